@@ -1,4 +1,5 @@
-//! A frame of the screen with a hundred characters: everything on the processor up to what the graphics card is told.
+//! A frame of the screen with a hundred characters: everything on the processor up to what the
+//! graphics card is told.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use segue::scene::{Colors, Director, Look, Viewport};
@@ -10,14 +11,7 @@ use std::hint::black_box;
 
 fn frame(c: &mut Criterion) {
     let colors = Colors::default();
-    let shown = [(
-        0,
-        Viewport {
-            width: 1440,
-            height: 900,
-            ..Viewport::default()
-        },
-    )];
+    let shown = [(0, Viewport { width: 1440, height: 900, ..Viewport::default() })];
     for count in [1, 100] {
         let mut session = Session::new();
         session
@@ -31,7 +25,9 @@ fn frame(c: &mut Criterion) {
         director.stage(&session, &shown, 1.0, Look::DARK, &colors, 0.0);
         while director.work() {}
         c.bench_function(&format!("scene of {count} characters"), |bench| {
-            bench.iter(|| director.stage(black_box(&session), &shown, 1.0, Look::DARK, &colors, 1.0 / 60.0));
+            bench.iter(|| {
+                director.stage(black_box(&session), &shown, 1.0, Look::DARK, &colors, 1.0 / 60.0)
+            });
         });
     }
 }
@@ -43,9 +39,8 @@ fn mesh(c: &mut Criterion) {
         bench.iter(|| SkinnedMesh::around(black_box(&skeleton), &roles, 1.0));
     });
     let mut sculptor = Sculptor::new(&skeleton, &roles, &skeleton.rest_pose());
-    let sculpture = std::iter::from_fn(|| Some(sculptor.advance()))
-        .find_map(|done| done)
-        .expect("a body");
+    let sculpture =
+        std::iter::from_fn(|| Some(sculptor.advance())).find_map(|done| done).expect("a body");
     c.bench_function("another girth of that body", |bench| {
         bench.iter(|| sculpture.with_girth(black_box(1.3)));
     });

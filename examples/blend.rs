@@ -21,7 +21,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let run = Arc::new(synthesize(&Params::new(Action::Run))?.clip);
     let roles = Roles::detect(walk.skeleton());
 
-    // Which window of the walk is most like a window of the run, after the best alignment on the ground?
+    // Which window of the walk is most like a window of the run, after the best alignment on the
+    // ground?
     let weights = limb_weights(walk.skeleton());
     let height = f64::from(roles.body_height(walk.skeleton()));
     let best = best_transition(&walk, &run, &weights, height, &SearchOptions::new(WINDOW))?;
@@ -31,12 +32,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (a, b) = (Source::new(Arc::clone(&walk), &roles), Source::new(Arc::clone(&run), &roles));
     let traces = [&walk, &run].map(|clip| MotionTrace::new(clip, &roles));
     for window in [0, WINDOW] {
-        let options = DissolveOptions {
-            window,
-            ..DissolveOptions::default()
-        };
+        let options = DissolveOptions { window, ..DissolveOptions::default() };
         let result = dissolve(&a, best.leave, &b, best.enter, &options)?.clip;
-        let metrics = ResultMetrics::measure(&MotionTrace::new(&result, &roles), &traces.each_ref());
+        let metrics =
+            ResultMetrics::measure(&MotionTrace::new(&result, &roles), &traces.each_ref());
         let jump = metrics.velocity_jump_dps.ok_or("the clips are too short to measure")?;
         println!("window of {window:2} frames: velocity jump {jump:.0} °/s");
         if let (Some(path), WINDOW) = (std::env::args_os().nth(1), window) {

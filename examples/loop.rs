@@ -14,10 +14,7 @@ use std::error::Error;
 use std::sync::Arc;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let params = Params {
-        turn_rate_dps: 30.0,
-        ..Params::new(Action::Walk)
-    };
+    let params = Params { turn_rate_dps: 30.0, ..Params::new(Action::Walk) };
     let walk = Arc::new(synthesize(&params)?.clip);
     let roles = Roles::detect(walk.skeleton());
     let contacts = Contacts::detect(&walk, &roles, &ContactOptions::default());

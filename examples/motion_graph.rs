@@ -22,15 +22,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let skeleton = clips.first().ok_or("no preset is a walk")?.skeleton();
     let roles = Roles::detect(skeleton);
     let height = f64::from(roles.body_height(skeleton));
-    let sources = clips.iter().map(|clip| Arc::new(Source::new(Arc::clone(clip), &roles))).collect();
+    let sources =
+        clips.iter().map(|clip| Arc::new(Source::new(Arc::clone(clip), &roles))).collect();
     let set = Arc::new(FrameSet::new(sources, height)?);
 
     // The distance of every window of frames to every other one; its minima are the transitions.
-    let options = GraphOptions {
-        blend_window: 20,
-        edge_threshold_cm: 8.0,
-        ..GraphOptions::default()
-    };
+    let options =
+        GraphOptions { blend_window: 20, edge_threshold_cm: 8.0, ..GraphOptions::default() };
     let mut pairs = AllPairs::new(Arc::clone(&set))?;
     while !pairs.advance(100_000)?.is_complete() {}
     let candidates = Candidates::find(&pairs, &pairs.distances(options.blend_window)?, &options)?;
@@ -44,7 +42,8 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let choices = Arc::new(Choices::new(&graph, &WeightOptions::default())?);
     let mut walker = Walker::new(Arc::clone(&graph), choices, 7);
-    let mut stitcher = Stitcher::new(Arc::clone(&set), &StitchOptions::dissolve(options.blend_window));
+    let mut stitcher =
+        Stitcher::new(Arc::clone(&set), &StitchOptions::dissolve(options.blend_window));
     let (mut pieces, mut frames) = (Vec::new(), 0);
     while (frames as f64) < 30.0 * set.fps() {
         let stay = walker.next_stay().ok_or("a pruned graph has no dead end")?;
@@ -53,8 +52,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         pieces.push(piece);
     }
     let (walk, _) = assembled(&pieces)?.ok_or("the walk is empty")?;
-    let traces: Vec<MotionTrace> = clips.iter().map(|clip| MotionTrace::new(clip, &roles)).collect();
-    let metrics = ResultMetrics::measure(&MotionTrace::new(&walk, &roles), &traces.iter().collect::<Vec<_>>());
+    let traces: Vec<MotionTrace> =
+        clips.iter().map(|clip| MotionTrace::new(clip, &roles)).collect();
+    let metrics = ResultMetrics::measure(
+        &MotionTrace::new(&walk, &roles),
+        &traces.iter().collect::<Vec<_>>(),
+    );
     let jump = metrics.pose_jump_deg.ok_or("the walk is too short to measure")?;
     println!(
         "a walk of {:.1} s in {} pieces: pose jump {jump:.1} °",

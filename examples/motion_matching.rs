@@ -1,20 +1,25 @@
 //! Steers a character along a figure eight by motion matching, and measures how well it follows.
 //!
-//! `cargo run --release --no-default-features --example motion_matching -- drive.bvh` also writes the motion.
+//! `cargo run --release --no-default-features --example motion_matching -- drive.bvh` also writes
+//! the motion.
 
 #![expect(clippy::print_stdout, reason = "the numbers are the example's output")]
 
 use segue_formats::bvh;
-use segue_motion::matching::{ControllerOptions, Database, DatabaseOptions, Scenario, drive, made_clips};
+use segue_motion::matching::{
+    ControllerOptions, Database, DatabaseOptions, Scenario, drive, made_clips,
+};
 use std::error::Error;
 use std::sync::Arc;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    // Features of every frame: where the feet and the hips are, how they move, and where the next second leads.
+    // Features of every frame: where the feet and the hips are, how they move, and where the next
+    // second leads.
     let database = Arc::new(Database::new(made_clips(1.75)?, &DatabaseOptions::default())?);
     println!("{} frames in {} motions", database.frames(), database.motions().len());
 
-    // The recorded stick is the input of every frame; ten times a second the best frame is searched for.
+    // The recorded stick is the input of every frame; ten times a second the best frame is searched
+    // for.
     let recording = Scenario::FigureEight.recording();
     let driven = drive(&database, ControllerOptions::default(), &recording)?;
     let metrics = driven.metrics(&database);

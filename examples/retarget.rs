@@ -5,7 +5,9 @@
 #![expect(clippy::print_stdout, reason = "the numbers are the example's output")]
 
 use segue_formats::bvh;
-use segue_motion::clip::{Clip, ContactOptions, Contacts, character_frames, ground_speed, retarget};
+use segue_motion::clip::{
+    Clip, ContactOptions, Contacts, character_frames, ground_speed, retarget,
+};
 use segue_motion::metrics::foot_slide_cm;
 use segue_motion::skeleton::{JointMap, Roles, Skeleton};
 use segue_motion::synth::{Action, Params, humanoid, synthesize};
@@ -36,7 +38,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Prints the height of a body, its speed over the ground, and how far its planted feet slide at most.
+/// Prints the height of a body, its speed over the ground, and how far its planted feet slide at
+/// most.
 fn print_gait(name: &str, clip: &Clip, roles: &Roles) {
     let height = roles.body_height(clip.skeleton());
     let speed = ground_speed(&character_frames(clip, roles), clip.fps());

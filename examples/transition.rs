@@ -1,6 +1,7 @@
 //! Goes from a walk to a run by four methods at the same frames, and compares the seams.
 //!
-//! `cargo run --no-default-features --example transition -- transition.bvh` also writes the inertialized result.
+//! `cargo run --no-default-features --example transition -- transition.bvh` also writes the
+//! inertialized result.
 
 #![expect(clippy::print_stdout, reason = "the numbers are the example's output")]
 
@@ -21,12 +22,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (a, b) = (Source::new(Arc::clone(&walk), &roles), Source::new(Arc::clone(&run), &roles));
     let traces = [&walk, &run].map(|clip| MotionTrace::new(clip, &roles));
 
-    let spring = Method::Inertialize(Inertialization::Offset(Decay::Spring { half_life_secs: 0.2 }));
+    let spring =
+        Method::Inertialize(Inertialization::Offset(Decay::Spring { half_life_secs: 0.2 }));
     let quintic = Method::Inertialize(Inertialization::Offset(Decay::Quintic { blend_secs: 0.4 }));
-    let dissolve = Method::Dissolve {
-        window: 24,
-        law: WeightLaw::default(),
-    };
+    let dissolve = Method::Dissolve { window: 24, law: WeightLaw::default() };
     let methods = [
         ("cut", Method::Cut),
         ("dissolve", dissolve),
@@ -35,7 +34,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     ];
     for (name, method) in methods {
         let result = concatenate(&a, 100, &b, 20, &TransitionOptions::new(method))?.clip;
-        let metrics = ResultMetrics::measure(&MotionTrace::new(&result, &roles), &traces.each_ref());
+        let metrics =
+            ResultMetrics::measure(&MotionTrace::new(&result, &roles), &traces.each_ref());
         let pose = metrics.pose_jump_deg.ok_or("the clips are too short to measure")?;
         let velocity = metrics.velocity_jump_dps.ok_or("the clips are too short to measure")?;
         println!("{name:12} pose jump {pose:5.1} °, velocity jump {velocity:5.0} °/s");

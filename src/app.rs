@@ -1,6 +1,7 @@
 //! The app: the document and what surrounds it, frame by frame.
 //!
-//! [`Segue`] outlives the window that draws it: when the graphics device is lost, a new one draws the same [`Segue`] on.
+//! [`Segue`] outlives the window that draws it: when the graphics device is lost, a new one draws
+//! the same [`Segue`] on.
 
 mod address_bar;
 pub(crate) mod api;
@@ -33,13 +34,15 @@ use std::time::Duration;
 
 /// How much of a frame may go into work that is left over, milliseconds.
 const WORK_MS: f64 = 5.0;
-/// Where frames take long, as without a graphics card, work may take this share of them, up to so many milliseconds: it would hardly go on otherwise.
+/// Where frames take long, as without a graphics card, work may take this share of them, up to so
+/// many milliseconds: it would hardly go on otherwise.
 const WORK_SHARE: f64 = 0.25;
 /// See [`WORK_SHARE`].
 const MOST_WORK_MS: f64 = 60.0;
 /// How often it is shown how far work has come.
 const SHOW_PROGRESS: Duration = Duration::from_millis(200);
-/// Time that the playhead skips over when a frame took longer than that, seconds: a page that was in the background does not leap on.
+/// Time that the playhead skips over when a frame took longer than that, seconds: a page that was
+/// in the background does not leap on.
 const LONGEST_STEP_SECS: f64 = 0.25;
 
 /// Without a graphics card a picture every so many milliseconds is enough.
@@ -141,13 +144,15 @@ struct Window {
     generation: u64,
     /// As the API calls it; empty before there is one.
     backend: &'static str,
-    /// Where there is no graphics card: what sees to it that drawing leaves room for everything else.
+    /// Where there is no graphics card: what sees to it that drawing leaves room for everything
+    /// else.
     pace: Option<Pace>,
     /// How it looks; none before its first frame.
     theme: Option<Theme>,
     /// What it speaks.
     spoken: Spoken,
-    /// Whether the last frame was computed inside of an input event, which eframe's own clock does not see.
+    /// Whether the last frame was computed inside of an input event, which eframe's own clock does
+    /// not see.
     within_event: bool,
 }
 
@@ -157,7 +162,8 @@ pub(crate) type Shared = Rc<RefCell<Segue>>;
 impl Segue {
     /// Starts with the link in the address, and asks for what is stored.
     ///
-    /// A page inside of another page stores nothing: it would show, and overwrite, what the reader works on elsewhere.
+    /// A page inside of another page stores nothing: it would show, and overwrite, what the reader
+    /// works on elsewhere.
     pub(crate) fn start(inbox: Inbox) -> Shared {
         let link = platform::location_query();
         let embedded = link::read(&link).values.contains(&(Key::Embed, Value::Switch(true)));
@@ -186,12 +192,7 @@ impl Segue {
             frames: Frames::default(),
             events: Vec::new(),
             told: Told::default(),
-            clock: Clock {
-                ticked: now_ms,
-                left_work: None,
-                frame_took: 0.0,
-                frame_began: now_ms,
-            },
+            clock: Clock { ticked: now_ms, left_work: None, frame_took: 0.0, frame_began: now_ms },
             window: Window::default(),
             panels: UiState::default(),
             curves: CurveCache::default(),
@@ -207,11 +208,9 @@ impl Segue {
     /// Takes a new window, with all that belongs to its graphics device.
     fn attach(&mut self, cc: &eframe::CreationContext<'_>) {
         self.inbox.wakes(&cc.egui_ctx);
-        self.window = Window {
-            generation: self.window.generation + 1,
-            ..Window::default()
-        };
-        // Fonts take effect with the next frame: this way it is the first one, and the work is done while the storage opens.
+        self.window = Window { generation: self.window.generation + 1, ..Window::default() };
+        // Fonts take effect with the next frame: this way it is the first one, and the work is done
+        // while the storage opens.
         self.dress(&cc.egui_ctx);
         let Some(state) = &cc.wgpu_render_state else {
             return;
@@ -222,10 +221,11 @@ impl Segue {
         self.window.pace = in_software.then(|| Pace::new(&state.device, &state.queue));
         crate::render::install(state);
         let (inbox, generation) = (self.inbox.clone(), self.window.generation);
-        state
-            .device
-            .set_device_lost_callback(move |_, reason| inbox.push(Incoming::DeviceLost { generation, reason }));
-        // Without this, wgpu panics at the first complaint of a driver, and a panic is the end of everything.
+        state.device.set_device_lost_callback(move |_, reason| {
+            inbox.push(Incoming::DeviceLost { generation, reason })
+        });
+        // Without this, wgpu panics at the first complaint of a driver, and a panic is the end of
+        // everything.
         state
             .device
             .on_uncaptured_error(std::sync::Arc::new(|error| log::error!("graphics: {error}")));
@@ -255,7 +255,8 @@ impl Segue {
         self.session.apply(command)
     }
 
-    /// What happens once, when the work and the link are here: who wants little motion starts it by hand.
+    /// What happens once, when the work and the link are here: who wants little motion starts it by
+    /// hand.
     fn begin(&mut self) {
         if platform::prefers_stillness() && self.session.params().is_on(Key::Play) {
             self.obey(Command::TogglePlay);
@@ -267,14 +268,16 @@ impl Segue {
         let passed = (now_ms - self.clock.ticked).max(0.0) / 1e3;
         self.clock.ticked = now_ms;
         let playing = self.session.params().is_on(Key::Play);
-        let ticked = self.session.tick(if playing { passed.min(LONGEST_STEP_SECS) } else { passed });
+        let ticked =
+            self.session.tick(if playing { passed.min(LONGEST_STEP_SECS) } else { passed });
         if self.session.is_driven() {
             self.session.tick_took((platform::now_ms() - now_ms) / 1e3);
         }
         ticked
     }
 
-    /// Takes what has come in, sends what is asked for, and works on what is left over for a while. `true` while there is more to do.
+    /// Takes what has come in, sends what is asked for, and works on what is left over for a while.
+    /// `true` while there is more to do.
     pub(crate) fn pump(&mut self) -> bool {
         platform::follow_memory(&mut self.reader, &mut self.session);
         for incoming in self.inbox.take() {
@@ -307,9 +310,11 @@ impl Segue {
         more
     }
 
-    /// Whether something is under way that soon changes what is shown. A large file that is read elsewhere takes its time.
+    /// Whether something is under way that soon changes what is shown. A large file that is read
+    /// elsewhere takes its time.
     pub(crate) fn is_busy(&self) -> bool {
-        let soon = self.session.jobs().iter().any(|job| job.task.is_none()) || matches!(self.session.lesson(), Some(Lesson::Waiting));
+        let soon = self.session.jobs().iter().any(|job| job.task.is_none())
+            || matches!(self.session.lesson(), Some(Lesson::Waiting));
         self.keeper.is_waiting()
             || !self.downloads.is_empty()
             || !self.session.awaited_samples().is_empty()
@@ -324,9 +329,12 @@ impl Segue {
         self.keeper.is_waiting()
     }
 
-    /// Whether what is stored is to be expected any moment, or is being read, though something is shown already.
+    /// Whether what is stored is to be expected any moment, or is being read, though something is
+    /// shown already.
     pub(crate) fn awaits_work(&mut self) -> bool {
-        self.is_waiting() || self.keeper.is_late(platform::now_ms()) || self.session.is_reading_small()
+        self.is_waiting()
+            || self.keeper.is_late(platform::now_ms())
+            || self.session.is_reading_small()
     }
 
     /// Carries out a command of the user's. What cannot be done is said.
@@ -336,7 +344,8 @@ impl Segue {
         }
     }
 
-    /// What happens in every frame, and now and then while the page is hidden. No drawing. `true` while there is work left over.
+    /// What happens in every frame, and now and then while the page is hidden. No drawing. `true`
+    /// while there is work left over.
     fn logic(&mut self, ctx: &egui::Context) -> bool {
         self.clock.frame_began = platform::now_ms();
         let more = self.pump();
@@ -344,12 +353,9 @@ impl Segue {
         if ticked {
             self.animate(ctx);
         } else if more {
-            // Between frames work goes on without a new picture: all there is to see is how far it is.
-            let soon = if platform::WORKS_BETWEEN_FRAMES {
-                SHOW_PROGRESS
-            } else {
-                Duration::ZERO
-            };
+            // Between frames work goes on without a new picture: all there is to see is how far it
+            // is.
+            let soon = if platform::WORKS_BETWEEN_FRAMES { SHOW_PROGRESS } else { Duration::ZERO };
             ctx.request_repaint_after(soon);
         }
         more && !self.keeper.is_waiting()
@@ -371,9 +377,12 @@ impl Segue {
         self.dress(ui.ctx());
         let before = self.session.revision();
         let mut frame = picture::Place::default();
-        let mut reserve = |stage: egui::Rect, panes: &[(usize, egui::Rect)], ui: &mut egui::Ui| frame.reserve(stage, panes, ui);
+        let mut reserve = |stage: egui::Rect, panes: &[(usize, egui::Rect)], ui: &mut egui::Ui| {
+            frame.reserve(stage, panes, ui)
+        };
         self.panels.cameras = self.picture.cameras(self.session.panes().len());
-        self.panels.language = self.speech.tend(&self.session, &mut self.window.spoken, &self.inbox, ui.ctx());
+        self.panels.language =
+            self.speech.tend(&self.session, &mut self.window.spoken, &self.inbox, ui.ctx());
         self.session.read_lessons_in(self.panels.language.tag());
         self.panels.fetching = self.downloads.under_way().collect();
         self.panels.stored = self.keeper.progress();
@@ -434,7 +443,8 @@ impl Segue {
         }
     }
 
-    /// Tells once, before the first file is read, that the page around this one can use it: it drives this one by the page's API.
+    /// Tells once, before the first file is read, that the page around this one can use it: it
+    /// drives this one by the page's API.
     fn tell_of_host(&mut self) {
         if self.panels.host_reads && !std::mem::replace(&mut self.has_told_of_host, true) {
             self.session.say(Level::Warning, ui::HOST_READS);
@@ -464,7 +474,9 @@ impl Segue {
                     platform::take_picture(stage, &self.inbox);
                 }
             }
-            Action::SaveText { name, mime, text } => platform::download(name, mime, text.as_bytes(), &self.inbox),
+            Action::SaveText { name, mime, text } => {
+                platform::download(name, mime, text.as_bytes(), &self.inbox)
+            }
             Action::Save { which, how } => match self.export_as(which, how) {
                 Ok(file) => platform::download(&file.name, file.mime, &file.bytes, &self.inbox),
                 Err(reason) => self.session.say(
@@ -474,14 +486,21 @@ impl Segue {
             },
             Action::SavePicture => {
                 if let Some(stage) = self.picture.place() {
-                    platform::save_picture(&api::file_name(&self.stage_name(), "png"), stage, &self.inbox);
+                    platform::save_picture(
+                        &api::file_name(&self.stage_name(), "png"),
+                        stage,
+                        &self.inbox,
+                    );
                 }
             }
             Action::Record => match self.film.take() {
                 Some(film) => film.save(&self.stage_name(), &self.inbox),
                 None => {
                     if let Err(reason) = self.begin_film() {
-                        self.session.say(Level::Error, format!("The page could not be recorded: {reason}."));
+                        self.session.say(
+                            Level::Error,
+                            format!("The page could not be recorded: {reason}."),
+                        );
                     }
                 }
             },
@@ -502,11 +521,13 @@ impl Segue {
         self.film.take().ok_or_else(|| "no recording is under way".to_owned())
     }
 
-    /// Remembers how long the last frame took. eframe measures all of it, up to the commands for the graphics device, but only when it began
-    /// with the screen's beat; a frame that was computed inside of an input event is counted with what was measured here.
+    /// Remembers how long the last frame took. eframe measures all of it, up to the commands for
+    /// the graphics device, but only when it began with the screen's beat; a frame that was
+    /// computed inside of an input event is counted with what was measured here.
     fn note_frame_time(&mut self, ctx: &egui::Context, frame: &eframe::Frame) {
         let whole_ms = frame.info().cpu_usage.map(|secs| secs * 1e3);
-        let millis = if self.window.within_event { None } else { whole_ms }.unwrap_or(self.clock.frame_took as f32);
+        let millis = if self.window.within_event { None } else { whole_ms }
+            .unwrap_or(self.clock.frame_took as f32);
         if self.frames.count() > 0 {
             self.frames.took(self.clock.frame_took as f32, millis);
         }
@@ -514,7 +535,10 @@ impl Segue {
             let computed_at_once = |event: &egui::Event| {
                 matches!(
                     event,
-                    egui::Event::PointerButton { .. } | egui::Event::Copy | egui::Event::Cut | egui::Event::Paste(_)
+                    egui::Event::PointerButton { .. }
+                        | egui::Event::Copy
+                        | egui::Event::Cut
+                        | egui::Event::Paste(_)
                 )
             };
             input.events.iter().any(computed_at_once)
@@ -543,8 +567,8 @@ impl Segue {
         }
     }
 
-    /// Something moves by itself: the next picture comes with the screen's next beat, or, where pictures are drawn in software, in time to leave
-    /// the processor free for everything else.
+    /// Something moves by itself: the next picture comes with the screen's next beat, or, where
+    /// pictures are drawn in software, in time to leave the processor free for everything else.
     fn animate(&self, ctx: &egui::Context) {
         match &self.window.pace {
             Some(pace) => pace.next_frame(ctx, self.clock.frame_began, SOFTWARE_FRAME_MS),
@@ -575,9 +599,7 @@ impl Segue {
         let mut events = std::mem::take(&mut self.events);
         for notice in self.session.notices().errors_since(self.told.next_notice) {
             self.told.next_notice = notice.id + 1;
-            events.push(Event::Error {
-                message: notice.text.clone(),
-            });
+            events.push(Event::Error { message: notice.text.clone() });
         }
         for job in self.session.jobs() {
             events.push(Event::Progress {
@@ -587,9 +609,7 @@ impl Segue {
         }
         if self.session.revision() != self.told.revision && !self.keeper.is_waiting() {
             self.told.revision = self.session.revision();
-            events.push(Event::Change {
-                query: link_query(&self.session),
-            });
+            events.push(Event::Change { query: link_query(&self.session) });
         }
         events
     }
@@ -606,17 +626,17 @@ pub(crate) struct View {
 
 impl View {
     /// A window that begins to draw `segue`.
-    pub(crate) fn new(segue: Shared, cc: &eframe::CreationContext<'_>, tell: impl Fn(Vec<Event>) + 'static) -> Self {
+    pub(crate) fn new(
+        segue: Shared,
+        cc: &eframe::CreationContext<'_>,
+        tell: impl Fn(Vec<Event>) + 'static,
+    ) -> Self {
         segue.borrow_mut().attach(cc);
-        Self {
-            segue,
-            tell: Box::new(tell),
-            works: Rc::default(),
-        }
+        Self { segue, tell: Box::new(tell), works: Rc::default() }
     }
 
-    /// Has what a frame left over done before the next one, where the platform can: frames are far apart where pictures are drawn in software,
-    /// and the processor waits for them.
+    /// Has what a frame left over done before the next one, where the platform can: frames are far
+    /// apart where pictures are drawn in software, and the processor waits for them.
     fn work_on(&self, ctx: &egui::Context) {
         if self.works.replace(true) {
             return;
@@ -624,7 +644,9 @@ impl View {
         let (segue, works, ctx) = (Rc::clone(&self.segue), Rc::clone(&self.works), ctx.clone());
         platform::between_frames(move || {
             // In use means that it is being worked on.
-            let Ok(mut segue) = segue.try_borrow_mut() else { return true };
+            let Ok(mut segue) = segue.try_borrow_mut() else {
+                return true;
+            };
             let before = segue.session.revision();
             let more = segue.pump();
             if !more || segue.session.revision() != before {

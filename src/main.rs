@@ -9,7 +9,8 @@ mod platform;
 mod render;
 mod ui;
 
-/// Opens the window. The command line names files to load, or a link's query: `segue walk.bvh "lab=view"`.
+/// Opens the window. The command line names files to load, or a link's query: `segue walk.bvh
+/// "lab=view"`.
 #[cfg(not(target_arch = "wasm32"))]
 fn main() -> eframe::Result {
     use eframe::egui::ViewportBuilder;
@@ -32,7 +33,8 @@ fn main() -> eframe::Result {
     )
 }
 
-/// The page's modules start the app, through the `SegueHandle` of [`platform`]; here is only what comes before.
+/// The page's modules start the app, through the `SegueHandle` of [`platform`]; here is only what
+/// comes before.
 #[cfg(target_arch = "wasm32")]
 fn main() {
     eframe::WebLogger::init(log::LevelFilter::Warn).ok();

@@ -1,5 +1,6 @@
-//! What the crates cannot say by themselves: the order of the folders inside `segue-motion` and the app, what the libraries never use, and that
-//! nothing unfinished passes. Read from the text of the sources, so that a violation is reported with its line.
+//! What the crates cannot say by themselves: the order of the folders inside `segue-motion` and the
+//! app, what the libraries never use, and that nothing unfinished passes. Read from the text of the
+//! sources, so that a violation is reported with its line.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -24,8 +25,9 @@ const MOTION: [(&str, &str); 13] = [
 
 const BELOW: &str = "math skeleton clip synth registration transition gait blend metrics";
 
-/// The folders of the app, and the worker that reads files, which uses none of them; what they may name of the app and of the workspace's crates.
-/// The platform holds the handle by which the page drives the app, so these two name each other.
+/// The folders of the app, and the worker that reads files, which uses none of them; what they may
+/// name of the app and of the workspace's crates. The platform holds the handle by which the page
+/// drives the app, so these two name each other.
 const APP: [(&str, &str); 7] = [
     ("scene", "segue_motion segue_session"),
     ("render", "scene segue_motion"),
@@ -69,9 +71,8 @@ fn arrows_go_one_way() {
     let sources: Vec<_> = ["src", "crates"].into_iter().flat_map(sources).collect();
     let tests = test_modules(&sources);
     let mut slips = Vec::new();
-    for (path, text) in sources
-        .iter()
-        .filter(|(path, _)| is_production(path) && !is_test_file(path, &tests))
+    for (path, text) in
+        sources.iter().filter(|(path, _)| is_production(path) && !is_test_file(path, &tests))
     {
         slips.extend(violations(path, text));
     }
@@ -141,7 +142,8 @@ fn a_violation_is_seen() {
     );
     assert_eq!(found("src/attic/old.rs", ""), ["src/attic/old.rs:1: `attic` has no row here"]);
     // Comments and tests may name what they like, but what comes after the tests is code again.
-    let tested = "// crate::ui\n#[cfg(test)]\nmod tests {\n    use crate::ui;\n}\nuse crate::app;\n";
+    let tested =
+        "// crate::ui\n#[cfg(test)]\nmod tests {\n    use crate::ui;\n}\nuse crate::app;\n";
     assert_eq!(found("src/scene/rig.rs", tested), ["src/scene/rig.rs:6: `scene` names `app`"]);
 
     let code = "fn f() {\n    g().unwrap();\n}\n#[cfg(test)]\nmod tests {\n    fn f() {\n        g().unwrap();\n    }\n}\n";
@@ -188,16 +190,15 @@ fn is_production(path: &Path) -> bool {
     path.starts_with("src") || path.iter().nth(2).is_some_and(|folder| folder == "src")
 }
 
-/// Returns the modules of a path below `src`, outermost first: `src/a/b.rs` and `src/a/b/mod.rs` are both `a`, `b`.
+/// Returns the modules of a path below `src`, outermost first: `src/a/b.rs` and `src/a/b/mod.rs`
+/// are both `a`, `b`.
 fn modules(path: &Path) -> Vec<String> {
     let path = path.with_extension("");
-    let mut names: Vec<String> = path.iter().map(|name| name.to_string_lossy().into_owned()).collect();
+    let mut names: Vec<String> =
+        path.iter().map(|name| name.to_string_lossy().into_owned()).collect();
     let source = names.iter().position(|name| name == "src").map_or(0, |at| at + 1);
     names.drain(..source);
-    if names
-        .last()
-        .is_some_and(|name| name == "mod" || (names.len() == 1 && name == "lib"))
-    {
+    if names.last().is_some_and(|name| name == "mod" || (names.len() == 1 && name == "lib")) {
         names.pop();
     }
     names
@@ -257,7 +258,8 @@ fn is_for_tests(line: &str) -> bool {
         .any(|start| line.starts_with(start))
 }
 
-/// Whether a line begins or continues an attribute. `is_open` says whether the attribute goes on in the next line.
+/// Whether a line begins or continues an attribute. `is_open` says whether the attribute goes on in
+/// the next line.
 fn continues_attribute(line: &str, is_open: &mut bool) -> bool {
     let belongs = *is_open || line.starts_with("#[");
     *is_open = belongs && !line.trim_end().ends_with(']');
@@ -306,7 +308,8 @@ fn places<'a>(code: &'a str, word: &'a str) -> impl Iterator<Item = usize> + 'a 
 
 /// The first names of a path that goes on with `rest`: one name, or those of a group.
 fn heads(rest: &str) -> Vec<&str> {
-    let name = |text: &'_ str| text.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(text.len());
+    let name =
+        |text: &'_ str| text.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(text.len());
     let Some(group) = rest.strip_prefix('{') else {
         return vec![&rest[..name(rest)]];
     };
@@ -335,7 +338,9 @@ fn violations(path: &Path, text: &str) -> Vec<String> {
     let modules = modules(path);
     let mut found = Vec::new();
     let line = |at: usize| code[..at].matches('\n').count() + 1;
-    let mut tell = |at: usize, what: String| found.push((at, format!("{}:{}: {what}", path.display(), line(at))));
+    let mut tell = |at: usize, what: String| {
+        found.push((at, format!("{}:{}: {what}", path.display(), line(at))))
+    };
     let in_app = path.starts_with("src");
     let rows: &[(&str, &str)] = match path.starts_with("crates/motion") {
         true => &MOTION,

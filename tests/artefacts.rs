@@ -1,5 +1,5 @@
-//! Artefacts of captured takes, and of takes that were spoiled on purpose, against an independent implementation
-//! (`tests/oracles/artefacts.py`).
+//! Artefacts of captured takes, and of takes that were spoiled on purpose, against an independent
+//! implementation (`tests/oracles/artefacts.py`).
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests: what fails here fails the test")]
 
@@ -53,7 +53,8 @@ fn take(name: &str) -> Clip {
 fn altered(clip: &Clip, change: impl Fn(usize, &mut [Quat], &mut Vec3)) -> Clip {
     let (mut rotations, mut roots) = (Vec::new(), Vec::new());
     for frame in 0..clip.frames() {
-        let (mut pose, mut root) = (clip.rotations(frame).to_vec(), clip.root_translations()[frame]);
+        let (mut pose, mut root) =
+            (clip.rotations(frame).to_vec(), clip.root_translations()[frame]);
         change(frame, &mut pose, &mut root);
         rotations.extend(pose);
         roots.push(root);
@@ -61,7 +62,8 @@ fn altered(clip: &Clip, change: impl Fn(usize, &mut [Quat], &mut Vec3)) -> Clip 
     Clip::new("changed", Arc::clone(clip.skeleton()), clip.fps(), rotations, roots).unwrap()
 }
 
-/// Returns the median over the frames of the body's height, from the lowest to the highest joint or end, m.
+/// Returns the median over the frames of the body's height, from the lowest to the highest joint or
+/// end, m.
 fn height_m(clip: &Clip) -> f32 {
     let ends: Vec<(usize, Vec3)> = (clip.skeleton().joints().iter().enumerate())
         .filter_map(|(index, joint)| Some((index, joint.end_site?)))
@@ -100,9 +102,11 @@ fn takes_and_artefacts_measure_as_the_oracle_has_it() {
     let close = |a: f64, b: f64| (a - b).abs() <= 0.01 * b.abs() + 1e-3;
     for (index, case) in cases.iter().enumerate() {
         let clip = take(&case.take);
-        let clip = case.change.as_ref().map_or_else(|| clip.clone(), |change| changed(&clip, change));
+        let clip =
+            case.change.as_ref().map_or_else(|| clip.clone(), |change| changed(&clip, change));
         let trace = |clip: &Clip| MotionTrace::new(clip, &Roles::detect(clip.skeleton()));
-        let sources: Vec<MotionTrace> = case.sources.iter().map(|name| trace(&take(name))).collect();
+        let sources: Vec<MotionTrace> =
+            case.sources.iter().map(|name| trace(&take(name))).collect();
         let (own, expected) = (trace(&clip), &case.numbers);
         let found = own.beside(&sources.iter().collect::<Vec<_>>());
         assert_eq!(clip.frames(), expected.frames, "{index}");

@@ -21,7 +21,8 @@ struct Canvas {
     pixels: Vec<u8>,
 }
 
-/// From where a mesh is seen: turned by `yaw` about the vertical through `middle`, which comes to the pixel `center`; `scale` in pixels per metre.
+/// From where a mesh is seen: turned by `yaw` about the vertical through `middle`, which comes to
+/// the pixel `center`; `scale` in pixels per metre.
 struct View {
     yaw: f32,
     middle: Vec3,
@@ -41,12 +42,7 @@ impl Canvas {
 
     /// Draws a mesh whose vertices are `positions` and `normals`, as `view` sees it.
     fn draw(&mut self, positions: &[Vec3], normals: &[Vec3], triangles: &[[u32; 3]], view: &View) {
-        let View {
-            yaw,
-            middle,
-            center,
-            scale,
-        } = *view;
+        let View { yaw, middle, center, scale } = *view;
         let turn = Quat::from_rotation_x(0.12) * Quat::from_rotation_y(yaw);
         let light = Vec3::new(-0.45, 0.7, 0.55).normalize_or_zero();
         for triangle in triangles {
@@ -64,8 +60,12 @@ impl Canvas {
                 continue;
             }
             let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-            for y in low.y.floor().max(0.0) as usize..(high.y.ceil().max(0.0) as usize).min(self.height) {
-                for x in low.x.floor().max(0.0) as usize..(high.x.ceil().max(0.0) as usize).min(self.width) {
+            for y in
+                low.y.floor().max(0.0) as usize..(high.y.ceil().max(0.0) as usize).min(self.height)
+            {
+                for x in low.x.floor().max(0.0) as usize
+                    ..(high.x.ceil().max(0.0) as usize).min(self.width)
+                {
                     let p = glam::Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
                     let u = (b.truncate() - p).perp_dot(c.truncate() - p) / area;
                     let v = (c.truncate() - p).perp_dot(a.truncate() - p) / area;
@@ -77,10 +77,15 @@ impl Canvas {
                     }
                     self.depth[at] = z;
                     let normal = (na * u + nb * v + nc * w).normalize_or(Vec3::Z);
-                    let lit = 0.62 * normal.dot(light).max(0.0) + 0.18 * (normal.y * 0.5 + 0.5) + 0.14 * normal.z.max(0.0);
-                    let shine = (normal.dot((light + Vec3::Z).normalize_or_zero()).max(0.0)).powi(24) * 0.10;
+                    let lit = 0.62 * normal.dot(light).max(0.0)
+                        + 0.18 * (normal.y * 0.5 + 0.5)
+                        + 0.14 * normal.z.max(0.0);
+                    let shine = (normal.dot((light + Vec3::Z).normalize_or_zero()).max(0.0))
+                        .powi(24)
+                        * 0.10;
                     for (channel, clay) in [0.98, 0.95, 0.92].into_iter().enumerate() {
-                        self.pixels[at * 3 + channel] = (255.0 * (lit * clay + shine).clamp(0.0, 1.0).powf(0.7)) as u8;
+                        self.pixels[at * 3 + channel] =
+                            (255.0 * (lit * clay + shine).clamp(0.0, 1.0).powf(0.7)) as u8;
                     }
                 }
             }
@@ -96,7 +101,9 @@ impl Canvas {
         let size = [self.width as u32, self.height as u32].map(u32::to_be_bytes);
         let header = [&size[0][..], &size[1], &[8, 2, 0, 0, 0]].concat();
         let mut file = b"\x89PNG\r\n\x1a\n".to_vec();
-        for (kind, data) in [(b"IHDR", header), (b"IDAT", rows.finish().unwrap()), (b"IEND", vec![])] {
+        for (kind, data) in
+            [(b"IHDR", header), (b"IDAT", rows.finish().unwrap()), (b"IEND", vec![])]
+        {
             let mut crc = Crc::new();
             crc.update(kind);
             crc.update(&data);
@@ -132,12 +139,7 @@ fn picture(name: &str, mesh: &SkinnedMesh, poses: &[WorldPose]) {
         let scale = (cell[0] * 0.96 / wide).min(cell[1] * 0.92 / (high - low).y.max(1e-3));
         for (column, yaw) in views.into_iter().enumerate() {
             let center = [cell[0] * (column as f32 + 0.5), cell[1] * (row as f32 + 0.5)];
-            let view = View {
-                yaw,
-                middle: (low + high) * 0.5,
-                center,
-                scale,
-            };
+            let view = View { yaw, middle: (low + high) * 0.5, center, scale };
             canvas.draw(&positions, &normals, &mesh.triangles, &view);
         }
     }
@@ -186,7 +188,8 @@ fn the_humanoid_stands_walks_and_runs() {
     picture("humanoid", &mesh, &poses);
 }
 
-/// Four legs, standing still, with joint axes that are turned by constants: its rest pose means nothing.
+/// Four legs, standing still, with joint axes that are turned by constants: its rest pose means
+/// nothing.
 fn dog() -> Clip {
     let bones: [(&str, Option<usize>, [f32; 3]); 16] = [
         ("Pelvis", None, [0.0, 0.6, -0.3]),
@@ -218,7 +221,10 @@ fn dog() -> Clip {
     let pose = |sway: f32| Pose {
         root_translation: Vec3::new(0.0, 0.6, 0.0),
         rotations: (0..skeleton.len())
-            .map(|joint| skeleton.parent(joint).map_or(Quat::from_rotation_y(sway), turn).conjugate() * turn(joint))
+            .map(|joint| {
+                skeleton.parent(joint).map_or(Quat::from_rotation_y(sway), turn).conjugate()
+                    * turn(joint)
+            })
             .collect(),
         translations: vec![],
     };
@@ -228,7 +234,9 @@ fn dog() -> Clip {
 
 #[test]
 fn the_takes_of_others_have_bodies_too() {
-    let Some(data) = std::env::var_os("SEGUE_SHARED").map(PathBuf::from).filter(|_| folder().is_some()) else {
+    let Some(data) =
+        std::env::var_os("SEGUE_SHARED").map(PathBuf::from).filter(|_| folder().is_some())
+    else {
         return;
     };
     let options = ImportOptions::default();
@@ -236,11 +244,7 @@ fn the_takes_of_others_have_bodies_too() {
     let bvh = |name: &str| import(name, &read(name), &options).unwrap().clips.remove(0).clip;
     let skeleton = acclaim::read_skeleton("16.asf", &read("cmu/16/16.asf"), &options).unwrap();
     let amc = |name: &str| {
-        acclaim::read_motion(name, &read(name), &skeleton, &options)
-            .unwrap()
-            .clips
-            .remove(0)
-            .clip
+        acclaim::read_motion(name, &read(name), &skeleton, &options).unwrap().clips.remove(0).clip
     };
     let takes = [
         ("cmu_asf", amc("cmu/16/16_35.amc")),

@@ -1,5 +1,6 @@
-//! Cycles of walks and runs: those that are found in a clip, against an exhaustive search, and clips that are one cycle by themselves. On made motion
-//! everywhere, and on captured motion where this machine has it.
+//! Cycles of walks and runs: those that are found in a clip, against an exhaustive search, and
+//! clips that are one cycle by themselves. On made motion everywhere, and on captured motion where
+//! this machine has it.
 
 #![expect(clippy::unwrap_used, reason = "what fails here fails the test")]
 
@@ -29,12 +30,7 @@ fn gaits() -> Vec<(String, Clip)> {
         (Action::Start, 1.4, 0.0, 60.0),
         (Action::Stop, 1.4, 0.0, 60.0),
     ] {
-        let params = Params {
-            speed_mps,
-            turn_rate_dps,
-            fps,
-            ..Params::new(action)
-        };
+        let params = Params { speed_mps, turn_rate_dps, fps, ..Params::new(action) };
         all.push((
             format!("{action:?} {speed_mps} m/s {turn_rate_dps}°/s"),
             synthesize(&params).unwrap().clip,
@@ -44,21 +40,27 @@ fn gaits() -> Vec<(String, Clip)> {
         for folder in ["bandai-namco", "games105", "cmu"] {
             for (name, bytes) in bvh_files(&data.join(folder)) {
                 if ["walk", "run", "dash"].iter().any(|word| name.contains(word)) {
-                    let clip = import(&name, &bytes, &ImportOptions::default()).unwrap().clips.swap_remove(0).clip;
+                    let clip = import(&name, &bytes, &ImportOptions::default())
+                        .unwrap()
+                        .clips
+                        .swap_remove(0)
+                        .clip;
                     all.push((name, clip));
                 }
             }
         }
     }
     let takes = [
-        "11", "13", "15", "16", "17", "19", "22", "29", "33", "35", "37", "39", "41", "43", "45", "55",
+        "11", "13", "15", "16", "17", "19", "22", "29", "33", "35", "37", "39", "41", "43", "45",
+        "55",
     ];
     all.extend(captured(&takes).into_iter().map(|(name, clip)| (format!("CMU 16_{name}"), clip)));
     all
 }
 
-/// The least distance of any two windows that are a cycle apart, centimetres on the reference body, with the slow distance: no grid, no refinement.
-/// As in the search, a foot comes down in a cycle if one does anywhere, and the whole clip is compared by its ends alone.
+/// The least distance of any two windows that are a cycle apart, centimetres on the reference body,
+/// with the slow distance: no grid, no refinement. As in the search, a foot comes down in a cycle
+/// if one does anywhere, and the whole clip is compared by its ends alone.
 fn least_cm(clip: &Clip, contacts: &Contacts, body_height: f64, search: &CycleSearch) -> f64 {
     let (frames, fps) = (clip.frames(), clip.fps());
     let weights = limb_weights(clip.skeleton());
@@ -79,13 +81,15 @@ fn least_cm(clip: &Clip, contacts: &Contacts, body_height: f64, search: &CycleSe
             *place = place.min(100.0 * f64::from(rms_m) * REFERENCE_HEIGHT_M / body_height);
         }
     };
-    let grid = distances_directly((clip, 0..frames), (clip, 0..frames), &weights, window, 1).unwrap();
+    let grid =
+        distances_directly((clip, 0..frames), (clip, 0..frames), &weights, window, 1).unwrap();
     for row in 0..grid.rows() {
         for column in row + 1..grid.columns() {
             offer(row, column, grid.get(row, column).unwrap());
         }
     }
-    let ends = distances_directly((clip, 0..1), (clip, frames - 1..frames), &weights, 1, 1).unwrap();
+    let ends =
+        distances_directly((clip, 0..1), (clip, frames - 1..frames), &weights, 1, 1).unwrap();
     offer(0, frames - 1, ends.get(0, 0).unwrap());
     if least[1].is_finite() { least[1] } else { least[0] }
 }
@@ -115,7 +119,8 @@ fn automatic_cycles_are_as_good_as_those_of_an_exhaustive_search() {
             looped.before.turn_deg,
             found.phase_gap
         );
-        // Half a millimetre is what the fast distance may be off by where windows are all but equal.
+        // Half a millimetre is what the fast distance may be off by where windows are all but
+        // equal.
         assert!(found.rms_cm <= 1.1 * least + 0.05, "{name}: {} {least}", found.rms_cm);
         compared += 1;
     }

@@ -1,5 +1,6 @@
-//! The documents agree with the project: the table of parameters in `docs/parameters.md` is the program's
-//! (`cargo xtask docs` writes it), links lead somewhere, and files that a text names exist.
+//! The documents agree with the project: the table of parameters in `docs/parameters.md` is the
+//! program's (`cargo xtask docs` writes it), links lead somewhere, and files that a text names
+//! exist.
 
 use segue_session::{Kind, PARAMS, Param};
 use std::fmt::Write as _;
@@ -12,29 +13,20 @@ const END: &str = "<!-- /parameters -->";
 fn row(param: &Param) -> String {
     let values = match param.kind {
         Kind::Number { min, max, auto, .. } => {
-            let unit = if param.unit.is_empty() {
-                String::new()
-            } else {
-                format!(" {}", param.unit)
-            };
+            let unit =
+                if param.unit.is_empty() { String::new() } else { format!(" {}", param.unit) };
             format!("{min} to {max}{unit}{}", if auto { ", or `auto`" } else { "" })
         }
         Kind::Switch => "`on`, `off`".to_owned(),
-        Kind::Choice(choices) => choices
-            .iter()
-            .map(|choice| format!("`{}`", choice.key))
-            .collect::<Vec<_>>()
-            .join(", "),
+        Kind::Choice(choices) => {
+            choices.iter().map(|choice| format!("`{}`", choice.key)).collect::<Vec<_>>().join(", ")
+        }
         Kind::Clip => "a clip's id".to_owned(),
         Kind::Compare => "`key:value,value`".to_owned(),
         Kind::Text => "text".to_owned(),
     };
     let default = param.format(&param.default_value());
-    let default = if default.is_empty() {
-        String::new()
-    } else {
-        format!("`{default}`")
-    };
+    let default = if default.is_empty() { String::new() } else { format!("`{default}`") };
     format!(
         "| `{}` | {} | {values} | {default} | {} |\n",
         param.name,
@@ -44,7 +36,8 @@ fn row(param: &Param) -> String {
 }
 
 fn table() -> String {
-    let mut table = "| key | part | values | default | what it does |\n|---|---|---|---|---|\n".to_owned();
+    let mut table =
+        "| key | part | values | default | what it does |\n|---|---|---|---|---|\n".to_owned();
     for param in PARAMS {
         table.push_str(&row(param));
     }
@@ -53,7 +46,8 @@ fn table() -> String {
 
 /// Folders of the repository by which a code span is recognised as a path.
 const FOLDERS: [&str; 11] = [
-    ".ci", ".github", "assets", "benches", "crates", "docs", "examples", "fuzz", "src", "tests", "tools",
+    ".ci", ".github", "assets", "benches", "crates", "docs", "examples", "fuzz", "src", "tests",
+    "tools",
 ];
 
 fn root() -> &'static Path {
@@ -65,11 +59,15 @@ fn documents() -> Vec<PathBuf> {
     let mut folders = vec![PathBuf::new(), "docs".into()];
     for parent in ["crates", "assets"] {
         let entries = fs::read_dir(root().join(parent)).expect("a folder");
-        folders.extend(entries.map(|entry| Path::new(parent).join(entry.expect("an entry").file_name())));
+        folders.extend(
+            entries.map(|entry| Path::new(parent).join(entry.expect("an entry").file_name())),
+        );
     }
     let mut found = Vec::new();
     for folder in folders.iter().filter(|folder| !folder.ends_with("lessons")) {
-        let Ok(entries) = fs::read_dir(root().join(folder)) else { continue };
+        let Ok(entries) = fs::read_dir(root().join(folder)) else {
+            continue;
+        };
         for entry in entries {
             let path = folder.join(entry.expect("an entry").file_name());
             if path.extension().is_some_and(|extension| extension == "md") {
@@ -97,8 +95,13 @@ fn anchor(heading: &str) -> String {
     kept.collect::<String>().to_lowercase().replace(' ', "-")
 }
 
-/// Returns the links of a document that lead nowhere. `read` returns the text of a file, and an empty one for a folder.
-fn broken_links(document: &Path, text: &str, read: impl Fn(&Path) -> Option<String>) -> Vec<String> {
+/// Returns the links of a document that lead nowhere. `read` returns the text of a file, and an
+/// empty one for a folder.
+fn broken_links(
+    document: &Path,
+    text: &str,
+    read: impl Fn(&Path) -> Option<String>,
+) -> Vec<String> {
     let mut broken = Vec::new();
     for (line, content) in prose(text) {
         let markdown = content.split("](").skip(1).filter_map(|rest| rest.split_once(')'));
@@ -115,7 +118,9 @@ fn broken_links(document: &Path, text: &str, read: impl Fn(&Path) -> Option<Stri
             };
             let leads = match read(&path) {
                 Some(_) if section.is_empty() => true,
-                Some(text) => prose(&text).any(|(_, line)| line.starts_with('#') && anchor(line.trim_start_matches('#')) == section),
+                Some(text) => prose(&text).any(|(_, line)| {
+                    line.starts_with('#') && anchor(line.trim_start_matches('#')) == section
+                }),
                 None => false,
             };
             if !leads {
@@ -126,7 +131,8 @@ fn broken_links(document: &Path, text: &str, read: impl Fn(&Path) -> Option<Stri
     broken
 }
 
-/// Returns the code spans of a document that are paths of the repository and do not exist. Patterns such as `tests/*.rs` are left out.
+/// Returns the code spans of a document that are paths of the repository and do not exist. Patterns
+/// such as `tests/*.rs` are left out.
 fn missing_paths(document: &Path, text: &str, exists: impl Fn(&str) -> bool) -> Vec<String> {
     let mut missing = Vec::new();
     for (line, content) in prose(text) {
@@ -147,8 +153,10 @@ fn missing_paths(document: &Path, text: &str, exists: impl Fn(&str) -> bool) -> 
 fn parameter_table_is_that_of_the_program() {
     let path = root().join("docs/parameters.md");
     let text = fs::read_to_string(&path).expect("the document exists");
-    let (before, rest) = text.split_once(BEGIN).expect("the document has the mark where the table begins");
-    let (old, after) = rest.split_once(END).expect("the document has the mark where the table ends");
+    let (before, rest) =
+        text.split_once(BEGIN).expect("the document has the mark where the table begins");
+    let (old, after) =
+        rest.split_once(END).expect("the document has the mark where the table ends");
     let table = table();
     if std::env::var_os("SEGUE_WRITE_DOCS").is_some() {
         let mut new = String::new();
@@ -189,14 +197,17 @@ fn glossary_chinese_terms_are_those_on_screen() {
     let glossary = read("docs/glossary.md");
     let cells: Vec<Vec<&str>> = (glossary.lines())
         .map(|line| line.trim_matches('|').split('|').map(str::trim).collect::<Vec<_>>())
-        .filter(|cells| cells.len() == 4 && !cells[3].is_empty() && !["繁體中文", "---"].contains(&cells[3]))
+        .filter(|cells| {
+            cells.len() == 4 && !cells[3].is_empty() && !["繁體中文", "---"].contains(&cells[3])
+        })
         .collect();
     let terms = cells.iter().flat_map(|cells| cells[3].split('、'));
     let lessons: String = (segue_session::lesson::LESSONS.iter())
         .filter_map(|lesson| segue_session::lesson::file_name(lesson))
         .map(|file| read(&format!("assets/lessons/zh-Hant/{file}")))
         .collect();
-    let unknown: Vec<&str> = terms.filter(|term| !catalogue.contains(term) && !lessons.contains(term)).collect();
+    let unknown: Vec<&str> =
+        terms.filter(|term| !catalogue.contains(term) && !lessons.contains(term)).collect();
     assert!(cells.len() > 40, "only {} terms found", cells.len());
     assert!(unknown.is_empty(), "not on screen: {unknown:?}");
 }
@@ -204,7 +215,10 @@ fn glossary_chinese_terms_are_those_on_screen() {
 #[test]
 fn broken_links_and_missing_paths_are_found() {
     let text = "# A title: two\n[a](b.md) [c](d.md#two-words) [e](#a-title-two) <img src=\"f.png\">\n```\n[g](h.md)\n```\n[i](?lab=x)\n";
-    let read = |path: &Path| (path == Path::new("x/y.md") || path == Path::new("x/d.md")).then(|| text.replace(": ", " "));
+    let read = |path: &Path| {
+        (path == Path::new("x/y.md") || path == Path::new("x/d.md"))
+            .then(|| text.replace(": ", " "))
+    };
     assert_eq!(
         broken_links(Path::new("x/y.md"), text, read),
         [

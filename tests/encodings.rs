@@ -1,4 +1,5 @@
-//! A result depends on the motion, not on how a file writes it down: every lab gives the same for one motion in ten files.
+//! A result depends on the motion, not on how a file writes it down: every lab gives the same for
+//! one motion in ten files.
 
 #[path = "../crates/formats/tests/common/mod.rs"]
 mod common;
@@ -23,21 +24,14 @@ struct Subject {
 
 fn made(name: &'static str, height_m: f32, a: Action, b: Action) -> Subject {
     let make = |action| {
-        let params = Params {
-            height_m,
-            ..Params::new(action)
-        };
+        let params = Params { height_m, ..Params::new(action) };
         unrepeated(&synthesize(&params).expect("a motion").clip)
     };
-    Subject {
-        name,
-        a: make(a),
-        b: make(b),
-    }
+    Subject { name, a: make(a), b: make(b) }
 }
 
-/// The motion with a tremor that never repeats: made gaits are periodic to the last bit, and of two places that are equally good either may be
-/// taken.
+/// The motion with a tremor that never repeats: made gaits are periodic to the last bit, and of two
+/// places that are equally good either may be taken.
 fn unrepeated(clip: &Clip) -> Clip {
     let poses = (0..clip.frames()).map(|frame| {
         let mut pose = clip.pose(frame);
@@ -48,7 +42,8 @@ fn unrepeated(clip: &Clip) -> Clip {
         }
         pose
     });
-    Clip::from_poses(clip.name(), Arc::clone(clip.skeleton()), clip.fps(), poses).expect("poses of one skeleton")
+    Clip::from_poses(clip.name(), Arc::clone(clip.skeleton()), clip.fps(), poses)
+        .expect("poses of one skeleton")
 }
 
 /// Captured motion, where this machine has it, at 60 frames per second.
@@ -58,15 +53,12 @@ fn captured() -> Vec<Subject> {
         return vec![];
     };
     let slower = |clip: Clip| resample(&clip, 60.0, Interpolation::Cubic).expect("a rate");
-    vec![Subject {
-        name: "CMU 16",
-        a: slower(a),
-        b: slower(b),
-    }]
+    vec![Subject { name: "CMU 16", a: slower(a), b: slower(b) }]
 }
 
-/// The labs with their methods, as links; the last column is how far results may be apart, metres. Without mirrored copies: which twist about a
-/// bone is the mirror image of which is said by the rest pose alone, and where joints' axes are turned there is none.
+/// The labs with their methods, as links; the last column is how far results may be apart, metres.
+/// Without mirrored copies: which twist about a bone is the mirror image of which is said by the
+/// rest pose alone, and where joints' axes are turned there is none.
 const LABS: [(&str, f32); 21] = [
     ("lab=view", 0.001),
     ("lab=blend", 0.001),
@@ -169,8 +161,14 @@ fn differences(subject: &Subject) -> Vec<String> {
                 };
                 match apart {
                     Ok(apart) if apart <= *bound => {}
-                    Ok(apart) => wrong.push(format!("{}, {name}{placing}: {lab}: {:.1} mm", subject.name, 1000.0 * apart)),
-                    Err(said) => wrong.push(format!("{}, {name}{placing}: {lab}: {said}", subject.name)),
+                    Ok(apart) => wrong.push(format!(
+                        "{}, {name}{placing}: {lab}: {:.1} mm",
+                        subject.name,
+                        1000.0 * apart
+                    )),
+                    Err(said) => {
+                        wrong.push(format!("{}, {name}{placing}: {lab}: {said}", subject.name))
+                    }
                 }
             }
         }
@@ -187,7 +185,8 @@ fn files_of_one_motion_hold_the_same_joints() {
     std::fs::create_dir_all(&folder).expect("a folder");
     for (name, text) in encodings(&subject.a) {
         std::fs::write(folder.join(format!("walk--{name}.bvh")), &text).expect("a file");
-        let read = import("walk.bvh", text.as_bytes(), &ImportOptions::default()).expect("a file that is read");
+        let read = import("walk.bvh", text.as_bytes(), &ImportOptions::default())
+            .expect("a file that is read");
         let clip = &read.clips[0].clip;
         assert_eq!(clip.skeleton().len(), subject.a.skeleton().len(), "{name}");
         let found = clip.world_positions(0..clip.frames());

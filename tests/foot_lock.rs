@@ -1,4 +1,5 @@
-//! Feet that slide in a transition are planted: on captured motion, where this machine has it, and on made motion everywhere.
+//! Feet that slide in a transition are planted: on captured motion, where this machine has it, and
+//! on made motion everywhere.
 
 #[path = "../crates/formats/tests/common/mod.rs"]
 mod common;
@@ -11,7 +12,9 @@ use segue_motion::metrics::{Profile, Subject, TransitionMetrics};
 use segue_motion::registration::{PoseSearch, PoseWeights, SearchOptions, limb_weights};
 use segue_motion::skeleton::{Role, Roles, Side};
 use segue_motion::synth::{Action, Params, synthesize};
-use segue_motion::transition::{FootLockOptions, Inertialization, Method, TransitionOptions, concatenate, foot_lock};
+use segue_motion::transition::{
+    FootLockOptions, Inertialization, Method, TransitionOptions, concatenate, foot_lock,
+};
 use std::sync::Arc;
 
 struct Take {
@@ -25,11 +28,7 @@ impl Take {
         let roles = Roles::detect(clip.skeleton());
         let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
         let source = Arc::new(Source::new(Arc::new(clip), &roles));
-        Self {
-            name: name.to_owned(),
-            profile: Profile::new(source, &roles, contacts),
-            roles,
-        }
+        Self { name: name.to_owned(), profile: Profile::new(source, &roles, contacts), roles }
     }
 
     fn clip(&self) -> &Arc<Clip> {
@@ -46,7 +45,9 @@ fn joined(a: &Take, b: &Take) -> (Concatenation, usize) {
     let weights = limb_weights(a.clip().skeleton());
     let height = f64::from(a.roles.body_height(a.clip().skeleton()));
     let (from, to) = (a.profile.source(), b.profile.source());
-    let mut search = PoseSearch::new((from.clip(), from.frames()), (to.clip(), to.frames()), &weights, height).expect("one rig");
+    let mut search =
+        PoseSearch::new((from.clip(), from.frames()), (to.clip(), to.frames()), &weights, height)
+            .expect("one rig");
     search.advance(usize::MAX);
     let found = search.best(PoseWeights::default(), &SearchOptions::new(40)).expect("windows fit");
     let spring = Inertialization::Offset(Decay::Spring { half_life_secs: 0.15 });
@@ -57,7 +58,13 @@ fn joined(a: &Take, b: &Take) -> (Concatenation, usize) {
     )
 }
 
-fn measured(a: &Take, b: &Take, out: &Concatenation, enter: usize, result: &Clip) -> TransitionMetrics {
+fn measured(
+    a: &Take,
+    b: &Take,
+    out: &Concatenation,
+    enter: usize,
+    result: &Clip,
+) -> TransitionMetrics {
     TransitionMetrics::measure(&Subject {
         result,
         start: out.transition.start,
@@ -74,7 +81,9 @@ fn measured(a: &Take, b: &Take, out: &Concatenation, enter: usize, result: &Clip
 /// The largest angular velocity of a knee, degrees per second.
 fn fastest_knee(clip: &Clip, roles: &Roles) -> f32 {
     let knees = Side::BOTH.map(|side| roles.get(Role::shin(side)).expect("legs have knees"));
-    let step = |frame: usize, knee: usize| quat::angle_between(clip.rotations(frame - 1)[knee], clip.rotations(frame)[knee]);
+    let step = |frame: usize, knee: usize| {
+        quat::angle_between(clip.rotations(frame - 1)[knee], clip.rotations(frame)[knee])
+    };
     let steps = (1..clip.frames()).flat_map(|frame| knees.map(|knee| step(frame, knee)));
     steps.fold(0.0, f32::max).to_degrees() * clip.fps() as f32
 }
@@ -89,8 +98,10 @@ fn locked(a: &Take, b: &Take) -> ([f64; 2], [f32; 2]) {
         enter,
         out.handover,
     );
-    let clip = foot_lock(&out.clip, &a.roles, &contacts, &FootLockOptions::default()).expect("there are legs");
-    let skate = [&out.clip, &clip].map(|clip| measured(a, b, &out, enter, clip).skate_cm.unwrap_or(0.0));
+    let clip = foot_lock(&out.clip, &a.roles, &contacts, &FootLockOptions::default())
+        .expect("there are legs");
+    let skate =
+        [&out.clip, &clip].map(|clip| measured(a, b, &out, enter, clip).skate_cm.unwrap_or(0.0));
     let knees = [&out.clip, &clip].map(|clip| fastest_knee(clip, &a.roles));
     eprintln!(
         "{} → {} at {} {enter}: skate {:.2} → {:.3} cm, knee {:.0} → {:.0} °/s",
@@ -121,7 +132,8 @@ fn made_walks_and_runs_lose_their_skate_too() {
     }
 }
 
-/// Automatic frames, whatever pair: the feet of most transitions stand, and hardly a knee is hurried.
+/// Automatic frames, whatever pair: the feet of most transitions stand, and hardly a knee is
+/// hurried.
 #[test]
 fn pairs_of_cmu_16_stand_still() {
     let takes = takes(&["05", "11", "15", "17", "22", "35", "43", "55"]);

@@ -1,13 +1,15 @@
-//! Every sentence that reaches the screen has a Chinese one in `assets/lang/zh-Hant.json`, and every entry there is one that the program
-//! says. Read from the text of the sources, so that a new sentence cannot be forgotten.
+//! Every sentence that reaches the screen has a Chinese one in `assets/lang/zh-Hant.json`, and
+//! every entry there is one that the program says. Read from the text of the sources, so that a new
+//! sentence cannot be forgotten.
 
 use segue_session::{Kind, PARAMS};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
-/// Where no sentence is for the screen: what is drawn is named for graphics tools there, files and reports get their keywords and names, the page's
-/// API and the programs that test it are spoken to in English.
+/// Where no sentence is for the screen: what is drawn is named for graphics tools there, files and
+/// reports get their keywords and names, the page's API and the programs that test it are spoken to
+/// in English.
 const NOT_SHOWN: [&str; 14] = [
     "crates/session/src/report.rs",
     "src/app/api.rs",
@@ -28,7 +30,8 @@ const NOT_SHOWN: [&str; 14] = [
 /// Where words stand alone: elsewhere a word without a space is taken for a key.
 const WORDS: [&str; 3] = ["src/ui/text.rs", "src/ui/kit/words.rs", "crates/session/src/params.rs"];
 
-/// What stands before a literal that nobody sees: reasons for the next programmer, the log, names of widgets.
+/// What stands before a literal that nobody sees: reasons for the next programmer, the log, names
+/// of widgets.
 const UNSEEN: [&str; 17] = [
     "reason = ",
     "expect(",
@@ -49,7 +52,8 @@ const UNSEEN: [&str; 17] = [
     "include_str!(",
 ];
 
-/// Literals that look like sentences and are none: keywords of files, names of files, and what is made of parts that have their own entries.
+/// Literals that look like sentences and are none: keywords of files, names of files, and what is
+/// made of parts that have their own entries.
 const NO_SENTENCE: [&str; 29] = [
     "{} and {}",
     "{} and {} registered",
@@ -88,12 +92,15 @@ fn root() -> &'static Path {
 
 /// The catalogue's text, and its entries.
 fn catalogue() -> (String, BTreeMap<String, String>) {
-    let text = fs::read_to_string(root().join("assets/lang/zh-Hant.json")).expect("the catalogue is there");
-    let sections: BTreeMap<String, BTreeMap<String, String>> = serde_json::from_str(&text).expect("the catalogue is JSON");
+    let text = fs::read_to_string(root().join("assets/lang/zh-Hant.json"))
+        .expect("the catalogue is there");
+    let sections: BTreeMap<String, BTreeMap<String, String>> =
+        serde_json::from_str(&text).expect("the catalogue is JSON");
     (text, sections.into_values().flatten().collect())
 }
 
-/// A key or a literal in the form in which they are compared: every placeholder is `{}`, nothing stands around.
+/// A key or a literal in the form in which they are compared: every placeholder is `{}`, nothing
+/// stands around.
 fn plain(text: &str) -> String {
     let mut plain = String::new();
     let mut rest = text;
@@ -106,7 +113,9 @@ fn plain(text: &str) -> String {
         } else if let Some(after) = sign.strip_prefix("}}") {
             plain.push('}');
             rest = after;
-        } else if let Some((_, after)) = sign.strip_prefix('{').and_then(|inside| inside.split_once('}')) {
+        } else if let Some((_, after)) =
+            sign.strip_prefix('{').and_then(|inside| inside.split_once('}'))
+        {
             plain.push_str("{}");
             rest = after;
         } else {
@@ -136,19 +145,20 @@ fn literals(source: &str) -> Vec<Literal<'_>> {
             at += rest.find('\n').unwrap_or(rest.len());
         } else if bytes[at] == b'"' {
             let (text, end) = quoted(source, at + 1);
-            found.push(Literal {
-                before: &source[..at],
-                text,
-                after: &source[end..],
-            });
+            found.push(Literal { before: &source[..at], text, after: &source[end..] });
             at = end;
         } else if bytes[at] == b'\'' {
             // A letter, not a lifetime.
             let letter = rest[1..].chars().next();
             let closes = |skip: usize| rest[skip..].find('\'').filter(|&close| close <= 10);
             at += match letter {
-                Some('\\') => 2 + closes(2).map_or(0, |close| close + usize::from(rest[2..].starts_with('\'')) + 1),
-                Some(letter) if rest[1 + letter.len_utf8()..].starts_with('\'') => 2 + letter.len_utf8(),
+                Some('\\') => {
+                    2 + closes(2)
+                        .map_or(0, |close| close + usize::from(rest[2..].starts_with('\'')) + 1)
+                }
+                Some(letter) if rest[1 + letter.len_utf8()..].starts_with('\'') => {
+                    2 + letter.len_utf8()
+                }
                 _ => 1,
             };
         } else {
@@ -197,7 +207,8 @@ fn without_tests(source: &str) -> String {
         } else if for_tests {
             if !item.starts_with("#[") {
                 for_tests = false;
-                end = line.ends_with('{').then(|| format!("{}}}", &line[..line.len() - item.len()]));
+                end =
+                    line.ends_with('{').then(|| format!("{}}}", &line[..line.len() - item.len()]));
             }
         } else {
             code.push_str(line);
@@ -229,7 +240,10 @@ fn sources() -> Vec<(String, String)> {
                 .iter()
                 .any(|end| name.ends_with(end))
             {
-                found.push((name, without_tests(&fs::read_to_string(&path).expect("a source is text"))));
+                found.push((
+                    name,
+                    without_tests(&fs::read_to_string(&path).expect("a source is text")),
+                ));
             }
         }
     }
@@ -255,14 +269,23 @@ fn shown(path: &str, source: &str) -> Vec<String> {
             };
             let is_error = before.ends_with("#[error(");
             let is_sentence = text.contains(' ') || is_error;
-            let is_query = text.contains(['_', '=', '&', '\n']) || text.contains(':') && !text.contains(' ');
+            let is_query =
+                text.contains(['_', '=', '&', '\n']) || text.contains(':') && !text.contains(' ');
             let is_word = words && !is_query && !is_key();
             let unseen = || {
-                let start = before.len() - before.char_indices().rev().take(24).last().map_or(0, |(at, _)| before.len() - at);
+                let start = before.len()
+                    - before
+                        .char_indices()
+                        .rev()
+                        .take(24)
+                        .last()
+                        .map_or(0, |(at, _)| before.len() - at);
                 let near = &literal.before[start..];
-                UNSEEN.iter().any(|sign| near.ends_with(sign) || near.trim_end().ends_with(sign)) || in_log(literal.before)
+                UNSEEN.iter().any(|sign| near.ends_with(sign) || near.trim_end().ends_with(sign))
+                    || in_log(literal.before)
             };
-            let seen = is_two_letters(&text.replace("{}", "")) && (is_sentence || is_word) && !unseen();
+            let seen =
+                is_two_letters(&text.replace("{}", "")) && (is_sentence || is_word) && !unseen();
             (seen && !NO_SENTENCE.iter().any(|none| plain(none) == text)).then_some(text)
         })
         .collect()
@@ -282,7 +305,9 @@ fn every_sentence_has_its_translation() {
     let mut seen = 0;
     for (path, source) in sources().iter().filter(|(path, _)| !NOT_SHOWN.contains(&path.as_str())) {
         // The rows of the table, and the words of its choices, are looked at below.
-        if ["crates/session/src/params.rs", "crates/session/src/choices.rs"].contains(&path.as_str()) {
+        if ["crates/session/src/params.rs", "crates/session/src/choices.rs"]
+            .contains(&path.as_str())
+        {
             continue;
         }
         for text in shown(path, source) {
@@ -327,7 +352,8 @@ fn no_translation_is_of_something_that_is_not_said() {
     assert_eq!(lines, entries.len(), "an entry stands in two sections");
 }
 
-/// Sentences that are made of several literals: their whole is an entry, because it cannot be told from its parts. And one that a script says.
+/// Sentences that are made of several literals: their whole is an entry, because it cannot be told
+/// from its parts. And one that a script says.
 const MADE: [&str; 17] = [
     "there is no memory to read it",
     "{#} units tall, read as {}: {#} m; {}",
@@ -352,8 +378,10 @@ const MADE: [&str; 17] = [
 fn placeholders_agree() {
     let (_, entries) = catalogue();
     for (english, translation) in entries {
-        let count = ["{}", "{#}", "{=}"].map(|sign| english.matches(sign).count()).iter().sum::<usize>();
-        let numbered: Vec<usize> = (0..9).filter(|index| translation.contains(&format!("{{{index}}}"))).collect();
+        let count =
+            ["{}", "{#}", "{=}"].map(|sign| english.matches(sign).count()).iter().sum::<usize>();
+        let numbered: Vec<usize> =
+            (0..9).filter(|index| translation.contains(&format!("{{{index}}}"))).collect();
         let in_order = translation.matches("{}").count();
         assert!(
             in_order == 0 || numbered.is_empty(),
@@ -371,7 +399,8 @@ fn placeholders_agree() {
     }
 }
 
-/// Characters and words of Simplified Chinese or of the mainland's usage, which a reader in Taiwan stumbles over.
+/// Characters and words of Simplified Chinese or of the mainland's usage, which a reader in Taiwan
+/// stumbles over.
 #[test]
 fn the_translation_is_taiwanese() {
     const ELSEWHERE: [&str; 26] = [
@@ -440,7 +469,10 @@ fn nothing_is_shown_past_the_catalogue() {
                 slips.push(format!("{path}: `painter.text(` without `tr(`"));
             }
         }
-        if source.contains("ui.button(") || source.contains("ui.heading(") || source.contains("ui.checkbox(") {
+        if source.contains("ui.button(")
+            || source.contains("ui.heading(")
+            || source.contains("ui.checkbox(")
+        {
             slips.push(format!("{path}: a widget of egui's own, which knows no language"));
         }
     }

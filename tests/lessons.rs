@@ -1,4 +1,5 @@
-//! The lessons that come with Segue: what they consist of, that their links do what they say, and that their numbers are those of the program.
+//! The lessons that come with Segue: what they consist of, that their links do what they say, and
+//! that their numbers are those of the program.
 
 mod bundled;
 
@@ -22,10 +23,9 @@ fn text(language: &str, lesson: &str) -> String {
 fn page(language: &str, lesson: &str) -> Page {
     let text = text(language, lesson);
     assert!(text.len() < MOST_BYTES / 16, "{language}, {lesson}");
-    let pages = parse(text.as_bytes()).unwrap_or_else(|error| panic!("{language}, {lesson}: {error}"));
-    let [page] = pages.as_slice() else {
-        panic!("{language}, {lesson}: {} pages", pages.len())
-    };
+    let pages =
+        parse(text.as_bytes()).unwrap_or_else(|error| panic!("{language}, {lesson}: {error}"));
+    let [page] = pages.as_slice() else { panic!("{language}, {lesson}: {} pages", pages.len()) };
     page.clone()
 }
 
@@ -76,12 +76,11 @@ fn the_list_is_that_of_the_files() {
     }
 }
 
-/// A session with a lesson open and one of its links tried, the bundled takes that it names there, all work done.
+/// A session with a lesson open and one of its links tried, the bundled takes that it names there,
+/// all work done.
 fn tried(lesson: &str, query: &str) -> Session {
     let mut session = Session::new();
-    session
-        .apply(Command::OpenLink(format!("lesson={lesson}")))
-        .expect("a link is never refused");
+    session.apply(Command::OpenLink(format!("lesson={lesson}"))).expect("a link is never refused");
     let source = segue_session::lesson::source_of(lesson, "en").expect("a lesson of the list").0;
     session.finish_lesson(&source, Ok(text("en", lesson).as_bytes()));
     session.apply(Command::Try(query.to_owned())).expect("a lesson is open");
@@ -99,7 +98,9 @@ fn every_link_is_understood_and_gives_what_it_promises() {
     for lesson in LESSONS {
         let page = page("en", lesson);
         let mut seen = BTreeSet::new();
-        for query in std::iter::once(String::new()).chain(page.tries.iter().map(|link| link.query.clone())) {
+        for query in
+            std::iter::once(String::new()).chain(page.tries.iter().map(|link| link.query.clone()))
+        {
             assert_eq!(link::read(&query).problems, Vec::<String>::new(), "{lesson}: {query}");
             let session = tried(lesson, &query);
             checked += check_numbers(lesson, &query, &session, &mut wrong);
@@ -118,7 +119,11 @@ fn every_link_is_understood_and_gives_what_it_promises() {
             assert!(seen.insert(session.query()), "{lesson}: {query} changes nothing");
             let others = page.tries.iter().filter(|link| link.query != query);
             for other in others {
-                assert!(!session.is_tried(&other.query), "{lesson}: {query} and {} are alike", other.query);
+                assert!(
+                    !session.is_tried(&other.query),
+                    "{lesson}: {query} and {} are alike",
+                    other.query
+                );
             }
         }
     }
@@ -129,8 +134,9 @@ fn every_link_is_understood_and_gives_what_it_promises() {
 /// Where a number of a pane lies: the pane, the number's id, at least, at most.
 type Bounds = (usize, &'static str, f64, f64);
 
-/// The lessons about labs that can work with captured motion, and what some numbers may be there: the pane, the id, the least and the most. The
-/// bounds are those of a result that a person would take for right; what exactly it is changes with the program.
+/// The lessons about labs that can work with captured motion, and what some numbers may be there:
+/// the pane, the id, the least and the most. The bounds are those of a result that a person would
+/// take for right; what exactly it is changes with the program.
 const REAL: &[(&str, &[Bounds])] = &[
     (
         "loops",
@@ -144,11 +150,7 @@ const REAL: &[(&str, &[Bounds])] = &[
     ("time_warp", &[(0, "apart_cm", 1.0, 20.0), (0, "foot_slide_cm", 0.0, 20.0)]),
     (
         "distance_matrix",
-        &[
-            (0, "spins", 0.0, 0.0),
-            (0, "seams_per_min", 2.0, 120.0),
-            (0, "variety", 20.0, 100.0),
-        ],
+        &[(0, "spins", 0.0, 0.0), (0, "seams_per_min", 2.0, 120.0), (0, "variety", 20.0, 100.0)],
     ),
     ("segment_size", &[(0, "spins", 0.0, 0.0), (0, "seams_per_min", 2.0, 120.0)]),
     ("edge_weights", &[(0, "spins", 0.0, 0.0), (0, "seams_per_min", 10.0, 400.0)]),
@@ -175,12 +177,15 @@ fn check_bounds(what: &str, session: &Session, bounds: &[(usize, &str, f64, f64)
         for &(_, id, least, most) in bounds.iter().filter(|bound| bound.0 == index) {
             let value = values.clone().find(|value| value.0 == id).map(|value| value.1);
             if !value.is_some_and(|value| (least..=most).contains(&value)) {
-                wrong.push(format!("{what}: pane {index}: {id} is {value:?}, expected {least} to {most}"));
+                wrong.push(format!(
+                    "{what}: pane {index}: {id} is {value:?}, expected {least} to {most}"
+                ));
             }
         }
         let root = outcome.motion.clip.root_translations();
         let fps = outcome.motion.clip.fps() as f32;
-        let fastest = root.windows(2).map(|pair| pair[0].distance(pair[1]) * fps).fold(0.0, f32::max);
+        let fastest =
+            root.windows(2).map(|pair| pair[0].distance(pair[1]) * fps).fold(0.0, f32::max);
         if !(0.2..8.0).contains(&fastest) {
             wrong.push(format!("{what}: pane {index}: the root moves at {fastest} m/s"));
         }
@@ -222,7 +227,8 @@ const LAB_LINKS: &[(&str, &[Bounds])] = &[
 
 #[test]
 fn links_of_the_labs_document_give_results_with_sane_numbers() {
-    let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/labs.md")).expect("the document");
+    let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/labs.md"))
+        .expect("the document");
     let links: Vec<&str> = (text.split("<code>?").skip(1))
         .filter_map(|rest| rest.split_once("</code>"))
         .map(|(link, _)| link)
@@ -237,9 +243,7 @@ fn links_of_the_labs_document_give_results_with_sane_numbers() {
             .unwrap_or_else(|| panic!("{begins}"));
         assert_eq!(link::read(link).problems, Vec::<String>::new(), "{link}");
         let mut session = Session::new();
-        session
-            .apply(Command::OpenLink((*link).to_owned()))
-            .expect("a link is never refused");
+        session.apply(Command::OpenLink((*link).to_owned())).expect("a link is never refused");
         let named = link.matches("cmu16_").count();
         assert_eq!(
             bundled::settle(&mut session).len(),
@@ -251,7 +255,8 @@ fn links_of_the_labs_document_give_results_with_sane_numbers() {
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
 }
 
-/// What a lesson says of a number: the lesson, the link, the pane, the number's id, and the words in both languages.
+/// What a lesson says of a number: the lesson, the link, the pane, the number's id, and the words
+/// in both languages.
 const QUOTED: &[(&str, &str, usize, &str, &str)] = &[
     ("alignment", "align=off", 0, "spin_deg", "23°"),
     ("alignment", "align=off", 0, "foot_slide_cm", "153 cm"),
@@ -337,25 +342,13 @@ const QUOTED: &[(&str, &str, usize, &str, &str)] = &[
     ("first_frame", "", 1, "spins", "6"),
     ("first_frame", "", 1, "foot_slide_cm", "56 cm"),
     ("first_frame", "", 0, "foot_slide_cm", "12"),
-    (
-        "first_frame",
-        "clips=walk_left,walk_right&compare=transform:whole,first",
-        1,
-        "spins",
-        "22",
-    ),
+    ("first_frame", "clips=walk_left,walk_right&compare=transform:whole,first", 1, "spins", "22"),
     ("path_editing", "", 0, "fit_rms_cm", "1.3 cm"),
     ("path_editing", "", 0, "foot_slide_cm", "0.6 cm"),
     ("path_editing", "compare=control_points:4,8,16", 0, "fit_rms_cm", "1.9"),
     ("path_editing", "compare=control_points:4,8,16", 2, "fit_rms_cm", "0.5 cm"),
     ("path_editing", "path=AAgAABB-MHRKZmJQdDZ8Fn4J", 0, "foot_slide_cm", "6.8 cm"),
-    (
-        "path_editing",
-        "path=AAgAABB-MHRKZmJQdDZ8Fn4J&foot_lock=on",
-        0,
-        "foot_slide_cm",
-        "0.0 cm",
-    ),
+    ("path_editing", "path=AAgAABB-MHRKZmJQdDZ8Fn4J&foot_lock=on", 0, "foot_slide_cm", "0.0 cm"),
     ("motion_matching", "", 0, "match_error", "1.8 cm"),
     ("motion_matching", "", 0, "match_seams", "17"),
     ("motion_matching", "weight_path=0", 0, "match_error", "32 cm"),
@@ -382,7 +375,8 @@ fn check_numbers(lesson: &str, query: &str, session: &Session, wrong: &mut Vec<S
     let said = QUOTED.iter().filter(|quoted| (quoted.0, quoted.1) == (lesson, query));
     said.map(|&(_, _, pane, id, words)| {
         let outcome = session.panes().get(pane).and_then(|pane| pane.outcome.as_ref());
-        let metric = outcome.and_then(|outcome| outcome.metrics.iter().find(|metric| metric.id == id)?.value);
+        let metric = outcome
+            .and_then(|outcome| outcome.metrics.iter().find(|metric| metric.id == id)?.value);
         if !metric.is_some_and(|value| is_rounded(words, value)) {
             wrong.push(format!("{lesson}: {query}: {id} is {metric:?}, not {words}"));
         }
@@ -429,7 +423,8 @@ fn graphs_have_as_many_transitions_as_the_lessons_say() {
         ("foot_skate", "leave_a=auto&enter_b=auto", "9.2 cm"),
     ] {
         let session = tried(lesson, query);
-        let transition = session.main_outcome().and_then(|outcome| outcome.transition).expect("a transition");
+        let transition =
+            session.main_outcome().and_then(|outcome| outcome.transition).expect("a transition");
         assert!(
             is_rounded(cm, f64::from(transition.distance_cm)),
             "{lesson}: {}",

@@ -1,4 +1,5 @@
-//! Paths of motions, edited: on made motion everywhere, and on captured motion where this machine has it.
+//! Paths of motions, edited: on made motion everywhere, and on captured motion where this machine
+//! has it.
 
 #[path = "../crates/formats/tests/common/mod.rs"]
 mod common;
@@ -12,8 +13,9 @@ use segue_motion::clip::{Clip, ContactOptions, Contacts};
 use segue_motion::math::{Planar, quat};
 use segue_motion::metrics::MotionTrace;
 use segue_motion::path::{
-    Carried, CarryOptions, FitOptions, FittedPath, GroundSpline, MotionOptions, Offset, Orientation, PathEdit, PathEditError, PathEditor,
-    Pins, Road, SplineEnds, Timing, carry, hard_turns,
+    Carried, CarryOptions, FitOptions, FittedPath, GroundSpline, MotionOptions, Offset,
+    Orientation, PathEdit, PathEditError, PathEditor, Pins, Road, SplineEnds, Timing, carry,
+    hard_turns,
 };
 use segue_motion::skeleton::Roles;
 use segue_motion::synth::{Action, Params, presets, synthesize};
@@ -33,17 +35,11 @@ fn made(params: &Params) -> (Arc<Source>, Roles) {
 }
 
 fn walk() -> (Arc<Source>, Roles) {
-    made(&Params {
-        duration_secs: 6.0,
-        ..Params::new(Action::Walk)
-    })
+    made(&Params { duration_secs: 6.0, ..Params::new(Action::Walk) })
 }
 
 fn options(control_points: usize) -> FitOptions {
-    FitOptions {
-        control_points,
-        ..FitOptions::default()
-    }
+    FitOptions { control_points, ..FitOptions::default() }
 }
 
 fn every_option() -> impl Iterator<Item = CarryOptions> {
@@ -54,16 +50,13 @@ fn every_option() -> impl Iterator<Item = CarryOptions> {
         (Orientation::World, Offset::World),
     ];
     let of = move |timing| {
-        ways.map(|(orientation, offset)| CarryOptions {
-            timing,
-            orientation,
-            offset,
-        })
+        ways.map(|(orientation, offset)| CarryOptions { timing, orientation, offset })
     };
     TIMINGS.into_iter().flat_map(of)
 }
 
-/// The largest distance between joints, metres, and the largest angle between rotations of joints, radians.
+/// The largest distance between joints, metres, and the largest angle between rotations of joints,
+/// radians.
 fn difference(a: &Clip, b: &Clip) -> (f32, f32) {
     assert_eq!(a.frames(), b.frames());
     let (mut far, mut turned) = (0.0f32, 0.0f32);
@@ -75,14 +68,17 @@ fn difference(a: &Clip, b: &Clip) -> (f32, f32) {
             .zip(&other.positions)
             .map(|(p, q)| p.distance(*q))
             .fold(far, f32::max);
-        let angles = one.rotations.iter().zip(&other.rotations).map(|(p, q)| quat::angle_between(*p, *q));
+        let angles =
+            one.rotations.iter().zip(&other.rotations).map(|(p, q)| quat::angle_between(*p, *q));
         turned = angles.fold(turned, f32::max);
     }
     (far, turned)
 }
 
 fn captured() -> Vec<Clip> {
-    let Some(data) = shared_data() else { return vec![] };
+    let Some(data) = shared_data() else {
+        return vec![];
+    };
     let names = [
         "games105/walkF.bvh",
         "games105/run_forward.bvh",
@@ -156,7 +152,8 @@ proptest! {
         }
     }
 
-    /// Whatever is done to the path: in every frame the body is the one of the original, moved over the ground; and the same is made twice.
+    /// Whatever is done to the path: in every frame the body is the one of the original, moved over
+    /// the ground; and the same is made twice.
     #[test]
     fn joints_keep_their_distances(points in prop::collection::vec((-3.0f64..3.0, -3.0f64..3.0), 4..10), closed: bool) {
         let (source, _) = walk();
@@ -191,7 +188,8 @@ fn bow(by: f64) -> (FittedPath, Roles, Road) {
     (path, roles, Road::new(edited).expect("it has a length"))
 }
 
-/// Beside the fast way stands the slow one: lengths by many chords, frames by small steps along the path.
+/// Beside the fast way stands the slow one: lengths by many chords, frames by small steps along the
+/// path.
 #[test]
 fn metres_are_kept() {
     let (path, _, edited) = bow(1.0);
@@ -232,10 +230,7 @@ fn speed_or_duration_are_kept() {
     let (path, _, edited) = bow(3.0);
     assert!(edited.length_m() > 1.1 * path.road().length_m());
     let with = |timing| {
-        let options = CarryOptions {
-            timing,
-            ..CarryOptions::default()
-        };
+        let options = CarryOptions { timing, ..CarryOptions::default() };
         carry(&path, &edited, &options).unwrap()
     };
     let whole = |out: &Carried| (out.taken_m().end - edited.length_m()).abs() < 1e-6;
@@ -253,17 +248,15 @@ fn speed_or_duration_are_kept() {
         assert!((own - original).abs() < 0.1, "{frame}: {own} {original}");
     }
     // What lies away from the dragged point is not touched.
-    let (far, turned) = difference(&duration.clip.crop(0..30).unwrap(), &path.source().clip().crop(0..30).unwrap());
+    let (far, turned) =
+        difference(&duration.clip.crop(0..30).unwrap(), &path.source().clip().crop(0..30).unwrap());
     assert!(far < 1e-4 && turned < 1e-4, "{far} {turned}");
 }
 
 #[test]
 fn the_body_faces_as_before_where_it_shall() {
     let (path, roles, edited) = bow(2.0);
-    let options = CarryOptions {
-        orientation: Orientation::World,
-        ..CarryOptions::default()
-    };
+    let options = CarryOptions { orientation: Orientation::World, ..CarryOptions::default() };
     let out = carry(&path, &edited, &options).unwrap();
     let turned = carry(&path, &edited, &CarryOptions::default()).unwrap();
     let clip = path.source().clip();
@@ -278,11 +271,8 @@ fn the_body_faces_as_before_where_it_shall() {
 fn the_offset_from_the_path_stays_in_the_world_where_it_shall() {
     let (path, roles, edited) = bow(2.0);
     for orientation in [Orientation::Path, Orientation::World] {
-        let options = CarryOptions {
-            orientation,
-            offset: Offset::World,
-            ..CarryOptions::default()
-        };
+        let options =
+            CarryOptions { orientation, offset: Offset::World, ..CarryOptions::default() };
         let out = carry(&path, &edited, &options).unwrap();
         let stands = Source::new(Arc::new(out.clip.clone()), &roles).frames().to_vec();
         let rows = stands
@@ -317,14 +307,16 @@ fn unclamped_control_points_make_the_same_path() {
             let u = f64::from(k) / 100.0;
             assert!(clamped.position(u).distance(uniform.position(u)) < 1e-9);
         }
-        // The matrix of a uniform piece: the path begins in (P0 + 4 P1 + P2)/6, and leaves there along P2 - P0.
+        // The matrix of a uniform piece: the path begins in (P0 + 4 P1 + P2)/6, and leaves there
+        // along P2 - P0.
         let (p, end) = (uniform.points(), uniform.points().len() - 1);
         let mean = |a: DVec2, b: DVec2, c: DVec2| (a + b * 4.0 + c) / 6.0;
         assert!(mean(p[0], p[1], p[2]).distance(uniform.position(0.0)) < 1e-9);
         assert!(mean(p[end], p[end - 1], p[end - 2]).distance(uniform.position(1.0)) < 1e-9);
         let way = p[2] - p[0];
         assert!((way.x.atan2(way.y) - uniform.heading(0.0)).abs() < 1e-9);
-        // The first point moves the path where its share is 1/6 at most; clamped it takes the start along.
+        // The first point moves the path where its share is 1/6 at most; clamped it takes the start
+        // along.
         let by = DVec2::new(0.6, 0.0);
         let start = |spline: &GroundSpline, pins: Pins| {
             let to = spline.points()[0] + by;
@@ -356,7 +348,8 @@ fn unclamped_control_points_make_the_same_path() {
 fn feet_stand_again() {
     let lock = Some(FootLockOptions::default());
     let mut checked = 0;
-    let made = [Action::Walk, Action::Run].map(|action| synthesize(&Params::new(action)).unwrap().clip);
+    let made =
+        [Action::Walk, Action::Run].map(|action| synthesize(&Params::new(action)).unwrap().clip);
     for clip in made.into_iter().chain(captured()) {
         let (source, roles) = source(clip);
         let contacts = Contacts::detect(source.clip(), &roles, &ContactOptions::default());
@@ -364,26 +357,23 @@ fn feet_stand_again() {
         let spline = path.road().spline();
         // Square to the way from end to end.
         let way = spline.points()[5] - spline.points()[0];
-        let to = spline.points()[3] + way.perp().normalize_or_zero() * 0.15 * path.road().length_m();
-        let edited = Road::new(spline.edited(&PathEdit::Move { index: 3, to }, FREE).unwrap()).unwrap();
+        let to =
+            spline.points()[3] + way.perp().normalize_or_zero() * 0.15 * path.road().length_m();
+        let edited =
+            Road::new(spline.edited(&PathEdit::Move { index: 3, to }, FREE).unwrap()).unwrap();
         let name = path.source().clip().name().to_owned();
         let editor = PathEditor::new(path, &roles, contacts);
         for timing in TIMINGS {
-            let carry = CarryOptions {
-                timing,
-                ..CarryOptions::default()
-            };
+            let carry = CarryOptions { timing, ..CarryOptions::default() };
             let out = editor.motion(&edited, &MotionOptions { carry, foot_lock: lock }).unwrap();
             println!("{name} {timing:?}: {:?}, {} hard turns", out.slide_cm, out.hard_turns.len());
             let (Some(carried), Some(locked)) = (out.slide_cm.carried, out.slide_cm.locked) else {
                 continue;
             };
-            // This one goes there and back: where it turns round, six control points are no path, and no foot can be held.
-            let limit = if name.ends_with("01_01.bvh") {
-                carried
-            } else {
-                (0.25 * carried).max(0.5)
-            };
+            // This one goes there and back: where it turns round, six control points are no path,
+            // and no foot can be held.
+            let limit =
+                if name.ends_with("01_01.bvh") { carried } else { (0.25 * carried).max(0.5) };
             assert!(locked <= limit, "{name} {timing:?}: {carried} → {locked} cm");
             checked += 1;
         }
@@ -394,11 +384,7 @@ fn feet_stand_again() {
 #[test]
 fn standing_feet_do_not_turn_with_a_bent_path() {
     for params in [
-        Params {
-            height_m: 1.9,
-            seed: 632,
-            ..Params::new(Action::Jump)
-        },
+        Params { height_m: 1.9, seed: 632, ..Params::new(Action::Jump) },
         Params::new(Action::Walk),
     ] {
         let (source, roles) = made(&params);
@@ -406,10 +392,11 @@ fn standing_feet_do_not_turn_with_a_bent_path() {
         let path = FittedPath::new(Arc::clone(&source), &options(6)).unwrap();
         let spline = path.road().spline();
         let way = spline.points()[5] - spline.points()[0];
-        let edited = [(2, 0.25), (4, -0.25)].into_iter().fold(spline.clone(), |spline, (index, share)| {
-            let to = spline.points()[index] + way.perp() * share;
-            spline.edited(&PathEdit::Move { index, to }, FREE).unwrap()
-        });
+        let edited =
+            [(2, 0.25), (4, -0.25)].into_iter().fold(spline.clone(), |spline, (index, share)| {
+                let to = spline.points()[index] + way.perp() * share;
+                spline.edited(&PathEdit::Move { index, to }, FREE).unwrap()
+            });
         let options = MotionOptions {
             foot_lock: Some(FootLockOptions::default()),
             ..MotionOptions::default()
@@ -490,11 +477,7 @@ fn degenerate_ways_work_or_say_why_not() {
     let (short, _) = source(source_of_walk.clip().crop(0..12).unwrap());
     assert_same(&FittedPath::new(short, &options(16)).unwrap(), "short");
     // More than a whole circle, over its own beginning.
-    let round = Params {
-        duration_secs: 9.0,
-        turn_rate_dps: 60.0,
-        ..Params::new(Action::Walk)
-    };
+    let round = Params { duration_secs: 9.0, turn_rate_dps: 60.0, ..Params::new(Action::Walk) };
     let (round, _) = made(&round);
     let path = FittedPath::new(round, &options(12)).unwrap();
     assert_same(&path, "round");

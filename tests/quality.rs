@@ -1,5 +1,5 @@
-//! Every lab on motions that nobody chose: synthesised ones everywhere, captured ones where this machine has them. `cargo xtask quality` does so for any
-//! folder, and prints the numbers.
+//! Every lab on motions that nobody chose: synthesised ones everywhere, captured ones where this
+//! machine has them. `cargo xtask quality` does so for any folder, and prints the numbers.
 
 #[path = "../crates/formats/tests/common/mod.rs"]
 mod common;
@@ -85,7 +85,9 @@ fn synthesised_motions_have_no_artefacts_in_any_lab() {
 
 #[test]
 fn captured_motions_have_no_artefacts_in_any_lab() {
-    let Some(folder) = common::subject_16() else { return };
+    let Some(folder) = common::subject_16() else {
+        return;
+    };
     let motions = Motions::of_folder(&folder).expect("the folder can be read");
     assert!(motions.takes.len() >= 15 && motions.refused.is_empty(), "{:?}", motions.refused);
     let trials = try_all(&motions, 3, 2);
@@ -98,7 +100,9 @@ fn captured_motions_have_no_artefacts_in_any_lab() {
 
 #[test]
 fn a_long_walk_through_captured_motion_neither_spins_nor_flashes() {
-    let Some(folder) = common::subject_16() else { return };
+    let Some(folder) = common::subject_16() else {
+        return;
+    };
     let motions = Motions::of_folder(&folder).expect("the folder can be read");
     let all: Vec<usize> = (0..motions.takes.len()).collect();
     let (mut session, ids) = motions.open(&all).expect("the takes are read");

@@ -1,25 +1,27 @@
-//! Roles, mirror images, other skeletons and contacts on real captures. Passes without the files, which are not part of the project.
+//! Roles, mirror images, other skeletons and contacts on real captures. Passes without the files,
+//! which are not part of the project.
 
 #[path = "../crates/formats/tests/common/mod.rs"]
 mod common;
 
 use common::shared_data;
 use segue_formats::{ImportOptions, import};
-use segue_motion::clip::{Clip, ContactOptions, Contacts, character_frames, ground_speed, mirror, retarget};
+use segue_motion::clip::{
+    Clip, ContactOptions, Contacts, character_frames, ground_speed, mirror, retarget,
+};
 use segue_motion::skeleton::{Found, Joint, Role, Roles, Side, Skeleton};
 
 fn clips(names: &[&str]) -> Vec<(Clip, Roles)> {
-    let Some(data) = shared_data() else { return Vec::new() };
+    let Some(data) = shared_data() else {
+        return Vec::new();
+    };
     let load = |name: &&str| {
         let bytes = std::fs::read(data.join(name)).ok()?;
         let clip = import(name, &bytes, &ImportOptions::default()).ok()?.clips.swap_remove(0).clip;
         let roles = Roles::detect(clip.skeleton());
         Some((clip.with_name(*name), roles))
     };
-    names
-        .iter()
-        .map(|name| load(name).unwrap_or_else(|| panic!("{name} does not load")))
-        .collect()
+    names.iter().map(|name| load(name).unwrap_or_else(|| panic!("{name} does not load"))).collect()
 }
 
 const GAMES: [&str; 6] = [
@@ -36,16 +38,14 @@ const CMU: [&str; 2] = ["cmu/01_01.bvh", "cmu/run.bvh"];
 fn all_roles_are_found_by_name_and_shape_agrees() {
     for (clip, roles) in clips(&[&GAMES[..], &CMU, &["cmu/pirouette.bvh"]].concat()) {
         // One of the rigs has no toes.
-        let wanted: &[Role] = if clip.name().contains("pirouette") {
-            &[Role::LeftToe, Role::RightToe]
-        } else {
-            &[]
-        };
+        let wanted: &[Role] =
+            if clip.name().contains("pirouette") { &[Role::LeftToe, Role::RightToe] } else { &[] };
         assert_eq!(roles.missing().collect::<Vec<_>>(), wanted, "{}", clip.name());
-        let nameless = clip.skeleton().joints().iter().map(|joint| Joint {
-            name: String::new(),
-            ..joint.clone()
-        });
+        let nameless = clip
+            .skeleton()
+            .joints()
+            .iter()
+            .map(|joint| Joint { name: String::new(), ..joint.clone() });
         let by_shape = Roles::detect(&Skeleton::new(nameless.collect()).unwrap());
         for role in Role::ALL {
             assert_eq!(roles.get(role), by_shape.get(role), "{}: {role:?}", clip.name());
@@ -89,14 +89,13 @@ fn mirrored_twice_is_the_original() {
                 clip.name()
             );
         }
-        for (a, b) in character_frames(&clip, &roles)
-            .iter()
-            .zip(character_frames(&once, &roles))
-            .step_by(5)
+        for (a, b) in
+            character_frames(&clip, &roles).iter().zip(character_frames(&once, &roles)).step_by(5)
         {
             // Rigs are a little uneven; the facing is that of the mirror to within a degree.
             assert!(
-                (a.forward().z - b.forward().z).abs() < 0.02 && (a.forward().x + b.forward().x).abs() < 0.02,
+                (a.forward().z - b.forward().z).abs() < 0.02
+                    && (a.forward().x + b.forward().x).abs() < 0.02,
                 "{}",
                 clip.name()
             );
@@ -104,7 +103,8 @@ fn mirrored_twice_is_the_original() {
     }
 }
 
-/// Measured: a walk at 1.2 m/s stands on each foot for 0.6 to 0.75 s, a sprint at 5.7 m/s for less than 0.1 s, twice on each foot.
+/// Measured: a walk at 1.2 m/s stands on each foot for 0.6 to 0.75 s, a sprint at 5.7 m/s for less
+/// than 0.1 s, twice on each foot.
 #[test]
 fn gaits_have_the_contacts_of_their_speed() {
     for (clip, roles) in clips(&["games105/walkF.bvh", "cmu/run.bvh", "games105/idle.bvh"]) {
@@ -120,14 +120,19 @@ fn gaits_have_the_contacts_of_their_speed() {
             match clip.name() {
                 "games105/walkF.bvh" => {
                     assert!(
-                        (1.1..1.3).contains(&speed) && secs.len() == 2 && secs.iter().all(|s| (0.6..0.75).contains(s)),
+                        (1.1..1.3).contains(&speed)
+                            && secs.len() == 2
+                            && secs.iter().all(|s| (0.6..0.75).contains(s)),
                         "{speed} {secs:?}"
                     );
                 }
                 "cmu/run.bvh" => {
                     assert!((5.5..6.0).contains(&speed), "{speed}");
                     let all = contacts.intervals(side);
-                    assert!(all.len() == 2 && all.iter().all(|range| (4..13).contains(&range.len())), "{all:?}");
+                    assert!(
+                        all.len() == 2 && all.iter().all(|range| (4..13).contains(&range.len())),
+                        "{all:?}"
+                    );
                 }
                 _ => assert!(
                     speed < 0.05 && contacts.intervals(side).len() == 1 && secs.is_empty(),

@@ -5,9 +5,14 @@ mod common;
 
 use common::captured;
 use glam::Vec3;
-use segue_motion::blend::{DissolveOptions, Instant, Partner, Source, WeightCurve, WeightLaw, dissolve, registered_blend, registered_join};
+use segue_motion::blend::{
+    DissolveOptions, Instant, Partner, Source, WeightCurve, WeightLaw, dissolve, registered_blend,
+    registered_join,
+};
 use segue_motion::clip::{Clip, ContactOptions, Contacts, Interpolation};
-use segue_motion::registration::{PairTerms, PathEnd, Registration, RegistrationOptions, limb_weights};
+use segue_motion::registration::{
+    PairTerms, PathEnd, Registration, RegistrationOptions, limb_weights,
+};
 use segue_motion::skeleton::{Roles, Side, world_pose};
 use std::sync::Arc;
 
@@ -22,12 +27,7 @@ impl Take {
     fn new(name: &str, clip: Clip) -> Self {
         let roles = Roles::detect(clip.skeleton());
         let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
-        Self {
-            name: name.to_owned(),
-            source: Source::new(Arc::new(clip), &roles),
-            roles,
-            contacts,
-        }
+        Self { name: name.to_owned(), source: Source::new(Arc::new(clip), &roles), roles, contacts }
     }
 
     fn clip(&self) -> &Arc<Clip> {
@@ -42,7 +42,15 @@ fn takes(wanted: &[&'static str]) -> Vec<Take> {
 
 fn register(a: &Take, b: &Take) -> Registration {
     let (from, to) = (a.clip(), b.clip());
-    let mut terms = PairTerms::new(from, 0..from.frames(), to, 0..to.frames(), &limb_weights(from.skeleton()), 1).expect("one body");
+    let mut terms = PairTerms::new(
+        from,
+        0..from.frames(),
+        to,
+        0..to.frames(),
+        &limb_weights(from.skeleton()),
+        1,
+    )
+    .expect("one body");
     terms.finish();
     let matrix = terms.distances(15, &(0..from.frames()), &(0..to.frames())).expect("complete");
     let mut options = RegistrationOptions::new(from.fps());
@@ -65,15 +73,18 @@ fn stillest(before: &[Vec3], now: &[Vec3]) -> Vec3 {
     steps.min_by(|a, b| a.length().total_cmp(&b.length())).unwrap_or_default()
 }
 
-/// How far feet slide that stand where more than half of the weight is, beyond what they slide in the heavier clip: the mean over all stances,
-/// centimetres. Frame `start` of `result` is made of the first instant.
+/// How far feet slide that stand where more than half of the weight is, beyond what they slide in
+/// the heavier clip: the mean over all stances, centimetres. Frame `start` of `result` is made of
+/// the first instant.
 fn skate_cm(result: &Clip, start: usize, instants: &[Instant], takes: [&Take; 2]) -> f64 {
     let mut stances: Vec<f32> = vec![];
     for side in Side::BOTH {
         let (mut drift, mut farthest) = (Vec3::ZERO, None::<f32>);
         let heavier = |instant: &Instant| usize::from(instant.weights[1] > instant.weights[0]);
         let planted = |instant: &Instant| {
-            let stands = |of: &usize| takes[*of].contacts.planted(side, instant.frames[*of].round() as usize);
+            let stands = |of: &usize| {
+                takes[*of].contacts.planted(side, instant.frames[*of].round() as usize)
+            };
             (0..2).filter(stands).map(|of| instant.weights[of]).sum::<f64>() > 0.5
         };
         for (k, pair) in instants.windows(2).enumerate() {
@@ -85,7 +96,8 @@ fn skate_cm(result: &Clip, start: usize, instants: &[Instant], takes: [&Take; 2]
             let (of, roles) = (heavier(&pair[1]), &takes[0].roles);
             let at = |frame: usize| foot(result, roles, side, frame as f64);
             let step = stillest(&at(start + k), &at(start + k + 1));
-            let own = [0, 1].map(|end| foot(takes[of].clip(), &takes[of].roles, side, pair[end].frames[of]));
+            let own = [0, 1]
+                .map(|end| foot(takes[of].clip(), &takes[of].roles, side, pair[end].frames[of]));
             let own = stillest(&own[0], &own[1]).length();
             drift += step.normalize_or_zero() * (step.length() - own).max(0.0);
             farthest = Some(farthest.unwrap_or(0.0).max(drift.length()));
@@ -96,7 +108,12 @@ fn skate_cm(result: &Clip, start: usize, instants: &[Instant], takes: [&Take; 2]
 }
 
 /// Both clips frame by frame, side by side.
-fn in_lockstep(leave: usize, enter: usize, frames: usize, weight: impl Fn(usize) -> f64) -> Vec<Instant> {
+fn in_lockstep(
+    leave: usize,
+    enter: usize,
+    frames: usize,
+    weight: impl Fn(usize) -> f64,
+) -> Vec<Instant> {
     let instant = |p: usize| Instant {
         frames: vec![(leave + p) as f64, (enter + p) as f64],
         weights: vec![1.0 - weight(p), weight(p)],
@@ -117,23 +134,26 @@ fn registered_walks_of_cmu_16_skate_half_as_much_as_dissolved_ones() {
             let warp = registration.warp();
             let ((from, _), (to, _)) = (warp.first(), warp.last());
             let (leave, arrive) = (from.ceil() as usize, to.floor() as usize);
-            let join = registered_join(&a.source, &b.source, &registration, leave, arrive, WeightLaw::Smooth).expect("registered");
+            let join = registered_join(
+                &a.source,
+                &b.source,
+                &registration,
+                leave,
+                arrive,
+                WeightLaw::Smooth,
+            )
+            .expect("registered");
             let registered = skate_cm(&join.joined.clip, leave, &join.during, [a, b]);
             let enter = warp.at(leave as f64).round() as usize;
             let window = (arrive - leave).min(b.clip().frames() - enter - 1);
-            let options = DissolveOptions {
-                window,
-                ..DissolveOptions::default()
-            };
-            let plain = dissolve(&a.source, leave, &b.source, enter, &options).expect("the window fits");
+            let options = DissolveOptions { window, ..DissolveOptions::default() };
+            let plain =
+                dissolve(&a.source, leave, &b.source, enter, &options).expect("the window fits");
             let law = |p: usize| 1.0 - WeightLaw::Smooth.alpha((p + 1) as f64 / window as f64);
-            let plain = skate_cm(&plain.clip, leave, &in_lockstep(leave, enter, window, law), [a, b]);
+            let plain =
+                skate_cm(&plain.clip, leave, &in_lockstep(leave, enter, window, law), [a, b]);
             let half = WeightCurve::constant(0.5);
-            let partner = Partner {
-                source: &b.source,
-                registration: &registration,
-                weight: &half,
-            };
+            let partner = Partner { source: &b.source, registration: &registration, weight: &half };
             let blend = registered_blend(&a.source, &[partner]).expect("registered");
             let halfway = skate_cm(&blend.clip, 0, &blend.instants, [a, b]);
             // Below 2 cm nobody sees a difference.

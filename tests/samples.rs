@@ -1,4 +1,5 @@
-//! The bundled takes of one actor: what their files hold, and that it is what the database's own files hold, where this machine has those.
+//! The bundled takes of one actor: what their files hold, and that it is what the database's own
+//! files hold, where this machine has those.
 
 mod bundled;
 #[path = "../crates/formats/tests/common/mod.rs"]
@@ -29,7 +30,9 @@ fn unpacked(sample: &Sample) -> (usize, Vec<u8>) {
 }
 
 fn clip_of(sample: &Sample) -> Clip {
-    let mut read = import(sample.file.trim_end_matches(".gz"), &unpacked(sample).1, &ImportOptions::default()).expect("a BVH file");
+    let mut read =
+        import(sample.file.trim_end_matches(".gz"), &unpacked(sample).1, &ImportOptions::default())
+            .expect("a BVH file");
     assert_eq!(read.clips.len(), 1, "{}", sample.id);
     let warnings: Vec<String> = read.warnings.iter().map(ToString::to_string).collect();
     assert!(warnings.is_empty(), "{}: {warnings:?}", sample.id);
@@ -50,10 +53,12 @@ fn the_set_is_small_and_of_one_skeleton() {
     }
 }
 
-/// The line of a take in `assets/samples/README.md`: frames, frames per second, SHA-256 of what its file unpacks to.
+/// The line of a take in `assets/samples/README.md`: frames, frames per second, SHA-256 of what its
+/// file unpacks to.
 #[test]
 fn every_bundled_file_is_told_of_and_is_as_told() {
-    let readme = std::fs::read_to_string(bundled::folder().join("README.md")).expect("the samples' README");
+    let readme =
+        std::fs::read_to_string(bundled::folder().join("README.md")).expect("the samples' README");
     let files = std::fs::read_dir(bundled::folder()).expect("the samples");
     let mut packed = 0;
     for entry in files {
@@ -118,25 +123,26 @@ fn gait(clip: &Clip) -> (Contacts, f64) {
 #[test]
 fn takes_agree_with_the_files_of_the_database() {
     for sample in set() {
-        let number: &'static str = sample.file.trim_start_matches("16_").trim_end_matches(".bvh.gz");
+        let number: &'static str =
+            sample.file.trim_start_matches("16_").trim_end_matches(".bvh.gz");
         for (name, original) in captured(&[number]) {
             let take = clip_of(sample);
-            let names = |clip: &Clip| clip.skeleton().joints().iter().map(|joint| joint.name.clone()).collect::<Vec<_>>();
+            let names = |clip: &Clip| {
+                clip.skeleton().joints().iter().map(|joint| joint.name.clone()).collect::<Vec<_>>()
+            };
             assert_eq!(names(&take), names(&original), "{name}");
             let first = first_frame(&take, &original);
             let kept: Vec<usize> = (first..original.frames()).step_by(STRIDE).collect();
             assert_eq!(kept.len(), take.frames(), "{name}: begins with frame {first}");
-            let apart = kept
-                .iter()
-                .enumerate()
-                .map(|(frame, &kept)| farthest(&take.world_pose(frame), &original.world_pose(kept)));
+            let apart = kept.iter().enumerate().map(|(frame, &kept)| {
+                farthest(&take.world_pose(frame), &original.world_pose(kept))
+            });
             let worst = apart.fold(0.0, f32::max);
             let [(stands, speed), (stood, speed_then)] = [gait(&take), gait(&original)];
             let agree = |side: Side| {
-                let alike = kept
-                    .iter()
-                    .enumerate()
-                    .filter(|(frame, kept)| stands.planted(side, *frame) == stood.planted(side, **kept));
+                let alike = kept.iter().enumerate().filter(|(frame, kept)| {
+                    stands.planted(side, *frame) == stood.planted(side, **kept)
+                });
                 alike.count() as f64 / kept.len() as f64
             };
             let agreed = Side::BOTH.map(agree);

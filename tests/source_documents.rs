@@ -1,7 +1,9 @@
-//! Each experiment of the four documents that Segue was made to show again, as one link, with what the document reports of it: a course report on motion graphs, a
-//! program for motion path editing, homework on blending and motion matching, and an article on Gleicher's motion path editing.
+//! Each experiment of the four documents that Segue was made to show again, as one link, with what
+//! the document reports of it: a course report on motion graphs, a program for motion path editing,
+//! homework on blending and motion matching, and an article on Gleicher's motion path editing.
 //!
-//! Motions are synthesised. Where the homework's own files lie beside the project they are used as well.
+//! Motions are synthesised. Where the homework's own files lie beside the project they are used as
+//! well.
 
 #[path = "../crates/formats/tests/common/mod.rs"]
 mod common;
@@ -13,7 +15,9 @@ use segue_motion::blend::WeightLaw;
 use segue_motion::graph::{Construction, MotionGraph};
 use segue_motion::math::{Planar, quat, spring};
 use segue_motion::path::SplineEnds;
-use segue_session::{Command, CycleMade, Key, Level, Motion, Outcome, Pane, Session, Slot, Value, Walk};
+use segue_session::{
+    Command, CycleMade, Key, Level, Motion, Outcome, Pane, Session, Slot, Value, Walk,
+};
 use std::sync::Arc;
 
 /// An angle by the shorter way round, radians.
@@ -26,12 +30,8 @@ fn opened(link: &str) -> Session {
     let mut session = Session::new();
     session.apply(Command::OpenLink(link.to_owned())).expect("a link is never refused");
     while session.work() {}
-    let said: Vec<_> = session
-        .notices()
-        .list()
-        .iter()
-        .filter(|notice| notice.level != Level::Info)
-        .collect();
+    let said: Vec<_> =
+        session.notices().list().iter().filter(|notice| notice.level != Level::Info).collect();
     assert!(said.is_empty(), "{link}: {said:?}");
     session
 }
@@ -80,7 +80,10 @@ fn is_rising(values: &[f64]) -> bool {
 fn transform_sets_the_first_frame_in_a_place_and_takes_the_whole_clip_along() {
     let mut session = opened("lab=view&a=walk_left&place_x=2&place_z=-1&place_heading=90");
     let first = motion(&session, 0).ground_frames[0];
-    assert!(first.shift.distance(DVec2::new(2.0, -1.0)) < 1e-5 && (first.yaw.to_degrees() - 90.0).abs() < 1e-3);
+    assert!(
+        first.shift.distance(DVec2::new(2.0, -1.0)) < 1e-5
+            && (first.yaw.to_degrees() - 90.0).abs() < 1e-3
+    );
     let own = clip(&mut session, "walk_left");
     let moved = first.after(&own.ground_frames[0].inverse());
     let (there, here) = (&motion(&session, 0).clip, &own.clip);
@@ -88,43 +91,46 @@ fn transform_sets_the_first_frame_in_a_place_and_takes_the_whole_clip_along() {
     for frame in (0..here.frames()).step_by(17) {
         let (p, q) = (there.world_pose(frame), here.world_pose(frame));
         assert!(
-            p.positions
-                .iter()
-                .zip(&q.positions)
-                .all(|(p, q)| p.distance(moved.apply(*q)) < 1e-4)
+            p.positions.iter().zip(&q.positions).all(|(p, q)| p.distance(moved.apply(*q)) < 1e-4)
         );
     }
 }
 
 #[test]
 fn a_blend_in_the_world_slerps_joints_and_mixes_roots_by_the_weight() {
-    let link = "lab=blend&a=walk&b=run&blend_window=30&root_blend=off&weight_law=linear&align_by=first";
+    let link =
+        "lab=blend&a=walk&b=run&blend_window=30&root_blend=off&weight_law=linear&align_by=first";
     let session = opened(link);
     let made = outcome(&session, 0);
     let transition = made.transition.expect("a transition");
-    let [a, b] = [Slot::A, Slot::B].map(|slot| made.sources.iter().find(|source| source.slot == slot).expect("a source"));
+    let [a, b] = [Slot::A, Slot::B]
+        .map(|slot| made.sources.iter().find(|source| source.slot == slot).expect("a source"));
     let frame = |secs: f64| (secs * 60.0).round() as usize;
-    let (leave, enter, window) = (
-        frame(transition.leave_a_secs),
-        frame(transition.enter_b_secs),
-        transition.window_frames,
-    );
+    let (leave, enter, window) =
+        (frame(transition.leave_a_secs), frame(transition.enter_b_secs), transition.window_frames);
     assert_eq!(window, 30);
     // The first posture of B stands where A's does, and faces there.
     let placed = b.world_from_clip.after(&b.motion.ground_frames[enter]);
     let stands = a.motion.ground_frames[leave];
-    assert!(placed.shift.distance(stands.shift) < 1e-4 && wrap_angle(placed.yaw - stands.yaw).abs() < 1e-4);
+    assert!(
+        placed.shift.distance(stands.shift) < 1e-4
+            && wrap_angle(placed.yaw - stands.yaw).abs() < 1e-4
+    );
     let (clip_a, clip_b) = (&a.motion.clip, b.motion.clip.transformed(&b.world_from_clip));
     for p in 0..window {
         let weight = WeightLaw::Linear.alpha((p + 1) as f64 / window as f64) as f32;
         assert!((weight - (1.0 - (p + 1) as f32 / window as f32)).abs() < 1e-6);
-        let root = clip_b.root_translations()[enter + p].lerp(clip_a.root_translations()[leave + p], weight);
+        let root = clip_b.root_translations()[enter + p]
+            .lerp(clip_a.root_translations()[leave + p], weight);
         assert!(root.distance(made.motion.clip.root_translations()[leave + p]) < 1e-4);
         let (qa, qb) = (clip_a.rotations(leave + p), clip_b.rotations(enter + p));
         for (joint, &found) in made.motion.clip.rotations(leave + p).iter().enumerate() {
             // Toward the nearer of a rotation's two quaternions.
             let near = if qa[joint].dot(qb[joint]) < 0.0 { -qa[joint] } else { qa[joint] };
-            assert!(quat::angle_between(found, qb[joint].slerp(near, weight)) < 1e-3, "{p} {joint}");
+            assert!(
+                quat::angle_between(found, qb[joint].slerp(near, weight)) < 1e-3,
+                "{p} {joint}"
+            );
         }
     }
 }
@@ -133,7 +139,8 @@ const SEGMENTS: &str = "lab=graph&construction=segments&segment_size=60&blend_wi
 
 #[test]
 fn segments_have_an_edge_to_the_next_and_to_all_that_are_near() {
-    let session = opened(&format!("{SEGMENTS}&prune=off&clips=walk,walk_left,walk_right&edge_threshold=10"));
+    let session =
+        opened(&format!("{SEGMENTS}&prune=off&clips=walk,walk_left,walk_right&edge_threshold=10"));
     let whole = walk(&session, 0).built.whole();
     assert_eq!(whole.options().construction, Construction::Segments { segment_size: 60 });
     let mut goes_on = 0;
@@ -176,7 +183,9 @@ fn a_weight_by_the_distance_itself_prefers_what_fits_worst() {
 
 #[test]
 fn a_constant_weight_of_the_consecutive_edge_holds_a_clip_the_less_the_more_ways_lead_out() {
-    let link = format!("{SEGMENTS}&edge_weight=proportional&going_on=constant&compare=continuity_weight:1,1000");
+    let link = format!(
+        "{SEGMENTS}&edge_weight=proportional&going_on=constant&compare=continuity_weight:1,1000"
+    );
     let session = opened(&link);
     for (pane, weight) in [1.0, 1_000.0].into_iter().enumerate() {
         let (graph, walk) = (graph(&session, pane), walk(&session, pane));
@@ -202,7 +211,8 @@ fn a_constant_weight_of_the_consecutive_edge_holds_a_clip_the_less_the_more_ways
 
 #[test]
 fn a_long_window_drags_and_a_short_one_bursts() {
-    let session = opened("lab=graph&construction=segments&segment_size=60&compare=blend_window:30,15,10");
+    let session =
+        opened("lab=graph&construction=segments&segment_size=60&compare=blend_window:30,15,10");
     let (lag, burst) = (numbers(&session, "lag_s"), numbers(&session, "velocity_jump_dps"));
     assert!(lag[0] > lag[1] && lag[1] > lag[2], "{lag:?}");
     assert!(is_rising(&burst), "{burst:?}");
@@ -210,14 +220,18 @@ fn a_long_window_drags_and_a_short_one_bursts() {
 
 #[test]
 fn a_third_of_the_segment_leaves_nothing_beside_the_window_and_is_refused() {
-    let session = opened("lab=graph&construction=segments&blend_window=20&segment_size=60&compare=segment_size:60,30,20");
+    let session = opened(
+        "lab=graph&construction=segments&blend_window=20&segment_size=60&compare=segment_size:60,30,20",
+    );
     let built = [0, 1].map(|pane| walk(&session, pane).built.clone());
     let jumps = [0, 1].map(|pane| built[pane].whole().jumps().len());
     // What there is to compare and to choose from grows.
     assert!(jumps[1] > 2 * jumps[0]);
     assert_eq!(
         session.panes()[2].problem.as_deref(),
-        Some("A blend window of 20 frames leaves nothing of a segment of 20: lower the window to 19 or raise the segment to 21.")
+        Some(
+            "A blend window of 20 frames leaves nothing of a segment of 20: lower the window to 19 or raise the segment to 21."
+        )
     );
 }
 
@@ -239,7 +253,8 @@ fn a_wrong_angle_spins() {
 #[test]
 fn a_transform_of_the_first_frame_alone_flashes() {
     let session = opened("lab=graph&compare=transform:whole,first,teleport");
-    let [flashes, spins, slides] = ["flashes", "spins", "foot_slide_cm"].map(|id| numbers(&session, id));
+    let [flashes, spins, slides] =
+        ["flashes", "spins", "foot_slide_cm"].map(|id| numbers(&session, id));
     assert_eq!((flashes[0], spins[0]), (0.0, 0.0));
     assert!(flashes[1] > 0.0 && flashes[2] > 0.0);
     assert!(slides[2] > slides[0] && slides[1] > slides[0]);
@@ -259,8 +274,8 @@ fn a_transform_of_the_first_frame_alone_flashes() {
 #[test]
 fn a_walk_has_the_root_and_the_weight_that_it_is_asked_for() {
     let link = "lab=graph&clips=walk,walk_left,walk_right&walk_seconds=30&continuity=0.5";
-    let sessions =
-        ["", "&root_blend=off", "&root_blend=off&align_by=first", "&weight_law=linear"].map(|more| opened(&format!("{link}{more}")));
+    let sessions = ["", "&root_blend=off", "&root_blend=off&align_by=first", "&weight_law=linear"]
+        .map(|more| opened(&format!("{link}{more}")));
     let places = |session: &Session| motion(session, 0).ground_frames.clone();
     let usual = places(&sessions[0]);
     for (other, name) in sessions[1..].iter().zip(["root", "alignment", "law"]) {
@@ -291,10 +306,8 @@ fn the_motion_without_its_path_stays_in_place_and_faces_one_way() {
     }
     // Beside its path the hips sway, and stay within a few centimetres.
     let residual = &motion(&session, 2).ground_frames;
-    let far = residual
-        .iter()
-        .map(|frame| (frame.shift - residual[0].shift).length())
-        .fold(0.0, f64::max);
+    let far =
+        residual.iter().map(|frame| (frame.shift - residual[0].shift).length()).fold(0.0, f64::max);
     let turned = residual
         .iter()
         .map(|frame| wrap_angle(frame.yaw - residual[0].yaw).abs())
@@ -304,7 +317,10 @@ fn the_motion_without_its_path_stays_in_place_and_faces_one_way() {
     for pane in [1, 2] {
         let there = &motion(&session, pane).clip;
         for frame in (0..there.frames()).step_by(13) {
-            assert!((there.root_translations()[frame].y - own.clip.root_translations()[frame].y).abs() < 1e-5);
+            assert!(
+                (there.root_translations()[frame].y - own.clip.root_translations()[frame].y).abs()
+                    < 1e-5
+            );
             assert_eq!(there.rotations(frame)[1..], own.clip.rotations(frame)[1..]);
         }
     }
@@ -401,7 +417,14 @@ fn the_camera_stays_with_any_character_that_plays_along() {
             Some(other) => session.company()[other].motion.clone().expect("it is there"),
             None => outcome(&session, 0).motion.clone(),
         };
-        let stage = Director::default().stage(&session, &[(0, Viewport::default())], 1.0, Look::DARK, &Colors::default(), 0.0);
+        let stage = Director::default().stage(
+            &session,
+            &[(0, Viewport::default())],
+            1.0,
+            Look::DARK,
+            &Colors::default(),
+            0.0,
+        );
         let (focus, stands) = (stage.panes[0].focus, followed.standing_at(2.0).origin());
         assert!(focus.distance(stands) < 0.2, "{follow}: {focus} {stands}");
     }
@@ -420,8 +443,11 @@ fn an_offset_that_stays_in_the_world_is_no_longer_to_the_left_of_the_path() {
         let path = made.path.as_ref().expect("a path");
         assert!(path.is_edited);
         let old = path.fitted.places().iter().zip(&path.fitted.motion().ground_frames);
-        for ((old, stood), (place, stands)) in old.zip(path.places.iter().zip(&made.motion.ground_frames)) {
-            let local = |place: &Planar, stands: &Planar| place.inverse().apply_ground(stands.shift);
+        for ((old, stood), (place, stands)) in
+            old.zip(path.places.iter().zip(&made.motion.ground_frames))
+        {
+            let local =
+                |place: &Planar, stands: &Planar| place.inverse().apply_ground(stands.shift);
             let found = local(&place.frame, stands).distance(local(&old.frame, stood));
             let world = (stands.shift - place.frame.shift).distance(stood.shift - old.frame.shift);
             assert!((if is_local { found } else { world }) < 1e-4);
@@ -436,14 +462,18 @@ fn an_offset_that_stays_in_the_world_is_no_longer_to_the_left_of_the_path() {
 fn the_path_of_an_unclamped_basis_begins_beside_its_first_control_point() {
     let link = "lab=path&a=walk_left&control_points=4&compare=path_spline:clamped,uniform";
     let session = opened(link);
-    let [clamped, uniform] = [0, 1].map(|pane| outcome(&session, pane).path.as_ref().expect("a path").road.spline().clone());
+    let [clamped, uniform] = [0, 1]
+        .map(|pane| outcome(&session, pane).path.as_ref().expect("a path").road.spline().clone());
     assert_eq!(uniform.ends(), SplineEnds::Uniform);
     assert_eq!(clamped.position(0.0), clamped.points()[0]);
     let p = uniform.points();
     // The matrix of the article: (1, 4, 1, 0)/6 at 0 and (0, 1, 4, 1)/6 at 1.
     let ends = [(p[0] + p[1] * 4.0 + p[2]) / 6.0, (p[1] + p[2] * 4.0 + p[3]) / 6.0];
     for (u, place) in [(0.0, ends[0]), (1.0, ends[1])] {
-        assert!(uniform.position(u).distance(place) < 1e-9 && uniform.position(u).distance(clamped.position(u)) < 1e-9);
+        assert!(
+            uniform.position(u).distance(place) < 1e-9
+                && uniform.position(u).distance(clamped.position(u)) < 1e-9
+        );
     }
     assert!(uniform.position(0.0).distance(p[0]) > 0.1);
 }
@@ -453,10 +483,7 @@ fn a_body_faces_along_an_edited_path_or_as_it_did() {
     let session = opened(&format!("{CURVE}&compare=path_facing:path,world"));
     let turned = |pane: usize| {
         let frames = &motion(&session, pane).ground_frames;
-        frames
-            .iter()
-            .map(|frame| wrap_angle(frame.yaw - frames[0].yaw).abs())
-            .fold(0.0, f64::max)
+        frames.iter().map(|frame| wrap_angle(frame.yaw - frames[0].yaw).abs()).fold(0.0, f64::max)
     };
     assert!(turned(0) > 0.4 && turned(1) < 0.3);
 }
@@ -478,7 +505,9 @@ fn two_gaits_blend_to_one_and_a_half_metres_per_second() {
 
 #[test]
 fn springs_from_both_ends_close_a_loop_but_for_what_is_left_of_them() {
-    let session = opened("lab=loop&a=walk&loop_from=0.5&loop_to=1.4&half_life=0.2&loop_ratio=0.5&compare=loop_method:exact,both");
+    let session = opened(
+        "lab=loop&a=walk&loop_from=0.5&loop_to=1.4&half_life=0.2&loop_ratio=0.5&compare=loop_method:exact,both",
+    );
     let (before, seam) = (numbers(&session, "loop_before_deg"), numbers(&session, "loop_seam_deg"));
     // The springs reach the other end: (1 + yT) exp(-yT) of the difference is left there.
     let left = |secs: f64| {
@@ -490,8 +519,11 @@ fn springs_from_both_ends_close_a_loop_but_for_what_is_left_of_them() {
 
 #[test]
 fn a_half_life_leaves_six_tenths() {
-    // (1 + ln 4 · t/h · …): what a critically damped spring has left at its half-life, and when it has half.
-    let left = |t: f64| (1.0 + 2.0 * std::f64::consts::LN_2 * t) * (-2.0 * std::f64::consts::LN_2 * t).exp();
+    // (1 + ln 4 · t/h · …): what a critically damped spring has left at its half-life, and when it
+    // has half.
+    let left = |t: f64| {
+        (1.0 + 2.0 * std::f64::consts::LN_2 * t) * (-2.0 * std::f64::consts::LN_2 * t).exp()
+    };
     assert!((left(1.0) - 0.597).abs() < 1e-3 && (left(1.211) - 0.5).abs() < 1e-3);
     assert!((spring::secs_until(0.27, 0.5) - 1.211 * 0.27).abs() < 1e-3);
     let session = opened("lab=transition&a=walk&b=run&compare=half_life:0.1,0.27,0.6");
@@ -514,7 +546,8 @@ fn a_frame_by_hand_slides_and_a_foot_lock_mends_it() {
 
 #[test]
 fn velocities_divided_by_the_rate_stop_what_moves() {
-    let session = opened("lab=transition&a=walk&b=run&half_life=0.27&compare=mistake:none,velocity");
+    let session =
+        opened("lab=transition&a=walk&b=run&half_life=0.27&compare=mistake:none,velocity");
     let seams = numbers(&session, "velocity_jump_dps");
     assert!(seams[1] > 2.0 * seams[0], "{seams:?}");
 }
@@ -531,18 +564,15 @@ fn a_character_that_is_driven_turns_as_the_stick_does() {
             farthest = if turned.abs() > farthest.abs() { turned } else { farthest };
         }
         // Half a turn may be made either way round.
-        let off = if scenario == "spin" {
-            farthest.abs() - degrees
-        } else {
-            farthest - degrees
-        };
+        let off = if scenario == "spin" { farthest.abs() - degrees } else { farthest - degrees };
         assert!(off.abs() < 25.0, "{scenario}: {farthest}");
     }
 }
 
 #[test]
 fn every_search_finds_the_same_frames() {
-    let made = ["tree", "boxes", "scan"].map(|by| opened(&format!("lab=match&scenario=left&search_by={by}")));
+    let made = ["tree", "boxes", "scan"]
+        .map(|by| opened(&format!("lab=match&scenario=left&search_by={by}")));
     let roots = |session: &Session| motion(session, 0).clip.root_translations().to_vec();
     let first: Vec<Vec3> = roots(&made[0]);
     assert!(first.len() > 100 && made[1..].iter().all(|other| roots(other) == first));
@@ -551,7 +581,9 @@ fn every_search_finds_the_same_frames() {
 /// The homework's own files, where they are.
 #[test]
 fn the_homeworks_own_files_are_shown_in_place_and_on_a_path() {
-    let Some(data) = common::shared_data() else { return };
+    let Some(data) = common::shared_data() else {
+        return;
+    };
     for name in ["walk_forward.bvh", "run_forward.bvh"] {
         let Ok(bytes) = std::fs::read(data.join("games105").join(name)) else {
             continue;

@@ -1,5 +1,5 @@
-//! Makes the bundled takes of the CMU database's subject 16: reads ASF and AMC from the folder that is named, keeps every second frame, and writes BVH
-//! packed with gzip into `assets/samples`.
+//! Makes the bundled takes of the CMU database's subject 16: reads ASF and AMC from the folder that
+//! is named, keeps every second frame, and writes BVH packed with gzip into `assets/samples`.
 //!
 //! `cargo run --release --package segue-tools --bin bundle_takes -- FOLDER`
 
@@ -17,7 +17,8 @@ use std::fs;
 use std::io::Write as _;
 use std::path::Path;
 
-/// The takes, each with the frame that it begins with. In the first two frames of `16_15` the left arm was not solved.
+/// The takes, each with the frame that it begins with. In the first two frames of `16_15` the left
+/// arm was not solved.
 const TAKES: [(&str, usize); 9] = [
     ("16_15", 2),
     ("16_22", 0),
@@ -33,7 +34,8 @@ const TAKES: [(&str, usize); 9] = [
 /// Frames from one that is kept to the next.
 const STRIDE: usize = 2;
 
-/// Digits behind the point: hundredths of a degree and of a centimetre. A hand is off by less than half a millimetre then.
+/// Digits behind the point: hundredths of a degree and of a centimetre. A hand is off by less than
+/// half a millimetre then.
 const DECIMALS: usize = 2;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -63,7 +65,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Centimetres and Y up, as most programs take a BVH file to be. With one order for all, every take has the same skeleton, whatever stands still in it.
+/// Centimetres and Y up, as most programs take a BVH file to be. With one order for all, every take
+/// has the same skeleton, whatever stands still in it.
 const WRITE: bvh::WriteOptions = bvh::WriteOptions {
     metres_per_unit: Some(0.01),
     up: None,
@@ -74,7 +77,8 @@ const WRITE: bvh::WriteOptions = bvh::WriteOptions {
 fn every_second_frame(clip: &Clip, first: usize) -> Result<Clip, Box<dyn Error>> {
     let poses = (first..clip.frames()).step_by(STRIDE).map(|frame| clip.pose(frame));
     let fps = clip.fps() / STRIDE as f64;
-    Ok(Clip::from_poses(clip.name(), clip.skeleton().clone(), fps, poses)?.with_provenance(clip.provenance()))
+    Ok(Clip::from_poses(clip.name(), clip.skeleton().clone(), fps, poses)?
+        .with_provenance(clip.provenance()))
 }
 
 /// The numbers of the motion with fewer digits; the skeleton keeps all of its own.
@@ -85,7 +89,8 @@ fn rounded(text: &str) -> String {
         if !is_row {
             out.push_str(line);
         }
-        let numbers = line.split(' ').filter_map(|number| number.parse::<f64>().ok()).filter(|_| is_row);
+        let numbers =
+            line.split(' ').filter_map(|number| number.parse::<f64>().ok()).filter(|_| is_row);
         for (column, number) in numbers.enumerate() {
             let digits = format!("{number:.DECIMALS$}");
             let digits = digits.trim_end_matches('0').trim_end_matches('.');

@@ -1,9 +1,11 @@
-//! How well a character follows recorded input with the synthesiser's motions and default options: every scenario, measured. Prints a table in
-//! Markdown. `cargo xtask match-quality` runs it.
+//! How well a character follows recorded input with the synthesiser's motions and default options:
+//! every scenario, measured. Prints a table in Markdown. `cargo xtask match-quality` runs it.
 
 #![expect(clippy::print_stdout, reason = "the table is what it is for")]
 
-use segue_motion::matching::{ControllerOptions, Database, DatabaseOptions, Scenario, drive, made_clips};
+use segue_motion::matching::{
+    ControllerOptions, Database, DatabaseOptions, Scenario, drive, made_clips,
+};
 use std::error::Error;
 use std::sync::Arc;
 use std::time::Instant;
@@ -30,14 +32,12 @@ fn main() -> Result<(), Box<dyn Error>> {
         let played = drive(&database, ControllerOptions::default(), &recording)?;
         let free = drive(
             &database,
-            ControllerOptions {
-                planting: None,
-                ..ControllerOptions::default()
-            },
+            ControllerOptions { planting: None, ..ControllerOptions::default() },
             &recording,
         )?;
         let (metrics, free) = (played.metrics(&database), free.metrics(&database));
-        let number = |value: Option<f64>| value.map_or("–".to_owned(), |value| format!("{value:.2}"));
+        let number =
+            |value: Option<f64>| value.map_or("–".to_owned(), |value| format!("{value:.2}"));
         println!(
             "| {} | {:.1}, {:.1} | {} | {}, {} | {}, {} | {:.1} | {} | {} |",
             scenario.title(),

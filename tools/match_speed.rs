@@ -1,6 +1,7 @@
-//! How long a search of motion matching takes, at the median and at the 99th percentile: 27 dimensions; 5,000, 50,000 and 500,000 frames;
-//! queries from a recorded drive and from noise; by four methods. `cargo xtask match-speed` runs it and prints a table in Markdown;
-//! `node tests/browser/search.mjs` does the same in Chromium, where the page keeps the time.
+//! How long a search of motion matching takes, at the median and at the 99th percentile: 27
+//! dimensions; 5,000, 50,000 and 500,000 frames; queries from a recorded drive and from noise; by
+//! four methods. `cargo xtask match-speed` runs it and prints a table in Markdown; `node
+//! tests/browser/search.mjs` does the same in Chromium, where the page keeps the time.
 
 #[path = "../crates/motion/benches/common/search.rs"]
 mod search;
@@ -26,7 +27,8 @@ fn main() {
                 let all = trial.queries(kind);
                 let queries = if method == Method::Boxes { all } else { all.min(FEW) };
                 let mut times = vec![Duration::MAX; queries];
-                // Of each query the fastest of three passes over all of them: what else the machine does is not counted.
+                // Of each query the fastest of three passes over all of them: what else the machine
+                // does is not counted.
                 for _ in 0..3 {
                     for (query, time) in times.iter_mut().enumerate() {
                         let start = Instant::now();
@@ -35,7 +37,9 @@ fn main() {
                     }
                 }
                 times.sort_unstable();
-                let at = |share: f64| times[((times.len() - 1) as f64 * share) as usize].as_secs_f64() * 1e6;
+                let at = |share: f64| {
+                    times[((times.len() - 1) as f64 * share) as usize].as_secs_f64() * 1e6
+                };
                 format!("{:.1}, {:.1}", at(0.5), at(0.99))
             });
             let visited: usize = (0..trial.queries(kind))

@@ -1,10 +1,13 @@
-//! ASF and AMC: any two texts, divided by a NUL byte, are read or refused, in bounded memory; an AMC that was read is normal motion.
+//! ASF and AMC: any two texts, divided by a NUL byte, are read or refused, in bounded memory; an
+//! AMC that was read is normal motion.
 
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
 use segue_formats::ImportOptions;
-use segue_formats::acclaim::{best_skeleton, bone_names, read_motion, read_skeleton, skeleton_clip};
+use segue_formats::acclaim::{
+    best_skeleton, bone_names, read_motion, read_skeleton, skeleton_clip,
+};
 
 fuzz_target!(|bytes: &[u8]| {
     let options = ImportOptions::default();
@@ -30,7 +33,9 @@ fuzz_target!(|bytes: &[u8]| {
                 frames * joints * 16 <= (64 << 20) + 16 * bytes.len(),
                 "{frames} frames × {joints} joints"
             );
-            assert!((0..frames).all(|frame| clip.rotations(frame).iter().all(|q| q.is_normalized())));
+            assert!(
+                (0..frames).all(|frame| clip.rotations(frame).iter().all(|q| q.is_normalized()))
+            );
         }
     }
 });

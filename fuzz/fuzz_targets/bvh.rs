@@ -1,5 +1,5 @@
-//! BVH: any bytes are read or refused, in bounded memory; the fast way of reading a row agrees with the slow one; and what was read can be
-//! written and read again.
+//! BVH: any bytes are read or refused, in bounded memory; the fast way of reading a row agrees with
+//! the slow one; and what was read can be written and read again.
 
 #![no_main]
 
@@ -13,7 +13,9 @@ fuzz_target!(|bytes: &[u8]| {
         let slow = read("fuzz.bvh", &slow, &ImportOptions::default());
         match (&found, &slow) {
             (Ok(found), Ok(slow)) => assert_eq!(format!("{found:?}"), format!("{slow:?}")),
-            (Err(found), Err(slow)) => assert_eq!((found.line, &found.expected), (slow.line, &slow.expected)),
+            (Err(found), Err(slow)) => {
+                assert_eq!((found.line, &found.expected), (slow.line, &slow.expected))
+            }
             _ => panic!("fast and slow disagree: {found:?} {slow:?}"),
         }
     }
@@ -22,7 +24,8 @@ fuzz_target!(|bytes: &[u8]| {
     }
 });
 
-/// The same file with a vertical tab before each line end: white space like any other, but no row is plain then.
+/// The same file with a vertical tab before each line end: white space like any other, but no row
+/// is plain then.
 fn slowed(bytes: &[u8]) -> Option<Vec<u8>> {
     // UTF-16 has two bytes for each.
     let is_utf16 = bytes.iter().take(4).any(|b| matches!(b, 0 | 0xfe | 0xff));
@@ -30,7 +33,8 @@ fn slowed(bytes: &[u8]) -> Option<Vec<u8>> {
         let mut slow = Vec::with_capacity(2 * bytes.len());
         for (index, &b) in bytes.iter().enumerate() {
             // Between CR and LF it would make two line ends of one.
-            let is_end = b == b'\r' || (b == b'\n' && bytes.get(index.wrapping_sub(1)) != Some(&b'\r'));
+            let is_end =
+                b == b'\r' || (b == b'\n' && bytes.get(index.wrapping_sub(1)) != Some(&b'\r'));
             slow.extend(is_end.then_some(0x0b));
             slow.push(b);
         }
@@ -50,11 +54,8 @@ fn survives(found: &Imported, bytes: usize) {
             .root_translations()
             .iter()
             .chain(clip.translations().iter().flat_map(|track| &track.values));
-        let offsets = clip
-            .skeleton()
-            .joints()
-            .iter()
-            .flat_map(|joint| [Some(joint.offset), joint.end_site]);
+        let offsets =
+            clip.skeleton().joints().iter().flat_map(|joint| [Some(joint.offset), joint.end_site]);
         let sane = |v: glam::Vec3| v.abs().max_element() < 1e20;
         if frames * joints > 100_000 || !lengths.copied().chain(offsets.flatten()).all(sane) {
             continue;
@@ -67,8 +68,12 @@ fn survives(found: &Imported, bytes: usize) {
             ..ImportOptions::default()
         };
         let text = write(clip, &WriteOptions::default());
-        let back = read("fuzz.bvh", text.as_bytes(), &options).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        let back = read("fuzz.bvh", text.as_bytes(), &options)
+            .unwrap_or_else(|error| panic!("{error}\n{text}"));
         assert_eq!(back.clips.len(), 1);
-        assert_eq!((back.clips[0].clip.frames(), back.clips[0].clip.skeleton().len()), (frames, joints));
+        assert_eq!(
+            (back.clips[0].clip.frames(), back.clips[0].clip.skeleton().len()),
+            (frames, joints)
+        );
     }
 }

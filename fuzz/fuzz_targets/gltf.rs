@@ -1,5 +1,6 @@
-//! glTF: any bytes are read or refused, in bounded memory; what was read is normal motion, can be written and read again; and a mesh that came along
-//! is whole. Of a text, what stands behind the first NUL byte is the file beside it.
+//! glTF: any bytes are read or refused, in bounded memory; what was read is normal motion, can be
+//! written and read again; and a mesh that came along is whole. Of a text, what stands behind the
+//! first NUL byte is the file beside it.
 
 #![no_main]
 
@@ -11,10 +12,7 @@ use segue_motion::skin::SkinnedMesh;
 use std::sync::Arc;
 
 fuzz_target!(|bytes: &[u8]| {
-    let options = ImportOptions {
-        max_bytes: 16 << 20,
-        ..ImportOptions::default()
-    };
+    let options = ImportOptions { max_bytes: 16 << 20, ..ImportOptions::default() };
     let (file, beside) = match bytes.iter().position(|b| *b == 0) {
         Some(end) if !bytes.starts_with(b"glTF") => (&bytes[..end], &bytes[end + 1..]),
         _ => (bytes, &[][..]),
@@ -35,7 +33,9 @@ fn survives(found: &Imported, most: usize) {
     assert!(numbers * 16 <= most, "{numbers} rotations");
     for imported in &found.clips {
         let clip = &imported.clip;
-        assert!((0..clip.frames()).all(|frame| clip.rotations(frame).iter().all(|q| q.is_normalized())));
+        assert!(
+            (0..clip.frames()).all(|frame| clip.rotations(frame).iter().all(|q| q.is_normalized()))
+        );
         assert!(clip.root_translations().iter().all(|place| place.is_finite()));
         if let Some(mesh) = &imported.mesh {
             is_whole(mesh, clip);
@@ -55,7 +55,9 @@ fn is_whole(mesh: &SkinnedMesh, clip: &Clip) {
     let joints = mesh.bind.len();
     assert_eq!(joints, clip.skeleton().len());
     assert!(mesh.joints.iter().flatten().all(|&joint| usize::from(joint) < joints));
-    let is_one = |weights: &[f32; 4]| weights.iter().all(|w| *w >= 0.0) && (weights.iter().sum::<f32>() - 1.0).abs() < 1e-3;
+    let is_one = |weights: &[f32; 4]| {
+        weights.iter().all(|w| *w >= 0.0) && (weights.iter().sum::<f32>() - 1.0).abs() < 1e-3
+    };
     assert!(mesh.weights.iter().all(is_one));
 }
 
@@ -73,6 +75,7 @@ fn comes_back(clip: &Clip, mesh: Option<&SkinnedMesh>) {
         drop_t_pose: false,
         ..ImportOptions::default()
     };
-    let back = read("fuzz.glb", &written, &|_| None, &reading).unwrap_or_else(|error| panic!("{error}"));
+    let back =
+        read("fuzz.glb", &written, &|_| None, &reading).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!((back.clips.len(), back.clips[0].clip.frames()), (1, clip.frames().max(1)));
 }

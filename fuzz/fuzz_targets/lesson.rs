@@ -1,4 +1,5 @@
-//! Lessons: any bytes are pages or refused, and what can be pressed in them leads to a state or to the web.
+//! Lessons: any bytes are pages or refused, and what can be pressed in them leads to a state or to
+//! the web.
 
 #![no_main]
 
@@ -20,7 +21,11 @@ fuzz_target!(|bytes: &[u8]| {
 
 fn is_harmless(span: &Span) -> bool {
     match &span.target {
-        Some(Target::Web(address)) => address.starts_with("https://") || address.starts_with("http://"),
-        Some(Target::State(_)) | None => !span.text.contains(|letter: char| letter.is_control() && letter != '\n'),
+        Some(Target::Web(address)) => {
+            address.starts_with("https://") || address.starts_with("http://")
+        }
+        Some(Target::State(_)) | None => {
+            !span.text.contains(|letter: char| letter.is_control() && letter != '\n')
+        }
     }
 }

@@ -1,4 +1,5 @@
-//! The link: any query string is taken over as far as it makes sense, and the document's own link opens the same document.
+//! The link: any query string is taken over as far as it makes sense, and the document's own link
+//! opens the same document.
 
 #![no_main]
 
@@ -7,7 +8,8 @@ use segue_session::{Command, Session};
 use std::cell::RefCell;
 
 thread_local! {
-    /// Made once, since making its clips takes longer than thousands of links; a link resets whatever it does not name.
+    /// Made once, since making its clips takes longer than thousands of links; a link resets
+    /// whatever it does not name.
     static SESSION: RefCell<Session> = RefCell::new(Session::new());
 }
 

@@ -6,10 +6,7 @@ use libfuzzer_sys::fuzz_target;
 use segue_formats::archive::{ArchiveLimits, unpack};
 
 fuzz_target!(|bytes: &[u8]| {
-    let limits = ArchiveLimits {
-        max_bytes: 1 << 20,
-        ..ArchiveLimits::default()
-    };
+    let limits = ArchiveLimits { max_bytes: 1 << 20, ..ArchiveLimits::default() };
     if let Ok(unpacked) = unpack("fuzz.zip", bytes, &limits) {
         let total: usize = unpacked.files.iter().map(|file| file.bytes.len()).sum();
         assert!(!unpacked.files.is_empty() && total <= limits.max_bytes);

@@ -18,7 +18,8 @@ pub(crate) struct AddressBar {
     written_at_ms: Option<f64>,
 }
 
-/// The query of a link to this state. A link without any would show what a first visitor sees, so it always names something.
+/// The query of a link to this state. A link without any would show what a first visitor sees, so
+/// it always names something.
 pub(crate) fn link_query(session: &Session) -> String {
     let query = session.query();
     if query.is_empty() {
@@ -29,19 +30,22 @@ pub(crate) fn link_query(session: &Session) -> String {
 }
 
 impl AddressBar {
-    /// Takes the address, whatever it says, for one that leads to the present state: the session was just opened with it.
+    /// Takes the address, whatever it says, for one that leads to the present state: the session
+    /// was just opened with it.
     pub(crate) fn is_right(&mut self, session: &Session) {
         self.address = platform::location_query();
         self.query = link_query(session);
         self.revision = session.revision();
     }
 
-    /// Whether the user went to another query than the one that is known. A change behind the `#` is none.
+    /// Whether the user went to another query than the one that is known. A change behind the `#`
+    /// is none.
     pub(crate) fn is_news(&self, address: &str) -> bool {
         address != self.address
     }
 
-    /// Writes the address when the state is another, but not in the middle of a drag. Returns in how many milliseconds to ask again.
+    /// Writes the address when the state is another, but not in the middle of a drag. Returns in
+    /// how many milliseconds to ask again.
     pub(crate) fn tend(&mut self, session: &Session, dragging: bool, now_ms: f64) -> Option<f64> {
         if session.revision() == self.revision || dragging {
             return None;

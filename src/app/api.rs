@@ -1,4 +1,5 @@
-//! The page's own API, as far as it is plain data: what it is asked, and what it answers. `docs/api.md` documents it.
+//! The page's own API, as far as it is plain data: what it is asked, and what it answers.
+//! `docs/api.md` documents it.
 
 use super::Segue;
 use super::frames::FrameTimes;
@@ -10,12 +11,14 @@ use segue::scene::pose_at;
 use segue_motion::math::Planar;
 use segue_motion::metrics::{Better, Metric};
 use segue_motion::skeleton::Side;
-use segue_session::export::{ExportBody, ExportFormat, ExportOptions, export, plotted_of_clip, plotted_of_result};
+use segue_session::export::{
+    ExportBody, ExportFormat, ExportOptions, export, plotted_of_clip, plotted_of_result,
+};
 use segue_session::outside;
 use segue_session::reading::Content;
 use segue_session::{
-    ClipInfo, Command, CommandError, Key, Kind, Loaded, Made, Motion, PARAMS, Pane, Param, ReportFacts, Value, check_graph_clips,
-    file_stem, frame_at, report,
+    ClipInfo, Command, CommandError, Key, Kind, Loaded, Made, Motion, PARAMS, Pane, Param,
+    ReportFacts, Value, check_graph_clips, file_stem, frame_at, report,
 };
 use serde::Serialize;
 use serde_json::{Map, Value as Json};
@@ -192,11 +195,14 @@ impl Segue {
     }
 
     fn checked(&self, name: &str, json: &Json) -> Result<(Key, Value), String> {
-        let key = Key::from_name(name).ok_or_else(|| format!("`{name}` is not a parameter; keys() lists them"))?;
+        let key = Key::from_name(name)
+            .ok_or_else(|| format!("`{name}` is not a parameter; keys() lists them"))?;
         let mut value = key.param().from_json(json).map_err(|error| error.to_string())?;
         if let (Kind::Clip, Value::Text(id)) = (key.param().kind, &value) {
             let known = self.session.nameable(id);
-            value = Value::Text(known.ok_or_else(|| format!("{name}: {}", CommandError::NoClip(id.clone())))?);
+            value = Value::Text(
+                known.ok_or_else(|| format!("{name}: {}", CommandError::NoClip(id.clone())))?,
+            );
         }
         if let (Key::Clips, Value::Text(ids)) = (key, &value) {
             check_graph_clips(ids).map_err(|reason| format!("{name}: {reason}"))?;
@@ -206,13 +212,11 @@ impl Segue {
 
     pub(super) fn loaded_clips(&mut self, loaded: Loaded) -> LoadedClips {
         let clips = self.clips().into_iter().filter(|clip| loaded.ids.contains(&clip.id)).collect();
-        LoadedClips {
-            clips,
-            warnings: loaded.warnings,
-        }
+        LoadedClips { clips, warnings: loaded.warnings }
     }
 
-    /// Has a file read elsewhere, exactly as if it were dropped on the page, and keeps what comes of it. Returns the task's number.
+    /// Has a file read elsewhere, exactly as if it were dropped on the page, and keeps what comes
+    /// of it. Returns the task's number.
     pub(crate) fn load_elsewhere(&mut self, name: &str, file: FileBytes) -> u64 {
         self.pump();
         let task = match file {
@@ -226,9 +230,13 @@ impl Segue {
         task
     }
 
-    /// Whether clips are still to come: from storage, over the network, or out of a file that is being read.
+    /// Whether clips are still to come: from storage, over the network, or out of a file that is
+    /// being read.
     pub(crate) fn is_loading(&mut self) -> bool {
-        self.awaits_work() || !self.downloads.is_empty() || !self.session.awaited_samples().is_empty() || self.session.is_reading_any()
+        self.awaits_work()
+            || !self.downloads.is_empty()
+            || !self.session.awaited_samples().is_empty()
+            || self.session.is_reading_any()
     }
 
     /// Whether that file is still being read.
@@ -251,7 +259,9 @@ impl Segue {
         {
             self.stop_fetching(&name);
         } else {
-            return Err(format!("stop: found `{name}`, expected the name of a file that is under way"));
+            return Err(format!(
+                "stop: found `{name}`, expected the name of a file that is under way"
+            ));
         }
         Ok(())
     }
@@ -268,11 +278,7 @@ impl Segue {
 
     /// What is shown, in Markdown. `picture` is an address, such as one that is the picture itself.
     pub(crate) fn report(&self, picture: Option<&str>) -> Result<String, String> {
-        let facts = ReportFacts {
-            link: &self.url(),
-            picture,
-            backend: self.window.backend,
-        };
+        let facts = ReportFacts { link: &self.url(), picture, backend: self.window.backend };
         report(&self.session, &facts).map_err(|reason| reason.to_string())
     }
 
@@ -305,21 +311,24 @@ impl Segue {
             let entry =
                 entry.ok_or_else(|| format!("found `{which}`, expected the id of a clip, `result`, or `result:1` for the second pane"))?;
             let motion = entry.motion.as_ref();
-            return motion
-                .map(Subject::Clip)
-                .ok_or_else(|| format!("`{}` is not loaded yet; put it into a or b first", entry.id));
+            return motion.map(Subject::Clip).ok_or_else(|| {
+                format!("`{}` is not loaded yet; put it into a or b first", entry.id)
+            });
         };
-        let pane = panes
-            .get(index)
-            .ok_or_else(|| format!("found `{which}`, expected a pane from `result:0` to `result:{}`", panes.len() - 1))?;
-        pane.result()
-            .map(|made| Subject::Result(pane, made))
-            .map_err(|reason| reason.to_string())
+        let pane = panes.get(index).ok_or_else(|| {
+            format!(
+                "found `{which}`, expected a pane from `result:0` to `result:{}`",
+                panes.len() - 1
+            )
+        })?;
+        pane.result().map(|made| Subject::Result(pane, made)).map_err(|reason| reason.to_string())
     }
 
     /// Puts a result into the library. Returns the id of the new clip.
     pub(crate) fn keep(&mut self, which: &str) -> Result<String, String> {
-        let pane = pane_number(which).ok_or_else(|| format!("found `{which}`, expected `result`, or `result:1` for the second pane"))?;
+        let pane = pane_number(which).ok_or_else(|| {
+            format!("found `{which}`, expected `result`, or `result:1` for the second pane")
+        })?;
         self.apply(Command::Keep(pane)).map_err(|error| error.to_string())?;
         let kept = self.session.library().entries().last();
         Ok(kept.map(|entry| entry.id.clone()).unwrap_or_default())
@@ -344,7 +353,10 @@ impl Segue {
         let joints = motion.clip.skeleton().joints();
         Ok(PoseInfo {
             joints: joints.iter().map(|joint| joint.name.clone()).collect(),
-            parents: joints.iter().map(|joint| joint.parent.map_or(-1, |parent| parent as i64)).collect(),
+            parents: joints
+                .iter()
+                .map(|joint| joint.parent.map_or(-1, |parent| parent as i64))
+                .collect(),
             positions: world.positions.iter().flat_map(Vec3::to_array).collect(),
             rotations: world.rotations.iter().flat_map(Quat::to_array).collect(),
             contacts: [Side::Left, Side::Right].map(|side| motion.contacts.planted(side, frame)),
@@ -374,31 +386,37 @@ impl Segue {
         Ok(main.outcome.metrics.iter().map(|metric| (metric.id, info(metric))).collect())
     }
 
-    /// A motion as a file of that format. `which` as in [`Self::pose`]; `body` says whose body a GLB file has, the character's on the stage where `None`.
-    pub(crate) fn export(&self, which: &str, format: &str, body: Option<&str>) -> Result<ExportedFile, String> {
+    /// A motion as a file of that format. `which` as in [`Self::pose`]; `body` says whose body a
+    /// GLB file has, the character's on the stage where `None`.
+    pub(crate) fn export(
+        &self,
+        which: &str,
+        format: &str,
+        body: Option<&str>,
+    ) -> Result<ExportedFile, String> {
         let format = ExportFormat::from_name(format).ok_or_else(|| {
             let names = ExportFormat::ALL.map(ExportFormat::name).join(", ");
             format!("found `{format}`, expected one of {names}")
         })?;
         let body = body.map_or(Ok(ExportBody::default()), |body| {
             let names = ExportBody::ALL.map(ExportBody::name).join(", ");
-            ExportBody::from_name(body).ok_or_else(|| format!("found `{body}`, expected one of {names}"))
+            ExportBody::from_name(body)
+                .ok_or_else(|| format!("found `{body}`, expected one of {names}"))
         })?;
-        self.export_as(
-            which,
-            &ExportOptions {
-                format,
-                body,
-                ..ExportOptions::default()
-            },
-        )
+        self.export_as(which, &ExportOptions { format, body, ..ExportOptions::default() })
     }
 
     /// A motion as a file, in the way that a person wants it.
-    pub(crate) fn export_as(&self, which: &str, how: &ExportOptions) -> Result<ExportedFile, String> {
+    pub(crate) fn export_as(
+        &self,
+        which: &str,
+        how: &ExportOptions,
+    ) -> Result<ExportedFile, String> {
         let params = self.session.params();
         let (motion, curves, stem) = match self.subject(which)? {
-            Subject::Clip(motion) => (motion, plotted_of_clip(motion, params), motion.clip.name().to_owned()),
+            Subject::Clip(motion) => {
+                (motion, plotted_of_clip(motion, params), motion.clip.name().to_owned())
+            }
             Subject::Result(pane, made) => {
                 let value = pane.variant.as_ref().map(|(key, value)| {
                     let param = key.param();
@@ -411,7 +429,8 @@ impl Segue {
         Ok(ExportedFile {
             name: file_name(&stem, how.format.name()),
             mime: how.format.mime(),
-            bytes: export(motion, self.session.character().as_ref(), &curves, how).map_err(|error| error.to_string())?,
+            bytes: export(motion, self.session.character().as_ref(), &curves, how)
+                .map_err(|error| error.to_string())?,
         })
     }
 
@@ -428,7 +447,8 @@ impl Segue {
             .jobs()
             .into_iter()
             .map(|job| (job.kind.name().to_owned(), Some(job.progress)));
-        let samples = self.session.awaited_samples().iter().map(|sample| (sample.id.to_owned(), None));
+        let samples =
+            self.session.awaited_samples().iter().map(|sample| (sample.id.to_owned(), None));
         let lessons = self.downloads.lessons_under_way().map(|name| (name, None));
         computed
             .chain(self.downloads.under_way())
@@ -464,11 +484,7 @@ impl Segue {
 /// A file's name that every system takes.
 pub(crate) fn file_name(stem: &str, ending: &str) -> String {
     let plain = |c: char| {
-        if c.is_alphanumeric() || matches!(c, '-' | '_' | '.' | ' ' | '~') {
-            c
-        } else {
-            '_'
-        }
+        if c.is_alphanumeric() || matches!(c, '-' | '_' | '.' | ' ' | '~') { c } else { '_' }
     };
     let stem: String = stem.chars().map(plain).take(100).collect();
     let stem = stem.trim().trim_start_matches('.');
@@ -505,11 +521,7 @@ mod tests {
     }
 
     fn object(json: Json) -> Map<String, Json> {
-        if let Json::Object(map) = json {
-            map
-        } else {
-            panic!("{json} is no object")
-        }
+        if let Json::Object(map) = json { map } else { panic!("{json} is no object") }
     }
 
     #[test]
@@ -563,7 +575,8 @@ mod tests {
         assert!(names.iter().all(|name| segue.params().contains_key(*name)));
         assert_eq!(names.len(), segue.params().len());
         let rows = serde_json::to_value(keys()).unwrap();
-        let window = rows.as_array().unwrap().iter().find(|row| row["key"] == "blend_window").unwrap();
+        let window =
+            rows.as_array().unwrap().iter().find(|row| row["key"] == "blend_window").unwrap();
         assert_eq!(
             (&window["type"], &window["min"], &window["max"], &window["unit"], &window["lab"]),
             (&json!("integer"), &json!(1.0), &json!(240.0), &json!("frames"), &json!("blend"))
@@ -588,10 +601,17 @@ mod tests {
             place(joint).distance(place(pose.parents[joint] as usize))
         };
         for joint in 1..joints {
-            assert!((bone(&pose, joint) - bone(&start, joint)).abs() < 1e-4, "{}", pose.joints[joint]);
+            assert!(
+                (bone(&pose, joint) - bone(&start, joint)).abs() < 1e-4,
+                "{}",
+                pose.joints[joint]
+            );
         }
         for which in ["result:2", "result:x", "resultant", "nobody"] {
-            assert!(segue.pose(which, 0.0).unwrap_err().contains(&format!("found `{which}`")), "{which}");
+            assert!(
+                segue.pose(which, 0.0).unwrap_err().contains(&format!("found `{which}`")),
+                "{which}"
+            );
         }
     }
 
@@ -620,7 +640,11 @@ mod tests {
         ] {
             let mut segue = open(good);
             let name = segue.stage_name();
-            assert!(segue.metrics().is_ok() && segue.export("result", "bvh", None).is_ok() && segue.report(None).is_ok());
+            assert!(
+                segue.metrics().is_ok()
+                    && segue.export("result", "bvh", None).is_ok()
+                    && segue.report(None).is_ok()
+            );
             segue.set(&object(bad)).unwrap();
             while segue.pump() || segue.is_busy() {}
             let kept = segue.clips().len();
@@ -667,7 +691,9 @@ mod tests {
             ("result", "walk to run 30 frames"),
             ("result:1", "walk to run 10 frames"),
         ] {
-            for (format, mime) in [("bvh", "text/plain"), ("csv", "text/csv"), ("glb", "model/gltf-binary")] {
+            for (format, mime) in
+                [("bvh", "text/plain"), ("csv", "text/csv"), ("glb", "model/gltf-binary")]
+            {
                 let file = segue.export(which, format, None).unwrap();
                 assert_eq!(
                     (file.name.to_lowercase(), file.mime),
@@ -676,9 +702,12 @@ mod tests {
                 assert!(file.bytes.len() > 1000);
             }
         }
-        let table = String::from_utf8(segue.export("result:1", "csv", None).unwrap().bytes).unwrap();
+        let table =
+            String::from_utf8(segue.export("result:1", "csv", None).unwrap().bytes).unwrap();
         let header = table.lines().next().unwrap();
-        assert!(header.ends_with("left foot.speed_m_per_s,A left foot.speed_m_per_s,B left foot.speed_m_per_s"));
+        assert!(header.ends_with(
+            "left foot.speed_m_per_s,A left foot.speed_m_per_s,B left foot.speed_m_per_s"
+        ));
         let frames = segue.motion("result:1").unwrap().clip.frames();
         assert_eq!(table.lines().count(), frames + 1);
     }

@@ -1,4 +1,5 @@
-//! Files and lessons that come over the network. Files are handed on in the order in which they were asked for: the first one is A, the second B.
+//! Files and lessons that come over the network. Files are handed on in the order in which they
+//! were asked for: the first one is A, the second B.
 
 use crate::platform::{self, Fetch, FileBytes, Inbox, fetch, file_name_of};
 use segue_session::lesson::Source;
@@ -60,8 +61,14 @@ impl Downloads {
         self.files.retain(|download| wanted(&download.address));
     }
 
-    /// A part has come. Returns the file's name and how much of it there is, 0 to 1, where that is known.
-    pub(crate) fn progressed(&mut self, address: &str, done: u64, total: Option<u64>) -> Option<(String, Option<f64>)> {
+    /// A part has come. Returns the file's name and how much of it there is, 0 to 1, where that is
+    /// known.
+    pub(crate) fn progressed(
+        &mut self,
+        address: &str,
+        done: u64,
+        total: Option<u64>,
+    ) -> Option<(String, Option<f64>)> {
         let download = self.find(address)?;
         (download.done, download.total) = (done, total);
         Some((file_name_of(address), download.progress()))
@@ -83,9 +90,7 @@ impl Downloads {
 
     /// Name and progress of every file under way.
     pub(crate) fn under_way(&self) -> impl Iterator<Item = (String, Option<f64>)> {
-        self.files
-            .iter()
-            .map(|download| (file_name_of(&download.address), download.progress()))
+        self.files.iter().map(|download| (file_name_of(&download.address), download.progress()))
     }
 
     /// The files in which the lessons under way stand.

@@ -36,7 +36,8 @@ impl Frames {
         self.count += 1;
     }
 
-    /// Remembers how long a frame took: input, panels and scene, and with them the commands for the graphics device.
+    /// Remembers how long a frame took: input, panels and scene, and with them the commands for the
+    /// graphics device.
     pub(crate) fn took(&mut self, thinking: f32, whole: f32) {
         if self.recent.len() >= REMEMBERED {
             self.recent.remove(0);
@@ -66,11 +67,7 @@ impl Frames {
             let index = (share * sorted.len() as f32).ceil() as usize;
             sorted.get(index.saturating_sub(1)).copied().unwrap_or_default()
         };
-        FrameTimes {
-            p50: rank(0.5),
-            p95: rank(0.95),
-            max: rank(1.0),
-        }
+        FrameTimes { p50: rank(0.5), p95: rank(0.95), max: rank(1.0) }
     }
 }
 
@@ -85,13 +82,6 @@ mod tests {
         (0..1000).for_each(|_| frames.took(500.0, 600.0));
         (1..=REMEMBERED).rev().for_each(|millis| frames.took(millis as f32, 300.0));
         assert_eq!(frames.whole_times().p50, 300.0);
-        assert_eq!(
-            frames.times(),
-            FrameTimes {
-                p50: 120.0,
-                p95: 228.0,
-                max: 240.0
-            }
-        );
+        assert_eq!(frames.times(), FrameTimes { p50: 120.0, p95: 228.0, max: 240.0 });
     }
 }

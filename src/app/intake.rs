@@ -24,7 +24,8 @@ impl Segue {
                     }
                     Err(reason) => {
                         let reason = reason.trim_end_matches('.');
-                        self.session.say(Level::Error, format!("The report could not be made: {reason}."));
+                        self.session
+                            .say(Level::Error, format!("The report could not be made: {reason}."));
                     }
                 }
             }
@@ -68,15 +69,18 @@ impl Segue {
                 }
             }
             Incoming::Stored(stored) => {
-                if self
-                    .keeper
-                    .arrived(&mut self.session, &mut self.vault, stored.map(|stored| *stored))
-                {
+                if self.keeper.arrived(
+                    &mut self.session,
+                    &mut self.vault,
+                    stored.map(|stored| *stored),
+                ) {
                     self.address.is_right(&self.session);
                 }
             }
             Incoming::StoredElsewhere(entries) => self.keeper.hear_of(&self.session, entries),
-            Incoming::Joined(stored) => self.keeper.join(&mut self.session, &mut self.vault, &stored),
+            Incoming::Joined(stored) => {
+                self.keeper.join(&mut self.session, &mut self.vault, &stored)
+            }
             Incoming::Navigated(query) => {
                 if self.address.is_news(&query) {
                     self.obey(Command::OpenLink(query));
@@ -111,7 +115,9 @@ impl Segue {
         if let Some(key) = self.session.reading_key(task).map(str::to_owned) {
             match &news {
                 ReadNews::Done(Ok(report)) => match report.files.as_slice() {
-                    [file] if file.result.is_ok() && report.is_one_file() => self.vault.name(&key, &file.sha256),
+                    [file] if file.result.is_ok() && report.is_one_file() => {
+                        self.vault.name(&key, &file.sha256)
+                    }
                     _ => self.vault.drop_file(&key),
                 },
                 // A file that is not in the library yet will not be: nobody else has it.
@@ -184,13 +190,15 @@ impl Segue {
         }
     }
 
-    /// Stops what comes over the network in a file of that name. The addresses of a motion file go out of the link; a lesson says that it was stopped.
+    /// Stops what comes over the network in a file of that name. The addresses of a motion file go
+    /// out of the link; a lesson says that it was stopped.
     pub(super) fn stop_fetching(&mut self, name: &str) {
         if self.downloads.lessons_under_way().any(|lesson| lesson == name) {
             return self.stop_lessons();
         }
         let sources = self.session.params().text(Key::Src).split_whitespace();
-        let rest: Vec<&str> = sources.filter(|address| platform::file_name_of(address) != *name).collect();
+        let rest: Vec<&str> =
+            sources.filter(|address| platform::file_name_of(address) != *name).collect();
         let rest = Value::Text(rest.join(" "));
         self.obey(Command::Set(vec![(Key::Src, rest)]));
     }

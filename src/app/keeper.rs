@@ -1,4 +1,5 @@
-//! Keeps the work: brings it back at the start, stores a file as soon as it is read, and everything else soon after it has changed.
+//! Keeps the work: brings it back at the start, stores a file as soon as it is read, and everything
+//! else soon after it has changed.
 
 use crate::platform::{Arrival, Storage, Stored, StoredFiles, Vault, Work};
 use segue_session::{Origin, Saved, SavedEntry, Session, Storing};
@@ -22,10 +23,7 @@ struct Mark {
 
 impl Mark {
     fn of(session: &Session) -> Self {
-        Self {
-            library: session.library_revision(),
-            query: session.query(),
-        }
+        Self { library: session.library_revision(), query: session.query() }
     }
 }
 
@@ -33,7 +31,8 @@ impl Mark {
 enum Phase {
     /// Nothing is shown yet: what is stored may come any moment.
     Waiting { since_ms: f64 },
-    /// It takes longer than anybody waits. The session has begun without it, and nothing is stored before it has come: that would be in its place.
+    /// It takes longer than anybody waits. The session has begun without it, and nothing is stored
+    /// before it has come: that would be in its place.
     Late { begun: Mark, since_ms: f64 },
     /// What was stored is here, or there is nothing.
     Ready,
@@ -47,7 +46,8 @@ pub(crate) struct Keeper {
     /// The link that the page was opened with; empty for none.
     link: String,
     stored: Mark,
-    /// The ids of all clips that were read from storage or written to it here. Others that are found there are another window's.
+    /// The ids of all clips that were read from storage or written to it here. Others that are
+    /// found there are another window's.
     known: BTreeSet<String>,
     seen: Mark,
     /// The session's revision at which `seen` was taken.
@@ -63,7 +63,8 @@ struct Changed {
 }
 
 impl Keeper {
-    /// Waits for what `storage` holds; without one nothing is kept. `link` is what the page was opened with; empty for nothing.
+    /// Waits for what `storage` holds; without one nothing is kept. `link` is what the page was
+    /// opened with; empty for nothing.
     pub(crate) fn new(storage: Option<Storage>, link: String, now_ms: f64) -> Self {
         Self {
             storage,
@@ -87,18 +88,18 @@ impl Keeper {
         matches!(self.phase, Phase::Late { since_ms, .. } if now_ms - since_ms < LATEST_MS)
     }
 
-    /// Begins without what is stored when it takes too long. Says whether the session has begun just now.
+    /// Begins without what is stored when it takes too long. Says whether the session has begun
+    /// just now.
     pub(crate) fn wait(&mut self, session: &mut Session, vault: &mut Vault, now_ms: f64) -> bool {
-        let Phase::Waiting { since_ms } = self.phase else { return false };
+        let Phase::Waiting { since_ms } = self.phase else {
+            return false;
+        };
         if self.storage.is_some() && now_ms - since_ms < PATIENCE_MS {
             return false;
         }
         self.open(session, vault, None);
         self.phase = if self.storage.is_some() {
-            Phase::Late {
-                begun: Mark::of(session),
-                since_ms,
-            }
+            Phase::Late { begun: Mark::of(session), since_ms }
         } else {
             Phase::Ready
         };
@@ -112,8 +113,14 @@ impl Keeper {
         }
     }
 
-    /// What is stored has come. Says whether the address that the page was opened with leads to what is now shown.
-    pub(crate) fn arrived(&mut self, session: &mut Session, vault: &mut Vault, stored: Option<Stored>) -> bool {
+    /// What is stored has come. Says whether the address that the page was opened with leads to
+    /// what is now shown.
+    pub(crate) fn arrived(
+        &mut self,
+        session: &mut Session,
+        vault: &mut Vault,
+        stored: Option<Stored>,
+    ) -> bool {
         let nothing = stored.is_none();
         let stored = stored.map(|stored| Found::of(stored, session));
         if let Some(stored) = &stored {
@@ -142,7 +149,9 @@ impl Keeper {
 
     /// Another window has stored these clips. Those that were never here are asked for.
     pub(crate) fn hear_of(&self, session: &Session, entries: Vec<SavedEntry>) {
-        let is_new = |entry: &SavedEntry| !self.known.contains(&entry.id) && session.library().get(&entry.id).is_none();
+        let is_new = |entry: &SavedEntry| {
+            !self.known.contains(&entry.id) && session.library().get(&entry.id).is_none()
+        };
         let new: Vec<SavedEntry> = entries.into_iter().filter(is_new).collect();
         if let Some(storage) = self.storage.as_ref().filter(|_| !new.is_empty()) {
             storage.fetch(new);
@@ -164,8 +173,12 @@ impl Keeper {
         let Some(storage) = &self.storage else { return };
         let mut arrivals = Vec::new();
         for entry in ids.iter().filter_map(|id| session.library().get(id)) {
-            let Origin::File(file) = &entry.origin else { continue };
-            let Some(bytes) = vault.bytes_of(&file.content) else { continue };
+            let Origin::File(file) = &entry.origin else {
+                continue;
+            };
+            let Some(bytes) = vault.bytes_of(&file.content) else {
+                continue;
+            };
             self.known.insert(entry.id.clone());
             arrivals.push(Arrival {
                 entry: SavedEntry::from(&**entry),
@@ -202,8 +215,11 @@ impl Keeper {
     fn open(&mut self, session: &mut Session, vault: &mut Vault, stored: Option<Found>) {
         let link = (!self.link.is_empty()).then_some(self.link.as_str());
         match stored {
-            Some(stored) => session.restore(&stored.saved, |key| vault.restore(&stored.files, key), link),
-            // Without a link there is nothing to bring about: a new session shows what a first visitor sees.
+            Some(stored) => {
+                session.restore(&stored.saved, |key| vault.restore(&stored.files, key), link)
+            }
+            // Without a link there is nothing to bring about: a new session shows what a first
+            // visitor sees.
             None if link.is_some() => session.restore(&Saved::default(), |_| None, link),
             None => {}
         }
@@ -216,7 +232,8 @@ impl Keeper {
         self.changed = None;
     }
 
-    /// Stores the work when it has been quiet for a while. Returns in how many milliseconds to ask again.
+    /// Stores the work when it has been quiet for a while. Returns in how many milliseconds to ask
+    /// again.
     pub(crate) fn tend(&mut self, session: &Session, vault: &Vault, now_ms: f64) -> Option<f64> {
         if !matches!(self.phase, Phase::Ready) || self.storage.is_none() {
             return None;
@@ -267,11 +284,7 @@ impl Keeper {
         self.known.extend(saved.entries.iter().map(|entry| entry.id.clone()));
         self.stored.clone_from(&now);
         self.seen = now;
-        let work = Work {
-            saved,
-            known: self.known.clone(),
-            files: files_of(session, vault),
-        };
+        let work = Work { saved, known: self.known.clone(), files: files_of(session, vault) };
         Some((storage, work))
     }
 }
@@ -291,10 +304,7 @@ impl Found {
                 saved.entries.push(entry);
             }
         }
-        Self {
-            saved,
-            files: stored.files,
-        }
+        Self { saved, files: stored.files }
     }
 }
 
@@ -315,18 +325,11 @@ mod tests {
     use segue_session::{Command, Key, Slot, Value};
     use std::sync::Arc;
 
-    const STANDING: &str =
-        "HIERARCHY ROOT Hips { OFFSET 0 1 0 CHANNELS 1 Yrotation End Site { OFFSET 0 0.7 0 } } MOTION Frames: 2 Frame Time: .1\n1\n2";
+    const STANDING: &str = "HIERARCHY ROOT Hips { OFFSET 0 1 0 CHANNELS 1 Yrotation End Site { OFFSET 0 0.7 0 } } MOTION Frames: 2 Frame Time: .1\n1\n2";
 
     fn stored(query: &str) -> Stored {
-        let saved = Saved {
-            query: query.into(),
-            ..Session::new().saved()
-        };
-        Stored {
-            saved: Some(saved),
-            ..Stored::default()
-        }
+        let saved = Saved { query: query.into(), ..Session::new().saved() };
+        Stored { saved: Some(saved), ..Stored::default() }
     }
 
     fn keeper(link: &str) -> (Keeper, Session) {
@@ -334,9 +337,7 @@ mod tests {
     }
 
     fn set_window(session: &mut Session, frames: f64) {
-        session
-            .apply(Command::Set(vec![(Key::BlendWindow, Value::Number(frames))]))
-            .unwrap();
+        session.apply(Command::Set(vec![(Key::BlendWindow, Value::Number(frames))])).unwrap();
     }
 
     #[test]
@@ -354,7 +355,11 @@ mod tests {
     #[test]
     fn a_link_goes_before_stored_parameters() {
         let (mut keeper, mut session) = keeper("blend_window=12");
-        assert!(keeper.arrived(&mut session, &mut Vault::default(), Some(stored("blend_window=24"))));
+        assert!(keeper.arrived(
+            &mut session,
+            &mut Vault::default(),
+            Some(stored("blend_window=24"))
+        ));
         assert_eq!(session.query(), "blend_window=12");
     }
 
@@ -424,12 +429,18 @@ mod tests {
         keeper.save_now(&session, vault);
         assert_eq!(keeper.known.len(), 0, "nothing is stored over what has not been read yet");
         keeper.arrived(&mut session, vault, Some(late));
-        let has = |session: &Session, id: &str| session.library().get(id).is_some_and(|entry| entry.motion.is_some());
+        let has = |session: &Session, id: &str| {
+            session.library().get(id).is_some_and(|entry| entry.motion.is_some())
+        };
         assert!(has(&session, &stored_id) && has(&session, &dropped));
         assert_eq!(session.library().get(&stored_id).unwrap().name, "mine");
         assert!(session.library().get("idle").is_none());
         assert_eq!(session.params().text(Key::A), dropped, "the parameters stay");
-        assert_eq!(keeper.tend(&session, vault, 2000.0), Some(QUIET_MS), "both are yet to be stored");
+        assert_eq!(
+            keeper.tend(&session, vault, 2000.0),
+            Some(QUIET_MS),
+            "both are yet to be stored"
+        );
         // The way back leads past the drop, and not past what was stored.
         session.apply(Command::Undo).unwrap();
         assert!(has(&session, &stored_id) && session.library().get(&dropped).is_none());

@@ -10,7 +10,8 @@ use segue_session::Session;
 
 /// The one stage of the page.
 const STAGE: u64 = 0;
-/// A camera does not leap over the time that nothing was drawn in, seconds. Slow machines need a second for a frame of many bodies.
+/// A camera does not leap over the time that nothing was drawn in, seconds. Slow machines need a
+/// second for a frame of many bodies.
 const LONGEST_STEP_SECS: f64 = 1.0;
 
 /// What goes on from frame to frame.
@@ -39,12 +40,7 @@ impl Place {
     pub(crate) fn reserve(&mut self, stage: Rect, panes: &[(usize, Rect)], ui: &Ui) {
         let painter = ui.painter().clone();
         let index = painter.add(Shape::Noop);
-        self.0 = Some(Reserved {
-            stage,
-            panes: panes.to_vec(),
-            painter,
-            index,
-        });
+        self.0 = Some(Reserved { stage, panes: panes.to_vec(), painter, index });
     }
 }
 
@@ -64,7 +60,8 @@ impl Picture {
         self.director.mark_path(marks);
     }
 
-    /// The frame that is shown as a ghost beside the driven character, in what is drawn from now on.
+    /// The frame that is shown as a ghost beside the driven character, in what is drawn from now
+    /// on.
     pub(crate) fn show_candidate(&mut self, place: Option<segue_motion::matching::Place>) {
         self.director.show_candidate(place);
     }
@@ -80,18 +77,19 @@ impl Picture {
     }
 
     /// Draws the session's present state into the place that was kept.
-    pub(crate) fn finish(&mut self, place: Place, session: &Session, palette: &Palette, look: Look, ui: &Ui) {
+    pub(crate) fn finish(
+        &mut self,
+        place: Place,
+        session: &Session,
+        palette: &Palette,
+        look: Look,
+        ui: &Ui,
+    ) {
         let now_ms = now_ms();
         let dt_secs = ((now_ms - self.drawn_at_ms) / 1e3).clamp(0.0, LONGEST_STEP_SECS) as f32;
         self.drawn_at_ms = now_ms;
         self.place = place.0.as_ref().map(|reserved| reserved.stage);
-        let Some(Reserved {
-            stage: rect,
-            panes,
-            painter,
-            index,
-        }) = place.0
-        else {
+        let Some(Reserved { stage: rect, panes, painter, index }) = place.0 else {
             return;
         };
         let scale = ui.ctx().pixels_per_point();
@@ -128,14 +126,10 @@ impl Picture {
 /// A part of a stage in the pixels of its target.
 fn within(stage: Rect, part: Rect, size: [u32; 2], scale: f32) -> Viewport {
     let pixel = |points: f32, most: u32| (points * scale).round().clamp(0.0, most as f32) as u32;
-    let (left, right) = (
-        pixel(part.left() - stage.left(), size[0]),
-        pixel(part.right() - stage.left(), size[0]),
-    );
-    let (top, bottom) = (
-        pixel(part.top() - stage.top(), size[1]),
-        pixel(part.bottom() - stage.top(), size[1]),
-    );
+    let (left, right) =
+        (pixel(part.left() - stage.left(), size[0]), pixel(part.right() - stage.left(), size[0]));
+    let (top, bottom) =
+        (pixel(part.top() - stage.top(), size[1]), pixel(part.bottom() - stage.top(), size[1]));
     Viewport {
         x: left,
         y: top,
@@ -145,7 +139,9 @@ fn within(stage: Rect, part: Rect, size: [u32; 2], scale: f32) -> Viewport {
 }
 
 fn colors_of(palette: &Palette) -> Colors {
-    let color = |color: Color32| -> Color { color.to_srgba_unmultiplied().map(|part| f32::from(part) / 255.0) };
+    let color = |color: Color32| -> Color {
+        color.to_srgba_unmultiplied().map(|part| f32::from(part) / 255.0)
+    };
     Colors {
         a: color(palette.a),
         b: color(palette.b),

@@ -56,8 +56,15 @@ impl Speech {
         }
     }
 
-    /// Before a frame: asks for the language that is wanted, or speaks it. Returns the one that is spoken.
-    pub(super) fn tend(&mut self, session: &Session, spoken: &mut Spoken, inbox: &Inbox, ctx: &Context) -> Language {
+    /// Before a frame: asks for the language that is wanted, or speaks it. Returns the one that is
+    /// spoken.
+    pub(super) fn tend(
+        &mut self,
+        session: &Session,
+        spoken: &mut Spoken,
+        inbox: &Inbox,
+        ctx: &Context,
+    ) -> Language {
         let wanted = Language::of(session, self.preferred);
         match (wanted, &self.chinese) {
             (Language::English, Lesson::Failed) => self.chinese = Lesson::NotBegun,

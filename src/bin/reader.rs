@@ -1,4 +1,5 @@
-//! The worker of the page that reads files: the part of the motion core that does, and nothing of the app. `web/js/reader.js` calls it.
+//! The worker of the page that reads files: the part of the motion core that does, and nothing of
+//! the app. `web/js/reader.js` calls it.
 
 #[cfg(target_arch = "wasm32")]
 mod worker {
@@ -7,7 +8,8 @@ mod worker {
     use wasm_bindgen::JsValue;
     use wasm_bindgen::prelude::wasm_bindgen;
 
-    /// The worker's part: reads a file, whose SHA-256 the browser may know, and hands its report out, first the head, then the pieces.
+    /// The worker's part: reads a file, whose SHA-256 the browser may know, and hands its report
+    /// out, first the head, then the pieces.
     #[wasm_bindgen(js_name = readFile)]
     #[expect(unreachable_pub, reason = "called from JavaScript")]
     pub fn read_file(
@@ -19,13 +21,16 @@ mod worker {
         head: &Function,
         piece: &Function,
     ) -> Result<(), JsValue> {
-        let mut setup: ReadSetup = serde_json::from_str(setup).map_err(|error| error.to_string())?;
+        let mut setup: ReadSetup =
+            serde_json::from_str(setup).map_err(|error| error.to_string())?;
         setup.sha256 = setup.sha256.or(sha256);
         let report = read(name, &bytes, &setup, &mut |done| {
             progress.call1(&JsValue::NULL, &JsValue::from(done as f64)).is_ok()
         });
         drop(bytes);
-        let Some(report) = report else { return Err("stopped".into()) };
+        let Some(report) = report else {
+            return Err("stopped".into());
+        };
         let parcel = Parcel::new(report).map_err(|error| error.to_string())?;
         head.call1(&JsValue::NULL, &JsValue::from(parcel.head()))?;
         let mut failed = Ok(());

@@ -4,7 +4,8 @@ use super::last_part;
 use percent_encoding::percent_decode_str;
 use segue_session::outside;
 
-/// The key with which a page is told which graphics to use. It belongs to the page, not to the state.
+/// The key with which a page is told which graphics to use. It belongs to the page, not to the
+/// state.
 const BACKEND: &str = "backend";
 
 /// The value of `backend=` in a query.
@@ -19,7 +20,10 @@ pub(super) fn backend_of(query: &str) -> Option<String> {
 }
 
 /// `query` with the `backend=` that `old` has.
-#[cfg_attr(not(target_arch = "wasm32"), expect(dead_code, reason = "a window has no address to keep it in"))]
+#[cfg_attr(
+    not(target_arch = "wasm32"),
+    expect(dead_code, reason = "a window has no address to keep it in")
+)]
 pub(super) fn with_backend_of(query: &str, old: &str) -> String {
     let kept = bare(old).split('&').find(|pair| pair.split('=').next() == Some(BACKEND));
     match kept {
@@ -49,11 +53,7 @@ pub(crate) fn file_name_of(address: &str) -> String {
     // The host alone names no file.
     let name = path.split_once('/').map_or("", |(_, path)| last_part(path));
     let name = percent_decode_str(name).decode_utf8_lossy();
-    if name.is_empty() {
-        "download".to_owned()
-    } else {
-        outside::file_name(&name)
-    }
+    if name.is_empty() { "download".to_owned() } else { outside::file_name(&name) }
 }
 
 #[cfg(test)]

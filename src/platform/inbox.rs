@@ -37,7 +37,8 @@ pub(crate) enum Incoming {
     },
     /// The text that was to be copied is in the clipboard.
     Copied,
-    /// The picture that was asked for, as an address that is the picture itself; `None` where none could be taken.
+    /// The picture that was asked for, as an address that is the picture itself; `None` where none
+    /// could be taken.
     Picture(Option<String>),
     /// A bundled take.
     Sample {
@@ -81,7 +82,8 @@ pub(crate) enum Incoming {
     Navigated(String),
     /// The graphics device is gone.
     DeviceLost {
-        /// Which one, counted from the app's start: one that was given up on purpose is nothing to tell.
+        /// Which one, counted from the app's start: one that was given up on purpose is nothing to
+        /// tell.
         generation: u64,
         /// What the driver says.
         reason: String,
@@ -156,19 +158,14 @@ mod tests {
         });
         let other_end = inbox.clone();
         for name in ["1.bvh", "2.bvh"] {
-            other_end.push(Incoming::File {
-                name: name.into(),
-                bytes: Arc::from([]),
-            });
+            other_end.push(Incoming::File { name: name.into(), bytes: Arc::from([]) });
         }
         let names: Vec<String> = (inbox.take().into_iter())
-            .map(|incoming| {
-                if let Incoming::File { name, .. } = incoming {
-                    name
-                } else {
-                    String::new()
-                }
-            })
+            .map(
+                |incoming| {
+                    if let Incoming::File { name, .. } = incoming { name } else { String::new() }
+                },
+            )
             .collect();
         assert_eq!(names, ["1.bvh", "2.bvh"]);
         assert!(inbox.take().is_empty());

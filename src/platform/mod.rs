@@ -1,9 +1,13 @@
-//! Everything that a page and a desktop window do differently: files, addresses, storage, time. The same names on both sides.
+//! Everything that a page and a desktop window do differently: files, addresses, storage, time. The
+//! same names on both sides.
 //!
 //! What takes time answers through an [`Inbox`]; the app takes the answers when it is drawn next.
 
 mod address;
-#[cfg_attr(not(target_arch = "wasm32"), expect(dead_code, reason = "some things happen to a page only"))]
+#[cfg_attr(
+    not(target_arch = "wasm32"),
+    expect(dead_code, reason = "some things happen to a page only")
+)]
 mod inbox;
 #[cfg_attr(
     not(any(test, target_arch = "wasm32")),
@@ -30,7 +34,8 @@ use segue_session::{Saved, SavedEntry};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// The largest file that is read. A motion file of that size holds days; more would only fill the memory.
+/// The largest file that is read. A motion file of that size holds days; more would only fill the
+/// memory.
 pub(crate) const MAX_FILE_BYTES: u64 = 512 * 1024 * 1024;
 
 /// The bytes of a file.
@@ -90,19 +95,19 @@ pub(crate) struct Work {
 }
 
 impl Work {
-    /// What is to be stored where `there` is stored at present: this work, with what other windows have added. Clips whose files are not `held` in
-    /// the storage are left out.
+    /// What is to be stored where `there` is stored at present: this work, with what other windows
+    /// have added. Clips whose files are not `held` in the storage are left out.
     fn over(&self, there: &Saved, held: impl Fn(&str) -> bool) -> Saved {
         let mut all = self.saved.clone().with_others_of(there, &self.known);
-        all.entries
-            .retain(|entry| entry.file.as_ref().is_none_or(|file| held(&file.sha256)));
+        all.entries.retain(|entry| entry.file.as_ref().is_none_or(|file| held(&file.sha256)));
         all
     }
 
     /// The clips whose files are not `held` in the storage, each with its file.
     #[cfg(any(test, target_arch = "wasm32"))]
     fn missing(&self, held: impl Fn(&str) -> bool) -> Vec<Arrival> {
-        let entries = self.saved.entries.iter().filter_map(|entry| Some((entry, entry.file.as_ref()?)));
+        let entries =
+            self.saved.entries.iter().filter_map(|entry| Some((entry, entry.file.as_ref()?)));
         entries
             .filter(|(_, file)| !held(&file.sha256))
             .filter_map(|(entry, file)| {
@@ -150,13 +155,15 @@ fn too_large(name: &str, bytes: u64, most: u64) -> Option<String> {
     })
 }
 
-/// How the names of motion files end. A file that is dropped by itself is looked into whatever its name; of a folder these are taken.
+/// How the names of motion files end. A file that is dropped by itself is looked into whatever its
+/// name; of a folder these are taken.
 const MOTION_ENDINGS: [&str; 7] = ["bvh", "asf", "amc", "glb", "gltf", "zip", "gz"];
 
 /// More files of one folder are not read, as of an archive.
 const MOST_FILES_OF_FOLDER: usize = segue_formats::archive::MOST_FILES;
 
-/// Whether a file in a folder is read. Hidden ones are not: what a Mac adds to a folder ends like the files it adds it for.
+/// Whether a file in a folder is read. Hidden ones are not: what a Mac adds to a folder ends like
+/// the files it adds it for.
 fn is_motion_file(name: &str) -> bool {
     let known = |own: &str| MOTION_ENDINGS.iter().any(|ending| own.eq_ignore_ascii_case(ending));
     !name.starts_with('.') && name.rsplit_once('.').is_some_and(|(_, own)| known(own))
@@ -169,7 +176,9 @@ fn no_motion_in(folder: &str) -> String {
 
 /// What is said of a folder with more files than are read.
 fn too_many_in(folder: &str) -> String {
-    format!("{folder} has more than {MOST_FILES_OF_FOLDER} motion files: the first {MOST_FILES_OF_FOLDER} are read.")
+    format!(
+        "{folder} has more than {MOST_FILES_OF_FOLDER} motion files: the first {MOST_FILES_OF_FOLDER} are read."
+    )
 }
 
 /// The name of a file without the folders before it.
@@ -183,7 +192,8 @@ fn clip_of(id: &str) -> SavedEntry {
     let sha256 = id.split_once('~').map(|(_, sha256)| sha256);
     let file = sha256
         .map(|sha256| serde_json::json!({ "name": id, "sha256": sha256, "index": 0, "options": segue_formats::ImportOptions::default() }));
-    serde_json::from_value(serde_json::json!({ "id": id, "name": id, "file": file, "roles": null })).unwrap()
+    serde_json::from_value(serde_json::json!({ "id": id, "name": id, "file": file, "roles": null }))
+        .unwrap()
 }
 
 #[cfg(test)]
@@ -201,15 +211,12 @@ mod tests {
             files: [("22".to_owned(), FileBytes::Here(Arc::from([2_u8])))].into(),
         };
         let held = |sha256: &str| sha256 == "11";
-        let ids: Vec<String> = work
-            .over(&Saved::default(), held)
-            .entries
-            .into_iter()
-            .map(|entry| entry.id)
-            .collect();
+        let ids: Vec<String> =
+            work.over(&Saved::default(), held).entries.into_iter().map(|entry| entry.id).collect();
         assert_eq!(ids, ["idle", "a~11"]);
         // Nobody has the bytes of the third.
-        let missing: Vec<String> = work.missing(held).into_iter().map(|arrival| arrival.sha256).collect();
+        let missing: Vec<String> =
+            work.missing(held).into_iter().map(|arrival| arrival.sha256).collect();
         assert_eq!(missing, ["22"]);
     }
 

@@ -1,9 +1,11 @@
-//! What is stored of the work, as texts by their keys: the record of all of it, a row for every clip that came from a file, and what windows wrote
-//! as they went.
+//! What is stored of the work, as texts by their keys: the record of all of it, a row for every
+//! clip that came from a file, and what windows wrote as they went.
 //!
-//! A clip's row is stored together with the bytes of its file, as soon as the file is read; the record follows when there is time for it. So a clip
-//! that no record names is one that came since, or one whose record cannot be read any more: it is found by its row. A window that goes has no time
-//! to ask what others have stored: it leaves a record of its own, which is joined to the others' when the work is read or stored next.
+//! A clip's row is stored together with the bytes of its file, as soon as the file is read; the
+//! record follows when there is time for it. So a clip that no record names is one that came since,
+//! or one whose record cannot be read any more: it is found by its row. A window that goes has no
+//! time to ask what others have stored: it leaves a record of its own, which is joined to the
+//! others' when the work is read or stored next.
 
 use segue_session::{Saved, SavedEntry};
 use serde::{Deserialize, Serialize};
@@ -82,16 +84,20 @@ enum Since {
 }
 
 impl Records {
-    /// Reads texts, each with its key. Of the rows, those are enough whose clips the record does not name.
+    /// Reads texts, each with its key. Of the rows, those are enough whose clips the record does
+    /// not name.
     pub(crate) fn read<'a>(texts: impl IntoIterator<Item = (&'a str, &'a str)>) -> Self {
         let (mut records, mut since) = (Self::default(), Vec::new());
         for (key, text) in texts {
             let read = if key == LATEST {
                 serde_json::from_str(text).map(|saved| records.saved = Some(saved))
             } else if row_id(key).is_some() {
-                serde_json::from_str(text).map(|Row { at_ms, entry }| since.push((at_ms, Since::Came(Box::new(entry)))))
+                serde_json::from_str(text)
+                    .map(|Row { at_ms, entry }| since.push((at_ms, Since::Came(Box::new(entry)))))
             } else if is_left(key) {
-                serde_json::from_str(text).map(|Left { at_ms, known, saved }| since.push((at_ms, Since::Left(known, saved))))
+                serde_json::from_str(text).map(|Left { at_ms, known, saved }| {
+                    since.push((at_ms, Since::Left(known, saved)))
+                })
             } else {
                 Ok(())
             };
@@ -111,7 +117,8 @@ impl Records {
     fn add(&mut self, since: Since) {
         match since {
             Since::Came(entry) => {
-                let entries = self.saved.as_mut().map_or(&mut self.loose, |saved| &mut saved.entries);
+                let entries =
+                    self.saved.as_mut().map_or(&mut self.loose, |saved| &mut saved.entries);
                 if entries.iter().all(|there| there.id != entry.id) {
                     entries.push(*entry);
                 }
@@ -138,10 +145,7 @@ mod tests {
     use crate::platform::clip_of;
 
     fn saved(query: &str, ids: &[&str]) -> Saved {
-        Saved {
-            query: query.to_owned(),
-            entries: ids.iter().map(|id| clip_of(id)).collect(),
-        }
+        Saved { query: query.to_owned(), entries: ids.iter().map(|id| clip_of(id)).collect() }
     }
 
     fn row(at_ms: f64, id: &str) -> (String, String) {
@@ -168,7 +172,8 @@ mod tests {
 
     #[test]
     fn a_clip_that_came_since_the_record_follows_it() {
-        let records = read(&[row(9.0, "b"), latest(&saved("t=1", &["a"])), row(8.0, "c"), row(7.0, "a")]);
+        let records =
+            read(&[row(9.0, "b"), latest(&saved("t=1", &["a"])), row(8.0, "c"), row(7.0, "a")]);
         let all = records.saved.unwrap();
         assert_eq!((all.query.as_str(), ids(&all.entries)), ("t=1", vec!["a", "c", "b"]));
         assert!(records.loose.is_empty() && records.problem.is_none());
@@ -200,7 +205,10 @@ mod tests {
             row(20.0, "later"),
         ]);
         let all = records.saved.unwrap();
-        assert_eq!((all.query.as_str(), ids(&all.entries)), ("t=2", vec!["b", "c", "theirs", "later"]));
+        assert_eq!(
+            (all.query.as_str(), ids(&all.entries)),
+            ("t=2", vec!["b", "c", "theirs", "later"])
+        );
     }
 
     #[test]

@@ -1,6 +1,8 @@
 use super::StageRenderer;
 use eframe::egui::{self, PaintCallbackInfo, epaint::ViewportInPixels};
-use eframe::egui_wgpu::{Callback, CallbackResources, CallbackTrait, RenderState, ScreenDescriptor};
+use eframe::egui_wgpu::{
+    Callback, CallbackResources, CallbackTrait, RenderState, ScreenDescriptor,
+};
 use eframe::wgpu;
 use segue::scene::Stage;
 use std::sync::Arc;
@@ -8,23 +10,34 @@ use std::time::Duration;
 
 /// Makes the renderer and leaves it with egui's. Call it once, when the app is created.
 pub(crate) fn install(render_state: &RenderState) {
-    let (device, queue, adapter) = (&render_state.device, &render_state.queue, &render_state.adapter);
+    let (device, queue, adapter) =
+        (&render_state.device, &render_state.queue, &render_state.adapter);
     let renderer = StageRenderer::new(device, queue, adapter, render_state.target_format);
     render_state.renderer.write().callback_resources.insert(renderer);
 }
 
 /// A shape that shows `stage` in `rect`. Every stage of the page has an `id` of its own.
 ///
-/// Keep the `Arc` and change the stage with `Arc::make_mut` in the next frame: egui has let go of it by then, so that nothing is copied.
-pub(crate) fn paint_callback(id: u64, rect: egui::Rect, stage: Arc<Stage>, ctx: &egui::Context) -> egui::Shape {
+/// Keep the `Arc` and change the stage with `Arc::make_mut` in the next frame: egui has let go of
+/// it by then, so that nothing is copied.
+pub(crate) fn paint_callback(
+    id: u64,
+    rect: egui::Rect,
+    stage: Arc<Stage>,
+    ctx: &egui::Context,
+) -> egui::Shape {
     let ctx = ctx.clone();
-    egui::Shape::Callback(Callback::new_paint_callback(rect, StageCallback { id, rect, stage, ctx }))
+    egui::Shape::Callback(Callback::new_paint_callback(
+        rect,
+        StageCallback { id, rect, stage, ctx },
+    ))
 }
 
 /// What stood still for so long is drawn finely where moving things are drawn coarsely.
 const REFINE_AFTER: Duration = Duration::from_millis(200);
 
-/// The size in physical pixels of the target for a stage in `rect`: what its panes' viewports divide.
+/// The size in physical pixels of the target for a stage in `rect`: what its panes' viewports
+/// divide.
 pub(crate) fn stage_pixels(ctx: &egui::Context, rect: egui::Rect) -> [u32; 2] {
     let pixels_per_point = ctx.pixels_per_point();
     let screen = ctx.content_rect().size() * pixels_per_point;
@@ -64,7 +77,12 @@ impl CallbackTrait for StageCallback {
         Vec::new()
     }
 
-    fn paint(&self, _info: PaintCallbackInfo, pass: &mut wgpu::RenderPass<'static>, resources: &CallbackResources) {
+    fn paint(
+        &self,
+        _info: PaintCallbackInfo,
+        pass: &mut wgpu::RenderPass<'static>,
+        resources: &CallbackResources,
+    ) {
         if let Some(renderer) = resources.get::<StageRenderer>() {
             renderer.paint(pass, self.id);
         }

@@ -1,9 +1,12 @@
-//! From the draw list to what the GPU reads: plain bytes and the order of drawing. Nothing here allocates once it has grown.
+//! From the draw list to what the GPU reads: plain bytes and the order of drawing. Nothing here
+//! allocates once it has grown.
 
 use super::light::{self, LightBox, MAP_SIZE};
 use super::renderer::Quality;
 use glam::Vec4;
-use segue::scene::{Color, Figure, Layer, Lens, Limb, Look, Pane, Ring, Skin, Skinning, Stage, Stroke, Viewport};
+use segue::scene::{
+    Color, Figure, Layer, Lens, Limb, Look, Pane, Ring, Skin, Skinning, Stage, Stroke, Viewport,
+};
 use segue_motion::skin::SkinnedMesh;
 use std::ops::Range;
 use std::sync::Arc;
@@ -100,14 +103,16 @@ impl ViewUniform {
         self.light_center = fit.center.extend(fit.half_width).to_array();
         self.light_right = fit.right.extend(fit.half_depth).to_array();
         self.light_up = fit.up.extend(1.0).to_array();
-        self.light_tile = [tile.x, tile.y, tile.width, tile.height].map(|texels| texels as f32 / MAP_SIZE as f32);
+        self.light_tile =
+            [tile.x, tile.y, tile.width, tile.height].map(|texels| texels as f32 / MAP_SIZE as f32);
         let [spread, widest] = if look.flat { [0.0, 0.0] } else { [SPREAD, WIDEST_M] };
         self.light_tile_metres = [texel, spread, widest, look.key_shadow];
         true
     }
 }
 
-/// The main light's radius over its distance: how much wider the edge of a shadow gets with every metre.
+/// The main light's radius over its distance: how much wider the edge of a shadow gets with every
+/// metre.
 const SPREAD: f32 = 0.055;
 /// The widest that the edge of a shadow gets to either side, metres.
 const WIDEST_M: f32 = 0.13;
@@ -200,17 +205,14 @@ fn bytes(color: Color) -> [u8; 4] {
 /// The viewport's part inside a stage of that size.
 fn clip(viewport: Viewport, [width, height]: [u32; 2]) -> Viewport {
     let (x, y) = (viewport.x.min(width), viewport.y.min(height));
-    Viewport {
-        x,
-        y,
-        width: viewport.width.min(width - x),
-        height: viewport.height.min(height - y),
-    }
+    Viewport { x, y, width: viewport.width.min(width - x), height: viewport.height.min(height - y) }
 }
 
 /// The same part of another target; neighbours stay neighbours.
 fn stretched(viewport: Viewport, from: [u32; 2], to: [u32; 2]) -> Viewport {
-    let place = |at: u32, axis: usize| (f64::from(at) * f64::from(to[axis]) / f64::from(from[axis].max(1))).round() as u32;
+    let place = |at: u32, axis: usize| {
+        (f64::from(at) * f64::from(to[axis]) / f64::from(from[axis].max(1))).round() as u32
+    };
     let (x, y) = (place(viewport.x, 0), place(viewport.y, 1));
     Viewport {
         x,
@@ -221,8 +223,15 @@ fn stretched(viewport: Viewport, from: [u32; 2], to: [u32; 2]) -> Viewport {
 }
 
 impl Frame {
-    /// Fills the frame from a stage whose panes divide `size` pixels and that is drawn into `target` pixels.
-    pub(super) fn build(&mut self, stage: &Stage, size: [u32; 2], target: [u32; 2], quality: Quality) {
+    /// Fills the frame from a stage whose panes divide `size` pixels and that is drawn into
+    /// `target` pixels.
+    pub(super) fn build(
+        &mut self,
+        stage: &Stage,
+        size: [u32; 2],
+        target: [u32; 2],
+        quality: Quality,
+    ) {
         self.clear = stage.look.background_top;
         self.views.clear();
         self.figures.clear();
@@ -244,13 +253,15 @@ impl Frame {
             let figures = self.add_figures(pane, viewport, stage.look.flat, quality);
             let strokes = [Layer::Ground, Layer::Space, Layer::Over].map(|layer| {
                 let start = self.strokes.len() as u32;
-                self.strokes
-                    .extend(pane.strokes.iter().filter(|s| s.layer == layer).filter_map(stroke_instance));
+                self.strokes.extend(
+                    pane.strokes.iter().filter(|s| s.layer == layer).filter_map(stroke_instance),
+                );
                 start..self.strokes.len() as u32
             });
             let rings = self.rings.len() as u32;
             self.rings.extend(pane.rings.iter().filter_map(ring_instance));
-            let mut view = view_uniform(pane, viewport, stage, target[1] as f32 / size[1].max(1) as f32);
+            let mut view =
+                view_uniform(pane, viewport, stage, target[1] as f32 / size[1].max(1) as f32);
             let tile = light::tile(self.panes.len(), stage.panes.len());
             let lit = quality == Quality::Full && view.add_light(pane, &stage.look, tile);
             self.views.push(view);
@@ -280,7 +291,8 @@ impl Frame {
         let transforms = pane.joints.get(skin.joints.clone()).unwrap_or_default();
         let colors = pane.joint_colors.get(skin.joints.clone()).unwrap_or_default();
         self.joints.extend(transforms.iter().enumerate().map(|(index, transform)| {
-            let [red, green, blue, _] = bytes(colors.get(index).copied().unwrap_or(skin.color)).map(f32::from);
+            let [red, green, blue, _] =
+                bytes(colors.get(index).copied().unwrap_or(skin.color)).map(f32::from);
             let shift = transform.translation.extend(red + 256.0 * green + 65_536.0 * blue);
             [transform.rotation.to_array(), shift.to_array()]
         }));
@@ -295,14 +307,12 @@ impl Frame {
             (false, true) => 0,
             (false, false) => 2,
         };
-        self.skins.push(SkinInstance {
-            figure: [first, color_from],
-            color: bytes(skin.color),
-        });
+        self.skins.push(SkinInstance { figure: [first, color_from], color: bytes(skin.color) });
         self.skins.len() as u32 - 1
     }
 
-    /// Adds all solid figures in skins: those that share one follow each other, and are drawn at once.
+    /// Adds all solid figures in skins: those that share one follow each other, and are drawn at
+    /// once.
     fn add_solid_skins(&mut self, pane: &Pane) -> Range<usize> {
         let first = self.solid_skins.len();
         let solids = || {
@@ -326,13 +336,20 @@ impl Frame {
         first..self.solid_skins.len()
     }
 
-    fn add_figures(&mut self, pane: &Pane, viewport: Viewport, flat: bool, quality: Quality) -> Range<usize> {
+    fn add_figures(
+        &mut self,
+        pane: &Pane,
+        viewport: Viewport,
+        flat: bool,
+        quality: Quality,
+    ) -> Range<usize> {
         let first = self.figures.len();
         let [_, _, back] = pane.camera.axes();
         let plain = quality == Quality::Plain;
         // Where the main light's shadow is all there is to be, none is soft.
         let soft = plain || !flat;
-        // The shadows of high limbs are as wide as the body and hardly seen: where every pixel costs, only what is low casts one.
+        // The shadows of high limbs are as wide as the body and hardly seen: where every pixel
+        // costs, only what is low casts one.
         let only_low = plain || pane.figures.len() > MANY_FIGURES;
         for figure in &pane.figures {
             let Some(limbs) = pane.limbs.get(figure.limbs.clone()) else {
@@ -381,7 +398,9 @@ impl Frame {
             self.figures.push(draw);
         }
         // Solid ones first, then ghosts from far to near.
-        let key = |f: &FigureDraw| if f.ghost { (true, -f.depth) } else { (false, 0.0) };
+        let key = |f: &FigureDraw| {
+            if f.ghost { (true, -f.depth) } else { (false, 0.0) }
+        };
         self.figures[first..].sort_unstable_by(|x, y| {
             let (x, y) = (key(x), key(y));
             x.0.cmp(&y.0).then(x.1.total_cmp(&y.1))
@@ -390,10 +409,21 @@ impl Frame {
     }
 
     /// Adds the limbs of a figure that is seen as such.
-    fn add_limbs(&mut self, limbs: &[Limb], figure: &Figure, pane: &Pane, viewport: Viewport, quality: Quality, draw: &mut FigureDraw) {
+    fn add_limbs(
+        &mut self,
+        limbs: &[Limb],
+        figure: &Figure,
+        pane: &Pane,
+        viewport: Viewport,
+        quality: Quality,
+        draw: &mut FigureDraw,
+    ) {
         let (plain, height) = (quality == Quality::Plain, viewport.height as f32);
         let is_fine = |limb: &Limb| {
-            !plain && limb.radius_a.max(limb.radius_b) * pane.camera.pixels_per_metre((limb.a + limb.b) * 0.5, height) >= FINE_FROM_PIXELS
+            !plain
+                && limb.radius_a.max(limb.radius_b)
+                    * pane.camera.pixels_per_metre((limb.a + limb.b) * 0.5, height)
+                    >= FINE_FROM_PIXELS
         };
         let instance = |limb: &Limb| limb_instance(limb, figure.shadow);
         let start = self.limbs.len() as u32;
@@ -427,7 +457,10 @@ fn lowest(limb: &LimbInstance) -> f32 {
 }
 
 fn limb_instance(limb: &Limb, shadow: f32) -> Option<LimbInstance> {
-    let finite = limb.a.is_finite() && limb.b.is_finite() && limb.radius_a.is_finite() && limb.radius_b.is_finite();
+    let finite = limb.a.is_finite()
+        && limb.b.is_finite()
+        && limb.radius_a.is_finite()
+        && limb.radius_b.is_finite();
     (finite && limb.radius_a >= 0.0 && limb.radius_b >= 0.0).then(|| LimbInstance {
         a: limb.a.extend(limb.radius_a).to_array(),
         b: limb.b.extend(limb.radius_b).to_array(),
@@ -457,13 +490,12 @@ fn ring_instance(ring: &Ring) -> Option<RingInstance> {
 
 fn figure_uniform(limbs: &[Limb], figure: &Figure) -> FigureUniform {
     let solid = if figure.ghost { 0.0 } else { 1.0 };
-    let mut uniform = FigureUniform {
-        about: [solid, 0.0, 0.0, 0.0],
-        neighbours: [[0.0; 4]; 3 * NEIGHBOURS],
-    };
+    let mut uniform =
+        FigureUniform { about: [solid, 0.0, 0.0, 0.0], neighbours: [[0.0; 4]; 3 * NEIGHBOURS] };
     for (limb, triple) in limbs.iter().zip(uniform.neighbours.chunks_exact_mut(3)) {
         // As the mesh is bent: the flattening is across the axis.
-        let flat = limb.flat - limb.flat.project_onto_normalized((limb.b - limb.a).normalize_or_zero());
+        let flat =
+            limb.flat - limb.flat.project_onto_normalized((limb.b - limb.a).normalize_or_zero());
         let flatness = if flat.length() > 1e-3 { limb.flatness.max(0.05) } else { 1.0 };
         triple[0] = limb.a.extend(limb.radius_a).to_array();
         triple[1] = limb.b.extend(limb.radius_b).to_array();
@@ -472,8 +504,8 @@ fn figure_uniform(limbs: &[Limb], figure: &Figure) -> FigureUniform {
     uniform
 }
 
-/// Notes for every instance which limbs of its body, by their numbers in `limbs`, touch it or take the most light from it. A ghost's limbs
-/// shade nothing: there only touch counts.
+/// Notes for every instance which limbs of its body, by their numbers in `limbs`, touch it or take
+/// the most light from it. A ghost's limbs shade nothing: there only touch counts.
 fn find_nearest(limbs: &[Limb], instances: &mut [LimbInstance], ghost: bool) {
     for instance in instances {
         let (a, b) = (Vec4::from(instance.a), Vec4::from(instance.b));
@@ -489,10 +521,16 @@ fn find_nearest(limbs: &[Limb], instances: &mut [LimbInstance], ghost: bool) {
             let reach = (limb.b - limb.a).length() * 0.5 + half;
             let at_least = points[1].distance((limb.a + limb.b) * 0.5) - reach;
             let too_far = ghost && at_least - own_radius - radius >= TOUCHING;
-            if too_far || (at_least > 0.0 && score_at(at_least, at_least - own_radius - radius) <= scores[NEAREST - 1]) {
+            if too_far
+                || (at_least > 0.0
+                    && score_at(at_least, at_least - own_radius - radius) <= scores[NEAREST - 1])
+            {
                 continue;
             }
-            let itself = limb.a == points[0] && limb.b == points[2] && limb.radius_a == a.w && limb.radius_b == b.w;
+            let itself = limb.a == points[0]
+                && limb.b == points[2]
+                && limb.radius_a == a.w
+                && limb.radius_b == b.w;
             if itself || limb_instance(limb, 0.0).is_none() {
                 continue;
             }
@@ -525,29 +563,23 @@ fn view_uniform(pane: &Pane, viewport: Viewport, stage: &Stage, stretch: f32) ->
     let [right, up, back] = camera.axes();
     let aspect = viewport.aspect();
     let orthographic = camera.lens == Lens::Orthographic;
-    let half_height = if orthographic {
-        camera.half_height()
-    } else {
-        (camera.fov_y * 0.5).tan()
-    };
-    let scale = stretch
-        * if stage.pixels_per_point > 0.0 {
-            stage.pixels_per_point
-        } else {
-            1.0
-        };
+    let half_height = if orthographic { camera.half_height() } else { (camera.fov_y * 0.5).tan() };
+    let scale = stretch * if stage.pixels_per_point > 0.0 { stage.pixels_per_point } else { 1.0 };
     let key = light::key_direction(right, camera.yaw);
     ViewUniform {
         clip_from_world: (camera.projection(aspect) * camera.view()).to_cols_array(),
         eye: camera.eye().extend(if orthographic { 1.0 } else { 0.0 }).to_array(),
         right: (right * (half_height * aspect)).extend(0.0).to_array(),
         up: (up * half_height).extend(0.0).to_array(),
-        forward: (-back).extend(if orthographic { 0.0 } else { camera.depth_range()[0] }).to_array(),
+        forward: (-back)
+            .extend(if orthographic { 0.0 } else { camera.depth_range()[0] })
+            .to_array(),
         viewport: [viewport.x, viewport.y, viewport.width, viewport.height].map(|v| v as f32),
         key: key.extend(scale).to_array(),
         background_top: look.background_top,
         background_bottom: look.background_bottom,
-        // From far the light falls on more of the ground: it is the middle of the picture that is lit.
+        // From far the light falls on more of the ground: it is the middle of the picture that is
+        // lit.
         floor: Vec4::from(look.floor)
             .with_w(look.floor_radius.max(0.55 * camera.distance).max(0.1))
             .to_array(),

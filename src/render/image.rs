@@ -20,10 +20,14 @@ pub(crate) struct Image {
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum ImageError {
     /// The size is zero or more than the device can draw.
-    #[error("a picture of {0} × {1} pixels cannot be drawn: choose a size from 1 × 1 up to what the graphics card allows")]
+    #[error(
+        "a picture of {0} × {1} pixels cannot be drawn: choose a size from 1 × 1 up to what the graphics card allows"
+    )]
     Size(u32, u32),
     /// The device did not hand the pixels out.
-    #[error("the graphics card did not give the picture back ({0}): try again, or reload if the picture on the page is gone too")]
+    #[error(
+        "the graphics card did not give the picture back ({0}): try again, or reload if the picture on the page is gone too"
+    )]
     Device(String),
     /// Packing failed.
     #[error("the picture could not be packed as PNG: {0}")]
@@ -34,7 +38,8 @@ pub(crate) enum ImageError {
 const ROW_ALIGNMENT: u32 = wgpu::COPY_BYTES_PER_ROW_ALIGNMENT;
 const SNAPSHOT: u64 = u64::MAX;
 
-/// Draws a stage off the screen and waits for its pixels. Natively only: a page must not wait, it reads its canvas.
+/// Draws a stage off the screen and waits for its pixels. Natively only: a page must not wait, it
+/// reads its canvas.
 pub(crate) fn render_to_image(
     renderer: &mut StageRenderer,
     device: &wgpu::Device,
@@ -46,9 +51,8 @@ pub(crate) fn render_to_image(
     if width == 0 || height == 0 || width > largest || height > largest {
         return Err(ImageError::Size(width, height));
     }
-    let mut encoder = device.create_command_encoder(&wgpu::CommandEncoderDescriptor {
-        label: Some("stage image"),
-    });
+    let mut encoder = device
+        .create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("stage image") });
     while renderer
         .prepare(device, queue, &mut encoder, SNAPSHOT, stage, [width, height])
         .to_be_refined
@@ -86,11 +90,7 @@ pub(super) fn read_texture(
                 rows_per_image: None,
             },
         },
-        wgpu::Extent3d {
-            width,
-            height,
-            depth_or_array_layers: 1,
-        },
+        wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
     );
     let submitted = queue.submit([encoder.finish()]);
 
@@ -134,7 +134,8 @@ impl Image {
                 packed.write_all(line)?;
             } else {
                 let above = &self.rgba[(y - 1) * row..y * row];
-                let difference: Vec<u8> = line.iter().zip(above).map(|(&x, &up)| x.wrapping_sub(up)).collect();
+                let difference: Vec<u8> =
+                    line.iter().zip(above).map(|(&x, &up)| x.wrapping_sub(up)).collect();
                 packed.write_all(&difference)?;
             }
         }

@@ -1,4 +1,5 @@
-//! What the main light sees: the box about the bodies of a pane, and the map of depths that it is drawn into.
+//! What the main light sees: the box about the bodies of a pane, and the map of depths that it is
+//! drawn into.
 
 use super::pipelines::Pipelines;
 use eframe::wgpu;
@@ -8,7 +9,8 @@ use segue::scene::{Figure, Pane, Viewport};
 /// Width and height of the map of all panes, texels.
 pub(super) const MAP_SIZE: u32 = 2048;
 pub(super) const MAP_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
-/// A body farther than this from the middle of the picture casts no shadow: the others' would get coarse, metres.
+/// A body farther than this from the middle of the picture casts no shadow: the others' would get
+/// coarse, metres.
 const FARTHEST: f32 = 16.0;
 /// From higher up no shadow reaches the ground: the map's depths would get coarse, metres.
 const HIGHEST: f32 = 30.0;
@@ -34,7 +36,8 @@ pub(super) struct LightBox {
     pub(super) half_depth: f32,
 }
 
-/// The main light's direction in a pane, from its camera's axes: it stands over the left shoulder, so that the body is modelled from all sides.
+/// The main light's direction in a pane, from its camera's axes: it stands over the left shoulder,
+/// so that the body is modelled from all sides.
 pub(super) fn key_direction(right: Vec3, yaw: f32) -> Vec3 {
     let level_back = Vec3::new(yaw.sin(), 0.0, yaw.cos());
     (Vec3::Y * 0.86 - right * 0.62 + level_back * 0.55).normalize_or(Vec3::Y)
@@ -45,18 +48,15 @@ pub(super) fn tile(index: usize, panes: usize) -> Viewport {
     let columns = (1..MAP_SIZE).find(|columns| (columns * columns) as usize >= panes).unwrap_or(1);
     let side = MAP_SIZE / columns;
     let index = index as u32;
-    Viewport {
-        x: index % columns * side,
-        y: index / columns * side,
-        width: side,
-        height: side,
-    }
+    Viewport { x: index % columns * side, y: index / columns * side, width: side, height: side }
 }
 
 impl LightBox {
-    /// About every solid body that casts a shadow in the pane and the ground that it falls on; `None` where there is none.
+    /// About every solid body that casts a shadow in the pane and the ground that it falls on;
+    /// `None` where there is none.
     ///
-    /// Shadows must not crawl while a body walks: the box grows in steps, and moves by whole texels of a map of `texels` × `texels`.
+    /// Shadows must not crawl while a body walks: the box grows in steps, and moves by whole texels
+    /// of a map of `texels` × `texels`.
     pub(super) fn about(pane: &Pane, key: Vec3, texels: u32) -> Option<Self> {
         let right = Vec3::Y.cross(key).try_normalize()?;
         let up = key.cross(right);
@@ -75,7 +75,9 @@ impl LightBox {
                     (low, high) = (low.min(on_map - reach), high.max(on_map + reach));
                     near = near.max(along + reach);
                     // From the ball's lower end along the light to the ground.
-                    far = far.min(along - reach - (point.y + reach).clamp(0.0, HIGHEST) / key.y.max(0.1));
+                    far = far.min(
+                        along - reach - (point.y + reach).clamp(0.0, HIGHEST) / key.y.max(0.1),
+                    );
                 }
             }
         }
@@ -86,7 +88,8 @@ impl LightBox {
         let half_width = ((half.max(0.25).log2() * 2.0).ceil() * 0.5).exp2();
         let texel = 2.0 * half_width / texels.max(1) as f32;
         let middle = ((low + high) * (0.5 / texel)).round() * texel;
-        // Depths are of the texture's steps, not of the texels': they need not be snapped, but a still body's must stay.
+        // Depths are of the texture's steps, not of the texels': they need not be snapped, but a
+        // still body's must stay.
         let (far, near) = ((far * 4.0).floor() * 0.25, (near * 4.0).ceil() * 0.25);
         Some(Self {
             center: right * middle.x + up * middle.y + key * ((near + far) * 0.5),
@@ -109,11 +112,7 @@ impl LightMap {
     pub(super) fn new(device: &wgpu::Device, pipelines: &Pipelines, size: u32) -> Self {
         let texture = device.create_texture(&wgpu::TextureDescriptor {
             label: Some("light map"),
-            size: wgpu::Extent3d {
-                width: size,
-                height: size,
-                depth_or_array_layers: 1,
-            },
+            size: wgpu::Extent3d { width: size, height: size, depth_or_array_layers: 1 },
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
@@ -167,12 +166,7 @@ mod tests {
             })
             .collect();
         Pane {
-            figures: vec![Figure {
-                limbs: 0..limbs.len(),
-                skin: None,
-                ghost: false,
-                shadow: 1.0,
-            }],
+            figures: vec![Figure { limbs: 0..limbs.len(), skin: None, ghost: false, shadow: 1.0 }],
             limbs,
             ..Pane::default()
         }
@@ -182,12 +176,16 @@ mod tests {
 
     #[test]
     fn bodies_and_the_ground_below_them_are_inside() {
-        let centers = [Vec3::new(0.4, 1.7, -0.3), Vec3::new(-0.9, 0.1, 1.2), Vec3::new(90.0, 0.0, 0.0)];
+        let centers =
+            [Vec3::new(0.4, 1.7, -0.3), Vec3::new(-0.9, 0.1, 1.2), Vec3::new(90.0, 0.0, 0.0)];
         let fit = LightBox::about(&pane(&centers), KEY, 1024).unwrap();
         for center in &centers[..2] {
             for point in [*center, *center - KEY * (center.y / KEY.y)] {
                 let from = point - fit.center;
-                assert!(from.dot(fit.right).abs() < fit.half_width && from.dot(fit.up).abs() < fit.half_width);
+                assert!(
+                    from.dot(fit.right).abs() < fit.half_width
+                        && from.dot(fit.up).abs() < fit.half_width
+                );
                 assert!(from.dot(KEY).abs() < fit.half_depth);
             }
         }
@@ -199,7 +197,10 @@ mod tests {
 
     #[test]
     fn a_body_that_walks_keeps_the_texels() {
-        let fit = |x: f32| LightBox::about(&pane(&[Vec3::new(x, 1.0, 0.0), Vec3::new(x, 0.2, 0.5)]), KEY, 1024).unwrap();
+        let fit = |x: f32| {
+            LightBox::about(&pane(&[Vec3::new(x, 1.0, 0.0), Vec3::new(x, 0.2, 0.5)]), KEY, 1024)
+                .unwrap()
+        };
         let first = fit(0.0);
         let texel = 2.0 * first.half_width / 1024.0;
         for step in 1..40u8 {
@@ -217,9 +218,7 @@ mod tests {
         assert_eq!(tile(0, 1).width, MAP_SIZE);
         let tiles: Vec<_> = (0..4).map(|index| tile(index, 4)).collect();
         assert!(
-            tiles
-                .iter()
-                .all(|tile| tile.width == MAP_SIZE / 2 && tile.x + tile.width <= MAP_SIZE)
+            tiles.iter().all(|tile| tile.width == MAP_SIZE / 2 && tile.x + tile.width <= MAP_SIZE)
         );
         assert_eq!((tiles[3].x, tiles[3].y), (MAP_SIZE / 2, MAP_SIZE / 2));
     }

@@ -1,6 +1,7 @@
 //! The one mesh: a rounded cone before it is bent to a limb.
 
-/// A vertex: cosine and sine about the axis, 0 (the seam with the other cap) to 1 (the pole), and which ball (0 or 1).
+/// A vertex: cosine and sine about the axis, 0 (the seam with the other cap) to 1 (the pole), and
+/// which ball (0 or 1).
 pub(super) type ConeVertex = [f32; 4];
 
 /// A unit rounded cone.
@@ -13,11 +14,13 @@ impl ConeMesh {
     /// With `sides` around the axis and `rings` from each seam to its pole.
     pub(super) fn new(sides: u16, rings: u16) -> Self {
         let mut vertices = Vec::new();
-        // Rows from the pole of the first ball over its seam, along the cone, to the pole of the second.
+        // Rows from the pole of the first ball over its seam, along the cone, to the pole of the
+        // second.
         let rows = (0..=rings).rev().map(|r| (r, 0.0)).chain((0..=rings).map(|r| (r, 1.0)));
         for (ring, ball) in rows {
             for side in 0..sides {
-                let (sin, cos) = (f32::from(side) / f32::from(sides) * std::f32::consts::TAU).sin_cos();
+                let (sin, cos) =
+                    (f32::from(side) / f32::from(sides) * std::f32::consts::TAU).sin_cos();
                 vertices.push([cos, sin, f32::from(ring) / f32::from(rings), ball]);
             }
         }
@@ -50,7 +53,8 @@ mod tests {
     use super::*;
     use glam::Vec3;
 
-    /// The same as the shader's, for balls of radius 1 about the origin and of radius 0.5 about (0, 3, 0).
+    /// The same as the shader's, for balls of radius 1 about the origin and of radius 0.5 about (0,
+    /// 3, 0).
     fn bend(vertex: ConeVertex) -> Vec3 {
         let tilt = (0.5f32 / 3.0).asin();
         let pole = if vertex[3] > 0.5 { 1.0 } else { -1.0 } * std::f32::consts::FRAC_PI_2;
@@ -71,7 +75,8 @@ mod tests {
             volume += at(t[0]).dot(at(t[1]).cross(at(t[2]))) / 6.0;
             for (from, to) in [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])] {
                 let (from, to) = (place(from), place(to));
-                *edges.entry((from.min(to), from.max(to))).or_default() += if from < to { 1 } else { -1 };
+                *edges.entry((from.min(to), from.max(to))).or_default() +=
+                    if from < to { 1 } else { -1 };
             }
         }
         assert!(edges.values().all(|&walked| walked == 0), "every edge is walked once each way");

@@ -1,8 +1,9 @@
 //! Draws a [`segue::scene::Stage`] with wgpu, inside the page that egui paints.
 //!
-//! The stage is drawn in egui's prepare step into a target of its own (multisampled, with depth) and copied into the page, pixel by pixel, in
-//! its paint step. A stage that did not change since the last frame is not drawn again. Everything runs on `WebGL2`: instance attributes and
-//! small uniform blocks, no storage buffers.
+//! The stage is drawn in egui's prepare step into a target of its own (multisampled, with depth)
+//! and copied into the page, pixel by pixel, in its paint step. A stage that did not change since
+//! the last frame is not drawn again. Everything runs on `WebGL2`: instance attributes and small
+//! uniform blocks, no storage buffers.
 
 mod callback;
 mod frame;

@@ -1,6 +1,8 @@
 //! The render pipelines of a device.
 
-use super::frame::{FigureUniform, LimbInstance, RingInstance, SkinInstance, StrokeInstance, ViewUniform};
+use super::frame::{
+    FigureUniform, LimbInstance, RingInstance, SkinInstance, StrokeInstance, ViewUniform,
+};
 use super::light::MAP_FORMAT;
 use super::mesh::ConeVertex;
 use super::skins::SkinVertex;
@@ -12,13 +14,12 @@ use wgpu::CompareFunction::{Less, LessEqual};
 use wgpu::Face::{Back, Front};
 
 /// The shaders as they are compiled: what all share comes first.
-pub(super) const LIMB: &str = concat!(include_str!("view.wgsl"), include_str!("light.wgsl"), include_str!("limb.wgsl"));
-pub(super) const SKIN: &str = concat!(include_str!("view.wgsl"), include_str!("light.wgsl"), include_str!("skin.wgsl"));
-pub(super) const KEY_SHADOW: &str = concat!(
-    include_str!("view.wgsl"),
-    include_str!("light.wgsl"),
-    include_str!("key_shadow.wgsl")
-);
+pub(super) const LIMB: &str =
+    concat!(include_str!("view.wgsl"), include_str!("light.wgsl"), include_str!("limb.wgsl"));
+pub(super) const SKIN: &str =
+    concat!(include_str!("view.wgsl"), include_str!("light.wgsl"), include_str!("skin.wgsl"));
+pub(super) const KEY_SHADOW: &str =
+    concat!(include_str!("view.wgsl"), include_str!("light.wgsl"), include_str!("key_shadow.wgsl"));
 pub(super) const SHADOW: &str = concat!(include_str!("view.wgsl"), include_str!("shadow.wgsl"));
 pub(super) const GROUND: &str = concat!(include_str!("view.wgsl"), include_str!("ground.wgsl"));
 pub(super) const LINE: &str = concat!(include_str!("view.wgsl"), include_str!("line.wgsl"));
@@ -80,8 +81,8 @@ impl Brush {
     }
 }
 
-/// The pipelines of a device. WebGL takes long to make one: the first picture comes with those that it cannot do without, and the others are made
-/// one in a frame.
+/// The pipelines of a device. WebGL takes long to make one: the first picture comes with those that
+/// it cannot do without, and the others are made one in a frame.
 pub(super) struct Pipelines {
     device: wgpu::Device,
     pub(super) view_layout: wgpu::BindGroupLayout,
@@ -123,11 +124,7 @@ struct Shader {
 
 impl Shader {
     const fn new(label: &'static str, source: &'static str) -> Self {
-        Self {
-            label,
-            source,
-            module: OnceLock::new(),
-        }
+        Self { label, source, module: OnceLock::new() }
     }
 
     fn module(&self, device: &wgpu::Device) -> &wgpu::ShaderModule {
@@ -182,7 +179,8 @@ const SHADE: wgpu::BlendState = wgpu::BlendState {
     alpha: wgpu::BlendComponent::REPLACE,
 };
 
-/// Where two limbs of a ghost share a surface, it is coloured once: the stencil keeps the number of the ghost that was there last.
+/// Where two limbs of a ghost share a surface, it is coloured once: the stencil keeps the number of
+/// the ghost that was there last.
 fn once_per_ghost() -> wgpu::StencilState {
     let face = wgpu::StencilFaceState {
         compare: wgpu::CompareFunction::NotEqual,
@@ -190,12 +188,7 @@ fn once_per_ghost() -> wgpu::StencilState {
         depth_fail_op: wgpu::StencilOperation::Keep,
         pass_op: wgpu::StencilOperation::Replace,
     };
-    wgpu::StencilState {
-        front: face,
-        back: face,
-        read_mask: 0xff,
-        write_mask: 0xff,
-    }
+    wgpu::StencilState { front: face, back: face, read_mask: 0xff, write_mask: 0xff }
 }
 
 fn uniform_layout(device: &wgpu::Device, label: &str, size: usize) -> wgpu::BindGroupLayout {
@@ -228,7 +221,11 @@ fn light_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     })
 }
 
-fn texture_entry(binding: u32, visibility: wgpu::ShaderStages, sample_type: wgpu::TextureSampleType) -> wgpu::BindGroupLayoutEntry {
+fn texture_entry(
+    binding: u32,
+    visibility: wgpu::ShaderStages,
+    sample_type: wgpu::TextureSampleType,
+) -> wgpu::BindGroupLayoutEntry {
     wgpu::BindGroupLayoutEntry {
         binding,
         visibility,
@@ -251,7 +248,11 @@ fn sampler_entry(binding: u32, kind: wgpu::SamplerBindingType) -> wgpu::BindGrou
 }
 
 impl Pipelines {
-    pub(super) fn new(device: &wgpu::Device, output_format: wgpu::TextureFormat, sample_count: u32) -> Self {
+    pub(super) fn new(
+        device: &wgpu::Device,
+        output_format: wgpu::TextureFormat,
+        sample_count: u32,
+    ) -> Self {
         let view_layout = uniform_layout(device, "stage view", size_of::<ViewUniform>());
         let figure_layout = uniform_layout(device, "stage figure", size_of::<FigureUniform>());
         let layout = |label, groups: &[Option<&wgpu::BindGroupLayout>]| {
@@ -274,8 +275,14 @@ impl Pipelines {
         Self {
             plain: layout("stage", &[Some(&view_layout)]),
             lit: layout("stage light", &[Some(&view_layout), Some(&light_layout)]),
-            bodily: layout("stage bodies", &[Some(&view_layout), Some(&light_layout), Some(&figure_layout)]),
-            skinned: layout("stage skins", &[Some(&view_layout), Some(&light_layout), Some(&joints_layout)]),
+            bodily: layout(
+                "stage bodies",
+                &[Some(&view_layout), Some(&light_layout), Some(&figure_layout)],
+            ),
+            skinned: layout(
+                "stage skins",
+                &[Some(&view_layout), Some(&light_layout), Some(&joints_layout)],
+            ),
             limb: Shader::new("limb", LIMB),
             skin: Shader::new("skin", SKIN),
             shadow: Shader::new("shadow", SHADOW),
@@ -313,7 +320,8 @@ impl Pipelines {
         }
     }
 
-    /// The pipeline; `None` where the picture can do without it until it is made. Natively that takes no time worth a word.
+    /// The pipeline; `None` where the picture can do without it until it is made. Natively that
+    /// takes no time worth a word.
     pub(super) fn get(&self, brush: Brush) -> Option<&wgpu::RenderPipeline> {
         let slot = &self.made[brush as usize];
         if brush.is_vital() || cfg!(not(target_arch = "wasm32")) {
@@ -358,10 +366,8 @@ impl Pipelines {
         // The shadow reads the limbs, but for their colour.
         let [place_a, place_b, flat, .., strength] = limb_attributes;
         let shadow_attributes = [place_a, place_b, flat, strength];
-        let shadow_buffers = [Some(wgpu::VertexBufferLayout {
-            attributes: &shadow_attributes,
-            ..limb_buffer
-        })];
+        let shadow_buffers =
+            [Some(wgpu::VertexBufferLayout { attributes: &shadow_attributes, ..limb_buffer })];
         let skin_attributes = wgpu::vertex_attr_array![0 => Float32x3, 1 => Snorm16x4, 2 => Uint16x4, 3 => Unorm16x4, 4 => Unorm8x4];
         let skin_figure_attributes = wgpu::vertex_attr_array![5 => Uint32x2, 6 => Unorm8x4];
         let skin_buffers = [
@@ -431,7 +437,12 @@ impl Pipelines {
                 buffers: &shadow_buffers,
                 ..shadow_recipe("shadow", &self.shadow, &self.plain, ["vs_shadow", "fs_shadow"])
             },
-            Brush::KeyShadow => shadow_recipe("key shadow", &self.key_shadow, &self.lit, ["vs_key_shadow", "fs_key_shadow"]),
+            Brush::KeyShadow => shadow_recipe(
+                "key shadow",
+                &self.key_shadow,
+                &self.lit,
+                ["vs_key_shadow", "fs_key_shadow"],
+            ),
             Brush::Cast => Recipe {
                 layout: &self.plain,
                 ..limb_recipe("cast", ["vs_cast", ""], (Less, true), None, Back)
@@ -445,34 +456,62 @@ impl Pipelines {
             },
             Brush::FlatLine => line_recipe("line", None),
             Brush::SpaceLine => line_recipe("line in space", Some((LessEqual, true))),
-            Brush::Solid => limb_recipe("limb", ["vs_limb", "fs_solid"], (LessEqual, false), None, Back),
-            Brush::Edge => limb_recipe("limb edge", ["vs_edge", "fs_edge"], (Less, true), Some(OVER), Front),
+            Brush::Solid => {
+                limb_recipe("limb", ["vs_limb", "fs_solid"], (LessEqual, false), None, Back)
+            }
+            Brush::Edge => {
+                limb_recipe("limb edge", ["vs_edge", "fs_edge"], (Less, true), Some(OVER), Front)
+            }
             Brush::Front => Recipe {
                 writes: wgpu::ColorWrites::empty(),
                 ..limb_recipe("limb front", ["vs_limb", "fs_depth"], (Less, true), None, Back)
             },
             Brush::Ghost => Recipe {
                 stencil: once_per_ghost(),
-                ..limb_recipe("ghost", ["vs_limb", "fs_ghost"], (LessEqual, false), Some(OVER), Back)
+                ..limb_recipe(
+                    "ghost",
+                    ["vs_limb", "fs_ghost"],
+                    (LessEqual, false),
+                    Some(OVER),
+                    Back,
+                )
             },
             Brush::Skin => skin_recipe("skin", ["vs_skin", "fs_skin"], (Less, true), None, Back),
-            Brush::SkinEdge => skin_recipe("skin edge", ["vs_skin_edge", "fs_skin_edge"], (Less, true), Some(OVER), Front),
+            Brush::SkinEdge => skin_recipe(
+                "skin edge",
+                ["vs_skin_edge", "fs_skin_edge"],
+                (Less, true),
+                Some(OVER),
+                Front,
+            ),
             Brush::SkinFront => Recipe {
                 writes: wgpu::ColorWrites::empty(),
                 ..skin_recipe("skin front", ["vs_skin", "fs_depth"], (Less, true), None, Back)
             },
             Brush::SkinGhost => Recipe {
                 stencil: once_per_ghost(),
-                ..skin_recipe("skin ghost", ["vs_skin", "fs_skin_ghost"], (LessEqual, false), Some(OVER), Back)
+                ..skin_recipe(
+                    "skin ghost",
+                    ["vs_skin", "fs_skin_ghost"],
+                    (LessEqual, false),
+                    Some(OVER),
+                    Back,
+                )
             },
-            Brush::SkinCast => skin_recipe("skin cast", ["vs_skin_cast", ""], (Less, true), None, Back),
+            Brush::SkinCast => {
+                skin_recipe("skin cast", ["vs_skin_cast", ""], (Less, true), None, Back)
+            }
         };
         stage_pipeline(device, &recipe, self.sample_count)
     }
 }
 
 /// A recipe without an entry for colours only finds depths, for the light map.
-fn stage_pipeline(device: &wgpu::Device, recipe: &Recipe<'_>, sample_count: u32) -> wgpu::RenderPipeline {
+fn stage_pipeline(
+    device: &wgpu::Device,
+    recipe: &Recipe<'_>,
+    sample_count: u32,
+) -> wgpu::RenderPipeline {
     let module = recipe.shader.module(device);
     let is_cast = recipe.entries[1].is_empty();
     let targets = [Some(wgpu::ColorTargetState {
@@ -517,11 +556,18 @@ fn stage_pipeline(device: &wgpu::Device, recipe: &Recipe<'_>, sample_count: u32)
     })
 }
 
-fn composite_pipeline(device: &wgpu::Device, output_format: wgpu::TextureFormat) -> (wgpu::BindGroupLayout, wgpu::RenderPipeline) {
+fn composite_pipeline(
+    device: &wgpu::Device,
+    output_format: wgpu::TextureFormat,
+) -> (wgpu::BindGroupLayout, wgpu::RenderPipeline) {
     let group = device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("stage composite"),
         entries: &[
-            texture_entry(0, wgpu::ShaderStages::FRAGMENT, wgpu::TextureSampleType::Float { filterable: true }),
+            texture_entry(
+                0,
+                wgpu::ShaderStages::FRAGMENT,
+                wgpu::TextureSampleType::Float { filterable: true },
+            ),
             sampler_entry(1, wgpu::SamplerBindingType::Filtering),
         ],
     });

@@ -101,7 +101,8 @@ struct GrowingBuffer {
 
 /// Makes a buffer that holds `contents`.
 ///
-/// It is never mapped: where a device is dying a browser refuses that by an exception, which wgpu takes for a reason to stop.
+/// It is never mapped: where a device is dying a browser refuses that by an exception, which wgpu
+/// takes for a reason to stop.
 pub(super) fn filled_buffer(
     device: &wgpu::Device,
     queue: &wgpu::Queue,
@@ -128,11 +129,7 @@ pub(super) fn filled_buffer(
 
 impl GrowingBuffer {
     fn new(label: &'static str, usage: wgpu::BufferUsages) -> Self {
-        Self {
-            label,
-            usage: usage | wgpu::BufferUsages::COPY_DST,
-            buffer: None,
-        }
+        Self { label, usage: usage | wgpu::BufferUsages::COPY_DST, buffer: None }
     }
 
     /// Writes `bytes`; `true` where the buffer was made anew.
@@ -187,7 +184,8 @@ impl View {
     }
 }
 
-/// `blocks` one after the other, each at a multiple of `stride`, and one block of zeros more so that no window reaches past the end.
+/// `blocks` one after the other, each at a multiple of `stride`, and one block of zeros more so
+/// that no window reaches past the end.
 fn spaced<T: bytemuck::Pod>(blocks: &[T], stride: usize, out: &mut Vec<u8>) {
     out.clear();
     out.resize(stride * (blocks.len() + 1), 0);
@@ -196,14 +194,15 @@ fn spaced<T: bytemuck::Pod>(blocks: &[T], stride: usize, out: &mut Vec<u8>) {
     }
 }
 
-fn uniform_group(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, buffer: &GrowingBuffer, size: usize) -> Option<wgpu::BindGroup> {
+fn uniform_group(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    buffer: &GrowingBuffer,
+    size: usize,
+) -> Option<wgpu::BindGroup> {
     let buffer = buffer.buffer.as_ref()?;
     Some(device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some(if size == size_of::<ViewUniform>() {
-            "stage view"
-        } else {
-            "stage figure"
-        }),
+        label: Some(if size == size_of::<ViewUniform>() { "stage view" } else { "stage figure" }),
         layout,
         entries: &[wgpu::BindGroupEntry {
             binding: 0,
@@ -218,13 +217,19 @@ fn uniform_group(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, buffer: 
 
 impl StageRenderer {
     /// Makes what all stages share. `output_format` is the format of the page's target.
-    pub(crate) fn new(device: &wgpu::Device, queue: &wgpu::Queue, adapter: &wgpu::Adapter, output_format: wgpu::TextureFormat) -> Self {
-        let smooth = [COLOR_FORMAT, DEPTH_FORMAT]
-            .iter()
-            .all(|&format| adapter.get_texture_format_features(format).flags.sample_count_supported(4));
+    pub(crate) fn new(
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        adapter: &wgpu::Adapter,
+        output_format: wgpu::TextureFormat,
+    ) -> Self {
+        let smooth = [COLOR_FORMAT, DEPTH_FORMAT].iter().all(|&format| {
+            adapter.get_texture_format_features(format).flags.sample_count_supported(4)
+        });
         let mesh = |sides, rings| {
             let mesh = ConeMesh::new(sides, rings);
-            let buffer = |contents: &[u8], usage| filled_buffer(device, queue, "cone", contents, usage);
+            let buffer =
+                |contents: &[u8], usage| filled_buffer(device, queue, "cone", contents, usage);
             Mesh {
                 vertices: buffer(bytemuck::cast_slice(&mesh.vertices), wgpu::BufferUsages::VERTEX),
                 indices: buffer(bytemuck::cast_slice(&mesh.indices), wgpu::BufferUsages::INDEX),
@@ -273,7 +278,8 @@ impl StageRenderer {
 
     /// Draws `stage` into its own target of `size` pixels, unless nothing changed.
     ///
-    /// Where every pixel costs ([`Quality::Plain`]), what changes is drawn smaller and stretched; asked for again unchanged, it is drawn finely.
+    /// Where every pixel costs ([`Quality::Plain`]), what changes is drawn smaller and stretched;
+    /// asked for again unchanged, it is drawn finely.
     pub(crate) fn prepare(
         &mut self,
         device: &wgpu::Device,
@@ -284,11 +290,7 @@ impl StageRenderer {
         size: [u32; 2],
     ) -> Prepared {
         if size.contains(&0) {
-            return Prepared {
-                drawn: false,
-                complete: true,
-                to_be_refined: false,
-            };
+            return Prepared { drawn: false, complete: true, to_be_refined: false };
         }
         let size = size.map(|side| side.min(self.largest_side));
         for (_, view) in &mut self.views {
@@ -398,16 +400,32 @@ impl StageRenderer {
         rings.write(device, queue, bytemuck::cast_slice(&drawn.rings));
         spaced(&drawn.views, view_stride, &mut self.bytes);
         if pane_uniforms.write(device, queue, &self.bytes) {
-            *views_bound = uniform_group(device, &self.pipelines.view_layout, pane_uniforms, size_of::<ViewUniform>());
+            *views_bound = uniform_group(
+                device,
+                &self.pipelines.view_layout,
+                pane_uniforms,
+                size_of::<ViewUniform>(),
+            );
         }
         spaced(&drawn.figure_uniforms, figure_stride, &mut self.bytes);
         if figure_uniforms.write(device, queue, &self.bytes) {
-            *figures_bound = uniform_group(device, &self.pipelines.figure_layout, figure_uniforms, size_of::<FigureUniform>());
+            *figures_bound = uniform_group(
+                device,
+                &self.pipelines.figure_layout,
+                figure_uniforms,
+                size_of::<FigureUniform>(),
+            );
         }
     }
 
-    /// Draws what the main light sees. `false` where something is left out because its pipeline is yet to be made.
-    fn encode_light(&self, light: &LightMap, encoder: &mut wgpu::CommandEncoder, view: &View) -> bool {
+    /// Draws what the main light sees. `false` where something is left out because its pipeline is
+    /// yet to be made.
+    fn encode_light(
+        &self,
+        light: &LightMap,
+        encoder: &mut wgpu::CommandEncoder,
+        view: &View,
+    ) -> bool {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("light map"),
             depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
@@ -425,10 +443,22 @@ impl StageRenderer {
         let mut complete = true;
         for (index, pane) in view.drawn.panes.iter().enumerate() {
             let Some(tile) = pane.lit else { continue };
-            pass.set_viewport(tile.x as f32, tile.y as f32, tile.width as f32, tile.height as f32, 0.0, 1.0);
-            pass.set_bind_group(0, view.views_bound.as_ref(), &[(index * self.view_stride()) as u32]);
+            pass.set_viewport(
+                tile.x as f32,
+                tile.y as f32,
+                tile.width as f32,
+                tile.height as f32,
+                0.0,
+                1.0,
+            );
+            pass.set_bind_group(
+                0,
+                view.views_bound.as_ref(),
+                &[(index * self.view_stride()) as u32],
+            );
             let figures = view.drawn.figures.get(pane.figures.clone()).unwrap_or_default();
-            let solid_skins = view.drawn.solid_skins.get(pane.solid_skins.clone()).unwrap_or_default();
+            let solid_skins =
+                view.drawn.solid_skins.get(pane.solid_skins.clone()).unwrap_or_default();
             let glass = figures
                 .iter()
                 .filter(|figure| figure.in_light)
@@ -444,7 +474,9 @@ impl StageRenderer {
                 pass.set_vertex_buffer(0, self.coarse.vertices.slice(..));
                 pass.set_vertex_buffer(1, limbs.slice(..));
                 pass.set_index_buffer(self.coarse.indices.slice(..), wgpu::IndexFormat::Uint16);
-                for figure in figures.iter().filter(|figure| figure.in_light && !figure.limbs().is_empty()) {
+                for figure in
+                    figures.iter().filter(|figure| figure.in_light && !figure.limbs().is_empty())
+                {
                     pass.draw_indexed(0..self.coarse.index_count, 0, figure.limbs());
                 }
             }
@@ -504,13 +536,19 @@ impl StageRenderer {
         });
         pass.set_bind_group(1, &light.unwrap_or(&self.unlit).bound, &[]);
         for (index, pane) in view.drawn.panes.iter().enumerate() {
-            let [x, y, width, height] = [pane.viewport.x, pane.viewport.y, pane.viewport.width, pane.viewport.height];
+            let [x, y, width, height] =
+                [pane.viewport.x, pane.viewport.y, pane.viewport.width, pane.viewport.height];
             pass.set_viewport(x as f32, y as f32, width as f32, height as f32, 0.0, 1.0);
             pass.set_scissor_rect(x, y, width, height);
-            pass.set_bind_group(0, view.views_bound.as_ref(), &[(index * self.view_stride()) as u32]);
+            pass.set_bind_group(
+                0,
+                view.views_bound.as_ref(),
+                &[(index * self.view_stride()) as u32],
+            );
             complete &= self.encode_pane(&mut pass, view, pane);
         }
-        // WebGL resolves the samples at the end of the pass by a copy that the last pane's scissor would cut.
+        // WebGL resolves the samples at the end of the pass by a copy that the last pane's scissor
+        // would cut.
         let [width, height] = targets.size;
         pass.set_scissor_rect(0, 0, width, height);
         complete
@@ -518,7 +556,9 @@ impl StageRenderer {
 
     /// Draws one pane. `false` where something is left out because its pipeline is yet to be made.
     fn encode_pane(&self, pass: &mut wgpu::RenderPass<'_>, view: &View, pane: &PaneDraw) -> bool {
-        let (Some(limbs), Some(strokes), Some(rings)) = (&view.limbs.buffer, &view.strokes.buffer, &view.rings.buffer) else {
+        let (Some(limbs), Some(strokes), Some(rings)) =
+            (&view.limbs.buffer, &view.strokes.buffer, &view.rings.buffer)
+        else {
             return true;
         };
         let complete = Cell::new(true);
@@ -534,7 +574,11 @@ impl StageRenderer {
         };
         let figures = || view.drawn.figures.get(pane.figures.clone()).unwrap_or_default().iter();
         let set_figure = |pass: &mut wgpu::RenderPass<'_>, figure: &FigureDraw| {
-            pass.set_bind_group(2, view.figures_bound.as_ref(), &[(figure.uniform * self.figure_stride()) as u32]);
+            pass.set_bind_group(
+                2,
+                view.figures_bound.as_ref(),
+                &[(figure.uniform * self.figure_stride()) as u32],
+            );
         };
 
         // The ground, and what lies on it. Bodies stand above it: nothing of it can hide them.
@@ -546,7 +590,8 @@ impl StageRenderer {
             pass.set_vertex_buffer(0, limbs.slice(..));
             // Those that follow each other in the buffer at once.
             let mut waiting = 0..0;
-            for FigureDraw { casting, .. } in figures().filter(|figure| !figure.casting.is_empty()) {
+            for FigureDraw { casting, .. } in figures().filter(|figure| !figure.casting.is_empty())
+            {
                 if casting.start == waiting.end {
                     waiting.end = casting.end;
                 } else {
@@ -561,7 +606,10 @@ impl StageRenderer {
         if (casts || pane.lit.is_some()) && take(pass, Brush::Shade) {
             pass.draw(0..3, 0..1);
         }
-        let quads = |pass: &mut wgpu::RenderPass<'_>, brush, buffer: &wgpu::Buffer, range: &std::ops::Range<u32>| {
+        let quads = |pass: &mut wgpu::RenderPass<'_>,
+                     brush,
+                     buffer: &wgpu::Buffer,
+                     range: &std::ops::Range<u32>| {
             if !range.is_empty() && take(pass, brush) {
                 pass.set_vertex_buffer(0, buffer.slice(..));
                 pass.draw(0..4, range.clone());
@@ -573,7 +621,9 @@ impl StageRenderer {
         let has_edges = view.drawn.views.first().is_some_and(ViewUniform::has_edges);
         let solids = || figures().filter(|figure| !figure.ghost && !figure.limbs().is_empty());
         // Fronts first: what is hidden need not be lit, and bodies are mostly limbs within limbs.
-        for (brush, wanted) in [(Brush::Front, true), (Brush::Solid, true), (Brush::Edge, has_edges)] {
+        for (brush, wanted) in
+            [(Brush::Front, true), (Brush::Solid, true), (Brush::Edge, has_edges)]
+        {
             if wanted && solids().next().is_some() && take(pass, brush) {
                 pass.set_vertex_buffer(1, limbs.slice(..));
                 for figure in solids() {

@@ -1,4 +1,5 @@
-//! What skinned bodies need on the GPU: each mesh once, and the joints of all figures of a stage in a texture.
+//! What skinned bodies need on the GPU: each mesh once, and the joints of all figures of a stage in
+//! a texture.
 
 use super::frame::{JointTexels, Mesh};
 use super::pipelines::Pipelines;
@@ -44,7 +45,10 @@ fn vertices(mesh: &SkinnedMesh) -> Vec<SkinVertex> {
                 .filter(|p| p.is_finite())
                 .unwrap_or_default()
                 .to_array(),
-            normal: normal.extend(0.0).to_array().map(|part| (part.clamp(-1.0, 1.0) * 32_767.0) as i16),
+            normal: normal
+                .extend(0.0)
+                .to_array()
+                .map(|part| (part.clamp(-1.0, 1.0) * 32_767.0) as i16),
             joints: joints.map(|joint| joint.min(last_joint)),
             weights: weights.map(|weight| (weight.clamp(0.0, 1.0) * 65_535.0 + 0.5) as u16),
             tint: tint.map(|part| (part.clamp(0.0, 1.0) * 255.0 + 0.5) as u8),
@@ -58,7 +62,9 @@ impl SkinBuffers {
         let buffer = |contents: &[u8], usage| filled_buffer(device, queue, "skin", contents, usage);
         let vertices = vertices(mesh);
         // A corner that is no vertex takes its whole triangle out.
-        let inside = |triangle: &&[u32; 3]| triangle.iter().all(|&corner| (corner as usize) < vertices.len());
+        let inside = |triangle: &&[u32; 3]| {
+            triangle.iter().all(|&corner| (corner as usize) < vertices.len())
+        };
         let triangles: Vec<[u32; 3]> = mesh.triangles.iter().filter(inside).copied().collect();
         Self {
             mesh: Arc::downgrade(mesh),
@@ -74,7 +80,8 @@ impl SkinBuffers {
 pub(super) struct SkinStore(Vec<SkinBuffers>);
 
 impl SkinStore {
-    /// Brings those meshes to the device that are not there yet, and lets go of those that are gone.
+    /// Brings those meshes to the device that are not there yet, and lets go of those that are
+    /// gone.
     pub(super) fn load(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, meshes: &[Mesh]) {
         self.0.retain(|buffers| buffers.mesh.strong_count() > 0);
         for Mesh(mesh) in meshes {
@@ -100,8 +107,15 @@ pub(super) struct JointTexture {
 }
 
 impl JointTexture {
-    /// Writes them, into a larger texture where that is needed. Those that no texture holds are left out.
-    pub(super) fn write(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, pipelines: &Pipelines, joints: &[JointTexels]) {
+    /// Writes them, into a larger texture where that is needed. Those that no texture holds are
+    /// left out.
+    pub(super) fn write(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        pipelines: &Pipelines,
+        joints: &[JointTexels],
+    ) {
         let most = device.limits().max_texture_dimension_2d;
         let needed = (joints.len().div_ceil(JOINTS_IN_ROW) as u32).clamp(1, most);
         if joints.is_empty() && self.bound.is_some() {

@@ -1,7 +1,8 @@
 use super::pipelines::Pipelines;
 use eframe::wgpu;
 
-/// Colours are kept encoded, as egui keeps its own: blending then looks the same in the stage and beside it.
+/// Colours are kept encoded, as egui keeps its own: blending then looks the same in the stage and
+/// beside it.
 pub(super) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth24PlusStencil8;
 
@@ -46,8 +47,10 @@ impl Targets {
             attachment | wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC,
         );
         let color_view = color.create_view(&wgpu::TextureViewDescriptor::default());
-        let view = |texture: wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let samples = (sample_count > 1).then(|| view(texture("stage samples", COLOR_FORMAT, sample_count, attachment)));
+        let view =
+            |texture: wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let samples = (sample_count > 1)
+            .then(|| view(texture("stage samples", COLOR_FORMAT, sample_count, attachment)));
         let depth = view(texture("stage depth", DEPTH_FORMAT, sample_count, attachment));
         let composite = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("stage composite"),

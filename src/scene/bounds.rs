@@ -18,10 +18,7 @@ impl Default for Bounds {
 
 impl Bounds {
     /// Contains nothing.
-    pub const EMPTY: Self = Self {
-        min: Vec3::INFINITY,
-        max: Vec3::NEG_INFINITY,
-    };
+    pub const EMPTY: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
 
     /// Whether no point was included yet.
     #[must_use]
@@ -47,10 +44,7 @@ impl Bounds {
     /// The box with `margin` metres added on every side.
     #[must_use]
     pub fn grown(&self, margin: f32) -> Self {
-        Self {
-            min: self.min - margin,
-            max: self.max + margin,
-        }
+        Self { min: self.min - margin, max: self.max + margin }
     }
 
     /// The middle; the origin where the box is empty.

@@ -1,7 +1,9 @@
 use super::dress::{Wardrobe, size_beside, worn_character};
 use super::drive::add_drive;
 use super::path::{PathMarks, add_drawn, add_path};
-use super::{Body, Camera, CameraRig, Color, Layer, Lens, Look, Pane, Skinning, Stage, Viewport, with_alpha};
+use super::{
+    Body, Camera, CameraRig, Color, Layer, Lens, Look, Pane, Skinning, Stage, Viewport, with_alpha,
+};
 use glam::{Quat, Vec3};
 use segue_motion::clip::Interpolation;
 use segue_motion::graph::Place;
@@ -10,7 +12,9 @@ use segue_motion::math::Planar;
 use segue_motion::skeleton::{Role, Side, WorldPose, world_pose, world_pose_into};
 use segue_session::LabId;
 use segue_session::choices;
-use segue_session::{self, Built, DistanceMap, Key, Motion, Outcome, Params, Session, Slot, Walk, joint_of};
+use segue_session::{
+    self, Built, DistanceMap, Key, Motion, Outcome, Params, Session, Slot, Walk, joint_of,
+};
 use std::sync::Arc;
 
 /// The colours of what is made from A, from B, and from both, in the theme of the page.
@@ -32,7 +36,8 @@ pub struct Colors {
     pub ghost_alpha: f32,
 }
 
-/// Makes the stage from the session, and keeps what goes on from frame to frame: cameras on their way, and the bodies of skeletons.
+/// Makes the stage from the session, and keeps what goes on from frame to frame: cameras on their
+/// way, and the bodies of skeletons.
 #[derive(Debug)]
 pub struct Director {
     stage: Arc<Stage>,
@@ -55,7 +60,8 @@ const GHOST_FADE_SECS: f64 = 0.3;
 const CLAY_SHARE: f32 = 0.3;
 /// A planted foot that moves faster than this slides.
 const SLIDE_MPS: f32 = 0.08;
-/// The ring about the chosen joint, as a share of the distance that it is seen from: it is of one size wherever the camera stands.
+/// The ring about the chosen joint, as a share of the distance that it is seen from: it is of one
+/// size wherever the camera stands.
 const MARK_RADIUS: f32 = 0.011;
 /// The sources of a registered result walk this far to its left and right.
 const BESIDE_METRES: f64 = 0.8;
@@ -73,7 +79,8 @@ const PATH_POINTS: usize = 600;
 const WALK_PATH_SECS: f64 = 30.0;
 /// A camera that nothing is followed with comes to a new view this fast.
 const VIEW_HALF_LIFE_SECS: f32 = 0.06;
-/// A followed character that jumped farther than this (a loop began again) is not chased but cut to.
+/// A followed character that jumped farther than this (a loop began again) is not chased but cut
+/// to.
 const CUT_METRES: f32 = 1.5;
 
 impl Default for Director {
@@ -94,8 +101,8 @@ impl Default for Director {
 }
 
 impl Director {
-    /// Everything that is to be seen now: the session's panes that are shown, each with its place (physical pixels). `dt_secs` moves the
-    /// cameras on.
+    /// Everything that is to be seen now: the session's panes that are shown, each with its place
+    /// (physical pixels). `dt_secs` moves the cameras on.
     pub fn stage(
         &mut self,
         session: &Session,
@@ -121,20 +128,21 @@ impl Director {
             pane.clear();
             pane.viewport = viewport;
             pane.skinning = skinning_of(session, index);
-            if let Some(segue_session::Shown { outcome, secs: now, place }) = session.panes().get(index).and_then(|pane| pane.shown_at(now))
+            if let Some(segue_session::Shown { outcome, secs: now, place }) =
+                session.panes().get(index).and_then(|pane| pane.shown_at(now))
             {
                 let Some(world) = pose_at(&outcome.motion, now, &place) else {
                     continue;
                 };
-                let shown = Shown {
-                    outcome,
-                    now,
-                    place,
-                    world,
-                };
-                match (self.pair.zip(session.distance_map()), self.jump.zip(session.graph_built())) {
-                    (Some((frames, map)), _) => self.draw_pair(&shown, frames, map, params, colors, pane),
-                    (None, Some((ends, built))) => self.draw_jump(&shown, ends, built, colors, pane),
+                let shown = Shown { outcome, now, place, world };
+                match (self.pair.zip(session.distance_map()), self.jump.zip(session.graph_built()))
+                {
+                    (Some((frames, map)), _) => {
+                        self.draw_pair(&shown, frames, map, params, colors, pane)
+                    }
+                    (None, Some((ends, built))) => {
+                        self.draw_jump(&shown, ends, built, colors, pane)
+                    }
                     (None, None) => self.draw(&shown, params, &look, colors, pane),
                 }
                 self.draw_company(session, &look, colors, pane);
@@ -149,7 +157,8 @@ impl Director {
                 if self.marks_joint
                     && let Some(joint) = joint_of(&outcome.motion, params.text(Key::Joint))
                     && let body = self.body(&outcome.motion)
-                    && let Some(&at) = body.seen_pose(&shown.world).positions.get(body.seen_joint(joint))
+                    && let Some(&at) =
+                        body.seen_pose(&shown.world).positions.get(body.seen_joint(joint))
                 {
                     add_mark(at, colors.result, look.edge, pane);
                 }
@@ -167,8 +176,8 @@ impl Director {
         Arc::clone(&self.stage)
     }
 
-    /// Works on what takes a while to be made, a millisecond or two: skins of skeletons that were seen. Until they are there bodies are limbs. `true`
-    /// while there is more to do.
+    /// Works on what takes a while to be made, a millisecond or two: skins of skeletons that were
+    /// seen. Until they are there bodies are limbs. `true` while there is more to do.
     pub fn work(&mut self) -> bool {
         self.wardrobe.work()
     }
@@ -184,7 +193,8 @@ impl Director {
         self.marks_joint = on;
     }
 
-    /// The pair of frames of A and B (at A's rate) that is shown in place of the result from now on, aligned; `None` for the result itself.
+    /// The pair of frames of A and B (at A's rate) that is shown in place of the result from now
+    /// on, aligned; `None` for the result itself.
     pub fn show_pair(&mut self, frames: Option<[f64; 2]>) {
         self.pair = frames;
     }
@@ -199,7 +209,8 @@ impl Director {
         self.marks = marks;
     }
 
-    /// The transition whose windows are shown in place of the result from now on, laid on each other; `None` for the result itself.
+    /// The transition whose windows are shown in place of the result from now on, laid on each
+    /// other; `None` for the result itself.
     pub fn show_jump(&mut self, ends: Option<[Place; 2]>) {
         self.jump = ends;
     }
@@ -220,13 +231,15 @@ impl Director {
         self.wardrobe.body(motion)
     }
 
-    fn draw(&mut self, shown: &Shown<'_>, params: &Params, look: &Look, colors: &Colors, pane: &mut Pane) {
-        let Shown {
-            outcome,
-            now,
-            place,
-            world,
-        } = shown;
+    fn draw(
+        &mut self,
+        shown: &Shown<'_>,
+        params: &Params,
+        look: &Look,
+        colors: &Colors,
+        pane: &mut Pane,
+    ) {
+        let Shown { outcome, now, place, world } = shown;
         let (motion, now) = (&outcome.motion, *now);
         let body = self.body(motion);
         let twisted = twisted(motion, world, params.number(Key::Twist));
@@ -234,7 +247,9 @@ impl Director {
         let seen = params.choice::<choices::Look>();
         match (seen, outcome.layer.as_ref().filter(|_| params.is_on(Key::MaskColors))) {
             (choices::Look::Bones, _) => {}
-            (choices::Look::Both, _) => pane.add_glass(&body, world, with_alpha(look.clay, GLASS_ALPHA)),
+            (choices::Look::Both, _) => {
+                pane.add_glass(&body, world, with_alpha(look.clay, GLASS_ALPHA))
+            }
             (_, Some(layer)) => pane.add_colored_body(&body, world, |joint| {
                 share_color(layer.shares.get(joint).copied().unwrap_or(0.0), look, colors)
             }),
@@ -276,7 +291,11 @@ impl Director {
                 && let Some(pose) = driven.database.pose(candidate, &moment.root)
             {
                 let ghost = world_pose(driven.database.skeleton(), &pose);
-                pane.add_ghost(&body, &ghost, with_alpha(colors.b, (PAIR_ALPHA * colors.ghost_alpha).min(0.9)));
+                pane.add_ghost(
+                    &body,
+                    &ghost,
+                    with_alpha(colors.b, (PAIR_ALPHA * colors.ghost_alpha).min(0.9)),
+                );
             }
         }
         if params.is_on(Key::JointTrail)
@@ -293,7 +312,9 @@ impl Director {
     fn draw_company(&mut self, session: &Session, look: &Look, colors: &Colors, pane: &mut Pane) {
         let params = session.params();
         for (index, companion) in session.company().iter().enumerate() {
-            let Ok(motion) = &companion.motion else { continue };
+            let Ok(motion) = &companion.motion else {
+                continue;
+            };
             let color = colors.others[index % colors.others.len()];
             let Some(world) = pose_at(motion, session.now_secs(), &Planar::IDENTITY) else {
                 continue;
@@ -309,14 +330,27 @@ impl Director {
                     .ground_frames
                     .iter()
                     .step_by(motion.ground_frames.len().div_ceil(PATH_POINTS).max(1));
-                pane.add_path(ways.map(|place| (place.origin().with_y(0.004), color)), 2.0, Layer::Ground);
+                pane.add_path(
+                    ways.map(|place| (place.origin().with_y(0.004), color)),
+                    2.0,
+                    Layer::Ground,
+                );
             }
         }
     }
 
     /// Those who walk about the one that is driven.
-    fn draw_crowd(&mut self, session: &Session, shown: &Shown<'_>, look: &Look, colors: &Colors, pane: &mut Pane) {
-        let Some((database, poses)) = session.crowd() else { return };
+    fn draw_crowd(
+        &mut self,
+        session: &Session,
+        shown: &Shown<'_>,
+        look: &Look,
+        colors: &Colors,
+        pane: &mut Pane,
+    ) {
+        let Some((database, poses)) = session.crowd() else {
+            return;
+        };
         let skeleton = database.skeleton();
         if shown.outcome.motion.clip.skeleton() != skeleton {
             return;
@@ -336,16 +370,30 @@ impl Director {
     }
 
     /// A frame of A with one of B laid on it, where the result stands.
-    fn draw_pair(&mut self, shown: &Shown<'_>, frames: [f64; 2], map: &DistanceMap, params: &Params, colors: &Colors, pane: &mut Pane) {
+    fn draw_pair(
+        &mut self,
+        shown: &Shown<'_>,
+        frames: [f64; 2],
+        map: &DistanceMap,
+        params: &Params,
+        colors: &Colors,
+        pane: &mut Pane,
+    ) {
         let [a, b] = map.motions();
         let secs = frames.map(|frame| frame / map.fps());
         let stands = shown.place.after(&shown.outcome.motion.standing_at(shown.now));
         let world_from_a = stands.after(&a.standing_at(secs[0]).inverse());
         let world_from_b = world_from_a.after(&map.b_on_a(frames).unwrap_or(Planar::IDENTITY));
-        for (motion, secs, place, color) in [(a, secs[0], world_from_a, colors.a), (b, secs[1], world_from_b, colors.b)] {
+        for (motion, secs, place, color) in
+            [(a, secs[0], world_from_a, colors.a), (b, secs[1], world_from_b, colors.b)]
+        {
             if let Some(world) = pose_at(motion, secs, &place) {
                 let body = self.body(motion);
-                pane.add_ghost(&body, &world, with_alpha(color, (PAIR_ALPHA * colors.ghost_alpha).min(0.9)));
+                pane.add_ghost(
+                    &body,
+                    &world,
+                    with_alpha(color, (PAIR_ALPHA * colors.ghost_alpha).min(0.9)),
+                );
             }
         }
         if params.is_on(Key::Trail) {
@@ -354,8 +402,17 @@ impl Director {
     }
 
     /// Both windows of a transition where the result stands: their first, middle and last frame.
-    fn draw_jump(&mut self, shown: &Shown<'_>, [leave, enter]: [Place; 2], built: &Built, colors: &Colors, pane: &mut Pane) {
-        let Some(jump) = built.jump_of(leave, enter).and_then(|index| built.whole().jumps().get(index)) else {
+    fn draw_jump(
+        &mut self,
+        shown: &Shown<'_>,
+        [leave, enter]: [Place; 2],
+        built: &Built,
+        colors: &Colors,
+        pane: &mut Pane,
+    ) {
+        let Some(jump) =
+            built.jump_of(leave, enter).and_then(|index| built.whole().jumps().get(index))
+        else {
             return;
         };
         let motions = built.cast().motions();
@@ -370,22 +427,43 @@ impl Director {
         let world_from_a = stands.after(&middle.inverse());
         let world_from_b = world_from_a.after(&jump.alignment);
         for (step, clear) in [(0, 0.55), (last, 0.55), (last / 2, 1.0)] {
-            for (motion, from, place, color) in [(a, leave.frame, &world_from_a, colors.a), (b, enter.frame, &world_from_b, colors.b)] {
+            for (motion, from, place, color) in [
+                (a, leave.frame, &world_from_a, colors.a),
+                (b, enter.frame, &world_from_b, colors.b),
+            ] {
                 if let Some(world) = pose_at(motion, secs(from + step), place) {
                     let body = self.body(motion);
-                    pane.add_ghost(&body, &world, with_alpha(color, (PAIR_ALPHA * clear * colors.ghost_alpha).min(0.9)));
+                    pane.add_ghost(
+                        &body,
+                        &world,
+                        with_alpha(color, (PAIR_ALPHA * clear * colors.ghost_alpha).min(0.9)),
+                    );
                 }
             }
         }
     }
 
     /// The clips that a walk is made of about a transition.
-    fn draw_walk_ghosts(&mut self, shown: &Shown<'_>, walk: &Walk, colors: &Colors, pane: &mut Pane) {
-        for (ghost, color) in walk.ghosts_at(shown.now, GHOST_FADE_SECS).into_iter().zip([colors.a, colors.b]) {
+    fn draw_walk_ghosts(
+        &mut self,
+        shown: &Shown<'_>,
+        walk: &Walk,
+        colors: &Colors,
+        pane: &mut Pane,
+    ) {
+        for (ghost, color) in
+            walk.ghosts_at(shown.now, GHOST_FADE_SECS).into_iter().zip([colors.a, colors.b])
+        {
             let Some(ghost) = ghost else { continue };
-            if let Some(world) = pose_at(ghost.motion, ghost.secs, &shown.place.after(&ghost.world_from_clip)) {
+            if let Some(world) =
+                pose_at(ghost.motion, ghost.secs, &shown.place.after(&ghost.world_from_clip))
+            {
                 let body = self.body(ghost.motion);
-                pane.add_ghost(&body, &world, with_alpha(color, colors.ghost_alpha * ghost.clear as f32));
+                pane.add_ghost(
+                    &body,
+                    &world,
+                    with_alpha(color, colors.ghost_alpha * ghost.clear as f32),
+                );
             }
         }
     }
@@ -402,7 +480,8 @@ impl Director {
             };
             let aside = Planar::new(0.0, side, 0.0);
             let stands = shown.outcome.motion.standing_at(shown.now);
-            let beside = shown.place.after(&stands).after(&aside).after(&stands.inverse()).after(&place);
+            let beside =
+                shown.place.after(&stands).after(&aside).after(&stands.inverse()).after(&place);
             if let Some(world) = pose_at(&source.motion, at, &beside) {
                 let body = self.body(&source.motion);
                 pane.add_ghost(&body, &world, with_alpha(color, colors.ghost_alpha * visible));
@@ -410,7 +489,8 @@ impl Director {
         }
     }
 
-    /// Both sources about the transition, as far as they differ from the result: A appears as its weight falls, B vanishes as its weight rises.
+    /// Both sources about the transition, as far as they differ from the result: A appears as its
+    /// weight falls, B vanishes as its weight rises.
     fn draw_sources(&mut self, shown: &Shown<'_>, colors: &Colors, pane: &mut Pane) {
         let (outcome, now) = (shown.outcome, shown.now);
         if let Some(walk) = outcome.walk.as_ref().filter(|walk| !walk.is_jump) {
@@ -419,7 +499,8 @@ impl Director {
         }
         if outcome.registered.is_some() {
             let away = outcome.transition.map_or(0.0, |transition| {
-                (transition.start_secs - now).max(now - transition.end_secs).max(0.0) / GHOST_FADE_SECS
+                (transition.start_secs - now).max(now - transition.end_secs).max(0.0)
+                    / GHOST_FADE_SECS
             });
             let visible = (1.0 - away).max(0.0) as f32;
             if visible > 0.02 {
@@ -427,7 +508,9 @@ impl Director {
             }
             return;
         }
-        let Some(transition) = outcome.transition else { return };
+        let Some(transition) = outcome.transition else {
+            return;
+        };
         let length = transition.end_secs - transition.start_secs;
         let inside = ((now - transition.start_secs) / length.max(1e-6)).clamp(0.0, 1.0);
         let before = ((transition.start_secs - now) / GHOST_FADE_SECS).max(0.0);
@@ -438,12 +521,15 @@ impl Director {
                 Slot::A => (colors.a, inside * (1.0 - behind)),
                 Slot::B => (colors.b, (1.0 - inside) * (1.0 - before)),
             };
-            // Half of the way there a ghost is as clear as it gets: only where it lies on the result it must not be seen.
+            // Half of the way there a ghost is as clear as it gets: only where it lies on the
+            // result it must not be seen.
             let share = (2.0 * share).clamp(0.0, 1.0) as f32;
             if share < 0.02 || !(0.0..=source.motion.clip.duration_secs()).contains(&at) {
                 continue;
             }
-            if let Some(world) = pose_at(&source.motion, at, &shown.place.after(&source.world_from_clip)) {
+            if let Some(world) =
+                pose_at(&source.motion, at, &shown.place.after(&source.world_from_clip))
+            {
                 let body = self.body(&source.motion);
                 pane.add_ghost(&body, &world, with_alpha(color, colors.ghost_alpha * share));
             }
@@ -475,8 +561,8 @@ impl Director {
                 }
             },
             Some(source) => {
-                let (at, world_from_clip) =
-                    (outcome.source_at(source, shown.now)).unwrap_or((shown.now - source.starts_at_secs, source.world_from_clip));
+                let (at, world_from_clip) = (outcome.source_at(source, shown.now))
+                    .unwrap_or((shown.now - source.starts_at_secs, source.world_from_clip));
                 source_pose = pose_at(&source.motion, at, &shown.place.after(&world_from_clip))?;
                 (&source.motion, &source_pose)
             }
@@ -485,16 +571,19 @@ impl Director {
         let joint = joint_of(motion, params.text(Key::FollowJoint)).unwrap_or(0);
         let point = *body.seen_pose(world).positions.get(body.seen_joint(joint))?;
         let hips = motion.roles.get(Role::Hips).unwrap_or(0);
-        // Bobbing with every step makes an audience seasick: hips are followed over the ground, at the height of a standing body's middle.
-        Some(if joint == hips {
-            point.with_y(middle_height(motion))
-        } else {
-            point
-        })
+        // Bobbing with every step makes an audience seasick: hips are followed over the ground, at
+        // the height of a standing body's middle.
+        Some(if joint == hips { point.with_y(middle_height(motion)) } else { point })
     }
 
     /// The clips that a result could not be made of, in its place.
-    fn draw_stand_ins(&mut self, refused: &segue_session::Pane, now: f64, colors: &Colors, pane: &mut Pane) {
+    fn draw_stand_ins(
+        &mut self,
+        refused: &segue_session::Pane,
+        now: f64,
+        colors: &Colors,
+        pane: &mut Pane,
+    ) {
         for source in &refused.sources {
             let color = match source.slot {
                 Slot::A => colors.a,
@@ -508,18 +597,27 @@ impl Director {
         }
     }
 
-    /// Brings the pane's camera to where the parameters want it: after the followed point, or to where it rests.
-    fn aim(&mut self, index: usize, followed: Option<Vec3>, rest: Vec3, params: &Params, dt_secs: f32, pane: &mut Pane) {
+    /// Brings the pane's camera to where the parameters want it: after the followed point, or to
+    /// where it rests.
+    fn aim(
+        &mut self,
+        index: usize,
+        followed: Option<Vec3>,
+        rest: Vec3,
+        params: &Params,
+        dt_secs: f32,
+        pane: &mut Pane,
+    ) {
         let pan = Vec3::new(
             params.number(Key::PanX) as f32,
             params.number(Key::PanY) as f32,
             params.number(Key::PanZ) as f32,
         ) / self.shown_size;
-        let goal = Camera {
-            target: followed.unwrap_or(rest) + pan,
-            ..camera_of(params, self.shown_size)
+        let goal =
+            Camera { target: followed.unwrap_or(rest) + pan, ..camera_of(params, self.shown_size) };
+        let Some(rig) = self.rigs.get_mut(index) else {
+            return;
         };
-        let Some(rig) = self.rigs.get_mut(index) else { return };
         let first = *rig == CameraRig::default();
         if self.marks.is_held && !first {
             // The ground must not move under the hand.
@@ -568,12 +666,13 @@ pub fn pose_at(motion: &Motion, secs: f64, world_from_clip: &Planar) -> Option<W
     Some(world)
 }
 
-/// Returns how many times as large as its motion a figure is shown: by the height that the parameters give it, and by its own size where it is a
-/// character.
+/// Returns how many times as large as its motion a figure is shown: by the height that the
+/// parameters give it, and by its own size where it is a character.
 ///
-/// The figure is drawn in the size and the place of its motion. It is the world about it that is shown smaller: the camera stands nearer and the cells of
-/// the grid are narrower. So its steps, its path and all that is drawn along with it grow as it does, and what stands still keeps standing still: foot
-/// skate is neither made nor hidden.
+/// The figure is drawn in the size and the place of its motion. It is the world about it that is
+/// shown smaller: the camera stands nearer and the cells of the grid are narrower. So its steps,
+/// its path and all that is drawn along with it grow as it does, and what stands still keeps
+/// standing still: foot skate is neither made nor hidden.
 #[must_use]
 pub fn shown_size(session: &Session, motion: &Motion) -> f32 {
     let character = worn_character(session).and_then(|character| size_beside(&character, motion));
@@ -597,24 +696,32 @@ fn skinning_of(session: &Session, pane: usize) -> Skinning {
     }
 }
 
-/// The pose with both hands turned about their forearms, by degrees; `None` where they are not to be.
+/// The pose with both hands turned about their forearms, by degrees; `None` where they are not to
+/// be.
 fn twisted(motion: &Motion, world: &WorldPose, degrees: f64) -> Option<WorldPose> {
     let (skeleton, mut world) = (motion.clip.skeleton(), (degrees != 0.0).then(|| world.clone())?);
     for side in Side::BOTH {
-        let (Some(elbow), Some(hand)) = (motion.roles.get(Role::forearm(side)), motion.roles.get(Role::hand(side))) else {
+        let (Some(elbow), Some(hand)) =
+            (motion.roles.get(Role::forearm(side)), motion.roles.get(Role::hand(side)))
+        else {
             continue;
         };
-        let (Some(&from), Some(&wrist)) = (world.positions.get(elbow), world.positions.get(hand)) else {
+        let (Some(&from), Some(&wrist)) = (world.positions.get(elbow), world.positions.get(hand))
+        else {
             continue;
         };
-        let Some(axis) = (wrist - from).try_normalize() else { continue };
+        let Some(axis) = (wrist - from).try_normalize() else {
+            continue;
+        };
         let turn = Quat::from_axis_angle(axis, degrees.to_radians() as f32);
         // The hand and all that hangs on it: parents come first.
         let mut moved = vec![false; skeleton.len()];
         for joint in hand..skeleton.len() {
-            moved[joint] = joint == hand || skeleton.parent(joint).is_some_and(|parent| moved[parent]);
+            moved[joint] =
+                joint == hand || skeleton.parent(joint).is_some_and(|parent| moved[parent]);
             if moved[joint]
-                && let (Some(position), Some(rotation)) = (world.positions.get_mut(joint), world.rotations.get_mut(joint))
+                && let (Some(position), Some(rotation)) =
+                    (world.positions.get_mut(joint), world.rotations.get_mut(joint))
             {
                 *position = wrist + turn * (*position - wrist);
                 *rotation = turn * *rotation;
@@ -624,8 +731,8 @@ fn twisted(motion: &Motion, world: &WorldPose, degrees: f64) -> Option<WorldPose
     Some(world)
 }
 
-/// The camera that the parameters describe, wherever what it follows may be, about a figure that is shown so many times as large as its motion (see
-/// [`shown_size`]).
+/// The camera that the parameters describe, wherever what it follows may be, about a figure that is
+/// shown so many times as large as its motion (see [`shown_size`]).
 #[must_use]
 pub fn camera_of(params: &Params, shown_size: f32) -> Camera {
     let from_above = params.choice::<choices::Camera>() == choices::Camera::Top;
@@ -642,8 +749,8 @@ pub fn camera_of(params: &Params, shown_size: f32) -> Camera {
     }
 }
 
-/// What an unbound camera looks at: where the motion begins, which lies at `place`. Of a motion on an edited path it is where that began before: the
-/// ground must not move when the path does.
+/// What an unbound camera looks at: where the motion begins, which lies at `place`. Of a motion on
+/// an edited path it is where that began before: the ground must not move when the path does.
 #[must_use]
 pub fn resting_point(outcome: &Outcome, place: &Planar) -> Vec3 {
     let motion = outcome.path.as_ref().map_or(&outcome.motion, |path| path.fitted.motion());
@@ -656,7 +763,8 @@ fn resting_place(motion: &Motion, place: &Planar) -> Vec3 {
     place.apply(start).with_y(middle_height(motion))
 }
 
-/// The height in the middle of the picture: a little below the body's own, because the panes' numbers lie over the lower edge.
+/// The height in the middle of the picture: a little below the body's own, because the panes'
+/// numbers lie over the lower edge.
 fn middle_height(motion: &Motion) -> f32 {
     motion.roles.body_height(motion.clip.skeleton()) * 0.4
 }
@@ -731,7 +839,8 @@ fn add_joint_trail(shown: &Shown<'_>, body: &Body, joint: usize, color: Color, p
     pane.add_path(points, 1.75, Layer::Space);
 }
 
-/// A dot in a ring over everything, turned to the camera, both with an edge that sets them off from the body.
+/// A dot in a ring over everything, turned to the camera, both with an edge that sets them off from
+/// the body.
 fn add_mark(at: Vec3, color: Color, edge: Color, pane: &mut Pane) {
     const CORNERS: u16 = 28;
     let [right, up, _] = pane.camera.axes();
@@ -774,7 +883,8 @@ fn add_bones(body: &Body, motion: &Motion, world: &WorldPose, color: Color, pane
 fn add_axes(world: &WorldPose, colors: &Colors, pane: &mut Pane) {
     const LENGTH_M: f32 = 0.07;
     for (&position, &rotation) in world.positions.iter().zip(&world.rotations) {
-        for (axis, color) in [(Vec3::X, colors.bad), (Vec3::Y, colors.result), (Vec3::Z, colors.b)] {
+        for (axis, color) in [(Vec3::X, colors.bad), (Vec3::Y, colors.result), (Vec3::Z, colors.b)]
+        {
             pane.add_line(position, position + rotation * axis * LENGTH_M, color, 1.5, Layer::Over);
         }
     }
@@ -796,15 +906,16 @@ fn add_contacts(shown: &Shown<'_>, body: &Body, colors: &Colors, pane: &mut Pane
         if !motion.contacts.planted(side, frame) {
             continue;
         }
-        let Some(foot) = roles.get(Role::foot(side)) else { continue };
-        let joint = roles.get(Role::toe(side)).unwrap_or(foot);
-        let (Some(&toe), Some(&ankle)) = (world.positions.get(joint), world.positions.get(foot)) else {
+        let Some(foot) = roles.get(Role::foot(side)) else {
             continue;
         };
-        let before = earlier
-            .as_ref()
-            .and_then(|world| world.positions.get(joint).copied())
-            .unwrap_or(toe);
+        let joint = roles.get(Role::toe(side)).unwrap_or(foot);
+        let (Some(&toe), Some(&ankle)) = (world.positions.get(joint), world.positions.get(foot))
+        else {
+            continue;
+        };
+        let before =
+            earlier.as_ref().and_then(|world| world.positions.get(joint).copied()).unwrap_or(toe);
         let slides = (toe - before).with_y(0.0).length() / dt > SLIDE_MPS;
         let middle = toe.lerp(ankle, 0.35).with_y(0.0);
         pane.add_contact(middle, if slides { colors.bad } else { colors.result }, slides);

@@ -23,18 +23,21 @@ pub struct Ray {
 }
 
 impl Ray {
-    /// Where the ray meets the ground plane `y = 0`; `None` where it runs level, away from it, or meets it farther than 10 km off.
+    /// Where the ray meets the ground plane `y = 0`; `None` where it runs level, away from it, or
+    /// meets it farther than 10 km off.
     #[must_use]
     pub fn ground_hit(&self) -> Option<Vec3> {
         let t = -self.origin.y / self.direction.y;
-        (t.is_finite() && (0.0..10_000.0).contains(&t)).then(|| (self.origin + self.direction * t).with_y(0.0))
+        (t.is_finite() && (0.0..10_000.0).contains(&t))
+            .then(|| (self.origin + self.direction * t).with_y(0.0))
     }
 }
 
 /// An orbit camera: it looks at a point from a direction and a distance.
 ///
-/// At yaw 0 it stands on the +Z side of its target, so that it sees the face of a character that faces +Z. Positive yaw moves it to the
-/// left of that character, positive pitch upwards; at a pitch of π/2 it looks straight down with the far side up.
+/// At yaw 0 it stands on the +Z side of its target, so that it sees the face of a character that
+/// faces +Z. Positive yaw moves it to the left of that character, positive pitch upwards; at a
+/// pitch of π/2 it looks straight down with the far side up.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Camera {
     /// The point in the middle of the picture, metres.
@@ -45,7 +48,8 @@ pub struct Camera {
     pub pitch: f32,
     /// Distance from the target, metres.
     pub distance: f32,
-    /// Vertical angle of view, radians. An orthographic picture is as high as a perspective one at the target.
+    /// Vertical angle of view, radians. An orthographic picture is as high as a perspective one at
+    /// the target.
     pub fov_y: f32,
     /// Perspective or orthographic.
     pub lens: Lens,
@@ -66,11 +70,13 @@ impl Default for Camera {
 
 /// Distances the camera keeps, metres.
 const DISTANCES: std::ops::RangeInclusive<f32> = 0.2..=300.0;
-/// The lowest pitch that [`Camera::orbit`] reaches: a little below the horizon, so that soles can be looked at.
+/// The lowest pitch that [`Camera::orbit`] reaches: a little below the horizon, so that soles can
+/// be looked at.
 const LOWEST_PITCH: f32 = -0.12;
 
 impl Camera {
-    /// The camera's axes: right, up, and back (from the target to the camera). Unit and orthogonal, also when it looks straight down.
+    /// The camera's axes: right, up, and back (from the target to the camera). Unit and orthogonal,
+    /// also when it looks straight down.
     #[must_use]
     pub fn axes(&self) -> [Vec3; 3] {
         let (sin_yaw, cos_yaw) = self.yaw.sin_cos();
@@ -122,13 +128,15 @@ impl Camera {
         }
     }
 
-    /// Turns around the target. The pitch stays between a little below the horizon and straight down.
+    /// Turns around the target. The pitch stays between a little below the horizon and straight
+    /// down.
     pub fn orbit(&mut self, yaw_radians: f32, pitch_radians: f32) {
         self.yaw = (self.yaw + yaw_radians + PI).rem_euclid(2.0 * PI) - PI;
         self.pitch = (self.pitch + pitch_radians).clamp(LOWEST_PITCH.min(self.pitch), FRAC_PI_2);
     }
 
-    /// Drags the picture by `delta` pixels (right, down) in a viewport `height` pixels high: what lies at the target's depth stays under the pointer.
+    /// Drags the picture by `delta` pixels (right, down) in a viewport `height` pixels high: what
+    /// lies at the target's depth stays under the pointer.
     pub fn pan(&mut self, delta: Vec2, height: f32) {
         let [right, up, _] = self.axes();
         let metres_per_pixel = 2.0 * self.half_height() / height.max(1.0);
@@ -164,7 +172,8 @@ impl Camera {
         self.lens = Lens::Orthographic;
     }
 
-    /// Keeps the direction and moves so that the whole box is seen, with a margin of 6 %. Does nothing for an empty box.
+    /// Keeps the direction and moves so that the whole box is seen, with a margin of 6 %. Does
+    /// nothing for an empty box.
     pub fn frame(&mut self, bounds: &Bounds, aspect: f32) {
         if bounds.is_empty() {
             return;
@@ -180,7 +189,8 @@ impl Camera {
             in_front + across / tangent
         });
         self.target = center;
-        self.distance = distance.into_iter().fold(0.0, f32::max).clamp(*DISTANCES.start(), *DISTANCES.end());
+        self.distance =
+            distance.into_iter().fold(0.0, f32::max).clamp(*DISTANCES.start(), *DISTANCES.end());
     }
 
     /// The ray through a pixel (from the top left corner) of a viewport of the given size.
@@ -194,10 +204,7 @@ impl Camera {
             Lens::Perspective => {
                 let tangent = (self.fov_y * 0.5).tan();
                 let direction = right * (ndc.x * tangent * aspect) + up * (ndc.y * tangent) - back;
-                Ray {
-                    origin: self.eye(),
-                    direction: direction.normalize_or(-back),
-                }
+                Ray { origin: self.eye(), direction: direction.normalize_or(-back) }
             }
             Lens::Orthographic => {
                 let half = self.half_height();
@@ -209,26 +216,25 @@ impl Camera {
         }
     }
 
-    /// The pixel (from the top left corner) where a point is drawn; `None` where it lies behind the camera.
+    /// The pixel (from the top left corner) where a point is drawn; `None` where it lies behind the
+    /// camera.
     #[must_use]
     pub fn project(&self, point: Vec3, viewport: Vec2) -> Option<Vec2> {
-        let clip = self.projection(viewport.x / viewport.y.max(1.0)) * (self.view() * point.extend(1.0));
+        let clip =
+            self.projection(viewport.x / viewport.y.max(1.0)) * (self.view() * point.extend(1.0));
         let ndc = Vec2::new(clip.x, clip.y) / clip.w;
         (clip.w > 0.0 && ndc.is_finite()).then(|| (ndc * Vec2::new(0.5, -0.5) + 0.5) * viewport)
     }
 
-    /// How many pixels one metre covers at `point` in a viewport `height` pixels high; 0 behind the camera.
+    /// How many pixels one metre covers at `point` in a viewport `height` pixels high; 0 behind the
+    /// camera.
     #[must_use]
     pub fn pixels_per_metre(&self, point: Vec3, height: f32) -> f32 {
         let depth = match self.lens {
             Lens::Orthographic => self.distance,
             Lens::Perspective => (self.eye() - point).dot(self.axes()[2]),
         };
-        if depth > 1e-3 {
-            height * 0.5 / (depth * (self.fov_y * 0.5).tan())
-        } else {
-            0.0
-        }
+        if depth > 1e-3 { height * 0.5 / (depth * (self.fov_y * 0.5).tan()) } else { 0.0 }
     }
 }
 
@@ -240,14 +246,16 @@ mod tests {
     const VIEWPORT: Vec2 = Vec2::new(640.0, 480.0);
 
     fn camera() -> impl Strategy<Value = Camera> {
-        (-3.0f32..3.0, -0.1f32..1.57, 0.5f32..20.0, any::<bool>()).prop_map(|(yaw, pitch, distance, perspective)| Camera {
-            target: Vec3::new(1.0, 0.8, -2.0),
-            yaw,
-            pitch,
-            distance,
-            fov_y: 0.6,
-            lens: if perspective { Lens::Perspective } else { Lens::Orthographic },
-        })
+        (-3.0f32..3.0, -0.1f32..1.57, 0.5f32..20.0, any::<bool>()).prop_map(
+            |(yaw, pitch, distance, perspective)| Camera {
+                target: Vec3::new(1.0, 0.8, -2.0),
+                yaw,
+                pitch,
+                distance,
+                fov_y: 0.6,
+                lens: if perspective { Lens::Perspective } else { Lens::Orthographic },
+            },
+        )
     }
 
     proptest! {
@@ -289,12 +297,7 @@ mod tests {
 
     #[test]
     fn looks_at_the_face_at_yaw_zero_with_left_on_the_right() {
-        let camera = Camera {
-            target: Vec3::Y,
-            yaw: 0.0,
-            pitch: 0.0,
-            ..Camera::default()
-        };
+        let camera = Camera { target: Vec3::Y, yaw: 0.0, pitch: 0.0, ..Camera::default() };
         assert!(camera.eye().z > 1.0);
         let left_hand = camera.project(Vec3::new(0.5, 1.0, 0.0), VIEWPORT).unwrap();
         assert!(left_hand.x > 321.0 && (left_hand.y - 240.0).abs() < 0.01, "{left_hand}");
@@ -304,10 +307,7 @@ mod tests {
 
     #[test]
     fn the_top_view_hits_the_ground_below_the_pixel() {
-        let mut camera = Camera {
-            yaw: 0.0,
-            ..Camera::default()
-        };
+        let mut camera = Camera { yaw: 0.0, ..Camera::default() };
         camera.look_from_top();
         let hit = camera.ray(Vec2::new(480.0, 240.0), VIEWPORT).ground_hit().unwrap();
         let metres_per_pixel = 2.0 * camera.half_height() / VIEWPORT.y;
@@ -317,21 +317,7 @@ mod tests {
 
     #[test]
     fn a_ray_that_rises_hits_no_ground() {
-        assert_eq!(
-            Ray {
-                origin: Vec3::Y,
-                direction: Vec3::Y
-            }
-            .ground_hit(),
-            None
-        );
-        assert_eq!(
-            Ray {
-                origin: Vec3::Y,
-                direction: Vec3::X
-            }
-            .ground_hit(),
-            None
-        );
+        assert_eq!(Ray { origin: Vec3::Y, direction: Vec3::Y }.ground_hit(), None);
+        assert_eq!(Ray { origin: Vec3::Y, direction: Vec3::X }.ground_hit(), None);
     }
 }

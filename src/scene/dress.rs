@@ -1,4 +1,5 @@
-//! The bodies of skeletons: made when first seen, kept as long as the skeleton is. A skin takes a while: until it is there, limbs are worn.
+//! The bodies of skeletons: made when first seen, kept as long as the skeleton is. A skin takes a
+//! while: until it is there, limbs are worn.
 
 use super::Body;
 use segue_motion::clip::reference_pose;
@@ -11,7 +12,8 @@ use std::sync::{Arc, Weak};
 /// So many skeletons' skins are kept, whether they are worn or not.
 const MOST_KEPT: usize = 16;
 
-/// A character that is by itself smaller or larger beside its motion is none of a size that anybody could look at.
+/// A character that is by itself smaller or larger beside its motion is none of a size that anybody
+/// could look at.
 const SIZES: (f32, f32) = (0.02, 50.0);
 
 /// What bodies look like for now, and those that were made so.
@@ -19,7 +21,8 @@ const SIZES: (f32, f32) = (0.02, 50.0);
 pub(super) struct Wardrobe {
     cut: Cut,
     character: Option<Character>,
-    /// The character in the sizes that it is drawn in, each with how many times as large it is itself.
+    /// The character in the sizes that it is drawn in, each with how many times as large it is
+    /// itself.
     sizes: Vec<(f32, Character)>,
     bodies: Vec<(Weak<Skeleton>, Roles, Arc<Body>)>,
     /// One for all skeletons that are equal, so that they are drawn together; the oldest first.
@@ -58,7 +61,8 @@ pub(super) fn worn_character(session: &Session) -> Option<Character> {
     session.character().filter(|_| shows_skin(session.params()))
 }
 
-/// How many times as large a character is by itself as the motion that moves it; `None` where it cannot.
+/// How many times as large a character is by itself as the motion that moves it; `None` where it
+/// cannot.
 pub(super) fn size_beside(character: &Character, motion: &Motion) -> Option<f32> {
     let size = character.size_beside(motion.clip.skeleton(), &motion.roles)?;
     Some(size.clamp(SIZES.0, SIZES.1))
@@ -68,13 +72,12 @@ impl Wardrobe {
     /// Chooses what is worn from now on, and lets go of what nobody wears any longer.
     pub(super) fn choose(&mut self, session: &Session) {
         let params = session.params();
-        let cut = Cut {
-            skin: shows_skin(params),
-            girth: params.number(Key::FigureBuild) as f32,
-        };
+        let cut = Cut { skin: shows_skin(params), girth: params.number(Key::FigureBuild) as f32 };
         let character = worn_character(session);
         let same = match (&character, &self.character) {
-            (Some(new), Some(old)) => Arc::ptr_eq(&new.mesh, &old.mesh) && Arc::ptr_eq(&new.skeleton, &old.skeleton),
+            (Some(new), Some(old)) => {
+                Arc::ptr_eq(&new.mesh, &old.mesh) && Arc::ptr_eq(&new.skeleton, &old.skeleton)
+            }
             (new, old) => new.is_none() && old.is_none(),
         };
         if cut != self.cut || !same {
@@ -93,25 +96,27 @@ impl Wardrobe {
     /// The body of a motion's skeleton.
     pub(super) fn body(&mut self, motion: &Motion) -> Arc<Body> {
         let skeleton = motion.clip.skeleton();
-        let known =
-            |(known, roles, _): &&(Weak<Skeleton>, Roles, Arc<Body>)| known.as_ptr() == Arc::as_ptr(skeleton) && *roles == motion.roles;
+        let known = |(known, roles, _): &&(Weak<Skeleton>, Roles, Arc<Body>)| {
+            known.as_ptr() == Arc::as_ptr(skeleton) && *roles == motion.roles
+        };
         if let Some((.., body)) = self.bodies.iter().find(known) {
             return Arc::clone(body);
         }
         let body = Arc::new(self.led(motion).unwrap_or_else(|| self.made(motion)));
-        self.bodies
-            .push((Arc::downgrade(skeleton), motion.roles.clone(), Arc::clone(&body)));
+        self.bodies.push((Arc::downgrade(skeleton), motion.roles.clone(), Arc::clone(&body)));
         body
     }
 
-    /// The character in place of a body, where there is one that can be moved so. It is drawn in the size of the motion, so that it stands where all
-    /// else of the motion is drawn; the world is shown smaller by as much.
+    /// The character in place of a body, where there is one that can be moved so. It is drawn in
+    /// the size of the motion, so that it stands where all else of the motion is drawn; the world
+    /// is shown smaller by as much.
     fn led(&mut self, motion: &Motion) -> Option<Body> {
         let skeleton = motion.clip.skeleton();
         let character = self.character.as_ref()?;
         let size = size_beside(character, motion)?;
         let known = self.sizes.iter().find(|(known, _)| *known == size);
-        let sized = known.map_or_else(|| character.scaled(size.recip()), |(_, sized)| sized.clone());
+        let sized =
+            known.map_or_else(|| character.scaled(size.recip()), |(_, sized)| sized.clone());
         if known.is_none() {
             self.sizes.push((size, sized.clone()));
         }
@@ -132,11 +137,21 @@ impl Wardrobe {
     }
 
     /// The skin of a skeleton, where it is there already; else it is begun.
-    fn mesh(&mut self, skeleton: &Arc<Skeleton>, roles: &Roles, reference: &WorldPose) -> Option<Arc<SkinnedMesh>> {
+    fn mesh(
+        &mut self,
+        skeleton: &Arc<Skeleton>,
+        roles: &Roles,
+        reference: &WorldPose,
+    ) -> Option<Arc<SkinnedMesh>> {
         let girth = self.cut.girth;
-        let fits = |known: &&mut Tailored| known.roles == *roles && (Arc::ptr_eq(&known.skeleton, skeleton) || known.skeleton == *skeleton);
+        let fits = |known: &&mut Tailored| {
+            known.roles == *roles
+                && (Arc::ptr_eq(&known.skeleton, skeleton) || known.skeleton == *skeleton)
+        };
         if let Some(known) = self.tailored.iter_mut().find(fits) {
-            let State::Done(sculpture) = &known.state else { return None };
+            let State::Done(sculpture) = &known.state else {
+                return None;
+            };
             let mesh = known.mesh.get_or_insert_with(|| Arc::new(sculpture.with_girth(girth)));
             return Some(Arc::clone(mesh));
         }
@@ -163,7 +178,9 @@ impl Wardrobe {
             State::Begun(sculptor) => Some((sculptor.advance(), &mut tailored.state)),
             State::Done(_) => None,
         });
-        let Some((sculpture, state)) = begun else { return false };
+        let Some((sculpture, state)) = begun else {
+            return false;
+        };
         if let Some(sculpture) = sculpture {
             *state = State::Done(Box::new(sculpture));
             // Whoever wears limbs for the time being is dressed anew.
@@ -180,9 +197,17 @@ mod tests {
 
     /// Half the width of the waist of the skin that is worn; none where limbs are.
     fn width(director: &mut Director, session: &Session) -> Option<f32> {
-        let stage = director.stage(session, &[(0, Viewport::default())], 1.0, Look::DARK, &Colors::default(), 0.0);
+        let stage = director.stage(
+            session,
+            &[(0, Viewport::default())],
+            1.0,
+            Look::DARK,
+            &Colors::default(),
+            0.0,
+        );
         let skin = stage.panes[0].figures.first()?.skin.as_ref()?;
-        let waist = skin.mesh.positions.iter().filter(|p| (0.05..0.2).contains(&p.y) && p.x.abs() < 0.4);
+        let waist =
+            skin.mesh.positions.iter().filter(|p| (0.05..0.2).contains(&p.y) && p.x.abs() < 0.4);
         Some(waist.map(|p| p.x).fold(0.0, f32::max))
     }
 

@@ -1,4 +1,5 @@
-//! The Match lab on the ground: where the character was asked to be, where it is asked to go, and where the frame that plays would lead.
+//! The Match lab on the ground: where the character was asked to be, where it is asked to go, and
+//! where the frame that plays would lead.
 
 use super::{Color, Colors, Layer, Pane, Ring, with_alpha};
 use segue_motion::math::Planar;
@@ -19,7 +20,9 @@ const FACING_M: f32 = 0.22;
 
 /// What is asked for in A's colour, what the frame leads to in B's.
 pub(super) fn add_drive(driven: &Driven, now_secs: f64, colors: &Colors, pane: &mut Pane) {
-    let Some(moment) = driven.at(now_secs) else { return };
+    let Some(moment) = driven.at(now_secs) else {
+        return;
+    };
     let stride = driven.moments.len().div_ceil(WAY_POINTS).max(1);
     let asked = driven.moments.iter().step_by(stride);
     pane.add_dashed_path(
@@ -41,7 +44,11 @@ pub(super) fn add_drive(driven: &Driven, now_secs: f64, colors: &Colors, pane: &
 
 /// A trajectory, with what is faced at the times that are compared.
 fn add_way(driven: &Driven, way: &[Planar], color: Color, height: f32, pane: &mut Pane) {
-    pane.add_path(way.iter().map(|place| (place.origin().with_y(height), color)), 2.5, Layer::Ground);
+    pane.add_path(
+        way.iter().map(|place| (place.origin().with_y(height), color)),
+        2.5,
+        Layer::Ground,
+    );
     let layout = driven.database.features().layout();
     let horizon = layout.horizon().max(1);
     for ahead in layout.ahead() {

@@ -1,10 +1,12 @@
-//! What is to be seen, as plain data: cameras, limbs, lines and rings. It knows no GPU; the renderer knows no session.
+//! What is to be seen, as plain data: cameras, limbs, lines and rings. It knows no GPU; the
+//! renderer knows no session.
 //!
 //! # The idea
 //!
-//! A [`Stage`] is one rectangle of the page with one or several [`Pane`]s in it. A pane has a [`Camera`] and lists what it shows; the
-//! [`Director`] makes the list from a [`segue_session::Session`] and a time. Every skeleton has a [`Body`] from its bones' lengths alone, a
-//! rounded cone along each bone, so that whatever loads can be seen at once.
+//! A [`Stage`] is one rectangle of the page with one or several [`Pane`]s in it. A pane has a
+//! [`Camera`] and lists what it shows; the [`Director`] makes the list from a
+//! [`segue_session::Session`] and a time. Every skeleton has a [`Body`] from its bones' lengths
+//! alone, a rounded cone along each bone, so that whatever loads can be seen at once.
 //!
 //! The camera goes round its target on a globe: yaw along the equator, pitch up to the pole.
 //!
@@ -13,10 +15,11 @@
 //! pixel → ray from the eye → ground:  t = -origin.y / direction.y
 //! ```
 //!
-//! At yaw 0 it sees the face of a character that faces +Z, whose left hand is then on the right of the picture. A [`CameraRig`] draws it to
-//! its goal as a critically damped spring does.
+//! At yaw 0 it sees the face of a character that faces +Z, whose left hand is then on the right of
+//! the picture. A [`CameraRig`] draws it to its goal as a critically damped spring does.
 //!
-//! Colours here are `[red, green, blue, alpha]` in 0–1 as written in a palette (sRGB-encoded, alpha straight); see [`rgb`].
+//! Colours here are `[red, green, blue, alpha]` in 0–1 as written in a palette (sRGB-encoded, alpha
+//! straight); see [`rgb`].
 //!
 //! # Example
 //!
@@ -51,13 +54,14 @@
 //!
 //! # Accuracy and cost
 //!
-//! The ray through a pixel comes back to that pixel within a tenth of one; a framed box fills the picture with a margin of 6 %; the rig's
-//! way does not depend on the frame rate. A stage is O(limbs shown) per frame.
+//! The ray through a pixel comes back to that pixel within a tenth of one; a framed box fills the
+//! picture with a margin of 6 %; the rig's way does not depend on the frame rate. A stage is
+//! O(limbs shown) per frame.
 //!
 //! # What it does not do
 //!
-//! No meshes of its own: limbs are rounded cones. No light and no shadows are computed here: a [`Figure`] only says how strongly it darkens
-//! the ground.
+//! No meshes of its own: limbs are rounded cones. No light and no shadows are computed here: a
+//! [`Figure`] only says how strongly it darkens the ground.
 
 mod body;
 mod bounds;
@@ -77,4 +81,7 @@ pub use build::{Colors, Director, camera_of, pose_at, resting_point, shown_size}
 pub use camera::{Camera, Lens, Ray};
 pub use path::PathMarks;
 pub use rig::CameraRig;
-pub use stage::{Color, Figure, Layer, Limb, Look, Pane, Ring, Skin, Skinning, Stage, Stroke, Viewport, rgb, with_alpha};
+pub use stage::{
+    Color, Figure, Layer, Limb, Look, Pane, Ring, Skin, Skinning, Stage, Stroke, Viewport, rgb,
+    with_alpha,
+};

@@ -1,4 +1,5 @@
-//! The Path lab on the stage: the way as it was, the path that was fitted to it, the path as it is now, and its control points.
+//! The Path lab on the stage: the way as it was, the path that was fitted to it, the path as it is
+//! now, and its control points.
 
 use super::{Color, Colors, Layer, Look, Pane, with_alpha};
 use glam::{DVec2, Vec3};
@@ -37,8 +38,15 @@ const HIGHEST: f32 = 0.007;
 /// Radius of a control point, points.
 const HANDLE: f32 = 6.0;
 
-/// Adds everything to a pane whose camera is set later; control points are lines on the ground plane over everything.
-pub(super) fn add_path(path: &OnPath, marks: &PathMarks, look: &Look, colors: &Colors, pane: &mut Pane) {
+/// Adds everything to a pane whose camera is set later; control points are lines on the ground
+/// plane over everything.
+pub(super) fn add_path(
+    path: &OnPath,
+    marks: &PathMarks,
+    look: &Look,
+    colors: &Colors,
+    pane: &mut Pane,
+) {
     add_original(path, colors, pane);
     add_edited(path, colors, pane);
     if marks.handles {
@@ -69,7 +77,8 @@ pub(super) fn add_drawn(marks: &PathMarks, colors: &Colors, pane: &mut Pane) {
     pane.add_path(drawn, 3.0, Layer::Over);
 }
 
-/// The way of the hips in A's colour, the path fitted to it, and short lines between: what is carried along.
+/// The way of the hips in A's colour, the path fitted to it, and short lines between: what is
+/// carried along.
 fn add_original(path: &OnPath, colors: &Colors, pane: &mut Pane) {
     let (motion, places) = (path.fitted.motion(), path.fitted.places());
     let strength = if path.is_edited { 0.6 } else { 1.0 };
@@ -82,9 +91,8 @@ fn add_original(path: &OnPath, colors: &Colors, pane: &mut Pane) {
         Layer::Ground,
     );
     if path.is_edited {
-        let fitted = curve(path.fitted.road())
-            .into_iter()
-            .map(|place| on_ground(place.frame.shift, MIDDLE));
+        let fitted =
+            curve(path.fitted.road()).into_iter().map(|place| on_ground(place.frame.shift, MIDDLE));
         pane.add_dashed_path(fitted, with_alpha(colors.a, 0.8), 0.08, 1.5, Layer::Ground);
     }
     let apart = (motion.clip.fps() * RESIDUAL_SECS)
@@ -111,7 +119,8 @@ fn add_edited(path: &OnPath, colors: &Colors, pane: &mut Pane) {
         Layer::Ground,
     );
     for turn in &path.hard_turns {
-        let Some(frames) = path.places.get(turn.frames.start.saturating_sub(1)..turn.frames.end) else {
+        let Some(frames) = path.places.get(turn.frames.start.saturating_sub(1)..turn.frames.end)
+        else {
             continue;
         };
         let hard = frames
@@ -125,7 +134,13 @@ fn add_edited(path: &OnPath, colors: &Colors, pane: &mut Pane) {
         let ahead = end.frame.forward();
         let left = Vec3::new(ahead.z, 0.0, -ahead.x);
         for side in [-1.0, 1.0] {
-            pane.add_line(tip, tip - ahead * 0.16 + left * (0.09 * side), colors.result, 2.5, Layer::Ground);
+            pane.add_line(
+                tip,
+                tip - ahead * 0.16 + left * (0.09 * side),
+                colors.result,
+                2.5,
+                Layer::Ground,
+            );
         }
     }
 }

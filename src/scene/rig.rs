@@ -5,8 +5,9 @@ use std::f32::consts::PI;
 
 /// A camera that comes smoothly to where it should be.
 ///
-/// Change `goal` (from the pointer, by framing, by following a body) and call [`CameraRig::update`] once a frame. The way there is that of a
-/// critically damped spring (Holden, "Spring-It-On", with its half-life), which overshoots nothing and does not depend on the frame rate.
+/// Change `goal` (from the pointer, by framing, by following a body) and call [`CameraRig::update`]
+/// once a frame. The way there is that of a critically damped spring (Holden, "Spring-It-On", with
+/// its half-life), which overshoots nothing and does not depend on the frame rate.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CameraRig {
     /// Where the camera should be.
@@ -22,11 +23,7 @@ impl CameraRig {
     /// A rig that stands still at `camera`.
     #[must_use]
     pub fn new(camera: Camera) -> Self {
-        Self {
-            goal: camera,
-            shown: camera,
-            ..Self::default()
-        }
+        Self { goal: camera, shown: camera, ..Self::default() }
     }
 
     /// The camera to draw with.
@@ -46,17 +43,16 @@ impl CameraRig {
         self.shown == self.goal
     }
 
-    /// Takes direction, distance and lens of the goal at once; only the target stays on its way. For a hand that turns the camera: what it
-    /// does is not to be smoothed, what the camera follows is.
+    /// Takes direction, distance and lens of the goal at once; only the target stays on its way.
+    /// For a hand that turns the camera: what it does is not to be smoothed, what the camera
+    /// follows is.
     pub fn turn_at_once(&mut self) {
-        self.shown = Camera {
-            target: self.shown.target,
-            ..self.goal
-        };
+        self.shown = Camera { target: self.shown.target, ..self.goal };
         (self.yaw_velocity, self.pitch_velocity, self.zoom_velocity) = (0.0, 0.0, 0.0);
     }
 
-    /// Moves on by `dt_secs`; half of the distance to the goal is left after 1.2 half-lives. A half-life of 0 jumps.
+    /// Moves on by `dt_secs`; half of the distance to the goal is left after 1.2 half-lives. A
+    /// half-life of 0 jumps.
     pub fn update(&mut self, half_life_secs: f32, dt_secs: f32) {
         if self.is_still() || half_life_secs <= 0.0 || !dt_secs.is_finite() {
             self.jump();
@@ -64,7 +60,15 @@ impl CameraRig {
         }
         let goal = self.goal;
         // What is left of an offset.
-        let left = |offset, velocity| spring::towards_point(offset, velocity, Vec3::ZERO, f64::from(half_life_secs), f64::from(dt_secs));
+        let left = |offset, velocity| {
+            spring::towards_point(
+                offset,
+                velocity,
+                Vec3::ZERO,
+                f64::from(half_life_secs),
+                f64::from(dt_secs),
+            )
+        };
         let (target, target_velocity) = left(self.shown.target - goal.target, self.target_velocity);
         let yaw_offset = (self.shown.yaw - goal.yaw + PI).rem_euclid(2.0 * PI) - PI;
         // Zooming is even when the logarithm of the distance is.
@@ -73,7 +77,10 @@ impl CameraRig {
             Vec3::new(yaw_offset, self.shown.pitch - goal.pitch, zoom_offset),
             Vec3::new(self.yaw_velocity, self.pitch_velocity, self.zoom_velocity),
         );
-        let still = target.length() < 1e-4 && turn.length() < 1e-4 && target_velocity.length() < 1e-3 && turn_velocity.length() < 1e-3;
+        let still = target.length() < 1e-4
+            && turn.length() < 1e-4
+            && target_velocity.length() < 1e-3
+            && turn_velocity.length() < 1e-3;
         if still || !(target.is_finite() && turn.is_finite()) {
             self.jump();
             return;
@@ -96,20 +103,12 @@ mod tests {
 
     #[test]
     fn arrives_without_overshoot_the_short_way_round_at_any_frame_rate() {
-        let start = Camera {
-            yaw: 3.0,
-            distance: 2.0,
-            ..Camera::default()
-        };
+        let start = Camera { yaw: 3.0, distance: 2.0, ..Camera::default() };
         let mut at_60 = CameraRig::new(start);
         let mut at_15 = at_60;
         for rig in [&mut at_60, &mut at_15] {
-            rig.goal = Camera {
-                yaw: -3.0,
-                distance: 8.0,
-                target: Vec3::new(1.0, 0.9, 0.0),
-                ..start
-            };
+            rig.goal =
+                Camera { yaw: -3.0, distance: 8.0, target: Vec3::new(1.0, 0.9, 0.0), ..start };
         }
         let mut previous = 0.0;
         for _ in 0..10 {

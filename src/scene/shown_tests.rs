@@ -19,10 +19,7 @@ fn character_file(leg_metres: f32) -> Arc<[u8]> {
     let root = skeleton.joints()[0].offset;
     let clip = Clip::new("person", Arc::clone(&skeleton), 30.0, vec![], vec![]);
     let clip = clip.unwrap_or_else(|error| panic!("{error} {root}"));
-    let options = GlbOptions {
-        smooth: true,
-        ..GlbOptions::default()
-    };
+    let options = GlbOptions { smooth: true, ..GlbOptions::default() };
     let mut bytes = write_glb(&clip, &options).unwrap();
     let at = bytes.windows(6).position(|w| w == b"Segue ").unwrap();
     bytes[at..at + 5].copy_from_slice(b"Other");
@@ -42,13 +39,9 @@ fn session(link: &str, size: f32) -> Session {
 }
 
 fn staged(director: &mut Director, session: &Session) -> Pane {
-    let viewport = Viewport {
-        x: 0,
-        y: 0,
-        width: 640,
-        height: 480,
-    };
-    let stage = director.stage(session, &[(0, viewport)], 1.0, Look::DARK, &Colors::default(), 20.0);
+    let viewport = Viewport { x: 0, y: 0, width: 640, height: 480 };
+    let stage =
+        director.stage(session, &[(0, viewport)], 1.0, Look::DARK, &Colors::default(), 20.0);
     let size = shown_size(session, &session.main_outcome().unwrap().motion);
     assert!((stage.grid_metres * size - 1.0).abs() < 1e-4);
     stage.panes[0].clone()
@@ -66,7 +59,8 @@ fn drawn(pane: &Pane, character: &Character, role: Role) -> Vec3 {
 fn distance_to_ground_lines(pane: &Pane, point: Vec3) -> f32 {
     let to_line = |from: Vec3, to: Vec3| {
         let (from, along) = (from.xz(), (to - from).xz());
-        let share = ((point.xz() - from).dot(along) / along.length_squared().max(1e-9)).clamp(0.0, 1.0);
+        let share =
+            ((point.xz() - from).dot(along) / along.length_squared().max(1e-9)).clamp(0.0, 1.0);
         point.xz().distance(from + along * share)
     };
     let ground = pane.strokes.iter().filter(|stroke| stroke.layer == Layer::Ground);
@@ -95,11 +89,13 @@ fn assert_drawn_together(session: &mut Session, size: f32, what: &str) {
         let moved = world.positions[motion.roles.get(Role::Hips).unwrap()];
         assert!(hips.xz().distance(moved.xz()) < 2e-3, "{what}: hips at {hips} beside {moved}");
         let [left, right] = Side::BOTH.map(|side| {
-            let toe = character.roles.get(Role::toe(side)).map_or(Role::foot(side), |_| Role::toe(side));
+            let toe =
+                character.roles.get(Role::toe(side)).map_or(Role::foot(side), |_| Role::toe(side));
             drawn(&pane, &character, toe).lerp(drawn(&pane, &character, Role::foot(side)), 0.35)
         });
         for ring in &pane.rings {
-            let from = left.xz().distance(ring.center.xz()).min(right.xz().distance(ring.center.xz()));
+            let from =
+                left.xz().distance(ring.center.xz()).min(right.xz().distance(ring.center.xz()));
             // The ring of what is steered in the Match lab is no foot's.
             assert!(from < 2e-3 || ring.radius > 0.15, "{what}: a ring {from} m beside the foot");
             rings += 1;
@@ -122,7 +118,12 @@ fn assert_drawn_together(session: &mut Session, size: f32, what: &str) {
             (target.y / hips.y - 0.87).abs() < 0.25,
             "{what}: the camera looks at {target}, hips at {hips}"
         );
-        assert!((pane.camera.distance * size / session.params().number(Key::CameraDistance) as f32 - 1.0).abs() < 1e-3);
+        assert!(
+            (pane.camera.distance * size / session.params().number(Key::CameraDistance) as f32
+                - 1.0)
+                .abs()
+                < 1e-3
+        );
     }
     assert!(rings > 2, "{what}: {rings} rings");
 }
@@ -147,10 +148,7 @@ fn handles_of_the_path_lie_along_the_way_of_the_character() {
     let mut session = session("lab=path&a=walk&camera_distance=4&follow_half_life=0&trail=on", 1.6);
     let character = session.character().unwrap();
     let mut director = Director::default();
-    director.mark_path(super::PathMarks {
-        handles: true,
-        ..super::PathMarks::default()
-    });
+    director.mark_path(super::PathMarks { handles: true, ..super::PathMarks::default() });
     let mut farthest = 0.0f32;
     for step in 0..=4 {
         let secs = session.main_outcome().unwrap().duration_secs() * f64::from(step) / 4.0;
@@ -158,7 +156,8 @@ fn handles_of_the_path_lie_along_the_way_of_the_character() {
         let pane = staged(&mut director, &session);
         let hips = drawn(&pane, &character, Role::Hips);
         let dots = pane.strokes.iter().filter(|stroke| stroke.layer == Layer::Over);
-        let nearest = dots.map(|dot| dot.from.xz().distance(hips.xz())).fold(f32::INFINITY, f32::min);
+        let nearest =
+            dots.map(|dot| dot.from.xz().distance(hips.xz())).fold(f32::INFINITY, f32::min);
         farthest = farthest.max(nearest);
     }
     // Handles stand about a metre apart.
@@ -172,25 +171,26 @@ fn an_exported_character_is_the_one_on_the_stage() {
         let outcome = Arc::clone(session.main_outcome().unwrap());
         let motion = &outcome.motion;
         let mut character = session.character().unwrap();
-        let options = ExportOptions {
-            format: ExportFormat::Glb,
-            ..ExportOptions::default()
-        };
+        let options = ExportOptions { format: ExportFormat::Glb, ..ExportOptions::default() };
         // Trousers.
         let mut mesh = SkinnedMesh::clone(&character.mesh);
         let (blue, red) = ([0.1, 0.2, 0.8, 1.0], [0.8, 0.3, 0.2, 1.0]);
         let middle = character.skeleton.joints()[0].offset.y;
-        mesh.colors = mesh.positions.iter().map(|at| if at.y < middle { blue } else { red }).collect();
+        mesh.colors =
+            mesh.positions.iter().map(|at| if at.y < middle { blue } else { red }).collect();
         character.mesh = Arc::new(mesh);
         let bytes = export(motion, Some(&character), &[], &options).unwrap();
         let back = import("x.glb", &bytes, &ImportOptions::default()).unwrap().clips.remove(0);
         let (skeleton, mesh) = (back.clip.skeleton(), back.mesh.unwrap());
-        let names = |skeleton: &Skeleton| skeleton.joints().iter().map(|joint| joint.name.clone()).collect::<Vec<_>>();
+        let names = |skeleton: &Skeleton| {
+            skeleton.joints().iter().map(|joint| joint.name.clone()).collect::<Vec<_>>()
+        };
         assert_eq!(names(skeleton), names(&character.skeleton));
         // The same triangles, in the order of their colours; weights are bytes.
         let corners = |mesh: &SkinnedMesh, vertex: u32| {
             let vertex = vertex as usize;
-            let [x, y, z] = mesh.positions[vertex].to_array().map(|x| (f64::from(x) * 1e4).round() as i64);
+            let [x, y, z] =
+                mesh.positions[vertex].to_array().map(|x| (f64::from(x) * 1e4).round() as i64);
             (x, y, z, mesh.joints[vertex][0])
         };
         let triangles = |mesh: &SkinnedMesh| {
@@ -210,7 +210,9 @@ fn an_exported_character_is_the_one_on_the_stage() {
         );
         assert!(same * 100 > found.len() * 98, "{same} of {} triangles", found.len());
         for color in [blue, red] {
-            let is_near = |known: &[f32; 4]| known.iter().zip(color).all(|(known, color)| (known - color).abs() < 1e-3);
+            let is_near = |known: &[f32; 4]| {
+                known.iter().zip(color).all(|(known, color)| (known - color).abs() < 1e-3)
+            };
             assert!(mesh.colors.iter().filter(|known| is_near(known)).count() > 500);
         }
         // And where the stage has it, in its own size.
@@ -231,10 +233,7 @@ fn an_exported_character_is_the_one_on_the_stage() {
             }
         }
         assert!(farthest < 1e-3, "{size}: {farthest} m apart");
-        let plain = ExportOptions {
-            body: ExportBody::Plain,
-            ..options
-        };
+        let plain = ExportOptions { body: ExportBody::Plain, ..options };
         let bytes = export(motion, Some(&character), &[], &plain).unwrap();
         let back = import("x.glb", &bytes, &ImportOptions::default()).unwrap().clips.remove(0);
         assert_eq!(names(back.clip.skeleton()), names(motion.clip.skeleton()));

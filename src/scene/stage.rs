@@ -53,7 +53,8 @@ pub struct Figure {
     pub skin: Option<Skin>,
     /// Translucent: only its front is seen, and bodies behind it shine through.
     pub ghost: bool,
-    /// How strongly it darkens the ground near it, 0 (not at all) to 1: what is that strong also keeps off the main light.
+    /// How strongly it darkens the ground near it, 0 (not at all) to 1: what is that strong also
+    /// keeps off the main light.
     pub shadow: f32,
 }
 
@@ -64,7 +65,8 @@ pub struct Skin {
     pub mesh: Arc<SkinnedMesh>,
     /// Its joints' `world_from_bind`, a range of [`Pane::joints`].
     pub joints: Range<usize>,
-    /// Colour; for a ghost the alpha says how much of it is seen. Where the mesh has colours of its own, a solid body shows those.
+    /// Colour; for a ghost the alpha says how much of it is seen. Where the mesh has colours of its
+    /// own, a solid body shows those.
     pub color: Color,
     /// Whether every joint has a colour of its own instead, in [`Pane::joint_colors`].
     pub colored: bool,
@@ -73,7 +75,10 @@ pub struct Skin {
 /// Meshes are large: one is itself and no other.
 impl PartialEq for Skin {
     fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.mesh, &other.mesh) && self.joints == other.joints && self.color == other.color && self.colored == other.colored
+        Arc::ptr_eq(&self.mesh, &other.mesh)
+            && self.joints == other.joints
+            && self.color == other.color
+            && self.colored == other.colored
     }
 }
 
@@ -168,12 +173,7 @@ impl Viewport {
         let inner = width.saturating_sub(gap * (count - 1));
         (0..count).map(move |i| {
             let start = inner * i / count;
-            Self {
-                x: start + gap * i,
-                y: 0,
-                width: inner * (i + 1) / count - start,
-                height,
-            }
+            Self { x: start + gap * i, y: 0, width: inner * (i + 1) / count - start, height }
         })
     }
 }
@@ -220,7 +220,12 @@ impl Pane {
     }
 
     /// Adds a body in a pose, solid, each limb in the colour of the joint that moves it.
-    pub fn add_colored_body(&mut self, body: &Body, pose: &WorldPose, color_of: impl Fn(usize) -> Color) {
+    pub fn add_colored_body(
+        &mut self,
+        body: &Body,
+        pose: &WorldPose,
+        color_of: impl Fn(usize) -> Color,
+    ) {
         self.add_figure(body, pose, [1.0; 4], Some(&color_of), false, 1.0);
     }
 
@@ -229,7 +234,8 @@ impl Pane {
         self.add_figure(body, pose, color, None, true, color[3]);
     }
 
-    /// Adds a body that is seen through, as a ghost is, and that keeps off the light as a solid one does.
+    /// Adds a body that is seen through, as a ghost is, and that keeps off the light as a solid one
+    /// does.
     pub fn add_glass(&mut self, body: &Body, pose: &WorldPose, color: Color) {
         self.add_figure(body, pose, color, None, true, 1.0);
     }
@@ -250,25 +256,17 @@ impl Pane {
             (Some(color_of), None) => body.colored_limbs(pose, color_of, &mut self.limbs),
             _ => body.limbs(pose, color, &mut self.limbs),
         }
-        let skin = body.skin().map(|mesh| {
-            let first = self.joints.len();
-            self.joints.extend(mesh.world_from_bind(pose));
-            let joints = first..self.joints.len();
-            self.joint_colors
-                .extend((0..joints.len()).map(|joint| color_of.map_or(color, |color_of| color_of(body.color_joint(joint)))));
-            Skin {
-                mesh: Arc::clone(mesh),
-                joints,
-                color,
-                colored: color_of.is_some(),
-            }
-        });
-        self.figures.push(Figure {
-            limbs: start..self.limbs.len(),
-            skin,
-            ghost,
-            shadow,
-        });
+        let skin =
+            body.skin().map(|mesh| {
+                let first = self.joints.len();
+                self.joints.extend(mesh.world_from_bind(pose));
+                let joints = first..self.joints.len();
+                self.joint_colors.extend((0..joints.len()).map(|joint| {
+                    color_of.map_or(color, |color_of| color_of(body.color_joint(joint)))
+                }));
+                Skin { mesh: Arc::clone(mesh), joints, color, colored: color_of.is_some() }
+            });
+        self.figures.push(Figure { limbs: start..self.limbs.len(), skin, ghost, shadow });
     }
 
     /// Adds a single straight line.
@@ -285,8 +283,14 @@ impl Pane {
         });
     }
 
-    /// Adds a line through `points`, each with its colour, with its pieces joined. Points that repeat are skipped.
-    pub fn add_path(&mut self, points: impl IntoIterator<Item = (Vec3, Color)>, width: f32, layer: Layer) {
+    /// Adds a line through `points`, each with its colour, with its pieces joined. Points that
+    /// repeat are skipped.
+    pub fn add_path(
+        &mut self,
+        points: impl IntoIterator<Item = (Vec3, Color)>,
+        width: f32,
+        layer: Layer,
+    ) {
         let first = self.strokes.len();
         let mut last: Option<(Vec3, Color)> = None;
         for (to, color_to) in points {
@@ -322,7 +326,14 @@ impl Pane {
     }
 
     /// Adds a dashed line through `points`; dashes and gaps are equally long along the line.
-    pub fn add_dashed_path(&mut self, points: impl IntoIterator<Item = Vec3>, color: Color, dash: f32, width: f32, layer: Layer) {
+    pub fn add_dashed_path(
+        &mut self,
+        points: impl IntoIterator<Item = Vec3>,
+        color: Color,
+        dash: f32,
+        width: f32,
+        layer: Layer,
+    ) {
         let dash = dash.max(1e-3);
         let mut walked = 0.0f32;
         let mut last: Option<Vec3> = None;
@@ -357,16 +368,11 @@ impl Pane {
         }
     }
 
-    /// Adds a ring of 12 cm on the ground about a planted foot. That of a foot which slides is heavier: its colour is not all that tells it.
+    /// Adds a ring of 12 cm on the ground about a planted foot. That of a foot which slides is
+    /// heavier: its colour is not all that tells it.
     pub fn add_contact(&mut self, foot: Vec3, color: Color, slides: bool) {
         let (width, fill) = if slides { (0.032, 0.32) } else { (0.014, 0.1) };
-        self.rings.push(Ring {
-            center: foot,
-            radius: 0.12,
-            width,
-            color,
-            fill,
-        });
+        self.rings.push(Ring { center: foot, radius: 0.12, width, color, fill });
     }
 }
 
@@ -385,7 +391,8 @@ pub struct Look {
     pub grid: Color,
     /// How dark the ground gets under a body, 0–1.
     pub shadow: f32,
-    /// How much of the light on the ground is the main one's, which throws the shadow of the whole body, 0–1.
+    /// How much of the light on the ground is the main one's, which throws the shadow of the whole
+    /// body, 0–1.
     pub key_shadow: f32,
     /// The neutral clay for the bodies that are the result.
     pub clay: Color,
@@ -469,12 +476,7 @@ pub struct Stage {
 
 impl Default for Stage {
     fn default() -> Self {
-        Self {
-            panes: Vec::new(),
-            look: Look::DARK,
-            pixels_per_point: 1.0,
-            grid_metres: 1.0,
-        }
+        Self { panes: Vec::new(), look: Look::DARK, pixels_per_point: 1.0, grid_metres: 1.0 }
     }
 }
 

@@ -1,4 +1,5 @@
-//! What was read of a clip, and what may be said of it by hand: in the library under its row, and in the View lab.
+//! What was read of a clip, and what may be said of it by hand: in the library under its row, and
+//! in the View lab.
 
 use super::kit::{self, Tree, TreeRow};
 use super::language::tr;
@@ -11,13 +12,24 @@ use eframe::egui::{RichText, Ui};
 use segue_formats::ImportOptions;
 use segue_motion::clip::{UpAxis, ground_speed};
 use segue_motion::skeleton::{Channel, Role, Skeleton};
-use segue_session::{Command, Entry, Key, Motion, Origin, Session, SourceFile, Value, format_number, joint_of, sentence, word_of_joint};
+use segue_session::{
+    Command, Entry, Key, Motion, Origin, Session, SourceFile, Value, format_number, joint_of,
+    sentence, word_of_joint,
+};
 
 /// The tree of joints scrolls above this height, points.
 const TREE_HEIGHT: f32 = 264.0;
 
-/// The whole panel of one clip. `saved` is the id of what is saved from here: the clip, or a result that is made of it alone.
-pub(crate) fn clip_panel_ui(entry: &Entry, saved: &str, session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+/// The whole panel of one clip. `saved` is the id of what is saved from here: the clip, or a result
+/// that is made of it alone.
+pub(crate) fn clip_panel_ui(
+    entry: &Entry,
+    saved: &str,
+    session: &Session,
+    state: &mut UiState,
+    out: &mut Out,
+    ui: &mut Ui,
+) {
     for warning in &entry.warnings {
         sentence_ui(warning, palette_of(ui).warning, ui);
     }
@@ -80,17 +92,25 @@ const UNITS: [(f64, &str); 6] = [
 ];
 
 /// Frame rates that files come in.
-const RATES: [(f64, &str); 5] = [(24.0, "24"), (25.0, "25"), (30.0, "30"), (60.0, "60"), (120.0, "120")];
+const RATES: [(f64, &str); 5] =
+    [(24.0, "24"), (25.0, "25"), (30.0, "30"), (60.0, "60"), (120.0, "120")];
 
 /// What may be said better than it was found.
-fn overrides_ui(entry: &Entry, file: &SourceFile, motion: &Motion, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+fn overrides_ui(
+    entry: &Entry,
+    file: &SourceFile,
+    motion: &Motion,
+    state: &mut UiState,
+    out: &mut Out,
+    ui: &mut Ui,
+) {
     let options = file.options;
-    let mut reread = |options: ImportOptions| out.commands.push(Command::Reimport(entry.id.clone(), options));
+    let mut reread =
+        |options: ImportOptions| out.commands.push(Command::Reimport(entry.id.clone(), options));
     let provenance = motion.clip.provenance();
 
-    let known = UNITS
-        .iter()
-        .find(|(metres, _)| (metres / provenance.metres_per_unit - 1.0).abs() < 1e-6);
+    let known =
+        UNITS.iter().find(|(metres, _)| (metres / provenance.metres_per_unit - 1.0).abs() < 1e-6);
     let unit = known.map_or_else(
         || format!("{} m", format_number(provenance.metres_per_unit, 1e-6)),
         |(_, name)| (*name).to_owned(),
@@ -98,11 +118,10 @@ fn overrides_ui(entry: &Entry, file: &SourceFile, motion: &Motion, state: &mut U
     let found = as_found(&unit, options.metres_per_unit.is_none());
     let mut choices = vec![(None, found.as_str())];
     choices.extend(UNITS.map(|(metres, name)| (Some(metres), name)));
-    if let Some(metres_per_unit) = kit::choice_row_ui(text::UNIT, options.metres_per_unit, &choices, ui) {
-        reread(ImportOptions {
-            metres_per_unit,
-            ..options
-        });
+    if let Some(metres_per_unit) =
+        kit::choice_row_ui(text::UNIT, options.metres_per_unit, &choices, ui)
+    {
+        reread(ImportOptions { metres_per_unit, ..options });
     }
 
     let axis = |up| if up == UpAxis::Y { "Y" } else { "Z" };
@@ -124,11 +143,7 @@ fn overrides_ui(entry: &Entry, file: &SourceFile, motion: &Motion, state: &mut U
 }
 
 fn as_found(value: &str, is_found: bool) -> String {
-    if is_found {
-        format!("{value}, {}", text::FOUND_WORD)
-    } else {
-        text::AS_FOUND.to_owned()
-    }
+    if is_found { format!("{value}, {}", text::FOUND_WORD) } else { text::AS_FOUND.to_owned() }
 }
 
 /// What is chosen in the list of frame rates.
@@ -152,10 +167,7 @@ fn rate_ui(entry: &Entry, fps: Option<f64>, state: &mut UiState, ui: &mut Ui) ->
     let Some(typing) = typing else {
         let picked = kit::choice_row_ui(text::FRAME_RATE, chosen, &choices, ui);
         if picked == Some(Rate::Other) {
-            state.typed_fps = Some(Typing {
-                id: entry.id.clone(),
-                text: String::new(),
-            });
+            state.typed_fps = Some(Typing { id: entry.id.clone(), text: String::new() });
         }
         return picked;
     };
@@ -212,8 +224,9 @@ fn roles_ui(entry: &Entry, motion: &Motion, out: &mut Out, ui: &mut Ui) {
 
 /// `position X Y Z, rotation Z X Y`; empty for a joint without channels.
 fn in_words(channels: &[Channel]) -> String {
-    let letters =
-        |of: fn(Channel) -> Option<&'static str>| channels.iter().filter_map(|&channel| of(channel)).collect::<Vec<_>>().join(" ");
+    let letters = |of: fn(Channel) -> Option<&'static str>| {
+        channels.iter().filter_map(|&channel| of(channel)).collect::<Vec<_>>().join(" ")
+    };
     let place = letters(|channel| match channel {
         Channel::XPosition => Some("X"),
         Channel::YPosition => Some("Y"),
@@ -228,22 +241,18 @@ fn in_words(channels: &[Channel]) -> String {
     });
     let parts = [(text::POSITION, place), (text::ROTATION, turn)];
     let parts = parts.into_iter().filter(|(_, letters)| !letters.is_empty());
-    parts
-        .map(|(what, letters)| format!("{what} {letters}"))
-        .collect::<Vec<_>>()
-        .join(", ")
+    parts.map(|(what, letters)| format!("{what} {letters}")).collect::<Vec<_>>().join(", ")
 }
 
-/// What channels the file has: for the root, and for the other joints, the most common first. Empty where there are none.
+/// What channels the file has: for the root, and for the other joints, the most common first. Empty
+/// where there are none.
 fn channels_in_words(skeleton: &Skeleton) -> String {
     let Some((root, others)) = skeleton.joints().split_first() else {
         return String::new();
     };
     let mut kinds: Vec<(String, usize)> = Vec::new();
-    for words in others
-        .iter()
-        .map(|joint| in_words(&joint.channels))
-        .filter(|words| !words.is_empty())
+    for words in
+        others.iter().map(|joint| in_words(&joint.channels)).filter(|words| !words.is_empty())
     {
         match kinds.iter_mut().find(|(known, _)| *known == words) {
             Some((_, count)) => *count += 1,

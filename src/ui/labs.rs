@@ -45,11 +45,15 @@ fn of(lab: LabId) -> LabUi {
     let (panel_ui, compares): (fn(&Session, &mut UiState, &mut Out, &mut Ui), _) = match lab {
         LabId::View => (
             view::view_ui,
-            Compares::Own(|session, out| compare_clips(session.params().text(Key::A), session.params().text(Key::B), out)),
+            Compares::Own(|session, out| {
+                compare_clips(session.params().text(Key::A), session.params().text(Key::B), out)
+            }),
         ),
         LabId::Make => (
             make::make_ui,
-            Compares::Own(|session, out| out.commands.push(Command::Compare(make::made_number(session)))),
+            Compares::Own(|session, out| {
+                out.commands.push(Command::Compare(make::made_number(session)))
+            }),
         ),
         LabId::Blend => (blend::blend_ui, Compares::Key(Key::BlendWindow)),
         LabId::Transition => (transition::transition_ui, Compares::Key(Key::HalfLife)),
@@ -64,7 +68,8 @@ fn of(lab: LabId) -> LabUi {
     LabUi { panel_ui, compares }
 }
 
-/// Opens "full, half, third" of the lab's first number, or what else the lab has to compare, or goes back to one pane.
+/// Opens "full, half, third" of the lab's first number, or what else the lab has to compare, or
+/// goes back to one pane.
 pub(crate) fn toggle_compare(session: &Session, out: &mut Out) {
     if session.panes().len() > 1 {
         out.set_once(Key::Compare, Value::Text(String::new()));
@@ -88,9 +93,8 @@ pub(crate) fn lab_panel_ui(session: &Session, state: &mut UiState, out: &mut Out
 
 fn group_ui(title: &str, group: Group, session: &Session, out: &mut Out, ui: &mut Ui) {
     kit::folded_ui(title, ui, |ui| {
-        for param in PARAMS
-            .iter()
-            .filter(|param| param.group == group && !is_handled_elsewhere(param.key))
+        for param in
+            PARAMS.iter().filter(|param| param.group == group && !is_handled_elsewhere(param.key))
         {
             param_row_ui(param.key, &Detail::default(), session, out, ui);
         }
@@ -102,16 +106,21 @@ fn is_handled_elsewhere(key: Key) -> bool {
     matches!(key, Key::PanX | Key::PanY | Key::PanZ)
 }
 
-/// The parameters that an embedding page wants its readers to try: those that its link names, whatever they are by now, and those of the lab that were
-/// changed since. Looking around and playing have controls of their own.
+/// The parameters that an embedding page wants its readers to try: those that its link names,
+/// whatever they are by now, and those of the lab that were changed since. Looking around and
+/// playing have controls of their own.
 fn named_params(session: &Session) -> impl Iterator<Item = Key> + '_ {
     let compared = session.compare().map(|compare| compare.key);
     PARAMS.iter().map(|param| param.key).filter(move |&key| {
         let (group, named) = (key.param().group, session.names(key));
-        let changed = group.is_of_lab() && session.params().get(key) != &key.param().default_value();
+        let changed =
+            group.is_of_lab() && session.params().get(key) != &key.param().default_value();
         changed
             || compared == Some(key)
-            || (named && (group.is_of_lab() || matches!(group, Group::Stage) || matches!(key, Key::A | Key::B)))
+            || (named
+                && (group.is_of_lab()
+                    || matches!(group, Group::Stage)
+                    || matches!(key, Key::A | Key::B)))
     })
 }
 

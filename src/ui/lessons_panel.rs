@@ -23,7 +23,8 @@ pub(super) fn toggle_lessons(session: &Session, out: &mut Out) {
     go_to(if is_open(session) { "" } else { CONTENTS }, out);
 }
 
-/// The width of the panel beside the stage: as wide as a line reads well, less where the stage needs the room.
+/// The width of the panel beside the stage: as wide as a line reads well, less where the stage
+/// needs the room.
 pub(super) fn width(available: f32, scale: f32) -> f32 {
     (0.29 * available).clamp(330.0 * scale, 460.0 * scale).round()
 }
@@ -53,7 +54,9 @@ pub(super) fn lesson_or_parameters_ui(state: &mut UiState, ui: &mut Ui) {
 
 /// The whole panel.
 pub(super) fn lessons_panel_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    let Some(lesson) = session.lesson() else { return };
+    let Some(lesson) = session.lesson() else {
+        return;
+    };
     let name = session.params().text(Key::Lesson);
     if state.answered.as_ref().is_some_and(|answered| answered != name) {
         state.answered = None;
@@ -83,10 +86,7 @@ pub(super) fn lessons_panel_ui(session: &Session, state: &mut UiState, out: &mut
 
 /// Leaves the room in which the bar of what scrolls lies.
 fn clear_of_bar_ui<R>(ui: &mut Ui, content: impl FnOnce(&mut Ui) -> R) -> R {
-    let margin = Margin {
-        right: space::M as i8,
-        ..Margin::ZERO
-    };
+    let margin = Margin { right: space::M as i8, ..Margin::ZERO };
     Frame::new().inner_margin(margin).show(ui, content).inner
 }
 
@@ -95,7 +95,9 @@ fn header_ui(lesson: &Lesson<'_>, out: &mut Out, ui: &mut Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = space::XS;
-        if !matches!(lesson, Lesson::Contents(_)) && kit::icon_button_ui(Icon::Menu, text::ALL_LESSONS, ui).clicked() {
+        if !matches!(lesson, Lesson::Contents(_))
+            && kit::icon_button_ui(Icon::Menu, text::ALL_LESSONS, ui).clicked()
+        {
             go_to(CONTENTS, out);
         }
         if let Lesson::Page(page) = lesson {
@@ -132,10 +134,7 @@ fn contents_ui(page: &Page, out: &mut Out, ui: &mut Ui) {
     ui.add_space(space::XS);
     for (index, entry) in page.entries().enumerate() {
         let name = format!("{}. {}", index + 1, entry.label);
-        let item = MenuItem {
-            text: &name,
-            ..MenuItem::default()
-        };
+        let item = MenuItem { text: &name, ..MenuItem::default() };
         if kit::menu_item_ui(item, ui).clicked() {
             out.commands.push(Command::Try(entry.query.clone()));
         }
@@ -146,7 +145,14 @@ fn contents_ui(page: &Page, out: &mut Out, ui: &mut Ui) {
     }
 }
 
-fn page_ui(shown: &LessonPage<'_>, name: &str, session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+fn page_ui(
+    shown: &LessonPage<'_>,
+    name: &str,
+    session: &Session,
+    state: &mut UiState,
+    out: &mut Out,
+    ui: &mut Ui,
+) {
     let page = shown.page;
     title_ui(&page.title, ui);
     if let Some(begin) = &page.state {
@@ -227,10 +233,7 @@ const MENU_INDENT: f32 = 31.0;
 
 /// Set in, below a button or an item of a menu.
 fn indented_ui(by: f32, ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
-    let margin = Margin {
-        left: by as i8,
-        ..Margin::ZERO
-    };
+    let margin = Margin { left: by as i8, ..Margin::ZERO };
     Frame::new().inner_margin(margin).show(ui, content);
 }
 

@@ -17,10 +17,7 @@ const MEMORY_SHOWN_FROM: f32 = 0.25;
 
 /// The whole panel: the list, and below it, always in sight, where files are dropped.
 pub(crate) fn library_panel_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    let frame = Frame::new().inner_margin(Margin {
-        top: space::S as i8,
-        ..Margin::ZERO
-    });
+    let frame = Frame::new().inner_margin(Margin { top: space::S as i8, ..Margin::ZERO });
     Panel::bottom("drop files here")
         .frame(frame)
         .show_separator_line(false)
@@ -63,7 +60,8 @@ pub(crate) fn library_list_ui(session: &Session, state: &mut UiState, out: &mut 
 /// Where files are dropped or asked for, and the bundled takes.
 pub(crate) fn drop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let memory = session.memory().filter(|memory| memory.share() > MEMORY_SHOWN_FROM);
-    // A panel is as large as what was in it the last time: it is laid out once more before anybody sees it cut off.
+    // A panel is as large as what was in it the last time: it is laid out once more before anybody
+    // sees it cut off.
     let rows = (
         state.fetching.len(),
         session.jobs().iter().filter(|job| job.size.is_some()).count(),
@@ -82,7 +80,9 @@ pub(crate) fn drop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
         }
     }
     for job in session.jobs() {
-        let (Some(task), Some(size)) = (job.task, job.size) else { continue };
+        let (Some(task), Some(size)) = (job.task, job.size) else {
+            continue;
+        };
         let megabytes = size as f64 / 1e6;
         let detail = format!("{:.0} of {megabytes:.0} MB", job.progress * megabytes);
         if kit::progress_row_ui(job.kind.name(), Some(job.progress as f32), &detail, ui) {
@@ -111,21 +111,14 @@ pub(crate) fn drop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
 fn samples_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     for set in Session::sample_sets() {
-        let item = MenuItem {
-            text: set.label,
-            icon: Some(Icon::Download),
-            ..MenuItem::default()
-        };
+        let item = MenuItem { text: set.label, icon: Some(Icon::Download), ..MenuItem::default() };
         if kit::menu_item_ui(item, ui).clicked() {
             out.commands.push(Command::LoadSamples(set));
         }
     }
     for sample in Session::samples() {
-        let item = MenuItem {
-            text: sample.label,
-            icon: Some(Icon::Download),
-            ..MenuItem::default()
-        };
+        let item =
+            MenuItem { text: sample.label, icon: Some(Icon::Download), ..MenuItem::default() };
         if kit::menu_item_ui(item, ui).clicked() {
             out.commands.push(Command::Assign(free_slot(session), sample.id.to_owned()));
         }
@@ -138,9 +131,11 @@ fn samples_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     );
 }
 
-/// Where a clip goes when it is clicked: what is looked at in View; in Blend the slot that does not hold the other chosen clip.
+/// Where a clip goes when it is clicked: what is looked at in View; in Blend the slot that does not
+/// hold the other chosen clip.
 fn free_slot(session: &Session) -> Slot {
-    let built_in = |slot| session.slot(slot).is_none_or(|entry| matches!(entry.origin, Origin::Preset));
+    let built_in =
+        |slot| session.slot(slot).is_none_or(|entry| matches!(entry.origin, Origin::Preset));
     if !session.uses(Slot::B) || built_in(Slot::A) || !built_in(Slot::B) {
         Slot::A
     } else {
@@ -191,11 +186,8 @@ fn entry_ui(entry: &Entry, session: &Session, state: &mut UiState, out: &mut Out
     let open = state.details.as_ref() == Some(&entry.id);
     let blending = session.uses(Slot::B);
     let warning = entry.warnings.join("\n");
-    let actions = [
-        (Icon::Sliders, text::DETAILS),
-        (Icon::Pencil, text::RENAME),
-        (Icon::Trash, text::REMOVE),
-    ];
+    let actions =
+        [(Icon::Sliders, text::DETAILS), (Icon::Pencil, text::RENAME), (Icon::Trash, text::REMOVE)];
     let facts = facts(entry);
     let row = ClipRow {
         name: &entry.name,
@@ -210,10 +202,7 @@ fn entry_ui(entry: &Entry, session: &Session, state: &mut UiState, out: &mut Out
     match response.action {
         Some(0) => state.details = if open { None } else { Some(entry.id.clone()) },
         Some(1) => {
-            state.renaming = Some(Typing {
-                id: entry.id.clone(),
-                text: entry.name.clone(),
-            });
+            state.renaming = Some(Typing { id: entry.id.clone(), text: entry.name.clone() });
         }
         Some(_) => out.commands.push(Command::Remove(entry.id.clone())),
         None if response.clicked || response.badge_clicked => {
@@ -227,49 +216,26 @@ fn entry_ui(entry: &Entry, session: &Session, state: &mut UiState, out: &mut Out
     menu.show(|ui| {
         for slot in [Slot::A, Slot::B] {
             let words = if slot == Slot::A { text::USE_AS_A } else { text::USE_AS_B };
-            if kit::menu_item_ui(
-                MenuItem {
-                    text: words,
-                    ..MenuItem::default()
-                },
-                ui,
-            )
-            .clicked()
-            {
+            if kit::menu_item_ui(MenuItem { text: words, ..MenuItem::default() }, ui).clicked() {
                 out.commands.push(Command::Assign(slot, entry.id.clone()));
             }
         }
-        let compare = MenuItem {
-            text: text::COMPARE_WITH_A,
-            icon: Some(Icon::Swap),
-            ..MenuItem::default()
-        };
+        let compare =
+            MenuItem { text: text::COMPARE_WITH_A, icon: Some(Icon::Swap), ..MenuItem::default() };
         if part != Part::A && kit::menu_item_ui(compare, ui).clicked() {
             compare_clips(session.params().text(Key::A), &entry.id, out);
         }
         for format in ExportFormat::ALL {
             let words = format!("{} {}", text::SAVE_AS, text::format(format));
-            let save = MenuItem {
-                text: &words,
-                icon: Some(Icon::Download),
-                ..MenuItem::default()
-            };
+            let save = MenuItem { text: &words, icon: Some(Icon::Download), ..MenuItem::default() };
             if kit::menu_item_ui(save, ui).clicked() {
                 let how = ExportOptions { format, ..state.export };
-                out.actions.push(Action::Save {
-                    which: entry.id.clone(),
-                    how,
-                });
+                out.actions.push(Action::Save { which: entry.id.clone(), how });
             }
         }
     });
     if open {
-        let card = Frame::new().inner_margin(Margin {
-            left: 10,
-            right: 4,
-            top: 6,
-            bottom: 10,
-        });
+        let card = Frame::new().inner_margin(Margin { left: 10, right: 4, top: 6, bottom: 10 });
         card.show(ui, |ui| {
             ui.spacing_mut().item_spacing.y = space::XS;
             clip_panel_ui(entry, &entry.id, session, state, out, ui);
@@ -279,7 +245,12 @@ fn entry_ui(entry: &Entry, session: &Session, state: &mut UiState, out: &mut Out
 
 /// The button that opens the drawer, where the library is one.
 pub(crate) fn library_button_ui(state: &mut UiState, ui: &mut Ui) {
-    if kit::button_ui(Button::new(text::LIBRARY).icon(Icon::Folder).selected(state.library_open), ui).clicked() {
+    if kit::button_ui(
+        Button::new(text::LIBRARY).icon(Icon::Folder).selected(state.library_open),
+        ui,
+    )
+    .clicked()
+    {
         state.library_open = !state.library_open;
     }
 }

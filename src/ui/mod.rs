@@ -43,10 +43,7 @@ pub(crate) fn theme(session: &Session, system_dark: bool) -> Theme {
         choices::PageTheme::Light => false,
         choices::PageTheme::Auto => system_dark,
     };
-    Theme {
-        dark,
-        projector: session.params().is_on(Key::Projector),
-    }
+    Theme { dark, projector: session.params().is_on(Key::Projector) }
 }
 
 /// The theme of what lies over the stage, on a page of that theme.
@@ -71,7 +68,13 @@ pub(crate) fn stage_look(session: &Session, theme: Theme) -> Look {
 }
 
 /// Draws the page. `paint` draws the 3D picture into the stage.
-pub(crate) fn show(session: &Session, state: &mut UiState, curves: &mut CurveCache, paint: Paint<'_>, ui: &mut Ui) -> Out {
+pub(crate) fn show(
+    session: &Session,
+    state: &mut UiState,
+    curves: &mut CurveCache,
+    paint: Paint<'_>,
+    ui: &mut Ui,
+) -> Out {
     let mut out = Out::default();
     state.joints_open = false;
     state.hovered_pair = None;
@@ -80,7 +83,8 @@ pub(crate) fn show(session: &Session, state: &mut UiState, curves: &mut CurveCac
     let layout = Layout::of(ui.available_width(), theme_of(ui).scale());
     state.layout = layout;
     let has_room = ui.available_width() >= MAP_ROOM * theme_of(ui).scale();
-    state.has_map_panel = has_room && labs::graph::is_open(session) && !lessons_panel::is_open(session);
+    state.has_map_panel =
+        has_room && labs::graph::is_open(session) && !lessons_panel::is_open(session);
     if !matches!(session.params().lab(), LabId::Graph | LabId::Path) {
         state.drawing = None;
     }
@@ -89,7 +93,9 @@ pub(crate) fn show(session: &Session, state: &mut UiState, curves: &mut CurveCac
     } else {
         match layout {
             Layout::Phone => phone_ui(session, state, curves, &mut out, paint, ui),
-            Layout::Desk | Layout::Tablet => desk_ui(session, layout, state, curves, &mut out, paint, ui),
+            Layout::Desk | Layout::Tablet => {
+                desk_ui(session, layout, state, curves, &mut out, paint, ui)
+            }
         }
     }
     labs::match_::steer(session, state, &mut out, ui.ctx());
@@ -103,7 +109,8 @@ fn panel_frame(ui: &Ui, horizontal: f32, vertical: f32) -> Frame {
         .inner_margin(Margin::symmetric(horizontal as i8, vertical as i8))
 }
 
-/// The frame of a panel that scrolls: at its right edge there is room for the bar, so that it does not lie on numbers and units.
+/// The frame of a panel that scrolls: at its right edge there is room for the bar, so that it does
+/// not lie on numbers and units.
 fn scrolling_frame(ui: &Ui, horizontal: f32, vertical: f32) -> Frame {
     let mut frame = panel_frame(ui, horizontal, vertical);
     frame.inner_margin.right = BAR_MARGIN as i8;
@@ -113,10 +120,7 @@ fn scrolling_frame(ui: &Ui, horizontal: f32, vertical: f32) -> Frame {
 /// What scrolls inside of a [`scrolling_frame`], as wide as in a panel that does not.
 fn scrolled_ui(horizontal: f32, ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
-        let margin = Margin {
-            right: (horizontal - BAR_MARGIN) as i8,
-            ..Margin::ZERO
-        };
+        let margin = Margin { right: (horizontal - BAR_MARGIN) as i8, ..Margin::ZERO };
         Frame::new().inner_margin(margin).show(ui, content);
     });
 }
@@ -126,7 +130,15 @@ const MAP_ROOM: f32 = 1000.0;
 /// Between the bar of a panel that scrolls and the panel's edge, points.
 const BAR_MARGIN: f32 = 3.0;
 
-fn desk_ui(session: &Session, layout: Layout, state: &mut UiState, curves: &mut CurveCache, out: &mut Out, paint: Paint<'_>, ui: &mut Ui) {
+fn desk_ui(
+    session: &Session,
+    layout: Layout,
+    state: &mut UiState,
+    curves: &mut CurveCache,
+    out: &mut Out,
+    paint: Paint<'_>,
+    ui: &mut Ui,
+) {
     let scale = theme_of(ui).scale();
     let height = ui.available_height();
     let frame = panel_frame(ui, space::L, space::S);
@@ -153,13 +165,12 @@ fn desk_ui(session: &Session, layout: Layout, state: &mut UiState, curves: &mut 
     // A lesson, and the map of the graph, take the library's room.
     let drawer = layout == Layout::Tablet || lesson || labs::graph::is_open(session);
     if state.library_open || !drawer {
-        Panel::left("library")
-            .exact_size(244.0 * scale)
-            .frame(side(ui))
-            .resizable(false)
-            .show(ui, |ui| {
+        Panel::left("library").exact_size(244.0 * scale).frame(side(ui)).resizable(false).show(
+            ui,
+            |ui| {
                 library_panel::library_panel_ui(session, state, out, ui);
-            });
+            },
+        );
     }
     // A lesson that has no place of its own shares that of the parameters.
     let shared = lesson && layout == Layout::Tablet;
@@ -194,31 +205,52 @@ fn desk_ui(session: &Session, layout: Layout, state: &mut UiState, curves: &mut 
 }
 
 /// What happens in time; of a walk, the graph that it goes through.
-fn time_ui(session: &Session, layout: Layout, state: &mut UiState, curves: &mut CurveCache, out: &mut Out, ui: &mut Ui) {
+fn time_ui(
+    session: &Session,
+    layout: Layout,
+    state: &mut UiState,
+    curves: &mut CurveCache,
+    out: &mut Out,
+    ui: &mut Ui,
+) {
     match session.graph_walk().filter(|walk| !walk.is_jump) {
         Some(walk) => labs::graph::walk_panel_ui(session, walk, layout, state, out, ui),
         None => timeline_panel::timeline_panel_ui(session, layout, curves, state, out, ui),
     }
 }
 
-/// The same where room is scarce. Strips of walks and drives fill what they get; tracks and stripes take what they need, and no panel may be smaller
-/// than what is in it: the next one would cover it.
-fn slim_time_ui(panel: Panel, margin: f32, session: &Session, state: &mut UiState, curves: &mut CurveCache, out: &mut Out, ui: &mut Ui) {
+/// The same where room is scarce. Strips of walks and drives fill what they get; tracks and stripes
+/// take what they need, and no panel may be smaller than what is in it: the next one would cover
+/// it.
+fn slim_time_ui(
+    panel: Panel,
+    margin: f32,
+    session: &Session,
+    state: &mut UiState,
+    curves: &mut CurveCache,
+    out: &mut Out,
+    ui: &mut Ui,
+) {
     let scale = theme_of(ui).scale();
     let is_walked = session.graph_walk().is_some_and(|walk| !walk.is_jump);
-    let has_strip = is_walked || session.main_outcome().is_some_and(|outcome| outcome.driven.is_some());
-    let panel = if has_strip {
-        panel.exact_size(144.0 * scale)
-    } else {
-        panel.default_size(136.0 * scale)
-    };
+    let has_strip =
+        is_walked || session.main_outcome().is_some_and(|outcome| outcome.driven.is_some());
+    let panel =
+        if has_strip { panel.exact_size(144.0 * scale) } else { panel.default_size(136.0 * scale) };
     panel.frame(panel_frame(ui, margin, space::S)).show(ui, |ui| {
         time_ui(session, Layout::Phone, state, curves, out, ui);
     });
 }
 
 /// One column: bar, stage, timeline, parameters.
-fn phone_ui(session: &Session, state: &mut UiState, curves: &mut CurveCache, out: &mut Out, paint: Paint<'_>, ui: &mut Ui) {
+fn phone_ui(
+    session: &Session,
+    state: &mut UiState,
+    curves: &mut CurveCache,
+    out: &mut Out,
+    paint: Paint<'_>,
+    ui: &mut Ui,
+) {
     let scale = theme_of(ui).scale();
     let frame = panel_frame(ui, space::M, space::S);
     Panel::top("top bar")
@@ -234,38 +266,43 @@ fn phone_ui(session: &Session, state: &mut UiState, curves: &mut CurveCache, out
             stage_panel::stage_panel_ui(session, Layout::Phone, state, out, paint, ui);
         });
     slim_time_ui(Panel::top("timeline"), space::L, session, state, curves, out, ui);
-    egui::CentralPanel::default()
-        .frame(scrolling_frame(ui, space::L, space::M))
-        .show(ui, |ui| {
-            if lesson && !state.library_open {
-                lessons_panel::lesson_or_parameters_ui(state, ui);
-                if !state.lesson_behind {
-                    lessons_panel::lessons_panel_ui(session, state, out, ui);
-                    return;
-                }
+    egui::CentralPanel::default().frame(scrolling_frame(ui, space::L, space::M)).show(ui, |ui| {
+        if lesson && !state.library_open {
+            lessons_panel::lesson_or_parameters_ui(state, ui);
+            if !state.lesson_behind {
+                lessons_panel::lessons_panel_ui(session, state, out, ui);
+                return;
             }
-            scrolled_ui(space::L, ui, |ui| {
-                if state.library_open {
-                    library_panel::drop_ui(session, state, out, ui);
-                    library_panel::library_list_ui(session, state, out, ui);
-                    ui.add_space(space::M);
-                    if kit::button_ui(kit::Button::new(text::CLOSE), ui).clicked() {
-                        state.library_open = false;
-                    }
-                } else {
-                    // On so small a stage it would lie on what it speaks of.
-                    if stage_panel::is_welcome(session) {
-                        kit::note_ui(text::WELCOME_HINT, palette_of(ui).muted, ui);
-                        ui.add_space(space::M);
-                    }
-                    labs::lab_panel_ui(session, state, out, ui);
+        }
+        scrolled_ui(space::L, ui, |ui| {
+            if state.library_open {
+                library_panel::drop_ui(session, state, out, ui);
+                library_panel::library_list_ui(session, state, out, ui);
+                ui.add_space(space::M);
+                if kit::button_ui(kit::Button::new(text::CLOSE), ui).clicked() {
+                    state.library_open = false;
                 }
-            });
+            } else {
+                // On so small a stage it would lie on what it speaks of.
+                if stage_panel::is_welcome(session) {
+                    kit::note_ui(text::WELCOME_HINT, palette_of(ui).muted, ui);
+                    ui.add_space(space::M);
+                }
+                labs::lab_panel_ui(session, state, out, ui);
+            }
         });
+    });
 }
 
 /// Inside another page: the stage, a slim timeline, and the parameters that the link names.
-fn embedded_ui(session: &Session, state: &mut UiState, curves: &mut CurveCache, out: &mut Out, paint: Paint<'_>, ui: &mut Ui) {
+fn embedded_ui(
+    session: &Session,
+    state: &mut UiState,
+    curves: &mut CurveCache,
+    out: &mut Out,
+    paint: Paint<'_>,
+    ui: &mut Ui,
+) {
     let scale = theme_of(ui).scale();
     slim_time_ui(Panel::bottom("timeline"), space::M, session, state, curves, out, ui);
     if labs::has_named_params(session) {
@@ -274,11 +311,7 @@ fn embedded_ui(session: &Session, state: &mut UiState, curves: &mut CurveCache, 
             .frame(frame)
             .show(ui, |ui| labs::named_params_ui(session, out, ui));
     }
-    let layout = if ui.available_width() < 480.0 * scale {
-        Layout::Phone
-    } else {
-        Layout::Desk
-    };
+    let layout = if ui.available_width() < 480.0 * scale { Layout::Phone } else { Layout::Desk };
     egui::CentralPanel::default().frame(Frame::new()).show(ui, |ui| {
         stage_panel::stage_panel_ui(session, layout, state, out, paint, ui);
     });

@@ -1,4 +1,5 @@
-//! What lies over the whole page: notices, the list of shortcuts, the field for files that hang over the window.
+//! What lies over the whole page: notices, the list of shortcuts, the field for files that hang
+//! over the window.
 
 use super::kit::{self, Mood, Notice, NoticeEvent};
 use super::language::tr;
@@ -60,8 +61,16 @@ fn help_ui(state: &mut UiState, ui: &mut Ui) {
         .show(ui.ctx(), |ui| {
             Grid::new("shortcuts").num_columns(2).spacing([space::L, space::XS]).show(ui, |ui| {
                 for (keys, what) in text::SHORTCUTS {
-                    ui.label(RichText::new(tr(keys, ui)).font(theme.font(Type::Strong)).color(palette.text));
-                    ui.label(RichText::new(tr(what, ui)).font(theme.font(Type::Body)).color(palette.muted));
+                    ui.label(
+                        RichText::new(tr(keys, ui))
+                            .font(theme.font(Type::Strong))
+                            .color(palette.text),
+                    );
+                    ui.label(
+                        RichText::new(tr(what, ui))
+                            .font(theme.font(Type::Body))
+                            .color(palette.muted),
+                    );
                     ui.end_row();
                 }
             });
@@ -94,8 +103,15 @@ fn drop_ui(state: &UiState, ui: &Ui) {
         palette.text,
     );
     if state.host_reads {
-        let warning = kit::paint::paragraph(text::HOST_READS, Type::Body, palette.warning, screen.width() - 4.0 * space::L, ui);
-        let place = Align2::CENTER_TOP.anchor_size(words.center_bottom() + egui::vec2(0.0, space::M), warning.size());
+        let warning = kit::paint::paragraph(
+            text::HOST_READS,
+            Type::Body,
+            palette.warning,
+            screen.width() - 4.0 * space::L,
+            ui,
+        );
+        let place = Align2::CENTER_TOP
+            .anchor_size(words.center_bottom() + egui::vec2(0.0, space::M), warning.size());
         painter.galley(place.min, warning, palette.warning);
     }
 }

@@ -16,7 +16,9 @@ use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{self, Ui};
 use segue_motion::transition::has_legs;
-use segue_session::{Command, Compare, Key, LabId, NoResult, Session, Slot, Value, split_reference};
+use segue_session::{
+    Command, Compare, Key, LabId, NoResult, Session, Slot, Value, split_reference,
+};
 /// The foot lock, how feet are read where they are held, and why they are not.
 pub(crate) fn foot_rows_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
@@ -43,7 +45,8 @@ pub(crate) fn foot_rows_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
 pub(crate) fn save_result_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let panes = session.panes();
     state.saved_pane = state.saved_pane.min(panes.len().saturating_sub(1));
-    let names: Vec<String> = panes.iter().map(|pane| session.variant_name(pane).unwrap_or_default()).collect();
+    let names: Vec<String> =
+        panes.iter().map(|pane| session.variant_name(pane).unwrap_or_default()).collect();
     if panes.len() > 1 {
         let options: Vec<(usize, &str)> = names.iter().map(String::as_str).enumerate().collect();
         if let Some(pane) = kit::choice_row_ui(text::SAVED_PANE, state.saved_pane, &options, ui) {
@@ -74,13 +77,15 @@ pub(crate) fn keep_ui(pane: usize, session: &Session, out: &mut Out, ui: &mut Ui
     }
 }
 
-/// The two clips, and what is done to B where it moves another skeleton. Returns the frame rate of what is made of them.
+/// The two clips, and what is done to B where it moves another skeleton. Returns the frame rate of
+/// what is made of them.
 pub(crate) fn pair_ui(session: &Session, out: &mut Out, ui: &mut Ui) -> f64 {
     slot_row_ui(Slot::A, session, out, ui);
     slot_row_ui(Slot::B, session, out, ui);
     let outcome = session.main_outcome();
     if let Some(retargeted) = outcome.and_then(|outcome| outcome.retargeted.as_ref()) {
-        let words = egui::RichText::new(tr(&text::retargeted(retargeted), ui)).font(theme_of(ui).font(Type::Small));
+        let words = egui::RichText::new(tr(&text::retargeted(retargeted), ui))
+            .font(theme_of(ui).font(Type::Small));
         let line = ui.label(words.color(palette_of(ui).muted));
         if !retargeted.unmatched.is_empty() {
             line.on_hover_text(tr(&retargeted.unmatched.join(", "), ui));
@@ -90,15 +95,16 @@ pub(crate) fn pair_ui(session: &Session, out: &mut Out, ui: &mut Ui) -> f64 {
     if let (Some(a), Some(b)) = (rate(Slot::A), rate(Slot::B))
         && (a - b).abs() > 1e-4 * a
     {
-        let words = egui::RichText::new(tr(&text::resampled(b, a), ui)).font(theme_of(ui).font(Type::Small));
+        let words = egui::RichText::new(tr(&text::resampled(b, a), ui))
+            .font(theme_of(ui).font(Type::Small));
         ui.label(words.color(palette_of(ui).muted));
     }
     ui.add_space(space::S);
     outcome.map_or(60.0, |outcome| outcome.motion.clip.fps())
 }
 
-/// Where A is left and B entered, in seconds or in frames of each clip. How that was found is one thing for both: it is said once, below the second
-/// row, or below the one that is left to Segue.
+/// Where A is left and B entered, in seconds or in frames of each clip. How that was found is one
+/// thing for both: it is said once, below the second row, or below the one that is left to Segue.
 pub(crate) fn place_rows_ui(keys: [Key; 2], session: &Session, out: &mut Out, ui: &mut Ui) {
     let automatic = keys.map(|key| session.params().optional(key).is_none());
     let said_below = usize::from(automatic != [true, false]);
@@ -110,8 +116,10 @@ pub(crate) fn place_rows_ui(keys: [Key; 2], session: &Session, out: &mut Out, ui
             let end = motion.clip.duration_secs();
             search.map_or(end, |search| search.latest_secs[index].min(end))
         });
-        let in_frames = |secs: f64| motion.map_or(secs, |motion| (secs * motion.clip.fps()).round());
-        let max = latest_secs.map(|secs| if key.param().unit == "s" { secs } else { in_frames(secs) });
+        let in_frames =
+            |secs: f64| motion.map_or(secs, |motion| (secs * motion.clip.fps()).round());
+        let max =
+            latest_secs.map(|secs| if key.param().unit == "s" { secs } else { in_frames(secs) });
         let help = match (said_below == index, automatic[index]) {
             (true, _) => found_sentence(session, automatic),
             (false, true) => String::new(),
@@ -119,7 +127,8 @@ pub(crate) fn place_rows_ui(keys: [Key; 2], session: &Session, out: &mut Out, ui
         };
         let detail = Detail {
             max,
-            used: max.filter(|&max| session.params().optional(key).is_some_and(|given| given > max)),
+            used: max
+                .filter(|&max| session.params().optional(key).is_some_and(|given| given > max)),
             help: Some(help),
             ..Detail::default()
         };
@@ -147,11 +156,17 @@ pub(crate) fn slot_row_ui(slot: Slot, session: &Session, out: &mut Out, ui: &mut
 }
 
 /// A clip of the library to choose; the id of the one that was.
-pub(crate) fn clip_choice_ui(label: &str, chosen: &str, session: &Session, ui: &mut Ui) -> Option<String> {
+pub(crate) fn clip_choice_ui(
+    label: &str,
+    chosen: &str,
+    session: &Session,
+    ui: &mut Ui,
+) -> Option<String> {
     let entries = session.library().entries();
     let found = session.library().find(chosen);
     let found = found.and_then(|entry| entries.iter().position(|other| other.id == entry.id));
-    let missing = (found.is_none() && !chosen.is_empty()).then(|| text::missing(split_reference(chosen).0));
+    let missing =
+        (found.is_none() && !chosen.is_empty()).then(|| text::missing(split_reference(chosen).0));
     // The one that is not here cannot be chosen, only seen.
     let options: Vec<(usize, &str)> = (entries.iter().map(|entry| entry.name.as_str()).enumerate())
         .chain(missing.as_deref().map(|words| (usize::MAX, words)))
@@ -165,7 +180,9 @@ pub(crate) fn clip_choice_ui(label: &str, chosen: &str, session: &Session, ui: &
 /// The experiment of the course. The rows of what is compared have the way back.
 pub(crate) fn compare_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
     let on = session.compare().is_some_and(|compare| compare.key == key);
-    if !on && kit::button_ui(Button::new(text::FULL_HALF_THIRD).hint(text::COMPARE_HELP), ui).clicked() {
+    if !on
+        && kit::button_ui(Button::new(text::FULL_HALF_THIRD).hint(text::COMPARE_HELP), ui).clicked()
+    {
         out.commands.push(Command::Compare(key));
     }
 }

@@ -29,7 +29,9 @@ pub(crate) fn shortcuts(session: &Session, state: &mut UiState, out: &mut Out, c
     if ctx.text_edit_focused() {
         return;
     }
-    let pressed = |modifiers: Modifiers, key: Keyboard| ctx.input_mut(|input| input.consume_key(modifiers, key));
+    let pressed = |modifiers: Modifiers, key: Keyboard| {
+        ctx.input_mut(|input| input.consume_key(modifiers, key))
+    };
     let (none, shift, command) = (Modifiers::NONE, Modifiers::SHIFT, Modifiers::COMMAND);
     let params = session.params();
     // The longer chord first: an exact match is only asked of what is pressed besides.
@@ -42,19 +44,26 @@ pub(crate) fn shortcuts(session: &Session, state: &mut UiState, out: &mut Out, c
     if ctx.input(|input| input.events.contains(&Event::Copy)) {
         out.actions.push(Action::CopyLink);
     }
-    if ctx.input(|input| input.events.iter().any(|event| matches!(event, Event::Text(text) if text == "?"))) {
+    if ctx.input(|input| {
+        input.events.iter().any(|event| matches!(event, Event::Text(text) if text == "?"))
+    }) {
         state.help_open = !state.help_open;
     }
     // A menu that is open closes itself.
     if !Popup::is_any_open(ctx) && pressed(none, Keyboard::Escape) {
-        if lessons_panel::is_open(session) && !state.help_open && !state.library_open && state.drawing.is_none() {
+        if lessons_panel::is_open(session)
+            && !state.help_open
+            && !state.library_open
+            && state.drawing.is_none()
+        {
             toggle_lessons(session, out);
         }
         (state.help_open, state.library_open) = (false, false);
         state.drawing = None;
     }
-    // A focused slider or tab takes Space and the arrows for itself. What has the focus only because it was dragged or clicked leaves Space to the
-    // motion: one drags, and wants to see it play.
+    // A focused slider or tab takes Space and the arrows for itself. What has the focus only
+    // because it was dragged or clicked leaves Space to the motion: one drags, and wants to see it
+    // play.
     let focus = ctx.memory(eframe::egui::Memory::focused);
     let by_pointer = Id::unique("focused by the pointer");
     if ctx.input(|input| input.pointer.any_down() || input.pointer.any_released()) {
@@ -94,7 +103,10 @@ pub(crate) fn shortcuts(session: &Session, state: &mut UiState, out: &mut Out, c
     }
     for (keyboard, factor) in [(Keyboard::OpenBracket, 0.5), (Keyboard::CloseBracket, 2.0)] {
         if pressed(none, keyboard) {
-            out.set_once(Key::Rate, Value::Number((params.number(Key::Rate) * factor).clamp(0.05, 4.0)));
+            out.set_once(
+                Key::Rate,
+                Value::Number((params.number(Key::Rate) * factor).clamp(0.05, 4.0)),
+            );
         }
     }
     if pressed(none, Keyboard::L) {

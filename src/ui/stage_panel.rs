@@ -17,15 +17,31 @@ use segue_session::LabId;
 use segue_session::choices;
 use segue_session::{CycleMade, Key, Kind, Pane, Session, Value, Walk, write_path};
 
-/// Draws the 3D picture: the whole stage, and for each pane that is shown its index in the session and its place.
+/// Draws the 3D picture: the whole stage, and for each pane that is shown its index in the session
+/// and its place.
 pub(crate) type Paint<'a> = &'a mut dyn FnMut(Rect, &[(usize, Rect)], &mut Ui);
 
 /// The whole stage, as large as `ui`, in the stage's own theme.
-pub(crate) fn stage_panel_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut Out, paint: Paint<'_>, ui: &mut Ui) {
-    super::stage_theme(session, theme_of(ui)).within(ui, |ui| stage_ui(session, layout, state, out, paint, ui));
+pub(crate) fn stage_panel_ui(
+    session: &Session,
+    layout: Layout,
+    state: &mut UiState,
+    out: &mut Out,
+    paint: Paint<'_>,
+    ui: &mut Ui,
+) {
+    super::stage_theme(session, theme_of(ui))
+        .within(ui, |ui| stage_ui(session, layout, state, out, paint, ui));
 }
 
-fn stage_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut Out, paint: Paint<'_>, ui: &mut Ui) {
+fn stage_ui(
+    session: &Session,
+    layout: Layout,
+    state: &mut UiState,
+    out: &mut Out,
+    paint: Paint<'_>,
+    ui: &mut Ui,
+) {
     let stage = ui.available_rect_before_wrap();
     state.stage = stage;
     let panes = session.panes();
@@ -38,7 +54,8 @@ fn stage_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut Ou
     let response = ui.allocate_rect(stage, Sense::click_and_drag());
     frame_once(session, state, out);
     let line = ground_line(&shown, &response, state, ui);
-    let takes_drag = !matches!(line, GroundLine::None) || state.path.held.is_some() || state.drive.is_held();
+    let takes_drag =
+        !matches!(line, GroundLine::None) || state.path.held.is_some() || state.drive.is_held();
     if let GroundLine::Done(points) = line {
         if session.params().lab() == LabId::Path {
             state.path.take_drawn(&points, session, out);
@@ -74,18 +91,22 @@ fn stage_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut Ou
     let roomy = numbers_top - stage.top() > 240.0 * theme_of(ui).scale();
     // Where there is nothing to do it to, no hint says what to do.
     let is_refused = session.panes().iter().any(|pane| pane.problem.is_some());
-    let says = session.params().lab() == LabId::Path && (state.path.said.is_some() || state.drawing.is_some());
+    let says = session.params().lab() == LabId::Path
+        && (state.path.said.is_some() || state.drawing.is_some());
     if says {
         said_ui(stage, numbers_top, state, ui);
     } else if let Some(note) = session.character_note().filter(|_| roomy) {
         kit::caption_ui(&note, stage.with_max_y(numbers_top - space::S), ui);
-    } else if let Some(hint) = hint(session).filter(|_| state.hint && roomy && layout != Layout::Phone && !is_refused) {
+    } else if let Some(hint) =
+        hint(session).filter(|_| state.hint && roomy && layout != Layout::Phone && !is_refused)
+    {
         let mut free = stage.with_max_y(numbers_top - space::S);
         if session.is_driven() {
             free.min.x += kit::stick_size(ui) + space::L;
         }
         kit::caption_ui(hint, free, ui);
-        if ui.input(|input| input.pointer.any_pressed() || input.keys_down.iter().next().is_some()) {
+        if ui.input(|input| input.pointer.any_pressed() || input.keys_down.iter().next().is_some())
+        {
             state.hint = false;
         }
     }
@@ -102,7 +123,8 @@ fn hint(session: &Session) -> Option<&'static str> {
     }
 }
 
-/// Whether the hint's sentence is about what is on the stage: the windows of the built-in walk and run.
+/// Whether the hint's sentence is about what is on the stage: the windows of the built-in walk and
+/// run.
 pub(crate) fn is_welcome(session: &Session) -> bool {
     let shown = |key, id| session.params().text(key) == id;
     shown(Key::Lab, "blend")
@@ -121,8 +143,8 @@ fn columns(stage: Rect, count: usize) -> impl Iterator<Item = Rect> {
     })
 }
 
-/// The best and the worst pane, by the velocity jump: what an eye calls smooth and rough. Of registered clips by how the feet skate. Where that is alike,
-/// by the next of these numbers.
+/// The best and the worst pane, by the velocity jump: what an eye calls smooth and rough. Of
+/// registered clips by how the feet skate. Where that is alike, by the next of these numbers.
 #[derive(Clone, Copy, Debug, Default)]
 struct Verdicts {
     best: Option<usize>,
@@ -178,16 +200,22 @@ fn ranking(panes: &[Pane], id: &str) -> Verdicts {
     let best = values.iter().copied().min_by(|x, y| x.1.total_cmp(&y.1));
     let worst = values.iter().copied().max_by(|x, y| x.1.total_cmp(&y.1));
     match (best, worst) {
-        (Some(best), Some(worst)) if worst.1 - best.1 >= least => Verdicts {
-            best: Some(best.0),
-            worst: Some(worst.0),
-        },
+        (Some(best), Some(worst)) if worst.1 - best.1 >= least => {
+            Verdicts { best: Some(best.0), worst: Some(worst.0) }
+        }
         _ => Verdicts::default(),
     }
 }
 
 /// What lies over one pane. Returns where its numbers begin, from the top of the page.
-fn pane_ui(pane: &Pane, index: usize, verdicts: &Verdicts, session: &Session, rect: Rect, ui: &mut Ui) -> f32 {
+fn pane_ui(
+    pane: &Pane,
+    index: usize,
+    verdicts: &Verdicts,
+    session: &Session,
+    rect: Rect,
+    ui: &mut Ui,
+) -> f32 {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let words = pane_words(pane, session);
     if pane.is_outdated() {
@@ -220,21 +248,23 @@ fn pane_ui(pane: &Pane, index: usize, verdicts: &Verdicts, session: &Session, re
     } else if pane.outcome.is_none() {
         let jobs = session.jobs();
         let words = jobs.first().map_or(text::EMPTY_PANE.to_owned(), text::under_way);
-        let galley = kit::paint::line_of(&[kit::paint::Run::new(&words, Type::Body, palette.muted)], rect.width(), ui);
+        let galley = kit::paint::line_of(
+            &[kit::paint::Run::new(&words, Type::Body, palette.muted)],
+            rect.width(),
+            ui,
+        );
         kit::paint::put(ui.painter(), rect.center(), Align2::CENTER_CENTER, galley);
     }
     let Some(outcome) = pane.outcome.as_deref() else {
         return rect.bottom();
     };
     let panes = session.panes();
-    let room = if rect.width() < 280.0 * theme.scale() {
-        6
-    } else {
-        text::METRICS.len()
-    };
+    let room = if rect.width() < 280.0 * theme.scale() { 6 } else { text::METRICS.len() };
     let shown = text::METRICS
         .iter()
-        .filter_map(|(id, label)| Some((outcome.metrics.iter().find(|metric| metric.id == *id)?, label)))
+        .filter_map(|(id, label)| {
+            Some((outcome.metrics.iter().find(|metric| metric.id == *id)?, label))
+        })
         .take(room);
     let numbers: Vec<(String, &str, Rank, &str)> = shown
         .map(|(metric, &label)| {
@@ -255,17 +285,13 @@ fn pane_ui(pane: &Pane, index: usize, verdicts: &Verdicts, session: &Session, re
         .collect();
     let strip: Vec<Metric<'_>> = numbers
         .iter()
-        .map(|(value, label, rank, hint)| Metric {
-            value,
-            label,
-            rank: *rank,
-            hint,
-        })
+        .map(|(value, label, rank, hint)| Metric { value, label, rank: *rank, hint })
         .collect();
     kit::pane_footer_ui(&strip, rect, ui).top()
 }
 
-/// Why a pane has no result, on a plate where its numbers would be: the clips above it are to be seen. Returns where it begins.
+/// Why a pane has no result, on a plate where its numbers would be: the clips above it are to be
+/// seen. Returns where it begins.
 fn problem_ui(problem: &str, rect: Rect, ui: &mut Ui) -> f32 {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let width = (rect.width() - 2.0 * space::L).min(420.0 * theme.scale());
@@ -277,10 +303,8 @@ fn problem_ui(problem: &str, rect: Rect, ui: &mut Ui) -> f32 {
         .id_salt(("problem", rect.min.x.to_bits()))
         .max_rect(place)
         .layout(egui::Layout::bottom_up(egui::Align::Center));
-    let plate = Frame::new()
-        .fill(palette.panel_raised)
-        .corner_radius(radius::L)
-        .inner_margin(space::M);
+    let plate =
+        Frame::new().fill(palette.panel_raised).corner_radius(radius::L).inner_margin(space::M);
     let shown = ui.scope_builder(builder, |ui| {
         plate.show(ui, |ui| {
             let words = egui::RichText::new(tr(problem, ui)).font(theme.font(Type::Body));
@@ -298,7 +322,9 @@ fn is_beyond(pane: &Pane) -> bool {
 
 /// A metric's number as it is read at a glance.
 fn written(metric: &segue_motion::metrics::Metric) -> String {
-    let Some(value) = metric.value else { return "–".to_owned() };
+    let Some(value) = metric.value else {
+        return "–".to_owned();
+    };
     let decimals = match metric.unit {
         "s" | "m" | "m/s" | "ms" => 2,
         "cm" => 1,
@@ -340,11 +366,7 @@ fn pane_words(pane: &Pane, session: &Session) -> Words {
             Value::Number(_) if param.unit.is_empty() => param.label.to_owned(),
             _ => String::new(),
         };
-        return Words {
-            strong: param.spoken(value),
-            text: param.unit.to_owned(),
-            secondary,
-        };
+        return Words { strong: param.spoken(value), text: param.unit.to_owned(), secondary };
     }
     let name = |key| {
         session
@@ -366,11 +388,14 @@ fn pane_words(pane: &Pane, session: &Session) -> Words {
         LabId::Speed => Words {
             strong: name(Key::A),
             text: format!("~ {}", name(Key::B)),
-            // The speed that was reached, as the numbers have it: a cycle of whole frames is not always as fast as was asked.
+            // The speed that was reached, as the numbers have it: a cycle of whole frames is not
+            // always as fast as was asked.
             secondary: pane
                 .outcome
                 .as_ref()
-                .and_then(|outcome| outcome.metrics.iter().find(|metric| metric.id == "speed_mps")?.value)
+                .and_then(|outcome| {
+                    outcome.metrics.iter().find(|metric| metric.id == "speed_mps")?.value
+                })
                 .map_or_else(String::new, |speed| format!("{speed:.2} m/s")),
         },
         LabId::Loop => Words {
@@ -394,7 +419,12 @@ fn pane_words(pane: &Pane, session: &Session) -> Words {
                 format!("→ {}", name(Key::B))
             } else {
                 let also = session.also_blended();
-                let of = |id: &str| session.library().find(id).map_or_else(|| id.to_owned(), |entry| entry.name.clone());
+                let of = |id: &str| {
+                    session
+                        .library()
+                        .find(id)
+                        .map_or_else(|| id.to_owned(), |entry| entry.name.clone())
+                };
                 let others = also.iter().map(|(id, _)| of(id));
                 let others: Vec<String> = std::iter::once(name(Key::B)).chain(others).collect();
                 format!("+ {}", others.join(" + "))
@@ -404,8 +434,11 @@ fn pane_words(pane: &Pane, session: &Session) -> Words {
         LabId::Graph => {
             let walk = pane.outcome.as_ref().and_then(|outcome| outcome.walk.as_ref());
             let at = walk.and_then(|walk| Some((walk, walk.at(session.now_secs())?)));
-            let name = |(walk, clip): (&Walk, usize)| walk.built.cast().names().get(clip).cloned().unwrap_or_default();
-            let next = at.and_then(|(walk, at)| Some(name((walk, walk.passed.get(at.stay + 1)?.stay.clip))));
+            let name = |(walk, clip): (&Walk, usize)| {
+                walk.built.cast().names().get(clip).cloned().unwrap_or_default()
+            };
+            let next = at
+                .and_then(|(walk, at)| Some(name((walk, walk.passed.get(at.stay + 1)?.stay.clip))));
             Words {
                 strong: at.map(|(walk, at)| name((walk, at.place.clip))).unwrap_or_default(),
                 text: next.map(|next| format!("→ {next}")).unwrap_or_default(),
@@ -426,17 +459,16 @@ fn pane_words(pane: &Pane, session: &Session) -> Words {
             text: String::new(),
             secondary: String::new(),
         },
-        LabId::View => Words {
-            strong: name(Key::A),
-            text: String::new(),
-            secondary: String::new(),
-        },
+        LabId::View => {
+            Words { strong: name(Key::A), text: String::new(), secondary: String::new() }
+        }
     }
 }
 
 /// On a phone one pane is shown; this goes on to the next.
 fn pane_switch_ui(count: usize, stage: Rect, state: &mut UiState, ui: &mut Ui) {
-    let rect = Rect::from_min_size(pos2(stage.right() - 92.0, stage.top() + 44.0), vec2(84.0, 28.0));
+    let rect =
+        Rect::from_min_size(pos2(stage.right() - 92.0, stage.top() + 44.0), vec2(84.0, 28.0));
     let label = format!("{} / {count}", state.shown_pane + 1);
     ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
         if kit::button_ui(Button::new(&label).icon(Icon::Swap), ui).clicked() {
@@ -455,19 +487,30 @@ fn camera_buttons_ui(session: &Session, stage: Rect, state: &UiState, out: &mut 
     ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
         ui.spacing_mut().item_spacing.y = space::XS;
         let follows = params.choice::<choices::Follow>() != choices::Follow::Off;
-        if kit::button_ui(Button::icon_only(Icon::Follow, text::FOLLOW).quiet().selected(follows), ui).clicked() {
+        if kit::button_ui(
+            Button::icon_only(Icon::Follow, text::FOLLOW).quiet().selected(follows),
+            ui,
+        )
+        .clicked()
+        {
             out.set_once(Key::Follow, Value::Choice(if follows { "off" } else { "result" }));
         }
         let top = params.choice::<choices::Camera>() == choices::Camera::Top;
-        if kit::button_ui(Button::icon_only(Icon::Top, text::TOP_VIEW).quiet().selected(top), ui).clicked() {
+        if kit::button_ui(Button::icon_only(Icon::Top, text::TOP_VIEW).quiet().selected(top), ui)
+            .clicked()
+        {
             out.set_once(Key::Camera, Value::Choice(if top { "orbit" } else { "top" }));
         }
-        if kit::button_ui(Button::icon_only(Icon::FrameAll, text::FRAME_ALL).quiet(), ui).clicked() {
+        if kit::button_ui(Button::icon_only(Icon::FrameAll, text::FRAME_ALL).quiet(), ui).clicked()
+        {
             frame_everything(session, state, out);
         }
     });
     if !params.is_on(Key::Embed) {
-        let below = Rect::from_min_size(rect.left_bottom() + vec2(0.0, space::M), vec2(side, 3.0 * side + 2.0 * space::XS));
+        let below = Rect::from_min_size(
+            rect.left_bottom() + vec2(0.0, space::M),
+            vec2(side, 3.0 * side + 2.0 * space::XS),
+        );
         filming_ui(state.filming, below, out, ui);
     }
 }
@@ -477,21 +520,24 @@ fn filming_ui(filming: Filming, rect: Rect, out: &mut Out, ui: &mut Ui) {
     let builder = UiBuilder::new().id_salt("filming").max_rect(rect);
     let recorded = ui.scope_builder(builder, |ui| {
         ui.spacing_mut().item_spacing.y = space::XS;
-        if filming.pictures && kit::button_ui(Button::icon_only(Icon::Picture, text::SAVE_PICTURE).quiet(), ui).clicked() {
+        if filming.pictures
+            && kit::button_ui(Button::icon_only(Icon::Picture, text::SAVE_PICTURE).quiet(), ui)
+                .clicked()
+        {
             out.actions.push(Action::SavePicture);
         }
-        if kit::button_ui(Button::icon_only(Icon::Report, text::COPY_REPORT).quiet(), ui).clicked() {
+        if kit::button_ui(Button::icon_only(Icon::Report, text::COPY_REPORT).quiet(), ui).clicked()
+        {
             out.actions.push(Action::CopyReport);
         }
         if !filming.films {
             return None;
         }
-        let name = if filming.secs.is_some() {
-            text::STOP_RECORDING
-        } else {
-            text::RECORD
-        };
-        let button = kit::button_ui(Button::icon_only(Icon::Record, name).quiet().selected(filming.secs.is_some()), ui);
+        let name = if filming.secs.is_some() { text::STOP_RECORDING } else { text::RECORD };
+        let button = kit::button_ui(
+            Button::icon_only(Icon::Record, name).quiet().selected(filming.secs.is_some()),
+            ui,
+        );
         if button.clicked() {
             out.actions.push(Action::Record);
         }
@@ -513,11 +559,8 @@ fn camera_input(session: &Session, response: &Response, draws: bool, out: &mut O
     let mut nearer = 1.0;
     if !session.is_driven() {
         let keys = camera_keys(ui);
-        (drag, panning) = if keys.drag == Vec2::ZERO {
-            (drag, panning)
-        } else {
-            (keys.drag, keys.panning)
-        };
+        (drag, panning) =
+            if keys.drag == Vec2::ZERO { (drag, panning) } else { (keys.drag, keys.panning) };
         nearer = keys.nearer;
     }
     let from_above = params.choice::<choices::Camera>() == choices::Camera::Top;
@@ -542,7 +585,8 @@ fn camera_input(session: &Session, response: &Response, draws: bool, out: &mut O
     }
 }
 
-/// What keys ask of the camera: a drag of as many points, with or without Shift, and how much nearer it comes.
+/// What keys ask of the camera: a drag of as many points, with or without Shift, and how much
+/// nearer it comes.
 struct CameraKeys {
     drag: Vec2,
     panning: bool,
@@ -552,13 +596,10 @@ struct CameraKeys {
 /// A press of a key, or its repetition, is a drag of so many points.
 const POINTS_PER_KEY: f32 = 16.0;
 
-/// W, A, S, D turn the camera (with Shift they move it), the page keys zoom. What has the focus keeps its keys.
+/// W, A, S, D turn the camera (with Shift they move it), the page keys zoom. What has the focus
+/// keeps its keys.
 fn camera_keys(ui: &Ui) -> CameraKeys {
-    let mut keys = CameraKeys {
-        drag: Vec2::ZERO,
-        panning: false,
-        nearer: 1.0,
-    };
+    let mut keys = CameraKeys { drag: Vec2::ZERO, panning: false, nearer: 1.0 };
     if ui.ctx().memory(|memory| memory.focused().is_some()) {
         return keys;
     }
@@ -569,28 +610,31 @@ fn camera_keys(ui: &Ui) -> CameraKeys {
         (egui::Key::S, vec2(0.0, -1.0)),
     ];
     ui.input_mut(|input| {
-        for (modifiers, panning) in [(egui::Modifiers::SHIFT, true), (egui::Modifiers::NONE, false)] {
+        for (modifiers, panning) in [(egui::Modifiers::SHIFT, true), (egui::Modifiers::NONE, false)]
+        {
             for (key, way) in ways {
                 let times = input.count_and_consume_key(modifiers, key) as f32;
                 keys.drag += way * times * POINTS_PER_KEY;
                 keys.panning |= panning && times > 0.0;
             }
         }
-        let [nearer, farther] =
-            [egui::Key::PageUp, egui::Key::PageDown].map(|key| input.count_and_consume_key(egui::Modifiers::NONE, key) as i32);
+        let [nearer, farther] = [egui::Key::PageUp, egui::Key::PageDown]
+            .map(|key| input.count_and_consume_key(egui::Modifiers::NONE, key) as i32);
         keys.nearer = 1.1_f64.powi(nearer - farther);
     });
     keys
 }
 
-/// How far the pointer, or two fingers, moved, and whether that moves the camera instead of turning it.
+/// How far the pointer, or two fingers, moved, and whether that moves the camera instead of turning
+/// it.
 fn drag_of(response: &Response, ui: &Ui) -> (Vec2, bool) {
     if let Some(touch) = ui.input(eframe::egui::InputState::multi_touch)
         && response.rect.contains(touch.center_pos)
     {
         return (touch.translation_delta, true);
     }
-    let other_button = response.dragged_by(egui::PointerButton::Secondary) || response.dragged_by(egui::PointerButton::Middle);
+    let other_button = response.dragged_by(egui::PointerButton::Secondary)
+        || response.dragged_by(egui::PointerButton::Middle);
     if response.dragged() {
         (response.drag_delta(), other_button || ui.input(|input| input.modifiers.shift))
     } else {
@@ -606,7 +650,9 @@ fn pan(session: &Session, drag: Vec2, stage: Rect) -> Vec<(Key, Value)> {
     camera.pan(glam_vec2(drag), stage.height());
     let moved = camera.target - before;
     [(Key::PanX, moved.x), (Key::PanY, moved.y), (Key::PanZ, moved.z)]
-        .map(|(key, by)| (key, Value::Number((params.number(key) + f64::from(by)).clamp(-100.0, 100.0))))
+        .map(|(key, by)| {
+            (key, Value::Number((params.number(key) + f64::from(by)).clamp(-100.0, 100.0)))
+        })
         .to_vec()
 }
 
@@ -619,22 +665,29 @@ pub(crate) fn frame_everything(session: &Session, state: &UiState, out: &mut Out
     out.commands.extend(framing(session, state, None).map(segue_session::Command::Set));
 }
 
-/// The camera that shows the whole way of everybody; from this height, degrees, or from where it is.
-pub(super) fn framing(session: &Session, state: &UiState, pitch: Option<f64>) -> Option<Vec<(Key, Value)>> {
+/// The camera that shows the whole way of everybody; from this height, degrees, or from where it
+/// is.
+pub(super) fn framing(
+    session: &Session,
+    state: &UiState,
+    pitch: Option<f64>,
+) -> Option<Vec<(Key, Value)>> {
     let outcomes = || session.panes().iter().filter_map(|pane| pane.shown_at(0.0));
     let places = outcomes().flat_map(|shown| {
         let frames = &shown.outcome.motion.ground_frames;
         frames.iter().map(move |frame| shown.place.after(frame).origin())
     });
     let company = session.company().iter().filter_map(|companion| companion.motion.as_ref().ok());
-    let company = company.flat_map(|motion| motion.ground_frames.iter().map(segue_motion::math::Planar::origin));
+    let company = company
+        .flat_map(|motion| motion.ground_frames.iter().map(segue_motion::math::Planar::origin));
     let paths = session.panes().iter().filter_map(|pane| path_of(session, pane));
     let points = paths.flat_map(|path| path.road.spline().points());
     let points = points.map(|point| glam::Vec3::new(point.x as f32, 0.0, point.y as f32));
     let all = places.chain(company).chain(points);
-    let (low, high) = all.fold((glam::Vec3::INFINITY, glam::Vec3::NEG_INFINITY), |(low, high), p| {
-        (low.min(p), high.max(p))
-    });
+    let (low, high) = all
+        .fold((glam::Vec3::INFINITY, glam::Vec3::NEG_INFINITY), |(low, high), p| {
+            (low.min(p), high.max(p))
+        });
     let first = outcomes().next().filter(|_| low.is_finite())?;
     let motion = &first.outcome.motion;
     let height = motion.roles.body_height(motion.clip.skeleton());
@@ -653,10 +706,7 @@ pub(super) fn framing(session: &Session, state: &UiState, pitch: Option<f64>) ->
     let pan = (camera.target - resting_point(first.outcome, &first.place)) * shown;
     let mut values = vec![
         (Key::Follow, choices::Follow::Off.into()),
-        (
-            Key::CameraDistance,
-            Value::Number(f64::from(camera.distance * shown).clamp(0.5, 60.0)),
-        ),
+        (Key::CameraDistance, Value::Number(f64::from(camera.distance * shown).clamp(0.5, 60.0))),
     ];
     values.extend(pitch);
     for (key, value) in [(Key::PanX, pan.x), (Key::PanY, pan.y), (Key::PanZ, pan.z)] {

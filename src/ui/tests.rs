@@ -1,4 +1,5 @@
-//! What the panels show and ask for. With `SEGUE_GALLERY` set to a folder, pictures of them are written there.
+//! What the panels show and ask for. With `SEGUE_GALLERY` set to a folder, pictures of them are
+//! written there.
 
 use super::*;
 use crate::ui::theme::Theme;
@@ -13,7 +14,9 @@ use segue_session::choices;
 use segue_session::choices::{Mistake, Selected as _};
 use segue_session::export::{ExportFormat, ExportOptions, export};
 use segue_session::reading::Content;
-use segue_session::{Command, Entry, Kind, Level, Origin, Outcome, PageMemory, Slot, SourceFile, Storing, Value};
+use segue_session::{
+    Command, Entry, Kind, Level, Origin, Outcome, PageMemory, Slot, SourceFile, Storing, Value,
+};
 use std::fmt::Write as _;
 use std::sync::Arc;
 
@@ -27,19 +30,10 @@ mod samples;
 
 const DESK: Vec2 = vec2(1440.0, 900.0);
 const PHONE: Vec2 = vec2(390.0, 844.0);
-const DARK: Theme = Theme {
-    dark: true,
-    projector: false,
-};
-const LIGHT: Theme = Theme {
-    dark: false,
-    projector: false,
-};
+const DARK: Theme = Theme { dark: true, projector: false };
+const LIGHT: Theme = Theme { dark: false, projector: false };
 
-const HALL: Theme = Theme {
-    dark: true,
-    projector: true,
-};
+const HALL: Theme = Theme { dark: true, projector: true };
 
 /// A page without a renderer.
 struct Page {
@@ -63,10 +57,10 @@ impl Page {
             width: rect.width() as u32,
             height: rect.height() as u32,
         };
-        let shown: Vec<(usize, Viewport)> = places.iter().map(|&(pane, rect)| (pane, viewport(rect))).collect();
+        let shown: Vec<(usize, Viewport)> =
+            places.iter().map(|&(pane, rect)| (pane, viewport(rect))).collect();
         self.director.mark_path(self.state.path_marks(&self.session));
-        self.director
-            .stage(&self.session, &shown, 1.0, Look::DARK, &Colors::default(), 10.0);
+        self.director.stage(&self.session, &shown, 1.0, Look::DARK, &Colors::default(), 10.0);
         let panes = self.session.panes().len();
         self.state.cameras = (0..panes).map(|pane| self.director.camera(pane).copied()).collect();
     }
@@ -88,10 +82,8 @@ fn page(link: &str) -> Page {
 }
 
 fn harness(size: Vec2, theme: Theme, page: Page) -> Harness<'static, Page> {
-    let builder = Harness::builder()
-        .with_size(size)
-        .with_max_steps(60)
-        .with_context_setup(move |ctx| {
+    let builder =
+        Harness::builder().with_size(size).with_max_steps(60).with_context_setup(move |ctx| {
             theme.install(ctx);
             kit::ENGLISH.install(ctx);
         });
@@ -103,14 +95,16 @@ fn harness(size: Vec2, theme: Theme, page: Page) -> Harness<'static, Page> {
                 shown = stage;
                 places = panes.to_vec();
                 let colors = &palette_of(ui).stage;
-                ui.painter()
-                    .add(Shape::gradient_rect(stage, egui::Direction::TopDown, [colors.sky, colors.horizon]));
+                ui.painter().add(Shape::gradient_rect(
+                    stage,
+                    egui::Direction::TopDown,
+                    [colors.sky, colors.horizon],
+                ));
             };
             let whole = egui::UiBuilder::new().max_rect(ui.ctx().content_rect());
-            let Page {
-                session, state, curves, ..
-            } = page;
-            let out = ui.scope_builder(whole, |ui| show(session, state, curves, &mut paint, ui)).inner;
+            let Page { session, state, curves, .. } = page;
+            let out =
+                ui.scope_builder(whole, |ui| show(session, state, curves, &mut paint, ui)).inner;
             for command in &out.commands {
                 if page.obeys {
                     page.session.apply(command.clone()).expect("a page as the tests need it");
@@ -151,7 +145,8 @@ fn press(label: &str, harness: &mut Harness<'_, Page>) {
     harness.run();
 }
 
-/// Writes a picture where pictures were asked for. They are to be looked at, not compared: rasterisers differ.
+/// Writes a picture where pictures were asked for. They are to be looked at, not compared:
+/// rasterisers differ.
 fn picture(name: &str, harness: &mut Harness<'_, Page>) {
     if let Some(folder) = std::env::var_os("SEGUE_GALLERY") {
         let image = harness.render().expect("a rasteriser");
@@ -191,8 +186,10 @@ fn file(session: &Session) -> String {
         .find("walk")
         .and_then(|entry| entry.motion.clone())
         .expect("a page as the tests need it");
-    let text = String::from_utf8(export(&motion, None, &[], &ExportOptions::default()).expect("a page as the tests need it"))
-        .expect("a page as the tests need it");
+    let text = String::from_utf8(
+        export(&motion, None, &[], &ExportOptions::default()).expect("a page as the tests need it"),
+    )
+    .expect("a page as the tests need it");
     let (head, rows) = text.split_once("MOTION\n").expect("a page as the tests need it");
     let frames = motion.clip.frames();
     let root_end = head
@@ -206,7 +203,8 @@ fn file(session: &Session) -> String {
         .split_once("Frame Time")
         .map(|(_, rest)| rest.split_once('\n').expect("a page as the tests need it"))
         .expect("a page as the tests need it");
-    let columns = rows.lines().next().expect("a page as the tests need it").split_whitespace().count();
+    let columns =
+        rows.lines().next().expect("a page as the tests need it").split_whitespace().count();
     let mut first: Vec<&str> = rows
         .lines()
         .next()
@@ -216,7 +214,8 @@ fn file(session: &Session) -> String {
         .collect();
     first.resize(columns, "0");
     let mut out = format!("{}{tail}{}MOTION\n", &head[..root_end], &head[root_end..]);
-    write!(out, "Frames: {}\nFrame Time{time}\n{}\n{rows}", frames + 1, first.join(" ")).expect("a page as the tests need it");
+    write!(out, "Frames: {}\nFrame Time{time}\n{}\n{rows}", frames + 1, first.join(" "))
+        .expect("a page as the tests need it");
     out
 }
 
@@ -315,7 +314,8 @@ fn what_is_said_by_hand_reads_the_file_again() {
 fn a_joint_of_the_tree_is_chosen_by_pointer_and_by_keyboard() {
     let mut harness = harness(DESK, DARK, with_file("lab=view&play=off&joint=tail"));
     press("Joints", &mut harness);
-    let chosen = |harness: &Harness<'_, Page>| harness.state().session.params().text(Key::Joint).to_owned();
+    let chosen =
+        |harness: &Harness<'_, Page>| harness.state().session.params().text(Key::Joint).to_owned();
     let tail = harness.get_by_label("Tail");
     assert_eq!(tail.accesskit_node().is_selected(), Some(true));
     tail.focus();
@@ -402,11 +402,7 @@ fn memory_in_use_is_shown_once_it_is_more_than_a_quarter() {
 #[test]
 fn a_motion_is_saved_as_it_is_wanted() {
     let mut harness = harness(DESK, DARK, page("compare=blend_window:30,15,10&play=off"));
-    harness.state_mut().state.filming = Filming {
-        pictures: true,
-        films: true,
-        secs: Some(67.4),
-    };
+    harness.state_mut().state.filming = Filming { pictures: true, films: true, secs: Some(67.4) };
     press("Result", &mut harness);
     press("15 frames", &mut harness);
     press("File options", &mut harness);
@@ -420,7 +416,9 @@ fn a_motion_is_saved_as_it_is_wanted() {
     press("Save the stage as a picture", &mut harness);
     harness.get_by_label("Recording, 1:07");
     let actions = &harness.state().out.actions;
-    let [Action::Save { which, how }, Action::Save { how: glb, .. }, rest @ ..] = actions.as_slice() else {
+    let [Action::Save { which, how }, Action::Save { how: glb, .. }, rest @ ..] =
+        actions.as_slice()
+    else {
         panic!("{actions:?}")
     };
     assert_eq!((which.as_str(), how.format), ("result:1", ExportFormat::Bvh));
@@ -433,7 +431,9 @@ fn a_motion_is_saved_as_it_is_wanted() {
 fn a_blend_of_two_skeletons_says_what_was_not_matched() {
     let page = with_file("lab=blend&b=run&play=off");
     assert_eq!(outcome(&page).retargeted.as_ref().unwrap().unmatched, ["Tail"]);
-    for (name, size, theme) in [("retarget-desk-light", DESK, LIGHT), ("retarget-phone-dark", PHONE, DARK)] {
+    for (name, size, theme) in
+        [("retarget-desk-light", DESK, LIGHT), ("retarget-phone-dark", PHONE, DARK)]
+    {
         let mut harness = harness(size, theme, with_file("lab=blend&b=run&play=off"));
         harness.get_by_label("B's motion is moved onto A's skeleton; not matched: Tail.");
         picture(name, &mut harness);
@@ -458,15 +458,9 @@ fn a_clip_without_a_motion_says_why() {
         index: 0,
         options: ImportOptions::default(),
     };
-    let being_read = Entry {
-        origin: Origin::File(large),
-        ..entry.clone()
-    };
+    let being_read = Entry { origin: Origin::File(large), ..entry.clone() };
     assert_eq!(text::status(&being_read), text::READING);
-    let given_up = Entry {
-        unread: Some("Reading large.bvh was stopped.".into()),
-        ..being_read
-    };
+    let given_up = Entry { unread: Some("Reading large.bvh was stopped.".into()), ..being_read };
     assert_eq!(text::status(&given_up), text::UNREAD);
     let mut harness = harness(DESK, DARK, page);
     harness.get_by_label_contains("alone, waits for its skeleton");
@@ -478,12 +472,7 @@ fn a_gait_takes_any_speed_and_says_when_that_is_a_guess() {
     for (name, size, theme, link) in [
         ("speed-desk-dark", DESK, DARK, "lab=speed&play=off&t=1"),
         ("speed-desk-light", DESK, LIGHT, "lab=speed&speed=9&foot_lock=on&play=off"),
-        (
-            "speed-compare-desk-dark",
-            DESK,
-            DARK,
-            "lab=speed&compare=speed:1.4,2.2,3.9&play=off",
-        ),
+        ("speed-compare-desk-dark", DESK, DARK, "lab=speed&compare=speed:1.4,2.2,3.9&play=off"),
         ("speed-phone-dark", PHONE, DARK, "lab=speed&play=off"),
         ("speed-projector", vec2(1280.0, 720.0), HALL, "lab=speed&play=off"),
     ] {
@@ -560,18 +549,8 @@ fn a_loop_says_where_it_was_cut_and_what_its_method_does() {
 fn the_layers_lab_says_how_time_goes_and_where_the_layer_is() {
     for (name, size, theme, link) in [
         ("layers-desk-dark", DESK, DARK, "lab=layers&play=off&t=1"),
-        (
-            "layers-additive-light",
-            DESK,
-            LIGHT,
-            "lab=layers&layer_mode=additive&b=jump&play=off",
-        ),
-        (
-            "layers-compare-dark",
-            DESK,
-            DARK,
-            "lab=layers&compare=layer_weight:1,0.5,0.33&play=off",
-        ),
+        ("layers-additive-light", DESK, LIGHT, "lab=layers&layer_mode=additive&b=jump&play=off"),
+        ("layers-compare-dark", DESK, DARK, "lab=layers&compare=layer_weight:1,0.5,0.33&play=off"),
         ("layers-phone-dark", PHONE, DARK, "lab=layers&play=off"),
     ] {
         let page = page(link);
@@ -591,10 +570,7 @@ fn the_layers_lab_says_how_time_goes_and_where_the_layer_is() {
     press("left arm", &mut harness);
     let params = harness.state().session.params();
     assert_eq!(
-        (
-            params.choice::<choices::LayerMode>().word(),
-            params.choice::<choices::Mask>().word()
-        ),
+        (params.choice::<choices::LayerMode>().word(), params.choice::<choices::Mask>().word()),
         ("additive", "left_arm")
     );
     harness.get_by_label("first frame");
@@ -616,11 +592,14 @@ fn a_mistake_is_chosen_explained_and_held_against_the_right_way() {
     press(text::RIGHT_AND_WRONG, &mut harness);
     assert_eq!(harness.state().session.panes().len(), 1);
     // A cut has nothing to be mixed wrongly, and that is said.
-    let cut = self::harness(DESK, LIGHT, page("lab=transition&method=cut&mistake=degrees&play=off"));
+    let cut =
+        self::harness(DESK, LIGHT, page("lab=transition&method=cut&mistake=degrees&play=off"));
     cut.get_by_label(text::MISTAKE_IDLE);
-    let dissolve = self::harness(DESK, DARK, page("lab=transition&method=smooth&mistake=velocity&play=off"));
+    let dissolve =
+        self::harness(DESK, DARK, page("lab=transition&method=smooth&mistake=velocity&play=off"));
     dissolve.get_by_label(text::VELOCITY_IN_DISSOLVE);
-    let turned = self::harness(PHONE, LIGHT, page("lab=transition&method=cut&mistake=atan&play=off"));
+    let turned =
+        self::harness(PHONE, LIGHT, page("lab=transition&method=cut&mistake=atan&play=off"));
     turned.get_by_label(text::mistake(Mistake::Atan));
 }
 
@@ -641,24 +620,36 @@ fn a_clip_of_another_skeleton_is_said_to_be_moved() {
     while page.session.work() {}
     let harness = harness(DESK, DARK, page);
     harness.get_by_label_contains("Moved onto the skeleton of Walk:");
-    let alone = self::page("lab=graph&clips=idle&construction=segments&segment_size=20&blend_window=30&play=off");
+    let alone = self::page(
+        "lab=graph&clips=idle&construction=segments&segment_size=20&blend_window=30&play=off",
+    );
     let harness = self::harness(DESK, LIGHT, alone);
     assert!(harness.query_all_by_label_contains("raise the segment to 31").next().is_some());
 }
 
-/// Inside another page no panel may cover another: the row with the play button stood half under the stage where the tracks need room.
+/// Inside another page no panel may cover another: the row with the play button stood half under
+/// the stage where the tracks need room.
 #[test]
 fn an_embedded_page_shows_all_of_its_timeline() {
     for lab in ["blend", "transition", "loop", "register", "graph", "match"] {
-        for (name, size) in [("phone", PHONE), ("desk", vec2(800.0, 500.0)), ("projector", vec2(1280.0, 720.0))] {
+        for (name, size) in
+            [("phone", PHONE), ("desk", vec2(800.0, 500.0)), ("projector", vec2(1280.0, 720.0))]
+        {
             let link = format!("lab={lab}&play=off&embed=1&half_life=0.2&blend_window=12");
             let mut harness = harness(size, DARK, page(&link));
             picture(&format!("embed-{lab}-{name}"), &mut harness);
-            let [slider, play] = ["Blend window", "Play"].map(|label| harness.get_by_label(label).rect());
+            let [slider, play] =
+                ["Blend window", "Play"].map(|label| harness.get_by_label(label).rect());
             let last = harness.query_by_label("Timeline").map_or(play, |timeline| timeline.rect());
             let stage = harness.state().stage;
-            assert!(stage.height() > 150.0 && stage.bottom() <= slider.top(), "{lab}, {name}: {stage:?}");
-            assert!(slider.bottom() <= play.top() && last.bottom() <= size.y, "{lab}, {name}: {play:?}");
+            assert!(
+                stage.height() > 150.0 && stage.bottom() <= slider.top(),
+                "{lab}, {name}: {stage:?}"
+            );
+            assert!(
+                slider.bottom() <= play.top() && last.bottom() <= size.y,
+                "{lab}, {name}: {play:?}"
+            );
         }
     }
 }
@@ -677,7 +668,8 @@ fn a_clip_that_is_not_here_is_named_where_it_is_missed() {
     }
 }
 
-/// One drags, and wants to see it play: Space is the motion's, unless the focus came by the keyboard.
+/// One drags, and wants to see it play: Space is the motion's, unless the focus came by the
+/// keyboard.
 #[test]
 fn space_plays_after_a_drag() {
     let mut harness = harness(DESK, DARK, page("lab=blend&play=off"));
@@ -700,12 +692,15 @@ fn space_plays_after_a_drag() {
     assert!(plays(&harness) && !harness.state().session.params().is_on(Key::Align));
 }
 
-/// What a first visitor drags is what the panes show: every pane of a comparison has its own slider.
+/// What a first visitor drags is what the panes show: every pane of a comparison has its own
+/// slider.
 #[test]
 fn values_side_by_side_are_dragged_one_by_one() {
     let mut harness = harness(DESK, DARK, page("compare=blend_window:30,15,10&play=off"));
     picture("compare-rows", &mut harness);
-    let compare = |harness: &Harness<'_, Page>| harness.state().session.params().text(Key::Compare).to_owned();
+    let compare = |harness: &Harness<'_, Page>| {
+        harness.state().session.params().text(Key::Compare).to_owned()
+    };
     harness.get_by_label("Blend window · 2").focus();
     harness.step();
     harness.key_press(egui::Key::ArrowRight);
@@ -729,7 +724,9 @@ fn values_side_by_side_are_dragged_one_by_one() {
 fn choices_side_by_side_have_a_row_each() {
     let mut harness = harness(DESK, DARK, page("compare=weight_law:smooth,linear&play=off"));
     picture("compare-choices", &mut harness);
-    let compare = |harness: &Harness<'_, Page>| harness.state().session.params().text(Key::Compare).to_owned();
+    let compare = |harness: &Harness<'_, Page>| {
+        harness.state().session.params().text(Key::Compare).to_owned()
+    };
     assert!(harness.query_by_label("Weight law").is_none());
     press(text::PANE_MORE, &mut harness);
     let three = compare(&harness);
@@ -748,7 +745,10 @@ fn an_embedded_page_keeps_the_rows_that_its_link_names() {
     let link = "lab=blend&embed=1&blend_window=30&a=walk&look=both&play=off";
     let mut harness = harness(vec2(800.0, 500.0), DARK, page(link));
     harness.run_steps(2);
-    assert!(harness.query_by_label("Blend window").is_some() && harness.query_by_label(Slot::A.label()).is_some());
+    assert!(
+        harness.query_by_label("Blend window").is_some()
+            && harness.query_by_label(Slot::A.label()).is_some()
+    );
     // At its default a parameter is still there to be tried.
     harness.state_mut().session.apply(Command::Reset(Key::BlendWindow)).unwrap();
     harness.run_steps(2);
@@ -782,11 +782,7 @@ fn notices_of_any_length_can_be_closed_one_after_the_other() {
                     .last()
                     .map(|cross| cross.rect().center())
             };
-            harness
-                .get_all_by_label(kit::ENGLISH.dismiss)
-                .last()
-                .expect("a cross")
-                .scroll_to_me();
+            harness.get_all_by_label(kit::ENGLISH.dismiss).last().expect("a cross").scroll_to_me();
             harness.run();
             let at = cross(&harness).expect("a cross");
             assert!(

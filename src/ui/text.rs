@@ -1,4 +1,5 @@
-//! Every sentence and word of the interface that is not a parameter's own (those stand in the table of parameters).
+//! Every sentence and word of the interface that is not a parameter's own (those stand in the table
+//! of parameters).
 
 use segue_motion::gait::GaitFacts;
 use segue_motion::matching::{Block, Database, Held, RATE, Reason, SearchRecord};
@@ -7,8 +8,8 @@ use segue_session::JobKind;
 use segue_session::choices::{Hysteresis, LoopMethod, Mistake, PathKeep};
 use segue_session::export::ExportFormat;
 use segue_session::{
-    Built, Cast, ClipSet, Entry, Job, LayerFacts, LayerFit, MemoryUse, OnPath, Origin, Retargeted, Storing, Trace, Transition,
-    format_number,
+    Built, Cast, ClipSet, Entry, Job, LayerFacts, LayerFit, MemoryUse, OnPath, Origin, Retargeted,
+    Storing, Trace, Transition, format_number,
 };
 
 pub(crate) const APP: &str = "Segue";
@@ -26,7 +27,8 @@ pub(crate) const MEND: &str = "Correct it";
 /// Of several of them.
 pub(crate) const MEND_ALL: &str = "Correct all";
 /// In a frame of another page.
-pub(crate) const HOST_READS: &str = "The page around this frame can read and save what you open here.";
+pub(crate) const HOST_READS: &str =
+    "The page around this frame can read and save what you open here.";
 pub(crate) const COMPARE: &str = "Compare";
 pub(crate) const COMPARE_OFF: &str = "One pane";
 /// Of what several values stand side by side, and nothing of the kind.
@@ -41,15 +43,16 @@ pub(crate) const LINK: &str = "Link";
 pub(crate) const LINK_COPIED: &str = "The link is in the clipboard. It opens exactly this state.";
 pub(crate) const COPY_REPORT: &str = "Copy a report: picture, settings, numbers, link";
 pub(crate) const REPORT: &str = "Copy a report";
-pub(crate) const REPORT_COPIED: &str = "The report is in the clipboard: Markdown, with the picture in it.";
+pub(crate) const REPORT_COPIED: &str =
+    "The report is in the clipboard: Markdown, with the picture in it.";
 pub(crate) const COMPARE_WITH_A: &str = "Compare with A";
 pub(crate) const CLIP: &str = "Clip";
 pub(crate) const COMPARE_CLIPS: &str = "Compare with B";
-pub(crate) const COMPARE_CLIPS_HELP: &str = "A and B as they are, side by side, with the same numbers for both";
+pub(crate) const COMPARE_CLIPS_HELP: &str =
+    "A and B as they are, side by side, with the same numbers for both";
 pub(crate) const BLEND_MORE: &str = "Blend in another clip";
 pub(crate) const TAGS: &str = "Tags";
-pub(crate) const TAGS_HELP: &str =
-    "Speed and turn rate suggest tags. Drag along a clip in the strip below the stage to tag a stretch of it by hand.";
+pub(crate) const TAGS_HELP: &str = "Speed and turn rate suggest tags. Drag along a clip in the strip below the stage to tag a stretch of it by hand.";
 pub(crate) const TAG_WHAT_PLAYS: &str = "Choose what plays now";
 pub(crate) const STRETCH_FROM: &str = "Stretch from";
 pub(crate) const STRETCH_TO: &str = "Stretch to";
@@ -103,8 +106,7 @@ pub(crate) const FRAME_RATE: &str = "Frame rate";
 pub(crate) const BODY_HEIGHT: &str = "Body height";
 pub(crate) const GROUND: &str = "Ground";
 /// Of a body whose feet cannot be held.
-pub(crate) const NO_LEGS: &str =
-    "Its feet are not held: this skeleton has no leg with thigh, shin and foot. Choose these joints under Body parts in the View lab.";
+pub(crate) const NO_LEGS: &str = "Its feet are not held: this skeleton has no leg with thigh, shin and foot. Choose these joints under Body parts in the View lab.";
 pub(crate) const FEET: &str = "Feet and ground";
 pub(crate) const MEAN_SPEED: &str = "Mean speed";
 pub(crate) const JOINTS: &str = "Joints";
@@ -114,7 +116,8 @@ pub(crate) const POSITION: &str = "position";
 pub(crate) const ROTATION: &str = "rotation";
 pub(crate) const MADE_BODY: &str = "made around the bones";
 pub(crate) const BODY_PARTS: &str = "Body parts";
-pub(crate) const BODY_PARTS_HELP: &str = "Which joint is which part of the body. Found by name or by shape; correct what is wrong.";
+pub(crate) const BODY_PARTS_HELP: &str =
+    "Which joint is which part of the body. Found by name or by shape; correct what is wrong.";
 pub(crate) const UNIT: &str = "Unit";
 pub(crate) const UP_AXIS: &str = "Up axis";
 pub(crate) const FOUND_WORD: &str = "found";
@@ -126,25 +129,29 @@ pub(crate) const TYPED_RATE: &str = "Frames per second";
 pub(crate) const DROP_T_POSE: &str = "Leave out the T-pose";
 pub(crate) const NOBODY: &str = "none";
 pub(crate) const FOUND: &str = "Found automatically";
-pub(crate) const BY_HAND: &str = "Set by hand; double-click the label to find the best match again.";
-/// How the place of a transition was found, and how far apart the clips are there. `automatic`: whether A's frame and B's are left to Segue.
+pub(crate) const BY_HAND: &str =
+    "Set by hand; double-click the label to find the best match again.";
+/// How the place of a transition was found, and how far apart the clips are there. `automatic`:
+/// whether A's frame and B's are left to Segue.
 pub(crate) fn place_found(transition: &Transition, automatic: [bool; 2]) -> String {
     let Some(search) = transition.search.filter(|_| transition.distance_cm.is_finite()) else {
-        return if automatic == [false, false] {
-            BY_HAND.to_owned()
-        } else {
-            format!("{FOUND}.")
-        };
+        return if automatic == [false, false] { BY_HAND.to_owned() } else { format!("{FOUND}.") };
     };
     let cm = transition.distance_cm;
     let mut said = match (automatic, search.by_pose) {
-        ([false, false], true) => vec![BY_HAND.to_owned(), format!("The poses are {cm:.1} cm apart.")],
-        ([false, false], false) => vec![BY_HAND.to_owned(), format!("The windows are {cm:.1} cm apart.")],
+        ([false, false], true) => {
+            vec![BY_HAND.to_owned(), format!("The poses are {cm:.1} cm apart.")]
+        }
+        ([false, false], false) => {
+            vec![BY_HAND.to_owned(), format!("The windows are {cm:.1} cm apart.")]
+        }
         (_, true) => vec![format!("{FOUND}: best match of two poses, {cm:.1} cm.")],
         (_, false) => vec![format!("{FOUND}: best match of both windows, {cm:.1} cm.")],
     };
     match automatic {
-        _ if search.is_widened => said.push("A clip is too short for its half to be searched: all of it was.".to_owned()),
+        _ if search.is_widened => {
+            said.push("A clip is too short for its half to be searched: all of it was.".to_owned())
+        }
         [true, true] => said.push("Searched: A's second half and B's first half.".to_owned()),
         [true, false] => said.push("Searched: A's second half.".to_owned()),
         [false, true] => said.push("Searched: B's first half.".to_owned()),
@@ -160,8 +167,7 @@ pub(crate) fn place_found(transition: &Transition, automatic: [bool; 2]) -> Stri
 }
 pub(crate) const SMOOTHEST: &str = "smoothest";
 pub(crate) const ROUGHEST: &str = "roughest";
-pub(crate) const WELCOME_HINT: &str =
-    "Same walk, same instant. Watch the feet and the hips: the shorter the window, the harder the burst into the run.";
+pub(crate) const WELCOME_HINT: &str = "Same walk, same instant. Watch the feet and the hips: the shorter the window, the harder the burst into the run.";
 pub(crate) const EMPTY_PANE: &str = "Nothing to show yet";
 /// On a pane that still shows an earlier result.
 pub(crate) const OUTDATED: &str = "computing the new one";
@@ -262,7 +268,9 @@ pub(crate) fn retargeted(retargeted: &Retargeted) -> String {
 /// That B runs at another rate than A.
 pub(crate) fn resampled(from: f64, to: f64) -> String {
     let [from, to] = [from, to].map(|fps| format_number(fps, 0.01));
-    format!("B is resampled from {from} to {to} frames per second, the rate of A and of the result.")
+    format!(
+        "B is resampled from {from} to {to} frames per second, the rate of A and of the result."
+    )
 }
 
 /// The shortcuts, in the order of the list under `?`.
@@ -292,8 +300,8 @@ pub(crate) const SHORTCUTS: &[(&str, &str)] = &[
     ("Page up, down", "zoom"),
 ];
 
-/// The numbers under a pane, by id, with the short names that fit there: first those of every lab. A narrow pane has room for these and
-/// two more.
+/// The numbers under a pane, by id, with the short names that fit there: first those of every lab.
+/// A narrow pane has room for these and two more.
 pub(crate) const METRICS: &[(&str, &str)] = &[
     ("pose_jump_deg", "pose jump"),
     ("velocity_jump_dps", "jump °/s"),
@@ -340,8 +348,7 @@ pub(crate) const METRICS: &[(&str, &str)] = &[
 ];
 
 /// What the Speed lab does.
-pub(crate) const SPEED_ABOUT: &str =
-    "Blends two gaits, such as a walk and a run, to any speed between them. Drag the speed while it plays.";
+pub(crate) const SPEED_ABOUT: &str = "Blends two gaits, such as a walk and a run, to any speed between them. Drag the speed while it plays.";
 /// Opens the speeds of A and B and the one between.
 pub(crate) const THREE_SPEEDS: &str = "A, half way, B";
 /// A chip over a pane whose speed lies beyond both clips.
@@ -374,9 +381,11 @@ pub(crate) fn beyond_gaits(facts: &GaitFacts, [a, b]: [f64; 2]) -> Option<String
 /// A mark on the timeline.
 pub(crate) const CYCLE_BEGINS: &str = "The cycle begins again";
 /// What the Loop lab does.
-pub(crate) const LOOP_ABOUT: &str = "Makes a seamless cycle of a part of A: the difference between its ends is spread over it.";
+pub(crate) const LOOP_ABOUT: &str =
+    "Makes a seamless cycle of a part of A: the difference between its ends is spread over it.";
 /// What the half-life does to a loop.
-pub(crate) const LOOP_HALF_LIFE: &str = "How far into the cycle the correction reaches from its ends.";
+pub(crate) const LOOP_HALF_LIFE: &str =
+    "How far into the cycle the correction reaches from its ends.";
 /// Several methods on the same cycle.
 pub(crate) const LOOP_SHOOT_OUT: &str = "Exact against classic";
 /// What the button opens.
@@ -385,15 +394,23 @@ pub(crate) const LOOP_SHOOT_OUT_QUERY: &str = "loop_method:exact,both,end";
 /// What a way to close a loop does.
 pub(crate) fn loop_method(method: LoopMethod) -> &'static str {
     match method {
-        LoopMethod::Both => "Springs from both ends, as they are: what has not died away at the other end stays as a seam.",
+        LoopMethod::Both => {
+            "Springs from both ends, as they are: what has not died away at the other end stays as a seam."
+        }
         LoopMethod::Crossed => {
             "As with both ends, but the beginning takes the other share of the velocity's difference. With a ratio of 0.5 it is the same."
         }
         LoopMethod::Start => "A spring at the beginning alone takes all of the difference.",
         LoopMethod::End => "A spring at the end alone takes all of the difference.",
-        LoopMethod::Linear => "Evenly over the whole cycle: the pose closes, its velocity does not.",
-        LoopMethod::Cubic => "A cubic over the whole cycle: pose and velocity close, and every pose bends a little.",
-        LoopMethod::Exact => "Springs from both ends, solved so that pose and velocity close exactly.",
+        LoopMethod::Linear => {
+            "Evenly over the whole cycle: the pose closes, its velocity does not."
+        }
+        LoopMethod::Cubic => {
+            "A cubic over the whole cycle: pose and velocity close, and every pose bends a little."
+        }
+        LoopMethod::Exact => {
+            "Springs from both ends, solved so that pose and velocity close exactly."
+        }
     }
 }
 
@@ -410,11 +427,9 @@ pub(crate) fn poor_ends(distance_cm: f64) -> String {
 }
 
 /// What the Register lab does, and where to look.
-pub(crate) const REGISTER_ABOUT: &str =
-    "Bends B's time so that alike frames meet. Watch the feet on the timeline: A, B and the result strike together.";
+pub(crate) const REGISTER_ABOUT: &str = "Bends B's time so that alike frames meet. Watch the feet on the timeline: A, B and the result strike together.";
 /// The same over the stage.
-pub(crate) const REGISTER_HINT: &str =
-    "A and B go beside what is made of them, in step. Compare with plain: there steps double and feet slide.";
+pub(crate) const REGISTER_HINT: &str = "A and B go beside what is made of them, in step. Compare with plain: there steps double and feet slide.";
 /// What makes the weight of a registered blend a curve.
 pub(crate) const WEIGHT_OVER_TIME: &str = "Draw over time";
 /// And a number again.
@@ -426,7 +441,8 @@ pub(crate) const ALL_B: &str = "all B";
 /// See [`ALL_B`].
 pub(crate) const ALL_A: &str = "all A";
 /// How the curve is worked.
-pub(crate) const WEIGHT_CURVE_HELP: &str = "Drag a key to move it; double-click to add one, or to take one away.";
+pub(crate) const WEIGHT_CURVE_HELP: &str =
+    "Drag a key to move it; double-click to add one, or to take one away.";
 /// Opens both beside each other.
 pub(crate) const REGISTERED_AND_PLAIN: &str = "Registered beside plain";
 /// The map's name.
@@ -434,7 +450,8 @@ pub(crate) const DISTANCES: &str = "Distances between A and B";
 /// While they are computed.
 pub(crate) const COMPARING: &str = "Comparing all frames";
 /// What can be done with the map.
-pub(crate) const MAP_HELP: &str = "Point: both poses. Click: go there. Drag: a pin; drag it out or double-click it to remove it.";
+pub(crate) const MAP_HELP: &str =
+    "Point: both poses. Click: go there. Drag: a pin; drag it out or double-click it to remove it.";
 /// A button.
 pub(crate) const REMOVE_PINS: &str = "Remove pins";
 /// Of the parameters below the map.
@@ -465,27 +482,28 @@ pub(crate) fn pins(count: usize) -> String {
 }
 
 /// What the Path lab does.
-pub(crate) const PATH_ABOUT: &str =
-    "A curve is fitted to the path of the hips. Drag its points: the path bends, and the character follows with what the curve left over.";
+pub(crate) const PATH_ABOUT: &str = "A curve is fitted to the path of the hips. Drag its points: the path bends, and the character follows with what the curve left over.";
 /// The same over the stage.
 pub(crate) const PATH_HINT: &str = "Drag a point: the path bends, and the character follows. Double-click the path for one more point.";
 /// A button.
 pub(crate) const DRAW: &str = "Draw";
 /// Its hint.
-pub(crate) const DRAW_HELP: &str = "Draw a path on the ground with one stroke; back to where it began makes a loop";
+pub(crate) const DRAW_HELP: &str =
+    "Draw a path on the ground with one stroke; back to where it began makes a loop";
 /// Over the stage, until something was drawn.
-pub(crate) const DRAW_HINT: &str = "Draw the path on the ground in one stroke. Esc leaves it as it is.";
+pub(crate) const DRAW_HINT: &str =
+    "Draw the path on the ground in one stroke. Esc leaves it as it is.";
 /// A button.
 pub(crate) const ADD_POINT: &str = "Add a point";
 /// Its hint.
-pub(crate) const ADD_POINT_HELP: &str = "One more control point behind the chosen one; the path stays as it is";
+pub(crate) const ADD_POINT_HELP: &str =
+    "One more control point behind the chosen one; the path stays as it is";
 /// A button.
 pub(crate) const REMOVE_POINT: &str = "Take it out";
 /// Its hint.
 pub(crate) const REMOVE_POINT_HELP: &str = "Takes the chosen control point out of the path";
 /// While no point is chosen.
-pub(crate) const POINTS_HELP: &str =
-    "Points on the stage: drag, or choose one and use the arrow keys, Shift for more, Delete to take it out, Tab for the next.";
+pub(crate) const POINTS_HELP: &str = "Points on the stage: drag, or choose one and use the arrow keys, Shift for more, Delete to take it out, Tab for the next.";
 /// When none is chosen.
 pub(crate) const CHOOSE_POINT: &str = "Choose a control point on the stage first.";
 /// Over the buttons that follow.
@@ -513,7 +531,8 @@ pub(crate) const SNAP_ALL: &str = "Snap all points";
 /// Likewise.
 pub(crate) const RESET_PATH: &str = "Reset the path";
 /// Its hint.
-pub(crate) const RESET_PATH_HELP: &str = "Back to the path as it was fitted; undo brings the edited one back";
+pub(crate) const RESET_PATH_HELP: &str =
+    "Back to the path as it was fitted; undo brings the edited one back";
 /// Over what belongs to the fit.
 pub(crate) const FIT: &str = "Fit";
 /// A button that opens panes.
@@ -529,7 +548,8 @@ pub(crate) const COMPANY: &str = "On the stage together";
 /// A button.
 pub(crate) const JOIN: &str = "This one joins";
 /// Its hint.
-pub(crate) const JOIN_HELP: &str = "Leaves this character on the stage as it is, so that another path can be made beside it";
+pub(crate) const JOIN_HELP: &str =
+    "Leaves this character on the stage as it is, so that another path can be made beside it";
 /// A list of clips.
 pub(crate) const JOIN_CLIP: &str = "A clip joins";
 /// Which clip is preferred while none is chosen.
@@ -537,7 +557,8 @@ pub(crate) const THE_CLIP_THAT_PLAYS: &str = "the one that plays";
 /// While none is chosen.
 pub(crate) const CHOOSE_CLIP: &str = "choose…";
 /// What that is for.
-pub(crate) const COMPANY_HELP: &str = "Each on its own path and in its own colour, all in the same time. The link carries them.";
+pub(crate) const COMPANY_HELP: &str =
+    "Each on its own path and in its own colour, all in the same time. The link carries them.";
 
 /// What a screen reader says of a control point.
 pub(crate) fn control_point(index: usize, count: usize, place: glam::DVec2) -> String {
@@ -556,30 +577,36 @@ pub(crate) fn chosen_point(index: usize, count: usize, place: glam::DVec2) -> St
 /// What stays when a path becomes longer or shorter.
 pub(crate) fn path_keep(word: PathKeep) -> &'static str {
     match word {
-        PathKeep::Duration => "It takes the whole path in the time that it took before: faster on a longer one, and feet slide.",
-        PathKeep::Whole => "It takes the whole path at its speed: a longer one takes longer, with longer strides.",
-        PathKeep::Speed => "Speed and strides stay: on a longer path it does not come to the end, on a closed one it goes round.",
+        PathKeep::Duration => {
+            "It takes the whole path in the time that it took before: faster on a longer one, and feet slide."
+        }
+        PathKeep::Whole => {
+            "It takes the whole path at its speed: a longer one takes longer, with longer strides."
+        }
+        PathKeep::Speed => {
+            "Speed and strides stay: on a longer path it does not come to the end, on a closed one it goes round."
+        }
     }
 }
 
 /// How long the path is, and was.
 pub(crate) fn path_lengths(path: &OnPath) -> String {
     let (now, before) = (path.road.length_m(), path.fitted.road().length_m());
-    if path.is_edited {
-        format!("{now:.2} m, was {before:.2} m")
-    } else {
-        format!("{now:.2} m")
-    }
+    if path.is_edited { format!("{now:.2} m, was {before:.2} m") } else { format!("{now:.2} m") }
 }
 
 /// How well the path follows the hips.
 pub(crate) fn fit_error(rms_cm: f64, most_cm: f64, along_m: f64) -> String {
-    format!("Hips beside the path: {rms_cm:.1} cm on average (root mean square), at most {most_cm:.1} cm at {along_m:.1} m.")
+    format!(
+        "Hips beside the path: {rms_cm:.1} cm on average (root mean square), at most {most_cm:.1} cm at {along_m:.1} m."
+    )
 }
 
 /// That an edited path does not change with the slider.
 pub(crate) fn own_points(count: usize) -> String {
-    format!("The edited path keeps its own {count} points; this is the path that it is measured against.")
+    format!(
+        "The edited path keeps its own {count} points; this is the path that it is measured against."
+    )
 }
 
 /// A turn that the motion does not hold.
@@ -622,10 +649,18 @@ pub(crate) fn mistake(key: Mistake) -> &'static str {
         Mistake::Hemisphere => {
             "Limbs swing the long way round: half of B's quaternions come with the other sign, the same rotations, and nobody took the nearer one."
         }
-        Mistake::Euler => "Limbs twist and flip, forearms first: three angles mixed one by one are no rotation on the way from A to B.",
-        Mistake::Degrees => "Limbs whirl: an angle in degrees taken for radians is 57 times too large.",
-        Mistake::Atan => "B arrives turned by half a turn and goes off backwards: atan cannot tell a direction from its opposite.",
-        Mistake::TransformDegrees => "B goes off in a direction of its own: its turn in degrees was taken for radians.",
+        Mistake::Euler => {
+            "Limbs twist and flip, forearms first: three angles mixed one by one are no rotation on the way from A to B."
+        }
+        Mistake::Degrees => {
+            "Limbs whirl: an angle in degrees taken for radians is 57 times too large."
+        }
+        Mistake::Atan => {
+            "B arrives turned by half a turn and goes off backwards: atan cannot tell a direction from its opposite."
+        }
+        Mistake::TransformDegrees => {
+            "B goes off in a direction of its own: its turn in degrees was taken for radians."
+        }
         Mistake::Facing => {
             "B is turned to wherever the hips happen to tilt: the root's Y axis points up, and its shadow on the ground is no facing."
         }
@@ -633,15 +668,17 @@ pub(crate) fn mistake(key: Mistake) -> &'static str {
         Mistake::Velocity => {
             "Everything that moved stops dead at the seam and starts anew: the velocities are thousands of times too small."
         }
-        Mistake::WorldRoot => "The feet slide and the pace surges: where A and B stand is mixed, not how they go.",
+        Mistake::WorldRoot => {
+            "The feet slide and the pace surges: where A and B stand is mixed, not how they go."
+        }
         Mistake::None => "",
     }
 }
 /// Of `velocity` where the method is a dissolve, which has no other velocity.
-pub(crate) const VELOCITY_IN_DISSOLVE: &str =
-    "The character treads on the spot through the window and then goes on: its velocity over the ground is thousands of times too small.";
+pub(crate) const VELOCITY_IN_DISSOLVE: &str = "The character treads on the spot through the window and then goes on: its velocity over the ground is thousands of times too small.";
 /// For a method that the mistake cannot be made in.
-pub(crate) const MISTAKE_IDLE: &str = "A cut mixes nothing, so there is nothing to see: choose another method.";
+pub(crate) const MISTAKE_IDLE: &str =
+    "A cut mixes nothing, so there is nothing to see: choose another method.";
 /// What a comparison opens that shows the mistake.
 pub(crate) const RIGHT_AND_WRONG: &str = "Right beside wrong";
 
@@ -677,26 +714,29 @@ pub(crate) const ALIKE_WINDOW: &str = "Dissolve that feels alike";
 pub(crate) const fn clip_set(set: ClipSet) -> (&'static str, &'static str) {
     match set {
         ClipSet::Made => ("Synthesised motion", "The clips that this lab begins with"),
-        ClipSet::Captured => (
-            "Real motion (CMU 16)",
-            "Captured walks and runs of one actor, from the CMU database",
-        ),
+        ClipSet::Captured => {
+            ("Real motion (CMU 16)", "Captured walks and runs of one actor, from the CMU database")
+        }
         ClipSet::Own => ("My clips", "All motions of the files that you have dropped or opened"),
     }
 }
 
 /// What the Graph lab does.
-pub(crate) const GRAPH_ABOUT: &str =
-    "Several clips, and every place where one may go over into another. A walk through them never ends: the seed says where it goes.";
+pub(crate) const GRAPH_ABOUT: &str = "Several clips, and every place where one may go over into another. A walk through them never ends: the seed says where it goes.";
 /// Over the stage.
-pub(crate) const GRAPH_HINT: &str = "Point at a ring or an arc to see both poses. Click it to play that transition alone.";
+pub(crate) const GRAPH_HINT: &str =
+    "Point at a ring or an arc to see both poses. Click it to play that transition alone.";
 /// Of the seed, in place of what it does for a made motion.
-pub(crate) const GRAPH_SEED_HELP: &str = "Another seed, another way through the graph; the same seed, the same walk on every machine.";
+pub(crate) const GRAPH_SEED_HELP: &str =
+    "Another seed, another way through the graph; the same seed, the same walk on every machine.";
 /// Why a visit came to nothing.
 pub(crate) fn no_way(name: &str, secs: f64) -> String {
-    format!("No way leads to {name} from where the walk is at {secs:.1} s: a higher threshold may make one.")
+    format!(
+        "No way leads to {name} from where the walk is at {secs:.1} s: a higher threshold may make one."
+    )
 }
-pub(crate) const GRAPH_LACKS_SOME: &str = "More transitions lie below the threshold than can be held: the closest are.";
+pub(crate) const GRAPH_LACKS_SOME: &str =
+    "More transitions lie below the threshold than can be held: the closest are.";
 /// Of the clips.
 pub(crate) const GRAPH_CLIPS: &str = "Clips of the graph";
 /// Adds one.
@@ -712,8 +752,7 @@ pub(crate) const WALK: &str = "The walk";
 /// The picture of the distances.
 pub(crate) const ALL_DISTANCES: &str = "Distances of all windows";
 /// Below it.
-pub(crate) const MATRIX_HELP: &str =
-    "Down: where a clip is left. Across: where one is entered. Rings are transitions. Wheel: closer; drag: move.";
+pub(crate) const MATRIX_HELP: &str = "Down: where a clip is left. Across: where one is entered. Rings are transitions. Wheel: closer; drag: move.";
 /// The histogram's name.
 pub(crate) const ALL_HISTOGRAM: &str = "How many pairs of windows are how far apart";
 /// The strip's name.
@@ -809,11 +848,7 @@ pub(crate) fn ways_left_out(built: &Built) -> Option<String> {
 /// What there is of a graph.
 pub(crate) fn graph_in_words(built: &Built, run_secs: Option<f64>) -> String {
     let jumps = |count: usize| {
-        if count == 1 {
-            "1 transition".to_owned()
-        } else {
-            format!("{count} transitions")
-        }
+        if count == 1 { "1 transition".to_owned() } else { format!("{count} transitions") }
     };
     let dead = match built.dead_ends() {
         0 => "no dead end".to_owned(),
@@ -835,21 +870,28 @@ pub(crate) fn graph_in_words(built: &Built, run_secs: Option<f64>) -> String {
         }
     };
     let first = format!("{}, {dead}.", jumps(built.whole().jumps().len()));
-    let pruned = (built.is_pruned()).then(|| format!("The walk keeps to the largest: {}.", jumps(built.graph().jumps().len())));
-    let run = run_secs.map(|secs| format!("A clip runs for {secs:.1} s on average until the next transition."));
+    let pruned = (built.is_pruned())
+        .then(|| format!("The walk keeps to the largest: {}.", jumps(built.graph().jumps().len())));
+    let run = run_secs
+        .map(|secs| format!("A clip runs for {secs:.1} s on average until the next transition."));
     let sentences: Vec<String> = [first, components].into_iter().chain(pruned).chain(run).collect();
     sentences.join(" ")
 }
 
 /// A transition: from where to where, how far apart, how probable.
-pub(crate) fn jump_in_words([leave, enter]: [(&str, usize); 2], cm: f64, probability: Option<f64>) -> String {
+pub(crate) fn jump_in_words(
+    [leave, enter]: [(&str, usize); 2],
+    cm: f64,
+    probability: Option<f64>,
+) -> String {
     let probable = probability.map_or_else(String::new, |p| format!(" · p {p:.2}"));
     format!("{} {} → {} {} · {cm:.1} cm{probable}", leave.0, leave.1, enter.0, enter.1)
 }
 
 /// A pair of windows that is no transition.
 pub(crate) fn windows_apart([leave, enter]: [(&str, usize); 2], cm: Option<f64>) -> String {
-    let apart = cm.map_or_else(|| "no window starts here".to_owned(), |cm| format!("{cm:.1} cm apart"));
+    let apart =
+        cm.map_or_else(|| "no window starts here".to_owned(), |cm| format!("{cm:.1} cm apart"));
     format!("{} {} | {} {}: {apart}", leave.0, leave.1, enter.0, enter.1)
 }
 
@@ -860,37 +902,35 @@ pub(crate) fn moved_onto_first(cast: &Cast) -> Option<String> {
         .map(|(_, name)| name.as_str())
         .collect();
     let first = cast.names().first()?;
-    (!moved.is_empty()).then(|| format!("Moved onto the skeleton of {first}: {}.", moved.join(", ")))
+    (!moved.is_empty())
+        .then(|| format!("Moved onto the skeleton of {first}: {}.", moved.join(", ")))
 }
 
 /// How a walk follows its line.
 pub(crate) fn followed(trace: &Trace) -> String {
-    let Trace {
-        along_m,
-        length_m,
-        rms_m,
-        looked_at,
-        ..
-    } = trace;
+    let Trace { along_m, length_m, rms_m, looked_at, .. } = trace;
     if trace.is_searching {
         format!(
             "So far {along_m:.1} of {length_m:.1} m of the path are followed, {rms_m:.2} m off it on average; {looked_at} ways were looked at."
         )
     } else {
-        format!("Follows {along_m:.1} of {length_m:.1} m of the path, {rms_m:.2} m off it on average; {looked_at} ways were looked at.")
+        format!(
+            "Follows {along_m:.1} of {length_m:.1} m of the path, {rms_m:.2} m off it on average; {looked_at} ways were looked at."
+        )
     }
 }
 
 /// That a walk has an end.
 pub(crate) fn dead_end(secs: f64) -> String {
-    format!("The walk comes to a dead end after {secs:.1} s. Keep to the largest component, and it never does.")
+    format!(
+        "The walk comes to a dead end after {secs:.1} s. Keep to the largest component, and it never does."
+    )
 }
 
 /// What the Match lab does.
 pub(crate) const MATCH_ABOUT: &str = "Drive the character: W A S D or arrows, Shift to run, Q to strafe. Ten times a second the frame of all clips that fits best is looked for.";
 /// The same over the stage.
-pub(crate) const MATCH_HINT: &str =
-    "Drive with W A S D or the arrows, Shift to run, or the stick. Orange: where you ask it to go. Blue: where the frame that plays leads.";
+pub(crate) const MATCH_HINT: &str = "Drive with W A S D or the arrows, Shift to run, or the stick. Orange: where you ask it to go. Blue: where the frame that plays leads.";
 /// Over a pane whose character the user drives.
 pub(crate) const LIVE: &str = "Yours";
 /// The stick on the screen.
@@ -904,7 +944,8 @@ pub(crate) const WHY: &str = "Why this frame";
 /// Before there was a search.
 pub(crate) const NO_SEARCH: &str = "Nothing was searched yet.";
 /// How candidates are looked at.
-pub(crate) const GHOST_HELP: &str = "Point at a frame to see it as a ghost; press to keep it there.";
+pub(crate) const GHOST_HELP: &str =
+    "Point at a frame to see it as a ghost; press to keep it there.";
 /// A section.
 pub(crate) const WEIGHTS: &str = "What counts";
 /// A section.
@@ -918,7 +959,8 @@ pub(crate) const MATCH_CLIPS: &str = "Clips and characters";
 /// A button.
 pub(crate) const REPLAY: &str = "Play it again";
 /// What it does.
-pub(crate) const REPLAY_HELP: &str = "Plays the same input from the start, exactly; the link then holds it";
+pub(crate) const REPLAY_HELP: &str =
+    "Plays the same input from the start, exactly; the link then holds it";
 /// A button.
 pub(crate) const START_OVER: &str = "Start over";
 /// What it does.
@@ -926,13 +968,15 @@ pub(crate) const START_OVER_HELP: &str = "Back to the origin; nothing is remembe
 /// A button.
 pub(crate) const DRIVE_YOURSELF: &str = "Drive yourself";
 /// While written input plays.
-pub(crate) const RECORDED: &str = "Recorded input: the same for everybody. Change what counts and see what becomes of it.";
+pub(crate) const RECORDED: &str =
+    "Recorded input: the same for everybody. Change what counts and see what becomes of it.";
 /// A button.
 pub(crate) const HYSTERESES: &str = "None beside bias and votes";
 /// What it opens.
 pub(crate) const HYSTERESES_QUERY: &str = "hysteresis:none,bias,votes";
 /// Of the clips.
-pub(crate) const MADE_SET: &str = "The synthesiser's set: standing, walks and runs, turns, starts, stops and spins.";
+pub(crate) const MADE_SET: &str =
+    "The synthesiser's set: standing, walks and runs, turns, starts, stops and spins.";
 /// The strip's name.
 pub(crate) const CLIP_STRIP: &str = "All clips, and the frame that plays";
 /// Of the curves.
@@ -978,7 +1022,9 @@ pub(crate) fn hysteresis(word: Hysteresis) -> &'static str {
         Hysteresis::None => "The best frame is taken, however little better it is: many jumps.",
         Hysteresis::Time => "After a jump it stays for a while, whatever comes.",
         Hysteresis::Votes => "Three searches in a row must want to go.",
-        Hysteresis::ClipVotes => "Three searches in a row must want to go to another clip; within its clip it jumps at once.",
+        Hysteresis::ClipVotes => {
+            "Three searches in a row must want to go to another clip; within its clip it jumps at once."
+        }
         Hysteresis::Bias => "Going on counts as better than it is.",
     }
 }
@@ -1009,11 +1055,7 @@ pub(crate) fn searched(search: &SearchRecord, frames: usize) -> String {
         Reason::ClipEnd => "The clip came to its end",
         Reason::InputChange => "The input changed",
     };
-    format!(
-        "{why}; {}. {} of {frames} frames were looked at.",
-        held(search.held),
-        search.visited
-    )
+    format!("{why}; {}. {} of {frames} frames were looked at.", held(search.held), search.visited)
 }
 
 /// How large a database is.
@@ -1050,7 +1092,8 @@ pub(crate) fn weight_of(index: usize) -> String {
 /// The button that opens the list of lessons.
 pub(crate) const LESSONS: &str = "Lessons";
 /// Its hint.
-pub(crate) const LESSONS_HELP: &str = "Short guided pages: what to look at, what to try, a question";
+pub(crate) const LESSONS_HELP: &str =
+    "Short guided pages: what to look at, what to try, a question";
 /// Of the page, where it shares its place with the parameters.
 pub(crate) const LESSON: &str = "Lesson";
 /// See [`LESSON`].
@@ -1098,11 +1141,7 @@ pub(crate) fn hand_tag(clip: &str, [from, to]: [f64; 2], word: &str, takes_away:
 
 /// The button that puts a tag on the chosen stretch, or takes it away from there.
 pub(crate) fn tag_as(word: &str, takes_away: bool) -> String {
-    if takes_away {
-        format!("Not {word}")
-    } else {
-        format!("Tag as {word}")
-    }
+    if takes_away { format!("Not {word}") } else { format!("Tag as {word}") }
 }
 
 #[cfg(test)]

@@ -1,13 +1,14 @@
-//! How Segue looks: colours, one type scale, one grid. Nothing else in the app writes down a colour or a size of text.
+//! How Segue looks: colours, one type scale, one grid. Nothing else in the app writes down a colour
+//! or a size of text.
 //!
-//! [`Theme::install`] gives a context the fonts and the style once, and again whenever the theme changes. Widgets read the
-//! theme back with [`theme_of`]; it costs one look-up.
+//! [`Theme::install`] gives a context the fonts and the style once, and again whenever the theme
+//! changes. Widgets read the theme back with [`theme_of`]; it costs one look-up.
 
 mod palette;
 
 use eframe::egui::{
-    self, Color32, Context, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Id, Margin, Shadow, Stroke, Style, TextStyle, Ui,
-    Vec2, Visuals, style,
+    self, Color32, Context, CornerRadius, FontData, FontDefinitions, FontFamily, FontId, Id,
+    Margin, Shadow, Stroke, Style, TextStyle, Ui, Vec2, Visuals, style,
 };
 use eframe::epaint::text::{FontInsert, FontPriority, InsertFontFamily};
 use std::sync::Arc;
@@ -50,10 +51,7 @@ pub(crate) struct Theme {
 
 impl Default for Theme {
     fn default() -> Self {
-        Self {
-            dark: true,
-            projector: false,
-        }
+        Self { dark: true, projector: false }
     }
 }
 
@@ -111,7 +109,10 @@ impl Theme {
             Type::SmallStrong => (11.0, true),
             Type::Caps => (11.0, false),
         };
-        FontId::new(size * self.scale(), if strong { strong_family() } else { FontFamily::Proportional })
+        FontId::new(
+            size * self.scale(),
+            if strong { strong_family() } else { FontFamily::Proportional },
+        )
     }
 
     /// The height of a row that one presses: at least [`HIT`], more on a projector.
@@ -135,7 +136,8 @@ impl Theme {
         ];
         for (name, bytes) in faces {
             let mut face = FontData::from_static(bytes);
-            // A glyph is drawn once and not for four fractions of a pixel: sharper, and a good part of the first frame's time.
+            // A glyph is drawn once and not for four fractions of a pixel: sharper, and a good part
+            // of the first frame's time.
             face.tweak.subpixel_binning = Some(false);
             fonts.font_data.insert(name.to_owned(), Arc::new(face));
         }
@@ -148,7 +150,8 @@ impl Theme {
         fonts
     }
 
-    /// Makes a context look like this theme: fonts (the first time only) and the style of both of egui's themes.
+    /// Makes a context look like this theme: fonts (the first time only) and the style of both of
+    /// egui's themes.
     pub(crate) fn install(self, ctx: &Context) {
         let fonts_id = Id::unique("segue fonts");
         if !ctx.data(|data| data.get_temp::<bool>(fonts_id).unwrap_or(false)) {
@@ -185,10 +188,7 @@ impl Theme {
         spacing.menu_margin = Margin::same(6);
         spacing.menu_spacing = space::XS;
         spacing.tooltip_width = 300.0 * self.scale();
-        spacing.scroll = style::ScrollStyle {
-            bar_width: 8.0,
-            ..style::ScrollStyle::floating()
-        };
+        spacing.scroll = style::ScrollStyle { bar_width: 8.0, ..style::ScrollStyle::floating() };
         style.interaction.selectable_labels = false;
         style.interaction.tooltip_delay = 0.45;
         style
@@ -222,8 +222,10 @@ impl Theme {
         };
         visuals.widgets.noninteractive = widget(p.panel, line, p.text);
         visuals.widgets.inactive = widget(p.panel_raised, line, p.text);
-        visuals.widgets.hovered = widget(p.hover, Stroke::new(self.hairline(), p.line_strong), p.text);
-        visuals.widgets.active = widget(p.pressed, Stroke::new(self.hairline(), p.line_strong), p.text);
+        visuals.widgets.hovered =
+            widget(p.hover, Stroke::new(self.hairline(), p.line_strong), p.text);
+        visuals.widgets.active =
+            widget(p.pressed, Stroke::new(self.hairline(), p.line_strong), p.text);
         visuals.widgets.open = widget(p.hover, line, p.text);
         visuals.selection.bg_fill = p.accent_wash;
         visuals.selection.stroke = Stroke::new(1.5, p.accent_ink);
@@ -240,12 +242,7 @@ impl Theme {
         visuals.window_stroke = line;
         visuals.window_corner_radius = CornerRadius::same(radius::L);
         visuals.menu_corner_radius = CornerRadius::same(radius::L);
-        let shadow = Shadow {
-            offset: [0, 6],
-            blur: 20,
-            spread: 0,
-            color: p.shadow,
-        };
+        let shadow = Shadow { offset: [0, 6], blur: 20, spread: 0, color: p.shadow };
         visuals.window_shadow = shadow;
         visuals.popup_shadow = shadow;
         visuals.text_cursor.stroke = Stroke::new(1.5, p.accent_ink);
@@ -257,13 +254,12 @@ impl Theme {
     }
 }
 
-/// Adds a face that stands in for the letters that the others lack. It can be written with from the next frame on.
+/// Adds a face that stands in for the letters that the others lack. It can be written with from the
+/// next frame on.
 pub(crate) fn add_face(name: &str, mut face: FontData, ctx: &Context) {
     face.tweak.subpixel_binning = Some(false);
-    let families = [FontFamily::Proportional, FontFamily::Monospace, strong_family()].map(|family| InsertFontFamily {
-        family,
-        priority: FontPriority::Lowest,
-    });
+    let families = [FontFamily::Proportional, FontFamily::Monospace, strong_family()]
+        .map(|family| InsertFontFamily { family, priority: FontPriority::Lowest });
     ctx.add_font(FontInsert::new(name, face, families.into()));
 }
 
@@ -295,11 +291,22 @@ mod tests {
         Theme::default().install(&ctx);
         let mut widths = Vec::new();
         let output = ctx.run_ui(egui::RawInput::default(), |ui| {
-            let steps = [Type::Title, Type::Body, Type::Number, Type::Metric, Type::Small, Type::SmallStrong];
+            let steps = [
+                Type::Title,
+                Type::Body,
+                Type::Number,
+                Type::Metric,
+                Type::Small,
+                Type::SmallStrong,
+            ];
             widths = ui.fonts_mut(|fonts| {
                 let font = |step| Theme::default().font(step);
                 steps
-                    .map(|step| ('0'..='9').map(|digit| fonts.glyph_width(&font(step), digit)).collect::<Vec<_>>())
+                    .map(|step| {
+                        ('0'..='9')
+                            .map(|digit| fonts.glyph_width(&font(step), digit))
+                            .collect::<Vec<_>>()
+                    })
                     .to_vec()
             });
         });
@@ -311,13 +318,7 @@ mod tests {
 
     #[test]
     fn a_projector_makes_text_larger_and_keeps_the_order_of_the_scale() {
-        let (desk, hall) = (
-            Theme::default(),
-            Theme {
-                projector: true,
-                ..Theme::default()
-            },
-        );
+        let (desk, hall) = (Theme::default(), Theme { projector: true, ..Theme::default() });
         for step in [Type::Title, Type::Body, Type::Small, Type::Caps] {
             assert!(hall.font(step).size > desk.font(step).size);
         }

@@ -13,11 +13,13 @@ use segue_motion::skeleton::{Role, Side};
 use segue_session::LabId;
 use segue_session::choices;
 use segue_session::{
-    Command, CycleMade, Key, Kind, Motion, Outcome, Pane, Registered, Session, Slot, Source, Value, curve_kind, frame_at, joint_of,
+    Command, CycleMade, Key, Kind, Motion, Outcome, Pane, Registered, Session, Slot, Source, Value,
+    curve_kind, frame_at, joint_of,
 };
 use std::sync::Arc;
 
-/// The curves of the chosen joint, of every pane over each other, kept until a result or the choice changes.
+/// The curves of the chosen joint, of every pane over each other, kept until a result or the choice
+/// changes.
 #[derive(Debug, Default)]
 pub(crate) struct CurveCache {
     panes: Vec<(String, Arc<Outcome>)>,
@@ -88,9 +90,11 @@ pub(crate) fn timeline_panel_ui(
             },
             CurveOf::Pane(index, _) => Series {
                 name: of.name(),
-                // The first is the result that everything else on the page shows; two more are told apart by light, the last by a colour that neither clip has.
+                // The first is the result that everything else on the page shows; two more are told
+                // apart by light, the last by a colour that neither clip has.
                 color: [palette.accent, palette.text, palette.muted, palette.others[1]][index % 4],
-                ink: [palette.accent_ink, palette.text, palette.muted, palette.others[1]][index % 4],
+                ink: [palette.accent_ink, palette.text, palette.muted, palette.others[1]]
+                    [index % 4],
                 strong: *index == 0,
                 points,
             },
@@ -106,8 +110,7 @@ pub(crate) fn timeline_panel_ui(
     let names = match &outcome.walk {
         Some(walk) => [0, 1].map(|part: usize| {
             let clip = walk.passed.get(part).map(|passed| passed.stay.clip);
-            clip.and_then(|clip| walk.built.cast().names().get(clip).cloned())
-                .unwrap_or_default()
+            clip.and_then(|clip| walk.built.cast().names().get(clip).cloned()).unwrap_or_default()
         }),
         None => names,
     };
@@ -164,21 +167,29 @@ fn timeline_event(event: TimelineEvent, session: &Session, outcome: &Outcome, ou
     );
     let event = match event {
         TimelineEvent::SetIn(secs) => TimelineEvent::SetIn(secs.min(to - 1.0 / fps).max(0.0)),
-        TimelineEvent::SetOut(secs) => TimelineEvent::SetOut(secs.max(from + 1.0 / fps).min(session.duration_secs())),
+        TimelineEvent::SetOut(secs) => {
+            TimelineEvent::SetOut(secs.max(from + 1.0 / fps).min(session.duration_secs()))
+        }
         event => event,
     };
     match event {
         // At the ends they mark nothing.
         TimelineEvent::SetIn(secs) if at_end(0.0, secs) => out.set(Key::In, Value::Auto),
-        TimelineEvent::SetOut(secs) if at_end(session.duration_secs(), secs) => out.set(Key::Out, Value::Auto),
+        TimelineEvent::SetOut(secs) if at_end(session.duration_secs(), secs) => {
+            out.set(Key::Out, Value::Auto)
+        }
         TimelineEvent::Seek(secs) => out.commands.push(Command::Seek(secs)),
         TimelineEvent::ScrubStarted => out.set(Key::Play, Value::Switch(false)),
         TimelineEvent::SetIn(secs) => out.set(Key::In, Value::Number(secs)),
         TimelineEvent::SetOut(secs) => out.set(Key::Out, Value::Number(secs)),
-        TimelineEvent::SetTransitionStart(secs) if outcome.registered.is_some() => out.set(Key::WarpFrom, Value::Number(secs.max(0.0))),
+        TimelineEvent::SetTransitionStart(secs) if outcome.registered.is_some() => {
+            out.set(Key::WarpFrom, Value::Number(secs.max(0.0)))
+        }
         TimelineEvent::SetTransitionEnd(secs) if outcome.registered.is_some() => {
             // The end is a time of A, whose clock is bent until then.
-            if let Some(beat) = outcome.registered.as_ref().and_then(|registered| registered.beat_at(secs)) {
+            if let Some(beat) =
+                outcome.registered.as_ref().and_then(|registered| registered.beat_at(secs))
+            {
                 out.set(Key::WarpTo, Value::Number((beat.frames[0] / fps).max(0.0)));
             }
         }
@@ -190,19 +201,23 @@ fn timeline_event(event: TimelineEvent, session: &Session, outcome: &Outcome, ou
             out.set(Key::LeaveA, Value::Number(secs.max(0.0)));
         }
         TimelineEvent::SetTransitionEnd(secs) => {
-            let (start, end) = outcome.transition.map_or((0.0, 0.0), |found| (found.start_secs, found.end_secs));
+            let (start, end) =
+                outcome.transition.map_or((0.0, 0.0), |found| (found.start_secs, found.end_secs));
             let wanted = secs - start;
             // What sets how long it takes depends on the method.
             let (key, value) = match params.choice::<choices::TransitionMethod>() {
                 _ if !in_transition => (Key::BlendWindow, wanted * fps),
-                choices::TransitionMethod::Cubic | choices::TransitionMethod::Quintic | choices::TransitionMethod::Dead => {
-                    (Key::BlendTime, wanted)
-                }
-                choices::TransitionMethod::Inertialize => {
-                    (Key::HalfLife, params.number(Key::HalfLife) * wanted / (end - start).max(1.0 / fps))
-                }
+                choices::TransitionMethod::Cubic
+                | choices::TransitionMethod::Quintic
+                | choices::TransitionMethod::Dead => (Key::BlendTime, wanted),
+                choices::TransitionMethod::Inertialize => (
+                    Key::HalfLife,
+                    params.number(Key::HalfLife) * wanted / (end - start).max(1.0 / fps),
+                ),
                 choices::TransitionMethod::Cut => return,
-                choices::TransitionMethod::Smooth | choices::TransitionMethod::Linear => (Key::BlendWindow, wanted * fps),
+                choices::TransitionMethod::Smooth | choices::TransitionMethod::Linear => {
+                    (Key::BlendWindow, wanted * fps)
+                }
             };
             if let Kind::Number { min, max, .. } = key.param().kind {
                 out.set(key, Value::Number(value.clamp(min, max)));
@@ -228,11 +243,8 @@ fn seams(outcome: &Outcome, color: Color32) -> Vec<Moment<'static>> {
         return Vec::new();
     };
     let count = (outcome.duration_secs() / cycle.secs).round() as usize;
-    let seam = |round: usize| Moment {
-        time: round as f64 * cycle.secs,
-        color,
-        name: text::CYCLE_BEGINS,
-    };
+    let seam =
+        |round: usize| Moment { time: round as f64 * cycle.secs, color, name: text::CYCLE_BEGINS };
     (1..count).map(seam).collect()
 }
 
@@ -240,11 +252,7 @@ fn seams(outcome: &Outcome, color: Color32) -> Vec<Moment<'static>> {
 fn hard_turns(outcome: &Outcome, color: Color32) -> impl Iterator<Item = Moment<'static>> {
     let fps = outcome.motion.clip.fps();
     let turns = outcome.path.iter().flat_map(|path| &path.hard_turns);
-    turns.map(move |turn| Moment {
-        time: turn.worst as f64 / fps,
-        color,
-        name: text::HARD_MOMENT,
-    })
+    turns.map(move |turn| Moment { time: turn.worst as f64 / fps, color, name: text::HARD_MOMENT })
 }
 
 /// What stands before the stripes of each pane's feet: A, B, result. A phone has room for one pane.
@@ -269,7 +277,8 @@ fn feet_names(session: &Session, layout: Layout) -> Vec<[String; 3]> {
 fn stripes<'a>(session: &Session, names: &'a [[String; 3]]) -> Vec<Stripe<'a>> {
     let of = [(Part::A, Some(Slot::A)), (Part::B, Some(Slot::B)), (Part::Result, None)];
     let panes = session.panes().iter().zip(names);
-    let registered = panes.filter_map(|(pane, names)| Some((pane.outcome.as_ref()?.registered.as_ref()?, names)));
+    let registered = panes
+        .filter_map(|(pane, names)| Some((pane.outcome.as_ref()?.registered.as_ref()?, names)));
     registered
         .flat_map(|(registered, names)| {
             of.into_iter().zip(names).map(|((part, slot), label)| Stripe {
@@ -346,14 +355,22 @@ impl CurveOf {
 }
 
 impl CurveCache {
-    fn update(&mut self, main: &Arc<Outcome>, panes: &[(String, &Arc<Outcome>)], joint: &str, quantity: choices::Curve) {
+    fn update(
+        &mut self,
+        main: &Arc<Outcome>,
+        panes: &[(String, &Arc<Outcome>)],
+        joint: &str,
+        quantity: choices::Curve,
+    ) {
         let shown = panes.iter().map(|(name, outcome)| (name, *outcome));
         let known = self.panes.iter().map(|(name, outcome)| (name, outcome));
-        let same = shown.len() == known.len() && shown.zip(known).all(|(a, b)| a.0 == b.0 && Arc::ptr_eq(a.1, b.1));
+        let same = shown.len() == known.len()
+            && shown.zip(known).all(|(a, b)| a.0 == b.0 && Arc::ptr_eq(a.1, b.1));
         if same && self.what.0 == joint && self.what.1 == Some(quantity) {
             return;
         }
-        self.panes = panes.iter().map(|(name, outcome)| (name.clone(), Arc::clone(outcome))).collect();
+        self.panes =
+            panes.iter().map(|(name, outcome)| (name.clone(), Arc::clone(outcome))).collect();
         self.what = (joint.to_owned(), Some(quantity));
         self.lines.clear();
         let end = main.duration_secs();
@@ -373,10 +390,7 @@ impl CurveCache {
             });
             let mut points = curve(&source.motion, joint, quantity, source.starts_at_secs);
             points.retain(|point| window.contains(&point[0]) && (0.0..=end).contains(&point[0]));
-            self.lines.push(Curve {
-                of: CurveOf::Source(part),
-                points,
-            });
+            self.lines.push(Curve { of: CurveOf::Source(part), points });
         }
         let results = panes.iter().enumerate().map(|(index, (name, outcome))| Curve {
             of: CurveOf::Pane(index, name.clone()),
@@ -386,8 +400,15 @@ impl CurveCache {
     }
 }
 
-fn curve(motion: &Motion, joint: &str, quantity: choices::Curve, starts_at_secs: f64) -> Vec<[f64; 2]> {
-    let Some(joint) = joint_of(motion, joint) else { return Vec::new() };
+fn curve(
+    motion: &Motion,
+    joint: &str,
+    quantity: choices::Curve,
+    starts_at_secs: f64,
+) -> Vec<[f64; 2]> {
+    let Some(joint) = joint_of(motion, joint) else {
+        return Vec::new();
+    };
     let values = joint_curve(&motion.clip, joint, curve_kind(quantity));
     let stride = values.len().div_ceil(CURVE_POINTS).max(1);
     let fps = motion.clip.fps();
@@ -399,8 +420,14 @@ fn curve(motion: &Motion, joint: &str, quantity: choices::Curve, starts_at_secs:
         .collect()
 }
 
-/// The curve of a source in the result's time: what it has in the frames that the result is made of.
-fn registered_curve(source: &Source, registered: &Registered, joint: &str, quantity: choices::Curve) -> Vec<[f64; 2]> {
+/// The curve of a source in the result's time: what it has in the frames that the result is made
+/// of.
+fn registered_curve(
+    source: &Source,
+    registered: &Registered,
+    joint: &str,
+    quantity: choices::Curve,
+) -> Vec<[f64; 2]> {
     let Some(joint) = joint_of(&source.motion, joint) else {
         return Vec::new();
     };
@@ -428,17 +455,19 @@ fn unit_of(quantity: choices::Curve) -> &'static str {
 
 /// Which joint and what of it: a menu on the caption.
 fn curve_menu_ui(outcome: &Outcome, row: &eframe::egui::Response, out: &mut Out, ui: &mut Ui) {
-    let rect = eframe::egui::Rect::from_min_max(eframe::egui::pos2(row.rect.right() - 220.0, row.rect.top()), row.rect.max);
+    let rect = eframe::egui::Rect::from_min_max(
+        eframe::egui::pos2(row.rect.right() - 220.0, row.rect.top()),
+        row.rect.max,
+    );
     let opener = ui.interact(rect, ui.scope_id().with("curve menu"), eframe::egui::Sense::click());
-    opener.widget_info(|| eframe::egui::WidgetInfo::labeled(eframe::egui::Role::ComboBox, true, text::CURVES));
+    opener.widget_info(|| {
+        eframe::egui::WidgetInfo::labeled(eframe::egui::Role::ComboBox, true, text::CURVES)
+    });
     kit::menu_ui(&opener, RectAlign::TOP_END, |ui| {
         if let Kind::Choice(choices) = Key::Curve.param().kind {
             for choice in choices {
                 if kit::menu_item_ui(
-                    kit::MenuItem {
-                        text: choice.label,
-                        ..kit::MenuItem::default()
-                    },
+                    kit::MenuItem { text: choice.label, ..kit::MenuItem::default() },
                     ui,
                 )
                 .clicked()
@@ -449,12 +478,11 @@ fn curve_menu_ui(outcome: &Outcome, row: &eframe::egui::Response, out: &mut Out,
         }
         kit::menu_line_ui(ui);
         eframe::egui::ScrollArea::vertical().max_height(320.0).show(ui, |ui| {
-            for role in Role::ALL.into_iter().filter(|&role| outcome.motion.roles.get(role).is_some()) {
+            for role in
+                Role::ALL.into_iter().filter(|&role| outcome.motion.roles.get(role).is_some())
+            {
                 if kit::menu_item_ui(
-                    kit::MenuItem {
-                        text: role.name(),
-                        ..kit::MenuItem::default()
-                    },
+                    kit::MenuItem { text: role.name(), ..kit::MenuItem::default() },
                     ui,
                 )
                 .clicked()
@@ -474,7 +502,9 @@ mod tests {
     fn the_results_of_all_panes_are_drawn_over_each_other() {
         let mut session = Session::new();
         session
-            .apply(Command::OpenLink("lab=transition&compare=method:inertialize,smooth,dead".into()))
+            .apply(Command::OpenLink(
+                "lab=transition&compare=method:inertialize,smooth,dead".into(),
+            ))
             .unwrap();
         while session.work() {}
         let panes = named_outcomes(&session);

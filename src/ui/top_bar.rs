@@ -12,7 +12,13 @@ use eframe::egui::{Align, Layout as Flow, RectAlign, RichText, Sense, Ui, vec2};
 use segue_session::{Command, Key, Kind, Session, Value};
 
 /// The whole bar.
-pub(crate) fn top_bar_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+pub(crate) fn top_bar_ui(
+    session: &Session,
+    layout: Layout,
+    state: &mut UiState,
+    out: &mut Out,
+    ui: &mut Ui,
+) {
     ui.horizontal_centered(|ui| {
         ui.spacing_mut().item_spacing.x = space::S;
         logo_ui(layout, ui);
@@ -39,7 +45,9 @@ fn logo_ui(layout: Layout, ui: &mut Ui) {
 }
 
 fn lab_tabs_ui(session: &Session, ui: &mut Ui) -> Option<&'static str> {
-    let Kind::Choice(labs) = Key::Lab.param().kind else { return None };
+    let Kind::Choice(labs) = Key::Lab.param().kind else {
+        return None;
+    };
     let options: Vec<(&'static str, &str)> = labs.iter().map(|lab| (lab.key, lab.label)).collect();
     let chosen = session.params().lab().word();
     kit::tabs_ui(
@@ -51,7 +59,8 @@ fn lab_tabs_ui(session: &Session, ui: &mut Ui) -> Option<&'static str> {
     )
 }
 
-/// From right to left: the link, the theme, and what the width leaves room for; the rest is in a menu.
+/// From right to left: the link, the theme, and what the width leaves room for; the rest is in a
+/// menu.
 fn actions_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let link = if layout == Layout::Phone { text::LINK } else { text::COPY_LINK };
     if kit::button_ui(Button::new(link).primary().icon(Icon::Link), ui).clicked() {
@@ -95,12 +104,11 @@ fn actions_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut 
         }
     }
     let panes = session.panes().len();
-    let label = if panes > 1 {
-        format!("{} · {panes}", text::COMPARE)
-    } else {
-        text::COMPARE.to_owned()
-    };
-    if kit::button_ui(Button::new(&label).hint(text::COMPARE_HELP).selected(panes > 1), ui).clicked() {
+    let label =
+        if panes > 1 { format!("{} · {panes}", text::COMPARE) } else { text::COMPARE.to_owned() };
+    if kit::button_ui(Button::new(&label).hint(text::COMPARE_HELP).selected(panes > 1), ui)
+        .clicked()
+    {
         toggle_compare(session, out);
     }
     lessons_button_ui(session, layout, out, ui);
@@ -108,11 +116,7 @@ fn actions_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut 
 
 /// What a phone has no room for in the bar.
 fn page_menu_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    let item = |text, icon| MenuItem {
-        text,
-        icon: Some(icon),
-        ..MenuItem::default()
-    };
+    let item = |text, icon| MenuItem { text, icon: Some(icon), ..MenuItem::default() };
     if kit::menu_item_ui(item(text::LIBRARY, Icon::Folder), ui).clicked() {
         state.library_open = true;
     }

@@ -1,4 +1,5 @@
-//! One motion, many files: the same joints at the same places in the world, written as rigs of other kinds.
+//! One motion, many files: the same joints at the same places in the world, written as rigs of
+//! other kinds.
 
 #![allow(unreachable_pub, reason = "a module of a test binary")]
 
@@ -18,24 +19,15 @@ pub fn encodings(clip: &Clip) -> Vec<(&'static str, String)> {
     let frames = clip.frames();
     let plain = |options: &WriteOptions| write(&bare(clip), options);
     let usual = WriteOptions::default();
-    let ordered = |order| WriteOptions {
-        rotation_order: Some(order),
-        ..usual
-    };
-    let inches = WriteOptions {
-        metres_per_unit: Some(0.0254),
-        ..usual
-    };
+    let ordered = |order| WriteOptions { rotation_order: Some(order), ..usual };
+    let inches = WriteOptions { metres_per_unit: Some(0.0254), ..usual };
     let lying = Quat::from_rotation_x(-FRAC_PI_2);
     vec![
         ("plain", plain(&usual)),
         ("order_xyz", plain(&ordered(RotationOrder::Xyz))),
         ("order_yxz", plain(&ordered(RotationOrder::Yxz))),
         ("inches", plain(&inches)),
-        (
-            "static_root",
-            write(&hung(clip, &vec![(Vec3::ZERO, Quat::IDENTITY); frames]), &usual),
-        ),
+        ("static_root", write(&hung(clip, &vec![(Vec3::ZERO, Quat::IDENTITY); frames]), &usual)),
         ("static_root_turned", write(&hung(clip, &vec![(Vec3::ZERO, lying); frames]), &usual)),
         ("root_motion", write(&hung(clip, &on_the_ground(clip)), &usual)),
         ("turned_frames", write(&with_turned_frames(clip), &usual)),
@@ -44,7 +36,13 @@ pub fn encodings(clip: &Clip) -> Vec<(&'static str, String)> {
     ]
 }
 
-fn rebuilt(clip: &Clip, joints: Vec<Joint>, rotations: Vec<Quat>, roots: Vec<Vec3>, tracks: Vec<JointTranslations>) -> Clip {
+fn rebuilt(
+    clip: &Clip,
+    joints: Vec<Joint>,
+    rotations: Vec<Quat>,
+    roots: Vec<Vec3>,
+    tracks: Vec<JointTranslations>,
+) -> Clip {
     let skeleton = Arc::new(Skeleton::new(joints).expect("a tree"));
     let made = Clip::new(clip.name(), skeleton, clip.fps(), rotations, roots).expect("a clip");
     made.with_translations(tracks).expect("translations that fit")
@@ -53,12 +51,7 @@ fn rebuilt(clip: &Clip, joints: Vec<Joint>, rotations: Vec<Quat>, roots: Vec<Vec
 /// The joints without the channels of the file that they came from.
 fn bare_joints(clip: &Clip) -> Vec<Joint> {
     let joints = clip.skeleton().joints().iter();
-    joints
-        .map(|joint| Joint {
-            channels: vec![],
-            ..joint.clone()
-        })
-        .collect()
+    joints.map(|joint| Joint { channels: vec![], ..joint.clone() }).collect()
 }
 
 fn all_rotations(clip: &Clip) -> Vec<Quat> {
@@ -95,16 +88,17 @@ fn hung(clip: &Clip, above: &Above) -> Clip {
         rotations.extend_from_slice(&own[1..]);
         carried.push(back * (clip.root_translations()[frame] - *at));
     }
-    let others = clip.translations().iter().map(|track| JointTranslations {
-        joint: track.joint + 1,
-        values: track.values.clone(),
-    });
+    let others = clip
+        .translations()
+        .iter()
+        .map(|track| JointTranslations { joint: track.joint + 1, values: track.values.clone() });
     let tracks = std::iter::once(JointTranslations { joint: 1, values: carried }).chain(others);
     let roots = above.iter().map(|(at, _)| *at).collect();
     rebuilt(clip, joints, rotations, roots, tracks.collect())
 }
 
-/// Below the body on the ground, heading where the hips head, the mean of 15 frames: as game engines have it.
+/// Below the body on the ground, heading where the hips head, the mean of 15 frames: as game
+/// engines have it.
 fn on_the_ground(clip: &Clip) -> Above {
     let roles = Roles::detect(clip.skeleton());
     let [left, right] = Side::BOTH.map(|side| roles.get(Role::thigh(side)).expect("a leg"));
@@ -119,7 +113,9 @@ fn on_the_ground(clip: &Clip) -> Above {
         yaws.push(before + turn.sin().atan2(turn.cos()));
     }
     let smooth = |frame: usize| {
-        let at = |offset: isize| yaws[(frame as isize + offset).clamp(0, yaws.len() as isize - 1) as usize];
+        let at = |offset: isize| {
+            yaws[(frame as isize + offset).clamp(0, yaws.len() as isize - 1) as usize]
+        };
         (-7..=7).map(at).sum::<f64>() / 15.0
     };
     let place = |frame: usize| {
@@ -131,13 +127,13 @@ fn on_the_ground(clip: &Clip) -> Above {
     (0..clip.frames()).map(place).collect()
 }
 
-/// Every joint's axes turned by a constant of its own, as in files whose bones lie along X: the rest pose means nothing.
+/// Every joint's axes turned by a constant of its own, as in files whose bones lie along X: the
+/// rest pose means nothing.
 fn with_turned_frames(clip: &Clip) -> Clip {
     let mut state = 7_u64;
     let mut random = || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
+        state =
+            state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 40) as f32 / (1 << 24) as f32 * 6.0 - 3.0
     };
     let mut joints = bare_joints(clip);

@@ -1,5 +1,6 @@
-//! How good every lab's results are on any motion: pairs and sets of takes drawn from a folder or from the synthesiser, every lab and every method of it,
-//! measured beside the sources. Prints tables in Markdown. `cargo xtask quality` runs it.
+//! How good every lab's results are on any motion: pairs and sets of takes drawn from a folder or
+//! from the synthesiser, every lab and every method of it, measured beside the sources. Prints
+//! tables in Markdown. `cargo xtask quality` runs it.
 
 #![expect(clippy::print_stdout, reason = "the tables are what it is for")]
 
@@ -20,25 +21,25 @@ struct Arguments {
 }
 
 fn arguments() -> Result<Arguments, Box<dyn Error>> {
-    let mut found = Arguments {
-        folder: None,
-        synthesised: 0,
-        pairs: 8,
-        seed: 1,
-        json: None,
-    };
+    let mut found = Arguments { folder: None, synthesised: 0, pairs: 8, seed: 1, json: None };
     let mut words = std::env::args_os().skip(1);
     while let Some(word) = words.next() {
         let word = word.to_string_lossy().into_owned();
         let value = words.next().ok_or_else(|| format!("{word} is followed by a value"))?;
-        let number = value.to_string_lossy().parse::<usize>().map_err(|error| format!("{word}: {error}"));
+        let number =
+            value.to_string_lossy().parse::<usize>().map_err(|error| format!("{word}: {error}"));
         match word.as_str() {
             "--data" => found.folder = Some(value.into()),
             "--synth" => found.synthesised = number?,
             "--pairs" => found.pairs = number?,
             "--seed" => found.seed = number? as u64,
             "--json" => found.json = Some(value.into()),
-            _ => return Err(format!("there is no argument {word}, only --data, --synth, --pairs, --seed and --json").into()),
+            _ => {
+                return Err(format!(
+                    "there is no argument {word}, only --data, --synth, --pairs, --seed and --json"
+                )
+                .into());
+            }
         }
     }
     Ok(found)
@@ -49,8 +50,13 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
     guard::keep_panics();
     let motions = match &arguments.folder {
         Some(folder) => Motions::of_folder(folder)?,
-        None if arguments.synthesised > 0 => Motions::synthesised(arguments.synthesised, arguments.seed),
-        None => return Err("name a folder of motion files by --data, or a number of synthesised clips by --synth".into()),
+        None if arguments.synthesised > 0 => {
+            Motions::synthesised(arguments.synthesised, arguments.seed)
+        }
+        None => return Err(
+            "name a folder of motion files by --data, or a number of synthesised clips by --synth"
+                .into(),
+        ),
     };
     if motions.takes.is_empty() {
         return Err("there is no motion: no BVH, no GLB, and no AMC beside its ASF".into());

@@ -54,7 +54,8 @@ fn clippy(what: &[&str]) -> Command {
 }
 
 fn core(report: &mut Report) {
-    // Crate by crate, as somebody who works on one of them would: this also shows that each needs no more than it names.
+    // Crate by crate, as somebody who works on one of them would: this also shows that each needs
+    // no more than it names.
     for library in LIBRARIES {
         report.run(library, cargo(&["test", "--quiet", "--locked", "--package", library]));
     }
@@ -108,7 +109,8 @@ fn browser(report: &mut Report) {
         let server = server::Server::bind(0, dist::folder())?;
         let address = server.address();
         std::thread::spawn(move || server.run());
-        // One file after the other: each starts browsers that draw in software, and those take all the cores there are.
+        // One file after the other: each starts browsers that draw in software, and those take all
+        // the cores there are.
         let mut node = command("node", &["--test", "--test-reporter=spec", "--test-concurrency=1"]);
         node.current_dir(root().join("tests/browser"))
             .env("SEGUE_URL", address)
@@ -156,10 +158,6 @@ impl Report {
             .filter(|(_, outcome, _)| outcome.is_err())
             .map(|(name, ..)| *name)
             .collect();
-        if failed.is_empty() {
-            Ok(())
-        } else {
-            fail(format!("failed: {}", failed.join(", ")))
-        }
+        if failed.is_empty() { Ok(()) } else { fail(format!("failed: {}", failed.join(", "))) }
     }
 }

@@ -20,8 +20,11 @@ pub fn folder() -> PathBuf {
 /// Builds the page into `dist/`, and installs first what that needs.
 pub fn build(profile: Profile) -> Result<()> {
     if tools::web_is_missing()? {
-        println!("The first build installs tools and compiles everything: about 10 minutes on 2 cores. Later ones take seconds.");
-        // The tools are many small crates and the app ends in one long link: side by side they fill both cores.
+        println!(
+            "The first build installs tools and compiles everything: about 10 minutes on 2 cores. Later ones take seconds."
+        );
+        // The tools are many small crates and the app ends in one long link: side by side they fill
+        // both cores.
         tools::ensure_wasm_target()?;
         std::thread::scope(|scope| {
             let ahead = scope.spawn(|| compile(profile));
@@ -32,14 +35,17 @@ pub fn build(profile: Profile) -> Result<()> {
         })?;
     }
     let tools = tools::web()?;
-    // Trunk builds offline (Trunk.toml), so that it brings no tools of its own; the packages must be here by then.
+    // Trunk builds offline (Trunk.toml), so that it brings no tools of its own; the packages must
+    // be here by then.
     run(&mut cargo(&["fetch", "--quiet", "--locked", "--target=wasm32-unknown-unknown"]))?;
     let (name, args): (_, &[&str]) = match profile {
         Profile::Release => ("release", &["build", "--release"]),
         Profile::Dev => ("dev", &["build"]),
     };
     step(
-        format!("building the page in {name} mode (minutes when much has changed, seconds otherwise)"),
+        format!(
+            "building the page in {name} mode (minutes when much has changed, seconds otherwise)"
+        ),
         || run(tools.command("trunk", args).env_remove("NO_COLOR")),
     )
 }
@@ -66,7 +72,9 @@ fn compile(profile: Profile) -> Result<()> {
 /// Writes `.br` and `.gz` beside every file in `dist/` that gets smaller by it.
 pub fn precompress() -> Result<()> {
     if !on_path("node") {
-        return fail("precompressing needs `node` on the path, whose zlib holds both brotli and gzip");
+        return fail(
+            "precompressing needs `node` on the path, whose zlib holds both brotli and gzip",
+        );
     }
     step("precompressing dist/ (about 20 seconds when the app has changed)", || {
         let cache = target().join("precompressed");

@@ -1,4 +1,5 @@
-//! `cargo xtask fuzz`: feeds readers with bytes, and the page with all that it takes, until one of them breaks, or time is up.
+//! `cargo xtask fuzz`: feeds readers with bytes, and the page with all that it takes, until one of
+//! them breaks, or time is up.
 
 use std::fs;
 
@@ -28,7 +29,9 @@ pub fn run_targets(args: &[&str]) -> Result<()> {
                 _ => return fail("--seed is followed by a whole number"),
             },
             name if known.iter().any(|target| target == name) => chosen.push(name.to_owned()),
-            other => return fail(format!("there is no target `{other}`, only {}", known.join(", "))),
+            other => {
+                return fail(format!("there is no target `{other}`, only {}", known.join(", ")));
+            }
         }
     }
     if chosen.is_empty() {
@@ -53,20 +56,25 @@ fn fuzz_page(minutes: u32, seed: u32) -> Result<()> {
     let address = server.address();
     std::thread::spawn(move || server.run());
     let (minutes, seed) = (minutes.to_string(), seed.to_string());
-    let mut fuzz = command("node", &["tests/browser/fuzz.mjs", "--minutes", &minutes, "--seed", &seed]);
+    let mut fuzz =
+        command("node", &["tests/browser/fuzz.mjs", "--minutes", &minutes, "--seed", &seed]);
     run(fuzz.env("SEGUE_URL", address).env("CHROMIUM", chromium))
 }
 
 fn fuzz(target: &str, minutes: u32) -> Result<()> {
-    // The first folder takes what the fuzzer finds on its way, the second one holds where it starts.
+    // The first folder takes what the fuzzer finds on its way, the second one holds where it
+    // starts.
     let found = format!("fuzz/corpus/{target}");
     let seeds = format!("fuzz/corpus-seeds/{target}");
     fs::create_dir_all(root().join(&found))?;
-    let mut fuzz = command("rustup", &["run", "nightly", "cargo", "fuzz", "run", target, &found, &seeds, "--"]);
-    // A link is short; a file of a few rows shows all there is. Ten seconds for either are a finding.
+    let mut fuzz = command(
+        "rustup",
+        &["run", "nightly", "cargo", "fuzz", "run", target, &found, &seeds, "--"],
+    );
+    // A link is short; a file of a few rows shows all there is. Ten seconds for either are a
+    // finding.
     let length = if target == "url" { 600 } else { 8192 };
-    fuzz.arg(format!("-max_total_time={}", minutes * 60))
-        .arg(format!("-max_len={length}"));
+    fuzz.arg(format!("-max_total_time={}", minutes * 60)).arg(format!("-max_len={length}"));
     fuzz.args(["-timeout=10", "-rss_limit_mb=2048", "-print_final_stats=1"]);
     // This command's own cargo and its pinned compiler are not for the nightly one.
     fuzz.env_remove("RUSTUP_TOOLCHAIN").env_remove("CARGO");
@@ -89,7 +97,10 @@ fn targets() -> Result<Vec<String>> {
 fn nightly() -> Result<()> {
     if output("rustup", &["run", "nightly", "rustc", "--version"]).is_none() {
         step("installing a nightly compiler (about a minute)", || {
-            run(&mut command("rustup", &["toolchain", "install", "nightly", "--profile", "minimal"]))
+            run(&mut command(
+                "rustup",
+                &["toolchain", "install", "nightly", "--profile", "minimal"],
+            ))
         })?;
     }
     if !on_path("cargo-fuzz") {

@@ -1,4 +1,5 @@
-//! `cargo xtask quality`, `match-quality` and `match-speed`: every lab on any motion, characters driven by recorded input, and searches, measured.
+//! `cargo xtask quality`, `match-quality` and `match-speed`: every lab on any motion, characters
+//! driven by recorded input, and searches, measured.
 
 use std::path::PathBuf;
 use std::process::Command;
@@ -66,6 +67,8 @@ fn usual_folder() -> Result<PathBuf> {
     let mut folders = places.into_iter().flatten().map(|place| place.join("cmu/16"));
     match folders.find(|folder| folder.is_dir()) {
         Some(folder) => Ok(folder),
-        None => fail("the takes of CMU's subject 16 are not in ../shared/data/cmu/16: name a folder of motion files by --data"),
+        None => fail(
+            "the takes of CMU's subject 16 are not in ../shared/data/cmu/16: name a folder of motion files by --data",
+        ),
     }
 }

@@ -1,5 +1,5 @@
-//! The last step of a build: what belongs together is named so that it can never be mixed, the page gets its policy, and the service worker learns
-//! what there is.
+//! The last step of a build: what belongs together is named so that it can never be mixed, the page
+//! gets its policy, and the service worker learns what there is.
 //!
 //! Trunk calls it as a hook (Trunk.toml), so that every way to build makes the same folder.
 
@@ -11,8 +11,10 @@ use crate::shell::{Result, fail};
 
 /// What is fetched when somebody asks for it, and kept from then on.
 const LATER: [&str; 3] = ["samples/", "lessons/", "lang/"];
-/// What the page may do, as a Content-Security-Policy: run the scripts and the WebAssembly that lie beside it and nothing else, and fetch from
-/// anywhere, for `src=` and lessons. Pictures and films that it has made itself (`blob:`) may be shown in it. Who may frame it only a header of the host can say.
+/// What the page may do, as a Content-Security-Policy: run the scripts and the WebAssembly that lie
+/// beside it and nothing else, and fetch from anywhere, for `src=` and lessons. Pictures and films
+/// that it has made itself (`blob:`) may be shown in it. Who may frame it only a header of the host
+/// can say.
 const POLICY: &str = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; style-src 'self'; img-src 'self' data: blob:; \
                       media-src blob:; manifest-src 'self'; connect-src 'self' https: http:; base-uri 'none'; form-action 'none'";
 /// Where the policy goes: before everything that it is about.
@@ -24,9 +26,12 @@ const WORKER: &str = "sw.js";
 /// Seals the folder that Trunk is about to hand over.
 pub fn run() -> Result<()> {
     let Some(folder) = std::env::var_os("TRUNK_STAGING_DIR") else {
-        return fail("`seal` is called by Trunk, after a build: TRUNK_STAGING_DIR names the folder");
+        return fail(
+            "`seal` is called by Trunk, after a build: TRUNK_STAGING_DIR names the folder",
+        );
     };
-    // While one works on the page, a worker that keeps old pages is in the way, and so is a policy without the script with which Trunk reloads it.
+    // While one works on the page, a worker that keeps old pages is in the way, and so is a policy
+    // without the script with which Trunk reloads it.
     let is_release = std::env::var("TRUNK_PROFILE").is_ok_and(|profile| profile == "release");
     seal(Path::new(&folder), is_release)
 }
@@ -46,8 +51,11 @@ fn seal(folder: &Path, is_release: bool) -> Result<()> {
     };
     fs::write(&page, format!("{head}<meta name=\"build\" content=\"{version}\">\n</head>{body}"))?;
     let is_later = |file: &&String| LATER.iter().any(|later| file.starts_with(later));
-    let (later, first): (Vec<&String>, Vec<&String>) = files.iter().filter(|file| *file != WORKER).partition(is_later);
-    let list = |files: &[&String]| format!("[\n{}]", files.iter().map(|file| format!("  {file:?},\n")).collect::<String>());
+    let (later, first): (Vec<&String>, Vec<&String>) =
+        files.iter().filter(|file| *file != WORKER).partition(is_later);
+    let list = |files: &[&String]| {
+        format!("[\n{}]", files.iter().map(|file| format!("  {file:?},\n")).collect::<String>())
+    };
     let worker = folder.join(WORKER);
     let script = fs::read_to_string(&worker)?;
     for mark in ["\"BUILD\"", "[/* FILES */]", "[/* LATER */]"] {
@@ -62,9 +70,11 @@ fn seal(folder: &Path, is_release: bool) -> Result<()> {
     Ok(fs::write(worker, script)?)
 }
 
-/// Puts the page's own scripts into a folder that is named after what they say: a browser that keeps them never gives an old one to a new page.
+/// Puts the page's own scripts into a folder that is named after what they say: a browser that
+/// keeps them never gives an old one to a new page.
 fn rename_scripts(folder: &Path) -> Result<()> {
-    let scripts: Vec<String> = files_of(folder)?.into_iter().filter(|file| file.starts_with("js/")).collect();
+    let scripts: Vec<String> =
+        files_of(folder)?.into_iter().filter(|file| file.starts_with("js/")).collect();
     if scripts.is_empty() {
         return fail("the build has no folder js/");
     }
@@ -166,10 +176,15 @@ mod tests {
         assert!(!worker.contains("sw.js"), "{worker}");
         let policy = page.find("Content-Security-Policy").unwrap();
         assert!(
-            policy < page.find("<script").unwrap() && page.contains("script-src 'self' 'wasm-unsafe-eval';"),
+            policy < page.find("<script").unwrap()
+                && page.contains("script-src 'self' 'wasm-unsafe-eval';"),
             "{page}"
         );
-        assert_eq!(read("b", "1"), ([page.clone(), worker.clone()], files.clone()), "the same again");
+        assert_eq!(
+            read("b", "1"),
+            ([page.clone(), worker.clone()], files.clone()),
+            "the same again"
+        );
         let ([other_page, other_worker], other_files) = read("c", "2");
         assert!(page != other_page && worker != other_worker && files != other_files);
     }

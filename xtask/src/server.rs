@@ -21,11 +21,10 @@ impl Server {
             return fail(format!("{} holds no index.html: build first", folder.display()));
         }
         match TcpListener::bind((Ipv4Addr::LOCALHOST, port)) {
-            Ok(listener) => Ok(Self {
-                listener,
-                folder: folder.into(),
-            }),
-            Err(error) => fail(format!("port {port} cannot be had ({error}); `--port N` takes another")),
+            Ok(listener) => Ok(Self { listener, folder: folder.into() }),
+            Err(error) => {
+                fail(format!("port {port} cannot be had ({error}); `--port N` takes another"))
+            }
         }
     }
 
@@ -86,7 +85,9 @@ impl Request {
             if reader.read_line(&mut line)? == 0 || line.trim().is_empty() {
                 return Ok(Some(request));
             }
-            let Some((name, value)) = line.split_once(':') else { continue };
+            let Some((name, value)) = line.split_once(':') else {
+                continue;
+            };
             match name.to_ascii_lowercase().as_str() {
                 "accept-encoding" => request.accepts = value.trim().to_owned(),
                 "if-none-match" => request.known_tag = value.trim().to_owned(),
@@ -118,7 +119,8 @@ impl Response {
     }
 
     fn encode(&self, request: &Request) -> Vec<u8> {
-        let mut bytes = format!("HTTP/1.1 {}\r\nContent-Length: {}\r\n", self.status, self.body.len());
+        let mut bytes =
+            format!("HTTP/1.1 {}\r\nContent-Length: {}\r\n", self.status, self.body.len());
         for (name, value) in &self.headers {
             bytes += &format!("{name}: {value}\r\n");
         }
@@ -148,29 +150,23 @@ fn respond(request: &Request, folder: &Path) -> Response {
             let path = PathBuf::from(name);
             path.is_file().then_some((path, encoding))
         });
-    let (path, encoding) = packed.map_or((file.clone(), None), |(path, encoding)| (path, Some(encoding)));
+    let (path, encoding) =
+        packed.map_or((file.clone(), None), |(path, encoding)| (path, Some(encoding)));
     let tag = tag(&path);
     let mut headers = vec![
         ("Content-Type", media_type(&file).to_owned()),
         ("ETag", tag.clone()),
-        // The browser may keep it but asks each time: a rebuild shows at once, and compiled code is kept for the rest.
+        // The browser may keep it but asks each time: a rebuild shows at once, and compiled code is
+        // kept for the rest.
         ("Cache-Control", "no-cache".to_owned()),
         ("Vary", "Accept-Encoding".to_owned()),
     ];
     headers.extend(encoding.map(|encoding| ("Content-Encoding", encoding.to_owned())));
     if request.known_tag == tag {
-        return Response {
-            status: "304 Not Modified",
-            headers,
-            body: Vec::new(),
-        };
+        return Response { status: "304 Not Modified", headers, body: Vec::new() };
     }
     match fs::read(&path) {
-        Ok(body) => Response {
-            status: "200 OK",
-            headers,
-            body,
-        },
+        Ok(body) => Response { status: "200 OK", headers, body },
         Err(_) => Response::text("404 Not Found"),
     }
 }
@@ -206,7 +202,9 @@ fn percent_decoded(text: &str) -> Option<String> {
 
 /// Changes whenever the file does.
 fn tag(path: &Path) -> String {
-    let Ok(meta) = fs::metadata(path) else { return String::new() };
+    let Ok(meta) = fs::metadata(path) else {
+        return String::new();
+    };
     let written = meta
         .modified()
         .ok()
@@ -241,24 +239,16 @@ mod tests {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
         assert!(resolve("/main.rs", &folder).is_some());
         assert!(resolve("/main.rs?lab=blend", &folder).is_some());
-        for path in [
-            "/../Cargo.toml",
-            "/%2e%2e/Cargo.toml",
-            "//etc/passwd",
-            "/none.rs",
-            "/%zz",
-            "/%e2%82",
-        ] {
+        for path in
+            ["/../Cargo.toml", "/%2e%2e/Cargo.toml", "//etc/passwd", "/none.rs", "/%zz", "/%e2%82"]
+        {
             assert!(resolve(path, &folder).is_none(), "{path}");
         }
     }
 
     #[test]
     fn an_encoding_is_accepted_by_its_whole_name() {
-        let request = Request {
-            accepts: "gzip;q=0.8, br".to_owned(),
-            ..Request::default()
-        };
+        let request = Request { accepts: "gzip;q=0.8, br".to_owned(), ..Request::default() };
         assert!(request.accepts("gzip") && request.accepts("br"));
         assert!(!request.accepts("b"));
     }

@@ -6,7 +6,8 @@ use std::process::Command;
 
 use crate::shell::{Result, cargo, command, fail, on_path, output, root, run, step, target};
 
-/// What Trunk this page was made with; it is asked for exactly, for its start scripts differ between versions.
+/// What Trunk this page was made with; it is asked for exactly, for its start scripts differ
+/// between versions.
 const TRUNK: &str = "0.21.14";
 const WASM_TARGET: &str = "wasm32-unknown-unknown";
 
@@ -20,13 +21,11 @@ impl WebTools {
     /// The command of one of these tools, with all of them on its path.
     pub fn command(&self, program: &str, args: &[&str]) -> Command {
         let rest = std::env::var_os("PATH").unwrap_or_default();
-        let path = std::env::join_paths(std::iter::once(self.own.clone()).chain(std::env::split_paths(&rest)));
+        let path = std::env::join_paths(
+            std::iter::once(self.own.clone()).chain(std::env::split_paths(&rest)),
+        );
         let own = self.own.join(program);
-        let mut command = if own.is_file() {
-            command(own, args)
-        } else {
-            command(program, args)
-        };
+        let mut command = if own.is_file() { command(own, args) } else { command(program, args) };
         if let Ok(path) = path {
             command.env("PATH", path);
         }
@@ -39,16 +38,19 @@ struct Crate {
     name: &'static str,
     program: &'static str,
     version: String,
-    /// Trunk needs the versions in its own lock file to build at all; wasm-bindgen-cli comes without a lock file.
+    /// Trunk needs the versions in its own lock file to build at all; wasm-bindgen-cli comes
+    /// without a lock file.
     locked: bool,
-    /// Level 0 suffices for Trunk, which only starts others; wasm-bindgen itself works on megabytes.
+    /// Level 0 suffices for Trunk, which only starts others; wasm-bindgen itself works on
+    /// megabytes.
     opt_level: &'static str,
     minutes: u32,
 }
 
 impl Crate {
     fn found(&self, program: impl AsRef<std::ffi::OsStr>) -> Option<bool> {
-        output(program, &["--version"]).map(|text| text.split_whitespace().nth(1) == Some(&self.version))
+        output(program, &["--version"])
+            .map(|text| text.split_whitespace().nth(1) == Some(&self.version))
     }
 }
 
@@ -63,9 +65,7 @@ pub fn web() -> Result<WebTools> {
     for missing in missing_crates()? {
         install(&missing)?;
     }
-    Ok(WebTools {
-        own: own_folder().join("bin"),
-    })
+    Ok(WebTools { own: own_folder().join("bin") })
 }
 
 /// Finds or installs Rust's standard library for the web.
@@ -89,7 +89,8 @@ pub fn software_vulkan() -> Result<()> {
 
 /// Finds or installs a browser, and gives its path.
 pub fn chromium() -> Result<String> {
-    const NAMES: [&str; 4] = ["chromium", "chromium-browser", "google-chrome-stable", "google-chrome"];
+    const NAMES: [&str; 4] =
+        ["chromium", "chromium-browser", "google-chrome-stable", "google-chrome"];
     if let Ok(own) = std::env::var("CHROMIUM") {
         return Ok(own);
     }
@@ -98,14 +99,17 @@ pub fn chromium() -> Result<String> {
     }
     match NAMES.iter().find(|name| on_path(name)) {
         Some(name) => Ok((*name).to_owned()),
-        None => fail("no Chromium was found: install one, or name its path in the variable CHROMIUM"),
+        None => {
+            fail("no Chromium was found: install one, or name its path in the variable CHROMIUM")
+        }
     }
 }
 
 /// Finds or installs what the browser tests import.
 pub fn browser_packages() -> Result<()> {
     let folder = root().join("tests/browser");
-    let written = |path: &str| fs::metadata(folder.join(path)).and_then(|meta| meta.modified()).ok();
+    let written =
+        |path: &str| fs::metadata(folder.join(path)).and_then(|meta| meta.modified()).ok();
     if written("node_modules/.package-lock.json") >= written("package-lock.json") {
         return Ok(());
     }
@@ -114,7 +118,8 @@ pub fn browser_packages() -> Result<()> {
     })
 }
 
-/// Finds or installs one Python package, with its exact version, and gives the path of the Python that has it.
+/// Finds or installs one Python package, with its exact version, and gives the path of the Python
+/// that has it.
 pub fn python(package: &str) -> Result<PathBuf> {
     let folder = target().join("python").join(package);
     let bin = folder.join(if cfg!(windows) { "Scripts" } else { "bin" });
@@ -122,7 +127,8 @@ pub fn python(package: &str) -> Result<PathBuf> {
     // Written last, so that half an installation is made again.
     let done = folder.join("installed");
     if !done.exists() {
-        // Debian has the module apart from Python, and without it half of `venv` still seems to work.
+        // Debian has the module apart from Python, and without it half of `venv` still seems to
+        // work.
         if output("python3", &["-c", "import ensurepip, venv"]).is_none() {
             apt(&["python3", "python3-venv"])?;
         }
@@ -139,8 +145,10 @@ pub fn python(package: &str) -> Result<PathBuf> {
 }
 
 fn has_wasm_target() -> bool {
-    // Asked of rustc and not of rustup, so that a standard library that came another way counts too.
-    output("rustc", &["--print", "target-libdir", "--target", WASM_TARGET]).is_some_and(|folder| PathBuf::from(folder).is_dir())
+    // Asked of rustc and not of rustup, so that a standard library that came another way counts
+    // too.
+    output("rustc", &["--print", "target-libdir", "--target", WASM_TARGET])
+        .is_some_and(|folder| PathBuf::from(folder).is_dir())
 }
 
 fn missing_crates() -> Result<Vec<Crate>> {
@@ -173,27 +181,26 @@ fn own_folder() -> PathBuf {
 }
 
 fn install(wanted: &Crate) -> Result<()> {
-    let Crate {
-        name,
-        program,
-        version,
-        minutes,
-        ..
-    } = wanted;
+    let Crate { name, program, version, minutes, .. } = wanted;
     let has_other = wanted.found(program).is_some();
-    let place = if has_other {
-        "into .tools/, beside your other version"
-    } else {
-        "with `cargo install`"
-    };
+    let place =
+        if has_other { "into .tools/, beside your other version" } else { "with `cargo install`" };
     step(
         format!("installing {name} {version} {place} (about {minutes} minutes on 2 cores)"),
         || {
             let own = own_folder();
             let build = target().join("tools");
-            // Neither needs TLS, which their default features bring for downloads that the project does not let them make.
+            // Neither needs TLS, which their default features bring for downloads that the project
+            // does not let them make.
             let package = format!("{name}@{version}");
-            let mut install = cargo(&["install", "--quiet", "--force", "--debug", "--no-default-features", &package]);
+            let mut install = cargo(&[
+                "install",
+                "--quiet",
+                "--force",
+                "--debug",
+                "--no-default-features",
+                &package,
+            ]);
             if wanted.locked {
                 install.arg("--locked");
             }
@@ -206,7 +213,8 @@ fn install(wanted: &Crate) -> Result<()> {
                 .env("CARGO_PROFILE_DEV_OPT_LEVEL", wanted.opt_level)
                 .env("CARGO_INCREMENTAL", "0");
             run(&mut install)?;
-            // Half a gigabyte that nobody needs again. A failed install keeps it, and goes on where it stopped.
+            // Half a gigabyte that nobody needs again. A failed install keeps it, and goes on where
+            // it stopped.
             let _ = fs::remove_dir_all(build);
             Ok(())
         },
@@ -218,8 +226,12 @@ fn locked_version(package: &str) -> Result<String> {
     let lock = fs::read_to_string(root().join("Cargo.lock"))?;
     let entry = format!("name = \"{package}\"");
     let mut lines = lock.lines().skip_while(|line| *line != entry);
-    let version = lines.nth(1).and_then(|line| line.strip_prefix("version = \"")?.strip_suffix('"'));
-    version.map_or_else(|| fail(format!("Cargo.lock holds no {package}")), |version| Ok(version.to_owned()))
+    let version =
+        lines.nth(1).and_then(|line| line.strip_prefix("version = \"")?.strip_suffix('"'));
+    version.map_or_else(
+        || fail(format!("Cargo.lock holds no {package}")),
+        |version| Ok(version.to_owned()),
+    )
 }
 
 fn apt(packages: &[&str]) -> Result<()> {

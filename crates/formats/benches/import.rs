@@ -1,6 +1,8 @@
-//! How fast motion files are read, in bytes of text per second, beside another reader of the same files in the same run.
+//! How fast motion files are read, in bytes of text per second, beside another reader of the same
+//! files in the same run.
 //!
-//! `cargo bench --package segue-formats`. The file of the CMU database is read where the machine has it.
+//! `cargo bench --package segue-formats`. The file of the CMU database is read where the machine
+//! has it.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use segue_formats::bvh::{WriteOptions, write};
@@ -28,12 +30,9 @@ fn take() -> Vec<u8> {
 
 /// A minute of walking in six decimals, over and over.
 fn made(bytes: usize) -> Vec<u8> {
-    let clip = synthesize(&Params {
-        duration_secs: 60.0,
-        ..Params::new(Action::Walk)
-    })
-    .expect("natural parameters")
-    .clip;
+    let clip = synthesize(&Params { duration_secs: 60.0, ..Params::new(Action::Walk) })
+        .expect("natural parameters")
+        .clip;
     let text = write(&clip, &WriteOptions::default());
     let (hierarchy, motion) = text.split_once("Frames: ").expect("a header");
     let (_, motion) = motion.split_once('\n').expect("a header");
@@ -51,7 +50,9 @@ fn reading(c: &mut Criterion) {
         let mut group = c.benchmark_group(name);
         group.throughput(Throughput::Bytes(bytes.len() as u64)).sample_size(10);
         group.bench_function("segue", |bench| {
-            bench.iter(|| import(name, black_box(&bytes), &ImportOptions::default()).expect("a clip"));
+            bench.iter(|| {
+                import(name, black_box(&bytes), &ImportOptions::default()).expect("a clip")
+            });
         });
         group.bench_function("bvh_anim 0.4", |bench| {
             bench.iter(|| bvh_anim::from_bytes(black_box(&bytes)).expect("a clip"));

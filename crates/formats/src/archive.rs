@@ -1,7 +1,8 @@
 //! Zip archives of motion files.
 //!
-//! What comes out is motion only, in the order of paths, whatever order the archive has. Nothing is ever allocated because a header says so, an
-//! archive inside the archive is opened and one inside that is not, and paths never lead out of the archive: they are names, nothing else.
+//! What comes out is motion only, in the order of paths, whatever order the archive has. Nothing is
+//! ever allocated because a header says so, an archive inside the archive is opened and one inside
+//! that is not, and paths never lead out of the archive: they are names, nothing else.
 
 use super::gzip::{no_memory, read_at_most};
 use super::text::name as decoded;
@@ -23,27 +24,26 @@ const DEPTH: usize = 1;
 /// How much an archive may hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct ArchiveLimits {
-    /// The most bytes that its motion files have together once they are unpacked. Larger archives are refused.
+    /// The most bytes that its motion files have together once they are unpacked. Larger archives
+    /// are refused.
     pub max_bytes: usize,
     /// The most motion files that are read. Further ones are left out, and told.
     pub max_files: usize,
 }
 
 impl Default for ArchiveLimits {
-    /// As much as a single file may have, in as many files as a list has that a person looks through.
+    /// As much as a single file may have, in as many files as a list has that a person looks
+    /// through.
     fn default() -> Self {
-        Self {
-            max_bytes: ImportOptions::default().max_bytes,
-            max_files: MOST_FILES,
-        }
+        Self { max_bytes: ImportOptions::default().max_bytes, max_files: MOST_FILES }
     }
 }
 
 /// A file of an archive, unpacked.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ArchivedFile {
-    /// Where it lies in the archive, with `/` between folders; below an archive inside the archive, that one's path comes first. The ending `.gz` of
-    /// a file that was packed once more is gone.
+    /// Where it lies in the archive, with `/` between folders; below an archive inside the archive,
+    /// that one's path comes first. The ending `.gz` of a file that was packed once more is gone.
     pub path: String,
     /// What it holds.
     pub bytes: Vec<u8>,
@@ -65,12 +65,15 @@ pub fn is_zip(bytes: &[u8]) -> bool {
     bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"PK\x05\x06")
 }
 
-/// Unpacks the motion files of a zip archive: `.bvh`, `.asf`, `.amc`, `.glb`, `.gltf` with its `.bin`, each also packed once more as `.gz`.
+/// Unpacks the motion files of a zip archive: `.bvh`, `.asf`, `.amc`, `.glb`, `.gltf` with its
+/// `.bin`, each also packed once more as `.gz`.
 ///
-/// A file that is damaged, encrypted or packed in an unusual way is left out with a warning, as long as others are there.
+/// A file that is damaged, encrypted or packed in an unusual way is left out with a warning, as
+/// long as others are there.
 ///
 /// # Errors
-/// [`ImportError`] when this is no zip archive, when it is cut off, when its files unpack to more than the limit, and when no motion comes out.
+/// [`ImportError`] when this is no zip archive, when it is cut off, when its files unpack to more
+/// than the limit, and when no motion comes out.
 pub fn unpack(name: &str, bytes: &[u8], limits: &ArchiveLimits) -> Result<Unpacked, ImportError> {
     let mut unpacking = Unpacking {
         name,
@@ -87,8 +90,13 @@ pub fn unpack(name: &str, bytes: &[u8], limits: &ArchiveLimits) -> Result<Unpack
         let unreadable = warnings
             .iter()
             .find(|warning| matches!(warning.kind, WarningKind::UnreadableFiles { .. }));
-        let found = unreadable.map_or_else(|| "an archive without motion files".to_owned(), ToString::to_string);
-        return Err(ImportError::whole_file(name, found, "motion files (.bvh, .asf, .amc, .glb, .gltf)"));
+        let found = unreadable
+            .map_or_else(|| "an archive without motion files".to_owned(), ToString::to_string);
+        return Err(ImportError::whole_file(
+            name,
+            found,
+            "motion files (.bvh, .asf, .amc, .glb, .gltf)",
+        ));
     }
     // Stable: of two files with one path, the one that comes first in the archive stays first.
     files.sort_by(|a, b| a.path.cmp(&b.path));
@@ -102,12 +110,11 @@ fn open(bytes: &[u8]) -> Result<ZipSliceArchive<&[u8]>, String> {
         ErrorKind::MissingEndOfCentralDirectory => "no zip archive".to_owned(),
         _ => format!("a damaged zip archive ({error})"),
     })?;
-    // The end of an archive inside one that was cut off may look like its own. But then nothing in it is at the start, and something comes after.
+    // The end of an archive inside one that was cut off may look like its own. But then nothing in
+    // it is at the start, and something comes after.
     let is_inner = archive.end_offset() < bytes.len() as u64
         && bytes.starts_with(b"PK\x03\x04")
-        && archive
-            .entries()
-            .all(|entry| entry.is_ok_and(|entry| entry.local_header_offset() > 0));
+        && archive.entries().all(|entry| entry.is_ok_and(|entry| entry.local_header_offset() > 0));
     if is_inner { Err(cut_off()) } else { Ok(archive) }
 }
 
@@ -140,7 +147,12 @@ impl From<io::Error> for Miss {
 }
 
 impl Unpacking<'_> {
-    fn archive(&mut self, archive: &ZipSliceArchive<&[u8]>, folder: &str, depth: usize) -> Result<(), ImportError> {
+    fn archive(
+        &mut self,
+        archive: &ZipSliceArchive<&[u8]>,
+        folder: &str,
+        depth: usize,
+    ) -> Result<(), ImportError> {
         let mut entries = archive.entries();
         loop {
             match entries.next_entry() {
@@ -218,18 +230,31 @@ impl Unpacking<'_> {
         Ok(())
     }
 
-    fn read(&self, archive: &ZipSliceArchive<&[u8]>, entry: &ZipFileHeaderRecord<'_>) -> Result<Vec<u8>, Miss> {
+    fn read(
+        &self,
+        archive: &ZipSliceArchive<&[u8]>,
+        entry: &ZipFileHeaderRecord<'_>,
+    ) -> Result<Vec<u8>, Miss> {
         if entry.flags().is_encrypted() {
             return Err(Miss::Unreadable("it is encrypted".to_owned()));
         }
         let packed = archive.get_entry(entry.wayfinder());
-        let packed = packed.map_err(|error| Miss::Unreadable(format!("it is damaged ({error})")))?;
+        let packed =
+            packed.map_err(|error| Miss::Unreadable(format!("it is damaged ({error})")))?;
         let bytes = match entry.compression_method() {
-            CompressionMethod::STORE => read_at_most(packed.verifying_reader(packed.data()), self.left),
-            CompressionMethod::DEFLATE => read_at_most(packed.verifying_reader(DeflateDecoder::new(packed.data())), self.left),
+            CompressionMethod::STORE => {
+                read_at_most(packed.verifying_reader(packed.data()), self.left)
+            }
+            CompressionMethod::DEFLATE => {
+                read_at_most(packed.verifying_reader(DeflateDecoder::new(packed.data())), self.left)
+            }
             other => {
-                let name = other.name().map_or_else(|| format!("method {}", other.as_u16()), str::to_owned);
-                return Err(Miss::Unreadable(format!("it is packed with {name}, which is not read here")));
+                let name = other
+                    .name()
+                    .map_or_else(|| format!("method {}", other.as_u16()), str::to_owned);
+                return Err(Miss::Unreadable(format!(
+                    "it is packed with {name}, which is not read here"
+                )));
             }
         };
         bytes?.ok_or(Miss::TooMuch)
@@ -254,8 +279,12 @@ impl Unpacking<'_> {
 
     fn too_much(&self) -> ImportError {
         let most = format!("{} MB", self.limits.max_bytes >> 20);
-        ImportError::whole_file(self.name, format!("more than {most} after unpacking"), format!("at most {most}"))
-            .with_hint("unpack the archive and open a part of its files")
+        ImportError::whole_file(
+            self.name,
+            format!("more than {most} after unpacking"),
+            format!("at most {most}"),
+        )
+        .with_hint("unpack the archive and open a part of its files")
     }
 }
 
@@ -263,7 +292,8 @@ fn is_motion(path: &str) -> bool {
     MOTION.iter().any(|extension| has_extension(path, extension))
 }
 
-/// A path inside the archive: with `/` only, and without drives, roots, `.` and `..`. Tells whether it would have led out.
+/// A path inside the archive: with `/` only, and without drives, roots, `.` and `..`. Tells whether
+/// it would have led out.
 fn tidy(path: &str) -> (String, bool) {
     let is_drive = |part: &str| part.len() == 2 && part.ends_with(':');
     let mut leads_out = path.starts_with(['/', '\\']);

@@ -7,9 +7,11 @@ use super::t_pose::first_frame_is_t_pose;
 use super::warning::{Tally, WarningKind};
 use super::{ImportOptions, ImportedClip, stem};
 
-/// One clip for each character of a file: measured, in metres and Y up, without a T-pose row where there is one.
+/// One clip for each character of a file: measured, in metres and Y up, without a T-pose row where
+/// there is one.
 ///
-/// `unit_of_file` is what the file itself says of its unit, metres; `first_row_at` the place of its first row.
+/// `unit_of_file` is what the file itself says of its unit, metres; `first_row_at` the place of its
+/// first row.
 pub(super) fn assemble(
     name: &str,
     mut motions: Vec<RawMotion>,
@@ -38,7 +40,8 @@ pub(super) fn assemble(
         if dropped {
             raw.drop_first_frame();
         }
-        let measure = measure(&raw, options.metres_per_unit, options.up).with_unit_of_file(unit_of_file);
+        let measure =
+            measure(&raw, options.metres_per_unit, options.up).with_unit_of_file(unit_of_file);
         if measure.unit_unknown {
             tally.add(WarningKind::UnknownUnit, None);
         }

@@ -1,7 +1,8 @@
 //! Comma-separated values: a clip as a table for spreadsheets and scripts, one row per frame.
 //!
-//! As RFC 4180 has it: a header row, lines that end with CR LF, quotation marks around names that need them. Numbers have a decimal point and as many
-//! digits as it takes to read the same number back. Columns say their unit: `Hips.x_m`.
+//! As RFC 4180 has it: a header row, lines that end with CR LF, quotation marks around names that
+//! need them. Numbers have a decimal point and as many digits as it takes to read the same number
+//! back. Columns say their unit: `Hips.x_m`.
 
 use super::bvh::RotationOrder;
 use glam::Quat;
@@ -14,11 +15,13 @@ use std::fmt::{Display, Write as _};
 /// How local rotations are written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum CsvRotations {
-    /// Four columns `.qx`, `.qy`, `.qz`, `.qw`: unit quaternions, each in the hemisphere of the one in the row before.
+    /// Four columns `.qx`, `.qy`, `.qz`, `.qw`: unit quaternions, each in the hemisphere of the one
+    /// in the row before.
     #[default]
     Quaternions,
-    /// Three columns in this order, such as `.rz_deg`, `.rx_deg`, `.ry_deg`: turns about the joint's own axes, degrees, the first one outermost, each
-    /// nearest to the one in the row before.
+    /// Three columns in this order, such as `.rz_deg`, `.rx_deg`, `.ry_deg`: turns about the
+    /// joint's own axes, degrees, the first one outermost, each nearest to the one in the row
+    /// before.
     Euler(RotationOrder),
 }
 
@@ -40,15 +43,13 @@ pub struct CsvInputs<'a> {
     pub columns: &'a [(String, Vec<f32>)],
 }
 
-/// Writes a clip as a table: `time_s`; for each joint its position in the world (metres) and its local rotation; `left_foot_contact` and
-/// `right_foot_contact` (0 or 1); the columns of `inputs`. Values that are no numbers are empty. Joints of the same name are numbered: `Hand (2)`.
+/// Writes a clip as a table: `time_s`; for each joint its position in the world (metres) and its
+/// local rotation; `left_foot_contact` and `right_foot_contact` (0 or 1); the columns of `inputs`.
+/// Values that are no numbers are empty. Joints of the same name are numbered: `Hand (2)`.
 #[must_use]
 pub fn write_csv(inputs: &CsvInputs<'_>, options: &CsvOptions) -> String {
     let unfolded = inputs.clip.unfolded();
-    let inputs = &CsvInputs {
-        clip: unfolded.as_ref().unwrap_or(inputs.clip),
-        ..*inputs
-    };
+    let inputs = &CsvInputs { clip: unfolded.as_ref().unwrap_or(inputs.clip), ..*inputs };
     let clip = inputs.clip;
     let mut out = String::new();
     header(&mut out, inputs, options.rotations);
@@ -68,7 +69,9 @@ pub fn write_csv(inputs: &CsvInputs<'_>, options: &CsvOptions) -> String {
                 }
                 CsvRotations::Euler(order) => {
                     angles[joint] = order.angles(turn, angles[joint]);
-                    angles[joint].into_iter().for_each(|angle| row.value(angle.to_degrees() as f32));
+                    angles[joint]
+                        .into_iter()
+                        .for_each(|angle| row.value(angle.to_degrees() as f32));
                 }
             }
         }
@@ -88,18 +91,17 @@ pub fn write_csv(inputs: &CsvInputs<'_>, options: &CsvOptions) -> String {
 fn header(out: &mut String, inputs: &CsvInputs<'_>, rotations: CsvRotations) {
     let rotations: Vec<&str> = match rotations {
         CsvRotations::Quaternions => vec!["qx", "qy", "qz", "qw"],
-        CsvRotations::Euler(order) => order.axes().into_iter().map(|axis| ["rx_deg", "ry_deg", "rz_deg"][axis]).collect(),
+        CsvRotations::Euler(order) => {
+            order.axes().into_iter().map(|axis| ["rx_deg", "ry_deg", "rz_deg"][axis]).collect()
+        }
     };
     out.push_str("time_s");
     let mut seen: BTreeMap<&str, usize> = BTreeMap::new();
     for joint in inputs.clip.skeleton().joints() {
         let times = seen.entry(&joint.name).or_default();
         *times += 1;
-        let name = if *times == 1 {
-            joint.name.clone()
-        } else {
-            format!("{} ({times})", joint.name)
-        };
+        let name =
+            if *times == 1 { joint.name.clone() } else { format!("{} ({times})", joint.name) };
         for column in ["x_m", "y_m", "z_m"].iter().chain(&rotations) {
             out.push(',');
             out.push_str(&cell(&format!("{name}.{column}")));
@@ -115,15 +117,11 @@ fn header(out: &mut String, inputs: &CsvInputs<'_>, rotations: CsvRotations) {
     out.push_str("\r\n");
 }
 
-/// Returns a name as a cell: in quotation marks where it holds what would end it, and behind an apostrophe where a spreadsheet would take it for a
-/// formula (OWASP, CSV injection).
+/// Returns a name as a cell: in quotation marks where it holds what would end it, and behind an
+/// apostrophe where a spreadsheet would take it for a formula (OWASP, CSV injection).
 #[must_use]
 pub fn cell(name: &str) -> String {
-    let apostrophe = if name.starts_with(['=', '+', '-', '@', '\t', '\r']) {
-        "'"
-    } else {
-        ""
-    };
+    let apostrophe = if name.starts_with(['=', '+', '-', '@', '\t', '\r']) { "'" } else { "" };
     if name.contains([',', '"', '\n', '\r']) {
         format!("\"{apostrophe}{}\"", name.replace('"', "\"\""))
     } else {
@@ -184,11 +182,7 @@ mod tests {
     }
 
     fn inputs(clip: &Clip) -> CsvInputs<'_> {
-        CsvInputs {
-            clip,
-            contacts: None,
-            columns: &[],
-        }
+        CsvInputs { clip, contacts: None, columns: &[] }
     }
 
     #[test]
@@ -196,14 +190,11 @@ mod tests {
         let clip = synthesize(&Params::new(Action::Walk)).unwrap().clip;
         let values = (0..clip.frames()).map(|frame| Vec3::splat(0.01 * frame as f32)).collect();
         let clip = clip.with_translations(vec![JointTranslations { joint: 3, values }]).unwrap();
-        let contacts = Contacts::detect(&clip, &Roles::detect(clip.skeleton()), &ContactOptions::default());
+        let contacts =
+            Contacts::detect(&clip, &Roles::detect(clip.skeleton()), &ContactOptions::default());
         let columns = [("speed, \"fast\"".to_owned(), vec![1.5, f32::NAN])];
         let text = write_csv(
-            &CsvInputs {
-                contacts: Some(&contacts),
-                columns: &columns,
-                ..inputs(&clip)
-            },
+            &CsvInputs { contacts: Some(&contacts), columns: &columns, ..inputs(&clip) },
             &CsvOptions::default(),
         );
         let rows = table(&text);
@@ -226,13 +217,20 @@ mod tests {
             assert_eq!(row[0].parse::<f64>().unwrap(), clip.time_of(frame));
             for joint in 0..joints {
                 let at = 1 + 7 * joint;
-                assert_eq!(Vec3::new(number(at), number(at + 1), number(at + 2)), world.positions[joint]);
-                let turn = Quat::from_xyzw(number(at + 3), number(at + 4), number(at + 5), number(at + 6));
+                assert_eq!(
+                    Vec3::new(number(at), number(at + 1), number(at + 2)),
+                    world.positions[joint]
+                );
+                let turn =
+                    Quat::from_xyzw(number(at + 3), number(at + 4), number(at + 5), number(at + 6));
                 let own = clip.rotations(frame)[joint];
                 assert!(turn == own || turn == -own);
             }
             for side in Side::BOTH {
-                assert_eq!(row[1 + 7 * joints + side.index()] == "1", contacts.planted(side, frame));
+                assert_eq!(
+                    row[1 + 7 * joints + side.index()] == "1",
+                    contacts.planted(side, frame)
+                );
             }
             assert_eq!(row.last().unwrap(), if frame == 0 { "1.5" } else { "" });
         }
@@ -248,12 +246,15 @@ mod tests {
             pose
         });
         let clip = Clip::from_poses("spin", Arc::clone(run.skeleton()), run.fps(), poses).unwrap();
-        let options = CsvOptions {
-            rotations: CsvRotations::Euler(RotationOrder::Zxy),
-        };
+        let options = CsvOptions { rotations: CsvRotations::Euler(RotationOrder::Zxy) };
         let rows = table(&write_csv(&inputs(&clip), &options));
-        assert!(rows[0][4].ends_with(".rz_deg") && rows[0][5].ends_with(".rx_deg") && rows[0][6].ends_with(".ry_deg"));
-        let angle = |frame: usize, at: usize| rows[frame + 1][at].parse::<f32>().unwrap().to_radians();
+        assert!(
+            rows[0][4].ends_with(".rz_deg")
+                && rows[0][5].ends_with(".rx_deg")
+                && rows[0][6].ends_with(".ry_deg")
+        );
+        let angle =
+            |frame: usize, at: usize| rows[frame + 1][at].parse::<f32>().unwrap().to_radians();
         for frame in 0..clip.frames() {
             for joint in 0..clip.skeleton().len() {
                 let at = 4 + 6 * joint;
@@ -262,7 +263,10 @@ mod tests {
                     * Quat::from_rotation_y(angle(frame, at + 2));
                 assert!(quat::angle_between(turn, clip.rotations(frame)[joint]) < 1e-5);
                 if frame > 0 {
-                    assert!((0..3).all(|i| (angle(frame, at + i) - angle(frame - 1, at + i)).abs() < 3.0));
+                    assert!(
+                        (0..3)
+                            .all(|i| (angle(frame, at + i) - angle(frame - 1, at + i)).abs() < 3.0)
+                    );
                 }
             }
         }
@@ -293,10 +297,13 @@ mod tests {
             channels: vec![],
         };
         let joints = vec![joint("a,b", None), joint("hand", Some(0)), joint("hand", Some(0))];
-        let clip = Clip::new("c", Arc::new(Skeleton::new(joints).unwrap()), 30.0, vec![], vec![]).unwrap();
+        let clip =
+            Clip::new("c", Arc::new(Skeleton::new(joints).unwrap()), 30.0, vec![], vec![]).unwrap();
         let text = write_csv(&inputs(&clip), &CsvOptions::default());
         assert!(
-            text.starts_with("time_s,\"a,b.x_m\",\"a,b.y_m\"") && text.contains(",hand.x_m,") && text.ends_with(",hand (2).qw\r\n"),
+            text.starts_with("time_s,\"a,b.x_m\",\"a,b.y_m\"")
+                && text.contains(",hand.x_m,")
+                && text.ends_with(",hand (2).qw\r\n"),
             "{text}"
         );
     }

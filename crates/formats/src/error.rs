@@ -20,7 +20,11 @@ pub struct ImportError {
 
 impl ImportError {
     /// An error about the file as a whole.
-    pub(super) fn whole_file(file: &str, found: impl Into<String>, expected: impl Into<String>) -> Self {
+    pub(super) fn whole_file(
+        file: &str,
+        found: impl Into<String>,
+        expected: impl Into<String>,
+    ) -> Self {
         Self {
             file: file.to_owned(),
             line: 1,
@@ -37,7 +41,8 @@ impl ImportError {
     }
 }
 
-/// An [`ImportError`] before its byte offset is turned into line and column. Lines are counted only when there is something to report.
+/// An [`ImportError`] before its byte offset is turned into line and column. Lines are counted only
+/// when there is something to report.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Fault {
     pub(super) at: usize,
@@ -48,21 +53,12 @@ pub(super) struct Fault {
 
 impl Fault {
     pub(super) fn new(at: usize, found: impl Into<String>, expected: impl Into<String>) -> Self {
-        Self {
-            at,
-            found: found.into(),
-            expected: expected.into(),
-            hint: None,
-        }
+        Self { at, found: found.into(), expected: expected.into(), hint: None }
     }
 
     /// At `at` stands `token`, which is empty at the end of the file.
     pub(super) fn at_token(at: usize, token: &[u8], expected: impl Into<String>) -> Self {
-        let found = if token.is_empty() {
-            "the end of the file".to_owned()
-        } else {
-            quoted(token)
-        };
+        let found = if token.is_empty() { "the end of the file".to_owned() } else { quoted(token) };
         Self::new(at, found, expected)
     }
 

@@ -7,7 +7,8 @@ pub(super) fn is_gzip(bytes: &[u8]) -> bool {
     bytes.starts_with(&[0x1f, 0x8b])
 }
 
-/// Unpacks a gzip file. Bytes that are no gzip file come back as they are: a server may have unpacked them on the way.
+/// Unpacks a gzip file. Bytes that are no gzip file come back as they are: a server may have
+/// unpacked them on the way.
 ///
 /// # Errors
 /// [`ImportError`] when it is damaged or unpacks to more than `most` bytes.
@@ -29,11 +30,13 @@ pub fn unpack_gzip(name: &str, packed: &[u8], most: usize) -> Result<Vec<u8>, Im
 /// Says that there is no memory for what comes out of the packed file `name`.
 pub(super) fn no_memory(name: &str) -> ImportError {
     let found = "more than there is memory for after unpacking";
-    ImportError::whole_file(name, found, "a smaller file").with_hint("unpack the archive and open a part of its files")
+    ImportError::whole_file(name, found, "a smaller file")
+        .with_hint("unpack the archive and open a part of its files")
 }
 
-/// Reads to the end, or gives `None` when there is more than `most`. The buffer grows with what comes, whatever a header promises;
-/// where there is no memory for it, the error is of the kind [`io::ErrorKind::OutOfMemory`].
+/// Reads to the end, or gives `None` when there is more than `most`. The buffer grows with what
+/// comes, whatever a header promises; where there is no memory for it, the error is of the kind
+/// [`io::ErrorKind::OutOfMemory`].
 pub(super) fn read_at_most(reader: impl Read, most: usize) -> io::Result<Option<Vec<u8>>> {
     let mut bytes = Vec::new();
     reader.take((most as u64).saturating_add(1)).read_to_end(&mut bytes)?;

@@ -1,12 +1,14 @@
 //! Motion files: from bytes to clips and back.
 //!
-//! [`import`] reads whatever it is given, by content rather than by name. Everything with a sensible reading is read, and what was odd about
-//! it comes back as [`ImportWarning`]s, one line per kind; the rest is refused with an [`ImportError`] that says where. Memory follows the
-//! bytes that are there, never a number in a header.
+//! [`import`] reads whatever it is given, by content rather than by name. Everything with a
+//! sensible reading is read, and what was odd about it comes back as [`ImportWarning`]s, one line
+//! per kind; the rest is refused with an [`ImportError`] that says where. Memory follows the bytes
+//! that are there, never a number in a header.
 //!
 //! # The idea
 //!
-//! A motion file is a skeleton and a table of numbers, but no format says all that a [`Clip`] needs. What is missing is found:
+//! A motion file is a skeleton and a table of numbers, but no format says all that a [`Clip`]
+//! needs. What is missing is found:
 //!
 //! ```text
 //! bytes → kind (first words) → skeleton and numbers, in the file's units and axes
@@ -14,8 +16,8 @@
 //!       → metres, Y up, parents first → Clip
 //! ```
 //!
-//! A body that is 174 units tall is measured in centimetres, one of 1.74 in metres, and how the body stands tells which way is up. Where
-//! that is wrong, [`ImportOptions`] say better.
+//! A body that is 174 units tall is measured in centimetres, one of 1.74 in metres, and how the
+//! body stands tells which way is up. Where that is wrong, [`ImportOptions`] say better.
 //!
 //! | | read | written |
 //! |---|---|---|
@@ -55,13 +57,15 @@
 //!
 //! # Accuracy and cost
 //!
-//! A clip that is written as BVH and read back is the same to 1e-5 (metres, radians), whatever its channels and rotation orders. Reading a
-//! BVH file takes memory of at most three times its size, and time by its length. Any bytes are read or refused, none panic.
+//! A clip that is written as BVH and read back is the same to 1e-5 (metres, radians), whatever its
+//! channels and rotation orders. Reading a BVH file takes memory of at most three times its size,
+//! and time by its length. Any bytes are read or refused, none panic.
 //!
 //! # What it does not do
 //!
-//! No FBX, no meshes, no materials. [`import`] neither opens archives nor looks for a second file: whoever holds the files does, and hands
-//! an AMC file over with its skeleton ([`acclaim::read_motion`]).
+//! No FBX, no meshes, no materials. [`import`] neither opens archives nor looks for a second file:
+//! whoever holds the files does, and hands an AMC file over with its skeleton
+//! ([`acclaim::read_motion`]).
 //!
 //! # Sources
 //!
@@ -105,7 +109,8 @@ pub struct ImportOptions {
     pub max_bytes: usize,
     /// Whether a first row that is a T-pose is left out; otherwise it is only marked.
     pub drop_t_pose: bool,
-    /// Whether rows in which the root is metres away, and back in the next, get a place between their neighbours.
+    /// Whether rows in which the root is metres away, and back in the next, get a place between
+    /// their neighbours.
     #[serde(default)]
     pub even_wild_rows: bool,
 }
@@ -129,8 +134,8 @@ impl Default for ImportOptions {
 pub struct ImportedClip {
     /// The motion, in metres and Y up.
     pub clip: Clip,
-    /// Whether the first row of the file is a T-pose that the motion does not start from. Frame 0 of `clip` is that row unless
-    /// [`t_pose_dropped`](Self::t_pose_dropped).
+    /// Whether the first row of the file is a T-pose that the motion does not start from. Frame 0
+    /// of `clip` is that row unless [`t_pose_dropped`](Self::t_pose_dropped).
     pub t_pose_first_row: bool,
     /// Whether the first row was left out.
     pub t_pose_dropped: bool,
@@ -144,10 +149,7 @@ pub struct ImportedClip {
 
 impl ImportedClip {
     fn with_mesh(self, mesh: Option<&Arc<SkinnedMesh>>) -> Self {
-        Self {
-            mesh: mesh.cloned(),
-            ..self
-        }
+        Self { mesh: mesh.cloned(), ..self }
     }
 }
 
@@ -160,7 +162,9 @@ pub struct Imported {
     pub warnings: Vec<ImportWarning>,
 }
 
-/// Reads a motion file. An ASF file is read as its skeleton alone; for an AMC file, which is nothing without one, see [`acclaim`]. `name` is the file's name: for errors, for the name of the clip, and for its ending where the content says nothing.
+/// Reads a motion file. An ASF file is read as its skeleton alone; for an AMC file, which is
+/// nothing without one, see [`acclaim`]. `name` is the file's name: for errors, for the name of the
+/// clip, and for its ending where the content says nothing.
 ///
 /// # Errors
 /// [`ImportError`] when the file is too large, of no known format, or broken.
@@ -168,7 +172,8 @@ pub fn import(name: &str, bytes: &[u8], options: &ImportOptions) -> Result<Impor
     Ok(import_with_progress(name, bytes, options, &mut |_| true)?.unwrap_or_default())
 }
 
-/// [`import`] that reports the bytes read so far about every 256 KB, and stops with `None` when `progress` returns `false`.
+/// [`import`] that reports the bytes read so far about every 256 KB, and stops with `None` when
+/// `progress` returns `false`.
 ///
 /// # Errors
 /// As [`import`].
@@ -181,7 +186,10 @@ pub fn import_with_progress(
     check_size(name, bytes, options)?;
     match kind_of(name, bytes) {
         FileKind::Bvh => bvh::read_with_progress(name, bytes, options, progress),
-        FileKind::Asf => acclaim::skeleton_clip(&acclaim::read_skeleton(name, bytes, options)?, options).map(Some),
+        FileKind::Asf => {
+            acclaim::skeleton_clip(&acclaim::read_skeleton(name, bytes, options)?, options)
+                .map(Some)
+        }
         FileKind::Amc => {
             let error = ImportError::whole_file(
                 name,
@@ -191,13 +199,21 @@ pub fn import_with_progress(
             Err(error.with_hint("drop the .asf file as well, before it, with it or after it"))
         }
         FileKind::Gltf => gltf::read(name, bytes, &|_| None, options).map(Some),
-        FileKind::Zip | FileKind::Gzip => Err(ImportError::whole_file(name, "an archive", "one of the files in it")),
+        FileKind::Zip | FileKind::Gzip => {
+            Err(ImportError::whole_file(name, "an archive", "one of the files in it"))
+        }
         FileKind::Unknown => {
             let found = match name.rsplit_once('.') {
-                Some((_, extension)) if !extension.is_empty() => format!("a file that ends in .{extension}"),
+                Some((_, extension)) if !extension.is_empty() => {
+                    format!("a file that ends in .{extension}")
+                }
                 _ => "a file of unknown format".to_owned(),
             };
-            let error = ImportError::whole_file(name, found, "a motion file (.bvh, .asf with .amc, .glb, .gltf, .zip)");
+            let error = ImportError::whole_file(
+                name,
+                found,
+                "a motion file (.bvh, .asf with .amc, .glb, .gltf, .zip)",
+            );
             Err(error.with_hint("convert it to BVH, or rename it if it is one"))
         }
     }
@@ -275,8 +291,7 @@ pub fn kind_of(name: &str, bytes: &[u8]) -> FileKind {
 }
 
 fn has_extension(name: &str, extension: &str) -> bool {
-    name.rsplit_once('.')
-        .is_some_and(|(_, found)| found.eq_ignore_ascii_case(extension))
+    name.rsplit_once('.').is_some_and(|(_, found)| found.eq_ignore_ascii_case(extension))
 }
 
 /// The file's name without folders and ending.
@@ -293,7 +308,8 @@ fn check_size(name: &str, bytes: &[u8], options: &ImportOptions) -> Result<(), I
         return check_not_empty(name, bytes);
     }
     let found = format!("a file of {} MB", bytes.len().div_ceil(1 << 20));
-    Err(ImportError::whole_file(name, found, format!("at most {} MB", options.max_bytes >> 20)).with_hint("cut the motion into parts"))
+    Err(ImportError::whole_file(name, found, format!("at most {} MB", options.max_bytes >> 20))
+        .with_hint("cut the motion into parts"))
 }
 
 /// Refuses a file of nothing, or of white space alone.
@@ -350,10 +366,7 @@ mod tests {
 
     #[test]
     fn the_size_is_checked_first() {
-        let options = ImportOptions {
-            max_bytes: 10 << 20,
-            ..ImportOptions::default()
-        };
+        let options = ImportOptions { max_bytes: 10 << 20, ..ImportOptions::default() };
         let error = import("big.bvh", &vec![b' '; (10 << 20) + 1], &options).unwrap_err();
         assert_eq!(error.to_string(), "big.bvh:1:1: found a file of 11 MB, expected at most 10 MB");
     }

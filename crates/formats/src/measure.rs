@@ -1,4 +1,5 @@
-//! How long a file's unit is, and which of its axes is up. No motion format says; the size and stance of a person do.
+//! How long a file's unit is, and which of its axes is up. No motion format says; the size and
+//! stance of a person do.
 
 use super::raw::RawMotion;
 use glam::Vec3;
@@ -6,11 +7,13 @@ use segue_motion::clip::{Provenance, UpAxis};
 use segue_motion::skeleton::{Role, Roles, Side, Skeleton};
 use std::fmt;
 
-/// Metres per unit of the CMU motion capture database: inches scaled by 0.45, as its skeleton files say (`:units … length 0.45`).
+/// Metres per unit of the CMU motion capture database: inches scaled by 0.45, as its skeleton files
+/// say (`:units … length 0.45`).
 pub const CMU_METRES_PER_UNIT: f64 = 0.0254 / 0.45;
 
-/// Heights in file units (from, below) that make a person of a unit. Between people of 1.2 to 2.2 m there is no overlap; for the gaps, the bound
-/// is where both neighbours are equally far from a person of 1.7 m, but for centimetres, which are more common than inches.
+/// Heights in file units (from, below) that make a person of a unit. Between people of 1.2 to 2.2 m
+/// there is no overlap; for the gaps, the bound is where both neighbours are equally far from a
+/// person of 1.7 m, but for centimetres, which are more common than inches.
 const UNITS: [(f64, f64, f64); 7] = [
     (0.3, 3.1, 1.0),
     (3.1, 9.7, 0.3048),
@@ -29,10 +32,11 @@ const CLEARLY: f32 = 1.25;
 pub struct Measure {
     /// The unit and the up axis that the clip was read with.
     pub provenance: Provenance,
-    /// The height of the character standing upright, in the file's units: from the lengths of its bones ([`Roles::body_height`]) where names tell its
-    /// legs, else its extent.
+    /// The height of the character standing upright, in the file's units: from the lengths of its
+    /// bones ([`Roles::body_height`]) where names tell its legs, else its extent.
     pub height_units: f64,
-    /// Whether the unit was found by the height, or by the word of the file where that fits the height, rather than given.
+    /// Whether the unit was found by the height, or by the word of the file where that fits the
+    /// height, rather than given.
     pub unit_detected: bool,
     /// Whether the height fits no unit, so that centimetres were taken.
     pub unit_unknown: bool,
@@ -47,7 +51,8 @@ pub enum UpKnown {
     Given,
     /// It was found by the stance.
     Found,
-    /// What speaks for it hardly outweighs what speaks against it, as for a body that lies in every frame.
+    /// What speaks for it hardly outweighs what speaks against it, as for a body that lies in every
+    /// frame.
     Uncertain,
 }
 
@@ -58,15 +63,14 @@ impl Measure {
         self.height_units * self.provenance.metres_per_unit
     }
 
-    /// The same with the unit that the file itself tells of, metres, where that makes the character as tall as a person (0.9 to 2.5 m) and no
-    /// other unit was given.
+    /// The same with the unit that the file itself tells of, metres, where that makes the character
+    /// as tall as a person (0.9 to 2.5 m) and no other unit was given.
     pub(super) fn with_unit_of_file(self, metres_per_unit: Option<f64>) -> Self {
-        match metres_per_unit.filter(|unit| self.unit_detected && (0.9..2.5).contains(&(self.height_units * unit))) {
+        match metres_per_unit
+            .filter(|unit| self.unit_detected && (0.9..2.5).contains(&(self.height_units * unit)))
+        {
             Some(metres_per_unit) => Self {
-                provenance: Provenance {
-                    metres_per_unit,
-                    ..self.provenance
-                },
+                provenance: Provenance { metres_per_unit, ..self.provenance },
                 unit_unknown: false,
                 ..self
             },
@@ -104,12 +108,18 @@ impl fmt::Display for Measure {
 
 /// Measures a motion in file units and axes. What is given is taken as it is.
 ///
-/// Where names tell the legs, nothing depends on the rest pose, which in some files means nothing: the height follows from bone lengths, and up is
-/// where limbs and head point over all frames, and on whose floor the body moves ([`Evidence`]).
-pub(super) fn measure(raw: &RawMotion, metres_per_unit: Option<f64>, up: Option<UpAxis>) -> Measure {
+/// Where names tell the legs, nothing depends on the rest pose, which in some files means nothing:
+/// the height follows from bone lengths, and up is where limbs and head point over all frames, and
+/// on whose floor the body moves ([`Evidence`]).
+pub(super) fn measure(
+    raw: &RawMotion,
+    metres_per_unit: Option<f64>,
+    up: Option<UpAxis>,
+) -> Measure {
     let rest = Body::of(&raw.rest_points());
     let skeleton = Skeleton::new(raw.joints.clone()).ok();
-    let frames = skeleton.as_ref().map(|skeleton| sampled_frames(raw, skeleton)).unwrap_or_default();
+    let frames =
+        skeleton.as_ref().map(|skeleton| sampled_frames(raw, skeleton)).unwrap_or_default();
     let by_shape = || up_axis(&raw.rest_points(), &rest, &frames);
     let named = skeleton.as_ref().and_then(Named::of);
     let (found_up, up_known) = match (up, &named) {
@@ -122,10 +132,8 @@ pub(super) fn measure(raw: &RawMotion, metres_per_unit: Option<f64>, up: Option<
         None => f64::from(extent_along(index(found_up), raw, &rest, &frames)),
     };
     let given = metres_per_unit.filter(|unit| unit.is_finite() && *unit > 0.0);
-    let detected = UNITS
-        .iter()
-        .find(|(from, below, _)| (*from..*below).contains(&height))
-        .map(|unit| unit.2);
+    let detected =
+        UNITS.iter().find(|(from, below, _)| (*from..*below).contains(&height)).map(|unit| unit.2);
     Measure {
         provenance: Provenance {
             metres_per_unit: given.or(detected).unwrap_or(0.01),
@@ -138,9 +146,11 @@ pub(super) fn measure(raw: &RawMotion, metres_per_unit: Option<f64>, up: Option<
     }
 }
 
-/// The height of a body whose joints no name tells: that of its rest pose, or of the median frame where the rest pose lies flat.
+/// The height of a body whose joints no name tells: that of its rest pose, or of the median frame
+/// where the rest pose lies flat.
 fn extent_along(axis: usize, raw: &RawMotion, rest: &Body, frames: &[Body]) -> f32 {
-    // A rest pose that lies flat (bones along their own axes) says nothing about height; the frames do.
+    // A rest pose that lies flat (bones along their own axes) says nothing about height; the frames
+    // do.
     let upright = rest.extent()[axis] > 0.35 * rest.extent().max_element();
     let mut heights: Vec<f32> = frames.iter().map(|body| body.extent()[axis]).collect();
     heights.sort_by(f32::total_cmp);
@@ -172,7 +182,8 @@ struct Named<'a> {
 /// What speaks for an axis as the one that points up.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Evidence {
-    /// How far limbs and head point along it, −1 to 1: from feet to hips, from hands to shoulders, from hips to head.
+    /// How far limbs and head point along it, −1 to 1: from feet to hips, from hands to shoulders,
+    /// from hips to head.
     limbs: f32,
     /// 0 to 1: the lowest point of the body stays at one level, and near 0, as on a floor.
     floor: f32,
@@ -221,14 +232,15 @@ impl<'a> Named<'a> {
         let floor = |axis: usize| {
             let mut levels: Vec<f32> = lows.iter().map(|low| low[axis]).collect();
             levels.sort_by(f32::total_cmp);
-            let at = |share: f32| levels.get((share * levels.len() as f32) as usize).copied().unwrap_or(0.0);
-            let near = |distance: f32| (1.0 - distance.abs() / (FLOOR_SHARE * self.height as f32)).clamp(0.0, 1.0);
+            let at = |share: f32| {
+                levels.get((share * levels.len() as f32) as usize).copied().unwrap_or(0.0)
+            };
+            let near = |distance: f32| {
+                (1.0 - distance.abs() / (FLOOR_SHARE * self.height as f32)).clamp(0.0, 1.0)
+            };
             0.5 * near(at(0.9) - at(0.1)) + 0.5 * near(at(0.5))
         };
-        [1, 2].map(|axis| Evidence {
-            limbs: limbs[axis],
-            floor: floor(axis),
-        })
+        [1, 2].map(|axis| Evidence { limbs: limbs[axis], floor: floor(axis) })
     }
 
     /// Where limbs and head point in a frame, each counted by its length; unit length.
@@ -269,10 +281,7 @@ impl Body {
                 high: b.high.max(p),
             }))
         });
-        around.unwrap_or(Self {
-            low: Vec3::ZERO,
-            high: Vec3::ZERO,
-        })
+        around.unwrap_or(Self { low: Vec3::ZERO, high: Vec3::ZERO })
     }
 
     fn extent(&self) -> Vec3 {
@@ -298,19 +307,36 @@ fn sampled_frames(raw: &RawMotion, skeleton: &Skeleton) -> Vec<Body> {
 fn up_axis(rest_points: &[Vec3], rest: &Body, frames: &[Body]) -> UpAxis {
     let by_rest = longer_axis(rest.extent(), lateral_axis(rest_points, rest));
     // Frames in which the feet are on the ground of one axis and far from that of the other.
-    let share = |votes: &dyn Fn(&Body) -> bool| frames.iter().filter(|body| votes(body)).count() as f32 / frames.len().max(1) as f32;
-    let stands = |body: &Body, up: usize, other: usize| body.off_ground(up) < 0.15 && body.off_ground(other) > 0.3;
+    let share = |votes: &dyn Fn(&Body) -> bool| {
+        frames.iter().filter(|body| votes(body)).count() as f32 / frames.len().max(1) as f32
+    };
+    let stands = |body: &Body, up: usize, other: usize| {
+        body.off_ground(up) < 0.15 && body.off_ground(other) > 0.3
+    };
     match by_rest {
         // A four-legged body is longer than it is tall, but its feet are on the ground.
-        Some(UpAxis::Z) if share(&|body| stands(body, 1, 2)) > 0.7 && share(&|body| stands(body, 2, 1)) < 0.1 => UpAxis::Y,
+        Some(UpAxis::Z)
+            if share(&|body| stands(body, 1, 2)) > 0.7
+                && share(&|body| stands(body, 2, 1)) < 0.1 =>
+        {
+            UpAxis::Y
+        }
         // The root turns a Y-up rest pose upright in a Z-up world.
-        Some(UpAxis::Y) if share(&|body| stands(body, 2, 1) && body.extent().z > 2.0 * body.extent().y) > 0.9 => UpAxis::Z,
+        Some(UpAxis::Y)
+            if share(&|body| stands(body, 2, 1) && body.extent().z > 2.0 * body.extent().y)
+                > 0.9 =>
+        {
+            UpAxis::Z
+        }
         Some(up) => up,
-        None => frames.first().and_then(|body| longer_axis(body.extent(), None)).unwrap_or_default(),
+        None => {
+            frames.first().and_then(|body| longer_axis(body.extent(), None)).unwrap_or_default()
+        }
     }
 }
 
-/// Which of Y and Z is up by a body's size along both, when they are clearly different and the arms do not run along one of them.
+/// Which of Y and Z is up by a body's size along both, when they are clearly different and the arms
+/// do not run along one of them.
 fn longer_axis(extent: Vec3, lateral: Option<usize>) -> Option<UpAxis> {
     // Lying along X: what is left says nothing.
     if extent.y.max(extent.z) < 0.35 * extent.x {
@@ -392,10 +418,7 @@ mod tests {
             let found = measure(&raw, None, None);
             assert_eq!(
                 found.provenance,
-                Provenance {
-                    metres_per_unit: unit,
-                    up: UpAxis::Y
-                },
+                Provenance { metres_per_unit: unit, up: UpAxis::Y },
                 "{found}"
             );
             assert!((found.height_metres() - 1.66).abs() < 1e-3, "{found}");
@@ -426,18 +449,13 @@ mod tests {
     #[test]
     fn what_is_given_is_taken() {
         let found = measure(&person(|v| v, STANDING), Some(0.5), Some(UpAxis::Z));
-        assert_eq!(
-            found.provenance,
-            Provenance {
-                metres_per_unit: 0.5,
-                up: UpAxis::Z
-            }
-        );
+        assert_eq!(found.provenance, Provenance { metres_per_unit: 0.5, up: UpAxis::Z });
         assert!(!found.unit_detected && found.up_known == UpKnown::Given);
         assert!(measure(&person(|v| v, STANDING), Some(f64::NAN), None).unit_detected);
     }
 
-    /// The same person with joints that are named, in a motion of three frames, each moved and turned.
+    /// The same person with joints that are named, in a motion of three frames, each moved and
+    /// turned.
     fn named(frames: [(Vec3, Quat); 3]) -> RawMotion {
         let mut raw = person(|v| v * 100.0, Vec3::ZERO);
         let names = [
@@ -468,7 +486,8 @@ mod tests {
     #[test]
     fn up_of_named_joints_is_where_the_body_points_whatever_the_rest_pose() {
         let quarter = Quat::from_rotation_x(std::f32::consts::FRAC_PI_2);
-        let walks = [0.0, 1.0, 2.0].map(|way| (Vec3::new(way, 0.94, 0.3 * way), Quat::from_rotation_y(way)));
+        let walks = [0.0, 1.0, 2.0]
+            .map(|way| (Vec3::new(way, 0.94, 0.3 * way), Quat::from_rotation_y(way)));
         assert_eq!(measure(&named(walks), None, None).provenance.up, UpAxis::Y);
         // The rest pose stands along Y, and the motion is in a world where Z is up.
         let turned = walks.map(|(at, turn)| (quarter * at, quarter * turn));

@@ -1,4 +1,5 @@
-//! A motion on its way from a file to a [`Clip`]: in the file's units and axes, and not yet checked.
+//! A motion on its way from a file to a [`Clip`]: in the file's units and axes, and not yet
+//! checked.
 
 use super::error::Fault;
 use super::measure::Measure;
@@ -10,7 +11,8 @@ use std::sync::Arc;
 /// Translations nearer to the rest offset than this are the offset, metres.
 const SAME_PLACE: f32 = 1e-6;
 
-/// Joints, rotations (frame-major), the root's way and the translations of other joints, all as in the file.
+/// Joints, rotations (frame-major), the root's way and the translations of other joints, all as in
+/// the file.
 #[derive(Clone, Debug, Default)]
 pub(super) struct RawMotion {
     pub(super) joints: Vec<Joint>,
@@ -35,7 +37,8 @@ impl RawMotion {
 
     /// The root's way, and then the tracks.
     pub(super) fn translations_mut(&mut self) -> impl Iterator<Item = &mut Vec<Vec3>> {
-        std::iter::once(&mut self.root_translations).chain(self.tracks.iter_mut().map(|(_, values)| values))
+        std::iter::once(&mut self.root_translations)
+            .chain(self.tracks.iter_mut().map(|(_, values)| values))
     }
 
     /// Takes the memory for so many more frames.
@@ -46,8 +49,10 @@ impl RawMotion {
             taken = taken.and_then(|()| track.try_reserve_exact(frames));
         }
         taken.map_err(|_| {
-            let found = format!("a motion for which there is no memory after {} frames", self.frames());
-            Fault::new(0, found, "a motion that fits into memory").with_hint("cut the motion into parts")
+            let found =
+                format!("a motion for which there is no memory after {} frames", self.frames());
+            Fault::new(0, found, "a motion that fits into memory")
+                .with_hint("cut the motion into parts")
         })
     }
 
@@ -57,12 +62,16 @@ impl RawMotion {
         self.rotations.get(frame * joints..(frame + 1) * joints).unwrap_or_default()
     }
 
-    /// Where all OFFSETs are zero and position channels carry the skeleton, the first frame is the rest pose. Tells whether that was so.
+    /// Where all OFFSETs are zero and position channels carry the skeleton, the first frame is the
+    /// rest pose. Tells whether that was so.
     pub(super) fn rest_from_first_frame(&mut self) -> bool {
-        let degenerate = self.joints.len() > 1 && self.joints.iter().skip(1).all(|joint| joint.offset == Vec3::ZERO);
+        let degenerate = self.joints.len() > 1
+            && self.joints.iter().skip(1).all(|joint| joint.offset == Vec3::ZERO);
         let mut changed = false;
         for (joint, values) in &self.tracks {
-            if let (true, Some(joint), Some(&first)) = (degenerate, self.joints.get_mut(*joint), values.first()) {
+            if let (true, Some(joint), Some(&first)) =
+                (degenerate, self.joints.get_mut(*joint), values.first())
+            {
                 changed |= first != Vec3::ZERO;
                 joint.offset = first;
             }
@@ -96,13 +105,20 @@ impl RawMotion {
     pub(super) fn world_points(&self, skeleton: &Skeleton, frame: usize) -> Vec<Vec3> {
         let mut world = WorldPose::default();
         let root = self.root_translations.get(frame).copied().unwrap_or_default();
-        let moved = self.tracks.iter().filter_map(|(joint, values)| Some((*joint, *values.get(frame)?)));
+        let moved =
+            self.tracks.iter().filter_map(|(joint, values)| Some((*joint, *values.get(frame)?)));
         world_pose_into(skeleton, root, self.pose(frame), moved, &mut world);
         with_end_sites(&self.joints, world)
     }
 
-    /// The clip in metres with Y up, its first joint the one that carries the body ([`Clip::folded`]).
-    pub(super) fn into_clip(mut self, name: String, fps: f64, measure: &Measure) -> Result<Clip, RawError> {
+    /// The clip in metres with Y up, its first joint the one that carries the body
+    /// ([`Clip::folded`]).
+    pub(super) fn into_clip(
+        mut self,
+        name: String,
+        fps: f64,
+        measure: &Measure,
+    ) -> Result<Clip, RawError> {
         let Provenance { metres_per_unit, up } = measure.provenance;
         let length = |v: Vec3| {
             let v = (v.as_dvec3() * metres_per_unit).as_vec3();
@@ -144,7 +160,8 @@ fn y_up_from_z_up(v: Vec3) -> Vec3 {
 }
 
 /// The same as a rotation.
-pub(super) const Y_UP_FROM_Z_UP: Quat = Quat::from_xyzw(-std::f32::consts::FRAC_1_SQRT_2, 0.0, 0.0, std::f32::consts::FRAC_1_SQRT_2);
+pub(super) const Y_UP_FROM_Z_UP: Quat =
+    Quat::from_xyzw(-std::f32::consts::FRAC_1_SQRT_2, 0.0, 0.0, std::f32::consts::FRAC_1_SQRT_2);
 
 fn with_end_sites(joints: &[Joint], world: WorldPose) -> Vec<Vec3> {
     let ends = joints
@@ -170,10 +187,7 @@ mod tests {
             end_site: None,
             channels: Vec::new(),
         };
-        let mut raw = RawMotion {
-            joints: vec![joint],
-            ..RawMotion::default()
-        };
+        let mut raw = RawMotion { joints: vec![joint], ..RawMotion::default() };
         for frames in [usize::MAX, usize::MAX / 64] {
             let refused = raw.reserve(frames).unwrap_err();
             assert!(refused.found.contains("no memory"), "{refused:?}");

@@ -12,8 +12,9 @@ const FRAMES: usize = 30;
 
 /// Whether the first frame is a T-pose that the motion does not start from.
 ///
-/// Two things must hold for the joints that move at all: most are at rest in the first frame and not in the second, and the step from the first
-/// frame to the second is many times larger than those that follow. A motion that starts in the rest pose and leaves it smoothly fails the
+/// Two things must hold for the joints that move at all: most are at rest in the first frame and
+/// not in the second, and the step from the first frame to the second is many times larger than
+/// those that follow. A motion that starts in the rest pose and leaves it smoothly fails the
 /// second, a cut into a take fails the first.
 pub(super) fn first_frame_is_t_pose(raw: &RawMotion) -> bool {
     let frames = raw.frames().min(FRAMES);
@@ -27,18 +28,22 @@ pub(super) fn first_frame_is_t_pose(raw: &RawMotion) -> bool {
     };
     let moving: Vec<usize> = (0..raw.joints.len()).filter(|&joint| moves(joint)).collect();
     let resting = |pose: &[Quat]| {
-        let angle = |joint: &usize| pose.get(*joint).map_or(0.0, |&q| quat::angle_between(Quat::IDENTITY, q));
+        let angle = |joint: &usize| {
+            pose.get(*joint).map_or(0.0, |&q| quat::angle_between(Quat::IDENTITY, q))
+        };
         moving.iter().filter(|joint| angle(joint) < AT_REST).count()
     };
-    let mostly_at_rest = resting(first) * 10 >= moving.len() * 6 && resting(second) * 10 <= moving.len() * 5;
+    let mostly_at_rest =
+        resting(first) * 10 >= moving.len() * 6 && resting(second) * 10 <= moving.len() * 5;
     if moving.is_empty() || !mostly_at_rest {
         return false;
     }
     let step = |frame: usize| {
-        let angle = |joint: &usize| match (raw.pose(frame).get(*joint), raw.pose(frame + 1).get(*joint)) {
-            (Some(&a), Some(&b)) => quat::angle_between(a, b),
-            _ => 0.0,
-        };
+        let angle =
+            |joint: &usize| match (raw.pose(frame).get(*joint), raw.pose(frame + 1).get(*joint)) {
+                (Some(&a), Some(&b)) => quat::angle_between(a, b),
+                _ => 0.0,
+            };
         moving.iter().map(angle).sum::<f32>() / moving.len() as f32
     };
     let mut later: Vec<f32> = (1..frames - 1).map(step).collect();
@@ -65,7 +70,9 @@ mod tests {
         RawMotion {
             joints: (0..10).map(joint).collect(),
             rotations: (0..20)
-                .flat_map(|frame| (0..10).map(move |joint| Quat::from_rotation_x(angle(frame, joint))))
+                .flat_map(|frame| {
+                    (0..10).map(move |joint| Quat::from_rotation_x(angle(frame, joint)))
+                })
                 .collect(),
             root_translations: vec![Vec3::ZERO; 20],
             tracks: vec![],
@@ -74,18 +81,13 @@ mod tests {
 
     #[test]
     fn only_a_jump_out_of_the_rest_pose_counts() {
-        let walk = |frame: usize, joint: usize| 0.4 + 0.1 * (frame as f32 * 0.3 + joint as f32).sin();
-        assert!(first_frame_is_t_pose(&motion(|frame, joint| if frame == 0 {
-            0.0
-        } else {
-            walk(frame, joint)
+        let walk =
+            |frame: usize, joint: usize| 0.4 + 0.1 * (frame as f32 * 0.3 + joint as f32).sin();
+        assert!(first_frame_is_t_pose(&motion(|frame, joint| {
+            if frame == 0 { 0.0 } else { walk(frame, joint) }
         })));
         let with_bent_arms = |frame, joint| {
-            if frame == 0 {
-                if joint < 3 { 0.3 } else { 0.0 }
-            } else {
-                walk(frame, joint)
-            }
+            if frame == 0 { if joint < 3 { 0.3 } else { 0.0 } } else { walk(frame, joint) }
         };
         assert!(first_frame_is_t_pose(&motion(with_bent_arms)));
         assert!(!first_frame_is_t_pose(&motion(walk)), "no T-pose at all");

@@ -2,7 +2,8 @@
 
 use std::borrow::Cow;
 
-/// The text of a file without byte order mark and without padding after its end; UTF-16 is turned into UTF-8.
+/// The text of a file without byte order mark and without padding after its end; UTF-16 is turned
+/// into UTF-8.
 ///
 /// Bytes that are no UTF-8 stay as they are: only names may hold them, and [`name`] reads those.
 pub(super) fn decode(bytes: &[u8]) -> Cow<'_, [u8]> {
@@ -22,28 +23,21 @@ pub(super) fn decode(bytes: &[u8]) -> Cow<'_, [u8]> {
     };
     let units = rest.chunks_exact(2).filter_map(|pair| {
         let pair: [u8; 2] = pair.try_into().ok()?;
-        Some(if big_endian {
-            u16::from_be_bytes(pair)
-        } else {
-            u16::from_le_bytes(pair)
-        })
+        Some(if big_endian { u16::from_be_bytes(pair) } else { u16::from_le_bytes(pair) })
     });
-    let text: String = char::decode_utf16(units)
-        .map(|unit| unit.unwrap_or(char::REPLACEMENT_CHARACTER))
-        .collect();
+    let text: String =
+        char::decode_utf16(units).map(|unit| unit.unwrap_or(char::REPLACEMENT_CHARACTER)).collect();
     let length = without_padding(text.as_bytes()).len();
     let mut text = text.into_bytes();
     text.truncate(length);
     Cow::Owned(text)
 }
 
-/// Cuts off NUL bytes and the old end-of-file mark (Ctrl-Z) after the data, with the white space between them.
+/// Cuts off NUL bytes and the old end-of-file mark (Ctrl-Z) after the data, with the white space
+/// between them.
 fn without_padding(text: &[u8]) -> &[u8] {
     let is_padding = |b: &u8| matches!(b, 0 | 0x1a);
-    let end = text
-        .iter()
-        .rposition(|b| !is_padding(b) && !is_space(*b))
-        .map_or(0, |last| last + 1);
+    let end = text.iter().rposition(|b| !is_padding(b) && !is_space(*b)).map_or(0, |last| last + 1);
     let (data, tail) = text.split_at(end);
     if tail.iter().any(is_padding) { data } else { text }
 }
@@ -58,15 +52,18 @@ pub(super) fn is_space(b: u8) -> bool {
 pub(super) fn position(text: &[u8], at: usize) -> (usize, usize) {
     let before = &text[..at.min(text.len())];
     // Of CRLF only the LF counts.
-    let ends_line = |&index: &usize| text.get(index) == Some(&b'\n') || text.get(index + 1) != Some(&b'\n');
+    let ends_line =
+        |&index: &usize| text.get(index) == Some(&b'\n') || text.get(index + 1) != Some(&b'\n');
     let line = 1 + memchr::memchr2_iter(b'\n', b'\r', before).filter(ends_line).count();
-    let start = memchr::memrchr2_iter(b'\n', b'\r', before).find(ends_line).map_or(0, |end| end + 1);
+    let start =
+        memchr::memrchr2_iter(b'\n', b'\r', before).find(ends_line).map_or(0, |end| end + 1);
     // Continuation bytes of UTF-8 are no characters of their own.
     let column = before[start..].iter().filter(|&&b| b & 0xc0 != 0x80).count() + 1;
     (line, column)
 }
 
-/// A name as text, and whether it was UTF-8. Where it is not, every byte is read as Latin-1, so that nothing is lost.
+/// A name as text, and whether it was UTF-8. Where it is not, every byte is read as Latin-1, so
+/// that nothing is lost.
 pub(super) fn name(bytes: &[u8]) -> (String, bool) {
     match std::str::from_utf8(bytes) {
         Ok(name) => (name.to_owned(), true),
@@ -80,7 +77,9 @@ pub(super) fn short(bytes: &[u8]) -> String {
     let head = &bytes[..bytes.len().min(4 * LONGEST)];
     let text = match std::str::from_utf8(head) {
         // The cut went through a character: none is longer than four bytes.
-        Err(error) if head.len() < bytes.len() && error.valid_up_to() + 4 > head.len() => name(&head[..error.valid_up_to()]).0,
+        Err(error) if head.len() < bytes.len() && error.valid_up_to() + 4 > head.len() => {
+            name(&head[..error.valid_up_to()]).0
+        }
         _ => name(head).0,
     };
     let mut short = String::new();

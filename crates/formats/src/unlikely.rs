@@ -1,5 +1,5 @@
-//! Motions that nobody has made: bodies of no size that people have, roots that jump, places far from everything. They are read as they are, and
-//! told.
+//! Motions that nobody has made: bodies of no size that people have, roots that jump, places far
+//! from everything. They are read as they are, and told.
 
 use super::ImportOptions;
 use super::measure::Measure;
@@ -11,7 +11,8 @@ use glam::Vec3;
 const LIKELY_METRES: std::ops::Range<f64> = 0.3..5.0;
 /// A unit is offered that makes a body as tall as a person, metres.
 const PERSON_METRES: std::ops::Range<f64> = 0.9..2.5;
-/// A root that moves farther from one frame to the next is told, metres. A sprinter makes 0.4 m at 30 frames per second.
+/// A root that moves farther from one frame to the next is told, metres. A sprinter makes 0.4 m at
+/// 30 frames per second.
 const JUMP_METRES: f64 = 5.0;
 /// A root that goes farther from the origin is told, metres.
 const FAR_METRES: f64 = 1000.0;
@@ -19,15 +20,22 @@ const FAR_METRES: f64 = 1000.0;
 /// What could be mended in how a clip was read, where that is safe.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Mendable {
-    /// Metres per unit that make the body as tall as a person: the power of ten of the unit that was taken.
+    /// Metres per unit that make the body as tall as a person: the power of ten of the unit that
+    /// was taken.
     pub metres_per_unit: Option<f64>,
     /// Whether the root is elsewhere in single rows, and where it was in the row after them.
     pub wild_rows: bool,
 }
 
 impl RawMotion {
-    /// Tells what is unlikely of a motion that was measured, and evens out the rows in which the root is elsewhere where the options say so.
-    pub(super) fn tell_unlikely(&mut self, measure: &Measure, options: &ImportOptions, tally: &mut Tally) -> Mendable {
+    /// Tells what is unlikely of a motion that was measured, and evens out the rows in which the
+    /// root is elsewhere where the options say so.
+    pub(super) fn tell_unlikely(
+        &mut self,
+        measure: &Measure,
+        options: &ImportOptions,
+        tally: &mut Tally,
+    ) -> Mendable {
         let mut mendable = Mendable::default();
         let metres = measure.height_metres();
         // What was said by hand is known by whoever said it.
@@ -71,7 +79,10 @@ fn fitting_unit(measure: &Measure) -> Option<f64> {
     // From 1.7 m, the middle of the range, it is the nearest power.
     let power = (1.7 / measure.height_metres()).log10().round();
     let fitting = unit * 10_f64.powi(power as i32);
-    (fitting.is_finite() && fitting > 0.0 && PERSON_METRES.contains(&(measure.height_units * fitting))).then_some(fitting)
+    (fitting.is_finite()
+        && fitting > 0.0
+        && PERSON_METRES.contains(&(measure.height_units * fitting)))
+    .then_some(fitting)
 }
 
 #[derive(Debug, Default, PartialEq)]
@@ -95,9 +106,11 @@ fn jumps(way: &[Vec3], metres_per_unit: f64) -> Jumps {
     let mut row = 1;
     while let Some(metres) = distance(row - 1, row) {
         if metres > JUMP_METRES {
-            // In the last row, too: nothing says that the root stays there. In the first one it may be a body at the origin before the motion begins.
+            // In the last row, too: nothing says that the root stays there. In the first one it may
+            // be a body at the origin before the motion begins.
             let is_short = |from, to| distance(from, to).is_none_or(|metres| metres <= JUMP_METRES);
-            let returns = is_short(row - 1, row + 1) && !(row + 1 < way.len() && is_short(row, row + 1));
+            let returns =
+                is_short(row - 1, row + 1) && !(row + 1 < way.len() && is_short(row, row + 1));
             if returns {
                 found.wild_rows.push(row);
                 found.wild_metres = Some(found.wild_metres.unwrap_or(0.0).max(metres));
@@ -130,7 +143,8 @@ mod tests {
     use super::*;
 
     fn walk(places: &[(usize, f32)]) -> Vec<Vec3> {
-        let mut way: Vec<Vec3> = (0..10).map(|row| Vec3::new(0.0, 1.0, 0.05 * row as f32)).collect();
+        let mut way: Vec<Vec3> =
+            (0..10).map(|row| Vec3::new(0.0, 1.0, 0.05 * row as f32)).collect();
         for (row, x) in places {
             way[*row].x = *x;
         }

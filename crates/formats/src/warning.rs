@@ -36,7 +36,8 @@ pub enum WarningKind {
         /// What the header says; `None` where it says nothing.
         found: Option<String>,
     },
-    /// `Frame Time:` is longer than a second or shorter than a ten-thousandth of one, and taken as it is.
+    /// `Frame Time:` is longer than a second or shorter than a ten-thousandth of one, and taken as
+    /// it is.
     UnlikelyFrameTime {
         /// Seconds.
         secs: f64,
@@ -76,7 +77,8 @@ pub enum WarningKind {
     },
     /// Animated scales: the scale at rest is taken.
     ScaleAnimation,
-    /// Nodes that are scaled by another factor along each axis: joints below them are where they should be at rest, and nearly so in motion.
+    /// Nodes that are scaled by another factor along each axis: joints below them are where they
+    /// should be at rest, and nearly so in motion.
     UnevenScale,
     /// The keys of an animation lie at no common rate that can be played: it is sampled.
     Resampled {
@@ -133,7 +135,8 @@ pub enum WarningKind {
         /// The first of them.
         name: String,
     },
-    /// The lowest point of the motion is far from the ground: the skeleton may be that of another person.
+    /// The lowest point of the motion is far from the ground: the skeleton may be that of another
+    /// person.
     OffGround {
         /// Its height over the ground, metres.
         metres: f32,
@@ -162,7 +165,8 @@ pub enum WarningKind {
     },
     /// No unit of length makes this skeleton the size of a person: centimetres are taken.
     UnknownUnit,
-    /// Neither the limbs nor the floor tell which axis points up, as for a body that lies: this one is taken.
+    /// Neither the limbs nor the floor tell which axis points up, as for a body that lies: this one
+    /// is taken.
     UncertainUp {
         /// The axis that was taken.
         up: UpAxis,
@@ -191,11 +195,7 @@ pub struct ImportWarning {
 
 /// `1 row` or `3 rows`.
 fn number_of(count: usize, thing: &str) -> String {
-    if count == 1 {
-        format!("1 {thing}")
-    } else {
-        format!("{count} {thing}s")
-    }
+    if count == 1 { format!("1 {thing}") } else { format!("{count} {thing}s") }
 }
 
 /// A length that may be of any size, with its unit.
@@ -233,9 +233,15 @@ impl fmt::Display for ImportWarning {
                 )
             }
             WarningKind::ScaleChannels => write!(f, "{}{place} ignored", n("scale channel")),
-            WarningKind::EndSiteChannels => write!(f, "{} of End Sites{place} ignored", n("channel")),
-            WarningKind::SeveralEndSites => write!(f, "{} with more than one End Site{place}; one was kept", n("joint")),
-            WarningKind::MissingOffset => write!(f, "{} without OFFSET{place}; placed on the parent", n("joint")),
+            WarningKind::EndSiteChannels => {
+                write!(f, "{} of End Sites{place} ignored", n("channel"))
+            }
+            WarningKind::SeveralEndSites => {
+                write!(f, "{} with more than one End Site{place}; one was kept", n("joint"))
+            }
+            WarningKind::MissingOffset => {
+                write!(f, "{} without OFFSET{place}; placed on the parent", n("joint"))
+            }
             WarningKind::NoFrames => write!(f, "the file holds a skeleton and no motion"),
             WarningKind::FrameCount { declared, found } => {
                 write!(
@@ -243,9 +249,14 @@ impl fmt::Display for ImportWarning {
                     "the header says {declared} frames{place}, the file holds {found}; the rows count"
                 )
             }
-            WarningKind::FrameTime { found: None } => write!(f, "no frame time; 30 frames per second are taken"),
+            WarningKind::FrameTime { found: None } => {
+                write!(f, "no frame time; 30 frames per second are taken")
+            }
             WarningKind::FrameTime { found: Some(found) } => {
-                write!(f, "a frame time of {found} is no time{place}; 30 frames per second are taken")
+                write!(
+                    f,
+                    "a frame time of {found} is no time{place}; 30 frames per second are taken"
+                )
             }
             WarningKind::UnlikelyFrameTime { secs } => {
                 write!(
@@ -264,11 +275,19 @@ impl fmt::Display for ImportWarning {
                 f,
                 "no line holds exactly one frame{place}; the numbers were read one after the other"
             ),
-            WarningKind::NotFinite => write!(f, "{} without a number{place}; the last good value was held", n("value")),
-            WarningKind::DecimalCommas => write!(f, "the numbers have decimal commas{place}; read as points"),
-            WarningKind::MissingSpaces => write!(f, "{} between numbers{place}; split before the sign", n("missing space")),
+            WarningKind::NotFinite => {
+                write!(f, "{} without a number{place}; the last good value was held", n("value"))
+            }
+            WarningKind::DecimalCommas => {
+                write!(f, "the numbers have decimal commas{place}; read as points")
+            }
+            WarningKind::MissingSpaces => {
+                write!(f, "{} between numbers{place}; split before the sign", n("missing space"))
+            }
             WarningKind::HiddenFiles => write!(f, "{} of the archive left out", n("hidden file")),
-            WarningKind::OtherFiles => write!(f, "{} of the archive without motion left out", n("file")),
+            WarningKind::OtherFiles => {
+                write!(f, "{} of the archive without motion left out", n("file"))
+            }
             WarningKind::TooManyFiles { most } => {
                 write!(f, "{} of the archive left out: the first {most} are read", n("motion file"))
             }
@@ -277,7 +296,9 @@ impl fmt::Display for ImportWarning {
                 "{} of the archive with a path out of it; the rest of the path was taken",
                 n("file")
             ),
-            WarningKind::UnreadableFiles { path, why } if one => write!(f, "`{path}` in the archive left out: {why}"),
+            WarningKind::UnreadableFiles { path, why } if one => {
+                write!(f, "`{path}` in the archive left out: {why}")
+            }
             WarningKind::UnreadableFiles { path, why } => {
                 write!(f, "{} of the archive left out, the first: `{path}`, {why}", n("file"))
             }
@@ -287,21 +308,38 @@ impl fmt::Display for ImportWarning {
                 "{} scaled by a different factor along each axis; joints below are exact at rest and near in motion",
                 n("node")
             ),
-            WarningKind::Resampled { fps } => write!(f, "the keys have no common rate; sampled at {fps} frames per second"),
-            WarningKind::NotMetres { metres_per_unit } => {
-                write!(f, "the body is far too large for metres; units of {metres_per_unit} m are taken")
+            WarningKind::Resampled { fps } => {
+                write!(f, "the keys have no common rate; sampled at {fps} frames per second")
             }
-            WarningKind::RestFromFirstRow => write!(f, "all OFFSETs are zero; the rest pose was taken from the first row"),
-            WarningKind::TPose { dropped: true } => write!(f, "the first row is a T-pose{place}; dropped"),
-            WarningKind::TPose { dropped: false } => write!(f, "the first row is a T-pose{place}; kept and marked"),
+            WarningKind::NotMetres { metres_per_unit } => {
+                write!(
+                    f,
+                    "the body is far too large for metres; units of {metres_per_unit} m are taken"
+                )
+            }
+            WarningKind::RestFromFirstRow => {
+                write!(f, "all OFFSETs are zero; the rest pose was taken from the first row")
+            }
+            WarningKind::TPose { dropped: true } => {
+                write!(f, "the first row is a T-pose{place}; dropped")
+            }
+            WarningKind::TPose { dropped: false } => {
+                write!(f, "the first row is a T-pose{place}; kept and marked")
+            }
             WarningKind::AssumedFrameRate { fps } => {
                 write!(
                     f,
                     "the format has no frame rate; {fps} frames per second are taken, it can be set by hand"
                 )
             }
-            WarningKind::FrameNumbers => write!(f, "{} out of order{place}; frames were taken as they come", n("frame number")),
-            WarningKind::MissingBones => write!(f, "{}{place} without some of the bones; their pose was held", n("frame")),
+            WarningKind::FrameNumbers => write!(
+                f,
+                "{} out of order{place}; frames were taken as they come",
+                n("frame number")
+            ),
+            WarningKind::MissingBones => {
+                write!(f, "{}{place} without some of the bones; their pose was held", n("frame"))
+            }
             WarningKind::UnknownBones { name } => {
                 write!(
                     f,
@@ -323,7 +361,11 @@ impl fmt::Display for ImportWarning {
                 )
             }
             WarningKind::UnknownInHierarchy { name } => {
-                write!(f, "{} in the hierarchy{place} without bone, such as `{name}`; left out", n("name"))
+                write!(
+                    f,
+                    "{} in the hierarchy{place} without bone, such as `{name}`; left out",
+                    n("name")
+                )
             }
             WarningKind::LooseBones { name } => {
                 write!(f, "{}{place} not below the root, such as `{name}`; left out", n("bone"))
@@ -334,8 +376,12 @@ impl fmt::Display for ImportWarning {
                 metres.abs() * 100.0,
                 if *metres > 0.0 { "above" } else { "below" }
             ),
-            WarningKind::Textures => write!(f, "{} left out; the plain colour was taken", n("texture")),
-            WarningKind::MorphTargets => write!(f, "{} with morph targets; they keep their shape", n("surface")),
+            WarningKind::Textures => {
+                write!(f, "{} left out; the plain colour was taken", n("texture"))
+            }
+            WarningKind::MorphTargets => {
+                write!(f, "{} with morph targets; they keep their shape", n("surface"))
+            }
             WarningKind::BrokenMesh { why } => {
                 write!(f, "{} left out; the first has {why}", n("surface"))
             }
@@ -346,9 +392,16 @@ impl fmt::Display for ImportWarning {
                 };
                 write!(f, "the motion does not tell which axis points up; {axis} is taken")
             }
-            WarningKind::UnlikelyHeight { metres } => write!(f, "the body is {} tall: its unit may be another one", length(*metres)),
+            WarningKind::UnlikelyHeight { metres } => {
+                write!(f, "the body is {} tall: its unit may be another one", length(*metres))
+            }
             WarningKind::WildRows { metres, evened: false } => {
-                write!(f, "{} with a root that is {} away for that row alone", n("row"), length(*metres))
+                write!(
+                    f,
+                    "{} with a root that is {} away for that row alone",
+                    n("row"),
+                    length(*metres)
+                )
             }
             WarningKind::WildRows { metres, evened: true } => write!(
                 f,
@@ -357,10 +410,19 @@ impl fmt::Display for ImportWarning {
                 length(*metres)
             ),
             WarningKind::RootJumps { metres } => {
-                write!(f, "{} of the root from one frame to the next, up to {}", n("jump"), length(*metres))
+                write!(
+                    f,
+                    "{} of the root from one frame to the next, up to {}",
+                    n("jump"),
+                    length(*metres)
+                )
             }
-            WarningKind::FarAway { metres } => write!(f, "the root goes {} away from the origin", length(*metres)),
-            WarningKind::UnknownUnit => write!(f, "the size of the skeleton fits no unit of length; centimetres are taken"),
+            WarningKind::FarAway { metres } => {
+                write!(f, "the root goes {} away from the origin", length(*metres))
+            }
+            WarningKind::UnknownUnit => {
+                write!(f, "the size of the skeleton fits no unit of length; centimetres are taken")
+            }
         }
     }
 }
@@ -372,9 +434,12 @@ pub(super) struct Tally {
 }
 
 impl Tally {
-    /// Counts one oddity. Those of one kind become one line, which keeps the details and the place of the first.
+    /// Counts one oddity. Those of one kind become one line, which keeps the details and the place
+    /// of the first.
     pub(super) fn add(&mut self, kind: WarningKind, at: Option<usize>) {
-        let same = |entry: &&mut (WarningKind, usize, Option<usize>)| std::mem::discriminant(&entry.0) == std::mem::discriminant(&kind);
+        let same = |entry: &&mut (WarningKind, usize, Option<usize>)| {
+            std::mem::discriminant(&entry.0) == std::mem::discriminant(&kind)
+        };
         match self.entries.iter_mut().find(same) {
             Some((_, count, _)) => *count += 1,
             None => self.entries.push((kind, 1, at)),
@@ -401,7 +466,8 @@ mod tests {
         tally.add(WarningKind::MissingSpaces, Some(2));
         tally.add(WarningKind::NoFrames, None);
         tally.add(WarningKind::MissingSpaces, Some(4));
-        let lines: Vec<String> = tally.into_warnings(b"a\nb\nc").iter().map(ToString::to_string).collect();
+        let lines: Vec<String> =
+            tally.into_warnings(b"a\nb\nc").iter().map(ToString::to_string).collect();
         assert_eq!(
             lines,
             [
@@ -419,15 +485,14 @@ mod tests {
             say(row, 1, Some(412)),
             "the last row holds 95 numbers instead of 96 (line 412); dropped"
         );
-        let channels = || WarningKind::ChannelCount {
-            declared: "3".into(),
-            named: 6,
-        };
+        let channels = || WarningKind::ChannelCount { declared: "3".into(), named: 6 };
         assert_eq!(
             say(channels(), 1, Some(5)),
             "1 CHANNELS line gives a number that disagrees with the names after it (line 5), such as 3 for 6; the names count"
         );
-        assert!(say(channels(), 2, Some(5)).starts_with("2 CHANNELS lines give numbers that disagree"));
+        assert!(
+            say(channels(), 2, Some(5)).starts_with("2 CHANNELS lines give numbers that disagree")
+        );
         assert_eq!(
             say(WarningKind::NotFinite, 1, Some(9)),
             "1 value without a number (line 9); the last good value was held"

@@ -1,5 +1,6 @@
-//! What is exported is what others read: `bvh_anim` here, and for `three` (`tests/browser/read_back.mjs`) and `bvhio` (`tests/oracles/read_back.py`)
-//! the files that these tests leave in the target folder. `cargo xtask test oracles` runs all three.
+//! What is exported is what others read: `bvh_anim` here, and for `three`
+//! (`tests/browser/read_back.mjs`) and `bvhio` (`tests/oracles/read_back.py`) the files that these
+//! tests leave in the target folder. `cargo xtask test oracles` runs all three.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests: what fails here fails the test")]
 
@@ -58,7 +59,10 @@ fn cases() -> Vec<(String, Clip, WriteOptions)> {
 /// The clip that a file with these options holds.
 fn written(clip: &Clip, options: &WriteOptions) -> Clip {
     match options.fps {
-        Some(fps) => segue_motion::clip::resample(clip, fps, segue_motion::clip::Interpolation::default()).unwrap(),
+        Some(fps) => {
+            segue_motion::clip::resample(clip, fps, segue_motion::clip::Interpolation::default())
+                .unwrap()
+        }
         None => clip.clone(),
     }
 }
@@ -67,7 +71,8 @@ fn unit(clip: &Clip, options: &WriteOptions) -> f64 {
     options.metres_per_unit.unwrap_or(clip.provenance().metres_per_unit)
 }
 
-/// World positions in metres, frame by frame, with the names of the joints: matrices multiplied from the root on. Positions replace the OFFSET.
+/// World positions in metres, frame by frame, with the names of the joints: matrices multiplied
+/// from the root on. Positions replace the OFFSET.
 fn positions(bvh: &Bvh, metres_per_unit: f64) -> Vec<Vec<(String, DVec3)>> {
     let frame = |frame: &bvh_anim::Frame| {
         let mut world: Vec<DMat4> = Vec::new();
@@ -75,7 +80,8 @@ fn positions(bvh: &Bvh, metres_per_unit: f64) -> Vec<Vec<(String, DVec3)>> {
         for joint in bvh.joints() {
             let data = joint.data();
             let offset = data.offset();
-            let mut place = DVec3::new(f64::from(offset.x), f64::from(offset.y), f64::from(offset.z));
+            let mut place =
+                DVec3::new(f64::from(offset.x), f64::from(offset.y), f64::from(offset.z));
             let mut turn = DMat4::IDENTITY;
             for channel in data.channels() {
                 let value = f64::from(*frame.get(channel).unwrap());
@@ -106,11 +112,15 @@ fn exported_bvh_is_the_same_motion_to_another_reader() {
     for (name, clip, options) in cases() {
         for up in [UpAxis::Y, UpAxis::Z] {
             let text = write(&clip, &WriteOptions { up: Some(up), ..options });
-            let bvh = bvh_anim::from_bytes(text.as_bytes()).unwrap_or_else(|error| panic!("{name}: {error}"));
+            let bvh = bvh_anim::from_bytes(text.as_bytes())
+                .unwrap_or_else(|error| panic!("{name}: {error}"));
             let expected = written(&clip, &options);
             let found = positions(&bvh, unit(&clip, &options));
             assert_eq!(found.len(), expected.frames(), "{name}");
-            assert!((bvh.frame_time().as_secs_f64() - expected.fps().recip()).abs() < 1e-8, "{name}");
+            assert!(
+                (bvh.frame_time().as_secs_f64() - expected.fps().recip()).abs() < 1e-8,
+                "{name}"
+            );
             let mut farthest = 0.0_f64;
             for (frame, joints) in found.iter().enumerate() {
                 let world = expected.world_pose(frame);
@@ -138,16 +148,13 @@ fn character() -> (Clip, SkinnedMesh) {
     let mut mesh = SkinnedMesh::around(&skeleton, &roles, 1.0);
     let colors = [[0.1, 0.2, 0.8, 1.0], [0.8, 0.3, 0.2, 1.0]];
     mesh.colors = mesh.positions.iter().map(|at| colors[usize::from(at.y > 0.0)]).collect();
-    let child = Character {
-        skeleton,
-        roles,
-        mesh: Arc::new(mesh.clone()),
-    };
+    let child = Character { skeleton, roles, mesh: Arc::new(mesh.clone()) };
     let drive = Drive::new(&walk, &Roles::detect(walk.skeleton()), &child).unwrap();
     (drive.clip(&walk).unwrap(), mesh)
 }
 
-/// Leaves what the readers in other languages compare: for each case the BVH and the GLB, and the positions as CSV.
+/// Leaves what the readers in other languages compare: for each case the BVH and the GLB, and the
+/// positions as CSV.
 #[test]
 fn files_for_other_readers() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("exchange");
@@ -157,38 +164,21 @@ fn files_for_other_readers() {
     let mut list = String::new();
     for (name, clip, options) in cases() {
         let expected = written(&clip, &options);
-        let options = WriteOptions {
-            up: Some(UpAxis::Y),
-            ..options
+        let options = WriteOptions { up: Some(UpAxis::Y), ..options };
+        let inputs = CsvInputs { clip: &expected, contacts: None, columns: &[] };
+        let save = |ending: &str, bytes: &[u8]| {
+            fs::write(folder.join(format!("{name}.{ending}")), bytes).unwrap()
         };
-        let inputs = CsvInputs {
-            clip: &expected,
-            contacts: None,
-            columns: &[],
-        };
-        let save = |ending: &str, bytes: &[u8]| fs::write(folder.join(format!("{name}.{ending}")), bytes).unwrap();
         save("bvh", write(&clip, &options).as_bytes());
-        save(
-            "glb",
-            &write_glb(
-                &clip,
-                &GlbOptions {
-                    fps: options.fps,
-                    smooth: true,
-                },
-            )
-            .unwrap(),
-        );
+        save("glb", &write_glb(&clip, &GlbOptions { fps: options.fps, smooth: true }).unwrap());
         save("csv", write_csv(&inputs, &CsvOptions::default()).as_bytes());
         writeln!(list, "{name} {}", unit(&clip, &options)).unwrap();
     }
     let (clip, mesh) = character();
-    let inputs = CsvInputs {
-        clip: &clip,
-        contacts: None,
-        columns: &[],
+    let inputs = CsvInputs { clip: &clip, contacts: None, columns: &[] };
+    let save = |ending: &str, bytes: &[u8]| {
+        fs::write(folder.join(format!("character.{ending}")), bytes).unwrap()
     };
-    let save = |ending: &str, bytes: &[u8]| fs::write(folder.join(format!("character.{ending}")), bytes).unwrap();
     save("bvh", write(&clip, &WriteOptions::default()).as_bytes());
     save("glb", &write_character_glb(&clip, &mesh, &GlbOptions::default()).unwrap());
     save("csv", write_csv(&inputs, &CsvOptions::default()).as_bytes());

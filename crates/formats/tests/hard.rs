@@ -13,12 +13,15 @@ const NAMES: [&str; 3] = ["Hips", "Spine", "Head"];
 
 /// `Rz · Rx · Ry` from degrees, by glam.
 fn zxy(z: f32, x: f32, y: f32) -> Quat {
-    Quat::from_rotation_z(z.to_radians()) * Quat::from_rotation_x(x.to_radians()) * Quat::from_rotation_y(y.to_radians())
+    Quat::from_rotation_z(z.to_radians())
+        * Quat::from_rotation_x(x.to_radians())
+        * Quat::from_rotation_y(y.to_radians())
 }
 
 fn assert_near(found: Quat, expected: Quat, what: &str) {
     assert!(
-        (found * expected.conjugate()).to_axis_angle().1.min(1.0) < 1e-5 || (found - expected).length() < 1e-6,
+        (found * expected.conjugate()).to_axis_angle().1.min(1.0) < 1e-5
+            || (found - expected).length() < 1e-6,
         "{what}: {found} {expected}"
     );
 }
@@ -34,8 +37,16 @@ fn check_motion(name: &str, clip: &Clip, frames: usize) {
         let at = Vec3::new(0.01 * f, height, 0.05 * f);
         assert!(clip.root_translations()[frame].distance(at) < 1e-6, "{name}, frame {frame}");
         assert_near(clip.rotations(frame)[0], zxy(0.0, 0.0, 10.0 + f), name);
-        assert_near(clip.rotations(frame)[1], zxy(1.0 + 0.5 * f, 2.0 + 0.5 * f, 3.0 + 0.5 * f), name);
-        assert_near(clip.rotations(frame)[2], zxy(4.0 + 0.5 * f, 5.0 + 0.5 * f, 6.0 + 0.5 * f), name);
+        assert_near(
+            clip.rotations(frame)[1],
+            zxy(1.0 + 0.5 * f, 2.0 + 0.5 * f, 3.0 + 0.5 * f),
+            name,
+        );
+        assert_near(
+            clip.rotations(frame)[2],
+            zxy(4.0 + 0.5 * f, 5.0 + 0.5 * f, 6.0 + 0.5 * f),
+            name,
+        );
     }
     assert_eq!(clip.translations(), [], "{name}");
 }
@@ -97,11 +108,15 @@ fn each_of_the_thirty_files_comes_out_as_it_should() {
                 check_motion(name, clip, 4);
             }
             "24_rot_first_root.bvh" => {
-                // Zrotation Xrotation Yrotation Xposition Yposition Zposition = 2 90.5 10 0 0 12 in the third frame.
+                // Zrotation Xrotation Yrotation Xposition Yposition Zposition = 2 90.5 10 0 0 12 in
+                // the third frame.
                 assert_eq!(clip.frames(), 4);
                 assert_near(clip.rotations(2)[0], zxy(2.0, 90.5, 10.0), name);
                 assert!(clip.root_translations()[2].distance(Vec3::new(0.0, 0.0, 0.12)) < 1e-6);
-                assert_eq!(clip.skeleton().joints()[0].channels[..2], [Channel::ZRotation, Channel::XRotation]);
+                assert_eq!(
+                    clip.skeleton().joints()[0].channels[..2],
+                    [Channel::ZRotation, Channel::XRotation]
+                );
             }
             "25_all_six_channels.bvh" => {
                 // All positions are the OFFSETs: no joint leaves its place.
@@ -119,15 +134,21 @@ fn each_of_the_thirty_files_comes_out_as_it_should() {
                     let f = frame as f32;
                     let spine = if one { zxy(0.0, 1.0 + 0.5 * f, 0.0) } else { Quat::IDENTITY };
                     assert_near(clip.rotations(frame)[1], spine, name);
-                    assert_near(clip.rotations(frame)[2], zxy(4.0 + 0.5 * f, 5.0 + 0.5 * f, 6.0 + 0.5 * f), name);
+                    assert_near(
+                        clip.rotations(frame)[2],
+                        zxy(4.0 + 0.5 * f, 5.0 + 0.5 * f, 6.0 + 0.5 * f),
+                        name,
+                    );
                 }
             }
             "31_frames_too_many_declared.bvh" => {
-                expected_warnings = vec!["the header says 9 frames (line 22), the file holds 4; the rows count"];
+                expected_warnings =
+                    vec!["the header says 9 frames (line 22), the file holds 4; the rows count"];
                 check_motion(name, clip, 4);
             }
             "32_frames_too_few_declared.bvh" => {
-                expected_warnings = vec!["the header says 3 frames (line 22), the file holds 4; the rows count"];
+                expected_warnings =
+                    vec!["the header says 3 frames (line 22), the file holds 4; the rows count"];
                 check_motion(name, clip, 4);
             }
             "33_zero_frames.bvh" | "37_no_motion_section.bvh" => {
@@ -142,7 +163,9 @@ fn each_of_the_thirty_files_comes_out_as_it_should() {
                 assert_eq!(clip.frames(), 4);
             }
             "43_single_line_motion.bvh" => {
-                expected_warnings = vec!["no line holds exactly one frame (line 24); the numbers were read one after the other"];
+                expected_warnings = vec![
+                    "no line holds exactly one frame (line 24); the numbers were read one after the other",
+                ];
                 check_motion(name, clip, 4);
             }
             "49_plus_and_leading_dot.bvh" => {

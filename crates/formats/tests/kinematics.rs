@@ -1,4 +1,5 @@
-//! Channels of every kind put every joint where an independent reader puts it (`tests/cases/bvh_kinematics/oracle.py`).
+//! Channels of every kind put every joint where an independent reader puts it
+//! (`tests/cases/bvh_kinematics/oracle.py`).
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests: what fails here fails the test")]
 

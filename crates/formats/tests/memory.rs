@@ -1,5 +1,5 @@
-//! What reading a file takes at its peak, the file itself among it, by an allocator that counts. In a binary of its own, with one test, so that
-//! nothing else allocates meanwhile.
+//! What reading a file takes at its peak, the file itself among it, by an allocator that counts. In
+//! a binary of its own, with one test, so that nothing else allocates meanwhile.
 
 use peak_alloc::PeakAlloc;
 use segue_formats::bvh::{WriteOptions, write};
@@ -25,7 +25,9 @@ fn file(header: impl Fn(usize) -> String) -> Vec<u8> {
     let (frame_time, rows) = motion.split_once('\n').expect("a header");
     let times = BYTES.div_ceil(rows.len());
     let mut file = Vec::with_capacity(hierarchy.len() + 100 + times * rows.len());
-    file.extend_from_slice(format!("{hierarchy}{}\n{frame_time}\n", header(times * clip.frames())).as_bytes());
+    file.extend_from_slice(
+        format!("{hierarchy}{}\n{frame_time}\n", header(times * clip.frames())).as_bytes(),
+    );
     (0..times).for_each(|_| file.extend_from_slice(rows.as_bytes()));
     file
 }

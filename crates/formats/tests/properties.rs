@@ -1,4 +1,5 @@
-//! What must hold for any clip and any bytes: a clip comes back from its own file, and no file brings the reader down.
+//! What must hold for any clip and any bytes: a clip comes back from its own file, and no file
+//! brings the reader down.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests: what fails here fails the test")]
 
@@ -61,36 +62,37 @@ fn clip() -> impl Strategy<Value = Clip> {
         prop::sample::select(vec![1.0, 0.01, 0.0254 / 0.45, 0.001]),
         prop::sample::select(vec![UpAxis::Y, UpAxis::Z]),
     );
-    (prop::collection::vec(bone(), 1..12), 0..5_usize, fps, provenance).prop_flat_map(|(bones, frames, fps, (metres_per_unit, up))| {
-        let joint = |(index, (parent, offset, end_site, channels)): (usize, Bone)| Joint {
-            name: format!("joint {index}"),
-            parent: (index > 0).then(|| parent.index(index)),
-            offset,
-            end_site,
-            channels,
-        };
-        let joints: Vec<Joint> = bones.into_iter().enumerate().map(joint).collect();
-        let rotations = prop::collection::vec(rotation(), joints.len() * frames);
-        let roots = prop::collection::vec(vector(50.0), frames);
-        let moving = prop::collection::vec(
-            proptest::option::weighted(0.3, prop::collection::vec(vector(2.0), frames)),
-            joints.len() - 1,
-        );
-        (Just(joints), rotations, roots, moving).prop_map(move |(joints, rotations, roots, moving)| {
-            let tracks = moving.into_iter().enumerate().filter_map(|(index, values)| {
-                Some(JointTranslations {
-                    joint: index + 1,
-                    values: values?,
-                })
-            });
-            let skeleton = Arc::new(Skeleton::new(joints).unwrap());
-            let clip = Clip::new("clip", skeleton, fps, rotations, roots)
-                .unwrap()
-                .with_translations(tracks.collect())
-                .unwrap();
-            clip.with_provenance(Provenance { metres_per_unit, up })
-        })
-    })
+    (prop::collection::vec(bone(), 1..12), 0..5_usize, fps, provenance).prop_flat_map(
+        |(bones, frames, fps, (metres_per_unit, up))| {
+            let joint = |(index, (parent, offset, end_site, channels)): (usize, Bone)| Joint {
+                name: format!("joint {index}"),
+                parent: (index > 0).then(|| parent.index(index)),
+                offset,
+                end_site,
+                channels,
+            };
+            let joints: Vec<Joint> = bones.into_iter().enumerate().map(joint).collect();
+            let rotations = prop::collection::vec(rotation(), joints.len() * frames);
+            let roots = prop::collection::vec(vector(50.0), frames);
+            let moving = prop::collection::vec(
+                proptest::option::weighted(0.3, prop::collection::vec(vector(2.0), frames)),
+                joints.len() - 1,
+            );
+            (Just(joints), rotations, roots, moving).prop_map(
+                move |(joints, rotations, roots, moving)| {
+                    let tracks = moving.into_iter().enumerate().filter_map(|(index, values)| {
+                        Some(JointTranslations { joint: index + 1, values: values? })
+                    });
+                    let skeleton = Arc::new(Skeleton::new(joints).unwrap());
+                    let clip = Clip::new("clip", skeleton, fps, rotations, roots)
+                        .unwrap()
+                        .with_translations(tracks.collect())
+                        .unwrap();
+                    clip.with_provenance(Provenance { metres_per_unit, up })
+                },
+            )
+        },
+    )
 }
 
 fn options() -> impl Strategy<Value = WriteOptions> {
@@ -123,12 +125,15 @@ fn file_order(skeleton: &Skeleton) -> Vec<usize> {
     order
 }
 
-/// For each joint of what was read the joint of the clip that was written, whose own form with the carrier first is `folded`.
+/// For each joint of what was read the joint of the clip that was written, whose own form with the
+/// carrier first is `folded`.
 fn written_joints(back: &Clip, clip: &Clip, folded: &Clip) -> Vec<usize> {
     let order = file_order(clip.skeleton());
     let joints = 0..back.skeleton().len();
-    let in_file = |found: usize| back.skeleton().above().map_or(found, |above| above.file_index()[found]);
-    let in_folded = |joint: usize| folded.skeleton().above().map_or(joint, |above| above.from_file()[joint]);
+    let in_file =
+        |found: usize| back.skeleton().above().map_or(found, |above| above.file_index()[found]);
+    let in_folded =
+        |joint: usize| folded.skeleton().above().map_or(joint, |above| above.from_file()[joint]);
     joints.map(|found| in_folded(order[in_file(found)])).collect()
 }
 
@@ -282,7 +287,8 @@ proptest! {
 #[test]
 fn long_runs_of_anything_take_no_longer_than_their_length() {
     // Each would take minutes or hours were any of them read over and over again.
-    let head = "ROOT a { CHANNELS 2 Xrotation Yposition } MOTION Frames: 4000000000 Frame Time: 0.01\n";
+    let head =
+        "ROOT a { CHANNELS 2 Xrotation Yposition } MOTION Frames: 4000000000 Frame Time: 0.01\n";
     let big = 2_000_000;
     let mut texts = vec![
         format!("{head}1{}", "-1".repeat(big)),
@@ -295,7 +301,10 @@ fn long_runs_of_anything_take_no_longer_than_their_length() {
         format!("{head}{}", "1,5 ".repeat(big / 4)),
         format!("{head}{}nan(", "1 2\n".repeat(big / 4)),
     ];
-    texts.extend(["{", "}", "ROOT a { } ", "ROOT a {", "End ", "\0", "\u{feff}"].map(|piece| piece.repeat(big / 8)));
+    texts.extend(
+        ["{", "}", "ROOT a { } ", "ROOT a {", "End ", "\0", "\u{feff}"]
+            .map(|piece| piece.repeat(big / 8)),
+    );
     texts.push(format!("ROOT a {{ {} }}", "CHANNELS 1 Xrotation ".repeat(big / 20)));
     texts.push(format!("ROOT a {{ {} }}", "JOINT b { OFFSET 1 2 3 } ".repeat(big / 20)));
     texts.push(format!("ROOT a {{ {} }}", "End Site { OFFSET 1 2 3 } ".repeat(big / 20)));

@@ -1,4 +1,5 @@
-//! Captured motion as it is found in the world: it loads, with the right size, the right way up, and comes back from a file of our own.
+//! Captured motion as it is found in the world: it loads, with the right size, the right way up,
+//! and comes back from a file of our own.
 
 mod common;
 
@@ -8,7 +9,8 @@ use segue_formats::{CMU_METRES_PER_UNIT, ImportOptions, import};
 use segue_motion::clip::{Clip, UpAxis};
 use segue_motion::math::quat;
 
-/// The height of the body over all frames: the median, in metres. Lowest and highest joint or end site.
+/// The height of the body over all frames: the median, in metres. Lowest and highest joint or end
+/// site.
 fn standing_height(clip: &Clip) -> f32 {
     let height = |frame: usize| {
         let ys: Vec<f32> = points(clip, frame).iter().map(|p| p.y).collect();
@@ -19,8 +21,8 @@ fn standing_height(clip: &Clip) -> f32 {
     heights[heights.len() / 2]
 }
 
-/// What the conversions of CMU motion cut out of the body, metres: their `Neck` has no OFFSET, where the database has a bone (thorax) as long as the
-/// one below it, `Spine1`.
+/// What the conversions of CMU motion cut out of the body, metres: their `Neck` has no OFFSET,
+/// where the database has a bone (thorax) as long as the one below it, `Spine1`.
 fn lost_in_conversion(clip: &Clip) -> f32 {
     let joints = clip.skeleton().joints();
     let neck = joints.iter().find(|joint| joint.name == "Neck" && joint.offset == glam::Vec3::ZERO);
@@ -38,7 +40,8 @@ fn feet_above_ground(clip: &Clip) -> f32 {
 #[test]
 fn people_are_as_tall_as_people_and_stand_on_the_ground() {
     let Some(data) = shared_data() else { return };
-    // Name, joints, frames after the T-pose row, frames per second, metres per unit, whether there is a T-pose row.
+    // Name, joints, frames after the T-pose row, frames per second, metres per unit, whether there
+    // is a T-pose row.
     let expected = [
         ("01_01.bvh", 31, 2751, 120.0, CMU_METRES_PER_UNIT, true),
         ("pirouette.bvh", 43, 591, 120.0, 0.01, true),
@@ -50,16 +53,15 @@ fn people_are_as_tall_as_people_and_stand_on_the_ground() {
         ("walk_and_turn_left.bvh", 20, 420, 100.0, 1.0, false),
         ("walk_forward.bvh", 20, 100, 100.0, 1.0, false),
     ];
-    let files: Vec<(String, Vec<u8>)> = ["cmu", "games105"]
-        .iter()
-        .flat_map(|folder| bvh_files(&data.join(folder)))
-        .collect();
+    let files: Vec<(String, Vec<u8>)> =
+        ["cmu", "games105"].iter().flat_map(|folder| bvh_files(&data.join(folder))).collect();
     assert_eq!(
         files.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(),
         expected.map(|row| row.0)
     );
     for ((name, bytes), (_, joints, frames, fps, unit, t_pose)) in files.iter().zip(expected) {
-        let imported = import(name, bytes, &ImportOptions::default()).unwrap_or_else(|error| panic!("{error}"));
+        let imported = import(name, bytes, &ImportOptions::default())
+            .unwrap_or_else(|error| panic!("{error}"));
         let found = &imported.clips[0];
         let clip = &found.clip;
         let lost = lost_in_conversion(clip);
@@ -76,7 +78,11 @@ fn people_are_as_tall_as_people_and_stand_on_the_ground() {
             rest,
             warnings.join("; ")
         );
-        assert_eq!((clip.skeleton().len(), clip.frames(), clip.fps()), (joints, frames, fps), "{name}");
+        assert_eq!(
+            (clip.skeleton().len(), clip.frames(), clip.fps()),
+            (joints, frames, fps),
+            "{name}"
+        );
         assert_eq!(found.measure.provenance.metres_per_unit, unit, "{name}");
         assert_eq!(clip.provenance().up, UpAxis::Y, "{name}");
         assert_eq!((found.t_pose_first_row, found.t_pose_dropped), (t_pose, t_pose), "{name}");
@@ -92,10 +98,7 @@ fn people_are_as_tall_as_people_and_stand_on_the_ground() {
 fn a_t_pose_row_can_be_kept() {
     let Some(data) = shared_data() else { return };
     let bytes = std::fs::read(data.join("cmu/run.bvh")).unwrap();
-    let options = ImportOptions {
-        drop_t_pose: false,
-        ..ImportOptions::default()
-    };
+    let options = ImportOptions { drop_t_pose: false, ..ImportOptions::default() };
     let imported = import("run.bvh", &bytes, &options).unwrap();
     assert_eq!(imported.clips[0].clip.frames(), 75);
     assert!(imported.clips[0].t_pose_first_row && !imported.clips[0].t_pose_dropped);
@@ -112,13 +115,7 @@ fn real_motion_survives_the_way_out_and_in() {
     for (name, bytes) in files.filter(|(name, _)| name != "01_01.bvh") {
         let clip = import(&name, &bytes, &ImportOptions::default()).unwrap().clips.remove(0).clip;
         for up in [UpAxis::Y, UpAxis::Z] {
-            let text = write(
-                &clip,
-                &WriteOptions {
-                    up: Some(up),
-                    ..WriteOptions::default()
-                },
-            );
+            let text = write(&clip, &WriteOptions { up: Some(up), ..WriteOptions::default() });
             let back = import(&name, text.as_bytes(), &ImportOptions::default()).unwrap();
             assert_eq!(back.warnings, [], "{name}");
             let back = &back.clips[0].clip;
@@ -127,12 +124,15 @@ fn real_motion_survives_the_way_out_and_in() {
                 (up, clip.provenance().metres_per_unit),
                 "{name}"
             );
-            let channels = |clip: &Clip| clip.skeleton().joints().iter().map(|j| j.channels.clone()).collect::<Vec<_>>();
+            let channels = |clip: &Clip| {
+                clip.skeleton().joints().iter().map(|j| j.channels.clone()).collect::<Vec<_>>()
+            };
             assert_eq!(channels(back), channels(&clip), "{name}");
             assert_eq!(back.frames(), clip.frames());
             for frame in 0..clip.frames() {
                 assert!(
-                    back.root_translations()[frame].distance(clip.root_translations()[frame]) < 1e-5,
+                    back.root_translations()[frame].distance(clip.root_translations()[frame])
+                        < 1e-5,
                     "{name}"
                 );
                 for (a, b) in back.rotations(frame).iter().zip(clip.rotations(frame)) {

@@ -44,7 +44,11 @@ fn any_line_ends_and_white_space() {
     assert_eq!(same(text.trim_end()), [""; 0]);
     // Lines count in errors whatever ends them.
     for end in ["\n", "\r\n", "\r"] {
-        assert_eq!(refused(text.replace("9.5\n2.5", "\n2.5").replace('\n', end)).line, 25, "{end:?}");
+        assert_eq!(
+            refused(text.replace("9.5\n2.5", "\n2.5").replace('\n', end)).line,
+            25,
+            "{end:?}"
+        );
     }
 }
 
@@ -145,7 +149,8 @@ fn end_sites_may_be_missing_named_or_many() {
         .replace("OFFSET 0 22 0", "OFFSET 0 22 0 CHANNELS 1 Xrotation")
         .replace(" 9.5\n", " 9.5 77\n");
     assert_eq!(same(with_channels), ["1 channel of End Sites (line 16) ignored"]);
-    let (found, _) = one(text.replace("JOINT Torso", "JOINT End").replace("JOINT Skull", "JOINT Frames: 4"));
+    let (found, _) =
+        one(text.replace("JOINT Torso", "JOINT End").replace("JOINT Skull", "JOINT Frames: 4"));
     assert_eq!(
         found.clip.skeleton().joints().iter().map(|j| j.name.as_str()).collect::<Vec<_>>(),
         ["Pelvis", "End", "Frames: 4"]
@@ -155,16 +160,10 @@ fn end_sites_may_be_missing_named_or_many() {
 #[test]
 fn names_are_kept_as_written() {
     let names = |text: &[u8]| {
-        one(text)
-            .0
-            .clip
-            .skeleton()
-            .joints()
-            .iter()
-            .map(|j| j.name.clone())
-            .collect::<Vec<_>>()
+        one(text).0.clip.skeleton().joints().iter().map(|j| j.name.clone()).collect::<Vec<_>>()
     };
-    let named = |first: &str, second: &str| chain(1).replace("Pelvis", first).replace("Torso", second);
+    let named =
+        |first: &str, second: &str| chain(1).replace("Pelvis", first).replace("Torso", second);
     assert_eq!(
         names(named("left upper arm", "rig:Bip01 L.Thigh-2").as_bytes())[..2],
         ["left upper arm", "rig:Bip01 L.Thigh-2"]
@@ -185,22 +184,24 @@ fn names_are_kept_as_written() {
 
 #[test]
 fn each_root_is_one_character() {
-    let second =
-        "ROOT Other\n{\n OFFSET 100 80 0\n CHANNELS 2 Yposition Yrotation\n JOINT Tip\n {\n OFFSET 0 85 0\n CHANNELS 1 Xrotation\n }\n}\n";
+    let second = "ROOT Other\n{\n OFFSET 100 80 0\n CHANNELS 2 Yposition Yrotation\n JOINT Tip\n {\n OFFSET 0 85 0\n CHANNELS 1 Xrotation\n }\n}\n";
     let rows = [0, 1, 2, 3]
         .map(|frame| format!("{} {} {} 30\n", row(frame), 80 + frame, 10 * frame))
         .concat();
-    let imported = read(format!("{CHAIN}{second}MOTION\nFrames: 4\nFrame Time: 0.01\n{rows}")).unwrap();
+    let imported =
+        read(format!("{CHAIN}{second}MOTION\nFrames: 4\nFrame Time: 0.01\n{rows}")).unwrap();
     assert_eq!(imported.warnings, []);
-    let [first, other] = &imported.clips[..] else {
-        panic!("two characters")
-    };
+    let [first, other] = &imported.clips[..] else { panic!("two characters") };
     assert_eq!((first.clip.name(), other.clip.name()), ("test (Pelvis)", "test (Other)"));
     assert_eq!(first.clip, plain().with_name("test (Pelvis)"));
     assert_eq!(other.clip.skeleton().len(), 2);
     assert!(other.clip.root_translations()[3].distance(Vec3::new(1.0, 0.83, 0.0)) < 1e-6);
-    assert!((other.clip.rotations(3)[0] - Quat::from_rotation_y(30f32.to_radians())).length() < 1e-6);
-    assert!((other.clip.rotations(3)[1] - Quat::from_rotation_x(30f32.to_radians())).length() < 1e-6);
+    assert!(
+        (other.clip.rotations(3)[0] - Quat::from_rotation_y(30f32.to_radians())).length() < 1e-6
+    );
+    assert!(
+        (other.clip.rotations(3)[1] - Quat::from_rotation_x(30f32.to_radians())).length() < 1e-6
+    );
 }
 
 #[test]
@@ -210,9 +211,12 @@ fn any_number_of_channels_on_any_joint() {
         .replace("CHANNELS 6 Xposition", "CHANNELS 9 Xscale Yscale Zscale Xposition")
         .replacen("CHANNELS 3 Zrotation Xrotation Yrotation", "CHANNELS 2 Yrotation Xrotation", 1)
         .replacen("CHANNELS 3 Zrotation Xrotation Yrotation", "CHANNELS 0", 1);
-    let (found, warnings) = one(format!("{text}MOTION\nFrames: 1\nFrame Time: 0.01\n7 8 9 1 2 3 10 20 30 40 50\n"));
+    let (found, warnings) =
+        one(format!("{text}MOTION\nFrames: 1\nFrame Time: 0.01\n7 8 9 1 2 3 10 20 30 40 50\n"));
     assert_eq!(warnings, ["3 scale channels (first: line 5) ignored"]);
-    let turn = |x: f32, y: f32| Quat::from_rotation_y(y.to_radians()) * Quat::from_rotation_x(x.to_radians());
+    let turn = |x: f32, y: f32| {
+        Quat::from_rotation_y(y.to_radians()) * Quat::from_rotation_x(x.to_radians())
+    };
     assert!(found.clip.root_translations()[0].distance(Vec3::new(0.01, 0.02, 0.03)) < 1e-7);
     assert!((found.clip.rotations(0)[1] - turn(50.0, 40.0)).length() < 1e-6);
     assert_eq!(found.clip.rotations(0)[2], Quat::IDENTITY);
@@ -223,7 +227,8 @@ fn any_number_of_channels_on_any_joint() {
 
 #[test]
 fn channels_in_any_order() {
-    // Rotations before positions, positions between rotations, and the axes of either in any order: the order of rotations is that of the product.
+    // Rotations before positions, positions between rotations, and the axes of either in any order:
+    // the order of rotations is that of the product.
     let text = CHAIN
         .replace(
             "CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation",
@@ -239,7 +244,8 @@ fn channels_in_any_order() {
             "CHANNELS 3 Yrotation Xrotation Yrotation",
             1,
         );
-    let text = format!("{text}MOTION\nFrames: 1\nFrame Time: 0.01\n10 3 20 1 30 2 40 50 60 70 80 90\n");
+    let text =
+        format!("{text}MOTION\nFrames: 1\nFrame Time: 0.01\n10 3 20 1 30 2 40 50 60 70 80 90\n");
     // A single frame, bent double: which way is up is not to be guessed from it.
     let options = ImportOptions {
         up: Some(UpAxis::Y),
@@ -279,9 +285,7 @@ fn positions_replace_the_offset_and_a_root_without_them_stays_on_it() {
     ));
     assert_eq!(found.clip.root_translations(), [Vec3::new(0.0, 0.88, 0.0); 2]);
     // The Torso moves in x only and keeps its OFFSET in y; the Skull stays where its OFFSET is.
-    let [track] = found.clip.translations() else {
-        panic!("one joint moves")
-    };
+    let [track] = found.clip.translations() else { panic!("one joint moves") };
     assert_eq!(track.joint, 1);
     assert!(track.values[1].distance(Vec3::new(0.04, 0.12, 0.0)) < 1e-6);
 }
@@ -294,7 +298,9 @@ fn a_root_that_stands_still_is_folded_into_the_hips_that_move_and_written_again(
                 MOTION\nFrames: 2\nFrame Time: .0083333\n0 0 0 0 0 0 1 90 0 0 0 5\n0 0 0 0 0 0 3 90 0 0 0 6\n";
     let (found, warnings) = one(text);
     assert_eq!(warnings, [""; 0]);
-    let names = |clip: &Clip| clip.skeleton().joints().iter().map(|joint| joint.name.clone()).collect::<Vec<_>>();
+    let names = |clip: &Clip| {
+        clip.skeleton().joints().iter().map(|joint| joint.name.clone()).collect::<Vec<_>>()
+    };
     assert_eq!(names(&found.clip), ["Hips", "Head", "Foot"]);
     assert!(found.clip.translations().is_empty());
     for (root, x) in found.clip.root_translations().iter().zip([0.01, 0.03]) {
@@ -304,7 +310,8 @@ fn a_root_that_stands_still_is_folded_into_the_hips_that_move_and_written_again(
     assert!((found.measure.height_metres() - 1.65).abs() < 1e-5);
     let written = bvh::write(&found.clip, &bvh::WriteOptions::default());
     assert!(written.contains("ROOT reference") && written.contains("JOINT Hips"));
-    let rows: Vec<&str> = written.lines().skip_while(|line| !line.starts_with("Frame Time")).skip(1).collect();
+    let rows: Vec<&str> =
+        written.lines().skip_while(|line| !line.starts_with("Frame Time")).skip(1).collect();
     assert!(rows.iter().all(|row| row.starts_with("0 0 0 0 0 0 ")), "{rows:?}");
 }
 
@@ -318,7 +325,10 @@ fn zero_offsets_take_the_rest_pose_from_the_first_frame() {
     let (found, warnings) = one(text);
     assert_eq!(warnings, ["all OFFSETs are zero; the rest pose was taken from the first row"]);
     let joints = found.clip.skeleton().joints();
-    assert!(joints[1].offset.distance(Vec3::Y * 0.45) < 1e-6 && joints[3].offset.distance(Vec3::Y * -0.93) < 1e-6);
+    assert!(
+        joints[1].offset.distance(Vec3::Y * 0.45) < 1e-6
+            && joints[3].offset.distance(Vec3::Y * -0.93) < 1e-6
+    );
     assert_eq!(found.clip.provenance().metres_per_unit, 0.01);
     assert_eq!(
         found.clip.translations().iter().map(|t| t.joint).collect::<Vec<_>>(),
@@ -357,7 +367,8 @@ fn rows_count_not_the_header() {
 fn rows_across_lines_and_wrong_rows() {
     let text = chain(4);
     let (head, rows) = text.split_once("0.01\n").unwrap();
-    let note = "no line holds exactly one frame (line 24); the numbers were read one after the other";
+    let note =
+        "no line holds exactly one frame (line 24); the numbers were read one after the other";
     assert_eq!(same(format!("{head}0.01\n{}", rows.replace('\n', " "))), [note]);
     let numbers: Vec<&str> = rows.split_whitespace().collect();
     for width in [1, 5, 7, 24] {
@@ -391,10 +402,14 @@ fn rows_across_lines_and_wrong_rows() {
 
 #[test]
 fn no_frames_are_a_skeleton_and_one_is_a_pose() {
-    for text in [CHAIN.to_owned(), chain(0), format!("{CHAIN}MOTION"), CHAIN.trim_end().to_owned()] {
+    for text in [CHAIN.to_owned(), chain(0), format!("{CHAIN}MOTION"), CHAIN.trim_end().to_owned()]
+    {
         let (found, warnings) = one(&text);
         assert_eq!((found.clip.frames(), found.clip.skeleton().len()), (0, 3));
-        assert_eq!(warnings.last().map(String::as_str), Some("the file holds a skeleton and no motion"));
+        assert_eq!(
+            warnings.last().map(String::as_str),
+            Some("the file holds a skeleton and no motion")
+        );
         assert!((found.measure.height_metres() - 1.64).abs() < 1e-5);
     }
     let (found, warnings) = one(chain(1));
@@ -425,20 +440,16 @@ fn frame_times_that_are_none_and_those_that_were_cut() {
         );
     }
     for time in ["0", "-0.01", "nan", "soon"] {
-        let said = format!("a frame time of {time} is no time (line 23); 30 frames per second are taken");
+        let said =
+            format!("a frame time of {time} is no time (line 23); 30 frames per second are taken");
         assert_eq!(fps(time), (30.0, vec![said]));
     }
     // What a person says goes, and then there is nothing to warn of.
-    let options = ImportOptions {
-        fps: Some(48.0),
-        ..ImportOptions::default()
-    };
-    let imported = import("test.bvh", chain(2).replace("0.01\n", "0\n").as_bytes(), &options).unwrap();
+    let options = ImportOptions { fps: Some(48.0), ..ImportOptions::default() };
+    let imported =
+        import("test.bvh", chain(2).replace("0.01\n", "0\n").as_bytes(), &options).unwrap();
     assert_eq!((imported.clips[0].clip.fps(), imported.warnings.len()), (48.0, 0));
-    let options = ImportOptions {
-        fps: Some(f64::NAN),
-        ..ImportOptions::default()
-    };
+    let options = ImportOptions { fps: Some(f64::NAN), ..ImportOptions::default() };
     assert_eq!(
         import("test.bvh", chain(2).as_bytes(), &options).unwrap().clips[0].clip.fps(),
         100.0
@@ -452,7 +463,8 @@ fn every_spelling_of_a_number() {
         "+.5 9.05E+1 0.5000000000000000000001 1.5 2.50 3 45e-1",
     );
     assert_eq!(one(text).0.clip, one(chain(1)).0.clip);
-    let (found, warnings) = one(chain(1).replace("0.5 90.5 0.5 1.5 2.5 3.0", "4.9e-324 1e-310 1e-7 7.6e-016 -0 -0.0"));
+    let (found, warnings) =
+        one(chain(1).replace("0.5 90.5 0.5 1.5 2.5 3.0", "4.9e-324 1e-310 1e-7 7.6e-016 -0 -0.0"));
     assert_eq!(warnings, [""; 0]);
     assert!((found.clip.rotations(0)[0] - Quat::IDENTITY).length() < 1e-15);
     assert!(found.clip.root_translations()[0].distance(Vec3::ZERO) < 1e-8);
@@ -465,7 +477,12 @@ fn values_that_are_no_numbers_repeat_the_last_good_one() {
         let words = ["nan", "-nan(ind)", "1.#IND", "-1.#IND00", "inf", "1.#QNAN", "-Infinity"];
         let spoil = |frame: usize| words.get(frame.wrapping_sub(10)).filter(|_| frame < 10 + count);
         let rows: Vec<String> = (0..50)
-            .map(|frame| spoil(frame).map_or_else(|| row(frame), |word| row(frame).replace(" 4.5 5.5 ", &format!(" {word} 5.5 "))))
+            .map(|frame| {
+                spoil(frame).map_or_else(
+                    || row(frame),
+                    |word| row(frame).replace(" 4.5 5.5 ", &format!(" {word} 5.5 ")),
+                )
+            })
             .collect();
         format!("{CHAIN}MOTION\nFrames: 50\nFrame Time: 0.01\n{}\n", rows.join("\n"))
     };
@@ -515,7 +532,8 @@ fn decimal_commas_in_every_number_or_in_none() {
     assert!(text.contains("OFFSET 0,0 12,0 0,0") && text.contains("Frame Time: 0,01"));
     assert_eq!(same(&text), ["the numbers have decimal commas; read as points"]);
     assert_eq!(same(text.replace(" 1,5 ", " 15,0e-1 ")).len(), 1);
-    // One point or one whole number among them, or commas between numbers: refused, at the first comma.
+    // One point or one whole number among them, or commas between numbers: refused, at the first
+    // comma.
     let mixed = refused(text.replacen("1,5", "1.5", 1));
     assert_eq!(
         mixed.to_string(),
@@ -567,19 +585,18 @@ fn deep_chains_are_read_and_bottomless_ones_refused() {
         ("joints nested more than 4096 deep", "at most 4096 levels")
     );
     // Nothing but opening: neither a stack overflow nor a wait.
-    assert!(
-        refused("ROOT a {".to_owned() + &"JOINT a {".repeat(1_000_000))
-            .found
-            .contains("4096")
-    );
+    assert!(refused("ROOT a {".to_owned() + &"JOINT a {".repeat(1_000_000)).found.contains("4096"));
 }
 
 #[test]
 fn a_t_pose_in_front_is_marked_and_dropped() {
     let bones = "CHANNELS 3 Zrotation Xrotation Yrotation";
     let mut hierarchy = CHAIN.replace("    }\n  }\n", "    }\n  }\n  @\n");
-    let limb =
-        |name: &str, x: f64| format!("JOINT {name}\n{{\nOFFSET {x} -40 0\n{bones}\nJOINT {name}2\n{{\nOFFSET 0 -40 0\n{bones}\n}}\n}}\n");
+    let limb = |name: &str, x: f64| {
+        format!(
+            "JOINT {name}\n{{\nOFFSET {x} -40 0\n{bones}\nJOINT {name}2\n{{\nOFFSET 0 -40 0\n{bones}\n}}\n}}\n"
+        )
+    };
     hierarchy = hierarchy.replace('@', &(limb("L", 10.0) + &limb("R", -10.0)));
     let walk: String = (0..20).map(|frame| row(frame) + &" 20 -30 11".repeat(4) + "\n").collect();
     let t_pose = format!("0 88 0 {}\n", "0 ".repeat(21));
@@ -594,10 +611,7 @@ fn a_t_pose_in_front_is_marked_and_dropped() {
             text.lines().position(|l| l.starts_with("0 88")).unwrap() + 1
         )]
     );
-    let options = ImportOptions {
-        drop_t_pose: false,
-        ..ImportOptions::default()
-    };
+    let options = ImportOptions { drop_t_pose: false, ..ImportOptions::default() };
     let kept = import("test.bvh", text.as_bytes(), &options).unwrap().clips.remove(0);
     assert!(kept.t_pose_first_row && !kept.t_pose_dropped);
     assert_eq!(kept.clip.crop(1..21).unwrap(), found.clip);
@@ -607,18 +621,21 @@ fn a_t_pose_in_front_is_marked_and_dropped() {
 fn large_files_report_progress_can_be_stopped_and_have_a_cap() {
     let text = chain(20_000);
     let mut reports = vec![];
-    let imported = import_with_progress("test.bvh", text.as_bytes(), &ImportOptions::default(), &mut |done| {
-        reports.push(done);
-        true
-    });
+    let imported =
+        import_with_progress("test.bvh", text.as_bytes(), &ImportOptions::default(), &mut |done| {
+            reports.push(done);
+            true
+        });
     assert_eq!(imported.unwrap().unwrap().clips[0].clip.frames(), 20_000);
-    assert!(reports.len() >= 3 && reports.is_sorted() && reports.iter().all(|&done| done <= text.len()));
-    let stopped = import_with_progress("test.bvh", text.as_bytes(), &ImportOptions::default(), &mut |_| false);
+    assert!(
+        reports.len() >= 3 && reports.is_sorted() && reports.iter().all(|&done| done <= text.len())
+    );
+    let stopped =
+        import_with_progress("test.bvh", text.as_bytes(), &ImportOptions::default(), &mut |_| {
+            false
+        });
     assert_eq!(stopped.unwrap(), None);
-    let options = ImportOptions {
-        max_bytes: 1 << 20,
-        ..ImportOptions::default()
-    };
+    let options = ImportOptions { max_bytes: 1 << 20, ..ImportOptions::default() };
     assert_eq!(import("test.bvh", text.as_bytes(), &options).unwrap_err().expected, "at most 1 MB");
 }
 

@@ -1,7 +1,7 @@
 //! What happens while a hand drags the blend window: two clips of 3,000 frames and 31 joints.
 //!
-//! `window/cached terms` is what a new window costs: the distances between all windows on the search's grid. `registration.rs` holds that against the
-//! definition.
+//! `window/cached terms` is what a new window costs: the distances between all windows on the
+//! search's grid. `registration.rs` holds that against the definition.
 
 mod common;
 
@@ -37,7 +37,10 @@ fn registration(c: &mut Criterion) {
     let skeleton = skeleton();
     let (a, b) = (clip(&skeleton, 5.0, 1.2), clip(&skeleton, 6.5, 2.0));
     let weights = limb_weights(&skeleton);
-    let prepared = || TransitionSearch::new(Arc::clone(&a), Arc::clone(&b), &weights, 1.75).expect("the clips fit");
+    let prepared = || {
+        TransitionSearch::new(Arc::clone(&a), Arc::clone(&b), &weights, 1.75)
+            .expect("the clips fit")
+    };
     c.bench_function("window/first (once per pair of clips)", |bench| {
         bench.iter(|| {
             let mut search = prepared();
@@ -49,7 +52,9 @@ fn registration(c: &mut Criterion) {
     search.advance(usize::MAX);
     for window in [30, 120] {
         c.bench_function(&format!("window/best transition, {window} frames"), |bench| {
-            bench.iter(|| search.best(black_box(&SearchOptions::new(window))).expect("the window fits"));
+            bench.iter(|| {
+                search.best(black_box(&SearchOptions::new(window))).expect("the window fits")
+            });
         });
         c.bench_function(&format!("window/cached terms, {window} frames"), |bench| {
             bench.iter(|| {
@@ -68,26 +73,20 @@ fn blending(c: &mut Criterion) {
     let roles = Roles::detect(&skeleton);
     let (a, b) = (Source::new(a, &roles), Source::new(b, &roles));
     for root in [RootBlend::Velocity, RootBlend::World] {
-        let options = DissolveOptions {
-            window: 120,
-            root,
-            ..DissolveOptions::default()
-        };
+        let options = DissolveOptions { window: 120, root, ..DissolveOptions::default() };
         c.bench_function(&format!("dissolve, 120 frames, {root:?}"), |bench| {
-            bench.iter(|| dissolve(&a, 2_800, black_box(&b), 50, &options).expect("the window fits"));
+            bench.iter(|| {
+                dissolve(&a, 2_800, black_box(&b), 50, &options).expect("the window fits")
+            });
         });
     }
 }
 
 fn measuring(c: &mut Criterion) {
     let [walk, run] = [Action::Walk, Action::Run].map(|action| {
-        let clip = synthesize(&Params {
-            fps: 120.0,
-            duration_secs: 25.0,
-            ..Params::new(action)
-        })
-        .expect("natural parameters")
-        .clip;
+        let clip = synthesize(&Params { fps: 120.0, duration_secs: 25.0, ..Params::new(action) })
+            .expect("natural parameters")
+            .clip;
         let roles = Roles::detect(clip.skeleton());
         let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
         (Profile::new(Arc::new(Source::new(Arc::new(clip), &roles)), &roles, contacts), roles)
@@ -99,10 +98,7 @@ fn measuring(c: &mut Criterion) {
             2_000,
             b.source(),
             500,
-            &DissolveOptions {
-                window,
-                ..DissolveOptions::default()
-            },
+            &DissolveOptions { window, ..DissolveOptions::default() },
         )
         .expect("the window fits");
         let (start, end) = (out.transition.start, out.transition.end);

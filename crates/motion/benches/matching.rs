@@ -1,9 +1,13 @@
-//! What a search costs: 27 dimensions; 5,000, 50,000 and 500,000 frames; queries from a recorded drive through that database and from noise. The
-//! boxes against a plain scan, against boxes over 16 and 64 frames in order of time with early exit (the usual way, Holden 2020), and against
-//! the k-d tree of `kiddo`. What building costs; and what a crowd costs. Percentiles: `cargo xtask match-speed`.
+//! What a search costs: 27 dimensions; 5,000, 50,000 and 500,000 frames; queries from a recorded
+//! drive through that database and from noise. The boxes against a plain scan, against boxes over
+//! 16 and 64 frames in order of time with early exit (the usual way, Holden 2020), and against the
+//! k-d tree of `kiddo`. What building costs; and what a crowd costs. Percentiles: `cargo xtask
+//! match-speed`.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use segue_motion::matching::{Controller, ControllerOptions, Database, DatabaseOptions, RATE, Recording};
+use segue_motion::matching::{
+    Controller, ControllerOptions, Database, DatabaseOptions, RATE, Recording,
+};
 use segue_motion::math::Planar;
 use std::hint::black_box;
 use std::sync::Arc;
@@ -17,7 +21,8 @@ fn searches(c: &mut Criterion) {
     for frames in [5_000, 50_000, 500_000] {
         let trial = Trial::new(frames);
         for kind in Kind::ALL {
-            let mut group = c.benchmark_group(format!("matching/{}/{}", trial.frames(), kind.name()));
+            let mut group =
+                c.benchmark_group(format!("matching/{}/{}", trial.frames(), kind.name()));
             group
                 .sample_size(10)
                 .measurement_time(Duration::from_secs(2))
@@ -49,17 +54,22 @@ fn building(c: &mut Criterion) {
 fn crowd(c: &mut Criterion) {
     let mut group = c.benchmark_group("matching/crowd");
     group.sample_size(10);
-    let database = Arc::new(Database::new(clips(20_000), &DatabaseOptions::default()).expect("clips"));
+    let database =
+        Arc::new(Database::new(clips(20_000), &DatabaseOptions::default()).expect("clips"));
     let recordings: Vec<Recording> = (0..60).map(|seed| recording(seed, 6_000)).collect();
     let mut characters: Vec<Controller> = (0..60)
-        .map(|_| Controller::new(Arc::clone(&database), ControllerOptions::default(), &Planar::IDENTITY).expect("defaults"))
+        .map(|_| {
+            Controller::new(Arc::clone(&database), ControllerOptions::default(), &Planar::IDENTITY)
+                .expect("defaults")
+        })
         .collect();
     let mut second = 0;
     group.bench_function("60 characters, 60 updates", |bench| {
         bench.iter(|| {
             for (character, recording) in characters.iter_mut().zip(&recordings) {
                 for tick in 0..RATE {
-                    let control = recording.control((second * RATE + tick) % 6_000).unwrap_or_default();
+                    let control =
+                        recording.control((second * RATE + tick) % 6_000).unwrap_or_default();
                     character.tick(&control);
                 }
             }

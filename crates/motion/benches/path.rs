@@ -1,10 +1,14 @@
-//! What happens while a hand drags a control point: a clip of 3,000 frames and 31 joints, laid on another path for every frame of the screen.
+//! What happens while a hand drags a control point: a clip of 3,000 frames and 31 joints, laid on
+//! another path for every frame of the screen.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use glam::DVec2;
 use segue_motion::blend::Source;
 use segue_motion::clip::{ContactOptions, Contacts};
-use segue_motion::path::{CarryOptions, FitOptions, FittedPath, MotionOptions, PathEdit, PathEditor, Pins, Road, Timing, carry};
+use segue_motion::path::{
+    CarryOptions, FitOptions, FittedPath, MotionOptions, PathEdit, PathEditor, Pins, Road, Timing,
+    carry,
+};
 use segue_motion::skeleton::Roles;
 use segue_motion::synth::Action;
 use segue_motion::transition::FootLockOptions;
@@ -22,41 +26,30 @@ fn dragging(c: &mut Criterion) {
     let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
     let size = format!("{} frames, {} joints", clip.frames(), clip.skeleton().len());
     let source = Arc::new(Source::new(clip, &roles));
-    let fit = FitOptions {
-        control_points: 24,
-        ..FitOptions::default()
-    };
+    let fit = FitOptions { control_points: 24, ..FitOptions::default() };
     c.bench_function(&format!("fit, {size}"), |bench| {
-        bench.iter(|| FittedPath::new(black_box(Arc::clone(&source)), &fit).expect("a walk goes somewhere"));
+        bench.iter(|| {
+            FittedPath::new(black_box(Arc::clone(&source)), &fit).expect("a walk goes somewhere")
+        });
     });
     let path = FittedPath::new(source, &fit).expect("a walk goes somewhere");
     let spline = path.road().spline().clone();
     let to = spline.points()[9] + DVec2::new(1.0, 0.5);
     let edited = || {
         let moved = spline
-            .edited(
-                &PathEdit::Move {
-                    index: 9,
-                    to: black_box(to),
-                },
-                Pins::default(),
-            )
+            .edited(&PathEdit::Move { index: 9, to: black_box(to) }, Pins::default())
             .expect("the point is there");
         Road::new(moved).expect("it has a length")
     };
     let editor = PathEditor::new(path, &roles, contacts);
-    for (name, timing) in [("metres", Timing::Metres), ("speed", Timing::Speed), ("duration", Timing::Duration)] {
-        let options = CarryOptions {
-            timing,
-            ..CarryOptions::default()
-        };
+    for (name, timing) in
+        [("metres", Timing::Metres), ("speed", Timing::Speed), ("duration", Timing::Duration)]
+    {
+        let options = CarryOptions { timing, ..CarryOptions::default() };
         c.bench_function(&format!("carry, {name}"), |bench| {
             bench.iter(|| carry(editor.path(), &edited(), &options).expect("there is a path"));
         });
-        let whole = MotionOptions {
-            carry: options,
-            foot_lock: Some(FootLockOptions::default()),
-        };
+        let whole = MotionOptions { carry: options, foot_lock: Some(FootLockOptions::default()) };
         c.bench_function(&format!("carry, plant the feet and measure, {name}"), |bench| {
             bench.iter(|| editor.motion(&edited(), &whole).expect("there are legs"));
         });

@@ -1,14 +1,17 @@
-//! Character motion as plain data: clips, the skeletons that they move, and the algorithms that make new clips from them.
+//! Character motion as plain data: clips, the skeletons that they move, and the algorithms that
+//! make new clips from them.
 //!
-//! The library is pure and deterministic. It uses no screen, file system, clock or thread: data goes in, data comes out, randomness comes
-//! from a seed, and time is a parameter. The crate `segue-formats` reads and writes motion files; the app Segue is built on both.
+//! The library is pure and deterministic. It uses no screen, file system, clock or thread: data
+//! goes in, data comes out, randomness comes from a seed, and time is a parameter. The crate
+//! `segue-formats` reads and writes motion files; the app Segue is built on both.
 //!
-//! These pages are also a small textbook. Each module is a chapter: the idea, the formula, an example that runs, the accuracy and the cost,
-//! the limits, and the sources.
+//! These pages are also a small textbook. Each module is a chapter: the idea, the formula, an
+//! example that runs, the accuracy and the cost, the limits, and the sources.
 //!
 //! # A first example
 //!
-//! The example blends a walk into a run and measures the result. [`synth`] makes both clips, so that no file is needed.
+//! The example blends a walk into a run and measures the result. [`synth`] makes both clips, so
+//! that no file is needed.
 //!
 //! ```
 //! use segue_motion::blend::{Concatenation, DissolveOptions, Source, dissolve};
@@ -65,7 +68,8 @@
 //! What a motion is:
 //!
 //! 1. [`math`]: rotations as vectors, rigid transforms of the ground, springs, curves.
-//! 2. [`skeleton`]: a tree of joints, where it puts them, what each is for; other bodies and mirror images.
+//! 2. [`skeleton`]: a tree of joints, where it puts them, what each is for; other bodies and mirror
+//!    images.
 //! 3. [`clip`]: poses over time; sampling, velocities, facing, feet on the ground.
 //! 4. [`synth`]: motions made from parameters, with the truth about them.
 //!
@@ -95,19 +99,25 @@
 //!
 //! # Conventions
 //!
-//! - *Units.* Metres, seconds, radians; a name says so where a bare number could be anything else (`dt_secs`, `rms_cm`, `spin_deg`). Every
-//!   rate is per second at the clip's own frame rate.
-//! - *Axes.* Right-handed, Y up. The ground is the plane `y = 0`. A character whose yaw is 0 faces +Z and has its left at +X; positive yaw
-//!   turns it left (about +Y). A point of the ground is (x, z).
-//! - *Rotations.* Quaternions are unit; `q` and `-q` are the same rotation, so everything that interpolates first brings both into one
-//!   hemisphere.
-//! - *Transforms* are named destination-from-source: `world_from_joint * point_in_joint`. `a_world_from_b_world` lays clip B on clip A.
-//! - *Skeletons* list parents first: one pass from the front poses a body. At rest every rotation is the identity.
-//! - *Windows.* A transition leaves clip A at frame `i`, enters clip B at frame `j` and overlaps `k` frames: `A[i..i + k)` lies over
-//!   `B[j..j + k)`, in search, blend and picture alike.
-//! - *Numbers* of clips are stored in `f32`; sums that run long, and frames on the ground, are `f64`.
-//! - *Long work* comes in slices: an `advance` that does a part of it, so that the caller decides when to stop for a frame of the screen.
-//! - *Errors* are values that say what was found and what would do. Nothing in a file or a link can make the library panic.
+//! - *Units.* Metres, seconds, radians; a name says so where a bare number could be anything else
+//!   (`dt_secs`, `rms_cm`, `spin_deg`). Every rate is per second at the clip's own frame rate.
+//! - *Axes.* Right-handed, Y up. The ground is the plane `y = 0`. A character whose yaw is 0 faces
+//!   +Z and has its left at +X; positive yaw turns it left (about +Y). A point of the ground is (x,
+//!   z).
+//! - *Rotations.* Quaternions are unit; `q` and `-q` are the same rotation, so everything that
+//!   interpolates first brings both into one hemisphere.
+//! - *Transforms* are named destination-from-source: `world_from_joint * point_in_joint`.
+//!   `a_world_from_b_world` lays clip B on clip A.
+//! - *Skeletons* list parents first: one pass from the front poses a body. At rest every rotation
+//!   is the identity.
+//! - *Windows.* A transition leaves clip A at frame `i`, enters clip B at frame `j` and overlaps
+//!   `k` frames: `A[i..i + k)` lies over `B[j..j + k)`, in search, blend and picture alike.
+//! - *Numbers* of clips are stored in `f32`; sums that run long, and frames on the ground, are
+//!   `f64`.
+//! - *Long work* comes in slices: an `advance` that does a part of it, so that the caller decides
+//!   when to stop for a frame of the screen.
+//! - *Errors* are values that say what was found and what would do. Nothing in a file or a link can
+//!   make the library panic.
 
 pub mod blend;
 pub mod clip;

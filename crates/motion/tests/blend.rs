@@ -12,18 +12,11 @@ const WINDOW: usize = 24;
 
 fn profiles() -> Vec<(&'static str, Profile)> {
     let made = presets().into_iter().map(|preset| {
-        let clip = synthesize(&Params {
-            fps: 60.0,
-            ..preset.params
-        })
-        .expect("a preset can be made")
-        .clip;
+        let clip =
+            synthesize(&Params { fps: 60.0, ..preset.params }).expect("a preset can be made").clip;
         let roles = Roles::detect(clip.skeleton());
         let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
-        (
-            preset.id,
-            Profile::new(Arc::new(Source::new(Arc::new(clip), &roles)), &roles, contacts),
-        )
+        (preset.id, Profile::new(Arc::new(Source::new(Arc::new(clip), &roles)), &roles, contacts))
     });
     made.collect()
 }
@@ -37,16 +30,18 @@ fn every_pair_of_made_motions_has_a_clean_transition() {
             let (from, to) = (a.source().clip(), b.source().clip());
             let roles = Roles::detect(from.skeleton());
             let height = f64::from(roles.body_height(from.skeleton()));
-            let found =
-                best_transition(from, to, &limb_weights(from.skeleton()), height, &SearchOptions::new(WINDOW)).expect("windows fit");
+            let found = best_transition(
+                from,
+                to,
+                &limb_weights(from.skeleton()),
+                height,
+                &SearchOptions::new(WINDOW),
+            )
+            .expect("windows fit");
             let measured = |window: usize, root: RootBlend, align: bool| {
-                let options = DissolveOptions {
-                    window,
-                    root,
-                    align,
-                    ..DissolveOptions::default()
-                };
-                let out = dissolve(a.source(), found.leave, b.source(), found.enter, &options).expect("windows fit");
+                let options = DissolveOptions { window, root, align, ..DissolveOptions::default() };
+                let out = dissolve(a.source(), found.leave, b.source(), found.enter, &options)
+                    .expect("windows fit");
                 let (start, end) = (out.transition.start, out.transition.end);
                 let subject = Subject {
                     result: &out.clip,
@@ -83,7 +78,8 @@ fn every_pair_of_made_motions_has_a_clean_transition() {
             }
             let pair = format!("{a_name} → {b_name}: {good:?}");
             assert!(
-                found.rms_cm.is_finite() && good.list().iter().all(|m| m.value.is_none_or(f64::is_finite)),
+                found.rms_cm.is_finite()
+                    && good.list().iter().all(|m| m.value.is_none_or(f64::is_finite)),
                 "{pair}"
             );
             assert!(

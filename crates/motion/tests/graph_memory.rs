@@ -1,5 +1,6 @@
-//! What the search for transitions in 30,000 frames takes at its peak, beside the clips, by an allocator that counts. In a binary of its own, with one
-//! test, so that nothing else allocates meanwhile.
+//! What the search for transitions in 30,000 frames takes at its peak, beside the clips, by an
+//! allocator that counts. In a binary of its own, with one test, so that nothing else allocates
+//! meanwhile.
 
 use glam::{Quat, Vec3};
 use peak_alloc::PeakAlloc;
@@ -17,12 +18,14 @@ const CLIPS: usize = 6;
 const FRAMES: usize = 5_000;
 const MOST_BYTES: usize = 300_000_000;
 
-/// Steps of the search that are done: all where the build is optimised. Otherwise the parts that the clips are cut into, which are held to the end, and some
-/// of the 7,600 tiles. What a tile takes is given back before the next, and all are of one size; the overview has its size from the first
-/// one on. What is found grows, but not beyond [`most_found_bytes`], which is added.
+/// Steps of the search that are done: all where the build is optimised. Otherwise the parts that
+/// the clips are cut into, which are held to the end, and some of the 7,600 tiles. What a tile
+/// takes is given back before the next, and all are of one size; the overview has its size from the
+/// first one on. What is found grows, but not beyond [`most_found_bytes`], which is added.
 const STEPS: usize = if cfg!(debug_assertions) { 500 } else { usize::MAX };
 
-/// At most 800,000 candidates are held at a time. A vector that grows holds twice of what is in it, and the half of that which it comes from.
+/// At most 800,000 candidates are held at a time. A vector that grows holds twice of what is in it,
+/// and the half of that which it comes from.
 fn most_found_bytes() -> usize {
     800_000 * size_of::<Candidate>() * 3
 }
@@ -39,17 +42,22 @@ fn clips() -> Arc<FrameSet> {
             channels: vec![],
         }
     };
-    let skeleton = Arc::new(Skeleton::new((0..JOINTS).map(joint).collect()).expect("parents come first"));
+    let skeleton =
+        Arc::new(Skeleton::new((0..JOINTS).map(joint).collect()).expect("parents come first"));
     let roles = Roles::detect(&skeleton);
     let sources = (0..CLIPS).map(|clip| {
-        let (mut rotations, mut roots) = (Vec::with_capacity(FRAMES * JOINTS), Vec::with_capacity(FRAMES));
+        let (mut rotations, mut roots) =
+            (Vec::with_capacity(FRAMES * JOINTS), Vec::with_capacity(FRAMES));
         for frame in 0..FRAMES {
             let time = frame as f32 / 60.0;
             let phase = (4.0 + 0.3 * clip as f32) * time + 0.9 * (0.7 * time).sin();
-            rotations.extend((0..JOINTS).map(|joint| Quat::from_rotation_x(0.4 * (phase + joint as f32).sin())));
+            rotations.extend(
+                (0..JOINTS).map(|joint| Quat::from_rotation_x(0.4 * (phase + joint as f32).sin())),
+            );
             roots.push(Vec3::new((0.3 * time).sin(), 1.0, 0.3 * phase));
         }
-        let clip = Clip::new(format!("clip {clip}"), Arc::clone(&skeleton), 60.0, rotations, roots).expect("lengths fit");
+        let clip = Clip::new(format!("clip {clip}"), Arc::clone(&skeleton), 60.0, rotations, roots)
+            .expect("lengths fit");
         Arc::new(Source::new(Arc::new(clip), &roles))
     });
     Arc::new(FrameSet::new(sources.collect(), 1.75).expect("clips of one skeleton"))
@@ -61,10 +69,7 @@ fn thirty_thousand_frames_are_searched_in_300_mb() {
     assert_eq!(set.frames(), 30_000);
     let before = ALLOCATOR.current_usage();
     ALLOCATOR.reset_peak_usage();
-    let options = GraphOptions {
-        edge_threshold_cm: 20.0,
-        ..GraphOptions::default()
-    };
+    let options = GraphOptions { edge_threshold_cm: 20.0, ..GraphOptions::default() };
     let mut stream = CandidateStream::new(&set, &options).expect("options that fit");
     let parts = 6 * 21;
     let progress = stream.advance(STEPS).expect("positions are finite");

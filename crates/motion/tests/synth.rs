@@ -7,7 +7,10 @@ use proptest::prelude::*;
 use segue_motion::clip::Clip;
 use segue_motion::math::quat;
 use segue_motion::skeleton::WorldPose;
-use segue_motion::synth::{Action, FootContact, Params, Style, SynthError, Synthesized, heel_in_foot, humanoid, presets, synthesize};
+use segue_motion::synth::{
+    Action, FootContact, Params, Style, SynthError, Synthesized, heel_in_foot, humanoid, presets,
+    synthesize,
+};
 
 const FEET: [(&str, &str); 2] = [("LeftFoot", "LeftToe"), ("RightFoot", "RightToe")];
 
@@ -16,17 +19,11 @@ fn made(params: &Params) -> Synthesized {
 }
 
 fn walk(speed_mps: f32) -> Params {
-    Params {
-        speed_mps,
-        ..Params::new(Action::Walk)
-    }
+    Params { speed_mps, ..Params::new(Action::Walk) }
 }
 
 fn run(speed_mps: f32) -> Params {
-    Params {
-        speed_mps,
-        ..Params::new(Action::Run)
-    }
+    Params { speed_mps, ..Params::new(Action::Run) }
 }
 
 fn joint(clip: &Clip, name: &str) -> usize {
@@ -43,7 +40,9 @@ fn soles(made: &Synthesized, height_m: f32) -> Vec<[[Vec3; 3]; 2]> {
     (0..clip.frames())
         .map(|frame| {
             clip.world_pose_into(frame, &mut world);
-            feet.map(|(foot, toe)| [world.point(foot, heel), world.positions[toe], world.point(toe, tip)])
+            feet.map(|(foot, toe)| {
+                [world.point(foot, heel), world.positions[toe], world.point(toe, tip)]
+            })
         })
         .collect()
 }
@@ -68,18 +67,16 @@ fn worst_slip(made: &Synthesized, height_m: f32) -> f32 {
 
 /// How far anything of a foot gets below the ground, metres.
 fn deepest(made: &Synthesized, height_m: f32) -> f32 {
-    soles(made, height_m)
-        .iter()
-        .flatten()
-        .flatten()
-        .map(|point| -point.y)
-        .fold(0.0, f32::max)
+    soles(made, height_m).iter().flatten().flatten().map(|point| -point.y).fold(0.0, f32::max)
 }
 
-/// The largest change of any joint's local angular velocity from frame to frame, rad/s², with its frame and joint.
+/// The largest change of any joint's local angular velocity from frame to frame, rad/s², with its
+/// frame and joint.
 fn worst_angular_acceleration(clip: &Clip) -> (f32, usize, usize) {
     let dt = clip.dt_secs();
-    let velocity = |frame: usize, joint: usize| quat::angular_velocity(clip.rotations(frame)[joint], clip.rotations(frame + 1)[joint], dt);
+    let velocity = |frame: usize, joint: usize| {
+        quat::angular_velocity(clip.rotations(frame)[joint], clip.rotations(frame + 1)[joint], dt)
+    };
     let mut worst = (0.0, 0, 0);
     for frame in 0..clip.frames().saturating_sub(2) {
         for joint in 0..clip.skeleton().len() {
@@ -108,14 +105,8 @@ fn least_and_greatest(values: impl Iterator<Item = f32>) -> (f32, f32) {
 fn every_action() -> Vec<Params> {
     let mut all: Vec<Params> = presets().iter().map(|preset| preset.params).collect();
     for turn_rate_dps in [-120.0, -50.0, 0.0, 50.0, 120.0] {
-        all.extend([0.4, 1.0, 1.6, 2.2].map(|speed| Params {
-            turn_rate_dps,
-            ..walk(speed)
-        }));
-        all.extend([1.8, 3.0, 5.0, 6.5].map(|speed| Params {
-            turn_rate_dps,
-            ..run(speed)
-        }));
+        all.extend([0.4, 1.0, 1.6, 2.2].map(|speed| Params { turn_rate_dps, ..walk(speed) }));
+        all.extend([1.8, 3.0, 5.0, 6.5].map(|speed| Params { turn_rate_dps, ..run(speed) }));
     }
     for height_m in [1.0, 2.2] {
         all.extend(presets().iter().map(|preset| Params { height_m, ..preset.params }));
@@ -153,7 +144,8 @@ fn feet_stay_above_the_ground() {
     }
 }
 
-/// The shortest distance between the segments `a` and `b`, by sampling: good to a few millimetres on a foot.
+/// The shortest distance between the segments `a` and `b`, by sampling: good to a few millimetres
+/// on a foot.
 fn distance(a: [Vec3; 2], b: [Vec3; 2]) -> f32 {
     let at = |segment: [Vec3; 2], i: u8| segment[0].lerp(segment[1], f32::from(i) / 16.0);
     let pairs = (0..=16).flat_map(|i| (0..=16).map(move |j| (i, j)));
@@ -163,14 +155,11 @@ fn distance(a: [Vec3; 2], b: [Vec3; 2]) -> f32 {
 #[test]
 fn feet_do_not_go_through_each_other() {
     let mut all: Vec<Params> = presets().iter().map(|preset| preset.params).collect();
-    all.extend([-90.0, 45.0, 120.0].map(|spin_degrees| Params {
-        spin_degrees,
-        ..Params::new(Action::Spin)
-    }));
-    all.extend([-90.0, 60.0].map(|turn_rate_dps| Params {
-        turn_rate_dps,
-        ..walk(1.0)
-    }));
+    all.extend(
+        [-90.0, 45.0, 120.0]
+            .map(|spin_degrees| Params { spin_degrees, ..Params::new(Action::Spin) }),
+    );
+    all.extend([-90.0, 60.0].map(|turn_rate_dps| Params { turn_rate_dps, ..walk(1.0) }));
     for params in all {
         let closest = (soles(&made(&params), params.height_m).iter())
             .map(|[left, right]| distance([left[0], left[2]], [right[0], right[2]]))
@@ -183,24 +172,18 @@ fn feet_do_not_go_through_each_other() {
 fn the_mean_speed_is_the_one_asked_for() {
     for turn_rate_dps in [0.0, 30.0, -90.0] {
         for speed in [0.4, 0.9, 1.4, 2.2] {
-            check_speed(&Params {
-                turn_rate_dps,
-                ..walk(speed)
-            });
+            check_speed(&Params { turn_rate_dps, ..walk(speed) });
         }
     }
     for turn_rate_dps in [0.0, -45.0, 120.0] {
         for speed in [1.8, 3.5, 6.5] {
-            check_speed(&Params {
-                turn_rate_dps,
-                ..run(speed)
-            });
+            check_speed(&Params { turn_rate_dps, ..run(speed) });
         }
     }
 }
 
-/// Straight: from the displacement over whole cycles. Around a circle: the hips sway about it, so its radius is their mean distance from the
-/// centre, and speed = radius × turn rate.
+/// Straight: from the displacement over whole cycles. Around a circle: the hips sway about it, so
+/// its radius is their mean distance from the centre, and speed = radius × turn rate.
 fn check_speed(params: &Params) {
     let made = made(&Params { fps: 120.0, ..*params });
     let roots = made.clip.root_translations();
@@ -211,8 +194,11 @@ fn check_speed(params: &Params) {
         roots[whole].distance(roots[0]) / secs
     } else {
         let centre = Vec3::new(params.speed_mps / yaw_rate, 0.0, 0.0);
-        let radius = roots[..whole].iter().map(|root| root.with_y(0.0).distance(centre)).sum::<f32>() / whole as f32;
-        // The whole pose turns as the path does, so the first and last frame differ by turn rate × time.
+        let radius =
+            roots[..whole].iter().map(|root| root.with_y(0.0).distance(centre)).sum::<f32>()
+                / whole as f32;
+        // The whole pose turns as the path does, so the first and last frame differ by turn rate ×
+        // time.
         let [a, b] = [0, whole].map(|frame| made.clip.rotations(frame)[0]);
         let expected = glam::Quat::from_rotation_y(yaw_rate * secs) * a;
         assert!(quat::angle_between(expected, b) < 0.01, "{params:?}");
@@ -224,25 +210,17 @@ fn check_speed(params: &Params) {
 
 #[test]
 fn walks_and_runs_end_in_the_pose_they_began_with() {
-    let turning = Params {
-        turn_rate_dps: 40.0,
-        ..walk(1.2)
-    };
-    for params in [
-        walk(1.4),
-        walk(0.7),
-        run(3.5),
-        turning,
-        Params {
-            fps: 30.0,
-            seed: 5,
-            ..run(3.0)
-        },
-    ] {
+    let turning = Params { turn_rate_dps: 40.0, ..walk(1.2) };
+    for params in
+        [walk(1.4), walk(0.7), run(3.5), turning, Params { fps: 30.0, seed: 5, ..run(3.0) }]
+    {
         let made = made(&params);
         let last = made.clip.frames() - 1;
         for joint in 1..made.clip.skeleton().len() {
-            let angle = quat::angle_between(made.clip.rotations(0)[joint], made.clip.rotations(last)[joint]);
+            let angle = quat::angle_between(
+                made.clip.rotations(0)[joint],
+                made.clip.rotations(last)[joint],
+            );
             assert!(angle < 2e-3, "joint {joint} {angle} rad in {params:?}");
         }
         let phase = &made.truth.phase;
@@ -253,19 +231,15 @@ fn walks_and_runs_end_in_the_pose_they_began_with() {
 #[test]
 fn running_flies_and_walking_does_not() {
     let up = |params: &Params| {
-        made(params)
-            .truth
-            .contacts
-            .iter()
-            .filter(|feet| !feet[0].any() && !feet[1].any())
-            .count()
+        made(params).truth.contacts.iter().filter(|feet| !feet[0].any() && !feet[1].any()).count()
     };
     for speed in [0.4, 1.4, 2.2] {
         assert_eq!(up(&walk(speed)), 0, "{speed}");
     }
     let flights = [1.8, 2.5, 3.5, 5.0, 6.5].map(|speed| up(&Params { fps: 120.0, ..run(speed) }));
     assert!(flights.iter().all(|&frames| frames > 0), "{flights:?}");
-    // The share of a cycle that a foot is down: about 60 % in walking, below half in running, less the faster.
+    // The share of a cycle that a foot is down: about 60 % in walking, below half in running, less
+    // the faster.
     let duty = |params: &Params| {
         let contacts = made(params).truth.contacts;
         contacts.iter().filter(|feet| feet[0].any()).count() as f32 / contacts.len() as f32
@@ -277,21 +251,23 @@ fn running_flies_and_walking_does_not() {
 
 #[test]
 fn a_body_in_flight_falls_as_bodies_fall() {
-    for params in [
-        Params { fps: 120.0, ..run(3.5) },
-        Params {
-            fps: 120.0,
-            ..Params::new(Action::Jump)
-        },
-    ] {
+    for params in
+        [Params { fps: 120.0, ..run(3.5) }, Params { fps: 120.0, ..Params::new(Action::Jump) }]
+    {
         let made = made(&params);
         let (roots, contacts) = (made.clip.root_translations(), &made.truth.contacts);
         let flying = |frame: usize| contacts[frame].iter().all(|foot| !foot.any());
         let mut checked = 0;
         for frame in 1..roots.len() - 1 {
             if (frame - 1..=frame + 1).all(flying) {
-                let a = (roots[frame + 1].y - 2.0 * roots[frame].y + roots[frame - 1].y) * 120.0 * 120.0;
-                assert!((a + 9.81).abs() < 0.15, "{a} m/s² at frame {frame} of {:?}", params.action);
+                let a = (roots[frame + 1].y - 2.0 * roots[frame].y + roots[frame - 1].y)
+                    * 120.0
+                    * 120.0;
+                assert!(
+                    (a + 9.81).abs() < 0.15,
+                    "{a} m/s² at frame {frame} of {:?}",
+                    params.action
+                );
                 checked += 1;
             }
         }
@@ -301,24 +277,22 @@ fn a_body_in_flight_falls_as_bodies_fall() {
 
 #[test]
 fn cadence_and_step_length_are_those_of_people() {
-    // Adults of 1.75 m. Walking: Murray 1967, Perry and Burnfield 2010. Running: Cavanagh and Kram 1989.
-    for (speed, lowest, highest) in [(0.8, 78.0, 100.0), (1.1, 92.0, 112.0), (1.4, 106.0, 120.0), (1.8, 118.0, 138.0)] {
+    // Adults of 1.75 m. Walking: Murray 1967, Perry and Burnfield 2010. Running: Cavanagh and Kram
+    // 1989.
+    for (speed, lowest, highest) in
+        [(0.8, 78.0, 100.0), (1.1, 92.0, 112.0), (1.4, 106.0, 120.0), (1.8, 118.0, 138.0)]
+    {
         let cadence = made(&walk(speed)).truth.cadence_spm;
         assert!((lowest..highest).contains(&cadence), "{cadence} steps/min at {speed} m/s");
     }
-    for (speed, lowest, highest) in [(2.5, 148.0, 170.0), (3.5, 158.0, 176.0), (5.0, 170.0, 196.0)] {
+    for (speed, lowest, highest) in [(2.5, 148.0, 170.0), (3.5, 158.0, 176.0), (5.0, 170.0, 196.0)]
+    {
         let cadence = made(&run(speed)).truth.cadence_spm;
         assert!((lowest..highest).contains(&cadence), "{cadence} steps/min at {speed} m/s");
     }
     // A child takes more and shorter steps at the same speed.
-    let (child, adult) = (
-        made(&Params {
-            height_m: 1.1,
-            ..walk(1.0)
-        })
-        .truth,
-        made(&walk(1.0)).truth,
-    );
+    let (child, adult) =
+        (made(&Params { height_m: 1.1, ..walk(1.0) }).truth, made(&walk(1.0)).truth);
     assert!(child.cadence_spm > 1.1 * adult.cadence_spm && child.stride_m < adult.stride_m);
     assert!((adult.stride_m - adult.speed_mps * adult.cycle_secs).abs() < 1e-5);
 }
@@ -332,7 +306,8 @@ fn phase_and_contacts_tell_the_same_story() {
         for frame in 1..truth.contacts.len() {
             for side in 0..2 {
                 if truth.contacts[frame][side].any() && !truth.contacts[frame - 1][side].any() {
-                    // Left strikes at 0, right at a half; a strike shows in the first frame after it.
+                    // Left strikes at 0, right at a half; a strike shows in the first frame after
+                    // it.
                     let late = (truth.phase[frame] - 0.5 * side as f32 + 0.5).rem_euclid(1.0) - 0.5;
                     assert!((-1e-3..one_frame * 1.01).contains(&late), "{late} at frame {frame}");
                     strikes += 1;
@@ -347,8 +322,9 @@ fn phase_and_contacts_tell_the_same_story() {
 fn nothing_jerks() {
     for params in every_action() {
         let (worst, frame, joint) = worst_angular_acceleration(&made(&params).clip);
-        // A runner's knee gains 1000°/s within a tenth of a cycle (Novacheck 1998); tight curves are quicker. Bodies of other size are alike at
-        // equal Froude number, and then quicker by 1/size.
+        // A runner's knee gains 1000°/s within a tenth of a cycle (Novacheck 1998); tight curves
+        // are quicker. Bodies of other size are alike at equal Froude number, and then quicker by
+        // 1/size.
         let size = params.height_m / 1.75;
         let alike_mps = params.speed_mps / size.sqrt();
         let turning = 1.0 + params.turn_rate_dps.abs() / 200.0;
@@ -365,8 +341,11 @@ fn nothing_jerks() {
 
 #[test]
 fn knees_bend_as_knees_do() {
-    for (params, swing) in [(walk(1.4), 52.0..75.0), (walk(1.0), 48.0..72.0), (run(3.5), 85.0..130.0)] {
-        let (least, peak) = least_and_greatest(knee_flexions(&made(&params).clip).into_iter().flatten());
+    for (params, swing) in
+        [(walk(1.4), 52.0..75.0), (walk(1.0), 48.0..72.0), (run(3.5), 85.0..130.0)]
+    {
+        let (least, peak) =
+            least_and_greatest(knee_flexions(&made(&params).clip).into_iter().flatten());
         assert!(swing.contains(&peak), "{peak}° in {params:?}");
         assert!((2.0..25.0).contains(&least), "{least}° in {params:?}");
     }
@@ -381,7 +360,8 @@ fn knees_bend_as_knees_do() {
     let (_, peak) = least_and_greatest(early);
     assert!((14.0..34.0).contains(&peak), "{peak}°");
     for params in every_action() {
-        let (least, _) = least_and_greatest(knee_flexions(&made(&params).clip).into_iter().flatten());
+        let (least, _) =
+            least_and_greatest(knee_flexions(&made(&params).clip).into_iter().flatten());
         assert!(least > 0.3, "{least}° in {params:?}");
     }
 }
@@ -433,11 +413,7 @@ fn starts_and_stops_stand_with_feet_side_by_side() {
 #[test]
 fn a_spin_turns_by_the_angle_in_place_and_never_lifts_both_feet() {
     for spin_degrees in [180.0, -180.0, 90.0, -45.0, 360.0] {
-        let made = made(&Params {
-            spin_degrees,
-            duration_secs: 5.0,
-            ..Params::new(Action::Spin)
-        });
+        let made = made(&Params { spin_degrees, duration_secs: 5.0, ..Params::new(Action::Spin) });
         let last = made.clip.frames() - 1;
         let facing = |frame: usize| made.clip.rotations(frame)[0] * Vec3::Z;
         let (from, to) = (facing(0), facing(last));
@@ -463,12 +439,8 @@ fn a_jump_leaves_the_ground_and_comes_back_to_it() {
         "{standing} {low} {high}"
     );
     assert!((heights[heights.len() - 1] - standing).abs() < 0.01);
-    let both_up = made
-        .truth
-        .contacts
-        .iter()
-        .filter(|feet| feet.iter().all(|foot| !foot.any()))
-        .count();
+    let both_up =
+        made.truth.contacts.iter().filter(|feet| feet.iter().all(|foot| !foot.any())).count();
     assert!((20..45).contains(&both_up), "{both_up} frames");
 }
 
@@ -510,38 +482,11 @@ fn what_cannot_be_made_is_refused_with_the_range() {
     refused(walk(3.0), &["speed", "3 m/s", "0.4", "2.2 m/s"]);
     refused(run(1.0), &["speed", "1.8", "6.5"]);
     refused(walk(f32::NAN), &["speed"]);
-    refused(
-        Params {
-            height_m: 0.5,
-            ..walk(1.4)
-        },
-        &["height", "1", "2.2 m"],
-    );
-    refused(
-        Params {
-            turn_rate_dps: 150.0,
-            ..walk(1.4)
-        },
-        &["turn rate", "-120", "120"],
-    );
+    refused(Params { height_m: 0.5, ..walk(1.4) }, &["height", "1", "2.2 m"]);
+    refused(Params { turn_rate_dps: 150.0, ..walk(1.4) }, &["turn rate", "-120", "120"]);
     refused(Params { fps: 0.0, ..walk(1.4) }, &["frame rate"]);
-    refused(
-        Params {
-            duration_secs: f32::INFINITY,
-            ..walk(1.4)
-        },
-        &["duration"],
-    );
-    refused(
-        Params {
-            style: Style {
-                lean: -1.0,
-                ..Style::default()
-            },
-            ..walk(1.4)
-        },
-        &["lean"],
-    );
+    refused(Params { duration_secs: f32::INFINITY, ..walk(1.4) }, &["duration"]);
+    refused(Params { style: Style { lean: -1.0, ..Style::default() }, ..walk(1.4) }, &["lean"]);
     assert!(humanoid(3.0).is_err());
 }
 
@@ -563,38 +508,23 @@ fn the_body_has_human_proportions() {
 }
 
 fn any_params() -> impl Strategy<Value = Params> {
-    let style = prop::array::uniform5(0.0f32..=2.0).prop_map(|[bounce, arm_swing, stance_width, energy, lean]| Style {
-        bounce,
-        arm_swing,
-        stance_width,
-        energy,
-        lean,
-    });
+    let style = prop::array::uniform5(0.0f32..=2.0).prop_map(
+        |[bounce, arm_swing, stance_width, energy, lean]| Style {
+            bounce,
+            arm_swing,
+            stance_width,
+            energy,
+            lean,
+        },
+    );
     let action = prop::sample::select(Action::ALL.to_vec());
     let fps = prop::sample::select(vec![24.0f32, 60.0, 120.0]);
-    (
-        action,
-        0.0f32..=1.0,
-        -120.0f32..=120.0,
-        -360.0f32..=360.0,
-        1.0f32..=2.2,
-        style,
-        0u32..9,
-        fps,
-    )
+    (action, 0.0f32..=1.0, -120.0f32..=120.0, -360.0f32..=360.0, 1.0f32..=2.2, style, 0u32..9, fps)
         .prop_map(|(action, at, turn_rate_dps, spin_degrees, height_m, style, seed, fps)| {
             let natural = Params::new(action);
-            let speed_mps = Params::speed_range(action).map_or(0.0, |(least, most)| least + at * (most - least));
-            Params {
-                speed_mps,
-                turn_rate_dps,
-                spin_degrees,
-                height_m,
-                style,
-                seed,
-                fps,
-                ..natural
-            }
+            let speed_mps = Params::speed_range(action)
+                .map_or(0.0, |(least, most)| least + at * (most - least));
+            Params { speed_mps, turn_rate_dps, spin_degrees, height_m, style, seed, fps, ..natural }
         })
 }
 

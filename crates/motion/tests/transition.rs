@@ -12,12 +12,8 @@ use std::sync::Arc;
 
 fn profiles() -> Vec<(&'static str, Profile, Roles)> {
     let made = presets().into_iter().map(|preset| {
-        let clip = synthesize(&Params {
-            fps: 60.0,
-            ..preset.params
-        })
-        .expect("a preset can be made")
-        .clip;
+        let clip =
+            synthesize(&Params { fps: 60.0, ..preset.params }).expect("a preset can be made").clip;
         let roles = Roles::detect(clip.skeleton());
         let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
         let source = Arc::new(Source::new(Arc::new(clip), &roles));
@@ -28,32 +24,14 @@ fn profiles() -> Vec<(&'static str, Profile, Roles)> {
 
 const METHODS: [(&str, Method); 7] = [
     ("cut", Method::Cut),
-    (
-        "linear",
-        Method::Dissolve {
-            window: 24,
-            law: WeightLaw::Linear,
-        },
-    ),
-    (
-        "smooth",
-        Method::Dissolve {
-            window: 24,
-            law: WeightLaw::Smooth,
-        },
-    ),
+    ("linear", Method::Dissolve { window: 24, law: WeightLaw::Linear }),
+    ("smooth", Method::Dissolve { window: 24, law: WeightLaw::Smooth }),
     (
         "spring",
         Method::Inertialize(Inertialization::Offset(Decay::Spring { half_life_secs: 0.14 })),
     ),
-    (
-        "cubic",
-        Method::Inertialize(Inertialization::Offset(Decay::Cubic { blend_secs: 0.4 })),
-    ),
-    (
-        "quintic",
-        Method::Inertialize(Inertialization::Offset(Decay::Quintic { blend_secs: 0.4 })),
-    ),
+    ("cubic", Method::Inertialize(Inertialization::Offset(Decay::Cubic { blend_secs: 0.4 }))),
+    ("quintic", Method::Inertialize(Inertialization::Offset(Decay::Quintic { blend_secs: 0.4 }))),
     (
         "dead",
         Method::Inertialize(Inertialization::DeadBlend {
@@ -63,7 +41,13 @@ const METHODS: [(&str, Method); 7] = [
     ),
 ];
 
-fn measured(out: &Concatenation, enter: usize, a: &Profile, b: &Profile, roles: &Roles) -> TransitionMetrics {
+fn measured(
+    out: &Concatenation,
+    enter: usize,
+    a: &Profile,
+    b: &Profile,
+    roles: &Roles,
+) -> TransitionMetrics {
     TransitionMetrics::measure(&Subject {
         result: &out.clip,
         start: out.transition.start,
@@ -85,16 +69,27 @@ fn every_method_joins_every_pair_and_its_numbers_can_be_compared() {
             let (from, to) = (a.source().clip(), b.source().clip());
             let height = f64::from(roles.body_height(from.skeleton()));
             let weights = limb_weights(from.skeleton());
-            let mut search =
-                PoseSearch::new((from, a.source().frames()), (to, b.source().frames()), &weights, height).expect("made clips fit");
+            let mut search = PoseSearch::new(
+                (from, a.source().frames()),
+                (to, b.source().frames()),
+                &weights,
+                height,
+            )
+            .expect("made clips fit");
             search.advance(usize::MAX);
-            let found = search.best(PoseWeights::default(), &SearchOptions::new(24)).expect("windows fit");
+            let found =
+                search.best(PoseWeights::default(), &SearchOptions::new(24)).expect("windows fit");
             let numbers = METHODS.map(|(name, method)| {
                 let options = TransitionOptions::new(method);
-                let out = concatenate(a.source(), found.leave, b.source(), found.enter, &options).expect("windows fit");
+                let out = concatenate(a.source(), found.leave, b.source(), found.enter, &options)
+                    .expect("windows fit");
                 let metrics = measured(&out, found.enter, a, b, roles);
-                let values: Vec<Option<f64>> = metrics.list().iter().map(|metric| metric.value).collect();
-                assert!(values.iter().flatten().all(|value| value.is_finite()), "{a_name} {b_name} {name}");
+                let values: Vec<Option<f64>> =
+                    metrics.list().iter().map(|metric| metric.value).collect();
+                assert!(
+                    values.iter().flatten().all(|value| value.is_finite()),
+                    "{a_name} {b_name} {name}"
+                );
                 if std::env::var_os("SEGUE_SHOW").is_some() {
                     let shown: Vec<String> = metrics
                         .list()
@@ -105,22 +100,32 @@ fn every_method_joins_every_pair_and_its_numbers_can_be_compared() {
                 }
                 (name, metrics)
             });
-            let of = |wanted: &str| numbers.iter().find(|(name, _)| *name == wanted).expect("a method of the list").1;
+            let of = |wanted: &str| {
+                numbers.iter().find(|(name, _)| *name == wanted).expect("a method of the list").1
+            };
             let pair = format!("{a_name} → {b_name} at {} {}", found.leave, found.enter);
             let deg = |metrics: TransitionMetrics| metrics.seam_deg.expect("joints turn");
             for (name, metrics) in &numbers[1..] {
-                // A dead pose differs from the motion that it came from, and is faded out: seen best where there is nothing to bridge.
+                // A dead pose differs from the motion that it came from, and is faded out: seen
+                // best where there is nothing to bridge.
                 let allowed = if *name == "dead" { 3.0 } else { 0.5 };
                 assert!(deg(*metrics) <= deg(of("cut")) + allowed, "{pair} {name} {metrics:?}");
-                assert!(metrics.jump_cm.expect("characters move") < 1.0, "{pair} {name} {metrics:?}");
-                assert!(metrics.spin_deg.expect("characters turn") < 6.0, "{pair} {name} {metrics:?}");
+                assert!(
+                    metrics.jump_cm.expect("characters move") < 1.0,
+                    "{pair} {name} {metrics:?}"
+                );
+                assert!(
+                    metrics.spin_deg.expect("characters turn") < 6.0,
+                    "{pair} {name} {metrics:?}"
+                );
             }
         }
     }
     assert!(profiles.len() >= 3);
 }
 
-/// Behind the last frame of A, in front of the second of B, unaligned or in the world: whatever a slider can ask for has numbers.
+/// Behind the last frame of A, in front of the second of B, unaligned or in the world: whatever a
+/// slider can ask for has numbers.
 #[test]
 fn there_are_numbers_at_the_ends_too() {
     let profiles = profiles();
@@ -131,16 +136,16 @@ fn there_are_numbers_at_the_ends_too() {
             if matches!(method, Method::Dissolve { .. }) {
                 continue;
             }
-            for (align, root) in [(true, RootBlend::Velocity), (true, RootBlend::World), (false, RootBlend::World)] {
-                let options = TransitionOptions {
-                    align,
-                    root,
-                    ..TransitionOptions::new(method)
-                };
-                let out = concatenate(a.source(), leave, b.source(), enter, &options).expect("frames are in the clips");
+            for (align, root) in
+                [(true, RootBlend::Velocity), (true, RootBlend::World), (false, RootBlend::World)]
+            {
+                let options = TransitionOptions { align, root, ..TransitionOptions::new(method) };
+                let out = concatenate(a.source(), leave, b.source(), enter, &options)
+                    .expect("frames are in the clips");
                 assert_eq!(out.clip.frames(), leave + last_b - enter);
                 let metrics = measured(&out, enter, a, b, roles);
-                let finite = metrics.list().iter().all(|metric| metric.value.is_none_or(f64::is_finite));
+                let finite =
+                    metrics.list().iter().all(|metric| metric.value.is_none_or(f64::is_finite));
                 assert!(finite, "{name} {leave} {enter} {metrics:?}");
             }
         }

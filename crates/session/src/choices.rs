@@ -1,4 +1,5 @@
-//! The choices of parameters that take one of a few words, as types: `params.choice::<TransitionMethod>()`.
+//! The choices of parameters that take one of a few words, as types:
+//! `params.choice::<TransitionMethod>()`.
 
 use super::params::{Choice, Key};
 

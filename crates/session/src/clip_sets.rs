@@ -19,7 +19,8 @@ pub enum ClipSet {
 }
 
 impl Session {
-    /// What is to be set so that the open lab works with these clips; `None` where it has nothing to choose, or there are no such clips.
+    /// What is to be set so that the open lab works with these clips; `None` where it has nothing
+    /// to choose, or there are no such clips.
     #[must_use]
     pub fn clip_set(&self, set: ClipSet) -> Option<Vec<(Key, Value)>> {
         let lab = lab::of(self.params().lab());

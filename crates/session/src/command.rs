@@ -9,7 +9,8 @@ use segue_formats::{ImportError, ImportOptions};
 use segue_motion::matching::Control;
 use segue_motion::skeleton::Role;
 
-/// Everything that can be done to the document. Buttons, shortcuts, links and the page's API all end here.
+/// Everything that can be done to the document. Buttons, shortcuts, links and the page's API all
+/// end here.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
     /// Sets parameters, all or none.
@@ -38,7 +39,8 @@ pub enum Command {
     Company(CompanyChange),
     /// What the character of the Match lab is asked for from now on.
     Steer(Control),
-    /// The character of the Match lab stands at the origin again, and nothing of what it was asked for is remembered.
+    /// The character of the Match lab stands at the origin again, and nothing of what it was asked
+    /// for is remembered.
     RestartDrive,
     /// Plays what the character was asked for again: it becomes the parameter `drive`.
     ReplayDrive,
@@ -48,9 +50,11 @@ pub enum Command {
     Step(i64),
     /// Plays or pauses.
     TogglePlay,
-    /// Opens several values of a parameter side by side: of a number the full, half and a third, of a choice those there are.
+    /// Opens several values of a parameter side by side: of a number the full, half and a third, of
+    /// a choice those there are.
     Compare(Key),
-    /// Lays a link of the open lesson over the state of its page; an empty one is the page's own state.
+    /// Lays a link of the open lesson over the state of its page; an empty one is the page's own
+    /// state.
     Try(String),
     /// Takes the last step back.
     Undo,
@@ -58,7 +62,8 @@ pub enum Command {
     Redo,
     /// Takes a message away.
     Dismiss(u64),
-    /// Reads the clips better that a message offers to mend, as one step, and takes the message away.
+    /// Reads the clips better that a message offers to mend, as one step, and takes the message
+    /// away.
     Mend(u64),
     /// Gives up making the graph and the walk that are under way, or goes on with them.
     StopGraph(bool),
@@ -102,13 +107,15 @@ pub enum CommandError {
 /// What the document needs from outside.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Request {
-    /// A bundled take; hand its packed bytes to [`super::Session::load_sample`], or say to [`super::Session::fail_sample`] why there are none.
+    /// A bundled take; hand its packed bytes to [`super::Session::load_sample`], or say to
+    /// [`super::Session::fail_sample`] why there are none.
     Sample(&'static Sample),
     /// A file at an address; hand its bytes to [`super::Session::load_fetched`].
     Fetch(String),
     /// The text of a lesson; hand its bytes to [`super::Session::finish_lesson`].
     Lesson(Source),
-    /// A file that is not to be read between two frames; read it elsewhere and hand the report to [`super::Session::finish_reading`].
+    /// A file that is not to be read between two frames; read it elsewhere and hand the report to
+    /// [`super::Session::finish_reading`].
     Read(ReadTask),
     /// Nobody waits for a task any longer.
     StopReading {

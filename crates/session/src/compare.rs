@@ -3,7 +3,8 @@ use super::outside::short;
 use super::params::{Choice, Key, Kind, Value, ValueError};
 use std::fmt;
 
-/// Two to four values of one parameter, each in a pane of its own: `blend_window:30,15,10`, `method:inertialize,smooth`, `a:walk,run`.
+/// Two to four values of one parameter, each in a pane of its own: `blend_window:30,15,10`,
+/// `method:inertialize,smooth`, `a:walk,run`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Compare {
     /// The parameter in which the panes differ.
@@ -19,12 +20,11 @@ impl Compare {
     /// Reads `key:value,value,…`.
     ///
     /// # Errors
-    /// [`ValueError`] when the key cannot be compared, a value does not fit it, or there are not two to four values.
+    /// [`ValueError`] when the key cannot be compared, a value does not fit it, or there are not
+    /// two to four values.
     pub fn parse(text: &str) -> Result<Self, ValueError> {
-        let refuse = |expected: String| ValueError::NotAComparison {
-            found: text.to_owned(),
-            expected,
-        };
+        let refuse =
+            |expected: String| ValueError::NotAComparison { found: text.to_owned(), expected };
         let (name, list) = text
             .split_once(':')
             .ok_or_else(|| refuse("`key:value,value`, as in blend_window:30,15,10".into()))?;
@@ -38,7 +38,8 @@ impl Compare {
             })?;
         let is_clip = matches!(key.param().kind, Kind::Clip);
         let words = if is_clip {
-            read_ids(list).ok_or_else(|| refuse("ids whose brackets close, separated by commas".into()))?
+            read_ids(list)
+                .ok_or_else(|| refuse("ids whose brackets close, separated by commas".into()))?
         } else {
             list.split(',').map(|word| word.trim().to_owned()).collect()
         };
@@ -55,8 +56,9 @@ impl Compare {
         Ok(Self { key, values })
     }
 
-    /// The experiment of the course: the full value, half of it and a third. Where the range (the parameter's own, or a narrower one) does not hold
-    /// all three apart, both its ends and its middle. `None` for a parameter that is no number or cannot be compared.
+    /// The experiment of the course: the full value, half of it and a third. Where the range (the
+    /// parameter's own, or a narrower one) does not hold all three apart, both its ends and its
+    /// middle. `None` for a parameter that is no number or cannot be compared.
     #[must_use]
     pub fn full_half_third(key: Key, full: f64, range: Option<(f64, f64)>) -> Option<Self> {
         let Kind::Number { min, max, .. } = key.param().kind else {
@@ -64,7 +66,8 @@ impl Compare {
         };
         let (min, max) = range.unwrap_or((min, max));
         let checked = |number: f64| key.param().check(Value::Number(number.clamp(min, max))).ok();
-        let of = |numbers: [f64; 3]| numbers.into_iter().map(checked).collect::<Option<Vec<Value>>>();
+        let of =
+            |numbers: [f64; 3]| numbers.into_iter().map(checked).collect::<Option<Vec<Value>>>();
         let mut values = of([full, full / 2.0, full / 3.0])?;
         if values[0] == values[1] || values[1] == values[2] {
             values = of([max, f64::midpoint(min, max), min])?;
@@ -72,20 +75,25 @@ impl Compare {
         key.param().is_comparable().then_some(Self { key, values })
     }
 
-    /// A choice and the others that there are, as many as fit. `None` for a parameter that is no choice or cannot be compared.
+    /// A choice and the others that there are, as many as fit. `None` for a parameter that is no
+    /// choice or cannot be compared.
     #[must_use]
     pub fn choices(key: Key, chosen: &Value) -> Option<Self> {
-        let Kind::Choice(choices) = key.param().kind else { return None };
-        let (first, others): (Vec<&Choice>, Vec<&Choice>) = choices.iter().partition(|choice| *chosen == Value::Choice(choice.key));
+        let Kind::Choice(choices) = key.param().kind else {
+            return None;
+        };
+        let (first, others): (Vec<&Choice>, Vec<&Choice>) =
+            choices.iter().partition(|choice| *chosen == Value::Choice(choice.key));
         let values = first.into_iter().chain(others).take(MAX_PANES);
-        key.param().is_comparable().then(|| Self {
-            key,
-            values: values.map(|choice| Value::Choice(choice.key)).collect(),
-        })
+        key.param()
+            .is_comparable()
+            .then(|| Self { key, values: values.map(|choice| Value::Choice(choice.key)).collect() })
     }
 
-    /// The same with one value more, if there is room: of choices the next that is not there yet; of numbers the share of the first that comes next, a quarter after a third. Where the range (the parameter's
-    /// own, or a narrower one) ends before that, the middle of the widest gap between those that are there.
+    /// The same with one value more, if there is room: of choices the next that is not there yet;
+    /// of numbers the share of the first that comes next, a quarter after a third. Where the range
+    /// (the parameter's own, or a narrower one) ends before that, the middle of the widest gap
+    /// between those that are there.
     #[must_use]
     pub fn with_one_more(&self, range: Option<(f64, f64)>) -> Self {
         let mut more = self.clone();
@@ -104,11 +112,13 @@ impl Compare {
             _ => None,
         };
         let mut numbers: Vec<f64> = self.values.iter().filter_map(number).collect();
-        let Some(share) = numbers.first().map(|first| first / (self.values.len() + 1) as f64) else {
+        let Some(share) = numbers.first().map(|first| first / (self.values.len() + 1) as f64)
+        else {
             return more;
         };
         numbers.sort_by(f64::total_cmp);
-        let gaps = numbers.windows(2).map(|pair| (pair[1] - pair[0], f64::midpoint(pair[0], pair[1])));
+        let gaps =
+            numbers.windows(2).map(|pair| (pair[1] - pair[0], f64::midpoint(pair[0], pair[1])));
         let widest = gaps.max_by(|a, b| a.0.total_cmp(&b.0)).map_or(min, |(_, middle)| middle);
         let next = Value::Number(if (min..=max).contains(&share) { share } else { widest });
         if let Ok(next) = self.key.param().check(next) {

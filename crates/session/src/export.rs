@@ -52,8 +52,8 @@ impl ExportFormat {
     }
 }
 
-/// What a person may want otherwise than the clip has it. A format takes what it can say: BVH all of it but the body, GLB frame rate and
-/// body, CSV nothing.
+/// What a person may want otherwise than the clip has it. A format takes what it can say: BVH all
+/// of it but the body, GLB frame rate and body, CSV nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ExportOptions {
     /// The kind of file.
@@ -71,7 +71,8 @@ pub struct ExportOptions {
 /// Whose body a file has beside its motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ExportBody {
-    /// That of the character on the stage, on its own skeleton, in its own size; where there is none that the motion can move, the plain one.
+    /// That of the character on the stage, on its own skeleton, in its own size; where there is
+    /// none that the motion can move, the plain one.
     #[default]
     Character,
     /// One made around the clip's own skeleton.
@@ -101,11 +102,17 @@ impl ExportBody {
 /// A number per frame that goes into a table beside the joints, under its name.
 pub type Column = (String, Vec<f32>);
 
-/// Writes a motion as a file. `columns` go into a table only. `character` is who is on the stage in place of a plain body: see [`ExportBody`].
+/// Writes a motion as a file. `columns` go into a table only. `character` is who is on the stage in
+/// place of a plain body: see [`ExportBody`].
 ///
 /// # Errors
 /// [`GlbError`] when the motion is too large for the format.
-pub fn export(motion: &Motion, character: Option<&Character>, columns: &[Column], options: &ExportOptions) -> Result<Vec<u8>, GlbError> {
+pub fn export(
+    motion: &Motion,
+    character: Option<&Character>,
+    columns: &[Column],
+    options: &ExportOptions,
+) -> Result<Vec<u8>, GlbError> {
     match options.format {
         ExportFormat::Bvh => {
             let how = bvh::WriteOptions {
@@ -117,18 +124,12 @@ pub fn export(motion: &Motion, character: Option<&Character>, columns: &[Column]
             Ok(bvh::write(&motion.clip, &how).into_bytes())
         }
         ExportFormat::Csv => {
-            let inputs = CsvInputs {
-                clip: &motion.clip,
-                contacts: Some(&motion.contacts),
-                columns,
-            };
+            let inputs =
+                CsvInputs { clip: &motion.clip, contacts: Some(&motion.contacts), columns };
             Ok(write_csv(&inputs, &CsvOptions::default()).into_bytes())
         }
         ExportFormat::Glb => {
-            let how = GlbOptions {
-                fps: options.fps,
-                smooth: true,
-            };
+            let how = GlbOptions { fps: options.fps, smooth: true };
             let character = character.filter(|_| options.body == ExportBody::Character);
             match character.and_then(|character| Some((led(motion, character)?, character))) {
                 Some((clip, character)) => write_character_glb(&clip, &character.mesh, &how),
@@ -138,18 +139,21 @@ pub fn export(motion: &Motion, character: Option<&Character>, columns: &[Column]
     }
 }
 
-/// The motion as the character on the stage has it; `None` where it moves no joint of the character.
+/// The motion as the character on the stage has it; `None` where it moves no joint of the
+/// character.
 fn led(motion: &Motion, character: &Character) -> Option<Clip> {
     Drive::new(&motion.clip, &motion.roles, character)?.clip(&motion.clip).ok()
 }
 
-/// The curve that is plotted of a clip: of the chosen joint, the chosen quantity. None where the clip has no such joint.
+/// The curve that is plotted of a clip: of the chosen joint, the chosen quantity. None where the
+/// clip has no such joint.
 #[must_use]
 pub fn plotted_of_clip(motion: &Motion, params: &Params) -> Vec<Column> {
     plotted(motion, "", params).into_iter().collect()
 }
 
-/// The curves that are plotted of a result: its own, and those of what it was made from, each at the result's time; no numbers where they do not play.
+/// The curves that are plotted of a result: its own, and those of what it was made from, each at
+/// the result's time; no numbers where they do not play.
 #[must_use]
 pub fn plotted_of_result(outcome: &Outcome, params: &Params) -> Vec<Column> {
     let own = plotted(&outcome.motion, "", params);
@@ -209,20 +213,15 @@ mod tests {
         let motion = &session.main_outcome().unwrap().motion;
         for format in ExportFormat::ALL {
             assert_eq!(ExportFormat::from_name(format.name()), Some(format));
-            let bytes = export(
-                motion,
-                None,
-                &[],
-                &ExportOptions {
-                    format,
-                    ..ExportOptions::default()
-                },
-            )
-            .unwrap();
+            let bytes =
+                export(motion, None, &[], &ExportOptions { format, ..ExportOptions::default() })
+                    .unwrap();
             if format == ExportFormat::Csv {
                 let text = String::from_utf8(bytes).unwrap();
                 assert_eq!(text.lines().count(), motion.clip.frames() + 1);
-                assert!(text.lines().next().unwrap().ends_with("left_foot_contact,right_foot_contact"));
+                assert!(
+                    text.lines().next().unwrap().ends_with("left_foot_contact,right_foot_contact")
+                );
             } else {
                 let clip = read_back(&bytes, &format!("x.{}", format.name()));
                 assert_eq!(
@@ -245,15 +244,17 @@ mod tests {
             ..ExportOptions::default()
         };
         let text = String::from_utf8(export(motion, None, &[], &options).unwrap()).unwrap();
-        assert!(text.contains("Xrotation Yrotation Zrotation") && !text.contains("Zrotation Xrotation"));
+        assert!(
+            text.contains("Xrotation Yrotation Zrotation") && !text.contains("Zrotation Xrotation")
+        );
         let clip = read_back(text.as_bytes(), "x.bvh");
         assert_eq!(clip.fps().round(), 30.0);
         assert_eq!(clip.provenance().metres_per_unit, 1.0);
-        let glb = ExportOptions {
-            format: ExportFormat::Glb,
-            ..options
-        };
-        assert_eq!(read_back(&export(motion, None, &[], &glb).unwrap(), "x.glb").fps().round(), 30.0);
+        let glb = ExportOptions { format: ExportFormat::Glb, ..options };
+        assert_eq!(
+            read_back(&export(motion, None, &[], &glb).unwrap(), "x.glb").fps().round(),
+            30.0
+        );
     }
 
     #[test]
@@ -268,7 +269,8 @@ mod tests {
         );
         assert!(columns.iter().all(|(_, values)| values.len() == outcome.motion.clip.frames()));
         let (a, b) = (&columns[1].1, &columns[2].1);
-        // Outside of the transition the result is the source: B plays to the end, and not before it was begun.
+        // Outside of the transition the result is the source: B plays to the end, and not before it
+        // was begun.
         let fps = outcome.motion.clip.fps();
         let transition = outcome.transition.unwrap();
         let before = (transition.start_secs * fps).round() as usize / 2;

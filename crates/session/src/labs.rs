@@ -29,10 +29,13 @@ mod view;
 pub use blend::mistake_shows;
 pub(super) use gauge::Gauge;
 pub use graph::{
-    At, Built, Cast, Distances, Field, Passed, Trace, Walk, WalkGhost, check_graph_clips, graph_of, write_jump, write_path, write_visits,
+    At, Built, Cast, Distances, Field, Passed, Trace, Walk, WalkGhost, check_graph_clips, graph_of,
+    write_jump, write_path, write_visits,
 };
 pub(super) use graph::{clips_of, read_path, read_visits};
-pub(super) use kept::{belongs_to, is_as_it_is, read_ids, recipe_id, recipe_ingredients, recipe_name, recipe_params};
+pub(super) use kept::{
+    belongs_to, is_as_it_is, read_ids, recipe_id, recipe_ingredients, recipe_name, recipe_params,
+};
 pub use kept::{file_stem, write_ids};
 pub use lab_set::JobKind;
 pub(super) use lab_set::{Inputs, LabClips, LabSet, MoreClip};
@@ -43,7 +46,9 @@ pub(super) use match_::options_of;
 pub(super) use match_::{Crowd, Live, filter_of, options_in, read_tags, recording_of};
 pub use match_::{DriveMoment, Driven, HandTag, own_words, write_tags};
 pub use path::{FittedMotion, OnPath, spline_ends};
-pub use register::{Beat, DistanceMap, MOST_ALSO, Registered, weight_curve, write_also, write_pairs};
+pub use register::{
+    Beat, DistanceMap, MOST_ALSO, Registered, weight_curve, write_also, write_pairs,
+};
 pub(super) use register::{read_also, read_pins, read_weights};
 pub(super) use speed::middle_mps;
 
@@ -83,20 +88,21 @@ pub struct Source {
     pub slot: Slot,
     /// The clip as it is in the library, on its own skeleton.
     pub motion: Arc<Motion>,
-    /// The time in the result at which its first frame plays, seconds; negative when it is entered later than there.
+    /// The time in the result at which its first frame plays, seconds; negative when it is entered
+    /// later than there.
     pub starts_at_secs: f64,
     /// Where it lies on the result's ground.
     pub world_from_clip: Planar,
 }
 
 impl Source {
-    pub(super) fn new(slot: Slot, motion: &Arc<Motion>, starts_at_secs: f64, world_from_clip: Planar) -> Self {
-        Self {
-            slot,
-            motion: Arc::clone(motion),
-            starts_at_secs,
-            world_from_clip,
-        }
+    pub(super) fn new(
+        slot: Slot,
+        motion: &Arc<Motion>,
+        starts_at_secs: f64,
+        world_from_clip: Planar,
+    ) -> Self {
+        Self { slot, motion: Arc::clone(motion), starts_at_secs, world_from_clip }
     }
 }
 
@@ -113,7 +119,8 @@ pub struct Transition {
     pub enter_b_secs: f64,
     /// The window's length in frames of the result.
     pub window_frames: usize,
-    /// How far apart the two windows are after the best alignment: root mean square per joint, centimetres at a body height of 1.75 m.
+    /// How far apart the two windows are after the best alignment: root mean square per joint,
+    /// centimetres at a body height of 1.75 m.
     pub distance_cm: f32,
     /// How the place was searched for; `None` where no search for the best match found it.
     pub search: Option<MatchSearch>,
@@ -126,26 +133,29 @@ pub struct MatchSearch {
     pub by_pose: bool,
     /// Frames of the windows.
     pub window_frames: usize,
-    /// The windows are shorter than asked for: behind a frame set by hand no more is left of its clip.
+    /// The windows are shorter than asked for: behind a frame set by hand no more is left of its
+    /// clip.
     pub is_shortened: bool,
     /// A clip is too short for its half to hold a window behind it: all of it was searched.
     pub is_widened: bool,
-    /// The last times at which A can be left and B entered, seconds in each: a dissolve needs its window behind both.
+    /// The last times at which A can be left and B entered, seconds in each: a dissolve needs its
+    /// window behind both.
     pub latest_secs: [f64; 2],
 }
 
 /// How B came onto a skeleton that is not its own.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Retargeted {
-    /// The joints of A's skeleton that nothing of B moves, by name, parents first: they keep their rest pose.
+    /// The joints of A's skeleton that nothing of B moves, by name, parents first: they keep their
+    /// rest pose.
     pub unmatched: Vec<String>,
 }
 
 /// What a result goes round in.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cycle {
-    /// How long one takes, seconds: a whole number of frames. The result is a whole number of cycles long, and its last frame has the pose of its
-    /// first.
+    /// How long one takes, seconds: a whole number of frames. The result is a whole number of
+    /// cycles long, and its last frame has the pose of its first.
     pub secs: f64,
     /// What it was made of.
     pub made: CycleMade,
@@ -162,7 +172,8 @@ pub enum CycleMade {
         asked_mps: f64,
         /// How fast A and B go in the cycles that were taken of them, metres per second.
         clips_mps: [f64; 2],
-        /// Where these cycles begin and end, seconds in A and in B. A clip that is closed by its own ends may end before its cycle does.
+        /// Where these cycles begin and end, seconds in A and in B. A clip that is closed by its
+        /// own ends may end before its cycle does.
         cuts_secs: [[f64; 2]; 2],
     },
     /// A part of A whose ends were brought together.
@@ -171,7 +182,8 @@ pub enum CycleMade {
         from_secs: f64,
         /// Where it is over, seconds in A.
         to_secs: f64,
-        /// How far apart the bodies at both ends are: root mean square per joint, centimetres at a body height of 1.75 m.
+        /// How far apart the bodies at both ends are: root mean square per joint, centimetres at a
+        /// body height of 1.75 m.
         distance_cm: f64,
     },
 }
@@ -201,7 +213,8 @@ pub struct Outcome {
     pub driven: Option<Arc<Driven>>,
     /// The artefacts, as numbers: those that every lab has, and its own behind them.
     pub metrics: Vec<Metric>,
-    /// The clips that it is made of, on its skeleton: only what exceeds them is an artefact. None for a clip as it is.
+    /// The clips that it is made of, on its skeleton: only what exceeds them is an artefact. None
+    /// for a clip as it is.
     pub(super) beside: Vec<Arc<Clip>>,
     /// What is measured for the numbers that every lab has.
     pub(super) measured: Measured,
@@ -245,10 +258,13 @@ impl Outcome {
     /// Whether there is a place for the numbers that every lab has, and not yet their values.
     pub(super) fn awaits_numbers(&self) -> bool {
         let common = ResultMetrics::default().list();
-        !self.is_measured && self.metrics.iter().zip(&common).filter(|(own, common)| own.id == common.id).count() == common.len()
+        !self.is_measured
+            && self.metrics.iter().zip(&common).filter(|(own, common)| own.id == common.id).count()
+                == common.len()
     }
 
-    /// Puts the numbers that every lab has before its own; without a value where they are not known yet.
+    /// Puts the numbers that every lab has before its own; without a value where they are not known
+    /// yet.
     pub(super) fn take_numbers(&mut self, found: Option<ResultMetrics>) {
         let common = found.unwrap_or_default().list();
         self.metrics.retain(|metric| common.iter().all(|other| other.id != metric.id));
@@ -267,8 +283,9 @@ impl Outcome {
         self.motion.clip.duration_secs()
     }
 
-    /// Which time of a source goes into the result at a time of the result, and where the source lies then, standing where the result stands.
-    /// `None` where there is none of it, and where the sources are not registered: they simply play on.
+    /// Which time of a source goes into the result at a time of the result, and where the source
+    /// lies then, standing where the result stands. `None` where there is none of it, and where the
+    /// sources are not registered: they simply play on.
     #[must_use]
     pub fn source_at(&self, source: &Source, secs: f64) -> Option<(f64, Planar)> {
         let beat = self.registered.as_ref()?.beat_at(secs)?;
@@ -280,8 +297,8 @@ impl Outcome {
         })
     }
 
-    /// Where the character of a result that goes round stands at a time beyond its end: the time in its motion, and where that then lies. A
-    /// result that has an end stays as it is.
+    /// Where the character of a result that goes round stands at a time beyond its end: the time in
+    /// its motion, and where that then lies. A result that has an end stays as it is.
     pub(super) fn around(&self, secs: f64) -> (f64, Planar) {
         let duration = self.duration_secs();
         if self.cycle.is_none() || duration <= 0.0 || secs.is_nan() || secs <= duration {
@@ -293,10 +310,9 @@ impl Outcome {
         (secs - rounds * duration, place)
     }
 
-    /// What brings the character from where it stands at one time of the motion to where it stands at another.
+    /// What brings the character from where it stands at one time of the motion to where it stands
+    /// at another.
     pub(super) fn step(&self, from_secs: f64, to_secs: f64) -> Planar {
-        self.motion
-            .standing_at(to_secs)
-            .after(&self.motion.standing_at(from_secs).inverse())
+        self.motion.standing_at(to_secs).after(&self.motion.standing_at(from_secs).inverse())
     }
 }

@@ -1,4 +1,5 @@
-//! The document: the library, the parameters, what is made from them, and everything that can be done to it.
+//! The document: the library, the parameters, what is made from them, and everything that can be
+//! done to it.
 //!
 //! # The idea
 //!
@@ -8,12 +9,15 @@
 //! link, slider, API → Command → Session::apply → recipe (inputs → clip, numbers) → panes → scene
 //! ```
 //!
-//! One table ([`PARAMS`]) says what parameters there are: their keys in the link, ranges, steps, defaults and help. Sliders, link, API,
-//! comparison and undo come from it. A *recipe* is a pure function of clips and parameters; its inputs are remembered with its result, so
-//! that what did not change is not computed again. Picture a spreadsheet: a cell is touched, and only what hangs on it is reckoned anew.
+//! One table ([`PARAMS`]) says what parameters there are: their keys in the link, ranges, steps,
+//! defaults and help. Sliders, link, API, comparison and undo come from it. A *recipe* is a pure
+//! function of clips and parameters; its inputs are remembered with its result, so that what did
+//! not change is not computed again. Picture a spreadsheet: a cell is touched, and only what hangs
+//! on it is reckoned anew.
 //!
-//! What takes longer than a frame is cut into slices ([`Session::work`]). What the document needs from outside, a file or an address, it
-//! asks for ([`Request`]) and is handed; nothing here knows a screen, a file system or a clock. Time comes in by [`Session::tick`].
+//! What takes longer than a frame is cut into slices ([`Session::work`]). What the document needs
+//! from outside, a file or an address, it asks for ([`Request`]) and is handed; nothing here knows
+//! a screen, a file system or a clock. Time comes in by [`Session::tick`].
 //!
 //! # Example
 //!
@@ -49,13 +53,15 @@
 //!
 //! # Accuracy and cost
 //!
-//! The same link gives the same motion; numbers in it are whole multiples of their parameter's step. A change costs what the recipe costs
-//! that depends on it: a camera that turns makes nothing anew.
+//! The same link gives the same motion; numbers in it are whole multiples of their parameter's
+//! step. A change costs what the recipe costs that depends on it: a camera that turns makes nothing
+//! anew.
 //!
 //! # What it does not do
 //!
-//! It draws nothing, plays nothing by itself, and stores nothing: [`Saved`] is what an app may keep. A link carries parameters, not data: it
-//! names a file, with the first digits of its SHA-256, and who opens the link must have that file.
+//! It draws nothing, plays nothing by itself, and stores nothing: [`Saved`] is what an app may
+//! keep. A link carries parameters, not data: it names a file, with the first digits of its
+//! SHA-256, and who opens the link must have that file.
 
 pub mod choices;
 mod clip_sets;
@@ -84,12 +90,20 @@ pub use choices::{LabId, Selected};
 pub use clip_sets::ClipSet;
 pub use command::{Command, CommandError, CompanyChange, Request};
 pub use compare::{Compare, MAX_PANES};
-pub use document::{ClipInfo, Companion, Job, Lesson, LessonPage, Loaded, Made, NoResult, Pane, Session, Shown};
-pub use labs::{
-    At, Built, Cast, Distances, Field, Passed, Trace, Walk, WalkGhost, check_graph_clips, graph_of, write_jump, write_path, write_visits,
+pub use document::{
+    ClipInfo, Companion, Job, Lesson, LessonPage, Loaded, Made, NoResult, Pane, Session, Shown,
 };
-pub use labs::{Beat, DistanceMap, DriveMoment, Driven, FittedMotion, OnPath, Registered, spline_ends};
-pub use labs::{Cycle, CycleMade, LayerFacts, LayerFit, MatchSearch, Outcome, Retargeted, Slot, Source, Transition, mistake_shows};
+pub use labs::{
+    At, Built, Cast, Distances, Field, Passed, Trace, Walk, WalkGhost, check_graph_clips, graph_of,
+    write_jump, write_path, write_visits,
+};
+pub use labs::{
+    Beat, DistanceMap, DriveMoment, Driven, FittedMotion, OnPath, Registered, spline_ends,
+};
+pub use labs::{
+    Cycle, CycleMade, LayerFacts, LayerFit, MatchSearch, Outcome, Retargeted, Slot, Source,
+    Transition, mistake_shows,
+};
 pub use labs::{HandTag, own_words, write_tags};
 pub use labs::{JobKind, file_stem, write_ids};
 pub use labs::{MOST_ALSO, weight_curve, write_also, write_pairs};
@@ -98,7 +112,9 @@ pub use memory::{MemoryUse, PageMemory};
 pub use motion::{FeetReading, Motion, curve_kind, frame_at, joint_of, word_of_joint};
 pub use notice::{Level, Notice, Notices, sentence};
 pub use numbers::{NumberRow, NumberTable, digits};
-pub use params::{Choice, Group, Key, Kind, PARAMS, Param, Params, Value, ValueError, decimals_of, format_number};
+pub use params::{
+    Choice, Group, Key, Kind, PARAMS, Param, Params, Value, ValueError, decimals_of, format_number,
+};
 pub use report::{ReportFacts, report};
 pub use samples::{SAMPLES_CREDIT, Sample, SampleSet};
 pub use saved::{Saved, SavedEntry, Storing};

@@ -60,11 +60,13 @@ pub struct Entry {
     pub name: String,
     /// Where it comes from.
     pub origin: Origin,
-    /// The motion; `None` for a bundled take that has not come, a preset that was not needed yet, and a file that is being read.
+    /// The motion; `None` for a bundled take that has not come, a preset that was not needed yet,
+    /// and a file that is being read.
     pub motion: Option<Arc<Motion>>,
     /// The mesh that the file has for the clip's skeleton.
     pub mesh: Option<Arc<SkinnedMesh>>,
-    /// Why there is no motion though the file is known: reading it failed or was stopped. It is read again when that is asked for.
+    /// Why there is no motion though the file is known: reading it failed or was stopped. It is
+    /// read again when that is asked for.
     pub unread: Option<String>,
     /// How its file was read; `None` for what comes from no file, and until it is read.
     pub about: Option<About>,
@@ -103,11 +105,13 @@ impl Entry {
     /// Whether it is the motion of a skeleton that is not here.
     #[must_use]
     pub fn awaits_skeleton(&self) -> bool {
-        let motion_alone = |file: &SourceFile| file.kind == FileKind::Amc && file.companion.is_none();
+        let motion_alone =
+            |file: &SourceFile| file.kind == FileKind::Amc && file.companion.is_none();
         self.motion.is_none() && matches!(&self.origin, Origin::File(file) if motion_alone(file))
     }
 
-    /// The character that the file brought: its mesh on the clip's skeleton. `None` without a mesh, and until the file is read.
+    /// The character that the file brought: its mesh on the clip's skeleton. `None` without a mesh,
+    /// and until the file is read.
     #[must_use]
     pub fn character(&self) -> Option<Character> {
         let motion = self.motion.as_ref()?;
@@ -121,11 +125,7 @@ impl Entry {
     /// The whole SHA-256 of the file it came from, hexadecimal.
     #[must_use]
     pub fn sha256(&self) -> Option<&str> {
-        if let Origin::File(file) = &self.origin {
-            Some(&file.sha256)
-        } else {
-            None
-        }
+        if let Origin::File(file) = &self.origin { Some(&file.sha256) } else { None }
     }
 }
 
@@ -155,7 +155,8 @@ impl Library {
         &self.entries
     }
 
-    /// The clip that a link means: by id, else by the SHA-256 prefix in it, else by a file's name when only one has it.
+    /// The clip that a link means: by id, else by the SHA-256 prefix in it, else by a file's name
+    /// when only one has it.
     #[must_use]
     pub fn find(&self, reference: &str) -> Option<&Arc<Entry>> {
         if let Some(entry) = self.get(reference) {
@@ -163,7 +164,9 @@ impl Library {
         }
         let (name, sha, index) = split_reference(reference);
         let mut matching = self.entries.iter().filter(|entry| match &entry.origin {
-            Origin::File(file) if !sha.is_empty() => file.sha256.starts_with(sha) && file.index == index,
+            Origin::File(file) if !sha.is_empty() => {
+                file.sha256.starts_with(sha) && file.index == index
+            }
             Origin::File(file) => file_stem(&file.name) == file_stem(name) && file.index == index,
             _ => false,
         });
@@ -198,23 +201,24 @@ impl Library {
         self.entries.len() < before
     }
 
-    /// Takes what is known of clips over that have no motion here, where the other library has them read in the same way.
+    /// Takes what is known of clips over that have no motion here, where the other library has them
+    /// read in the same way.
     pub fn take_motions_of(&mut self, other: &Self) {
         for entry in self.entries.iter_mut().filter(|entry| entry.motion.is_none()) {
             let known = other.get(&entry.id).filter(|known| {
                 let is_read_alike = match (&known.origin, &entry.origin) {
                     (Origin::File(a), Origin::File(b)) => {
-                        (&a.sha256, a.index, a.options, &a.companion) == (&b.sha256, b.index, b.options, &b.companion)
+                        (&a.sha256, a.index, a.options, &a.companion)
+                            == (&b.sha256, b.index, b.options, &b.companion)
                     }
                     (a, b) => a == b,
                 };
-                known.motion.is_some() && known.roles_by_hand == entry.roles_by_hand && is_read_alike
+                known.motion.is_some()
+                    && known.roles_by_hand == entry.roles_by_hand
+                    && is_read_alike
             });
             if let Some(known) = known {
-                *entry = Arc::new(Entry {
-                    name: entry.name.clone(),
-                    ..(**known).clone()
-                });
+                *entry = Arc::new(Entry { name: entry.name.clone(), ..(**known).clone() });
             }
         }
     }
@@ -229,7 +233,8 @@ impl Library {
     }
 }
 
-/// The id of the clip `index` of a file: `01_01~3fa9c1d2`, and `01_01~3fa9c1d2.2` for the second character in it. Of a long name it has the beginning.
+/// The id of the clip `index` of a file: `01_01~3fa9c1d2`, and `01_01~3fa9c1d2.2` for the second
+/// character in it. Of a long name it has the beginning.
 #[must_use]
 pub fn file_id(name: &str, sha256: &str, index: usize) -> String {
     let sha = sha256.get(..SHA_DIGITS).unwrap_or(sha256);
@@ -298,7 +303,11 @@ mod tests {
         library.put(dropped("walk.bvh", "22222222aa"));
         assert_eq!(library.entries()[0].id, "01_01~3fa9c1d2");
         for reference in ["01_01~3fa9c1d2", "renamed~3fa9c1d2", "x~3fa9", "01_01", "01_01.bvh"] {
-            assert_eq!(library.find(reference).map(|e| e.name.as_str()), Some("a/01_01.bvh"), "{reference}");
+            assert_eq!(
+                library.find(reference).map(|e| e.name.as_str()),
+                Some("a/01_01.bvh"),
+                "{reference}"
+            );
         }
         assert_eq!(library.find("walk").map(|e| &e.id), None, "two files have that name");
         assert_eq!(library.find("walk~2222").map(|e| e.id.as_str()), Some("walk~22222222"));
@@ -308,7 +317,8 @@ mod tests {
     #[test]
     fn references_come_apart() {
         assert_eq!(split_reference("a~b~12.3"), ("a~b", "12", 2));
-        for whole in ["walk", "blend(a:walk,b:spider~12ab34cd.2,enter_b:0.5)", "tilde~", "a~2 b~x"] {
+        for whole in ["walk", "blend(a:walk,b:spider~12ab34cd.2,enter_b:0.5)", "tilde~", "a~2 b~x"]
+        {
             assert_eq!(split_reference(whole), (whole, "", 0));
         }
         assert_eq!(file_stem("x/y.z/.hidden"), ".hidden");

@@ -4,7 +4,8 @@ use super::outside::short;
 use super::params::{Key, Params, Value};
 use percent_encoding::{AsciiSet, CONTROLS, utf8_percent_encode};
 
-/// What a query string must escape. Colons, commas, slashes and parentheses stay readable; every browser takes them as they are.
+/// What a query string must escape. Colons, commas, slashes and parentheses stay readable; every
+/// browser takes them as they are.
 const ESCAPED: &AsciiSet = &CONTROLS
     .add(b' ')
     .add(b'"')
@@ -40,13 +41,16 @@ pub fn read(query: &str) -> Link {
                 Err(error) => link.problems.push(error.to_string()),
             },
             None if LOADER_KEYS.contains(&name.as_ref()) => {}
-            None => link.problems.push(format!("`{}` is not a parameter of this version", short(&name))),
+            None => {
+                link.problems.push(format!("`{}` is not a parameter of this version", short(&name)))
+            }
         }
     }
     link
 }
 
-/// Writes the query string without `?`: what differs from the defaults, in the order of the table. The playhead is left out while `playing`.
+/// Writes the query string without `?`: what differs from the defaults, in the order of the table.
+/// The playhead is left out while `playing`.
 #[must_use]
 pub fn write(params: &Params) -> String {
     let mut query = String::new();
@@ -88,10 +92,16 @@ mod tests {
                 })
                 .boxed(),
             Kind::Switch => any::<bool>().prop_map(move |on| (key, Value::Switch(on))).boxed(),
-            Kind::Choice(choices) => (0..choices.len()).prop_map(move |i| (key, Value::Choice(choices[i].key))).boxed(),
-            Kind::Clip | Kind::Text => "[^\\pC]{0,12}".prop_map(move |text| (key, Value::Text(text))).boxed(),
+            Kind::Choice(choices) => {
+                (0..choices.len()).prop_map(move |i| (key, Value::Choice(choices[i].key))).boxed()
+            }
+            Kind::Clip | Kind::Text => {
+                "[^\\pC]{0,12}".prop_map(move |text| (key, Value::Text(text))).boxed()
+            }
             Kind::Compare => (1.0f64..120.0, 1.0f64..120.0)
-                .prop_map(move |(x, y)| (key, key.param().parse(&format!("blend_window:{x},{y}")).unwrap()))
+                .prop_map(move |(x, y)| {
+                    (key, key.param().parse(&format!("blend_window:{x},{y}")).unwrap())
+                })
                 .boxed(),
         }
     }
@@ -126,7 +136,10 @@ mod tests {
         params.set(Key::BlendWindow, Value::Number(24.0)).unwrap();
         params.set(Key::Compare, Value::Text("blend_window:30,15,10".into())).unwrap();
         params.set(Key::A, Value::Text("01_01~3fa9c1d2".into())).unwrap();
-        assert_eq!(write(&params), "a=01_01~3fa9c1d2&blend_window=24&compare=blend_window:30,15,10");
+        assert_eq!(
+            write(&params),
+            "a=01_01~3fa9c1d2&blend_window=24&compare=blend_window:30,15,10"
+        );
     }
 
     #[test]

@@ -7,7 +7,8 @@ use glam::{Quat, Vec3};
 use segue_motion::clip::Clip;
 use std::cmp::Reverse;
 
-/// What a page says of its memory, bytes. The memory of a WebAssembly grows and never shrinks: what was freed in it is used again.
+/// What a page says of its memory, bytes. The memory of a WebAssembly grows and never shrinks: what
+/// was freed in it is used again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PageMemory {
     /// How large it is by now.
@@ -19,8 +20,9 @@ pub struct PageMemory {
 }
 
 impl PageMemory {
-    /// Returns how large the memory of a page may become, bytes: 3 GB of the 4 GiB that a WebAssembly can address, since results and their
-    /// pictures take memory beside the clips. Of a device that has so many GiB, where its browser tells, no more than half.
+    /// Returns how large the memory of a page may become, bytes: 3 GB of the 4 GiB that a
+    /// WebAssembly can address, since results and their pictures take memory beside the clips. Of a
+    /// device that has so many GiB, where its browser tells, no more than half.
     #[must_use]
     pub fn limit_of(device_gib: Option<f64>) -> u64 {
         let most = 3_000_000_000;
@@ -52,7 +54,8 @@ impl MemoryUse {
     }
 }
 
-/// Follows the memory of a page. How much of it is free is not told anywhere, but what clips gave back since is.
+/// Follows the memory of a page. How much of it is free is not told anywhere, but what clips gave
+/// back since is.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Memory {
     page: PageMemory,
@@ -66,19 +69,13 @@ impl Memory {
     /// Takes what the page says, and what the clips of the library hold, bytes.
     pub(super) fn follow(before: Option<Self>, page: PageMemory, clips: u64) -> Self {
         let held = clips.saturating_add(page.coming);
-        let freed = before.map_or(0, |before| before.freed.saturating_add(before.held).saturating_sub(held));
-        Self {
-            page,
-            held,
-            freed: freed.min(page.bytes),
-        }
+        let freed = before
+            .map_or(0, |before| before.freed.saturating_add(before.held).saturating_sub(held));
+        Self { page, held, freed: freed.min(page.bytes) }
     }
 
     pub(super) fn in_use(&self) -> MemoryUse {
-        MemoryUse {
-            used: self.page.bytes - self.freed,
-            limit: self.page.limit,
-        }
+        MemoryUse { used: self.page.bytes - self.freed, limit: self.page.limit }
     }
 
     /// Whether the page is so large that motion which nobody sees is not kept.
@@ -98,15 +95,17 @@ fn clip_bytes(clip: &Clip) -> u64 {
     motion_bytes(clip.frames(), clip.skeleton().len(), clip.translations().len())
 }
 
-/// How much memory a motion takes, bytes: a rotation for each joint, a place for the root and for each other joint that moves, the
-/// character's frame on the ground and the contacts of two feet.
+/// How much memory a motion takes, bytes: a rotation for each joint, a place for the root and for
+/// each other joint that moves, the character's frame on the ground and the contacts of two feet.
 pub(super) fn motion_bytes(frames: usize, joints: usize, moving: usize) -> u64 {
-    let per_frame = size_of::<Quat>() * joints + size_of::<Vec3>() * (moving + 1) + 3 * size_of::<f64>() + 2;
+    let per_frame =
+        size_of::<Quat>() * joints + size_of::<Vec3>() * (moving + 1) + 3 * size_of::<f64>() + 2;
     (frames as u64).saturating_mul(per_frame as u64)
 }
 
-/// How much memory a file is expected to take once it is read, bytes, by its name and size alone. Of 30 BVH files of real motion the clips took 0.27 to
-/// 0.71 times the file; text packs to about a quarter, and what comes out of an archive is kept beside its clips.
+/// How much memory a file is expected to take once it is read, bytes, by its name and size alone.
+/// Of 30 BVH files of real motion the clips took 0.27 to 0.71 times the file; text packs to about a
+/// quarter, and what comes out of an archive is kept beside its clips.
 pub(super) fn expected_bytes(name: &str, size: u64) -> u64 {
     let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_lowercase();
     match ending.as_str() {
@@ -143,8 +142,15 @@ const MOST_NAMED: usize = 3;
 /// Clips that take less are not worth removing, bytes.
 const WORTH_REMOVING: u64 = 10_000_000;
 
-/// Says that there is no memory for a file of `size` bytes, which takes `needed`, and what to do about it.
-pub(super) fn refusal(name: &str, size: u64, needed: u64, memory: MemoryUse, library: &Library) -> String {
+/// Says that there is no memory for a file of `size` bytes, which takes `needed`, and what to do
+/// about it.
+pub(super) fn refusal(
+    name: &str,
+    size: u64,
+    needed: u64,
+    memory: MemoryUse,
+    library: &Library,
+) -> String {
     let mut large: Vec<(&str, u64)> = library
         .entries()
         .iter()
@@ -202,11 +208,7 @@ mod tests {
     }
 
     fn page(bytes: u64, coming: u64) -> PageMemory {
-        PageMemory {
-            bytes,
-            limit: 3 * GB,
-            coming,
-        }
+        PageMemory { bytes, limit: 3 * GB, coming }
     }
 
     #[test]
@@ -231,7 +233,8 @@ mod tests {
 
     #[test]
     fn limit_is_three_gigabytes_or_half_of_what_the_device_has() {
-        let limits = [None, Some(8.0), Some(4.0), Some(0.5), Some(0.0), Some(f64::NAN)].map(PageMemory::limit_of);
+        let limits = [None, Some(8.0), Some(4.0), Some(0.5), Some(0.0), Some(f64::NAN)]
+            .map(PageMemory::limit_of);
         let most = 3_000_000_000;
         assert_eq!(limits, [most, most, 2 * GB, GB / 4, most, most]);
     }
@@ -247,16 +250,14 @@ mod tests {
 
     #[test]
     fn expected_memory_follows_the_kind_of_file() {
-        let expected = ["a.bvh", "A.AMC", "b.GLB", "c.zip", "c.bvh.gz", "none"].map(|name| expected_bytes(name, 4000));
+        let expected = ["a.bvh", "A.AMC", "b.GLB", "c.zip", "c.bvh.gz", "none"]
+            .map(|name| expected_bytes(name, 4000));
         assert_eq!(expected, [3000, 3000, 4000, 28_000, 28_000, 3000]);
     }
 
     #[test]
     fn refusal_names_memory_file_and_the_largest_clips() {
-        let memory = MemoryUse {
-            used: 2_900_000_000,
-            limit: 3_000_000_000,
-        };
+        let memory = MemoryUse { used: 2_900_000_000, limit: 3_000_000_000 };
         let none = refusal("long.bvh", 480_000_000, 1_250_000_001, memory, &Library::default());
         assert_eq!(
             none,

@@ -1,6 +1,8 @@
 use crate::choices::Curve;
 use crate::params::{Key, Params, Value};
-use segue_motion::clip::{Clip, ContactOptions, Contacts, CurveKind, character_frames, estimate_ground};
+use segue_motion::clip::{
+    Clip, ContactOptions, Contacts, CurveKind, character_frames, estimate_ground,
+};
 use segue_motion::math::{Planar, wrap_angle};
 use segue_motion::skeleton::{Role, Roles};
 use std::collections::VecDeque;
@@ -17,7 +19,8 @@ pub struct FeetReading {
 }
 
 impl FeetReading {
-    /// Returns what the parameters ask for. A foot leaves the ground above 1.75 times the height and twice the speed at which it comes down.
+    /// Returns what the parameters ask for. A foot leaves the ground above 1.75 times the height
+    /// and twice the speed at which it comes down.
     #[must_use]
     pub fn of(params: &Params) -> Self {
         let usual = ContactOptions::default();
@@ -53,7 +56,9 @@ impl FeetReader {
         if motion.feet == feet {
             return Arc::clone(motion);
         }
-        if let Some((_, read)) = self.0.iter().find(|(of, read)| Arc::ptr_eq(of, motion) && read.feet == feet) {
+        if let Some((_, read)) =
+            self.0.iter().find(|(of, read)| Arc::ptr_eq(of, motion) && read.feet == feet)
+        {
             return Arc::clone(read);
         }
         let read = Arc::new(Motion {
@@ -77,7 +82,8 @@ pub struct Motion {
     pub contacts: Contacts,
     /// Where the character stands and what it faces, one frame of reference per frame of the clip.
     pub ground_frames: Vec<Planar>,
-    /// The frames in which one clip goes over into the next, in order: where a result was joined from clips.
+    /// The frames in which one clip goes over into the next, in order: where a result was joined
+    /// from clips.
     pub seams: Vec<Range<usize>>,
     /// The height of the ground under the clip, metres.
     pub ground_m: f32,
@@ -92,7 +98,8 @@ impl Motion {
         Self::analyze_feet(clip, roles, FeetReading::default())
     }
 
-    /// Derives everything from a clip as [`analyze`](Self::analyze) does, its feet read in this way.
+    /// Derives everything from a clip as [`analyze`](Self::analyze) does, its feet read in this
+    /// way.
     #[must_use]
     pub fn analyze_feet(clip: Clip, roles: Option<Roles>, feet: FeetReading) -> Self {
         let roles = roles.unwrap_or_else(|| Roles::detect(clip.skeleton()));
@@ -123,42 +130,58 @@ impl Motion {
         self.seams.iter().map(|seam| seam.start).min().unwrap_or(last).min(last)
     }
 
-    /// The seams as they lie in a motion that plays the same at another pace: `frame` says where one of this motion's frames plays there.
+    /// The seams as they lie in a motion that plays the same at another pace: `frame` says where
+    /// one of this motion's frames plays there.
     pub(super) fn seams_at(&self, frame: impl Fn(usize) -> usize) -> Vec<Range<usize>> {
         self.seams.iter().map(|seam| frame(seam.start)..frame(seam.end)).collect()
     }
 
-    /// The seams of a motion that is this one up to `own` and `next` behind it, whose frame `enters` plays where `own` begins.
-    pub(super) fn seams_joined(&self, own: &Range<usize>, next: &Self, enters: usize) -> Vec<Range<usize>> {
+    /// The seams of a motion that is this one up to `own` and `next` behind it, whose frame
+    /// `enters` plays where `own` begins.
+    pub(super) fn seams_joined(
+        &self,
+        own: &Range<usize>,
+        next: &Self,
+        enters: usize,
+    ) -> Vec<Range<usize>> {
         let before = self.seams.iter().filter(|seam| seam.start < own.start);
         let before = before.map(|seam| seam.start..seam.end.min(own.start));
         let behind = next.seams.iter().filter(|seam| seam.start >= enters);
-        let behind = behind.map(|seam| seam.start - enters + own.start..seam.end - enters + own.start);
+        let behind =
+            behind.map(|seam| seam.start - enters + own.start..seam.end - enters + own.start);
         before.chain([own.clone()]).chain(behind).collect()
     }
 
-    /// The same with roles that were corrected by hand. Such as name joints that the skeleton has not, as those of another version's clip may, are
-    /// left alone.
+    /// The same with roles that were corrected by hand. Such as name joints that the skeleton has
+    /// not, as those of another version's clip may, are left alone.
     #[must_use]
     pub fn with_roles(self, by_hand: Option<&Roles>) -> Self {
         let joints = self.clip.skeleton().len();
-        let fits = |roles: &&Roles| Role::ALL.into_iter().filter_map(|role| roles.get(role)).all(|joint| joint < joints);
+        let fits = |roles: &&Roles| {
+            Role::ALL.into_iter().filter_map(|role| roles.get(role)).all(|joint| joint < joints)
+        };
         match by_hand.filter(fits) {
             Some(roles) if *roles != self.roles => Self {
                 seams: self.seams,
-                ..Self::analyze_feet(Arc::unwrap_or_clone(self.clip), Some(roles.clone()), self.feet)
+                ..Self::analyze_feet(
+                    Arc::unwrap_or_clone(self.clip),
+                    Some(roles.clone()),
+                    self.feet,
+                )
             },
             _ => self,
         }
     }
 
-    /// Where the character stands and what it faces at a time; between two frames in proportion, beyond the ends as at them.
+    /// Where the character stands and what it faces at a time; between two frames in proportion,
+    /// beyond the ends as at them.
     #[must_use]
     pub fn standing_at(&self, secs: f64) -> Planar {
         let last = self.ground_frames.len().saturating_sub(1);
         // `max` takes NaN to 0.
         let at = (secs * self.clip.fps()).max(0.0).min(last as f64);
-        let [here, next] = [at.floor() as usize, (at.floor() as usize + 1).min(last)].map(|frame| self.ground_frames.get(frame));
+        let [here, next] = [at.floor() as usize, (at.floor() as usize + 1).min(last)]
+            .map(|frame| self.ground_frames.get(frame));
         let (Some(here), Some(next)) = (here, next) else {
             return Planar::IDENTITY;
         };
@@ -238,7 +261,8 @@ mod tests {
         let raised = outcome("lab=view&a=walk&ground=5");
         assert!((raised.motion.ground_m - 0.05).abs() < 1e-6);
         let sunk = |outcome: &Outcome| {
-            let metric = outcome.metrics.iter().find(|metric| metric.id == "clip_penetration_cm").unwrap();
+            let metric =
+                outcome.metrics.iter().find(|metric| metric.id == "clip_penetration_cm").unwrap();
             metric.value.unwrap()
         };
         // The lowest points of this body are toe tips, which stand 1 cm above the soles.

@@ -31,7 +31,8 @@ pub struct Notice {
     pub level: Level,
     /// What happened and what to do, in a sentence or two.
     pub text: String,
-    /// What it is about, in a word: a file, a key. Where a row has no room for more, this stands for it.
+    /// What it is about, in a word: a file, a key. Where a row has no room for more, this stands
+    /// for it.
     pub about: String,
     /// Ids of the clips that can be read better: [`Command::Mend`](super::Command::Mend) does it.
     pub mends: Vec<String>,
@@ -147,7 +148,8 @@ impl Notices {
         at.map(|at| self.list.remove(at)).is_some()
     }
 
-    /// An error for which there is no room: it and the last one that has a row, or those that are summed up already, are one row from now on.
+    /// An error for which there is no room: it and the last one that has a row, or those that are
+    /// summed up already, are one row from now on.
     fn sum_up(&mut self, error: Notice) {
         let last = match self.sum {
             Some(sum) => self.list.iter().position(|notice| notice.id == sum),
@@ -156,7 +158,8 @@ impl Notices {
         let last = last.map(|at| self.list.remove(at));
         self.more.extend(last.filter(|notice| Some(notice.id) != self.sum));
         self.more.push(error);
-        let mut named: Vec<&str> = self.more.iter().take(MOST_NAMED).map(|notice| notice.about.as_str()).collect();
+        let mut named: Vec<&str> =
+            self.more.iter().take(MOST_NAMED).map(|notice| notice.about.as_str()).collect();
         if self.more.len() > MOST_NAMED {
             named.push("…");
         }
@@ -183,12 +186,14 @@ impl Notices {
         }
     }
 
-    /// Every error since the one of that number, with those for which there was no room, in the order in which they came.
+    /// Every error since the one of that number, with those for which there was no room, in the
+    /// order in which they came.
     #[must_use]
     pub fn errors_since(&self, id: u64) -> Vec<&Notice> {
         let of_list = self.list.iter().filter(|notice| Some(notice.id) != self.sum);
         let errors = of_list.chain(&self.more);
-        let mut errors: Vec<&Notice> = errors.filter(|notice| notice.level == Level::Error && notice.id >= id).collect();
+        let mut errors: Vec<&Notice> =
+            errors.filter(|notice| notice.level == Level::Error && notice.id >= id).collect();
         errors.sort_by_key(|notice| notice.id);
         errors
     }
@@ -199,8 +204,7 @@ impl Notices {
         for notice in &mut self.list {
             notice.age_secs += dt_secs;
         }
-        self.list
-            .retain(|notice| notice.level != Level::Info || notice.age_secs < INFO_SECS);
+        self.list.retain(|notice| notice.level != Level::Info || notice.age_secs < INFO_SECS);
         self.list.len() < before
     }
 
@@ -218,8 +222,9 @@ impl Notices {
     }
 }
 
-/// What an error is about, in most of them a file or a key: what stands before the first colon with a space behind it, without line and column, and
-/// before the words that it does not work. The colon of an address or of a host's port is none.
+/// What an error is about, in most of them a file or a key: what stands before the first colon with
+/// a space behind it, without line and column, and before the words that it does not work. The
+/// colon of an address or of a host's port is none.
 fn head(text: &str) -> &str {
     let end = [": ", " could", " cannot"].into_iter().filter_map(|sign| text.find(sign)).min();
     let mut head = text.get(..end.unwrap_or(text.len())).unwrap_or(text).trim_end_matches('.');
@@ -270,12 +275,17 @@ mod tests {
     #[test]
     fn no_error_is_lost() {
         let mut notices = Notices::default();
-        let errors: Vec<String> = (0..40).map(|n| format!("f{n}.bvh:1:2: found `x`, expected `y`")).collect();
+        let errors: Vec<String> =
+            (0..40).map(|n| format!("f{n}.bvh:1:2: found `x`, expected `y`")).collect();
         for (n, error) in errors.iter().enumerate() {
             notices.say(Level::Error, error.clone());
             notices.say(Level::Info, format!("info {n}"));
             if n == 5 {
-                assert_eq!(texts(&notices)[..3], errors[..3], "the first ones stand there as they are");
+                assert_eq!(
+                    texts(&notices)[..3],
+                    errors[..3],
+                    "the first ones stand there as they are"
+                );
                 assert!(texts(&notices).contains(&"3 more did not work: f3.bvh, f4.bvh, f5.bvh."));
             }
         }
@@ -283,7 +293,8 @@ mod tests {
         let sum = notices.list().iter().find(|notice| notice.text.starts_with("37 more")).unwrap();
         assert!(sum.text.ends_with("f26.bvh, …."), "{}", sum.text);
         // Listeners hear of each, once.
-        let heard: Vec<&str> = notices.errors_since(0).iter().map(|notice| notice.text.as_str()).collect();
+        let heard: Vec<&str> =
+            notices.errors_since(0).iter().map(|notice| notice.text.as_str()).collect();
         assert_eq!(heard, errors);
         let last = notices.errors_since(0).last().unwrap().id;
         assert_eq!(notices.errors_since(last + 1).len(), 0);
@@ -301,7 +312,11 @@ mod tests {
         for text in ["1", "2", "3", "4"] {
             notices.say(Level::Error, text);
         }
-        notices.say_of(Level::Error, "walk.bvh", "There is no file at https://a.org/walk.bvh (answer 404).");
+        notices.say_of(
+            Level::Error,
+            "walk.bvh",
+            "There is no file at https://a.org/walk.bvh (answer 404).",
+        );
         notices.say(
             Level::Error,
             "127.0.0.1:8000 cannot be reached. Check the address: http://127.0.0.1:8000/x",
@@ -310,7 +325,10 @@ mod tests {
         notices.say(Level::Error, format!("{}: gone.", "y".repeat(500)));
         let sum = texts(&notices).pop().unwrap().to_owned();
         let long = short(&"y".repeat(500));
-        assert_eq!(sum, format!("5 more did not work: 4, walk.bvh, 127.0.0.1:8000, a/b.bvh, {long}."));
+        assert_eq!(
+            sum,
+            format!("5 more did not work: 4, walk.bvh, 127.0.0.1:8000, a/b.bvh, {long}.")
+        );
     }
 
     #[test]

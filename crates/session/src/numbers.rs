@@ -55,7 +55,8 @@ impl NumberTable {
         let mut rows: Vec<NumberRow> = metrics.iter().map(row).collect();
         let walk = |pane: &Pane| pane.result().ok()?.outcome.walk.clone();
         if panes.iter().any(|pane| walk(pane).is_some()) {
-            let built = panes.iter().map(|pane| session.graph_build_secs(&walk(pane)?.built)).collect();
+            let built =
+                panes.iter().map(|pane| session.graph_build_secs(&walk(pane)?.built)).collect();
             rows.push(NumberRow {
                 label: "Build time",
                 unit: "s",
@@ -64,17 +65,15 @@ impl NumberTable {
                 values: built,
             });
         }
-        Self {
-            panes: panes.iter().map(name).collect(),
-            rows,
-        }
+        Self { panes: panes.iter().map(name).collect(), rows }
     }
 
     /// The table in Markdown.
     #[must_use]
     pub fn markdown(&self) -> String {
         let names: Vec<String> = self.panes.iter().map(|name| markdown(name)).collect();
-        let mut out = format!("| | {} |\n|---|{}\n", names.join(" | "), "---|".repeat(self.panes.len()));
+        let mut out =
+            format!("| | {} |\n|---|{}\n", names.join(" | "), "---|".repeat(self.panes.len()));
         for row in &self.rows {
             let values: Vec<String> = row.values.iter().map(|value| digits(*value)).collect();
             let written = writeln!(out, "| {} | {} |", row.heading(), values.join(" | "));
@@ -83,7 +82,8 @@ impl NumberTable {
         out
     }
 
-    /// The table as comma-separated values, in full precision. No cell is one that a spreadsheet computes ([`csv::cell`]).
+    /// The table as comma-separated values, in full precision. No cell is one that a spreadsheet
+    /// computes ([`csv::cell`]).
     #[must_use]
     pub fn csv(&self) -> String {
         let head: Vec<String> = ["", "unit"]
@@ -98,7 +98,13 @@ impl NumberTable {
                 .iter()
                 .map(|value| value.map_or_else(String::new, |value| value.to_string()))
                 .collect();
-            let written = writeln!(out, "{},{},{}", csv::cell(row.label), csv::cell(row.unit), values.join(","));
+            let written = writeln!(
+                out,
+                "{},{},{}",
+                csv::cell(row.label),
+                csv::cell(row.unit),
+                values.join(",")
+            );
             debug_assert!(written.is_ok(), "a string takes all");
         }
         out
@@ -122,8 +128,12 @@ impl NumberRow {
         let values = || self.values.iter().flatten().copied();
         let (low, high) = (values().min_by(f64::total_cmp), values().max_by(f64::total_cmp));
         match (low, high, self.better) {
-            (Some(low), Some(high), Better::Lower) if high - low > 0.05 * high.abs() => [Some(low), Some(high)],
-            (Some(low), Some(high), Better::Higher) if high - low > 0.05 * high.abs() => [Some(high), Some(low)],
+            (Some(low), Some(high), Better::Lower) if high - low > 0.05 * high.abs() => {
+                [Some(low), Some(high)]
+            }
+            (Some(low), Some(high), Better::Higher) if high - low > 0.05 * high.abs() => {
+                [Some(high), Some(low)]
+            }
             _ => [None, None],
         }
     }
@@ -132,7 +142,9 @@ impl NumberRow {
 /// A number with about three digits; a dash where there is none.
 #[must_use]
 pub fn digits(value: Option<f64>) -> String {
-    let Some(value) = value else { return "–".to_owned() };
+    let Some(value) = value else {
+        return "–".to_owned();
+    };
     let decimals = match value.abs() {
         large if large >= 100.0 => 0,
         middle if middle >= 10.0 => 1,
@@ -165,6 +177,9 @@ mod tests {
         };
         assert_eq!(table.markdown(), "| | =1+1 | a\\|b |\n|---|---|---|\n| Lag, s | 0.42 | – |\n");
         assert_eq!(table.csv(), ",unit,'=1+1,a|b\nLag,s,0.416,\n");
-        assert_eq!([digits(Some(-0.5)), digits(Some(123.4)), digits(Some(12.0))], ["−0.5", "123", "12"]);
+        assert_eq!(
+            [digits(Some(-0.5)), digits(Some(123.4)), digits(Some(12.0))],
+            ["−0.5", "123", "12"]
+        );
     }
 }

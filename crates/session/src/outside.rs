@@ -1,5 +1,5 @@
-//! Texts from outside (names of files, values of links) made fit to stand among the program's own: on one line, short, and without a meaning of
-//! their own in Markdown.
+//! Texts from outside (names of files, values of links) made fit to stand among the program's own:
+//! on one line, short, and without a meaning of their own in Markdown.
 
 /// The most letters of a value that a message quotes.
 const MOST_QUOTED: usize = 60;
@@ -12,8 +12,8 @@ const UNNAMED: &str = "unnamed";
 /// The most letters of the ending of a file's name.
 const MOST_OF_ENDING: usize = 10;
 
-/// Returns a text without what breaks a line, cannot be seen, or turns the direction in which the letters around it are read: line breaks and tabs
-/// become spaces, the rest goes.
+/// Returns a text without what breaks a line, cannot be seen, or turns the direction in which the
+/// letters around it are read: line breaks and tabs become spaces, the rest goes.
 #[must_use]
 pub fn on_one_line(text: &str) -> String {
     let letters = text.chars().filter_map(|letter| match letter {
@@ -24,7 +24,8 @@ pub fn on_one_line(text: &str) -> String {
     letters.collect()
 }
 
-/// The signs of Unicode's bidirectional algorithm (UAX #9, section 2), and the mark that tells the order of bytes.
+/// The signs of Unicode's bidirectional algorithm (UAX #9, section 2), and the mark that tells the
+/// order of bytes.
 fn is_direction_sign(letter: char) -> bool {
     matches!(
         letter,
@@ -32,7 +33,8 @@ fn is_direction_sign(letter: char) -> bool {
     )
 }
 
-/// Returns a text as a message quotes it: on one line, and of a long one its first 60 letters and `…`.
+/// Returns a text as a message quotes it: on one line, and of a long one its first 60 letters and
+/// `…`.
 #[must_use]
 pub fn short(text: &str) -> String {
     cut(&on_one_line(text), MOST_QUOTED)
@@ -45,7 +47,8 @@ fn cut(text: &str, most: usize) -> String {
     }
 }
 
-/// Returns the name of a clip as it is kept and shown: on one line, and of a long one its first letters and `…`.
+/// Returns the name of a clip as it is kept and shown: on one line, and of a long one its first
+/// letters and `…`.
 #[must_use]
 pub fn clip_name(name: &str) -> String {
     let name = on_one_line(name);
@@ -53,7 +56,8 @@ pub fn clip_name(name: &str) -> String {
     if name.is_empty() { UNNAMED.to_owned() } else { name }
 }
 
-/// Returns a file's name, with the folders before it, as it is kept and shown: on one line, and of a long one its first letters, `…` and its ending.
+/// Returns a file's name, with the folders before it, as it is kept and shown: on one line, and of
+/// a long one its first letters, `…` and its ending.
 #[must_use]
 pub fn file_name(path: &str) -> String {
     let path = on_one_line(path);
@@ -80,7 +84,8 @@ pub fn for_id(name: &str) -> &str {
     name.get(..end).unwrap_or(name)
 }
 
-/// Returns a text as Markdown shows it letter by letter, in a paragraph or in a cell of a table: no HTML, no link, no picture, no other cell.
+/// Returns a text as Markdown shows it letter by letter, in a paragraph or in a cell of a table: no
+/// HTML, no link, no picture, no other cell.
 #[must_use]
 pub fn markdown(text: &str) -> String {
     let text = on_one_line(text);
@@ -89,8 +94,11 @@ pub fn markdown(text: &str) -> String {
     for (at, letter) in text.char_indices() {
         let (_, rest) = text.split_at(at);
         // GitHub makes links of addresses that stand there as they are.
-        let begins_address = (letter == ':' && rest.starts_with("://")) || (letter == '.' && before.to_ascii_lowercase().ends_with("www"));
-        if begins_address || matches!(letter, '\\' | '`' | '*' | '[' | ']' | '<' | '>' | '|' | '@' | '&') {
+        let begins_address = (letter == ':' && rest.starts_with("://"))
+            || (letter == '.' && before.to_ascii_lowercase().ends_with("www"));
+        if begins_address
+            || matches!(letter, '\\' | '`' | '*' | '[' | ']' | '<' | '>' | '|' | '@' | '&')
+        {
             escaped.push('\\');
         }
         escaped.push(letter);
@@ -105,7 +113,8 @@ pub fn markdown_code(text: &str) -> String {
     format!("`{}`", on_one_line(text).replace('`', "'").replace('|', "\\|"))
 }
 
-/// Returns a sentence of ours that quotes texts from outside in backticks, as Markdown: the quotes as code.
+/// Returns a sentence of ours that quotes texts from outside in backticks, as Markdown: the quotes
+/// as code.
 #[must_use]
 pub fn markdown_sentence(sentence: &str) -> String {
     let parts: Vec<&str> = sentence.split('`').collect();
@@ -145,12 +154,16 @@ mod tests {
         ] {
             let cut = file_name(&name);
             assert!(cut.chars().count() <= MOST_OF_NAME + 2, "{cut}");
-            let ends = |name: &str| (name.rsplit('.').next() == Some("bvh"), name.starts_with("a/"));
+            let ends =
+                |name: &str| (name.rsplit('.').next() == Some("bvh"), name.starts_with("a/"));
             assert_eq!(ends(&cut), ends(&name));
             assert_eq!(file_name(&cut), cut, "a name that is kept stays");
         }
         for empty in ["", " \n", "\0\u{202e}"] {
-            assert_eq!((file_name(empty), clip_name(empty)), (UNNAMED.to_owned(), UNNAMED.to_owned()));
+            assert_eq!(
+                (file_name(empty), clip_name(empty)),
+                (UNNAMED.to_owned(), UNNAMED.to_owned())
+            );
         }
         assert_eq!(file_name(" a\nb.bvh"), "a b.bvh");
         assert_eq!(for_id(&"走".repeat(4000)).chars().count(), MOST_OF_ID);

@@ -1,10 +1,12 @@
-//! The one table of parameters. Sliders, the link, the page's API, compare, undo and `docs/parameters.md` are made from it.
+//! The one table of parameters. Sliders, the link, the page's API, compare, undo and
+//! `docs/parameters.md` are made from it.
 
 use super::choices::{
-    AlignBy, Atan, Backdrop, Camera, Construction, Curve, EdgeWeight, Ends, Follow, GoingOn, Hysteresis, JumpMethod, LabId, LayerFit,
-    LayerMode, LayerReference, Look, LoopMethod, MadeAction, Mask, MatchBy, Mistake, Normalisation, PageLanguage, PageTheme, PathFacing,
-    PathKeep, PathOffset, PathSpline, RootMotion, Scenario, SearchBy, Selected, Skinning, Transform, TransitionMethod, WalkMethod,
-    WarpMode, WarpWith, WeightLaw,
+    AlignBy, Atan, Backdrop, Camera, Construction, Curve, EdgeWeight, Ends, Follow, GoingOn,
+    Hysteresis, JumpMethod, LabId, LayerFit, LayerMode, LayerReference, Look, LoopMethod,
+    MadeAction, Mask, MatchBy, Mistake, Normalisation, PageLanguage, PageTheme, PathFacing,
+    PathKeep, PathOffset, PathSpline, RootMotion, Scenario, SearchBy, Selected, Skinning,
+    Transform, TransitionMethod, WalkMethod, WarpMode, WarpWith, WeightLaw,
 };
 use super::compare::Compare;
 use super::outside::short;
@@ -197,31 +199,13 @@ macro_rules! parameters {
 }
 
 const fn number(min: f64, max: f64, step: f64) -> Kind {
-    Kind::Number {
-        min,
-        max,
-        step,
-        auto: false,
-        logarithmic: false,
-    }
+    Kind::Number { min, max, step, auto: false, logarithmic: false }
 }
 const fn auto(min: f64, max: f64, step: f64) -> Kind {
-    Kind::Number {
-        min,
-        max,
-        step,
-        auto: true,
-        logarithmic: false,
-    }
+    Kind::Number { min, max, step, auto: true, logarithmic: false }
 }
 const fn logarithmic(min: f64, max: f64, step: f64) -> Kind {
-    Kind::Number {
-        min,
-        max,
-        step,
-        auto: false,
-        logarithmic: true,
-    }
+    Kind::Number { min, max, step, auto: false, logarithmic: true }
 }
 
 parameters! {
@@ -532,11 +516,7 @@ impl Param {
 
     fn not_a_choice(&self, found: &str, choices: &[Choice]) -> ValueError {
         let expected = choices.iter().map(|c| c.key).collect::<Vec<_>>().join(", ");
-        ValueError::NotAChoice {
-            key: self.name,
-            found: found.to_owned(),
-            expected,
-        }
+        ValueError::NotAChoice { key: self.name, found: found.to_owned(), expected }
     }
 
     /// A value as it is said on screen.
@@ -600,7 +580,8 @@ impl Param {
         }
     }
 
-    /// The value as JSON for the API: numbers, booleans and strings; `"auto"` where it is left to Segue.
+    /// The value as JSON for the API: numbers, booleans and strings; `"auto"` where it is left to
+    /// Segue.
     #[must_use]
     pub fn to_json(&self, value: &Value) -> Json {
         match value {
@@ -623,7 +604,8 @@ impl Param {
         }
     }
 
-    /// Whether a change of it is a step that undo takes back. Looking around, playing and stopping are not.
+    /// Whether a change of it is a step that undo takes back. Looking around, playing and stopping
+    /// are not.
     #[must_use]
     pub const fn is_undoable(&self) -> bool {
         use Key::{CameraDistance, CameraPitch, CameraYaw, PanX, PanY, PanZ, Play, Time};
@@ -633,14 +615,17 @@ impl Param {
         )
     }
 
-    /// Whether compare can make panes of it: a clip, a number or choice that changes the result, and the two ways of skinning.
+    /// Whether compare can make panes of it: a clip, a number or choice that changes the result,
+    /// and the two ways of skinning.
     #[must_use]
     pub fn is_comparable(&self) -> bool {
         match self.kind {
             // Clips are read anew for these.
             _ if matches!(self.key, Key::Ground | Key::ContactHeight | Key::ContactSpeed) => false,
             Kind::Clip => true,
-            Kind::Number { .. } | Kind::Choice(_) => self.group.is_of_lab() || self.key == Key::Skinning,
+            Kind::Number { .. } | Kind::Choice(_) => {
+                self.group.is_of_lab() || self.key == Key::Skinning
+            }
             _ => false,
         }
     }
@@ -673,7 +658,9 @@ pub fn format_number(number: f64, step: f64) -> String {
 #[must_use]
 pub fn decimals_of(step: f64) -> usize {
     (0..6)
-        .find(|&decimals| ((step * 10f64.powi(decimals)).round() - step * 10f64.powi(decimals)).abs() < 1e-9)
+        .find(|&decimals| {
+            ((step * 10f64.powi(decimals)).round() - step * 10f64.powi(decimals)).abs() < 1e-9
+        })
         .unwrap_or(6) as usize
 }
 
@@ -722,11 +709,7 @@ impl Params {
     /// A number; `None` where it is left to Segue.
     #[must_use]
     pub fn optional(&self, key: Key) -> Option<f64> {
-        if let Value::Number(number) = self.get(key) {
-            Some(*number)
-        } else {
-            None
-        }
+        if let Value::Number(number) = self.get(key) { Some(*number) } else { None }
     }
 
     /// A number that is never `auto`. 0 for a parameter that is no number.
@@ -741,7 +724,8 @@ impl Params {
         *self.get(key) == Value::Switch(true)
     }
 
-    /// Returns a clip's id or a text; the empty text for a parameter of another kind. Choices have types: [`Params::choice`].
+    /// Returns a clip's id or a text; the empty text for a parameter of another kind. Choices have
+    /// types: [`Params::choice`].
     #[must_use]
     pub fn text(&self, key: Key) -> &str {
         match self.get(key) {
@@ -778,7 +762,12 @@ mod tests {
     fn the_table_is_sound() {
         for (index, param) in PARAMS.iter().enumerate() {
             assert_eq!(param.key as usize, index);
-            assert_eq!(Key::from_name(param.name), Some(param.key), "{} is there twice", param.name);
+            assert_eq!(
+                Key::from_name(param.name),
+                Some(param.key),
+                "{} is there twice",
+                param.name
+            );
             assert_eq!(
                 param.check(param.default_value()).as_ref(),
                 Ok(&param.default_value()),
@@ -786,7 +775,11 @@ mod tests {
                 param.name
             );
             assert!(param.help.ends_with('.') && !param.label.is_empty(), "{}", param.name);
-            assert!(param.name.bytes().all(|b| b.is_ascii_lowercase() || b == b'_'), "{}", param.name);
+            assert!(
+                param.name.bytes().all(|b| b.is_ascii_lowercase() || b == b'_'),
+                "{}",
+                param.name
+            );
         }
     }
 
@@ -803,12 +796,7 @@ mod tests {
         );
         assert_eq!(Key::LeaveA.param().parse("auto"), Ok(Value::Auto));
         assert!(
-            Key::Lab
-                .param()
-                .parse("cook")
-                .unwrap_err()
-                .to_string()
-                .contains("view, make, blend")
+            Key::Lab.param().parse("cook").unwrap_err().to_string().contains("view, make, blend")
         );
         assert!(window.parse("inf").is_err() && window.parse("NaN").is_err());
     }

@@ -13,14 +13,16 @@ use std::fmt::Write as _;
 pub struct ReportFacts<'a> {
     /// The address that opens this state.
     pub link: &'a str,
-    /// The stage as an address of a picture (`data:image/jpeg;base64,…`); `None` where there is none.
+    /// The stage as an address of a picture (`data:image/jpeg;base64,…`); `None` where there is
+    /// none.
     pub picture: Option<&'a str>,
-    /// What else there is to know of the program: its version comes by itself, this is the graphics it draws with.
+    /// What else there is to know of the program: its version comes by itself, this is the graphics
+    /// it draws with.
     pub backend: &'a str,
 }
 
-/// The state as Markdown: a heading, the picture, the link, the clips, what was set, the numbers of all panes, and the versions. Of panes whose
-/// result cannot be made it says why.
+/// The state as Markdown: a heading, the picture, the link, the clips, what was set, the numbers of
+/// all panes, and the versions. Of panes whose result cannot be made it says why.
 ///
 /// # Errors
 /// [`NoResult`] where no pane has a result, and while one of them is computed.
@@ -38,10 +40,7 @@ pub fn report(session: &Session, facts: &ReportFacts<'_>) -> Result<String, NoRe
     if let Some(picture) = facts.picture {
         say(format!("![The stage at {:.2} s]({picture})\n", session.now_secs()));
     }
-    say(format!(
-        "[Open this state]({})\n",
-        facts.link.replace('(', "%28").replace(')', "%29")
-    ));
+    say(format!("[Open this state]({})\n", facts.link.replace('(', "%28").replace(')', "%29")));
     say("| setting | value |\n|---|---|".to_owned());
     for key in recipe_ingredients(params.lab()) {
         let param = key.param();
@@ -68,11 +67,8 @@ pub fn report(session: &Session, facts: &ReportFacts<'_>) -> Result<String, NoRe
     } else {
         say(table.markdown());
     }
-    let backend = if facts.backend.is_empty() {
-        String::new()
-    } else {
-        format!(" · {}", facts.backend)
-    };
+    let backend =
+        if facts.backend.is_empty() { String::new() } else { format!(" · {}", facts.backend) };
     for pane in session.panes() {
         if let Err(reason) = pane.result() {
             let name = session.variant_name(pane).unwrap_or_default();
@@ -87,7 +83,8 @@ pub fn report(session: &Session, facts: &ReportFacts<'_>) -> Result<String, NoRe
     Ok(out)
 }
 
-/// A clip by its name, and what tells it from another one of that name: the check sum of its file, or the recipe. As Markdown.
+/// A clip by its name, and what tells it from another one of that name: the check sum of its file,
+/// or the recipe. As Markdown.
 fn clip_in_words(session: &Session, id: &str) -> String {
     let Some(entry) = session.library().find(id) else {
         return format!("{}, which is not here", markdown_code(id));
@@ -95,7 +92,9 @@ fn clip_in_words(session: &Session, id: &str) -> String {
     let Entry { name, origin, .. } = &**entry;
     let name = markdown(name);
     match origin {
-        Origin::File(file) => format!("{name} (SHA-256 {}…)", file.sha256.get(..12).unwrap_or(&file.sha256)),
+        Origin::File(file) => {
+            format!("{name} (SHA-256 {}…)", file.sha256.get(..12).unwrap_or(&file.sha256))
+        }
         Origin::Made if recipe_params(id).is_some() => format!("{name} ({})", markdown_code(id)),
         _ => name,
     }

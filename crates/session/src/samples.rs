@@ -46,14 +46,11 @@ pub(super) static SUBJECT_16: [Sample; 9] = [
 ];
 
 /// The sets.
-pub(super) static SETS: [SampleSet; 1] = [SampleSet {
-    label: "CMU 16 · nine walks and runs",
-    samples: &SUBJECT_16,
-}];
+pub(super) static SETS: [SampleSet; 1] =
+    [SampleSet { label: "CMU 16 · nine walks and runs", samples: &SUBJECT_16 }];
 
 /// The credit that goes with the bundled takes.
-pub const SAMPLES_CREDIT: &str =
-    "The data used in this project was obtained from mocap.cs.cmu.edu. The database was created with funding from NSF EIA-0196217.";
+pub const SAMPLES_CREDIT: &str = "The data used in this project was obtained from mocap.cs.cmu.edu. The database was created with funding from NSF EIA-0196217.";
 
 /// All takes, those of sets as well.
 pub(super) fn all() -> impl Iterator<Item = &'static Sample> {

@@ -1,4 +1,5 @@
-//! What is stored of the work, so that it survives a reload. The files' bytes are stored beside it, by their SHA-256.
+//! What is stored of the work, so that it survives a reload. The files' bytes are stored beside it,
+//! by their SHA-256.
 
 use super::library::{Entry, Origin};
 use super::reading::Companion;
@@ -29,12 +30,13 @@ pub struct Saved {
 }
 
 impl Saved {
-    /// Keeps what `there`, stored at present, has from others: clips that are not among the `known`. Whoever writes this never had them, so it
-    /// was not them who took them away.
+    /// Keeps what `there`, stored at present, has from others: clips that are not among the
+    /// `known`. Whoever writes this never had them, so it was not them who took them away.
     #[must_use]
     pub fn with_others_of(mut self, there: &Self, known: &BTreeSet<String>) -> Self {
         let own: BTreeSet<&str> = self.entries.iter().map(|entry| entry.id.as_str()).collect();
-        let is_of_others = |entry: &&SavedEntry| !own.contains(entry.id.as_str()) && !known.contains(&entry.id);
+        let is_of_others =
+            |entry: &&SavedEntry| !own.contains(entry.id.as_str()) && !known.contains(&entry.id);
         let others: Vec<SavedEntry> = there.entries.iter().filter(is_of_others).cloned().collect();
         self.entries.extend(others);
         self
@@ -59,7 +61,8 @@ pub struct SavedEntry {
     pub file: Option<SavedFile>,
     /// Roles that were corrected by hand.
     pub roles: Option<Roles>,
-    /// Whether it is a bundled take. In what was stored without this mark, all takes are listed, whether they were asked for or not.
+    /// Whether it is a bundled take. In what was stored without this mark, all takes are listed,
+    /// whether they were asked for or not.
     #[serde(default)]
     pub is_sample: bool,
 }
@@ -135,10 +138,7 @@ mod tests {
             roles: None,
             is_sample: false,
         };
-        Saved {
-            query: query.to_owned(),
-            entries: ids.iter().map(entry).collect(),
-        }
+        Saved { query: query.to_owned(), entries: ids.iter().map(entry).collect() }
     }
 
     fn names(saved: &Saved) -> Vec<&str> {

@@ -10,21 +10,19 @@ pub struct Span {
 }
 
 impl Span {
-    /// The part of `[0, duration]` between two marks; a mark that is missing or outside is the end of the result, and marks in the wrong order
-    /// are taken the other way round.
+    /// The part of `[0, duration]` between two marks; a mark that is missing or outside is the end
+    /// of the result, and marks in the wrong order are taken the other way round.
     #[must_use]
     pub fn between(in_mark: Option<f64>, out_mark: Option<f64>, duration: f64) -> Self {
         let start = in_mark.unwrap_or(0.0).clamp(0.0, duration);
         let end = out_mark.unwrap_or(duration).clamp(0.0, duration);
-        Self {
-            start: start.min(end),
-            end: start.max(end),
-        }
+        Self { start: start.min(end), end: start.max(end) }
     }
 
     /// The playhead after `dt_secs` of playing at `rate`, and whether it still moves.
     ///
-    /// A playhead outside the span enters at the start. With `repeat` it goes round; else it stops at the end.
+    /// A playhead outside the span enters at the start. With `repeat` it goes round; else it stops
+    /// at the end.
     #[must_use]
     pub fn advance(&self, now: f64, dt_secs: f64, rate: f64, repeat: bool) -> (f64, bool) {
         let length = self.end - self.start;
@@ -68,7 +66,8 @@ mod tests {
         assert_eq!(span.advance(2.5, 1.0, 1.0, false), (3.0, false));
         assert_eq!(span.advance(2.0, 0.5, 0.5, false), (2.25, true));
         assert_eq!(Span::between(None, None, 0.0).advance(0.0, 1.0, 1.0, true), (0.0, false));
-        let rounds = [(2.5, 0.25), (2.5, 1.0), (2.5, 4.75), (0.0, 0.5), (0.0, 2.5)].map(|(now, dt)| span.rounds(now, dt, 1.0));
+        let rounds = [(2.5, 0.25), (2.5, 1.0), (2.5, 4.75), (0.0, 0.5), (0.0, 2.5)]
+            .map(|(now, dt)| span.rounds(now, dt, 1.0));
         assert_eq!(rounds, [0, 1, 3, 0, 1]);
         assert_eq!(Span::between(None, None, 0.0).rounds(0.0, 1.0, 1.0), 0);
     }

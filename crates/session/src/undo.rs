@@ -15,7 +15,8 @@ struct State {
 pub(super) struct History {
     past: Vec<State>,
     future: Vec<State>,
-    /// The parameter that the last step changed, while its slider is still held: more of the same joins that step.
+    /// The parameter that the last step changed, while its slider is still held: more of the same
+    /// joins that step.
     open: Option<Key>,
 }
 
@@ -23,7 +24,8 @@ pub(super) struct History {
 const MOST_STEPS: usize = 200;
 
 impl History {
-    /// Remembers the state before a change. With `key`, changes of one parameter in one gesture are one step.
+    /// Remembers the state before a change. With `key`, changes of one parameter in one gesture are
+    /// one step.
     pub(super) fn before_change(&mut self, params: &Params, library: &Library, key: Option<Key>) {
         if key.is_some() && self.open == key {
             return;
@@ -33,10 +35,7 @@ impl History {
         if self.past.len() >= MOST_STEPS {
             self.past.remove(0);
         }
-        self.past.push(State {
-            params: params.clone(),
-            library: library.clone(),
-        });
+        self.past.push(State { params: params.clone(), library: library.clone() });
     }
 
     /// Ends a gesture: the next change is a step of its own.
@@ -58,7 +57,8 @@ impl History {
         }
     }
 
-    /// Lets go of the motions of files that `library` does not hold; says whether there were any. They are read again when a step brings them back.
+    /// Lets go of the motions of files that `library` does not hold; says whether there were any.
+    /// They are read again when a step brings them back.
     pub(super) fn let_go_of_motions_outside(&mut self, library: &Library) -> bool {
         let held: BTreeSet<_> = library
             .entries()
@@ -69,7 +69,8 @@ impl History {
         for state in self.past.iter_mut().chain(&mut self.future) {
             let is_outside = |entry: &&Arc<Entry>| {
                 let motion = entry.motion.as_ref().map(Arc::as_ptr);
-                matches!(entry.origin, Origin::File(_)) && motion.is_some_and(|motion| !held.contains(&motion))
+                matches!(entry.origin, Origin::File(_))
+                    && motion.is_some_and(|motion| !held.contains(&motion))
             };
             let ids: Vec<String> = state
                 .library
@@ -103,14 +104,17 @@ impl History {
         Self::swap(&mut self.future, &mut self.past, &mut self.open, params, library)
     }
 
-    fn swap(from: &mut Vec<State>, to: &mut Vec<State>, open: &mut Option<Key>, params: &mut Params, library: &mut Library) -> bool {
+    fn swap(
+        from: &mut Vec<State>,
+        to: &mut Vec<State>,
+        open: &mut Option<Key>,
+        params: &mut Params,
+        library: &mut Library,
+    ) -> bool {
         let Some(state) = from.pop() else {
             return false;
         };
-        to.push(State {
-            params: params.clone(),
-            library: library.clone(),
-        });
+        to.push(State { params: params.clone(), library: library.clone() });
         *open = None;
         let left = std::mem::replace(library, state.library);
         library.take_motions_of(&left);

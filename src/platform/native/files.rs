@@ -1,8 +1,10 @@
-//! Files of the user: into the window and out of it. Reading and asking happen on threads of their own, so that the picture goes on.
+//! Files of the user: into the window and out of it. Reading and asking happen on threads of their
+//! own, so that the picture goes on.
 
 use super::LargeFile;
 use crate::platform::{
-    Inbox, Incoming, MAX_FILE_BYTES, MOST_FILES_OF_FOLDER, MOTION_ENDINGS, is_motion_file, last_part, no_motion_in, too_large, too_many_in,
+    Inbox, Incoming, MAX_FILE_BYTES, MOST_FILES_OF_FOLDER, MOTION_ENDINGS, is_motion_file,
+    last_part, no_motion_in, too_large, too_many_in,
 };
 use eframe::egui::DroppedFileHandle;
 use segue_session::reading::LARGE_BYTES;
@@ -76,10 +78,16 @@ fn read_path(path: &Path, inbox: &Inbox) {
     }
 }
 
-/// The first `most` motion files in and below a folder in the order of their paths, with the names that they get, and whether there are more.
-fn motion_files(folder: &Path, name: &str, most: usize) -> std::io::Result<(Vec<(PathBuf, String)>, bool)> {
+/// The first `most` motion files in and below a folder in the order of their paths, with the names
+/// that they get, and whether there are more.
+fn motion_files(
+    folder: &Path,
+    name: &str,
+    most: usize,
+) -> std::io::Result<(Vec<(PathBuf, String)>, bool)> {
     let mut files = Vec::new();
-    // What is still to be looked at; the next one last. Links are not followed: they may lead round in a circle.
+    // What is still to be looked at; the next one last. Links are not followed: they may lead round
+    // in a circle.
     let mut waiting = vec![(folder.to_path_buf(), name.to_owned(), true)];
     while let Some((path, name, is_folder)) = waiting.pop() {
         if is_folder {
@@ -113,14 +121,10 @@ fn read_file(path: &Path, name: String, inbox: &Inbox) {
         Err(error) => Err(unreadable(error)),
     };
     inbox.push(match bytes {
-        Ok(bytes) if bytes.len() as u64 > LARGE_BYTES => Incoming::Large {
-            name,
-            file: LargeFile::new(Arc::from(bytes)),
-        },
-        Ok(bytes) => Incoming::File {
-            name,
-            bytes: Arc::from(bytes),
-        },
+        Ok(bytes) if bytes.len() as u64 > LARGE_BYTES => {
+            Incoming::Large { name, file: LargeFile::new(Arc::from(bytes)) }
+        }
+        Ok(bytes) => Incoming::File { name, bytes: Arc::from(bytes) },
         Err(reason) => Incoming::Failed { reason },
     });
 }
@@ -130,7 +134,9 @@ pub(crate) fn download(file_name: &str, _mime: &str, bytes: &[u8], inbox: &Inbox
     let asked = rfd::AsyncFileDialog::new().set_file_name(file_name).save_file();
     let (bytes, inbox) = (bytes.to_vec(), inbox.clone());
     std::thread::spawn(move || {
-        let Some(file) = pollster::block_on(asked) else { return };
+        let Some(file) = pollster::block_on(asked) else {
+            return;
+        };
         if let Err(error) = std::fs::write(file.path(), bytes) {
             inbox.push(Incoming::Failed {
                 reason: format!("{} could not be saved: {error}.", file.path().display()),
@@ -184,7 +190,10 @@ mod tests {
         read_path(&folder.join("empty"), &inbox);
         read_path(Path::new("/nowhere/walk.bvh"), &inbox);
         let reasons = told(&inbox);
-        assert_eq!(reasons[0], "empty has no motion files (.bvh, .asf, .amc, .glb, .gltf, .zip, .gz).");
+        assert_eq!(
+            reasons[0],
+            "empty has no motion files (.bvh, .asf, .amc, .glb, .gltf, .zip, .gz)."
+        );
         assert!(reasons[1].starts_with("walk.bvh cannot be read: "), "{reasons:?}");
         std::fs::remove_dir_all(&folder).unwrap();
     }

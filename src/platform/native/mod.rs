@@ -96,11 +96,10 @@ pub(crate) struct Fetch;
 
 /// A window loads nothing over the network, and says so.
 pub(crate) fn fetch(address: &str, inbox: &Inbox) -> Fetch {
-    let reason = format!("This window does not load files over the network. Download {address} and drop the file here.");
-    inbox.push(Incoming::Fetched {
-        address: address.to_owned(),
-        result: Err(reason),
-    });
+    let reason = format!(
+        "This window does not load files over the network. Download {address} and drop the file here."
+    );
+    inbox.push(Incoming::Fetched { address: address.to_owned(), result: Err(reason) });
     Fetch
 }
 
@@ -123,7 +122,8 @@ pub(crate) fn tell_language(_tag: &str) {}
 /// Reads the text of a lesson; [`Incoming::Lesson`] brings it.
 pub(crate) fn load_lesson(source: &Source, inbox: &Inbox) -> Fetch {
     let result = match source {
-        Source::BuiltIn(file) => read_bundled("lessons", file).map_err(|reason| format!("{file} could not be loaded: {reason}.")),
+        Source::BuiltIn(file) => read_bundled("lessons", file)
+            .map_err(|reason| format!("{file} could not be loaded: {reason}.")),
         Source::Web(address) => Err(format!(
             "This window does not load lessons over the network: {address} opens in a browser."
         )),
@@ -135,11 +135,11 @@ pub(crate) fn load_lesson(source: &Source, inbox: &Inbox) -> Fetch {
 
 /// What lies in a folder beside the program, or in the project's own.
 fn read_bundled(folder: &str, file: &str) -> Result<Arc<[u8]>, String> {
-    let beside = std::env::current_exe()
-        .ok()
-        .and_then(|program| Some(program.parent()?.join(folder)));
+    let beside =
+        std::env::current_exe().ok().and_then(|program| Some(program.parent()?.join(folder)));
     let in_project = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets").join(folder);
-    let paths: Vec<_> = beside.into_iter().chain([in_project]).map(|folder| folder.join(file)).collect();
+    let paths: Vec<_> =
+        beside.into_iter().chain([in_project]).map(|folder| folder.join(file)).collect();
     let read = paths.iter().find(|path| path.is_file()).map(std::fs::read);
     match read {
         Some(read) => read.map(Arc::from).map_err(|error| error.to_string()),

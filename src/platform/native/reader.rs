@@ -47,10 +47,7 @@ pub(crate) struct Reader {
 impl Reader {
     /// One that tells `inbox` of what it reads.
     pub(crate) fn new(inbox: &Inbox) -> Self {
-        Self {
-            inbox: inbox.clone(),
-            running: Vec::new(),
-        }
+        Self { inbox: inbox.clone(), running: Vec::new() }
     }
 
     /// Begins to read a file.
@@ -98,7 +95,11 @@ mod tests {
         let inbox = Inbox::default();
         let mut reader = Reader::new(&inbox);
         let mut session = Session::new();
-        let id = session.begin_reading("small.bvh", Content::Outside("file 1".into()), text.len() as u64);
+        let id = session.begin_reading(
+            "small.bvh",
+            Content::Outside("file 1".into()),
+            text.len() as u64,
+        );
         let task = session.take_requests().into_iter().find_map(|request| match request {
             segue_session::Request::Read(task) => Some(task),
             _ => None,
@@ -106,10 +107,7 @@ mod tests {
         reader.start(task.unwrap(), FileBytes::Large(LargeFile::new(text)));
         let report = loop {
             let news = inbox.take().into_iter().find_map(|incoming| match incoming {
-                Incoming::Reading {
-                    news: ReadNews::Done(done),
-                    ..
-                } => Some(done),
+                Incoming::Reading { news: ReadNews::Done(done), .. } => Some(done),
                 _ => None,
             });
             match news {

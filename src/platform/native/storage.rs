@@ -18,7 +18,8 @@ const FILES: &str = "files";
 /// A record that could not be read, which is kept.
 const UNREAD: &str = "work-unread.json";
 
-/// The folder, and the thread that writes into it; by default there is none. Clones are the same one.
+/// The folder, and the thread that writes into it; by default there is none. Clones are the same
+/// one.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Storage(Option<Arc<Mutex<Writer>>>);
 
@@ -68,8 +69,10 @@ impl Storage {
             inbox.push(Incoming::Failed { reason });
         }
         let (queue, jobs) = channel::<Job>();
-        let (waiting, has_failed) = (Arc::new(AtomicUsize::new(0)), Arc::new(AtomicBool::new(false)));
-        let (inbox, still_waiting, failed) = (inbox.clone(), Arc::clone(&waiting), Arc::clone(&has_failed));
+        let (waiting, has_failed) =
+            (Arc::new(AtomicUsize::new(0)), Arc::new(AtomicBool::new(false)));
+        let (inbox, still_waiting, failed) =
+            (inbox.clone(), Arc::clone(&waiting), Arc::clone(&has_failed));
         let thread = std::thread::spawn(move || {
             while let Ok(first) = jobs.recv() {
                 let (mut due, mut taken) = (Vec::new(), 0);
@@ -88,7 +91,8 @@ impl Storage {
                 });
                 failed.store(done.is_err(), Ordering::Relaxed);
                 if let Err(error) = done {
-                    let reason = format!("The work could not be stored in {}: {error}.", folder.display());
+                    let reason =
+                        format!("The work could not be stored in {}: {error}.", folder.display());
                     inbox.push(Incoming::Failed { reason });
                 }
                 still_waiting.fetch_sub(taken, Ordering::Relaxed);
@@ -170,7 +174,9 @@ fn read(folder: &Path) -> (Option<Stored>, Option<String>) {
         );
         return (None, Some(reason));
     }
-    let Some(saved) = records.saved else { return (None, None) };
+    let Some(saved) = records.saved else {
+        return (None, None);
+    };
     let mut files = StoredFiles::new();
     for entry in fs::read_dir(folder.join(FILES)).ok().into_iter().flatten().flatten() {
         if let (Some(key), Ok(bytes)) = (entry.file_name().to_str(), fs::read(entry.path())) {
@@ -184,11 +190,7 @@ fn read(folder: &Path) -> (Option<Stored>, Option<String>) {
             files.insert(key.to_owned(), bytes);
         }
     }
-    let stored = Stored {
-        saved: Some(saved),
-        loose: Vec::new(),
-        files,
-    };
+    let stored = Stored { saved: Some(saved), loose: Vec::new(), files };
     (Some(stored), None)
 }
 
@@ -203,7 +205,10 @@ fn record_of(folder: &Path) -> io::Result<Option<Saved>> {
     Ok(records.saved)
 }
 
-fn write_files<'a>(folder: &Path, files: impl IntoIterator<Item = (&'a String, &'a FileBytes)>) -> io::Result<()> {
+fn write_files<'a>(
+    folder: &Path,
+    files: impl IntoIterator<Item = (&'a String, &'a FileBytes)>,
+) -> io::Result<()> {
     let folder = folder.join(FILES);
     fs::create_dir_all(&folder)?;
     for (key, bytes) in files {
@@ -233,7 +238,8 @@ fn store(folder: &Path, arrivals: &[Arrival]) -> io::Result<()> {
 fn write(folder: &Path, work: &Work) -> io::Result<()> {
     write_files(folder, &work.files)?;
     let files = folder.join(FILES);
-    let all = work.over(&record_of(folder)?.unwrap_or_default(), |sha256| files.join(sha256).exists());
+    let all =
+        work.over(&record_of(folder)?.unwrap_or_default(), |sha256| files.join(sha256).exists());
     write_whole(&folder.join(RECORD), serde_json::to_string(&all)?.as_bytes())?;
     if folder.join(UNREAD).exists() {
         // It may need any of them.
@@ -249,7 +255,8 @@ fn write(folder: &Path, work: &Work) -> io::Result<()> {
     Ok(())
 }
 
-/// Writes beside the file and then in its place: whoever reads it finds the old one or the new one, never half of one.
+/// Writes beside the file and then in its place: whoever reads it finds the old one or the new one,
+/// never half of one.
 fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let beside = path.with_extension("part");
     fs::write(&beside, bytes)?;
@@ -292,7 +299,8 @@ mod tests {
     }
 
     fn emptied(name: &str) -> PathBuf {
-        let folder = std::env::temp_dir().join(format!("segue-storage-{name}-{}", std::process::id()));
+        let folder =
+            std::env::temp_dir().join(format!("segue-storage-{name}-{}", std::process::id()));
         fs::remove_dir_all(&folder).ok();
         folder
     }

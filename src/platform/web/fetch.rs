@@ -2,7 +2,9 @@
 
 use super::page::window;
 use super::words_of;
-use crate::platform::{FileBytes, Inbox, Incoming, LargeFile, MAX_FILE_BYTES, file_name_of, too_large};
+use crate::platform::{
+    FileBytes, Inbox, Incoming, LargeFile, MAX_FILE_BYTES, file_name_of, too_large,
+};
 use js_sys::{Array, Reflect, Uint8Array};
 use segue_session::Sample;
 use segue_session::lesson::{MOST_BYTES, Source, host_of};
@@ -14,7 +16,10 @@ use std::sync::Arc;
 use wasm_bindgen::prelude::Closure;
 use wasm_bindgen::{JsCast as _, JsValue};
 use wasm_bindgen_futures::{JsFuture, spawn_local};
-use web_sys::{AbortController, AbortSignal, ReadableStreamDefaultReader, RequestCredentials, RequestInit, RequestMode, Response};
+use web_sys::{
+    AbortController, AbortSignal, ReadableStreamDefaultReader, RequestCredentials, RequestInit,
+    RequestMode, Response,
+};
 
 /// A server that sends nothing for so long has been waited for long enough, milliseconds.
 const PATIENCE_MS: i32 = 20_000;
@@ -29,7 +34,8 @@ impl Drop for Fetch {
     }
 }
 
-/// What several hold on to who wait for one answer: it can be ended, and is ended when nothing comes for [`PATIENCE_MS`].
+/// What several hold on to who wait for one answer: it can be ended, and is ended when nothing
+/// comes for [`PATIENCE_MS`].
 #[derive(Clone, Debug)]
 struct Call(Rc<CallInner>);
 
@@ -80,7 +86,10 @@ impl Call {
         let (Some(window), Some(ring)) = (window(), self.0.ring.get()) else {
             return;
         };
-        let set = window.set_timeout_with_callback_and_timeout_and_arguments_0(ring.as_ref().unchecked_ref(), PATIENCE_MS);
+        let set = window.set_timeout_with_callback_and_timeout_and_arguments_0(
+            ring.as_ref().unchecked_ref(),
+            PATIENCE_MS,
+        );
         self.0.timer.set(set.ok());
     }
 
@@ -117,8 +126,9 @@ impl Drop for CallInner {
     }
 }
 
-/// Asks for the file at an address. [`Incoming::Progress`] tells how it goes on, [`Incoming::Fetched`] how it ended; nothing comes
-/// any more once the result of this function is dropped.
+/// Asks for the file at an address. [`Incoming::Progress`] tells how it goes on,
+/// [`Incoming::Fetched`] how it ended; nothing comes any more once the result of this function is
+/// dropped.
 pub(crate) fn fetch(address: &str, inbox: &Inbox) -> Fetch {
     let call = Call::new();
     let fetch = Fetch(call.clone());
@@ -143,7 +153,8 @@ pub(crate) fn load_sample(sample: &'static Sample, inbox: &Inbox) {
     });
 }
 
-/// Asks for the text of a lesson; [`Incoming::Lesson`] brings it, unless the result of this function is dropped before.
+/// Asks for the text of a lesson; [`Incoming::Lesson`] brings it, unless the result of this
+/// function is dropped before.
 pub(crate) fn load_lesson(source: &Source, inbox: &Inbox) -> Fetch {
     let call = Call::new();
     let fetch = Fetch(call.clone());
@@ -153,7 +164,9 @@ pub(crate) fn load_lesson(source: &Source, inbox: &Inbox) -> Fetch {
             Source::BuiltIn(file) => bundled(&format!("lessons/{file}"), &call, &inbox)
                 .await
                 .map_err(|reason| format!("{file} could not be loaded: {reason}.")),
-            Source::Web(address) => get(address, &LESSON, &call, &inbox).await.map(|pieces| pieces.to_bytes()),
+            Source::Web(address) => {
+                get(address, &LESSON, &call, &inbox).await.map(|pieces| pieces.to_bytes())
+            }
         };
         if call.is_over() && !call.0.is_late.get() {
             return;
@@ -167,7 +180,8 @@ pub(crate) fn load_lesson(source: &Source, inbox: &Inbox) -> Fetch {
 pub(crate) fn load_language(tag: &'static str, inbox: &Inbox) {
     let inbox = inbox.clone();
     spawn_local(async move {
-        let part = async |ending| bundled(&format!("lang/{tag}.{ending}"), &Call::new(), &inbox).await;
+        let part =
+            async |ending| bundled(&format!("lang/{tag}.{ending}"), &Call::new(), &inbox).await;
         let files = async { Ok([part("json").await?, part("otf").await?]) };
         inbox.push(Incoming::Language(files.await));
     });
@@ -229,7 +243,13 @@ async fn get(address: &str, wanted: &Wanted, call: &Call, inbox: &Inbox) -> Resu
     call.goes_on();
     match response.status() {
         200..=299 => {}
-        404 | 410 => return Err(format!("There is no file at {} (answer {}).", short(address), response.status())),
+        404 | 410 => {
+            return Err(format!(
+                "There is no file at {} (answer {}).",
+                short(address),
+                response.status()
+            ));
+        }
         401 | 403 => {
             return Err(format!(
                 "{} does not give {name} to everybody (answer {}).",
@@ -256,17 +276,18 @@ async fn get(address: &str, wanted: &Wanted, call: &Call, inbox: &Inbox) -> Resu
     if let Some(reason) = total.and_then(|bytes| too_large(&name, bytes, wanted.most_bytes)) {
         return Err(reason);
     }
-    read(&response, address, total, wanted.most_bytes, call, inbox)
-        .await
-        .map_err(|error| match error {
+    read(&response, address, total, wanted.most_bytes, call, inbox).await.map_err(|error| {
+        match error {
             Unread::TooLarge(reason) => reason,
-            Unread::Broken(error) => call
-                .lateness(address, &name)
-                .unwrap_or_else(|| format!("The connection broke while {name} was loading: {}.", words_of(&error))),
-        })
+            Unread::Broken(error) => call.lateness(address, &name).unwrap_or_else(|| {
+                format!("The connection broke while {name} was loading: {}.", words_of(&error))
+            }),
+        }
+    })
 }
 
-/// What came of an answer. It stays with the browser until all of it is there: the page's own memory would keep the size of a file that is refused.
+/// What came of an answer. It stays with the browser until all of it is there: the page's own
+/// memory would keep the size of a file that is refused.
 struct Pieces {
     parts: Array,
     bytes: u64,
@@ -274,10 +295,7 @@ struct Pieces {
 
 impl Pieces {
     fn new() -> Self {
-        Self {
-            parts: Array::new(),
-            bytes: 0,
-        }
+        Self { parts: Array::new(), bytes: 0 }
     }
 
     fn push(&mut self, piece: &Uint8Array) {
@@ -315,7 +333,8 @@ impl From<JsValue> for Unread {
     }
 }
 
-/// Reads an answer piece by piece. An answer without a length may be endless, so it is counted, not trusted.
+/// Reads an answer piece by piece. An answer without a length may be endless, so it is counted, not
+/// trusted.
 async fn read(
     response: &Response,
     address: &str,
@@ -328,7 +347,8 @@ async fn read(
     let Some(stream) = response.body() else {
         return Ok(pieces);
     };
-    let reader: ReadableStreamDefaultReader = stream.get_reader().dyn_into().map_err(JsValue::from)?;
+    let reader: ReadableStreamDefaultReader =
+        stream.get_reader().dyn_into().map_err(JsValue::from)?;
     loop {
         let chunk = JsFuture::from(reader.read()).await?;
         call.goes_on();
@@ -344,28 +364,30 @@ async fn read(
             ));
         }
         pieces.push(&piece);
-        // The length is that of what travels, packed; once there is more than that, it says nothing.
+        // The length is that of what travels, packed; once there is more than that, it says
+        // nothing.
         let total = total.filter(|&total| done <= total);
-        inbox.push(Incoming::Progress {
-            address: address.to_owned(),
-            done,
-            total,
-        });
+        inbox.push(Incoming::Progress { address: address.to_owned(), done, total });
     }
 }
 
-/// A browser does not say why it refused. Asking again without wanting to read the answer tells apart a server that is not there from
-/// one that does not let other pages read.
+/// A browser does not say why it refused. Asking again without wanting to read the answer tells
+/// apart a server that is not there from one that does not let other pages read.
 async fn why_refused(address: &str, wanted: &Wanted) -> String {
     let host = host_of(address);
-    let Some(window) = window() else { return String::new() };
+    let Some(window) = window() else {
+        return String::new();
+    };
     if !window.navigator().on_line() {
         return format!(
             "There is no connection to the internet, so {} was not loaded.",
             file_name_of(address)
         );
     }
-    if address.starts_with("http://") && window.is_secure_context() && window.location().protocol().is_ok_and(|p| p == "https:") {
+    if address.starts_with("http://")
+        && window.is_secure_context()
+        && window.location().protocol().is_ok_and(|p| p == "https:")
+    {
         return format!(
             "Browsers do not let a secure page load from {}. Use an address that starts with https://.",
             short(address)

@@ -20,8 +20,8 @@ const TEXT_FILE: &str = "segue.md";
 
 /// Lets the user choose files.
 ///
-/// Only within a user's gesture: browsers ignore it otherwise. There is no filter by ending, because phones then grey out every file
-/// of a kind that they do not know.
+/// Only within a user's gesture: browsers ignore it otherwise. There is no filter by ending,
+/// because phones then grey out every file of a kind that they do not know.
 pub(crate) fn open_files(inbox: &Inbox) {
     let asked = (|| -> Result<(), JsValue> {
         let document = document().ok_or("no document")?;
@@ -71,10 +71,7 @@ pub(super) async fn read(files: Vec<(String, File)>, inbox: Inbox) {
 
 fn deliver(name: String, bytes: Result<Vec<u8>, String>, inbox: &Inbox) {
     inbox.push(match bytes {
-        Ok(bytes) => Incoming::File {
-            name,
-            bytes: Arc::from(bytes),
-        },
+        Ok(bytes) => Incoming::File { name, bytes: Arc::from(bytes) },
         Err(error) => {
             log::warn!("{name}: {error}");
             Incoming::Failed {
@@ -118,7 +115,10 @@ fn path_text(path: &Path) -> String {
 pub(crate) fn download(file_name: &str, mime: &str, bytes: &[u8], inbox: &Inbox) {
     let options = BlobPropertyBag::new();
     options.set_type(mime);
-    let blob = Blob::new_with_u8_array_sequence_and_options(&Array::of1(&Uint8Array::from(bytes)), &options);
+    let blob = Blob::new_with_u8_array_sequence_and_options(
+        &Array::of1(&Uint8Array::from(bytes)),
+        &options,
+    );
     if let Err(error) = blob.and_then(|blob| hand_over(file_name, &blob)) {
         inbox.push(Incoming::Failed {
             reason: format!("{file_name} could not be saved: {}.", words_of(&error)),
@@ -145,7 +145,8 @@ pub(super) fn hand_over(file_name: &str, blob: &Blob) -> Result<(), JsValue> {
     Ok(())
 }
 
-/// Puts a text into the clipboard. [`Incoming::Copied`] tells that it is there; where a browser refuses, the text itself is shown.
+/// Puts a text into the clipboard. [`Incoming::Copied`] tells that it is there; where a browser
+/// refuses, the text itself is shown.
 pub(crate) fn copy_text(text: String, _ctx: &egui::Context, inbox: &Inbox) {
     // Undefined on an insecure address, whatever the type says.
     let clipboard = window()
@@ -163,14 +164,13 @@ pub(crate) fn copy_text(text: String, _ctx: &egui::Context, inbox: &Inbox) {
         inbox.push(if done {
             Incoming::Copied
         } else {
-            Incoming::Failed {
-                reason: by_hand(&text, &inbox),
-            }
+            Incoming::Failed { reason: by_hand(&text, &inbox) }
         });
     });
 }
 
-/// What to do where the clipboard is closed to pages: copy what is short by hand, and take the rest as a file.
+/// What to do where the clipboard is closed to pages: copy what is short by hand, and take the rest
+/// as a file.
 fn by_hand(text: &str, inbox: &Inbox) -> String {
     let refused = "This browser does not let the page use the clipboard.";
     if text.len() < LONGEST_NOTICE {

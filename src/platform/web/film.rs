@@ -11,13 +11,18 @@ use js_sys::{Array, Error, Promise, Reflect};
 use std::cell::OnceCell;
 use wasm_bindgen::{JsCast as _, JsValue};
 use wasm_bindgen_futures::{JsFuture, spawn_local};
-use web_sys::{Blob, BlobEvent, BlobPropertyBag, MediaRecorder, MediaRecorderOptions, MediaStreamTrack, RecordingState};
+use web_sys::{
+    Blob, BlobEvent, BlobPropertyBag, MediaRecorder, MediaRecorderOptions, MediaStreamTrack,
+    RecordingState,
+};
 
 /// What films are packed as: the first of these that the browser can.
-const KINDS: [&str; 4] = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm", "video/mp4"];
+const KINDS: [&str; 4] =
+    ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm", "video/mp4"];
 /// Thin lines before a smooth ground need more than browsers give by themselves.
 const BITS_PER_SECOND: u32 = 12_000_000;
-/// What is filmed is handed over every so many milliseconds: a long film does not wait in the encoder.
+/// What is filmed is handed over every so many milliseconds: a long film does not wait in the
+/// encoder.
 const PART_MS: i32 = 1000;
 
 /// Whether pictures of the stage can be saved.
@@ -33,12 +38,14 @@ pub(crate) fn save_picture(file_name: &str, stage: Rect, inbox: &Inbox) {
     let (file_name, inbox) = (file_name.to_owned(), inbox.clone());
     spawn_local(async move {
         let area = area_of(stage, ctx.pixels_per_point());
-        let taken = snapshot(&canvas, || ctx.cumulative_frame_nr(), || inbox.wake(), || Some(area)).await;
+        let taken =
+            snapshot(&canvas, || ctx.cumulative_frame_nr(), || inbox.wake(), || Some(area)).await;
         tell_failure(&file_name, taken.and_then(|blob| hand_over(&file_name, &blob)), &inbox);
     });
 }
 
-/// Takes a picture of the stage, at that place on the page (points), for a text: [`Incoming::Picture`] brings it.
+/// Takes a picture of the stage, at that place on the page (points), for a text:
+/// [`Incoming::Picture`] brings it.
 pub(crate) fn take_picture(stage: Rect, inbox: &Inbox) {
     let (Some(canvas), Some(ctx)) = (canvas(), inbox.ctx()) else {
         return inbox.push(Incoming::Picture(None));
@@ -46,7 +53,9 @@ pub(crate) fn take_picture(stage: Rect, inbox: &Inbox) {
     let inbox = inbox.clone();
     spawn_local(async move {
         let area = area_of(stage, ctx.pixels_per_point());
-        let taken = inline_picture(&canvas, || ctx.cumulative_frame_nr(), || inbox.wake(), || Some(area)).await;
+        let taken =
+            inline_picture(&canvas, || ctx.cumulative_frame_nr(), || inbox.wake(), || Some(area))
+                .await;
         if let Err(error) = &taken {
             log::warn!("no picture: {}", words_of(error));
         }
@@ -68,8 +77,10 @@ pub(crate) fn can_film() -> bool {
         static CAN_FILM: OnceCell<bool> = const { OnceCell::new() };
     }
     let has = |object: &JsValue, key: &str| Reflect::has(object, &key.into()).unwrap_or(false);
-    let look =
-        || window().is_some_and(|window| has(&window, "MediaRecorder")) && canvas().is_some_and(|canvas| has(&canvas, "captureStream"));
+    let look = || {
+        window().is_some_and(|window| has(&window, "MediaRecorder"))
+            && canvas().is_some_and(|canvas| has(&canvas, "captureStream"))
+    };
     CAN_FILM.with(|known| *known.get_or_init(look))
 }
 
@@ -99,7 +110,8 @@ impl Film {
         if let Some(kind) = KINDS.into_iter().find(|kind| MediaRecorder::is_type_supported(kind)) {
             options.set_mime_type(kind);
         }
-        let recorder = MediaRecorder::new_with_media_stream_and_media_recorder_options(&stream, &options)?;
+        let recorder =
+            MediaRecorder::new_with_media_stream_and_media_recorder_options(&stream, &options)?;
         let parts = Array::new();
         let collected = parts.clone();
         listen(Some(&recorder), "dataavailable", move |event| {
@@ -113,12 +125,7 @@ impl Film {
             }
         });
         recorder.start_with_time_slice(PART_MS)?;
-        Ok(Self {
-            recorder,
-            parts,
-            ended,
-            began_ms: now_ms(),
-        })
+        Ok(Self { recorder, parts, ended, began_ms: now_ms() })
     }
 
     /// How long it is, seconds.
@@ -128,11 +135,8 @@ impl Film {
 
     /// Ends it and hands it to the user.
     pub(crate) fn save(self, stem: &str, inbox: &Inbox) {
-        let ending = if self.recorder.mime_type().starts_with("video/mp4") {
-            "mp4"
-        } else {
-            "webm"
-        };
+        let ending =
+            if self.recorder.mime_type().starts_with("video/mp4") { "mp4" } else { "webm" };
         let (name, inbox) = (file_name(stem, ending), inbox.clone());
         spawn_local(async move {
             let film = self.end().await;

@@ -3,13 +3,16 @@
 use super::files::read;
 use super::page::{listen_first, window};
 use super::words_of;
-use crate::platform::{Inbox, Incoming, MOST_FILES_OF_FOLDER, is_motion_file, no_motion_in, too_many_in};
+use crate::platform::{
+    Inbox, Incoming, MOST_FILES_OF_FOLDER, is_motion_file, no_motion_in, too_many_in,
+};
 use js_sys::{Array, Promise};
 use wasm_bindgen::{JsCast as _, JsValue};
 use wasm_bindgen_futures::{JsFuture, spawn_local};
 use web_sys::{DragEvent, File, FileSystemDirectoryEntry, FileSystemEntry, FileSystemFileEntry};
 
-/// From now on, a drop with a folder in it is read here as a whole, folders and files. Any other is left to eframe.
+/// From now on, a drop with a folder in it is read here as a whole, folders and files. Any other is
+/// left to eframe.
 pub(super) fn watch_folders(inbox: &Inbox) {
     let inbox = inbox.clone();
     listen_first(window(), "drop", move |event| {
@@ -20,9 +23,9 @@ pub(super) fn watch_folders(inbox: &Inbox) {
         event.prevent_default();
         event.stop_propagation();
         // eframe has seen the files come and does not see them go: for it, they have left again.
-        let left = event
-            .target()
-            .and_then(|target| Some(target.dispatch_event(DragEvent::new("dragleave").ok()?.as_ref())));
+        let left = event.target().and_then(|target| {
+            Some(target.dispatch_event(DragEvent::new("dragleave").ok()?.as_ref()))
+        });
         if let Some(Err(error)) = left {
             log::warn!("the drop was not ended: {}", words_of(&error));
         }
@@ -55,9 +58,9 @@ async fn read_entry(entry: FileSystemEntry, inbox: &Inbox) {
         file_of(entry).await.map(|file| vec![(path, file)])
     };
     match files {
-        Ok(files) if files.is_empty() => inbox.push(Incoming::Failed {
-            reason: no_motion_in(&name),
-        }),
+        Ok(files) if files.is_empty() => {
+            inbox.push(Incoming::Failed { reason: no_motion_in(&name) })
+        }
         Ok(files) => read(files, inbox.clone()).await,
         Err(error) => inbox.push(Incoming::Failed {
             reason: format!("{name} cannot be read: {}.", words_of(&error)),
@@ -65,8 +68,12 @@ async fn read_entry(entry: FileSystemEntry, inbox: &Inbox) {
     }
 }
 
-/// The motion files in and below a folder, with their paths. What can be listed is read up to a number that nobody has by intention.
-async fn motion_files(folder: FileSystemEntry, inbox: &Inbox) -> Result<Vec<(String, File)>, JsValue> {
+/// The motion files in and below a folder, with their paths. What can be listed is read up to a
+/// number that nobody has by intention.
+async fn motion_files(
+    folder: FileSystemEntry,
+    inbox: &Inbox,
+) -> Result<Vec<(String, File)>, JsValue> {
     let name = folder.name();
     let mut files = Vec::new();
     // What is still to be looked at; the next one last.
@@ -78,9 +85,7 @@ async fn motion_files(folder: FileSystemEntry, inbox: &Inbox) -> Result<Vec<(Str
             waiting.extend(children.into_iter().rev());
         } else if is_motion_file(&entry.name()) {
             if files.len() == MOST_FILES_OF_FOLDER {
-                inbox.push(Incoming::Failed {
-                    reason: too_many_in(&name),
-                });
+                inbox.push(Incoming::Failed { reason: too_many_in(&name) });
                 break;
             }
             files.push((path_of(&entry), file_of(entry).await?));
@@ -109,7 +114,9 @@ async fn children_of(folder: &FileSystemDirectoryEntry) -> Result<Vec<FileSystem
 
 async fn file_of(entry: FileSystemEntry) -> Result<File, JsValue> {
     let entry: FileSystemFileEntry = entry.unchecked_into();
-    let file = Promise::new(&mut |resolve, reject| entry.file_with_callback_and_callback(&resolve, &reject));
+    let file = Promise::new(&mut |resolve, reject| {
+        entry.file_with_callback_and_callback(&resolve, &reject)
+    });
     Ok(JsFuture::from(file).await?.unchecked_into())
 }
 

@@ -4,8 +4,8 @@ use super::page::window;
 use crate::platform::Gamepad;
 use wasm_bindgen::JsCast as _;
 
-/// The first gamepad that has two sticks; none before one of its buttons was pressed, as browsers have it. Buttons lie as in the
-/// [standard layout](https://www.w3.org/TR/gamepad/#remapping).
+/// The first gamepad that has two sticks; none before one of its buttons was pressed, as browsers
+/// have it. Buttons lie as in the [standard layout](https://www.w3.org/TR/gamepad/#remapping).
 pub(crate) fn gamepad() -> Option<Gamepad> {
     let pads = window()?.navigator().get_gamepads().ok()?;
     let pads = pads.iter().filter_map(|pad| pad.dyn_into::<web_sys::Gamepad>().ok());

@@ -1,7 +1,10 @@
-//! What the page's modules drive the app by. `web/js/boot.js` and `web/js/api.js` say what they expect of it.
+//! What the page's modules drive the app by. `web/js/boot.js` and `web/js/api.js` say what they
+//! expect of it.
 
 use super::folders::watch_folders;
-use super::page::{ask_before_leaving_while, listen, next_frame, now_ms, sleep, turn, wanted_backend, watch_hiding};
+use super::page::{
+    ask_before_leaving_while, listen, next_frame, now_ms, sleep, turn, wanted_backend, watch_hiding,
+};
 use super::reader::{LargeFile, page_bytes, workers_are_made_by};
 use super::snapshot::{Area, area_of, inline_picture, snapshot};
 use crate::app::{Event, Segue, Shared, View, api};
@@ -23,8 +26,8 @@ use web_sys::{Blob, HtmlCanvasElement, WebGl2RenderingContext};
 
 /// The running app, as the page holds it.
 ///
-/// Every method borrows it shared: after a panic inside of an exclusive one, wasm-bindgen would refuse all others, the one that tells of
-/// the panic among them.
+/// Every method borrows it shared: after a panic inside of an exclusive one, wasm-bindgen would
+/// refuse all others, the one that tells of the panic among them.
 #[wasm_bindgen]
 #[derive(Clone)]
 pub struct SegueHandle {
@@ -37,8 +40,9 @@ pub struct SegueHandle {
     replaced_ms: Rc<Cell<Option<f64>>>,
 }
 
-/// WebGL 2 is taken when a WebGPU device that replaced a lost one is lost itself within this time of its start, milliseconds. How long the
-/// start took does not count: that says how slow the machine is, not how long a device lives.
+/// WebGL 2 is taken when a WebGPU device that replaced a lost one is lost itself within this time
+/// of its start, milliseconds. How long the start took does not count: that says how slow the
+/// machine is, not how long a device lives.
 const SOON_MS: f64 = 10_000.0;
 
 fn error(text: impl AsRef<str>) -> JsValue {
@@ -52,7 +56,10 @@ fn to_js(value: &impl Serialize) -> Result<JsValue, JsValue> {
 #[wasm_bindgen]
 impl SegueHandle {
     /// Starts the app on a canvas. `new_reader` makes the worker that reads files.
-    pub async fn start(canvas: HtmlCanvasElement, new_reader: Function) -> Result<SegueHandle, JsValue> {
+    pub async fn start(
+        canvas: HtmlCanvasElement,
+        new_reader: Function,
+    ) -> Result<SegueHandle, JsValue> {
         workers_are_made_by(new_reader);
         let inbox = Inbox::default();
         let handle = Self {
@@ -76,13 +83,15 @@ impl SegueHandle {
         let weak = Rc::downgrade(&handle.segue);
         ask_before_leaving_while(move || {
             let segue = weak.upgrade();
-            segue.is_some_and(|segue| segue.try_borrow().is_ok_and(|segue| segue.has_unstored_files()))
+            segue.is_some_and(|segue| {
+                segue.try_borrow().is_ok_and(|segue| segue.has_unstored_files())
+            })
         });
         Ok(handle)
     }
 
-    /// Goes on, on a fresh canvas, after the graphics device was lost. The document is as it was. When this fails it can be asked again, with
-    /// another canvas.
+    /// Goes on, on a fresh canvas, after the graphics device was lost. The document is as it was.
+    /// When this fails it can be asked again, with another canvas.
     pub async fn restart(&self, canvas: HtmlCanvasElement) -> Result<(), JsValue> {
         let backend = {
             let mut segue = self.borrow_mut()?;
@@ -109,7 +118,9 @@ impl SegueHandle {
     /// Resolves when the first frame is on screen.
     #[wasm_bindgen(js_name = firstFrame)]
     pub async fn first_frame(&self) {
-        while self.segue.try_borrow().is_ok_and(|segue| segue.frames_drawn() == 0) && !self.runner.has_panicked() {
+        while self.segue.try_borrow().is_ok_and(|segue| segue.frames_drawn() == 0)
+            && !self.runner.has_panicked()
+        {
             next_frame().await;
         }
     }
@@ -144,7 +155,8 @@ impl SegueHandle {
     pub async fn load(&self, name: String, bytes: Uint8Array) -> Result<JsValue, JsValue> {
         self.opened().await?;
         let file = if u64::from(bytes.length()) > LARGE_BYTES {
-            let large = LargeFile::of_bytes(&bytes).ok_or_else(|| error(format!("{name}: this browser has no room for the file")))?;
+            let large = LargeFile::of_bytes(&bytes)
+                .ok_or_else(|| error(format!("{name}: this browser has no room for the file")))?;
             FileBytes::Large(large)
         } else {
             FileBytes::Here(Arc::from(bytes.to_vec()))
@@ -177,7 +189,8 @@ impl SegueHandle {
         to_js(&self.borrow_mut()?.clips())
     }
 
-    /// Waits until no more clips are to come: what was stored is back, and what is fetched or read is there. Every clip of the library then.
+    /// Waits until no more clips are to come: what was stored is back, and what is fetched or read
+    /// is there. Every clip of the library then.
     pub async fn loaded(&self) -> Result<JsValue, JsValue> {
         self.opened().await?;
         // While the page is hidden no frame comes to do it.
@@ -198,8 +211,9 @@ impl SegueHandle {
 
     /// Sets parameters, all or none. Resolves when what depends on them is computed.
     pub async fn set(&self, values: JsValue) -> Result<(), JsValue> {
-        let values = serde_wasm_bindgen::from_value(values)
-            .map_err(|_| error("set: expected an object of keys and values, as in { blend_window: 24 }"))?;
+        let values = serde_wasm_bindgen::from_value(values).map_err(|_| {
+            error("set: expected an object of keys and values, as in { blend_window: 24 }")
+        })?;
         self.opened().await?;
         let set = self.borrow_mut()?.set(&values);
         self.changed();
@@ -253,10 +267,16 @@ impl SegueHandle {
         self.change(|segue| segue.stop(name))
     }
 
-    /// A motion as the bytes of a file, a GLB file with the body that `body` names: "character" or "plain".
+    /// A motion as the bytes of a file, a GLB file with the body that `body` names: "character" or
+    /// "plain".
     #[expect(clippy::needless_pass_by_value, reason = "wasm-bindgen hands over what it has made")]
     #[wasm_bindgen(js_name = exportClip)]
-    pub fn export_clip(&self, which: &str, format: &str, body: Option<String>) -> Result<Vec<u8>, JsValue> {
+    pub fn export_clip(
+        &self,
+        which: &str,
+        format: &str,
+        body: Option<String>,
+    ) -> Result<Vec<u8>, JsValue> {
         Ok(self
             .borrow()?
             .export(which, format, body.as_deref())
@@ -266,7 +286,8 @@ impl SegueHandle {
 
     /// Puts a result into the library; its id there.
     pub fn keep(&self, which: &str) -> Result<String, JsValue> {
-        let kept = self.borrow_mut()?.keep(which).map_err(|reason| error(format!("keep: {reason}")));
+        let kept =
+            self.borrow_mut()?.keep(which).map_err(|reason| error(format!("keep: {reason}")));
         self.changed();
         kept
     }
@@ -280,10 +301,10 @@ impl SegueHandle {
     /// What is shown, in Markdown with the picture in it.
     pub async fn report(&self) -> Result<String, JsValue> {
         let canvas = self.canvas.borrow().clone();
-        let picture = inline_picture(&canvas, || self.frames(), || self.inbox.wake(), || self.stage_area()).await?;
-        self.borrow()?
-            .report(Some(&picture))
-            .map_err(|reason| error(format!("report: {reason}")))
+        let picture =
+            inline_picture(&canvas, || self.frames(), || self.inbox.wake(), || self.stage_area())
+                .await?;
+        self.borrow()?.report(Some(&picture)).map_err(|reason| error(format!("report: {reason}")))
     }
 
     /// Begins to film the page.
@@ -351,23 +372,20 @@ impl SegueHandle {
         let Err(reason) = self.run_on(canvas.clone(), both).await else {
             return Ok(());
         };
-        // An adapter that then gives no device: WebGL 2 may still do. A canvas keeps the kind of context it once had, so it needs a new one.
+        // An adapter that then gives no device: WebGL 2 may still do. A canvas keeps the kind of
+        // context it once had, so it needs a new one.
         log::warn!(
             "the graphics could not be set up, trying WebGL 2 alone: {}",
             super::words_of(&reason)
         );
-        let fresh: HtmlCanvasElement = canvas.clone_node()?.dyn_into().map_err(|_| reason.clone())?;
+        let fresh: HtmlCanvasElement =
+            canvas.clone_node()?.dyn_into().map_err(|_| reason.clone())?;
         canvas.replace_with_with_node_1(&fresh)?;
         let listener = Rc::clone(&self.listener);
         // The page looks after the canvas that it knows of. This one tells it by itself.
         listen(Some(&fresh), "webglcontextlost", move |event| {
             event.prevent_default();
-            tell(
-                &listener,
-                vec![Event::Lost {
-                    message: "the WebGL context was lost".to_owned(),
-                }],
-            );
+            tell(&listener, vec![Event::Lost { message: "the WebGL context was lost".to_owned() }]);
         });
         let both_reasons = |second: JsValue| {
             error(format!(
@@ -395,8 +413,9 @@ impl SegueHandle {
             ..WebOptions::default()
         };
         let (segue, listener) = (Rc::clone(&self.segue), Rc::clone(&self.listener));
-        let create: eframe::AppCreator<'static> =
-            Box::new(move |cc| Ok(Box::new(View::new(segue, cc, move |events| tell(&listener, events)))));
+        let create: eframe::AppCreator<'static> = Box::new(move |cc| {
+            Ok(Box::new(View::new(segue, cc, move |events| tell(&listener, events))))
+        });
         self.canvas.replace(canvas.clone());
         self.runner.start(canvas, options, create).await
     }
@@ -415,7 +434,8 @@ impl SegueHandle {
         }
     }
 
-    /// Waits until what was stored has come back, or is not to be expected any longer: whoever asks then finds it there.
+    /// Waits until what was stored has come back, or is not to be expected any longer: whoever asks
+    /// then finds it there.
     async fn opened(&self) -> Result<(), JsValue> {
         while self.borrow_mut()?.awaits_work() {
             sleep(5).await;
@@ -440,16 +460,15 @@ impl SegueHandle {
     }
 }
 
-/// Whether the canvas has a WebGL context that is lost already: wgpu stops at one that cannot tell its version.
+/// Whether the canvas has a WebGL context that is lost already: wgpu stops at one that cannot tell
+/// its version.
 fn is_lost(canvas: &HtmlCanvasElement) -> bool {
     let options = Object::new();
     // As wgpu asks for it: it is given this one.
     let asked = Reflect::set(&options, &"antialias".into(), &JsValue::FALSE)
         .and_then(|_| canvas.get_context_with_context_options("webgl2", &options));
-    let context = asked
-        .ok()
-        .flatten()
-        .and_then(|context| context.dyn_into::<WebGl2RenderingContext>().ok());
+    let context =
+        asked.ok().flatten().and_then(|context| context.dyn_into::<WebGl2RenderingContext>().ok());
     context.is_some_and(|context| context.is_context_lost())
 }
 
@@ -458,10 +477,14 @@ fn tell(listener: &Rc<RefCell<Option<Function>>>, events: Vec<Event>) {
     if events.is_empty() {
         return;
     }
-    let Some(listener) = listener.borrow().clone() else { return };
+    let Some(listener) = listener.borrow().clone() else {
+        return;
+    };
     spawn_local(async move {
         for event in events {
-            let told = to_js(&event).and_then(|detail| listener.call2(&JsValue::NULL, &JsValue::from(event.name()), &detail));
+            let told = to_js(&event).and_then(|detail| {
+                listener.call2(&JsValue::NULL, &JsValue::from(event.name()), &detail)
+            });
             if let Err(error) = told {
                 log::error!("a listener failed: {}", super::words_of(&error));
             }

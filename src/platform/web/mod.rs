@@ -19,8 +19,9 @@ pub(crate) use film::{Film, can_film, can_take_pictures, save_picture, take_pict
 pub(crate) use gamepad::gamepad;
 pub(crate) use pace::Pace;
 pub(crate) use page::{
-    READS_ELSEWHERE, WORKS_BETWEEN_FRAMES, announce, between_frames, full_link, is_framed, languages, location_query, now_ms, open_page,
-    prefers_stillness, replace_query, tell_language, watch_navigation,
+    READS_ELSEWHERE, WORKS_BETWEEN_FRAMES, announce, between_frames, full_link, is_framed,
+    languages, location_query, now_ms, open_page, prefers_stillness, replace_query, tell_language,
+    watch_navigation,
 };
 pub(crate) use reader::{LargeFile, Reader, follow_memory};
 pub(crate) use storage::Storage;

@@ -9,8 +9,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use wasm_bindgen_futures::spawn_local;
 
-/// Asks for the next picture once the last one is drawn. On a machine without a graphics card both are the same processor's work: a picture that
-/// is begun while the last is still being drawn makes both slow, and the panels with them.
+/// Asks for the next picture once the last one is drawn. On a machine without a graphics card both
+/// are the same processor's work: a picture that is begun while the last is still being drawn makes
+/// both slow, and the panels with them.
 #[derive(Debug)]
 pub(crate) struct Pace {
     device: wgpu::Device,
@@ -26,19 +27,17 @@ const PATIENCE_MS: f64 = 2000.0;
 impl Pace {
     /// For this device.
     pub(crate) fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Self {
-        Self {
-            device: device.clone(),
-            queue: queue.clone(),
-            asked: Rc::default(),
-        }
+        Self { device: device.clone(), queue: queue.clone(), asked: Rc::default() }
     }
 
-    /// Has the next frame computed when the device has drawn everything up to this one, and not sooner than `least_ms` after it began.
+    /// Has the next frame computed when the device has drawn everything up to this one, and not
+    /// sooner than `least_ms` after it began.
     pub(crate) fn next_frame(&self, ctx: &egui::Context, began_ms: f64, least_ms: f64) {
         if self.asked.replace(true) {
             return;
         }
-        let (device, queue, asked, ctx) = (self.device.clone(), self.queue.clone(), Rc::clone(&self.asked), ctx.clone());
+        let (device, queue, asked, ctx) =
+            (self.device.clone(), self.queue.clone(), Rc::clone(&self.asked), ctx.clone());
         spawn_local(async move {
             // What this frame gives the device is there only when the frame is over.
             sleep(0).await;

@@ -10,7 +10,9 @@ use std::rc::Rc;
 use wasm_bindgen::prelude::Closure;
 use wasm_bindgen::{JsCast as _, JsValue};
 use wasm_bindgen_futures::{JsFuture, spawn_local};
-use web_sys::{Document, EventTarget, HtmlCanvasElement, HtmlElement, MessageChannel, MessagePort, Window};
+use web_sys::{
+    Document, EventTarget, HtmlCanvasElement, HtmlElement, MessageChannel, MessagePort, Window,
+};
 
 pub(super) fn window() -> Option<Window> {
     web_sys::window()
@@ -36,7 +38,8 @@ fn search() -> String {
     window().and_then(|window| window.location().search().ok()).unwrap_or_default()
 }
 
-/// The state that the page's address describes: its query, without `?` and without what belongs to the page.
+/// The state that the page's address describes: its query, without `?` and without what belongs to
+/// the page.
 pub(crate) fn location_query() -> String {
     state_of(&search())
 }
@@ -76,7 +79,8 @@ pub(crate) fn replace_query(query: &str) {
         window.history()?.replace_state_with_url(&JsValue::NULL, "", Some(&address))
     });
     if let Err(error) = result {
-        // A frame without an origin has no address of its own, and browsers limit how often it may change. The state is not lost by it.
+        // A frame without an origin has no address of its own, and browsers limit how often it may
+        // change. The state is not lost by it.
         log::debug!("the address was not changed: {}", super::words_of(&error));
     }
 }
@@ -90,9 +94,12 @@ pub(crate) fn full_link(query: &str) -> String {
     format!("{}?{query}", base.unwrap_or_default())
 }
 
-/// Opens a page of the web in a new tab. That page gets neither a handle to this one, which it could put a forgery in the place of, nor its address.
+/// Opens a page of the web in a new tab. That page gets neither a handle to this one, which it
+/// could put a forgery in the place of, nor its address.
 pub(crate) fn open_page(address: &str, _ctx: &egui::Context) {
-    let opened = window().map(|window| window.open_with_url_and_target_and_features(address, "_blank", "noopener,noreferrer"));
+    let opened = window().map(|window| {
+        window.open_with_url_and_target_and_features(address, "_blank", "noopener,noreferrer")
+    });
     if let Some(Err(error)) = opened {
         log::warn!("{address} was not opened: {}", super::words_of(&error));
     }
@@ -112,7 +119,8 @@ pub(crate) fn watch_navigation(inbox: &Inbox) {
     listen(window(), "popstate", move |_| inbox.push(Incoming::Navigated(location_query())));
 }
 
-/// Calls back when the page may be about to go: in the background a browser may end it without a word.
+/// Calls back when the page may be about to go: in the background a browser may end it without a
+/// word.
 pub(super) fn watch_hiding(on_hide: impl Fn() + Clone + 'static) {
     let hidden = on_hide.clone();
     listen(document(), "visibilitychange", move |_| {
@@ -141,7 +149,8 @@ pub(crate) fn announce(words: &str) {
 
 /// Whether the user has asked their system for little motion.
 pub(crate) fn prefers_stillness() -> bool {
-    let asked = window().and_then(|window| window.match_media("(prefers-reduced-motion: reduce)").ok().flatten());
+    let asked = window()
+        .and_then(|window| window.match_media("(prefers-reduced-motion: reduce)").ok().flatten());
     asked.is_some_and(|query| query.matches())
 }
 
@@ -151,22 +160,36 @@ pub(super) fn is_hidden() -> bool {
 }
 
 /// Listens for as long as the page lives.
-pub(super) fn listen(target: Option<impl AsRef<EventTarget>>, event: &str, listener: impl FnMut(web_sys::Event) + 'static) {
+pub(super) fn listen(
+    target: Option<impl AsRef<EventTarget>>,
+    event: &str,
+    listener: impl FnMut(web_sys::Event) + 'static,
+) {
     listen_in(target, event, false, listener);
 }
 
 /// The same, before whatever the event is meant for hears of it.
-pub(super) fn listen_first(target: Option<impl AsRef<EventTarget>>, event: &str, listener: impl FnMut(web_sys::Event) + 'static) {
+pub(super) fn listen_first(
+    target: Option<impl AsRef<EventTarget>>,
+    event: &str,
+    listener: impl FnMut(web_sys::Event) + 'static,
+) {
     listen_in(target, event, true, listener);
 }
 
-fn listen_in(target: Option<impl AsRef<EventTarget>>, event: &str, capture: bool, listener: impl FnMut(web_sys::Event) + 'static) {
+fn listen_in(
+    target: Option<impl AsRef<EventTarget>>,
+    event: &str,
+    capture: bool,
+    listener: impl FnMut(web_sys::Event) + 'static,
+) {
     let Some(target) = target else { return };
     let closure = Closure::<dyn FnMut(web_sys::Event)>::new(listener);
-    if let Err(error) = target
-        .as_ref()
-        .add_event_listener_with_callback_and_bool(event, closure.as_ref().unchecked_ref(), capture)
-    {
+    if let Err(error) = target.as_ref().add_event_listener_with_callback_and_bool(
+        event,
+        closure.as_ref().unchecked_ref(),
+        capture,
+    ) {
         log::error!("no `{event}` events: {}", super::words_of(&error));
     }
     closure.forget();
@@ -176,26 +199,26 @@ fn listen_in(target: Option<impl AsRef<EventTarget>>, event: &str, capture: bool
 pub(super) async fn sleep(millis: i32) {
     resolved(|resolve| {
         window().is_some_and(|window| {
-            window
-                .set_timeout_with_callback_and_timeout_and_arguments_0(resolve, millis)
-                .is_ok()
+            window.set_timeout_with_callback_and_timeout_and_arguments_0(resolve, millis).is_ok()
         })
     })
     .await;
 }
 
-/// Waits until the browser has had its turn: input and frames that are due come first. Unlike [`sleep`], which takes 4 ms at the least once it was
-/// called a few times in a row.
+/// Waits until the browser has had its turn: input and frames that are due come first. Unlike
+/// [`sleep`], which takes 4 ms at the least once it was called a few times in a row.
 pub(super) async fn turn() {
-    resolved(|resolve| TURNS.with(|turns| turns.as_ref().is_some_and(|turns| turns.wait(resolve)))).await;
+    resolved(|resolve| TURNS.with(|turns| turns.as_ref().is_some_and(|turns| turns.wait(resolve))))
+        .await;
 }
 
 thread_local! {
     static TURNS: Option<Turns> = Turns::open();
 }
 
-/// One channel of the page to itself for all who wait for their turn. One for every wait would stay in memory: a browser keeps a port that has a
-/// listener for as long as its other end could still speak.
+/// One channel of the page to itself for all who wait for their turn. One for every wait would stay
+/// in memory: a browser keeps a port that has a listener for as long as its other end could still
+/// speak.
 struct Turns {
     sender: MessagePort,
     waiting: Rc<RefCell<VecDeque<Function>>>,
@@ -214,10 +237,7 @@ impl Turns {
         });
         channel.port1().set_onmessage(Some(on_message.as_ref().unchecked_ref()));
         on_message.forget();
-        Some(Self {
-            sender: channel.port2(),
-            waiting,
-        })
+        Some(Self { sender: channel.port2(), waiting })
     }
 
     /// Has a function called at the next turn; `false` when the browser takes no message.
@@ -236,7 +256,8 @@ pub(crate) const WORKS_BETWEEN_FRAMES: bool = true;
 /// All files are read by a worker, which has the code for it.
 pub(crate) const READS_ELSEWHERE: bool = true;
 
-/// Calls `work` again and again, between the browser's frames and whether there are any or not, until it says that nothing is left.
+/// Calls `work` again and again, between the browser's frames and whether there are any or not,
+/// until it says that nothing is left.
 pub(crate) fn between_frames(mut work: impl FnMut() -> bool + 'static) {
     spawn_local(async move {
         loop {
@@ -248,12 +269,17 @@ pub(crate) fn between_frames(mut work: impl FnMut() -> bool + 'static) {
     });
 }
 
-/// Waits for the next frame of the page: what runs then runs after the app's own drawing, before the picture is shown.
+/// Waits for the next frame of the page: what runs then runs after the app's own drawing, before
+/// the picture is shown.
 pub(super) async fn next_frame() {
-    resolved(|resolve| window().is_some_and(|window| window.request_animation_frame(resolve).is_ok())).await;
+    resolved(|resolve| {
+        window().is_some_and(|window| window.request_animation_frame(resolve).is_ok())
+    })
+    .await;
 }
 
-/// Waits for a function to be called that `ask` hands on; not at all when `ask` says that it could not.
+/// Waits for a function to be called that `ask` hands on; not at all when `ask` says that it could
+/// not.
 async fn resolved(mut ask: impl FnMut(&Function) -> bool) {
     let promise = Promise::new(&mut |resolve, _| {
         if !ask(&resolve) {

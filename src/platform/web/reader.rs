@@ -1,4 +1,5 @@
-//! Files are read by a worker, which has a WebAssembly of its own: `src/bin/reader.rs`. `web/js/reader.js` starts it.
+//! Files are read by a worker, which has a WebAssembly of its own: `src/bin/reader.rs`.
+//! `web/js/reader.js` starts it.
 
 use super::page::{listen, window};
 use super::words_of;
@@ -13,7 +14,8 @@ use std::rc::Rc;
 use wasm_bindgen::{JsCast as _, JsValue};
 use web_sys::{Blob, MessageEvent, Worker};
 
-/// A file that is too large to be read between two frames: it stays with the browser, and none of its bytes is copied here.
+/// A file that is too large to be read between two frames: it stays with the browser, and none of
+/// its bytes is copied here.
 #[derive(Clone, PartialEq)]
 pub(crate) struct LargeFile(Blob);
 
@@ -85,7 +87,8 @@ pub(super) fn page_bytes() -> u64 {
 pub(crate) fn follow_memory(reader: &mut Reader, session: &mut Session) {
     // Not every browser tells.
     let navigator = window().map(|window| window.navigator());
-    let device_gib = navigator.and_then(|navigator| Reflect::get(&navigator, &"deviceMemory".into()).ok()?.as_f64());
+    let device_gib = navigator
+        .and_then(|navigator| Reflect::get(&navigator, &"deviceMemory".into()).ok()?.as_f64());
     let states = [&reader.large, &reader.small];
     session.note_memory(PageMemory {
         bytes: page_bytes(),
@@ -137,10 +140,7 @@ impl Reader {
                 room: u64::MAX,
             }))
         };
-        Self {
-            large: state(),
-            small: state(),
-        }
+        Self { large: state(), small: state() }
     }
 
     /// Reads a file when those before it are read.
@@ -198,7 +198,9 @@ impl State {
     }
 
     fn done(&mut self) {
-        let Some(current) = self.current.take() else { return };
+        let Some(current) = self.current.take() else {
+            return;
+        };
         let report = match current.unpacker {
             Some(unpacker) => unpacker.finish().map_err(|error| error.to_string()),
             None => Err("the worker sent nothing".to_owned()),
@@ -211,8 +213,11 @@ impl State {
 
     /// Takes what the worker says.
     fn hear(&mut self, data: &JsValue) {
-        let part = |name: &str| Reflect::get(data, &JsValue::from(name)).unwrap_or(JsValue::UNDEFINED);
-        let Some(current) = &mut self.current else { return };
+        let part =
+            |name: &str| Reflect::get(data, &JsValue::from(name)).unwrap_or(JsValue::UNDEFINED);
+        let Some(current) = &mut self.current else {
+            return;
+        };
         if part("task").as_f64() != Some(current.task as f64) {
             return;
         }
@@ -228,7 +233,9 @@ impl State {
                 Err(WireError::NoRoom { bytes }) => self.give_up(ReadNews::NoRoom(bytes as u64)),
                 Err(error) => self.fail(error.to_string()),
             }
-        } else if let (Ok(piece), Some(unpacker)) = (part("piece").dyn_into::<Uint8Array>(), &mut current.unpacker) {
+        } else if let (Ok(piece), Some(unpacker)) =
+            (part("piece").dyn_into::<Uint8Array>(), &mut current.unpacker)
+        {
             unpacker.push(&piece.to_vec());
         } else if let Some(reason) = part("failed").as_string() {
             self.fail(reason);
@@ -245,12 +252,10 @@ fn next(state: &Rc<RefCell<State>>) {
         if state.current.is_some() {
             return;
         }
-        let Some((task, bytes)) = state.waiting.pop_front() else { return };
-        state.current = Some(Current {
-            task: task.id,
-            size: bytes.len(),
-            unpacker: None,
-        });
+        let Some((task, bytes)) = state.waiting.pop_front() else {
+            return;
+        };
+        state.current = Some(Current { task: task.id, size: bytes.len(), unpacker: None });
         (task, bytes)
     };
     if let Err(error) = give(state, &task, &bytes) {
@@ -301,7 +306,8 @@ fn new_worker(state: &Rc<RefCell<State>>) -> Result<Worker, JsValue> {
     listen(Some(&worker), "error", move |event| {
         event.prevent_default();
         let Some(state) = weak.upgrade() else { return };
-        let message = Reflect::get(&event, &"message".into()).ok().and_then(|text| text.as_string());
+        let message =
+            Reflect::get(&event, &"message".into()).ok().and_then(|text| text.as_string());
         state
             .borrow_mut()
             .fail(message.unwrap_or_else(|| "the worker could not be started".to_owned()));

@@ -13,7 +13,8 @@ pub(super) type Area = [f64; 4];
 
 /// A rectangle of the page, points, as an area of the canvas.
 pub(super) fn area_of(rect: Rect, pixels_per_point: f32) -> Area {
-    [rect.left(), rect.top(), rect.width(), rect.height()].map(|points| f64::from(points * pixels_per_point).round())
+    [rect.left(), rect.top(), rect.width(), rect.height()]
+        .map(|points| f64::from(points * pixels_per_point).round())
 }
 
 /// How many frames to wait for one in which the app draws.
@@ -47,8 +48,9 @@ pub(super) async fn inline_picture(
 
 /// A copy of a part of the canvas, at most so wide.
 ///
-/// What WebGPU and WebGL draw can be read only until the frame ends. So this waits for a frame in which the app draws (`frames` counts
-/// them, `wake` asks for one), copies the picture within it, and packs the copy.
+/// What WebGPU and WebGL draw can be read only until the frame ends. So this waits for a frame in
+/// which the app draws (`frames` counts them, `wake` asks for one), copies the picture within it,
+/// and packs the copy.
 async fn take(
     canvas: &HtmlCanvasElement,
     frames: impl Fn() -> u64,
@@ -58,7 +60,10 @@ async fn take(
 ) -> Result<HtmlCanvasElement, JsValue> {
     for _ in 0..MOST_FRAMES {
         if is_hidden() {
-            return Err(Error::new("snapshot: the page is hidden, so nothing is drawn; bring it to the front").into());
+            return Err(Error::new(
+                "snapshot: the page is hidden, so nothing is drawn; bring it to the front",
+            )
+            .into());
         }
         let before = frames();
         wake();
@@ -70,10 +75,15 @@ async fn take(
     Err(Error::new("snapshot: nothing was drawn").into())
 }
 
-fn copy(canvas: &HtmlCanvasElement, area: Option<Area>, widest: f64) -> Result<HtmlCanvasElement, JsValue> {
+fn copy(
+    canvas: &HtmlCanvasElement,
+    area: Option<Area>,
+    widest: f64,
+) -> Result<HtmlCanvasElement, JsValue> {
     let whole = [0.0, 0.0, f64::from(canvas.width()), f64::from(canvas.height())];
     let [x, y, width, height] = area.unwrap_or(whole);
-    let copy: HtmlCanvasElement = document().ok_or("no document")?.create_element("canvas")?.dyn_into()?;
+    let copy: HtmlCanvasElement =
+        document().ok_or("no document")?.create_element("canvas")?.dyn_into()?;
     let scale = (widest / width.max(1.0)).min(1.0);
     let [wide, high] = [width, height].map(|side| (side * scale).round().max(1.0));
     copy.set_width(wide as u32);
@@ -82,8 +92,9 @@ fn copy(canvas: &HtmlCanvasElement, area: Option<Area>, widest: f64) -> Result<H
         .get_context("2d")?
         .ok_or_else(|| Error::new("snapshot: this browser cannot copy pictures"))?
         .dyn_into()?;
-    context
-        .draw_image_with_html_canvas_element_and_sw_and_sh_and_dx_and_dy_and_dw_and_dh(canvas, x, y, width, height, 0.0, 0.0, wide, high)?;
+    context.draw_image_with_html_canvas_element_and_sw_and_sh_and_dx_and_dy_and_dw_and_dh(
+        canvas, x, y, width, height, 0.0, 0.0, wide, high,
+    )?;
     Ok(copy)
 }
 

@@ -1,12 +1,19 @@
-//! The work in the browser's IndexedDB: the records of it (see [`records`](crate::platform::records)), and the files' bytes by their SHA-256.
+//! The work in the browser's IndexedDB: the records of it (see
+//! [`records`](crate::platform::records)), and the files' bytes by their SHA-256.
 //!
-//! What has just come is put there in a transaction that asks nothing first and is committed in the same breath: such a one is carried out though the
-//! page goes meanwhile. The record of all work joins what other windows have stored, so it has to read first, and may be late.
+//! What has just come is put there in a transaction that asks nothing first and is committed in the
+//! same breath: such a one is carried out though the page goes meanwhile. The record of all work
+//! joins what other windows have stored, so it has to read first, and may be late.
 
 use super::reader::LargeFile;
-use crate::platform::records::{LATEST, Left, Records, Row, is_left, is_unread, left_key, row_id, row_key, unread_key};
+use crate::platform::records::{
+    LATEST, Left, Records, Row, is_left, is_unread, left_key, row_id, row_key, unread_key,
+};
 use crate::platform::{Arrival, FileBytes, Inbox, Incoming, Stored, StoredFiles, Work, in_short};
-use idb::{Database, DatabaseEvent as _, Error, Factory, ObjectStoreParams, Transaction, TransactionMode, TransactionResult};
+use idb::{
+    Database, DatabaseEvent as _, Error, Factory, ObjectStoreParams, Transaction, TransactionMode,
+    TransactionResult,
+};
 use js_sys::{Date, Math, Uint8Array};
 use segue_session::{SavedEntry, Storing};
 use std::cell::RefCell;
@@ -105,7 +112,8 @@ impl Storage {
                     let reason = "A newer Segue has stored its work in this browser, and this page cannot read it: nothing is stored until you reload the page.";
                     (None, Some(reason.to_owned()))
                 } else {
-                    // A private window, or storage that the user switched off: Segue works, and promises nothing.
+                    // A private window, or storage that the user switched off: Segue works, and
+                    // promises nothing.
                     log::warn!("no storage in this browser: {error}");
                     (None, None)
                 }
@@ -148,11 +156,7 @@ impl Storage {
         }
         let entries = records.saved.iter().flat_map(|saved| &saved.entries).chain(&records.loose);
         self.state.borrow_mut().announced.extend(entries.map(|entry| entry.id.clone()));
-        let stored = Stored {
-            saved: records.saved,
-            loose: records.loose,
-            files,
-        };
+        let stored = Stored { saved: records.saved, loose: records.loose, files };
         Ok((Some(stored), problem))
     }
 
@@ -172,25 +176,28 @@ impl Storage {
         self.go_on();
     }
 
-    /// Writes the work before the page goes, which may be any moment: with nothing read first, and with all clips that are not written yet.
+    /// Writes the work before the page goes, which may be any moment: with nothing read first, and
+    /// with all clips that are not written yet.
     pub(crate) fn leave(&self, work: Work) {
         let (database, arrivals, left) = {
             let mut state = self.state.borrow_mut();
-            let Some(database) = state.database.clone() else { return };
+            let Some(database) = state.database.clone() else {
+                return;
+            };
             // It is older.
             state.next = None;
-            let arrivals: Vec<Arrival> = state.in_flight.iter().chain(&state.queue).cloned().collect();
+            let arrivals: Vec<Arrival> =
+                state.in_flight.iter().chain(&state.queue).cloned().collect();
             let mut saved = work.saved;
-            (saved.entries).retain(|entry| entry.file.as_ref().is_none_or(|file| !state.refused.contains_key(&file.sha256)));
-            let left = Left {
-                at_ms: Date::now(),
-                known: work.known,
-                saved,
-            };
+            (saved.entries).retain(|entry| {
+                entry.file.as_ref().is_none_or(|file| !state.refused.contains_key(&file.sha256))
+            });
+            let left = Left { at_ms: Date::now(), known: work.known, saved };
             (database, arrivals, (left_key(&state.window), left))
         };
         let (key, left) = left;
-        let begun = text_of(&left).and_then(|text| begin_put(&database, &arrivals, Some((&key, &text))));
+        let begun =
+            text_of(&left).and_then(|text| begin_put(&database, &arrivals, Some((&key, &text))));
         let inbox = self.inbox.clone();
         spawn_local(async move {
             let put = match begun {
@@ -212,7 +219,9 @@ impl Storage {
         spawn_local(async move {
             match read_files(&database, &entries).await {
                 Ok(files) => {
-                    let has_file = |entry: &SavedEntry| entry.file.as_ref().is_none_or(|file| files.contains_key(&file.sha256));
+                    let has_file = |entry: &SavedEntry| {
+                        entry.file.as_ref().is_none_or(|file| files.contains_key(&file.sha256))
+                    };
                     let loose: Vec<SavedEntry> = entries.into_iter().filter(has_file).collect();
                     let ids = loose.iter().map(|entry| entry.id.clone());
                     this.state.borrow_mut().announced.extend(ids);
@@ -259,7 +268,8 @@ impl Storage {
                 let arrivals = Rc::new(std::mem::take(&mut state.queue));
                 state.in_flight = Rc::clone(&arrivals);
                 let work = if arrivals.is_empty() { state.next.take() } else { None };
-                let database = state.database.clone().filter(|_| !arrivals.is_empty() || work.is_some());
+                let database =
+                    state.database.clone().filter(|_| !arrivals.is_empty() || work.is_some());
                 let Some(database) = database else {
                     state.writing = false;
                     drop(state);
@@ -278,7 +288,8 @@ impl Storage {
         }
     }
 
-    /// Writes clips with their files, all at once, or one by one where there is no room for all: what has room is kept.
+    /// Writes clips with their files, all at once, or one by one where there is no room for all:
+    /// what has room is kept.
     async fn write_arrivals(&self, database: &Database, arrivals: &[Arrival]) {
         if arrivals.is_empty() {
             return;
@@ -339,15 +350,22 @@ impl Storage {
         let transaction = database.transaction(&[WORK, FILES], TransactionMode::ReadWrite)?;
         let watched = transaction.object_store(WORK)?.transaction();
         let (works, files) = (transaction.object_store(WORK)?, transaction.object_store(FILES)?);
-        // Other windows may have written meanwhile: what is there is asked, not remembered. Until this transaction ends, no other begins.
-        let (latest, work_keys) = (works.get(JsValue::from(LATEST))?, works.get_all_keys(None, None)?);
+        // Other windows may have written meanwhile: what is there is asked, not remembered. Until
+        // this transaction ends, no other begins.
+        let (latest, work_keys) =
+            (works.get(JsValue::from(LATEST))?, works.get_all_keys(None, None)?);
         let held = files.get_all_keys(None, None)?;
         let latest = latest.await?.and_then(|text| text.as_string());
         let (work_keys, held) = (keys_of(work_keys.await?), keys_of(held.await?));
-        let mut texts: Vec<(&str, String)> = latest.map(|text| (LATEST, text)).into_iter().collect();
+        let mut texts: Vec<(&str, String)> =
+            latest.map(|text| (LATEST, text)).into_iter().collect();
         for key in &work_keys {
-            let is_of_others = row_id(key).is_some_and(|id| !work.known.contains(id)) || is_left(key);
-            if is_of_others && let Some(text) = works.get(JsValue::from(key))?.await?.and_then(|text| text.as_string()) {
+            let is_of_others =
+                row_id(key).is_some_and(|id| !work.known.contains(id)) || is_left(key);
+            if is_of_others
+                && let Some(text) =
+                    works.get(JsValue::from(key))?.await?.and_then(|text| text.as_string())
+            {
                 texts.push((key, text));
             }
         }
@@ -361,9 +379,10 @@ impl Storage {
         let there = records.all();
         let all = work.over(&there, |sha256| held.contains(sha256));
         works.put(&JsValue::from(text_of(&all)?), Some(&JsValue::from(LATEST)))?;
-        let rows: BTreeMap<String, &SavedEntry> = (all.entries.iter().filter(|entry| entry.file.is_some()))
-            .map(|entry| (row_key(&entry.id), entry))
-            .collect();
+        let rows: BTreeMap<String, &SavedEntry> =
+            (all.entries.iter().filter(|entry| entry.file.is_some()))
+                .map(|entry| (row_key(&entry.id), entry))
+                .collect();
         for key in work_keys
             .iter()
             .filter(|key| is_left(key) || (row_id(key).is_some() && !rows.contains_key(*key)))
@@ -375,7 +394,9 @@ impl Storage {
         }
         // A record that cannot be read may need any file but those that others named, too.
         let (needed, named) = (all.files(), there.files());
-        let is_free = |key: &&String| !needed.contains(key.as_str()) && (!some_are_unread || named.contains(key.as_str()));
+        let is_free = |key: &&String| {
+            !needed.contains(key.as_str()) && (!some_are_unread || named.contains(key.as_str()))
+        };
         let mut freed = false;
         for key in held.iter().filter(is_free) {
             files.delete(JsValue::from(key))?;
@@ -435,10 +456,7 @@ fn text_of(value: &impl serde::Serialize) -> Result<String, Failure> {
 }
 
 fn row_text(entry: &SavedEntry) -> Result<String, Failure> {
-    text_of(&Row {
-        at_ms: Date::now(),
-        entry: entry.clone(),
-    })
+    text_of(&Row { at_ms: Date::now(), entry: entry.clone() })
 }
 
 fn keys_of(keys: Vec<JsValue>) -> BTreeSet<String> {
@@ -449,7 +467,11 @@ fn keys_of(keys: Vec<JsValue>) -> BTreeSet<String> {
 type Begun = (Transaction, Transaction);
 
 /// Begins to write clips with their files, and one more record, and commits that at once.
-fn begin_put(database: &Database, arrivals: &[Arrival], record: Option<(&str, &str)>) -> Result<Begun, Failure> {
+fn begin_put(
+    database: &Database,
+    arrivals: &[Arrival],
+    record: Option<(&str, &str)>,
+) -> Result<Begun, Failure> {
     let transaction = database.transaction(&[WORK, FILES], TransactionMode::ReadWrite)?;
     let (works, files) = (transaction.object_store(WORK)?, transaction.object_store(FILES)?);
     let mut written = BTreeSet::new();
@@ -492,10 +514,8 @@ async fn put(database: &Database, arrivals: &[Arrival]) -> Result<(), Failure> {
 async fn read_files(database: &Database, entries: &[SavedEntry]) -> Result<StoredFiles, Error> {
     let transaction = database.transaction(&[FILES], TransactionMode::ReadOnly)?;
     let store = transaction.object_store(FILES)?;
-    let keys: BTreeSet<&str> = entries
-        .iter()
-        .filter_map(|entry| Some(entry.file.as_ref()?.sha256.as_str()))
-        .collect();
+    let keys: BTreeSet<&str> =
+        entries.iter().filter_map(|entry| Some(entry.file.as_ref()?.sha256.as_str())).collect();
     let mut files = StoredFiles::new();
     for key in keys {
         if let Some(bytes) = store.get(JsValue::from(key))?.await?.and_then(file_bytes) {
@@ -507,11 +527,7 @@ async fn read_files(database: &Database, entries: &[SavedEntry]) -> Result<Store
 
 /// What a browser calls an error.
 fn name_of(error: &Error) -> Option<String> {
-    if let Error::DomException(exception) = error {
-        Some(exception.name())
-    } else {
-        None
-    }
+    if let Error::DomException(exception) = error { Some(exception.name()) } else { None }
 }
 
 /// A stored file: small ones as their bytes, large ones as the browser's handle.

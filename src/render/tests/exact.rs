@@ -18,7 +18,8 @@ fn in_software_what_moves_is_coarse_and_what_stands_is_fine() {
     let mut stage = stage(&actors, size, 2, false, 1.0);
     gpu.renderer.set_quality(Quality::Plain);
     let mut prepared = |stage: &Stage| {
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let mut encoder =
+            gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let prepared = gpu.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, 5, stage, size);
         gpu.queue.submit([encoder.finish()]);
         (prepared.drawn, prepared.to_be_refined)
@@ -51,58 +52,28 @@ fn a_stage_without_size_or_with_a_pane_outside_is_fine() {
     let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
     assert!(!gpu.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, 1, &stage, [0, 0]).drawn);
     // What did not change is not drawn again; what changed in size or content is.
+    assert!(gpu.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, 1, &stage, [64, 64]).drawn);
     assert!(
-        gpu.renderer
-            .prepare(&gpu.device, &gpu.queue, &mut encoder, 1, &stage, [64, 64])
-            .drawn
+        !gpu.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, 1, &stage, [64, 64]).drawn
     );
-    assert!(
-        !gpu.renderer
-            .prepare(&gpu.device, &gpu.queue, &mut encoder, 1, &stage, [64, 64])
-            .drawn
-    );
-    assert!(
-        gpu.renderer
-            .prepare(&gpu.device, &gpu.queue, &mut encoder, 1, &stage, [65, 64])
-            .drawn
-    );
+    assert!(gpu.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, 1, &stage, [65, 64]).drawn);
     stage.panes[0].camera.yaw += 0.1;
-    assert!(
-        gpu.renderer
-            .prepare(&gpu.device, &gpu.queue, &mut encoder, 1, &stage, [65, 64])
-            .drawn
-    );
+    assert!(gpu.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, 1, &stage, [65, 64]).drawn);
     gpu.queue.submit([encoder.finish()]);
     // Panes that reach out of the stage, that are empty, and limbs that are no numbers.
-    stage.panes[0].viewport = Viewport {
-        x: 40,
-        y: 40,
-        width: 500,
-        height: 500,
-    };
+    stage.panes[0].viewport = Viewport { x: 40, y: 40, width: 500, height: 500 };
     stage.panes[0].limbs[0].a = Vec3::NAN;
     stage.panes[0].limbs[1].radius_a = f32::INFINITY;
     stage.panes[0].figures[0].limbs = 5..usize::MAX;
     stage.panes.push(Pane::default());
-    stage.panes.push(Pane {
-        viewport: Viewport {
-            x: 900,
-            y: 0,
-            width: 5,
-            height: 5,
-        },
-        ..Pane::default()
-    });
-    stage.panes.push(Pane {
-        viewport: Viewport {
-            x: 0,
-            y: 0,
-            width: 30,
-            height: 30,
-        },
-        ..Pane::default()
-    });
-    let image = render_to_image(&mut gpu.renderer, &gpu.device, &gpu.queue, &stage, [64, 64]).unwrap();
+    stage
+        .panes
+        .push(Pane { viewport: Viewport { x: 900, y: 0, width: 5, height: 5 }, ..Pane::default() });
+    stage
+        .panes
+        .push(Pane { viewport: Viewport { x: 0, y: 0, width: 30, height: 30 }, ..Pane::default() });
+    let image =
+        render_to_image(&mut gpu.renderer, &gpu.device, &gpu.queue, &stage, [64, 64]).unwrap();
     assert_eq!((image.width, image.height, image.rgba.len()), (64, 64, 64 * 64 * 4));
     assert_eq!(image.pixel(64, 0), None);
 }
@@ -118,15 +89,11 @@ fn a_ghost_shows_only_its_front_and_is_hidden_by_the_solid_before_it() {
         lens: Lens::Orthographic,
         ..Camera::default()
     };
-    let viewport = Viewport {
-        x: 0,
-        y: 0,
-        width: 64,
-        height: 64,
-    };
+    let viewport = Viewport { x: 0, y: 0, width: 64, height: 64 };
     let mut look = Look::DARK;
     look.edge[3] = 0.0;
-    let mut middle = |limbs: Vec<segue::scene::Limb>, figures: &[(std::ops::Range<usize>, bool)]| {
+    let mut middle = |limbs: Vec<segue::scene::Limb>,
+                      figures: &[(std::ops::Range<usize>, bool)]| {
         let figures = figures
             .iter()
             .map(|(limbs, ghost)| segue::scene::Figure {
@@ -137,13 +104,7 @@ fn a_ghost_shows_only_its_front_and_is_hidden_by_the_solid_before_it() {
             })
             .collect();
         let stage = Stage {
-            panes: vec![Pane {
-                viewport,
-                camera,
-                limbs,
-                figures,
-                ..Pane::default()
-            }],
+            panes: vec![Pane { viewport, camera, limbs, figures, ..Pane::default() }],
             look,
             pixels_per_point: 1.0,
             ..Stage::default()
@@ -200,12 +161,7 @@ fn a_ball_is_round_and_as_large_as_the_camera_says() {
         lens: Lens::Orthographic,
         ..Camera::default()
     };
-    let viewport = Viewport {
-        x: 0,
-        y: 0,
-        width: 200,
-        height: 200,
-    };
+    let viewport = Viewport { x: 0, y: 0, width: 200, height: 200 };
     let mut look = Look::DARK;
     (look.edge[3], look.grid[3], look.floor) = (0.0, 0.0, look.background_top);
     look.background_bottom = look.background_top;
@@ -219,44 +175,33 @@ fn a_ball_is_round_and_as_large_as_the_camera_says() {
         flatness: 1.0,
         color: [1.0; 4],
     };
-    let figures = vec![segue::scene::Figure {
-        limbs: 0..1,
-        ghost: false,
-        skin: None,
-        shadow: 0.0,
-    }];
+    let figures = vec![segue::scene::Figure { limbs: 0..1, ghost: false, skin: None, shadow: 0.0 }];
     let stage = Stage {
-        panes: vec![Pane {
-            viewport,
-            camera,
-            limbs: vec![ball],
-            figures,
-            ..Pane::default()
-        }],
+        panes: vec![Pane { viewport, camera, limbs: vec![ball], figures, ..Pane::default() }],
         look,
         pixels_per_point: 1.0,
         ..Stage::default()
     };
     let image = gpu.draw("ball", &stage, [200, 200]);
     let covered = image.rgba.chunks_exact(4).filter(|p| p[0] > 0x18).count() as f32;
-    let expected = std::f32::consts::PI * (radius * camera.pixels_per_metre(camera.target, 200.0)).powi(2);
+    let expected =
+        std::f32::consts::PI * (radius * camera.pixels_per_metre(camera.target, 200.0)).powi(2);
     assert!((covered / expected - 1.0).abs() < 0.02, "{covered} pixels, not {expected}");
 }
 
 #[test]
 fn the_page_gets_the_stage_pixel_by_pixel_in_both_kinds_of_targets() {
     for format in [wgpu::TextureFormat::Rgba8Unorm, wgpu::TextureFormat::Rgba8UnormSrgb] {
-        let Some(mut gpu) = gpu_for(format) else { return };
+        let Some(mut gpu) = gpu_for(format) else {
+            return;
+        };
         let actors = actors();
         let stage = stage(&actors, [128, 96], 1, false, 1.0);
-        let expected = render_to_image(&mut gpu.renderer, &gpu.device, &gpu.queue, &stage, [128, 96]).unwrap();
+        let expected =
+            render_to_image(&mut gpu.renderer, &gpu.device, &gpu.queue, &stage, [128, 96]).unwrap();
         let page = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: None,
-            size: wgpu::Extent3d {
-                width: 256,
-                height: 128,
-                depth_or_array_layers: 1,
-            },
+            size: wgpu::Extent3d { width: 256, height: 128, depth_or_array_layers: 1 },
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
@@ -265,11 +210,10 @@ fn the_page_gets_the_stage_pixel_by_pixel_in_both_kinds_of_targets() {
             view_formats: &[],
         });
         let view = page.create_view(&wgpu::TextureViewDescriptor::default());
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let mut encoder =
+            gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         assert!(
-            gpu.renderer
-                .prepare(&gpu.device, &gpu.queue, &mut encoder, 3, &stage, [128, 96])
-                .drawn
+            gpu.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, 3, &stage, [128, 96]).drawn
         );
         {
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -291,7 +235,11 @@ fn the_page_gets_the_stage_pixel_by_pixel_in_both_kinds_of_targets() {
         assert_eq!(got.pixel(15, 20), Some([255, 0, 0, 255]));
         for y in 0..96 {
             for x in 0..128 {
-                assert_eq!(got.pixel(x + 16, y + 8), expected.pixel(x, y), "{format:?} at {x}, {y}");
+                assert_eq!(
+                    got.pixel(x + 16, y + 8),
+                    expected.pixel(x, y),
+                    "{format:?} at {x}, {y}"
+                );
             }
         }
     }
@@ -324,7 +272,8 @@ fn time_to_build_and_encode() {
         let start = Instant::now();
         frame.build(&stage, [1440, 900], [1440, 900], Quality::Full);
         build += start.elapsed().as_secs_f64();
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+        let mut encoder =
+            gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
         let start = Instant::now();
         assert!(
             gpu.renderer

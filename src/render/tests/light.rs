@@ -6,7 +6,8 @@ use glam::Vec3;
 use segue::scene::{Camera, Director, Figure, Lens, Limb, Look, Pane, Stage, Viewport};
 use segue_session::{Command, Session};
 
-/// Balls seen from straight above, 1 cm to the pixel, x to the right and z downwards, the origin in the middle.
+/// Balls seen from straight above, 1 cm to the pixel, x to the right and z downwards, the origin in
+/// the middle.
 fn from_above(balls: &[Limb], shadow: f32) -> Stage {
     let mut camera = Camera {
         target: Vec3::ZERO,
@@ -22,19 +23,10 @@ fn from_above(balls: &[Limb], shadow: f32) -> Stage {
     look.background_bottom = look.background_top;
     Stage {
         panes: vec![Pane {
-            viewport: Viewport {
-                width: SIZE,
-                height: SIZE,
-                ..Viewport::default()
-            },
+            viewport: Viewport { width: SIZE, height: SIZE, ..Viewport::default() },
             camera,
             limbs: balls.to_vec(),
-            figures: vec![Figure {
-                limbs: 0..balls.len(),
-                skin: None,
-                ghost: false,
-                shadow,
-            }],
+            figures: vec![Figure { limbs: 0..balls.len(), skin: None, ghost: false, shadow }],
             ..Pane::default()
         }],
         look,
@@ -65,8 +57,8 @@ fn a_shadow_lies_where_the_light_says_crisp_below_what_is_low() {
     };
     let far = light(1.3, &[0.0, 0.8]);
     assert!(far[0] < far[1] - 40, "in the shadow {} and beside it {}", far[0], far[1]);
-    // The ball's shadow is 0.2 m / sin(height of the light) long to its edge. From there on it is light at once when the ball is low, not so
-    // when it is high.
+    // The ball's shadow is 0.2 m / sin(height of the light) long to its edge. From there on it is
+    // light at once when the ball is low, not so when it is high.
     let edge = 0.2 / key.y;
     let reach = [edge - 0.05, edge + 0.05];
     let (low, high) = (light(0.45, &reach), light(1.3, &reach));
@@ -90,12 +82,14 @@ fn a_body_does_not_shade_what_faces_the_light() {
     let mut seen = 0;
     for y in 0..SIZE {
         for x in 0..SIZE {
-            let [across, down] = [x, y].map(|pixel| (pixel as f32 + 0.5 - SIZE as f32 * 0.5) * 0.01 / radius);
+            let [across, down] =
+                [x, y].map(|pixel| (pixel as f32 + 0.5 - SIZE as f32 * 0.5) * 0.01 / radius);
             let up = 1.0 - across * across - down * down;
             let normal = Vec3::new(across, up.max(0.0).sqrt(), down);
             if up > 0.1 && normal.dot(key) > 0.35 {
                 seen += 1;
-                let [with, without] = [&lit, &unlit].map(|image| i32::from(image.pixel(x, y).unwrap()[1]));
+                let [with, without] =
+                    [&lit, &unlit].map(|image| i32::from(image.pixel(x, y).unwrap()[1]));
                 assert!((with - without).abs() <= 2, "{with} is not {without} at {x}, {y}");
             }
         }
@@ -107,8 +101,11 @@ fn a_body_does_not_shade_what_faces_the_light() {
 fn a_figure_on_all_stages() {
     let Some(mut gpu) = gpu() else { return };
     let size = [1440, 700];
-    let shown: Vec<(usize, Viewport)> = Viewport::columns(size[0], size[1], 3, 1).enumerate().collect();
-    for (name, look, theme) in [("dark", Look::DARK, 0), ("light", Look::LIGHT, 1), ("paper", Look::PAPER, 1)] {
+    let shown: Vec<(usize, Viewport)> =
+        Viewport::columns(size[0], size[1], 3, 1).enumerate().collect();
+    for (name, look, theme) in
+        [("dark", Look::DARK, 0), ("light", Look::LIGHT, 1), ("paper", Look::PAPER, 1)]
+    {
         for (scene, link) in [
             (
                 "blend",
@@ -129,7 +126,8 @@ fn a_figure_on_all_stages() {
             let mut session = Session::new();
             session.apply(Command::OpenLink(link.into())).unwrap();
             while session.work() {}
-            let stage = staged(&mut Director::default(), &session, &shown, 1.0, look, &colors(theme), 0.0);
+            let stage =
+                staged(&mut Director::default(), &session, &shown, 1.0, look, &colors(theme), 0.0);
             let image = gpu.draw(&format!("stage-{name}-{scene}"), &stage, size);
             if name == "paper" {
                 // White stays white to the corner.
@@ -143,16 +141,10 @@ fn a_figure_on_all_stages() {
 fn a_lecture_hall_sees_a_foot_that_slides() {
     let Some(mut gpu) = gpu() else { return };
     let size = [1920, 1080];
-    let shown = [(
-        0,
-        Viewport {
-            width: size[0],
-            height: size[1],
-            ..Viewport::default()
-        },
-    )];
+    let shown = [(0, Viewport { width: size[0], height: size[1], ..Viewport::default() })];
     let mut session = Session::new();
-    let link = "lab=blend&a=walk&b=run&blend_window=40&root_blend=off&camera_distance=4.2&stage=paper";
+    let link =
+        "lab=blend&a=walk&b=run&blend_window=40&root_blend=off&camera_distance=4.2&stage=paper";
     session.apply(Command::OpenLink(link.into())).unwrap();
     while session.work() {}
     let mut look = Look::PAPER;

@@ -1,4 +1,5 @@
-//! Pictures from a device without a window: run with `cargo test --bin segue render` and look at `target/stage/*.png`.
+//! Pictures from a device without a window: run with `cargo test --bin segue render` and look at
+//! `target/stage/*.png`.
 
 mod exact;
 mod light;
@@ -10,7 +11,10 @@ mod skins;
 use super::{Image, Quality, StageRenderer, render_to_image};
 use eframe::wgpu;
 use glam::Vec3;
-use segue::scene::{Body, Camera, Color, Colors, Director, Layer, Limb, Look, Pane, Stage, Viewport, rgb, with_alpha};
+use segue::scene::{
+    Body, Camera, Color, Colors, Director, Layer, Limb, Look, Pane, Stage, Viewport, rgb,
+    with_alpha,
+};
 use segue_motion::clip::Clip;
 use segue_motion::math::Planar;
 use segue_motion::skeleton::Roles;
@@ -75,7 +79,8 @@ impl Gpu {
     fn draw(&mut self, name: &str, stage: &Stage, size: [u32; 2]) -> Image {
         self.renderer.set_quality(Quality::Full);
         let start = Instant::now();
-        let image = render_to_image(&mut self.renderer, &self.device, &self.queue, stage, size).unwrap();
+        let image =
+            render_to_image(&mut self.renderer, &self.device, &self.queue, stage, size).unwrap();
         eprintln!("{name}: {:.2} s", start.elapsed().as_secs_f64());
         let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("target/stage");
         std::fs::create_dir_all(&folder).unwrap();
@@ -91,17 +96,15 @@ fn gpu() -> Option<Gpu> {
 
 fn gpu_for(output: wgpu::TextureFormat) -> Option<Gpu> {
     // `WGPU_BACKEND=gl` draws as WebGL does.
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+    let instance =
+        wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
     let options = wgpu::RequestAdapterOptions::default();
     let Ok(adapter) = pollster::block_on(instance.request_adapter(&options)) else {
         eprintln!("no graphics adapter: the picture is not drawn");
         return None;
     };
     let limits = wgpu::Limits::downlevel_webgl2_defaults().using_resolution(adapter.limits());
-    let descriptor = wgpu::DeviceDescriptor {
-        required_limits: limits,
-        ..Default::default()
-    };
+    let descriptor = wgpu::DeviceDescriptor { required_limits: limits, ..Default::default() };
     let (device, queue) = pollster::block_on(adapter.request_device(&descriptor)).ok()?;
     let renderer = StageRenderer::new(&device, &queue, &adapter, output);
     Some(Gpu { device, queue, renderer })
@@ -114,18 +117,9 @@ struct Actors {
 }
 
 fn actors() -> Actors {
-    let walk = synthesize(&Params {
-        duration_secs: 4.0,
-        ..Params::new(Action::Walk)
-    })
-    .unwrap()
-    .clip;
-    let run = synthesize(&Params {
-        duration_secs: 3.0,
-        ..Params::new(Action::Run)
-    })
-    .unwrap()
-    .clip;
+    let walk =
+        synthesize(&Params { duration_secs: 4.0, ..Params::new(Action::Walk) }).unwrap().clip;
+    let run = synthesize(&Params { duration_secs: 3.0, ..Params::new(Action::Run) }).unwrap().clip;
     let body = Body::new(walk.skeleton(), Some(&Roles::detect(walk.skeleton())));
     Actors { walk, run, body }
 }
@@ -138,17 +132,18 @@ const RESULT: [u32; 2] = [0x58_d6_a9, 0x16_9d_72];
 fn blend_pane(actors: &Actors, viewport: Viewport, light: bool, frame: usize) -> Pane {
     let theme = usize::from(light);
     let look = if light { Look::LIGHT } else { Look::DARK };
-    let mut pane = Pane {
-        viewport,
-        ..Pane::default()
-    };
+    let mut pane = Pane { viewport, ..Pane::default() };
     let alpha = if light { 0.32 } else { 0.34 };
     let walk = |frame: usize| actors.walk.world_pose(frame.min(actors.walk.frames() - 1));
     let now = walk(frame);
     let here = now.positions[0].with_y(0.0);
     let (tint_a, tint_b) = (rgb(A[theme]), rgb(B[theme]));
     for (steps, fade) in [(22, 1.0), (44, 0.62)] {
-        pane.add_ghost(&actors.body, &walk(frame.saturating_sub(steps)), with_alpha(tint_a, alpha * fade));
+        pane.add_ghost(
+            &actors.body,
+            &walk(frame.saturating_sub(steps)),
+            with_alpha(tint_a, alpha * fade),
+        );
     }
     let entry = Planar::new(0.0, f64::from(here.x), f64::from(here.z));
     for (ahead, fade) in [(16, 1.0), (34, 0.62)] {

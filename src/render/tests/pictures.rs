@@ -2,7 +2,9 @@
 
 use super::{actors, blend_pane, gpu, stage};
 use glam::Vec3;
-use segue::scene::{Body, Bounds, Camera, Layer, Look, Pane, Ring, Stage, Viewport, rgb, with_alpha};
+use segue::scene::{
+    Body, Bounds, Camera, Layer, Look, Pane, Ring, Stage, Viewport, rgb, with_alpha,
+};
 use segue_motion::math::Planar;
 use segue_motion::skeleton::{Joint, Roles, Skeleton, world_pose};
 
@@ -11,13 +13,13 @@ fn three_panes_in_both_themes_and_on_a_phone() {
     let Some(mut gpu) = gpu() else { return };
     let actors = actors();
     for (theme, light) in [("dark", false), ("light", true)] {
-        let image = gpu.draw(&format!("three-{theme}"), &stage(&actors, [1440, 900], 3, light, 1.0), [1440, 900]);
+        let image = gpu.draw(
+            &format!("three-{theme}"),
+            &stage(&actors, [1440, 900], 3, light, 1.0),
+            [1440, 900],
+        );
         // The palette comes out exactly.
-        let expected = if light {
-            [0xee, 0xf0, 0xf4, 0xff]
-        } else {
-            [0x0f, 0x11, 0x15, 0xff]
-        };
+        let expected = if light { [0xee, 0xf0, 0xf4, 0xff] } else { [0x0f, 0x11, 0x15, 0xff] };
         assert_eq!(image.pixel(20, 0), Some(expected));
         assert_eq!(image.pixel(1300, 0), Some(expected));
         gpu.draw(&format!("phone-{theme}"), &stage(&actors, [780, 800], 1, light, 2.0), [780, 800]);
@@ -33,17 +35,9 @@ fn the_mannequin_from_all_sides() {
         let look = if light { Look::LIGHT } else { Look::DARK };
         let panes = (0..10u32)
             .map(|i| {
-                let viewport = Viewport {
-                    x: i % 5 * 360,
-                    y: i / 5 * 550,
-                    width: 360,
-                    height: 550,
-                };
-                let pose = if i < 5 {
-                    actors.walk.world_pose(60)
-                } else {
-                    actors.run.world_pose(31)
-                };
+                let viewport = Viewport { x: i % 5 * 360, y: i / 5 * 550, width: 360, height: 550 };
+                let pose =
+                    if i < 5 { actors.walk.world_pose(60) } else { actors.run.world_pose(31) };
                 let here = pose.positions[0].with_y(0.0);
                 let mut bounds = Bounds::EMPTY;
                 bounds.include_pose(&pose);
@@ -53,24 +47,14 @@ fn the_mannequin_from_all_sides() {
                     ..Camera::default()
                 };
                 camera.frame(&bounds.grown(0.12), viewport.aspect());
-                let mut pane = Pane {
-                    viewport,
-                    camera,
-                    focus: here,
-                    ..Pane::default()
-                };
+                let mut pane = Pane { viewport, camera, focus: here, ..Pane::default() };
                 pane.add_body(&actors.body, &pose, look.clay);
                 pane
             })
             .collect();
         gpu.draw(
             if light { "sides-light" } else { "sides-dark" },
-            &Stage {
-                panes,
-                look,
-                pixels_per_point: 1.0,
-                ..Stage::default()
-            },
+            &Stage { panes, look, pixels_per_point: 1.0, ..Stage::default() },
             size,
         );
     }
@@ -156,7 +140,13 @@ fn from_above_close_up_and_other_bodies() {
         panes[3].add_body(&Body::new(actors.walk.skeleton(), None), &person, look.clay);
         for (index, joint) in actors.walk.skeleton().joints().iter().enumerate().skip(1) {
             if let Some(parent) = joint.parent {
-                panes[3].add_line(person.positions[parent], person.positions[index], rgb(0x58_d6_a9), 1.5, Layer::Over);
+                panes[3].add_line(
+                    person.positions[parent],
+                    person.positions[index],
+                    rgb(0x58_d6_a9),
+                    1.5,
+                    Layer::Over,
+                );
             }
         }
         panes[3].add_path(
@@ -179,12 +169,7 @@ fn from_above_close_up_and_other_bodies() {
         });
         gpu.draw(
             if light { "more-light" } else { "more-dark" },
-            &Stage {
-                panes,
-                look,
-                pixels_per_point: 1.0,
-                ..Stage::default()
-            },
+            &Stage { panes, look, pixels_per_point: 1.0, ..Stage::default() },
             [1600, 800],
         );
     }

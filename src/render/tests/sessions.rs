@@ -10,14 +10,7 @@ use std::sync::Arc;
 fn the_chosen_joint_is_marked_over_the_body() {
     let Some(mut gpu) = gpu() else { return };
     let size = [700, 600];
-    let shown = [(
-        0,
-        Viewport {
-            width: size[0],
-            height: size[1],
-            ..Viewport::default()
-        },
-    )];
+    let shown = [(0, Viewport { width: size[0], height: size[1], ..Viewport::default() })];
     for (theme, look) in [Look::DARK, Look::LIGHT].into_iter().enumerate() {
         let mut session = Session::new();
         let link = "lab=view&a=walk&t=0.4&joint=left%20hand&trail=off&contacts=off".to_owned();
@@ -62,7 +55,8 @@ fn a_layered_body_shows_whose_limbs_are_whose() {
             session.apply(Command::OpenLink(link.to_owned())).unwrap();
             while session.work() {}
             let panes = session.panes().len() as u32;
-            let shown: Vec<(usize, Viewport)> = Viewport::columns(size[0], size[1], panes, 1).enumerate().collect();
+            let shown: Vec<(usize, Viewport)> =
+                Viewport::columns(size[0], size[1], panes, 1).enumerate().collect();
             let stage = staged(&mut Director::default(), &session, &shown, 1.0, look, &colors, 0.0);
             let image = gpu.draw(&format!("{name}-{theme}"), &stage, size);
             let is_blue = |p: &&[u8]| i32::from(p[2]) - i32::from(p[0]) > 40;
@@ -76,10 +70,7 @@ fn a_layered_body_shows_whose_limbs_are_whose() {
 fn registered_clips_walk_beside_the_result_and_a_pair_stands_in_its_place() {
     let Some(mut gpu) = gpu() else { return };
     let (size, look) = ([1400, 560], Look::DARK);
-    let colors = Colors {
-        ghost_alpha: 0.42,
-        ..colors(0)
-    };
+    let colors = Colors { ghost_alpha: 0.42, ..colors(0) };
     for (name, link, pair) in [
         ("registered", "lab=register&t=1.1&compare=warp_with:registered,plain", None),
         (
@@ -93,7 +84,8 @@ fn registered_clips_walk_beside_the_result_and_a_pair_stands_in_its_place() {
         session.apply(Command::OpenLink(link.to_owned())).unwrap();
         while session.work() {}
         let panes = session.panes().len() as u32;
-        let shown: Vec<(usize, Viewport)> = Viewport::columns(size[0], size[1], panes, 1).enumerate().collect();
+        let shown: Vec<(usize, Viewport)> =
+            Viewport::columns(size[0], size[1], panes, 1).enumerate().collect();
         let mut director = Director::default();
         director.show_pair(pair);
         let stage = staged(&mut director, &session, &shown, 1.0, look, &colors, 0.0);
@@ -123,18 +115,16 @@ fn a_path_lies_on_the_stage_with_its_points_and_those_who_play_along() {
                 let outcome = Arc::clone(session.main_outcome().unwrap());
                 let spline = outcome.path.as_ref().unwrap().road.spline();
                 let to = spline.points()[4] + glam::DVec2::new(-1.4, -1.9);
-                let edited = spline.edited(&PathEdit::Move { index: 4, to }, Pins::default()).unwrap();
+                let edited =
+                    spline.edited(&PathEdit::Move { index: 4, to }, Pins::default()).unwrap();
                 session
                     .apply(Command::Set(vec![(Key::Path, Value::Text(edited.to_code()))]))
                     .unwrap();
-                assert!(!session.main_outcome().unwrap().path.as_ref().unwrap().hard_turns.is_empty());
+                assert!(
+                    !session.main_outcome().unwrap().path.as_ref().unwrap().hard_turns.is_empty()
+                );
             }
-            let viewport = Viewport {
-                x: 0,
-                y: 0,
-                width: size[0],
-                height: size[1],
-            };
+            let viewport = Viewport { x: 0, y: 0, width: size[0], height: size[1] };
             let mut director = Director::default();
             director.mark_path(PathMarks {
                 handles: true,
@@ -170,13 +160,9 @@ fn a_driven_character_has_its_ways_on_the_ground_a_ghost_and_a_crowd() {
             let driven = outcome.driven.as_ref().unwrap();
             let moment = driven.at(session.now_secs()).unwrap();
             let mut director = Director::default();
-            director.show_candidate(moment.search.as_ref().map(|search| search.candidates[1].place));
-            let viewport = Viewport {
-                x: 0,
-                y: 0,
-                width: size[0],
-                height: size[1],
-            };
+            director
+                .show_candidate(moment.search.as_ref().map(|search| search.candidates[1].place));
+            let viewport = Viewport { x: 0, y: 0, width: size[0], height: size[1] };
             let stage = staged(&mut director, &session, &[(0, viewport)], 1.0, look, &colors, 0.0);
             assert_eq!(stage.panes[0].figures.len(), bodies, "{name}");
             let ring = stage.panes[0].rings.iter().any(|ring| ring.color[..3] == colors.a[..3]);

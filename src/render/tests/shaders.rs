@@ -8,10 +8,7 @@ fn translates_to_webgl(name: &str, module: &naga::Module, info: &naga::valid::Mo
     use naga::back::glsl;
     for entry in &module.entry_points {
         let options = glsl::Options {
-            version: glsl::Version::Embedded {
-                version: 300,
-                is_webgl: true,
-            },
+            version: glsl::Version::Embedded { version: 300, is_webgl: true },
             ..glsl::Options::default()
         };
         let pipeline = glsl::PipelineOptions {
@@ -21,7 +18,8 @@ fn translates_to_webgl(name: &str, module: &naga::Module, info: &naga::valid::Mo
         };
         let mut text = String::new();
         let policies = naga::proc::BoundsCheckPolicies::default();
-        let written = glsl::Writer::new(&mut text, module, info, &options, &pipeline, policies).and_then(|mut writer| writer.write());
+        let written = glsl::Writer::new(&mut text, module, info, &options, &pipeline, policies)
+            .and_then(|mut writer| writer.write());
         assert!(
             written.is_ok(),
             "{name}.wgsl, {}: {}",
@@ -44,17 +42,19 @@ fn every_shader_is_valid() {
         ("ring", RING),
         ("composite", COMPOSITE),
     ] {
-        let module = naga::front::wgsl::parse_str(source).unwrap_or_else(|e| panic!("{name}.wgsl: {}", e.emit_to_string(source)));
+        let module = naga::front::wgsl::parse_str(source)
+            .unwrap_or_else(|e| panic!("{name}.wgsl: {}", e.emit_to_string(source)));
         // No capabilities beyond the plain ones.
-        let mut validator = naga::valid::Validator::new(naga::valid::ValidationFlags::all(), naga::valid::Capabilities::empty());
+        let mut validator = naga::valid::Validator::new(
+            naga::valid::ValidationFlags::all(),
+            naga::valid::Capabilities::empty(),
+        );
         let info = validator
             .validate(&module)
             .unwrap_or_else(|e| panic!("{name}.wgsl: {}", e.emit_to_string(source)));
         translates_to_webgl(name, &module, &info);
-        let blocks = module
-            .global_variables
-            .iter()
-            .filter(|(_, v)| v.space == naga::AddressSpace::Uniform);
+        let blocks =
+            module.global_variables.iter().filter(|(_, v)| v.space == naga::AddressSpace::Uniform);
         for (_, block) in blocks {
             let size = module.types[block.ty].inner.size(module.to_ctx());
             assert!(size <= 16 * 1024, "{name}.wgsl: a uniform block of {size} bytes");

@@ -9,14 +9,13 @@ use segue_session::{Command, Session};
 use std::sync::Arc;
 use std::time::Instant;
 
-/// A rod along x, from -0.5 m to 0.5 m about the height of 1 m, that one joint moves at one end and another at the other.
+/// A rod along x, from -0.5 m to 0.5 m about the height of 1 m, that one joint moves at one end and
+/// another at the other.
 fn rod() -> SkinnedMesh {
     const SIDES: u32 = 24;
     const RINGS: u32 = 40;
-    let mut mesh = SkinnedMesh {
-        bind: vec![RigidTransform::IDENTITY; 2],
-        ..SkinnedMesh::default()
-    };
+    let mut mesh =
+        SkinnedMesh { bind: vec![RigidTransform::IDENTITY; 2], ..SkinnedMesh::default() };
     for ring in 0..=RINGS {
         let along = ring as f32 / RINGS as f32;
         for side in 0..SIDES {
@@ -39,11 +38,7 @@ fn rod() -> SkinnedMesh {
 }
 
 fn stage_of(mesh: &Arc<SkinnedMesh>, joints: &[RigidTransform], skinning: Skinning) -> Stage {
-    let viewport = Viewport {
-        width: SIZE,
-        height: SIZE,
-        ..Viewport::default()
-    };
+    let viewport = Viewport { width: SIZE, height: SIZE, ..Viewport::default() };
     let camera = Camera {
         target: Vec3::Y,
         yaw: 0.4,
@@ -62,12 +57,7 @@ fn stage_of(mesh: &Arc<SkinnedMesh>, joints: &[RigidTransform], skinning: Skinni
         panes: vec![Pane {
             viewport,
             camera,
-            figures: vec![Figure {
-                limbs: 0..0,
-                skin: Some(skin),
-                ghost: false,
-                shadow: 0.0,
-            }],
+            figures: vec![Figure { limbs: 0..0, skin: Some(skin), ghost: false, shadow: 0.0 }],
             joints: joints.to_vec(),
             joint_colors: vec![[1.0, 0.0, 0.0, 1.0]; joints.len()],
             skinning,
@@ -94,7 +84,11 @@ fn the_gpu_skins_as_the_plain_sums_do() {
     };
     let mut pictures = Vec::new();
     for (name, skinning) in [("dual", Skinning::Dual), ("linear", Skinning::Linear)] {
-        let image = gpu.draw(&format!("rod-{name}"), &stage_of(&mesh, &[first, twist], skinning), [SIZE, SIZE]);
+        let image = gpu.draw(
+            &format!("rod-{name}"),
+            &stage_of(&mesh, &[first, twist], skinning),
+            [SIZE, SIZE],
+        );
         let mut still = rod();
         let (mut positions, mut normals) = (Vec::new(), Vec::new());
         if skinning == Skinning::Dual {
@@ -104,7 +98,9 @@ fn the_gpu_skins_as_the_plain_sums_do() {
         }
         (still.positions, still.normals) = (positions, normals);
         let stage = stage_of(&Arc::new(still), &[RigidTransform::IDENTITY; 2], skinning);
-        let expected = render_to_image(&mut gpu.renderer, &gpu.device, &gpu.queue, &stage, [SIZE, SIZE]).unwrap();
+        let expected =
+            render_to_image(&mut gpu.renderer, &gpu.device, &gpu.queue, &stage, [SIZE, SIZE])
+                .unwrap();
         let differ = |a: &[u8], b: &[u8]| a.iter().zip(b).any(|(&a, &b)| a.abs_diff(b) > 6);
         let pixels = || image.rgba.chunks_exact(4).zip(expected.rgba.chunks_exact(4));
         let wrong = pixels().filter(|(a, b)| differ(a, b)).count();
@@ -154,12 +150,15 @@ fn session(link: &str) -> Session {
 fn a_twisted_forearm_in_both_ways_of_skinning() {
     let Some(mut gpu) = gpu() else { return };
     let size = [1200, 700];
-    let session =
-        session("lab=view&a=idle&t=0.4&compare=skinning:dual,linear&twist=170&camera_distance=1.3&follow_joint=left%20hand&trail=off");
+    let session = session(
+        "lab=view&a=idle&t=0.4&compare=skinning:dual,linear&twist=170&camera_distance=1.3&follow_joint=left%20hand&trail=off",
+    );
     let panes = session.panes().len();
     assert_eq!(panes, 2);
-    let shown: Vec<(usize, Viewport)> = Viewport::columns(size[0], size[1], 2, 1).enumerate().collect();
-    let stage = staged(&mut Director::default(), &session, &shown, 1.0, Look::DARK, &colors(0), 0.0);
+    let shown: Vec<(usize, Viewport)> =
+        Viewport::columns(size[0], size[1], 2, 1).enumerate().collect();
+    let stage =
+        staged(&mut Director::default(), &session, &shown, 1.0, Look::DARK, &colors(0), 0.0);
     assert_eq!(
         stage.panes.iter().map(|pane| pane.skinning).collect::<Vec<_>>(),
         [Skinning::Dual, Skinning::Linear]
@@ -173,10 +172,12 @@ fn statures() {
     let size = [1400, 560];
     let viewports: Vec<Viewport> = Viewport::columns(size[0], size[1], 4, 1).collect();
     let mut all = Stage::default();
-    for (viewport, stature) in viewports
-        .into_iter()
-        .zip(["figure_height=1", "figure_height=0.6", "figure_build=0.7", "figure_build=1.5"])
-    {
+    for (viewport, stature) in viewports.into_iter().zip([
+        "figure_height=1",
+        "figure_height=0.6",
+        "figure_build=0.7",
+        "figure_build=1.5",
+    ]) {
         let session = session(&format!("lab=view&a=walk&t=1.2&{stature}"));
         let stage = staged(
             &mut Director::default(),
@@ -187,9 +188,13 @@ fn statures() {
             &colors(1),
             0.0,
         );
-        // The world about a figure of 60 % is shown smaller by as much: from so much farther off, and with wider cells.
+        // The world about a figure of 60 % is shown smaller by as much: from so much farther off,
+        // and with wider cells.
         let height = if stature == "figure_height=0.6" { 0.6 } else { 1.0 };
-        assert!((stage.panes[0].camera.distance * height - 4.8).abs() < 1e-4 && (stage.grid_metres * height - 1.0).abs() < 1e-6);
+        assert!(
+            (stage.panes[0].camera.distance * height - 4.8).abs() < 1e-4
+                && (stage.grid_metres * height - 1.0).abs() < 1e-6
+        );
         all.panes.push(stage.panes[0].clone());
         (all.look, all.grid_metres) = (stage.look, 1.0);
     }
@@ -205,27 +210,20 @@ fn a_hundred_characters() {
     for _ in 0..120 {
         session.tick(1.0 / 60.0);
     }
-    let shown = [(
-        0,
-        Viewport {
-            width: size[0],
-            height: size[1],
-            ..Viewport::default()
-        },
-    )];
+    let shown = [(0, Viewport { width: size[0], height: size[1], ..Viewport::default() })];
     let mut director = Director::default();
     let mut frame = Frame::default();
     let (mut scene, mut build, mut encode) = (0.0, 0.0, 0.0);
     gpu.renderer.set_quality(Quality::Full);
     for round in 0..=ROUNDS {
         let start = Instant::now();
-        let stage = staged(&mut director, &session, &shown, 1.0, Look::DARK, &colors(0), 1.0 / 60.0);
+        let stage =
+            staged(&mut director, &session, &shown, 1.0, Look::DARK, &colors(0), 1.0 / 60.0);
         let made = Instant::now();
         frame.build(&stage, size, size, Quality::Full);
         let built = Instant::now();
-        let mut encoder = gpu
-            .device
-            .create_command_encoder(&eframe::wgpu::CommandEncoderDescriptor::default());
+        let mut encoder =
+            gpu.device.create_command_encoder(&eframe::wgpu::CommandEncoderDescriptor::default());
         gpu.renderer.prepare(&gpu.device, &gpu.queue, &mut encoder, 5, &stage, size);
         if round == 0 {
             // One draw for all of them.
@@ -255,9 +253,11 @@ fn a_hundred_characters() {
 fn time_in_software() {
     let Some(mut gpu) = gpu() else { return };
     let size = [1440, 900];
-    let shown: Vec<(usize, Viewport)> = Viewport::columns(size[0], size[1], 3, 1).enumerate().collect();
+    let shown: Vec<(usize, Viewport)> =
+        Viewport::columns(size[0], size[1], 3, 1).enumerate().collect();
     for look in ["body", "limbs"] {
-        let mut session = session(&format!("lab=blend&a=walk&b=run&compare=blend_window:30,15,10&look={look}"));
+        let mut session =
+            session(&format!("lab=blend&a=walk&b=run&compare=blend_window:30,15,10&look={look}"));
         let mut director = Director::default();
         let made = Instant::now();
         staged(&mut director, &session, &shown, 1.0, Look::DARK, &colors(0), 0.1);
@@ -267,7 +267,8 @@ fn time_in_software() {
             let mut secs = Vec::new();
             for round in 0..5 {
                 session.apply(Command::Seek(1.0 + 0.1 * f64::from(round))).unwrap();
-                let stage = staged(&mut director, &session, &shown, 1.0, Look::DARK, &colors(0), 0.1);
+                let stage =
+                    staged(&mut director, &session, &shown, 1.0, Look::DARK, &colors(0), 0.1);
                 let start = Instant::now();
                 let mut encoder = gpu
                     .device

@@ -1,4 +1,5 @@
-//! A body of tapered limbs, one per shape of [`segue_motion::skin::shapes`]: posed in microseconds, whatever the skeleton.
+//! A body of tapered limbs, one per shape of [`segue_motion::skin::shapes`]: posed in microseconds,
+//! whatever the skeleton.
 
 #[cfg(test)]
 mod tests;
@@ -10,11 +11,14 @@ use segue_motion::skin::{Character, Drive, SkinnedMesh};
 use std::borrow::Cow;
 use std::sync::Arc;
 
-/// Where two limbs meet in the same ball, the second one's becomes a little smaller, lest both surfaces flicker through each other.
+/// Where two limbs meet in the same ball, the second one's becomes a little smaller, lest both
+/// surfaces flicker through each other.
 fn set_balls_apart(shapes: &mut [Shape]) {
     for index in 1..shapes.len() {
         let (before, rest) = shapes.split_at_mut(index);
-        let Some(shape) = rest.first_mut() else { continue };
+        let Some(shape) = rest.first_mut() else {
+            continue;
+        };
         if before.iter().any(|other| other.b == shape.a && other.radius_b == shape.radius_a) {
             shape.radius_a *= 0.985;
         }
@@ -23,8 +27,9 @@ fn set_balls_apart(shapes: &mut [Shape]) {
 
 /// The shapes of one skeleton's body, made once and posed every frame.
 ///
-/// With the roles of a human it becomes a mannequin of human proportions (segment lengths are the skeleton's own; girths follow the body
-/// height). Any other tree gets one tapered limb per bone, each as thick as what hangs on it asks for.
+/// With the roles of a human it becomes a mannequin of human proportions (segment lengths are the
+/// skeleton's own; girths follow the body height). Any other tree gets one tapered limb per bone,
+/// each as thick as what hangs on it asks for.
 #[derive(Clone, Debug, Default)]
 pub struct Body {
     shapes: Vec<Shape>,
@@ -47,17 +52,21 @@ struct Led {
 }
 
 impl Body {
-    /// Makes the body of a skeleton of which nothing is known but its rest pose. `roles` may be missing or belong to another skeleton: the body is then
-    /// plainer.
+    /// Makes the body of a skeleton of which nothing is known but its rest pose. `roles` may be
+    /// missing or belong to another skeleton: the body is then plainer.
     #[must_use]
     pub fn new(skeleton: &Skeleton, roles: Option<&Roles>) -> Self {
         Self::standing(skeleton, roles, &skeleton.rest_pose())
     }
 
-    /// Makes the body of a skeleton on its [`canonical_stance`]; `reference` shows how the bones lie to each other ([`segue_motion::clip::reference_pose`]).
+    /// Makes the body of a skeleton on its [`canonical_stance`]; `reference` shows how the bones
+    /// lie to each other ([`segue_motion::clip::reference_pose`]).
     #[must_use]
     pub fn standing(skeleton: &Skeleton, roles: Option<&Roles>, reference: &WorldPose) -> Self {
-        let stance = roles.map_or_else(|| skeleton.rest_pose(), |roles| canonical_stance(skeleton, roles, reference));
+        let stance = roles.map_or_else(
+            || skeleton.rest_pose(),
+            |roles| canonical_stance(skeleton, roles, reference),
+        );
         let skeleton = &skeleton.resting_in(&stance);
         let rest = skeleton.rest_positions();
         let mut shapes = limb_shapes(skeleton, &rest, roles);
@@ -66,15 +75,11 @@ impl Body {
         // The renderer lets only the first few of a body shade the others: the big ones come first.
         shapes.sort_by(|x, y| y.weight(&rest).total_cmp(&x.weight(&rest)));
         let shapes = shapes.into_iter().map(|shape| shape.in_axes_of(&stance)).collect();
-        Self {
-            shapes,
-            skin: None,
-            led: None,
-            size: None,
-        }
+        Self { shapes, skin: None, led: None, size: None }
     }
 
-    /// The body of a character that poses of another skeleton, with those roles, move through `drive`.
+    /// The body of a character that poses of another skeleton, with those roles, move through
+    /// `drive`.
     #[must_use]
     pub fn led(character: &Character, drive: Drive, source: &Skeleton, roles: &Roles) -> Self {
         let skeleton = &character.skeleton;
@@ -105,8 +110,13 @@ impl Body {
         }
     }
 
-    /// The pose of the body's own skeleton for a pose of the one that moves it, written to `out`; `None` where both are the same.
-    pub(super) fn led_pose<'a>(&self, pose: &WorldPose, out: &'a mut WorldPose) -> Option<&'a WorldPose> {
+    /// The pose of the body's own skeleton for a pose of the one that moves it, written to `out`;
+    /// `None` where both are the same.
+    pub(super) fn led_pose<'a>(
+        &self,
+        pose: &WorldPose,
+        out: &'a mut WorldPose,
+    ) -> Option<&'a WorldPose> {
         let led = self.led.as_ref()?;
         led.drive.pose(pose, out);
         Some(out)
@@ -134,8 +144,12 @@ impl Body {
         self.size.unwrap_or(1.0)
     }
 
-    /// The skeleton of the figure that is seen, and what its joints are for: its own where another skeleton moves the body.
-    pub(super) fn seen<'a>(&'a self, moving: (&'a Skeleton, &'a Roles)) -> (&'a Skeleton, &'a Roles) {
+    /// The skeleton of the figure that is seen, and what its joints are for: its own where another
+    /// skeleton moves the body.
+    pub(super) fn seen<'a>(
+        &'a self,
+        moving: (&'a Skeleton, &'a Roles),
+    ) -> (&'a Skeleton, &'a Roles) {
         self.led.as_ref().map_or(moving, |led| (&led.skeleton, &led.roles))
     }
 
@@ -161,7 +175,8 @@ impl Body {
         self
     }
 
-    /// The body in a skin: it is seen in place of the limbs, which go on to shade the ground. The mesh is one of the same skeleton.
+    /// The body in a skin: it is seen in place of the limbs, which go on to shade the ground. The
+    /// mesh is one of the same skeleton.
     #[must_use]
     pub fn with_skin(self, mesh: Arc<SkinnedMesh>) -> Self {
         Self { skin: Some(mesh), ..self }
@@ -185,17 +200,15 @@ impl Body {
     }
 
     /// Likewise, each limb in the colour of the joint that moves it.
-    pub fn colored_limbs(&self, pose: &WorldPose, color_of: impl Fn(usize) -> Color, out: &mut Vec<Limb>) {
+    pub fn colored_limbs(
+        &self,
+        pose: &WorldPose,
+        color_of: impl Fn(usize) -> Color,
+        out: &mut Vec<Limb>,
+    ) {
         out.reserve(self.shapes.len());
         for shape in &self.shapes {
-            let Some(PlacedShape {
-                a,
-                b,
-                radius_a,
-                radius_b,
-                flat,
-                flatness,
-            }) = shape.placed(pose)
+            let Some(PlacedShape { a, b, radius_a, radius_b, flat, flatness }) = shape.placed(pose)
             else {
                 continue;
             };

@@ -48,18 +48,18 @@ fn adult() -> Skeleton {
 }
 
 fn rest_limbs(skeleton: &Skeleton, body: &Body) -> Vec<Limb> {
-    let pose = Pose {
-        root_translation: skeleton.joints()[0].offset,
-        ..Pose::default()
-    };
+    let pose = Pose { root_translation: skeleton.joints()[0].offset, ..Pose::default() };
     let mut limbs = Vec::new();
     body.limbs(&world_pose(skeleton, &pose), rgb(0xff_ff_ff), &mut limbs);
     limbs
 }
 
 fn lowest(limbs: &[Limb]) -> f32 {
-    // Half the height of an ellipse of radius r, scaled by k along the unit vector f, in the direction y: r √(1 - f_y² (1 - k²)).
-    let reach = |limb: &Limb, radius: f32| radius * (1.0 - limb.flat.y.powi(2) * (1.0 - limb.flatness.powi(2))).sqrt();
+    // Half the height of an ellipse of radius r, scaled by k along the unit vector f, in the
+    // direction y: r √(1 - f_y² (1 - k²)).
+    let reach = |limb: &Limb, radius: f32| {
+        radius * (1.0 - limb.flat.y.powi(2) * (1.0 - limb.flatness.powi(2))).sqrt()
+    };
     limbs
         .iter()
         .flat_map(|l| [l.a.y - reach(l, l.radius_a), l.b.y - reach(l, l.radius_b)])
@@ -72,21 +72,24 @@ fn an_adult_is_as_high_and_wide_as_an_adult_and_the_same_on_both_sides() {
     let body = Body::new(&skeleton, Some(&Roles::detect(&skeleton)));
     let limbs = rest_limbs(&skeleton, &body);
     assert_eq!(limbs.len(), body.limb_count());
-    let top = limbs
-        .iter()
-        .map(|l| (l.a.y + l.radius_a).max(l.b.y + l.radius_b))
-        .fold(0.0, f32::max);
+    let top =
+        limbs.iter().map(|l| (l.a.y + l.radius_a).max(l.b.y + l.radius_b)).fold(0.0, f32::max);
     assert!((1.6..1.85).contains(&top), "crown at {top} m");
-    // The joint at the ball of the foot is at 2 cm: the sole lies on the ground, give or take a centimetre.
+    // The joint at the ball of the foot is at 2 cm: the sole lies on the ground, give or take a
+    // centimetre.
     assert!(lowest(&limbs).abs() < 0.012, "sole at {} m", lowest(&limbs));
     for limb in &limbs {
         let mirrored = |p: Vec3| p * Vec3::new(-1.0, 1.0, 1.0);
         let twin = limbs.iter().any(|other| {
-            let straight = other.a.distance(mirrored(limb.a)) < 1e-4 && other.b.distance(mirrored(limb.b)) < 1e-4;
-            let turned = other.b.distance(mirrored(limb.a)) < 1e-4 && other.a.distance(mirrored(limb.b)) < 1e-4;
+            let straight = other.a.distance(mirrored(limb.a)) < 1e-4
+                && other.b.distance(mirrored(limb.b)) < 1e-4;
+            let turned = other.b.distance(mirrored(limb.a)) < 1e-4
+                && other.a.distance(mirrored(limb.b)) < 1e-4;
             let same = |x: f32, y: f32| (x - y).abs() < 1e-5;
             (straight && same(other.radius_a, limb.radius_a) && same(other.radius_b, limb.radius_b))
-                || (turned && same(other.radius_a, limb.radius_b) && same(other.radius_b, limb.radius_a))
+                || (turned
+                    && same(other.radius_a, limb.radius_b)
+                    && same(other.radius_b, limb.radius_a))
         });
         assert!(twin, "no mirror image of {limb:?}");
     }
@@ -96,14 +99,7 @@ fn an_adult_is_as_high_and_wide_as_an_adult_and_the_same_on_both_sides() {
 fn the_body_scales_with_the_skeleton_and_moves_with_it() {
     let skeleton = adult();
     let half = Skeleton::new(
-        skeleton
-            .joints()
-            .iter()
-            .map(|j| Joint {
-                offset: j.offset * 0.5,
-                ..j.clone()
-            })
-            .collect(),
+        skeleton.joints().iter().map(|j| Joint { offset: j.offset * 0.5, ..j.clone() }).collect(),
     )
     .unwrap();
     let full = rest_limbs(&skeleton, &Body::new(&skeleton, Some(&Roles::detect(&skeleton))));
@@ -119,14 +115,7 @@ fn the_body_scales_with_the_skeleton_and_moves_with_it() {
     let root_translation = skeleton.joints()[0].offset;
     let mut turned = Vec::new();
     body.limbs(
-        &world_pose(
-            &skeleton,
-            &Pose {
-                root_translation,
-                rotations,
-                translations: vec![],
-            },
-        ),
+        &world_pose(&skeleton, &Pose { root_translation, rotations, translations: vec![] }),
         rgb(0),
         &mut turned,
     );
@@ -137,7 +126,8 @@ fn the_body_scales_with_the_skeleton_and_moves_with_it() {
 
 #[test]
 fn legs_that_rest_upside_down_get_the_same_shapes() {
-    // Some files let every bone of the resting skeleton point along one axis; a pose turns the legs down. Knees and feet must look the same.
+    // Some files let every bone of the resting skeleton point along one axis; a pose turns the legs
+    // down. Knees and feet must look the same.
     let upright = adult();
     let mut joints = upright.joints().to_vec();
     for joint in [1, 5] {
@@ -155,14 +145,7 @@ fn legs_that_rest_upside_down_get_the_same_shapes() {
     let body = Body::new(&odd, Some(&Roles::detect(&odd)));
     let mut limbs = Vec::new();
     body.limbs(
-        &world_pose(
-            &odd,
-            &Pose {
-                root_translation,
-                rotations,
-                translations: vec![],
-            },
-        ),
+        &world_pose(&odd, &Pose { root_translation, rotations, translations: vec![] }),
         rgb(0),
         &mut limbs,
     );
@@ -205,23 +188,18 @@ fn degenerate_skeletons_have_a_body_too() {
     ]);
     let limbs = rest_limbs(&flat, &Body::new(&flat, Some(&Roles::detect(&flat))));
     assert!(!limbs.is_empty() && limbs.iter().all(|l| l.radius_a > 0.0 && l.a.is_finite()));
-    // A pose with fewer joints than the body leaves the rest out, and one with numbers that are none too.
+    // A pose with fewer joints than the body leaves the rest out, and one with numbers that are
+    // none too.
     let body = Body::new(&adult(), None);
     let mut out = Vec::new();
     body.limbs(
-        &WorldPose {
-            positions: vec![Vec3::ZERO],
-            rotations: vec![Quat::IDENTITY],
-        },
+        &WorldPose { positions: vec![Vec3::ZERO], rotations: vec![Quat::IDENTITY] },
         rgb(0),
         &mut out,
     );
     assert!(out.len() <= 1);
     body.limbs(
-        &WorldPose {
-            positions: vec![Vec3::NAN; 22],
-            rotations: vec![Quat::IDENTITY; 22],
-        },
+        &WorldPose { positions: vec![Vec3::NAN; 22], rotations: vec![Quat::IDENTITY; 22] },
         rgb(0),
         &mut out,
     );
@@ -264,7 +242,8 @@ fn a_character_is_led_by_another_skeleton_and_wears_its_colours() {
 fn girth_widens_and_lengthens_nothing() {
     let skeleton = adult();
     let roles = Roles::detect(&skeleton);
-    let limbs = |girth: f32| rest_limbs(&skeleton, &Body::new(&skeleton, Some(&roles)).with_girth(girth));
+    let limbs =
+        |girth: f32| rest_limbs(&skeleton, &Body::new(&skeleton, Some(&roles)).with_girth(girth));
     for (thin, broad) in limbs(1.0).iter().zip(limbs(1.5)) {
         assert_eq!((thin.a, thin.b), (broad.a, broad.b));
         assert!((broad.radius_a - 1.5 * thin.radius_a).abs() < 1e-6);

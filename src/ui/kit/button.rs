@@ -4,7 +4,10 @@ use super::icon::{Icon, paint_icon};
 use super::paint::{Run, faded, focus_ring, line_of};
 use crate::ui::language::tr;
 use crate::ui::theme::{HIT, Palette, Type, palette_of, radius, space, theme_of};
-use eframe::egui::{Align2, Color32, CursorIcon, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
+use eframe::egui::{
+    Align2, Color32, CursorIcon, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2,
+    vec2,
+};
 
 /// How loud a button is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -44,16 +47,10 @@ impl<'a> Button<'a> {
         }
     }
 
-    /// A button that is only an icon; `name` is what it is called, and its hint until another is given.
+    /// A button that is only an icon; `name` is what it is called, and its hint until another is
+    /// given.
     pub(crate) fn icon_only(icon: Icon, name: &'a str) -> Self {
-        Self {
-            text: "",
-            name,
-            icon: Some(icon),
-            hint: name,
-            tone: Tone::Quiet,
-            ..Self::new("")
-        }
+        Self { text: "", name, icon: Some(icon), hint: name, tone: Tone::Quiet, ..Self::new("") }
     }
 
     /// The one thing to do here.
@@ -144,9 +141,7 @@ pub(crate) fn button_ui(button: Button<'_>, ui: &mut Ui) -> Response {
     let text_width = if button.text.is_empty() {
         0.0
     } else {
-        line_of(&[Run::new(button.text, step, palette.text)], width_limit.max(40.0), ui)
-            .size()
-            .x
+        line_of(&[Run::new(button.text, step, palette.text)], width_limit.max(40.0), ui).size().x
     };
     let mut content = text_width;
     let icons = [button.icon, button.trailing].into_iter().flatten().count() as f32;
@@ -154,34 +149,38 @@ pub(crate) fn button_ui(button: Button<'_>, ui: &mut Ui) -> Response {
     if !button.text.is_empty() {
         content += icons * 6.0;
     }
-    let padding = if button.text.is_empty() {
-        (height - icon_size) / 2.0
-    } else {
-        space::M
-    };
+    let padding = if button.text.is_empty() { (height - icon_size) / 2.0 } else { space::M };
     let size = vec2((content + 2.0 * padding).max(HIT), height);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     let response = response.on_hover_cursor(CursorIcon::PointingHand);
 
     if ui.is_rect_visible(rect) {
         let hovered = response.hovered() || response.has_focus();
-        let (fill, line, ink) = button.colors(hovered, response.is_pointer_button_down_on(), palette);
+        let (fill, line, ink) =
+            button.colors(hovered, response.is_pointer_button_down_on(), palette);
         let ink = faded(ink, enabled);
         let stroke = Stroke::new(theme.hairline(), line);
         ui.painter().rect(rect, radius::M, faded(fill, enabled), stroke, StrokeKind::Inside);
         let mut x = rect.center().x - content / 2.0;
         if let Some(icon) = button.icon {
-            let at = Align2::LEFT_CENTER.anchor_size(pos2(x, rect.center().y), vec2(icon_size, icon_size));
+            let at = Align2::LEFT_CENTER
+                .anchor_size(pos2(x, rect.center().y), vec2(icon_size, icon_size));
             paint_icon(icon, at, ink, ui.painter());
             x += icon_size + 6.0;
         }
         if !button.text.is_empty() {
             let galley = line_of(&[Run::new(button.text, step, ink)], width_limit.max(40.0), ui);
-            let at = super::paint::put(ui.painter(), pos2(x, rect.center().y), Align2::LEFT_CENTER, galley);
+            let at = super::paint::put(
+                ui.painter(),
+                pos2(x, rect.center().y),
+                Align2::LEFT_CENTER,
+                galley,
+            );
             x = at.right() + 6.0;
         }
         if let Some(icon) = button.trailing {
-            let at = Align2::LEFT_CENTER.anchor_size(pos2(x, rect.center().y), vec2(icon_size, icon_size));
+            let at = Align2::LEFT_CENTER
+                .anchor_size(pos2(x, rect.center().y), vec2(icon_size, icon_size));
             paint_icon(
                 icon,
                 at.shrink(1.0),
@@ -198,11 +197,7 @@ pub(crate) fn button_ui(button: Button<'_>, ui: &mut Ui) -> Response {
         }
         info
     });
-    if button.hint.is_empty() {
-        response
-    } else {
-        response.on_hover_text(tr(button.hint, ui))
-    }
+    if button.hint.is_empty() { response } else { response.on_hover_text(tr(button.hint, ui)) }
 }
 
 /// A small square button that is only an icon.
@@ -219,18 +214,17 @@ pub(crate) fn link_ui(text: &str, ui: &mut Ui) -> Response {
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     let response = response.on_hover_cursor(CursorIcon::PointingHand);
     let ink = faded(
-        if response.hovered() || response.has_focus() {
-            palette.accent_ink
-        } else {
-            palette.text
-        },
+        if response.hovered() || response.has_focus() { palette.accent_ink } else { palette.text },
         enabled,
     );
     let galley = line_of(&[Run::new(text, Type::Body, ink)], f32::INFINITY, ui);
     let at = super::paint::put(ui.painter(), rect.center(), Align2::CENTER_CENTER, galley);
     let under = if response.hovered() { ink } else { palette.line_strong };
-    ui.painter()
-        .hline(at.x_range(), at.bottom() - 1.0, Stroke::new(theme_of(ui).hairline(), under));
+    ui.painter().hline(
+        at.x_range(),
+        at.bottom() - 1.0,
+        Stroke::new(theme_of(ui).hairline(), under),
+    );
     focus_ring(at, radius::S, &response, ui);
     response.widget_info(|| WidgetInfo::labeled(Role::Link, enabled, text));
     response

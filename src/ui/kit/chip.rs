@@ -3,7 +3,10 @@
 use super::icon::Icon;
 use super::paint::{Run, line_of, put};
 use crate::ui::theme::{Palette, Type, palette_of, radius, theme_of};
-use eframe::egui::{Align2, Color32, Painter, Pos2, Rect, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo, vec2};
+use eframe::egui::{
+    Align2, Color32, Painter, Pos2, Rect, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo,
+    vec2,
+};
 
 /// What a coloured word means. The colour never says it alone: the word does too.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -88,7 +91,8 @@ impl Part {
 
 /// How large a chip is.
 pub(crate) fn chip_size(text: &str, ui: &Ui) -> Vec2 {
-    line_of(&[Run::new(text, Type::SmallStrong, Color32::PLACEHOLDER)], f32::INFINITY, ui).size() + vec2(16.0, 6.0)
+    line_of(&[Run::new(text, Type::SmallStrong, Color32::PLACEHOLDER)], f32::INFINITY, ui).size()
+        + vec2(16.0, 6.0)
 }
 
 /// Draws a chip whose right end lies at `right_center`; where it lies then.
@@ -127,15 +131,9 @@ pub(crate) fn recording_ui(name: &str, secs: f64, right_center: Pos2, ui: &mut U
     let size = vec2(galley.size().x + 32.0 * scale, height);
     let rect = Align2::RIGHT_CENTER.anchor_size(right_center, size);
     let line = Stroke::new(theme_of(ui).hairline(), palette.line);
-    ui.painter()
-        .rect(rect, height / 2.0, palette.panel_raised, line, StrokeKind::Inside);
+    ui.painter().rect(rect, height / 2.0, palette.panel_raised, line, StrokeKind::Inside);
     dot(rect.left_center() + vec2(13.0 * scale, 0.0), palette.bad, 4.5 * scale, ui.painter());
-    put(
-        ui.painter(),
-        rect.right_center() - vec2(10.0 * scale, 0.0),
-        Align2::RIGHT_CENTER,
-        galley,
-    );
+    put(ui.painter(), rect.right_center() - vec2(10.0 * scale, 0.0), Align2::RIGHT_CENTER, galley);
     let response = ui.interact(rect, ui.make_persistent_id(("recording", name)), Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("{name}, {time}")));
     rect

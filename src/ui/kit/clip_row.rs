@@ -5,7 +5,10 @@ use super::icon::{Icon, paint_icon};
 use super::paint::{Run, focus_ring, full_width, line_of, paragraph, put};
 use crate::ui::language::tr;
 use crate::ui::theme::{HIT, Type, palette_of, radius, space, theme_of};
-use eframe::egui::{Align2, Color32, CursorIcon, Id, Rect, Response, Role, Sense, Stroke, Ui, Vec2, WidgetInfo, pos2, vec2};
+use eframe::egui::{
+    Align2, Color32, CursorIcon, Id, Rect, Response, Role, Sense, Stroke, Ui, Vec2, WidgetInfo,
+    pos2, vec2,
+};
 
 /// What the library knows of a clip at a glance.
 #[derive(Clone, Copy, Debug, Default)]
@@ -39,7 +42,8 @@ pub(crate) struct ClipRowResponse {
     pub(crate) response: Response,
 }
 
-/// A clip: its letter, name and facts; a sign if its file was odd; what one may do with it while the pointer is there.
+/// A clip: its letter, name and facts; a sign if its file was odd; what one may do with it while
+/// the pointer is there.
 pub(crate) fn clip_row_ui(row: ClipRow<'_>, ui: &mut Ui) -> ClipRowResponse {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let scale = theme.scale();
@@ -54,9 +58,8 @@ pub(crate) fn clip_row_ui(row: ClipRow<'_>, ui: &mut Ui) -> ClipRowResponse {
     let height = (name_height + detail.size().y + 2.0 * pad).max(44.0 * scale).round();
     let rect = full_width(height, ui);
     let id = ui.make_persistent_id(("clip", row.name));
-    let response = ui
-        .interact(rect, id, Sense::click_and_drag())
-        .on_hover_cursor(CursorIcon::PointingHand);
+    let response =
+        ui.interact(rect, id, Sense::click_and_drag()).on_hover_cursor(CursorIcon::PointingHand);
 
     // The pointer may be on a button inside the row: the row is hovered then as well.
     let hovered = response.contains_pointer();
@@ -66,7 +69,10 @@ pub(crate) fn clip_row_ui(row: ClipRow<'_>, ui: &mut Ui) -> ClipRowResponse {
         (false, false) => Color32::TRANSPARENT,
     };
     ui.painter().rect_filled(rect, radius::M, ground);
-    let badge = Rect::from_min_size(pos2(rect.left() + pad, rect.top() + pad + 3.0), Vec2::splat(badge_side));
+    let badge = Rect::from_min_size(
+        pos2(rect.left() + pad, rect.top() + pad + 3.0),
+        Vec2::splat(badge_side),
+    );
     paint_badge(row.part, badge, ui);
 
     let show_actions = (hovered || response.has_focus()) && !row.actions.is_empty();
@@ -99,11 +105,21 @@ pub(crate) fn clip_row_ui(row: ClipRow<'_>, ui: &mut Ui) -> ClipRowResponse {
         .interact(badge_hit, id.with("badge"), Sense::click())
         .on_hover_cursor(CursorIcon::PointingHand);
     focus_ring(badge, radius::S, &badge_response, ui);
-    badge_response.widget_info(|| WidgetInfo::labeled(Role::Button, ui.is_enabled(), format!("{}: {}", row.name, row.part.letter())));
+    badge_response.widget_info(|| {
+        WidgetInfo::labeled(
+            Role::Button,
+            ui.is_enabled(),
+            format!("{}: {}", row.name, row.part.letter()),
+        )
+    });
     if badge_response.hovered() {
         let ring = Stroke::new(1.5, palette.text);
-        ui.painter()
-            .rect_stroke(badge.expand(2.0), radius::M, ring, eframe::egui::StrokeKind::Middle);
+        ui.painter().rect_stroke(
+            badge.expand(2.0),
+            radius::M,
+            ring,
+            eframe::egui::StrokeKind::Middle,
+        );
     }
 
     let mut right = rect.right() - pad / 2.0;
@@ -135,7 +151,14 @@ pub(crate) fn clip_row_ui(row: ClipRow<'_>, ui: &mut Ui) -> ClipRowResponse {
 }
 
 /// An icon inside another widget, pressed by itself.
-pub(super) fn small_icon_ui(icon: Icon, name: &str, id: Id, rect: Rect, ground: Color32, ui: &Ui) -> Response {
+pub(super) fn small_icon_ui(
+    icon: Icon,
+    name: &str,
+    id: Id,
+    rect: Rect,
+    ground: Color32,
+    ui: &Ui,
+) -> Response {
     let palette = palette_of(ui);
     let response = ui.interact(rect, id, Sense::click()).on_hover_cursor(CursorIcon::PointingHand);
     let hot = response.hovered() || response.has_focus();

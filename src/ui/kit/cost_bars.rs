@@ -2,7 +2,9 @@
 
 use super::paint::{Run, focus_ring, full_width, line_of, put};
 use crate::ui::theme::{HIT, Type, palette_of, radius, space, theme_of};
-use eframe::egui::{Align2, Color32, CursorIcon, Rangef, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2};
+use eframe::egui::{
+    Align2, Color32, CursorIcon, Rangef, Rect, Role, Sense, Ui, WidgetInfo, pos2, vec2,
+};
 
 /// One cost.
 #[derive(Clone, Debug)]
@@ -49,7 +51,14 @@ pub(crate) fn cost_bars_ui(bars: &CostBars<'_>, ui: &mut Ui) -> CostResponse {
         let response = ui
             .interact(rect, ui.make_persistent_id(("cost", index)), Sense::click())
             .on_hover_cursor(CursorIcon::PointingHand);
-        response.widget_info(|| WidgetInfo::selected(Role::Button, true, row.shown, format!("{}: {:.decimals$}", row.name, total(row))));
+        response.widget_info(|| {
+            WidgetInfo::selected(
+                Role::Button,
+                true,
+                row.shown,
+                format!("{}: {:.decimals$}", row.name, total(row)),
+            )
+        });
         if response.clicked() {
             found.clicked = Some(index);
         }
@@ -62,14 +71,22 @@ pub(crate) fn cost_bars_ui(bars: &CostBars<'_>, ui: &mut Ui) -> CostResponse {
         }
         let step = if row.strong { Type::SmallStrong } else { Type::Small };
         let ink = if row.strong { palette.text } else { palette.muted };
-        let number = line_of(&[Run::new(&format!("{:.decimals$}", total(row)), step, ink)], f32::INFINITY, ui);
+        let number = line_of(
+            &[Run::new(&format!("{:.decimals$}", total(row)), step, ink)],
+            f32::INFINITY,
+            ui,
+        );
         let first = rect.top() + 0.28 * rect.height();
         let number = put(ui.painter(), pos2(rect.right(), first), Align2::RIGHT_CENTER, number);
-        let name = line_of(&[Run::new(&row.name, step, ink)], number.left() - rect.left() - space::S, ui);
+        let name =
+            line_of(&[Run::new(&row.name, step, ink)], number.left() - rect.left() - space::S, ui);
         put(ui.painter(), pos2(rect.left(), first), Align2::LEFT_CENTER, name);
         let y = Rangef::new(rect.top() + 0.58 * rect.height(), rect.bottom() - 5.0);
-        ui.painter()
-            .rect_filled(Rect::from_x_y_ranges(rect.x_range(), y), radius::S / 2, palette.track);
+        ui.painter().rect_filled(
+            Rect::from_x_y_ranges(rect.x_range(), y),
+            radius::S / 2,
+            palette.track,
+        );
         let mut left = rect.left();
         for (part, (_, color)) in row.parts.iter().zip(bars.parts) {
             let right = left + part / most * rect.width();
@@ -85,7 +102,8 @@ pub(crate) fn cost_bars_ui(bars: &CostBars<'_>, ui: &mut Ui) -> CostResponse {
         for (name, color) in bars.parts {
             let galley = line_of(&[Run::new(name, Type::Small, palette.muted)], f32::INFINITY, ui);
             let (_, rect) = ui.allocate_space(galley.size() + vec2(12.0, 0.0));
-            let square = Rect::from_center_size(pos2(rect.left() + 4.0, rect.center().y), vec2(8.0, 8.0));
+            let square =
+                Rect::from_center_size(pos2(rect.left() + 4.0, rect.center().y), vec2(8.0, 8.0));
             ui.painter().rect_filled(square, 2, *color);
             put(ui.painter(), rect.left_center() + vec2(12.0, 0.0), Align2::LEFT_CENTER, galley);
         }

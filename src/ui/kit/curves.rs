@@ -3,7 +3,9 @@
 use super::paint::{Run, line_of, put};
 use super::timeline::{TimeAxis, hovered_time, nice_step};
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
-use eframe::egui::{Align2, Color32, Rect, Response, Sense, Stroke, StrokeKind, Ui, UiBuilder, Vec2b, pos2, vec2};
+use eframe::egui::{
+    Align2, Color32, Rect, Response, Sense, Stroke, StrokeKind, Ui, UiBuilder, Vec2b, pos2, vec2,
+};
 use egui_plot::{GridMark, Line, Plot, PlotPoint, PlotPoints};
 
 /// One curve.
@@ -58,17 +60,21 @@ impl Curves<'_> {
             0.5 * high.abs().max(1.0)
         };
         // What must be in sight as a limit, such as standing still, needs no margin beyond it.
-        let floor = if self.include == Some(low) {
-            low - 0.02 * (high - low)
-        } else {
-            low - margin
-        };
+        let floor =
+            if self.include == Some(low) { low - 0.02 * (high - low) } else { low - margin };
         (floor, high + margin)
     }
 }
 
-/// Draws the curves into `plot`, whose width is the axis of time; with `scale_labels`, what its lines stand for is written before it.
-pub(super) fn curves_ui(curves: &Curves<'_>, axis: TimeAxis, plot: Rect, scale_labels: bool, ui: &mut Ui) {
+/// Draws the curves into `plot`, whose width is the axis of time; with `scale_labels`, what its
+/// lines stand for is written before it.
+pub(super) fn curves_ui(
+    curves: &Curves<'_>,
+    axis: TimeAxis,
+    plot: Rect,
+    scale_labels: bool,
+    ui: &mut Ui,
+) {
     if plot.width() < 2.0 || plot.height() < 2.0 || axis.duration <= 0.0 {
         return;
     }
@@ -77,9 +83,7 @@ pub(super) fn curves_ui(curves: &Curves<'_>, axis: TimeAxis, plot: Rect, scale_l
     let step = nice_step(high - low, f64::from(plot.height() / (24.0 * theme.scale())));
     let first = (low / step).ceil();
     let marks = move || {
-        (0..)
-            .map(move |i| (first + f64::from(i)) * step)
-            .take_while(move |&value| value <= high)
+        (0..).map(move |i| (first + f64::from(i)) * step).take_while(move |&value| value <= high)
     };
     let builder = UiBuilder::new().id_salt("curves").max_rect(plot);
     ui.scope_builder(builder, |ui| {
@@ -94,7 +98,9 @@ pub(super) fn curves_ui(curves: &Curves<'_>, axis: TimeAxis, plot: Rect, scale_l
             .show_grid([false, true])
             .grid_color(palette.line)
             .grid_fade(0.0)
-            .y_grid_spacer(move |_| marks().map(|value| GridMark { value, step_size: step }).collect())
+            .y_grid_spacer(move |_| {
+                marks().map(|value| GridMark { value, step_size: step }).collect()
+            })
             .show_crosshair(false)
             .allow_zoom(false)
             .allow_drag(false)
@@ -116,9 +122,14 @@ pub(super) fn curves_ui(curves: &Curves<'_>, axis: TimeAxis, plot: Rect, scale_l
                         .split(|point| !(point[0].is_finite() && point[1].is_finite()))
                         .filter(|run| run.len() > 1)
                     {
-                        let points: Vec<PlotPoint> = run.iter().map(|&[x, y]| PlotPoint::new(x, y)).collect();
+                        let points: Vec<PlotPoint> =
+                            run.iter().map(|&[x, y]| PlotPoint::new(x, y)).collect();
                         let stroke = Stroke::new(width, series.color);
-                        plot_ui.line(Line::new(series.name, PlotPoints::Owned(points)).stroke(stroke).allow_hover(false));
+                        plot_ui.line(
+                            Line::new(series.name, PlotPoints::Owned(points))
+                                .stroke(stroke)
+                                .allow_hover(false),
+                        );
                     }
                 }
             }
@@ -143,7 +154,8 @@ pub(super) fn key_ui(curves: &Curves<'_>, area: Rect, ui: &Ui) {
     let title = line_of(&[Run::new(title.trim(), Type::Small, palette.muted)], area.width(), ui);
     let at = put(ui.painter(), area.left_top() + vec2(0.0, space::S), Align2::LEFT_TOP, title);
     // Letters share a line; words have one each.
-    let (letters, words): (Vec<_>, Vec<_>) = curves.series.iter().partition(|series| series.name.chars().count() == 1);
+    let (letters, words): (Vec<_>, Vec<_>) =
+        curves.series.iter().partition(|series| series.name.chars().count() == 1);
     let lines = if words.len() > 1 {
         std::iter::once(letters).chain(words.into_iter().map(|word| vec![word])).collect()
     } else {
@@ -156,7 +168,11 @@ pub(super) fn key_ui(curves: &Curves<'_>, area: Rect, ui: &Ui) {
             if index > 0 {
                 runs.push(Run::new("·", Type::Small, palette.muted).after(space::XS));
             }
-            runs.push(Run::new(series.name, Type::Small, series.ink).after(if index > 0 { space::XS } else { 0.0 }));
+            runs.push(Run::new(series.name, Type::Small, series.ink).after(if index > 0 {
+                space::XS
+            } else {
+                0.0
+            }));
         }
         let names = line_of(&runs, area.width(), ui);
         // The last one may hang into the time's axis, which begins beside it.
@@ -168,8 +184,16 @@ pub(super) fn key_ui(curves: &Curves<'_>, area: Rect, ui: &Ui) {
 }
 
 /// What the curves say at the pointer: a dot on each, and their values with the unit.
-pub(super) fn hover_ui(curves: &Curves<'_>, axis: TimeAxis, plot: Rect, response: &Response, ui: &Ui) {
-    let Some(time) = hovered_time(axis, plot, response) else { return };
+pub(super) fn hover_ui(
+    curves: &Curves<'_>,
+    axis: TimeAxis,
+    plot: Rect,
+    response: &Response,
+    ui: &Ui,
+) {
+    let Some(time) = hovered_time(axis, plot, response) else {
+        return;
+    };
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let (low, high) = curves.bounds();
     let painter = ui.painter();
@@ -185,7 +209,12 @@ pub(super) fn hover_ui(curves: &Curves<'_>, axis: TimeAxis, plot: Rect, response
         .filter_map(|series| {
             let value = value_at(series.points, time)?;
             let y = plot.bottom() - ((value - low) / (high - low)) as f32 * plot.height();
-            painter.circle(pos2(x, y), 3.0 * theme.scale(), series.color, Stroke::new(1.5, palette.panel));
+            painter.circle(
+                pos2(x, y),
+                3.0 * theme.scale(),
+                series.color,
+                Stroke::new(1.5, palette.panel),
+            );
             Some((format!("{value:.*}", curves.decimals).replace('-', "−"), series))
         })
         .collect();
@@ -250,23 +279,12 @@ mod tests {
             strong: true,
             points: &points,
         }];
-        let curves = Curves {
-            include: Some(0.0),
-            series: &series,
-            ..Curves::default()
-        };
+        let curves = Curves { include: Some(0.0), series: &series, ..Curves::default() };
         let (low, high) = curves.bounds();
         assert!(low <= 0.0 && low > -0.5 && high > 5.0 && high < 6.0);
         let flat = [[0.0, 2.0], [1.0, 2.0]];
-        let series = [Series {
-            points: &flat,
-            ..series[0]
-        }];
-        let (low, high) = Curves {
-            series: &series,
-            ..Curves::default()
-        }
-        .bounds();
+        let series = [Series { points: &flat, ..series[0] }];
+        let (low, high) = Curves { series: &series, ..Curves::default() }.bounds();
         assert!(low < 2.0 && high > 2.0);
         assert_eq!(Curves::default().bounds(), (0.0, 1.0));
     }

@@ -3,11 +3,19 @@
 use super::button::link_ui;
 use super::paint::{Run, line_of, paragraph, put};
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
-use eframe::egui::{Align, Align2, Color32, Layout, Rect, Shape, Stroke, Ui, UiBuilder, pos2, vec2};
+use eframe::egui::{
+    Align, Align2, Color32, Layout, Rect, Shape, Stroke, Ui, UiBuilder, pos2, vec2,
+};
 use std::f32::consts::FRAC_PI_2;
 
-/// A dashed field with a sentence and links below it. `hot` while files hang over the window. Which link was pressed.
-pub(crate) fn drop_zone_ui(sentence: &str, links: &[&str], hot: bool, ui: &mut Ui) -> Option<usize> {
+/// A dashed field with a sentence and links below it. `hot` while files hang over the window. Which
+/// link was pressed.
+pub(crate) fn drop_zone_ui(
+    sentence: &str,
+    links: &[&str],
+    hot: bool,
+    ui: &mut Ui,
+) -> Option<usize> {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let width = ui.available_width();
     let ink = if hot { palette.accent_ink } else { palette.muted };
@@ -21,13 +29,12 @@ pub(crate) fn drop_zone_ui(sentence: &str, links: &[&str], hot: bool, ui: &mut U
     let line = if hot { palette.accent } else { palette.line_strong };
     dashed_rect(rect.shrink(0.5), f32::from(radius::L), Stroke::new(theme.hairline(), line), ui);
     // A galley is set flush left; a sentence in two lines is short enough to be centred as a block.
-    let text_rect = put(ui.painter(), pos2(rect.center().x, rect.top() + space::M), Align2::CENTER_TOP, text);
+    let text_rect =
+        put(ui.painter(), pos2(rect.center().x, rect.top() + space::M), Align2::CENTER_TOP, text);
 
     let dot = line_of(&[Run::new("·", Type::Body, palette.muted)], f32::INFINITY, ui);
     let widths = links.iter().map(|link| {
-        line_of(&[Run::new(link, Type::Body, Color32::PLACEHOLDER)], f32::INFINITY, ui)
-            .size()
-            .x
+        line_of(&[Run::new(link, Type::Body, Color32::PLACEHOLDER)], f32::INFINITY, ui).size().x
     });
     let gaps = links.len().saturating_sub(1) as f32 * (dot.size().x + 2.0 * space::S);
     let total = widths.sum::<f32>() + gaps;

@@ -3,7 +3,9 @@
 use super::paint::{Run, faded, full_width, line_of, put};
 use crate::ui::language::tr;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
-use eframe::egui::{Align2, Key, Margin, Response, Role, Sense, TextEdit, Ui, WidgetInfo, pos2, vec2};
+use eframe::egui::{
+    Align2, Key, Margin, Response, Role, Sense, TextEdit, Ui, WidgetInfo, pos2, vec2,
+};
 
 /// What was done to a text field.
 #[derive(Debug)]
@@ -14,8 +16,14 @@ pub(crate) struct FieldResponse {
     pub(crate) response: Response,
 }
 
-/// A line of text to type, as wide as the panel. `name` is its accessible name, `hint` stands in it while it is empty.
-pub(crate) fn text_field_ui(name: &str, hint: &str, text: &mut String, ui: &mut Ui) -> FieldResponse {
+/// A line of text to type, as wide as the panel. `name` is its accessible name, `hint` stands in it
+/// while it is empty.
+pub(crate) fn text_field_ui(
+    name: &str,
+    hint: &str,
+    text: &mut String,
+    ui: &mut Ui,
+) -> FieldResponse {
     let theme = theme_of(ui);
     let size = vec2(ui.available_width(), theme.row_height());
     let edit = TextEdit::singleline(text)
@@ -30,13 +38,11 @@ pub(crate) fn text_field_ui(name: &str, hint: &str, text: &mut String, ui: &mut 
     let typing = response.has_focus();
     ui.data_mut(|data| data.insert_temp(typing_id, typing));
     let escaped = ui.input(|input| input.key_pressed(Key::Escape));
-    FieldResponse {
-        committed: was_typing && !typing && !escaped,
-        response,
-    }
+    FieldResponse { committed: was_typing && !typing && !escaped, response }
 }
 
-/// A value that is found, not set: the label left, the number and its unit right, as in a slider's row.
+/// A value that is found, not set: the label left, the number and its unit right, as in a slider's
+/// row.
 pub(crate) fn value_row_ui(label: &str, value: &str, unit: &str, ui: &mut Ui) -> Response {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let enabled = ui.is_enabled();
@@ -54,6 +60,8 @@ pub(crate) fn value_row_ui(label: &str, value: &str, unit: &str, ui: &mut Ui) ->
     );
     put(ui.painter(), pos2(row.left(), row.center().y), Align2::LEFT_CENTER, label_galley);
     let response = ui.interact(row, ui.make_persistent_id(("value", label)), Sense::hover());
-    response.widget_info(|| WidgetInfo::labeled(Role::Label, enabled, format!("{label}: {value} {unit}")));
+    response.widget_info(|| {
+        WidgetInfo::labeled(Role::Label, enabled, format!("{label}: {value} {unit}"))
+    });
     response
 }

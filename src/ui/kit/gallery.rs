@@ -1,10 +1,12 @@
-//! The kit laid out as a whole lab, to be looked at: with `SEGUE_GALLERY` set to a folder, the pictures are written there.
+//! The kit laid out as a whole lab, to be looked at: with `SEGUE_GALLERY` set to a folder, the
+//! pictures are written there.
 
 use super::timeline::Moment;
 use super::*;
 use crate::ui::theme::{Palette, Theme, Type, palette_of, space, theme_of};
 use eframe::egui::{
-    self, Align, CentralPanel, Frame, Layout, Margin, Panel, Rect, RectAlign, ScrollArea, Shape, Stroke, Ui, UiBuilder, Vec2, pos2, vec2,
+    self, Align, CentralPanel, Frame, Layout, Margin, Panel, Rect, RectAlign, ScrollArea, Shape,
+    Stroke, Ui, UiBuilder, Vec2, pos2, vec2,
 };
 use egui_kittest::{
     Harness,
@@ -13,7 +15,10 @@ use egui_kittest::{
 
 /// What the mock remembers between frames: enough to be played with.
 #[derive(Clone, Debug)]
-#[expect(clippy::struct_excessive_bools, reason = "switches that have nothing to do with each other")]
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "switches that have nothing to do with each other"
+)]
 struct Mock {
     lab: usize,
     mode: usize,
@@ -88,24 +93,16 @@ fn lab_ui(mock: &mut Mock, ui: &mut Ui) {
         .show_separator_line(true)
         .show(ui, |ui| top_ui(mock, phone, ui));
     if phone {
-        Panel::bottom("params")
-            .exact_size(300.0)
-            .frame(plain(p).inner_margin(16))
-            .show(ui, |ui| {
-                ScrollArea::vertical().show(ui, |ui| parameters_ui(mock, ui));
-            });
+        Panel::bottom("params").exact_size(300.0).frame(plain(p).inner_margin(16)).show(ui, |ui| {
+            ScrollArea::vertical().show(ui, |ui| parameters_ui(mock, ui));
+        });
         Panel::bottom("time")
             .exact_size(152.0)
             .frame(plain(p).inner_margin(Margin::symmetric(16, 10)))
             .show(ui, |ui| time_ui(mock, phone, ui));
     } else {
         let height = 232.0 * theme.scale();
-        let frame = plain(p).inner_margin(Margin {
-            left: 16,
-            right: 16,
-            top: 10,
-            bottom: 12,
-        });
+        let frame = plain(p).inner_margin(Margin { left: 16, right: 16, top: 10, bottom: 12 });
         Panel::bottom("time")
             .exact_size(height)
             .frame(frame)
@@ -146,7 +143,10 @@ fn top_ui(mock: &mut Mock, phone: bool, ui: &mut Ui) {
             mock.lab = lab;
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            button_ui(Button::new(if phone { "Link" } else { "Copy link" }).primary().icon(Icon::Link), ui);
+            button_ui(
+                Button::new(if phone { "Link" } else { "Copy link" }).primary().icon(Icon::Link),
+                ui,
+            );
             if phone {
                 icon_button_ui(Icon::Menu, "Menu", ui);
             } else {
@@ -157,19 +157,11 @@ fn top_ui(mock: &mut Mock, phone: bool, ui: &mut Ui) {
                 let compare = button_ui(Button::new("Compare · 3").trailing(Icon::ChevronDown), ui);
                 menu_ui(&compare, RectAlign::BOTTOM_END, |ui| {
                     menu_item_ui(
-                        MenuItem {
-                            text: "Three windows",
-                            chosen: true,
-                            ..MenuItem::default()
-                        },
+                        MenuItem { text: "Three windows", chosen: true, ..MenuItem::default() },
                         ui,
                     );
                     menu_item_ui(
-                        MenuItem {
-                            text: "Three methods",
-                            shortcut: "⇧3",
-                            ..MenuItem::default()
-                        },
+                        MenuItem { text: "Three methods", shortcut: "⇧3", ..MenuItem::default() },
                         ui,
                     );
                     menu_line_ui(ui);
@@ -219,22 +211,15 @@ fn library_ui(_mock: &mut Mock, ui: &mut Ui) {
 fn parameters_ui(mock: &mut Mock, ui: &mut Ui) {
     ui.spacing_mut().item_spacing.y = space::S;
     section_header_ui("Blend", ui);
-    if let Some(mode) = segmented_ui("Method", mock.mode, &[(0, "cut"), (1, "dissolve"), (2, "inertialize")], ui) {
+    if let Some(mode) =
+        segmented_ui("Method", mock.mode, &[(0, "cut"), (1, "dissolve"), (2, "inertialize")], ui)
+    {
         mock.mode = mode;
     }
     ui.add_space(space::XS);
     let seconds = format!("{:.2} s", mock.window / 60.0);
     let p = palette_of(ui);
-    let marks = [
-        Mark {
-            value: 15.0,
-            color: p.muted,
-        },
-        Mark {
-            value: 10.0,
-            color: p.muted,
-        },
-    ];
+    let marks = [Mark { value: 15.0, color: p.muted }, Mark { value: 10.0, color: p.muted }];
     let row = SliderRow::new("Blend window", 1.0..=60.0, 15.0)
         .whole()
         .unit("frames")
@@ -244,14 +229,14 @@ fn parameters_ui(mock: &mut Mock, ui: &mut Ui) {
     mock.window = slider_row_ui(mock.window, &row, ui).changed.unwrap_or(mock.window);
     let row = SliderRow::new("Leave A at", 0.0..=3.9, 2.0).step(0.01).unit("s");
     mock.leave = slider_row_ui(mock.leave, &row, ui).changed.unwrap_or(mock.leave);
-    let row = SliderRow::new("Enter B at", 0.0..=1.4, 0.2)
-        .step(0.01)
-        .unit("s")
-        .source(Source::Auto);
+    let row =
+        SliderRow::new("Enter B at", 0.0..=1.4, 0.2).step(0.01).unit("s").source(Source::Auto);
     slider_row_ui(0.13, &row.help("Found automatically: best match of both windows, 4.1 cm."), ui);
     let row = SliderRow::new("Half-life", 0.02..=2.0, 0.2).step(0.01).unit("s").log();
     mock.half_life = slider_row_ui(mock.half_life, &row, ui).changed.unwrap_or(mock.half_life);
-    if let Some(curve) = segmented_ui("Curve", mock.curve, &[(0, "smooth"), (1, "linear"), (2, "smoother")], ui) {
+    if let Some(curve) =
+        segmented_ui("Curve", mock.curve, &[(0, "smooth"), (1, "linear"), (2, "smoother")], ui)
+    {
         mock.curve = curve;
     }
     ui.add_space(space::XS);
@@ -290,22 +275,15 @@ fn stage_ui(mock: &Mock, phone: bool, ui: &mut Ui) {
     let mut footer_top = stage.bottom();
     let width = (stage.width() / count as f32).floor();
     for (index, &(strong, secondary, chip, mood)) in panes.iter().take(count).enumerate() {
-        let pane = Rect::from_min_size(pos2(stage.left() + index as f32 * width, stage.top()), vec2(width, stage.height()));
+        let pane = Rect::from_min_size(
+            pos2(stage.left() + index as f32 * width, stage.top()),
+            vec2(width, stage.height()),
+        );
         mock_picture(pane, ui);
         if index > 0 {
             ui.painter().vline(pane.left(), pane.y_range(), Stroke::new(1.0, p.line));
         }
-        pane_header_ui(
-            &PaneTitle {
-                strong,
-                text: "frames",
-                secondary,
-                chip,
-                mood,
-            },
-            pane,
-            ui,
-        );
+        pane_header_ui(&PaneTitle { strong, text: "frames", secondary, chip, mood }, pane, ui);
         let rank = [Rank::Best, Rank::Middle, Rank::Worst][index];
         let metrics = [
             Metric {
@@ -326,12 +304,7 @@ fn stage_ui(mock: &Mock, phone: bool, ui: &mut Ui) {
                 rank: Rank::Middle,
                 hint: "",
             },
-            Metric {
-                value: "0°",
-                label: "spin",
-                rank: Rank::Middle,
-                hint: "",
-            },
+            Metric { value: "0°", label: "spin", rank: Rank::Middle, hint: "" },
         ];
         footer_top = footer_top.min(pane_footer_ui(&metrics, pane, ui).top());
     }
@@ -344,19 +317,10 @@ fn stage_ui(mock: &Mock, phone: bool, ui: &mut Ui) {
         );
     }
     if mock.notices {
-        let long =
-            "pirouette.bvh: 3 of 4,712 numbers could not be read and were taken from the frame before. The rest is as it was recorded.";
+        let long = "pirouette.bvh: 3 of 4,712 numbers could not be read and were taken from the frame before. The rest is as it was recorded.";
         let notices = [
-            Notice {
-                text: "walk.bvh was read: 470 frames.",
-                mood: Mood::Good,
-                action: "",
-            },
-            Notice {
-                text: long,
-                mood: Mood::Warning,
-                action: "Show the lines",
-            },
+            Notice { text: "walk.bvh was read: 470 frames.", mood: Mood::Good, action: "" },
+            Notice { text: long, mood: Mood::Warning, action: "Show the lines" },
         ];
         toasts_ui(&notices, stage, ui);
     }
@@ -448,20 +412,8 @@ fn time_ui(mock: &mut Mock, phone: bool, ui: &mut Ui) {
     };
     let result: Vec<[f64; 2]> = wave(1.0, 0.0, 0.0..6.0).iter().map(blend).collect();
     let series = [
-        Series {
-            name: "A",
-            color: p.a,
-            ink: p.a_ink,
-            strong: false,
-            points: &a,
-        },
-        Series {
-            name: "B",
-            color: p.b,
-            ink: p.b_ink,
-            strong: false,
-            points: &b,
-        },
+        Series { name: "A", color: p.a, ink: p.a_ink, strong: false, points: &a },
+        Series { name: "B", color: p.b, ink: p.b_ink, strong: false, points: &b },
         Series {
             name: "result",
             color: p.accent,
@@ -471,24 +423,11 @@ fn time_ui(mock: &mut Mock, phone: bool, ui: &mut Ui) {
         },
     ];
     let moments = [
-        Moment {
-            time: 1.2,
-            color: p.muted,
-            name: "foot planted",
-        },
-        Moment {
-            time: 3.05,
-            color: p.bad,
-            name: "foot slides",
-        },
+        Moment { time: 1.2, color: p.muted, name: "foot planted" },
+        Moment { time: 3.05, color: p.bad, name: "foot slides" },
     ];
-    let curves = Curves {
-        title: "speed",
-        unit: "m/s",
-        decimals: 2,
-        include: Some(0.0),
-        series: &series,
-    };
+    let curves =
+        Curves { title: "speed", unit: "m/s", decimals: 2, include: Some(0.0), series: &series };
     let timeline = Timeline {
         duration: 5.8,
         now: mock.now,
@@ -529,7 +468,8 @@ fn harness(size: Vec2, theme: Theme, mock: Mock) -> Harness<'static, Mock> {
         )
 }
 
-/// Writes a picture where pictures were asked for. They are to be looked at, not compared: rasterisers differ.
+/// Writes a picture where pictures were asked for. They are to be looked at, not compared:
+/// rasterisers differ.
 fn picture(name: &str, harness: &mut Harness<'_, Mock>) {
     if let Some(folder) = std::env::var_os("SEGUE_GALLERY") {
         let image = harness.render().expect("a rasteriser");
@@ -540,14 +480,8 @@ fn picture(name: &str, harness: &mut Harness<'_, Mock>) {
 }
 
 const DESK: Vec2 = vec2(1440.0, 900.0);
-const DARK: Theme = Theme {
-    dark: true,
-    projector: false,
-};
-const LIGHT: Theme = Theme {
-    dark: false,
-    projector: false,
-};
+const DARK: Theme = Theme { dark: true, projector: false };
+const LIGHT: Theme = Theme { dark: false, projector: false };
 
 /// Every named widget lies within the window: nothing is cut off at its sides.
 fn assert_nothing_sticks_out(size: Vec2, harness: &Harness<'_, Mock>) {
@@ -567,10 +501,7 @@ fn assert_nothing_sticks_out(size: Vec2, harness: &Harness<'_, Mock>) {
 
 #[test]
 fn a_lab_fits_desk_projector_and_phone() {
-    let hall = Theme {
-        dark: true,
-        projector: true,
-    };
+    let hall = Theme { dark: true, projector: true };
     let places = [
         ("desk-dark", DESK, DARK),
         ("desk-light", DESK, LIGHT),
@@ -588,15 +519,8 @@ fn a_lab_fits_desk_projector_and_phone() {
 
 #[test]
 fn menus_notices_and_hovers_are_to_be_seen() {
-    let mut harness = harness(
-        DESK,
-        DARK,
-        Mock {
-            notices: true,
-            caption: false,
-            ..Mock::default()
-        },
-    );
+    let mut harness =
+        harness(DESK, DARK, Mock { notices: true, caption: false, ..Mock::default() });
     harness.run();
     harness.get_by_label("Compare · 3").click();
     harness.run();

@@ -1,18 +1,20 @@
-//! How far apart every moment of one clip is from every moment of another: a field of colours with curves and pins on it.
+//! How far apart every moment of one clip is from every moment of another: a field of colours with
+//! curves and pins on it.
 
 use super::paint::{Run, focus_ring, line_of, put};
 use super::timeline::nice_step;
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{
-    Align2, Color32, CornerRadius, CursorIcon, Id, Pos2, Rangef, Rect, Response, Role, Sense, Shape, Stroke, StrokeKind, TextureId, Ui,
-    WidgetInfo, pos2, vec2,
+    Align2, Color32, CornerRadius, CursorIcon, Id, Pos2, Rangef, Rect, Response, Role, Sense,
+    Shape, Stroke, StrokeKind, TextureId, Ui, WidgetInfo, pos2, vec2,
 };
 use std::ops::Range;
 
 /// Colours of a picture of distances: more than an eye tells apart.
 const SHADES: usize = 256;
 
-/// What colour a distance has, looked up: a picture of distances asks for it hundreds of thousands of times.
+/// What colour a distance has, looked up: a picture of distances asks for it hundreds of thousands
+/// of times.
 #[derive(Clone, Debug)]
 pub(crate) struct Shades([Color32; SHADES]);
 
@@ -123,8 +125,8 @@ const REACH: f32 = 11.0;
 /// A pin that is dragged this far out of the field is taken away, points.
 const OUT: f32 = 14.0;
 
-/// Draws the map as wide as there is room, at most `most_height` points high. Press to go there, drag to set or move a pin, drag it out or double-click it
-/// to take it away.
+/// Draws the map as wide as there is room, at most `most_height` points high. Press to go there,
+/// drag to set or move a pin, drag it out or double-click it to take it away.
 pub(crate) fn heat_map_ui(map: &HeatMap<'_>, most_height: f32, ui: &mut Ui) -> Vec<HeatMapEvent> {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let scale = theme.scale();
@@ -133,17 +135,12 @@ pub(crate) fn heat_map_ui(map: &HeatMap<'_>, most_height: f32, ui: &mut Ui) -> V
     let width = ui.available_width() - margin.x;
     // As high as the times ask for, within reason: equal speeds are a diagonal.
     let wanted = width * (map.spans[1] / map.spans[0].max(1e-9)) as f32;
-    let height = wanted
-        .clamp(0.55 * width, 1.1 * width)
-        .min(most_height - margin.y)
-        .max(60.0)
-        .round();
+    let height =
+        wanted.clamp(0.55 * width, 1.1 * width).min(most_height - margin.y).max(60.0).round();
     let (_, whole) = ui.allocate_space(vec2(ui.available_width(), height + margin.y));
-    let field = Rect::from_min_size(pos2(whole.left() + margin.x, whole.top()), vec2(width, height));
-    let axes = Axes {
-        rect: field,
-        spans: map.spans,
-    };
+    let field =
+        Rect::from_min_size(pos2(whole.left() + margin.x, whole.top()), vec2(width, height));
+    let axes = Axes { rect: field, spans: map.spans };
     let id = ui.make_persistent_id(map.label);
     let response = ui.interact(field, id, Sense::click_and_drag());
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, map.label));
@@ -154,7 +151,12 @@ pub(crate) fn heat_map_ui(map: &HeatMap<'_>, most_height: f32, ui: &mut Ui) -> V
     if let Some(texture) = map.texture {
         let [[from_a, to_a], [from_b, to_b]] = map.field;
         let place = Rect::from_two_pos(axes.at([from_a, from_b]), axes.at([to_a, to_b]));
-        painter.image(texture, place, Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)), Color32::WHITE);
+        painter.image(
+            texture,
+            place,
+            Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)),
+            Color32::WHITE,
+        );
     }
     for curve in map.curves {
         let points: Vec<Pos2> = curve.points.iter().map(|&secs| axes.at(secs)).collect();
@@ -174,21 +176,31 @@ pub(crate) fn heat_map_ui(map: &HeatMap<'_>, most_height: f32, ui: &mut Ui) -> V
     }
     for &pin in map.pins {
         let at = axes.at(pin);
-        painter.circle(at, 5.0 * scale, palette.warning, Stroke::new(1.5 * scale, palette.on_handle));
+        painter.circle(
+            at,
+            5.0 * scale,
+            palette.warning,
+            Stroke::new(1.5 * scale, palette.on_handle),
+        );
     }
     if let (Some(pos), false) = (response.hover_pos(), response.dragged()) {
         let hair = Stroke::new(theme.hairline(), palette.text.gamma_multiply(0.35));
         painter.vline(pos.x, field.y_range(), hair);
         painter.hline(field.x_range(), pos.y, hair);
     }
-    ui.painter()
-        .rect_stroke(field, 0.0, Stroke::new(theme.hairline(), palette.line_strong), StrokeKind::Outside);
+    ui.painter().rect_stroke(
+        field,
+        0.0,
+        Stroke::new(theme.hairline(), palette.line_strong),
+        StrokeKind::Outside,
+    );
     sides_ui(map, &axes, stripes, ui);
     focus_ring(field, radius::S, &response, ui);
     events
 }
 
-/// The stripes of the feet and the seconds: of the first clip below the field, of the second to its left.
+/// The stripes of the feet and the seconds: of the first clip below the field, of the second to its
+/// left.
 fn sides_ui(map: &HeatMap<'_>, axes: &Axes, stripes: f32, ui: &Ui) {
     let palette = palette_of(ui);
     let scale = theme_of(ui).scale();
@@ -198,14 +210,18 @@ fn sides_ui(map: &HeatMap<'_>, axes: &Axes, stripes: f32, ui: &Ui) {
         for (foot, stances) in map.feet[clip].iter().enumerate() {
             let lane = 2.0 + foot as f32 * (thick + 1.0);
             for stance in stances {
-                let ends = [stance.start, stance.end].map(|secs| axes.at([secs.min(map.spans[0]), secs.min(map.spans[1])]));
+                let ends = [stance.start, stance.end]
+                    .map(|secs| axes.at([secs.min(map.spans[0]), secs.min(map.spans[1])]));
                 let bar = if clip == 0 {
                     Rect::from_x_y_ranges(
                         ends[0].x..=ends[1].x,
                         Rangef::new(field.bottom() + lane, field.bottom() + lane + thick),
                     )
                 } else {
-                    Rect::from_x_y_ranges(Rangef::new(field.left() - lane - thick, field.left() - lane), ends[1].y..=ends[0].y)
+                    Rect::from_x_y_ranges(
+                        Rangef::new(field.left() - lane - thick, field.left() - lane),
+                        ends[1].y..=ends[0].y,
+                    )
                 };
                 ui.painter().rect_filled(bar, 1.0, color);
             }
@@ -244,13 +260,18 @@ fn events(map: &HeatMap<'_>, axes: &Axes, response: &Response, ui: &Ui) -> Vec<H
         let nearest = map.pins.iter().min_by(|x, y| off(x).total_cmp(&off(y)));
         nearest.copied().filter(|pin| axes.at(*pin).distance(pos) <= REACH)
     };
-    let reach = near(response.interact_pointer_pos().or(response.hover_pos()).unwrap_or(Pos2::ZERO));
+    let reach =
+        near(response.interact_pointer_pos().or(response.hover_pos()).unwrap_or(Pos2::ZERO));
     if response.hovered() {
-        ui.ctx()
-            .set_cursor_icon(if reach.is_some() { CursorIcon::Grab } else { CursorIcon::Crosshair });
+        ui.ctx().set_cursor_icon(if reach.is_some() {
+            CursorIcon::Grab
+        } else {
+            CursorIcon::Crosshair
+        });
     }
     if response.drag_started() {
-        let origin = ui.input(|input| input.pointer.press_origin()).or(response.interact_pointer_pos());
+        let origin =
+            ui.input(|input| input.pointer.press_origin()).or(response.interact_pointer_pos());
         ui.data_mut(|data| data.insert_temp(held_id, Held(origin.and_then(near))));
     }
     if let (true, Some(pos)) = (response.dragged(), response.interact_pointer_pos()) {
@@ -278,7 +299,9 @@ fn events(map: &HeatMap<'_>, axes: &Axes, response: &Response, ui: &Ui) -> Vec<H
     let clicked = response.interact_pointer_pos().filter(|_| response.clicked());
     if let Some(pos) = clicked {
         match near(pos) {
-            Some(pin) if response.double_clicked() => events.extend([HeatMapEvent::Unpin(pin), HeatMapEvent::Settled]),
+            Some(pin) if response.double_clicked() => {
+                events.extend([HeatMapEvent::Unpin(pin), HeatMapEvent::Settled])
+            }
             Some(pin) => events.push(HeatMapEvent::Seek(pin)),
             None => events.push(HeatMapEvent::Seek(axes.secs(pos))),
         }
@@ -298,12 +321,8 @@ pub(crate) fn heat_legend_ui(low: &str, high: &str, ui: &mut Ui) {
     if right > left {
         let bar = Rect::from_x_y_ranges(left..=right, row.center().y - 4.0..=row.center().y + 4.0);
         let count = palette.heat.len() as f32 - 1.0;
-        let stops: Vec<(f32, Color32)> = palette
-            .heat
-            .iter()
-            .enumerate()
-            .map(|(k, &color)| (k as f32 / count, color))
-            .collect();
+        let stops: Vec<(f32, Color32)> =
+            palette.heat.iter().enumerate().map(|(k, &color)| (k as f32 / count, color)).collect();
         super::paint::gradient_bar(bar, 2.0, &stops, ui.painter());
         let line = Stroke::new(theme.hairline(), palette.line_strong);
         ui.painter().rect_stroke(bar, CornerRadius::same(2), line, StrokeKind::Outside);

@@ -2,7 +2,9 @@
 
 use super::paint::{Run, focus_ring, full_width, line_of, put};
 use crate::ui::theme::{Type, palette_of, radius, theme_of};
-use eframe::egui::{Align2, CursorIcon, EventFilter, Key, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2};
+use eframe::egui::{
+    Align2, CursorIcon, EventFilter, Key, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2,
+};
 
 /// What it shows.
 #[derive(Clone, Copy, Debug)]
@@ -52,20 +54,21 @@ pub(crate) fn histogram_ui(histogram: &Histogram<'_>, ui: &mut Ui) -> HistogramR
         info
     });
     let mut out = HistogramResponse::default();
-    if let Some(pos) = response.interact_pointer_pos().filter(|_| response.dragged() || response.clicked()) {
+    if let Some(pos) =
+        response.interact_pointer_pos().filter(|_| response.dragged() || response.clicked())
+    {
         let share = f64::from((pos.x - plot.left()) / plot.width().max(1.0)).clamp(0.0, 1.0);
         let wanted = ((share * end / histogram.step).round() * histogram.step).max(histogram.step);
-        out.changed = Some(wanted).filter(|wanted| (wanted - histogram.value).abs() > 0.25 * histogram.step);
+        out.changed =
+            Some(wanted).filter(|wanted| (wanted - histogram.value).abs() > 0.25 * histogram.step);
     }
     out.settled = response.drag_stopped() || response.clicked();
     if response.has_focus() {
-        let filter = EventFilter {
-            horizontal_arrows: true,
-            ..EventFilter::default()
-        };
+        let filter = EventFilter { horizontal_arrows: true, ..EventFilter::default() };
         ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));
         let steps = ui.input(|input| {
-            f64::from(i8::from(input.key_pressed(Key::ArrowRight))) - f64::from(i8::from(input.key_pressed(Key::ArrowLeft)))
+            f64::from(i8::from(input.key_pressed(Key::ArrowRight)))
+                - f64::from(i8::from(input.key_pressed(Key::ArrowLeft)))
         });
         if steps != 0.0 {
             out.changed = Some((histogram.value + steps * histogram.step).max(histogram.step));
@@ -76,7 +79,9 @@ pub(crate) fn histogram_ui(histogram: &Histogram<'_>, ui: &mut Ui) -> HistogramR
 
     let most = f64::from(histogram.counts.iter().take(bins).copied().max().unwrap_or(0).max(1));
     let wide = plot.width() / bins as f32;
-    for (bin, &count) in histogram.counts.iter().take(bins).enumerate().filter(|(_, count)| **count > 0) {
+    for (bin, &count) in
+        histogram.counts.iter().take(bins).enumerate().filter(|(_, count)| **count > 0)
+    {
         // The root: few near pairs stand beside very many far ones.
         let high = (f64::from(count) / most).sqrt() as f32 * (height - 4.0);
         let left = plot.left() + bin as f32 * wide;
@@ -96,12 +101,18 @@ pub(crate) fn histogram_ui(histogram: &Histogram<'_>, ui: &mut Ui) -> HistogramR
         palette.handle,
         Stroke::new(1.0, palette.on_handle),
     );
-    ui.painter()
-        .hline(plot.x_range(), plot.bottom(), Stroke::new(theme.hairline(), palette.line_strong));
-    for (share, anchor) in [(0.0, Align2::LEFT_TOP), (0.5, Align2::CENTER_TOP), (1.0, Align2::RIGHT_TOP)] {
+    ui.painter().hline(
+        plot.x_range(),
+        plot.bottom(),
+        Stroke::new(theme.hairline(), palette.line_strong),
+    );
+    for (share, anchor) in
+        [(0.0, Align2::LEFT_TOP), (0.5, Align2::CENTER_TOP), (1.0, Align2::RIGHT_TOP)]
+    {
         let unit = if share == 1.0 { histogram.unit } else { "" };
         let words = format!("{:.0} {unit}", share * end);
-        let galley = line_of(&[Run::new(words.trim_end(), Type::Small, palette.muted)], plot.width(), ui);
+        let galley =
+            line_of(&[Run::new(words.trim_end(), Type::Small, palette.muted)], plot.width(), ui);
         put(
             ui.painter(),
             pos2(plot.left() + share as f32 * plot.width(), plot.bottom() + 1.0),

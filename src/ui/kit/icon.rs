@@ -1,4 +1,5 @@
-//! Signs, drawn as strokes: no icon font has to be downloaded, and they take the colour of what they stand in.
+//! Signs, drawn as strokes: no icon font has to be downloaded, and they take the colour of what
+//! they stand in.
 
 use eframe::egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, StrokeKind, Vec2, pos2, vec2};
 use std::f32::consts::{PI, TAU};
@@ -120,7 +121,14 @@ pub(crate) fn paint_icon(icon: Icon, rect: Rect, color: Color32, painter: &Paint
         }
         Icon::Book => {
             // Two pages that lie open.
-            pen.stroke(&[(8.0, 4.2), (6.2, 3.0), (2.0, 3.0), (2.0, 12.2), (6.2, 12.2), (8.0, 13.4)]);
+            pen.stroke(&[
+                (8.0, 4.2),
+                (6.2, 3.0),
+                (2.0, 3.0),
+                (2.0, 12.2),
+                (6.2, 12.2),
+                (8.0, 13.4),
+            ]);
             pen.stroke(&[
                 (8.0, 4.2),
                 (9.8, 3.0),
@@ -249,7 +257,14 @@ pub(crate) fn paint_icon(icon: Icon, rect: Rect, color: Color32, painter: &Paint
             pen.stroke(&hook);
             pen.disc(8.0, 12.7, 0.95);
         }
-        Icon::Folder => pen.closed(&[(2.2, 12.8), (2.2, 3.6), (6.4, 3.6), (7.8, 5.4), (13.8, 5.4), (13.8, 12.8)]),
+        Icon::Folder => pen.closed(&[
+            (2.2, 12.8),
+            (2.2, 3.6),
+            (6.4, 3.6),
+            (7.8, 5.4),
+            (13.8, 5.4),
+            (13.8, 12.8),
+        ]),
         Icon::Swap => {
             pen.stroke(&[(2.5, 5.2), (13.0, 5.2)]);
             pen.stroke(&[(10.4, 2.6), (13.2, 5.2), (10.4, 7.8)]);
@@ -317,8 +332,7 @@ impl Pen<'_> {
     }
 
     fn fill(&self, points: &[(f32, f32)]) {
-        self.painter
-            .add(Shape::convex_polygon(self.points(points), self.color, Stroke::NONE));
+        self.painter.add(Shape::convex_polygon(self.points(points), self.color, Stroke::NONE));
     }
 
     fn bar(&self, left: f32, top: f32, right: f32, bottom: f32) {
@@ -341,7 +355,12 @@ impl Pen<'_> {
     fn capsule(&self, center: (f32, f32), half_length: f32, radius: f32) {
         let size = vec2(2.0 * (half_length + radius * 0.5), 2.0 * radius) * self.unit;
         let rect = Rect::from_center_size(self.at(center), size);
-        let shape = eframe::egui::epaint::RectShape::stroke(rect, radius * self.unit, self.line(), StrokeKind::Middle);
+        let shape = eframe::egui::epaint::RectShape::stroke(
+            rect,
+            radius * self.unit,
+            self.line(),
+            StrokeKind::Middle,
+        );
         self.painter.add(shape.with_angle(-PI / 4.0));
     }
 }
@@ -356,7 +375,14 @@ fn arc(center: (f32, f32), radius: f32, from: f32, to: f32) -> Vec<(f32, f32)> {
 }
 
 /// A line, an arc, a line.
-fn curve(before: &[(f32, f32)], center: (f32, f32), radius: f32, from: f32, to: f32, after: &[(f32, f32)]) -> Vec<(f32, f32)> {
+fn curve(
+    before: &[(f32, f32)],
+    center: (f32, f32),
+    radius: f32,
+    from: f32,
+    to: f32,
+    after: &[(f32, f32)],
+) -> Vec<(f32, f32)> {
     before
         .iter()
         .copied()

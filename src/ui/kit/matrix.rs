@@ -1,11 +1,11 @@
-//! A large square of values as a picture that one can go into: tiles that are made when they are seen, marks on them, and the names of its parts along
-//! both sides.
+//! A large square of values as a picture that one can go into: tiles that are made when they are
+//! seen, marks on them, and the names of its parts along both sides.
 
 use super::paint::{Run, focus_ring, line_of, put};
 use crate::ui::theme::{Type, palette_of, radius, theme_of};
 use eframe::egui::{
-    Align2, Color32, CursorIcon, EventFilter, Id, Key, Pos2, Rect, Role, Sense, Stroke, StrokeKind, TextureId, Ui, Vec2, WidgetInfo, pos2,
-    vec2,
+    Align2, Color32, CursorIcon, EventFilter, Id, Key, Pos2, Rect, Role, Sense, Stroke, StrokeKind,
+    TextureId, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 
 /// Texels of a tile, to a side.
@@ -41,7 +41,8 @@ pub(crate) struct Matrix<'a> {
     pub(crate) label: &'a str,
     /// Rows, and columns.
     pub(crate) size: usize,
-    /// Tiles with so many cells to a texel, a power of two, or more are quickly made; finer ones take their time.
+    /// Tiles with so many cells to a texel, a power of two, or more are quickly made; finer ones
+    /// take their time.
     pub(crate) known: usize,
     /// Names of the parts, each with the row at which it begins.
     pub(crate) parts: &'a [(usize, &'a str)],
@@ -73,43 +74,37 @@ struct Window {
 
 impl Window {
     fn whole(size: f32, side: f32) -> Self {
-        Self {
-            corner: Vec2::ZERO,
-            cells: size / side.max(1.0),
-        }
+        Self { corner: Vec2::ZERO, cells: size / side.max(1.0) }
     }
 
     /// The same part on a field of another size.
     fn on(self, before: f32, side: f32) -> Self {
-        Self {
-            cells: self.cells * before / side,
-            ..self
-        }
+        Self { cells: self.cells * before / side, ..self }
     }
 
     /// Inside of the picture, and not so near that a cell is larger than a fingertip.
     fn bounded(self, size: f32, side: f32) -> Self {
         let cells = self.cells.clamp((1.0_f32 / 24.0).min(size / side), size / side);
         let last = (size - cells * side).max(0.0);
-        Self {
-            corner: self.corner.clamp(Vec2::ZERO, Vec2::splat(last)),
-            cells,
-        }
+        Self { corner: self.corner.clamp(Vec2::ZERO, Vec2::splat(last)), cells }
     }
 
     /// Nearer by a factor, with what is at a point of the field staying there.
     fn zoomed(self, factor: f32, at: Vec2) -> Self {
         let cells = self.cells / factor;
-        Self {
-            corner: self.corner + at * (self.cells - cells),
-            cells,
-        }
+        Self { corner: self.corner + at * (self.cells - cells), cells }
     }
 }
 
-/// Draws it as a square of at most `side` points. Wheel or pinch zooms, dragging moves, a double click shows all of it; the keys +, − and 0 do the
-/// same. `tile` gives the texture of a part, or none while that is not made yet.
-pub(crate) fn matrix_ui(matrix: &Matrix<'_>, side: f32, tile: &mut dyn FnMut(Tile) -> Option<TextureId>, ui: &mut Ui) -> MatrixResponse {
+/// Draws it as a square of at most `side` points. Wheel or pinch zooms, dragging moves, a double
+/// click shows all of it; the keys +, − and 0 do the same. `tile` gives the texture of a part, or
+/// none while that is not made yet.
+pub(crate) fn matrix_ui(
+    matrix: &Matrix<'_>,
+    side: f32,
+    tile: &mut dyn FnMut(Tile) -> Option<TextureId>,
+    ui: &mut Ui,
+) -> MatrixResponse {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let margin = (16.0 * theme.scale()).round();
     let side = (side.min(ui.available_width()) - margin).max(60.0).floor();
@@ -129,7 +124,8 @@ pub(crate) fn matrix_ui(matrix: &Matrix<'_>, side: f32, tile: &mut dyn FnMut(Til
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, matrix.label));
     window = moved(window, (size, side), field, &response, ui);
     ui.data_mut(|data| data.insert_temp::<(usize, f32, Window)>(id, (matrix.size, side, window)));
-    let place = |row: f32, column: f32| field.min + (vec2(column, row) - window.corner) / window.cells;
+    let place =
+        |row: f32, column: f32| field.min + (vec2(column, row) - window.corner) / window.cells;
 
     let painter = ui.painter_at(field.expand(1.0));
     painter.rect_filled(field, 0.0, palette.ground);
@@ -153,11 +149,19 @@ pub(crate) fn matrix_ui(matrix: &Matrix<'_>, side: f32, tile: &mut dyn FnMut(Til
                 };
                 let from = [row as f32 * cells, column as f32 * cells];
                 let to = [(from[0] + cells).min(size), (from[1] + cells).min(size)];
-                let texels = |from: f32, to: f32| ((to - from) / factor as f32).ceil().max(1.0) * factor as f32;
+                let texels = |from: f32, to: f32| {
+                    ((to - from) / factor as f32).ceil().max(1.0) * factor as f32
+                };
                 // A texel at the edge may stand for less than its cells.
-                let corner = place(from[0] + texels(from[0], to[0]), from[1] + texels(from[1], to[1]));
+                let corner =
+                    place(from[0] + texels(from[0], to[0]), from[1] + texels(from[1], to[1]));
                 let rect = Rect::from_min_max(place(from[0], from[1]), corner);
-                painter.image(texture, rect, Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0)), Color32::WHITE);
+                painter.image(
+                    texture,
+                    rect,
+                    Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0)),
+                    Color32::WHITE,
+                );
             }
         }
     }
@@ -175,14 +179,12 @@ pub(crate) fn matrix_ui(matrix: &Matrix<'_>, side: f32, tile: &mut dyn FnMut(Til
         nearest.filter(|(_, off)| *off <= REACH).map(|(index, _)| index)
     });
     // Small where there are many, larger the nearer one comes.
-    let radius_of_mark = ((side / 190.0).clamp(1.4, 2.6) * theme.scale() * (size / side / window.cells).powf(0.4)).min(6.5);
+    let radius_of_mark =
+        ((side / 190.0).clamp(1.4, 2.6) * theme.scale() * (size / side / window.cells).powf(0.4))
+            .min(6.5);
     for &(index, mark) in seen.iter().rev() {
         let at = place(mark.at[0] + 0.5, mark.at[1] + 0.5);
-        let color = if mark.faint {
-            palette.muted.gamma_multiply(0.6)
-        } else {
-            palette.text
-        };
+        let color = if mark.faint { palette.muted.gamma_multiply(0.6) } else { palette.text };
         let (radius, stroke) = if Some(index) == matrix.lit {
             (radius_of_mark + 3.0, Stroke::new(2.5, palette.accent))
         } else if Some(index) == hovered {
@@ -202,30 +204,26 @@ pub(crate) fn matrix_ui(matrix: &Matrix<'_>, side: f32, tile: &mut dyn FnMut(Til
     names_ui(matrix, (field, margin), &place, ui);
     focus_ring(field, radius::S, &response, ui);
     if response.hovered() {
-        let icon = if hovered.is_some() {
-            CursorIcon::PointingHand
-        } else {
-            CursorIcon::Crosshair
-        };
+        let icon = if hovered.is_some() { CursorIcon::PointingHand } else { CursorIcon::Crosshair };
         ui.ctx().set_cursor_icon(icon);
     }
     let at = response.hover_pos().map(|pos| {
         let cell = (pos - field.min) * window.cells + window.corner;
         [cell.y, cell.x]
     });
-    MatrixResponse {
-        hovered,
-        at,
-        clicked: hovered.filter(|_| response.clicked()),
-    }
+    MatrixResponse { hovered, at, clicked: hovered.filter(|_| response.clicked()) }
 }
 
-/// The marks in view with their indices: the most important first, and the one that is lit. The nearer one comes, the more of the others are among them.
+/// The marks in view with their indices: the most important first, and the one that is lit. The
+/// nearer one comes, the more of the others are among them.
 fn seen_marks<'a>(matrix: &Matrix<'a>, window: &Window, side: f32) -> Vec<(usize, &'a MatrixMark)> {
     // A ring at the edge is seen, too.
     let (margin, cells) = (4.0 * window.cells, window.cells * side);
-    let within = |at: f32, corner: f32| (corner - margin..=corner + cells + margin).contains(&(at + 0.5));
-    let is_seen = |mark: &MatrixMark| within(mark.at[0], window.corner.y) && within(mark.at[1], window.corner.x);
+    let within =
+        |at: f32, corner: f32| (corner - margin..=corner + cells + margin).contains(&(at + 0.5));
+    let is_seen = |mark: &MatrixMark| {
+        within(mark.at[0], window.corner.y) && within(mark.at[1], window.corner.x)
+    };
     let mut seen: Vec<_> = matrix
         .marks
         .iter()
@@ -233,9 +231,7 @@ fn seen_marks<'a>(matrix: &Matrix<'a>, window: &Window, side: f32) -> Vec<(usize
         .filter(|(_, mark)| is_seen(mark))
         .take(MOST_MARKS)
         .collect();
-    let lit = matrix
-        .lit
-        .filter(|lit| seen.binary_search_by_key(lit, |(index, _)| *index).is_err());
+    let lit = matrix.lit.filter(|lit| seen.binary_search_by_key(lit, |(index, _)| *index).is_err());
     let lit = lit.and_then(|lit| Some((lit, matrix.marks.get(lit)?)));
     // Drawn last, it would lie under all others: the last one is drawn first.
     seen.splice(0..0, lit.filter(|(_, mark)| is_seen(mark)));
@@ -248,7 +244,13 @@ fn factor_for(cells_per_pixel: f32) -> usize {
     1 << power.min(16)
 }
 
-fn moved(window: Window, (size, side): (f32, f32), field: Rect, response: &eframe::egui::Response, ui: &Ui) -> Window {
+fn moved(
+    window: Window,
+    (size, side): (f32, f32),
+    field: Rect,
+    response: &eframe::egui::Response,
+    ui: &Ui,
+) -> Window {
     let mut window = window;
     if response.dragged() {
         window.corner -= response.drag_delta() * window.cells;
@@ -280,8 +282,10 @@ fn moved(window: Window, (size, side): (f32, f32), field: Rect, response: &efram
         if pressed(Key::Num0) {
             window = Window::whole(size, side);
         }
-        let along = |more: Key, less: Key| f32::from(i8::from(pressed(more)) - i8::from(pressed(less)));
-        let step = vec2(along(Key::ArrowRight, Key::ArrowLeft), along(Key::ArrowDown, Key::ArrowUp));
+        let along =
+            |more: Key, less: Key| f32::from(i8::from(pressed(more)) - i8::from(pressed(less)));
+        let step =
+            vec2(along(Key::ArrowRight, Key::ArrowLeft), along(Key::ArrowDown, Key::ArrowUp));
         window.corner += step * (0.1 * side * window.cells);
     }
     if response.double_clicked() {
@@ -291,7 +295,12 @@ fn moved(window: Window, (size, side): (f32, f32), field: Rect, response: &efram
 }
 
 /// The names of the parts: of the columns above, of the rows at the left, turned.
-fn names_ui(matrix: &Matrix<'_>, (field, margin): (Rect, f32), place: &dyn Fn(f32, f32) -> Pos2, ui: &Ui) {
+fn names_ui(
+    matrix: &Matrix<'_>,
+    (field, margin): (Rect, f32),
+    place: &dyn Fn(f32, f32) -> Pos2,
+    ui: &Ui,
+) {
     let palette = palette_of(ui);
     for (index, &(start, name)) in matrix.parts.iter().enumerate() {
         let end = matrix.parts.get(index + 1).map_or(matrix.size, |next| next.0);
@@ -310,7 +319,8 @@ fn names_ui(matrix: &Matrix<'_>, (field, margin): (Rect, f32), place: &dyn Fn(f3
             let middle = 0.5 * (low + high);
             if vertical {
                 let at = pos2(field.left() - margin, middle + 0.5 * galley.size().x);
-                let shape = eframe::egui::epaint::TextShape::new(at, galley, palette.muted).with_angle(-std::f32::consts::FRAC_PI_2);
+                let shape = eframe::egui::epaint::TextShape::new(at, galley, palette.muted)
+                    .with_angle(-std::f32::consts::FRAC_PI_2);
                 ui.painter().add(shape);
             } else {
                 put(ui.painter(), pos2(middle, field.top() - margin), Align2::CENTER_TOP, galley);
@@ -335,7 +345,9 @@ mod tests {
             assert_eq!(Window::whole(1000.0, 500.0).on(500.0, side).bounded(1000.0, side), whole);
             let near = Window::whole(1000.0, 500.0).zoomed(4.0, vec2(250.0, 100.0));
             let seen = near.on(500.0, side).bounded(1000.0, side);
-            assert!(seen.corner == near.corner && (seen.cells * side - near.cells * 500.0).abs() < 1e-3);
+            assert!(
+                seen.corner == near.corner && (seen.cells * side - near.cells * 500.0).abs() < 1e-3
+            );
         }
     }
 
@@ -365,7 +377,8 @@ mod tests {
         );
         // The lower right corner, where none was marked but the one that is lit.
         let near = whole.zoomed(4.0, vec2(500.0, 500.0));
-        let seen: Vec<usize> = seen_marks(&matrix, &near, 500.0).iter().map(|(index, _)| *index).collect();
+        let seen: Vec<usize> =
+            seen_marks(&matrix, &near, 500.0).iter().map(|(index, _)| *index).collect();
         let wanted = (0..10_000).filter(|index| index / 100 >= 75 && index % 100 >= 75);
         assert_eq!(seen, wanted.collect::<Vec<_>>());
         // Where it does not lie in view it is not drawn.

@@ -4,8 +4,8 @@ use super::icon::{Icon, paint_icon};
 use super::paint::{Run, faded, focus_ring, full_width, line_of, put};
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{
-    Align2, CursorIcon, InnerResponse, Popup, PopupCloseBehavior, Rect, RectAlign, Response, Role, Sense, Stroke, StrokeKind, Ui,
-    WidgetInfo, pos2, vec2,
+    Align2, CursorIcon, InnerResponse, Popup, PopupCloseBehavior, Rect, RectAlign, Response, Role,
+    Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
 };
 
 /// One line of a menu.
@@ -21,8 +21,13 @@ pub(crate) struct MenuItem<'a> {
     pub(crate) chosen: bool,
 }
 
-/// A menu that opens below (or above, where there is no room) `opener` when that is clicked, and closes after a choice.
-pub(crate) fn menu_ui<R>(opener: &Response, align: RectAlign, content: impl FnOnce(&mut Ui) -> R) -> Option<InnerResponse<R>> {
+/// A menu that opens below (or above, where there is no room) `opener` when that is clicked, and
+/// closes after a choice.
+pub(crate) fn menu_ui<R>(
+    opener: &Response,
+    align: RectAlign,
+    content: impl FnOnce(&mut Ui) -> R,
+) -> Option<InnerResponse<R>> {
     Popup::menu(opener)
         .align(align)
         .gap(space::XS)
@@ -38,7 +43,11 @@ pub(crate) fn menu_ui<R>(opener: &Response, align: RectAlign, content: impl FnOn
 pub(crate) fn menu_item_ui(item: MenuItem<'_>, ui: &mut Ui) -> Response {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let enabled = ui.is_enabled();
-    let text = line_of(&[Run::new(item.text, Type::Body, faded(palette.text, enabled))], f32::INFINITY, ui);
+    let text = line_of(
+        &[Run::new(item.text, Type::Body, faded(palette.text, enabled))],
+        f32::INFINITY,
+        ui,
+    );
     let shortcut = line_of(
         &[Run::new(item.shortcut, Type::Small, faded(palette.muted, enabled))],
         f32::INFINITY,
@@ -48,12 +57,9 @@ pub(crate) fn menu_item_ui(item: MenuItem<'_>, ui: &mut Ui) -> Response {
     let indent = space::S + icon_size + space::S;
     let gap = if item.shortcut.is_empty() { 0.0 } else { 28.0 };
     let needed = indent + text.size().x + gap + shortcut.size().x + space::M;
-    // While the menu is being measured it is as wide as its widest line; then every line is as wide as the menu.
-    let width = if ui.is_sizing_pass() {
-        needed
-    } else {
-        needed.max(ui.available_width())
-    };
+    // While the menu is being measured it is as wide as its widest line; then every line is as wide
+    // as the menu.
+    let width = if ui.is_sizing_pass() { needed } else { needed.max(ui.available_width()) };
     let (rect, response) = ui.allocate_exact_size(vec2(width, theme.row_height()), Sense::click());
     let response = response.on_hover_cursor(CursorIcon::PointingHand);
     if enabled && (response.hovered() || response.has_focus()) {
@@ -61,7 +67,8 @@ pub(crate) fn menu_item_ui(item: MenuItem<'_>, ui: &mut Ui) -> Response {
     }
     let sign = if item.chosen { Some(Icon::Check) } else { item.icon };
     if let Some(sign) = sign {
-        let at = Align2::LEFT_CENTER.anchor_size(pos2(rect.left() + space::S, rect.center().y), vec2(icon_size, icon_size));
+        let at = Align2::LEFT_CENTER
+            .anchor_size(pos2(rect.left() + space::S, rect.center().y), vec2(icon_size, icon_size));
         let tone = if item.chosen { palette.accent_ink } else { palette.muted };
         paint_icon(sign, at, faded(tone, enabled), ui.painter());
     }
@@ -85,8 +92,14 @@ pub(crate) fn menu_line_ui(ui: &mut Ui) {
     ui.painter().hline(rect.x_range(), rect.center().y, stroke);
 }
 
-/// A parameter with many possible values: the label left, the chosen value right, the others in a menu. What was chosen anew.
-pub(crate) fn choice_row_ui<T: Copy + PartialEq>(label: &str, chosen: T, options: &[(T, &str)], ui: &mut Ui) -> Option<T> {
+/// A parameter with many possible values: the label left, the chosen value right, the others in a
+/// menu. What was chosen anew.
+pub(crate) fn choice_row_ui<T: Copy + PartialEq>(
+    label: &str,
+    chosen: T,
+    options: &[(T, &str)],
+    ui: &mut Ui,
+) -> Option<T> {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let enabled = ui.is_enabled();
     let id = ui.make_persistent_id(label);
@@ -110,15 +123,16 @@ pub(crate) fn choice_row_ui<T: Copy + PartialEq>(label: &str, chosen: T, options
     } else {
         (palette.panel_raised, palette.line)
     };
-    ui.painter()
-        .rect(field, radius::M, fill, Stroke::new(theme.hairline(), line), StrokeKind::Inside);
-    put(
-        ui.painter(),
-        pos2(field.left() + space::S, row.center().y),
-        Align2::LEFT_CENTER,
-        name,
+    ui.painter().rect(
+        field,
+        radius::M,
+        fill,
+        Stroke::new(theme.hairline(), line),
+        StrokeKind::Inside,
     );
-    let at = Align2::RIGHT_CENTER.anchor_size(pos2(field.right() - space::S + 2.0, row.center().y), vec2(chevron, chevron));
+    put(ui.painter(), pos2(field.left() + space::S, row.center().y), Align2::LEFT_CENTER, name);
+    let at = Align2::RIGHT_CENTER
+        .anchor_size(pos2(field.right() - space::S + 2.0, row.center().y), vec2(chevron, chevron));
     paint_icon(Icon::ChevronDown, at, faded(palette.muted, enabled), ui.painter());
     let label_galley = line_of(
         &[Run::new(label, Type::Label, faded(palette.text, enabled))],
@@ -136,15 +150,8 @@ pub(crate) fn choice_row_ui<T: Copy + PartialEq>(label: &str, chosen: T, options
     let picked = menu_ui(&response.with_new_rect(field), RectAlign::BOTTOM_END, |ui| {
         let mut picked = None;
         for &(value, text) in options {
-            if menu_item_ui(
-                MenuItem {
-                    text,
-                    chosen: value == chosen,
-                    ..MenuItem::default()
-                },
-                ui,
-            )
-            .clicked()
+            if menu_item_ui(MenuItem { text, chosen: value == chosen, ..MenuItem::default() }, ui)
+                .clicked()
             {
                 picked = Some(value);
             }

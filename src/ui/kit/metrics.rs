@@ -32,7 +32,8 @@ pub(crate) struct Metric<'a> {
     pub(crate) hint: &'a str,
 }
 
-/// Numbers side by side, in further rows where there is no room. The best and the worst are marked in colour and in words.
+/// Numbers side by side, in further rows where there is no room. The best and the worst are marked
+/// in colour and in words.
 pub(crate) fn metric_strip_ui(metrics: &[Metric<'_>], ui: &mut Ui) {
     let (rects, total) = places(metrics, ui.available_width(), ui);
     let (_, space) = ui.allocate_space(vec2(ui.available_width(), total));
@@ -48,7 +49,13 @@ pub(crate) fn metric_strip_ui(metrics: &[Metric<'_>], ui: &mut Ui) {
         );
         put(ui.painter(), pos2(rect.left(), rect.top() + 0.56 * height), Align2::LEFT_TOP, label);
         let response = ui.interact(rect, ui.make_persistent_id(("metric", index)), Sense::hover());
-        response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("{} {} {word}", metric.value, metric.label)));
+        response.widget_info(|| {
+            WidgetInfo::labeled(
+                Role::Label,
+                true,
+                format!("{} {} {word}", metric.value, metric.label),
+            )
+        });
         if !metric.hint.is_empty() {
             response.on_hover_text(tr(metric.hint, ui));
         }

@@ -1,11 +1,12 @@
 //! The widgets the whole app is built from.
 //!
-//! Each is one file and a function that takes `&mut Ui` last and ends in `_ui`. None changes the app: they are told a state and
-//! return what was asked for. All take their colours, sizes and spaces from the theme, name themselves to screen readers,
-//! and can be worked by mouse, by touch and by keyboard.
+//! Each is one file and a function that takes `&mut Ui` last and ends in `_ui`. None changes the
+//! app: they are told a state and return what was asked for. All take their colours, sizes and
+//! spaces from the theme, name themselves to screen readers, and can be worked by mouse, by touch
+//! and by keyboard.
 //!
-//! A row keeps its identity by its label (a drag or the focus survives when rows above come and go), so labels are unique within
-//! a `Ui`; use `push_id` where two panes show the same ones.
+//! A row keeps its identity by its label (a drag or the focus survives when rows above come and
+//! go), so labels are unique within a `Ui`; use `push_id` where two panes show the same ones.
 
 mod button;
 mod chip;
@@ -50,13 +51,17 @@ pub(crate) use cost_bars::{CostBars, CostRow, cost_bars_ui};
 pub(crate) use curves::{Curves, Series};
 pub(crate) use drop_zone::drop_zone_ui;
 pub(crate) use field::{text_field_ui, value_row_ui};
-pub(crate) use heat_map::{Feet, HeatMap, HeatMapEvent, MapCurve, Shades, heat_legend_ui, heat_map_ui};
+pub(crate) use heat_map::{
+    Feet, HeatMap, HeatMapEvent, MapCurve, Shades, heat_legend_ui, heat_map_ui,
+};
 pub(crate) use histogram::{Histogram, histogram_ui};
 pub(crate) use icon::{Icon, paint_logo};
 pub(crate) use matrix::{Matrix, MatrixMark, TILE, Tile, matrix_ui, tiles_id};
 pub(crate) use menu::{MenuItem, choice_row_ui, menu_item_ui, menu_line_ui, menu_ui};
 pub(crate) use metrics::{Metric, Rank};
-pub(crate) use notice::{Notice, NoticeEvent, brief_progress_ui, caption_ui, progress_row_ui, toasts_ui};
+pub(crate) use notice::{
+    Notice, NoticeEvent, brief_progress_ui, caption_ui, progress_row_ui, toasts_ui,
+};
 pub(crate) use pane::{PaneTitle, pane_footer_ui, pane_header_ui};
 pub(crate) use places::{Chosen, PlaceBar, Places, StripPlace, places_ui};
 pub(crate) use profile::profile_ui;

@@ -1,4 +1,5 @@
-//! What the app has to say: a caption over the stage, a notice that can be dismissed, a task under way.
+//! What the app has to say: a caption over the stage, a notice that can be dismissed, a task under
+//! way.
 
 use super::button::{Button, button_ui, icon_button_ui};
 use super::chip::Mood;
@@ -7,8 +8,8 @@ use super::paint::{Run, full_width, line_of, paragraph, put};
 use super::words::Words;
 use crate::ui::theme::{HIT, Type, palette_of, radius, space, theme_of};
 use eframe::egui::{
-    Align, Align2, Area, Color32, Frame, Id, Layout, Margin, Order, Rect, Role, ScrollArea, Sense, Shadow, Stroke, Ui, UiBuilder,
-    WidgetInfo, pos2, vec2,
+    Align, Align2, Area, Color32, Frame, Id, Layout, Margin, Order, Rect, Role, ScrollArea, Sense,
+    Shadow, Stroke, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
 
 /// Something to be told once.
@@ -52,14 +53,23 @@ pub(crate) fn notice_ui(notice: &Notice<'_>, ui: &mut Ui) -> Option<NoticeEvent>
             ui,
         );
         let row = full_width(text.size().y.max(HIT - 4.0), ui);
-        let sign_rect = Align2::LEFT_TOP.anchor_size(row.left_top() + vec2(0.0, 1.0), vec2(sign, sign));
+        let sign_rect =
+            Align2::LEFT_TOP.anchor_size(row.left_top() + vec2(0.0, 1.0), vec2(sign, sign));
         paint_icon(notice.mood.icon(), sign_rect, ink, ui.painter());
         let at = put(ui.painter(), row.left_top() + vec2(text_left, 0.0), Align2::LEFT_TOP, text);
         let label = ui.interact(at, ui.make_persistent_id(("notice", notice.text)), Sense::hover());
         label.widget_info(|| WidgetInfo::labeled(Role::Alert, true, notice.text));
-        let close = Rect::from_min_size(pos2(row.right() - HIT + 4.0, row.top() - 4.0), vec2(HIT, HIT));
+        let close =
+            Rect::from_min_size(pos2(row.right() - HIT + 4.0, row.top() - 4.0), vec2(HIT, HIT));
         let close_id = ui.make_persistent_id(("dismiss", notice.text));
-        let hit = super::clip_row::small_icon_ui(Icon::Close, words.dismiss, close_id, close, Color32::TRANSPARENT, ui);
+        let hit = super::clip_row::small_icon_ui(
+            Icon::Close,
+            words.dismiss,
+            close_id,
+            close,
+            Color32::TRANSPARENT,
+            ui,
+        );
         if hit.clicked() {
             event = Some(NoticeEvent::Dismissed);
         }
@@ -74,35 +84,36 @@ pub(crate) fn notice_ui(notice: &Notice<'_>, ui: &mut Ui) -> Option<NoticeEvent>
         }
     });
     if notice.mood != Mood::Plain {
-        // The mood as a quiet ground over the whole, and as an edge that is seen from the corner of the eye.
+        // The mood as a quiet ground over the whole, and as an edge that is seen from the corner of
+        // the eye.
         let rect = shown.response.rect;
         ui.painter().rect_filled(rect, radius::L, wash.gamma_multiply(0.5));
     }
     event
 }
 
-/// Notices floating over the lower edge of the stage, the newest lowest. Which of them was touched, and how.
-pub(crate) fn toasts_ui(notices: &[Notice<'_>], stage: Rect, ui: &mut Ui) -> Option<(usize, NoticeEvent)> {
+/// Notices floating over the lower edge of the stage, the newest lowest. Which of them was touched,
+/// and how.
+pub(crate) fn toasts_ui(
+    notices: &[Notice<'_>],
+    stage: Rect,
+    ui: &mut Ui,
+) -> Option<(usize, NoticeEvent)> {
     if notices.is_empty() {
         return None;
     }
     let width = (stage.width() - 2.0 * space::L).min(460.0 * theme_of(ui).scale());
-    let shadow = Shadow {
-        offset: [0, 6],
-        blur: 20,
-        spread: 0,
-        color: palette_of(ui).shadow,
-    };
-    let area = Area::new(Id::unique("segue toasts"))
-        .order(Order::Foreground)
-        .pivot(Align2::CENTER_BOTTOM);
+    let shadow = Shadow { offset: [0, 6], blur: 20, spread: 0, color: palette_of(ui).shadow };
+    let area =
+        Area::new(Id::unique("segue toasts")).order(Order::Foreground).pivot(Align2::CENTER_BOTTOM);
     let area = area
         .fixed_pos(stage.center_bottom() - vec2(0.0, space::L))
         .constrain_to(stage)
         .default_width(width);
     let shown = area.show(ui.ctx(), |ui| {
         ui.set_width(width);
-        // More than there is room for is scrolled, from its end: the cross of every notice can be reached.
+        // More than there is room for is scrolled, from its end: the cross of every notice can be
+        // reached.
         let scrolled = ScrollArea::vertical()
             .max_height(stage.height() - 2.0 * space::L)
             .stick_to_bottom(true);
@@ -122,31 +133,29 @@ pub(crate) fn toasts_ui(notices: &[Notice<'_>], stage: Rect, ui: &mut Ui) -> Opt
     shown.inner
 }
 
-/// One sentence on a round ground, centred on `center_bottom`: what to look at. Wraps on narrow stages.
+/// One sentence on a round ground, centred on `center_bottom`: what to look at. Wraps on narrow
+/// stages.
 pub(crate) fn caption_ui(text: &str, stage: Rect, ui: &mut Ui) -> Rect {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let padding = vec2(space::L, space::S);
-    let galley = paragraph(text, Type::Body, palette.text, (stage.width() - 4.0 * space::L).min(720.0), ui);
+    let galley =
+        paragraph(text, Type::Body, palette.text, (stage.width() - 4.0 * space::L).min(720.0), ui);
     let one_line = galley.rows.len() == 1;
-    let rect = Align2::CENTER_BOTTOM.anchor_size(stage.center_bottom(), galley.size() + 2.0 * padding);
+    let rect =
+        Align2::CENTER_BOTTOM.anchor_size(stage.center_bottom(), galley.size() + 2.0 * padding);
     let corner = if one_line { rect.height() / 2.0 } else { f32::from(radius::L) };
-    let shadow = Shadow {
-        offset: [0, 4],
-        blur: 16,
-        spread: 0,
-        color: palette.shadow,
-    };
+    let shadow = Shadow { offset: [0, 4], blur: 16, spread: 0, color: palette.shadow };
     ui.painter().add(shadow.as_shape(rect, corner));
     let stroke = Stroke::new(theme.hairline(), palette.line);
-    ui.painter()
-        .rect(rect, corner, palette.panel_raised, stroke, eframe::egui::StrokeKind::Inside);
+    ui.painter().rect(rect, corner, palette.panel_raised, stroke, eframe::egui::StrokeKind::Inside);
     put(ui.painter(), rect.center(), Align2::CENTER_CENTER, galley);
     let response = ui.interact(rect, ui.make_persistent_id(("caption", text)), Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, text));
     rect
 }
 
-/// A task under way: what it does, how far it is (`None`: unknown), and a button that stops it. Was that pressed?
+/// A task under way: what it does, how far it is (`None`: unknown), and a button that stops it. Was
+/// that pressed?
 pub(crate) fn progress_row_ui(label: &str, done: Option<f32>, detail: &str, ui: &mut Ui) -> bool {
     progress_ui(label, done, detail, true, ui)
 }
@@ -156,24 +165,24 @@ pub(crate) fn brief_progress_ui(label: &str, done: f32, detail: &str, ui: &mut U
     progress_ui(label, Some(done), detail, false, ui);
 }
 
-fn progress_ui(label: &str, done: Option<f32>, detail: &str, can_be_stopped: bool, ui: &mut Ui) -> bool {
+fn progress_ui(
+    label: &str,
+    done: Option<f32>,
+    detail: &str,
+    can_be_stopped: bool,
+    ui: &mut Ui,
+) -> bool {
     let (theme, palette, words) = (theme_of(ui), palette_of(ui), Words::of(ui));
     let scale = theme.scale();
     let width = ui.available_width();
     let head_height = theme.row_height();
     let (_, rect) = ui.allocate_space(vec2(width, head_height + 6.0 * scale));
     let head = Rect::from_min_size(rect.min, vec2(width, head_height));
-    let builder = UiBuilder::new()
-        .id_salt(label)
-        .max_rect(head)
-        .layout(Layout::right_to_left(Align::Center));
+    let builder =
+        UiBuilder::new().id_salt(label).max_rect(head).layout(Layout::right_to_left(Align::Center));
     let mut inner = ui.new_child(builder);
     let stopped = can_be_stopped && icon_button_ui(Icon::Close, words.cancel, &mut inner).clicked();
-    let right = if can_be_stopped {
-        inner.min_rect().left() - space::XS
-    } else {
-        head.right()
-    };
+    let right = if can_be_stopped { inner.min_rect().left() - space::XS } else { head.right() };
     // What it does comes first; how far it is takes what is left, and the bar says it too.
     let galley = line_of(&[Run::new(label, Type::Label, palette.text)], right - head.left(), ui);
     let said = put(ui.painter(), head.left_center(), Align2::LEFT_CENTER, galley);

@@ -3,7 +3,8 @@
 use crate::ui::language::tr;
 use crate::ui::theme::{Theme, Type, palette_of, theme_of};
 use eframe::egui::{
-    self, Align, Align2, Color32, CornerRadius, FontId, Galley, Id, Mesh, Painter, Pos2, Rect, Response, Stroke, StrokeKind, Ui,
+    self, Align, Align2, Color32, CornerRadius, FontId, Galley, Id, Mesh, Painter, Pos2, Rect,
+    Response, Stroke, StrokeKind, Ui,
     epaint::Vertex,
     pos2,
     text::{LayoutJob, TextFormat, TextWrapping},
@@ -30,13 +31,7 @@ pub(crate) struct Run<'a> {
 impl<'a> Run<'a> {
     /// A run that follows without a gap.
     pub(crate) fn new(text: &'a str, step: Type, color: Color32) -> Self {
-        Self {
-            text,
-            step,
-            color,
-            gap: 0.0,
-            own: false,
-        }
+        Self { text, step, color, gap: 0.0, own: false }
     }
 
     /// The same as a word of the user's, in whatever language.
@@ -75,11 +70,12 @@ pub(crate) fn line_of(runs: &[Run<'_>], max_width: f32, ui: &Ui) -> Arc<Galley> 
     ui.fonts_mut(|fonts| fonts.layout_job(job))
 }
 
-/// The line height that puts text of `size` on one baseline with text of size `largest`, set as [`format`] sets it.
+/// The line height that puts text of `size` on one baseline with text of size `largest`, set as
+/// [`format`] sets it.
 ///
-/// egui aligns the lower edges of line boxes and centres text in a box of given height. With ascent `a` and descent `d` (shares of
-/// the size), the baseline lies `(height + (a - d) size) / 2` below the upper edge of its own box; asking for `d · largest` below
-/// it for all gives the height.
+/// egui aligns the lower edges of line boxes and centres text in a box of given height. With ascent
+/// `a` and descent `d` (shares of the size), the baseline lies `(height + (a - d) size) / 2` below
+/// the upper edge of its own box; asking for `d · largest` below it for all gives the height.
 fn baseline_height(size: f32, largest: f32) -> f32 {
     // Inter's ascender and descender, of 2048 units to the em.
     let (ascent, descent) = (1984.0 / 2048.0, 494.0 / 2048.0);
@@ -87,7 +83,13 @@ fn baseline_height(size: f32, largest: f32) -> f32 {
 }
 
 /// Sets text in as many lines as it needs.
-pub(crate) fn paragraph(text: &str, step: Type, color: Color32, max_width: f32, ui: &Ui) -> Arc<Galley> {
+pub(crate) fn paragraph(
+    text: &str,
+    step: Type,
+    color: Color32,
+    max_width: f32,
+    ui: &Ui,
+) -> Arc<Galley> {
     let theme = theme_of(ui);
     let mut job = LayoutJob::single_section(tr(text, ui).into_owned(), format(theme, step, color));
     job.wrap.max_width = max_width.max(1.0);
@@ -149,18 +151,18 @@ pub(crate) fn focus_ring(rect: Rect, corner: u8, response: &Response, ui: &Ui) {
     }
 }
 
-/// A bar with round ends whose colour runs from left to right through `stops`: (0..=1, colour), in rising order.
+/// A bar with round ends whose colour runs from left to right through `stops`: (0..=1, colour), in
+/// rising order.
 ///
-/// egui's rectangles have one fill, so the shape is cut into thin columns where it is round and into the stops where it is not.
+/// egui's rectangles have one fill, so the shape is cut into thin columns where it is round and
+/// into the stops where it is not.
 pub(crate) fn gradient_bar(rect: Rect, corner: f32, stops: &[(f32, Color32)], painter: &Painter) {
     if rect.width() <= 0.0 || stops.is_empty() {
         return;
     }
     let corner = corner.min(rect.height() / 2.0).min(rect.width() / 2.0);
-    let mut columns: Vec<f32> = stops
-        .iter()
-        .map(|&(at, _)| rect.left() + at.clamp(0.0, 1.0) * rect.width())
-        .collect();
+    let mut columns: Vec<f32> =
+        stops.iter().map(|&(at, _)| rect.left() + at.clamp(0.0, 1.0) * rect.width()).collect();
     for step in 0..=8_u8 {
         let offset = corner * f32::from(step) / 8.0;
         columns.extend([rect.left() + offset, rect.right() - offset]);

@@ -4,7 +4,9 @@ use super::chip::{Mood, chip_size, paint_chip};
 use super::metrics::{Metric, metric_strip_height, metric_strip_ui};
 use super::paint::{Run, line_of, put};
 use crate::ui::theme::{Type, palette_of, space, theme_of};
-use eframe::egui::{Align2, Direction, Rect, Role, Sense, Shape, Ui, UiBuilder, WidgetInfo, pos2, vec2};
+use eframe::egui::{
+    Align2, Direction, Rect, Role, Sense, Shape, Ui, UiBuilder, WidgetInfo, pos2, vec2,
+};
 
 /// What a pane says of itself.
 #[derive(Clone, Copy, Debug, Default)]
@@ -33,7 +35,8 @@ pub(crate) fn pane_header_ui(title: &PaneTitle<'_>, pane: Rect, ui: &mut Ui) -> 
     scrim(strip, Direction::TopDown, ui);
     let mut right = strip.right() - space::M;
     if !title.chip.is_empty() && chip_size(title.chip, ui).x < strip.width() * 0.5 {
-        right = paint_chip(title.chip, title.mood, pos2(right, strip.center().y), ui).left() - space::S;
+        right =
+            paint_chip(title.chip, title.mood, pos2(right, strip.center().y), ui).left() - space::S;
     }
     let left = strip.left() + space::M;
     let mut runs = vec![Run::new(title.strong, Type::Title, palette.text)];
@@ -59,7 +62,8 @@ pub(crate) fn pane_header_ui(title: &PaneTitle<'_>, pane: Rect, ui: &mut Ui) -> 
     strip
 }
 
-/// The numbers over the bottom of `pane`. Returns the strip they stand in, so that a caption can keep clear of it.
+/// The numbers over the bottom of `pane`. Returns the strip they stand in, so that a caption can
+/// keep clear of it.
 pub(crate) fn pane_footer_ui(metrics: &[Metric<'_>], pane: Rect, ui: &mut Ui) -> Rect {
     if metrics.is_empty() {
         return pane.with_min_y(pane.bottom());

@@ -1,8 +1,11 @@
-//! All clips in a row, and the place in them that plays: it runs along its clip and jumps to another.
+//! All clips in a row, and the place in them that plays: it runs along its clip and jumps to
+//! another.
 
 use super::paint::{Run, line_of, put};
 use crate::ui::theme::{Type, palette_of, theme_of};
-use eframe::egui::{Align2, Color32, Rangef, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
+use eframe::egui::{
+    Align2, Color32, Rangef, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
+};
 use std::ops::Range;
 
 /// A clip.
@@ -57,7 +60,8 @@ pub(crate) struct Places<'a> {
     pub(crate) legend: &'a [(&'a str, Color32)],
 }
 
-/// Draws the strip `height` points high; the stretch that is just being chosen by dragging along a clip.
+/// Draws the strip `height` points high; the stretch that is just being chosen by dragging along a
+/// clip.
 pub(crate) fn places_ui(places: &Places<'_>, height: f32, ui: &mut Ui) -> Option<Chosen> {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let scale = theme.scale();
@@ -67,25 +71,39 @@ pub(crate) fn places_ui(places: &Places<'_>, height: f32, ui: &mut Ui) -> Option
     let legend = (16.0 * scale).round();
     let rows = places.rows.max(1);
     let pitch = ((whole.height() - legend) / rows as f32).floor();
-    let y_of = |row: usize| Rangef::new(whole.top() + row as f32 * pitch + 3.0, whole.top() + (row + 1) as f32 * pitch - 3.0);
+    let y_of = |row: usize| {
+        Rangef::new(
+            whole.top() + row as f32 * pitch + 3.0,
+            whole.top() + (row + 1) as f32 * pitch - 3.0,
+        )
+    };
     let gap = if places.bars.len() > 60 { 1.0 } else { 2.0 };
     let frames: usize = places.bars.iter().map(|bar| bar.frames).sum();
-    let per_frame = (whole.width() - gap * places.bars.len().saturating_sub(1) as f32).max(1.0) / frames.max(1) as f32;
+    let per_frame = (whole.width() - gap * places.bars.len().saturating_sub(1) as f32).max(1.0)
+        / frames.max(1) as f32;
     let mut starts = Vec::with_capacity(places.bars.len());
     let mut left = whole.left();
     for bar in places.bars {
         starts.push(left);
         left += bar.frames as f32 * per_frame + gap;
     }
-    let x_of = |bar: usize, frame: usize| starts.get(bar).map_or(whole.left(), |start| start + frame as f32 * per_frame);
+    let x_of = |bar: usize, frame: usize| {
+        starts.get(bar).map_or(whole.left(), |start| start + frame as f32 * per_frame)
+    };
     let at = |place: &StripPlace| pos2(x_of(place.bar, place.frame), y_of(place.row).center());
     let painter = ui.painter_at(whole.expand(3.0));
     for (index, bar) in places.bars.iter().enumerate() {
         for row in 0..rows {
-            let rect = |from: usize, to: usize| Rect::from_x_y_ranges(x_of(index, from)..=x_of(index, to), y_of(row));
+            let rect = |from: usize, to: usize| {
+                Rect::from_x_y_ranges(x_of(index, from)..=x_of(index, to), y_of(row))
+            };
             painter.rect_filled(rect(0, bar.frames), 2, palette.track);
             for (stretch, color) in &bar.stretches {
-                painter.rect_filled(rect(stretch.start, stretch.end.min(bar.frames)), 2, color.gamma_multiply(0.55));
+                painter.rect_filled(
+                    rect(stretch.start, stretch.end.min(bar.frames)),
+                    2,
+                    color.gamma_multiply(0.55),
+                );
             }
         }
     }
@@ -115,15 +133,13 @@ pub(crate) fn places_ui(places: &Places<'_>, height: f32, ui: &mut Ui) -> Option
     let bar_at = |x: f32| starts.partition_point(|start| *start <= x).checked_sub(1);
     let frame_at = |bar: usize, x: f32| ((x - starts[bar]).max(0.0) / per_frame.max(1e-6)) as usize;
     let hovered = response.hover_pos().and_then(|pos| bar_at(pos.x));
-    let pulled = ui.input(|input| input.pointer.press_origin()).zip(response.interact_pointer_pos());
+    let pulled =
+        ui.input(|input| input.pointer.press_origin()).zip(response.interact_pointer_pos());
     let dragged = pulled.filter(|_| response.dragged()).and_then(|(from, to)| {
         let bar = bar_at(from.x)?;
         let frames = places.bars.get(bar)?.frames;
         let [a, b] = [from, to].map(|pos| frame_at(bar, pos.x).min(frames));
-        (a != b).then(|| Chosen {
-            bar,
-            frames: a.min(b)..a.max(b),
-        })
+        (a != b).then(|| Chosen { bar, frames: a.min(b)..a.max(b) })
     });
     // What is pointed at, or plays, by name; else what the colours mean.
     let named = hovered.or(places.now.map(|now| now.bar)).and_then(|bar| places.bars.get(bar));
@@ -137,7 +153,8 @@ pub(crate) fn places_ui(places: &Places<'_>, height: f32, ui: &mut Ui) -> Option
         x = square.left() - 12.0;
     }
     if let Some(bar) = named {
-        let galley = line_of(&[Run::new(bar.name, Type::Small, palette.text)], x - whole.left(), ui);
+        let galley =
+            line_of(&[Run::new(bar.name, Type::Small, palette.text)], x - whole.left(), ui);
         put(&painter, pos2(whole.left(), base), Align2::LEFT_CENTER, galley);
     }
     dragged

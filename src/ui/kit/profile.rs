@@ -7,7 +7,8 @@ use eframe::egui::{Color32, Pos2, Role, Sense, Shape, Stroke, Ui, WidgetInfo, po
 /// More points than a panel is wide only cost time.
 const COLUMNS: usize = 240;
 
-/// Draws values (along the way, value) from 0 to `most`; `label` tells a screen reader what it shows.
+/// Draws values (along the way, value) from 0 to `most`; `label` tells a screen reader what it
+/// shows.
 pub(crate) fn profile_ui(label: &str, points: &[[f64; 2]], most: f64, color: Color32, ui: &mut Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let rect = full_width((44.0 * theme.scale()).round(), ui);
@@ -22,7 +23,8 @@ pub(crate) fn profile_ui(label: &str, points: &[[f64; 2]], most: f64, color: Col
     };
     // The largest of what falls into one column: a peak must not be lost.
     let columns = points.chunks(points.len().div_ceil(COLUMNS).max(1));
-    let largest = columns.filter_map(|column| column.iter().copied().max_by(|a, b| a[1].total_cmp(&b[1])));
+    let largest =
+        columns.filter_map(|column| column.iter().copied().max_by(|a, b| a[1].total_cmp(&b[1])));
     let line: Vec<Pos2> = largest.map(at).collect();
     let wash = color.gamma_multiply(0.18);
     for pair in line.windows(2) {

@@ -4,13 +4,17 @@ use super::icon::{Icon, paint_icon};
 use super::paint::{Run, full_width, line_of, put};
 use crate::ui::language::tr;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
-use eframe::egui::{Align, Align2, CollapsingHeader, Color32, Layout, Rect, RichText, Ui, UiBuilder, vec2};
+use eframe::egui::{
+    Align, Align2, CollapsingHeader, Color32, Layout, Rect, RichText, Ui, UiBuilder, vec2,
+};
 
-/// The heading of a section, set in quiet capitals. Returns the line it stands on, for a button at its right end.
+/// The heading of a section, set in quiet capitals. Returns the line it stands on, for a button at
+/// its right end.
 pub(crate) fn section_header_ui(title: &str, ui: &mut Ui) -> Rect {
     let rect = full_width((24.0 * theme_of(ui).scale()).round(), ui);
     let capitals = tr(title, ui).to_uppercase();
-    let galley = line_of(&[Run::new(&capitals, Type::Caps, palette_of(ui).muted)], rect.width(), ui);
+    let galley =
+        line_of(&[Run::new(&capitals, Type::Caps, palette_of(ui).muted)], rect.width(), ui);
     put(ui.painter(), rect.left_center(), Align2::LEFT_CENTER, galley);
     rect
 }
@@ -18,7 +22,8 @@ pub(crate) fn section_header_ui(title: &str, ui: &mut Ui) -> Rect {
 /// A quiet word at the right end of a heading's line.
 pub(crate) fn section_mark_ui(words: &str, header: Rect, ui: &mut Ui) {
     let at = header.shrink2(vec2(space::XS, 0.0));
-    let mut ui = ui.new_child(UiBuilder::new().max_rect(at).layout(Layout::right_to_left(Align::Center)));
+    let mut ui =
+        ui.new_child(UiBuilder::new().max_rect(at).layout(Layout::right_to_left(Align::Center)));
     let (font, muted) = (theme_of(&ui).font(Type::Small), palette_of(&ui).muted);
     ui.label(RichText::new(tr(words, &ui)).font(font).color(muted));
 }

@@ -5,20 +5,28 @@ use super::words::Words;
 use crate::ui::language::tr;
 use crate::ui::theme::{Type, palette_of, radius, theme_of};
 use eframe::egui::{
-    Align2, Color32, CursorIcon, EventFilter, Key, Label, Rect, RichText, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
+    Align2, Color32, CursorIcon, EventFilter, Key, Label, Rect, RichText, Role, Sense, Stroke,
+    StrokeKind, Ui, WidgetInfo, pos2, vec2,
 };
 
-/// What a choice among a few is about, above it. `true` when a double click on it asks for the default.
+/// What a choice among a few is about, above it. `true` when a double click on it asks for the
+/// default.
 pub(crate) fn segmented_label_ui(label: &str, ui: &mut Ui) -> bool {
     let words = RichText::new(tr(label, ui)).font(theme_of(ui).font(Type::Label));
     let response = ui.add(Label::new(words).selectable(false).sense(Sense::CLICK));
     response.on_hover_text(tr(Words::of(ui).reset_hint, ui)).double_clicked()
 }
 
-/// A choice among a few, as wide as the panel. `label` is its accessible name; what was chosen anew, if anything.
+/// A choice among a few, as wide as the panel. `label` is its accessible name; what was chosen
+/// anew, if anything.
 ///
 /// With the keyboard on it, the arrow keys go from one to the next.
-pub(crate) fn segmented_ui<T: Copy + PartialEq>(label: &str, chosen: T, options: &[(T, &str)], ui: &mut Ui) -> Option<T> {
+pub(crate) fn segmented_ui<T: Copy + PartialEq>(
+    label: &str,
+    chosen: T,
+    options: &[(T, &str)],
+    ui: &mut Ui,
+) -> Option<T> {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let enabled = ui.is_enabled();
     let height = (30.0 * theme.scale()).round();
@@ -32,7 +40,12 @@ pub(crate) fn segmented_ui<T: Copy + PartialEq>(label: &str, chosen: T, options:
 
     let inner = well.shrink(3.0);
     let width = inner.width() / options.len() as f32;
-    let cell = |index: usize| Rect::from_min_size(pos2(inner.left() + index as f32 * width, inner.top()), vec2(width, inner.height()));
+    let cell = |index: usize| {
+        Rect::from_min_size(
+            pos2(inner.left() + index as f32 * width, inner.top()),
+            vec2(width, inner.height()),
+        )
+    };
     let current = options.iter().position(|&(value, _)| value == chosen);
     let mut picked = None;
 
@@ -40,9 +53,15 @@ pub(crate) fn segmented_ui<T: Copy + PartialEq>(label: &str, chosen: T, options:
     if let Some(current) = current {
         let secs = ui.style().animation_time;
         let left = ui.ctx().animate_value_with_time(id.with("thumb"), current as f32, secs);
-        let thumb = Rect::from_min_size(pos2(inner.left() + left * width, inner.top()), vec2(width, inner.height()));
-        ui.painter()
-            .rect_filled(thumb.translate(vec2(0.0, 1.0)), radius::S + 1, palette.shadow.gamma_multiply(0.5));
+        let thumb = Rect::from_min_size(
+            pos2(inner.left() + left * width, inner.top()),
+            vec2(width, inner.height()),
+        );
+        ui.painter().rect_filled(
+            thumb.translate(vec2(0.0, 1.0)),
+            radius::S + 1,
+            palette.shadow.gamma_multiply(0.5),
+        );
         ui.painter().rect_filled(thumb, radius::S + 1, palette.pressed);
     }
     for (index, &(value, name)) in options.iter().enumerate() {
@@ -57,12 +76,12 @@ pub(crate) fn segmented_ui<T: Copy + PartialEq>(label: &str, chosen: T, options:
             picked = Some(value);
         }
         if response.has_focus() {
-            let filter = EventFilter {
-                horizontal_arrows: true,
-                ..EventFilter::default()
-            };
+            let filter = EventFilter { horizontal_arrows: true, ..EventFilter::default() };
             ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
-            let step = ui.input(|input| i32::from(input.key_pressed(Key::ArrowRight)) - i32::from(input.key_pressed(Key::ArrowLeft)));
+            let step = ui.input(|input| {
+                i32::from(input.key_pressed(Key::ArrowRight))
+                    - i32::from(input.key_pressed(Key::ArrowLeft))
+            });
             if let Some(next) = index
                 .checked_add_signed(step as isize)
                 .filter(|&next| step != 0 && next < options.len())
@@ -71,13 +90,10 @@ pub(crate) fn segmented_ui<T: Copy + PartialEq>(label: &str, chosen: T, options:
                 ui.memory_mut(|memory| memory.request_focus(id.with(next)));
             }
         }
-        let color = if is_chosen || response.hovered() {
-            palette.text
-        } else {
-            palette.muted
-        };
+        let color = if is_chosen || response.hovered() { palette.text } else { palette.muted };
         let step = if is_chosen { Type::Strong } else { Type::Body };
-        let galley = line_of(&[Run::new(name, step, faded(color, enabled))], rect.width() - 6.0, ui);
+        let galley =
+            line_of(&[Run::new(name, step, faded(color, enabled))], rect.width() - 6.0, ui);
         put(ui.painter(), rect.center(), Align2::CENTER_CENTER, galley);
         focus_ring(rect, radius::S, &response, ui);
         response.widget_info(|| WidgetInfo::selected(Role::RadioButton, enabled, is_chosen, name));

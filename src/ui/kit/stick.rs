@@ -13,8 +13,8 @@ pub(crate) fn stick_size(ui: &Ui) -> f32 {
     (2.0 * RADIUS * theme_of(ui).scale()).round()
 }
 
-/// Draws it about `center`, pushed as `shown` says while no hand is on it: each from -1 to 1, to the right and up. What the hand asks for, no longer than 1;
-/// nothing while it is let go.
+/// Draws it about `center`, pushed as `shown` says while no hand is on it: each from -1 to 1, to
+/// the right and up. What the hand asks for, no longer than 1; nothing while it is let go.
 pub(crate) fn stick_ui(label: &str, center: Pos2, shown: Vec2, ui: &mut Ui) -> Option<Vec2> {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let radius = RADIUS * theme.scale();
@@ -43,11 +43,7 @@ pub(crate) fn stick_ui(label: &str, center: Pos2, shown: Vec2, ui: &mut Ui) -> O
         painter.line_segment([center + way * (radius - 9.0), center + way * (radius - 5.0)], mark);
     }
     let knob = center + vec2(at.x, -at.y) * reach;
-    let fill = if at == Vec2::ZERO {
-        palette.handle.gamma_multiply(0.75)
-    } else {
-        palette.accent
-    };
+    let fill = if at == Vec2::ZERO { palette.handle.gamma_multiply(0.75) } else { palette.accent };
     painter.circle(knob, KNOB * theme.scale(), fill, Stroke::new(1.5, palette.panel));
     pushed
 }

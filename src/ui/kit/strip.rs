@@ -3,7 +3,10 @@
 use super::paint::{Run, focus_ring, line_of, put};
 use crate::ui::theme::{Type, palette_of, radius, theme_of};
 use eframe::egui::epaint::CubicBezierShape;
-use eframe::egui::{Align2, Color32, CursorIcon, Pos2, Rangef, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
+use eframe::egui::{
+    Align2, Color32, CursorIcon, Pos2, Rangef, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2,
+    vec2,
+};
 
 /// What becomes of who comes here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,7 +90,8 @@ pub(crate) fn strip_ui(strip: &Strip<'_>, height: f32, ui: &mut Ui) -> StripResp
     let (bar_height, names) = ((7.0 * scale).round(), (16.0 * scale).round());
     let bars = Rangef::new(whole.bottom() - names - bar_height, whole.bottom() - names);
     let frames: usize = strip.bars.iter().map(|bar| bar.1).sum();
-    let per_frame = (whole.width() - GAP * strip.bars.len().saturating_sub(1) as f32) / frames.max(1) as f32;
+    let per_frame =
+        (whole.width() - GAP * strip.bars.len().saturating_sub(1) as f32) / frames.max(1) as f32;
     let mut starts = Vec::with_capacity(strip.bars.len());
     let mut first = 0;
     for (index, bar) in strip.bars.iter().enumerate() {
@@ -96,9 +100,7 @@ pub(crate) fn strip_ui(strip: &Strip<'_>, height: f32, ui: &mut Ui) -> StripResp
     }
     let x_of = |frame: f32| {
         let bar = starts.partition_point(|start| start.0 as f32 <= frame).saturating_sub(1);
-        starts
-            .get(bar)
-            .map_or(whole.left(), |start| start.1 + (frame - start.0 as f32) * per_frame)
+        starts.get(bar).map_or(whole.left(), |start| start.1 + (frame - start.0 as f32) * per_frame)
     };
 
     let id = ui.make_persistent_id(strip.label);
@@ -131,7 +133,12 @@ pub(crate) fn strip_ui(strip: &Strip<'_>, height: f32, ui: &mut Ui) -> StripResp
     let painter = ui.painter_at(whole.expand(2.0));
     let draw = |index: usize, stroke: Stroke| {
         let points = curve(&strip.arcs[index]);
-        painter.add(CubicBezierShape::from_points_stroke(points, false, Color32::TRANSPARENT, stroke));
+        painter.add(CubicBezierShape::from_points_stroke(
+            points,
+            false,
+            Color32::TRANSPARENT,
+            stroke,
+        ));
     };
     for &index in &shown {
         let arc = &strip.arcs[index];
@@ -162,9 +169,16 @@ pub(crate) fn strip_ui(strip: &Strip<'_>, height: f32, ui: &mut Ui) -> StripResp
         if rect.width() >= 4.0 * theme.hairline() {
             rect.max.x -= theme.hairline();
         }
-        painter.rect_filled(rect, 0.0, color.gamma_multiply(if stretch.fate == Fate::Main { 0.75 } else { 1.0 }));
+        painter.rect_filled(
+            rect,
+            0.0,
+            color.gamma_multiply(if stretch.fate == Fate::Main { 0.75 } else { 1.0 }),
+        );
         if stretch.fate == Fate::End {
-            let end = Rect::from_min_max(pos2((rect.right() - 3.0).max(rect.left()), rect.top()), rect.max);
+            let end = Rect::from_min_max(
+                pos2((rect.right() - 3.0).max(rect.left()), rect.top()),
+                rect.max,
+            );
             painter.rect_filled(end, 0.0, palette.bad);
         }
     }
@@ -174,7 +188,8 @@ pub(crate) fn strip_ui(strip: &Strip<'_>, height: f32, ui: &mut Ui) -> StripResp
     }
     for ((name, frames), &(_, left)) in strip.bars.iter().zip(&starts) {
         let width = *frames as f32 * per_frame;
-        let galley = line_of(&[Run::new(name, Type::Small, palette.muted)], (width - 2.0).max(0.0), ui);
+        let galley =
+            line_of(&[Run::new(name, Type::Small, palette.muted)], (width - 2.0).max(0.0), ui);
         if width > 14.0 {
             put(&painter, pos2(left, bars.max + 1.0), Align2::LEFT_TOP, galley);
         }

@@ -17,7 +17,8 @@ pub(crate) fn switch_row_ui(label: &str, on: bool, ui: &mut Ui) -> Option<bool> 
     let shown = switched.unwrap_or(on);
 
     let size = (vec2(30.0, 18.0) * scale).round();
-    let track = Rect::from_min_size(pos2(row.right() - size.x, row.center().y - size.y / 2.0), size);
+    let track =
+        Rect::from_min_size(pos2(row.right() - size.x, row.center().y - size.y / 2.0), size);
     let t = ui.ctx().animate_bool_responsive(id, shown);
     let empty = if response.hovered() { palette.pressed } else { palette.track };
     let fill = faded(empty.lerp_to_gamma(palette.accent_fill, t), enabled);
@@ -30,14 +31,13 @@ pub(crate) fn switch_row_ui(label: &str, on: bool, ui: &mut Ui) -> Option<bool> 
     let travel = size.x - size.y;
     let at = pos2(track.left() + size.y / 2.0 + t * travel, track.center().y);
     let off_tone = palette.muted;
-    ui.painter()
-        .circle_filled(at, knob, faded(off_tone.lerp_to_gamma(palette.accent_text, t), enabled));
+    ui.painter().circle_filled(
+        at,
+        knob,
+        faded(off_tone.lerp_to_gamma(palette.accent_text, t), enabled),
+    );
 
-    let (word, tone) = if shown {
-        (words.on, palette.text)
-    } else {
-        (words.off, palette.muted)
-    };
+    let (word, tone) = if shown { (words.on, palette.text) } else { (words.off, palette.muted) };
     let word = line_of(
         &[Run::new(word, if shown { Type::Strong } else { Type::Label }, faded(tone, enabled))],
         f32::INFINITY,

@@ -5,14 +5,18 @@ use super::icon::Icon;
 use super::menu::{MenuItem, menu_item_ui, menu_ui};
 use super::paint::{Run, focus_ring, line_of, put};
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
-use eframe::egui::{Align2, Color32, CursorIcon, RectAlign, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, vec2};
+use eframe::egui::{
+    Align2, Color32, CursorIcon, RectAlign, Response, Role, Sense, Stroke, StrokeKind, Ui,
+    WidgetInfo, vec2,
+};
 
 /// Fewer tabs than this beside a menu are not worth the line: the chosen one alone is clearer.
 const LEAST_TABS: usize = 3;
 
-/// Tabs in one line, `width` points at most. What has no room stands in a menu at the right end, and the chosen one is always among the tabs; where
-/// hardly any have room, the chosen one alone is shown, with all in its menu. `names` are those of the tabs and of the menu with the rest.
-/// What was chosen anew.
+/// Tabs in one line, `width` points at most. What has no room stands in a menu at the right end,
+/// and the chosen one is always among the tabs; where hardly any have room, the chosen one alone is
+/// shown, with all in its menu. `names` are those of the tabs and of the menu with the rest. What
+/// was chosen anew.
 pub(crate) fn tabs_ui<T: Copy + PartialEq>(
     [name, more]: [&str; 2],
     chosen: T,
@@ -23,9 +27,7 @@ pub(crate) fn tabs_ui<T: Copy + PartialEq>(
     let theme = theme_of(ui);
     let pad = 10.0 * theme.scale();
     let size_of = |text: &str| {
-        line_of(&[Run::new(text, Type::Strong, Color32::PLACEHOLDER)], f32::INFINITY, ui)
-            .size()
-            .x
+        line_of(&[Run::new(text, Type::Strong, Color32::PLACEHOLDER)], f32::INFINITY, ui).size().x
             + 2.0 * pad
     };
     let widths: Vec<f32> = options.iter().map(|option| size_of(option.1).ceil()).collect();
@@ -42,7 +44,8 @@ pub(crate) fn tabs_ui<T: Copy + PartialEq>(
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing.x = GAP;
         for &index in &shown {
-            let (Some(&(value, text)), Some(&width)) = (options.get(index), widths.get(index)) else {
+            let (Some(&(value, text)), Some(&width)) = (options.get(index), widths.get(index))
+            else {
                 continue;
             };
             if tab_ui(text, width, value == chosen, ui) {
@@ -51,7 +54,8 @@ pub(crate) fn tabs_ui<T: Copy + PartialEq>(
         }
         if shown.len() < options.len() {
             let opener = button_ui(Button::icon_only(Icon::ChevronDown, more).quiet(), ui);
-            let rest = options.iter().copied().enumerate().filter(|(index, _)| !shown.contains(index));
+            let rest =
+                options.iter().copied().enumerate().filter(|(index, _)| !shown.contains(index));
             picked = picked.or(menu_of(&opener, chosen, rest.map(|(_, option)| option)));
         }
     });
@@ -61,10 +65,12 @@ pub(crate) fn tabs_ui<T: Copy + PartialEq>(
 /// Between two tabs, points.
 const GAP: f32 = 2.0;
 
-/// Which tabs have room, in order: all of them, or as many of the first as fit beside a menu of the width `rest`, of which the last gives way to the
-/// chosen one where that is not among them.
+/// Which tabs have room, in order: all of them, or as many of the first as fit beside a menu of the
+/// width `rest`, of which the last gives way to the chosen one where that is not among them.
 fn fitting(widths: &[f32], chosen: usize, width: f32, rest: f32) -> Vec<usize> {
-    let needed = |tabs: &[usize]| tabs.iter().filter_map(|&tab| widths.get(tab)).map(|width| width + GAP).sum::<f32>() - GAP;
+    let needed = |tabs: &[usize]| {
+        tabs.iter().filter_map(|&tab| widths.get(tab)).map(|width| width + GAP).sum::<f32>() - GAP
+    };
     let all: Vec<usize> = (0..widths.len()).collect();
     if needed(&all) <= width {
         return all;
@@ -91,11 +97,7 @@ fn tab_ui(text: &str, width: f32, is_chosen: bool, ui: &mut Ui) -> bool {
     } else if response.hovered() {
         ui.painter().rect_filled(rect, radius::M, palette.hover);
     }
-    let ink = if is_chosen || response.hovered() {
-        palette.text
-    } else {
-        palette.muted
-    };
+    let ink = if is_chosen || response.hovered() { palette.text } else { palette.muted };
     let step = if is_chosen { Type::Strong } else { Type::Body };
     let galley = line_of(&[Run::new(text, step, ink)], f32::INFINITY, ui);
     put(ui.painter(), rect.center(), Align2::CENTER_CENTER, galley);
@@ -104,15 +106,15 @@ fn tab_ui(text: &str, width: f32, is_chosen: bool, ui: &mut Ui) -> bool {
     response.clicked()
 }
 
-fn menu_of<'a, T: Copy + PartialEq>(opener: &Response, chosen: T, options: impl Iterator<Item = (T, &'a str)>) -> Option<T> {
+fn menu_of<'a, T: Copy + PartialEq>(
+    opener: &Response,
+    chosen: T,
+    options: impl Iterator<Item = (T, &'a str)>,
+) -> Option<T> {
     let mut picked = None;
     menu_ui(opener, RectAlign::BOTTOM_START, |ui| {
         for (value, text) in options {
-            let item = MenuItem {
-                text,
-                chosen: value == chosen,
-                ..MenuItem::default()
-            };
+            let item = MenuItem { text, chosen: value == chosen, ..MenuItem::default() };
             if menu_item_ui(item, ui).clicked() {
                 picked = Some(value);
             }

@@ -3,7 +3,9 @@
 use super::notice::notice_ui;
 use super::*;
 use crate::ui::theme::Theme;
-use eframe::egui::{self, Event, Key, Modifiers, PointerButton, Pos2, Ui, accesskit::Toggled, pos2, vec2};
+use eframe::egui::{
+    self, Event, Key, Modifiers, PointerButton, Pos2, Ui, accesskit::Toggled, pos2, vec2,
+};
 use egui_kittest::{
     Harness,
     kittest::{NodeT as _, Queryable as _},
@@ -50,25 +52,18 @@ struct Slid {
 }
 
 fn slider(value: f64, source: Source) -> Harness<'static, Slid> {
-    bench(
-        Slid {
-            value,
-            source,
-            ..Slid::default()
-        },
-        |state, ui| {
-            let row = SliderRow::new("Blend window", 0.0..=100.0, 15.0)
-                .step(1.0)
-                .unit("frames")
-                .source(state.source);
-            let out = slider_row_ui(state.value, &row, ui);
-            state.changes += usize::from(out.changed.is_some());
-            state.resets += usize::from(out.reset);
-            state.started += usize::from(out.drag_started);
-            state.ended += usize::from(out.drag_ended);
-            state.value = out.changed.unwrap_or(state.value);
-        },
-    )
+    bench(Slid { value, source, ..Slid::default() }, |state, ui| {
+        let row = SliderRow::new("Blend window", 0.0..=100.0, 15.0)
+            .step(1.0)
+            .unit("frames")
+            .source(state.source);
+        let out = slider_row_ui(state.value, &row, ui);
+        state.changes += usize::from(out.changed.is_some());
+        state.resets += usize::from(out.reset);
+        state.started += usize::from(out.drag_started);
+        state.ended += usize::from(out.drag_ended);
+        state.value = out.changed.unwrap_or(state.value);
+    })
 }
 
 #[test]
@@ -236,7 +231,9 @@ fn a_switch_turns_by_click_and_by_key() {
 #[test]
 fn segments_are_chosen_by_click_and_by_arrows() {
     let mut harness = bench((0, 0), |(chosen, asked), ui| {
-        if let Some(value) = segmented_ui("Method", *chosen, &[(0, "cut"), (1, "dissolve"), (2, "inertialize")], ui) {
+        if let Some(value) =
+            segmented_ui("Method", *chosen, &[(0, "cut"), (1, "dissolve"), (2, "inertialize")], ui)
+        {
             (*chosen, *asked) = (value, *asked + 1);
         }
     });
@@ -263,7 +260,12 @@ fn segments_are_chosen_by_click_and_by_arrows() {
 #[test]
 fn a_choice_opens_and_closes_and_says_what_was_chosen() {
     let mut harness = bench('a', |chosen, ui| {
-        if let Some(value) = choice_row_ui("Blend in", *chosen, &[('a', "joint rotations"), ('b', "world space")], ui) {
+        if let Some(value) = choice_row_ui(
+            "Blend in",
+            *chosen,
+            &[('a', "joint rotations"), ('b', "world space")],
+            ui,
+        ) {
             *chosen = value;
         }
     });
@@ -311,18 +313,14 @@ fn a_clip_its_letter_and_its_actions_are_told_apart() {
 
 #[test]
 fn notices_are_dismissed_and_acted_on_and_tasks_are_stopped() {
-    let mut harness = bench((Vec::new(), false), |(events, stopped): &mut (Vec<NoticeEvent>, bool), ui| {
-        let text = "A long notice that needs more than one line in a panel as narrow as this one is, and is not cut.";
-        events.extend(notice_ui(
-            &Notice {
-                text,
-                mood: Mood::Warning,
-                action: "Show",
-            },
-            ui,
-        ));
-        *stopped |= progress_row_ui("Distance matrix", Some(0.5), "half", ui);
-    });
+    let mut harness = bench(
+        (Vec::new(), false),
+        |(events, stopped): &mut (Vec<NoticeEvent>, bool), ui| {
+            let text = "A long notice that needs more than one line in a panel as narrow as this one is, and is not cut.";
+            events.extend(notice_ui(&Notice { text, mood: Mood::Warning, action: "Show" }, ui));
+            *stopped |= progress_row_ui("Distance matrix", Some(0.5), "half", ui);
+        },
+    );
     harness.get_by_label("Dismiss").click();
     harness.run();
     harness.get_by_label("Show").click();
@@ -345,21 +343,12 @@ struct Timed {
 }
 
 fn timeline() -> Harness<'static, Timed> {
-    let start = Timed {
-        now: 1.0,
-        transition: (4.0, 6.0),
-        events: Vec::new(),
-    };
+    let start = Timed { now: 1.0, transition: (4.0, 6.0), events: Vec::new() };
     bench(start, |state, ui| {
-        let points: Vec<[f64; 2]> = (0..=100_u32).map(|i| [f64::from(i) / 10.0, f64::from(i)]).collect();
+        let points: Vec<[f64; 2]> =
+            (0..=100_u32).map(|i| [f64::from(i) / 10.0, f64::from(i)]).collect();
         let ink = egui::Color32::WHITE;
-        let series = [Series {
-            name: "result",
-            color: ink,
-            ink,
-            strong: true,
-            points: &points,
-        }];
+        let series = [Series { name: "result", color: ink, ink, strong: true, points: &points }];
         let view = Timeline {
             duration: 10.0,
             now: state.now,
@@ -484,7 +473,8 @@ fn tabs_fold_into_a_menu_where_there_is_no_room() {
     const LABS: [(usize, &str); 4] = [(0, "View"), (1, "Blend"), (2, "Transition"), (3, "Graph")];
     for (width, folded) in [(600.0, false), (120.0, true)] {
         let mut harness = bench(1, move |chosen, ui| {
-            let picked = ui.horizontal(|ui| tabs_ui(["Lab", "More labs"], *chosen, &LABS, width, ui)).inner;
+            let picked =
+                ui.horizontal(|ui| tabs_ui(["Lab", "More labs"], *chosen, &LABS, width, ui)).inner;
             *chosen = picked.unwrap_or(*chosen);
         });
         assert_eq!(harness.query_by_label("Lab").is_some(), folded);
@@ -514,7 +504,8 @@ fn of_many_tabs_those_without_room_stand_in_a_menu() {
     ];
     let labs: Vec<(usize, &str)> = NAMES.into_iter().enumerate().collect();
     let mut harness = bench(0, move |chosen, ui| {
-        let picked = ui.horizontal(|ui| tabs_ui(["Lab", "More labs"], *chosen, &labs, 280.0, ui)).inner;
+        let picked =
+            ui.horizontal(|ui| tabs_ui(["Lab", "More labs"], *chosen, &labs, 280.0, ui)).inner;
         *chosen = picked.unwrap_or(*chosen);
     });
     assert!(harness.query_by_label("Blend").is_some() && harness.query_by_label("Path").is_none());

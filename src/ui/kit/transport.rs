@@ -7,7 +7,10 @@ use super::paint::{Run, focus_ring, line_of, put};
 use super::words::Words;
 use crate::ui::language::tr;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
-use eframe::egui::{Align, Align2, CursorIcon, Layout, RectAlign, Role, Sense, Ui, UiBuilder, WidgetInfo, pos2, vec2};
+use eframe::egui::{
+    Align, Align2, CursorIcon, Layout, RectAlign, Role, Sense, Ui, UiBuilder, WidgetInfo, pos2,
+    vec2,
+};
 
 /// The speeds one may choose.
 const SPEEDS: [f64; 7] = [0.05, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0];
@@ -72,7 +75,9 @@ pub(crate) fn transport_ui(transport: &Transport<'_>, ui: &mut Ui) -> Option<Tra
             if icon_button_ui(Icon::StepForward, words.step_forward, ui).clicked() {
                 event = Some(TransportEvent::Step(1));
             }
-            if button_ui(Button::icon_only(Icon::Loop, words.repeat).selected(transport.repeat), ui).clicked() {
+            if button_ui(Button::icon_only(Icon::Loop, words.repeat).selected(transport.repeat), ui)
+                .clicked()
+            {
                 event = Some(TransportEvent::SetRepeat(!transport.repeat));
             }
         }
@@ -93,7 +98,8 @@ pub(crate) fn transport_ui(transport: &Transport<'_>, ui: &mut Ui) -> Option<Tra
         rect.right()
     };
     let left = right_end + space::L;
-    let caption = line_of(&[Run::new(transport.caption, Type::Body, palette.muted)], row.right() - left, ui);
+    let caption =
+        line_of(&[Run::new(transport.caption, Type::Body, palette.muted)], row.right() - left, ui);
     put(ui.painter(), pos2(row.right(), row.center().y), Align2::RIGHT_CENTER, caption);
     event
 }

@@ -6,7 +6,8 @@ use crate::ui::language::tr;
 use crate::ui::theme::{HIT, Type, palette_of, radius, space, theme_of};
 use eframe::egui::accesskit::Action;
 use eframe::egui::{
-    Align2, CursorIcon, EventFilter, Id, Key, Rect, Response, Role, ScrollArea, Sense, Ui, WidgetInfo, pos2, style::ScrollAnimation, vec2,
+    Align2, CursorIcon, EventFilter, Id, Key, Rect, Response, Role, ScrollArea, Sense, Ui,
+    WidgetInfo, pos2, style::ScrollAnimation, vec2,
 };
 use std::collections::BTreeSet;
 
@@ -45,15 +46,22 @@ struct Open {
 /// Deeper rows are not set farther in: fingers would leave no room for their names.
 const MOST_INDENTS: usize = 9;
 
-/// A tree as wide as the panel. Only the rows in sight are laid out; `row_of` says what they say. What was chosen anew.
+/// A tree as wide as the panel. Only the rows in sight are laid out; `row_of` says what they say.
+/// What was chosen anew.
 ///
-/// With the keyboard on a row, up and down choose the next one, left and right fold it, unfold it and go to its parent or first child.
-pub(crate) fn tree_ui(tree: &Tree<'_>, row_of: impl Fn(usize) -> TreeRow, ui: &mut Ui) -> Option<usize> {
+/// With the keyboard on a row, up and down choose the next one, left and right fold it, unfold it
+/// and go to its parent or first child.
+pub(crate) fn tree_ui(
+    tree: &Tree<'_>,
+    row_of: impl Fn(usize) -> TreeRow,
+    ui: &mut Ui,
+) -> Option<usize> {
     let id = ui.make_persistent_id(tree.label);
     let mut folded: BTreeSet<usize> = ui.data_mut(|data| data.get_temp(id)).unwrap_or_default();
     let rows = open_rows(tree.parents, &folded);
     let height = (HIT * theme_of(ui).scale()).round();
-    let focused = rows.iter().position(|row| ui.memory(|memory| memory.has_focus(id.with(row.item))));
+    let focused =
+        rows.iter().position(|row| ui.memory(|memory| memory.has_focus(id.with(row.item))));
     // Once it is chosen elsewhere, it is brought into sight.
     let seen: Option<Option<usize>> = ui.data(|data| data.get_temp(id.with("seen")));
     let news = tree.chosen.filter(|chosen| seen != Some(Some(*chosen)));
@@ -68,7 +76,8 @@ pub(crate) fn tree_ui(tree: &Tree<'_>, row_of: impl Fn(usize) -> TreeRow, ui: &m
             .auto_shrink([false, true]);
         let shown = area.show_rows(ui, height, rows.len(), |ui, range| {
             ui.response().widget_info(|| WidgetInfo::labeled(Role::Tree, true, tree.label));
-            let (_, space) = ui.allocate_space(vec2(ui.available_width(), height * range.len() as f32));
+            let (_, space) =
+                ui.allocate_space(vec2(ui.available_width(), height * range.len() as f32));
             let place = |index: usize| {
                 let top = space.top() + (index as f32 - range.start as f32) * height;
                 Rect::from_min_size(pos2(space.left(), top), vec2(space.width(), height))
@@ -78,14 +87,23 @@ pub(crate) fn tree_ui(tree: &Tree<'_>, row_of: impl Fn(usize) -> TreeRow, ui: &m
             for index in range.clone().chain(out_of_sight) {
                 let row = rows[index];
                 let is_chosen = tree.chosen == Some(row.item);
-                let response = row_ui(row, &row_of(row.item), is_chosen, folded.contains(&row.item), place(index), id, ui);
+                let response = row_ui(
+                    row,
+                    &row_of(row.item),
+                    is_chosen,
+                    folded.contains(&row.item),
+                    place(index),
+                    id,
+                    ui,
+                );
                 event = event_of(&rows, index, &folded, &response, place(index), ui).or(event);
             }
             let goal = match event {
                 Some(Event::Choose(item)) => Some(item),
                 _ => news,
             };
-            if let Some(index) = goal.and_then(|item| rows.iter().position(|row| row.item == item)) {
+            if let Some(index) = goal.and_then(|item| rows.iter().position(|row| row.item == item))
+            {
                 ui.scroll_to_rect_animation(place(index), None, ScrollAnimation::none());
             }
         });
@@ -117,7 +135,8 @@ enum Event {
     Fold(usize),
 }
 
-/// The rows whose parents are all unfolded, each parent followed by all below it. Without recursion: files nest as deep as they like.
+/// The rows whose parents are all unfolded, each parent followed by all below it. Without
+/// recursion: files nest as deep as they like.
 fn open_rows(parents: &[Option<usize>], folded: &BTreeSet<usize>) -> Vec<Open> {
     let mut children: Vec<Vec<usize>> = vec![Vec::new(); parents.len()];
     let mut waiting = Vec::new();
@@ -130,11 +149,7 @@ fn open_rows(parents: &[Option<usize>], folded: &BTreeSet<usize>) -> Vec<Open> {
     waiting.reverse();
     let mut rows = Vec::with_capacity(parents.len());
     while let Some((item, depth)) = waiting.pop() {
-        rows.push(Open {
-            item,
-            depth,
-            has_children: !children[item].is_empty(),
-        });
+        rows.push(Open { item, depth, has_children: !children[item].is_empty() });
         if !folded.contains(&item) {
             waiting.extend(children[item].iter().rev().map(|&child| (child, depth + 1)));
         }
@@ -142,33 +157,38 @@ fn open_rows(parents: &[Option<usize>], folded: &BTreeSet<usize>) -> Vec<Open> {
     rows
 }
 
-fn event_of(rows: &[Open], index: usize, folded: &BTreeSet<usize>, response: &Response, rect: Rect, ui: &Ui) -> Option<Event> {
+fn event_of(
+    rows: &[Open],
+    index: usize,
+    folded: &BTreeSet<usize>,
+    response: &Response,
+    rect: Rect,
+    ui: &Ui,
+) -> Option<Event> {
     let row = rows[index];
     let is_folded = folded.contains(&row.item);
     if response.clicked() {
         let pointer = response.interact_pointer_pos();
-        let on_chevron = row.has_children && pointer.is_some_and(|at| at.x < chevron_of(row, rect).right() + 2.0);
-        return Some(if on_chevron {
-            Event::Fold(row.item)
-        } else {
-            Event::Choose(row.item)
-        });
+        let on_chevron = row.has_children
+            && pointer.is_some_and(|at| at.x < chevron_of(row, rect).right() + 2.0);
+        return Some(if on_chevron { Event::Fold(row.item) } else { Event::Choose(row.item) });
     }
     let asked = |action| ui.input(|input| input.has_accesskit_action_request(response.id, action));
-    if row.has_children && (asked(Action::Expand) && is_folded || asked(Action::Collapse) && !is_folded) {
+    if row.has_children
+        && (asked(Action::Expand) && is_folded || asked(Action::Collapse) && !is_folded)
+    {
         return Some(Event::Fold(row.item));
     }
     if !response.has_focus() {
         return None;
     }
-    let filter = EventFilter {
-        horizontal_arrows: true,
-        vertical_arrows: true,
-        ..EventFilter::default()
-    };
+    let filter =
+        EventFilter { horizontal_arrows: true, vertical_arrows: true, ..EventFilter::default() };
     ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
     let pressed = |key| ui.input(|input| input.key_pressed(key));
-    let at = |index: Option<usize>| index.and_then(|index| rows.get(index)).map(|row| Event::Choose(row.item));
+    let at = |index: Option<usize>| {
+        index.and_then(|index| rows.get(index)).map(|row| Event::Choose(row.item))
+    };
     let unfolded = row.has_children && !is_folded;
     if pressed(Key::ArrowDown) {
         at(Some(index + 1))
@@ -179,11 +199,7 @@ fn event_of(rows: &[Open], index: usize, folded: &BTreeSet<usize>, response: &Re
     } else if pressed(Key::End) {
         at(rows.len().checked_sub(1))
     } else if pressed(Key::ArrowRight) && row.has_children {
-        if unfolded {
-            at(Some(index + 1))
-        } else {
-            Some(Event::Fold(row.item))
-        }
+        if unfolded { at(Some(index + 1)) } else { Some(Event::Fold(row.item)) }
     } else if pressed(Key::ArrowLeft) {
         let parent = || rows[..index].iter().rposition(|above| above.depth < row.depth);
         if unfolded { Some(Event::Fold(row.item)) } else { at(parent()) }
@@ -199,7 +215,15 @@ fn chevron_of(row: Open, rect: Rect) -> Rect {
     Rect::from_min_size(pos2(left, rect.top()), vec2(rect.height() * 0.6, rect.height()))
 }
 
-fn row_ui(row: Open, says: &TreeRow, is_chosen: bool, is_folded: bool, rect: Rect, id: Id, ui: &Ui) -> Response {
+fn row_ui(
+    row: Open,
+    says: &TreeRow,
+    is_chosen: bool,
+    is_folded: bool,
+    rect: Rect,
+    id: Id,
+    ui: &Ui,
+) -> Response {
     let palette = palette_of(ui);
     let enabled = ui.is_enabled();
     let response = ui
@@ -234,11 +258,8 @@ fn row_ui(row: Open, says: &TreeRow, is_chosen: bool, is_folded: bool, rect: Rec
         Align2::RIGHT_CENTER,
         detail,
     );
-    let (step, ink) = if is_chosen {
-        (Type::Strong, palette.accent_ink)
-    } else {
-        (Type::Body, palette.text)
-    };
+    let (step, ink) =
+        if is_chosen { (Type::Strong, palette.accent_ink) } else { (Type::Body, palette.text) };
     let left = chevron.right() + 2.0;
     let name = line_of(
         &[Run::new(&says.name, step, faded(ink, enabled)).own(true)],
@@ -263,11 +284,7 @@ fn row_ui(row: Open, says: &TreeRow, is_chosen: bool, is_folded: bool, rect: Rec
             node.add_action(if is_folded { Action::Expand } else { Action::Collapse });
         }
     });
-    if says.hint.is_empty() {
-        response
-    } else {
-        response.on_hover_text(tr(&says.hint, ui))
-    }
+    if says.hint.is_empty() { response } else { response.on_hover_text(tr(&says.hint, ui)) }
 }
 
 #[cfg(test)]
@@ -288,7 +305,8 @@ mod tests {
         assert_eq!(rows(&[0]), [(0, 0)]);
         // A parent that is not there makes a root; deep chains need no stack.
         assert_eq!(open_rows(&[None, Some(9)], &BTreeSet::new()).len(), 2);
-        let chain: Vec<Option<usize>> = (0..100_000).map(|item: usize| item.checked_sub(1)).collect();
+        let chain: Vec<Option<usize>> =
+            (0..100_000).map(|item: usize| item.checked_sub(1)).collect();
         assert_eq!(open_rows(&chain, &BTreeSet::new()).last().map(|row| row.depth), Some(99_999));
     }
 }

@@ -3,7 +3,10 @@
 use super::keys::keys_pressed;
 use super::paint::{Run, focus_ring, line_of, put};
 use crate::ui::theme::{Type, palette_of, radius, theme_of};
-use eframe::egui::{Align2, CursorIcon, Id, Key, Mesh, Pos2, Rect, Role, Sense, Shape, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
+use eframe::egui::{
+    Align2, CursorIcon, Id, Key, Mesh, Pos2, Rect, Role, Sense, Shape, Stroke, StrokeKind, Ui,
+    WidgetInfo, pos2, vec2,
+};
 
 /// A key: per cent of the time, and per cent of the weight.
 type CurveKey = (usize, usize);
@@ -36,8 +39,9 @@ const HEIGHT: f32 = 96.0;
 /// A key is taken hold of within this distance, points: a target of 24 points.
 const REACH: f32 = 12.0;
 
-/// Draws the curve as wide as there is room. Drag a key to move it, press twice to add one or to take one away; with the keyboard, Tab goes from key
-/// to key, arrows move the one that has the focus (with shift by ten), Delete takes it away.
+/// Draws the curve as wide as there is room. Drag a key to move it, press twice to add one or to
+/// take one away; with the keyboard, Tab goes from key to key, arrows move the one that has the
+/// focus (with shift by ten), Delete takes it away.
 pub(crate) fn weight_curve_ui(row: &WeightCurveRow<'_>, ui: &mut Ui) -> Vec<WeightCurveEvent> {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let scale = theme.scale();
@@ -69,7 +73,8 @@ pub(crate) fn weight_curve_ui(row: &WeightCurveRow<'_>, ui: &mut Ui) -> Vec<Weig
     };
     let held_id: Id = id.with("held");
     if ground.drag_started() {
-        let origin = ui.input(|input| input.pointer.press_origin()).or(ground.interact_pointer_pos());
+        let origin =
+            ui.input(|input| input.pointer.press_origin()).or(ground.interact_pointer_pos());
         ui.data_mut(|data| data.insert_temp(held_id, origin.and_then(near)));
     }
     if let (true, Some(pos)) = (ground.dragged(), ground.interact_pointer_pos())
@@ -134,7 +139,12 @@ pub(crate) fn weight_curve_ui(row: &WeightCurveRow<'_>, ui: &mut Ui) -> Vec<Weig
             Stroke::new(theme.hairline(), palette.handle.gamma_multiply(0.6)),
         );
     }
-    painter.rect_stroke(field, 0.0, Stroke::new(theme.hairline(), palette.line_strong), StrokeKind::Outside);
+    painter.rect_stroke(
+        field,
+        0.0,
+        Stroke::new(theme.hairline(), palette.line_strong),
+        StrokeKind::Outside,
+    );
     for (index, &key) in row.keys.iter().enumerate() {
         let at = place(key);
         let handle = Rect::from_center_size(at, vec2(2.0, 2.0) * REACH * scale);
@@ -144,7 +154,12 @@ pub(crate) fn weight_curve_ui(row: &WeightCurveRow<'_>, ui: &mut Ui) -> Vec<Weig
         if let Some(changed) = response.has_focus().then(|| worked(row.keys, index, ui)).flatten() {
             events.extend([changed, WeightCurveEvent::Settled]);
         }
-        painter.circle(at, 5.0 * scale, palette.handle, Stroke::new(1.5 * scale, palette.on_handle));
+        painter.circle(
+            at,
+            5.0 * scale,
+            palette.handle,
+            Stroke::new(1.5 * scale, palette.on_handle),
+        );
         focus_ring(handle, radius::S, &response, ui);
     }
     events
@@ -170,14 +185,17 @@ fn worked(keys: &[CurveKey], index: usize, ui: &Ui) -> Option<WeightCurveEvent> 
             Key::ArrowRight => at = (at + step).min(100),
             Key::ArrowDown => weight = weight.saturating_sub(step),
             Key::ArrowUp => weight = (weight + step).min(100),
-            Key::Delete | Key::Backspace => return without(keys, index).map(WeightCurveEvent::Keys),
+            Key::Delete | Key::Backspace => {
+                return without(keys, index).map(WeightCurveEvent::Keys);
+            }
             _ => {}
         }
     }
     moved(keys, index, (at, weight))
 }
 
-/// The keys with one of them elsewhere: between its neighbours, so that it stays the one that it is. `None` where nothing changes.
+/// The keys with one of them elsewhere: between its neighbours, so that it stays the one that it
+/// is. `None` where nothing changes.
 fn moved(keys: &[CurveKey], index: usize, to: CurveKey) -> Option<WeightCurveEvent> {
     let least = index.checked_sub(1).map_or(0, |before| keys[before].0 + 1);
     let most = keys.get(index + 1).map_or(100, |after| after.0.saturating_sub(1));

@@ -1,4 +1,5 @@
-//! The few words that the kit itself says. Everything else is handed in by the panels, in the language of the app.
+//! The few words that the kit itself says. Everything else is handed in by the panels, in the
+//! language of the app.
 
 use eframe::egui::{Context, Id, Ui};
 

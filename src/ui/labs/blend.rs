@@ -2,7 +2,10 @@
 
 use crate::ui::kit;
 use crate::ui::out::Out;
-use crate::ui::rows::{Detail, compare_ui, foot_rows_ui, lab_label, pair_ui, param_row_ui, place_rows_ui, save_result_ui};
+use crate::ui::rows::{
+    Detail, compare_ui, foot_rows_ui, lab_label, pair_ui, param_row_ui, place_rows_ui,
+    save_result_ui,
+};
 use crate::ui::state::UiState;
 use crate::ui::theme::space;
 use eframe::egui::Ui;
@@ -12,12 +15,9 @@ pub(super) fn blend_ui(session: &Session, state: &mut UiState, out: &mut Out, ui
     let fps = pair_ui(session, out, ui);
     let duration = |slot| Some(session.slot(slot)?.motion.as_ref()?.clip.duration_secs());
     let window = session.params().number(Key::BlendWindow);
-    let shortest = [Slot::A, Slot::B].into_iter().filter_map(duration).fold(f64::INFINITY, f64::min);
-    let longest_window = if shortest.is_finite() {
-        Some((shortest * fps).floor())
-    } else {
-        None
-    };
+    let shortest =
+        [Slot::A, Slot::B].into_iter().filter_map(duration).fold(f64::INFINITY, f64::min);
+    let longest_window = if shortest.is_finite() { Some((shortest * fps).floor()) } else { None };
     param_row_ui(
         Key::BlendWindow,
         &Detail {

@@ -19,25 +19,29 @@ pub(super) fn break_it_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         let shows = shows(mistake, session);
         let sentence = match (mistake, params.choice()) {
             _ if !shows => text::MISTAKE_IDLE,
-            (Mistake::Velocity, TransitionMethod::Smooth | TransitionMethod::Linear) => text::VELOCITY_IN_DISSOLVE,
+            (Mistake::Velocity, TransitionMethod::Smooth | TransitionMethod::Linear) => {
+                text::VELOCITY_IN_DISSOLVE
+            }
             _ => text::mistake(mistake),
         };
         if !sentence.is_empty() {
             let color = if shows { palette_of(ui).muted } else { palette_of(ui).warning };
-            ui.label(RichText::new(tr(sentence, ui)).font(theme_of(ui).font(Type::Small)).color(color));
+            ui.label(
+                RichText::new(tr(sentence, ui)).font(theme_of(ui).font(Type::Small)).color(color),
+            );
         }
     }
     if (params.choice::<Mistake>() != Mistake::None || compared.is_some())
-        && kit::button_ui(Button::new(text::RIGHT_AND_WRONG).selected(compared.is_some()), ui).clicked()
+        && kit::button_ui(Button::new(text::RIGHT_AND_WRONG).selected(compared.is_some()), ui)
+            .clicked()
     {
         let none = Mistake::None.into();
         let query = match compared {
             Some(_) => String::new(),
-            None => Compare {
-                key: Key::Mistake,
-                values: vec![none, params.get(Key::Mistake).clone()],
+            None => {
+                Compare { key: Key::Mistake, values: vec![none, params.get(Key::Mistake).clone()] }
+                    .to_string()
             }
-            .to_string(),
         };
         out.set_once(Key::Compare, Value::Text(query));
     }

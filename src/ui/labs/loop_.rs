@@ -12,7 +12,8 @@ use eframe::egui::Ui;
 use segue_session::choices::LoopMethod;
 use segue_session::{Cycle, CycleMade, Key, Session, Slot, Value};
 
-/// Ends that are farther apart than this hardly repeat each other, centimetres: as the default threshold of the motion graph.
+/// Ends that are farther apart than this hardly repeat each other, centimetres: as the default
+/// threshold of the motion graph.
 const POOR_ENDS_CM: f64 = 8.0;
 
 /// A clip that becomes a cycle.
@@ -47,7 +48,9 @@ pub(super) fn loop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     };
     param_row_ui(Key::LoopFrom, &place(Key::LoopFrom, automatic(Key::LoopTo)), session, out, ui);
     param_row_ui(Key::LoopTo, &place(Key::LoopTo, false), session, out, ui);
-    if let Some(distance_cm) = distance_cm.filter(|_| poor && automatic(Key::LoopFrom) && automatic(Key::LoopTo)) {
+    if let Some(distance_cm) =
+        distance_cm.filter(|_| poor && automatic(Key::LoopFrom) && automatic(Key::LoopTo))
+    {
         kit::note_ui(&text::poor_ends(distance_cm), palette_of(ui).warning, ui);
     }
     param_row_ui(Key::LoopMethod, &Detail::default(), session, out, ui);
@@ -56,14 +59,8 @@ pub(super) fn loop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     if let [method] = methods.as_slice() {
         kit::note_ui(text::loop_method(*method), palette_of(ui).muted, ui);
     }
-    if !methods
-        .iter()
-        .all(|method| matches!(method, LoopMethod::Linear | LoopMethod::Cubic))
-    {
-        let detail = Detail {
-            help: Some(text::LOOP_HALF_LIFE.to_owned()),
-            ..Detail::default()
-        };
+    if !methods.iter().all(|method| matches!(method, LoopMethod::Linear | LoopMethod::Cubic)) {
+        let detail = Detail { help: Some(text::LOOP_HALF_LIFE.to_owned()), ..Detail::default() };
         param_row_ui(Key::HalfLife, &detail, session, out, ui);
         compare_ui(Key::HalfLife, session, out, ui);
     }

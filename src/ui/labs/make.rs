@@ -25,9 +25,5 @@ pub(super) fn make_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
 
 /// What of a made motion is compared: standing and turning on the spot have no speed.
 pub(crate) fn made_number(session: &Session) -> Key {
-    if session.made_motion_has(Key::GaitSpeed) {
-        Key::GaitSpeed
-    } else {
-        Key::BodyHeight
-    }
+    if session.made_motion_has(Key::GaitSpeed) { Key::GaitSpeed } else { Key::BodyHeight }
 }

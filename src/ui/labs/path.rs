@@ -1,4 +1,5 @@
-//! The panel of the Path lab: how the path is fitted, what stays, and what is done to the whole path.
+//! The panel of the Path lab: how the path is fitted, what stays, and what is done to the whole
+//! path.
 
 pub(crate) mod ground_line;
 pub(crate) mod hand;
@@ -53,7 +54,11 @@ pub(super) fn path_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
         whole_ui(path, session, state, out, ui);
     }
     if !session.params().text(Key::Path).is_empty()
-        && kit::button_ui(Button::new(text::RESET_PATH).icon(Icon::Undo).hint(text::RESET_PATH_HELP), ui).clicked()
+        && kit::button_ui(
+            Button::new(text::RESET_PATH).icon(Icon::Undo).hint(text::RESET_PATH_HELP),
+            ui,
+        )
+        .clicked()
     {
         state.path.said = None;
         state.path.chosen = None;
@@ -98,7 +103,9 @@ fn points_ui(path: &OnPath, session: &Session, state: &mut UiState, out: &mut Ou
         if kit::button_ui(Button::new(text::ADD_POINT).hint(text::ADD_POINT_HELP), ui).clicked() {
             state.path.add_point(path, session, out);
         }
-        if kit::button_ui(Button::new(text::REMOVE_POINT).hint(text::REMOVE_POINT_HELP), ui).clicked() {
+        if kit::button_ui(Button::new(text::REMOVE_POINT).hint(text::REMOVE_POINT_HELP), ui)
+            .clicked()
+        {
             state.path.remove_point(path, session, out);
         }
         for key in [Key::PinStart, Key::PinEnd] {
@@ -122,9 +129,7 @@ fn points_ui(path: &OnPath, session: &Session, state: &mut UiState, out: &mut Ou
 /// What is done with the whole path.
 fn whole_ui(path: &OnPath, session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     ui.label(RichText::new(tr(text::WHOLE_PATH, ui)).font(theme_of(ui).font(Type::Label)));
-    let turn = |degrees: f64| PathEdit::Rotate {
-        radians: degrees.to_radians(),
-    };
+    let turn = |degrees: f64| PathEdit::Rotate { radians: degrees.to_radians() };
     let grid_m = session.params().number(Key::PathGrid);
     let spline = path.road.spline();
     let mut edits = vec![
@@ -197,17 +202,27 @@ pub(super) fn compare_points(session: &Session, out: &mut Out) {
 }
 
 /// Who else is on the stage.
-fn company_ui(has_result: bool, session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+fn company_ui(
+    has_result: bool,
+    session: &Session,
+    state: &mut UiState,
+    out: &mut Out,
+    ui: &mut Ui,
+) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     ui.label(RichText::new(tr(text::COMPANY, ui)).font(theme.font(Type::Strong)));
     for (place, companion) in session.company().iter().enumerate() {
         ui.push_id(("companion", place), |ui| {
             let row = kit::paint::full_width(theme.row_height(), ui);
             let color = palette.others[place % palette.others.len()];
-            ui.painter()
-                .circle_filled(row.left_center() + vec2(6.0, 0.0), 5.0 * theme.scale(), color);
+            ui.painter().circle_filled(
+                row.left_center() + vec2(6.0, 0.0),
+                5.0 * theme.scale(),
+                color,
+            );
             let side = theme.row_height();
-            let buttons = Rect::from_min_max(pos2(row.right() - 2.0 * side - space::XS, row.top()), row.max);
+            let buttons =
+                Rect::from_min_max(pos2(row.right() - 2.0 * side - space::XS, row.top()), row.max);
             let name = kit::paint::line_of(
                 &[kit::paint::Run::new(&companion.name, Type::Body, palette.text)],
                 buttons.left() - row.left() - 2.0 * space::L,
@@ -244,7 +259,8 @@ fn company_ui(has_result: bool, session: &Session, state: &mut UiState, out: &mu
     }
     let entries = session.library().entries();
     let clips = entries.iter().enumerate().map(|(index, entry)| (index, entry.name.as_str()));
-    let options: Vec<(usize, &str)> = std::iter::once((usize::MAX, text::CHOOSE_CLIP)).chain(clips).collect();
+    let options: Vec<(usize, &str)> =
+        std::iter::once((usize::MAX, text::CHOOSE_CLIP)).chain(clips).collect();
     let picked = kit::choice_row_ui(text::JOIN_CLIP, usize::MAX, &options, ui);
     if let Some(entry) = picked.and_then(|index| entries.get(index)) {
         out.commands.push(Command::Company(CompanyChange::Join(entry.id.clone())));

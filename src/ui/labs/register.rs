@@ -1,11 +1,16 @@
 //! The Register lab: the map of distances with the path on it, and what is made along it.
 
-use crate::ui::kit::{self, Button, Feet, HeatMap, HeatMapEvent, Icon, MapCurve, SliderRow, WeightCurveEvent, WeightCurveRow};
+use crate::ui::kit::{
+    self, Button, Feet, HeatMap, HeatMapEvent, Icon, MapCurve, SliderRow, WeightCurveEvent,
+    WeightCurveRow,
+};
 use crate::ui::language::tr;
 use crate::ui::out::Out;
 use crate::ui::rows::clip_sets_ui;
 use crate::ui::rows::{Detail, param_row_ui};
-use crate::ui::rows::{clip_choice_ui, compare_ui, foot_rows_ui, lab_label, pair_ui, save_result_ui};
+use crate::ui::rows::{
+    clip_choice_ui, compare_ui, foot_rows_ui, lab_label, pair_ui, save_result_ui,
+};
 use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{Palette, Type, palette_of, space, theme_of};
@@ -13,7 +18,10 @@ use eframe::egui::{Color32, ColorImage, Id, RichText, TextureHandle, TextureOpti
 use segue_motion::skeleton::Side;
 use segue_session::JobKind;
 use segue_session::choices::{self, WarpMode};
-use segue_session::{Command, DistanceMap, Key, MOST_ALSO, Registered, Session, Slot, Value, weight_curve, write_also, write_pairs};
+use segue_session::{
+    Command, DistanceMap, Key, MOST_ALSO, Registered, Session, Slot, Value, weight_curve,
+    write_also, write_pairs,
+};
 use std::sync::Arc;
 
 /// How much of a clip there is that has just joined a blend.
@@ -45,10 +53,7 @@ pub(super) fn register_ui(session: &Session, state: &mut UiState, out: &mut Out,
             let motion = session.slot(slot).and_then(|entry| entry.motion.as_ref());
             motion.map(|motion| motion.clip.duration_secs())
         };
-        let detail = Detail {
-            max: last(Slot::A),
-            ..Detail::default()
-        };
+        let detail = Detail { max: last(Slot::A), ..Detail::default() };
         param_row_ui(Key::WarpFrom, &detail, session, out, ui);
         param_row_ui(Key::WarpTo, &detail, session, out, ui);
         param_row_ui(Key::WeightLaw, &plain, session, out, ui);
@@ -57,10 +62,7 @@ pub(super) fn register_ui(session: &Session, state: &mut UiState, out: &mut Out,
     ui.add_space(space::S);
     kit::section_header_ui(text::REGISTRATION, ui);
     let fps = session.distance_map().map_or(60.0, |map| map.fps());
-    let window = Detail {
-        fps: Some(fps),
-        ..Detail::default()
-    };
+    let window = Detail { fps: Some(fps), ..Detail::default() };
     param_row_ui(Key::RegistrationWindow, &window, session, out, ui);
     param_row_ui(Key::SlopeLimit, &plain, session, out, ui);
     param_row_ui(Key::WarpSmoothing, &plain, session, out, ui);
@@ -79,9 +81,13 @@ fn weight_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         param_row_ui(Key::WarpWeight, &Detail::default(), session, out, ui);
         compare_ui(Key::WarpWeight, session, out, ui);
     } else {
-        ui.label(RichText::new(tr(Key::WarpCurve.param().label, ui)).font(theme_of(ui).font(Type::Label)));
+        ui.label(
+            RichText::new(tr(Key::WarpCurve.param().label, ui))
+                .font(theme_of(ui).font(Type::Label)),
+        );
         let curve = weight_curve(&keys);
-        let points: Vec<f64> = (0..=CURVE_POINTS).map(|k| curve.at(k as f64 / CURVE_POINTS as f64)).collect();
+        let points: Vec<f64> =
+            (0..=CURVE_POINTS).map(|k| curve.at(k as f64 / CURVE_POINTS as f64)).collect();
         let duration = session.duration_secs();
         let row = WeightCurveRow {
             label: Key::WarpCurve.param().label,
@@ -92,7 +98,9 @@ fn weight_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         };
         for event in kit::weight_curve_ui(&row, ui) {
             match event {
-                WeightCurveEvent::Keys(keys) => out.set(Key::WarpCurve, Value::Text(write_pairs(&keys))),
+                WeightCurveEvent::Keys(keys) => {
+                    out.set(Key::WarpCurve, Value::Text(write_pairs(&keys)))
+                }
                 WeightCurveEvent::Settled => out.commands.push(Command::Settle),
             }
         }
@@ -111,7 +119,9 @@ fn weight_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
 /// The further clips of a blend, each with its weight.
 fn also_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let also = session.also_blended();
-    let set = |also: &[(String, f64)], out: &mut Out| out.set(Key::WarpAlso, Value::Text(write_also(also)));
+    let set = |also: &[(String, f64)], out: &mut Out| {
+        out.set(Key::WarpAlso, Value::Text(write_also(also)))
+    };
     for (index, (id, weight)) in also.iter().enumerate() {
         let label = text::blended_clip(index);
         let with = |clip: (String, f64)| {
@@ -139,7 +149,8 @@ fn also_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
             });
         });
         let share = text::weight_of(index);
-        let response = kit::slider_row_ui(*weight, &SliderRow::new(&share, 0.0..=1.0, 0.0).step(0.01), ui);
+        let response =
+            kit::slider_row_ui(*weight, &SliderRow::new(&share, 0.0..=1.0, 0.0).step(0.01), ui);
         if let Some(weight) = response.changed {
             set(&with((id.clone(), weight)), out);
         }
@@ -148,11 +159,18 @@ fn also_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         }
     }
     if also.len() < MOST_ALSO
-        && kit::button_ui(Button::new(text::BLEND_MORE).icon(Icon::Plus).hint(Key::WarpAlso.param().help), ui).clicked()
+        && kit::button_ui(
+            Button::new(text::BLEND_MORE).icon(Icon::Plus).hint(Key::WarpAlso.param().help),
+            ui,
+        )
+        .clicked()
     {
         // The first that is not in it yet, if there is one.
         let params = session.params();
-        let is_in = |id: &str| [Key::A, Key::B].iter().any(|key| params.text(*key) == id) || also.iter().any(|(other, _)| other == id);
+        let is_in = |id: &str| {
+            [Key::A, Key::B].iter().any(|key| params.text(*key) == id)
+                || also.iter().any(|(other, _)| other == id)
+        };
         let entries = session.library().entries();
         let next = entries.iter().find(|entry| !is_in(&entry.id)).or(entries.first());
         let added = next.map(|entry| (entry.id.clone(), FIRST_SHARE));
@@ -168,7 +186,8 @@ pub(super) fn compare_warps(session: &Session, out: &mut Out) {
     out.set_once(Key::Compare, Value::Text(query.to_owned()));
 }
 
-/// The map, its legend, and what is known of the pair under the pointer, else of the one that is shown.
+/// The map, its legend, and what is known of the pair under the pointer, else of the one that is
+/// shown.
 fn map_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let palette = palette_of(ui);
     let job = session.jobs().into_iter().find(|job| job.kind == JobKind::Registering);
@@ -201,7 +220,8 @@ fn map_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let now = (registered.first())
         .and_then(|registered| registered.beat_at(session.now_secs()))
         .map(|beat| beat.frames);
-    let inside = |frames: &[f64; 2]| (0..2).all(|clip| (0.0..=spans[clip]).contains(&secs(*frames)[clip]));
+    let inside =
+        |frames: &[f64; 2]| (0..2).all(|clip| (0.0..=spans[clip]).contains(&secs(*frames)[clip]));
     let view = HeatMap {
         label: text::DISTANCES,
         texture: picture.as_ref().map(|picture| picture.texture.id()),
@@ -230,7 +250,9 @@ fn map_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
         kit::note_ui(text::MAP_HELP, palette.muted, ui);
     } else {
         ui.horizontal(|ui| {
-            ui.label(RichText::new(tr(&text::pins(pins.len()), ui)).font(theme_of(ui).font(Type::Label)));
+            ui.label(
+                RichText::new(tr(&text::pins(pins.len()), ui)).font(theme_of(ui).font(Type::Label)),
+            );
             if kit::button_ui(Button::new(text::REMOVE_PINS), ui).clicked() {
                 out.set_once(Key::Pins, Value::Text(String::new()));
             }
@@ -260,7 +282,9 @@ fn map_event(
         let [a, b] = frames(secs).map(|frame| frame.round().max(0.0) as usize);
         (a, b)
     };
-    let others = |taken: Option<[f64; 2]>| pins.iter().copied().filter(move |known| taken.map(pin) != Some(*known));
+    let others = |taken: Option<[f64; 2]>| {
+        pins.iter().copied().filter(move |known| taken.map(pin) != Some(*known))
+    };
     match event {
         HeatMapEvent::Hover(at) => state.hovered_pair = Some(frames(at)),
         HeatMapEvent::Seek(at) => {
@@ -301,12 +325,7 @@ struct Line {
 
 impl Line {
     fn curve(&self) -> MapCurve<'_> {
-        MapCurve {
-            points: &self.points,
-            color: self.color,
-            width: self.width,
-            dashed: self.dashed,
-        }
+        MapCurve { points: &self.points, color: self.color, width: self.width, dashed: self.dashed }
     }
 }
 
@@ -316,7 +335,9 @@ const CURVE_POINTS: usize = 300;
 /// The path of the first pane, and what every pane follows: its timewarp, or none.
 fn lines(registered: &[&Registered], palette: &Palette) -> Vec<Line> {
     let mut lines = Vec::new();
-    let Some(first) = registered.first() else { return lines };
+    let Some(first) = registered.first() else {
+        return lines;
+    };
     let fps = first.map.fps();
     let secs = |frames: [f64; 2]| frames.map(|frame| frame / fps);
     lines.push(Line {
@@ -332,7 +353,8 @@ fn lines(registered: &[&Registered], palette: &Palette) -> Vec<Line> {
         dashed: false,
     });
     for registered in registered.iter().rev().filter(|registered| registered.is_plain) {
-        let points = registered.beats.iter().filter(|beat| beat.frames.iter().all(|frame| *frame >= 0.0));
+        let points =
+            registered.beats.iter().filter(|beat| beat.frames.iter().all(|frame| *frame >= 0.0));
         lines.push(Line {
             points: points.map(|beat| secs(beat.frames)).collect(),
             color: palette.bad,
@@ -340,7 +362,9 @@ fn lines(registered: &[&Registered], palette: &Palette) -> Vec<Line> {
             dashed: true,
         });
     }
-    for (index, registered) in registered.iter().enumerate().rev().filter(|(_, registered)| !registered.is_plain) {
+    for (index, registered) in
+        registered.iter().enumerate().rev().filter(|(_, registered)| !registered.is_plain)
+    {
         let warp = registered.registration.warp();
         let ((from, _), (to, _)) = (warp.first(), warp.last());
         let points = (0..=CURVE_POINTS).map(|k| {
@@ -373,7 +397,8 @@ const MOST_TEXELS: usize = 512;
 /// Every so manieth cell is looked at to learn where the worst begin.
 const SAMPLED_CELLS: usize = 13;
 
-/// The picture of these distances, made when they or the theme have changed; none where there are none.
+/// The picture of these distances, made when they or the theme have changed; none where there are
+/// none.
 fn picture_of(map: &Arc<DistanceMap>, ui: &Ui) -> Option<Picture> {
     let heat = palette_of(ui).heat;
     let id = Id::unique("distances");
@@ -392,7 +417,8 @@ fn picture_of(map: &Arc<DistanceMap>, ui: &Ui) -> Option<Picture> {
         return None;
     }
     let low = pooled.rms_m().iter().copied().fold(f32::INFINITY, f32::min);
-    // The few worst pairs would take all contrast from the others. Where they begin a part of the cells tells well enough.
+    // The few worst pairs would take all contrast from the others. Where they begin a part of the
+    // cells tells well enough.
     let mut some: Vec<f32> = pooled.rms_m().iter().copied().step_by(SAMPLED_CELLS).collect();
     let worst = (some.len() - 1) * 98 / 100;
     let (_, &mut high, _) = some.select_nth_unstable_by(worst, f32::total_cmp);

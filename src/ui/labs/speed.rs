@@ -24,22 +24,10 @@ pub(super) fn speed_ui(session: &Session, state: &mut UiState, out: &mut Out, ui
     pair_ui(session, out, ui);
     let palette = palette_of(ui);
     let made = session.main_outcome().and_then(|outcome| outcome.cycle).map(|cycle| cycle.made);
-    let mut detail = Detail {
-        max: Some(SLIDER_MPS),
-        ..Detail::default()
-    };
+    let mut detail = Detail { max: Some(SLIDER_MPS), ..Detail::default() };
     let mut warning = None;
-    if let Some(CycleMade::Gait {
-        facts,
-        clips_mps,
-        cuts_secs,
-        ..
-    }) = made
-    {
-        let mark = |part: Part, value| Mark {
-            value,
-            color: part.fill(palette).0,
-        };
+    if let Some(CycleMade::Gait { facts, clips_mps, cuts_secs, .. }) = made {
+        let mark = |part: Part, value| Mark { value, color: part.fill(palette).0 };
         detail.marks = vec![mark(Part::A, clips_mps[0]), mark(Part::B, clips_mps[1])];
         detail.help = Some(text::gaits(clips_mps, cuts_secs));
         let most = clips_mps[0].max(clips_mps[1]);
@@ -69,8 +57,10 @@ pub(super) fn compare_speeds(session: &Session, out: &mut Out) {
     let made = session.main_outcome().and_then(|outcome| outcome.cycle).map(|cycle| cycle.made);
     let query = match made {
         Some(CycleMade::Gait { clips_mps: [a, b], .. }) if !on => {
-            let words = [a, 0.5 * (a + b), b].map(|speed| Key::Speed.param().check(Value::Number(speed)).ok());
-            let words: Vec<String> = words.iter().flatten().map(|speed| Key::Speed.param().format(speed)).collect();
+            let words = [a, 0.5 * (a + b), b]
+                .map(|speed| Key::Speed.param().check(Value::Number(speed)).ok());
+            let words: Vec<String> =
+                words.iter().flatten().map(|speed| Key::Speed.param().format(speed)).collect();
             format!("{}:{}", Key::Speed.param().name, words.join(","))
         }
         _ => String::new(),

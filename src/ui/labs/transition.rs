@@ -3,7 +3,10 @@
 use super::break_it::break_it_ui;
 use crate::ui::kit::{self, Button};
 use crate::ui::out::Out;
-use crate::ui::rows::{Detail, compare_ui, foot_rows_ui, lab_label, pair_ui, param_row_ui, place_rows_ui, save_result_ui};
+use crate::ui::rows::{
+    Detail, compare_ui, foot_rows_ui, lab_label, pair_ui, param_row_ui, place_rows_ui,
+    save_result_ui,
+};
 use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::space;
@@ -32,10 +35,7 @@ pub(super) fn transition_ui(session: &Session, state: &mut UiState, out: &mut Ou
         param_row_ui(Key::ExtrapolationHalfLife, &Detail::default(), session, out, ui);
     }
     if any(&[TransitionMethod::Smooth, TransitionMethod::Linear]) {
-        let detail = Detail {
-            fps: Some(fps),
-            ..Detail::default()
-        };
+        let detail = Detail { fps: Some(fps), ..Detail::default() };
         param_row_ui(Key::BlendWindow, &detail, session, out, ui);
     }
     let shoot_out = session.compare().is_some_and(|compare| compare.key == Key::Method);
@@ -63,7 +63,9 @@ pub(super) fn transition_ui(session: &Session, state: &mut UiState, out: &mut Ou
 
 /// How long a half-life really lasts, and the dissolve that feels alike.
 fn half_life_ruler_ui(half_life_secs: f64, fps: f64, ui: &mut Ui) {
-    for (label, share) in [(text::HALF_LEFT, 0.5), (text::TENTH_LEFT, 0.1), (text::HUNDREDTH_LEFT, 0.01)] {
+    for (label, share) in
+        [(text::HALF_LEFT, 0.5), (text::TENTH_LEFT, 0.1), (text::HUNDREDTH_LEFT, 0.01)]
+    {
         let secs = spring::secs_until(half_life_secs, share);
         kit::value_row_ui(label, &format!("{secs:.2}"), "s", ui);
     }

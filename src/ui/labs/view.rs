@@ -4,7 +4,9 @@ use crate::ui::clip_panel::clip_panel_ui;
 use crate::ui::kit::{self, Button};
 use crate::ui::labs::toggle_compare;
 use crate::ui::out::Out;
-use crate::ui::rows::{Detail, clip_choice_ui, foot_rows_ui, keep_ui, lab_label, param_row_ui, slot_row_ui};
+use crate::ui::rows::{
+    Detail, clip_choice_ui, foot_rows_ui, keep_ui, lab_label, param_row_ui, slot_row_ui,
+};
 use crate::ui::state::UiState;
 use crate::ui::text;
 use eframe::egui::Ui;
@@ -32,7 +34,9 @@ fn compared_clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let label = if let Some(compare) = compare {
         for (pane, value) in compare.values.iter().enumerate() {
             let label = format!("{} {}", text::CLIP, pane + 1);
-            if let Some(id) = clip_choice_ui(&label, compare.key.param().format(value).as_str(), session, ui) {
+            if let Some(id) =
+                clip_choice_ui(&label, compare.key.param().format(value).as_str(), session, ui)
+            {
                 let mut compare = compare.clone();
                 compare.values[pane] = Value::Text(id);
                 out.set_once(Key::Compare, Value::Text(compare.to_string()));

@@ -1,15 +1,18 @@
 //! A catalogue: what English sentences are in another language.
 //!
-//! English stands in the program, where it is written and read; it is the key of its own translation. So the core needs no language at
-//! all, and a sentence that has no translation is still a sentence. What is made of parts is found again by its parts:
+//! English stands in the program, where it is written and read; it is the key of its own
+//! translation. So the core needs no language at all, and a sentence that has no translation is
+//! still a sentence. What is made of parts is found again by its parts:
 //!
-//! - an entry with placeholders, `{} could not be loaded: {}.`, is a pattern; `{#}` stands for a number alone, `{=}` for what stays
-//!   as it is. What its placeholders
-//!   stood for is translated in turn, and goes into the placeholders of the translation, in order or by number (`{1}`);
+//! - an entry with placeholders, `{} could not be loaded: {}.`, is a pattern; `{#}` stands for a
+//!   number alone, `{=}` for what stays as it is. What its placeholders stood for is translated in
+//!   turn, and goes into the placeholders of the translation, in order or by number (`{1}`);
 //! - several sentences behind each other, lists, and `title: text` are translated piece by piece;
-//! - a note, `the rest pose was taken`, is found also where it was made a sentence, `The rest pose was taken.`;
+//! - a note, `the rest pose was taken`, is found also where it was made a sentence, `The rest pose
+//!   was taken.`;
 //! - a number before a thing, `3 bones`, needs an entry for one `bone` only;
-//! - a row of words and numbers that all have entries, `27 seam °/s best`, is translated word by word.
+//! - a row of words and numbers that all have entries, `27 seam °/s best`, is translated word by
+//!   word.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -56,7 +59,8 @@ impl Catalogue {
     /// # Errors
     /// What is wrong with the JSON.
     pub(crate) fn read(json: &[u8]) -> Result<Self, String> {
-        let sections: BTreeMap<String, BTreeMap<String, String>> = serde_json::from_slice(json).map_err(|error| error.to_string())?;
+        let sections: BTreeMap<String, BTreeMap<String, String>> =
+            serde_json::from_slice(json).map_err(|error| error.to_string())?;
         let mut exact = BTreeMap::new();
         let mut patterns = Vec::new();
         for (english, translation) in sections.into_values().flatten() {
@@ -65,19 +69,11 @@ impl Catalogue {
                 exact.insert(words.clone(), translation);
             } else {
                 let letters = pieces.iter().map(Piece::letters).sum();
-                patterns.push(Pattern {
-                    english: pieces,
-                    translation,
-                    letters,
-                });
+                patterns.push(Pattern { english: pieces, translation, letters });
             }
         }
         patterns.sort_by_key(|pattern| std::cmp::Reverse(pattern.letters));
-        Ok(Self {
-            exact,
-            patterns,
-            known: Mutex::default(),
-        })
+        Ok(Self { exact, patterns, known: Mutex::default() })
     }
 
     /// The translation of a text; `None` where there is none.
@@ -158,19 +154,20 @@ impl Catalogue {
             let fits = |text: &str| {
                 let mut filled = Vec::new();
                 let fits = fill(&pattern.english, text, &mut filled);
-                let places = pattern.english.iter().filter(|piece| !matches!(piece, Piece::Words(_)));
+                let places =
+                    pattern.english.iter().filter(|piece| !matches!(piece, Piece::Words(_)));
                 let part = |(part, piece): (&&str, &Piece)| {
-                    if *piece == Piece::Kept {
-                        (*part).to_owned()
-                    } else {
-                        self.part(part, depth)
-                    }
+                    if *piece == Piece::Kept { (*part).to_owned() } else { self.part(part, depth) }
                 };
-                let parts = fits.then(|| filled.iter().zip(places).map(part).collect::<Vec<_>>())?;
-                // Few words stand in a long text by chance, too: what they stand between must then be known.
-                let known =
-                    |(part, english): (&String, &&str)| part != english.trim() || !has_word(english) || !english.trim().contains(' ');
-                (pattern.letters >= ENOUGH || parts.iter().zip(&filled).all(known)).then(|| put_in(&pattern.translation, &parts))
+                let parts =
+                    fits.then(|| filled.iter().zip(places).map(part).collect::<Vec<_>>())?;
+                // Few words stand in a long text by chance, too: what they stand between must then
+                // be known.
+                let known = |(part, english): (&String, &&str)| {
+                    part != english.trim() || !has_word(english) || !english.trim().contains(' ')
+                };
+                (pattern.letters >= ENOUGH || parts.iter().zip(&filled).all(known))
+                    .then(|| put_in(&pattern.translation, &parts))
             };
             fits(text).or_else(|| Some(format!("{}。", fits(note.as_deref()?)?)))
         })
@@ -210,36 +207,34 @@ impl Catalogue {
         })
     }
 
-    /// What stands beside each other: `this · that`, `this; that`, `this: that`, `this, that`. Some of it must have a translation; of what is
-    /// divided by commas, which also stand in sentences, all.
+    /// What stands beside each other: `this · that`, `this; that`, `this: that`, `this, that`. Some
+    /// of it must have a translation; of what is divided by commas, which also stand in sentences,
+    /// all.
     fn joined(&self, text: &str, depth: usize) -> Option<String> {
-        [
-            (" · ", " · "),
-            ("; ", "；"),
-            (": ", "："),
-            (" → ", " → "),
-            (" | ", " | "),
-            (", ", "、"),
-        ]
-        .into_iter()
-        .filter(|(between, _)| text.contains(between))
-        .find_map(|(between, translated)| {
-            let parts: Vec<&str> = if between == ": " {
-                let (title, rest) = text.split_once(between)?;
-                vec![title, rest]
-            } else {
-                text.split(between).collect()
-            };
-            let found: Vec<Option<String>> = parts.iter().map(|part| self.look_up(part, depth + 1)).collect();
-            let some = found.iter().any(Option::is_some);
-            let all = found.iter().zip(&parts).all(|(found, part)| found.is_some() || !has_word(part));
-            (some && (all || between != ", ")).then(|| {
-                let whole: Vec<String> = (found.into_iter().zip(&parts))
-                    .map(|(found, part)| found.unwrap_or_else(|| part.trim().to_owned()))
-                    .collect();
-                whole.join(translated)
+        [(" · ", " · "), ("; ", "；"), (": ", "："), (" → ", " → "), (" | ", " | "), (", ", "、")]
+            .into_iter()
+            .filter(|(between, _)| text.contains(between))
+            .find_map(|(between, translated)| {
+                let parts: Vec<&str> = if between == ": " {
+                    let (title, rest) = text.split_once(between)?;
+                    vec![title, rest]
+                } else {
+                    text.split(between).collect()
+                };
+                let found: Vec<Option<String>> =
+                    parts.iter().map(|part| self.look_up(part, depth + 1)).collect();
+                let some = found.iter().any(Option::is_some);
+                let all = found
+                    .iter()
+                    .zip(&parts)
+                    .all(|(found, part)| found.is_some() || !has_word(part));
+                (some && (all || between != ", ")).then(|| {
+                    let whole: Vec<String> = (found.into_iter().zip(&parts))
+                        .map(|(found, part)| found.unwrap_or_else(|| part.trim().to_owned()))
+                        .collect();
+                    whole.join(translated)
+                })
             })
-        })
     }
 
     /// Words and numbers in a row: all of them must have entries, the longest are taken first.
@@ -334,7 +329,8 @@ fn fill<'a>(pieces: &[Piece], text: &'a str, filled: &mut Vec<&'a str>) -> bool 
     let known = filled.len();
     let ends: Vec<usize> = match rest.first() {
         None => vec![text.len()],
-        // Two placeholders side by side: the first takes all, for they go side by side into the translation, too.
+        // Two placeholders side by side: the first takes all, for they go side by side into the
+        // translation, too.
         Some(Piece::Anything | Piece::Number | Piece::Kept) => {
             let next = rest
                 .iter()
@@ -387,7 +383,8 @@ fn has_word(text: &str) -> bool {
 }
 
 fn is_number(text: &str) -> bool {
-    text.contains(|sign: char| sign.is_ascii_digit()) && text.chars().all(|sign| sign.is_ascii_digit() || "+-−.,:".contains(sign))
+    text.contains(|sign: char| sign.is_ascii_digit())
+        && text.chars().all(|sign| sign.is_ascii_digit() || "+-−.,:".contains(sign))
 }
 
 #[cfg(test)]
@@ -419,9 +416,7 @@ mod tests {
     }
 
     fn told(text: &str) -> String {
-        catalogue()
-            .find(text)
-            .map_or_else(|| format!("({text})"), |found| found.to_string())
+        catalogue().find(text).map_or_else(|| format!("({text})"), |found| found.to_string())
     }
 
     #[test]

@@ -1,13 +1,15 @@
 //! Which language the interface speaks.
 //!
-//! The parameter `lang` is `auto` until somebody chooses by hand, as the theme is. Three rules follow from that one:
-//! a link carries a language only when its sender chose one; a link that names none leaves every reader their own; and what was
-//! chosen by hand is stored with the work and is there again on the next visit.
+//! The parameter `lang` is `auto` until somebody chooses by hand, as the theme is. Three rules
+//! follow from that one: a link carries a language only when its sender chose one; a link that
+//! names none leaves every reader their own; and what was chosen by hand is stored with the work
+//! and is there again on the next visit.
 //!
-//! Everything is written in English, in the place where it is used, and translated where it is set as text: [`tr`] asks the context's
-//! [`Tongue`], and the widgets of the kit ask it for all that they are given. So the core knows no language, what a link or a file
-//! carries stays English, and a new panel is translated by a row in `assets/lang`. Catalogue and letters are fetched when a language is
-//! first asked for; until they are here, everything is in English.
+//! Everything is written in English, in the place where it is used, and translated where it is set
+//! as text: [`tr`] asks the context's [`Tongue`], and the widgets of the kit ask it for all that
+//! they are given. So the core knows no language, what a link or a file carries stays English, and
+//! a new panel is translated by a row in `assets/lang`. Catalogue and letters are fetched when a
+//! language is first asked for; until they are here, everything is in English.
 
 mod catalogue;
 mod tongue;
@@ -37,18 +39,22 @@ impl Language {
         }
     }
 
-    /// The first of a reader's languages, best first, that there is; English where there is none of them.
+    /// The first of a reader's languages, best first, that there is; English where there is none of
+    /// them.
     pub(crate) fn preferred<'a>(tags: impl IntoIterator<Item = &'a str>) -> Self {
         tags.into_iter().find_map(Self::from_tag).unwrap_or_default()
     }
 
-    /// The language of a tag such as `en-GB`, `zh-TW` or `zh_TW.UTF-8`. Simplified Chinese is another one.
+    /// The language of a tag such as `en-GB`, `zh-TW` or `zh_TW.UTF-8`. Simplified Chinese is
+    /// another one.
     fn from_tag(tag: &str) -> Option<Self> {
         let tag = tag.split('.').next().unwrap_or(tag).to_ascii_lowercase().replace('_', "-");
         let mut parts = tag.split('-');
         match parts.next()? {
             "en" => Some(Self::English),
-            "zh" if parts.any(|part| matches!(part, "hant" | "tw" | "hk" | "mo")) => Some(Self::Chinese),
+            "zh" if parts.any(|part| matches!(part, "hant" | "tw" | "hk" | "mo")) => {
+                Some(Self::Chinese)
+            }
             _ => None,
         }
     }
@@ -98,7 +104,9 @@ mod tests {
     #[test]
     fn a_link_without_a_language_leaves_the_readers() {
         let mut session = Session::new();
-        let open = |session: &mut Session, link: &str| session.apply(Command::OpenLink(link.to_owned())).unwrap();
+        let open = |session: &mut Session, link: &str| {
+            session.apply(Command::OpenLink(link.to_owned())).unwrap()
+        };
         open(&mut session, "lang=zh-Hant");
         open(&mut session, "lab=make");
         assert_eq!(Language::of(&session, Language::English), Language::Chinese);
@@ -108,10 +116,7 @@ mod tests {
 
     #[test]
     fn what_was_chosen_on_the_last_visit_is_there_again() {
-        let saved = |query: &str| Saved {
-            query: query.into(),
-            ..Session::new().saved()
-        };
+        let saved = |query: &str| Saved { query: query.into(), ..Session::new().saved() };
         for (stored, link, expected) in [
             ("lang=zh-Hant", None, Language::Chinese),
             ("lang=zh-Hant", Some("lab=make"), Language::Chinese),

@@ -58,7 +58,8 @@ fn catalogue_of(ctx: &Context) -> Option<Arc<Catalogue>> {
     ctx.data(|data| data.get_temp::<Option<Arc<Catalogue>>>(tongue_id())).flatten()
 }
 
-/// A text in the language of the interface. The widgets of the kit ask this themselves, for all that they are given.
+/// A text in the language of the interface. The widgets of the kit ask this themselves, for all
+/// that they are given.
 pub(crate) fn tr<'a>(text: &'a str, ui: &Ui) -> Cow<'a, str> {
     match catalogue_of(ui.ctx()).and_then(|catalogue| catalogue.find(text)) {
         Some(found) => Cow::Owned(found.to_string()),
@@ -75,15 +76,19 @@ impl Plugin for Spoken {
     }
 
     fn output_hook(&mut self, ctx: &Context, output: &mut FullOutput) {
-        let Some(catalogue) = catalogue_of(ctx) else { return };
+        let Some(catalogue) = catalogue_of(ctx) else {
+            return;
+        };
         if let Some(update) = &mut output.platform_output.accesskit_update {
             for (_, node) in &mut update.nodes {
                 if let Some(label) = node.label().and_then(|label| catalogue.find(label)) {
                     node.set_label(label.to_string());
                 }
                 // A text that is edited is the user's.
-                if !matches!(node.role(), Role::TextInput | Role::MultilineTextInput | Role::TextRun)
-                    && let Some(value) = node.value().and_then(|value| catalogue.find(value))
+                if !matches!(
+                    node.role(),
+                    Role::TextInput | Role::MultilineTextInput | Role::TextRun
+                ) && let Some(value) = node.value().and_then(|value| catalogue.find(value))
                 {
                     node.set_value(value.to_string());
                 }

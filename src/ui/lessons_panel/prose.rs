@@ -19,7 +19,11 @@ pub(super) fn blocks_ui(blocks: &[Block], step: Type, out: &mut Out, ui: &mut Ui
             }
             // A formula that stands alone.
             Block::Paragraph(spans) if spans.iter().all(|span| span.code) => {
-                formula_ui(&spans.iter().map(|span| span.text.as_str()).collect::<String>(), step, ui);
+                formula_ui(
+                    &spans.iter().map(|span| span.text.as_str()).collect::<String>(),
+                    step,
+                    ui,
+                );
             }
             Block::Paragraph(spans) => spans_ui(spans, step, false, out, ui),
             Block::Item { depth, number, spans } => {
@@ -46,7 +50,8 @@ fn formula_ui(lines: &str, step: Type, ui: &mut Ui) {
     });
 }
 
-/// One paragraph. A link to a state sets it, one to the web opens another window, and its host stands beside it.
+/// One paragraph. A link to a state sets it, one to the web opens another window, and its host
+/// stands beside it.
 pub(super) fn spans_ui(spans: &[Span], step: Type, muted: bool, out: &mut Out, ui: &mut Ui) {
     let job_of = |spans: &[Span], ui: &Ui| {
         let mut job = LayoutJob::default();
@@ -83,7 +88,10 @@ pub(super) fn spans_ui(spans: &[Span], step: Type, muted: bool, out: &mut Out, u
                     // Words may say anything, also another address.
                     if run.iter().map(|span| span.text.as_str()).collect::<String>() != *address {
                         let host = Span::plain(format!(" ({})", host_of(address)));
-                        ui.label(LayoutJob::single_section(host.text.clone(), format(&host, step, true, ui)));
+                        ui.label(LayoutJob::single_section(
+                            host.text.clone(),
+                            format(&host, step, true, ui),
+                        ));
                     }
                 }
             }
@@ -100,7 +108,8 @@ fn format(span: &Span, step: Type, muted: bool, ui: &Ui) -> TextFormat {
         _ => step,
     });
     let line_height = (font.size * 1.42).round();
-    // Letters that Inter does not have come in one weight and upright: colour says there what stands out.
+    // Letters that Inter does not have come in one weight and upright: colour says there what
+    // stands out.
     let is_in_one_weight = span.text.chars().any(|letter| letter >= '\u{2e80}');
     let color = if span.target.is_some() || ((span.strong || span.emphasis) && is_in_one_weight) {
         palette.accent_ink

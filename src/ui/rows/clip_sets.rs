@@ -12,7 +12,9 @@ pub(crate) fn clip_sets_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(space::XS, space::XS);
         for set in [ClipSet::Made, ClipSet::Captured, ClipSet::Own] {
-            let Some(values) = session.clip_set(set) else { continue };
+            let Some(values) = session.clip_set(set) else {
+                continue;
+            };
             let (words, help) = text::clip_set(set);
             let button = Button::new(words).selected(session.uses_clip_set(set)).hint(help);
             if kit::button_ui(button, ui).clicked() {

@@ -25,7 +25,13 @@ pub(crate) struct Detail {
 }
 
 /// The row of a parameter: a slider, a switch or a choice, as the table has it.
-pub(crate) fn param_row_ui(key: Key, detail: &Detail, session: &Session, out: &mut Out, ui: &mut Ui) {
+pub(crate) fn param_row_ui(
+    key: Key,
+    detail: &Detail,
+    session: &Session,
+    out: &mut Out,
+    ui: &mut Ui,
+) {
     let param = key.param();
     if param.is_comparable() {
         out.rows.push(key);
@@ -38,7 +44,8 @@ pub(crate) fn param_row_ui(key: Key, detail: &Detail, session: &Session, out: &m
             }
         }
         Kind::Choice(choices) => {
-            let options: Vec<(&'static str, &str)> = choices.iter().map(|choice| (choice.key, choice.label)).collect();
+            let options: Vec<(&'static str, &str)> =
+                choices.iter().map(|choice| (choice.key, choice.label)).collect();
             if let Some(compare) = session.compare().filter(|compare| compare.key == key) {
                 return compared_choices_ui(&compare, &options, out, ui);
             }
@@ -58,7 +65,9 @@ pub(crate) fn param_row_ui(key: Key, detail: &Detail, session: &Session, out: &m
                 out.set_once(key, Value::Choice(word));
             }
         }
-        Kind::Text if matches!(key, Key::Joint | Key::FollowJoint) => joint_ui(key, session, out, ui),
+        Kind::Text if matches!(key, Key::Joint | Key::FollowJoint) => {
+            joint_ui(key, session, out, ui)
+        }
         Kind::Text if key == Key::Character => character_ui(key, session, out, ui),
         Kind::Clip | Kind::Text | Kind::Compare => {}
     });
@@ -68,10 +77,12 @@ pub(crate) fn param_row_ui(key: Key, detail: &Detail, session: &Session, out: &m
     }
 }
 
-/// A body part to choose. A joint that is named in the link and is no body part keeps its place until another is chosen.
+/// A body part to choose. A joint that is named in the link and is no body part keeps its place
+/// until another is chosen.
 fn joint_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
     let chosen = session.params().text(key);
-    let mut options: Vec<(&str, &str)> = Role::ALL.iter().map(|role| (role.name(), role.name())).collect();
+    let mut options: Vec<(&str, &str)> =
+        Role::ALL.iter().map(|role| (role.name(), role.name())).collect();
     if !options.iter().any(|(name, _)| *name == chosen) {
         options.insert(0, (chosen, chosen));
     }
@@ -80,7 +91,8 @@ fn joint_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
     }
 }
 
-/// The characters that files brought, and the body that is made around the bones. Nothing where no file brought one.
+/// The characters that files brought, and the body that is made around the bones. Nothing where no
+/// file brought one.
 fn character_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
     let brought = session.library().entries().iter().filter(|entry| entry.mesh.is_some());
     let options: Vec<(&str, &str)> = std::iter::once(("", text::MADE_BODY))
@@ -89,10 +101,8 @@ fn character_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
     if options.len() < 2 {
         return;
     }
-    let chosen = session
-        .library()
-        .find(session.params().text(key))
-        .filter(|entry| entry.mesh.is_some());
+    let chosen =
+        session.library().find(session.params().text(key)).filter(|entry| entry.mesh.is_some());
     let chosen = chosen.map_or("", |entry| entry.id.as_str());
     if let Some(id) = kit::choice_row_ui(key.param().label, chosen, &options, ui) {
         out.set_once(key, Value::Text(id.to_owned()));
@@ -101,14 +111,7 @@ fn character_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
 
 fn number_ui(key: Key, detail: &Detail, session: &Session, out: &mut Out, ui: &mut Ui) {
     let param = key.param();
-    let Kind::Number {
-        min,
-        max,
-        step,
-        auto,
-        logarithmic,
-    } = param.kind
-    else {
+    let Kind::Number { min, max, step, auto, logarithmic } = param.kind else {
         return;
     };
     let given = session.params().optional(key);
@@ -120,24 +123,20 @@ fn number_ui(key: Key, detail: &Detail, session: &Session, out: &mut Out, ui: &m
     let max = detail.max.map_or(max, |limit| limit.clamp(min + step, max));
     let compare = session.compare().filter(|compare| compare.key == key);
     let color = palette_of(ui).muted;
-    let values = |compare: &Compare| -> Vec<f64> { compare.values.iter().filter_map(number_of).collect() };
+    let values =
+        |compare: &Compare| -> Vec<f64> { compare.values.iter().filter_map(number_of).collect() };
     let marks: Vec<Mark> = (compare.iter().flat_map(values))
         .map(|value| Mark { value, color })
         .chain(detail.marks.iter().copied())
         .collect();
-    let mut row = SliderRow::new(param.label, min..=max, default)
-        .unit(param.unit)
-        .step(step)
-        .marks(&marks);
-    row = if step == 1.0 {
-        row.whole()
-    } else {
-        row.decimals(decimals_of(step).min(2))
-    };
+    let mut row =
+        SliderRow::new(param.label, min..=max, default).unit(param.unit).step(step).marks(&marks);
+    row = if step == 1.0 { row.whole() } else { row.decimals(decimals_of(step).min(2)) };
     if logarithmic {
         row = row.log();
     }
-    let in_seconds = |value: f64| detail.fps.map_or_else(String::new, |fps| format!("{:.2} s", value / fps));
+    let in_seconds =
+        |value: f64| detail.fps.map_or_else(String::new, |fps| format!("{:.2} s", value / fps));
     let help = detail.help.as_deref().unwrap_or(param.help);
     if let Some(compare) = compare {
         return compared_ui(&compare, session.range_of(key), &row, &in_seconds, help, out, ui);
@@ -175,7 +174,8 @@ fn number_of(value: &Value) -> Option<f64> {
     }
 }
 
-/// A number that differs from pane to pane: a slider for each of them, so that what is dragged is what one sees.
+/// A number that differs from pane to pane: a slider for each of them, so that what is dragged is
+/// what one sees.
 fn compared_ui(
     compare: &Compare,
     range: Option<(f64, f64)>,
@@ -189,10 +189,13 @@ fn compared_ui(
     let mut panes = compare.clone();
     let last = compare.values.len() - 1;
     for (pane, value) in compare.values.iter().enumerate() {
-        let Some(value) = number_of(value) else { continue };
+        let Some(value) = number_of(value) else {
+            continue;
+        };
         let (label, secondary) = (format!("{} · {}", param.label, pane + 1), in_seconds(value));
         let row = row.clone().label(&label).secondary(&secondary);
-        let response = kit::slider_row_ui(value, &row.help(if pane == last { help } else { "" }), ui);
+        let response =
+            kit::slider_row_ui(value, &row.help(if pane == last { help } else { "" }), ui);
         if let Some(value) = response.changed {
             panes.values[pane] = Value::Number(value);
             out.set(Key::Compare, Value::Text(panes.to_string()));
@@ -203,10 +206,17 @@ fn compared_ui(
 }
 
 /// A choice that differs from pane to pane: a row for each of them.
-fn compared_choices_ui(compare: &Compare, options: &[(&'static str, &str)], out: &mut Out, ui: &mut Ui) {
+fn compared_choices_ui(
+    compare: &Compare,
+    options: &[(&'static str, &str)],
+    out: &mut Out,
+    ui: &mut Ui,
+) {
     let label = compare.key.param().label;
     for (pane, value) in compare.values.iter().enumerate() {
-        let Value::Choice(chosen) = value else { continue };
+        let Value::Choice(chosen) = value else {
+            continue;
+        };
         let label = format!("{label} · {}", pane + 1);
         let picked = ui.push_id(pane, |ui| kit::choice_row_ui(&label, *chosen, options, ui)).inner;
         if let Some(word) = picked {

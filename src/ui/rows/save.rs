@@ -11,10 +11,12 @@ use segue_formats::bvh::RotationOrder;
 use segue_session::export::{ExportBody, ExportFormat};
 
 /// What files are saved in, with its name.
-const UNITS: [(Option<f64>, &str); 3] = [(None, text::AS_FILE), (Some(1.0), "m"), (Some(0.01), "cm")];
+const UNITS: [(Option<f64>, &str); 3] =
+    [(None, text::AS_FILE), (Some(1.0), "m"), (Some(0.01), "cm")];
 
 /// Whose body a file has.
-const BODIES: [(ExportBody, &str); 2] = [(ExportBody::Character, text::BODY_CHARACTER), (ExportBody::Plain, text::BODY_PLAIN)];
+const BODIES: [(ExportBody, &str); 2] =
+    [(ExportBody::Character, text::BODY_CHARACTER), (ExportBody::Plain, text::BODY_PLAIN)];
 
 const ORDERS: [(Option<RotationOrder>, &str); 7] = [
     (None, text::AS_FILE),
@@ -33,7 +35,8 @@ const RATES: [(Option<f64>, &str); 4] = [
     (Some(120.0), "120 fps"),
 ];
 
-/// One row to save a motion, and its options, folded. `which` is a clip's id, or `result:1` for the second pane.
+/// One row to save a motion, and its options, folded. `which` is a clip's id, or `result:1` for the
+/// second pane.
 pub(crate) fn save_rows_ui(which: &str, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let theme = theme_of(ui);
     let rect = kit::paint::full_width((30.0 * theme.scale()).round(), ui);
@@ -47,21 +50,21 @@ pub(crate) fn save_rows_ui(which: &str, state: &mut UiState, out: &mut Out, ui: 
         pos2(rect.right() - button - space::S, rect.bottom()),
     );
     ui.scope_builder(UiBuilder::new().id_salt("format").max_rect(well), |ui| {
-        if let Some(format) = kit::segmented_ui(text::FILE_FORMAT, state.export.format, &formats, ui) {
+        if let Some(format) =
+            kit::segmented_ui(text::FILE_FORMAT, state.export.format, &formats, ui)
+        {
             state.export.format = format;
         }
     });
-    let place = Rect::from_min_size(pos2(rect.right() - button, rect.top() + 1.0), vec2(button, button));
+    let place =
+        Rect::from_min_size(pos2(rect.right() - button, rect.top() + 1.0), vec2(button, button));
     let builder = UiBuilder::new()
         .id_salt("save")
         .max_rect(place)
         .layout(Layout::right_to_left(Align::Center));
     let save = Button::icon_only(Icon::Download, text::SAVE).outlined();
     if ui.scope_builder(builder, |ui| kit::button_ui(save, ui)).inner.clicked() {
-        out.actions.push(Action::Save {
-            which: which.to_owned(),
-            how: state.export,
-        });
+        out.actions.push(Action::Save { which: which.to_owned(), how: state.export });
     }
     let export = &mut state.export;
     match export.format {
@@ -76,10 +79,14 @@ pub(crate) fn save_rows_ui(which: &str, state: &mut UiState, out: &mut Out, ui: 
         }
         ExportFormat::Bvh => {
             kit::folded_ui(text::SAVE_OPTIONS, ui, |ui| {
-                if let Some(unit) = kit::choice_row_ui(text::SAVE_UNIT, export.metres_per_unit, &UNITS, ui) {
+                if let Some(unit) =
+                    kit::choice_row_ui(text::SAVE_UNIT, export.metres_per_unit, &UNITS, ui)
+                {
                     export.metres_per_unit = unit;
                 }
-                if let Some(order) = kit::choice_row_ui(text::ROTATION_ORDER, export.rotation_order, &ORDERS, ui) {
+                if let Some(order) =
+                    kit::choice_row_ui(text::ROTATION_ORDER, export.rotation_order, &ORDERS, ui)
+                {
                     export.rotation_order = order;
                 }
                 rate_ui(&mut export.fps, ui);

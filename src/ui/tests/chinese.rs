@@ -9,14 +9,17 @@ const HALL_SIZE: Vec2 = vec2(1280.0, 720.0);
 
 /// Names, units and keys that are written so in Chinese, too.
 const AS_IT_IS: [&str; 38] = [
-    "EN", "Enter", "Segue", "BVH", "ASF", "AMC", "GLB", "CSV", "CMU", "zip", "fps", "cm", "ms", "Aa", "Shift", "Ctrl", "Home", "Esc",
-    "Delete", "Tab", "atan", "atan2", "exp", "json", "JSON", "DOT", "Markdown", "MB", "mocap", "cmu", "edu", "cs", "NSF", "EIA", "XYZ",
-    "ZXY", "YXZ", "English",
+    "EN", "Enter", "Segue", "BVH", "ASF", "AMC", "GLB", "CSV", "CMU", "zip", "fps", "cm", "ms",
+    "Aa", "Shift", "Ctrl", "Home", "Esc", "Delete", "Tab", "atan", "atan2", "exp", "json", "JSON",
+    "DOT", "Markdown", "MB", "mocap", "cmu", "edu", "cs", "NSF", "EIA", "XYZ", "ZXY", "YXZ",
+    "English",
 ];
 
 fn tongue() -> Tongue {
-    let file =
-        |name: &str| fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/lang/").to_owned() + name).expect("a file of the language");
+    let file = |name: &str| {
+        fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/lang/").to_owned() + name)
+            .expect("a file of the language")
+    };
     Tongue::read(&file("zh-Hant.json"), Arc::from(file("zh-Hant.otf"))).expect("a language")
 }
 
@@ -40,7 +43,9 @@ fn english_in(text: &str) -> Vec<&str> {
         .filter(|word| !word.contains([':', '=']));
     words
         .flat_map(|word| word.split(|letter: char| !letter.is_ascii_alphanumeric()))
-        .filter(|word| word.bytes().filter(u8::is_ascii_alphabetic).count() > 1 && !AS_IT_IS.contains(word))
+        .filter(|word| {
+            word.bytes().filter(u8::is_ascii_alphabetic).count() > 1 && !AS_IT_IS.contains(word)
+        })
         .collect()
 }
 
@@ -96,14 +101,19 @@ fn the_switch_asks_for_the_other_language_and_screen_readers_hear_it() {
     harness.get_by_label(text::COPY_LINK);
     harness.get_by_label(text::IN_CHINESE).click();
     harness.run();
-    assert_eq!(harness.state().session.params().choice::<choices::PageLanguage>().word(), "zh-Hant");
+    assert_eq!(
+        harness.state().session.params().choice::<choices::PageLanguage>().word(),
+        "zh-Hant"
+    );
 }
 
-/// What the catalogue and the lessons are written with can be set: the letters are in one of the fonts.
+/// What the catalogue and the lessons are written with can be set: the letters are in one of the
+/// fonts.
 #[test]
 fn every_character_is_in_the_fonts() {
     let root = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/");
-    let mut texts = vec![fs::read_to_string(root.to_owned() + "lang/zh-Hant.json").expect("the catalogue")];
+    let mut texts =
+        vec![fs::read_to_string(root.to_owned() + "lang/zh-Hant.json").expect("the catalogue")];
     for entry in fs::read_dir(root.to_owned() + "lessons/zh-Hant").into_iter().flatten().flatten() {
         texts.push(fs::read_to_string(entry.path()).expect("a lesson is text"));
     }
@@ -111,7 +121,8 @@ fn every_character_is_in_the_fonts() {
     harness.run();
     let missing: BTreeSet<char> = harness.ctx.fonts_mut(|fonts| {
         let font = DARK.font(theme::Type::Body);
-        let letters = texts.iter().flat_map(|text| text.chars()).filter(|letter| !letter.is_control());
+        let letters =
+            texts.iter().flat_map(|text| text.chars()).filter(|letter| !letter.is_control());
         letters.filter(|&letter| !fonts.has_glyph(&font, letter)).collect()
     });
     assert!(missing.is_empty(), "run assets/fonts/subset_zh.py again for {missing:?}");

@@ -6,7 +6,8 @@ use segue_motion::matching::Control;
 use segue_session::Driven;
 
 /// A database that is built in a moment.
-const SMALL: &str = "lab=match&mirrored=off&match_clips=idle,walk,walk_left,walk_right,walk(make_seconds:6)";
+const SMALL: &str =
+    "lab=match&mirrored=off&match_clips=idle,walk,walk_left,walk_right,walk(make_seconds:6)";
 
 fn driven(harness: &Harness<'_, Page>) -> Arc<Driven> {
     outcome(harness.state()).driven.clone().expect("a drive")
@@ -71,8 +72,11 @@ fn keys_drive_away_from_the_camera_and_are_let_go() {
     harness.key_press(Keyboard::PageUp);
     play(2, &mut harness);
     let asked = &harness.state().out.commands[before..];
-    let is_camera = |(key, _): &(Key, Value)| matches!(key, Key::CameraYaw | Key::CameraPitch | Key::CameraDistance);
-    let turns = |command: &Command| matches!(command, Command::Set(values) if values.iter().all(is_camera));
+    let is_camera = |(key, _): &(Key, Value)| {
+        matches!(key, Key::CameraYaw | Key::CameraPitch | Key::CameraDistance)
+    };
+    let turns =
+        |command: &Command| matches!(command, Command::Set(values) if values.iter().all(is_camera));
     assert!(!asked.is_empty() && asked.iter().all(turns), "{asked:?}");
 }
 
@@ -100,10 +104,7 @@ fn the_stick_drives_while_it_is_held_and_leaves_the_camera() {
 #[test]
 fn a_gamepad_pushes_by_as_much_as_it_is_pushed() {
     let mut harness = harness(DESK, DARK, page(&format!("{SMALL}&camera_yaw=180")));
-    let mut pad = Pad {
-        walk: [0.0, 0.1],
-        ..Pad::default()
-    };
+    let mut pad = Pad { walk: [0.0, 0.1], ..Pad::default() };
     harness.state_mut().state.drive.pad = Some(pad);
     play(2, &mut harness);
     assert_eq!(control(&harness), Control::default(), "it trembles");
@@ -129,13 +130,11 @@ fn a_search_tells_why_and_a_candidate_is_a_ghost() {
     harness.key_press(Keyboard::Space);
     harness.run();
     assert!(!harness.state().session.params().is_on(Key::Play));
-    let search = driven(&harness)
-        .moments
-        .last()
-        .and_then(|moment| moment.search.clone())
-        .expect("a search");
+    let search =
+        driven(&harness).moments.last().and_then(|moment| moment.search.clone()).expect("a search");
     assert_eq!(harness.state().state.drive.ghost(&harness.state().session), None);
-    let rows: Vec<Rect> = harness.get_all_by_label_contains(" s: ").map(|node| node.rect()).collect();
+    let rows: Vec<Rect> =
+        harness.get_all_by_label_contains(" s: ").map(|node| node.rect()).collect();
     assert_eq!(rows.len(), 1 + search.candidates.len());
     let second = rows[2].center();
     step(vec![Event::PointerMoved(second)], &mut harness);
@@ -162,7 +161,9 @@ fn what_was_driven_is_played_again_and_one_may_drive_anew() {
     press("Drive yourself", &mut harness);
     while harness.state_mut().session.work() {}
     harness.run();
-    assert!(harness.state().session.is_driven() && harness.state().session.recording().ticks() == 0);
+    assert!(
+        harness.state().session.is_driven() && harness.state().session.recording().ticks() == 0
+    );
 }
 
 #[test]
@@ -206,10 +207,7 @@ fn a_stretch_is_tagged_by_hand() {
     press(&text::tag_as("exclude", false), &mut harness);
     let tags = harness.state().session.hand_tags();
     let [tag] = tags.as_slice() else { panic!("{tags:?}") };
-    assert!(
-        tag.word == "exclude" && tag.secs[1] - tag.secs[0] > 0.2 && !tag.takes_away,
-        "{tag:?}"
-    );
+    assert!(tag.word == "exclude" && tag.secs[1] - tag.secs[0] > 0.2 && !tag.takes_away, "{tag:?}");
     press(text::TAKE_TAG_AWAY, &mut harness);
     assert!(harness.state().session.hand_tags().is_empty());
 }

@@ -27,7 +27,9 @@ fn the_graph_lab_shows_the_walk_the_distances_and_the_graph() {
 fn the_graph_lab_does_what_is_pressed() {
     let link = "lab=graph&clips=walk,walk_left,walk_right&walk_seconds=20&play=off";
     let mut harness = harness(DESK, DARK, page(link));
-    let text_of = |harness: &Harness<'_, Page>, key: Key| harness.state().session.params().text(key).to_owned();
+    let text_of = |harness: &Harness<'_, Page>, key: Key| {
+        harness.state().session.params().text(key).to_owned()
+    };
     let done = |harness: &mut Harness<'_, Page>| {
         harness.run();
         while harness.state_mut().session.work() {}
@@ -87,11 +89,7 @@ fn the_graph_lab_does_what_is_pressed() {
     }
     harness.drop_at(stage.center() + vec2(0.0, -60.0));
     done(&mut harness);
-    assert!(
-        harness.state().session.graph_path().len() > 3,
-        "{}",
-        text_of(&harness, Key::WalkPath)
-    );
+    assert!(harness.state().session.graph_path().len() > 3, "{}", text_of(&harness, Key::WalkPath));
     assert!(harness.state().session.graph_walk().is_some_and(|walk| walk.followed.is_some()));
     press(text::REMOVE_PATH, &mut harness);
     done(&mut harness);
@@ -105,7 +103,13 @@ fn the_graph_lab_does_what_is_pressed() {
         for (index, pane) in harness.state().session.panes().iter().enumerate() {
             // A segment that is no longer than the window is refused, in words.
             let is_refused = experiment.query.contains("segment_size:60,30,20") && index == 2;
-            assert_eq!(pane.problem.is_some(), is_refused, "{}: {:?}", experiment.name, pane.problem);
+            assert_eq!(
+                pane.problem.is_some(),
+                is_refused,
+                "{}: {:?}",
+                experiment.name,
+                pane.problem
+            );
         }
     }
     press(text::COPY_MARKDOWN, &mut harness);
@@ -120,9 +124,12 @@ fn the_graph_lab_does_what_is_pressed() {
     else {
         panic!("{actions:?}")
     };
-    assert!(*name == "motion graph.json" && text.contains("\"edges\"") && dot.starts_with("digraph"));
     assert!(
-        markdown.starts_with("| | whole clip | first frame only | first frame, then as recorded |") && csv.lines().count() == 12,
+        *name == "motion graph.json" && text.contains("\"edges\"") && dot.starts_with("digraph")
+    );
+    assert!(
+        markdown.starts_with("| | whole clip | first frame only | first frame, then as recorded |")
+            && csv.lines().count() == 12,
         "{markdown}{csv}"
     );
     // The last experiment again: one pane.
@@ -133,7 +140,8 @@ fn the_graph_lab_does_what_is_pressed() {
 
 #[test]
 fn whoever_sends_the_walk_where_no_way_leads_is_told() {
-    let link = "lab=graph&clips=walk,walk_left,walk_right,idle&walk_seconds=20&blend_window=20&play=off";
+    let link =
+        "lab=graph&clips=walk,walk_left,walk_right,idle&walk_seconds=20&blend_window=20&play=off";
     for theme in [DARK, LIGHT] {
         let mut harness = harness(DESK, theme, page(link));
         let strip = harness.get_by_label(text::GRAPH_STRIP).rect();
@@ -147,7 +155,10 @@ fn whoever_sends_the_walk_where_no_way_leads_is_told() {
         assert_eq!(walk.missed, [(0.0, 3)]);
         let sentence = "No way leads to Stand from where the walk is at 0.0 s: a higher threshold may make one.";
         assert!(harness.query_all_by_label(sentence).count() > 0);
-        picture(if theme == DARK { "graph-no-way-dark" } else { "graph-no-way-light" }, &mut harness);
+        picture(
+            if theme == DARK { "graph-no-way-dark" } else { "graph-no-way-light" },
+            &mut harness,
+        );
     }
 }
 
@@ -179,10 +190,13 @@ fn the_distances_of_very_many_frames_are_seen_from_afar_and_nearby() {
     };
     let field = harness.get_by_label(text::ALL_DISTANCES).rect();
     picture("graph-afar-dark", &mut harness);
-    // The wheel over a ring: it stays where it is, and the picture gets finer until there is nothing left to compute.
+    // The wheel over a ring: it stays where it is, and the picture gets finer until there is
+    // nothing left to compute.
     let ring = field.min + mark * field.size();
     harness.hover_at(ring);
-    for (name, turns) in [("graph-nearer-dark", 2), ("graph-nearby-dark", 4), ("graph-cells-dark", 4)] {
+    for (name, turns) in
+        [("graph-nearer-dark", 2), ("graph-nearby-dark", 4), ("graph-cells-dark", 4)]
+    {
         for _ in 0..turns {
             harness.event(egui::Event::MouseWheel {
                 unit: egui::MouseWheelUnit::Point,

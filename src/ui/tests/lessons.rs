@@ -12,7 +12,9 @@ fn deliver(session: &mut Session) {
         if let segue_session::Request::Lesson(source) = request {
             let text = match &source {
                 Source::BuiltIn(file) => {
-                    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/lessons").join(file);
+                    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
+                        .join("assets/lessons")
+                        .join(file);
                     std::fs::read(path).map_err(|error| error.to_string())
                 }
                 Source::Web(address) => Err(format!("There is no file at {address} (answer 404).")),
@@ -43,7 +45,9 @@ fn a_lesson_is_read_tried_and_left() {
     picture("lessons-contents", &mut harness);
     go("3. The blend window", &mut harness);
     harness.get_by_label("3 of 14");
-    let params = |harness: &Harness<'_, Page>, key: Key| key.param().format(harness.state().session.params().get(key));
+    let params = |harness: &Harness<'_, Page>, key: Key| {
+        key.param().format(harness.state().session.params().get(key))
+    };
     assert_eq!(params(&harness, Key::Lab), "blend");
     assert_eq!(params(&harness, Key::Compare), "blend_window:30,15,10");
     let is_marked = |label: &str, harness: &Harness<'_, Page>| {
@@ -142,7 +146,9 @@ fn lessons_look_well_everywhere() {
             } else {
                 harness_in_chinese(size, theme, page)
             };
-            let said = |english: &'static str, chinese: &'static str| if tag.is_empty() { english } else { chinese };
+            let said = |english: &'static str, chinese: &'static str| {
+                if tag.is_empty() { english } else { chinese }
+            };
             harness.get_by_label(said(text::CLOSE_LESSONS, "關閉課程"));
             picture(&format!("lessons-{name}-{language}"), &mut harness);
             let show = said(text::SHOW_ANSWER, "顯示解答");
@@ -160,13 +166,15 @@ fn rest_of(link: &str) -> Vec<(Key, Value)> {
     values.into_iter().filter(|(key, _)| *key != Key::Lesson).collect()
 }
 
-/// The page in Chinese. Its letters come with the second frame; until then there is nothing to set with them.
+/// The page in Chinese. Its letters come with the second frame; until then there is nothing to set
+/// with them.
 fn harness_in_chinese(size: Vec2, theme: Theme, page: Page) -> Harness<'static, Page> {
     let file = |name: &str| {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/lang").join(name);
         std::fs::read(path).expect("a language")
     };
-    let tongue = Tongue::read(&file("zh-Hant.json"), Arc::from(file("zh-Hant.otf"))).expect("a language");
+    let tongue =
+        Tongue::read(&file("zh-Hant.json"), Arc::from(file("zh-Hant.otf"))).expect("a language");
     let mut harness = harness(size, theme, self::page("lab=make&play=off"));
     tongue.teach(&harness.ctx);
     harness.run();

@@ -26,9 +26,7 @@ fn handle(number: usize, harness: &Harness<'_, Page>) -> Pos2 {
 }
 
 fn is_handle(node: &egui_kittest::Node<'_>) -> bool {
-    node.accesskit_node()
-        .label()
-        .is_some_and(|label| label.starts_with("Control point "))
+    node.accesskit_node().label().is_some_and(|label| label.starts_with("Control point "))
 }
 
 /// Takes what is under the pointer along these places and lets it go.
@@ -53,22 +51,13 @@ fn the_lab_opens_with_its_path_in_sight() {
             DARK,
             "lab=path&a=walk_left&compare=control_points:4,8,16&play=off",
         ),
-        (
-            "path-phone-dark",
-            PHONE,
-            DARK,
-            "lab=path&a=walk_left&play=off&others=run,walk_right",
-        ),
-        (
-            "path-projector",
-            vec2(1280.0, 720.0),
-            HALL,
-            "lab=path&play=off&others=run,walk_right",
-        ),
+        ("path-phone-dark", PHONE, DARK, "lab=path&a=walk_left&play=off&others=run,walk_right"),
+        ("path-projector", vec2(1280.0, 720.0), HALL, "lab=path&play=off&others=run,walk_right"),
         ("path-none-dark", DESK, DARK, "lab=path&a=idle&play=off"),
     ] {
         let harness = &mut lab(size, theme, link);
-        let count = harness.query_all_by_label_contains(" of ").filter(|node| is_handle(node)).count();
+        let count =
+            harness.query_all_by_label_contains(" of ").filter(|node| is_handle(node)).count();
         let wanted = match name {
             "path-none-dark" => 0,
             "path-compare-dark" => 4 + 8 + 16,
@@ -148,10 +137,7 @@ fn a_finger_drags_a_point_too() {
         &mut harness,
     );
     step(vec![touch(TouchPhase::Move, to), Event::PointerMoved(to)], &mut harness);
-    step(
-        vec![touch(TouchPhase::End, to), button(to, false), Event::PointerGone],
-        &mut harness,
-    );
+    step(vec![touch(TouchPhase::End, to), button(to, false), Event::PointerGone], &mut harness);
     harness.run_steps(2);
     assert!(path(&harness).is_edited);
     assert!(handle(3, &harness).distance(to) < 4.0);

@@ -105,7 +105,8 @@ fn the_map_is_pointed_at_pressed_and_pinned() {
     let now = harness.state().session.now_secs();
     let beat = outcome(harness.state()).registered.as_ref().unwrap().beat_at(now).unwrap();
     let off = |secs: f64| {
-        let frames = outcome(harness.state()).registered.as_ref().unwrap().beat_at(secs).unwrap().frames;
+        let frames =
+            outcome(harness.state()).registered.as_ref().unwrap().beat_at(secs).unwrap().frames;
         (frames[0] - a).hypot(frames[1] - b)
     };
     assert!(
@@ -123,16 +124,9 @@ fn the_map_is_pointed_at_pressed_and_pinned() {
         harness.run();
     };
     drag(&mut harness, at(0.4, 0.4), at(0.5, 0.45));
-    let [(pin_a, pin_b)] = pins(&harness)[..] else {
-        panic!("{:?}", pins(&harness))
-    };
-    let warped = outcome(harness.state())
-        .registered
-        .as_ref()
-        .unwrap()
-        .registration
-        .warp()
-        .at(pin_a as f64);
+    let [(pin_a, pin_b)] = pins(&harness)[..] else { panic!("{:?}", pins(&harness)) };
+    let warped =
+        outcome(harness.state()).registered.as_ref().unwrap().registration.warp().at(pin_a as f64);
     assert!((warped - pin_b as f64).abs() < 0.01, "{warped} {pin_b}");
     picture("register-pinned-dark", &mut harness);
     // It is moved, and dragged out; each is one step.

@@ -11,13 +11,11 @@ fn serve(harness: &mut Harness<'_, Page>) {
         while session.work() {}
         let requests = session.take_requests();
         let samples: Vec<_> = (requests.into_iter())
-            .filter_map(|request| {
-                if let Request::Sample(sample) = request {
-                    Some(sample)
-                } else {
-                    None
-                }
-            })
+            .filter_map(
+                |request| {
+                    if let Request::Sample(sample) = request { Some(sample) } else { None }
+                },
+            )
             .collect();
         if samples.is_empty() {
             break;
@@ -63,7 +61,8 @@ fn one_click_loads_the_set_with_progress_and_undo_takes_it_back() {
 fn a_button_changes_the_motion_of_every_lab_that_has_a_set() {
     let (made, captured) = (text::clip_set(ClipSet::Made).0, text::clip_set(ClipSet::Captured).0);
     for lab in ["speed", "loop", "register", "path", "graph", "match"] {
-        let mut harness = harness(DESK, DARK, page(&format!("lab={lab}&scenario=straight&play=off")));
+        let mut harness =
+            harness(DESK, DARK, page(&format!("lab={lab}&scenario=straight&play=off")));
         assert!(
             harness.query_by_label(text::clip_set(ClipSet::Own).0).is_none(),
             "{lab}: there are none"
@@ -81,15 +80,12 @@ fn a_button_changes_the_motion_of_every_lab_that_has_a_set() {
 #[test]
 fn the_users_own_clips_fill_graph_and_match_with_one_click() {
     for lab in ["graph", "match"] {
-        let mut harness = harness(DESK, DARK, with_file(&format!("lab={lab}&scenario=straight&play=off")));
+        let mut harness =
+            harness(DESK, DARK, with_file(&format!("lab={lab}&scenario=straight&play=off")));
         let id = loaded(harness.state()).id.clone();
         press(text::clip_set(ClipSet::Own).0, &mut harness);
         let session = &harness.state().session;
-        let ids = if lab == "graph" {
-            session.graph_clip_ids()
-        } else {
-            session.match_clip_ids()
-        };
+        let ids = if lab == "graph" { session.graph_clip_ids() } else { session.match_clip_ids() };
         assert_eq!(ids, [id], "{lab}");
     }
 }

@@ -4,8 +4,9 @@ use eframe::egui::Color32;
 
 /// The colours of one theme, named for what they say.
 ///
-/// A is warm, B is cool, what comes out of both is the accent. For each of them there is a *fill* (bars, curves, handles), an
-/// *ink* (the same hue, dark or light enough to be read as text on panels), and the text that stands on the fill.
+/// A is warm, B is cool, what comes out of both is the accent. For each of them there is a *fill*
+/// (bars, curves, handles), an *ink* (the same hue, dark or light enough to be read as text on
+/// panels), and the text that stands on the fill.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Palette {
     /// Behind everything, and behind the stage.
@@ -20,7 +21,8 @@ pub(crate) struct Palette {
     pub(crate) pressed: Color32,
     /// Hairlines between panels and rows, and the outline of controls.
     pub(crate) line: Color32,
-    /// An outline that is the control itself: the dashed drop zone, an unset switch, a mark on a track.
+    /// An outline that is the control itself: the dashed drop zone, an unset switch, a mark on a
+    /// track.
     pub(crate) line_strong: Color32,
     /// The empty part of a slider's or a progress bar's track.
     pub(crate) track: Color32,
@@ -68,7 +70,8 @@ pub(crate) struct Palette {
     pub(crate) others: [Color32; 4],
     /// Under raised things. Translucent.
     pub(crate) shadow: Color32,
-    /// Distances, from alike to far apart: what is alike has the ground's colour, so that curves stand out in the valleys.
+    /// Distances, from alike to far apart: what is alike has the ground's colour, so that curves
+    /// stand out in the valleys.
     pub(crate) heat: [Color32; 5],
     /// How much of a ghost's colour covers what is behind it, 0..=1.
     pub(crate) ghost_alpha: f32,
@@ -215,11 +218,7 @@ mod tests {
     fn luminance(color: Color32) -> f64 {
         let channel = |value: u8| {
             let value = f64::from(value) / 255.0;
-            if value <= 0.040_45 {
-                value / 12.92
-            } else {
-                ((value + 0.055) / 1.055).powf(2.4)
-            }
+            if value <= 0.040_45 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
         };
         0.2126 * channel(color.r()) + 0.7152 * channel(color.g()) + 0.0722 * channel(color.b())
     }
@@ -230,7 +229,8 @@ mod tests {
         (one.max(other) + 0.05) / (one.min(other) + 0.05)
     }
 
-    /// What a translucent colour looks like on an opaque one, as egui blends (premultiplied, in gamma space).
+    /// What a translucent colour looks like on an opaque one, as egui blends (premultiplied, in
+    /// gamma space).
     fn over(top: Color32, under: Color32) -> Color32 {
         under.blend(top)
     }

@@ -66,7 +66,8 @@ fn folder_of(path: &str) -> &str {
     path.rsplit_once('/').map_or("", |(folder, _)| folder)
 }
 
-/// Every file below a folder, in the order of their paths. Folders that are links are not followed: they may lead around.
+/// Every file below a folder, in the order of their paths. Folders that are links are not followed:
+/// they may lead around.
 fn files_below(folder: &Path) -> Result<Vec<PathBuf>, String> {
     let at = |path: &Path, error: &std::io::Error| format!("{}: {error}", path.display());
     let (mut folders, mut files) = (vec![folder.to_owned()], Vec::new());
@@ -94,7 +95,8 @@ impl Motions {
         let mut motions = Self::default();
         let mut skeletons: BTreeMap<String, Vec<Companion>> = BTreeMap::new();
         for path in files_below(folder)? {
-            let name = path.strip_prefix(folder).unwrap_or(&path).to_string_lossy().replace('\\', "/");
+            let name =
+                path.strip_prefix(folder).unwrap_or(&path).to_string_lossy().replace('\\', "/");
             let ending = name.rsplit('.').next().unwrap_or_default().to_lowercase();
             if !["bvh", "amc", "asf", "glb", "zip", "gz"].contains(&ending.as_str()) {
                 continue;
@@ -123,15 +125,16 @@ impl Motions {
     }
 
     fn unpack(&mut self, path: &Path, name: &str) {
-        let unpacked = fs::read(path)
-            .map_err(|error| error.to_string())
-            .and_then(|bytes| archive::unpack(name, &bytes, &ArchiveLimits::default()).map_err(|error| error.to_string()));
+        let unpacked = fs::read(path).map_err(|error| error.to_string()).and_then(|bytes| {
+            archive::unpack(name, &bytes, &ArchiveLimits::default())
+                .map_err(|error| error.to_string())
+        });
         let unpacked = match unpacked {
             Ok(unpacked) => unpacked,
             Err(sentence) => return self.refused.push((name.to_owned(), sentence)),
         };
-        let (skeletons, motions): (Vec<_>, Vec<_>) =
-            (unpacked.files.into_iter()).partition(|file| kind_of(&file.path, &file.bytes) == FileKind::Asf);
+        let (skeletons, motions): (Vec<_>, Vec<_>) = (unpacked.files.into_iter())
+            .partition(|file| kind_of(&file.path, &file.bytes) == FileKind::Asf);
         for file in motions {
             let beside = skeletons
                 .iter()
@@ -139,7 +142,9 @@ impl Motions {
             self.files.push(MotionFile {
                 path: format!("{name}/{}", file.path),
                 content: FileContent::Unpacked(file.bytes.into()),
-                skeletons: beside.map(|file| Companion::new(file_name(&file.path), &file.bytes)).collect(),
+                skeletons: beside
+                    .map(|file| Companion::new(file_name(&file.path), &file.bytes))
+                    .collect(),
             });
         }
     }
@@ -179,7 +184,8 @@ impl Motions {
                 }
                 Ok(Ok(clips)) => {
                     for (clip, skeleton) in clips.iter().enumerate() {
-                        let number = if clips.len() > 1 { format!("#{}", clip + 1) } else { String::new() };
+                        let number =
+                            if clips.len() > 1 { format!("#{}", clip + 1) } else { String::new() };
                         self.takes.push(Take {
                             name: format!("{}{number}", file.path),
                             rig: rig_of(&mut rigs, skeleton),
@@ -223,7 +229,9 @@ impl Motions {
 impl MotionFile {
     fn bytes(&self) -> Result<Arc<[u8]>, String> {
         match &self.content {
-            FileContent::OnDisk(path) => fs::read(path).map(Into::into).map_err(|error| error.to_string()),
+            FileContent::OnDisk(path) => {
+                fs::read(path).map(Into::into).map_err(|error| error.to_string())
+            }
             FileContent::Unpacked(bytes) => Ok(Arc::clone(bytes)),
         }
     }
@@ -234,7 +242,8 @@ impl MotionFile {
             companions: self.skeletons.clone(),
             ..ReadSetup::default()
         };
-        let report: ReadReport = read(file_name(&self.path), &self.bytes()?, &setup, &mut |_| true).unwrap_or_default();
+        let report: ReadReport =
+            read(file_name(&self.path), &self.bytes()?, &setup, &mut |_| true).unwrap_or_default();
         let mut clips = Vec::new();
         for file in report.files {
             let read = file.result.map_err(|error| error.to_string())?;
@@ -257,7 +266,8 @@ fn loaded(session: &mut Session, name: &str, bytes: &Arc<[u8]>) -> Result<Vec<St
     // A large file is to be read elsewhere, which is here.
     for request in session.take_requests() {
         if let Request::Read(task) = request {
-            let report = read(&task.name, bytes, &task.setup, &mut |_| true).ok_or("it was not read");
+            let report =
+                read(&task.name, bytes, &task.setup, &mut |_| true).ok_or("it was not read");
             let done = session.finish_reading(task.id, report.map_err(str::to_owned));
             ids.extend(done.transpose()?.map(|loaded| loaded.ids).unwrap_or_default());
         }
@@ -274,9 +284,7 @@ fn rig_of(rigs: &mut Vec<Arc<Skeleton>>, skeleton: &Arc<Skeleton>) -> usize {
 
 /// The skeleton of what a link shows.
 fn opened(session: &mut Session, link: &str) -> Result<Arc<Skeleton>, String> {
-    session
-        .apply(Command::OpenLink(link.to_owned()))
-        .map_err(|error| error.to_string())?;
+    session.apply(Command::OpenLink(link.to_owned())).map_err(|error| error.to_string())?;
     let pane = &session.panes()[0];
     match (&pane.outcome, &pane.problem) {
         (Some(outcome), None) => Ok(Arc::clone(outcome.motion.clip.skeleton())),
@@ -290,7 +298,8 @@ pub fn encoded(id: &str) -> String {
     form_urlencoded::byte_serialize(id.as_bytes()).collect()
 }
 
-/// The id of a clip that any session makes: five walks, three runs, and one each of the rest in ten.
+/// The id of a clip that any session makes: five walks, three runs, and one each of the rest in
+/// ten.
 fn made_id(chance: &mut Chance, number: usize) -> String {
     let height = ["1.6", "1.75", "1.9"][chance.below(3)];
     let seed = chance.below(1000);
@@ -316,7 +325,8 @@ fn made_id(chance: &mut Chance, number: usize) -> String {
     }
 }
 
-/// Numbers by chance, the same for the same seed everywhere (Steele, Lea, Flood 2014, "Fast Splittable Pseudorandom Number Generators").
+/// Numbers by chance, the same for the same seed everywhere (Steele, Lea, Flood 2014, "Fast
+/// Splittable Pseudorandom Number Generators").
 #[derive(Debug)]
 pub struct Chance(u64);
 

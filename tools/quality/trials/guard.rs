@@ -25,7 +25,8 @@ pub fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     catch_unwind(AssertUnwindSafe(work)).map_err(|_| LAST_PANIC.with(|last| last.borrow().clone()))
 }
 
-/// The results for all numbers below `count`, in their order, worked out by as many threads as the machine has.
+/// The results for all numbers below `count`, in their order, worked out by as many threads as the
+/// machine has.
 pub fn shared_out<T: Send>(count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
     let next = AtomicUsize::new(0);
     let results: Vec<Mutex<Option<T>>> = (0..count).map(|_| Mutex::new(None)).collect();
@@ -46,8 +47,5 @@ pub fn shared_out<T: Send>(count: usize, work: impl Fn(usize) -> T + Sync) -> Ve
             });
         }
     });
-    results
-        .into_iter()
-        .filter_map(|result| result.into_inner().ok().flatten())
-        .collect()
+    results.into_iter().filter_map(|result| result.into_inner().ok().flatten()).collect()
 }

@@ -1,4 +1,5 @@
-//! Takes from a folder or from the synthesiser, tried in every lab and measured. Shared with the test of the same name.
+//! Takes from a folder or from the synthesiser, tried in every lab and measured. Shared with the
+//! test of the same name.
 
 #![allow(
     dead_code,

@@ -50,10 +50,13 @@ fn write_methods(out: &mut String, drawn: Drawn, trials: &[&Trial]) {
         }
     }
     for (lab, method) in methods {
-        let own: Vec<&&Trial> = (trials.iter()).filter(|trial| trial.lab == lab && trial.method == method).collect();
+        let own: Vec<&&Trial> =
+            (trials.iter()).filter(|trial| trial.lab == lab && trial.method == method).collect();
         let count = |is: fn(&Came) -> bool| own.iter().filter(|trial| is(&trial.came)).count();
-        let made: Vec<(bool, &Numbers)> = own.iter().filter_map(|trial| Some((trial.locked, numbers(trial)?))).collect();
-        let sum = |of: fn(&Numbers) -> usize| made.iter().map(|(_, numbers)| of(numbers)).sum::<usize>();
+        let made: Vec<(bool, &Numbers)> =
+            own.iter().filter_map(|trial| Some((trial.locked, numbers(trial)?))).collect();
+        let sum =
+            |of: fn(&Numbers) -> usize| made.iter().map(|(_, numbers)| of(numbers)).sum::<usize>();
         let mean = |locked: Option<bool>, of: fn(&Numbers) -> Option<f64>| {
             let values: Vec<f64> = (made.iter())
                 .filter(|(is_locked, _)| locked.is_none_or(|locked| locked == *is_locked))
@@ -66,7 +69,12 @@ fn write_methods(out: &mut String, drawn: Drawn, trials: &[&Trial]) {
             }
         };
         let three = |own: fn(&Numbers) -> Option<f64>, source: fn(&Numbers) -> Option<f64>| {
-            format!("{} / {} / {}", mean(Some(false), own), mean(Some(true), own), mean(None, source))
+            format!(
+                "{} / {} / {}",
+                mean(Some(false), own),
+                mean(Some(true), own),
+                mean(None, source)
+            )
         };
         let (bound, broken) = own
             .iter()
@@ -136,9 +144,8 @@ fn write_refusals(out: &mut String, motions: &Motions, trials: &[Trial]) {
         *sentences.entry(of).or_default() += 1;
     }
     for (path, place) in &motions.panics {
-        *sentences
-            .entry(("reading".to_owned(), format!("PANIC {place}: {path}")))
-            .or_default() += 1;
+        *sentences.entry(("reading".to_owned(), format!("PANIC {place}: {path}"))).or_default() +=
+            1;
     }
     for trial in trials {
         let sentence = match &trial.came {

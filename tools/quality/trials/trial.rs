@@ -1,4 +1,5 @@
-//! Every lab and every method of it, tried on a pair or on a set of takes by links, as a user opens them.
+//! Every lab and every method of it, tried on a pair or on a set of takes by links, as a user opens
+//! them.
 
 use super::folder::{Chance, Motions, encoded};
 use super::guard::{guarded, shared_out};
@@ -10,11 +11,14 @@ use segue_session::{Command, CycleMade, Motion, Outcome, Session, write_ids};
 use std::sync::Arc;
 use std::time::Instant;
 
-/// The windows of a close pair are at most so far apart, centimetres: from A to B no more is asked than what a good transition does.
+/// The windows of a close pair are at most so far apart, centimetres: from A to B no more is asked
+/// than what a good transition does.
 const CLOSE_CM: f32 = 12.0;
-/// Skating is more than another one's by more than this share: so near do two meters that measure it agree.
+/// Skating is more than another one's by more than this share: so near do two meters that measure
+/// it agree.
 const SAME_SKATING: f64 = 1.05;
-/// A difference below this is no skating, cm/s: clips that stand have next to none, and a millimetre a second is not seen.
+/// A difference below this is no skating, cm/s: clips that stand have next to none, and a
+/// millimetre a second is not seen.
 const LEAST_SKATING_CMPS: f64 = 0.1;
 /// Trials that take longer are given up, seconds.
 const MOST_SECS: f64 = 120.0;
@@ -25,7 +29,8 @@ const MOST_BULGE_M: f64 = 1.0;
 const SET: usize = 4;
 
 const WEIGHT_LAWS: [&str; 3] = ["smooth", "linear", "smoother"];
-const TRANSITIONS: [&str; 7] = ["inertialize", "cubic", "quintic", "dead", "smooth", "linear", "cut"];
+const TRANSITIONS: [&str; 7] =
+    ["inertialize", "cubic", "quintic", "dead", "smooth", "linear", "cut"];
 const LOOPS: [&str; 6] = ["exact", "both", "start", "end", "linear", "cubic"];
 const LAYERS: [&str; 2] = ["partial", "additive"];
 const REGISTERED: [&str; 2] = ["blend", "join"];
@@ -132,7 +137,8 @@ pub struct Numbers {
     pub new_flashes: usize,
     pub root_jumps: usize,
     pub new_root_jumps: usize,
-    /// Where the first flash is that no source has: frame, joint, and how many times the sources' 99.9th percentile.
+    /// Where the first flash is that no source has: frame, joint, and how many times the sources'
+    /// 99.9th percentile.
     pub first_flash: Option<(usize, String, f64)>,
     /// Skating of the result, and of the worst source, cm/s.
     pub skating: Option<f64>,
@@ -162,10 +168,10 @@ impl Trial {
                     note(numbers.spins > 0, "spin");
                     note(numbers.new_flashes > 0, "flash");
                     note(numbers.new_root_jumps > 0, "root jump");
-                    let worse = numbers
-                        .skating
-                        .zip(numbers.source_skating)
-                        .is_some_and(|(own, source)| own > (SAME_SKATING * source).max(source + LEAST_SKATING_CMPS));
+                    let worse =
+                        numbers.skating.zip(numbers.source_skating).is_some_and(|(own, source)| {
+                            own > (SAME_SKATING * source).max(source + LEAST_SKATING_CMPS)
+                        });
                     note(self.locked && worse, "skating");
                 }
             }
@@ -174,7 +180,8 @@ impl Trial {
     }
 }
 
-/// Tries all labs on `pairs` pairs of one rig and as many of two, and on half as many sets of four takes, drawn by `seed`.
+/// Tries all labs on `pairs` pairs of one rig and as many of two, and on half as many sets of four
+/// takes, drawn by `seed`.
 #[must_use]
 pub fn try_all(motions: &Motions, pairs: usize, seed: u64) -> Vec<Trial> {
     let drawn = draw(motions, pairs, seed);
@@ -204,7 +211,10 @@ fn draw(motions: &Motions, pairs: usize, seed: u64) -> Vec<(Drawn, Vec<usize>)> 
             }
             let mut chosen = vec![chance.below(takes.len())];
             while chosen.len() < size {
-                let fits = |take: usize| (rig(take) == rig(chosen[0])) != (what == Drawn::OtherRigs) && !chosen.contains(&take);
+                let fits = |take: usize| {
+                    (rig(take) == rig(chosen[0])) != (what == Drawn::OtherRigs)
+                        && !chosen.contains(&take)
+                };
                 let mates: Vec<usize> = (0..takes.len()).filter(|&take| fits(take)).collect();
                 match mates.get(chance.below(mates.len())) {
                     Some(&mate) => chosen.push(mate),
@@ -229,12 +239,7 @@ struct Bench<'a> {
 
 impl<'a> Bench<'a> {
     fn new(motions: &'a Motions, drawn: Drawn, takes: &[usize]) -> Self {
-        Self {
-            motions,
-            drawn,
-            takes: takes.to_vec(),
-            session: None,
-        }
+        Self { motions, drawn, takes: takes.to_vec(), session: None }
     }
 
     fn names(&self) -> Vec<String> {
@@ -246,7 +251,9 @@ impl<'a> Bench<'a> {
         if self.session.is_none() {
             match guarded(|| self.motions.open(&self.takes)) {
                 Ok(Ok(session)) => self.session = Some(session),
-                Ok(Err(sentence)) => return Opened::without(String::new(), Err(Came::Refused(sentence))),
+                Ok(Err(sentence)) => {
+                    return Opened::without(String::new(), Err(Came::Refused(sentence)));
+                }
                 Err(place) => return Opened::without(String::new(), Err(Came::Panicked(place))),
             }
         }
@@ -272,36 +279,54 @@ impl<'a> Bench<'a> {
         let view = self.open(|ids| format!("lab=view&a={}", encoded(&ids[0])));
         let mut trials = Vec::new();
         let Ok(first) = &view.made else {
-            trials.push(self.trial("view", "a clip as it is".to_owned(), false, false, view, |_| Numbers::default()));
+            trials.push(self.trial(
+                "view",
+                "a clip as it is".to_owned(),
+                false,
+                false,
+                view,
+                |_| Numbers::default(),
+            ));
             return trials;
         };
         let (first, mut sources) = (Arc::clone(&first.motion), Vec::new());
         let mut is_close = self.drawn == Drawn::Set;
         if self.drawn == Drawn::Set {
             for index in 0..self.takes.len() {
-                if let Ok(outcome) = self.open(|ids| format!("lab=view&a={}", encoded(&ids[index]))).made {
+                if let Ok(outcome) =
+                    self.open(|ids| format!("lab=view&a={}", encoded(&ids[index]))).made
+                {
                     sources.push(traced(&outcome.motion));
                 }
             }
         } else {
             sources.push(traced(&first));
-            let pair = self.open(|ids| format!("lab=blend&a={}&b={}", encoded(&ids[0]), encoded(&ids[1])));
+            let pair =
+                self.open(|ids| format!("lab=blend&a={}&b={}", encoded(&ids[0]), encoded(&ids[1])));
             if let Ok(outcome) = &pair.made {
-                is_close = outcome.transition.is_some_and(|transition| transition.distance_cm < CLOSE_CM);
+                is_close =
+                    outcome.transition.is_some_and(|transition| transition.distance_cm < CLOSE_CM);
                 // B as it is mixed: on the skeleton of A.
                 sources.extend(outcome.sources.get(1).map(|source| traced(&source.motion)));
             }
             if self.drawn == Drawn::OtherRigs
-                && let Ok(outcome) = self.open(|ids| format!("lab=view&a={}", encoded(&ids[1]))).made
-                && let Some(moved) = pair
-                    .made
-                    .as_ref()
-                    .ok()
-                    .and_then(|pair| pair.sources.get(1).map(|source| Arc::clone(&source.motion)))
+                && let Ok(outcome) =
+                    self.open(|ids| format!("lab=view&a={}", encoded(&ids[1]))).made
+                && let Some(moved) =
+                    pair.made.as_ref().ok().and_then(|pair| {
+                        pair.sources.get(1).map(|source| Arc::clone(&source.motion))
+                    })
             {
                 let original = traced(&outcome.motion);
                 let numbers = measured(&moved, &[], &[&original], &[&original]);
-                trials.push(self.trial("retarget", "B on the skeleton of A".to_owned(), false, false, pair, |_| numbers));
+                trials.push(self.trial(
+                    "retarget",
+                    "B on the skeleton of A".to_owned(),
+                    false,
+                    false,
+                    pair,
+                    |_| numbers,
+                ));
             }
         }
         let mirrored = self.mirrored();
@@ -320,23 +345,34 @@ impl<'a> Bench<'a> {
                 } else {
                     sources.iter().collect()
                 };
-                // A path that turns faster than the motion can says so, and nothing is asked of the motion on it.
-                let is_hard = |outcome: &Arc<Outcome>| outcome.path.as_ref().is_some_and(|path| !path.hard_turns.is_empty());
+                // A path that turns faster than the motion can says so, and nothing is asked of the
+                // motion on it.
+                let is_hard = |outcome: &Arc<Outcome>| {
+                    outcome.path.as_ref().is_some_and(|path| !path.hard_turns.is_empty())
+                };
                 // What is laid on top of a motion adds its own speed to it, by design.
                 let adds = way.lab == "layers" && way.method == "additive";
-                let is_far = opened
-                    .made
-                    .as_ref()
-                    .is_ok_and(|outcome| own_distance_cm(outcome).is_some_and(|cm| cm >= f64::from(CLOSE_CM)));
-                let asks_much = way.jumps || adds || is_far || opened.made.as_ref().is_ok_and(is_hard);
+                let is_far = opened.made.as_ref().is_ok_and(|outcome| {
+                    own_distance_cm(outcome).is_some_and(|cm| cm >= f64::from(CLOSE_CM))
+                });
+                let asks_much =
+                    way.jumps || adds || is_far || opened.made.as_ref().is_ok_and(is_hard);
                 let bound = !asks_much && (is_close || way.lab == "match") && way.lab != "graph";
                 let numbers = |outcome: &Outcome| {
-                    let values: Vec<f64> = outcome.metrics.iter().filter_map(|metric| metric.value).collect();
+                    let values: Vec<f64> =
+                        outcome.metrics.iter().filter_map(|metric| metric.value).collect();
                     let part = cut_part(outcome, &first);
                     let feet: Vec<&MotionTrace> = feet.iter().copied().chain(&part).collect();
                     measured(&outcome.motion, &values, &beside, &feet)
                 };
-                trials.push(self.trial(way.lab, way.method.clone(), locked, bound, opened, numbers));
+                trials.push(self.trial(
+                    way.lab,
+                    way.method.clone(),
+                    locked,
+                    bound,
+                    opened,
+                    numbers,
+                ));
             }
         }
         trials
@@ -361,7 +397,8 @@ impl<'a> Bench<'a> {
             bound,
             secs: opened.secs,
             came: match opened.made {
-                Ok(outcome) => guarded(|| numbers(&outcome)).map_or_else(Came::Panicked, |numbers| Came::Made(Box::new(numbers))),
+                Ok(outcome) => guarded(|| numbers(&outcome))
+                    .map_or_else(Came::Panicked, |numbers| Came::Made(Box::new(numbers))),
                 Err(came) => came,
             },
         }
@@ -372,9 +409,14 @@ impl<'a> Bench<'a> {
         let count = if self.drawn == Drawn::Set { self.takes.len() } else { 0 };
         let mut traces = Vec::new();
         for index in 0..count {
-            if let Ok(outcome) = self.open(|ids| format!("lab=view&a={}", encoded(&ids[index]))).made {
+            if let Ok(outcome) =
+                self.open(|ids| format!("lab=view&a={}", encoded(&ids[index]))).made
+            {
                 let motion = &outcome.motion;
-                traces.extend(mirror(&motion.clip, &motion.roles).map(|clip| MotionTrace::new(&clip, &motion.roles)));
+                traces.extend(
+                    mirror(&motion.clip, &motion.roles)
+                        .map(|clip| MotionTrace::new(&clip, &motion.roles)),
+                );
             }
         }
         traces
@@ -390,7 +432,8 @@ impl<'a> Bench<'a> {
         let spline = road.spline();
         let points = spline.points();
         let chord = *points.last()? - *points.first()?;
-        let aside = chord.perp().try_normalize().unwrap_or(glam::DVec2::X) * (BULGE * road.length_m()).min(MOST_BULGE_M);
+        let aside = chord.perp().try_normalize().unwrap_or(glam::DVec2::X)
+            * (BULGE * road.length_m()).min(MOST_BULGE_M);
         let last = (points.len() - 1) as f64;
         let moved = points.iter().enumerate().map(|(index, point)| {
             let share = index as f64 / last;
@@ -437,27 +480,25 @@ fn traced(motion: &Motion) -> MotionTrace {
 }
 
 fn is_finite(clip: &Clip) -> bool {
-    let rotations = (0..clip.frames()).flat_map(|frame| clip.rotations(frame)).all(|q| q.is_finite());
+    let rotations =
+        (0..clip.frames()).flat_map(|frame| clip.rotations(frame)).all(|q| q.is_finite());
     let moved = clip.translations().iter().flat_map(|joint| &joint.values).all(|t| t.is_finite());
     rotations && moved && clip.root_translations().iter().all(|t| t.is_finite())
 }
 
 /// A result beside `sources` by how it moves, and beside `feet` by how it skates.
-fn measured(motion: &Motion, values: &[f64], sources: &[&MotionTrace], feet: &[&MotionTrace]) -> Numbers {
+fn measured(
+    motion: &Motion,
+    values: &[f64],
+    sources: &[&MotionTrace],
+    feet: &[&MotionTrace],
+) -> Numbers {
     if !is_finite(&motion.clip) {
-        return Numbers {
-            not_finite: true,
-            ..Numbers::default()
-        };
+        return Numbers { not_finite: true, ..Numbers::default() };
     }
     let trace = traced(motion);
-    let Artefacts {
-        spins,
-        flashes,
-        new_flashes,
-        root_jumps,
-        new_root_jumps,
-    } = trace.beside(sources);
+    let Artefacts { spins, flashes, new_flashes, root_jumps, new_root_jumps } =
+        trace.beside(sources);
     let joints = motion.clip.skeleton().joints();
     let stances: Vec<f64> = feet.iter().flat_map(|source| source.stances_cm()).copied().collect();
     Numbers {
@@ -471,13 +512,17 @@ fn measured(motion: &Motion, values: &[f64], sources: &[&MotionTrace], feet: &[&
         root_jumps,
         new_root_jumps,
         skating: trace.skating_cm_per_sec(),
-        source_skating: feet.iter().filter_map(|source| source.skating_cm_per_sec()).reduce(f64::max),
+        source_skating: feet
+            .iter()
+            .filter_map(|source| source.skating_cm_per_sec())
+            .reduce(f64::max),
         stance_cm: median(trace.stances_cm()),
         source_stance_cm: median(&stances),
     }
 }
 
-/// How far apart that is which a result brings together: the windows of its transition, the frames that were registered, or the ends of its cycle.
+/// How far apart that is which a result brings together: the windows of its transition, the frames
+/// that were registered, or the ends of its cycle.
 fn own_distance_cm(outcome: &Outcome) -> Option<f64> {
     match (outcome.transition.as_ref(), outcome.cycle.as_ref().map(|cycle| &cycle.made)) {
         (_, Some(CycleMade::Cut { distance_cm, .. })) => Some(*distance_cm),
@@ -486,7 +531,8 @@ fn own_distance_cm(outcome: &Outcome) -> Option<f64> {
     }
 }
 
-/// The part of A that goes round: it may skate more than the whole of A, in which the feet also stand or fly.
+/// The part of A that goes round: it may skate more than the whole of A, in which the feet also
+/// stand or fly.
 fn cut_part(outcome: &Outcome, a: &Motion) -> Option<MotionTrace> {
     let CycleMade::Cut { from_secs, to_secs, .. } = outcome.cycle?.made else {
         return None;
@@ -528,7 +574,9 @@ fn ways(drawn: Drawn, path_code: Option<&str>) -> Vec<Way> {
         });
     };
     if drawn == Drawn::Set {
-        for (scenario, jump) in SCENARIOS.into_iter().flat_map(|scenario| JUMPS.map(|jump| (scenario, jump))) {
+        for (scenario, jump) in
+            SCENARIOS.into_iter().flat_map(|scenario| JUMPS.map(|jump| (scenario, jump)))
+        {
             let query = format!("scenario={scenario}&jump_method={jump}");
             add("match", Of::All("match_clips"), format!("{scenario}, {jump}"), query, false);
         }
@@ -545,13 +593,7 @@ fn ways(drawn: Drawn, path_code: Option<&str>) -> Vec<Way> {
         add("blend", Of::Both, law.to_owned(), format!("weight_law={law}"), false);
     }
     for method in TRANSITIONS {
-        add(
-            "transition",
-            Of::Both,
-            method.to_owned(),
-            format!("method={method}"),
-            method == "cut",
-        );
+        add("transition", Of::Both, method.to_owned(), format!("method={method}"), method == "cut");
     }
     add("speed", Of::Both, "half way".to_owned(), "speed=auto".to_owned(), false);
     for method in LOOPS {
@@ -565,13 +607,7 @@ fn ways(drawn: Drawn, path_code: Option<&str>) -> Vec<Way> {
     }
     for keep in KEEPS {
         let code = path_code.unwrap_or_default();
-        add(
-            "path",
-            Of::First,
-            format!("bent, {keep}"),
-            format!("keep={keep}&path={code}"),
-            false,
-        );
+        add("path", Of::First, format!("bent, {keep}"), format!("keep={keep}&path={code}"), false);
     }
     ways
 }

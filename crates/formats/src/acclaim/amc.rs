@@ -1,7 +1,9 @@
 //! The frames of a motion file: one pass over the bytes, one row in memory.
 
 use super::convert::Converter;
-use super::lexer::{Number, is_blank, is_digits, line_end, number, skip_blank, skip_blank_in_line, token_end};
+use super::lexer::{
+    Number, is_blank, is_digits, line_end, number, skip_blank, skip_blank_in_line, token_end,
+};
 use super::skeleton::AcclaimSkeleton;
 use crate::error::Fault;
 use crate::text::{name, quoted};
@@ -54,7 +56,8 @@ struct Frames<'r, 'a> {
     at: usize,
     skeleton: &'r AcclaimSkeleton,
     tally: &'r mut Tally,
-    /// The values of all joints. It keeps those of the frame before, so that what is not given is held.
+    /// The values of all joints. It keeps those of the frame before, so that what is not given is
+    /// held.
     row: Vec<f64>,
     uses: Vec<Use>,
     /// The name of each joint as the file last spelled it, which spares looking it up.
@@ -117,7 +120,11 @@ pub(super) fn frames(
 }
 
 impl Frames<'_, '_> {
-    fn read(&mut self, converter: &mut Converter<'_>, progress: &mut dyn FnMut(usize) -> bool) -> Result<usize, Stop> {
+    fn read(
+        &mut self,
+        converter: &mut Converter<'_>,
+        progress: &mut dyn FnMut(usize) -> bool,
+    ) -> Result<usize, Stop> {
         let (mut reported, mut first_at, mut joint) = (0, None, 0);
         loop {
             self.at = skip_blank(self.text, self.at);
@@ -128,7 +135,9 @@ impl Frames<'_, '_> {
                     return Err(Stop::Cancelled);
                 }
             }
-            let Some(&first) = self.text.get(at) else { break };
+            let Some(&first) = self.text.get(at) else {
+                break;
+            };
             if first == b':' {
                 self.header(converter);
                 continue;
@@ -180,16 +189,20 @@ impl Frames<'_, '_> {
             self.follows(before, joint);
         }
         self.end_frame(converter)?;
-        first_at.ok_or_else(|| Fault::new(self.at, "the end of the file", "the number of a frame").into())
+        first_at.ok_or_else(|| {
+            Fault::new(self.at, "the end of the file", "the number of a frame").into()
+        })
     }
 
     /// Whether the name of a joint stands here, as it was spelled before.
     #[inline]
     fn spells(&self, joint: usize) -> bool {
         let rest = self.text.get(self.at..).unwrap_or_default();
-        self.spelled
-            .get(joint)
-            .is_some_and(|name| !name.is_empty() && rest.starts_with(name) && rest.get(name.len()).is_none_or(|&b| is_blank(b)))
+        self.spelled.get(joint).is_some_and(|name| {
+            !name.is_empty()
+                && rest.starts_with(name)
+                && rest.get(name.len()).is_none_or(|&b| is_blank(b))
+        })
     }
 
     fn follows(&mut self, before: usize, joint: usize) {
@@ -228,10 +241,7 @@ impl Frames<'_, '_> {
         }
         self.used_in_frame = 0;
         self.numbers_before = std::mem::take(&mut self.numbers);
-        converter.row(&self.row).map_err(|fault| Fault {
-            at: self.frame_at,
-            ..fault
-        })
+        converter.row(&self.row).map_err(|fault| Fault { at: self.frame_at, ..fault })
     }
 
     /// The file ends inside of the frame, which is dropped.
@@ -284,7 +294,8 @@ impl Frames<'_, '_> {
     fn odd_bone(&mut self, joint: usize, at: usize, run: &Run) -> Result<bool, Fault> {
         let usage = self.uses.get(joint).copied().unwrap_or(Use::Nothing);
         let expected = self.skeleton.values(joint);
-        let joint_name = || self.skeleton.joints.get(joint).map(|joint| joint.name.clone()).unwrap_or_default();
+        let joint_name =
+            || self.skeleton.joints.get(joint).map(|joint| joint.name.clone()).unwrap_or_default();
         let after = skip_blank(self.text, self.at);
         if run.cut || (run.count < expected && usage != Use::Nothing && after >= self.text.len()) {
             return Ok(false);
@@ -312,14 +323,7 @@ impl Frames<'_, '_> {
         }
         if usage == Use::Unnamed {
             let name = joint_name();
-            self.tally.add(
-                WarningKind::ValueCount {
-                    name,
-                    found: run.count,
-                    expected,
-                },
-                Some(at),
-            );
+            self.tally.add(WarningKind::ValueCount { name, found: run.count, expected }, Some(at));
             if let Some(usage) = self.uses.get_mut(joint) {
                 *usage = Use::Nothing;
             }
@@ -336,15 +340,12 @@ impl Frames<'_, '_> {
             .with_hint("complete the line or delete it, then drop the file again"))
     }
 
-    /// The numbers on the rest of the line, into the row; a value that is no number leaves what is there.
+    /// The numbers on the rest of the line, into the row; a value that is no number leaves what is
+    /// there.
     #[inline]
     fn numbers(&mut self, slots: Option<std::ops::Range<usize>>) -> Run {
         let text = self.text;
-        let mut run = Run {
-            count: 0,
-            last_at: self.at,
-            cut: false,
-        };
+        let mut run = Run { count: 0, last_at: self.at, cut: false };
         let (mut slot, end) = slots.map_or((0, 0), |slots| (slots.start, slots.end));
         loop {
             let at = skip_blank_in_line(text, self.at);
@@ -355,7 +356,10 @@ impl Frames<'_, '_> {
             }
             // The common case: a plain number with white space after it.
             let value = match fast_float2::parse_partial::<f64, _>(rest) {
-                Ok((value, length)) if value.abs() <= LARGEST && rest.get(length).is_none_or(|&next| is_blank(next)) => {
+                Ok((value, length))
+                    if value.abs() <= LARGEST
+                        && rest.get(length).is_none_or(|&next| is_blank(next)) =>
+                {
                     self.at = at + length;
                     Some(value)
                 }
@@ -407,7 +411,8 @@ impl Frames<'_, '_> {
 
     /// Where lines do not end with frames, the last number before a name is that of the next frame.
     fn give_back_frame_number(&mut self, run: &Run) {
-        let token = self.text.get(run.last_at..token_end(self.text, run.last_at)).unwrap_or_default();
+        let token =
+            self.text.get(run.last_at..token_end(self.text, run.last_at)).unwrap_or_default();
         let line_goes_on = self.text.get(self.at).is_some_and(|b| !matches!(b, b'\n' | b'\r'));
         if run.count > 0 && line_goes_on && is_digits(token) {
             self.at = run.last_at;
@@ -421,24 +426,33 @@ impl Frames<'_, '_> {
         }
         let at = skip_blank(self.text, self.at);
         let token = self.text.get(at..token_end(self.text, at)).unwrap_or_default();
-        let goes_on = !is_digits(token) && matches!(number(self.text, at), Number::Value { .. } | Number::NotFinite { .. });
+        let goes_on = !is_digits(token)
+            && matches!(number(self.text, at), Number::Value { .. } | Number::NotFinite { .. });
         if goes_on {
             self.at = at;
         }
         goes_on
     }
 
-    /// What can be said at the end: whether the motion fits the skeleton at all, and whether most values are values.
+    /// What can be said at the end: whether the motion fits the skeleton at all, and whether most
+    /// values are values.
     fn check(&mut self) -> Result<(), Fault> {
         if self.used == 0 {
-            let expected = format!("a motion of the skeleton {}", quoted(self.skeleton.name().as_bytes()));
-            let fault = Fault::new(0, "no bone with the names and degrees of freedom of the skeleton", expected);
+            let expected =
+                format!("a motion of the skeleton {}", quoted(self.skeleton.name().as_bytes()));
+            let fault = Fault::new(
+                0,
+                "no bone with the names and degrees of freedom of the skeleton",
+                expected,
+            );
             return Err(fault.with_hint("drop the ASF file that belongs to it"));
         }
         if self.not_finite * 100 > self.values {
             let found = format!("no number in {} of {} values", self.not_finite, self.values);
             let fault = Fault::new(self.first_not_finite, found, "at most 1 % of them");
-            return Err(fault.with_hint("export the motion again: too much of it is lost to be filled in"));
+            return Err(
+                fault.with_hint("export the motion again: too much of it is lost to be filled in")
+            );
         }
         for (index, (joint, usage)) in self.skeleton.joints.iter().zip(&self.uses).enumerate() {
             if *usage == Use::Unnamed && self.skeleton.values(index) > 0 {
@@ -484,7 +498,8 @@ pub(super) fn first_fault(text: &[u8]) -> Option<Fault> {
     Some(Fault::at_token(at, token_at(at), "a bone and its values"))
 }
 
-/// The bones of the first frame and how many values each has, as far as the beginning of a file tells.
+/// The bones of the first frame and how many values each has, as far as the beginning of a file
+/// tells.
 pub(super) fn first_frame(text: &[u8]) -> Vec<(String, usize)> {
     let mut bones: Vec<(String, usize)> = Vec::new();
     let (mut at, mut frames) = (0, 0);

@@ -6,16 +6,8 @@ use crate::text::quoted;
 use std::collections::HashSet;
 
 /// The sections that skeleton files have.
-const SECTIONS: [&str; 8] = [
-    ":version",
-    ":name",
-    ":units",
-    ":documentation",
-    ":root",
-    ":bonedata",
-    ":hierarchy",
-    ":skin",
-];
+const SECTIONS: [&str; 8] =
+    [":version", ":name", ":units", ":documentation", ":root", ":bonedata", ":hierarchy", ":skin"];
 
 /// One degree of freedom: one value per frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -167,7 +159,8 @@ fn units(lexer: &mut Lexer<'_>, asf: &mut Asf<'_>) {
         if is(key, "length") {
             asf.length = lexer.number().ok().filter(|length| *length > 0.0);
         } else if is(key, "angle") {
-            asf.radians = lexer.peek_in_line().first().is_some_and(|b| b.eq_ignore_ascii_case(&b'r'));
+            asf.radians =
+                lexer.peek_in_line().first().is_some_and(|b| b.eq_ignore_ascii_case(&b'r'));
         }
         lexer.skip_line();
     }
@@ -262,10 +255,7 @@ fn bones<'a>(lexer: &mut Lexer<'a>, bones: &mut Vec<FileBone<'a>>) -> Result<(),
 fn bone<'a>(lexer: &mut Lexer<'a>) -> Result<FileBone<'a>, Fault> {
     let begin = lexer.at;
     lexer.take();
-    let mut bone = FileBone {
-        name: b"",
-        ..FileBone::at(begin)
-    };
+    let mut bone = FileBone { name: b"", ..FileBone::at(begin) };
     loop {
         let key = lexer.peek();
         if section_ends(key) || is(key, "begin") {
@@ -319,8 +309,5 @@ fn hierarchy<'a>(lexer: &mut Lexer<'a>, links: &mut Vec<(Mention<'a>, Mention<'a
 
 fn mention<'a>(lexer: &mut Lexer<'a>) -> Mention<'a> {
     let name = lexer.take();
-    Mention {
-        name,
-        at: lexer.at - name.len(),
-    }
+    Mention { name, at: lexer.at - name.len() }
 }

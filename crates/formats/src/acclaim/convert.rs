@@ -25,10 +25,13 @@ pub(super) struct Converter<'s> {
 impl<'s> Converter<'s> {
     /// `bytes` is the length of the file and bounds what is allocated.
     pub(super) fn new(skeleton: &'s AcclaimSkeleton, bytes: usize) -> Self {
-        let stretches = |joint: usize| skeleton.motors.get(joint).is_some_and(|motor| motor.dofs.contains(&Dof::Stretch));
+        let stretches = |joint: usize| {
+            skeleton.motors.get(joint).is_some_and(|motor| motor.dofs.contains(&Dof::Stretch))
+        };
         let moves = |joint: usize| {
             let own = skeleton.motors.get(joint);
-            let own = own.is_some_and(|motor| motor.dofs.iter().any(|dof| matches!(dof, Dof::Move(_))));
+            let own =
+                own.is_some_and(|motor| motor.dofs.iter().any(|dof| matches!(dof, Dof::Move(_))));
             let parent = skeleton.joints.get(joint).and_then(|joint| joint.parent);
             own || parent.is_some_and(stretches)
         };
@@ -38,11 +41,15 @@ impl<'s> Converter<'s> {
             tracks: moving.map(|joint| (joint, Vec::new())).collect(),
             ..RawMotion::default()
         };
-        let bytes_per_row = (raw.joints.len() * size_of::<Quat>() + (raw.tracks.len() + 1) * size_of::<Vec3>()) as u64;
+        let bytes_per_row = (raw.joints.len() * size_of::<Quat>()
+            + (raw.tracks.len() + 1) * size_of::<Vec3>()) as u64;
         Self {
             skeleton,
             radians: skeleton.radians,
-            orientation: skeleton.motors.first().map_or(DQuat::IDENTITY, |root| DQuat::from_mat3(&root.axes)),
+            orientation: skeleton
+                .motors
+                .first()
+                .map_or(DQuat::IDENTITY, |root| DQuat::from_mat3(&root.axes)),
             raw,
             bytes_per_row,
             room: 0,
@@ -53,12 +60,17 @@ impl<'s> Converter<'s> {
 
     /// Takes one row: the values of all joints, joint after joint.
     ///
-    /// A turn by M about the bone's own axes C is C · M · C⁻¹ in the frame of its parent, which is the joint's rotation.
+    /// A turn by M about the bone's own axes C is C · M · C⁻¹ in the frame of its parent, which is
+    /// the joint's rotation.
     pub(super) fn row(&mut self, values: &[f64]) -> Result<(), Fault> {
         self.bytes += self.bytes_per_row;
         if self.bytes > self.limit {
-            let found = format!("a motion of more than {} MB, most of it in bones without values", self.limit >> 20);
-            return Err(Fault::new(0, found, "a motion that fits into memory").with_hint("cut the motion into parts"));
+            let found = format!(
+                "a motion of more than {} MB, most of it in bones without values",
+                self.limit >> 20
+            );
+            return Err(Fault::new(0, found, "a motion that fits into memory")
+                .with_hint("cut the motion into parts"));
         }
         if self.raw.frames() == self.room {
             let fits = (self.limit / self.bytes_per_row.max(1)) as usize;
@@ -84,7 +96,8 @@ impl<'s> Converter<'s> {
                     let own = values.get(motor.first_value..).unwrap_or_default();
                     motor.direction * value(motor, own, Dof::Stretch)
                 });
-                let moved = DVec3::from_array([0, 1, 2].map(|axis| value(motor, own, Dof::Move(axis))));
+                let moved =
+                    DVec3::from_array([0, 1, 2].map(|axis| value(motor, own, Dof::Move(axis))));
                 (motor.offset + motor.axes * moved + stretch).as_vec3()
             };
             if joint == 0 {

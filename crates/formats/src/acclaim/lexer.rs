@@ -31,9 +31,7 @@ pub(super) fn token_end(text: &[u8], at: usize) -> usize {
 /// The end of the line that `at` is on.
 pub(super) fn line_end(text: &[u8], at: usize) -> usize {
     let rest = text.get(at..).unwrap_or_default();
-    rest.iter()
-        .position(|b| matches!(b, b'\n' | b'\r'))
-        .map_or(text.len(), |length| at + length)
+    rest.iter().position(|b| matches!(b, b'\n' | b'\r')).map_or(text.len(), |length| at + length)
 }
 
 /// Goes past white space, and past comments from `#` to the end of the line.
@@ -80,8 +78,8 @@ pub(super) fn number(text: &[u8], at: usize) -> Number {
     }
 }
 
-/// The end of the token at `at`, or the end of the sign with which another number begins in it: no further, so that a long run of numbers
-/// without spaces takes no longer than one with.
+/// The end of the token at `at`, or the end of the sign with which another number begins in it: no
+/// further, so that a long run of numbers without spaces takes no longer than one with.
 fn number_end(text: &[u8], at: usize) -> usize {
     let mut before = b'+';
     for (index, &b) in text.iter().enumerate().skip(at) {
@@ -111,11 +109,7 @@ pub(super) struct Lexer<'a> {
 
 impl<'a> Lexer<'a> {
     pub(super) fn new(text: &'a [u8]) -> Self {
-        Self {
-            text,
-            at: 0,
-            tally: Tally::default(),
-        }
+        Self { text, at: 0, tally: Tally::default() }
     }
 
     /// The next token, which stays where it is. Empty at the end of the file.
@@ -167,7 +161,9 @@ impl<'a> Lexer<'a> {
                 self.at = end;
                 Ok(value)
             }
-            Number::NotFinite { .. } | Number::Cut | Number::None => Err(self.unexpected("a number")),
+            Number::NotFinite { .. } | Number::Cut | Number::None => {
+                Err(self.unexpected("a number"))
+            }
         }
     }
 
@@ -206,22 +202,8 @@ mod tests {
 
     #[test]
     fn numbers_end_at_commas_and_signs() {
-        assert_eq!(
-            number(b"1.5,2", 0),
-            Number::Value {
-                value: 1.5,
-                end: 3,
-                glued: false
-            }
-        );
-        assert_eq!(
-            number(b"1.5-2)", 0),
-            Number::Value {
-                value: 1.5,
-                end: 3,
-                glued: true
-            }
-        );
+        assert_eq!(number(b"1.5,2", 0), Number::Value { value: 1.5, end: 3, glued: false });
+        assert_eq!(number(b"1.5-2)", 0), Number::Value { value: 1.5, end: 3, glued: true });
         assert_eq!(number(b"-1.#IND ", 0), Number::NotFinite { end: 7, glued: false });
         assert_eq!(
             (number(b"1e", 0), number(b"1e ", 0), number(b"rx", 0)),

@@ -14,7 +14,8 @@ pub(crate) fn starts_like_asf(text: &[u8]) -> bool {
     is_section(Lexer::new(text).peek())
 }
 
-/// Whether the first words are those of a motion file: `:FULLY-SPECIFIED` and the like, or a number and the name of a bone.
+/// Whether the first words are those of a motion file: `:FULLY-SPECIFIED` and the like, or a number
+/// and the name of a bone.
 pub(crate) fn starts_like_amc(text: &[u8]) -> bool {
     let mut lexer = Lexer::new(text);
     let first = lexer.take();
@@ -23,16 +24,21 @@ pub(crate) fn starts_like_amc(text: &[u8]) -> bool {
         return true;
     }
     let second = lexer.take();
-    is_digits(first) && second.first().is_some_and(u8::is_ascii_alphabetic) && !lexer.peek_in_line().is_empty() && lexer.number().is_ok()
+    is_digits(first)
+        && second.first().is_some_and(u8::is_ascii_alphabetic)
+        && !lexer.peek_in_line().is_empty()
+        && lexer.number().is_ok()
 }
 
-/// The bones of an AMC file and how many values each has: those of the first frame, as far as the first 64 KB hold it. Empty for anything else.
+/// The bones of an AMC file and how many values each has: those of the first frame, as far as the
+/// first 64 KB hold it. Empty for anything else.
 #[must_use]
 pub fn bone_names(amc_bytes: &[u8]) -> Vec<(String, usize)> {
     first_frame(&decode(amc_bytes.get(..HEAD).unwrap_or(amc_bytes)))
 }
 
-/// Whether an AMC file has a motion at all, whatever its skeleton: a first frame with the values of a bone. Looks at the first 64 KB.
+/// Whether an AMC file has a motion at all, whatever its skeleton: a first frame with the values of
+/// a bone. Looks at the first 64 KB.
 ///
 /// # Errors
 /// [`ImportError`] with the place where that frame should be.
@@ -42,7 +48,8 @@ pub fn check_motion(amc_name: &str, amc_bytes: &[u8]) -> Result<(), ImportError>
     first_fault(&text).map_or(Ok(()), |fault| Err(fault.locate(amc_name, &text)))
 }
 
-/// How many bones of a motion a skeleton has with as many values, and how many bones the motion has.
+/// How many bones of a motion a skeleton has with as many values, and how many bones the motion
+/// has.
 #[must_use]
 pub fn matching_bones(amc_bytes: &[u8], skeleton: &AcclaimSkeleton) -> (usize, usize) {
     let bones = bone_names(amc_bytes);
@@ -50,17 +57,25 @@ pub fn matching_bones(amc_bytes: &[u8], skeleton: &AcclaimSkeleton) -> (usize, u
 }
 
 fn fitting(bones: &[(String, usize)], skeleton: &AcclaimSkeleton) -> usize {
-    let fits = |(name, values): &&(String, usize)| skeleton.find(name).is_some_and(|joint| skeleton.values(joint) == *values);
+    let fits = |(name, values): &&(String, usize)| {
+        skeleton.find(name).is_some_and(|joint| skeleton.values(joint) == *values)
+    };
     bones.iter().filter(fits).count()
 }
 
-/// Which of several skeletons a motion belongs to, by index. `None` where it has half of the motion's bones or fewer for none of them.
+/// Which of several skeletons a motion belongs to, by index. `None` where it has half of the
+/// motion's bones or fewer for none of them.
 ///
-/// What counts, most important first: how many bones have the name and the number of values that the skeleton says; the file names (equal, or
-/// the motion's goes on after the skeleton's, as `01_01.amc` and `01.asf` of the CMU database); the folder; how many letters the names share
-/// at the beginning. Of equals the first one is taken.
+/// What counts, most important first: how many bones have the name and the number of values that
+/// the skeleton says; the file names (equal, or the motion's goes on after the skeleton's, as
+/// `01_01.amc` and `01.asf` of the CMU database); the folder; how many letters the names share at
+/// the beginning. Of equals the first one is taken.
 #[must_use]
-pub fn best_skeleton(amc_name: &str, amc_bytes: &[u8], skeletons: &[(&str, &AcclaimSkeleton)]) -> Option<usize> {
+pub fn best_skeleton(
+    amc_name: &str,
+    amc_bytes: &[u8],
+    skeletons: &[(&str, &AcclaimSkeleton)],
+) -> Option<usize> {
     let bones = bone_names(amc_bytes);
     let ranked = skeletons.iter().enumerate().filter_map(|(index, (asf_name, skeleton))| {
         let fit = fitting(&bones, skeleton);
@@ -70,7 +85,8 @@ pub fn best_skeleton(amc_name: &str, amc_bytes: &[u8], skeletons: &[(&str, &Accl
     ranked.max().map(|(_, index)| index)
 }
 
-/// Whether the name of a motion file says that it belongs to a skeleton file: they are called the same, or the motion's goes on after the skeleton's.
+/// Whether the name of a motion file says that it belongs to a skeleton file: they are called the
+/// same, or the motion's goes on after the skeleton's.
 #[must_use]
 pub fn goes_by_name(amc: &str, asf: &str) -> bool {
     kinship(amc, asf).0 > 0
@@ -88,7 +104,8 @@ fn kinship(amc: &str, asf: &str) -> (u8, usize, usize) {
     (same, shared_folders(amc, asf), shared(&motion, &skeleton))
 }
 
-/// The number of folders that two paths have in common from the top; one more where they are all folders of both.
+/// The number of folders that two paths have in common from the top; one more where they are all
+/// folders of both.
 fn shared_folders(a: &str, b: &str) -> usize {
     let folders = |path: &str| -> Vec<String> {
         let mut parts: Vec<String> = path.split(['/', '\\']).map(str::to_lowercase).collect();
@@ -132,7 +149,8 @@ mod tests {
 
     #[test]
     fn a_file_without_a_frame_is_no_motion() {
-        for text in [":DEGREES\n1\nroot 1 2 3\n", "# by hand\n:FULLY-SPECIFIED\n7\nroot (1,\n2)\n"] {
+        for text in [":DEGREES\n1\nroot 1 2 3\n", "# by hand\n:FULLY-SPECIFIED\n7\nroot (1,\n2)\n"]
+        {
             assert_eq!(check_motion("a.amc", text.as_bytes()), Ok(()), "{text}");
         }
         for (text, error) in [
@@ -146,7 +164,11 @@ mod tests {
             ),
             ("1\nroot x\n", "a.amc:2:1: found `root`, expected a bone and its values"),
         ] {
-            assert_eq!(check_motion("a.amc", text.as_bytes()).unwrap_err().to_string(), error, "{text}");
+            assert_eq!(
+                check_motion("a.amc", text.as_bytes()).unwrap_err().to_string(),
+                error,
+                "{text}"
+            );
         }
     }
 

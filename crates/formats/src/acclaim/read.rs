@@ -13,20 +13,30 @@ use segue_motion::skeleton::{Role, Roles, WorldPose};
 /// Frames per second of the CMU database, taken where nobody says otherwise: no AMC file tells.
 pub const DEFAULT_FPS: f64 = 120.0;
 
-/// Reads an AMC file, the motion of a skeleton: one clip in metres and Y up, with the skeleton's warnings before its own.
+/// Reads an AMC file, the motion of a skeleton: one clip in metres and Y up, with the skeleton's
+/// warnings before its own.
 ///
-/// `name` is the file's name; it is used in errors and, without its ending, as the name of the clip. The frame rate is that of the options, or
-/// [`DEFAULT_FPS`]. The unit is that of the options; or 0.0254 m divided by the `length` of the skeleton's `:units`, the convention of the
-/// CMU database, where the character is then 0.9 to 2.5 m tall at rest; or else what makes it the size of a person.
+/// `name` is the file's name; it is used in errors and, without its ending, as the name of the
+/// clip. The frame rate is that of the options, or [`DEFAULT_FPS`]. The unit is that of the
+/// options; or 0.0254 m divided by the `length` of the skeleton's `:units`, the convention of the
+/// CMU database, where the character is then 0.9 to 2.5 m tall at rest; or else what makes it the
+/// size of a person.
 ///
 /// # Errors
 /// [`ImportError`] with the place of what cannot be read, and where no bone is one of the skeleton.
-pub fn read_motion(name: &str, bytes: &[u8], skeleton: &AcclaimSkeleton, options: &ImportOptions) -> Result<Imported, ImportError> {
+pub fn read_motion(
+    name: &str,
+    bytes: &[u8],
+    skeleton: &AcclaimSkeleton,
+    options: &ImportOptions,
+) -> Result<Imported, ImportError> {
     // Never cancelled, so never `None`.
-    Ok(read_motion_with_progress(name, bytes, skeleton, options, &mut |_| true)?.unwrap_or_default())
+    Ok(read_motion_with_progress(name, bytes, skeleton, options, &mut |_| true)?
+        .unwrap_or_default())
 }
 
-/// [`read_motion`] that reports the bytes read so far about every 256 KB, and stops with `None` when `progress` returns `false`.
+/// [`read_motion`] that reports the bytes read so far about every 256 KB, and stops with `None`
+/// when `progress` returns `false`.
 ///
 /// # Errors
 /// As [`read_motion`].
@@ -58,11 +68,15 @@ pub fn read_motion_with_progress(
 ///
 /// # Errors
 /// None that the reader of the skeleton would not have told.
-pub fn skeleton_clip(skeleton: &AcclaimSkeleton, options: &ImportOptions) -> Result<Imported, ImportError> {
+pub fn skeleton_clip(
+    skeleton: &AcclaimSkeleton,
+    options: &ImportOptions,
+) -> Result<Imported, ImportError> {
     let raw = Converter::new(skeleton, 0).finish();
     let mut tally = Tally::default();
     tally.add(WarningKind::NoFrames, None);
-    finish(&skeleton.file, raw, skeleton, options, tally, 0, b"").map_err(|fault| fault.locate(&skeleton.file, b""))
+    finish(&skeleton.file, raw, skeleton, options, tally, 0, b"")
+        .map_err(|fault| fault.locate(&skeleton.file, b""))
 }
 
 fn given_fps(options: &ImportOptions) -> Option<f64> {
@@ -79,7 +93,8 @@ fn finish(
     text: &[u8],
 ) -> Result<Imported, Fault> {
     let fps = given_fps(options).unwrap_or(DEFAULT_FPS);
-    let clips = assemble(name, vec![raw], fps, options, skeleton.unit_of_file, &mut tally, first_row_at)?;
+    let clips =
+        assemble(name, vec![raw], fps, options, skeleton.unit_of_file, &mut tally, first_row_at)?;
     if let Some(metres) = clips.first().and_then(|found| off_ground(&found.clip)) {
         tally.add(WarningKind::OffGround { metres }, None);
     }
@@ -88,23 +103,29 @@ fn finish(
     Ok(Imported { clips, warnings })
 }
 
-/// How high over the ground (y = 0) the feet of a motion are at their lowest, metres, where that is no place for feet: the values of a motion
-/// are those of one body, and on longer or shorter legs it sinks in or floats. `None` where all is well or there are no feet.
+/// How high over the ground (y = 0) the feet of a motion are at their lowest, metres, where that is
+/// no place for feet: the values of a motion are those of one body, and on longer or shorter legs
+/// it sinks in or floats. `None` where all is well or there are no feet.
 fn off_ground(clip: &Clip) -> Option<f32> {
     /// Frames that are looked at, spread over the clip.
     const SAMPLES: usize = 240;
-    /// Feet below or above this share of a body's height are in the ground or in the air: marker noise and soles stay within.
+    /// Feet below or above this share of a body's height are in the ground or in the air: marker
+    /// noise and soles stay within.
     const SUNK: f32 = -0.06;
     const AFLOAT: f32 = 0.1;
     let roles = Roles::detect(clip.skeleton());
-    let feet = [Role::LeftFoot, Role::LeftToe, Role::RightFoot, Role::RightToe].map(|role| roles.get(role));
-    let [Some(_), _, Some(_), _] = feet else { return None };
+    let feet = [Role::LeftFoot, Role::LeftToe, Role::RightFoot, Role::RightToe]
+        .map(|role| roles.get(role));
+    let [Some(_), _, Some(_), _] = feet else {
+        return None;
+    };
     let samples = clip.frames().min(SAMPLES);
     let mut world = WorldPose::default();
     let mut lows: Vec<f32> = Vec::with_capacity(samples);
     for sample in 0..samples {
         clip.world_pose_into(sample * clip.frames() / samples, &mut world);
-        let heights = feet.iter().flatten().filter_map(|&joint| world.positions.get(joint).map(|p| p.y));
+        let heights =
+            feet.iter().flatten().filter_map(|&joint| world.positions.get(joint).map(|p| p.y));
         lows.push(heights.fold(f32::MAX, f32::min));
     }
     lows.sort_by(f32::total_cmp);

@@ -9,7 +9,8 @@ use glam::{DMat3, DVec3, Vec3};
 use segue_motion::skeleton::{Channel, Joint};
 use std::collections::HashMap;
 
-/// Metres per unit of a file whose `:units` have a `length` of 1: inches, as the CMU database explains its 0.45.
+/// Metres per unit of a file whose `:units` have a `length` of 1: inches, as the CMU database
+/// explains its 0.45.
 const METRES_PER_LENGTH: f64 = 0.0254;
 
 /// How the values of a bone move it.
@@ -18,7 +19,8 @@ pub(super) struct Motor {
     pub(super) dofs: Vec<Dof>,
     /// Where its values begin in a row.
     pub(super) first_value: usize,
-    /// The bone's own axes, C, about which its degrees of freedom turn. For the root: its orientation.
+    /// The bone's own axes, C, about which its degrees of freedom turn. For the root: its
+    /// orientation.
     pub(super) axes: DMat3,
     /// Unit vector along the bone at rest, or zero.
     pub(super) direction: DVec3,
@@ -28,8 +30,9 @@ pub(super) struct Motor {
 
 /// The skeleton of an ASF file, ready for the motions of AMC files.
 ///
-/// Each bone is a joint of the bone's name at the bone's *start*, so that the joint's rotation turns the bone; its tip is the offset of the
-/// joints below, or an end site. The root is joint 0, called `root`. Lengths are in the file's units until a clip is made.
+/// Each bone is a joint of the bone's name at the bone's *start*, so that the joint's rotation
+/// turns the bone; its tip is the offset of the joints below, or an end site. The root is joint 0,
+/// called `root`. Lengths are in the file's units until a clip is made.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AcclaimSkeleton {
     pub(super) file: String,
@@ -46,11 +49,17 @@ pub struct AcclaimSkeleton {
     by_lowercase_name: HashMap<String, usize>,
 }
 
-/// Reads an ASF file. `file_name` is used in errors and, without its ending, as the name of clips of the skeleton alone.
+/// Reads an ASF file. `file_name` is used in errors and, without its ending, as the name of clips
+/// of the skeleton alone.
 ///
 /// # Errors
-/// [`ImportError`] with the place of what cannot be read: a missing section, a number that is none, a bone under two parents or under itself.
-pub fn read_skeleton(file_name: &str, bytes: &[u8], options: &ImportOptions) -> Result<AcclaimSkeleton, ImportError> {
+/// [`ImportError`] with the place of what cannot be read: a missing section, a number that is none,
+/// a bone under two parents or under itself.
+pub fn read_skeleton(
+    file_name: &str,
+    bytes: &[u8],
+    options: &ImportOptions,
+) -> Result<AcclaimSkeleton, ImportError> {
     check_size(file_name, bytes, options)?;
     let text = decode(bytes);
     let mut lexer = Lexer::new(&text);
@@ -102,7 +111,8 @@ struct Tree {
 }
 
 fn tree(asf: &Asf<'_>, tally: &mut Tally) -> Result<Tree, Fault> {
-    let mut places: HashMap<&[u8], usize> = asf.bones.iter().enumerate().map(|(index, bone)| (bone.name, index + 1)).collect();
+    let mut places: HashMap<&[u8], usize> =
+        asf.bones.iter().enumerate().map(|(index, bone)| (bone.name, index + 1)).collect();
     places.insert(b"root", 0);
     let mut parents = vec![None; asf.bones.len() + 1];
     let mut children = vec![Vec::new(); asf.bones.len() + 1];
@@ -136,7 +146,8 @@ fn tree(asf: &Asf<'_>, tally: &mut Tally) -> Result<Tree, Fault> {
 }
 
 impl Tree {
-    /// The bones below the root in the order of the hierarchy, each followed by all below it, with their depths.
+    /// The bones below the root in the order of the hierarchy, each followed by all below it, with
+    /// their depths.
     fn order(&self) -> Vec<(usize, usize)> {
         let mut order = Vec::new();
         let mut open = vec![(0, 0)];
@@ -169,7 +180,8 @@ impl Tree {
 
 fn build(asf: &Asf<'_>, tally: &mut Tally) -> Result<AcclaimSkeleton, Fault> {
     let tree = tree(asf, tally)?;
-    let bone = |place: usize| place.checked_sub(1).map_or(Some(&asf.root), |index| asf.bones.get(index));
+    let bone =
+        |place: usize| place.checked_sub(1).map_or(Some(&asf.root), |index| asf.bones.get(index));
     if let Some(bone) = tree.circle().and_then(bone) {
         return Err(Fault::new(
             bone.at,
@@ -250,7 +262,8 @@ fn build(asf: &Asf<'_>, tally: &mut Tally) -> Result<AcclaimSkeleton, Fault> {
     })
 }
 
-/// The channels that say the same in a file that multiplies them from left to right, with turns about the bone's own axes: the turns backwards.
+/// The channels that say the same in a file that multiplies them from left to right, with turns
+/// about the bone's own axes: the turns backwards.
 fn channels(dofs: &[Dof]) -> Vec<Channel> {
     let moves = dofs.iter().filter_map(|dof| match dof {
         Dof::Move(0) => Some(Channel::XPosition),

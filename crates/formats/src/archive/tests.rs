@@ -12,7 +12,8 @@ fn zip(files: &[(&str, &[u8])]) -> Vec<u8> {
     let mut archive = ZipArchiveWriter::new(Vec::new());
     for (path, content) in files {
         let file = archive.new_file(rawzip::path::EntryPath::verbatim(path.as_bytes()));
-        let (mut entry, config) = file.compression_method(CompressionMethod::DEFLATE).start().unwrap();
+        let (mut entry, config) =
+            file.compression_method(CompressionMethod::DEFLATE).start().unwrap();
         let mut writer = config.wrap(DeflateEncoder::new(&mut entry, Compression::best()));
         writer.write_all(content).unwrap();
         let (encoder, descriptor) = writer.finish().unwrap();
@@ -60,10 +61,13 @@ fn motion_comes_out_sorted_and_the_rest_is_told() {
 #[test]
 fn a_damaged_file_is_left_out_and_the_others_are_read() {
     let whole = zip(&[("good.bvh", b"HIERARCHY good"), ("torn.bvh", &[b'x'; 400])]);
-    let at = |pattern: &[u8], from: usize| from + whole[from..].windows(pattern.len()).position(|w| w == pattern).unwrap();
+    let at = |pattern: &[u8], from: usize| {
+        from + whole[from..].windows(pattern.len()).position(|w| w == pattern).unwrap()
+    };
     let directory = at(b"PK\x01\x02", 0);
     let torn = at(b"torn.bvh", directory) - 46;
-    // The flags, the method, the check sum and the size of the second file, as the list of files gives them.
+    // The flags, the method, the check sum and the size of the second file, as the list of files
+    // gives them.
     for (offset, value, why) in [
         (8, 0x01, "it is encrypted"),
         (10, 99, "it is packed with AES"),
@@ -77,7 +81,8 @@ fn a_damaged_file_is_left_out_and_the_others_are_read() {
         let unpacked = unpack("a.zip", &bytes, &ArchiveLimits::default()).unwrap();
         assert_eq!(paths(&unpacked), ["good.bvh"], "{why}");
         assert!(
-            sentences(&unpacked)[0].starts_with(&format!("`torn.bvh` in the archive left out: {why}")),
+            sentences(&unpacked)[0]
+                .starts_with(&format!("`torn.bvh` in the archive left out: {why}")),
             "{:?}",
             sentences(&unpacked)
         );
@@ -86,9 +91,13 @@ fn a_damaged_file_is_left_out_and_the_others_are_read() {
 
 #[test]
 fn what_is_no_archive_of_motion_is_refused() {
-    let say = |bytes: &[u8]| unpack("a.zip", bytes, &ArchiveLimits::default()).unwrap_err().to_string();
+    let say =
+        |bytes: &[u8]| unpack("a.zip", bytes, &ArchiveLimits::default()).unwrap_err().to_string();
     assert_eq!(say(b"HIERARCHY"), "a.zip:1:1: found no zip archive, expected a zip archive");
-    assert!(say(&TAKES[..TAKES.len() / 2]).contains("found a zip archive without an end: it was cut off"));
+    assert!(
+        say(&TAKES[..TAKES.len() / 2])
+            .contains("found a zip archive without an end: it was cut off")
+    );
     assert!(say(&zip(&[])).contains("found an archive without motion files"));
     assert!(say(&zip(&[("a.png", b"x")])).contains("expected motion files (.bvh"));
     let mut encrypted = zip(&[("a.bvh", b"x")]);
@@ -100,10 +109,7 @@ fn what_is_no_archive_of_motion_is_refused() {
 
 #[test]
 fn a_bomb_is_refused_before_it_fills_the_memory() {
-    let limits = ArchiveLimits {
-        max_bytes: 3 << 20,
-        ..ArchiveLimits::default()
-    };
+    let limits = ArchiveLimits { max_bytes: 3 << 20, ..ArchiveLimits::default() };
     let megabyte = vec![b' '; 1 << 20];
     let three = zip(&[
         ("1.bvh", &megabyte),
@@ -113,7 +119,8 @@ fn a_bomb_is_refused_before_it_fills_the_memory() {
     ]);
     assert!(three.len() < 1 << 14);
     assert_eq!(unpack("a.zip", &three, &limits).unwrap().files.len(), 3);
-    let four = zip(&[("1.bvh", &megabyte), ("2.bvh", &megabyte), ("3.bvh", &megabyte), ("4.bvh", b" ")]);
+    let four =
+        zip(&[("1.bvh", &megabyte), ("2.bvh", &megabyte), ("3.bvh", &megabyte), ("4.bvh", b" ")]);
     let error = unpack("a.zip", &four, &limits).unwrap_err();
     assert_eq!(
         error.to_string(),
@@ -125,8 +132,10 @@ fn a_bomb_is_refused_before_it_fills_the_memory() {
 
 #[test]
 fn more_files_than_are_read_are_told_by_one_line() {
-    let files: Vec<(String, &[u8])> = (0..MOST_FILES + 50).map(|n| (format!("{n}.bvh"), &b""[..])).collect();
-    let files: Vec<(&str, &[u8])> = files.iter().map(|(path, bytes)| (path.as_str(), *bytes)).collect();
+    let files: Vec<(String, &[u8])> =
+        (0..MOST_FILES + 50).map(|n| (format!("{n}.bvh"), &b""[..])).collect();
+    let files: Vec<(&str, &[u8])> =
+        files.iter().map(|(path, bytes)| (path.as_str(), *bytes)).collect();
     let unpacked = unpack("a.zip", &zip(&files), &ArchiveLimits::default()).unwrap();
     assert_eq!(unpacked.files.len(), MOST_FILES);
     let said: Vec<String> = unpacked.warnings.iter().map(ToString::to_string).collect();
@@ -181,9 +190,8 @@ fn an_archive_that_memory_cannot_hold_is_refused_and_not_called_damaged() {
     };
     let damaged = io::Error::new(io::ErrorKind::InvalidData, "a bad block");
     assert_eq!(unpacking.miss("a.bvh", damaged.into()), Ok(()));
-    let refused = unpacking
-        .miss("b.bvh", io::Error::from(io::ErrorKind::OutOfMemory).into())
-        .unwrap_err();
+    let refused =
+        unpacking.miss("b.bvh", io::Error::from(io::ErrorKind::OutOfMemory).into()).unwrap_err();
     assert_eq!(refused.file, "all.zip");
     assert!(refused.found.contains("memory"), "{refused}");
     let left_out = unpacking.tally.into_warnings(b"");

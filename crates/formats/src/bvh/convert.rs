@@ -9,8 +9,9 @@ use glam::{Quat, Vec3};
 use segue_motion::skeleton::{Channel, Joint};
 use std::ops::Range;
 
-/// Bytes of motion in memory per byte of file, at most. A joint with a single channel of single digits takes 8; only files in which most joints
-/// have no channel at all, and those made to fill the memory, come near.
+/// Bytes of motion in memory per byte of file, at most. A joint with a single channel of single
+/// digits takes 8; only files in which most joints have no channel at all, and those made to fill
+/// the memory, come near.
 pub(crate) const MEMORY_PER_BYTE: u64 = 16;
 
 /// Rows that there is room for before their length is known.
@@ -61,9 +62,11 @@ pub(super) struct Converter {
 }
 
 impl Converter {
-    /// `declared` is the number of rows that the header speaks of, `bytes` where the rows are in the file; these bound what is allocated.
+    /// `declared` is the number of rows that the header speaks of, `bytes` where the rows are in
+    /// the file; these bound what is allocated.
     pub(super) fn new(tree: &Hierarchy, declared: f64, bytes: Range<usize>) -> Self {
-        let mut positions: Vec<[Source; 3]> = tree.joints.iter().map(|joint| joint.offset.map(Source::Offset)).collect();
+        let mut positions: Vec<[Source; 3]> =
+            tree.joints.iter().map(|joint| joint.offset.map(Source::Offset)).collect();
         let mut moves = vec![false; tree.joints.len()];
         let mut turns: Vec<Vec<(usize, usize)>> = vec![Vec::new(); tree.joints.len()];
         let mut channels: Vec<Vec<Channel>> = vec![Vec::new(); tree.joints.len()];
@@ -79,9 +82,8 @@ impl Converter {
             }
         }
 
-        let starts: Vec<usize> = (0..tree.joints.len())
-            .filter(|&joint| tree.joints[joint].parent.is_none())
-            .collect();
+        let starts: Vec<usize> =
+            (0..tree.joints.len()).filter(|&joint| tree.joints[joint].parent.is_none()).collect();
         let ends = starts.iter().skip(1).copied().chain([tree.joints.len()]);
         let mut characters = Vec::new();
         for (start, end) in starts.iter().copied().zip(ends) {
@@ -109,7 +111,8 @@ impl Converter {
             characters.push(character);
         }
         let tracks: usize = characters.iter().map(|c| c.places.len()).sum();
-        let bytes_per_row = (tree.joints.len() * size_of::<Quat>() + tracks * size_of::<Vec3>()) as u64;
+        let bytes_per_row =
+            (tree.joints.len() * size_of::<Quat>() + tracks * size_of::<Vec3>()) as u64;
         Self {
             characters,
             declared,
@@ -121,11 +124,13 @@ impl Converter {
         }
     }
 
-    /// Makes room for the rows to come, as many as the bytes from `end` on hold if they are as long as those before. Growing by halves, as
-    /// vectors do, would at the end need room for the motion twice.
+    /// Makes room for the rows to come, as many as the bytes from `end` on hold if they are as long
+    /// as those before. Growing by halves, as vectors do, would at the end need room for the motion
+    /// twice.
     fn make_room(&mut self, end: usize) -> Result<(), Fault> {
         let left = self.bytes.end.saturating_sub(end) as f64;
-        let as_before = left * self.rows as f64 / end.saturating_sub(self.bytes.start).max(1) as f64;
+        let as_before =
+            left * self.rows as f64 / end.saturating_sub(self.bytes.start).max(1) as f64;
         // The header is believed as far as the bytes agree.
         let expected = (self.declared - self.rows as f64).clamp(0.9 * as_before, 1.1 * as_before);
         let fits = self.limit / self.bytes_per_row.max(1) / 4;
@@ -141,7 +146,9 @@ impl Converter {
     /// What channels are before any good value: positions stand at their OFFSET, rotations at 0.
     pub(super) fn first_row(tree: &Hierarchy) -> Vec<f64> {
         let value = |column: &Column| match column.channel.map(kind) {
-            Some((false, axis)) => tree.joints.get(column.joint).map_or(0.0, |joint| joint.offset[axis]),
+            Some((false, axis)) => {
+                tree.joints.get(column.joint).map_or(0.0, |joint| joint.offset[axis])
+            }
             _ => 0.0,
         };
         tree.columns.iter().map(value).collect()
@@ -164,7 +171,8 @@ impl RowSink for Converter {
                 "a motion of more than {} MB, most of it in joints without channels",
                 self.limit >> 20
             );
-            return Err(Fault::new(0, found, "a motion that fits into memory").with_hint("export fewer frames or fewer joints"));
+            return Err(Fault::new(0, found, "a motion that fits into memory")
+                .with_hint("export fewer frames or fewer joints"));
         }
         if self.rows == self.room {
             self.make_room(end)?;
@@ -195,12 +203,7 @@ mod tests {
     use crate::bvh::hierarchy::FileJoint;
 
     fn bare(parent: Option<usize>) -> FileJoint {
-        FileJoint {
-            name: String::new(),
-            parent,
-            offset: [0.0; 3],
-            end_site: None,
-        }
+        FileJoint { name: String::new(), parent, offset: [0.0; 3], end_site: None }
     }
 
     #[test]
@@ -209,10 +212,7 @@ mod tests {
         joints.extend((0..100_000).map(|_| bare(Some(0))));
         let tree = Hierarchy {
             joints,
-            columns: vec![Column {
-                joint: 0,
-                channel: Some(Channel::XRotation),
-            }],
+            columns: vec![Column { joint: 0, channel: Some(Channel::XRotation) }],
         };
         let mut converter = Converter::new(&tree, 4e9, 0..2_000_000);
         let refused = (0..1000).find_map(|row| converter.row(&[0.0], 2 * row).err());

@@ -1,9 +1,11 @@
 //! Lines of plain decimal numbers, fast: what almost all of a motion file is.
 //!
-//! Eight bytes at a time in one 64-bit word, the first one lowest: whether they are digits, and what number they make, takes a handful of
-//! operations without a branch (D. Lemire, "Number parsing at a gigabyte per second", Software: Practice and Experience 51, 2021). Where a number
-//! ends is found before and apart from what it is, so that the next one can be begun meanwhile. In a file nearly all numbers have as many digits
-//! behind the point, and where that is known the rest follows from where the point is.
+//! Eight bytes at a time in one 64-bit word, the first one lowest: whether they are digits, and
+//! what number they make, takes a handful of operations without a branch (D. Lemire, "Number
+//! parsing at a gigabyte per second", Software: Practice and Experience 51, 2021). Where a number
+//! ends is found before and apart from what it is, so that the next one can be begun meanwhile. In
+//! a file nearly all numbers have as many digits behind the point, and where that is known the rest
+//! follows from where the point is.
 //!
 //! Whatever is not plain is left to [`super::number`], which reads the same numbers slowly.
 
@@ -17,7 +19,8 @@ const fn all(byte: u8) -> u64 {
 struct Point {
     /// What stays where it is when the point is taken out of the last eight bytes: those behind it.
     kept: u64,
-    /// The power of ten that all digits are to be divided by, for a number without and with a minus sign.
+    /// The power of ten that all digits are to be divided by, for a number without and with a minus
+    /// sign.
     divisors: [f64; 2],
 }
 
@@ -35,10 +38,7 @@ const POINTS: [Point; 9] = [
 ];
 
 const fn point(kept: u64, divisor: f64) -> Point {
-    Point {
-        kept,
-        divisors: [divisor, -divisor],
-    }
+    Point { kept, divisors: [divisor, -divisor] }
 }
 
 /// The last row of [`POINTS`].
@@ -50,10 +50,12 @@ const MOST_DIGITS: usize = 15;
 /// Larger magnitudes are overflows, not measures: they would not survive being scaled in `f32`.
 pub(super) const LARGEST: f64 = 1e30;
 
-/// The number that eight digits make, the first one lowest; less eight times `b'0'`, so that missing ones are zeros. `None` if they are no digits.
+/// The number that eight digits make, the first one lowest; less eight times `b'0'`, so that
+/// missing ones are zeros. `None` if they are no digits.
 #[inline]
 fn eight_digits(digits: u64) -> Option<u32> {
-    // Digits are 0 to 9 now, and the highest bit is set for anything else. A carry would come from such a byte.
+    // Digits are 0 to 9 now, and the highest bit is set for anything else. A carry would come from
+    // such a byte.
     if (digits.wrapping_add(all(0x76)) | digits) & all(0x80) != 0 {
         return None;
     }
@@ -78,12 +80,14 @@ fn long_number(text: &[u8], start: usize, end: usize) -> Option<f64> {
     (value.abs() <= LARGEST).then_some(value)
 }
 
-/// All digits of a number, what they are to be divided by, and where its point stands, a row of [`POINTS`].
+/// All digits of a number, what they are to be divided by, and where its point stands, a row of
+/// [`POINTS`].
 type Parts = (f64, f64, usize);
 
-/// A number between two offsets that is made of a minus sign or none and at most 15 digits, among them perhaps a point with at most 7 behind it.
-/// Its digits and the power of ten are exact, so that their quotient is the double next to the number (W. Clinger, "How to read floating
-/// point numbers accurately", 1990).
+/// A number between two offsets that is made of a minus sign or none and at most 15 digits, among
+/// them perhaps a point with at most 7 behind it. Its digits and the power of ten are exact, so
+/// that their quotient is the double next to the number (W. Clinger, "How to read floating point
+/// numbers accurately", 1990).
 #[inline]
 fn short_number(text: &[u8], start: usize, end: usize) -> Option<Parts> {
     let bytes: &[u8; 9] = text.get(end.checked_sub(9)?..end)?.first_chunk()?;
@@ -92,7 +96,8 @@ fn short_number(text: &[u8], start: usize, end: usize) -> Option<Parts> {
     let length = end.wrapping_sub(start);
     let negative = *text.get(start)? == b'-';
 
-    // The last point, seen from the end: the highest byte that is zero without its bits. Nothing is carried from one byte to the next.
+    // The last point, seen from the end: the highest byte that is zero without its bits. Nothing is
+    // carried from one byte to the next.
     let points = last ^ all(b'.');
     let points = !((points & all(0x7f)).wrapping_add(all(0x7f)) | points | all(0x7f));
     let decimals = (points.leading_zeros() / 8) as usize;
@@ -117,8 +122,9 @@ fn short_number(text: &[u8], start: usize, end: usize) -> Option<Parts> {
     Some(((u64::from(first) * 100_000_000 + u64::from(rest)) as f64, divisor, at))
 }
 
-/// Numbers with the same number of digits behind the point: those of a file are mostly alike. Where the end of such a number is follows from where
-/// its point is, and all that follows from where the point is seen from the end is the same for all.
+/// Numbers with the same number of digits behind the point: those of a file are mostly alike. Where
+/// the end of such a number is follows from where its point is, and all that follows from where the
+/// point is seen from the end is the same for all.
 #[derive(Clone, Copy, Debug)]
 struct Usual {
     decimals: usize,
@@ -129,15 +135,11 @@ struct Usual {
 
 impl Usual {
     fn new(decimals: usize) -> Option<Self> {
-        Some(Self {
-            decimals,
-            point: *POINTS.get(decimals)?,
-            at: 0xff_u64 << 56 >> (8 * decimals),
-        })
+        Some(Self { decimals, point: *POINTS.get(decimals)?, at: 0xff_u64 << 56 >> (8 * decimals) })
     }
 
-    /// As [`short_number`], of at most 8 digits and with a blank behind it: all digits, what to divide them by, and the number's end. `None` for
-    /// any other number.
+    /// As [`short_number`], of at most 8 digits and with a blank behind it: all digits, what to
+    /// divide them by, and the number's end. `None` for any other number.
     #[inline]
     fn number(&self, text: &[u8], start: usize) -> Option<(f64, f64, usize)> {
         let word = u64::from_le_bytes(*text.get(start..)?.first_chunk()?);
@@ -150,7 +152,9 @@ impl Usual {
         let (last, before) = (u64::from_le_bytes(*last), u64::from_le_bytes(*before));
         let negative = usize::from(word as u8 == b'-');
         let count = whole.wrapping_add(self.decimals).wrapping_sub(negative);
-        let is_usual = (last ^ all(b'.')) & self.at == 0 && matches!(blank, b' ' | b'\t') && count.wrapping_sub(1) < 8;
+        let is_usual = (last ^ all(b'.')) & self.at == 0
+            && matches!(blank, b' ' | b'\t')
+            && count.wrapping_sub(1) < 8;
         if !is_usual {
             return None;
         }
@@ -163,16 +167,19 @@ impl Usual {
 /// Reads lines of plain numbers.
 #[derive(Debug, Default)]
 pub(super) struct Lines {
-    /// What the digits of each number are to be divided by: all at once, since one division takes as long as the rest of a number.
+    /// What the digits of each number are to be divided by: all at once, since one division takes
+    /// as long as the rest of a number.
     divisors: Vec<f64>,
     /// The number of digits behind the point that was usual in the lines before.
     decimals: usize,
 }
 
 impl Lines {
-    /// Reads a line of `row.len()` plain numbers with blanks between them into `row`, and returns the offset of the line's end.
+    /// Reads a line of `row.len()` plain numbers with blanks between them into `row`, and returns
+    /// the offset of the line's end.
     ///
-    /// `None` when there is anything else in it: what stands in `row` for the numbers before that is then of no use, and the rest is as it was.
+    /// `None` when there is anything else in it: what stands in `row` for the numbers before that
+    /// is then of no use, and the rest is as it was.
     pub(super) fn line(&mut self, text: &[u8], at: usize, row: &mut [f64]) -> Option<usize> {
         self.divisors.resize(row.len(), 1.0);
         let usual = Usual::new(self.decimals)?;
@@ -230,7 +237,8 @@ fn end_of_word(text: &[u8], at: usize) -> Option<usize> {
     }
 }
 
-/// Marks the first byte that is a space or lower, by its highest bit. What is set above that may be the borrow of it.
+/// Marks the first byte that is a space or lower, by its highest bit. What is set above that may be
+/// the borrow of it.
 #[inline]
 fn blanks(word: u64) -> u64 {
     word.wrapping_sub(all(b' ' + 1)) & !word & all(0x80)
@@ -325,14 +333,15 @@ mod tests {
     fn what_is_odd_is_left_to_the_slow_way() {
         let line = |text: &str, row: &mut [f64]| Lines::default().line(text.as_bytes(), 0, row);
         let padding = " ".repeat(16);
-        for second in [
-            "nan", "1.#IND", "1,5", "2-3", "2x", "# 2", "\0", "\x0b2", "1e40", "-", ".", "--2", "",
-        ] {
+        for second in
+            ["nan", "1.#IND", "1,5", "2-3", "2x", "# 2", "\0", "\x0b2", "1e40", "-", ".", "--2", ""]
+        {
             let mut row = [7.0, 8.0];
             assert_eq!(line(&format!("1 {second}\n{padding}"), &mut row), None, "{second}");
             assert_eq!(row[1], 8.0, "{second}");
         }
-        // Too many, a comment, other white space, and the end of the text, where there are no sixteen bytes to look at.
+        // Too many, a comment, other white space, and the end of the text, where there are no
+        // sixteen bytes to look at.
         for text in ["1 2 3\n", "1 2 # 3\n", "1 2\x0b\n", "1 2\0\n"] {
             assert_eq!(line(&format!("{text}{padding}"), &mut [7.0, 8.0]), None, "{text}");
         }

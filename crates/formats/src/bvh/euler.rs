@@ -3,7 +3,8 @@
 use glam::{DMat3, DQuat, DVec3, Quat};
 use std::f64::consts::TAU;
 
-/// Below this cosine of the middle angle (1e-7 rad from a quarter turn) the outer two turns are one: the first one takes what is given.
+/// Below this cosine of the middle angle (1e-7 rad from a quarter turn) the outer two turns are
+/// one: the first one takes what is given.
 const LOCKED: f64 = 1e-7;
 
 /// The unit vector of an axis (0 to 2).
@@ -23,18 +24,14 @@ fn entry(m: &DMat3, row: usize, column: usize) -> f64 {
 pub(super) fn precise(q: Quat) -> DQuat {
     let q = DQuat::from_xyzw(f64::from(q.x), f64::from(q.y), f64::from(q.z), f64::from(q.w));
     let length = q.length();
-    if length > 1e-6 && length.is_finite() {
-        q * length.recip()
-    } else {
-        DQuat::IDENTITY
-    }
+    if length > 1e-6 && length.is_finite() { q * length.recip() } else { DQuat::IDENTITY }
 }
 
 /// The rotation that turns about axes make, the first one outermost: `R₀(angle₀) · R₁(angle₁) · …`.
 pub(super) fn compose(axes: &[usize], angles: &[f64]) -> DQuat {
-    axes.iter().zip(angles).fold(DQuat::IDENTITY, |q, (&index, &angle)| {
-        q * DQuat::from_axis_angle(axis(index), angle)
-    })
+    axes.iter()
+        .zip(angles)
+        .fold(DQuat::IDENTITY, |q, (&index, &angle)| q * DQuat::from_axis_angle(axis(index), angle))
 }
 
 /// The angle (radians) between two rotations.
@@ -43,10 +40,12 @@ pub(super) fn distance(a: DQuat, b: DQuat) -> f64 {
     2.0 * DVec3::new(q.x, q.y, q.z).length().atan2(q.w.abs())
 }
 
-/// The angles (radians) of turns about three different `axes` that make `q`, of all solutions the one nearest to `near`.
+/// The angles (radians) of turns about three different `axes` that make `q`, of all solutions the
+/// one nearest to `near`.
 ///
-/// The last angle comes from the first row of the matrix, and is then taken out; what is left has two angles, both well defined. So nothing is
-/// lost near a middle angle of a quarter turn (gimbal lock), where the usual formulas read the first angle from two vanishing entries. Compare
+/// The last angle comes from the first row of the matrix, and is then taken out; what is left has
+/// two angles, both well defined. So nothing is lost near a middle angle of a quarter turn (gimbal
+/// lock), where the usual formulas read the first angle from two vanishing entries. Compare
 /// Shoemake, "Euler angle conversion", Graphics Gems IV, 1994.
 pub(super) fn three_angles(q: DQuat, axes: [usize; 3], near: [f64; 3]) -> [f64; 3] {
     let [a, b, _] = axes;
@@ -54,18 +53,17 @@ pub(super) fn three_angles(q: DQuat, axes: [usize; 3], near: [f64; 3]) -> [f64; 
     let m = DMat3::from_quat(q);
     let sign = parity(axes);
     let cosine = entry(&m, a, a).hypot(entry(&m, a, b));
-    let last = if cosine > LOCKED {
-        (-sign * entry(&m, a, b)).atan2(entry(&m, a, a))
-    } else {
-        near[2]
-    };
+    let last =
+        if cosine > LOCKED { (-sign * entry(&m, a, b)).atan2(entry(&m, a, a)) } else { near[2] };
     let rest = q * DQuat::from_axis_angle(axis(c), -last);
     let [first, middle] = two_angles(rest, [a, b]);
     let here = nearest([first, middle, last], near);
     // The other solution: half a turn more outside, the middle mirrored.
     let half = TAU / 2.0;
     let other = nearest([first + half, half - middle, last + half], near);
-    let far = |angles: &[f64; 3]| angles.iter().zip(near).map(|(angle, near)| (angle - near).powi(2)).sum::<f64>();
+    let far = |angles: &[f64; 3]| {
+        angles.iter().zip(near).map(|(angle, near)| (angle - near).powi(2)).sum::<f64>()
+    };
     // Both are the same distance from 0 only in rare cases; the plain one wins then.
     if far(&other) + 1e-9 < far(&here) { other } else { here }
 }
@@ -102,7 +100,8 @@ mod tests {
     use proptest::prelude::*;
     use std::f64::consts::{FRAC_PI_2, PI};
 
-    const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
+    const ORDERS: [[usize; 3]; 6] =
+        [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
 
     proptest! {
         #[test]

@@ -9,7 +9,8 @@ use crate::warning::WarningKind;
 /// Frames per second where the file does not say.
 pub(super) const DEFAULT_FPS: f64 = 30.0;
 
-/// Frame times are snapped to 1/N within this relative distance, with room for the rounding of `.03333`.
+/// Frame times are snapped to 1/N within this relative distance, with room for the rounding of
+/// `.03333`.
 const SNAP: f64 = 1.0001e-4;
 
 /// What the header says.
@@ -32,7 +33,9 @@ impl Header {
     /// Frames per second, always a number above 0; what is odd about it goes into the tally.
     pub(super) fn fps(&self, lexer: &mut Lexer<'_>) -> f64 {
         match &self.frame_time {
-            Some((_, Some(secs), at)) if *secs > 0.0 && secs.is_finite() && secs.recip().is_finite() => {
+            Some((_, Some(secs), at))
+                if *secs > 0.0 && secs.is_finite() && secs.recip().is_finite() =>
+            {
                 if !(1e-4..=1.0).contains(secs) {
                     lexer.tally.add(WarningKind::UnlikelyFrameTime { secs: *secs }, Some(*at));
                 }
@@ -50,13 +53,15 @@ impl Header {
     }
 }
 
-/// 1/`secs`, or the whole number next to it where only the digits of the file are between them. 23.976 and 119.88 stay.
+/// 1/`secs`, or the whole number next to it where only the digits of the file are between them.
+/// 23.976 and 119.88 stay.
 fn snapped(secs: f64) -> f64 {
     let whole = secs.recip().round();
     if (whole * secs - 1.0).abs() <= SNAP { whole } else { secs.recip() }
 }
 
-/// Reads `MOTION`, `Frames` and `Frame Time` with or without colons and spaces, in any order; each may be missing.
+/// Reads `MOTION`, `Frames` and `Frame Time` with or without colons and spaces, in any order; each
+/// may be missing.
 pub(super) fn header(lexer: &mut Lexer<'_>) -> Result<Header, Stop> {
     let mut header = Header::default();
     loop {
@@ -71,8 +76,8 @@ pub(super) fn header(lexer: &mut Lexer<'_>) -> Result<Header, Stop> {
             lexer.at = after;
             let value = value(lexer);
             header.frames = Some((short(value), at));
-        } else if let Some(after) =
-            keyword(lexer.text, at, b"frame").and_then(|after| keyword(lexer.text, past_blanks(lexer.text, after), b"time"))
+        } else if let Some(after) = keyword(lexer.text, at, b"frame")
+            .and_then(|after| keyword(lexer.text, past_blanks(lexer.text, after), b"time"))
         {
             lexer.at = after;
             header.frame_time = frame_time(lexer, at)?;
@@ -113,13 +118,22 @@ fn value<'a>(lexer: &mut Lexer<'a>) -> &'a [u8] {
     value
 }
 
-fn frame_time(lexer: &mut Lexer<'_>, at: usize) -> Result<Option<(String, Option<f64>, usize)>, Stop> {
+fn frame_time(
+    lexer: &mut Lexer<'_>,
+    at: usize,
+) -> Result<Option<(String, Option<f64>, usize)>, Stop> {
     to_value(lexer);
     let start = lexer.at;
     let secs = match scan(lexer.text, start, lexer.commas) {
         Scan::Value { value, .. } => Some(value),
-        // `Frame Time: 0` has no digits after the comma to show what it is; it is no time either way.
-        Scan::OtherDecimalSign if !matches!(lexer.text.get(start..token_end(lexer.text, start)), Some(b"0" | b"1")) => {
+        // `Frame Time: 0` has no digits after the comma to show what it is; it is no time either
+        // way.
+        Scan::OtherDecimalSign
+            if !matches!(
+                lexer.text.get(start..token_end(lexer.text, start)),
+                Some(b"0" | b"1")
+            ) =>
+        {
             return Err(lexer.other_decimal_sign());
         }
         _ => None,

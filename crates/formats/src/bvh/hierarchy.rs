@@ -17,7 +17,8 @@ pub(super) struct FileJoint {
     pub(super) end_site: Option<[f64; 3]>,
 }
 
-/// One number of a row. `channel` is `None` where the number is skipped: scale, and channels of End Sites.
+/// One number of a row. `channel` is `None` where the number is skipped: scale, and channels of End
+/// Sites.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Column {
     pub(super) joint: usize,
@@ -67,7 +68,8 @@ fn channel_name(token: &[u8]) -> Option<ChannelName> {
     }
 }
 
-/// Reads up to the MOTION section or the end of the file. Iterative: the depth of the tree costs heap, not stack.
+/// Reads up to the MOTION section or the end of the file. Iterative: the depth of the tree costs
+/// heap, not stack.
 pub(super) fn hierarchy(lexer: &mut Lexer<'_>) -> Result<Hierarchy, Stop> {
     let mut tree = Hierarchy::default();
     let mut open: Vec<Scope> = Vec::new();
@@ -106,13 +108,16 @@ pub(super) fn hierarchy(lexer: &mut Lexer<'_>) -> Result<Hierarchy, Stop> {
             Some(scope) if is("OFFSET") => {
                 lexer.at += token.len();
                 let offset = [lexer.number()?, lexer.number()?, lexer.number()?];
-                let Some(joint) = tree.joints.get_mut(scope.joint) else { continue };
+                let Some(joint) = tree.joints.get_mut(scope.joint) else {
+                    continue;
+                };
                 if !scope.is_end_site {
                     joint.offset = offset;
                 } else if scope.has_offset || joint.end_site.is_some() {
                     lexer.tally.add(WarningKind::SeveralEndSites, Some(start));
                 } else if offset != [0.0; 3] {
-                    // An End Site on the joint itself is a mere marker of a leaf: the bone has no length.
+                    // An End Site on the joint itself is a mere marker of a leaf: the bone has no
+                    // length.
                     joint.end_site = Some(offset);
                 }
                 scope.has_offset = true;
@@ -125,7 +130,9 @@ pub(super) fn hierarchy(lexer: &mut Lexer<'_>) -> Result<Hierarchy, Stop> {
                 let parent = scope.joint;
                 if is("JOINT") && open.len() >= MAX_DEPTH {
                     let found = format!("joints nested more than {MAX_DEPTH} deep");
-                    return Err(Fault::new(start, found, format!("at most {MAX_DEPTH} levels")).into());
+                    return Err(
+                        Fault::new(start, found, format!("at most {MAX_DEPTH} levels")).into()
+                    );
                 }
                 lexer.at += token.len();
                 open.push(if is("JOINT") {
@@ -134,16 +141,14 @@ pub(super) fn hierarchy(lexer: &mut Lexer<'_>) -> Result<Hierarchy, Stop> {
                     // `Site`, and a name after it.
                     lexer.rest_of_line();
                     open_brace(lexer)?;
-                    Scope {
-                        joint: parent,
-                        is_end_site: true,
-                        has_offset: false,
-                        at: start,
-                    }
+                    Scope { joint: parent, is_end_site: true, has_offset: false, at: start }
                 });
             }
             Some(scope) => {
-                let joint = tree.joints.get(scope.joint).map_or_else(String::new, |j| quoted(j.name.as_bytes()));
+                let joint = tree
+                    .joints
+                    .get(scope.joint)
+                    .map_or_else(String::new, |j| quoted(j.name.as_bytes()));
                 let expected = match (token.is_empty() || end_of_joints, scope.is_end_site) {
                     (true, _) => format!("`}}` for joint {joint}"),
                     (_, true) => "`OFFSET` or `}`".to_owned(),
@@ -160,7 +165,12 @@ pub(super) fn starts_motion_header(token: &[u8]) -> bool {
     token.get(..5).is_some_and(|head| head.eq_ignore_ascii_case(b"frame"))
 }
 
-fn begin_joint(lexer: &mut Lexer<'_>, tree: &mut Hierarchy, parent: Option<usize>, at: usize) -> Result<Scope, Stop> {
+fn begin_joint(
+    lexer: &mut Lexer<'_>,
+    tree: &mut Hierarchy,
+    parent: Option<usize>,
+    at: usize,
+) -> Result<Scope, Stop> {
     let mut written = lexer.rest_of_line();
     if written.is_empty() && !matches!(lexer.peek(), b"{" | b"") {
         // The name stands on a line of its own.
@@ -171,18 +181,8 @@ fn begin_joint(lexer: &mut Lexer<'_>, tree: &mut Hierarchy, parent: Option<usize
         lexer.tally.add(WarningKind::Latin1Names, Some(at));
     }
     open_brace(lexer)?;
-    tree.joints.push(FileJoint {
-        name,
-        parent,
-        offset: [0.0; 3],
-        end_site: None,
-    });
-    Ok(Scope {
-        joint: tree.joints.len() - 1,
-        is_end_site: false,
-        has_offset: false,
-        at,
-    })
+    tree.joints.push(FileJoint { name, parent, offset: [0.0; 3], end_site: None });
+    Ok(Scope { joint: tree.joints.len() - 1, is_end_site: false, has_offset: false, at })
 }
 
 fn open_brace(lexer: &mut Lexer<'_>) -> Result<(), Stop> {
@@ -194,8 +194,14 @@ fn open_brace(lexer: &mut Lexer<'_>) -> Result<(), Stop> {
     }
 }
 
-/// `CHANNELS 6 Xposition …`: names are read as long as there are any; the number only has a say where a name is wrong.
-fn channels(lexer: &mut Lexer<'_>, tree: &mut Hierarchy, scope: &Scope, start: usize) -> Result<(), Stop> {
+/// `CHANNELS 6 Xposition …`: names are read as long as there are any; the number only has a say
+/// where a name is wrong.
+fn channels(
+    lexer: &mut Lexer<'_>,
+    tree: &mut Hierarchy,
+    scope: &Scope,
+    start: usize,
+) -> Result<(), Stop> {
     let mut declared = String::new();
     let mut count = None;
     let token = lexer.peek();
@@ -207,7 +213,9 @@ fn channels(lexer: &mut Lexer<'_>, tree: &mut Hierarchy, scope: &Scope, start: u
     let mut named = 0_usize;
     loop {
         let token = lexer.peek();
-        let Some(name) = channel_name(token) else { break };
+        let Some(name) = channel_name(token) else {
+            break;
+        };
         let kept = match name {
             _ if scope.is_end_site => {
                 lexer.tally.add(WarningKind::EndSiteChannels, Some(lexer.at));
@@ -220,10 +228,7 @@ fn channels(lexer: &mut Lexer<'_>, tree: &mut Hierarchy, scope: &Scope, start: u
             ChannelName::Kept(channel) => Some(channel),
         };
         lexer.at += token.len();
-        tree.columns.push(Column {
-            joint: scope.joint,
-            channel: kept,
-        });
+        tree.columns.push(Column { joint: scope.joint, channel: kept });
         named += 1;
     }
     let next = lexer.peek();
@@ -275,13 +280,7 @@ mod tests {
         assert_eq!(tree.joints[0].offset, [1.0, 2.0, 3.0]);
         assert_eq!(tree.joints[0].end_site, Some([7.0, 8.0, 9.0]));
         assert_eq!((tree.joints[1].name.as_str(), tree.joints[1].parent), ("B C", Some(0)));
-        assert_eq!(
-            tree.columns,
-            [Column {
-                joint: 0,
-                channel: Some(Channel::ZRotation)
-            }]
-        );
+        assert_eq!(tree.columns, [Column { joint: 0, channel: Some(Channel::ZRotation) }]);
     }
 
     #[test]
@@ -307,7 +306,9 @@ mod tests {
 
     #[test]
     fn depth_is_limited_and_iterative() {
-        let nested = |depth: usize| format!("ROOT r {{ {} {}", "JOINT j { ".repeat(depth - 1), "}".repeat(depth));
+        let nested = |depth: usize| {
+            format!("ROOT r {{ {} {}", "JOINT j { ".repeat(depth - 1), "}".repeat(depth))
+        };
         assert_eq!(parse(&nested(3000)).unwrap().joints.len(), 3000);
         assert_eq!(parse(&nested(MAX_DEPTH)).unwrap().joints.len(), MAX_DEPTH);
         assert!(fault(&nested(MAX_DEPTH + 1)).1.contains("4096 deep"));

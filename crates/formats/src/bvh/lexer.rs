@@ -32,12 +32,7 @@ pub(super) struct Lexer<'a> {
 
 impl<'a> Lexer<'a> {
     pub(super) fn new(text: &'a [u8], commas: bool) -> Self {
-        Self {
-            text,
-            at: 0,
-            commas,
-            tally: Tally::default(),
-        }
+        Self { text, at: 0, commas, tally: Tally::default() }
     }
 
     /// Goes past white space, and past comments: `#` and `//` to the end of the line.
@@ -66,7 +61,8 @@ impl<'a> Lexer<'a> {
             .map_or(self.text.len(), |length| self.at + length)
     }
 
-    /// The next token, which stays where it is. A brace is a token of its own. Empty at the end of the file.
+    /// The next token, which stays where it is. A brace is a token of its own. Empty at the end of
+    /// the file.
     pub(super) fn peek(&mut self) -> &'a [u8] {
         self.skip_blank();
         let end = match self.text.get(self.at) {
@@ -76,7 +72,8 @@ impl<'a> Lexer<'a> {
         self.text.get(self.at..end).unwrap_or_default()
     }
 
-    /// The rest of the line up to an opening brace, without white space at either end. What it ends with is not taken.
+    /// The rest of the line up to an opening brace, without white space at either end. What it ends
+    /// with is not taken.
     pub(super) fn rest_of_line(&mut self) -> &'a [u8] {
         let rest = self.text.get(self.at..).unwrap_or_default();
         // The brace is looked for together with the line end: a whole file may be one line.
@@ -102,7 +99,9 @@ impl<'a> Lexer<'a> {
                 Ok(value)
             }
             Scan::OtherDecimalSign => Err(self.other_decimal_sign()),
-            Scan::NotFinite { .. } | Scan::Cut | Scan::Bad => Err(self.unexpected("a number").into()),
+            Scan::NotFinite { .. } | Scan::Cut | Scan::Bad => {
+                Err(self.unexpected("a number").into())
+            }
         }
     }
 

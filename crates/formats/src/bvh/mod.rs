@@ -1,8 +1,11 @@
-//! BVH: a text format for skeletons and motions (Biovision, 1990s), for which there is no standard but what files do.
+//! BVH: a text format for skeletons and motions (Biovision, 1990s), for which there is no standard
+//! but what files do.
 //!
-//! A HIERARCHY section lists joints with their OFFSET from the parent and their CHANNELS; a MOTION section has one number per channel and
-//! frame. Rotations are degrees about the joint's own axes, multiplied in the order of the channels: `Zrotation Xrotation Yrotation` is
-//! `Rz · Rx · Ry`. Position channels replace the OFFSET. Names are the rest of their line, and case does not matter in keywords.
+//! A HIERARCHY section lists joints with their OFFSET from the parent and their CHANNELS; a MOTION
+//! section has one number per channel and frame. Rotations are degrees about the joint's own axes,
+//! multiplied in the order of the channels: `Zrotation Xrotation Yrotation` is `Rz · Rx · Ry`.
+//! Position channels replace the OFFSET. Names are the rest of their line, and case does not matter
+//! in keywords.
 //!
 //! What is not in the file (the unit of length and the up axis) is found by [`super::Measure`].
 

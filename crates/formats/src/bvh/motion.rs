@@ -27,11 +27,18 @@ enum End {
     Cut,
 }
 
-/// Reads all rows into `sink` and returns how many there are. `first_row` holds what channels have before any good value.
+/// Reads all rows into `sink` and returns how many there are. `first_row` holds what channels have
+/// before any good value.
 ///
-/// A line that holds exactly one row makes lines count: then a shorter last row is dropped and any other wrong row is refused. Where no line
-/// holds exactly one row, numbers are taken one after the other.
-pub(super) fn rows(lexer: &mut Lexer<'_>, first_row: Vec<f64>, sink: &mut impl RowSink, progress: Progress<'_>) -> Result<usize, Stop> {
+/// A line that holds exactly one row makes lines count: then a shorter last row is dropped and any
+/// other wrong row is refused. Where no line holds exactly one row, numbers are taken one after the
+/// other.
+pub(super) fn rows(
+    lexer: &mut Lexer<'_>,
+    first_row: Vec<f64>,
+    sink: &mut impl RowSink,
+    progress: Progress<'_>,
+) -> Result<usize, Stop> {
     let mut reader = Rows {
         not_finite: 0,
         first_not_finite: 0,
@@ -46,7 +53,10 @@ pub(super) fn rows(lexer: &mut Lexer<'_>, first_row: Vec<f64>, sink: &mut impl R
         return Ok(0);
     }
     if reader.row.is_empty() {
-        return Err(reader.lexer.unexpected("the end of the file, since no joint has channels").into());
+        return Err(reader
+            .lexer
+            .unexpected("the end of the file, since no joint has channels")
+            .into());
     }
     let by_line = reader.a_line_is_one_row();
     let count = if by_line {
@@ -60,7 +70,8 @@ pub(super) fn rows(lexer: &mut Lexer<'_>, first_row: Vec<f64>, sink: &mut impl R
 
 struct Rows<'l, 'a> {
     lexer: &'l mut Lexer<'a>,
-    /// The row being read. It keeps the values of the row before, so that a value that is none repeats the last good one.
+    /// The row being read. It keeps the values of the row before, so that a value that is none
+    /// repeats the last good one.
     row: Vec<f64>,
     values: u64,
     not_finite: u64,
@@ -73,8 +84,7 @@ impl Rows<'_, '_> {
     /// Whether any line holds as many numbers as a row has. Usually the first one does.
     fn a_line_is_one_row(&self) -> bool {
         let rest = self.lexer.text.get(self.lexer.at..).unwrap_or_default();
-        rest.split(|b| matches!(b, b'\n' | b'\r'))
-            .any(|line| count_numbers(line) == self.row.len())
+        rest.split(|b| matches!(b, b'\n' | b'\r')).any(|line| count_numbers(line) == self.row.len())
     }
 
     fn by_line(&mut self, sink: &mut impl RowSink, progress: Progress<'_>) -> Result<usize, Stop> {
@@ -116,7 +126,11 @@ impl Rows<'_, '_> {
         }
     }
 
-    fn across_lines(&mut self, sink: &mut impl RowSink, progress: Progress<'_>) -> Result<usize, Stop> {
+    fn across_lines(
+        &mut self,
+        sink: &mut impl RowSink,
+        progress: Progress<'_>,
+    ) -> Result<usize, Stop> {
         let (width, start) = (self.row.len(), self.lexer.at);
         let mut count = 0;
         loop {
@@ -141,13 +155,9 @@ impl Rows<'_, '_> {
     }
 
     fn truncated(&mut self, at: usize, found: usize) {
-        self.lexer.tally.add(
-            WarningKind::TruncatedRow {
-                found,
-                expected: self.row.len(),
-            },
-            Some(at),
-        );
+        self.lexer
+            .tally
+            .add(WarningKind::TruncatedRow { found, expected: self.row.len() }, Some(at));
     }
 
     fn report(&mut self, progress: Progress<'_>) -> Result<(), Stop> {
@@ -160,11 +170,14 @@ impl Rows<'_, '_> {
         Ok(())
     }
 
-    /// Reads a line that holds one row of plain numbers and nothing else; if it does not, nothing has happened.
-    // Not inlined: browsers only optimise a function from one call to its next, and a file would be over before its reader is fast.
+    /// Reads a line that holds one row of plain numbers and nothing else; if it does not, nothing
+    /// has happened.
+    // Not inlined: browsers only optimise a function from one call to its next, and a file would be
+    // over before its reader is fast.
     #[inline(never)]
     fn plain_line(&mut self) -> bool {
-        // Where that fails, those before the first odd number are read again, and those behind it are still of the row before.
+        // Where that fails, those before the first odd number are read again, and those behind it
+        // are still of the row before.
         if self.lexer.commas {
             return false;
         }
@@ -176,10 +189,15 @@ impl Rows<'_, '_> {
         end.is_some()
     }
 
-    /// Reads numbers into the row: up to the end of the line, or, `across_lines`, until the row is full. A line is read no further than one
-    /// number too many.
+    /// Reads numbers into the row: up to the end of the line, or, `across_lines`, until the row is
+    /// full. A line is read no further than one number too many.
     #[inline]
-    fn numbers(&mut self, column: &mut usize, width: usize, across_lines: bool) -> Result<End, Stop> {
+    fn numbers(
+        &mut self,
+        column: &mut usize,
+        width: usize,
+        across_lines: bool,
+    ) -> Result<End, Stop> {
         let text = self.lexer.text;
         let mut at = self.lexer.at;
         while let Some(&b) = text.get(at) {
@@ -194,7 +212,9 @@ impl Rows<'_, '_> {
                     let rest = text.get(at..).unwrap_or_default();
                     match fast_float2::parse_partial::<f64, _>(rest) {
                         Ok((value, length))
-                            if !self.lexer.commas && value.abs() <= LARGEST && rest.get(length).is_none_or(|&next| is_space(next)) =>
+                            if !self.lexer.commas
+                                && value.abs() <= LARGEST
+                                && rest.get(length).is_none_or(|&next| is_space(next)) =>
                         {
                             at += length;
                             if let Some(slot) = self.row.get_mut(*column) {
@@ -283,12 +303,15 @@ enum Odd {
     Cut,
 }
 
-/// How many numbers a line seems to hold: white space and signs inside a token count, what they are does not.
+/// How many numbers a line seems to hold: white space and signs inside a token count, what they are
+/// does not.
 fn count_numbers(line: &[u8]) -> usize {
     let mut count = 0;
     let mut before = b' ';
     for (index, &b) in line.iter().enumerate() {
-        if is_space(before) && (b == b'#' || line.get(index..).is_some_and(|rest| rest.starts_with(b"//"))) {
+        if is_space(before)
+            && (b == b'#' || line.get(index..).is_some_and(|rest| rest.starts_with(b"//")))
+        {
             break;
         }
         let sign = matches!(b, b'+' | b'-') && !matches!(before, b'e' | b'E' | b'+' | b'-');
@@ -319,7 +342,8 @@ mod tests {
         let mut kept = Kept::default();
         let count = rows(&mut lexer, vec![0.0; width], &mut kept, &mut |_| true)?;
         assert_eq!(count, kept.0.len());
-        let warnings = lexer.tally.into_warnings(text.as_bytes()).iter().map(ToString::to_string).collect();
+        let warnings =
+            lexer.tally.into_warnings(text.as_bytes()).iter().map(ToString::to_string).collect();
         Ok((kept.0, warnings))
     }
 
@@ -349,7 +373,8 @@ mod tests {
     #[test]
     fn lines_do_not_count_where_none_holds_a_row() {
         let expected = vec![vec![1.0, 2.0], vec![3.0, 4.0]];
-        let note = "no line holds exactly one frame (line 1); the numbers were read one after the other";
+        let note =
+            "no line holds exactly one frame (line 1); the numbers were read one after the other";
         for text in ["1 2 3 4", "1\n2\n3\n4\n", "1\n2 3 4"] {
             assert_eq!(read(text, 2).unwrap(), (expected.clone(), vec![note.to_owned()]), "{text}");
         }
@@ -405,7 +430,7 @@ mod tests {
         assert_eq!(seen.len(), 3);
         let mut lexer = Lexer::new(text.as_bytes(), false);
         assert_eq!(
-            rows(&mut lexer, vec![0.0; 2], &mut Kept::default(), &mut |_| false),
+            rows(&mut lexer, vec![0.0; 2], &mut Kept::default(), &mut |_| { false }),
             Err(Stop::Cancelled)
         );
     }

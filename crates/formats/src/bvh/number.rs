@@ -61,8 +61,9 @@ pub(crate) fn scan(text: &[u8], at: usize, commas: bool) -> Scan {
     }
 }
 
-/// The end of the number at `at`: of its token, or before a sign in it that is not that of an exponent. Looks no further, so that a long run of
-/// numbers without spaces takes no longer than one with.
+/// The end of the number at `at`: of its token, or before a sign in it that is not that of an
+/// exponent. Looks no further, so that a long run of numbers without spaces takes no longer than
+/// one with.
 fn piece_end(text: &[u8], at: usize) -> usize {
     let mut before = b'+';
     for (index, &b) in text.iter().enumerate().skip(at) {
@@ -79,24 +80,29 @@ fn without_sign(piece: &[u8]) -> &[u8] {
     piece.strip_prefix(b"-").or_else(|| piece.strip_prefix(b"+")).unwrap_or(piece)
 }
 
-/// The spellings of C libraries for what is no number: `nan`, `nan(ind)`, `inf`, `infinity`, `1.#IND00`, `1.#QNAN`, `1.#INF`.
+/// The spellings of C libraries for what is no number: `nan`, `nan(ind)`, `inf`, `infinity`,
+/// `1.#IND00`, `1.#QNAN`, `1.#INF`.
 fn not_a_number(piece: &[u8]) -> bool {
-    let starts = |text: &[u8], word: &[u8]| text.get(..word.len()).is_some_and(|head| head.eq_ignore_ascii_case(word));
+    let starts = |text: &[u8], word: &[u8]| {
+        text.get(..word.len()).is_some_and(|head| head.eq_ignore_ascii_case(word))
+    };
     let word = without_sign(piece);
-    if word.eq_ignore_ascii_case(b"inf") || word.eq_ignore_ascii_case(b"infinity") || word.eq_ignore_ascii_case(b"nan") {
+    if word.eq_ignore_ascii_case(b"inf")
+        || word.eq_ignore_ascii_case(b"infinity")
+        || word.eq_ignore_ascii_case(b"nan")
+    {
         return true;
     }
     if starts(word, b"nan(") {
         return word.ends_with(b")");
     }
     word.strip_prefix(b"1.#").is_some_and(|kind| {
-        [b"ind".as_slice(), b"inf", b"qnan", b"snan", b"nan"]
-            .iter()
-            .any(|w| starts(kind, w))
+        [b"ind".as_slice(), b"inf", b"qnan", b"snan", b"nan"].iter().any(|w| starts(kind, w))
     })
 }
 
-/// Whether there is exactly one comma and no point, with digits around it: `,5` and `1,` are commas between numbers at least as likely.
+/// Whether there is exactly one comma and no point, with digits around it: `,5` and `1,` are commas
+/// between numbers at least as likely.
 fn has_decimal_comma(piece: &[u8]) -> bool {
     let has_one_comma = piece.split(|b| *b == b',').count() == 2;
     let inside = without_sign(piece).first() != Some(&b',') && piece.last() != Some(&b',');
@@ -107,10 +113,13 @@ fn has_decimal_comma(piece: &[u8]) -> bool {
 fn is_cut(piece: &[u8]) -> bool {
     let body = without_sign(piece);
     let mantissa = match body {
-        [head @ .., b'e' | b'E'] | [head @ .., b'e' | b'E', b'+' | b'-'] if !head.is_empty() => head,
+        [head @ .., b'e' | b'E'] | [head @ .., b'e' | b'E', b'+' | b'-'] if !head.is_empty() => {
+            head
+        }
         _ => body,
     };
-    mantissa.iter().all(|b| b.is_ascii_digit() || *b == b'.') && mantissa.split(|b| *b == b'.').count() <= 2
+    mantissa.iter().all(|b| b.is_ascii_digit() || *b == b'.')
+        && mantissa.split(|b| *b == b'.').count() <= 2
 }
 
 #[cfg(test)]
@@ -162,15 +171,13 @@ mod tests {
         ] {
             assert_eq!(
                 scan(text.as_bytes(), 0, false),
-                Scan::NotFinite {
-                    end: text.len(),
-                    glued: false
-                },
+                Scan::NotFinite { end: text.len(), glued: false },
                 "{text}"
             );
         }
         for text in [
-            "abc ", "1.2.3 ", "0x10 ", "1e ", "- ", "nanny ", "1.#XYZ ", "--1 ", "1,2,3 ", "1, ", ",5 ", "1.0,2 ",
+            "abc ", "1.2.3 ", "0x10 ", "1e ", "- ", "nanny ", "1.#XYZ ", "--1 ", "1,2,3 ", "1, ",
+            ",5 ", "1.0,2 ",
         ] {
             assert_eq!(scan(text.as_bytes(), 0, false), Scan::Bad, "{text}");
         }
@@ -178,51 +185,19 @@ mod tests {
 
     #[test]
     fn a_sign_starts_a_new_number_unless_an_exponent_has_it() {
-        assert_eq!(
-            scan(b"0.0-7.5", 0, false),
-            Scan::Value {
-                value: 0.0,
-                end: 3,
-                glued: true
-            }
-        );
-        assert_eq!(
-            scan(b"1e-3+2", 0, false),
-            Scan::Value {
-                value: 1e-3,
-                end: 4,
-                glued: true
-            }
-        );
+        assert_eq!(scan(b"0.0-7.5", 0, false), Scan::Value { value: 0.0, end: 3, glued: true });
+        assert_eq!(scan(b"1e-3+2", 0, false), Scan::Value { value: 1e-3, end: 4, glued: true });
         assert_eq!(scan(b"-nan(ind)-2", 0, false), Scan::NotFinite { end: 9, glued: true });
-        assert_eq!(
-            scan(b"5}", 0, false),
-            Scan::Value {
-                value: 5.0,
-                end: 1,
-                glued: false
-            }
-        );
+        assert_eq!(scan(b"5}", 0, false), Scan::Value { value: 5.0, end: 1, glued: false });
     }
 
     #[test]
     fn decimal_commas_need_their_mode() {
         assert_eq!(scan(b"1,5", 0, false), Scan::OtherDecimalSign);
-        assert_eq!(
-            scan(b"1,5", 0, true),
-            Scan::Value {
-                value: 1.5,
-                end: 3,
-                glued: false
-            }
-        );
+        assert_eq!(scan(b"1,5", 0, true), Scan::Value { value: 1.5, end: 3, glued: false });
         assert_eq!(
             scan(b"-1,5e-1-2,0", 0, true),
-            Scan::Value {
-                value: -0.15,
-                end: 7,
-                glued: true
-            }
+            Scan::Value { value: -0.15, end: 7, glued: true }
         );
         assert_eq!(scan(b"1.5", 0, true), Scan::OtherDecimalSign);
         assert_eq!(scan(b"1", 0, true), Scan::OtherDecimalSign);

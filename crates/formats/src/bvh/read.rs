@@ -11,7 +11,8 @@ use crate::{ImportOptions, Imported, check_size};
 
 /// Reads a BVH file: one clip for each ROOT, in metres and Y up.
 ///
-/// `name` is the file's name; it is used in errors and, without its ending, as the name of the clip.
+/// `name` is the file's name; it is used in errors and, without its ending, as the name of the
+/// clip.
 ///
 /// # Errors
 /// [`ImportError`] with the place of what cannot be read.
@@ -20,7 +21,8 @@ pub fn read(name: &str, bytes: &[u8], options: &ImportOptions) -> Result<Importe
     Ok(read_with_progress(name, bytes, options, &mut |_| true)?.unwrap_or_default())
 }
 
-/// [`read`] that reports the bytes read so far now and then, and stops with `None` when `progress` returns `false`.
+/// [`read`] that reports the bytes read so far now and then, and stops with `None` when `progress`
+/// returns `false`.
 ///
 /// # Errors
 /// As [`read`].
@@ -33,8 +35,10 @@ pub fn read_with_progress(
     check_size(name, bytes, options)?;
     let text = decode(bytes);
     let result = match parse(name, &text, options, false, progress) {
-        // The first number with a comma. If all have one it is read that way; if not, the first complaint was right.
-        Err(Stop::OtherDecimalSign(complaint)) => match parse(name, &text, options, true, progress) {
+        // The first number with a comma. If all have one it is read that way; if not, the first
+        // complaint was right.
+        Err(Stop::OtherDecimalSign(complaint)) => match parse(name, &text, options, true, progress)
+        {
             Err(Stop::OtherDecimalSign(_)) => Err(Stop::Fault(complaint)),
             other => other,
         },
@@ -47,7 +51,13 @@ pub fn read_with_progress(
     }
 }
 
-fn parse(name: &str, text: &[u8], options: &ImportOptions, commas: bool, progress: Progress<'_>) -> Result<Imported, Stop> {
+fn parse(
+    name: &str,
+    text: &[u8],
+    options: &ImportOptions,
+    commas: bool,
+    progress: Progress<'_>,
+) -> Result<Imported, Stop> {
     let mut lexer = Lexer::new(text, commas);
     if commas {
         lexer.tally.add(WarningKind::DecimalCommas, None);
@@ -67,13 +77,9 @@ fn parse(name: &str, text: &[u8], options: &ImportOptions, commas: bool, progres
     let found = rows(&mut lexer, Converter::first_row(&tree), &mut converter, progress)?;
     match &header.frames {
         Some((declared, at)) if header.declared_frames() != Some(found as f64) => {
-            lexer.tally.add(
-                WarningKind::FrameCount {
-                    declared: declared.clone(),
-                    found,
-                },
-                Some(*at),
-            );
+            lexer
+                .tally
+                .add(WarningKind::FrameCount { declared: declared.clone(), found }, Some(*at));
         }
         _ => {}
     }

@@ -17,8 +17,9 @@ struct Run {
 #[derive(Debug, Default)]
 pub(super) struct Turns {
     runs: Vec<Run>,
-    /// The columns of the angles: run by run, in each four joints at a time, and of these for each turn in order the columns of the four. Where
-    /// there are fewer than four joints, the last one stands for those that are missing.
+    /// The columns of the angles: run by run, in each four joints at a time, and of these for each
+    /// turn in order the columns of the four. Where there are fewer than four joints, the last one
+    /// stands for those that are missing.
     columns: Vec<[usize; LANES]>,
     /// The angles of the row, as they stand in `columns`.
     half_angles: Vec<HalfAngles>,
@@ -27,13 +28,19 @@ pub(super) struct Turns {
 impl Turns {
     /// Of the turns of each joint: axis and column, in order.
     pub(super) fn new(joints: &[Vec<(usize, usize)>]) -> Self {
-        let alike = |a: &Vec<(usize, usize)>, b: &Vec<(usize, usize)>| a.iter().map(|turn| turn.0).eq(b.iter().map(|turn| turn.0));
+        let alike = |a: &Vec<(usize, usize)>, b: &Vec<(usize, usize)>| {
+            a.iter().map(|turn| turn.0).eq(b.iter().map(|turn| turn.0))
+        };
         let mut turns = Self::default();
         for run in joints.chunk_by(alike) {
             let axes: Vec<usize> = run.iter().take(1).flatten().map(|turn| turn.0).collect();
             for four in run.chunks(LANES) {
-                let column = |lane: usize, place: usize| Some(four.get(lane.min(four.len() - 1))?.get(place)?.1);
-                let columns = (0..axes.len()).map(|place| std::array::from_fn(|lane| column(lane, place).unwrap_or_default()));
+                let column = |lane: usize, place: usize| {
+                    Some(four.get(lane.min(four.len() - 1))?.get(place)?.1)
+                };
+                let columns = (0..axes.len()).map(|place| {
+                    std::array::from_fn(|lane| column(lane, place).unwrap_or_default())
+                });
                 turns.columns.extend(columns);
             }
             turns.runs.push(Run { joints: run.len(), axes });
@@ -42,8 +49,10 @@ impl Turns {
         turns
     }
 
-    /// Appends the rotation of each joint in a row of values, degrees: the product `R₀ · R₁ · …` of its turns.
-    // Not inlined, and small: browsers optimise a function from one call to its next, and sooner where there is less of it.
+    /// Appends the rotation of each joint in a row of values, degrees: the product `R₀ · R₁ · …` of
+    /// its turns.
+    // Not inlined, and small: browsers optimise a function from one call to its next, and sooner
+    // where there is less of it.
     #[inline(never)]
     pub(super) fn rotations_into(&mut self, row: &[f64], rotations: &mut Vec<Quat>) {
         let reduced;
@@ -62,7 +71,9 @@ impl Turns {
             let mut left = run.joints;
             while left > 0 {
                 let turns = run.axes.iter().zip(half_angles.by_ref());
-                let product = turns.fold(Product::IDENTITY, |product, (&axis, angles)| product.turned(axis, angles.sin_cos()));
+                let product = turns.fold(Product::IDENTITY, |product, (&axis, angles)| {
+                    product.turned(axis, angles.sin_cos())
+                });
                 let four = product.rotations();
                 if left >= LANES {
                     rotations.extend_from_slice(&four);
@@ -105,7 +116,8 @@ impl HalfAngles {
         }
     }
 
-    /// Their sines and cosines, within 1e-7 of what they should be: which is what `f32` can tell apart.
+    /// Their sines and cosines, within 1e-7 of what they should be: which is what `f32` can tell
+    /// apart.
     #[inline]
     fn sin_cos(&self) -> (Vec4, Vec4) {
         // As above, in single precision and for magnitudes below 2²².
@@ -113,9 +125,16 @@ impl HalfAngles {
         let (x, quarters) = (Vec4::from_array(self.rests), Vec4::from_array(self.quarters));
         let x2 = x * x;
         // The Taylor series; the first terms left out are below 2e-9 at π/4.
-        let sin = x + x * (x2 * (-1.0 / 6.0 + x2 * (1.0 / 120.0 + x2 * (-1.0 / 5040.0 + x2 * (1.0 / 362_880.0)))));
-        let cos = 1.0 + x2 * (-0.5 + x2 * (1.0 / 24.0 + x2 * (-1.0 / 720.0 + x2 * (1.0 / 40_320.0 + x2 * (-1.0 / 3_628_800.0)))));
-        // From -2 to 2 quarter turns are left, whose sine and cosine are whole numbers: the addition theorem is exact with them.
+        let sin = x + x
+            * (x2
+                * (-1.0 / 6.0
+                    + x2 * (1.0 / 120.0 + x2 * (-1.0 / 5040.0 + x2 * (1.0 / 362_880.0)))));
+        let cos = 1.0
+            + x2 * (-0.5
+                + x2 * (1.0 / 24.0
+                    + x2 * (-1.0 / 720.0 + x2 * (1.0 / 40_320.0 + x2 * (-1.0 / 3_628_800.0)))));
+        // From -2 to 2 quarter turns are left, whose sine and cosine are whole numbers: the
+        // addition theorem is exact with them.
         let quarters = quarters - 4.0 * ((quarters * 0.25 + ROUND) - ROUND);
         let (whole_sin, whole_cos) = (quarters * (2.0 - quarters.abs()), 1.0 - quarters.abs());
         (sin * whole_cos + cos * whole_sin, cos * whole_cos - sin * whole_sin)
@@ -131,12 +150,7 @@ struct Product {
 }
 
 impl Product {
-    const IDENTITY: Self = Self {
-        x: Vec4::ZERO,
-        y: Vec4::ZERO,
-        z: Vec4::ZERO,
-        w: Vec4::ONE,
-    };
+    const IDENTITY: Self = Self { x: Vec4::ZERO, y: Vec4::ZERO, z: Vec4::ZERO, w: Vec4::ONE };
 
     /// Times turns about an axis, given sine and cosine of half the angles.
     #[inline]
@@ -164,12 +178,8 @@ impl Product {
     }
 
     fn rotations(self) -> [Quat; LANES] {
-        let Mat4 {
-            x_axis,
-            y_axis,
-            z_axis,
-            w_axis,
-        } = Mat4::from_cols(self.x, self.y, self.z, self.w).transpose();
+        let Mat4 { x_axis, y_axis, z_axis, w_axis } =
+            Mat4::from_cols(self.x, self.y, self.z, self.w).transpose();
         [x_axis, y_axis, z_axis, w_axis].map(Quat::from_vec4)
     }
 }
@@ -189,7 +199,8 @@ mod tests {
             assert!(sin == Vec4::splat(sin.x) && cos == Vec4::splat(cos.x));
             let (sin, cos) = (sin.x, cos.x);
             let (expected_sin, expected_cos) = (0.5 * degrees.to_radians()).sin_cos();
-            let error = (f64::from(sin) - expected_sin).abs().max((f64::from(cos) - expected_cos).abs());
+            let error =
+                (f64::from(sin) - expected_sin).abs().max((f64::from(cos) - expected_cos).abs());
             assert!(error < 1e-7, "{degrees}: {error}");
         }
     }
@@ -200,7 +211,9 @@ mod tests {
         let mut rotations = vec![];
         Turns::new(&joints).rotations_into(&[1e30, -7.2e12 - 90.0, 77.0, 90.0], &mut rotations);
         assert!((rotations[0].length() - 1.0).abs() < 1e-6);
-        assert!((rotations[2] - Quat::from_rotation_y(std::f32::consts::FRAC_PI_2)).length() < 1e-6);
+        assert!(
+            (rotations[2] - Quat::from_rotation_y(std::f32::consts::FRAC_PI_2)).length() < 1e-6
+        );
         assert!((rotations[1] * rotations[2] - Quat::IDENTITY).length() < 1e-6);
     }
 

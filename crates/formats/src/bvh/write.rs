@@ -43,7 +43,8 @@ impl RotationOrder {
         self.channels().map(|channel| kind(channel).1)
     }
 
-    /// The angles about the axes, radians, that make a rotation; of all solutions the one nearest to `near`.
+    /// The angles about the axes, radians, that make a rotation; of all solutions the one nearest
+    /// to `near`.
     pub(crate) fn angles(self, q: Quat, near: [f64; 3]) -> [f64; 3] {
         three_angles(precise(q), self.axes(), near)
     }
@@ -64,14 +65,17 @@ pub struct WriteOptions {
 
 /// Writes a clip as BVH text with LF line ends.
 ///
-/// Every joint keeps its channels as long as they can hold its motion; where they cannot, and where there are none, it gets three rotations
-/// (Z, X, Y unless it has an order of its own) and, if it moves against its parent, three positions. Leaves get an End Site, of length 0 where
-/// the clip has none. Read back, positions (metres) and rotations (radians) are the same to 1e-5. Line ends and braces in names become spaces
-/// and parentheses, since names are the rest of their line. Joints that the clip's file has above the one that carries the body are written again
+/// Every joint keeps its channels as long as they can hold its motion; where they cannot, and where
+/// there are none, it gets three rotations (Z, X, Y unless it has an order of its own) and, if it
+/// moves against its parent, three positions. Leaves get an End Site, of length 0 where the clip
+/// has none. Read back, positions (metres) and rotations (radians) are the same to 1e-5. Line ends
+/// and braces in names become spaces and parentheses, since names are the rest of their line.
+/// Joints that the clip's file has above the one that carries the body are written again
 /// ([`Clip::unfolded`]).
 ///
-/// Some programs put positions in the place of the OFFSET, others add the two. So the root, which always moves, has an OFFSET of zero where it
-/// has all three positions; and a joint that stays at its OFFSET is not given positions that its source did not have.
+/// Some programs put positions in the place of the OFFSET, others add the two. So the root, which
+/// always moves, has an OFFSET of zero where it has all three positions; and a joint that stays at
+/// its OFFSET is not given positions that its source did not have.
 #[must_use]
 pub fn write(clip: &Clip, options: &WriteOptions) -> String {
     let resampled = options.fps.and_then(|fps| resample(clip, fps, Interpolation::default()).ok());
@@ -79,7 +83,8 @@ pub fn write(clip: &Clip, options: &WriteOptions) -> String {
     let unfolded = clip.unfolded();
     let clip = unfolded.as_ref().unwrap_or(clip);
     let writer = Writer::new(clip, options);
-    let mut out = String::with_capacity(256 * clip.skeleton().len() + 9 * writer.columns() * clip.frames());
+    let mut out =
+        String::with_capacity(256 * clip.skeleton().len() + 9 * writer.columns() * clip.frames());
     let order = writer.hierarchy(&mut out);
     writer.motion(&mut out, &order);
     out
@@ -126,16 +131,12 @@ impl<'a> Writer<'a> {
             plans: Vec::new(),
             tracks,
         };
-        writer.plans = (0..skeleton.len())
-            .map(|joint| writer.plan(joint, options.rotation_order))
-            .collect();
+        writer.plans =
+            (0..skeleton.len()).map(|joint| writer.plan(joint, options.rotation_order)).collect();
         if writer.columns() == 0 {
             // A row must hold something, or there would be no rows.
             let channels = [POSITIONS.as_slice(), &RotationOrder::default().channels()].concat();
-            writer.plans[0] = Plan {
-                axes: axes_of(&channels),
-                channels,
-            };
+            writer.plans[0] = Plan { axes: axes_of(&channels), channels };
         }
         writer
     }
@@ -175,11 +176,13 @@ impl<'a> Writer<'a> {
         let axes = axes_of(source);
         let offset = self.to_file(joint.offset);
         let moves = |axis: usize| {
-            frames
-                .clone()
-                .any(|frame| (self.translation(index, frame)[axis] - offset[axis]).abs() > SAME_PLACE)
+            frames.clone().any(|frame| {
+                (self.translation(index, frame)[axis] - offset[axis]).abs() > SAME_PLACE
+            })
         };
-        let holds_positions = |channels: &[Channel]| (0..3).all(|axis| channels.contains(&POSITIONS[axis]) || !moves(axis));
+        let holds_positions = |channels: &[Channel]| {
+            (0..3).all(|axis| channels.contains(&POSITIONS[axis]) || !moves(axis))
+        };
         let holds_rotations = |axes: &[usize]| {
             is_order(axes)
                 || frames.clone().all(|frame| {
@@ -188,19 +191,19 @@ impl<'a> Writer<'a> {
                 })
         };
         let rotations_fit = holds_rotations(&axes);
-        let reordered = order.is_some_and(|order| !axes.is_empty() && axes != axes_of(&order.channels()));
+        let reordered =
+            order.is_some_and(|order| !axes.is_empty() && axes != axes_of(&order.channels()));
         let is_bare_root = index == 0 && source.is_empty();
         if rotations_fit && !reordered && !is_bare_root && holds_positions(source) {
-            return Plan {
-                channels: source.clone(),
-                axes,
-            };
+            return Plan { channels: source.clone(), axes };
         }
         let needs_rotations = is_bare_root || !axes.is_empty() || !rotations_fit;
         let turns: Vec<Channel> = match order {
             _ if !needs_rotations => Vec::new(),
             Some(order) => order.channels().to_vec(),
-            None if rotations_fit && !axes.is_empty() => source.iter().copied().filter(|&channel| kind(channel).0).collect(),
+            None if rotations_fit && !axes.is_empty() => {
+                source.iter().copied().filter(|&channel| kind(channel).0).collect()
+            }
             None => RotationOrder::default().channels().to_vec(),
         };
         let places: Vec<Channel> = if !is_bare_root && holds_positions(source) {
@@ -208,20 +211,16 @@ impl<'a> Writer<'a> {
         } else {
             POSITIONS.to_vec()
         };
-        let rotations_first = source.first().is_some_and(|&channel| kind(channel).0) && source.iter().any(|&channel| !kind(channel).0);
-        let channels = if rotations_first {
-            [turns, places].concat()
-        } else {
-            [places, turns].concat()
-        };
-        Plan {
-            axes: axes_of(&channels),
-            channels,
-        }
+        let rotations_first = source.first().is_some_and(|&channel| kind(channel).0)
+            && source.iter().any(|&channel| !kind(channel).0);
+        let channels =
+            if rotations_first { [turns, places].concat() } else { [places, turns].concat() };
+        Plan { axes: axes_of(&channels), channels }
     }
 
-    /// HIERARCHY. Returns the joints in the order in which they stand there, which is that of the numbers in a row: each is followed by all below
-    /// it, while a skeleton only has parents first. Without recursion.
+    /// HIERARCHY. Returns the joints in the order in which they stand there, which is that of the
+    /// numbers in a row: each is followed by all below it, while a skeleton only has parents first.
+    /// Without recursion.
     fn hierarchy(&self, out: &mut String) -> Vec<usize> {
         let joints = self.clip.skeleton().joints();
         let mut children: Vec<Vec<usize>> = vec![Vec::new(); joints.len()];
@@ -239,7 +238,9 @@ impl<'a> Writer<'a> {
                     order.push(index);
                     self.joint(out, index, depth, children[index].is_empty());
                     todo.push(Step::Close(depth));
-                    todo.extend(children[index].iter().rev().map(|&child| Step::Open(child, depth + 1)));
+                    todo.extend(
+                        children[index].iter().rev().map(|&child| Step::Open(child, depth + 1)),
+                    );
                 }
             }
         }
@@ -297,7 +298,8 @@ impl<'a> Writer<'a> {
                 if plan.channels.is_empty() {
                     continue;
                 }
-                let translation: DVec3 = self.translation(index, frame).as_dvec3() * self.units_per_metre;
+                let translation: DVec3 =
+                    self.translation(index, frame).as_dvec3() * self.units_per_metre;
                 let turns = angles(&plan.axes, self.rotation(index, frame), before[index]);
                 before[index] = turns;
                 let mut turns = turns.into_iter();
@@ -338,7 +340,8 @@ fn is_order(axes: &[usize]) -> bool {
     matches!(axes, &[a, b, c] if a != b && b != c && a != c)
 }
 
-/// The angles about `axes` (radians) that come nearest to a rotation; 0 for axes beyond the third and for those that repeat another.
+/// The angles about `axes` (radians) that come nearest to a rotation; 0 for axes beyond the third
+/// and for those that repeat another.
 fn angles(axes: &[usize], q: DQuat, near: [f64; 3]) -> [f64; 3] {
     match *axes {
         [a, b, c, ..] if is_order(&[a, b, c]) => three_angles(q, [a, b, c], near),

@@ -21,8 +21,10 @@ fn clip(joints: Vec<Joint>, rotations: Vec<Quat>) -> Clip {
 #[test]
 fn a_bare_skeleton_gets_what_its_motion_needs() {
     let turned = Quat::from_rotation_x(0.5);
-    let joints = vec![joint(None, "Hips", &[]), joint(Some(0), "Still", &[]), joint(Some(1), "Turns", &[])];
-    let clip = clip(joints, vec![Quat::IDENTITY, Quat::IDENTITY, turned]).with_provenance(Provenance::default());
+    let joints =
+        vec![joint(None, "Hips", &[]), joint(Some(0), "Still", &[]), joint(Some(1), "Turns", &[])];
+    let clip = clip(joints, vec![Quat::IDENTITY, Quat::IDENTITY, turned])
+        .with_provenance(Provenance::default());
     let expected = "HIERARCHY\nROOT Hips\n{\n\tOFFSET 0 0 0\n\tCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n\
                     \tJOINT Still\n\t{\n\t\tOFFSET 0 10 0\n\t\tCHANNELS 0\n\t\tJOINT Turns\n\t\t{\n\t\t\tOFFSET 0 10 0\n\
                     \t\t\tCHANNELS 3 Zrotation Xrotation Yrotation\n\t\t\tEnd Site\n\t\t\t{\n\t\t\t\tOFFSET 0 0 0\n\t\t\t}\n\t\t}\n\t}\n}\n\
@@ -39,7 +41,8 @@ fn channels_stay_until_the_motion_outgrows_them() {
             joint(Some(0), "j", channels),
         ];
         let text = write(&clip(joints, vec![Quat::IDENTITY, q]), options);
-        let lines: Vec<&str> = text.lines().filter(|line| line.contains("CHANNELS")).map(str::trim).collect();
+        let lines: Vec<&str> =
+            text.lines().filter(|line| line.contains("CHANNELS")).map(str::trim).collect();
         lines[1].to_owned()
     };
     let (about_x, about_all) = (
@@ -64,10 +67,7 @@ fn channels_stay_until_the_motion_outgrows_them() {
         channels_of(&[ZRotation, XRotation, ZRotation], about_all, &own),
         "CHANNELS 3 Zrotation Xrotation Yrotation"
     );
-    let chosen = WriteOptions {
-        rotation_order: Some(RotationOrder::Yzx),
-        ..own
-    };
+    let chosen = WriteOptions { rotation_order: Some(RotationOrder::Yzx), ..own };
     assert_eq!(
         channels_of(&[XRotation, YRotation, ZRotation], about_all, &chosen),
         "CHANNELS 3 Yrotation Zrotation Xrotation"
@@ -85,20 +85,13 @@ fn channels_stay_until_the_motion_outgrows_them() {
 
 #[test]
 fn a_moving_joint_gets_positions() {
-    let joints = vec![joint(None, "r", &[Channel::XPosition]), joint(Some(0), "j", &[Channel::ZRotation])];
+    let joints =
+        vec![joint(None, "r", &[Channel::XPosition]), joint(Some(0), "j", &[Channel::ZRotation])];
     let clip = clip(joints, vec![Quat::IDENTITY; 2]);
-    let track = JointTranslations {
-        joint: 1,
-        values: vec![Vec3::new(0.0, 0.25, 0.0)],
-    };
+    let track = JointTranslations { joint: 1, values: vec![Vec3::new(0.0, 0.25, 0.0)] };
     let clip = clip.with_translations(vec![track]).unwrap();
-    let text = write(
-        &clip,
-        &WriteOptions {
-            metres_per_unit: Some(1.0),
-            ..WriteOptions::default()
-        },
-    );
+    let text =
+        write(&clip, &WriteOptions { metres_per_unit: Some(1.0), ..WriteOptions::default() });
     assert!(text.contains("CHANNELS 4 Xposition Yposition Zposition Zrotation\n"), "{text}");
     assert!(text.ends_with("\n0 0 0.25 0 0\n"), "{text}");
 }
@@ -133,14 +126,13 @@ fn another_frame_rate_is_resampled() {
     let joints = vec![joint(None, "r", &[])];
     let clip = clip(joints, (0..5).map(|i| Quat::from_rotation_x(0.1 * i as f32)).collect());
     let at = |fps| {
-        let options = WriteOptions {
-            fps,
-            ..WriteOptions::default()
-        };
+        let options = WriteOptions { fps, ..WriteOptions::default() };
         write(&clip, &options)
     };
     assert!(
-        at(Some(60.0)).contains("Frames: 3\nFrame Time: 0.016666666666666666\n0 10 0 0 0 0\n0 10 0 0 11.459156 0\n"),
+        at(Some(60.0)).contains(
+            "Frames: 3\nFrame Time: 0.016666666666666666\n0 10 0 0 0 0\n0 10 0 0 11.459156 0\n"
+        ),
         "{}",
         at(Some(60.0))
     );

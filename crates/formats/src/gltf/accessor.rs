@@ -3,7 +3,9 @@
 use super::document::Document;
 use crate::ImportError;
 use gltf::json::Index;
-use gltf::json::accessor::{Accessor, ComponentType, GenericComponentType, IndexComponentType, Type};
+use gltf::json::accessor::{
+    Accessor, ComponentType, GenericComponentType, IndexComponentType, Type,
+};
 use gltf::json::buffer::View;
 use gltf::json::validation::{Checked, USize64};
 
@@ -20,28 +22,44 @@ struct Elements<'a> {
 
 impl<'a> Elements<'a> {
     fn iter(self) -> impl Iterator<Item = &'a [u8]> {
-        (0..self.count).filter_map(move |index| self.bytes.get(index * self.stride..)?.get(..self.size))
+        (0..self.count)
+            .filter_map(move |index| self.bytes.get(index * self.stride..)?.get(..self.size))
     }
 }
 
 impl Document<'_> {
-    /// The elements of an accessor as numbers, one element after the other. Integers are fractions of their largest value (section 3.6.2.2).
-    pub(super) fn floats(&self, index: Index<Accessor>, expected: Type) -> Result<Vec<f32>, ImportError> {
+    /// The elements of an accessor as numbers, one element after the other. Integers are fractions
+    /// of their largest value (section 3.6.2.2).
+    pub(super) fn floats(
+        &self,
+        index: Index<Accessor>,
+        expected: Type,
+    ) -> Result<Vec<f32>, ImportError> {
         self.values(index, expected, |component| {
             (component != ComponentType::U32).then_some(number as fn(_, &[u8]) -> _)
         })
     }
 
     /// The same of whole numbers that are not negative: indices of vertices and joints.
-    pub(super) fn integers(&self, index: Index<Accessor>, expected: Type) -> Result<Vec<u32>, ImportError> {
+    pub(super) fn integers(
+        &self,
+        index: Index<Accessor>,
+        expected: Type,
+    ) -> Result<Vec<u32>, ImportError> {
         use ComponentType::{U8, U16, U32};
         self.values(index, expected, |component| {
-            matches!(component, U8 | U16 | U32).then_some((|_, bytes| integer(bytes)) as fn(_, &[u8]) -> _)
+            matches!(component, U8 | U16 | U32)
+                .then_some((|_, bytes| integer(bytes)) as fn(_, &[u8]) -> _)
         })
     }
 
-    /// The same of lengths: integers stand for themselves unless the accessor says that they are fractions (`KHR_mesh_quantization`).
-    pub(super) fn lengths(&self, index: Index<Accessor>, expected: Type) -> Result<Vec<f32>, ImportError> {
+    /// The same of lengths: integers stand for themselves unless the accessor says that they are
+    /// fractions (`KHR_mesh_quantization`).
+    pub(super) fn lengths(
+        &self,
+        index: Index<Accessor>,
+        expected: Type,
+    ) -> Result<Vec<f32>, ImportError> {
         if self.root.get(index).is_some_and(|accessor| accessor.normalized) {
             return self.floats(index, expected);
         }
@@ -55,7 +73,8 @@ impl Document<'_> {
         self.root.get(index).map_or(0, |accessor| accessor.count.0)
     }
 
-    /// The elements of an accessor. `reader` gives what reads one component of a type, or `None` where the type does not fit.
+    /// The elements of an accessor. `reader` gives what reads one component of a type, or `None`
+    /// where the type does not fit.
     fn values<T: Copy + Default>(
         &self,
         index: Index<Accessor>,
@@ -67,7 +86,9 @@ impl Document<'_> {
             .root
             .get(index)
             .ok_or_else(|| self.error(format!("accessor {at}, which is not there"), VALID))?;
-        let (Checked::Valid(GenericComponentType(component)), Checked::Valid(kind)) = (accessor.component_type, accessor.type_) else {
+        let (Checked::Valid(GenericComponentType(component)), Checked::Valid(kind)) =
+            (accessor.component_type, accessor.type_)
+        else {
             return Err(self.error(format!("accessor {at} of an unknown type"), VALID));
         };
         let Some(read) = reader(component).filter(|_| kind == expected) else {
@@ -77,21 +98,27 @@ impl Document<'_> {
         let width = kind.multiplicity();
         let count = self.size(accessor.count)?;
         let mut values = if let Some(view) = accessor.buffer_view {
-            let elements = self.elements(view, accessor.byte_offset, count, width * component.size())?;
+            let elements =
+                self.elements(view, accessor.byte_offset, count, width * component.size())?;
             self.spend(count, size_of::<T>() * width)?;
             let parts = elements.iter().flat_map(|element| element.chunks_exact(component.size()));
             parts.map(|bytes| read(component, bytes)).collect()
         } else {
             // Zeros that no byte stands for.
             if count > self.total_bytes() {
-                return Err(self.error(format!("accessor {at} with {count} values and no data"), VALID));
+                return Err(
+                    self.error(format!("accessor {at} with {count} values and no data"), VALID)
+                );
             }
             self.spend(count, size_of::<T>() * width)?;
             vec![T::default(); count * width]
         };
         if let Some(sparse) = &accessor.sparse {
-            let Checked::Valid(IndexComponentType(index_type)) = sparse.indices.component_type else {
-                return Err(self.error(format!("accessor {at} with indices of an unknown type"), VALID));
+            let Checked::Valid(IndexComponentType(index_type)) = sparse.indices.component_type
+            else {
+                return Err(
+                    self.error(format!("accessor {at} with indices of an unknown type"), VALID)
+                );
             };
             let count = self.size(sparse.count)?;
             let places = self.elements(
@@ -108,10 +135,14 @@ impl Document<'_> {
             )?;
             for (place, content) in places.iter().zip(contents.iter()) {
                 let start = (integer(place) as usize).saturating_mul(width);
-                let Some(target) = values.get_mut(start..).and_then(|rest| rest.get_mut(..width)) else {
-                    return Err(self.error(format!("accessor {at} with an index beyond its end"), VALID));
+                let Some(target) = values.get_mut(start..).and_then(|rest| rest.get_mut(..width))
+                else {
+                    return Err(
+                        self.error(format!("accessor {at} with an index beyond its end"), VALID)
+                    );
                 };
-                for (value, bytes) in target.iter_mut().zip(content.chunks_exact(component.size())) {
+                for (value, bytes) in target.iter_mut().zip(content.chunks_exact(component.size()))
+                {
                     *value = read(component, bytes);
                 }
             }
@@ -119,7 +150,13 @@ impl Document<'_> {
         Ok(values)
     }
 
-    fn elements(&self, view: Index<View>, offset: Option<USize64>, count: usize, size: usize) -> Result<Elements<'_>, ImportError> {
+    fn elements(
+        &self,
+        view: Index<View>,
+        offset: Option<USize64>,
+        count: usize,
+        size: usize,
+    ) -> Result<Elements<'_>, ImportError> {
         let at = view.value();
         let view = self
             .root
@@ -127,7 +164,8 @@ impl Document<'_> {
             .ok_or_else(|| self.error(format!("buffer view {at}, which is not there"), VALID))?;
         let buffer = self.buffer(view.buffer.value())?;
         let start = self.size(view.byte_offset.unwrap_or_default())?;
-        let (length, offset) = (self.size(view.byte_length)?, self.size(offset.unwrap_or_default())?);
+        let (length, offset) =
+            (self.size(view.byte_length)?, self.size(offset.unwrap_or_default())?);
         let stride = view.byte_stride.map_or(size, |stride| stride.0);
         let bytes = buffer
             .get(start..)
@@ -137,24 +175,24 @@ impl Document<'_> {
             .checked_sub(1)
             .map_or(Some(0), |last| last.checked_mul(stride)?.checked_add(size));
         match (bytes, needed) {
-            (Some(bytes), Some(needed)) if needed <= bytes.len() && stride >= size => Ok(Elements {
-                bytes,
-                stride,
-                size,
-                count,
-            }),
+            (Some(bytes), Some(needed)) if needed <= bytes.len() && stride >= size => {
+                Ok(Elements { bytes, stride, size, count })
+            }
             _ => {
                 let found = format!(
                     "buffer view {at} with {} bytes for {count} values of {size}",
                     bytes.map_or(0, <[u8]>::len)
                 );
-                Err(self.error(found, "all bytes of the animation").with_hint("the file may be cut off"))
+                Err(self
+                    .error(found, "all bytes of the animation")
+                    .with_hint("the file may be cut off"))
             }
         }
     }
 
     fn size(&self, value: USize64) -> Result<usize, ImportError> {
-        usize::try_from(value.0).map_err(|_| self.error(format!("a size of {} bytes", value.0), VALID))
+        usize::try_from(value.0)
+            .map_err(|_| self.error(format!("a size of {} bytes", value.0), VALID))
     }
 }
 

@@ -1,4 +1,5 @@
-//! A body of simple bones around a skeleton at rest: what programs show of an armature is mostly the skin on it.
+//! A body of simple bones around a skeleton at rest: what programs show of an armature is mostly
+//! the skin on it.
 
 use glam::{Quat, Vec3};
 use segue_motion::skeleton::Skeleton;
@@ -6,7 +7,8 @@ use segue_motion::skin::{RigidTransform, SkinnedMesh};
 
 /// Bones shorter than this have no direction, metres.
 const SHORTEST: f32 = 1e-4;
-/// How far from its start a bone is thickest, and how far it then reaches to each side, as shares of its length.
+/// How far from its start a bone is thickest, and how far it then reaches to each side, as shares
+/// of its length.
 const WAIST: f32 = 0.2;
 const GIRTH: f32 = 0.1;
 /// The size of the mark for a joint from which no bone starts, metres.
@@ -21,7 +23,8 @@ pub(super) struct Bones {
 }
 
 impl Bones {
-    /// One octahedron from each joint to each joint below it and to its end, and a small one where there is neither.
+    /// One octahedron from each joint to each joint below it and to its end, and a small one where
+    /// there is neither.
     pub(super) fn around(skeleton: &Skeleton, positions: &[Vec3]) -> Self {
         let mut bones = Self::default();
         let mut has_bone = vec![false; skeleton.len()];
@@ -46,12 +49,11 @@ impl Bones {
         bones
     }
 
-    /// The bones as a mesh that is bound where the joints are at `positions`, of a skeleton of at most 65,536 joints.
+    /// The bones as a mesh that is bound where the joints are at `positions`, of a skeleton of at
+    /// most 65,536 joints.
     pub(super) fn into_mesh(self, positions: &[Vec3]) -> SkinnedMesh {
-        let bind = |&position: &Vec3| RigidTransform {
-            rotation: Quat::IDENTITY,
-            translation: -position,
-        };
+        let bind =
+            |&position: &Vec3| RigidTransform { rotation: Quat::IDENTITY, translation: -position };
         SkinnedMesh {
             joints: self.joints.iter().map(|&joint| [joint as u16, 0, 0, 0]).collect(),
             weights: vec![[1.0, 0.0, 0.0, 0.0]; self.joints.len()],
@@ -72,12 +74,25 @@ impl Bones {
             return false;
         };
         let (side, other) = direction.any_orthonormal_pair();
-        self.octahedron(joint, start, end, WAIST, [side * (GIRTH * length), other * (GIRTH * length)]);
+        self.octahedron(
+            joint,
+            start,
+            end,
+            WAIST,
+            [side * (GIRTH * length), other * (GIRTH * length)],
+        );
         true
     }
 
     /// `side`, `other` and the way from `start` to `end` are right-handed.
-    fn octahedron(&mut self, joint: usize, start: Vec3, end: Vec3, waist: f32, [side, other]: [Vec3; 2]) {
+    fn octahedron(
+        &mut self,
+        joint: usize,
+        start: Vec3,
+        end: Vec3,
+        waist: f32,
+        [side, other]: [Vec3; 2],
+    ) {
         let middle = start.lerp(end, waist);
         let ring = [middle + side, middle + other, middle - side, middle - other];
         for quarter in 0..4 {

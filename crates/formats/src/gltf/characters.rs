@@ -20,17 +20,26 @@ pub(super) struct Character {
     pub(super) uneven: usize,
 }
 
-/// The characters of a file, in the order of its nodes. `moves` tells which nodes are moved or turned by an animation.
+/// The characters of a file, in the order of its nodes. `moves` tells which nodes are moved or
+/// turned by an animation.
 ///
-/// With skins, a character is a tree of skins: those of which one hangs below the other, or that share joints. Its joints are those of the skins and
-/// the nodes between them, up to the last node above them that moves. Without skins, each tree of nodes is a character: what moves, what is between,
-/// and what hangs on it and shows nothing.
-pub(super) fn characters(document: &Document<'_>, nodes: &Nodes, moves: &[bool]) -> Result<Vec<Character>, ImportError> {
+/// With skins, a character is a tree of skins: those of which one hangs below the other, or that
+/// share joints. Its joints are those of the skins and the nodes between them, up to the last node
+/// above them that moves. Without skins, each tree of nodes is a character: what moves, what is
+/// between, and what hangs on it and shows nothing.
+pub(super) fn characters(
+    document: &Document<'_>,
+    nodes: &Nodes,
+    moves: &[bool],
+) -> Result<Vec<Character>, ImportError> {
     let mut search = Search::new(nodes, moves);
     for skin in &document.root.skins {
         let joints: Vec<usize> = skin.joints.iter().map(gltf::json::Index::value).collect();
         if let Some(missing) = joints.iter().find(|&&joint| joint >= nodes.all.len()) {
-            return Err(document.error(format!("node {missing} in a skin, which is not there"), "a valid glTF 2.0 file"));
+            return Err(document.error(
+                format!("node {missing} in a skin, which is not there"),
+                "a valid glTF 2.0 file",
+            ));
         }
         search.add(&joints);
     }
@@ -101,14 +110,17 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// A set of joints that belong together, as far as they are in one tree: their top is the lowest node that all of them are, or hang on.
+    /// A set of joints that belong together, as far as they are in one tree: their top is the
+    /// lowest node that all of them are, or hang on.
     fn add(&mut self, joints: &[usize]) {
         let mut tops: BTreeMap<usize, usize> = BTreeMap::new();
         for &joint in joints {
             self.is_joint[joint] = true;
             let top = tops.entry(self.roots[joint]).or_insert(joint);
             let place = self.below[joint].start;
-            while let (false, Some(parent)) = (self.below[*top].contains(&place), self.nodes.all[*top].parent) {
+            while let (false, Some(parent)) =
+                (self.below[*top].contains(&place), self.nodes.all[*top].parent)
+            {
                 *top = parent;
             }
         }
@@ -121,7 +133,9 @@ impl<'a> Search<'a> {
         self.taken[top] = true;
         for &node in &nodes.order[self.below[top].clone()] {
             let this = &nodes.all[node];
-            let hangs_on = !self.has_skins && this.is_bare && this.parent.is_some_and(|parent| self.taken[parent]);
+            let hangs_on = !self.has_skins
+                && this.is_bare
+                && this.parent.is_some_and(|parent| self.taken[parent]);
             if self.is_joint[node] || hangs_on || (self.moves[node] && this.is_bare) {
                 let path = nodes.upwards(node).take_while(|&node| self.below[node].start > start);
                 for node in path {
@@ -142,25 +156,24 @@ impl<'a> Search<'a> {
         for &node in below {
             self.take_as_end(node);
         }
-        let above = nodes.all[root].parent.map_or(World::IDENTITY, |parent| nodes.all[parent].world);
-        let joint_nodes: Vec<usize> = below.iter().copied().filter(|&node| self.taken[node]).collect();
+        let above =
+            nodes.all[root].parent.map_or(World::IDENTITY, |parent| nodes.all[parent].world);
+        let joint_nodes: Vec<usize> =
+            below.iter().copied().filter(|&node| self.taken[node]).collect();
         let joints = joint_nodes
             .iter()
             .enumerate()
             .map(|(index, &node)| self.joint(index, node, root))
             .collect();
-        let uneven = |node: &&usize| is_uneven(nodes.all[**node].scale) && !nodes.all[**node].children.is_empty();
+        let uneven = |node: &&usize| {
+            is_uneven(nodes.all[**node].scale) && !nodes.all[**node].children.is_empty()
+        };
         let uneven = joint_nodes.iter().filter(uneven).count();
         for &node in below {
             self.taken[node] = false;
             self.ends[node] = None;
         }
-        Character {
-            nodes: joint_nodes,
-            joints,
-            above,
-            uneven,
-        }
+        Character { nodes: joint_nodes, joints, above, uneven }
     }
 
     /// A leaf that only says where the bone of its parent ends is an end site and no joint.
@@ -170,7 +183,8 @@ impl<'a> Search<'a> {
             return;
         };
         let (above, is_joint) = (&self.nodes.all[parent], self.is_joint[node] || self.moves[node]);
-        let says_so = above.children.len() == 1 || leaf.name.strip_prefix(above.name.as_str()) == Some("_end");
+        let says_so = above.children.len() == 1
+            || leaf.name.strip_prefix(above.name.as_str()) == Some("_end");
         if !is_joint && leaf.is_bare && leaf.children.is_empty() && says_so {
             self.taken[node] = false;
             self.ends[parent] = self.ends[parent].or(Some(leaf.world.position));
@@ -182,7 +196,8 @@ impl<'a> Search<'a> {
         let this = &self.nodes.all[node];
         let position = this.world.position;
         let parent = this.parent.filter(|_| node != root);
-        let offset = position - parent.map_or(DVec3::ZERO, |parent| self.nodes.all[parent].world.position);
+        let offset =
+            position - parent.map_or(DVec3::ZERO, |parent| self.nodes.all[parent].world.position);
         Joint {
             name: this.name.clone(),
             parent: parent.map(|parent| self.indices[parent]),

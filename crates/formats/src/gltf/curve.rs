@@ -1,4 +1,5 @@
-//! What an animation does to one property of one node: keys over time, and the three ways to go from one to the next.
+//! What an animation does to one property of one node: keys over time, and the three ways to go
+//! from one to the next.
 
 use super::document::Document;
 use crate::ImportError;
@@ -16,7 +17,8 @@ pub(super) const SAME_FRAME: f64 = 0.01;
 pub(super) struct Curve {
     /// Seconds, not falling. Not empty.
     pub(super) times: Arc<[f32]>,
-    /// One for each key; three for a cubic spline: the slope before it, the value and the slope after it, per second.
+    /// One for each key; three for a cubic spline: the slope before it, the value and the slope
+    /// after it, per second.
     values: Vec<Vec4>,
     interpolation: Interpolation,
     is_rotation: bool,
@@ -30,7 +32,8 @@ pub(super) enum Kind {
 }
 
 impl Curve {
-    /// Reads a sampler. `held` counts the values that are no numbers: each repeats the one before it. `None` for a curve without keys.
+    /// Reads a sampler. `held` counts the values that are no numbers: each repeats the one before
+    /// it. `None` for a curve without keys.
     pub(super) fn read(
         document: &Document<'_>,
         sampler: &Sampler,
@@ -75,8 +78,9 @@ impl Curve {
         }))
     }
 
-    /// The value at a time, seconds; before the first key and after the last one it stays. Times within `same_secs` of a key are the key.
-    /// `key` is where the last search ended, for times that rise.
+    /// The value at a time, seconds; before the first key and after the last one it stays. Times
+    /// within `same_secs` of a key are the key. `key` is where the last search ended, for times
+    /// that rise.
     pub(super) fn at(&self, secs: f64, same_secs: f64, key: &mut usize) -> Vec4 {
         let time = |key: usize| f64::from(self.times[key]);
         let last = self.times.len() - 1;
@@ -101,7 +105,9 @@ impl Curve {
                     + to * (3.0 * t2 - 2.0 * t3)
                     + arriving * (span * (t3 - t2))
             }
-            _ if self.is_rotation => Vec4::from(quat::slerp(rotation(self.key(key)), rotation(self.key(key + 1)), t)),
+            _ if self.is_rotation => {
+                Vec4::from(quat::slerp(rotation(self.key(key)), rotation(self.key(key + 1)), t))
+            }
             _ => self.key(key).lerp(self.key(key + 1), t),
         }
     }
@@ -119,7 +125,8 @@ impl Curve {
 
     /// Whether any value is another than `rest` by more than a thousandth.
     pub(super) fn differs_from(&self, rest: Vec4) -> bool {
-        (0..self.times.len()).any(|key| (self.key(key) - rest).abs().max_element() > 1e-3 * rest.abs().max_element())
+        (0..self.times.len())
+            .any(|key| (self.key(key) - rest).abs().max_element() > 1e-3 * rest.abs().max_element())
     }
 }
 

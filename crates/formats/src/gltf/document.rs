@@ -9,7 +9,8 @@ use gltf::json::{Root, Value};
 use std::cell::Cell;
 use std::sync::Arc;
 
-/// Gives the bytes of a file beside the one that is read, by the name that stands in it; `None` where it is not there.
+/// Gives the bytes of a file beside the one that is read, by the name that stands in it; `None`
+/// where it is not there.
 pub(super) type Resolve<'a> = &'a dyn Fn(&str) -> Option<Arc<[u8]>>;
 
 /// A file, taken apart. Nothing in `root` has been checked.
@@ -29,10 +30,18 @@ enum Buffer<'a> {
 }
 
 impl<'a> Document<'a> {
-    /// `most` bounds the bytes that are made from the file: a few bytes of JSON may ask for any number of values.
-    pub(super) fn open(name: &'a str, bytes: &'a [u8], resolve: Resolve<'_>, most: usize) -> Result<Self, ImportError> {
+    /// `most` bounds the bytes that are made from the file: a few bytes of JSON may ask for any
+    /// number of values.
+    pub(super) fn open(
+        name: &'a str,
+        bytes: &'a [u8],
+        resolve: Resolve<'_>,
+        most: usize,
+    ) -> Result<Self, ImportError> {
         let (json, binary) = if bytes.starts_with(b"glTF") {
-            chunks(bytes).map_err(|found| ImportError::whole_file(name, found, "a whole glTF 2.0 file (.glb)"))?
+            chunks(bytes).map_err(|found| {
+                ImportError::whole_file(name, found, "a whole glTF 2.0 file (.glb)")
+            })?
         } else {
             (bytes, None)
         };
@@ -52,12 +61,7 @@ impl<'a> Document<'a> {
                 ),
             },
         });
-        Ok(Self {
-            name,
-            buffers: buffers.collect(),
-            root,
-            left: Cell::new(most),
-        })
+        Ok(Self { name, buffers: buffers.collect(), root, left: Cell::new(most) })
     }
 
     pub(super) fn name(&self) -> &str {
@@ -76,7 +80,10 @@ impl<'a> Document<'a> {
             Some(Buffer::Missing(why)) => Err(self
                 .error(why.clone(), "the binary data of the animation")
                 .with_hint("open it together with its .bin file")),
-            None => Err(self.error(format!("a view of buffer {index}, which is not there"), "a valid glTF 2.0 file")),
+            None => Err(self.error(
+                format!("a view of buffer {index}, which is not there"),
+                "a valid glTF 2.0 file",
+            )),
         }
     }
 
@@ -89,7 +96,8 @@ impl<'a> Document<'a> {
 
     /// Asks for memory before it is taken.
     pub(super) fn spend(&self, count: usize, bytes_each: usize) -> Result<(), ImportError> {
-        let left = count.checked_mul(bytes_each).and_then(|bytes| self.left.get().checked_sub(bytes));
+        let left =
+            count.checked_mul(bytes_each).and_then(|bytes| self.left.get().checked_sub(bytes));
         let Some(left) = left else {
             return Err(self
                 .error(
@@ -119,7 +127,9 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
         let chunk = bytes.get(at + 8..).and_then(|rest| rest.get(..length as usize));
         let Some(chunk) = chunk else {
             let there = bytes.len() - at - 8;
-            return Err(format!("{there} bytes of a part that should have {length}: the file was cut off"));
+            return Err(format!(
+                "{there} bytes of a part that should have {length}: the file was cut off"
+            ));
         };
         // The first of each kind counts, and other kinds are for others (section 4.4.3).
         match kind {
@@ -142,7 +152,11 @@ fn parse(name: &str, json: &[u8]) -> Result<Root, ImportError> {
     let refused = |error: &gltf::json::Error| ImportError {
         line: error.line().max(1),
         column: error.column().max(1),
-        ..ImportError::whole_file(name, format!("JSON that is no glTF ({error})"), "a glTF 2.0 file")
+        ..ImportError::whole_file(
+            name,
+            format!("JSON that is no glTF ({error})"),
+            "a glTF 2.0 file",
+        )
     };
     let Ok(mut value) = serde_json::from_slice::<Value>(json) else {
         return Err(refused(&error));
@@ -151,7 +165,8 @@ fn parse(name: &str, json: &[u8]) -> Result<Root, ImportError> {
         Some(found) if !found.starts_with("2.") => return Err(version(name, found)),
         _ => {}
     }
-    // Channels that move something else than a node (KHR_animation_pointer) are valid, but the library does not know them.
+    // Channels that move something else than a node (KHR_animation_pointer) are valid, but the
+    // library does not know them.
     let animations = value.get_mut("animations").and_then(Value::as_array_mut);
     for channels in animations
         .into_iter()
@@ -167,7 +182,8 @@ fn version(name: &str, found: &str) -> ImportError {
     ImportError::whole_file(name, format!("glTF version {}", short(found.as_bytes())), "glTF 2.0")
 }
 
-/// The content of a data URI after `data:`. Padding and white space are optional, percent signs are undone.
+/// The content of a data URI after `data:`. Padding and white space are optional, percent signs are
+/// undone.
 fn embedded(data: &str) -> Option<Vec<u8>> {
     const READER: GeneralPurpose = GeneralPurpose::new(
         &STANDARD,

@@ -1,11 +1,15 @@
-//! glTF 2.0: characters and their animations from `.glb` and `.gltf` files, and clips as `.glb` files.
+//! glTF 2.0: characters and their animations from `.glb` and `.gltf` files, and clips as `.glb`
+//! files.
 //!
-//! The format (Khronos Group, "glTF 2.0 Specification") is a JSON tree of nodes with translation, rotation and scale, and binary arrays
-//! (accessors) with keys over time. Lengths are metres, +Y is up, and a character looks along +Z: as inside Segue.
+//! The format (Khronos Group, "glTF 2.0 Specification") is a JSON tree of nodes with translation,
+//! rotation and scale, and binary arrays (accessors) with keys over time. Lengths are metres, +Y is
+//! up, and a character looks along +Z: as inside Segue.
 //!
-//! What is read is motion, and who moves: which nodes are joints is told by the skins, and where there is none by the animations. Joints get new axes, so that
-//! at rest every rotation is the identity and offsets are what the rest pose shows, as everywhere in Segue; scales of nodes go into offsets. World
-//! positions stay what they are. A mesh with a skin comes along with its plain colour; other meshes and images are not looked at.
+//! What is read is motion, and who moves: which nodes are joints is told by the skins, and where
+//! there is none by the animations. Joints get new axes, so that at rest every rotation is the
+//! identity and offsets are what the rest pose shows, as everywhere in Segue; scales of nodes go
+//! into offsets. World positions stay what they are. A mesh with a skin comes along with its plain
+//! colour; other meshes and images are not looked at.
 
 mod accessor;
 mod bones;

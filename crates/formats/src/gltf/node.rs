@@ -32,11 +32,8 @@ pub(super) struct World {
 }
 
 impl World {
-    pub(super) const IDENTITY: Self = Self {
-        position: DVec3::ZERO,
-        rotation: DQuat::IDENTITY,
-        linear: DMat3::IDENTITY,
-    };
+    pub(super) const IDENTITY: Self =
+        Self { position: DVec3::ZERO, rotation: DQuat::IDENTITY, linear: DMat3::IDENTITY };
 
     /// Where a child's translation leads.
     pub(super) fn point(&self, translation: DVec3) -> DVec3 {
@@ -68,12 +65,18 @@ impl Nodes {
                         let found = format!("node {child} (`{}`) with two parents", node.name);
                         return Err(document.error(found, "a tree of nodes"));
                     }
-                    None => return Err(document.error(format!("node {child}, which is not there"), "a tree of nodes")),
+                    None => {
+                        return Err(document.error(
+                            format!("node {child}, which is not there"),
+                            "a tree of nodes",
+                        ));
+                    }
                 }
             }
         }
         let mut order = Vec::with_capacity(all.len());
-        let mut open: Vec<usize> = (0..all.len()).rev().filter(|&node| all[node].parent.is_none()).collect();
+        let mut open: Vec<usize> =
+            (0..all.len()).rev().filter(|&node| all[node].parent.is_none()).collect();
         while let Some(index) = open.pop() {
             order.push(index);
             open.extend(all[index].children.iter().rev());
@@ -82,10 +85,14 @@ impl Nodes {
             node.world = World {
                 position: parent.point(node.translation),
                 rotation: (parent.rotation * node.rotation).normalize(),
-                linear: parent.linear * DMat3::from_quat(node.rotation) * DMat3::from_diagonal(node.scale),
+                linear: parent.linear
+                    * DMat3::from_quat(node.rotation)
+                    * DMat3::from_diagonal(node.scale),
             };
             let World { position, linear, .. } = node.world;
-            if !(position.abs().max_element() < FAR && linear.to_cols_array().iter().all(|entry| entry.abs() < FAR)) {
+            if !(position.abs().max_element() < FAR
+                && linear.to_cols_array().iter().all(|entry| entry.abs() < FAR))
+            {
                 let found = format!("node {index} (`{}`) farther away than can be told", node.name);
                 return Err(document.error(found, "a scene of some size"));
             }
@@ -103,12 +110,16 @@ impl Nodes {
 }
 
 fn at_rest(index: usize, node: &gltf::json::Node) -> Node {
-    let vector = |v: Option<[f32; 3]>, default: DVec3| v.map_or(default, |v| DVec3::from_array(v.map(f64::from)));
+    let vector = |v: Option<[f32; 3]>, default: DVec3| {
+        v.map_or(default, |v| DVec3::from_array(v.map(f64::from)))
+    };
     let mut translation = vector(node.translation, DVec3::ZERO);
-    let mut rotation = node.rotation.map_or(DQuat::IDENTITY, |q| DQuat::from_array(q.0.map(f64::from)));
+    let mut rotation =
+        node.rotation.map_or(DQuat::IDENTITY, |q| DQuat::from_array(q.0.map(f64::from)));
     let mut scale = vector(node.scale, DVec3::ONE);
     if let Some(matrix) = node.matrix {
-        (scale, rotation, translation) = DMat4::from_cols_array(&matrix.map(f64::from)).to_scale_rotation_translation();
+        (scale, rotation, translation) =
+            DMat4::from_cols_array(&matrix.map(f64::from)).to_scale_rotation_translation();
     }
     let length = rotation.length();
     Node {

@@ -2,7 +2,8 @@
 
 /// What is taken where the keys say nothing, frames per second.
 const DEFAULT_FPS: f64 = 30.0;
-/// Lower rates are multiplied until they come nearest to the default: a pose every second is no frame rate.
+/// Lower rates are multiplied until they come nearest to the default: a pose every second is no
+/// frame rate.
 const LOWEST_FPS: f64 = 20.0;
 /// Higher rates are those of slips.
 const HIGHEST_FPS: f64 = 1000.0;
@@ -10,7 +11,8 @@ const HIGHEST_FPS: f64 = 1000.0;
 const SAME_KEY_SECS: f64 = 1e-4;
 /// Keys this near to a frame lie on it, in frames.
 const ON_FRAME: f64 = 0.02;
-/// How many frames may lie between the two keys that are nearest to each other: for keys at 0, 2 and 5 frames.
+/// How many frames may lie between the two keys that are nearest to each other: for keys at 0, 2
+/// and 5 frames.
 const MOST_BETWEEN: u32 = 4;
 
 /// When an animation plays, and how often it is read.
@@ -26,8 +28,8 @@ pub(super) struct Rate {
     pub(super) holds_keys: bool,
 }
 
-/// The lowest rate at which every key lies on a frame: a whole one where it can be. `keys` are the times of all keys of all curves, seconds, in any
-/// order. `given` is taken as it is.
+/// The lowest rate at which every key lies on a frame: a whole one where it can be. `keys` are the
+/// times of all keys of all curves, seconds, in any order. `given` is taken as it is.
 pub(super) fn rate(mut keys: Vec<f64>, given: Option<f64>) -> Rate {
     keys.sort_by(f64::total_cmp);
     // Distances are measured from the first of keys that are one.
@@ -45,19 +47,15 @@ pub(super) fn rate(mut keys: Vec<f64>, given: Option<f64>) -> Rate {
         let nearest = keys.windows(2).map(|pair| pair[1] - pair[0]).min_by(f64::total_cmp)?;
         // Where every frame has a key, their number says it best.
         let even = (keys.len() - 1) as f64 / span;
-        let candidates = std::iter::once(even).chain((1..=MOST_BETWEEN).map(|between| f64::from(between) / nearest));
+        let candidates = std::iter::once(even)
+            .chain((1..=MOST_BETWEEN).map(|between| f64::from(between) / nearest));
         candidates
             .flat_map(|fps| [fps.round(), fps])
             .map(|fps| if fps < LOWEST_FPS { fps * (DEFAULT_FPS / fps).round() } else { fps })
             .find(|&fps| fps > 0.0 && fps <= HIGHEST_FPS && holds(fps))
     });
     let fps = found.unwrap_or(DEFAULT_FPS);
-    Rate {
-        fps,
-        start_secs: start,
-        frames: (span * fps).round() + 1.0,
-        holds_keys: holds(fps),
-    }
+    Rate { fps, start_secs: start, frames: (span * fps).round() + 1.0, holds_keys: holds(fps) }
 }
 
 #[cfg(test)]
@@ -66,9 +64,7 @@ mod tests {
 
     fn found(keys: impl IntoIterator<Item = f64>) -> (f64, f64, bool) {
         let single = keys.into_iter().map(|key| f64::from(key as f32)).collect();
-        let Rate {
-            fps, frames, holds_keys, ..
-        } = rate(single, None);
+        let Rate { fps, frames, holds_keys, .. } = rate(single, None);
         (fps, frames, holds_keys)
     }
 

@@ -21,18 +21,21 @@ use segue_motion::skin::SkinnedMesh;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Reads a glTF 2.0 file, `.glb` or `.gltf`: one clip for each animation of each character, in metres and Y up. A character without animation is a
-/// clip of one frame, its rest pose.
+/// Reads a glTF 2.0 file, `.glb` or `.gltf`: one clip for each animation of each character, in
+/// metres and Y up. A character without animation is a clip of one frame, its rest pose.
 ///
-/// `name` is the file's name: for errors, and for clips whose animation has no name. `resolve` gives the bytes of files that lie beside it, by the
-/// name that stands in it (the `.bin` of a `.gltf`).
+/// `name` is the file's name: for errors, and for clips whose animation has no name. `resolve`
+/// gives the bytes of files that lie beside it, by the name that stands in it (the `.bin` of a
+/// `.gltf`).
 ///
-/// Keys are sampled at the lowest rate at which each is a frame, or at 30 frames per second where there is none; `options.fps` overrides that and
-/// does not change how long an animation takes. Lengths are metres unless that makes giants of more than ten metres: centimetres then, or
+/// Keys are sampled at the lowest rate at which each is a frame, or at 30 frames per second where
+/// there is none; `options.fps` overrides that and does not change how long an animation takes.
+/// Lengths are metres unless that makes giants of more than ten metres: centimetres then, or
 /// millimetres.
 ///
 /// # Errors
-/// [`ImportError`] when the file is no glTF 2.0, is cut off, holds nothing that moves, or asks for more memory than `options.max_bytes`.
+/// [`ImportError`] when the file is no glTF 2.0, is cut off, holds nothing that moves, or asks for
+/// more memory than `options.max_bytes`.
 pub fn read(
     name: &str,
     bytes: &[u8],
@@ -67,12 +70,8 @@ pub fn read(
     }
     let mut imported = Imported::default();
     for character in &characters {
-        let context = Context {
-            document: &document,
-            nodes: &nodes,
-            options,
-            several: characters.len() > 1,
-        };
+        let context =
+            Context { document: &document, nodes: &nodes, options, several: characters.len() > 1 };
         context.clips(character, &motions, &mut imported.clips, &mut tally)?;
     }
     imported.warnings = tally.into_warnings(b"");
@@ -101,14 +100,21 @@ impl Motion {
         let mut all_times: BTreeMap<usize, Arc<[f32]>> = BTreeMap::new();
         let mut held = 0;
         for channel in &animation.channels {
-            let (node, Checked::Valid(path)) = (channel.target.node.value(), channel.target.path) else {
+            let (node, Checked::Valid(path)) = (channel.target.node.value(), channel.target.path)
+            else {
                 continue;
             };
             let Some(moved) = nodes.all.get(node) else {
-                return Err(document.error(format!("an animation of node {node}, which is not there"), "a valid glTF 2.0 file"));
+                return Err(document.error(
+                    format!("an animation of node {node}, which is not there"),
+                    "a valid glTF 2.0 file",
+                ));
             };
-            let Some(sampler): Option<&Sampler> = animation.samplers.get(channel.sampler.value()) else {
-                return Err(document.error("an animation without its keys", "a valid glTF 2.0 file"));
+            let Some(sampler): Option<&Sampler> = animation.samplers.get(channel.sampler.value())
+            else {
+                return Err(
+                    document.error("an animation without its keys", "a valid glTF 2.0 file")
+                );
             };
             let kind = match path {
                 Property::Rotation => Kind::Rotation,
@@ -119,11 +125,14 @@ impl Motion {
                 Some(times) => Arc::clone(times),
                 None => key_times(document, sampler.input)?,
             };
-            let Some(curve) = Curve::read(document, sampler, Arc::clone(&times), kind, &mut held)? else {
+            let Some(curve) = Curve::read(document, sampler, Arc::clone(&times), kind, &mut held)?
+            else {
                 continue;
             };
             match path {
-                Property::Scale if curve.differs_from(moved.scale.as_vec3().extend(0.0)) => tally.add(WarningKind::ScaleAnimation, None),
+                Property::Scale if curve.differs_from(moved.scale.as_vec3().extend(0.0)) => {
+                    tally.add(WarningKind::ScaleAnimation, None)
+                }
                 Property::Rotation => drop(turns.insert(node, curve)),
                 Property::Translation => drop(places.insert(node, curve)),
                 _ => continue,
@@ -138,12 +147,7 @@ impl Motion {
         if !rate.holds_keys && given_fps(options).is_none() {
             tally.add(WarningKind::Resampled { fps: rate.fps }, None);
         }
-        Ok(Self {
-            name: String::new(),
-            turns,
-            places,
-            rate,
-        })
+        Ok(Self { name: String::new(), turns, places, rate })
     }
 }
 
@@ -181,18 +185,20 @@ impl Context<'_> {
         clips: &mut Vec<ImportedClip>,
         tally: &mut Tally,
     ) -> Result<(), ImportError> {
-        let mut skin = if self.is_own() {
-            None
-        } else {
-            mesh(self.document, self.nodes, character, tally)
-        };
+        let mut skin =
+            if self.is_own() { None } else { mesh(self.document, self.nodes, character, tally) };
         for _ in 0..character.uneven {
             tally.add(WarningKind::UnevenScale, None);
         }
         let rest = RawMotion {
             joints: character.joints.clone(),
             rotations: vec![Quat::IDENTITY; character.joints.len()],
-            root_translations: character.joints.first().map(|root| root.offset).into_iter().collect(),
+            root_translations: character
+                .joints
+                .first()
+                .map(|root| root.offset)
+                .into_iter()
+                .collect(),
             tracks: Vec::new(),
         };
         let metres_per_unit = self.unit(&rest, tally);
@@ -204,7 +210,8 @@ impl Context<'_> {
         }
         let skin = skin.map(|mesh| Arc::new(Self::folded(mesh, &rest)));
         let is_moved = |motion: &&Motion| {
-            let moves = |node: &usize| motion.turns.contains_key(node) || motion.places.contains_key(node);
+            let moves =
+                |node: &usize| motion.turns.contains_key(node) || motion.places.contains_key(node);
             character.nodes.iter().any(moves)
         };
         let before = clips.len();
@@ -226,27 +233,35 @@ impl Context<'_> {
         Ok(())
     }
 
-    /// The mesh on the joints that its clips have ([`Clip::folded`]): what followed a joint above the carrier follows the carrier.
+    /// The mesh on the joints that its clips have ([`Clip::folded`]): what followed a joint above
+    /// the carrier follows the carrier.
     fn folded(mut mesh: SkinnedMesh, rest: &RawMotion) -> SkinnedMesh {
         let measure = measure(rest, Some(1.0), Some(UpAxis::Y));
         if let Ok(clip) = rest.clone().into_clip(String::new(), 1.0, &measure)
             && let Some(above) = clip.skeleton().above()
         {
-            let bind = above.file_index().iter().filter_map(|&file| mesh.bind.get(file).copied()).collect();
+            let bind = above
+                .file_index()
+                .iter()
+                .filter_map(|&file| mesh.bind.get(file).copied())
+                .collect();
             mesh.rebind(&above.from_file(), bind);
         }
         mesh
     }
 
-    /// Whether Segue wrote the file: the body in it is one that Segue makes around the bones itself.
+    /// Whether Segue wrote the file: the body in it is one that Segue makes around the bones
+    /// itself.
     fn is_own(&self) -> bool {
         let root = &self.document.root;
         let is_made = |mesh: &gltf::json::Mesh| mesh.name.as_deref() == Some(MADE_BODY);
         let generator = root.asset.generator.as_deref();
-        generator.is_some_and(|generator| generator.starts_with(GENERATOR)) && root.meshes.iter().all(is_made)
+        generator.is_some_and(|generator| generator.starts_with(GENERATOR))
+            && root.meshes.iter().all(is_made)
     }
 
-    /// Metres per unit. The format is made for metres, but not every exporter knows: animals and people of a hundred metres are in centimetres.
+    /// Metres per unit. The format is made for metres, but not every exporter knows: animals and
+    /// people of a hundred metres are in centimetres.
     fn unit(&self, rest: &RawMotion, tally: &mut Tally) -> f64 {
         /// Nothing that moves on joints is higher, in each unit.
         const HIGHEST: [(f64, f64); 2] = [(10.0, 1.0), (1000.0, 0.01)];
@@ -262,21 +277,24 @@ impl Context<'_> {
         metres_per_unit
     }
 
-    /// Reads an animation frame by frame. With `G` for rotations in the world at rest, a joint turns by `G(parent) · local · G(joint)⁻¹`, and a
-    /// translation is taken to the parent's new axes by the parent's rotation and scale at rest.
+    /// Reads an animation frame by frame. With `G` for rotations in the world at rest, a joint
+    /// turns by `G(parent) · local · G(joint)⁻¹`, and a translation is taken to the parent's new
+    /// axes by the parent's rotation and scale at rest.
     fn sampled(&self, character: &Character, motion: &Motion) -> Result<RawMotion, ImportError> {
-        let Rate {
-            fps, start_secs, frames, ..
-        } = motion.rate;
+        let Rate { fps, start_secs, frames, .. } = motion.rate;
         let joints = character.joints.len();
-        // Too many frames for a number of bytes are too many for `spend`, which takes what saturates for too much.
+        // Too many frames for a number of bytes are too many for `spend`, which takes what
+        // saturates for too much.
         let frames = frames as usize;
         self.document
             .spend(frames.saturating_mul(joints), size_of::<Quat>() + size_of::<Vec3>())?;
         let mut raw = RawMotion {
             joints: character.joints.clone(),
             rotations: vec![Quat::IDENTITY; frames * joints],
-            root_translations: vec![character.joints.first().map_or(Vec3::ZERO, |root| root.offset); frames],
+            root_translations: vec![
+                character.joints.first().map_or(Vec3::ZERO, |root| root.offset);
+                frames
+            ],
             tracks: Vec::new(),
         };
         let (secs, same_secs) = (|frame: usize| start_secs + frame as f64 / fps, SAME_FRAME / fps);
@@ -288,9 +306,14 @@ impl Context<'_> {
                     .map_or(character.above, |parent| self.nodes.all[parent].world),
             };
             if let Some(curve) = motion.turns.get(&node) {
-                let (parent, own) = (above.rotation.as_quat(), self.nodes.all[node].world.rotation.as_quat().conjugate());
+                let (parent, own) = (
+                    above.rotation.as_quat(),
+                    self.nodes.all[node].world.rotation.as_quat().conjugate(),
+                );
                 let mut key = 0;
-                for (frame, turn) in raw.rotations.iter_mut().skip(joint).step_by(joints).enumerate() {
+                for (frame, turn) in
+                    raw.rotations.iter_mut().skip(joint).step_by(joints).enumerate()
+                {
                     let local = rotation(curve.at(secs(frame), same_secs, &mut key));
                     *turn = quat::renormalize(parent * local * own);
                 }
@@ -320,7 +343,14 @@ impl Context<'_> {
         Ok(raw)
     }
 
-    fn clip(&self, mut raw: RawMotion, name: &str, fps: f64, metres_per_unit: f64, tally: &mut Tally) -> Result<ImportedClip, ImportError> {
+    fn clip(
+        &self,
+        mut raw: RawMotion,
+        name: &str,
+        fps: f64,
+        metres_per_unit: f64,
+        tally: &mut Tally,
+    ) -> Result<ImportedClip, ImportError> {
         let t_pose_first_row = first_frame_is_t_pose(&raw);
         let t_pose_dropped = t_pose_first_row && self.options.drop_t_pose;
         if t_pose_first_row {
@@ -329,7 +359,8 @@ impl Context<'_> {
         if t_pose_dropped {
             raw.drop_first_frame();
         }
-        let measure = measure(&raw, Some(metres_per_unit), Some(self.options.up.unwrap_or_default()));
+        let measure =
+            measure(&raw, Some(metres_per_unit), Some(self.options.up.unwrap_or_default()));
         let mendable = raw.tell_unlikely(&measure, self.options, tally);
         let name = match raw.joints.first() {
             Some(root) if self.several => format!("{name} ({})", root.name),
@@ -338,13 +369,6 @@ impl Context<'_> {
         let clip = raw
             .into_clip(name, fps, &measure)
             .map_err(|error| self.document.error(error.to_string(), "a skeleton with a motion"))?;
-        Ok(ImportedClip {
-            clip,
-            t_pose_first_row,
-            t_pose_dropped,
-            measure,
-            mendable,
-            mesh: None,
-        })
+        Ok(ImportedClip { clip, t_pose_first_row, t_pose_dropped, measure, mendable, mesh: None })
     }
 }

@@ -1,4 +1,5 @@
-//! The mesh of a character: all primitives whose skin lies on its joints, bound to them as they rest in the file.
+//! The mesh of a character: all primitives whose skin lies on its joints, bound to them as they
+//! rest in the file.
 
 use super::characters::Character;
 use super::document::Document;
@@ -17,11 +18,18 @@ const MOST: u64 = 1 << 21;
 /// Sets of joints and weights that are read; the four greatest weights of all count.
 const SETS: u32 = 2;
 
-/// The mesh of a character at rest, in the file's unit; `None` where it has none. What cannot be read is left out and told.
+/// The mesh of a character at rest, in the file's unit; `None` where it has none. What cannot be
+/// read is left out and told.
 ///
-/// The inverse bind matrices may scale, and lie in any pose: vertices are taken where the skin puts them at rest (section 3.7.3.3 of the
-/// specification), and are bound there anew, so that rigid motions of the joints move them from then on.
-pub(super) fn mesh(document: &Document<'_>, nodes: &Nodes, character: &Character, tally: &mut Tally) -> Option<SkinnedMesh> {
+/// The inverse bind matrices may scale, and lie in any pose: vertices are taken where the skin puts
+/// them at rest (section 3.7.3.3 of the specification), and are bound there anew, so that rigid
+/// motions of the joints move them from then on.
+pub(super) fn mesh(
+    document: &Document<'_>,
+    nodes: &Nodes,
+    character: &Character,
+    tally: &mut Tally,
+) -> Option<SkinnedMesh> {
     let mut joint_of = vec![None; nodes.all.len()];
     for (joint, &node) in character.nodes.iter().enumerate() {
         joint_of[node] = u16::try_from(joint).ok();
@@ -32,7 +40,9 @@ pub(super) fn mesh(document: &Document<'_>, nodes: &Nodes, character: &Character
         let (Some(shape), Some(skin)) = (node.mesh, node.skin) else {
             continue;
         };
-        let Some(skin) = document.root.get(skin) else { continue };
+        let Some(skin) = document.root.get(skin) else {
+            continue;
+        };
         let joints: Vec<Option<u16>> = skin
             .joints
             .iter()
@@ -41,7 +51,9 @@ pub(super) fn mesh(document: &Document<'_>, nodes: &Nodes, character: &Character
         if joints.iter().all(Option::is_none) {
             continue;
         }
-        let Some(shape) = document.root.get(shape) else { continue };
+        let Some(shape) = document.root.get(shape) else {
+            continue;
+        };
         let skin = Binding::read(document, nodes, skin, joints);
         for primitive in &shape.primitives {
             let before = mesh.positions.len() as u64;
@@ -60,7 +72,9 @@ pub(super) fn mesh(document: &Document<'_>, nodes: &Nodes, character: &Character
             if primitive.targets.as_ref().is_some_and(|targets| !targets.is_empty()) {
                 tally.add(WarningKind::MorphTargets, None);
             }
-            if material(document, primitive.material).is_some_and(|material| material.pbr_metallic_roughness.base_color_texture.is_some()) {
+            if material(document, primitive.material).is_some_and(|material| {
+                material.pbr_metallic_roughness.base_color_texture.is_some()
+            }) {
                 tally.add(WarningKind::Textures, None);
             }
         }
@@ -84,7 +98,10 @@ pub(super) fn mesh(document: &Document<'_>, nodes: &Nodes, character: &Character
 
 const WHITE: [f32; 4] = [1.0; 4];
 
-fn material<'a>(document: &'a Document<'_>, index: Option<Index<Material>>) -> Option<&'a Material> {
+fn material<'a>(
+    document: &'a Document<'_>,
+    index: Option<Index<Material>>,
+) -> Option<&'a Material> {
     document.root.get(index?)
 }
 
@@ -97,7 +114,12 @@ struct Binding {
 }
 
 impl Binding {
-    fn read(document: &Document<'_>, nodes: &Nodes, skin: &gltf::json::Skin, joints: Vec<Option<u16>>) -> Result<Self, ImportError> {
+    fn read(
+        document: &Document<'_>,
+        nodes: &Nodes,
+        skin: &gltf::json::Skin,
+        joints: Vec<Option<u16>>,
+    ) -> Result<Self, ImportError> {
         let inverse_bind = match skin.inverse_bind_matrices {
             Some(matrices) => document.floats(matrices, Type::Mat4)?,
             None => Vec::new(),
@@ -116,14 +138,11 @@ impl Binding {
             let world = nodes.all.get(node.value()).map(|node| node.world).unwrap_or_default();
             let joint = DMat4::from_mat3_translation(world.linear, world.position);
             joint
-                * matrices
-                    .get(place)
-                    .map_or(DMat4::IDENTITY, |matrix| DMat4::from_cols_array(&matrix.map(f64::from)))
+                * matrices.get(place).map_or(DMat4::IDENTITY, |matrix| {
+                    DMat4::from_cols_array(&matrix.map(f64::from))
+                })
         });
-        Ok(Self {
-            rest: rest.collect(),
-            joints,
-        })
+        Ok(Self { rest: rest.collect(), joints })
     }
 }
 
@@ -139,16 +158,26 @@ struct Part {
 
 impl Part {
     /// `None` for what is no surface, or has no skin. `before` vertices were read already.
-    fn read(document: &Document<'_>, primitive: &Primitive, binding: &Binding, before: u64) -> Result<Option<Self>, ImportError> {
-        let Checked::Valid(mode) = primitive.mode else { return Ok(None) };
-        let attribute = |semantic: Semantic| primitive.attributes.get(&Checked::Valid(semantic)).copied();
-        let Some(positions) =
-            attribute(Semantic::Positions).filter(|_| matches!(mode, Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan))
+    fn read(
+        document: &Document<'_>,
+        primitive: &Primitive,
+        binding: &Binding,
+        before: u64,
+    ) -> Result<Option<Self>, ImportError> {
+        let Checked::Valid(mode) = primitive.mode else {
+            return Ok(None);
+        };
+        let attribute =
+            |semantic: Semantic| primitive.attributes.get(&Checked::Valid(semantic)).copied();
+        let Some(positions) = attribute(Semantic::Positions)
+            .filter(|_| matches!(mode, Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan))
         else {
             return Ok(None);
         };
         let claimed = document.claimed(positions);
-        if before.saturating_add(claimed) > MOST || primitive.indices.is_some_and(|indices| document.claimed(indices) > 3 * MOST) {
+        if before.saturating_add(claimed) > MOST
+            || primitive.indices.is_some_and(|indices| document.claimed(indices) > 3 * MOST)
+        {
             return Err(document.error(format!("{claimed} vertices"), "at most two millions"));
         }
         let positions = vectors(&document.lengths(positions, Type::Vec3)?);
@@ -159,12 +188,16 @@ impl Part {
         };
         let mut influences: Vec<Vec<(usize, f32)>> = vec![Vec::new(); count];
         for set in 0..SETS {
-            let (Some(joints), Some(weights)) = (attribute(Semantic::Joints(set)), attribute(Semantic::Weights(set))) else {
+            let (Some(joints), Some(weights)) =
+                (attribute(Semantic::Joints(set)), attribute(Semantic::Weights(set)))
+            else {
                 break;
             };
-            let (joints, weights) = (document.integers(joints, Type::Vec4)?, document.floats(weights, Type::Vec4)?);
+            let (joints, weights) =
+                (document.integers(joints, Type::Vec4)?, document.floats(weights, Type::Vec4)?);
             if joints.len() != 4 * count || weights.len() != 4 * count {
-                return Err(document.error("joints or weights that are not one for each vertex", "one for each"));
+                return Err(document
+                    .error("joints or weights that are not one for each vertex", "one for each"));
             }
             document.spend(count, 4 * size_of::<(usize, f32)>())?;
             for (influences, (joints, weights)) in influences
@@ -186,7 +219,10 @@ impl Part {
             None => (0..count as u32).collect(),
         };
         if let Some(index) = indices.iter().find(|index| **index as usize >= count) {
-            return Err(document.error(format!("a triangle with vertex {index} of {count}"), "a vertex that is there"));
+            return Err(document.error(
+                format!("a triangle with vertex {index} of {count}"),
+                "a vertex that is there",
+            ));
         }
         let mut part = Self {
             triangles: triangles(&indices, mode),
@@ -209,7 +245,8 @@ impl Part {
         Ok(Some(part))
     }
 
-    /// Puts the vertices where the skin has them at rest, and names the joints that move them from there.
+    /// Puts the vertices where the skin has them at rest, and names the joints that move them from
+    /// there.
     fn rest(&mut self, binding: &Binding, influences: &[Vec<(usize, f32)>]) -> Result<(), String> {
         let has_normals = self.normals.len() == self.positions.len();
         let mut mirrored = 0usize;
@@ -224,7 +261,8 @@ impl Part {
             }
             let (mut matrix, mut joints, mut weights) = (DMat4::ZERO, [0; 4], [0.0; 4]);
             for (place, &(joint, weight)) in sorted.iter().enumerate() {
-                let (Some(rest), Some(&own)) = (binding.rest.get(joint), binding.joints.get(joint)) else {
+                let (Some(rest), Some(&own)) = (binding.rest.get(joint), binding.joints.get(joint))
+                else {
                     return Err(format!("a vertex with joint {joint} of {}", binding.rest.len()));
                 };
                 matrix += *rest * f64::from(weight / total);
@@ -234,7 +272,8 @@ impl Part {
             self.joints.push(joints);
             self.weights.push(weights);
             let linear = DMat3::from_mat4(matrix);
-            let (position, normal) = (self.positions[vertex], self.normals.get(vertex).copied().unwrap_or_default());
+            let (position, normal) =
+                (self.positions[vertex], self.normals.get(vertex).copied().unwrap_or_default());
             self.positions[vertex] = matrix.transform_point3(position.as_dvec3()).as_vec3();
             mirrored += usize::from(linear.determinant() < 0.0);
             if has_normals {
@@ -242,8 +281,9 @@ impl Part {
             }
         }
         let positions = &self.positions;
-        self.triangles
-            .retain(|triangle| triangle.iter().all(|&corner| positions[corner as usize].abs().max_element() < 1e18));
+        self.triangles.retain(|triangle| {
+            triangle.iter().all(|&corner| positions[corner as usize].abs().max_element() < 1e18)
+        });
         for position in &mut self.positions {
             if position.abs().max_element().is_nan() || position.abs().max_element() >= 1e18 {
                 *position = Vec3::ZERO;
@@ -275,7 +315,8 @@ impl Part {
     }
 }
 
-/// Takes normals along with a surface: the inverse transpose times the determinant, which is there for flattened surfaces, too.
+/// Takes normals along with a surface: the inverse transpose times the determinant, which is there
+/// for flattened surfaces, too.
 fn cofactors(m: DMat3) -> DMat3 {
     let [x, y, z]: [DVec3; 3] = [m.x_axis, m.y_axis, m.z_axis];
     let sign = m.determinant().signum();
@@ -293,7 +334,9 @@ fn triangles(indices: &[u32], mode: Mode) -> Vec<[u32; 3]> {
         Mode::TriangleStrip => indices
             .windows(3)
             .enumerate()
-            .filter_map(|(place, w)| own(if place % 2 == 0 { [w[0], w[1], w[2]] } else { [w[1], w[0], w[2]] }))
+            .filter_map(|(place, w)| {
+                own(if place % 2 == 0 { [w[0], w[1], w[2]] } else { [w[1], w[0], w[2]] })
+            })
             .collect(),
         Mode::TriangleFan => (indices.get(1..).unwrap_or_default().windows(2))
             .filter_map(|w| own([indices[0], w[0], w[1]]))

@@ -1,4 +1,5 @@
-//! Files are made here, as JSON with their numbers embedded, and read against matrices multiplied node by node.
+//! Files are made here, as JSON with their numbers embedded, and read against matrices multiplied
+//! node by node.
 
 use super::*;
 use crate::{ImportError, ImportOptions, Imported};
@@ -46,7 +47,8 @@ impl Made {
     }
 
     fn view(&mut self, bytes: &[u8]) -> usize {
-        let view = json!({ "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len() });
+        let view =
+            json!({ "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len() });
         self.bytes.extend_from_slice(bytes);
         self.list("bufferViews").push(view);
         self.list("bufferViews").len() - 1
@@ -64,7 +66,14 @@ impl Made {
     }
 
     /// One more channel of the first animation.
-    fn channel(&mut self, node: usize, path: &str, interpolation: &str, times: &[f32], values: &[f32]) {
+    fn channel(
+        &mut self,
+        node: usize,
+        path: &str,
+        interpolation: &str,
+        times: &[f32],
+        values: &[f32],
+    ) {
         let input = self.floats("SCALAR", 1, times);
         let (kind, width) = if path == "rotation" { ("VEC4", 4) } else { ("VEC3", 3) };
         let output = self.floats(kind, width, values);
@@ -141,7 +150,8 @@ fn a_clip_comes_back_from_its_file() {
     assert_eq!(back.provenance().metres_per_unit, 1.0);
     // Nodes are read each followed by all below it.
     let joints = clip.skeleton().joints();
-    let places: Vec<usize> = joints.iter().map(|joint| back.skeleton().find(&joint.name).unwrap()).collect();
+    let places: Vec<usize> =
+        joints.iter().map(|joint| back.skeleton().find(&joint.name).unwrap()).collect();
     for (b, &place) in joints.iter().zip(&places) {
         let a = &back.skeleton().joints()[place];
         assert_eq!(a.parent, b.parent.map(|parent| places[parent]));
@@ -151,19 +161,18 @@ fn a_clip_comes_back_from_its_file() {
     for frame in 0..40 {
         let (found, expected) = (back.world_pose(frame), clip.world_pose(frame));
         for (joint, &place) in places.iter().enumerate() {
-            assert!(found.positions[place].distance(expected.positions[joint]) < 1e-5, "frame {frame}");
-            assert!(quat::angle_between(back.rotations(frame)[place], clip.rotations(frame)[joint]) < 1e-5);
+            assert!(
+                found.positions[place].distance(expected.positions[joint]) < 1e-5,
+                "frame {frame}"
+            );
+            assert!(
+                quat::angle_between(back.rotations(frame)[place], clip.rotations(frame)[joint])
+                    < 1e-5
+            );
         }
     }
     // At another rate, and without frames.
-    let half = write_glb(
-        &clip,
-        &GlbOptions {
-            fps: Some(60.0),
-            ..GlbOptions::default()
-        },
-    )
-    .unwrap();
+    let half = write_glb(&clip, &GlbOptions { fps: Some(60.0), ..GlbOptions::default() }).unwrap();
     assert_eq!(
         only(&read("x.glb", &half, &|_| None, &ImportOptions::default()).unwrap()).frames(),
         79
@@ -230,7 +239,8 @@ fn small_numbers_sparse_ones_and_strides_are_read() {
     let output = made.accessor(json!({ "bufferView": view, "componentType": 5122, "normalized": true, "count": 3, "type": "VEC4" }));
     made.sampler(1, "rotation", json!({ "input": input, "output": output }));
     // Translations that are zero but for the last one.
-    let (indices, values) = (made.view(&[2]), made.view(&[0, 0, 128, 63, 0, 0, 0, 64, 0, 0, 64, 64]));
+    let (indices, values) =
+        (made.view(&[2]), made.view(&[0, 0, 128, 63, 0, 0, 0, 64, 0, 0, 64, 64]));
     let output = made.accessor(json!({ "componentType": 5126, "count": 3, "type": "VEC3", "sparse": {
         "count": 1, "indices": { "bufferView": indices, "componentType": 5121 }, "values": { "bufferView": values } } }));
     made.sampler(0, "translation", json!({ "input": input, "output": output }));
@@ -247,7 +257,8 @@ fn small_numbers_sparse_ones_and_strides_are_read() {
 
 #[test]
 fn the_skeleton_is_what_the_skin_says_and_what_moves_above() {
-    // World > Mover (moves) > Armature > {Hips > Chest > Head, Mesh}, and a lamp beside it. `Chest` is in no skin.
+    // World > Mover (moves) > Armature > {Hips > Chest > Head, Mesh}, and a lamp beside it. `Chest`
+    // is in no skin.
     let nodes = json!([
         { "name": "World", "children": [1, 7], "scale": [0.01, 0.01, 0.01] },
         { "name": "Mover", "children": [2] },
@@ -264,12 +275,8 @@ fn the_skeleton_is_what_the_skin_says_and_what_moves_above() {
     made.channel(7, "translation", "LINEAR", &[0.0, 1.0], &[0.0; 6]);
     let imported = made.read();
     let clip = only(&imported);
-    let joints: Vec<_> = clip
-        .skeleton()
-        .joints()
-        .iter()
-        .map(|joint| (joint.name.as_str(), joint.parent))
-        .collect();
+    let joints: Vec<_> =
+        clip.skeleton().joints().iter().map(|joint| (joint.name.as_str(), joint.parent)).collect();
     assert_eq!(
         joints,
         [
@@ -281,7 +288,10 @@ fn the_skeleton_is_what_the_skin_says_and_what_moves_above() {
         ]
     );
     let top = |frame: usize| clip.world_pose(frame).positions[4];
-    assert!(top(0).distance(Vec3::new(0.0, 1.6, 0.0)) < 1e-6 && top(30).distance(Vec3::new(1.0, 1.6, 0.0)) < 1e-6);
+    assert!(
+        top(0).distance(Vec3::new(0.0, 1.6, 0.0)) < 1e-6
+            && top(30).distance(Vec3::new(1.0, 1.6, 0.0)) < 1e-6
+    );
     // At rest nothing is turned, whatever the nodes are.
     assert!(clip.rotations(0).iter().all(|q| quat::angle_between(*q, Quat::IDENTITY) < 1e-6));
     assert!(clip.skeleton().rest_positions()[4].distance(Vec3::Y * 1.6) < 1e-6);
@@ -296,7 +306,8 @@ fn several_characters_and_animations_are_several_clips() {
     made.root["skins"] = json!([{ "joints": [0, 1] }, { "joints": [1] }, { "joints": [2, 3] }]);
     made.channel(0, "rotation", "LINEAR", &[0.0, 1.0], &[about_z(0.0), about_z(1.0)].concat());
     let first = made.root["animations"][0].clone();
-    made.root["animations"] = json!([first, first, { "name": "unused", "channels": [], "samplers": [] }]);
+    made.root["animations"] =
+        json!([first, first, { "name": "unused", "channels": [], "samplers": [] }]);
     made.root["animations"][0]["name"] = json!("walk");
     let imported = made.read();
     let clips: Vec<_> = imported
@@ -408,12 +419,16 @@ fn buffers_are_found_beside_the_file_or_missed_by_name() {
     assert!(error.to_string().contains("found no file `my%20walk.bin` beside it"), "{error}");
     assert!(error.hint.is_some());
     let short: Arc<[u8]> = made.bytes[..30].into();
-    let error = read("a.gltf", text.as_bytes(), &|_| Some(Arc::clone(&short)), &ImportOptions::default()).unwrap_err();
+    let error =
+        read("a.gltf", text.as_bytes(), &|_| Some(Arc::clone(&short)), &ImportOptions::default())
+            .unwrap_err();
     assert!(error.to_string().contains("expected all bytes of the animation"), "{error}");
     // A buffer of images alone is not missed.
     root["buffers"] = json!([{ "byteLength": made.bytes.len(), "uri": "walk.bin" }, { "byteLength": 9, "uri": "images.bin" }]);
     let beside = |name: &str| (name == "walk.bin").then(|| Arc::clone(&bytes));
-    assert!(read("a.gltf", root.to_string().as_bytes(), &beside, &ImportOptions::default()).is_ok());
+    assert!(
+        read("a.gltf", root.to_string().as_bytes(), &beside, &ImportOptions::default()).is_ok()
+    );
 }
 
 #[test]
@@ -424,17 +439,35 @@ fn what_is_no_gltf_is_refused_with_its_place() {
         "{}",
         say("{\n \"asset\": {]")
     );
-    assert!(say(r#"{"asset":{"version":"1.0"},"nodes":{}}"#).contains("found glTF version 1.0, expected glTF 2.0"));
-    assert!(say(r#"{"asset":{"version":"2.0"},"nodes":[{"children":[0]}]}"#).contains("below themselves"));
-    assert!(say(r#"{"asset":{"version":"2.0"},"nodes":[{"children":[2]},{"children":[2]},{}]}"#).contains("two parents"));
-    assert!(say(r#"{"asset":{"version":"2.0"},"nodes":[{"children":[9]}]}"#).contains("node 9, which is not there"));
-    assert!(say(r#"{"asset":{"version":"2.0"},"nodes":[{}],"skins":[{"joints":[4]}]}"#).contains("node 4 in a skin"));
+    assert!(
+        say(r#"{"asset":{"version":"1.0"},"nodes":{}}"#)
+            .contains("found glTF version 1.0, expected glTF 2.0")
+    );
+    assert!(
+        say(r#"{"asset":{"version":"2.0"},"nodes":[{"children":[0]}]}"#)
+            .contains("below themselves")
+    );
+    assert!(
+        say(r#"{"asset":{"version":"2.0"},"nodes":[{"children":[2]},{"children":[2]},{}]}"#)
+            .contains("two parents")
+    );
+    assert!(
+        say(r#"{"asset":{"version":"2.0"},"nodes":[{"children":[9]}]}"#)
+            .contains("node 9, which is not there")
+    );
+    assert!(
+        say(r#"{"asset":{"version":"2.0"},"nodes":[{}],"skins":[{"joints":[4]}]}"#)
+            .contains("node 4 in a skin")
+    );
     let huge = r#"{"asset":{"version":"2.0"},"nodes":[{"scale":[1e30,1e30,1e30],"children":[1]},{"translation":[1,0,0]}],"skins":[{"joints":[0]}]}"#;
     assert!(say(huge).contains("farther away than can be told"));
     let glb = write_glb(&wander(&fixtures::cmu_bvh(), 3, 1), &GlbOptions::default()).unwrap();
     let cut = open(&glb[..glb.len() - 5]).unwrap_err().to_string();
     assert!(cut.contains("the file was cut off, expected a whole glTF 2.0 file"), "{cut}");
-    assert!(open(b"glTF").is_err() && open(b"glTF\x01\0\0\0").unwrap_err().to_string().contains("glTF version 1"));
+    assert!(
+        open(b"glTF").is_err()
+            && open(b"glTF\x01\0\0\0").unwrap_err().to_string().contains("glTF version 1")
+    );
 }
 
 #[test]
@@ -450,7 +483,9 @@ fn keys_that_cannot_be_are_refused() {
     assert_eq!(say(&[0.0, 1.0], 2, None), "read");
     assert!(say(&[1.0, 0.0], 2, None).contains("expected rising times"));
     assert!(say(&[0.0, f32::NAN], 2, None).contains("expected rising times"));
-    assert!(say(&[0.0, 1.0], 3, None).contains("found 3 values for 2 keys, expected 1 for each key"));
+    assert!(
+        say(&[0.0, 1.0], 3, None).contains("found 3 values for 2 keys, expected 1 for each key")
+    );
     assert!(say(&[0.0, 1.0], 2, Some(4)).contains("for 2 values of 16"));
 }
 
@@ -458,8 +493,7 @@ fn keys_that_cannot_be_are_refused() {
 fn channels_that_move_no_node_are_passed_over() {
     let mut made = Made::new(&two_bones(), &[0, 1]);
     made.channel(1, "rotation", "LINEAR", &[0.0, 1.0], &[about_z(0.0), about_z(1.0)].concat());
-    let pointer =
-        json!({ "sampler": 0, "target": { "path": "pointer", "extensions": { "KHR_animation_pointer": { "pointer": "/materials/0" } } } });
+    let pointer = json!({ "sampler": 0, "target": { "path": "pointer", "extensions": { "KHR_animation_pointer": { "pointer": "/materials/0" } } } });
     made.root["animations"][0]["channels"].as_array_mut().unwrap().push(pointer);
     made.root["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
     assert_eq!(only(&made.read()).frames(), 31);

@@ -9,7 +9,8 @@ use std::sync::Arc;
 
 /// How the name of the program that wrote a file begins, where that was Segue.
 pub(super) const GENERATOR: &str = "Segue ";
-/// What a body that Segue made around the bones is called in a file: whoever reads the file has it already.
+/// What a body that Segue made around the bones is called in a file: whoever reads the file has it
+/// already.
 pub(super) const MADE_BODY: &str = "Body";
 /// What the mesh of a character is called.
 const CHARACTER: &str = "Character";
@@ -23,7 +24,8 @@ const CLAY: [f32; 4] = [0.7, 0.7, 0.7, 1.0];
 pub struct GlbOptions {
     /// Frames per second; the clip's own where `None` or no rate that [`resample`] knows.
     pub fps: Option<f64>,
-    /// Whether the skeleton wears the smooth body of [`SkinnedMesh::around_clip`] instead of simple bones: about half a megabyte.
+    /// Whether the skeleton wears the smooth body of [`SkinnedMesh::around_clip`] instead of simple
+    /// bones: about half a megabyte.
     #[serde(default)]
     pub smooth: bool,
 }
@@ -32,19 +34,23 @@ pub struct GlbOptions {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GlbError {
     /// The format counts bytes with 32 bits.
-    #[error("{0} bytes are more than the 4 GiB that a .glb file can hold: cut the motion into parts")]
+    #[error(
+        "{0} bytes are more than the 4 GiB that a .glb file can hold: cut the motion into parts"
+    )]
     TooLarge(u64),
     /// The format counts the joints of a skin with 16 bits.
     #[error("{0} joints are more than the 65,536 that a .glb file can hold")]
     TooManyJoints(usize),
 }
 
-/// Writes a clip as a `.glb` file: a node for each joint and each end site (`…_end`), a skin over all joints with a body, and an
-/// animation with the rotations of all joints and the translations of the root and of joints that move. Joints that the clip's file has above
-/// the one that carries the body are there again ([`Clip::unfolded`]).
+/// Writes a clip as a `.glb` file: a node for each joint and each end site (`…_end`), a skin over
+/// all joints with a body, and an animation with the rotations of all joints and the translations
+/// of the root and of joints that move. Joints that the clip's file has above the one that carries
+/// the body are there again ([`Clip::unfolded`]).
 ///
-/// At rest joints have no rotation and the root stands at its offset. Metres, +Y up. The same clip gives the same bytes. Read back, positions
-/// (metres) and rotations (radians) are the same to 1e-5.
+/// At rest joints have no rotation and the root stands at its offset. Metres, +Y up. The same clip
+/// gives the same bytes. Read back, positions (metres) and rotations (radians) are the same to
+/// 1e-5.
 ///
 /// # Errors
 /// [`GlbError`] when the clip is too large for the format.
@@ -63,16 +69,26 @@ pub fn write_glb(clip: &Clip, options: &GlbOptions) -> Result<Vec<u8>, GlbError>
     write_with(clip, mesh, MADE_BODY, options)
 }
 
-/// Writes a motion of a character as a `.glb` file, as [`write_glb`] does, with the character's own mesh: `clip` is one of the skeleton that `mesh` is
-/// bound to. Each colour of the mesh is a material.
+/// Writes a motion of a character as a `.glb` file, as [`write_glb`] does, with the character's own
+/// mesh: `clip` is one of the skeleton that `mesh` is bound to. Each colour of the mesh is a
+/// material.
 ///
 /// # Errors
 /// [`GlbError`] when the clip is too large for the format.
-pub fn write_character_glb(clip: &Clip, mesh: &SkinnedMesh, options: &GlbOptions) -> Result<Vec<u8>, GlbError> {
+pub fn write_character_glb(
+    clip: &Clip,
+    mesh: &SkinnedMesh,
+    options: &GlbOptions,
+) -> Result<Vec<u8>, GlbError> {
     write_with(clip, mesh.clone(), CHARACTER, options)
 }
 
-fn write_with(clip: &Clip, mut mesh: SkinnedMesh, name: &str, options: &GlbOptions) -> Result<Vec<u8>, GlbError> {
+fn write_with(
+    clip: &Clip,
+    mut mesh: SkinnedMesh,
+    name: &str,
+    options: &GlbOptions,
+) -> Result<Vec<u8>, GlbError> {
     let resampled = options.fps.and_then(|fps| resample(clip, fps, Interpolation::default()).ok());
     let clip: Cow<'_, Clip> = resampled.map_or(Cow::Borrowed(clip), Cow::Owned);
     let body = Arc::clone(clip.skeleton());
@@ -87,10 +103,7 @@ fn write_with(clip: &Clip, mut mesh: SkinnedMesh, name: &str, options: &GlbOptio
     nodes.push(json!({ "name": name, "mesh": 0, "skin": 0 }));
     if let Some(above) = body.above() {
         let mut bind: Vec<RigidTransform> = (standing_rest(skeleton).iter())
-            .map(|&position| RigidTransform {
-                rotation: Quat::IDENTITY,
-                translation: -position,
-            })
+            .map(|&position| RigidTransform { rotation: Quat::IDENTITY, translation: -position })
             .collect();
         for (&file, own) in above.file_index().iter().zip(&mesh.bind) {
             if let Some(bind) = bind.get_mut(file) {
@@ -100,7 +113,9 @@ fn write_with(clip: &Clip, mut mesh: SkinnedMesh, name: &str, options: &GlbOptio
         mesh.rebind(above.file_index(), bind);
     }
     let inverse_bind: Vec<f32> = (mesh.bind.iter())
-        .flat_map(|bind| Mat4::from_rotation_translation(bind.rotation, bind.translation).to_cols_array())
+        .flat_map(|bind| {
+            Mat4::from_rotation_translation(bind.rotation, bind.translation).to_cols_array()
+        })
         .collect();
     let inverse_bind = file.floats(&inverse_bind, "MAT4", None);
     let (mut primitives, mut materials) = (Vec::new(), Vec::new());
@@ -140,7 +155,9 @@ fn nodes(skeleton: &Skeleton) -> Vec<Value> {
         }
         if let Some(end) = joint.end_site {
             children[index].push(joints.len() + ends.len());
-            ends.push(json!({ "name": format!("{}_end", joint.name), "translation": end.to_array() }));
+            ends.push(
+                json!({ "name": format!("{}_end", joint.name), "translation": end.to_array() }),
+            );
         }
     }
     let node = |(joint, children): (&Joint, Vec<usize>)| {
@@ -154,9 +171,12 @@ fn nodes(skeleton: &Skeleton) -> Vec<Value> {
     joints.iter().zip(children).map(node).chain(ends).collect()
 }
 
-/// The parts of a mesh that have one colour (linear) each, in the order in which the colours come up. A triangle has the colour of its first corner.
+/// The parts of a mesh that have one colour (linear) each, in the order in which the colours come
+/// up. A triangle has the colour of its first corner.
 fn parts(mesh: &SkinnedMesh) -> Vec<(Cow<'_, SkinnedMesh>, [f32; 4])> {
-    let color_of = |triangle: &[u32; 3]| mesh.colors.get(triangle[0] as usize).map(|color| color.map(f32::to_bits));
+    let color_of = |triangle: &[u32; 3]| {
+        mesh.colors.get(triangle[0] as usize).map(|color| color.map(f32::to_bits))
+    };
     let mut colors: Vec<Option<[u32; 4]>> = Vec::new();
     let mut triangles: Vec<Vec<[u32; 3]>> = Vec::new();
     let mut last = 0;
@@ -181,9 +201,7 @@ fn parts(mesh: &SkinnedMesh) -> Vec<(Cow<'_, SkinnedMesh>, [f32; 4])> {
         return vec![(Cow::Borrowed(mesh), linear(colors.first().copied().flatten()))];
     }
     let parts = triangles.into_iter().zip(colors);
-    parts
-        .map(|(triangles, color)| (Cow::Owned(part(mesh, &triangles)), linear(color)))
-        .collect()
+    parts.map(|(triangles, color)| (Cow::Owned(part(mesh, &triangles)), linear(color))).collect()
 }
 
 /// The vertices of some triangles, in their order.
@@ -209,16 +227,14 @@ fn picked<T: Copy + Default>(values: &[T], vertices: &[u32]) -> Vec<T> {
 
 /// A part of a colour as written in a palette, linear (IEC 61966-2-1).
 fn decoded(encoded: f32) -> f32 {
-    if encoded <= 0.040_45 {
-        encoded / 12.92
-    } else {
-        ((encoded + 0.055) / 1.055).powf(2.4)
-    }
+    if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }
 
-/// Clay for a body that was made; for a character, whose surfaces may be open, the colour from both sides.
+/// Clay for a body that was made; for a character, whose surfaces may be open, the colour from both
+/// sides.
 fn material(color: &[f32; 4], name: &str, index: usize) -> Value {
-    let surface = json!({ "baseColorFactor": color, "metallicFactor": 0.0, "roughnessFactor": 0.8 });
+    let surface =
+        json!({ "baseColorFactor": color, "metallicFactor": 0.0, "roughnessFactor": 0.8 });
     if name == MADE_BODY {
         return json!({ "name": "Clay", "pbrMetallicRoughness": surface });
     }
@@ -229,7 +245,8 @@ fn primitive(file: &mut File, mesh: &SkinnedMesh, joints: usize, material: usize
     let vectors = |vectors: &[Vec3]| vectors.iter().flat_map(Vec3::to_array).collect::<Vec<f32>>();
     let low = mesh.positions.iter().copied().reduce(Vec3::min).unwrap_or_default();
     let high = mesh.positions.iter().copied().reduce(Vec3::max).unwrap_or_default();
-    let position = file.floats(&vectors(&mesh.positions), "VEC3", Some((&low.to_array(), &high.to_array())));
+    let position =
+        file.floats(&vectors(&mesh.positions), "VEC3", Some((&low.to_array(), &high.to_array())));
     let normal = file.floats(&vectors(&mesh.normals), "VEC3", None);
     let count = mesh.positions.len();
     let weights: Vec<[u8; 4]> = mesh.weights.iter().map(bytes_of).collect();
@@ -243,17 +260,15 @@ fn primitive(file: &mut File, mesh: &SkinnedMesh, joints: usize, material: usize
     } else {
         (UNSIGNED_SHORT, followed.flat_map(u16::to_le_bytes).collect())
     };
-    let followed = file.accessor(&followed, json!({ "componentType": component, "count": count, "type": "VEC4" }));
+    let followed = file
+        .accessor(&followed, json!({ "componentType": component, "count": count, "type": "VEC4" }));
     let weights = file.accessor(
         weights.as_flattened(),
         json!({ "componentType": UNSIGNED_BYTE, "normalized": true, "count": count, "type": "VEC4" }),
     );
     let corners = mesh.triangles.as_flattened();
     let (component, indices): (u32, Vec<u8>) = if u16::try_from(count).is_ok() {
-        (
-            UNSIGNED_SHORT,
-            corners.iter().flat_map(|&corner| (corner as u16).to_le_bytes()).collect(),
-        )
+        (UNSIGNED_SHORT, corners.iter().flat_map(|&corner| (corner as u16).to_le_bytes()).collect())
     } else {
         (UNSIGNED_INT, corners.iter().flat_map(|corner| corner.to_le_bytes()).collect())
     };
@@ -286,18 +301,21 @@ fn animation(file: &mut File, clip: &Clip) -> Value {
     let mut times: Vec<f32> = Vec::with_capacity(clip.frames());
     for frame in 0..clip.frames() {
         let time = clip.time_of(frame) as f32;
-        // Times must rise, and late in a very long clip single precision does not tell frames apart.
+        // Times must rise, and late in a very long clip single precision does not tell frames
+        // apart.
         times.push(times.last().map_or(time, |last| time.max(last.next_up())));
     }
     let ends = (times.first().copied().unwrap_or(0.0), times.last().copied().unwrap_or(0.0));
     let input = file.floats(&times, "SCALAR", Some((&[ends.0], &[ends.1])));
     let (mut samplers, mut channels) = (Vec::new(), Vec::new());
     let mut add = |node: usize, path: &str, output: usize| {
-        channels.push(json!({ "sampler": samplers.len(), "target": { "node": node, "path": path } }));
+        channels
+            .push(json!({ "sampler": samplers.len(), "target": { "node": node, "path": path } }));
         samplers.push(json!({ "input": input, "output": output, "interpolation": "LINEAR" }));
     };
     for joint in 0..clip.skeleton().len() {
-        let turns = (0..clip.frames()).flat_map(|frame| unit(clip.rotations(frame)[joint]).to_array());
+        let turns =
+            (0..clip.frames()).flat_map(|frame| unit(clip.rotations(frame)[joint]).to_array());
         add(joint, "rotation", file.floats(&turns.collect::<Vec<f32>>(), "VEC4", None));
     }
     let moving = clip.translations().iter().map(|track| (track.joint, track.values.as_slice()));
@@ -324,7 +342,8 @@ const UNSIGNED_SHORT: u32 = 5123;
 const UNSIGNED_INT: u32 = 5125;
 const FLOAT: u32 = 5126;
 
-/// A file that grows: its binary part, and what describes that. Each accessor has a view of its own, of the same index.
+/// A file that grows: its binary part, and what describes that. Each accessor has a view of its
+/// own, of the same index.
 #[derive(Default)]
 struct File {
     binary: Vec<u8>,
@@ -342,7 +361,8 @@ impl File {
             _ => 16,
         };
         let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
-        let mut accessor = json!({ "componentType": FLOAT, "count": values.len() / width, "type": kind });
+        let mut accessor =
+            json!({ "componentType": FLOAT, "count": values.len() / width, "type": kind });
         if let Some((low, high)) = bounds {
             accessor["min"] = json!(low);
             accessor["max"] = json!(high);
@@ -355,8 +375,9 @@ impl File {
         let index = self.accessors.len();
         accessor["bufferView"] = json!(index);
         self.accessors.push(accessor);
-        self.views
-            .push(json!({ "buffer": 0, "byteOffset": self.binary.len(), "byteLength": bytes.len() }));
+        self.views.push(
+            json!({ "buffer": 0, "byteOffset": self.binary.len(), "byteLength": bytes.len() }),
+        );
         self.binary.extend_from_slice(bytes);
         self.binary.resize(self.binary.len().next_multiple_of(4), 0);
         index

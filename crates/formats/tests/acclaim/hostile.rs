@@ -34,7 +34,9 @@ fn spoil(bytes: &mut Vec<u8>, edits: &[(prop::sample::Index, u8, u8, prop::sampl
             0 => bytes[at] = *byte,
             1 => bytes.truncate(at),
             2 => drop(bytes.drain(at.min(other)..at.max(other))),
-            3 => drop(bytes.splice(at..at, PIECES[usize::from(*byte) % PIECES.len()].iter().copied())),
+            3 => drop(
+                bytes.splice(at..at, PIECES[usize::from(*byte) % PIECES.len()].iter().copied()),
+            ),
             4 => bytes.swap(at, other),
             _ => {
                 let copy = bytes[at.min(other)..at.max(other)].to_vec();
@@ -126,26 +128,22 @@ fn long_runs_of_anything_take_no_longer_than_their_length() {
         "#",
         "(",
     ] {
-        for head in [
-            "",
-            ":root\n",
-            ":bonedata\n",
-            ":bonedata\nbegin\n",
-            ":hierarchy\n",
-            ":documentation\n",
-        ] {
+        for head in
+            ["", ":root\n", ":bonedata\n", ":bonedata\nbegin\n", ":hierarchy\n", ":documentation\n"]
+        {
             assert!(skeleton_of(format!("{head}{}", piece.repeat(big / piece.len()))).is_err());
         }
     }
     // Many bones, and frames without values for them.
-    let bones = (0..big / 20)
-        .map(|i| format!("begin name b{i} dof rx end\n"))
-        .collect::<Vec<_>>()
-        .concat();
+    let bones =
+        (0..big / 20).map(|i| format!("begin name b{i} dof rx end\n")).collect::<Vec<_>>().concat();
     let list: Vec<String> = (0..big / 20).map(|i| format!("b{i}")).collect();
-    let crowd = skeleton_of(format!(":root\n:bonedata\n{bones}:hierarchy\nroot {}\n", list.join(" "))).unwrap();
+    let crowd =
+        skeleton_of(format!(":root\n:bonedata\n{bones}:hierarchy\nroot {}\n", list.join(" ")))
+            .unwrap();
     let text = format!("1\nroot 1 2 3 4 5 6\n{}", "1\n".repeat(big / 2));
-    let error = read_motion("crowd.amc", text.as_bytes(), &crowd, &ImportOptions::default()).unwrap_err();
+    let error =
+        read_motion("crowd.amc", text.as_bytes(), &crowd, &ImportOptions::default()).unwrap_err();
     assert!(error.found.contains("bones without values"), "{error}");
     assert!(start.elapsed().as_secs() < 60, "{:?}", start.elapsed());
 }

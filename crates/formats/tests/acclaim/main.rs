@@ -1,5 +1,5 @@
-//! ASF and AMC: what real files do, one test for each kind of oddity; the mathematics against the slow, obvious one; and captured motion,
-//! which is the same as the BVH of the same take.
+//! ASF and AMC: what real files do, one test for each kind of oddity; the mathematics against the
+//! slow, obvious one; and captured motion, which is the same as the BVH of the same take.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests: what fails here fails the test")]
 
@@ -15,7 +15,8 @@ use segue_formats::{ImportError, ImportOptions, Imported};
 use segue_motion::clip::Clip;
 
 /// The warning that every motion brings along.
-const NO_RATE: &str = "the format has no frame rate; 120 frames per second are taken, it can be set by hand";
+const NO_RATE: &str =
+    "the format has no frame rate; 120 frames per second are taken, it can be set by hand";
 
 /// A body 1.6 m tall in centimetres.
 const ASF: &str = "# by hand
@@ -97,13 +98,18 @@ fn skeleton_of(text: impl AsRef<[u8]>) -> Result<AcclaimSkeleton, ImportError> {
     read_skeleton("toy.asf", text.as_ref(), &ImportOptions::default())
 }
 
-fn read_with(asf: impl AsRef<[u8]>, amc: impl AsRef<[u8]>, options: &ImportOptions) -> Result<Imported, ImportError> {
+fn read_with(
+    asf: impl AsRef<[u8]>,
+    amc: impl AsRef<[u8]>,
+    options: &ImportOptions,
+) -> Result<Imported, ImportError> {
     read_motion("take.amc", amc.as_ref(), &skeleton_of(asf)?, options)
 }
 
 /// The clip of two files that must be readable, and its warnings but for the missing frame rate.
 fn clip_of(asf: impl AsRef<[u8]>, amc: impl AsRef<[u8]>) -> (Clip, Vec<String>) {
-    let mut imported = read_with(asf, amc, &ImportOptions::default()).unwrap_or_else(|error| panic!("{error}"));
+    let mut imported =
+        read_with(asf, amc, &ImportOptions::default()).unwrap_or_else(|error| panic!("{error}"));
     let warnings = imported.warnings.iter().map(ToString::to_string).filter(|text| text != NO_RATE);
     (imported.clips.remove(0).clip, warnings.collect())
 }

@@ -20,7 +20,9 @@ const DOFS: [&str; 7] = ["tx", "ty", "tz", "rx", "ry", "rz", "l"];
 const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
 
 fn about(axis: usize, degrees: f64) -> DMat3 {
-    [DMat3::from_rotation_x, DMat3::from_rotation_y, DMat3::from_rotation_z][axis](degrees.to_radians())
+    [DMat3::from_rotation_x, DMat3::from_rotation_y, DMat3::from_rotation_z][axis](
+        degrees.to_radians(),
+    )
 }
 
 fn letters(order: [usize; 3]) -> String {

@@ -1,4 +1,5 @@
-//! Captured motion of the CMU database: the same as the BVH of the same take, as tall as people, on the ground.
+//! Captured motion of the CMU database: the same as the BVH of the same take, as tall as people, on
+//! the ground.
 
 use super::common::{points, shared_data};
 use super::{NO_RATE, skeleton_of};
@@ -9,16 +10,19 @@ use std::path::Path;
 
 fn real_skeleton(path: &Path) -> AcclaimSkeleton {
     let bytes = std::fs::read(path).unwrap();
-    read_skeleton(&path.to_string_lossy(), &bytes, &ImportOptions::default()).unwrap_or_else(|error| panic!("{error}"))
+    read_skeleton(&path.to_string_lossy(), &bytes, &ImportOptions::default())
+        .unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn real_motion(path: &Path, skeleton: &AcclaimSkeleton) -> Imported {
     let bytes = std::fs::read(path).unwrap();
-    read_motion(&path.to_string_lossy(), &bytes, skeleton, &ImportOptions::default()).unwrap_or_else(|error| panic!("{error}"))
+    read_motion(&path.to_string_lossy(), &bytes, skeleton, &ImportOptions::default())
+        .unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Joints of the conversion to BVH, those of the original that stand at the same place, and how far the conversion moved them, file units: its
-/// `Neck` and shoulders have no offset where the database has a bone.
+/// Joints of the conversion to BVH, those of the original that stand at the same place, and how far
+/// the conversion moved them, file units: its `Neck` and shoulders have no offset where the
+/// database has a bone.
 const SAME: [(&str, &str, f32); 16] = [
     ("Hips", "root", 0.0),
     ("LeftUpLeg", "lfemur", 0.0),
@@ -41,17 +45,21 @@ const SAME: [(&str, &str, f32); 16] = [
 #[test]
 fn the_same_take_as_bvh_and_as_amc_is_the_same_motion() {
     let Some(data) = shared_data() else { return };
-    let ours = real_motion(&data.join("cmu/01_01.amc"), &real_skeleton(&data.join("cmu/01_01.asf")))
-        .clips
-        .remove(0)
-        .clip;
+    let ours =
+        real_motion(&data.join("cmu/01_01.amc"), &real_skeleton(&data.join("cmu/01_01.asf")))
+            .clips
+            .remove(0)
+            .clip;
     let bytes = std::fs::read(data.join("cmu/01_01.bvh")).unwrap();
-    let theirs = import("01_01.bvh", &bytes, &ImportOptions::default()).unwrap().clips.remove(0).clip;
+    let theirs =
+        import("01_01.bvh", &bytes, &ImportOptions::default()).unwrap().clips.remove(0).clip;
     assert_eq!((ours.frames(), ours.fps()), (2751, 120.0));
     assert_eq!((theirs.frames(), theirs.fps()), (2751, 120.0));
     assert_eq!(ours.provenance(), theirs.provenance());
     let unit = CMU_METRES_PER_UNIT as f32;
-    let pairs = SAME.map(|(a, b, off)| (theirs.skeleton().find(a).unwrap(), ours.skeleton().find(b).unwrap(), off));
+    let pairs = SAME.map(|(a, b, off)| {
+        (theirs.skeleton().find(a).unwrap(), ours.skeleton().find(b).unwrap(), off)
+    });
     for frame in 0..ours.frames() {
         let (p, q) = (theirs.world_pose(frame), ours.world_pose(frame));
         for ((a, b, off), (name, ..)) in pairs.iter().zip(SAME) {
@@ -65,10 +73,8 @@ fn the_same_take_as_bvh_and_as_amc_is_the_same_motion() {
 #[test]
 fn people_are_as_tall_as_people_stand_on_the_ground_and_have_every_role() {
     let Some(data) = shared_data() else { return };
-    let (first, sixteenth) = (
-        real_skeleton(&data.join("cmu/01_01.asf")),
-        real_skeleton(&data.join("cmu/16/16.asf")),
-    );
+    let (first, sixteenth) =
+        (real_skeleton(&data.join("cmu/01_01.asf")), real_skeleton(&data.join("cmu/16/16.asf")));
     let entries = std::fs::read_dir(data.join("cmu/16")).unwrap();
     let mut paths: Vec<_> = entries.map(|entry| entry.unwrap().path()).collect();
     paths.retain(|path| path.extension().is_some_and(|ending| ending == "amc"));
@@ -76,7 +82,8 @@ fn people_are_as_tall_as_people_stand_on_the_ground_and_have_every_role() {
     assert!(paths.len() > 15);
     for path in paths {
         let (name, bytes) = (path.to_string_lossy().into_owned(), std::fs::read(&path).unwrap());
-        let best = best_skeleton(&name, &bytes, &[("01_01.asf", &first), ("16.asf", &sixteenth)]).unwrap();
+        let best =
+            best_skeleton(&name, &bytes, &[("01_01.asf", &first), ("16.asf", &sixteenth)]).unwrap();
         assert_eq!(best, usize::from(!name.ends_with("01_01.amc")), "{name}");
         let found = real_motion(&path, if best == 0 { &first } else { &sixteenth });
         let warnings: Vec<String> = found.warnings.iter().map(ToString::to_string).collect();
@@ -112,7 +119,8 @@ fn legs_of_another_length_are_told() {
     let motion = std::fs::read(data.join("cmu/16/16_15.amc")).unwrap();
     let said = |text: &str| {
         let skeleton = skeleton_of(text).unwrap();
-        let imported = read_motion("16_15.amc", &motion, &skeleton, &ImportOptions::default()).unwrap();
+        let imported =
+            read_motion("16_15.amc", &motion, &skeleton, &ImportOptions::default()).unwrap();
         imported
             .warnings
             .into_iter()

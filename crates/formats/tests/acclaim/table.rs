@@ -2,10 +2,13 @@
 
 use super::{ASF, amc, clip_of, frame, read_with, skeleton_of};
 use glam::Vec3;
-use segue_formats::acclaim::{AcclaimSkeleton, best_skeleton, read_motion, read_motion_with_progress, read_skeleton};
+use segue_formats::acclaim::{
+    AcclaimSkeleton, best_skeleton, read_motion, read_motion_with_progress, read_skeleton,
+};
 use segue_formats::{ImportOptions, import};
 
-/// Asserts that two files say the same as [`ASF`] and [`amc`] with three frames, and returns their warnings.
+/// Asserts that two files say the same as [`ASF`] and [`amc`] with three frames, and returns their
+/// warnings.
 fn same(asf: impl AsRef<[u8]>, motion: impl AsRef<[u8]>) -> Vec<String> {
     let (clip, warnings) = clip_of(&asf, &motion);
     let (plain, none) = clip_of(ASF, amc(3));
@@ -60,7 +63,8 @@ fn comments_line_ends_commas_and_parentheses() {
     assert_eq!(same_motion(with(&text, "spine 5.5 6.5", "spine (5.5, 6.5)")), [""; 0]);
     assert_eq!(same_motion(with(&text, "spine 5.5 6.5", "spine 5.5,6.5,")), [""; 0]);
     assert_eq!(same_motion([text.as_bytes(), &[0; 100]].concat()), [""; 0]);
-    let utf16: Vec<u8> = [0xfeff].into_iter().chain(text.encode_utf16()).flat_map(u16::to_le_bytes).collect();
+    let utf16: Vec<u8> =
+        [0xfeff].into_iter().chain(text.encode_utf16()).flat_map(u16::to_le_bytes).collect();
     assert_eq!(same_motion(utf16), [""; 0]);
     same_skeleton(ASF.replace('\n', "\r\n"));
     same_skeleton(with(ASF, "    dof rx ry rz\n", "# yes\n\tDOF rx, ry, rz # and\n"));
@@ -87,17 +91,16 @@ fn units_of_length() {
         let text = with(ASF, ":units\n  mass 1.0\n  length 1.0\n  angle deg\n", units);
         same_skeleton(text);
     }
-    // What the file says is taken where it makes a person: 160 units of an inch by 2.54 are 1.6 m, of an inch by 2 are 2.03 m.
+    // What the file says is taken where it makes a person: 160 units of an inch by 2.54 are 1.6 m,
+    // of an inch by 2 are 2.03 m.
     for (length, metres) in [("2.54", 0.01), ("2.0", 0.0127), ("0.1", 0.01)] {
-        let (clip, warnings) = clip_of(with(ASF, "length 1.0", &format!("length {length}")), amc(1));
+        let (clip, warnings) =
+            clip_of(with(ASF, "length 1.0", &format!("length {length}")), amc(1));
         assert!((clip.provenance().metres_per_unit - metres).abs() < 1e-9, "{length}");
         assert_eq!(warnings, [""; 0]);
     }
-    let options = ImportOptions {
-        metres_per_unit: Some(0.02),
-        fps: Some(60.0),
-        ..ImportOptions::default()
-    };
+    let options =
+        ImportOptions { metres_per_unit: Some(0.02), fps: Some(60.0), ..ImportOptions::default() };
     let imported = read_with(with(ASF, "length 1.0", "length 2.0"), amc(1), &options).unwrap();
     let clip = &imported.clips[0].clip;
     assert_eq!((clip.provenance().metres_per_unit, clip.fps()), (0.02, 60.0));
@@ -114,11 +117,7 @@ fn units_of_angle() {
             let keep = if name == "root" { 3 } else { 0 };
             let values = words.enumerate().map(|(i, word)| {
                 let value: f64 = word.parse().unwrap();
-                if i < keep {
-                    word.to_owned()
-                } else {
-                    format!("{:.12}", value.to_radians())
-                }
+                if i < keep { word.to_owned() } else { format!("{:.12}", value.to_radians()) }
             });
             out += &[name.to_owned()].into_iter().chain(values).collect::<Vec<_>>().join(" ");
             out.push('\n');
@@ -156,7 +155,8 @@ fn bones_missing_from_a_frame_hold_their_pose() {
     let text = with(&amc(3), ":FULLY-SPECIFIED\n", "");
     assert_eq!(same_motion(&text), [""; 0]);
     let second = "2\nroot 2.5 90.5 4.5 10.5 20.5 5.0\nspine 5.5 6.5\n";
-    let (clip, warnings) = clip_of(ASF, with(&text, &format!("{second}thigh 7.5 8.5 7.5\nshin 11.5\n"), second));
+    let (clip, warnings) =
+        clip_of(ASF, with(&text, &format!("{second}thigh 7.5 8.5 7.5\nshin 11.5\n"), second));
     assert_eq!(warnings, ["1 frame (line 8) without some of the bones; their pose was held"]);
     assert_eq!(clip.rotations(1)[1..3], clip.rotations(0)[1..3]);
     assert_eq!(clip.rotations(2), clip_of(ASF, amc(3)).0.rotations(2));
@@ -297,10 +297,11 @@ fn a_file_that_is_cut_off_loses_its_last_frame() {
         let cut = &text[..end];
         let (clip, warnings) = clip_of(ASF, cut);
         let whole = clip.frames() == 3;
-        // What ends with a whole line is a frame without some of its bones, and what ends with a whole number may be one cut off.
-        let told = warnings
-            .iter()
-            .any(|text| text.contains("dropped") || text.contains("held") || text.contains("left out"));
+        // What ends with a whole line is a frame without some of its bones, and what ends with a
+        // whole number may be one cut off.
+        let told = warnings.iter().any(|text| {
+            text.contains("dropped") || text.contains("held") || text.contains("left out")
+        });
         assert!(whole || (clip.frames() == 2 && told), "{warnings:?} {}", &text[last..end]);
         assert_eq!(clip.rotations(1), plain.rotations(1));
     }
@@ -329,10 +330,7 @@ fn broken_motions_are_refused_where_they_break() {
             with(&text, "\n3\nroot 3.5", "\n3\nroot x3.5"),
             "take.amc:15:6: found `x3.5`, expected a number for `root`",
         ),
-        (
-            with(&text, "\n1\n", "\n"),
-            "take.amc:4:1: found `root`, expected the number of a frame",
-        ),
+        (with(&text, "\n1\n", "\n"), "take.amc:4:1: found `root`, expected the number of a frame"),
         (
             ":DEGREES\n# nothing\n".to_owned(),
             "take.amc:3:1: found the end of the file, expected the number of a frame",
@@ -366,10 +364,7 @@ fn broken_skeletons_are_refused_where_they_break() {
             with(ASF, "direction 0.1 -0.9 0\n", "direction 0.1 up 0\n"),
             "toy.asf:20:19: found `up`, expected a number",
         ),
-        (
-            with(ASF, "length 40", "length nan"),
-            "toy.asf:21:12: found `nan`, expected a number",
-        ),
+        (with(ASF, "length 40", "length nan"), "toy.asf:21:12: found `nan`, expected a number"),
         (
             with(ASF, "20 XYZ", "20 XXZ"),
             "toy.asf:33:17: found `XXZ`, expected an order of axes, such as `XYZ`",
@@ -414,12 +409,7 @@ fn broken_skeletons_are_refused_where_they_break() {
     }
 
     let odd = |asf: &str| {
-        skeleton_of(asf)
-            .unwrap()
-            .warnings()
-            .iter()
-            .map(ToString::to_string)
-            .collect::<Vec<_>>()
+        skeleton_of(asf).unwrap().warnings().iter().map(ToString::to_string).collect::<Vec<_>>()
     };
     assert_eq!(
         odd(&tree(&["a", "b"], "root a tail")),
@@ -452,9 +442,12 @@ fn broken_skeletons_are_refused_where_they_break() {
 fn which_skeleton_a_motion_belongs_to() {
     let plain = skeleton_of(ASF).unwrap();
     let other = skeleton_of(ASF.replace("shin", "calf")).unwrap();
-    let foreign = skeleton_of(ASF.replace("thigh", "x").replace("shin", "y").replace("spine", "z")).unwrap();
+    let foreign =
+        skeleton_of(ASF.replace("thigh", "x").replace("shin", "y").replace("spine", "z")).unwrap();
     let motion = amc(2);
-    let best = |name: &str, skeletons: &[(&str, &AcclaimSkeleton)]| best_skeleton(name, motion.as_bytes(), skeletons);
+    let best = |name: &str, skeletons: &[(&str, &AcclaimSkeleton)]| {
+        best_skeleton(name, motion.as_bytes(), skeletons)
+    };
     assert_eq!(best("01_01.amc", &[]), None);
     assert_eq!(best("01_01.amc", &[("01.asf", &foreign)]), None, "the root alone is no fit");
     assert_eq!(
@@ -478,15 +471,19 @@ fn reading_can_be_watched_and_stopped() {
             seen.push(bytes);
             keep
         };
-        read_motion_with_progress("a.amc", text.as_bytes(), &skeleton, &ImportOptions::default(), &mut progress).unwrap()
+        read_motion_with_progress(
+            "a.amc",
+            text.as_bytes(),
+            &skeleton,
+            &ImportOptions::default(),
+            &mut progress,
+        )
+        .unwrap()
     };
     assert_eq!(watch(true).unwrap().clips[0].clip.frames(), 12_000);
     assert!(watch(false).is_none());
     assert_eq!(seen.len(), text.len() / (1 << 18) + 1);
-    let small = ImportOptions {
-        max_bytes: 100,
-        ..ImportOptions::default()
-    };
+    let small = ImportOptions { max_bytes: 100, ..ImportOptions::default() };
     assert!(read_motion("a.amc", text.as_bytes(), &skeleton, &small).is_err());
     assert!(read_skeleton("a.asf", ASF.as_bytes(), &small).is_err());
 }

@@ -33,9 +33,12 @@ pub fn subject_16() -> Option<PathBuf> {
     shared_data().map(|data| data.join("cmu/16")).filter(|folder| folder.is_dir())
 }
 
-/// Those of subject 16's takes whose names end like this, with their names; none where they are not there.
+/// Those of subject 16's takes whose names end like this, with their names; none where they are not
+/// there.
 pub fn captured(wanted: &[&'static str]) -> Vec<(&'static str, Clip)> {
-    let Some(folder) = subject_16() else { return vec![] };
+    let Some(folder) = subject_16() else {
+        return vec![];
+    };
     let bytes = std::fs::read(folder.join("16.asf")).unwrap();
     let skeleton = read_skeleton("16.asf", &bytes, &ImportOptions::default()).unwrap();
     let take = |&name: &&'static str| {
@@ -66,10 +69,7 @@ pub fn read(text: impl AsRef<[u8]>) -> Result<Imported, ImportError> {
 pub fn one(text: impl AsRef<[u8]>) -> (ImportedClip, Vec<String>) {
     let mut imported = read(text).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(imported.clips.len(), 1);
-    (
-        imported.clips.remove(0),
-        imported.warnings.iter().map(ToString::to_string).collect(),
-    )
+    (imported.clips.remove(0), imported.warnings.iter().map(ToString::to_string).collect())
 }
 
 /// Joints and end sites in the world.
@@ -85,7 +85,8 @@ pub fn points(clip: &Clip, frame: usize) -> Vec<Vec3> {
     world.positions.iter().copied().chain(ends).collect()
 }
 
-/// The HIERARCHY of a chain of three joints, 1.64 m tall in centimetres: 6 + 3 + 3 channels. 20 lines.
+/// The HIERARCHY of a chain of three joints, 1.64 m tall in centimetres: 6 + 3 + 3 channels. 20
+/// lines.
 pub const CHAIN: &str = "HIERARCHY
 ROOT Pelvis
 {

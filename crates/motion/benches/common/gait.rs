@@ -6,13 +6,11 @@ use segue_motion::skeleton::{Joint, Skeleton};
 use segue_motion::synth::{Action, Params, synthesize};
 use std::sync::Arc;
 
-/// So many frames of a made gait that turns, degrees per second, on a body of 31 joints: fingers are added.
+/// So many frames of a made gait that turns, degrees per second, on a body of 31 joints: fingers
+/// are added.
 pub(crate) fn gait(action: Action, frames: usize, turn_rate_dps: f32) -> Clip {
-    let params = Params {
-        duration_secs: frames as f32 / 60.0 + 0.2,
-        turn_rate_dps,
-        ..Params::new(action)
-    };
+    let params =
+        Params { duration_secs: frames as f32 / 60.0 + 0.2, turn_rate_dps, ..Params::new(action) };
     let made = synthesize(&params).expect("a gait can be made").clip;
     let made = made.crop(0..frames).expect("long enough");
     let mut joints = made.skeleton().joints().to_vec();

@@ -12,13 +12,7 @@ pub(crate) fn skeleton() -> Arc<Skeleton> {
         let name = format!("Joint{index}");
         let turn = Quat::from_rotation_y(chain as f32);
         let offset = if index == 0 { Vec3::Y } else { turn * Vec3::new(0.05, 0.2, 0.02) };
-        Joint {
-            name,
-            parent,
-            offset,
-            end_site: None,
-            channels: vec![],
-        }
+        Joint { name, parent, offset, end_site: None, channels: vec![] }
     };
     Arc::new(Skeleton::new((0..31).map(joint).collect()).expect("parents come first"))
 }

@@ -1,9 +1,11 @@
-//! Four searches over the same frames with the same queries: what `benches/matching.rs` and `tools/match_speed.rs` measure.
+//! Four searches over the same frames with the same queries: what `benches/matching.rs` and
+//! `tools/match_speed.rs` measure.
 
 use glam::DVec2;
 use segue_motion::matching::search::{Question, TreeIndex, scan};
 use segue_motion::matching::{
-    Control, Controller, ControllerOptions, Database, DatabaseOptions, Hit, MatchClip, RATE, Recording, TagFilter, made_params,
+    Control, Controller, ControllerOptions, Database, DatabaseOptions, Hit, MatchClip, RATE,
+    Recording, TagFilter, made_params,
 };
 use segue_motion::math::Planar;
 use segue_motion::skeleton::Roles;
@@ -16,10 +18,8 @@ struct Chance(u64);
 impl Chance {
     /// From 0 to 1.
     fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
     }
 
@@ -28,7 +28,8 @@ impl Chance {
     }
 }
 
-/// Clips of the synthesiser, each by another person in another manner, with so many frames when mirrored.
+/// Clips of the synthesiser, each by another person in another manner, with so many frames when
+/// mirrored.
 pub(crate) fn clips(frames: usize) -> Vec<MatchClip> {
     let (mut chance, mut clips, mut made_frames) = (Chance(1), Vec::<MatchClip>::new(), 0);
     for round in 0.. {
@@ -36,7 +37,9 @@ pub(crate) fn clips(frames: usize) -> Vec<MatchClip> {
             if 2 * made_frames >= frames {
                 return clips;
             }
-            let mut manner = || if round == 0 { 1.0 } else { chance.between(0.5, 1.5) as f32 };
+            let mut manner = || {
+                if round == 0 { 1.0 } else { chance.between(0.5, 1.5) as f32 }
+            };
             let style = Style {
                 bounce: manner(),
                 arm_swing: manner(),
@@ -45,7 +48,9 @@ pub(crate) fn clips(frames: usize) -> Vec<MatchClip> {
                 lean: manner(),
             };
             let speed_mps = match Params::speed_range(natural.action) {
-                Some((low, high)) if round > 0 => (natural.speed_mps * chance.between(0.85, 1.15) as f32).clamp(low, high),
+                Some((low, high)) if round > 0 => {
+                    (natural.speed_mps * chance.between(0.85, 1.15) as f32).clamp(low, high)
+                }
                 _ => natural.speed_mps,
             };
             let turn = chance.between(0.7, 1.0) as f32;
@@ -85,11 +90,15 @@ pub(crate) fn recording(seed: u64, ticks: u32) -> Recording {
 type Asked = (Vec<f32>, Option<Hit>);
 
 fn driven(database: &Arc<Database>) -> Vec<Asked> {
-    let mut controller = Controller::new(Arc::clone(database), ControllerOptions::default(), &Planar::IDENTITY).expect("defaults");
+    let mut controller =
+        Controller::new(Arc::clone(database), ControllerOptions::default(), &Planar::IDENTITY)
+            .expect("defaults");
     let mut asked = Vec::new();
     for control in recording(7, 12_000).controls() {
         controller.tick(&control);
-        if let Some(search) = controller.last_search().filter(|search| search.tick + 1 == controller.ticks()) {
+        if let Some(search) =
+            controller.last_search().filter(|search| search.tick + 1 == controller.ticks())
+        {
             let current = search.current;
             let known = database.is_valid(current.place).then(|| Hit {
                 frame: database.number(current.place).expect("it is playing"),
@@ -131,7 +140,8 @@ impl TwoLevels {
         let rows: Vec<f32> = database.valid().iter().flat_map(row).collect();
         let boxes = |frames: usize| {
             let one = |part: &[f32]| {
-                let (mut low, mut high) = (vec![f32::INFINITY; dims], vec![f32::NEG_INFINITY; dims]);
+                let (mut low, mut high) =
+                    (vec![f32::INFINITY; dims], vec![f32::NEG_INFINITY; dims]);
                 for row in part.chunks_exact(dims) {
                     for dim in 0..dims {
                         low[dim] = low[dim].min(row[dim]);
@@ -245,10 +255,12 @@ pub(crate) struct Trial {
 impl Trial {
     /// About so many frames of 27 dimensions.
     pub(crate) fn new(frames: usize) -> Self {
-        let database = Arc::new(Database::new(clips(frames), &DatabaseOptions::default()).expect("clips"));
+        let database =
+            Arc::new(Database::new(clips(frames), &DatabaseOptions::default()).expect("clips"));
         let weights = ControllerOptions::default().weights.spread(database.features().layout());
         Self {
-            tree: TreeIndex::new(&database.candidates(), &weights, TagFilter::default()).expect("a tree"),
+            tree: TreeIndex::new(&database.candidates(), &weights, TagFilter::default())
+                .expect("a tree"),
             two: TwoLevels::new(&database, &weights),
             asked: [driven(&database), noise(weights.len())],
             weights,
@@ -269,11 +281,7 @@ impl Trial {
     /// The cost of the best frame, and how many frames the boxes looked at.
     pub(crate) fn search(&self, method: Method, kind: Kind, query: usize) -> (f32, usize) {
         let (query, known) = &self.asked[kind as usize][query];
-        let question = Question {
-            query,
-            weights: &self.weights,
-            filter: TagFilter::default(),
-        };
+        let question = Question { query, weights: &self.weights, filter: TagFilter::default() };
         let cost = |hit: Option<Hit>| hit.map_or(f32::NAN, |hit| hit.cost);
         match method {
             Method::Boxes => {
@@ -281,10 +289,13 @@ impl Trial {
                 (cost(found.best), found.visited)
             }
             Method::TwoLevels => {
-                let weighted: Vec<f32> = query.iter().zip(&self.weights).map(|(q, w)| q * w).collect();
+                let weighted: Vec<f32> =
+                    query.iter().zip(&self.weights).map(|(q, w)| q * w).collect();
                 (self.two.search(&weighted, known.map(|hit| hit.cost)), 0)
             }
-            Method::Tree => (cost(self.tree.search(&self.database.candidates(), &question).best), 0),
+            Method::Tree => {
+                (cost(self.tree.search(&self.database.candidates(), &question).best), 0)
+            }
             Method::Scan => (cost(scan(&self.database.candidates(), &question).best), 0),
         }
     }

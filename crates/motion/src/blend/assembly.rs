@@ -5,8 +5,8 @@ use glam::{Quat, Vec3};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A clip that is put together from frames of others. A joint that moves against its parent in any of them does so in the result, and rests where
-/// its clip does not move it.
+/// A clip that is put together from frames of others. A joint that moves against its parent in any
+/// of them does so in the result, and rests where its clip does not move it.
 #[derive(Debug)]
 pub(crate) struct Assembly {
     skeleton: Arc<Skeleton>,
@@ -24,11 +24,14 @@ impl Assembly {
     }
 
     /// Likewise for frames that are made of any number of clips.
-    pub(crate) fn of<'a>(first: &Clip, clips: impl IntoIterator<Item = &'a Clip>, frames: usize) -> Self {
-        let tracks = moving_joints_of(clips).into_iter().map(|joint| JointTranslations {
-            joint,
-            values: Vec::with_capacity(frames),
-        });
+    pub(crate) fn of<'a>(
+        first: &Clip,
+        clips: impl IntoIterator<Item = &'a Clip>,
+        frames: usize,
+    ) -> Self {
+        let tracks = moving_joints_of(clips)
+            .into_iter()
+            .map(|joint| JointTranslations { joint, values: Vec::with_capacity(frames) });
         Self {
             skeleton: Arc::clone(first.skeleton()),
             fps: first.fps(),
@@ -49,7 +52,12 @@ impl Assembly {
     }
 
     /// Frames of a clip, moved over the ground.
-    pub(crate) fn play_moved(&mut self, clip: &Clip, frames: Range<usize>, world_from_clip: &Planar) {
+    pub(crate) fn play_moved(
+        &mut self,
+        clip: &Clip,
+        frames: Range<usize>,
+        world_from_clip: &Planar,
+    ) {
         let turn = world_from_clip.rotation();
         for frame in frames.clone() {
             let first = self.rotations.len();
@@ -58,8 +66,9 @@ impl Assembly {
                 *root = quat::renormalize(turn * *root);
             }
         }
-        self.roots
-            .extend(clip.root_translations()[frames.clone()].iter().map(|&p| world_from_clip.apply(p)));
+        self.roots.extend(
+            clip.root_translations()[frames.clone()].iter().map(|&p| world_from_clip.apply(p)),
+        );
         self.play_tracks(clip, frames);
     }
 

@@ -8,19 +8,26 @@ use glam::{DVec2, Quat, Vec3};
 use std::sync::Arc;
 
 /// How the way over the ground is blended.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
+)]
 pub enum RootBlend {
-    /// Forward speed, sideways speed and yaw rate are blended in the character's own frame and integrated from where A leaves.
+    /// Forward speed, sideways speed and yaw rate are blended in the character's own frame and
+    /// integrated from where A leaves.
     #[default]
     Velocity,
-    /// The two roots are interpolated in the world. The naive way, for comparison: where the ways part, the speed dents.
+    /// The two roots are interpolated in the world. The naive way, for comparison: where the ways
+    /// part, the speed dents.
     World,
 }
 
 /// By what of the two clips B is laid on A.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
+)]
 pub enum AlignBy {
-    /// All joints over the whole window: the least squares of Kovar, Gleicher, Pighin 2002, section 3.1 ([`align_onto`]).
+    /// All joints over the whole window: the least squares of Kovar, Gleicher, Pighin 2002, section
+    /// 3.1 ([`align_onto`]).
     #[default]
     Window,
     /// Place and facing of the first posture alone ([`align_facing`]).
@@ -34,8 +41,9 @@ pub struct DissolveOptions {
     pub window: usize,
     /// How A's weight falls.
     pub law: WeightLaw,
-    /// Whether B is first laid on A. Without, B stays where its file put it, and the way over the ground is blended in the world whatever `root`
-    /// says: the character flies to B's place during the window, or flashes there at a cut.
+    /// Whether B is first laid on A. Without, B stays where its file put it, and the way over the
+    /// ground is blended in the world whatever `root` says: the character flies to B's place during
+    /// the window, or flashes there at a cut.
     pub align: bool,
     /// By what it is laid there.
     pub align_by: AlignBy,
@@ -91,11 +99,7 @@ impl Source {
     /// Another motion of the same body, where the character's frames are known.
     #[must_use]
     pub(crate) fn with_motion(&self, clip: Clip, frames: Vec<Planar>) -> Self {
-        Self {
-            clip: Arc::new(clip),
-            frames,
-            weights: self.weights.clone(),
-        }
+        Self { clip: Arc::new(clip), frames, weights: self.weights.clone() }
     }
 
     /// The clip.
@@ -110,7 +114,8 @@ impl Source {
         &self.frames
     }
 
-    /// The step of the character into `frame`, in its own frame at the frame before; into frame 0 the step that follows it (no other is known).
+    /// The step of the character into `frame`, in its own frame at the frame before; into frame 0
+    /// the step that follows it (no other is known).
     pub(crate) fn step_into(&self, frame: usize) -> Planar {
         let frame = frame.max(1);
         match (self.frames.get(frame - 1), self.frames.get(frame)) {
@@ -120,18 +125,27 @@ impl Source {
     }
 }
 
-/// Fades from clip A to clip B: frame `leave` of A and frame `enter` of B are the first of `options.window` overlapped frames.
+/// Fades from clip A to clip B: frame `leave` of A and frame `enter` of B are the first of
+/// `options.window` overlapped frames.
 ///
-/// The weight of A in frame p of a window of k is `law((p + 1) / k)`: the frame before the window is all A, its last frame is all B (Kovar,
-/// Gleicher, Pighin 2002, section 3.3). Local rotations slerp by the shorter way, translations and heights lerp. With
-/// [`RootBlend::Velocity`], poses are blended in the character's frame, and the character's steps (forward, sideways, yaw; each step at the
-/// weight of its middle) are blended and integrated from A's last frame; B then goes on rigidly from where that ends, without a jump. With
-/// [`RootBlend::World`] root positions and orientations are interpolated in the world after B was laid on A.
+/// The weight of A in frame p of a window of k is `law((p + 1) / k)`: the frame before the window
+/// is all A, its last frame is all B (Kovar, Gleicher, Pighin 2002, section 3.3). Local rotations
+/// slerp by the shorter way, translations and heights lerp. With [`RootBlend::Velocity`], poses are
+/// blended in the character's frame, and the character's steps (forward, sideways, yaw; each step
+/// at the weight of its middle) are blended and integrated from A's last frame; B then goes on
+/// rigidly from where that ends, without a jump. With [`RootBlend::World`] root positions and
+/// orientations are interpolated in the world after B was laid on A.
 ///
 /// # Errors
-/// [`BlendError`] when the clips move different skeletons or run at different rates (retarget, resample first), or a window crosses the end of
-/// its clip.
-pub fn dissolve(a: &Source, leave: usize, b: &Source, enter: usize, options: &DissolveOptions) -> Result<Concatenation, BlendError> {
+/// [`BlendError`] when the clips move different skeletons or run at different rates (retarget,
+/// resample first), or a window crosses the end of its clip.
+pub fn dissolve(
+    a: &Source,
+    leave: usize,
+    b: &Source,
+    enter: usize,
+    options: &DissolveOptions,
+) -> Result<Concatenation, BlendError> {
     let window = if options.window < 2 { 0 } else { options.window };
     check(a, leave, b, enter, window)?;
     // A cut right behind A's last frame is aligned by that frame.
@@ -141,21 +155,11 @@ pub fn dissolve(a: &Source, leave: usize, b: &Source, enter: usize, options: &Di
     } else {
         Planar::IDENTITY
     };
-    let blend = Blend {
-        a,
-        leave,
-        b,
-        enter,
-        window,
-        law: options.law,
-    };
+    let blend = Blend { a, leave, b, enter, window, law: options.law };
     let by_velocity = options.align && options.root == RootBlend::Velocity;
     let turns = if by_velocity { Vec::new() } else { blend.turns(&aligned_b) };
-    let frames_during = if by_velocity {
-        blend.integrated()
-    } else {
-        blend.between(&aligned_b, &turns)
-    };
+    let frames_during =
+        if by_velocity { blend.integrated() } else { blend.between(&aligned_b, &turns) };
     let (b_during, world_from_b) = if by_velocity {
         let during: Vec<Planar> = frames_during
             .iter()
@@ -190,8 +194,16 @@ pub fn dissolve(a: &Source, leave: usize, b: &Source, enter: usize, options: &Di
     })
 }
 
-/// Where B lies when its window lies best on A's, or its first posture on A's: `a_world_from_b_world`.
-pub(crate) fn laid_on(a: &Source, frame_a: usize, b: &Source, frame_b: usize, window: usize, by: AlignBy) -> Result<Planar, BlendError> {
+/// Where B lies when its window lies best on A's, or its first posture on A's:
+/// `a_world_from_b_world`.
+pub(crate) fn laid_on(
+    a: &Source,
+    frame_a: usize,
+    b: &Source,
+    frame_b: usize,
+    window: usize,
+    by: AlignBy,
+) -> Result<Planar, BlendError> {
     if by == AlignBy::FirstPose {
         return Ok(align_facing(&a.frames[frame_a], &b.frames[frame_b]));
     }
@@ -200,10 +212,18 @@ pub(crate) fn laid_on(a: &Source, frame_a: usize, b: &Source, frame_b: usize, wi
 }
 
 /// Whether the clips can follow each other with this overlap.
-pub(crate) fn check(a: &Source, leave: usize, b: &Source, enter: usize, window: usize) -> Result<(), BlendError> {
+pub(crate) fn check(
+    a: &Source,
+    leave: usize,
+    b: &Source,
+    enter: usize,
+    window: usize,
+) -> Result<(), BlendError> {
     check_bodies(a, b)?;
     // B gives at least one frame, A may end right before a cut.
-    for (which, clip, at, window) in [("outgoing", &a.clip, leave, window), ("incoming", &b.clip, enter, window.max(1))] {
+    for (which, clip, at, window) in
+        [("outgoing", &a.clip, leave, window), ("incoming", &b.clip, enter, window.max(1))]
+    {
         let frames = clip.frames();
         if frames == 0 || at > frames || frames - at < window {
             return Err(BlendError::Window { which, frames, at, window });
@@ -216,10 +236,7 @@ pub(crate) fn check(a: &Source, leave: usize, b: &Source, enter: usize, window: 
 pub(super) fn check_bodies(a: &Source, b: &Source) -> Result<(), BlendError> {
     let (a_fps, b_fps) = (a.clip.fps(), b.clip.fps());
     if !same_body(a.clip.skeleton(), b.clip.skeleton()) {
-        return Err(BlendError::Skeletons {
-            a: a.clip.name().into(),
-            b: b.clip.name().into(),
-        });
+        return Err(BlendError::Skeletons { a: a.clip.name().into(), b: b.clip.name().into() });
     }
     if (a_fps - b_fps).abs() > 1e-4 * a_fps {
         return Err(BlendError::FrameRates { a_fps, b_fps });
@@ -227,13 +244,17 @@ pub(super) fn check_bodies(a: &Source, b: &Source) -> Result<(), BlendError> {
     Ok(())
 }
 
-/// Whether the joints have the same names and parents, and offsets that agree to a tenth of a millimetre.
+/// Whether the joints have the same names and parents, and offsets that agree to a tenth of a
+/// millimetre.
 fn same_body(a: &Arc<Skeleton>, b: &Arc<Skeleton>) -> bool {
     Arc::ptr_eq(a, b)
         || (a.len() == b.len()
             && a.joints().iter().zip(b.joints()).enumerate().all(|(index, (a, b))| {
-                // The root's rest offset is never used: its translation is given in every frame.
-                a.parent == b.parent && a.name == b.name && (index == 0 || a.offset.abs_diff_eq(b.offset, 1e-4))
+                // The root's rest offset is never used: its translation is given in every
+                // frame.
+                a.parent == b.parent
+                    && a.name == b.name
+                    && (index == 0 || a.offset.abs_diff_eq(b.offset, 1e-4))
             }))
 }
 
@@ -260,7 +281,8 @@ impl Blend<'_> {
         self.law.alpha((p + 1.0) / self.window as f64)
     }
 
-    /// Where the character is in the frame after A's last one, if it makes B's step: where a cut goes on.
+    /// Where the character is in the frame after A's last one, if it makes B's step: where a cut
+    /// goes on.
     fn start(&self) -> Planar {
         match self.leave.checked_sub(1) {
             Some(last) => self.a.frames[last].after(&self.b.step_into(self.enter)),
@@ -268,7 +290,8 @@ impl Blend<'_> {
         }
     }
 
-    /// The character's frames in the window: steps blended in the character's frame, integrated from A's last frame before it.
+    /// The character's frames in the window: steps blended in the character's frame, integrated
+    /// from A's last frame before it.
     fn integrated(&self) -> Vec<Planar> {
         let mut here = self.leave.checked_sub(1).map(|last| self.a.frames[last]);
         (0..self.window)
@@ -277,8 +300,14 @@ impl Blend<'_> {
                     // The window starts with A's first frame.
                     None => self.a.frames[0],
                     Some(here) => {
-                        let (a, b) = (self.a.step_into(self.leave + p), self.b.step_into(self.enter + p));
-                        here.after(&mixed(&a, &b, wrap_angle(b.yaw - a.yaw), self.weight(p as f64 - 0.5)))
+                        let (a, b) =
+                            (self.a.step_into(self.leave + p), self.b.step_into(self.enter + p));
+                        here.after(&mixed(
+                            &a,
+                            &b,
+                            wrap_angle(b.yaw - a.yaw),
+                            self.weight(p as f64 - 0.5),
+                        ))
                     }
                 };
                 here = Some(next);
@@ -287,12 +316,14 @@ impl Blend<'_> {
             .collect()
     }
 
-    /// How far B is turned from A in every frame of the window, radians: the shorter way in the middle of the window, and the same way round in all
-    /// others. Chosen anew in every frame, the side would change whenever the two pass half a turn; taken from the first frame, B would be turned
-    /// the long way round where it weighs most.
+    /// How far B is turned from A in every frame of the window, radians: the shorter way in the
+    /// middle of the window, and the same way round in all others. Chosen anew in every frame, the
+    /// side would change whenever the two pass half a turn; taken from the first frame, B would be
+    /// turned the long way round where it weighs most.
     fn turns(&self, world_from_b: &Planar) -> Vec<f64> {
         let turn = |p: usize, near: f64| {
-            let yaw = world_from_b.yaw + self.b.frames[self.enter + p].yaw - self.a.frames[self.leave + p].yaw;
+            let yaw = world_from_b.yaw + self.b.frames[self.enter + p].yaw
+                - self.a.frames[self.leave + p].yaw;
             nearest_turn(yaw, near)
         };
         let mut turns = vec![0.0; self.window];
@@ -302,8 +333,9 @@ impl Blend<'_> {
         turns
     }
 
-    /// For every frame of the window and every joint whether A's rotation changes its sign, so that each joint is turned by the shorter way in the middle of
-    /// the window and the same way round in all other frames.
+    /// For every frame of the window and every joint whether A's rotation changes its sign, so that
+    /// each joint is turned by the shorter way in the middle of the window and the same way round
+    /// in all other frames.
     fn sides(&self, placing: &Placing<'_>) -> Vec<bool> {
         let joints = self.a.clip.skeleton().len();
         let mut flips = vec![false; self.window * joints];
@@ -340,7 +372,9 @@ impl Blend<'_> {
     /// What takes A and B to where they are blended in frame `p`.
     fn seen_from(&self, p: usize, placing: &Placing<'_>) -> (Planar, Planar) {
         match placing {
-            Placing::Character(_) => (self.a.frames[self.leave + p].inverse(), self.b.frames[self.enter + p].inverse()),
+            Placing::Character(_) => {
+                (self.a.frames[self.leave + p].inverse(), self.b.frames[self.enter + p].inverse())
+            }
             Placing::World(world_from_b, _) => (Planar::IDENTITY, *world_from_b),
         }
     }
@@ -357,7 +391,8 @@ impl Blend<'_> {
             .collect()
     }
 
-    /// Local pose and place of frame `p`: A's weight, then the root's translation and rotation. `flip` changes the sign of A's rotation ([`Self::sides`]).
+    /// Local pose and place of frame `p`: A's weight, then the root's translation and rotation.
+    /// `flip` changes the sign of A's rotation ([`Self::sides`]).
     fn root(&self, p: usize, placing: &Placing<'_>, flip: bool) -> (f32, Vec3, Quat) {
         let weight = self.weight(p as f64) as f32;
         let (a_from, b_from) = self.seen_from(p, placing);
@@ -398,9 +433,13 @@ impl Blend<'_> {
             rotations.clear();
             rotations.push(rotation);
             let both = a.rotations(fa).iter().zip(b.rotations(fb)).enumerate().skip(1);
-            rotations.extend(both.map(|(joint, (&a, &b))| quat::slerp_as_given(b, signed(a, flips[p * joints + joint]), weight)));
+            rotations.extend(both.map(|(joint, (&a, &b))| {
+                quat::slerp_as_given(b, signed(a, flips[p * joints + joint]), weight)
+            }));
             translations.clear();
-            let between = |&joint: &usize| translation_of(b, joint, fb).lerp(translation_of(a, joint, fa), weight);
+            let between = |&joint: &usize| {
+                translation_of(b, joint, fb).lerp(translation_of(a, joint, fa), weight)
+            };
             translations.extend(moving.iter().map(between));
             made.push(translation, &rotations, &translations);
         }
@@ -413,7 +452,8 @@ fn signed(q: Quat, flip: bool) -> Quat {
     if flip { -q } else { q }
 }
 
-/// The frames of a window from its middle to its end, then from there back to its beginning, each with the neighbour that came before it.
+/// The frames of a window from its middle to its end, then from there back to its beginning, each
+/// with the neighbour that came before it.
 fn from_the_middle(window: usize) -> impl Iterator<Item = (usize, Option<usize>)> {
     let middle = window / 2;
     let later = (middle..window).map(move |p| (p, (p > middle).then(|| p - 1)));
@@ -423,10 +463,7 @@ fn from_the_middle(window: usize) -> impl Iterator<Item = (usize, Option<usize>)
 /// `weight` of `a`, the rest of `b`, which is turned from `a` by `turn`.
 fn mixed(a: &Planar, b: &Planar, turn: f64, weight: f64) -> Planar {
     let shift: DVec2 = b.shift + (a.shift - b.shift) * weight;
-    Planar {
-        yaw: wrap_angle(a.yaw + turn * (1.0 - weight)),
-        shift,
-    }
+    Planar { yaw: wrap_angle(a.yaw + turn * (1.0 - weight)), shift }
 }
 
 #[cfg(test)]

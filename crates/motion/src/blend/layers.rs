@@ -20,7 +20,9 @@ pub enum LayerError {
         over: String,
     },
     /// A frame of the layer that does not exist.
-    #[error("the layer has {frames} frames, and no frame {frame}: choose another frame of reference or another clip")]
+    #[error(
+        "the layer has {frames} frames, and no frame {frame}: choose another frame of reference or another clip"
+    )]
     NoFrame {
         /// The frame asked for.
         frame: usize,
@@ -51,8 +53,9 @@ pub enum Reference {
     Rest,
     /// A frame of the layer's own clip.
     Frame(usize),
-    /// The mean of the layer's own frames: of rotations the normalised sum of quaternions in one hemisphere (for poses of one clip within a degree of
-    /// the mean of Markley, Cheng, Crassidis, Oshman 2007).
+    /// The mean of the layer's own frames: of rotations the normalised sum of quaternions in one
+    /// hemisphere (for poses of one clip within a degree of the mean of Markley, Cheng, Crassidis,
+    /// Oshman 2007).
     Mean,
 }
 
@@ -61,13 +64,15 @@ pub enum Reference {
 pub enum LayerMode {
     /// The layer takes the base's place, joint by joint: slerp by mask × weight.
     Override,
-    /// What the layer does beyond a reference pose is added: `base · exp(w log(reference⁻¹ · over))`, in every joint's own frame, so that a
-    /// bent arm waves as a straight one does.
+    /// What the layer does beyond a reference pose is added: `base · exp(w log(reference⁻¹ ·
+    /// over))`, in every joint's own frame, so that a bent arm waves as a straight one does.
     Additive(Reference),
 }
 
 /// How long a layer lasts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
+)]
 pub enum LayerTime {
     /// It begins again at its end: its last frame counts as its first.
     #[default]
@@ -91,8 +96,9 @@ pub struct LayerOptions {
     pub time: LayerTime,
     /// The layer's time at the base's first frame, seconds; below 0 it begins later than the base.
     pub start_secs: f64,
-    /// Whether the joints at the border of the mask take the layer's orientation in the *character's* frame instead of against their parents. The
-    /// hips of a walk tilt and turn: an upper body that only keeps its angles to other hips nods with them. Only in override.
+    /// Whether the joints at the border of the mask take the layer's orientation in the
+    /// *character's* frame instead of against their parents. The hips of a walk tilt and turn: an
+    /// upper body that only keeps its angles to other hips nods with them. Only in override.
     pub keep_orientation: bool,
 }
 
@@ -112,24 +118,39 @@ impl Default for LayerOptions {
 
 /// Lays a part of one clip over another: the upper body of `over` on the legs of `base`.
 ///
-/// The result has the base's frames and rate; the layer is read between its frames where its rate or start do not fit. Joints outside the mask, and the
-/// root with them, are the base's, bit for bit. Where the mask takes in the root: its lean and its height are those of the layer by weight, in the character's
-/// frame; over the ground, an override blends the steps of both characters by the root's weight and integrates them from the base's first
-/// frame, and an additive layer leaves the base's way. Joints that move against their parents are blended likewise.
+/// The result has the base's frames and rate; the layer is read between its frames where its rate
+/// or start do not fit. Joints outside the mask, and the root with them, are the base's, bit for
+/// bit. Where the mask takes in the root: its lean and its height are those of the layer by weight,
+/// in the character's frame; over the ground, an override blends the steps of both characters by
+/// the root's weight and integrates them from the base's first frame, and an additive layer leaves
+/// the base's way. Joints that move against their parents are blended likewise.
 ///
 /// # Errors
-/// [`LayerError`] when the clips move different skeletons, the layer has no such frame, or a number is none.
-pub fn layer(base: &Clip, roles: &Roles, over: &Clip, options: &LayerOptions) -> Result<Clip, LayerError> {
+/// [`LayerError`] when the clips move different skeletons, the layer has no such frame, or a number
+/// is none.
+pub fn layer(
+    base: &Clip,
+    roles: &Roles,
+    over: &Clip,
+    options: &LayerOptions,
+) -> Result<Clip, LayerError> {
     let times: Vec<f64> = (0..base.frames()).map(|frame| base.time_of(frame)).collect();
     layer_timed(base, roles, over, options, &times)
 }
 
-/// [`layer`], where the layer need not run as evenly as the base: `times` has its own time for every frame of the base, seconds, to which the options' start
-/// is added; frames without one have the base's alone.
+/// [`layer`], where the layer need not run as evenly as the base: `times` has its own time for
+/// every frame of the base, seconds, to which the options' start is added; frames without one have
+/// the base's alone.
 ///
 /// # Errors
 /// As [`layer`].
-pub fn layer_timed(base: &Clip, roles: &Roles, over: &Clip, options: &LayerOptions, times: &[f64]) -> Result<Clip, LayerError> {
+pub fn layer_timed(
+    base: &Clip,
+    roles: &Roles,
+    over: &Clip,
+    options: &LayerOptions,
+    times: &[f64],
+) -> Result<Clip, LayerError> {
     check(base, over, options)?;
     let mask = mask(base.skeleton(), roles, &options.parts, options.feather);
     if options.weight == 0.0 || mask.iter().all(|&weight| weight == 0.0) || base.frames() == 0 {
@@ -178,10 +199,7 @@ fn check(base: &Clip, over: &Clip, options: &LayerOptions) -> Result<(), LayerEr
     if frame < over.frames() {
         Ok(())
     } else {
-        Err(LayerError::NoFrame {
-            frame,
-            frames: over.frames(),
-        })
+        Err(LayerError::NoFrame { frame, frames: over.frames() })
     }
 }
 
@@ -207,7 +225,9 @@ impl Layering<'_> {
         for frame in 0..self.base.frames() {
             let time = self.times.get(frame).copied().unwrap_or_else(|| self.base.time_of(frame));
             let secs = self.options.start_secs + time;
-            let Some(over) = self.pose(secs) else { continue };
+            let Some(over) = self.pose(secs) else {
+                continue;
+            };
             if frame > 0 {
                 here = here.after(&self.step(frame, before, secs));
             }
@@ -265,7 +285,8 @@ impl Layering<'_> {
         }
     }
 
-    /// The step into a frame: the base's, and in an override the layer's, from one of its times to the other, by the root's weight.
+    /// The step into a frame: the base's, and in an override the layer's, from one of its times to
+    /// the other, by the root's weight.
     fn step(&self, frame: usize, before: f64, secs: f64) -> Planar {
         let base = self.base_stands[frame - 1].inverse().after(&self.base_stands[frame]);
         let weight = f64::from(self.weight(0));
@@ -273,7 +294,8 @@ impl Layering<'_> {
             return base;
         }
         let (from, to) = (self.local(before), self.local(secs));
-        let between = |from: f64, to: f64| self.stands_at(from).inverse().after(&self.stands_at(to));
+        let between =
+            |from: f64, to: f64| self.stands_at(from).inverse().after(&self.stands_at(to));
         let over = if to >= from {
             between(from, to)
         } else {
@@ -281,15 +303,14 @@ impl Layering<'_> {
             between(from, self.over.duration_secs()).after(&between(0.0, to))
         };
         let yaw = wrap_angle(base.yaw) * (1.0 - weight) + wrap_angle(over.yaw) * weight;
-        Planar {
-            yaw,
-            shift: base.shift.lerp(over.shift, weight),
-        }
+        Planar { yaw, shift: base.shift.lerp(over.shift, weight) }
     }
 
     fn reference(&self) -> Pose {
         match self.options.mode {
-            LayerMode::Additive(Reference::Frame(frame)) => in_character_frame(self.over.pose(frame), &self.over_stands[frame]),
+            LayerMode::Additive(Reference::Frame(frame)) => {
+                in_character_frame(self.over.pose(frame), &self.over_stands[frame])
+            }
             LayerMode::Additive(Reference::Mean) => self.mean_pose(),
             _ => Pose {
                 root_translation: self.over.skeleton().joints()[0].offset,
@@ -301,7 +322,8 @@ impl Layering<'_> {
 
     /// The mean of the layer's poses, each seen from where the character stands.
     fn mean_pose(&self) -> Pose {
-        let poses = (0..self.over.frames()).map(|frame| in_character_frame(self.over.pose(frame), &self.over_stands[frame]));
+        let poses = (0..self.over.frames())
+            .map(|frame| in_character_frame(self.over.pose(frame), &self.over_stands[frame]));
         let share = (self.over.frames().max(1) as f32).recip();
         let sum = poses.reduce(|mut sum, pose| {
             sum.root_translation += pose.root_translation;
@@ -325,7 +347,14 @@ impl Layering<'_> {
     }
 
     /// Rotations with the layer in the base's place.
-    fn replace(&self, frame: usize, over: &Pose, here: &Planar, rotations: &mut Vec<Quat>, world: &mut WorldPose) {
+    fn replace(
+        &self,
+        frame: usize,
+        over: &Pose,
+        here: &Planar,
+        rotations: &mut Vec<Quat>,
+        world: &mut WorldPose,
+    ) {
         let base = self.base.rotations(frame);
         let joints = self.base.skeleton().joints();
         let turn = here.rotation();
@@ -341,7 +370,9 @@ impl Layering<'_> {
             let parent = joints[joint].parent;
             let target = match parent {
                 None => turn * over,
-                Some(parent) if self.turned && self.mask[parent] < 1.0 => made[parent].conjugate() * turn * world.rotations[joint],
+                Some(parent) if self.turned && self.mask[parent] < 1.0 => {
+                    made[parent].conjugate() * turn * world.rotations[joint]
+                }
                 Some(_) => over,
             };
             let base = match parent {
@@ -367,21 +398,12 @@ impl Layering<'_> {
     fn add(&self, frame: usize, over: &Pose, reference: &Pose, rotations: &mut Vec<Quat>) {
         rotations.clear();
         let poses = over.rotations.iter().zip(&reference.rotations);
-        rotations.extend(
-            self.base
-                .rotations(frame)
-                .iter()
-                .zip(poses)
-                .enumerate()
-                .map(|(joint, (&base, (over, reference)))| {
-                    let weight = self.weight(joint);
-                    if weight == 0.0 {
-                        base
-                    } else {
-                        added(base, *over, *reference, weight)
-                    }
-                }),
-        );
+        rotations.extend(self.base.rotations(frame).iter().zip(poses).enumerate().map(
+            |(joint, (&base, (over, reference)))| {
+                let weight = self.weight(joint);
+                if weight == 0.0 { base } else { added(base, *over, *reference, weight) }
+            },
+        ));
     }
 
     /// The root's place in an override.

@@ -32,10 +32,12 @@ impl BodyPart {
     ];
 }
 
-/// The weight of every joint of a skeleton, 0 to 1, for a set of parts; of parts that overlap the larger weight.
+/// The weight of every joint of a skeleton, 0 to 1, for a set of parts; of parts that overlap the
+/// larger weight.
 ///
-/// `feather` is a number of joints over which a part fades in along the tree from its first joint: with 3, the first four joints of the spine have
-/// weights 1/4, 2/4, 3/4 and 1. The lower body fades out over the same joints, so that it and the upper body are 1 together everywhere. The
+/// `feather` is a number of joints over which a part fades in along the tree from its first joint:
+/// with 3, the first four joints of the spine have weights 1/4, 2/4, 3/4 and 1. The lower body
+/// fades out over the same joints, so that it and the upper body are 1 together everywhere. The
 /// whole body has no border. A part whose joints the roles do not tell is empty.
 #[must_use]
 pub fn mask(skeleton: &Skeleton, roles: &Roles, parts: &[BodyPart], feather: usize) -> Vec<f32> {
@@ -64,7 +66,9 @@ impl<'a> Body<'a> {
         let joint = |role| roles.get_within(role, skeleton.len());
         let up = |from: usize| std::iter::successors(Some(from), |&joint| skeleton.parent(joint));
         let arms = Side::BOTH.map(|side| joint(Role::upper_arm(side)));
-        let carries = |above: usize, joint: Option<usize>| joint.is_some_and(|joint| up(joint).any(|j| j == above));
+        let carries = |above: usize, joint: Option<usize>| {
+            joint.is_some_and(|joint| up(joint).any(|j| j == above))
+        };
         let ends = [arms[0], arms[1], joint(Role::Head)];
         // The lowest joint that two of the arms and the head hang on.
         let chest = (0..skeleton.len())
@@ -84,18 +88,14 @@ impl<'a> Body<'a> {
             }
             spine => spine.into_iter().collect(),
         };
-        Self {
-            skeleton,
-            upper,
-            arms: arms.map(below_chest),
-            head: below_chest(ends[2]),
-            chest,
-        }
+        Self { skeleton, upper, arms: arms.map(below_chest), head: below_chest(ends[2]), chest }
     }
 
-    /// Joints from the nearest of `tops` down to `joint`; `None` for one that hangs on none of them.
+    /// Joints from the nearest of `tops` down to `joint`; `None` for one that hangs on none of
+    /// them.
     fn depth(&self, tops: &[usize], joint: usize) -> Option<usize> {
-        std::iter::successors(Some(joint), |&joint| self.skeleton.parent(joint)).position(|joint| tops.contains(&joint))
+        std::iter::successors(Some(joint), |&joint| self.skeleton.parent(joint))
+            .position(|joint| tops.contains(&joint))
     }
 
     fn weight(&self, part: BodyPart, joint: usize, feather: usize) -> f32 {
@@ -112,7 +112,8 @@ impl<'a> Body<'a> {
             BodyPart::RightArm => of(self.arms[1]),
             BodyPart::Head => of(self.head),
             BodyPart::Spine => {
-                let carries_chest = self.chest.is_some_and(|chest| self.depth(&[joint], chest).is_some());
+                let carries_chest =
+                    self.chest.is_some_and(|chest| self.depth(&[joint], chest).is_some());
                 if carries_chest { faded(&self.upper) } else { 0.0 }
             }
         }

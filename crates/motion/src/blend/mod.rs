@@ -1,9 +1,11 @@
-//! From one clip to another, and one over another: weights, placing one motion on another, the dissolve, registered blends, and layers.
+//! From one clip to another, and one over another: weights, placing one motion on another, the
+//! dissolve, registered blends, and layers.
 //!
 //! # The idea
 //!
-//! A dissolve leaves clip A at frame `i`, enters clip B at frame `j` and overlaps `k` frames. Its result is `A[..i]`, then `k` frames in
-//! which `A[i..i + k)` fades into `B[j..j + k)`, then `B[j + k..]`. In frame p of the window:
+//! A dissolve leaves clip A at frame `i`, enters clip B at frame `j` and overlaps `k` frames. Its
+//! result is `A[..i]`, then `k` frames in which `A[i..i + k)` fades into `B[j..j + k)`, then `B[j +
+//! k..]`. In frame p of the window:
 //!
 //! ```text
 //! α = 2t³ - 3t² + 1,  t = (p + 1)/k           weight of A: 1 before the window, 0 at its end
@@ -11,12 +13,14 @@
 //! frame = frame before · (α a + (1 - α) b)    a, b: the characters' own steps
 //! ```
 //!
-//! Poses are blended as each character sees its own body, and the way over the ground is made of blended *steps*: forward, sideways, turn.
-//! Picture two people who walk side by side in step while the camera goes over from one to the other; it does not matter where either walked
-//! before. Blended in the world ([`RootBlend::World`]) the character is pulled from one way to the other.
+//! Poses are blended as each character sees its own body, and the way over the ground is made of
+//! blended *steps*: forward, sideways, turn. Picture two people who walk side by side in step while
+//! the camera goes over from one to the other; it does not matter where either walked before.
+//! Blended in the world ([`RootBlend::World`]) the character is pulled from one way to the other.
 //!
-//! [`registered_blend`] plays both clips along a timewarp, so that like meets like for as long as the clips last. A [`layer`] puts a part of
-//! one body over another, or adds what a motion does beyond a reference pose:
+//! [`registered_blend`] plays both clips along a timewarp, so that like meets like for as long as
+//! the clips last. A [`layer`] puts a part of one body over another, or adds what a motion does
+//! beyond a reference pose:
 //!
 //! ```text
 //! in place   slerp(base, over, w)                        w = mask · weight
@@ -63,20 +67,22 @@
 //!
 //! # Accuracy and cost
 //!
-//! A clip dissolved into itself is itself to 1e-5 m; where B lay before changes the result by less than 0.2 mm. Between two straight walks
-//! no turn appears that neither has, and but for the sway of a stride speeds stay between both. Dissolves and layers agree with `SciPy`.
-//! O(frames × joints).
+//! A clip dissolved into itself is itself to 1e-5 m; where B lay before changes the result by less
+//! than 0.2 mm. Between two straight walks no turn appears that neither has, and but for the sway
+//! of a stride speeds stay between both. Dissolves and layers agree with `SciPy`. O(frames ×
+//! joints).
 //!
 //! # What it does not do
 //!
-//! It does not plant feet: a foot that stands in A and swings in B slides, and [`crate::transition::foot_lock`] repairs that. Two poses that
-//! are far apart have a mean that neither clip has; search a better place first. Nothing is retargeted or resampled on the way:
+//! It does not plant feet: a foot that stands in A and swings in B slides, and
+//! [`crate::transition::foot_lock`] repairs that. Two poses that are far apart have a mean that
+//! neither clip has; search a better place first. Nothing is retargeted or resampled on the way:
 //! [`BlendError`] asks for it.
 //!
 //! # Sources
 //!
-//! Kovar, Gleicher, Pighin, "Motion Graphs", 2002 (window and weight). Kovar, Gleicher 2003, section 5 (registered blends). Perlin 2002
-//! ([`WeightLaw::Smoother`]).
+//! Kovar, Gleicher, Pighin, "Motion Graphs", 2002 (window and weight). Kovar, Gleicher 2003,
+//! section 5 (registered blends). Perlin 2002 ([`WeightLaw::Smoother`]).
 
 mod assembly;
 mod concatenation;
@@ -95,7 +101,9 @@ pub(crate) use dissolve::{check, laid_on};
 pub use layers::{LayerError, LayerMode, LayerOptions, LayerTime, Reference, layer, layer_timed};
 pub use mask::{BodyPart, mask};
 pub use place::{align_facing, align_onto};
-pub use registered::{Instant, Partner, RegisteredBlend, RegisteredJoin, registered_blend, registered_join};
+pub use registered::{
+    Instant, Partner, RegisteredBlend, RegisteredJoin, registered_blend, registered_join,
+};
 pub use weight::WeightLaw;
 pub use weight_curve::WeightCurve;
 
@@ -117,7 +125,9 @@ pub enum BlendError {
         b: String,
     },
     /// The frame rates differ.
-    #[error("the clips run at {a_fps} and {b_fps} frames per second: resample one to the other's rate first")]
+    #[error(
+        "the clips run at {a_fps} and {b_fps} frames per second: resample one to the other's rate first"
+    )]
     FrameRates {
         /// Frame rate of the outgoing clip.
         a_fps: f64,

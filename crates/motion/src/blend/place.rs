@@ -2,14 +2,16 @@ use crate::clip::Clip;
 use crate::math::Planar;
 use crate::registration::{Alignment, RegistrationError, align};
 
-/// Lays clip `b` on clip `a` over a window (section A of the point clouds): `A[frame_a..frame_a + window)` and
-/// `B[frame_b..frame_b + window)`, at least one frame. The alignment's transform is `a_world_from_b_world`.
+/// Lays clip `b` on clip `a` over a window (section A of the point clouds): `A[frame_a..frame_a +
+/// window)` and `B[frame_b..frame_b + window)`, at least one frame. The alignment's transform is
+/// `a_world_from_b_world`.
 ///
-/// `weights` has one weight per joint ([`crate::registration::limb_weights`]); `fallback_yaw` is the turn where every turn fits (the
-/// difference of the facings is a good one).
+/// `weights` has one weight per joint ([`crate::registration::limb_weights`]); `fallback_yaw` is
+/// the turn where every turn fits (the difference of the facings is a good one).
 ///
 /// # Errors
-/// [`RegistrationError`] when a window crosses the end of its clip, the skeletons' sizes differ, or the weights do not fit.
+/// [`RegistrationError`] when a window crosses the end of its clip, the skeletons' sizes differ, or
+/// the weights do not fit.
 pub fn align_onto(
     a: &Clip,
     frame_a: usize,
@@ -22,10 +24,7 @@ pub fn align_onto(
     let window = window.max(1);
     let (source_joints, target_joints) = (a.skeleton().len(), b.skeleton().len());
     if source_joints != target_joints {
-        return Err(RegistrationError::Skeletons {
-            source_joints,
-            target_joints,
-        });
+        return Err(RegistrationError::Skeletons { source_joints, target_joints });
     }
     for (which, clip, frame) in [("outgoing", a, frame_a), ("incoming", b, frame_b)] {
         let frames = clip.frames().saturating_sub(frame);
@@ -41,8 +40,9 @@ pub fn align_onto(
     )
 }
 
-/// Lays character frame `b` on character frame `a`: same place on the ground, same facing (section B's `transform`). Looks at one frame only,
-/// where [`align_onto`] looks at the whole body over a window.
+/// Lays character frame `b` on character frame `a`: same place on the ground, same facing (section
+/// B's `transform`). Looks at one frame only, where [`align_onto`] looks at the whole body over a
+/// window.
 #[must_use]
 pub fn align_facing(a: &Planar, b: &Planar) -> Planar {
     a.after(&b.inverse())
@@ -91,22 +91,11 @@ mod tests {
 
     #[test]
     fn windows_end_with_their_clip() {
-        let clip = Walk {
-            frames: 10,
-            ..Walk::default()
-        }
-        .clip();
+        let clip = Walk { frames: 10, ..Walk::default() }.clip();
         let weights = limb_weights(clip.skeleton());
         assert!(align_onto(&clip, 6, &clip, 0, 4, &weights, 0.0).is_ok());
         let error = align_onto(&clip, 0, &clip, 7, 4, &weights, 0.0).unwrap_err();
-        assert_eq!(
-            error,
-            RegistrationError::TooShort {
-                which: "incoming",
-                frames: 3,
-                window: 4
-            }
-        );
+        assert_eq!(error, RegistrationError::TooShort { which: "incoming", frames: 3, window: 4 });
         assert!(align_onto(&clip, 99, &clip, 0, 0, &weights, 0.0).is_err());
     }
 }

@@ -14,14 +14,16 @@ pub struct Partner<'a> {
     pub source: &'a Source,
     /// Its registration to the reference.
     pub registration: &'a Registration,
-    /// Its weight over the course of the blend. What all partners leave of 1 is the reference's; partners that are more than 1 together share it.
+    /// Its weight over the course of the blend. What all partners leave of 1 is the reference's;
+    /// partners that are more than 1 together share it.
     pub weight: &'a WeightCurve,
 }
 
 /// What a frame of a registered blend is made of.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Instant {
-    /// The frame that each clip shows, which may lie between two: the reference, then the partners in order.
+    /// The frame that each clip shows, which may lie between two: the reference, then the partners
+    /// in order.
     pub frames: Vec<f64>,
     /// The weight of each clip; they add up to 1.
     pub weights: Vec<f64>,
@@ -49,13 +51,19 @@ pub struct RegisteredJoin {
 
 /// Blends clips along their registrations (Kovar, Gleicher 2003, section 5).
 ///
-/// The clips show frames that are alike: while the reference shows its frame t, a partner shows `warp(t)`. From frame to frame the clips' clocks go on by
-/// one frame in their weighted mean, so that a clip that has all the weight plays at its own speed. Poses are blended as they lie on each other by the
-/// alignment curves; the way over the ground is made of the steps that the blended character takes while every clip is moved rigidly.
+/// The clips show frames that are alike: while the reference shows its frame t, a partner shows
+/// `warp(t)`. From frame to frame the clips' clocks go on by one frame in their weighted mean, so
+/// that a clip that has all the weight plays at its own speed. Poses are blended as they lie on
+/// each other by the alignment curves; the way over the ground is made of the steps that the
+/// blended character takes while every clip is moved rigidly.
 ///
 /// # Errors
-/// [`BlendError`] when clips move different bodies or run at different rates, or the registered parts have less than two frames in common.
-pub fn registered_blend(reference: &Source, partners: &[Partner<'_>]) -> Result<RegisteredBlend, BlendError> {
+/// [`BlendError`] when clips move different bodies or run at different rates, or the registered
+/// parts have less than two frames in common.
+pub fn registered_blend(
+    reference: &Source,
+    partners: &[Partner<'_>],
+) -> Result<RegisteredBlend, BlendError> {
     let blend = Blend::new(reference, partners)?;
     let span = blend.span()?;
     let instants = blend.schedule(span, None);
@@ -63,13 +71,17 @@ pub fn registered_blend(reference: &Source, partners: &[Partner<'_>]) -> Result<
     Ok(RegisteredBlend { clip, instants, frames })
 }
 
-/// From clip A to clip B, registered to it: A up to frame `leave`, then both along the registration while the weight goes over, then B. The transition takes
-/// the registered part of A from `leave` up to about frame `arrive`: to the whole frame of B that is nearest. Its first frame is all A, its last all B.
+/// From clip A to clip B, registered to it: A up to frame `leave`, then both along the registration
+/// while the weight goes over, then B. The transition takes the registered part of A from `leave`
+/// up to about frame `arrive`: to the whole frame of B that is nearest. Its first frame is all A,
+/// its last all B.
 ///
-/// The clocks are stretched by at most half a frame over the transition, so that it ends on a frame.
+/// The clocks are stretched by at most half a frame over the transition, so that it ends on a
+/// frame.
 ///
 /// # Errors
-/// [`BlendError`] as for [`registered_blend`]; [`BlendError::Apart`] too when fewer than two frames of either clip lie between `leave` and `arrive`.
+/// [`BlendError`] as for [`registered_blend`]; [`BlendError::Apart`] too when fewer than two frames
+/// of either clip lie between `leave` and `arrive`.
 pub fn registered_join(
     a: &Source,
     b: &Source,
@@ -80,19 +92,10 @@ pub fn registered_join(
 ) -> Result<RegisteredJoin, BlendError> {
     // Keys would ease twice: the law is applied to a share of its own.
     let weight = WeightCurve::constant(0.0);
-    let partner = [Partner {
-        source: b,
-        registration,
-        weight: &weight,
-    }];
-    let blend = Blend {
-        law: Some(law),
-        ..Blend::new(a, &partner)?
-    };
+    let partner = [Partner { source: b, registration, weight: &weight }];
+    let blend = Blend { law: Some(law), ..Blend::new(a, &partner)? };
     let (from, to) = blend.span()?;
-    let apart = || BlendError::Apart {
-        reference: a.clip().name().into(),
-    };
+    let apart = || BlendError::Apart { reference: a.clip().name().into() };
     let warp = registration.warp();
     let start = leave as f64;
     let end_in_b = warp.at((arrive as f64).min(to)).round().min(warp.at(to).floor());
@@ -110,7 +113,8 @@ pub fn registered_join(
     let (middle, frames) = blend.clip(&during)?;
 
     let enter_end = (end_in_b as usize).min(b.clip().frames().saturating_sub(1));
-    let mut made = Assembly::new(a.clip(), b.clip(), leave + during.len() + b.clip().frames() - enter_end - 1);
+    let mut made =
+        Assembly::new(a.clip(), b.clip(), leave + during.len() + b.clip().frames() - enter_end - 1);
     made.play(a.clip(), 0..leave);
     made.play(&middle, 0..middle.frames());
     let b_during: Vec<Planar> = (during.iter().zip(&frames))
@@ -138,8 +142,8 @@ pub fn registered_join(
 }
 
 impl RegisteredBlend {
-    /// When which foot is on the ground: where clips with more than half of the weight have it there. `of` are the clips' contacts,
-    /// the reference's first.
+    /// When which foot is on the ground: where clips with more than half of the weight have it
+    /// there. `of` are the clips' contacts, the reference's first.
     #[must_use]
     pub fn contacts(&self, of: &[&Contacts]) -> Contacts {
         contacts_of(&self.instants, of)
@@ -166,7 +170,8 @@ fn contacts_of(instants: &[Instant], of: &[&Contacts]) -> Contacts {
     let planted = |side: Side| {
         instants.iter().map(move |instant| {
             let parts = instant.weights.iter().zip(&instant.frames).zip(of);
-            let planted = parts.filter(|((_, frame), contacts)| contacts.planted(side, frame.round() as usize));
+            let planted = parts
+                .filter(|((_, frame), contacts)| contacts.planted(side, frame.round() as usize));
             planted.map(|((weight, _), _)| weight).sum::<f64>() > 0.5
         })
     };
@@ -185,11 +190,7 @@ impl<'a> Blend<'a> {
         for partner in partners {
             check_bodies(reference, partner.source)?;
         }
-        Ok(Self {
-            reference,
-            partners,
-            law: None,
-        })
+        Ok(Self { reference, partners, law: None })
     }
 
     fn sources(&self) -> impl Iterator<Item = &'a Source> + '_ {
@@ -210,9 +211,7 @@ impl<'a> Blend<'a> {
         if span.1 - span.0 >= 1.0 {
             Ok(span)
         } else {
-            Err(BlendError::Apart {
-                reference: self.reference.clip().name().into(),
-            })
+            Err(BlendError::Apart { reference: self.reference.clip().name().into() })
         }
     }
 
@@ -240,7 +239,8 @@ impl<'a> Blend<'a> {
         weights
     }
 
-    /// Frames that go by in the weighted mean of the clips' clocks while the reference goes from one frame to another.
+    /// Frames that go by in the weighted mean of the clips' clocks while the reference goes from
+    /// one frame to another.
     fn clock(&self, weights: &[f64], from: f64, to: f64) -> f64 {
         let others = self.partners.iter().zip(&weights[1..]).filter(|(_, weight)| **weight > 0.0);
         let others = others.map(|(partner, weight)| {
@@ -250,7 +250,8 @@ impl<'a> Blend<'a> {
         weights[0] * (to - from) + others.sum::<f64>()
     }
 
-    /// The frame of the reference when the mean clock has gone on by `step` from `from`; `None` behind the end.
+    /// The frame of the reference when the mean clock has gone on by `step` from `from`; `None`
+    /// behind the end.
     fn next(&self, weights: &[f64], from: f64, end: f64, step: f64) -> Option<f64> {
         // What rounding has left of the last frame is a frame.
         let left = self.clock(weights, from, end) - step;
@@ -282,8 +283,8 @@ impl<'a> Blend<'a> {
         Some(at)
     }
 
-    /// What every frame of the blend shows, from one frame of the reference to another: as many as there are, or a number of steps of a given length,
-    /// the last of which ends at the end.
+    /// What every frame of the blend shows, from one frame of the reference to another: as many as
+    /// there are, or a number of steps of a given length, the last of which ends at the end.
     fn schedule(&self, (start, end): (f64, f64), steps: Option<(usize, f64)>) -> Vec<Instant> {
         let instant = |at: f64| Instant {
             frames: self.frames(at),
@@ -294,7 +295,9 @@ impl<'a> Blend<'a> {
         let (count, step) = steps.unwrap_or((usize::MAX, 1.0));
         while instants.len() <= count {
             // The weights of the middle of the step, nearly.
-            let rate = self.clock(&self.weights((at - start) / (end - start)), at, (at + 0.5).min(end)) / (end - at).min(0.5);
+            let rate =
+                self.clock(&self.weights((at - start) / (end - start)), at, (at + 0.5).min(end))
+                    / (end - at).min(0.5);
             let middle = (at + 0.5 * step / rate.max(0.05)).min(end);
             let weights = self.weights((middle - start) / (end - start));
             at = match self.next(&weights, at, end, step) {
@@ -321,7 +324,9 @@ impl<'a> Blend<'a> {
         let mut mean = Planar::IDENTITY;
         let mut sum = 0.0;
         let parts = self.sources().zip(alignments).zip(instant.frames.iter().zip(&instant.weights));
-        for ((source, alignment), (&frame, &weight)) in parts.filter(|(_, (_, weight))| **weight > 0.0) {
+        for ((source, alignment), (&frame, &weight)) in
+            parts.filter(|(_, (_, weight))| **weight > 0.0)
+        {
             let here = alignment.after(&character_at(source, frame));
             sum += weight;
             mean = between(&mean, &here, weight / sum);
@@ -329,7 +334,8 @@ impl<'a> Blend<'a> {
         mean
     }
 
-    /// Where the character stands and faces in every frame: the steps of the blend, one after the other.
+    /// Where the character stands and faces in every frame: the steps of the blend, one after the
+    /// other.
     fn way(&self, instants: &[Instant]) -> Vec<(Planar, Planar, Vec<Planar>)> {
         let mut way: Vec<(Planar, Planar, Vec<Planar>)> = Vec::with_capacity(instants.len());
         for instant in instants {
@@ -338,7 +344,9 @@ impl<'a> Blend<'a> {
             let here = match way.last() {
                 None => in_reference,
                 // Every clip is moved rigidly in the step, as it lay before it.
-                Some((here, before, alignments)) => here.after(&before.inverse().after(&self.character(instant, alignments))),
+                Some((here, before, alignments)) => {
+                    here.after(&before.inverse().after(&self.character(instant, alignments)))
+                }
             };
             way.push((here, in_reference, alignments));
         }
@@ -374,8 +382,8 @@ impl<'a> Blend<'a> {
     }
 }
 
-/// A weighted mean of poses, clip by clip: rotations slerp towards each further clip, by the shorter way at first and the same way from then on. For two
-/// clips it is the slerp between them.
+/// A weighted mean of poses, clip by clip: rotations slerp towards each further clip, by the
+/// shorter way at first and the same way from then on. For two clips it is the slerp between them.
 #[derive(Default)]
 struct Mean {
     sum: f64,
@@ -385,7 +393,15 @@ struct Mean {
 }
 
 impl Mean {
-    fn add(&mut self, weight: f64, clip: &Clip, pose: &Pose, world_from_clip: &Planar, moving: &[usize], sides: &mut quat::Hemispheres) {
+    fn add(
+        &mut self,
+        weight: f64,
+        clip: &Clip,
+        pose: &Pose,
+        world_from_clip: &Planar,
+        moving: &[usize],
+        sides: &mut quat::Hemispheres,
+    ) {
         self.sum += weight;
         let share = (weight / self.sum) as f32;
         let turn = world_from_clip.rotation();
@@ -430,10 +446,7 @@ fn character_at(source: &Source, frame: f64) -> Planar {
 /// `share` of the way from one frame to the other, turning the shorter way.
 fn between(from: &Planar, to: &Planar, share: f64) -> Planar {
     let shift: DVec2 = from.shift + (to.shift - from.shift) * share;
-    Planar {
-        yaw: wrap_angle(from.yaw + wrap_angle(to.yaw - from.yaw) * share),
-        shift,
-    }
+    Planar { yaw: wrap_angle(from.yaw + wrap_angle(to.yaw - from.yaw) * share), shift }
 }
 
 #[cfg(test)]

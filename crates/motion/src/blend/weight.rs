@@ -1,12 +1,16 @@
 /// How the outgoing clip's weight falls over a blend.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
+)]
 pub enum WeightLaw {
-    /// 2t³ - 3t² + 1: no slope at either end, so that velocities stay continuous (C¹; Kovar, Gleicher, Pighin 2002, section 3.3).
+    /// 2t³ - 3t² + 1: no slope at either end, so that velocities stay continuous (C¹; Kovar,
+    /// Gleicher, Pighin 2002, section 3.3).
     #[default]
     Smooth,
     /// 1 - t: velocities jump at both ends.
     Linear,
-    /// 1 - (6t⁵ - 15t⁴ + 10t³): no slope and no curvature at either end (C²; Perlin 2002), steeper in the middle.
+    /// 1 - (6t⁵ - 15t⁴ + 10t³): no slope and no curvature at either end (C²; Perlin 2002), steeper
+    /// in the middle.
     Smoother,
 }
 
@@ -14,7 +18,8 @@ impl WeightLaw {
     /// All laws, for a list to choose from.
     pub const ALL: [Self; 3] = [Self::Smooth, Self::Linear, Self::Smoother];
 
-    /// The weight of the *outgoing* clip at `t` from 0 (weight 1) to 1 (weight 0). `t` is clamped; NaN counts as 0.
+    /// The weight of the *outgoing* clip at `t` from 0 (weight 1) to 1 (weight 0). `t` is clamped;
+    /// NaN counts as 0.
     #[must_use]
     pub fn alpha(self, t: f64) -> f64 {
         // Not `clamp`, which keeps NaN.

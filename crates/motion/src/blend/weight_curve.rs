@@ -1,6 +1,7 @@
 use super::WeightLaw;
 
-/// A weight over the course of a blend: from key to key without a jump, without passing beyond either.
+/// A weight over the course of a blend: from key to key without a jump, without passing beyond
+/// either.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct WeightCurve {
     /// (share of the blend, 0 to 1; weight, 0 to 1), in the order of shares.
@@ -14,11 +15,13 @@ impl WeightCurve {
         Self::new([(0.0, weight)])
     }
 
-    /// Through keys (share of the blend, weight), in any order; both are clamped to 0 to 1. Of two keys at one share the later one holds from there on. Without
-    /// keys the weight is 0; keys that are no numbers are left out.
+    /// Through keys (share of the blend, weight), in any order; both are clamped to 0 to 1. Of two
+    /// keys at one share the later one holds from there on. Without keys the weight is 0; keys that
+    /// are no numbers are left out.
     #[must_use]
     pub fn new(keys: impl IntoIterator<Item = (f64, f64)>) -> Self {
-        let mut keys: Vec<(f64, f64)> = keys.into_iter().filter(|(at, weight)| !at.is_nan() && !weight.is_nan()).collect();
+        let mut keys: Vec<(f64, f64)> =
+            keys.into_iter().filter(|(at, weight)| !at.is_nan() && !weight.is_nan()).collect();
         keys.sort_by(|a, b| a.0.total_cmp(&b.0));
         Self {
             keys: keys
@@ -34,7 +37,8 @@ impl WeightCurve {
         &self.keys
     }
 
-    /// The weight at a share of the blend: eased from key to key (no slope at either), constant outside.
+    /// The weight at a share of the blend: eased from key to key (no slope at either), constant
+    /// outside.
     #[must_use]
     pub fn at(&self, share: f64) -> f64 {
         let next = self.keys.partition_point(|key| key.0 <= share);

@@ -2,29 +2,36 @@
 
 use super::{Clip, ClipError, JointTranslations, character_frames};
 use crate::math::{Planar, quat, wrap_angle};
-use crate::skeleton::{Above, AboveJoint, Beside, Follows, Joint, Pose, Roles, Skeleton, WorldPose, carrier};
+use crate::skeleton::{
+    Above, AboveJoint, Beside, Follows, Joint, Pose, Roles, Skeleton, WorldPose, carrier,
+};
 use glam::{DVec2, Quat, Vec3};
 use std::sync::Arc;
 
-/// Joints that move by less than this over a clip stand still: metres, and radians (0.3°). Files are written with a few digits.
+/// Joints that move by less than this over a clip stand still: metres, and radians (0.3°). Files
+/// are written with a few digits.
 const STILL_M: f32 = 2e-3;
 const STILL_RADIANS: f32 = 5e-3;
-/// What goes along the ground goes by the mean of this time to either side, seconds: no sway of the hips.
+/// What goes along the ground goes by the mean of this time to either side, seconds: no sway of the
+/// hips.
 const SMOOTH_SECS: f64 = 0.25;
 /// Translations nearer than this to the rest offset need no track, metres.
 const SAME_PLACE_M: f32 = 1e-6;
 
 impl Clip {
-    /// The same motion with the joint at the root that carries the body ([`carrier`]): everything that the file has above it, still or moving, is
-    /// folded into it.
+    /// The same motion with the joint at the root that carries the body ([`carrier`]): everything
+    /// that the file has above it, still or moving, is folded into it.
     ///
-    /// Some files hold a `ROOT` still and move the hips below it, game engines put one on the ground below the character. Seen from such a root the
-    /// body hangs on a lever: to mix the lever's angles swings the body. Folded, `root_translations` and the first joint's rotations are those of
-    /// the carrier in the world, whatever is above it, and all algorithms may rely on that. World positions of the joints that stay are the
-    /// same. Joints that hang beside the carrier on a joint above it hang on the carrier. [`Self::unfolded`] is the way back.
+    /// Some files hold a `ROOT` still and move the hips below it, game engines put one on the
+    /// ground below the character. Seen from such a root the body hangs on a lever: to mix the
+    /// lever's angles swings the body. Folded, `root_translations` and the first joint's rotations
+    /// are those of the carrier in the world, whatever is above it, and all algorithms may rely on
+    /// that. World positions of the joints that stay are the same. Joints that hang beside the
+    /// carrier on a joint above it hang on the carrier. [`Self::unfolded`] is the way back.
     ///
     /// # Errors
-    /// [`ClipError`] does not occur for a clip that is valid; the error of the parts that are put together again is passed on.
+    /// [`ClipError`] does not occur for a clip that is valid; the error of the parts that are put
+    /// together again is passed on.
     pub fn folded(self) -> Result<Self, ClipError> {
         let skeleton = self.skeleton();
         let root = carrier(skeleton, &Roles::detect(skeleton));
@@ -34,8 +41,9 @@ impl Clip {
         Fold::new(&self, root).clip()
     }
 
-    /// The motion as its file has it, with the joints above the carrier ([`Above`]): one that stood still stands still, one that went along the
-    /// ground goes along the ground below this motion, one that moved with the body does so. `None` where the file has none.
+    /// The motion as its file has it, with the joints above the carrier ([`Above`]): one that stood
+    /// still stands still, one that went along the ground goes along the ground below this motion,
+    /// one that moved with the body does so. `None` where the file has none.
     #[must_use]
     pub fn unfolded(&self) -> Option<Self> {
         let above = self.skeleton().above()?;
@@ -61,7 +69,8 @@ struct Fold<'a> {
 impl<'a> Fold<'a> {
     fn new(clip: &'a Clip, root: usize) -> Self {
         let skeleton = clip.skeleton();
-        let mut chain: Vec<usize> = std::iter::successors(skeleton.parent(root), |&joint| skeleton.parent(joint)).collect();
+        let mut chain: Vec<usize> =
+            std::iter::successors(skeleton.parent(root), |&joint| skeleton.parent(joint)).collect();
         chain.reverse();
         let others = (0..skeleton.len()).filter(|joint| *joint != root && !chain.contains(joint));
         let file_index: Vec<usize> = std::iter::once(root).chain(others).collect();
@@ -119,14 +128,18 @@ impl<'a> Fold<'a> {
             let (at, turned) = self.carrier_poses[frame];
             rotations[first] = quat::renormalize(turned);
             let back = turned.conjugate();
-            for ((beside, track), (position, rotation)) in self.beside.iter().zip(&mut tracks).zip(&self.beside_poses[frame]) {
+            for ((beside, track), (position, rotation)) in
+                self.beside.iter().zip(&mut tracks).zip(&self.beside_poses[frame])
+            {
                 rotations[first + beside.joint] = quat::renormalize(back * *rotation);
                 track.values.push(back * (*position - at));
             }
         }
         let place_of = |joint: usize| self.file_index.iter().position(|&file| file == joint);
         for track in clip.translations() {
-            let place = place_of(track.joint).filter(|&joint| joint != 0 && self.beside.iter().all(|beside| beside.joint != joint));
+            let place = place_of(track.joint).filter(|&joint| {
+                joint != 0 && self.beside.iter().all(|beside| beside.joint != joint)
+            });
             if let Some(joint) = place {
                 let values = track.values.clone();
                 tracks.push(JointTranslations { joint, values });
@@ -146,7 +159,8 @@ impl<'a> Fold<'a> {
         let root = skeleton.joints()[0].offset;
         let rest = skeleton.rest_positions();
         let carrier = self.file_index[0];
-        let mut joints: Vec<Joint> = self.file_index.iter().map(|&joint| skeleton.joints()[joint].clone()).collect();
+        let mut joints: Vec<Joint> =
+            self.file_index.iter().map(|&joint| skeleton.joints()[joint].clone()).collect();
         for joint in &mut joints {
             joint.parent = joint
                 .parent
@@ -158,7 +172,8 @@ impl<'a> Fold<'a> {
         for beside in &self.beside {
             joints[beside.joint].offset = rest[self.file_index[beside.joint]] - rest[carrier];
         }
-        // Parents still stand before their children: the carrier is first, and the rest is in the order of the file.
+        // Parents still stand before their children: the carrier is first, and the rest is in the
+        // order of the file.
         Skeleton::new(joints).map_err(|_| ClipError::Translations(carrier))
     }
 
@@ -169,12 +184,7 @@ impl<'a> Fold<'a> {
                 Some(poses) => local(place.checked_sub(1).map(|above| poses[above]), poses[place]),
                 None => (file[index].offset, Quat::IDENTITY),
             };
-            AboveJoint {
-                joint: file[index].clone(),
-                file_index: index,
-                rotation,
-                translation,
-            }
+            AboveJoint { joint: file[index].clone(), file_index: index, rotation, translation }
         });
         Above {
             chain: chain.collect(),
@@ -190,8 +200,12 @@ impl<'a> Fold<'a> {
         let Some(first) = self.chain_poses.first() else {
             return Follows::Still;
         };
-        let still = |a: &(Vec3, Quat), b: &(Vec3, Quat)| a.0.distance(b.0) < STILL_M && quat::angle_between(a.1, b.1) < STILL_RADIANS;
-        let moves = |place: &usize| self.chain_poses.iter().any(|poses| !still(&poses[*place], &first[*place]));
+        let still = |a: &(Vec3, Quat), b: &(Vec3, Quat)| {
+            a.0.distance(b.0) < STILL_M && quat::angle_between(a.1, b.1) < STILL_RADIANS
+        };
+        let moves = |place: &usize| {
+            self.chain_poses.iter().any(|poses| !still(&poses[*place], &first[*place]))
+        };
         let Some(joint) = (0..self.chain.len()).find(moves) else {
             return Follows::Still;
         };
@@ -199,11 +213,7 @@ impl<'a> Fold<'a> {
         self.on_ground(joint, &way).unwrap_or_else(|| {
             let (at, turned) = self.carrier_poses[0];
             let (translation, rotation) = local(Some((at, turned)), way[0]);
-            Follows::WithCarrier {
-                joint,
-                rotation,
-                translation,
-            }
+            Follows::WithCarrier { joint, rotation, translation }
         })
     }
 
@@ -223,7 +233,12 @@ impl<'a> Fold<'a> {
         let roles = Roles::detect(self.clip.skeleton());
         let skeleton = self.clip.skeleton();
         let placed = super::root_motion::frames_of(self.clip, &roles, self.file_index[0]);
-        debug_assert_eq!(placed.len(), self.clip.frames(), "one for each frame of {}", skeleton.len());
+        debug_assert_eq!(
+            placed.len(),
+            self.clip.frames(),
+            "one for each frame of {}",
+            skeleton.len()
+        );
         let frames = smoothed(&placed, self.clip.fps());
         let does_turn = turns.iter().any(|turn| turn.abs() > f64::from(STILL_RADIANS));
         let count = way.len() as f64;
@@ -264,7 +279,8 @@ fn placed(parent: Option<(Vec3, Quat)>, (translation, rotation): (Vec3, Quat)) -
     }
 }
 
-/// Frames of a character without the sway of its steps: means over [`SMOOTH_SECS`] to either side, narrower towards the ends.
+/// Frames of a character without the sway of its steps: means over [`SMOOTH_SECS`] to either side,
+/// narrower towards the ends.
 fn smoothed(frames: &[Planar], fps: f64) -> Vec<Planar> {
     let reach = (SMOOTH_SECS * fps).round() as usize;
     // Yaws that do not wrap, and sums of everything before each frame.
@@ -279,10 +295,7 @@ fn smoothed(frames: &[Planar], fps: f64) -> Vec<Planar> {
         let reach = reach.min(frame).min(frames.len() - 1 - frame);
         let ((from_yaw, from), (to_yaw, to)) = (sums[frame - reach], sums[frame + reach + 1]);
         let count = (2 * reach + 1) as f64;
-        Planar {
-            yaw: (to_yaw - from_yaw) / count,
-            shift: (to - from) / count,
-        }
+        Planar { yaw: (to_yaw - from_yaw) / count, shift: (to - from) / count }
     };
     (0..frames.len()).map(mean).collect()
 }
@@ -319,12 +332,7 @@ impl<'a> Unfold<'a> {
             *from.get_mut(file)? = Some(joint);
         }
         let skeleton = Skeleton::new(joints.into_iter().collect::<Option<Vec<Joint>>>()?).ok()?;
-        Some(Self {
-            clip,
-            above,
-            skeleton: Arc::new(skeleton),
-            from,
-        })
+        Some(Self { clip, above, skeleton: Arc::new(skeleton), from })
     }
 
     fn clip(&self) -> Result<Clip, ClipError> {
@@ -337,35 +345,22 @@ impl<'a> Unfold<'a> {
         };
         let poses = (0..clip.frames()).map(|frame| self.pose(&clip.pose(frame), frames.get(frame)));
         let poses: Vec<Pose> = without_still_tracks(poses.collect(), &self.skeleton);
-        Ok(Clip::from_poses(clip.name(), Arc::clone(&self.skeleton), clip.fps(), poses)?.with_provenance(clip.provenance()))
+        Ok(Clip::from_poses(clip.name(), Arc::clone(&self.skeleton), clip.fps(), poses)?
+            .with_provenance(clip.provenance()))
     }
 
     /// Where the chain is in a frame, in the world.
     fn chain(&self, carrier: (Vec3, Quat), here: Option<&Planar>) -> Vec<(Vec3, Quat)> {
         let moved = match (self.above.follows, here) {
-            (
-                Follows::OnGround {
-                    joint,
-                    height,
-                    rotation,
-                    shift,
-                    yaw,
-                },
-                Some(here),
-            ) => {
+            (Follows::OnGround { joint, height, rotation, shift, yaw }, Some(here)) => {
                 let ground = here.apply_ground(DVec2::from_array(shift));
                 let turn = yaw.map_or(0.0, |yaw| here.yaw + yaw) as f32;
                 let at = Vec3::new(ground.x as f32, height, ground.y as f32);
                 Some((joint, (at, quat::renormalize(Quat::from_rotation_y(turn) * rotation))))
             }
-            (
-                Follows::WithCarrier {
-                    joint,
-                    rotation,
-                    translation,
-                },
-                _,
-            ) => Some((joint, placed(Some(carrier), (translation, rotation)))),
+            (Follows::WithCarrier { joint, rotation, translation }, _) => {
+                Some((joint, placed(Some(carrier), (translation, rotation))))
+            }
             _ => None,
         };
         let mut chain: Vec<(Vec3, Quat)> = Vec::with_capacity(self.above.chain.len());
@@ -382,7 +377,8 @@ impl<'a> Unfold<'a> {
     fn pose(&self, pose: &Pose, here: Option<&Planar>) -> Pose {
         let carrier = (pose.root_translation, pose.rotations[0]);
         let chain = self.chain(carrier, here);
-        let locals = |place: usize| local(place.checked_sub(1).map(|above| chain[above]), chain[place]);
+        let locals =
+            |place: usize| local(place.checked_sub(1).map(|above| chain[above]), chain[place]);
         let mut made = Pose {
             root_translation: Vec3::ZERO,
             rotations: vec![Quat::IDENTITY; self.skeleton.len()],
@@ -396,14 +392,20 @@ impl<'a> Unfold<'a> {
         for (file, joint) in self.from.iter().enumerate() {
             let Some(joint) = *joint else { continue };
             let beside = self.above.beside.iter().find(|beside| beside.joint == joint);
-            let translation = pose.translations.iter().find(|(moved, _)| *moved == joint).map(|(_, value)| *value);
+            let translation = pose
+                .translations
+                .iter()
+                .find(|(moved, _)| *moved == joint)
+                .map(|(_, value)| *value);
             let own = (
                 translation.unwrap_or(self.clip.skeleton().joints()[joint].offset),
                 pose.rotations[joint],
             );
             let (translation, rotation) = match beside {
                 _ if joint == 0 => local(chain.last().copied(), carrier),
-                Some(beside) => local(chain.get(beside.hangs_on).copied(), placed(Some(carrier), own)),
+                Some(beside) => {
+                    local(chain.get(beside.hangs_on).copied(), placed(Some(carrier), own))
+                }
                 None if translation.is_none() => {
                     made.rotations[file] = own.1;
                     continue;

@@ -4,10 +4,12 @@ use crate::skeleton::{Role, Roles, Side, WorldPose};
 use glam::Vec3;
 use std::ops::Range;
 
-/// When a foot counts as planted. Lengths and speeds are those of a character 1.75 m tall and are scaled to the clip's character.
+/// When a foot counts as planted. Lengths and speeds are those of a character 1.75 m tall and are
+/// scaled to the clip's character.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ContactOptions {
-    /// A point of the foot comes to the ground at or below this height above its own lowest level, metres.
+    /// A point of the foot comes to the ground at or below this height above its own lowest level,
+    /// metres.
     pub enter_height_m: f32,
     /// It leaves the ground above this height, metres. At least `enter_height_m`.
     pub leave_height_m: f32,
@@ -33,12 +35,14 @@ impl Default for ContactOptions {
 
 /// The height that the options' lengths and speeds are given for, metres.
 pub(super) const REFERENCE_HEIGHT_M: f32 = 1.75;
-/// The ground is where the lowest twentieth of a point's heights ends: below lie only the noise and the dents of a soft floor.
+/// The ground is where the lowest twentieth of a point's heights ends: below lie only the noise and
+/// the dents of a soft floor.
 pub(super) const GROUND_PERCENTILE: f32 = 0.05;
-/// A floor that leans in the capture lifts one foot's level over that of both feet by up to this much, metres. A foot that stays higher is held up.
+/// A floor that leans in the capture lifts one foot's level over that of both feet by up to this
+/// much, metres. A foot that stays higher is held up.
 const LEANING_FLOOR_M: f32 = 0.05;
-/// Speed limits hold for bodies up to this speed, metres per second, and grow with it above: in a sprint a foot that stands rolls and
-/// trembles faster.
+/// Speed limits hold for bodies up to this speed, metres per second, and grow with it above: in a
+/// sprint a foot that stands rolls and trembles faster.
 const STEADY_SPEED_MPS: f32 = 2.0;
 /// The body's speed is measured over this time to either side, seconds: about one step.
 const BODY_SPEED_SECS: f64 = 0.25;
@@ -50,11 +54,13 @@ pub struct Contacts {
 }
 
 impl Contacts {
-    /// Finds the contacts of a clip's feet with the ground, by height and speed of ankles, toe joints and toe tips, with hysteresis.
+    /// Finds the contacts of a clip's feet with the ground, by height and speed of ankles, toe
+    /// joints and toe tips, with hysteresis.
     ///
-    /// A foot is planted while at least one of its points is. Each point is measured against its own lowest level in the clip (5th
-    /// percentile), so a clip that floats 3 cm above the ground gives the same contacts, and an ankle need not come down to the
-    /// height of a toe. Above 2 m/s the limits on speed grow in proportion to the body's own speed.
+    /// A foot is planted while at least one of its points is. Each point is measured against its
+    /// own lowest level in the clip (5th percentile), so a clip that floats 3 cm above the ground
+    /// gives the same contacts, and an ankle need not come down to the height of a toe. Above 2 m/s
+    /// the limits on speed grow in proportion to the body's own speed.
     #[must_use]
     pub fn detect(clip: &Clip, roles: &Roles, options: &ContactOptions) -> Self {
         let ways = Ways::of(clip, roles);
@@ -71,13 +77,7 @@ impl Contacts {
             for (side, way) in kind {
                 let own = stats::percentile(&heights(way), GROUND_PERCENTILE).unwrap_or(common);
                 let level = if own - common > LEANING_FLOOR_M * scale { common } else { own };
-                let point = Point {
-                    way,
-                    level,
-                    scale,
-                    haste: &haste,
-                    fps: clip.fps(),
-                };
+                let point = Point { way, level, scale, haste: &haste, fps: clip.fps() };
                 point.plant(options, &mut planted[side.index()]);
             }
         }
@@ -88,16 +88,24 @@ impl Contacts {
         Self { planted }
     }
 
-    /// Contacts that are known already: for the left and the right foot whether it is planted, one flag per frame.
+    /// Contacts that are known already: for the left and the right foot whether it is planted, one
+    /// flag per frame.
     #[must_use]
     pub fn from_flags(planted: [Vec<bool>; 2]) -> Self {
         Self { planted }
     }
 
-    /// The contacts of a result that plays `outgoing`, goes over at frame `leave` to `incoming`, which is entered at its frame `enter`, and has the
-    /// greater part of `incoming` from its frame `handover` on: before it the contacts are those of the outgoing clip.
+    /// The contacts of a result that plays `outgoing`, goes over at frame `leave` to `incoming`,
+    /// which is entered at its frame `enter`, and has the greater part of `incoming` from its frame
+    /// `handover` on: before it the contacts are those of the outgoing clip.
     #[must_use]
-    pub fn joined(outgoing: &Self, incoming: &Self, leave: usize, enter: usize, handover: usize) -> Self {
+    pub fn joined(
+        outgoing: &Self,
+        incoming: &Self,
+        leave: usize,
+        enter: usize,
+        handover: usize,
+    ) -> Self {
         let frames = (leave + incoming.frames()).saturating_sub(enter).max(handover);
         let planted = Side::BOTH.map(|side| {
             (0..frames)
@@ -125,8 +133,9 @@ impl Contacts {
         self.planted[side.index()].get(frame).copied().unwrap_or(false)
     }
 
-    /// Where the foot of `side` is between one touchdown and the next in `frame`: 0 at a touchdown, towards 1 before the next. Before the first and behind
-    /// the last touchdown the rhythm of the nearest stride goes on. `None` for a foot with fewer than two touchdowns.
+    /// Where the foot of `side` is between one touchdown and the next in `frame`: 0 at a touchdown,
+    /// towards 1 before the next. Before the first and behind the last touchdown the rhythm of the
+    /// nearest stride goes on. `None` for a foot with fewer than two touchdowns.
     #[must_use]
     pub fn phase(&self, side: Side, frame: usize) -> Option<f32> {
         // A foot that stands when the clip begins came down at some time before.
@@ -154,7 +163,8 @@ impl Contacts {
     }
 }
 
-/// The step over the ground of the point that moves least: a foot that rolls without sliding has one that stands nearly still.
+/// The step over the ground of the point that moves least: a foot that rolls without sliding has
+/// one that stands nearly still.
 pub(crate) fn stillest_step(before: &[Vec3], after: &[Vec3]) -> Option<Vec3> {
     stillest_point(before, after).map(|(_, step)| step)
 }
@@ -165,9 +175,7 @@ pub(crate) fn stillest_point(before: &[Vec3], after: &[Vec3]) -> Option<(usize, 
         .iter()
         .zip(after)
         .map(|(before, after)| (*after - *before) * Vec3::new(1.0, 0.0, 1.0));
-    steps
-        .enumerate()
-        .min_by(|a, b| a.1.length_squared().total_cmp(&b.1.length_squared()))
+    steps.enumerate().min_by(|a, b| a.1.length_squared().total_cmp(&b.1.length_squared()))
 }
 
 /// World positions, frame by frame.
@@ -195,7 +203,8 @@ impl Ways {
         let mut body = Vec::with_capacity(clip.frames());
         let mut points: Vec<Vec<Vec3>> = vec![Vec::with_capacity(clip.frames()); wanted.len()];
         let mut world = WorldPose::default();
-        let needed = skeleton.with_ancestors(wanted.iter().map(|&(_, _, joint, _)| joint).chain([hips]));
+        let needed =
+            skeleton.with_ancestors(wanted.iter().map(|&(_, _, joint, _)| joint).chain([hips]));
         for frame in 0..clip.frames() {
             clip.world_pose_of(frame, &needed, &mut world);
             body.push(world.positions[hips]);
@@ -237,7 +246,8 @@ struct Point<'a> {
 
 impl Point<'_> {
     /// Marks the frames in which the point is on the ground.
-    // Not inlined: browsers optimise a function from one call to its next, and a foot has several points.
+    // Not inlined: browsers optimise a function from one call to its next, and a foot has several
+    // points.
     #[inline(never)]
     fn plant(&self, options: &ContactOptions, planted: &mut [bool]) {
         let mut down = false;
@@ -277,7 +287,9 @@ fn runs(flags: &[bool]) -> impl Iterator<Item = (bool, Range<usize>)> + '_ {
 fn drop_short_runs(flags: &mut [bool], value: bool, min_frames: usize) {
     let last = flags.len();
     let short: Vec<Range<usize>> = runs(flags)
-        .filter(|(v, range)| *v == value && range.len() < min_frames && range.start > 0 && range.end < last)
+        .filter(|(v, range)| {
+            *v == value && range.len() < min_frames && range.start > 0 && range.end < last
+        })
         .map(|(_, range)| range)
         .collect();
     for range in short {

@@ -18,7 +18,8 @@ pub enum CurveKind {
     AngularSpeed,
 }
 
-/// One value per frame. Rates are central differences at the clip's own frame rate, one-sided at the ends.
+/// One value per frame. Rates are central differences at the clip's own frame rate, one-sided at
+/// the ends.
 ///
 /// Empty when the clip has no such joint; rates are 0 in a clip of one frame.
 #[must_use]
@@ -35,14 +36,19 @@ pub fn joint_curve(clip: &Clip, joint: usize, kind: CurveKind) -> Vec<f32> {
             match kind {
                 CurveKind::Height => track[frame].0.y,
                 CurveKind::Speed => (track[after].0 - track[before].0).length() / secs,
-                CurveKind::Angle => quat::angle_between(Quat::IDENTITY, clip.rotations(frame)[joint]).to_degrees(),
-                CurveKind::AngularSpeed => quat::angle_between(track[before].1, track[after].1).to_degrees() / secs,
+                CurveKind::Angle => {
+                    quat::angle_between(Quat::IDENTITY, clip.rotations(frame)[joint]).to_degrees()
+                }
+                CurveKind::AngularSpeed => {
+                    quat::angle_between(track[before].1, track[after].1).to_degrees() / secs
+                }
             }
         })
         .collect()
 }
 
-/// Where one joint is in the world, and how it is turned, in every frame: kinematics of its own chain alone, because plots follow a slider.
+/// Where one joint is in the world, and how it is turned, in every frame: kinematics of its own
+/// chain alone, because plots follow a slider.
 fn joint_track(clip: &Clip, joint: usize) -> Vec<(Vec3, Quat)> {
     let chain = clip.skeleton().with_ancestors([joint]);
     let mut world = WorldPose::default();
@@ -63,14 +69,19 @@ mod tests {
     #[test]
     fn the_chain_alone_gives_what_the_whole_body_gives() {
         let clip = synthesize(&Params::new(Action::Run)).unwrap().clip;
-        let values = (0..clip.frames()).map(|frame| Vec3::new(0.1, 0.2, 0.001 * frame as f32)).collect();
+        let values =
+            (0..clip.frames()).map(|frame| Vec3::new(0.1, 0.2, 0.001 * frame as f32)).collect();
         let clip = clip.with_translations(vec![JointTranslations { joint: 2, values }]).unwrap();
         for joint in 0..clip.skeleton().len() {
             let track = joint_track(&clip, joint);
             for frame in (0..clip.frames()).step_by(7) {
                 let world = clip.world_pose(frame);
                 let mut part = WorldPose::default();
-                clip.world_pose_of(frame, &clip.skeleton().with_ancestors([joint, 9999]), &mut part);
+                clip.world_pose_of(
+                    frame,
+                    &clip.skeleton().with_ancestors([joint, 9999]),
+                    &mut part,
+                );
                 assert_eq!(
                     (part.positions[joint], part.rotations[joint]),
                     (world.positions[joint], world.rotations[joint])

@@ -5,7 +5,8 @@ use crate::skeleton::{Joint, Skeleton, fixtures::noise};
 use glam::{Quat, Vec3};
 use std::sync::Arc;
 
-/// A smooth motion of every joint that looks random, with angles of up to half a radian, 30 frames per second.
+/// A smooth motion of every joint that looks random, with angles of up to half a radian, 30 frames
+/// per second.
 pub fn wander(skeleton: &Arc<Skeleton>, frames: usize, seed: u64) -> Clip {
     wander_by(skeleton, frames, seed, 0.5)
 }
@@ -14,13 +15,17 @@ pub fn wander(skeleton: &Arc<Skeleton>, frames: usize, seed: u64) -> Clip {
 pub fn wander_by(skeleton: &Arc<Skeleton>, frames: usize, seed: u64, radians: f32) -> Clip {
     let mut next = noise(seed);
     let joints = skeleton.len();
-    let mut vectors = |count: usize| (0..count).map(|_| Vec3::new(next(), next(), next())).collect::<Vec<_>>();
+    let mut vectors =
+        |count: usize| (0..count).map(|_| Vec3::new(next(), next(), next())).collect::<Vec<_>>();
     let (middle, swing, way) = (vectors(joints), vectors(joints), vectors(1)[0]);
     let (mut rotations, mut roots) = (Vec::new(), Vec::new());
     for frame in 0..frames {
         let t = frame as f32 / 30.0;
-        roots.push(Vec3::new(0.3, 0.95, -0.2) + Vec3::new(way.x, 0.05 * (5.0 * t).sin(), way.z) * t);
-        rotations.extend((0..joints).map(|j| Quat::from_scaled_axis((middle[j] + swing[j] * (3.0 * t).sin()) * 0.5 * radians)));
+        roots
+            .push(Vec3::new(0.3, 0.95, -0.2) + Vec3::new(way.x, 0.05 * (5.0 * t).sin(), way.z) * t);
+        rotations.extend((0..joints).map(|j| {
+            Quat::from_scaled_axis((middle[j] + swing[j] * (3.0 * t).sin()) * 0.5 * radians)
+        }));
     }
     Clip::new("wander", Arc::clone(skeleton), 30.0, rotations, roots).unwrap()
 }

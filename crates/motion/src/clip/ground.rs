@@ -6,15 +6,18 @@ use crate::math::stats;
 use crate::skeleton::{Roles, Side};
 use glam::Vec3;
 
-/// How high ankle, toe joint and toe tip usually lie above the sole of a character 1.75 m tall, metres.
+/// How high ankle, toe joint and toe tip usually lie above the sole of a character 1.75 m tall,
+/// metres.
 const ABOVE_SOLE_M: [f32; 3] = [0.09, 0.03, 0.02];
-/// The ground is y = 0, as files promise, unless the feet contradict it by more than this, metres for a character 1.75 m tall.
+/// The ground is y = 0, as files promise, unless the feet contradict it by more than this, metres
+/// for a character 1.75 m tall.
 const TOLERANCE_M: f32 = 0.03;
 
 /// Returns the height of the ground under a clip, metres, as its planted feet tell it.
 ///
-/// It is 0 unless planted feet contradict that: the 5th percentile of their lowest points lies more than 3 cm below 0 (then it is the ground),
-/// or the soles, by the usual heights of ankle, toe joint and toe tip above them, float more than 3 cm above 0 (then the soles' 5th percentile is).
+/// It is 0 unless planted feet contradict that: the 5th percentile of their lowest points lies more
+/// than 3 cm below 0 (then it is the ground), or the soles, by the usual heights of ankle, toe
+/// joint and toe tip above them, float more than 3 cm above 0 (then the soles' 5th percentile is).
 /// These lengths are those of a character 1.75 m tall. 0 for a clip in which no foot is planted.
 #[must_use]
 pub fn estimate_ground(clip: &Clip, roles: &Roles, contacts: &Contacts) -> f32 {
@@ -44,26 +47,36 @@ pub fn estimate_ground(clip: &Clip, roles: &Roles, contacts: &Contacts) -> f32 {
     }
 }
 
-/// Returns by how much `moved`, a clip that was moved to another body `scale` times as large, has to be raised so that its feet stand as high as those of
-/// `source` in proportion. Compared are the kinds of foot points (ankles, toe joints, toe tips) that both bodies have: an ankle stands higher than a
-/// toe. `None` where they have none in common.
-pub(super) fn rise_between(source: (&Clip, &Roles), moved: (&Clip, &Roles), scale: f32) -> Option<f32> {
+/// Returns by how much `moved`, a clip that was moved to another body `scale` times as large, has
+/// to be raised so that its feet stand as high as those of `source` in proportion. Compared are the
+/// kinds of foot points (ankles, toe joints, toe tips) that both bodies have: an ankle stands
+/// higher than a toe. `None` where they have none in common.
+pub(super) fn rise_between(
+    source: (&Clip, &Roles),
+    moved: (&Clip, &Roles),
+    scale: f32,
+) -> Option<f32> {
     let [source, moved] = [source, moved].map(|(clip, roles)| Ways::of(clip, roles));
     let has = |ways: &Ways, kind: usize| !ways.feet[kind].is_empty();
     let shared = [0, 1, 2].map(|kind| has(&source, kind) && has(&moved, kind));
     Some(level_of(&source, shared)? * scale - level_of(&moved, shared)?)
 }
 
-/// The 5th percentile of the heights of the lowest points of these kinds; `None` where there are none.
+/// The 5th percentile of the heights of the lowest points of these kinds; `None` where there are
+/// none.
 fn level_of(ways: &Ways, kinds: [bool; 3]) -> Option<f32> {
-    let points = || ways.feet.iter().zip(kinds).filter(|(_, wanted)| *wanted).flat_map(|(kind, _)| kind);
-    let lowest = |frame: usize| points().filter_map(|(_, way)| Some(way.get(frame)?.y)).min_by(f32::total_cmp);
+    let points =
+        || ways.feet.iter().zip(kinds).filter(|(_, wanted)| *wanted).flat_map(|(kind, _)| kind);
+    let lowest = |frame: usize| {
+        points().filter_map(|(_, way)| Some(way.get(frame)?.y)).min_by(f32::total_cmp)
+    };
     let frames = points().map(|(_, way)| way.len()).max().unwrap_or(0);
     let heights: Vec<f32> = (0..frames).filter_map(lowest).collect();
     stats::percentile(&heights, GROUND_PERCENTILE)
 }
 
-/// Returns the level of a clip's feet, metres: the 5th percentile of the heights of their lowest points. 0 for a clip without feet.
+/// Returns the level of a clip's feet, metres: the 5th percentile of the heights of their lowest
+/// points. 0 for a clip without feet.
 #[cfg(test)]
 pub(super) fn foot_level(clip: &Clip, roles: &Roles) -> f32 {
     level_of(&Ways::of(clip, roles), [true; 3]).unwrap_or(0.0)

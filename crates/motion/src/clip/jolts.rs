@@ -2,21 +2,27 @@ use super::Clip;
 use crate::math::{quat, stats};
 use glam::{Quat, Vec3};
 
-/// A joint whose turning changes by less than this from one step to the next is still, radians: what single precision makes of a joint at rest.
+/// A joint whose turning changes by less than this from one step to the next is still, radians:
+/// what single precision makes of a joint at rest.
 const STILL_RADIANS: f32 = 1e-4;
-/// Frames that are looked at for what is usual: enough for a 99th percentile, and bounded for long clips.
+/// Frames that are looked at for what is usual: enough for a 99th percentile, and bounded for long
+/// clips.
 const SAMPLES: usize = 1_000;
 
-/// How much a joint's turn changes from the step into `frame` to the step out of it: the length of the difference of the two rotation
-/// vectors, radians. `None` in the first and the last frame, and where there is no such frame or joint.
+/// How much a joint's turn changes from the step into `frame` to the step out of it: the length of
+/// the difference of the two rotation vectors, radians. `None` in the first and the last frame, and
+/// where there is no such frame or joint.
 pub(crate) fn turn_change(clip: &Clip, frame: usize, joint: usize) -> Option<f32> {
-    let at = |frame: usize| (frame < clip.frames()).then(|| clip.rotations(frame).get(joint).copied()).flatten();
-    let (before, here, after) = (at(frame.checked_sub(1)?)?, at(frame)?, at(frame.checked_add(1)?)?);
+    let at = |frame: usize| {
+        (frame < clip.frames()).then(|| clip.rotations(frame).get(joint).copied()).flatten()
+    };
+    let (before, here, after) =
+        (at(frame.checked_sub(1)?)?, at(frame)?, at(frame.checked_add(1)?)?);
     Some((turn(here, after) - turn(before, here)).length())
 }
 
-/// The rotation vector from one rotation to another. As [`quat::log`], but by an arc tangent that is the same to the last digit on every machine: what a
-/// motion graph goes by.
+/// The rotation vector from one rotation to another. As [`quat::log`], but by an arc tangent that
+/// is the same to the last digit on every machine: what a motion graph goes by.
 fn turn(from: Quat, to: Quat) -> Vec3 {
     let q = quat::shorter_way(to * from.conjugate());
     let v = Vec3::new(q.x, q.y, q.z);
@@ -27,8 +33,9 @@ fn turn(from: Quat, to: Quat) -> Vec3 {
     v * (2.0 * libm::atan2f(sine, q.w) / sine)
 }
 
-/// For every frame how much the joints jolt in it: the largest [`turn_change`] of a joint over what is usual for that joint, which is the 99th
-/// percentile of the clip. Above 1 stands what one frame in a hundred does: a heel strikes, or the capture trembles. 0 in the first and the last frame.
+/// For every frame how much the joints jolt in it: the largest [`turn_change`] of a joint over what
+/// is usual for that joint, which is the 99th percentile of the clip. Above 1 stands what one frame
+/// in a hundred does: a heel strikes, or the capture trembles. 0 in the first and the last frame.
 pub(crate) fn jolts(clip: &Clip) -> Vec<f32> {
     let mut jolting = Jolting::new(clip);
     while !jolting.advance(clip, usize::MAX) {}
@@ -45,13 +52,11 @@ pub(crate) struct Jolting {
 
 impl Jolting {
     pub(crate) fn new(clip: &Clip) -> Self {
-        Self {
-            jolts: vec![0.0; clip.frames()],
-            joint: 0,
-        }
+        Self { jolts: vec![0.0; clip.frames()], joint: 0 }
     }
 
-    /// Looks at up to so many more joints, at least one; `true` when nothing is left to do. 30,000 frames of a joint take about 3 ms.
+    /// Looks at up to so many more joints, at least one; `true` when nothing is left to do. 30,000
+    /// frames of a joint take about 3 ms.
     pub(crate) fn advance(&mut self, clip: &Clip, joints: usize) -> bool {
         let all = clip.skeleton().len();
         let stride = clip.frames().div_ceil(SAMPLES).max(1);
@@ -85,10 +90,13 @@ mod tests {
         let skeleton = fixtures::lafan();
         let (frames, joints) = (300, skeleton.len());
         let mut rotations: Vec<Quat> = (0..frames)
-            .flat_map(|frame| std::iter::repeat_n(Quat::from_rotation_x(0.4 * (0.1 * frame as f32).sin()), joints))
+            .flat_map(|frame| {
+                std::iter::repeat_n(Quat::from_rotation_x(0.4 * (0.1 * frame as f32).sin()), joints)
+            })
             .collect();
         rotations[150 * joints + 3] *= Quat::from_rotation_x(0.05);
-        let clip = Clip::new("jerk", Arc::clone(&skeleton), 60.0, rotations, vec![Vec3::Y; frames]).unwrap();
+        let clip = Clip::new("jerk", Arc::clone(&skeleton), 60.0, rotations, vec![Vec3::Y; frames])
+            .unwrap();
         // There and back again: twice the jerk, but for the little that the joint turns anyway.
         assert!((turn_change(&clip, 150, 3).unwrap() - 0.1).abs() < 0.005);
         assert!(turn_change(&clip, 150, 2).unwrap() < 0.005);
@@ -123,7 +131,9 @@ mod tests {
         let skeleton = fixtures::lafan();
         for frames in [1, 2, 5] {
             let rotations = vec![Quat::IDENTITY; frames * skeleton.len()];
-            let clip = Clip::new("still", Arc::clone(&skeleton), 60.0, rotations, vec![Vec3::Y; frames]).unwrap();
+            let clip =
+                Clip::new("still", Arc::clone(&skeleton), 60.0, rotations, vec![Vec3::Y; frames])
+                    .unwrap();
             assert_eq!(jolts(&clip), vec![0.0; frames]);
         }
     }

@@ -16,9 +16,11 @@ pub enum MirrorError {
     Clip(#[from] ClipError),
 }
 
-/// The clip in a mirror that stands on the plane x = 0 of the world: a left turn becomes a right turn, what the left hand did does the right.
+/// The clip in a mirror that stands on the plane x = 0 of the world: a left turn becomes a right
+/// turn, what the left hand did does the right.
 ///
-/// The skeleton stays, with its own bone lengths on either side. Twice is the original again, to within 3e-5. See [`Mirror`] for the way.
+/// The skeleton stays, with its own bone lengths on either side. Twice is the original again, to
+/// within 3e-5. See [`Mirror`] for the way.
 ///
 /// # Errors
 /// [`MirrorError::NoSides`] when neither roles nor names tell left from right.
@@ -29,7 +31,8 @@ pub fn mirror(clip: &Clip, roles: &Roles) -> Result<Clip, MirrorError> {
     Ok(mirrored.with_provenance(clip.provenance()))
 }
 
-/// How a clip's skeleton looks in a mirror: by its rest pose where that shows a creature, else by the motion.
+/// How a clip's skeleton looks in a mirror: by its rest pose where that shows a creature, else by
+/// the motion.
 fn mirror_of(clip: &Clip, roles: &Roles) -> Result<Mirror, NoSides> {
     let skeleton = clip.skeleton();
     if rest_is_plausible(skeleton, roles) != Some(false) {
@@ -66,7 +69,8 @@ mod tests {
             let (original, image) = (clip.world_pose(frame), mirrored.world_pose(frame));
             for joint in 0..clip.skeleton().len() {
                 let other = pairs.counterpart(joint).expect("these rigs are symmetric");
-                worst = worst.max(image.positions[joint].distance(reflected(original.positions[other])));
+                worst = worst
+                    .max(image.positions[joint].distance(reflected(original.positions[other])));
             }
         }
         worst
@@ -87,9 +91,12 @@ mod tests {
         for (rig, skeleton, _) in fixtures::all() {
             let (roles, clip) = (fixtures::roles(&skeleton), wander(&skeleton, 4, 9));
             let axes: Vec<Quat> = (0..skeleton.len())
-                .map(|joint| Quat::from_scaled_axis(Vec3::new(1.0, -0.4, 0.7) * (1.0 + joint as f32)))
+                .map(|joint| {
+                    Quat::from_scaled_axis(Vec3::new(1.0, -0.4, 0.7) * (1.0 + joint as f32))
+                })
                 .collect();
-            let above = |joint: usize| skeleton.parent(joint).map_or(Quat::IDENTITY, |parent| axes[parent]);
+            let above =
+                |joint: usize| skeleton.parent(joint).map_or(Quat::IDENTITY, |parent| axes[parent]);
             let joints = skeleton.joints().iter().enumerate().map(|(index, joint)| Joint {
                 offset: above(index).conjugate() * joint.offset,
                 end_site: joint.end_site.map(|end| axes[index].conjugate() * end),
@@ -100,15 +107,24 @@ mod tests {
                 let turn = |(joint, q): (usize, &Quat)| above(joint).conjugate() * *q * axes[joint];
                 clip.rotations(frame).iter().enumerate().map(turn).collect::<Vec<_>>()
             });
-            let rewritten = Clip::new("turned", turned, clip.fps(), rotations.collect(), clip.root_translations().to_vec()).unwrap();
-            let (plain, other) = (mirror(&clip, &roles).unwrap(), mirror(&rewritten, &roles).unwrap());
+            let rewritten = Clip::new(
+                "turned",
+                turned,
+                clip.fps(),
+                rotations.collect(),
+                clip.root_translations().to_vec(),
+            )
+            .unwrap();
+            let (plain, other) =
+                (mirror(&clip, &roles).unwrap(), mirror(&rewritten, &roles).unwrap());
             let (p, q) = (plain.world_positions(0..4), other.world_positions(0..4));
             let far = p.iter().zip(&q).map(|(p, q)| p.distance(*q)).fold(0.0, f32::max);
             assert!(far < 1e-3, "{rig}: {far} m");
         }
     }
 
-    /// Rest poses that show no creature tell nothing of turns about bones, and a spine must not come out turned half round.
+    /// Rest poses that show no creature tell nothing of turns about bones, and a spine must not
+    /// come out turned half round.
     #[test]
     fn joints_turned_by_constants_do_in_the_mirror_what_they_usually_do() {
         let clip = synthesize(&Params::new(Action::Walk)).unwrap().clip;
@@ -120,9 +136,12 @@ mod tests {
                 .collect();
             let rewritten = Clip::from_poses("turned", turned, clip.fps(), poses).unwrap();
             let image = mirror(&rewritten, &roles).unwrap();
-            let mean = |clip: &Clip, joint: usize| quat::mean((0..clip.frames()).map(|frame| clip.rotations(frame)[joint]));
+            let mean = |clip: &Clip, joint: usize| {
+                quat::mean((0..clip.frames()).map(|frame| clip.rotations(frame)[joint]))
+            };
             for joint in 1..clip.skeleton().len() {
-                let apart = quat::angle_between(mean(&rewritten, joint), mean(&image, joint)).to_degrees();
+                let apart =
+                    quat::angle_between(mean(&rewritten, joint), mean(&image, joint)).to_degrees();
                 assert!(apart < 8.0, "{seed}: {} {apart}°", clip.skeleton().joints()[joint].name);
             }
             assert!(largest_distance(&rewritten, &mirror(&image, &roles).unwrap()) < 1e-3);
@@ -133,7 +152,8 @@ mod tests {
     fn a_left_turn_becomes_a_right_turn() {
         let skeleton = fixtures::lafan();
         let roles = fixtures::roles(&skeleton);
-        let clip = wander_by(&skeleton, 2, 1, 0.1).transformed(&crate::math::Planar::new(0.7, 1.0, 2.0));
+        let clip =
+            wander_by(&skeleton, 2, 1, 0.1).transformed(&crate::math::Planar::new(0.7, 1.0, 2.0));
         let facing = |clip: &Clip| crate::clip::facing(&clip.world_pose(0), &roles).unwrap();
         let (original, image) = (facing(&clip), facing(&mirror(&clip, &roles).unwrap()));
         assert!(
@@ -142,12 +162,16 @@ mod tests {
         );
     }
 
-    /// The plane of symmetry at rest need not be x = 0: in some rigs every bone lies along +X at rest.
+    /// The plane of symmetry at rest need not be x = 0: in some rigs every bone lies along +X at
+    /// rest.
     #[test]
     fn the_rest_pose_may_lie_in_any_direction() {
         let upright = fixtures::mixamo();
-        let lie = Quat::from_axis_angle(Vec3::ONE.normalize_or(Vec3::X), std::f32::consts::TAU / 3.0);
-        for (turn, tolerance) in [(lie, 1e-5), (Quat::from_rotation_y(0.6), 1e-5), (Quat::from_rotation_y(0.1), 2.0)] {
+        let lie =
+            Quat::from_axis_angle(Vec3::ONE.normalize_or(Vec3::X), std::f32::consts::TAU / 3.0);
+        for (turn, tolerance) in
+            [(lie, 1e-5), (Quat::from_rotation_y(0.6), 1e-5), (Quat::from_rotation_y(0.1), 2.0)]
+        {
             let joints = upright.joints().iter().map(|joint| Joint {
                 offset: turn * joint.offset,
                 end_site: joint.end_site.map(|end| turn * end),
@@ -169,11 +193,17 @@ mod tests {
         let mirrored = mirror(&clip, &roles).unwrap();
         for frame in 0..clip.frames() {
             let (original, image) = (clip.world_pose(frame), mirrored.world_pose(frame));
-            for (role, next) in Role::ALL.into_iter().zip(Role::ALL.into_iter().skip(1)).filter(|(role, next)| {
-                role.side().is_some() && role.side() == next.side() && ![Role::LeftToe, Role::RightToe].contains(role)
-            }) {
+            for (role, next) in
+                Role::ALL.into_iter().zip(Role::ALL.into_iter().skip(1)).filter(|(role, next)| {
+                    role.side().is_some()
+                        && role.side() == next.side()
+                        && ![Role::LeftToe, Role::RightToe].contains(role)
+                })
+            {
                 let bone = |world: &crate::skeleton::WorldPose, a, b| {
-                    (world.positions[roles.get(b).unwrap()] - world.positions[roles.get(a).unwrap()]).normalize_or_zero()
+                    (world.positions[roles.get(b).unwrap()]
+                        - world.positions[roles.get(a).unwrap()])
+                    .normalize_or_zero()
                 };
                 let wanted = reflected(bone(&original, role.mirrored(), next.mirrored()));
                 assert!(bone(&image, role, next).distance(wanted) < 1e-4, "{role:?}");
@@ -186,16 +216,11 @@ mod tests {
         let skeleton = fixtures::bandai();
         let roles = fixtures::roles(&skeleton);
         let (hips, hand) = (roles.get(Role::Hips).unwrap(), roles.get(Role::LeftHand).unwrap());
-        let way = |base: Vec3| (0..6).map(|i| base + Vec3::new(0.1, 0.02, 0.05) * i as f32).collect();
+        let way =
+            |base: Vec3| (0..6).map(|i| base + Vec3::new(0.1, 0.02, 0.05) * i as f32).collect();
         let tracks = vec![
-            JointTranslations {
-                joint: hips,
-                values: way(Vec3::new(0.2, 0.95, 0.0)),
-            },
-            JointTranslations {
-                joint: hand,
-                values: way(skeleton.joints()[hand].offset),
-            },
+            JointTranslations { joint: hips, values: way(Vec3::new(0.2, 0.95, 0.0)) },
+            JointTranslations { joint: hand, values: way(skeleton.joints()[hand].offset) },
         ];
         let clip = wander(&skeleton, 6, 1).with_translations(tracks).unwrap();
         let mirrored = mirror(&clip, &roles).unwrap();
@@ -209,7 +234,10 @@ mod tests {
         let clip = wander(&fixtures::nameless(&fixtures::lafan()), 2, 0);
         assert_eq!(mirror(&clip, &Roles::default()), Err(MirrorError::NoSides(NoSides)));
         let named = wander(&fixtures::lafan(), 2, 0);
-        assert!(largest_error(&named, &mirror(&named, &Roles::default()).unwrap(), &Roles::default()) < 1e-5);
+        assert!(
+            largest_error(&named, &mirror(&named, &Roles::default()).unwrap(), &Roles::default())
+                < 1e-5
+        );
     }
 
     /// The collars and the neck of this rig start at one joint and lie nearly on one line.

@@ -1,9 +1,10 @@
-//! Clips: poses over time, and what can be asked of one clip alone. How fast does it go, which way does it face, when does a foot stand?
+//! Clips: poses over time, and what can be asked of one clip alone. How fast does it go, which way
+//! does it face, when does a foot stand?
 //!
 //! # The idea
 //!
-//! A [`Clip`] is a table: a row for every frame, a column for every joint, a local rotation in each cell, and beside it the root's way
-//! through the world. Everything else is derived from the table:
+//! A [`Clip`] is a table: a row for every frame, a column for every joint, a local rotation in each
+//! cell, and beside it the root's way through the world. Everything else is derived from the table:
 //!
 //! ```text
 //! pose(t)       between frames ⌊t·fps⌋ and the next: positions lerp, rotations slerp
@@ -12,15 +13,18 @@
 //! speed         length of the root's way over the ground / duration
 //! ```
 //!
-//! Facing comes from where joints are and never from an Euler angle, which jumps where the body does not. Place and facing together are the
-//! character's frame ([`character_frames`]): poses are blended and matched as seen from there.
+//! Facing comes from where joints are and never from an Euler angle, which jumps where the body
+//! does not. Place and facing together are the character's frame ([`character_frames`]): poses are
+//! blended and matched as seen from there.
 //!
-//! The first joint carries the body: it is the one where legs and trunk meet. Files may have more above it, a root that stands still or goes along
-//! the ground; on import that is folded into it ([`Clip::folded`]), and comes back when the clip is written ([`Clip::unfolded`]). A lever between
-//! root and hips would otherwise be mixed by its angles, and swing the body.
+//! The first joint carries the body: it is the one where legs and trunk meet. Files may have more
+//! above it, a root that stands still or goes along the ground; on import that is folded into it
+//! ([`Clip::folded`]), and comes back when the clip is written ([`Clip::unfolded`]). A lever
+//! between root and hips would otherwise be mixed by its angles, and swing the body.
 //!
-//! [`Contacts`] say when a foot is on the ground: it is low *and* slow. Each limit is double, one to come down and a looser one to leave, as
-//! a thermostat has two temperatures: about a single limit a trembling foot would flicker.
+//! [`Contacts`] say when a foot is on the ground: it is low *and* slow. Each limit is double, one
+//! to come down and a looser one to leave, as a thermostat has two temperatures: about a single
+//! limit a trembling foot would flicker.
 //!
 //! # Example
 //!
@@ -52,18 +56,21 @@
 //!
 //! # Accuracy and cost
 //!
-//! A clip resampled to a multiple of its rate and back is itself to 1e-5 m; mirrored twice, likewise. Contacts do not change with the height
-//! of the capture's floor or the size of the character, and with the frame rate by at most 2.5 of the coarser frames. Everything is one pass
+//! A clip resampled to a multiple of its rate and back is itself to 1e-5 m; mirrored twice,
+//! likewise. Contacts do not change with the height of the capture's floor or the size of the
+//! character, and with the frame rate by at most 2.5 of the coarser frames. Everything is one pass
 //! over frames × joints, but for the sorting of heights in contacts.
 //!
 //! # What it does not do
 //!
-//! One frame rate, no key frames, no compression. The ground is a plane: stairs and slopes have no contacts. A body that lies on its side has no
-//! facing: over such frames its heading turns evenly from the last known to the next.
+//! One frame rate, no key frames, no compression. The ground is a plane: stairs and slopes have no
+//! contacts. A body that lies on its side has no facing: over such frames its heading turns evenly
+//! from the last known to the next.
 //!
 //! # Sources
 //!
-//! Angular velocities: Holden, "Joint limits, quaternions and angular velocity". Cubic interpolation: Catmull and Rom, on rotation vectors.
+//! Angular velocities: Holden, "Joint limits, quaternions and angular velocity". Cubic
+//! interpolation: Catmull and Rom, on rotation vectors.
 
 mod carrier;
 mod contacts;

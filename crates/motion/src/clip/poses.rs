@@ -3,11 +3,12 @@ use crate::skeleton::{Pose, Skeleton};
 use std::sync::Arc;
 
 impl Clip {
-    /// A clip from whole poses, one per frame. The joints that have translations are those of the first pose.
+    /// A clip from whole poses, one per frame. The joints that have translations are those of the
+    /// first pose.
     ///
     /// # Errors
-    /// [`ClipError`] when the frame rate is not a positive number, a pose has not one rotation per joint, or poses differ in which joints
-    /// have translations.
+    /// [`ClipError`] when the frame rate is not a positive number, a pose has not one rotation per
+    /// joint, or poses differ in which joints have translations.
     pub fn from_poses(
         name: impl Into<String>,
         skeleton: Arc<Skeleton>,
@@ -33,11 +34,7 @@ impl Clip {
             }
             if pose.translations.len() != tracks.len() {
                 let (found, expected) = (pose.translations.len(), tracks.len());
-                return Err(ClipError::Length {
-                    what: "translations of a pose",
-                    found,
-                    expected,
-                });
+                return Err(ClipError::Length { what: "translations of a pose", found, expected });
             }
             for (track, &(joint, value)) in tracks.iter_mut().zip(&pose.translations) {
                 if track.joint != joint {
@@ -64,7 +61,10 @@ mod tests {
         let values = (0..7).map(|i| Vec3::X * i as f32).collect();
         let clip = clip.with_translations(vec![JointTranslations { joint: 4, values }]).unwrap();
         let poses = (0..clip.frames()).map(|frame| clip.pose(frame));
-        assert_eq!(Clip::from_poses(clip.name(), clip.skeleton().clone(), clip.fps(), poses), Ok(clip));
+        assert_eq!(
+            Clip::from_poses(clip.name(), clip.skeleton().clone(), clip.fps(), poses),
+            Ok(clip)
+        );
     }
 
     #[test]

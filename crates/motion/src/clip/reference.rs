@@ -1,20 +1,25 @@
 use super::Clip;
 use crate::math::quat;
-use crate::skeleton::{Role, Roles, Side, Skeleton, WorldPose, canonical_stance, rest_is_plausible, uprightness};
+use crate::skeleton::{
+    Role, Roles, Side, Skeleton, WorldPose, canonical_stance, rest_is_plausible, uprightness,
+};
 use glam::{Quat, Vec3};
 
 /// Frames of a clip that are looked at, at most.
 const SAMPLES: usize = 120;
 /// A frame may be less upright than the most upright one by this and count as upright, too.
 const AS_UPRIGHT: f32 = 0.06;
-/// A rest pose from which a clip's joints are turned by more than this in the mean is no pose of a creature, radians (40°).
+/// A rest pose from which a clip's joints are turned by more than this in the mean is no pose of a
+/// creature, radians (40°).
 const STRANGE: f32 = 0.7;
 
-/// Returns a pose that shows how a clip's bones lie to each other when the body stands, for [`crate::skeleton::canonical_stance`]: the rest pose where that is
-/// plausible, else the frame in which the body is most upright; of frames that are about as upright, that in which head, hands and feet are turned the
-/// least against how they are in the mean.
+/// Returns a pose that shows how a clip's bones lie to each other when the body stands, for
+/// [`crate::skeleton::canonical_stance`]: the rest pose where that is plausible, else the frame in
+/// which the body is most upright; of frames that are about as upright, that in which head, hands
+/// and feet are turned the least against how they are in the mean.
 ///
-/// Where the roles do not tell, it is the rest pose, unless the clip's joints are turned far from it: then the frame in which they are farthest apart.
+/// Where the roles do not tell, it is the rest pose, unless the clip's joints are turned far from
+/// it: then the frame in which they are farthest apart.
 #[must_use]
 pub fn reference_pose(clip: &Clip, roles: &Roles) -> WorldPose {
     let skeleton = clip.skeleton();
@@ -33,15 +38,17 @@ pub fn reference_pose(clip: &Clip, roles: &Roles) -> WorldPose {
     }
 }
 
-/// Returns the stance that stands in for the rest pose of a clip's skeleton: its [`canonical_stance`] where the rest pose shows no creature. `None` where it
-/// shows one, and where the roles do not tell.
+/// Returns the stance that stands in for the rest pose of a clip's skeleton: its
+/// [`canonical_stance`] where the rest pose shows no creature. `None` where it shows one, and where
+/// the roles do not tell.
 #[must_use]
 pub fn stance_for_rest(clip: &Clip, roles: &Roles) -> Option<WorldPose> {
     let is_strange = rest_is_plausible(clip.skeleton(), roles) == Some(false);
     is_strange.then(|| canonical_stance(clip.skeleton(), roles, &reference_pose(clip, roles)))
 }
 
-/// How far the joints below the root are turned from rest, radians: the mean over joints and every so many frames.
+/// How far the joints below the root are turned from rest, radians: the mean over joints and every
+/// so many frames.
 fn strangeness(clip: &Clip, step: usize) -> f32 {
     let frames = (0..clip.frames()).step_by(step);
     let turns = frames.flat_map(|frame| clip.rotations(frame).iter().skip(1));
@@ -52,7 +59,8 @@ fn strangeness(clip: &Clip, step: usize) -> f32 {
 }
 
 fn most_upright(poses: &[WorldPose], skeleton: &Skeleton, roles: &Roles) -> Option<WorldPose> {
-    let upright: Vec<f32> = poses.iter().map(|pose| uprightness(pose, roles).unwrap_or(-1.0)).collect();
+    let upright: Vec<f32> =
+        poses.iter().map(|pose| uprightness(pose, roles).unwrap_or(-1.0)).collect();
     let best = upright.iter().copied().reduce(f32::max)?;
     let ends = (Side::BOTH.into_iter()).flat_map(|side| [Role::hand(side), Role::foot(side)]);
     // A head is turned against the hips, hands and feet against their limbs.
@@ -64,7 +72,9 @@ fn most_upright(poses: &[WorldPose], skeleton: &Skeleton, roles: &Roles) -> Opti
     });
     let mut apart = vec![0.0f32; poses.len()];
     for (joint, against) in pairs.chain(head) {
-        let turn = |pose: &WorldPose| quat::renormalize(pose.rotations[against].conjugate() * pose.rotations[joint]);
+        let turn = |pose: &WorldPose| {
+            quat::renormalize(pose.rotations[against].conjugate() * pose.rotations[joint])
+        };
         let turns: Vec<Quat> = poses.iter().map(turn).collect();
         let mean = quat::mean(turns.iter().copied());
         for (apart, turn) in apart.iter_mut().zip(turns) {
@@ -99,7 +109,8 @@ mod tests {
         lying.rotations[hips] *= Quat::from_rotation_x(1.5);
         let mut crouching = standing.clone();
         for side in Side::BOTH {
-            crouching.rotations[roles.get(Role::thigh(side)).unwrap()] = Quat::from_rotation_x(-1.8);
+            crouching.rotations[roles.get(Role::thigh(side)).unwrap()] =
+                Quat::from_rotation_x(-1.8);
             crouching.rotations[roles.get(Role::shin(side)).unwrap()] = Quat::from_rotation_x(2.2);
         }
         let mut looking_away = standing.clone();
@@ -108,7 +119,8 @@ mod tests {
         let plain = Clip::from_poses("plain", Arc::clone(&skeleton), 30.0, poses.clone()).unwrap();
         assert_eq!(reference_pose(&plain, &roles), skeleton.rest_pose());
         let (turned, turns) = fixtures::turned(&skeleton, 3);
-        let poses: Vec<Pose> = poses.iter().map(|pose| fixtures::turned_pose(&skeleton, &turns, pose)).collect();
+        let poses: Vec<Pose> =
+            poses.iter().map(|pose| fixtures::turned_pose(&skeleton, &turns, pose)).collect();
         let clip = Clip::from_poses("turned", turned, 30.0, poses).unwrap();
         assert_eq!(reference_pose(&clip, &roles), clip.world_pose(3));
     }
@@ -129,10 +141,14 @@ mod tests {
             let mut rotations = vec![Quat::IDENTITY; 8];
             rotations[1] = Quat::from_rotation_z(turn);
             rotations[5] = Quat::from_rotation_z(0.5 * turn);
-            Clip::new("creature", Arc::clone(skeleton), 30.0, rotations, vec![Vec3::ZERO; 2]).unwrap()
+            Clip::new("creature", Arc::clone(skeleton), 30.0, rotations, vec![Vec3::ZERO; 2])
+                .unwrap()
         };
         let stretched = joints([Vec3::ZERO, Vec3::X, Vec3::X, Vec3::NEG_X]);
-        assert_eq!(reference_pose(&clip(&stretched, 0.6), &Roles::default()), stretched.rest_pose());
+        assert_eq!(
+            reference_pose(&clip(&stretched, 0.6), &Roles::default()),
+            stretched.rest_pose()
+        );
         // At rest the second bone lies back on the first.
         let folded = joints([Vec3::ZERO, Vec3::X, Vec3::NEG_X, Vec3::X * 0.5]);
         let moving = clip(&folded, 3.0);

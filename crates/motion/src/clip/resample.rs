@@ -1,12 +1,14 @@
 use super::{Clip, ClipError, Interpolation};
 
-/// The highest frame rate that a clip is resampled to, frames per second; guards the memory against a slip of the keyboard.
+/// The highest frame rate that a clip is resampled to, frames per second; guards the memory against
+/// a slip of the keyboard.
 const MAX_FPS: f64 = 1000.0;
 
 /// The clip at another frame rate, read from itself by `interpolation`.
 ///
-/// The first and the last frame stay what they are. Where the duration is no whole number of new frames it is rounded to the nearest one: the
-/// clip then plays by up to half a frame longer or shorter. At its own frame rate the clip comes back unchanged.
+/// The first and the last frame stay what they are. Where the duration is no whole number of new
+/// frames it is rounded to the nearest one: the clip then plays by up to half a frame longer or
+/// shorter. At its own frame rate the clip comes back unchanged.
 ///
 /// ```
 /// use glam::{Quat, Vec3};
@@ -23,7 +25,8 @@ const MAX_FPS: f64 = 1000.0;
 /// ```
 ///
 /// # Errors
-/// [`ClipError::FrameRate`] when `fps` is not a positive number, or is above both 1000 and the clip's own rate.
+/// [`ClipError::FrameRate`] when `fps` is not a positive number, or is above both 1000 and the
+/// clip's own rate.
 pub fn resample(clip: &Clip, fps: f64, interpolation: Interpolation) -> Result<Clip, ClipError> {
     if !(fps > 0.0 && fps <= MAX_FPS.max(clip.fps())) {
         return Err(ClipError::FrameRate(fps));
@@ -33,16 +36,15 @@ pub fn resample(clip: &Clip, fps: f64, interpolation: Interpolation) -> Result<C
     }
     let duration_secs = clip.duration_secs();
     // At least one step where there is a duration, so that neither end is lost.
-    let steps = if duration_secs > 0.0 {
-        ((duration_secs * fps).round() as usize).max(1)
-    } else {
-        0
-    };
+    let steps =
+        if duration_secs > 0.0 { ((duration_secs * fps).round() as usize).max(1) } else { 0 };
     let times = (0..steps).map(|step| duration_secs * step as f64 / steps as f64);
-    // The last frame is taken as it is: its time times the rate need not be a whole number in floating point.
+    // The last frame is taken as it is: its time times the rate need not be a whole number in
+    // floating point.
     let last = clip.frames().checked_sub(1).map(|last| clip.pose(last));
     let poses = times.filter_map(|time_secs| clip.sample(time_secs, interpolation)).chain(last);
-    Ok(Clip::from_poses(clip.name(), clip.skeleton().clone(), fps, poses)?.with_provenance(clip.provenance()))
+    Ok(Clip::from_poses(clip.name(), clip.skeleton().clone(), fps, poses)?
+        .with_provenance(clip.provenance()))
 }
 
 #[cfg(test)]
@@ -55,7 +57,8 @@ mod tests {
     use proptest::prelude::*;
     use std::sync::Arc;
 
-    const ALL: [Interpolation; 3] = [Interpolation::Nearest, Interpolation::Linear, Interpolation::Cubic];
+    const ALL: [Interpolation; 3] =
+        [Interpolation::Nearest, Interpolation::Linear, Interpolation::Cubic];
 
     proptest! {
         #[test]
@@ -93,7 +96,8 @@ mod tests {
         }
     }
 
-    /// What moves evenly moves evenly at every rate, and cubic interpolation follows a turn at constant speed.
+    /// What moves evenly moves evenly at every rate, and cubic interpolation follows a turn at
+    /// constant speed.
     #[test]
     fn even_motion_stays_even() {
         let skeleton = fixtures::bandai();
@@ -118,7 +122,9 @@ mod tests {
                     crate::math::quat::angle_between(finer.rotations(frame)[0], wanted) < tolerance,
                     "{how:?} {frame}"
                 );
-                assert!((finer.root_translations()[frame] - Vec3::Z * 0.1 * at).length() < tolerance);
+                assert!(
+                    (finer.root_translations()[frame] - Vec3::Z * 0.1 * at).length() < tolerance
+                );
                 assert!((finer.translations()[0].values[frame].z - 0.05 * at).abs() < tolerance);
             }
         }

@@ -3,16 +3,19 @@ use crate::math::{Planar, wrap_angle};
 use crate::skeleton::{Role, Roles, Side, WorldPose};
 use glam::{Quat, Vec3};
 
-/// Across axes whose share over the ground is below this are those of a character lying on its side: no facing.
+/// Across axes whose share over the ground is below this are those of a character lying on its
+/// side: no facing.
 const LEAST_ACROSS: f32 = 0.2;
 
 /// The pairs of joints whose axes say where the body faces.
 const ACROSS: [fn(Side) -> Role; 2] = [Role::thigh, Role::upper_arm];
 
-/// Where the body faces, as a unit vector over the ground; `None` where it faces up, down or nowhere (a character lying on its side).
+/// Where the body faces, as a unit vector over the ground; `None` where it faces up, down or
+/// nowhere (a character lying on its side).
 ///
-/// The mean of the axes across hips and shoulders (right to left), turned a quarter about up. Never an Euler angle: those jump where the
-/// body does not. A rig without legs and arms faces along its root's +Z.
+/// The mean of the axes across hips and shoulders (right to left), turned a quarter about up. Never
+/// an Euler angle: those jump where the body does not. A rig without legs and arms faces along its
+/// root's +Z.
 #[must_use]
 pub fn facing(world: &WorldPose, roles: &Roles) -> Option<Vec3> {
     let at = |role| roles.get(role).and_then(|joint| world.positions.get(joint));
@@ -26,7 +29,8 @@ pub fn facing(world: &WorldPose, roles: &Roles) -> Option<Vec3> {
 /// Likewise by hips and shoulders alone; `None` without either.
 fn axis_facing(world: &WorldPose, roles: &Roles) -> Option<Vec3> {
     let at = |role| roles.get(role).and_then(|joint| world.positions.get(joint).copied());
-    let across = |role: fn(Side) -> Role| (at(role(Side::Left))? - at(role(Side::Right))?).try_normalize();
+    let across =
+        |role: fn(Side) -> Role| (at(role(Side::Left))? - at(role(Side::Right))?).try_normalize();
     let [hips, shoulders] = ACROSS.map(across);
     // Left × up = forward.
     let across = (hips.unwrap_or_default() + shoulders.unwrap_or_default()).try_normalize()?;
@@ -35,19 +39,18 @@ fn axis_facing(world: &WorldPose, roles: &Roles) -> Option<Vec3> {
 
 fn over_the_ground(forward: Vec3) -> Option<Vec3> {
     let forward = Vec3::new(forward.x, 0.0, forward.z);
-    if forward.length() < LEAST_ACROSS {
-        None
-    } else {
-        forward.try_normalize()
-    }
+    if forward.length() < LEAST_ACROSS { None } else { forward.try_normalize() }
 }
 
-/// Returns where the character stands on the ground and what it faces, frame by frame: `world_from_character`.
+/// Returns where the character stands on the ground and what it faces, frame by frame:
+/// `world_from_character`.
 ///
-/// The shift is the first joint, which carries the body ([`Clip::folded`]), projected to the ground; the yaw is that of [`facing`]. Over frames
-/// without facing the yaw turns evenly, the shorter way, from the last known one to the next, so that it is continuous; before the first and
-/// behind the last it stays. Without any facing, as for creatures without hips and shoulders, the yaw is the turn of the first joint about +Y since
-/// the first frame, and faces along its +Z there: that is 0 for a joint that points up or down.
+/// The shift is the first joint, which carries the body ([`Clip::folded`]), projected to the
+/// ground; the yaw is that of [`facing`]. Over frames without facing the yaw turns evenly, the
+/// shorter way, from the last known one to the next, so that it is continuous; before the first and
+/// behind the last it stays. Without any facing, as for creatures without hips and shoulders, the
+/// yaw is the turn of the first joint about +Y since the first frame, and faces along its +Z there:
+/// that is 0 for a joint that points up or down.
 #[must_use]
 pub fn character_frames(clip: &Clip, roles: &Roles) -> Vec<Planar> {
     frames_of(clip, roles, 0)
@@ -82,8 +85,9 @@ pub(super) fn frames_of(clip: &Clip, roles: &Roles, carrier: usize) -> Vec<Plana
     frames
 }
 
-/// The yaw of a joint, frame by frame: how far it has turned about +Y since the first frame, on top of where its +Z points there. Relative
-/// rotations do not depend on how the file lays the joint's axes. `None` where it is upside down.
+/// The yaw of a joint, frame by frame: how far it has turned about +Y since the first frame, on top
+/// of where its +Z points there. Relative rotations do not depend on how the file lays the joint's
+/// axes. `None` where it is upside down.
 fn turned_since_the_first(turns: &[Quat]) -> Vec<Option<f64>> {
     let Some(&first) = turns.first() else {
         return Vec::new();
@@ -102,10 +106,12 @@ fn turned_since_the_first(turns: &[Quat]) -> Vec<Option<f64>> {
     turns.iter().map(yaw).collect()
 }
 
-/// Fills gaps between known angles evenly, the shorter way; before the first and behind the last known one with that.
+/// Fills gaps between known angles evenly, the shorter way; before the first and behind the last
+/// known one with that.
 fn without_gaps(values: &[Option<f64>]) -> Vec<Option<f64>> {
     let mut filled = values.to_vec();
-    let known: Vec<(usize, f64)> = values.iter().enumerate().filter_map(|(i, value)| Some((i, (*value)?))).collect();
+    let known: Vec<(usize, f64)> =
+        values.iter().enumerate().filter_map(|(i, value)| Some((i, (*value)?))).collect();
     for pair in known.windows(2) {
         let [(from, start), (to, end)] = [pair[0], pair[1]];
         for (step, slot) in (1..).zip(&mut filled[from + 1..to]) {
@@ -120,9 +126,11 @@ fn without_gaps(values: &[Option<f64>]) -> Vec<Option<f64>> {
     filled
 }
 
-/// The measured speed over the ground, metres per second: the length of the path of the frames' origins over its duration.
+/// The measured speed over the ground, metres per second: the length of the path of the frames'
+/// origins over its duration.
 ///
-/// 0 for fewer than two frames or a frame rate that is not positive; never negative. The path contains the body's sway.
+/// 0 for fewer than two frames or a frame rate that is not positive; never negative. The path
+/// contains the body's sway.
 ///
 /// ```
 /// use segue_motion::{clip::ground_speed, math::Planar};
@@ -160,7 +168,8 @@ mod tests {
         }
         let skeleton = fixtures::lafan();
         let rest = wander_by(&skeleton, 1, 0, 0.0);
-        // A rig whose root joint is turned by the file: the body still faces +X when its left is at -Z.
+        // A rig whose root joint is turned by the file: the body still faces +X when its left is at
+        // -Z.
         let turned = rest.transformed(&Planar::new(FRAC_PI_2, 0.0, 0.0)).world_pose(0);
         assert!((facing(&turned, &fixtures::roles(&skeleton)).unwrap() - Vec3::X).length() < 1e-6);
         // Without roles the root's own +Z.
@@ -198,7 +207,8 @@ mod tests {
         assert!((across_the_back.abs() - PI).abs() < 1e-12, "{across_the_back}");
     }
 
-    /// A creature without hips and shoulders, whose root's axes lie as the file likes, turns as it turns.
+    /// A creature without hips and shoulders, whose root's axes lie as the file likes, turns as it
+    /// turns.
     #[test]
     fn a_creature_without_limbs_turns_with_its_first_joint() {
         let skeleton = fixtures::lafan();
@@ -212,7 +222,9 @@ mod tests {
             for (frame, root) in rotations.iter_mut().step_by(skeleton.len()).enumerate() {
                 *root = turned(frame);
             }
-            let clip = Clip::new("whirl", Arc::clone(&skeleton), 30.0, rotations, vec![Vec3::Y; 60]).unwrap();
+            let clip =
+                Clip::new("whirl", Arc::clone(&skeleton), 30.0, rotations, vec![Vec3::Y; 60])
+                    .unwrap();
             let frames = character_frames(&clip, &Roles::default());
             for pair in frames.windows(2) {
                 let turn = crate::math::wrap_angle(pair[1].yaw - pair[0].yaw);

@@ -11,8 +11,9 @@ pub enum Interpolation {
     /// Positions on the straight line, rotations on the great circle (slerp).
     #[default]
     Linear,
-    /// Catmull-Rom on positions (C¹); on rotations the same in the tangent space of the frame before, whose velocity is continuous where the axis
-    /// stays, and nearly so where steps are small.
+    /// Catmull-Rom on positions (C¹); on rotations the same in the tangent space of the frame
+    /// before, whose velocity is continuous where the axis stays, and nearly so where steps are
+    /// small.
     Cubic,
 }
 
@@ -31,13 +32,17 @@ impl Clip {
         // `part > 0` means that there is a next frame.
         let (before, next, after) = (frame.saturating_sub(1), frame + 1, (frame + 2).min(last));
         let position = |of: &dyn Fn(usize) -> Vec3| match interpolation {
-            Interpolation::Cubic => curve::catmull_rom(of(before), of(frame), of(next), of(after), part),
+            Interpolation::Cubic => {
+                curve::catmull_rom(of(before), of(frame), of(next), of(after), part)
+            }
             _ => of(frame).lerp(of(next), part),
         };
         let rotation = |joint: usize| {
             let of = |f: usize| self.rotations(f)[joint];
             match interpolation {
-                Interpolation::Cubic => cubic_rotation(of(before), of(frame), of(next), of(after), part),
+                Interpolation::Cubic => {
+                    cubic_rotation(of(before), of(frame), of(next), of(after), part)
+                }
                 _ => quat::slerp(of(frame), of(next), part),
             }
         };

@@ -5,7 +5,9 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// The axis of a file that points up.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
+)]
 pub enum UpAxis {
     /// +Y is up, as inside Segue.
     #[default]
@@ -14,7 +16,8 @@ pub enum UpAxis {
     Z,
 }
 
-/// How the file that a clip came from measures: what an exporter needs to write it back the same way.
+/// How the file that a clip came from measures: what an exporter needs to write it back the same
+/// way.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Provenance {
     /// Metres per unit of length in the file.
@@ -26,14 +29,12 @@ pub struct Provenance {
 impl Default for Provenance {
     /// Centimetres and Y up, what most BVH files use.
     fn default() -> Self {
-        Self {
-            metres_per_unit: 0.01,
-            up: UpAxis::Y,
-        }
+        Self { metres_per_unit: 0.01, up: UpAxis::Y }
     }
 }
 
-/// Translations of one joint that moves against its parent: one per frame, metres, in the parent's frame.
+/// Translations of one joint that moves against its parent: one per frame, metres, in the parent's
+/// frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointTranslations {
     /// The joint's index; not 0, the root has its own.
@@ -68,14 +69,17 @@ pub enum ClipError {
         /// Frames that there are.
         frames: usize,
     },
-    /// Translations for a joint that the skeleton does not have, for the root, or not in the order of joints.
+    /// Translations for a joint that the skeleton does not have, for the root, or not in the order
+    /// of joints.
     #[error("translations of joint {0} do not fit this skeleton")]
     Translations(usize),
 }
 
-/// A motion: `frames × joints` local rotations at a fixed frame rate, and the root's way through the world.
+/// A motion: `frames × joints` local rotations at a fixed frame rate, and the root's way through
+/// the world.
 ///
-/// Rotations are unit quaternions (`parent_from_joint`), frame-major and contiguous. Lengths are metres, Y is up.
+/// Rotations are unit quaternions (`parent_from_joint`), frame-major and contiguous. Lengths are
+/// metres, Y is up.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clip {
     name: String,
@@ -88,10 +92,12 @@ pub struct Clip {
 }
 
 impl Clip {
-    /// A clip from its parts: `rotations` is frame-major, frames × joints long; `root_translations` has one value per frame.
+    /// A clip from its parts: `rotations` is frame-major, frames × joints long; `root_translations`
+    /// has one value per frame.
     ///
     /// # Errors
-    /// [`ClipError`] when the frame rate is not a positive number or the lengths do not fit each other.
+    /// [`ClipError`] when the frame rate is not a positive number or the lengths do not fit each
+    /// other.
     pub fn new(
         name: impl Into<String>,
         skeleton: Arc<Skeleton>,
@@ -104,11 +110,7 @@ impl Clip {
         }
         let expected = root_translations.len() * skeleton.len();
         if rotations.len() != expected {
-            return Err(ClipError::Length {
-                what: "rotations",
-                found: rotations.len(),
-                expected,
-            });
+            return Err(ClipError::Length { what: "rotations", found: rotations.len(), expected });
         }
         Ok(Self {
             name: name.into(),
@@ -124,8 +126,12 @@ impl Clip {
     /// The same clip with translations of joints other than the root, sorted by joint.
     ///
     /// # Errors
-    /// [`ClipError`] when a joint does not exist, is the root or is out of order, or a length is not the number of frames.
-    pub fn with_translations(mut self, translations: Vec<JointTranslations>) -> Result<Self, ClipError> {
+    /// [`ClipError`] when a joint does not exist, is the root or is out of order, or a length is
+    /// not the number of frames.
+    pub fn with_translations(
+        mut self,
+        translations: Vec<JointTranslations>,
+    ) -> Result<Self, ClipError> {
         let mut previous = 0;
         for track in &translations {
             if track.joint <= previous || track.joint >= self.skeleton.len() {
@@ -237,7 +243,11 @@ impl Clip {
         Pose {
             root_translation: self.root_translations[frame],
             rotations: self.rotations(frame).to_vec(),
-            translations: self.translations.iter().map(|track| (track.joint, track.values[frame])).collect(),
+            translations: self
+                .translations
+                .iter()
+                .map(|track| (track.joint, track.values[frame]))
+                .collect(),
         }
     }
 
@@ -247,7 +257,13 @@ impl Clip {
     /// When there is no such frame.
     pub fn world_pose_into(&self, frame: usize, world: &mut WorldPose) {
         let moved = self.translations.iter().map(|track| (track.joint, track.values[frame]));
-        world_pose_into(&self.skeleton, self.root_translations[frame], self.rotations(frame), moved, world);
+        world_pose_into(
+            &self.skeleton,
+            self.root_translations[frame],
+            self.rotations(frame),
+            moved,
+            world,
+        );
     }
 
     /// Forward kinematics of some joints of one frame; see [`world_pose_of`].
@@ -271,7 +287,8 @@ impl Clip {
         world
     }
 
-    /// World positions of all joints over a range of frames: frame-major, `range.len() × joints` long, metres. The range is clamped to the clip.
+    /// World positions of all joints over a range of frames: frame-major, `range.len() × joints`
+    /// long, metres. The range is clamped to the clip.
     #[must_use]
     pub fn world_positions(&self, range: Range<usize>) -> Vec<Vec3> {
         let end = range.end.min(self.frames());
@@ -314,8 +331,9 @@ impl Clip {
         })
     }
 
-    /// The whole clip turned and moved over the ground, rigidly: the distance between any two joints of any two frames stays, and so do heights.
-    /// (`transform` of section B; the turn is applied to *every* frame about +Y.)
+    /// The whole clip turned and moved over the ground, rigidly: the distance between any two
+    /// joints of any two frames stays, and so do heights. (`transform` of section B; the turn is
+    /// applied to *every* frame about +Y.)
     #[must_use]
     pub fn transformed(&self, world_from_clip: &Planar) -> Self {
         let mut moved = self.clone();
@@ -329,12 +347,15 @@ impl Clip {
         moved
     }
 
-    /// Returns the clip with each frame turned and moved over the ground by a transform of its own; a frame without one stays where it is.
+    /// Returns the clip with each frame turned and moved over the ground by a transform of its own;
+    /// a frame without one stays where it is.
     #[must_use]
     pub fn transformed_by_frame(&self, world_from_clip: &[Planar]) -> Self {
         let mut moved = self.clone();
         let poses = moved.rotations.chunks_exact_mut(self.skeleton.len());
-        for ((pose, translation), world_from_clip) in poses.zip(&mut moved.root_translations).zip(world_from_clip) {
+        for ((pose, translation), world_from_clip) in
+            poses.zip(&mut moved.root_translations).zip(world_from_clip)
+        {
             *translation = world_from_clip.apply(*translation);
             if let Some(root) = pose.first_mut() {
                 *root = crate::math::quat::renormalize(world_from_clip.rotation() * *root);

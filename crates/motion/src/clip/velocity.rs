@@ -11,25 +11,28 @@ pub struct Velocities {
     pub angular: Vec<Vec3>,
 }
 
-/// The velocities of all joints in `frame`, by central differences at the clip's own frame rate; one-sided in the first and last frame, 0 in a
-/// clip of one frame.
+/// The velocities of all joints in `frame`, by central differences at the clip's own frame rate;
+/// one-sided in the first and last frame, 0 in a clip of one frame.
 ///
 /// # Panics
 /// When there is no such frame.
 #[must_use]
 pub fn velocities(clip: &Clip, frame: usize) -> Velocities {
-    let (before, after) = (frame.saturating_sub(1), (frame + 1).min(clip.frames().saturating_sub(1)));
+    let (before, after) =
+        (frame.saturating_sub(1), (frame + 1).min(clip.frames().saturating_sub(1)));
     let joints = clip.skeleton().len();
     if clip.frames() == 1 && frame == 0 {
-        return Velocities {
-            linear: vec![Vec3::ZERO; joints],
-            angular: vec![Vec3::ZERO; joints],
-        };
+        return Velocities { linear: vec![Vec3::ZERO; joints], angular: vec![Vec3::ZERO; joints] };
     }
     let dt_secs = (after - before) as f32 * clip.dt_secs();
     let (from, to) = (clip.world_pose(before), clip.world_pose(after));
     Velocities {
-        linear: from.positions.iter().zip(&to.positions).map(|(&a, &b)| (b - a) / dt_secs).collect(),
+        linear: from
+            .positions
+            .iter()
+            .zip(&to.positions)
+            .map(|(&a, &b)| (b - a) / dt_secs)
+            .collect(),
         angular: from
             .rotations
             .iter()
@@ -54,13 +57,18 @@ mod tests {
         let (rate, fps) = (1.5f32, 120.0);
         let turn = |frame: usize| Quat::from_rotation_y(rate * frame as f32 / fps);
         let rotations = (0..9)
-            .flat_map(|f| std::iter::once(turn(f)).chain(std::iter::repeat_n(Quat::IDENTITY, skeleton.len() - 1)))
+            .flat_map(|f| {
+                std::iter::once(turn(f))
+                    .chain(std::iter::repeat_n(Quat::IDENTITY, skeleton.len() - 1))
+            })
             .collect();
         let roots = (0..9).map(|f| turn(f) * Vec3::X * 2.0).collect();
-        let clip = Clip::new("circle", Arc::clone(&skeleton), f64::from(fps), rotations, roots).unwrap();
+        let clip =
+            Clip::new("circle", Arc::clone(&skeleton), f64::from(fps), rotations, roots).unwrap();
         for frame in 0..clip.frames() {
             let (found, world) = (velocities(&clip, frame), clip.world_pose(frame));
-            // Central differences of a circle: exact but for the sine of the step, and one-sided ones lag by half a step.
+            // Central differences of a circle: exact but for the sine of the step, and one-sided
+            // ones lag by half a step.
             let tolerance = if (1..8).contains(&frame) { 1e-3 } else { 0.03 };
             for joint in 0..skeleton.len() {
                 let wanted = (Vec3::Y * rate).cross(world.positions[joint]);

@@ -23,17 +23,23 @@ const MOST_APART_CM: f64 = 12.0;
 const CYCLE_SECS: Range<f64> = 0.3..3.0;
 
 impl GaitCycle {
-    /// Finds the most regular cycle of a clip, and closes it ([`close_loop`], half of the difference at each end).
+    /// Finds the most regular cycle of a clip, and closes it ([`close_loop`], half of the
+    /// difference at each end).
     ///
-    /// A cycle goes from a strike of the left foot to the next one and has one strike of the right foot. Of all cycles that one is taken which
-    /// differs least from the median in duration, speed, and the phases of strike and lift, and whose ends are most alike; a foot that stands in
-    /// the clip's first frame is taken to strike there only if nothing else is a cycle. `contacts` are those of the clip.
+    /// A cycle goes from a strike of the left foot to the next one and has one strike of the right
+    /// foot. Of all cycles that one is taken which differs least from the median in duration,
+    /// speed, and the phases of strike and lift, and whose ends are most alike; a foot that stands
+    /// in the clip's first frame is taken to strike there only if nothing else is a cycle.
+    /// `contacts` are those of the clip.
     ///
-    /// A clip that is one cycle, or most of one, rarely begins with a strike. Where none of these cycles is in the clip, it is closed by its own ends
-    /// ([`WholeCycle`]), or where its poses repeat best ([`find_cycle`]); the contacts of the closed cycle, which go round, then tell where it strikes.
+    /// A clip that is one cycle, or most of one, rarely begins with a strike. Where none of these
+    /// cycles is in the clip, it is closed by its own ends ([`WholeCycle`]), or where its poses
+    /// repeat best ([`find_cycle`]); the contacts of the closed cycle, which go round, then tell
+    /// where it strikes.
     ///
     /// # Errors
-    /// [`GaitError::NoFeet`] and [`GaitError::NoCycle`] when there is none, [`GaitError::Loop`] when it cannot be closed.
+    /// [`GaitError::NoFeet`] and [`GaitError::NoCycle`] when there is none, [`GaitError::Loop`]
+    /// when it cannot be closed.
     pub fn find(source: &Source, roles: &Roles, contacts: &Contacts) -> Result<Self, GaitError> {
         let mut candidates = candidates(source, contacts);
         if candidates.iter().any(|candidate| candidate.range.start > 0) {
@@ -45,7 +51,8 @@ impl GaitCycle {
                 closed => return closed,
             }
         }
-        let measures: Vec<[f32; 5]> = candidates.iter().map(|candidate| candidate.measures(source)).collect();
+        let measures: Vec<[f32; 5]> =
+            candidates.iter().map(|candidate| candidate.measures(source)).collect();
         let median = |index: usize| {
             let values: Vec<f32> = measures.iter().map(|measures| measures[index]).collect();
             stats::percentile(&values, 0.5).unwrap_or(0.0)
@@ -77,7 +84,11 @@ impl GaitCycle {
     }
 
     /// The cycle of a clip that does not hold one from strike to strike.
-    fn closed_by_its_ends(source: &Source, roles: &Roles, contacts: &Contacts) -> Result<Self, GaitError> {
+    fn closed_by_its_ends(
+        source: &Source,
+        roles: &Roles,
+        contacts: &Contacts,
+    ) -> Result<Self, GaitError> {
         let clip = source.clip();
         let name = || clip.name().to_owned();
         if Side::BOTH.iter().any(|&side| roles.foot_points(clip.skeleton(), side).is_empty()) {
@@ -85,10 +96,7 @@ impl GaitCycle {
         }
         // The ends of both kinds, the nearer ones first.
         let whole = WholeCycle::of(source);
-        let search = CycleSearch {
-            min_secs: CYCLE_SECS.start,
-            ..CycleSearch::new(clip.fps())
-        };
+        let search = CycleSearch { min_secs: CYCLE_SECS.start, ..CycleSearch::new(clip.fps()) };
         let height = f64::from(roles.body_height(clip.skeleton()));
         let inside = find_cycle(source, contacts, height, &search)
             .ok()
@@ -110,14 +118,11 @@ impl GaitCycle {
             let looped = looped.begun_at(strike).map_err(GaitError::Clip)?;
             return Ok(Self::new(looped, start + strike..start + strike + frames, events));
         }
-        Err(GaitError::NoCycle {
-            name: name(),
-            secs: clip.duration_secs(),
-        })
+        Err(GaitError::NoCycle { name: name(), secs: clip.duration_secs() })
     }
 
-    /// The frames of the clip that were taken; `end` is the frame that stands for `start` again. It lies behind the clip's last frame where the clip
-    /// was closed by its own ends.
+    /// The frames of the clip that were taken; `end` is the frame that stands for `start` again. It
+    /// lies behind the clip's last frame where the clip was closed by its own ends.
     #[must_use]
     pub fn range(&self) -> Range<usize> {
         self.range.clone()
@@ -129,7 +134,8 @@ impl GaitCycle {
         self.events
     }
 
-    /// The length of the way over the ground over its duration, metres per second ([`ground_speed`]).
+    /// The length of the way over the ground over its duration, metres per second
+    /// ([`ground_speed`]).
     #[must_use]
     pub fn speed_mps(&self) -> f64 {
         self.speed_mps
@@ -153,7 +159,8 @@ impl GaitCycle {
     }
 }
 
-/// What goes on in a closed cycle: the frame in which the left foot strikes, and the events from there on. `None` unless each foot stands once.
+/// What goes on in a closed cycle: the frame in which the left foot strikes, and the events from
+/// there on. `None` unless each foot stands once.
 pub(crate) fn events_of(looped: &Loop, roles: &Roles) -> Option<(usize, Events)> {
     let frames = looped.clip.frames();
     if !CYCLE_SECS.contains(&(frames as f64 / looped.clip.fps())) {
@@ -190,9 +197,11 @@ fn candidates(source: &Source, contacts: &Contacts) -> Vec<Candidate> {
     let (left, right) = (contacts.intervals(Side::Left), contacts.intervals(Side::Right));
     let candidate = |pair: &[Range<usize>]| {
         let (stance, range) = (&pair[0], pair[0].start..pair[1].start);
-        let mut strikes = right.iter().filter(|stance| stance.start > range.start && stance.start < range.end);
+        let mut strikes =
+            right.iter().filter(|stance| stance.start > range.start && stance.start < range.end);
         let (only, more) = (strikes.next()?, strikes.next());
-        if more.is_some() || range.end >= last || !CYCLE_SECS.contains(&(range.len() as f64 / fps)) {
+        if more.is_some() || range.end >= last || !CYCLE_SECS.contains(&(range.len() as f64 / fps))
+        {
             return None;
         }
         let phase = |frame: usize| (frame - range.start) as f64 / range.len() as f64;
@@ -202,7 +211,8 @@ fn candidates(source: &Source, contacts: &Contacts) -> Vec<Candidate> {
             right_lift: phase(only.end),
         };
         // A stance that the clip's end cuts off tells no lift.
-        (events.right_lift < events.right_strike + 1.0 && only.end < last).then_some(Candidate { range, events })
+        (events.right_lift < events.right_strike + 1.0 && only.end < last)
+            .then_some(Candidate { range, events })
     };
     left.windows(2).filter_map(candidate).collect()
 }
@@ -210,7 +220,8 @@ fn candidates(source: &Source, contacts: &Contacts) -> Vec<Candidate> {
 impl Candidate {
     /// Duration and speed (logarithms), and the phases of the events: what is to be usual.
     fn measures(&self, source: &Source) -> [f32; 5] {
-        let speed = ground_speed(&source.frames()[self.range.start..=self.range.end], source.clip().fps());
+        let speed =
+            ground_speed(&source.frames()[self.range.start..=self.range.end], source.clip().fps());
         [
             (self.range.len() as f32).ln(),
             speed.max(1e-3).ln(),
@@ -230,7 +241,8 @@ impl Candidate {
             }
             rotations
         });
-        let squares = ends[0].iter().zip(&ends[1]).map(|(&a, &b)| quat::angle_between(a, b).powi(2));
+        let squares =
+            ends[0].iter().zip(&ends[1]).map(|(&a, &b)| quat::angle_between(a, b).powi(2));
         (squares.sum::<f32>() / ends[0].len().max(1) as f32).sqrt()
     }
 }

@@ -2,10 +2,11 @@
 //!
 //! # The idea
 //!
-//! One cycle of each gait, from one strike of the left foot to the next, is found by the contacts of the feet and closed ([`GaitCycle`]); a
-//! clip that is one cycle, or most of one, is closed by its own ends.
-//! Both are laid on one phase, so that strikes meet strikes and lifts meet lifts, and blended pose by pose ([`SpeedBlend`]). Faster means
-//! two things at once, longer strides and more of them:
+//! One cycle of each gait, from one strike of the left foot to the next, is found by the contacts
+//! of the feet and closed ([`GaitCycle`]); a clip that is one cycle, or most of one, is closed by
+//! its own ends. Both are laid on one phase, so that strikes meet strikes and lifts meet lifts, and
+//! blended pose by pose ([`SpeedBlend`]). Faster means two things at once, longer strides and more
+//! of them:
 //!
 //! ```text
 //! w = (v - v₁)/(v₂ - v₁)                    weight of the second gait
@@ -13,10 +14,11 @@
 //! T = stride / v
 //! ```
 //!
-//! In a walk a foot lifts after the other one has struck, in a run before. No single phase fits both legs, so each leg follows a clock of
-//! its own events ([`PhaseAlignment::Feet`]). Picture two wheels with spokes of uneven spacing, bent until the spokes lie on each other. The
-//! way over the ground is made of the cycles' own steps in the character's frame. [`SpeedPlayer`] lets the speed be dragged while it plays:
-//! the phase goes on whatever the speed does.
+//! In a walk a foot lifts after the other one has struck, in a run before. No single phase fits
+//! both legs, so each leg follows a clock of its own events ([`PhaseAlignment::Feet`]). Picture two
+//! wheels with spokes of uneven spacing, bent until the spokes lie on each other. The way over the
+//! ground is made of the cycles' own steps in the character's frame. [`SpeedPlayer`] lets the speed
+//! be dragged while it plays: the phase goes on whatever the speed does.
 //!
 //! # Example
 //!
@@ -50,18 +52,20 @@
 //!
 //! # Accuracy and cost
 //!
-//! From walk to run the measured speed is the one asked for to 2 %. At its own speed each gait comes out as it is, to 1e-5 radians. A
-//! hundred cycles do not drift. Weights go from -0.25 to 1.25; beyond the two gaits the result is marked as a guess. A pose is O(joints).
+//! From walk to run the measured speed is the one asked for to 2 %. At its own speed each gait
+//! comes out as it is, to 1e-5 radians. A hundred cycles do not drift. Weights go from -0.25 to
+//! 1.25; beyond the two gaits the result is marked as a guess. A pose is O(joints).
 //!
 //! # What it does not do
 //!
-//! Feet stand as well as a blend of two stances stands; [`foot_lock`](crate::transition::foot_lock) with the contacts that come along cleans
-//! up the rest. Gaits need both feet in turn: whoever hops on one leg, or crawls, has no cycle here.
+//! Feet stand as well as a blend of two stances stands; [`foot_lock`](crate::transition::foot_lock)
+//! with the contacts that come along cleans up the rest. Gaits need both feet in turn: whoever hops
+//! on one leg, or crawls, has no cycle here.
 //!
 //! # Sources
 //!
-//! Blending two cycles by speed is a classic exercise of animation courses. How each leg gets a clock of its own is told at
-//! [`PhaseAlignment`].
+//! Blending two cycles by speed is a classic exercise of animation courses. How each leg gets a
+//! clock of its own is told at [`PhaseAlignment`].
 
 mod cycle;
 mod phase;

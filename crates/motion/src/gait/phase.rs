@@ -1,26 +1,32 @@
 use crate::skeleton::Side;
 
-/// When the feet meet and leave the ground in a cycle that begins with the strike of the left foot; in cycles.
+/// When the feet meet and leave the ground in a cycle that begins with the strike of the left foot;
+/// in cycles.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Events {
     /// The left foot leaves the ground, above 0 and below 1.
     pub left_lift: f64,
     /// The right foot meets the ground, above 0 and below 1.
     pub right_strike: f64,
-    /// The right foot leaves it, after its strike and less than a cycle later; above 1 where it stands at the beginning of the cycle, as in a walk.
+    /// The right foot leaves it, after its strike and less than a cycle later; above 1 where it
+    /// stands at the beginning of the cycle, as in a walk.
     pub right_lift: f64,
 }
 
 /// How two gaits are laid on one phase.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
+)]
 pub enum PhaseAlignment {
-    /// Strikes meet strikes and lifts meet lifts. In a walk a foot lifts after the other one struck, in a run before: no one phase holds for both
-    /// legs. So each leg follows its own strikes and lifts, and the rest of the body the strikes of both feet.
+    /// Strikes meet strikes and lifts meet lifts. In a walk a foot lifts after the other one
+    /// struck, in a run before: no one phase holds for both legs. So each leg follows its own
+    /// strikes and lifts, and the rest of the body the strikes of both feet.
     #[default]
     Feet,
     /// The whole body follows the strikes of both feet; lifts fall where they fall.
     Strikes,
-    /// Not at all: each cycle runs evenly, and begins where its clip does. For comparison: with strikes against swings legs cross.
+    /// Not at all: each cycle runs evenly, and begins where its clip does. For comparison: with
+    /// strikes against swings legs cross.
     None,
 }
 
@@ -48,13 +54,15 @@ const LEAST: f64 = 0.05;
 impl Events {
     /// The events of a blend, `share` of the way from `self` to `other`.
     ///
-    /// The share is that of the second gait in the *stride*, not its weight: a blended foot goes back under the body by the weighted mean of both
-    /// stances' ways, and the body goes on by the weighted mean of both strides; the foot stands still if its stance takes the quotient of
+    /// The share is that of the second gait in the *stride*, not its weight: a blended foot goes
+    /// back under the body by the weighted mean of both stances' ways, and the body goes on by the
+    /// weighted mean of both strides; the foot stands still if its stance takes the quotient of
     /// these.
     pub(super) fn between(&self, other: &Self, share: f64) -> Self {
         let mix = |a: f64, b: f64| a + (b - a) * share;
         let right_strike = mix(self.right_strike, other.right_strike).clamp(LEAST, 1.0 - LEAST);
-        let stance = mix(self.right_lift - self.right_strike, other.right_lift - other.right_strike);
+        let stance =
+            mix(self.right_lift - self.right_strike, other.right_lift - other.right_strike);
         Self {
             left_lift: mix(self.left_lift, other.left_lift).clamp(LEAST, 1.0 - LEAST),
             right_strike,
@@ -76,9 +84,15 @@ impl Events {
         (phase - strike).rem_euclid(1.0) < lift - strike
     }
 
-    /// The phase of a cycle with the events `self` that belongs to `phase` of a cycle with the events `of`: linear between events, rising, and
-    /// one more for every cycle.
-    pub(super) fn warped(&self, of: &Self, phase: f64, part: Part, alignment: PhaseAlignment) -> f64 {
+    /// The phase of a cycle with the events `self` that belongs to `phase` of a cycle with the
+    /// events `of`: linear between events, rising, and one more for every cycle.
+    pub(super) fn warped(
+        &self,
+        of: &Self,
+        phase: f64,
+        part: Part,
+        alignment: PhaseAlignment,
+    ) -> f64 {
         let ([from, turn], [to_from, to_turn]) = match (alignment, part) {
             (PhaseAlignment::None, _) => return phase,
             (PhaseAlignment::Feet, Part::Leg(side)) => (of.stance(side), self.stance(side)),

@@ -4,8 +4,9 @@ use crate::skeleton::Pose;
 
 /// A gait that plays while its speed is dragged.
 ///
-/// The phase goes on whatever the speed does, and the speed follows the one asked for as a critically damped spring, so that a walk becomes a run
-/// without a jump. Holds no clips: every call is given the blend, which may be exchanged for another between calls.
+/// The phase goes on whatever the speed does, and the speed follows the one asked for as a
+/// critically damped spring, so that a walk becomes a run without a jump. Holds no clips: every
+/// call is given the blend, which may be exchanged for another between calls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpeedPlayer {
     speed_mps: f64,
@@ -26,7 +27,8 @@ impl SpeedPlayer {
         }
     }
 
-    /// Goes on by `dt_secs` towards a speed and gives the pose there. A step that is no number, or negative, is none.
+    /// Goes on by `dt_secs` towards a speed and gives the pose there. A step that is no number, or
+    /// negative, is none.
     pub fn advance(&mut self, blend: &SpeedBlend, dt_secs: f64, speed_mps: f64) -> Pose {
         self.go(blend, dt_secs, speed_mps);
         self.pose(blend)
@@ -37,7 +39,8 @@ impl SpeedPlayer {
         let dt_secs = if dt_secs > 0.0 { dt_secs.min(1.0) } else { 0.0 };
         let wanted = blend.facts(speed_mps).speed_mps;
         let half_life = blend.options().half_life_secs;
-        (self.speed_mps, self.acceleration) = spring::towards(self.speed_mps, self.acceleration, wanted, half_life, dt_secs);
+        (self.speed_mps, self.acceleration) =
+            spring::towards(self.speed_mps, self.acceleration, wanted, half_life, dt_secs);
         let facts = self.facts(blend);
         let before = self.phase;
         self.phase += dt_secs / facts.cycle_secs;

@@ -12,23 +12,22 @@ use std::ops::RangeInclusive;
 pub struct SpeedOptions {
     /// How the gaits are laid on one phase.
     pub alignment: PhaseAlignment,
-    /// How quickly a [`SpeedPlayer`] takes on another speed: the half-life of a critically damped spring, seconds. 0 is at once.
+    /// How quickly a [`SpeedPlayer`] takes on another speed: the half-life of a critically damped
+    /// spring, seconds. 0 is at once.
     pub half_life_secs: f64,
 }
 
 impl Default for SpeedOptions {
     fn default() -> Self {
-        Self {
-            alignment: PhaseAlignment::Feet,
-            half_life_secs: 0.15,
-        }
+        Self { alignment: PhaseAlignment::Feet, half_life_secs: 0.15 }
     }
 }
 
 /// What goes with a speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GaitFacts {
-    /// The speed that is made, metres per second: the one asked for, or the nearest one that can be made.
+    /// The speed that is made, metres per second: the one asked for, or the nearest one that can be
+    /// made.
     pub speed_mps: f64,
     /// The weight of the second gait, -0.25 to 1.25.
     pub weight: f64,
@@ -57,9 +56,11 @@ pub struct GaitClip {
 
 /// The weight may leave 0 to 1 by this.
 const BEYOND: f64 = 0.25;
-/// A weight that lies by this beyond the gaits is theirs: a walk of 1.4 m/s sways, and its way is a little longer.
+/// A weight that lies by this beyond the gaits is theirs: a walk of 1.4 m/s sways, and its way is a
+/// little longer.
 const NEARLY: f64 = 0.02;
-/// Nothing is made slower, or with a shorter stride, than this share of the lesser of the two gaits.
+/// Nothing is made slower, or with a shorter stride, than this share of the lesser of the two
+/// gaits.
 const LEAST_SHARE: f64 = 0.1;
 /// The least difference of speeds, metres per second.
 const LEAST_DIFFERENCE_MPS: f64 = 0.1;
@@ -83,7 +84,8 @@ struct Sampled {
     clip: Clip,
     rotations: Vec<Quat>,
     translations: Vec<Vec3>,
-    /// Sums of the steps in the character's own frame (sideways, yaw, forward) up to each frame, one more than there are frames.
+    /// Sums of the steps in the character's own frame (sideways, yaw, forward) up to each frame,
+    /// one more than there are frames.
     way: Vec<DVec3>,
     events: Events,
     first_phase: f64,
@@ -92,19 +94,26 @@ struct Sampled {
 }
 
 impl SpeedBlend {
-    /// Prepares two gaits of one skeleton. Their frame rates may differ; results have that of the first.
+    /// Prepares two gaits of one skeleton. Their frame rates may differ; results have that of the
+    /// first.
     ///
     /// # Errors
-    /// [`GaitError`] when the gaits move different skeletons, their speeds are (nearly) the same, one does not go anywhere, or the half-life is
-    /// none.
-    pub fn new(a: &GaitCycle, b: &GaitCycle, roles: &Roles, options: &SpeedOptions) -> Result<Self, GaitError> {
+    /// [`GaitError`] when the gaits move different skeletons, their speeds are (nearly) the same,
+    /// one does not go anywhere, or the half-life is none.
+    pub fn new(
+        a: &GaitCycle,
+        b: &GaitCycle,
+        roles: &Roles,
+        options: &SpeedOptions,
+    ) -> Result<Self, GaitError> {
         let (first, second) = (&a.looped.clip, &b.looped.clip);
         if first.skeleton() != second.skeleton() {
             let (a, b) = (first.name().to_owned(), second.name().to_owned());
             return Err(GaitError::Skeletons { a, b });
         }
         let (a_mps, b_mps) = (a.speed_mps(), b.speed_mps());
-        let differ = (a_mps - b_mps).abs() >= LEAST_DIFFERENCE_MPS && a_mps.min(b_mps) >= LEAST_DIFFERENCE_MPS;
+        let differ = (a_mps - b_mps).abs() >= LEAST_DIFFERENCE_MPS
+            && a_mps.min(b_mps) >= LEAST_DIFFERENCE_MPS;
         if !differ {
             return Err(GaitError::Speeds { a_mps, b_mps });
         }
@@ -119,7 +128,8 @@ impl SpeedBlend {
             let thigh = roles.get_within(Role::thigh(side), skeleton.len());
             for joint in 0..skeleton.len() {
                 // Parents come first.
-                let above = skeleton.parent(joint).is_some_and(|parent| parts[parent] == Part::Leg(side));
+                let above =
+                    skeleton.parent(joint).is_some_and(|parent| parts[parent] == Part::Leg(side));
                 if Some(joint) == thigh || above {
                     parts[joint] = Part::Leg(side);
                 }
@@ -175,11 +185,8 @@ impl SpeedBlend {
     pub fn facts(&self, speed_mps: f64) -> GaitFacts {
         let [a, b] = self.speeds_mps();
         let asked = (speed_mps - a) / (b - a);
-        let weight = if asked.is_nan() {
-            0.0
-        } else {
-            asked.clamp(self.weights[0], self.weights[1])
-        };
+        let weight =
+            if asked.is_nan() { 0.0 } else { asked.clamp(self.weights[0], self.weights[1]) };
         let speed = self.mixed(weight, |gait| gait.speed_mps);
         let stride = self.mixed(weight, |gait| gait.speed_mps * gait.secs);
         let cycle_secs = stride / speed;
@@ -208,7 +215,8 @@ impl SpeedBlend {
         Part::ALL.map(|part| begin + gait.events.warped(events, phase, part, alignment))
     }
 
-    /// The step over the ground from one phase to another at a weight, in the character's frame at the first.
+    /// The step over the ground from one phase to another at a weight, in the character's frame at
+    /// the first.
     pub(super) fn step(&self, weight: f64, from: f64, to: f64) -> Planar {
         let events = self.events(weight);
         let made = |gait: &Sampled| {
@@ -228,8 +236,15 @@ impl SpeedBlend {
         Side::BOTH.map(|side| events.planted(side, phase))
     }
 
-    /// The blended pose at a phase, in the character's frame: rotations, and translations of the root and of the joints that move.
-    fn pose_into(&self, weight: f64, phase: f64, rotations: &mut Vec<Quat>, translations: &mut Vec<Vec3>) {
+    /// The blended pose at a phase, in the character's frame: rotations, and translations of the
+    /// root and of the joints that move.
+    fn pose_into(
+        &self,
+        weight: f64,
+        phase: f64,
+        rotations: &mut Vec<Quat>,
+        translations: &mut Vec<Vec3>,
+    ) {
         let events = self.events(weight);
         let places = [0, 1].map(|index: usize| {
             let gait = &self.gaits[index];
@@ -266,13 +281,19 @@ impl SpeedBlend {
         Pose {
             root_translation: here.apply(translations.first().copied().unwrap_or_default()),
             rotations,
-            translations: self.moving.iter().copied().zip(translations.into_iter().skip(1)).collect(),
+            translations: self
+                .moving
+                .iter()
+                .copied()
+                .zip(translations.into_iter().skip(1))
+                .collect(),
         }
     }
 
-    /// One cycle, from a strike of the left foot to its next, at the nearest whole number of frames: with `n` steps from frame to frame it has
-    /// `n + 1` frames at the phases `i / n`, so that the last is the first again, one stride on. The speed is off by up to half a
-    /// frame of its duration for that.
+    /// One cycle, from a strike of the left foot to its next, at the nearest whole number of
+    /// frames: with `n` steps from frame to frame it has `n + 1` frames at the phases `i / n`, so
+    /// that the last is the first again, one stride on. The speed is off by up to half a frame of
+    /// its duration for that.
     ///
     /// # Errors
     /// [`GaitError::Clip`] when the result is no clip.
@@ -280,7 +301,8 @@ impl SpeedBlend {
         self.cycles_at(speed_mps, 1)
     }
 
-    /// Several cycles as [`Self::cycle_at`] makes them, one behind the other: `n · cycles + 1` frames.
+    /// Several cycles as [`Self::cycle_at`] makes them, one behind the other: `n · cycles + 1`
+    /// frames.
     ///
     /// # Errors
     /// [`GaitError::Option`] when they would take longer than 600 s.
@@ -303,12 +325,16 @@ impl SpeedBlend {
         self.made(facts, (0..=steps).map(|step| (facts.weight, step as f64 * per_step)))
     }
 
-    /// A motion whose speed changes: `speed_mps` is asked for the speed at every time (seconds), and the motion follows it as a
-    /// [`SpeedPlayer`] does.
+    /// A motion whose speed changes: `speed_mps` is asked for the speed at every time (seconds),
+    /// and the motion follows it as a [`SpeedPlayer`] does.
     ///
     /// # Errors
     /// [`GaitError::Option`] when `secs` is not between 0 and 600.
-    pub fn clip_along(&self, secs: f64, speed_mps: impl Fn(f64) -> f64) -> Result<GaitClip, GaitError> {
+    pub fn clip_along(
+        &self,
+        secs: f64,
+        speed_mps: impl Fn(f64) -> f64,
+    ) -> Result<GaitClip, GaitError> {
         let (steps, fps) = (self.steps_in(secs)?, self.gaits[0].clip.fps());
         let mut player = SpeedPlayer::new(self, speed_mps(0.0));
         let mut phases = vec![(player.facts(self).weight, player.phase())];
@@ -325,7 +351,11 @@ impl SpeedBlend {
     }
 
     /// Frames at these weights and (rising) phases.
-    fn made(&self, facts: GaitFacts, phases: impl Iterator<Item = (f64, f64)>) -> Result<GaitClip, GaitError> {
+    fn made(
+        &self,
+        facts: GaitFacts,
+        phases: impl Iterator<Item = (f64, f64)>,
+    ) -> Result<GaitClip, GaitError> {
         let [a, b] = &self.gaits;
         let mut made = Assembly::new(&a.clip, &b.clip, phases.size_hint().0);
         let (mut rotations, mut translations) = (Vec::new(), Vec::new());
@@ -355,11 +385,7 @@ impl SpeedBlend {
 
 fn checked(what: &'static str, value: f64, most: f64) -> Result<(), GaitError> {
     let fits = (0.0..=most).contains(&value);
-    if fits {
-        Ok(())
-    } else {
-        Err(GaitError::Option { what, value, most })
-    }
+    if fits { Ok(()) } else { Err(GaitError::Option { what, value, most }) }
 }
 
 /// A frame of a cycle, the next, and how far between.
@@ -401,12 +427,14 @@ impl Sampled {
     fn keep_signs(&mut self) {
         let joints = self.clip.skeleton().len();
         for at in joints..self.rotations.len() {
-            self.rotations[at] = quat::in_hemisphere_of(self.rotations[at], self.rotations[at - joints]);
+            self.rotations[at] =
+                quat::in_hemisphere_of(self.rotations[at], self.rotations[at - joints]);
         }
     }
 
-    /// Lays the rotations of each joint on that side of the other cycle's from which the way between the two is the shorter over most of the cycle: chosen
-    /// for each pose alone, it would change where the two are about half a turn apart.
+    /// Lays the rotations of each joint on that side of the other cycle's from which the way
+    /// between the two is the shorter over most of the cycle: chosen for each pose alone, it would
+    /// change where the two are about half a turn apart.
     fn take_side_of(&mut self, other: &mut Self) {
         const SAMPLES: usize = 32;
         self.keep_signs();

@@ -1,11 +1,14 @@
 use crate::clip::Contacts;
 use crate::skeleton::Side;
 
-/// The phase of every frame of a clip, in cycles, by the strikes of its feet: a whole number where the left foot meets the ground, `right_strike` (above
-/// 0 and below 1, [`super::Events::right_strike`]) more where the right one does, linear between. With it another gait keeps step.
+/// The phase of every frame of a clip, in cycles, by the strikes of its feet: a whole number where
+/// the left foot meets the ground, `right_strike` (above 0 and below 1,
+/// [`super::Events::right_strike`]) more where the right one does, linear between. With it another
+/// gait keeps step.
 ///
-/// Before the first strike and behind the last one the phase runs on as next to them. Where a foot strikes twice in a row, the other one was missed
-/// and a whole cycle has passed. A foot that stands in the first frame has not struck there. `None` where there are fewer than two strikes.
+/// Before the first strike and behind the last one the phase runs on as next to them. Where a foot
+/// strikes twice in a row, the other one was missed and a whole cycle has passed. A foot that
+/// stands in the first frame has not struck there. `None` where there are fewer than two strikes.
 #[must_use]
 pub fn strike_phases(contacts: &Contacts, right_strike: f64) -> Option<Vec<f64>> {
     let strikes_of = |side: Side| {
@@ -47,8 +50,11 @@ mod tests {
     fn strikes_are_where_the_phase_says() {
         let phases = strike_phases(&contacts(&[0, 20, 42], &[10, 31], 60), 0.4).unwrap();
         assert_eq!(phases.len(), 60);
-        // The foot that stands at the beginning is not counted: the first strike is the right one's.
-        for (frame, phase) in [(10, 0.4), (20, 1.0), (31, 1.4), (42, 2.0), (0, -0.2), (15, 0.7), (53, 2.6)] {
+        // The foot that stands at the beginning is not counted: the first strike is the right
+        // one's.
+        for (frame, phase) in
+            [(10, 0.4), (20, 1.0), (31, 1.4), (42, 2.0), (0, -0.2), (15, 0.7), (53, 2.6)]
+        {
             assert!((phases[frame] - phase).abs() < 1e-9, "{frame} {}", phases[frame]);
         }
         assert!(phases.windows(2).all(|pair| pair[0] < pair[1]));

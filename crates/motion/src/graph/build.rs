@@ -10,12 +10,14 @@ use std::sync::Arc;
 /// How the graph is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Construction {
-    /// Each clip is cut into segments of so many frames; one goes from the end of one into the start of another.
+    /// Each clip is cut into segments of so many frames; one goes from the end of one into the
+    /// start of another.
     Segments {
         /// Frames of a segment. What is left at a clip's end belongs to its last segment.
         segment_size: usize,
     },
-    /// One goes where the distance has a local minimum, and the clips are cut there (Kovar, Gleicher, Pighin 2002, section 3.2).
+    /// One goes where the distance has a local minimum, and the clips are cut there (Kovar,
+    /// Gleicher, Pighin 2002, section 3.2).
     Minima,
 }
 
@@ -26,11 +28,13 @@ pub struct GraphOptions {
     pub construction: Construction,
     /// Frames that a transition takes, and over which windows are compared; at least 1.
     pub blend_window: usize,
-    /// The largest distance of two windows between which one goes, centimetres on the reference body.
+    /// The largest distance of two windows between which one goes, centimetres on the reference
+    /// body.
     pub edge_threshold_cm: f64,
     /// One does not go to what is less than so many seconds away in the same clip.
     pub min_jump_secs: f64,
-    /// The most transitions out of a stretch; the closest are kept, and [`MotionGraph::left_out`] counts the others.
+    /// The most transitions out of a stretch; the closest are kept, and [`MotionGraph::left_out`]
+    /// counts the others.
     pub most_ways_out: usize,
 }
 
@@ -47,7 +51,8 @@ impl Default for GraphOptions {
 }
 
 impl GraphOptions {
-    /// Windows that are farther apart than this, centimetres, are not alike in any sense: nobody is told to raise a threshold beyond it.
+    /// Windows that are farther apart than this, centimetres, are not alike in any sense: nobody is
+    /// told to raise a threshold beyond it.
     pub const MOST_THRESHOLD_CM: f64 = 60.0;
 
     /// Frames of the shortest jump. From a frame to the next is none.
@@ -70,13 +75,17 @@ impl GraphOptions {
         }
         GraphError::NowhereToGo {
             window,
-            lower_window: set.longest().checked_sub(self.min_jump(set)).filter(|&window| window > 0),
+            lower_window: set
+                .longest()
+                .checked_sub(self.min_jump(set))
+                .filter(|&window| window > 0),
             min_jump_secs: self.min_jump_secs,
             farthest_secs: farthest as f64 / set.fps(),
         }
     }
 
-    /// Whether a graph of these clips can be made so, for all that can be said before distances are known.
+    /// Whether a graph of these clips can be made so, for all that can be said before distances are
+    /// known.
     ///
     /// # Errors
     /// [`GraphError`] says which number does not fit, and what would do.
@@ -99,16 +108,10 @@ impl GraphOptions {
         if let Construction::Segments { segment_size } = self.construction {
             setting("a segment size", segment_size as f64, 1.0, f64::from(u32::MAX))?;
             if segment_size > longest {
-                return Err(GraphError::SegmentTooLong {
-                    segment: segment_size,
-                    longest,
-                });
+                return Err(GraphError::SegmentTooLong { segment: segment_size, longest });
             }
             if window >= segment_size {
-                return Err(GraphError::SegmentTooShort {
-                    segment: segment_size,
-                    window,
-                });
+                return Err(GraphError::SegmentTooShort { segment: segment_size, window });
             }
         }
         Ok(())
@@ -121,14 +124,10 @@ impl GraphOptions {
         };
         let (size, frames) = (segment_size.max(1), set.frames_of(clip));
         let count = frames / size;
-        let end = |index: usize| if index + 1 == count { frames } else { (index + 1) * size };
-        (0..count)
-            .map(|index| Stretch {
-                clip,
-                start: index * size,
-                end: end(index),
-            })
-            .collect()
+        let end = |index: usize| {
+            if index + 1 == count { frames } else { (index + 1) * size }
+        };
+        (0..count).map(|index| Stretch { clip, start: index * size, end: end(index) }).collect()
     }
 
     /// Whether a segment is entered at this frame.
@@ -147,7 +146,8 @@ impl GraphOptions {
             return false;
         };
         let (size, count) = (segment_size.max(1), frames / segment_size.max(1));
-        count > 0 && (end == frames || (end.is_multiple_of(size) && end >= size && end / size < count))
+        count > 0
+            && (end == frames || (end.is_multiple_of(size) && end >= size && end / size < count))
     }
 
     /// Whether a segment is entered or left at this frame.
@@ -202,15 +202,23 @@ pub struct MotionGraph {
 }
 
 impl MotionGraph {
-    /// The graph of these places. `options` are those by which they were found; the threshold may be lower than it was then.
+    /// The graph of these places. `options` are those by which they were found; the threshold may
+    /// be lower than it was then.
     ///
-    /// Segments: a node each, in the order of clips and frames. A segment is left `blend_window` frames before its end and entered at its start; where
-    /// that is more than half of a segment, transitions overlap. Minima: each clip is cut where it is left and where a transition into it
-    /// is over, `blend_window` frames behind where it was entered, so that transitions do not overlap.
+    /// Segments: a node each, in the order of clips and frames. A segment is left `blend_window`
+    /// frames before its end and entered at its start; where that is more than half of a segment,
+    /// transitions overlap. Minima: each clip is cut where it is left and where a transition into
+    /// it is over, `blend_window` frames behind where it was entered, so that transitions do not
+    /// overlap.
     ///
     /// # Errors
-    /// [`GraphError`] when the options do not fit the clips, or there is no transition; it says what would do.
-    pub fn new(set: &Arc<FrameSet>, candidates: &Candidates, options: &GraphOptions) -> Result<Self, GraphError> {
+    /// [`GraphError`] when the options do not fit the clips, or there is no transition; it says
+    /// what would do.
+    pub fn new(
+        set: &Arc<FrameSet>,
+        candidates: &Candidates,
+        options: &GraphOptions,
+    ) -> Result<Self, GraphError> {
         options.check(set)?;
         let near = |distance: f64| distance <= options.edge_threshold_cm;
         let chosen: Vec<Jump> = (candidates.found.iter())
@@ -225,14 +233,12 @@ impl MotionGraph {
             .collect();
         if chosen.is_empty() {
             return Err(match candidates.nearest_cm {
-                Some(nearest_cm) if above(nearest_cm) > GraphOptions::MOST_THRESHOLD_CM => GraphError::TooFar {
-                    window: options.blend_window,
-                    nearest_cm,
-                },
-                Some(nearest_cm) => GraphError::NoTransition {
-                    threshold_cm: options.edge_threshold_cm,
-                    nearest_cm,
-                },
+                Some(nearest_cm) if above(nearest_cm) > GraphOptions::MOST_THRESHOLD_CM => {
+                    GraphError::TooFar { window: options.blend_window, nearest_cm }
+                }
+                Some(nearest_cm) => {
+                    GraphError::NoTransition { threshold_cm: options.edge_threshold_cm, nearest_cm }
+                }
                 None => options.nowhere(set),
             });
         }
@@ -244,19 +250,16 @@ impl MotionGraph {
             left_out: 0,
         };
         made.add_stretches(&chosen);
-        let (starting, ending) = (made.nodes_at(|stretch| stretch.start), made.nodes_at(|stretch| stretch.end));
-        let node_at = |nodes: &[Option<NodeIndex>], place| nodes.get(set.cut(place)?).copied().flatten();
+        let (starting, ending) =
+            (made.nodes_at(|stretch| stretch.start), made.nodes_at(|stretch| stretch.end));
+        let node_at =
+            |nodes: &[Option<NodeIndex>], place| nodes.get(set.cut(place)?).copied().flatten();
         let mut ways_out = vec![0; made.graph.node_count()];
         for jump in chosen {
-            let arrives = Place {
-                frame: jump.enter.frame + made.arrival(),
-                ..jump.enter
-            };
-            let leaves = Place {
-                frame: jump.leave.frame + made.departure(),
-                ..jump.leave
-            };
-            if let (Some(from), Some(to)) = (node_at(&ending, leaves), node_at(&starting, arrives)) {
+            let arrives = Place { frame: jump.enter.frame + made.arrival(), ..jump.enter };
+            let leaves = Place { frame: jump.leave.frame + made.departure(), ..jump.leave };
+            if let (Some(from), Some(to)) = (node_at(&ending, leaves), node_at(&starting, arrives))
+            {
                 if ways_out[from.index()] >= options.most_ways_out {
                     made.left_out += 1;
                     continue;
@@ -285,10 +288,8 @@ impl MotionGraph {
     fn add_stretches(&mut self, chosen: &[Jump]) {
         let mut is_cut = vec![false; self.set.cuts()];
         for jump in chosen {
-            let arrival = Place {
-                frame: jump.enter.frame + self.options.blend_window,
-                ..jump.enter
-            };
+            let arrival =
+                Place { frame: jump.enter.frame + self.options.blend_window, ..jump.enter };
             for cut in [jump.leave, arrival].into_iter().filter_map(|place| self.set.cut(place)) {
                 is_cut[cut] = true;
             }
@@ -298,14 +299,12 @@ impl MotionGraph {
                 Construction::Segments { .. } => self.options.stretches(&self.set, clip),
                 Construction::Minima => {
                     let frames = self.set.frames_of(clip);
-                    let is_cut = |frame| self.set.cut(Place { clip, frame }).is_some_and(|cut| is_cut[cut]);
+                    let is_cut =
+                        |frame| self.set.cut(Place { clip, frame }).is_some_and(|cut| is_cut[cut]);
                     let inside = (1..frames).filter(|&frame| is_cut(frame));
-                    let cuts: Vec<usize> = std::iter::once(0).chain(inside).chain([frames]).collect();
-                    let stretch = |pair: &[usize]| Stretch {
-                        clip,
-                        start: pair[0],
-                        end: pair[1],
-                    };
+                    let cuts: Vec<usize> =
+                        std::iter::once(0).chain(inside).chain([frames]).collect();
+                    let stretch = |pair: &[usize]| Stretch { clip, start: pair[0], end: pair[1] };
                     cuts.windows(2).map(stretch).collect()
                 }
             };
@@ -324,10 +323,7 @@ impl MotionGraph {
     fn nodes_at(&self, end: fn(&Stretch) -> usize) -> Vec<Option<NodeIndex>> {
         let mut nodes = vec![None; self.set.cuts()];
         for (node, stretch) in self.graph.node_indices().zip(self.graph.node_weights()) {
-            let place = Place {
-                clip: stretch.clip,
-                frame: end(stretch),
-            };
+            let place = Place { clip: stretch.clip, frame: end(stretch) };
             if let Some(slot) = self.set.cut(place).and_then(|cut| nodes.get_mut(cut)) {
                 *slot = Some(node);
             }
@@ -359,7 +355,8 @@ impl MotionGraph {
         &self.jumps
     }
 
-    /// Transitions below the threshold that are no part of the graph, because as many closer ones as there may be leave the same stretch.
+    /// Transitions below the threshold that are no part of the graph, because as many closer ones
+    /// as there may be leave the same stretch.
     #[must_use]
     pub fn left_out(&self) -> usize {
         self.left_out
@@ -374,10 +371,12 @@ impl MotionGraph {
         }
     }
 
-    /// The frames that play from where a node begins to where the node at the other end of an edge does.
+    /// The frames that play from where a node begins to where the node at the other end of an edge
+    /// does.
     #[must_use]
     pub fn frames_of(&self, edge: EdgeIndex) -> usize {
-        let node = self.graph.edge_endpoints(edge).and_then(|(from, _)| self.graph.node_weight(from));
+        let node =
+            self.graph.edge_endpoints(edge).and_then(|(from, _)| self.graph.node_weight(from));
         let Some(node) = node else { return 0 };
         match self.jump(edge) {
             None => node.end - node.start,
@@ -391,7 +390,8 @@ impl MotionGraph {
         self.graph.externals(Direction::Outgoing).collect()
     }
 
-    /// The strongly connected components, largest first (by frames, then by the first node): inside one, every node can be reached from every other.
+    /// The strongly connected components, largest first (by frames, then by the first node): inside
+    /// one, every node can be reached from every other.
     #[must_use]
     pub fn components(&self) -> Vec<Vec<NodeIndex>> {
         let frames = |nodes: &[NodeIndex]| -> usize {
@@ -423,7 +423,9 @@ impl MotionGraph {
     /// [`GraphError::NoCycle`] when no component has a way inside it.
     pub fn pruned_to(&self, components: &[Vec<NodeIndex>]) -> Result<Self, GraphError> {
         let inside = |nodes: &[NodeIndex]| {
-            let within = |edge: petgraph::graph::EdgeReference<'_, Way>| nodes.binary_search(&edge.target()).is_ok();
+            let within = |edge: petgraph::graph::EdgeReference<'_, Way>| {
+                nodes.binary_search(&edge.target()).is_ok()
+            };
             nodes.iter().any(|&node| self.graph.edges(node).any(within))
         };
         let Some(kept) = components.iter().find(|nodes| inside(nodes)) else {
@@ -441,12 +443,15 @@ impl MotionGraph {
         };
         let mut new = vec![None; self.graph.node_count()];
         for &node in kept {
-            if let (Some(stretch), Some(slot)) = (self.graph.node_weight(node), new.get_mut(node.index())) {
+            if let (Some(stretch), Some(slot)) =
+                (self.graph.node_weight(node), new.get_mut(node.index()))
+            {
                 *slot = Some(pruned.graph.add_node(*stretch));
             }
         }
         for edge in self.graph.edge_references() {
-            let (Some(from), Some(to)) = (new[edge.source().index()], new[edge.target().index()]) else {
+            let (Some(from), Some(to)) = (new[edge.source().index()], new[edge.target().index()])
+            else {
                 continue;
             };
             let way = match (edge.weight(), self.jump(edge.id())) {
@@ -464,9 +469,9 @@ impl MotionGraph {
     /// The node that a frame lies in; `None` where the graph has none.
     #[must_use]
     pub fn node_at(&self, place: Place) -> Option<NodeIndex> {
-        let holds = |stretch: &Stretch| stretch.clip == place.clip && (stretch.start..stretch.end).contains(&place.frame);
-        self.graph
-            .node_indices()
-            .find(|&node| self.graph.node_weight(node).is_some_and(holds))
+        let holds = |stretch: &Stretch| {
+            stretch.clip == place.clip && (stretch.start..stretch.end).contains(&place.frame)
+        };
+        self.graph.node_indices().find(|&node| self.graph.node_weight(node).is_some_and(holds))
     }
 }

@@ -9,7 +9,8 @@ const MOST_CANDIDATES: usize = 400_000;
 /// To align what was found takes as long as to look at so many cells.
 const CELLS_PER_FOUND: usize = 100;
 
-/// A frame in which a joint's turning changes so many times as much as in all but one in a hundred frames is not left or entered.
+/// A frame in which a joint's turning changes so many times as much as in all but one in a hundred
+/// frames is not left or entered.
 const MOST_JOLT: f32 = 4.0;
 
 /// A place where one may go from one stretch of motion into another.
@@ -38,15 +39,22 @@ pub struct Candidates {
 }
 
 impl Candidates {
-    /// The places that the options ask for: starts and ends of segments, or local minima of the distance; no farther than the threshold.
+    /// The places that the options ask for: starts and ends of segments, or local minima of the
+    /// distance; no farther than the threshold.
     ///
-    /// A place is left out where one could not go: the window would cross the end of its clip, nothing of the outgoing clip would play before
-    /// it, or nothing of the incoming one behind it; where one would jump less than the shortest jump inside a clip; and, of
-    /// minima, where a joint jolts.
+    /// A place is left out where one could not go: the window would cross the end of its clip,
+    /// nothing of the outgoing clip would play before it, or nothing of the incoming one behind it;
+    /// where one would jump less than the shortest jump inside a clip; and, of minima, where a
+    /// joint jolts.
     ///
     /// # Errors
-    /// [`GraphError`] when the options do not fit the clips, or the distances are those of another window.
-    pub fn find(all: &AllPairs, distances: &FrameDistances, options: &GraphOptions) -> Result<Self, GraphError> {
+    /// [`GraphError`] when the options do not fit the clips, or the distances are those of another
+    /// window.
+    pub fn find(
+        all: &AllPairs,
+        distances: &FrameDistances,
+        options: &GraphOptions,
+    ) -> Result<Self, GraphError> {
         let mut search = CandidateSearch::new(distances, options)?;
         while !search.advance(all, distances, usize::MAX)?.is_complete() {}
         Ok(search.finish())
@@ -58,13 +66,15 @@ impl Candidates {
         &self.found
     }
 
-    /// The smallest distance of two windows between which one could go, centimetres, below the threshold or not.
+    /// The smallest distance of two windows between which one could go, centimetres, below the
+    /// threshold or not.
     #[must_use]
     pub fn nearest_cm(&self) -> Option<f64> {
         self.nearest_cm
     }
 
-    /// How many places below the threshold are left out because there are too many (400,000); those kept are the closest.
+    /// How many places below the threshold are left out because there are too many (400,000); those
+    /// kept are the closest.
     #[must_use]
     pub fn left_out(&self) -> usize {
         self.left_out
@@ -92,7 +102,8 @@ impl CandidateSearch {
     /// Prepares the search.
     ///
     /// # Errors
-    /// [`GraphError`] when the options do not fit the clips, or the distances are those of another window.
+    /// [`GraphError`] when the options do not fit the clips, or the distances are those of another
+    /// window.
     pub fn new(distances: &FrameDistances, options: &GraphOptions) -> Result<Self, GraphError> {
         let set = distances.set();
         options.check(set)?;
@@ -115,19 +126,27 @@ impl CandidateSearch {
         })
     }
 
-    /// Looks at about `cells` more cells of the matrix (less where much is found), at least one row of a pair of clips, and says how many are done. All that is between two
-    /// clips is looked at in one slice if the construction is by segments: that is little.
+    /// Looks at about `cells` more cells of the matrix (less where much is found), at least one row
+    /// of a pair of clips, and says how many are done. All that is between two clips is looked at
+    /// in one slice if the construction is by segments: that is little.
     ///
     /// # Errors
     /// [`GraphError::Registration`]; not for the pairs and distances that it was made of.
-    pub fn advance(&mut self, all: &AllPairs, distances: &FrameDistances, cells: usize) -> Result<Progress, GraphError> {
+    pub fn advance(
+        &mut self,
+        all: &AllPairs,
+        distances: &FrameDistances,
+        cells: usize,
+    ) -> Result<Progress, GraphError> {
         let clips = distances.set().clips().len();
         let window = distances.window();
         let align = |leave, enter| all.alignment(leave, enter, window).map(|found| found.transform);
         let place = |clip, frame| Place { clip, frame };
         let until = self.done.saturating_add(cells.max(1));
         let found = self.picker.found.len();
-        let work = |search: &Self| search.done + CELLS_PER_FOUND * search.picker.found.len().saturating_sub(found);
+        let work = |search: &Self| {
+            search.done + CELLS_PER_FOUND * search.picker.found.len().saturating_sub(found)
+        };
         while self.next.0 < clips && work(self) < until {
             let (a, b, row) = self.next;
             let Some(block) = distances.block(a, b) else {
@@ -138,7 +157,13 @@ impl CandidateSearch {
             if let Construction::Segments { .. } = self.picker.options.construction {
                 for (row, column) in self.picker.cells(a, b) {
                     if let Some(distance) = block.get(row, column) {
-                        self.picker.offer(place(a, row), place(b, column), distance, || true, align)?;
+                        self.picker.offer(
+                            place(a, row),
+                            place(b, column),
+                            distance,
+                            || true,
+                            align,
+                        )?;
                     }
                 }
                 self.done += rows * columns;
@@ -151,7 +176,8 @@ impl CandidateSearch {
             }
             let at = |row: usize, column: usize| block.get(row, column);
             let (first, cells) = block.row(row);
-            for (column, &distance) in cells.iter().enumerate().map(|(at, cell)| (first + at, cell)) {
+            for (column, &distance) in cells.iter().enumerate().map(|(at, cell)| (first + at, cell))
+            {
                 if self.picker.is_worth(distance) {
                     let minimum = || is_minimum(at, row, column);
                     self.picker.offer(place(a, row), place(b, column), distance, minimum, align)?;
@@ -171,10 +197,7 @@ impl CandidateSearch {
     /// How far it has come.
     #[must_use]
     pub fn progress(&self) -> Progress {
-        Progress {
-            done: self.done.min(self.total),
-            total: self.total,
-        }
+        Progress { done: self.done.min(self.total), total: self.total }
     }
 
     /// What was found so far.
@@ -189,10 +212,16 @@ fn following(a: usize, b: usize, clips: usize) -> (usize, usize, usize) {
     if b + 1 < clips { (a, b + 1, 0) } else { (a + 1, a + 1, 0) }
 }
 
-/// No larger than its eight neighbours; of a plateau the first. It compares the distances as they were summed: products and sums in an order that is the same on every
-/// machine.
-pub(super) fn is_minimum(at: impl Fn(usize, usize) -> Option<f32>, row: usize, column: usize) -> bool {
-    let Some(here) = at(row, column) else { return false };
+/// No larger than its eight neighbours; of a plateau the first. It compares the distances as they
+/// were summed: products and sums in an order that is the same on every machine.
+pub(super) fn is_minimum(
+    at: impl Fn(usize, usize) -> Option<f32>,
+    row: usize,
+    column: usize,
+) -> bool {
+    let Some(here) = at(row, column) else {
+        return false;
+    };
     for r in row.saturating_sub(1)..=row + 1 {
         for c in column.saturating_sub(1)..=column + 1 {
             let Some(there) = at(r, c) else { continue };
@@ -232,7 +261,8 @@ impl Picker {
         }
     }
 
-    /// Whether a distance could matter: one that is below the threshold, or nearer than all before it.
+    /// Whether a distance could matter: one that is below the threshold, or nearer than all before
+    /// it.
     pub(super) fn is_worth(&self, distance: f32) -> bool {
         distance <= self.threshold_m || distance < self.nearest_m
     }
@@ -288,12 +318,7 @@ impl Picker {
         }
         let (leave, enter) = (a, b);
         let alignment = alignment(leave, enter)?;
-        let candidate = Candidate {
-            leave,
-            enter,
-            distance_cm,
-            alignment,
-        };
+        let candidate = Candidate { leave, enter, distance_cm, alignment };
         self.found.extend(there.then_some(candidate));
         self.found.extend(back.then(|| Candidate {
             leave: enter,
@@ -307,7 +332,8 @@ impl Picker {
         Ok(())
     }
 
-    /// Whether something plays before the transition, its windows fit, and something plays behind it.
+    /// Whether something plays before the transition, its windows fit, and something plays behind
+    /// it.
     fn can_go(&self, leave: Place, enter: Place) -> bool {
         let window = self.options.blend_window;
         let fits = leave.frame >= 1
@@ -315,11 +341,15 @@ impl Picker {
             && enter.frame + window < self.set.frames_of(enter.clip);
         fits && match self.options.construction {
             Construction::Minima => self.is_calm(leave) && self.is_calm(enter),
-            Construction::Segments { .. } => self.options.is_left_at(&self.set, leave) && self.options.is_entered_at(&self.set, enter),
+            Construction::Segments { .. } => {
+                self.options.is_left_at(&self.set, leave)
+                    && self.options.is_entered_at(&self.set, enter)
+            }
         }
     }
 
-    /// No joint jolts around a frame: a capture that trembles has velocities there that nobody had, and a transition would carry them on.
+    /// No joint jolts around a frame: a capture that trembles has velocities there that nobody had,
+    /// and a transition would carry them on.
     fn is_calm(&self, place: Place) -> bool {
         let around = place.frame.saturating_sub(1)..=place.frame;
         let jolts = self.set.jolts(place.clip).get(around);

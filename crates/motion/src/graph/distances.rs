@@ -1,18 +1,19 @@
 use super::{FrameSet, GraphError, Place};
 use crate::registration::{
-    Alignment, DistanceMatrix, MOST_PAIRS, PairTerms, PausedSelfSweep, PausedSweep, PointClouds, PointCloudsBegun, Progress,
-    RegistrationError, SelfSweep, SelfTerms, Sweep, SymmetricDistances,
+    Alignment, DistanceMatrix, MOST_PAIRS, PairTerms, PausedSelfSweep, PausedSweep, PointClouds,
+    PointCloudsBegun, Progress, RegistrationError, SelfSweep, SelfTerms, Sweep, SymmetricDistances,
 };
 use std::sync::Arc;
 
 /// To find where the joints of a frame are takes as long as to compare so many pairs.
 pub(super) const PAIRS_PER_FRAME: usize = 250;
 
-/// The terms of all pairs of frames of a set, clip by clip, from which the distances of windows of any length follow
-/// ([`PairTerms`]). Every pair is compared once: the distance of two windows is the same both ways.
+/// The terms of all pairs of frames of a set, clip by clip, from which the distances of windows of
+/// any length follow ([`PairTerms`]). Every pair is compared once: the distance of two windows is
+/// the same both ways.
 ///
-/// Made in slices. 6,000 frames are 18 million pairs, 216 MB and about 0.2 s; for more than 11,500 frames use
-/// [`CandidateStream`](super::CandidateStream), which holds none of it.
+/// Made in slices. 6,000 frames are 18 million pairs, 216 MB and about 0.2 s; for more than 11,500
+/// frames use [`CandidateStream`](super::CandidateStream), which holds none of it.
 #[derive(Clone, Debug)]
 pub struct AllPairs {
     set: Arc<FrameSet>,
@@ -40,7 +41,9 @@ impl Block {
                 let left = |rows: usize| rows * (rows + 1) / 2;
                 (left(*n) - left(n - terms.progress().done), left(*n))
             }
-            Self::Pair(terms, columns) => (terms.progress().done * columns, terms.progress().total * columns),
+            Self::Pair(terms, columns) => {
+                (terms.progress().done * columns, terms.progress().total * columns)
+            }
         }
     }
 
@@ -61,18 +64,14 @@ impl AllPairs {
     /// Prepares the comparison. Nothing is compared yet: call [`advance`](Self::advance).
     ///
     /// # Errors
-    /// [`GraphError::Registration`] when the pairs are more than memory should be taken for (67 million, 12 bytes each).
+    /// [`GraphError::Registration`] when the pairs are more than memory should be taken for (67
+    /// million, 12 bytes each).
     pub fn new(set: Arc<FrameSet>) -> Result<Self, GraphError> {
         let frames = set.frames();
         let pairs = frames.saturating_mul(frames.saturating_add(1)) / 2;
         if pairs > MOST_PAIRS {
             let stride = (pairs as f64 / MOST_PAIRS as f64).sqrt().ceil() as usize;
-            return Err(RegistrationError::TooManyPairs {
-                pairs,
-                most: MOST_PAIRS,
-                stride,
-            }
-            .into());
+            return Err(RegistrationError::TooManyPairs { pairs, most: MOST_PAIRS, stride }.into());
         }
         Ok(Self {
             level_m: level_m(&set)?,
@@ -90,8 +89,9 @@ impl AllPairs {
         &self.set
     }
 
-    /// Compares about `pairs` more pairs of frames, and says how much is done. 100,000 take about a millisecond. Before that the points of the frames are
-    /// found, which counts as 250 pairs a frame.
+    /// Compares about `pairs` more pairs of frames, and says how much is done. 100,000 take about a
+    /// millisecond. Before that the points of the frames are found, which counts as 250 pairs a
+    /// frame.
     ///
     /// # Errors
     /// [`GraphError::Registration`] when a position is not finite.
@@ -117,7 +117,9 @@ impl AllPairs {
         let clip = source.clip();
         let mut begun = match self.begun.take() {
             Some(begun) => begun,
-            None => PointCloudsBegun::new(clip, 0..clip.frames(), self.set.weights(), 1, self.level_m)?,
+            None => {
+                PointCloudsBegun::new(clip, 0..clip.frames(), self.set.weights(), 1, self.level_m)?
+            }
         };
         if begun.advance(clip, frames)?.is_complete() {
             self.clouds.push(begun.finish(clip)?);
@@ -134,8 +136,11 @@ impl AllPairs {
             return Ok(true);
         }
         let clips = self.clouds.len();
-        let mut next = (0..clips).flat_map(|a| (a..clips).map(move |b| (a, b))).skip(self.blocks.len());
-        let Some((a, b)) = next.next() else { return Ok(false) };
+        let mut next =
+            (0..clips).flat_map(|a| (a..clips).map(move |b| (a, b))).skip(self.blocks.len());
+        let Some((a, b)) = next.next() else {
+            return Ok(false);
+        };
         let (source, target) = (&self.clouds[a], &self.clouds[b]);
         self.blocks.push(if a == b {
             Block::Itself(SelfTerms::new(source)?, source.samples())
@@ -176,12 +181,7 @@ impl AllPairs {
         if done < total {
             return Err(RegistrationError::Unfinished { done, total }.into());
         }
-        Ok(AllSweep {
-            all: self,
-            window: window.max(1),
-            blocks: Vec::new(),
-            now: None,
-        })
+        Ok(AllSweep { all: self, window: window.max(1), blocks: Vec::new(), now: None })
     }
 
     /// [`Self::sweep`] in one call.
@@ -192,10 +192,12 @@ impl AllPairs {
         self.sweep(window)?.finish()
     }
 
-    /// How the window of `window` frames from frame `b` lies best on that from frame `a`: `a_world_from_b_world`. O(window).
+    /// How the window of `window` frames from frame `b` lies best on that from frame `a`:
+    /// `a_world_from_b_world`. O(window).
     ///
     /// # Errors
-    /// [`GraphError::Registration`] before all pairs are compared, or when a window crosses the end of its clip.
+    /// [`GraphError::Registration`] before all pairs are compared, or when a window crosses the end
+    /// of its clip.
     pub fn alignment(&self, a: Place, b: Place, window: usize) -> Result<Alignment, GraphError> {
         let (first, second) = (a.min(b), a.max(b));
         let facing = |place: Place| {
@@ -205,9 +207,14 @@ impl AllPairs {
                 .map_or(0.0, |frame| frame.yaw)
         };
         let fallback = facing(first) - facing(second);
-        let found = match self.blocks.get(block_of(self.set.clips().len(), first.clip, second.clip)) {
-            Some(Block::Itself(terms, _)) => terms.alignment(first.frame, second.frame, window, fallback)?,
-            Some(Block::Pair(terms, _)) => terms.alignment(first.frame, second.frame, window, fallback)?,
+        let found = match self.blocks.get(block_of(self.set.clips().len(), first.clip, second.clip))
+        {
+            Some(Block::Itself(terms, _)) => {
+                terms.alignment(first.frame, second.frame, window, fallback)?
+            }
+            Some(Block::Pair(terms, _)) => {
+                terms.alignment(first.frame, second.frame, window, fallback)?
+            }
             None => return Err(GraphError::NoClips),
         };
         let transform = if a <= b { found.transform } else { found.transform.inverse() };
@@ -260,16 +267,15 @@ impl PausedAllSweep {
     #[must_use]
     pub fn resume(self, all: &AllPairs) -> AllSweep<'_> {
         let now = match (self.now, all.blocks.get(self.blocks.len())) {
-            (Some(PausedNow::Itself(sweep)), Some(Block::Itself(terms, _))) => Some(Now::Itself(sweep.resume(terms))),
-            (Some(PausedNow::Pair(sweep)), Some(Block::Pair(terms, _))) => Some(Now::Pair(sweep.resume(terms))),
+            (Some(PausedNow::Itself(sweep)), Some(Block::Itself(terms, _))) => {
+                Some(Now::Itself(sweep.resume(terms)))
+            }
+            (Some(PausedNow::Pair(sweep)), Some(Block::Pair(terms, _))) => {
+                Some(Now::Pair(sweep.resume(terms)))
+            }
             _ => None,
         };
-        AllSweep {
-            all,
-            window: self.window,
-            blocks: self.blocks,
-            now,
-        }
+        AllSweep { all, window: self.window, blocks: self.blocks, now }
     }
 
     /// Frames of the windows.
@@ -281,10 +287,7 @@ impl PausedAllSweep {
     /// How many pairs of clips are done, and of how many.
     #[must_use]
     pub fn progress(&self, all: &AllPairs) -> Progress {
-        Progress {
-            done: self.blocks.len(),
-            total: all.blocks.len(),
-        }
+        Progress { done: self.blocks.len(), total: all.blocks.len() }
     }
 }
 
@@ -313,7 +316,9 @@ impl AllSweep<'_> {
             let mut now = match (self.now.take(), block) {
                 (Some(now), _) => now,
                 (None, Block::Itself(terms, _)) => Now::Itself(terms.sweep(self.window)?),
-                (None, Block::Pair(terms, _)) => Now::Pair(terms.sweep(self.window, &everything, &everything)?),
+                (None, Block::Pair(terms, _)) => {
+                    Now::Pair(terms.sweep(self.window, &everything, &everything)?)
+                }
             };
             let complete = match &mut now {
                 Now::Itself(sweep) => sweep.advance(rows).is_complete(),
@@ -328,10 +333,7 @@ impl AllSweep<'_> {
                 self.now = Some(now);
             }
         }
-        Ok(Progress {
-            done: self.blocks.len(),
-            total,
-        })
+        Ok(Progress { done: self.blocks.len(), total })
     }
 
     /// The rest, and the distances.
@@ -408,7 +410,8 @@ impl FrameDistances {
         self.window
     }
 
-    /// The distance of the windows that start at two frames, centimetres; `None` where a window crosses the end of its clip.
+    /// The distance of the windows that start at two frames, centimetres; `None` where a window
+    /// crosses the end of its clip.
     #[must_use]
     pub fn cm(&self, a: Place, b: Place) -> Option<f64> {
         let (a, b) = (a.min(b), a.max(b));
@@ -425,10 +428,16 @@ impl FrameDistances {
         self.blocks.get(block_of(clips, a, b))
     }
 
-    /// A picture of a part of the matrix: `rows` and `columns` are frames of the set, every value is the mean distance (centimetres) of a square of
-    /// `factor` × `factor` of them, of which at most 4 × 4 are looked at, row-major; NaN where no window starts.
+    /// A picture of a part of the matrix: `rows` and `columns` are frames of the set, every value
+    /// is the mean distance (centimetres) of a square of `factor` × `factor` of them, of which at
+    /// most 4 × 4 are looked at, row-major; NaN where no window starts.
     #[must_use]
-    pub fn picture(&self, rows: std::ops::Range<usize>, columns: std::ops::Range<usize>, factor: usize) -> Vec<f32> {
+    pub fn picture(
+        &self,
+        rows: std::ops::Range<usize>,
+        columns: std::ops::Range<usize>,
+        factor: usize,
+    ) -> Vec<f32> {
         let factor = factor.max(1);
         let places = |range: std::ops::Range<usize>| -> Vec<Option<Place>> {
             let range = range.start.min(self.set.frames())..range.end.min(self.set.frames());
@@ -444,7 +453,9 @@ impl FrameDistances {
                 for &a in rows.iter().step_by(every).flatten() {
                     for &b in columns.iter().step_by(every).flatten() {
                         let (a, b) = (a.min(b), a.max(b));
-                        if let Some(found) = self.block(a.clip, b.clip).and_then(|block| block.get(a.frame, b.frame)) {
+                        if let Some(found) =
+                            self.block(a.clip, b.clip).and_then(|block| block.get(a.frame, b.frame))
+                        {
                             sum += found;
                             count += 1;
                         }
@@ -456,8 +467,8 @@ impl FrameDistances {
         picture
     }
 
-    /// How many pairs of windows lie in each of `bins` ranges of `bin_cm` centimetres; the last one takes what is farther. Every pair counts
-    /// once, a window with itself not.
+    /// How many pairs of windows lie in each of `bins` ranges of `bin_cm` centimetres; the last one
+    /// takes what is farther. Every pair counts once, a window with itself not.
     #[must_use]
     pub fn histogram(&self, bin_cm: f64, bins: usize) -> Vec<u32> {
         let mut counts = vec![0_u32; bins.max(1)];
@@ -465,11 +476,14 @@ impl FrameDistances {
         counts
     }
 
-    /// [`Self::histogram`] of about `cells` more pairs of windows, at least one row, from where `at` says on, added to what is counted already; `true` behind the last.
+    /// [`Self::histogram`] of about `cells` more pairs of windows, at least one row, from where
+    /// `at` says on, added to what is counted already; `true` behind the last.
     pub fn count(&self, at: &mut CountedTo, cells: usize, bin_cm: f64, counts: &mut [u32]) -> bool {
         let mut left = cells.max(1);
         while left > 0 && at.block < self.blocks.len() {
-            let Some(block) = self.blocks.get(at.block) else { break };
+            let Some(block) = self.blocks.get(at.block) else {
+                break;
+            };
             let (rows, columns) = block.size();
             let end = (at.row + left.div_ceil(columns.max(1))).min(rows);
             self.count_rows(block, at.row..end, bin_cm, counts);
@@ -477,22 +491,23 @@ impl FrameDistances {
             *at = if end < rows {
                 CountedTo { row: end, ..*at }
             } else {
-                CountedTo {
-                    block: at.block + 1,
-                    row: 0,
-                }
+                CountedTo { block: at.block + 1, row: 0 }
             };
         }
         at.block >= self.blocks.len()
     }
 
-    fn count_rows(&self, block: &BlockDistances, rows: std::ops::Range<usize>, bin_cm: f64, counts: &mut [u32]) {
-        let Some(last) = counts.len().checked_sub(1) else { return };
-        let scale = if bin_cm > 0.0 {
-            (self.set.cm_per_m() / bin_cm) as f32
-        } else {
-            f32::MAX
+    fn count_rows(
+        &self,
+        block: &BlockDistances,
+        rows: std::ops::Range<usize>,
+        bin_cm: f64,
+        counts: &mut [u32],
+    ) {
+        let Some(last) = counts.len().checked_sub(1) else {
+            return;
         };
+        let scale = if bin_cm > 0.0 { (self.set.cm_per_m() / bin_cm) as f32 } else { f32::MAX };
         for row in rows {
             let (_, distances) = block.row(row);
             let itself = usize::from(matches!(block, BlockDistances::Itself(_)));

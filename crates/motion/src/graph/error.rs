@@ -64,7 +64,9 @@ pub enum GraphError {
         longest: usize,
     },
     /// The distances are those of another window.
-    #[error("these are distances of windows of {found} frames, the graph asks for {expected}: sum them again")]
+    #[error(
+        "these are distances of windows of {found} frames, the graph asks for {expected}: sum them again"
+    )]
     OtherWindow {
         /// The distances' window.
         found: usize,
@@ -111,7 +113,9 @@ pub enum GraphError {
         farthest_secs: f64,
     },
     /// There are places to go to, and none of them is better than its neighbours.
-    #[error("no distance of windows of {window} frames has a local minimum where one could go: cut the clips into segments, or add clips")]
+    #[error(
+        "no distance of windows of {window} frames has a local minimum where one could go: cut the clips into segments, or add clips"
+    )]
     NoMinimum {
         /// Frames of the blend window.
         window: usize,

@@ -4,8 +4,9 @@ use petgraph::visit::EdgeRef;
 use serde_json::{Value, json};
 
 impl MotionGraph {
-    /// The graph as JSON: `clips` (name, frames), `fps`, `options`, `nodes` (clip, start, end, component: 0 is the largest) and `edges` (from, to,
-    /// probability; transitions also leave, enter, window, `distance_cm`, and their alignment: yaw in radians, x and z in metres).
+    /// The graph as JSON: `clips` (name, frames), `fps`, `options`, `nodes` (clip, start, end,
+    /// component: 0 is the largest) and `edges` (from, to, probability; transitions also leave,
+    /// enter, window, `distance_cm`, and their alignment: yaw in radians, x and z in metres).
     #[must_use]
     pub fn to_json(&self, choices: &Choices) -> Value {
         let clips = self.set.clips().iter().map(|source| {
@@ -46,7 +47,8 @@ impl MotionGraph {
         })
     }
 
-    /// The graph in Graphviz' language: nodes by clip and frames, transitions dashed, both as wide as they are probable.
+    /// The graph in Graphviz' language: nodes by clip and frames, transitions dashed, both as wide
+    /// as they are probable.
     #[must_use]
     pub fn to_dot(&self, choices: &Choices) -> String {
         let mut probability = vec![0.0; self.graph.edge_count()];
@@ -59,7 +61,10 @@ impl MotionGraph {
             let width = 0.2 + 2.8 * probability.get(edge.id().index()).copied().unwrap_or(0.0);
             match self.jump(edge.id()) {
                 None => format!("penwidth = {width:.3}"),
-                Some(jump) => format!("penwidth = {width:.3}, style = dashed, label = \"{:.2} cm\"", jump.distance_cm),
+                Some(jump) => format!(
+                    "penwidth = {width:.3}, style = dashed, label = \"{:.2} cm\"",
+                    jump.distance_cm
+                ),
             }
         };
         let of_node = |_: &_, (_, stretch): (_, &super::Stretch)| {

@@ -25,15 +25,13 @@ pub struct GroundPath {
 }
 
 impl GroundPath {
-    /// The line through these points, (x, z) in metres. Points that are not finite, or repeat the one before, are left out.
+    /// The line through these points, (x, z) in metres. Points that are not finite, or repeat the
+    /// one before, are left out.
     ///
     /// # Errors
     /// [`GraphError::Setting`] when less than 10 cm of line is left.
     pub fn new(points: &[DVec2]) -> Result<Self, GraphError> {
-        let mut path = Self {
-            points: Vec::new(),
-            lengths: Vec::new(),
-        };
+        let mut path = Self { points: Vec::new(), lengths: Vec::new() };
         for &point in points.iter().filter(|point| point.is_finite()) {
             let step = path.points.last().map_or(0.0, |last| last.distance(point));
             if path.points.is_empty() || step > 1e-6 {
@@ -67,7 +65,9 @@ impl GroundPath {
                 .and_then(|last| Some((self.points.get(last)?, self.lengths.get(last)?))),
             self.points.get(next),
         ) {
-            (Some((from, start)), Some(to)) => from.lerp(*to, (metres - start) / from.distance(*to)),
+            (Some((from, start)), Some(to)) => {
+                from.lerp(*to, (metres - start) / from.distance(*to))
+            }
             (Some((from, _)), None) => *from,
             (None, first) => first.copied().unwrap_or(DVec2::ZERO),
         }
@@ -91,20 +91,30 @@ pub struct Followed {
     pub looked_at: usize,
 }
 
-/// A way through the graph whose trace on the ground stays close to a path (Kovar, Gleicher, Pighin 2002, section 5): branch and bound over what
-/// lies a few seconds ahead, of which the first is kept, and so on.
+/// A way through the graph whose trace on the ground stays close to a path (Kovar, Gleicher, Pighin
+/// 2002, section 5): branch and bound over what lies a few seconds ahead, of which the first is
+/// kept, and so on.
 ///
-/// The cost is the squared distance, summed over time, of the character from the point of the path that is as far along it as the character has
-/// walked; a little is added per second. `budget` is the number of nodes that are looked at in all. When it is used up, the best so far is given. The
+/// The cost is the squared distance, summed over time, of the character from the point of the path
+/// that is as far along it as the character has walked; a little is added per second. `budget` is
+/// the number of nodes that are looked at in all. When it is used up, the best so far is given. The
 /// character starts at node `start`, at the path's first point, and faces along it.
 ///
-/// *Why a number and not a time.* A number gives the same way on every machine, so that a link that holds a path shows everybody the same walk. Time bounds
-/// the waiting alone: whoever cannot wait for the end shows [`PathSearch::so_far`], and goes on.
+/// *Why a number and not a time.* A number gives the same way on every machine, so that a link that
+/// holds a path shows everybody the same walk. Time bounds the waiting alone: whoever cannot wait
+/// for the end shows [`PathSearch::so_far`], and goes on.
 ///
-/// Clips are laid on each other as a [`Stitcher`] with these options does, so that what it makes of the way lies where the way was planned. Transitions
-/// that overlap are taken to begin from the clip that is left; there it may be off by centimetres.
+/// Clips are laid on each other as a [`Stitcher`] with these options does, so that what it makes of
+/// the way lies where the way was planned. Transitions that overlap are taken to begin from the
+/// clip that is left; there it may be off by centimetres.
 #[must_use]
-pub fn follow(graph: &MotionGraph, start: NodeIndex, path: &GroundPath, budget: usize, options: &StitchOptions) -> Followed {
+pub fn follow(
+    graph: &MotionGraph,
+    start: NodeIndex,
+    path: &GroundPath,
+    budget: usize,
+    options: &StitchOptions,
+) -> Followed {
     let mut search = PathSearch::new(graph, start, path, budget, options);
     while !search.advance(graph, path, usize::MAX) {}
     search.so_far(graph, path)
@@ -114,7 +124,8 @@ pub fn follow(graph: &MotionGraph, start: NodeIndex, path: &GroundPath, budget: 
 #[derive(Clone, Debug)]
 pub struct PathSearch {
     stitcher: Stitcher,
-    /// Where the transitions that were looked at lay the clip that they enter: by their numbers, `left_from_entered`.
+    /// Where the transitions that were looked at lay the clip that they enter: by their numbers,
+    /// `left_from_entered`.
     placings: RefCell<BTreeMap<usize, Planar>>,
     world_from_first: Planar,
     here: State,
@@ -129,7 +140,13 @@ pub struct PathSearch {
 impl PathSearch {
     /// Stands at the start; the arguments are those of [`follow`].
     #[must_use]
-    pub fn new(graph: &MotionGraph, start: NodeIndex, path: &GroundPath, budget: usize, options: &StitchOptions) -> Self {
+    pub fn new(
+        graph: &MotionGraph,
+        start: NodeIndex,
+        path: &GroundPath,
+        budget: usize,
+        options: &StitchOptions,
+    ) -> Self {
         let world_from_first = first_place(graph, start, path);
         // A mistake is made in the walk, not in the plan.
         let options = StitchOptions { mistake: None, ..*options };
@@ -154,14 +171,10 @@ impl PathSearch {
         }
     }
 
-    /// Looks at about `nodes` more nodes; `true` when the path, the ways or the budget are at an end. Every call is given the same graph and path.
+    /// Looks at about `nodes` more nodes; `true` when the path, the ways or the budget are at an
+    /// end. Every call is given the same graph and path.
     pub fn advance(&mut self, graph: &MotionGraph, path: &GroundPath, nodes: usize) -> bool {
-        let ground = Ground {
-            graph,
-            path,
-            stitcher: &self.stitcher,
-            placings: &self.placings,
-        };
+        let ground = Ground { graph, path, stitcher: &self.stitcher, placings: &self.placings };
         let until = self.looked_at.saturating_add(nodes.max(1));
         while !self.is_over && self.looked_at < until {
             let ahead = match &mut self.ahead {
@@ -206,12 +219,7 @@ impl PathSearch {
     /// The best so far: what is kept, and the best way ahead.
     #[must_use]
     pub fn so_far(&self, graph: &MotionGraph, path: &GroundPath) -> Followed {
-        let ground = Ground {
-            graph,
-            path,
-            stitcher: &self.stitcher,
-            placings: &self.placings,
-        };
+        let ground = Ground { graph, path, stitcher: &self.stitcher, placings: &self.placings };
         let (mut here, mut edges) = (self.here, self.edges.clone());
         let best = self.ahead.as_ref().and_then(|ahead| ahead.best.as_ref());
         for &edge in best.map(|(_, way)| way.as_slice()).unwrap_or_default() {
@@ -233,7 +241,8 @@ fn first_place(graph: &MotionGraph, start: NodeIndex, path: &GroundPath) -> Plan
     let ahead = path.at(0.5_f64.min(path.length())) - path.at(0.0);
     let world = Planar::new(ahead.x.atan2(ahead.y), path.at(0.0).x, path.at(0.0).y);
     let stretch = graph.graph().node_weight(start);
-    let frame = stretch.and_then(|stretch| graph.set().clip(stretch.clip)?.frames().get(stretch.start));
+    let frame =
+        stretch.and_then(|stretch| graph.set().clip(stretch.clip)?.frames().get(stretch.start));
     frame.map_or(world, |frame| world.after(&frame.inverse()))
 }
 
@@ -276,17 +285,17 @@ struct Ahead {
 
 impl Ahead {
     fn new(limits: Limits) -> Self {
-        Self {
-            limits,
-            is_begun: false,
-            trail: Vec::new(),
-            levels: Vec::new(),
-            best: None,
-        }
+        Self { limits, is_begun: false, trail: Vec::new(), levels: Vec::new(), best: None }
     }
 
     /// Goes on until so many nodes are looked at; `true` when all ways are gone, or enough of them.
-    fn advance(&mut self, ground: &Ground<'_>, here: &State, looked_at: &mut usize, until: usize) -> bool {
+    fn advance(
+        &mut self,
+        ground: &Ground<'_>,
+        here: &State,
+        looked_at: &mut usize,
+        until: usize,
+    ) -> bool {
         if !std::mem::replace(&mut self.is_begun, true) {
             self.descend(ground, here, looked_at);
         }
@@ -323,7 +332,8 @@ impl Ahead {
             *looked_at += ways.len();
         }
         if ways.is_empty() {
-            // At the horizon, at the end of the path, or in a dead end: there what lies ahead cannot be walked.
+            // At the horizon, at the end of the path, or in a dead end: there what lies ahead
+            // cannot be walked.
             let cost = if goes_on { u64::MAX - 1 } else { bound };
             if is_better(bound) && is_better(cost) {
                 self.best = Some((cost, self.trail.clone()));
@@ -376,14 +386,17 @@ impl Ground<'_> {
         next
     }
 
-    /// Where a transition lays the clip that it enters; where that cannot be made, where it is aligned.
+    /// Where a transition lays the clip that it enters; where that cannot be made, where it is
+    /// aligned.
     fn placing(&self, index: usize, jump: &Jump) -> Planar {
         let place = || self.stitcher.placing(jump).unwrap_or(jump.alignment);
         *self.placings.borrow_mut().entry(index).or_insert_with(place)
     }
 
     fn walk(&self, state: &mut State, clip: usize, frames: std::ops::Range<usize>) {
-        let Some(source) = self.graph.set().clip(clip) else { return };
+        let Some(source) = self.graph.set().clip(clip) else {
+            return;
+        };
         let mut frame = frames.start;
         while frame < frames.end {
             let count = READ_EVERY.min(frames.end - frame);
@@ -392,7 +405,9 @@ impl Ground<'_> {
                 state.along += state.last.map_or(0.0, |last| last.distance(at));
                 let square = at.distance_squared(self.path.at(state.along));
                 state.square += square * count as f64;
-                state.cost = state.cost.saturating_add(((square + PATIENCE) * 1e6).round() as u64 * count as u64);
+                state.cost = state
+                    .cost
+                    .saturating_add(((square + PATIENCE) * 1e6).round() as u64 * count as u64);
                 state.last = Some(at);
             }
             state.frames += count;

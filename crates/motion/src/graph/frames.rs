@@ -13,7 +13,8 @@ pub struct Place {
     pub frame: usize,
 }
 
-/// Several clips of one skeleton at one frame rate: all their frames, one behind the other. Windows do not cross from one clip into the next.
+/// Several clips of one skeleton at one frame rate: all their frames, one behind the other. Windows
+/// do not cross from one clip into the next.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameSet {
     clips: Vec<Arc<Source>>,
@@ -21,16 +22,18 @@ pub struct FrameSet {
     starts: Vec<usize>,
     weights: Vec<f64>,
     body_height: f64,
-    /// Per clip and frame, how much the joints jolt; found when it is asked for, if not ahead ([`JoltSearch`]).
+    /// Per clip and frame, how much the joints jolt; found when it is asked for, if not ahead
+    /// ([`JoltSearch`]).
     jolts: Vec<OnceLock<Vec<f32>>>,
 }
 
 impl FrameSet {
-    /// The clips in this order; `body_height` (metres, [`crate::skeleton::Roles::body_height`]) is what distances are scaled by.
+    /// The clips in this order; `body_height` (metres, [`crate::skeleton::Roles::body_height`]) is
+    /// what distances are scaled by.
     ///
     /// # Errors
-    /// [`GraphError::NoClips`], or [`GraphError::Blend`] when a clip moves another skeleton, runs at another rate or has no frames;
-    /// [`GraphError::Setting`] for a height that is none.
+    /// [`GraphError::NoClips`], or [`GraphError::Blend`] when a clip moves another skeleton, runs
+    /// at another rate or has no frames; [`GraphError::Setting`] for a height that is none.
     pub fn new(clips: Vec<Arc<Source>>, body_height: f64) -> Result<Self, GraphError> {
         let first = clips.first().ok_or(GraphError::NoClips)?;
         for clip in &clips {
@@ -49,16 +52,11 @@ impl FrameSet {
         for clip in &clips {
             starts.push(starts.last().copied().unwrap_or(0) + clip.clip().frames());
         }
-        Ok(Self {
-            jolts: vec![OnceLock::new(); clips.len()],
-            clips,
-            starts,
-            weights,
-            body_height,
-        })
+        Ok(Self { jolts: vec![OnceLock::new(); clips.len()], clips, starts, weights, body_height })
     }
 
-    /// How much the joints of a clip jolt in each of its frames ([`jolts`]); empty where there is no such clip.
+    /// How much the joints of a clip jolt in each of its frames ([`jolts`]); empty where there is
+    /// no such clip.
     pub(super) fn jolts(&self, clip: usize) -> &[f32] {
         match (self.jolts.get(clip), self.clips.get(clip)) {
             (Some(found), Some(source)) => found.get_or_init(|| jolts(source.clip())),
@@ -113,10 +111,7 @@ impl FrameSet {
     pub fn place(&self, frame: usize) -> Option<Place> {
         // Clips have frames, so that no two start at one number.
         let clip = self.starts.partition_point(|&start| start <= frame).checked_sub(1)?;
-        (clip < self.clips.len()).then(|| Place {
-            clip,
-            frame: frame - self.starts[clip],
-        })
+        (clip < self.clips.len()).then(|| Place { clip, frame: frame - self.starts[clip] })
     }
 
     /// The number in the set of a clip's frame; `None` outside the clip.
@@ -125,7 +120,8 @@ impl FrameSet {
         (place.frame < self.frames_of(place.clip)).then(|| self.starts[place.clip] + place.frame)
     }
 
-    /// The number of a cut before a frame, or behind the last one of its clip, counted over all clips; less than [`Self::cuts`].
+    /// The number of a cut before a frame, or behind the last one of its clip, counted over all
+    /// clips; less than [`Self::cuts`].
     pub(super) fn cut(&self, place: Place) -> Option<usize> {
         (place.clip < self.clips.len() && place.frame <= self.frames_of(place.clip))
             .then(|| self.starts[place.clip] + place.clip + place.frame)
@@ -136,9 +132,10 @@ impl FrameSet {
         self.frames() + self.clips.len()
     }
 
-    /// A distance in metres of the clips' own body, as centimetres on the reference body, rounded to 0.001 cm: so it is told, ordered, and held
-    /// against a threshold. What lies within a last digit of the middle between two such numbers may still be rounded either way, where the clips
-    /// themselves differ by a last digit.
+    /// A distance in metres of the clips' own body, as centimetres on the reference body, rounded
+    /// to 0.001 cm: so it is told, ordered, and held against a threshold. What lies within a last
+    /// digit of the middle between two such numbers may still be rounded either way, where the
+    /// clips themselves differ by a last digit.
     #[must_use]
     pub fn rounded_cm(&self, rms_m: f32) -> f64 {
         (f64::from(rms_m) * self.cm_per_m() * 1_000.0).round() / 1_000.0
@@ -150,8 +147,9 @@ impl FrameSet {
     }
 }
 
-/// Finds how much the joints of a set's clips jolt, which a search for minima asks for, in slices. Without it a search finds it itself, a whole clip at a time: 0.1 s
-/// for 30,000 frames of 31 joints.
+/// Finds how much the joints of a set's clips jolt, which a search for minima asks for, in slices.
+/// Without it a search finds it itself, a whole clip at a time: 0.1 s for 30,000 frames of 31
+/// joints.
 #[derive(Clone, Debug, Default)]
 pub struct JoltSearch {
     /// The clip that comes next.
@@ -160,9 +158,11 @@ pub struct JoltSearch {
 }
 
 impl JoltSearch {
-    /// Looks at about so many more frames of single joints, at least at one joint of one clip; `true` when nothing is left to do. Every call is given the same set.
+    /// Looks at about so many more frames of single joints, at least at one joint of one clip;
+    /// `true` when nothing is left to do. Every call is given the same set.
     pub fn advance(&mut self, set: &FrameSet, joint_frames: usize) -> bool {
-        let (Some(source), Some(found)) = (set.clips.get(self.clip), set.jolts.get(self.clip)) else {
+        let (Some(source), Some(found)) = (set.clips.get(self.clip), set.jolts.get(self.clip))
+        else {
             return true;
         };
         let clip = source.clip();

@@ -37,7 +37,8 @@ pub struct WalkProfile {
 }
 
 impl WalkProfile {
-    /// Measures the clips; `contacts` has one entry per clip ([`Contacts::detect`]). O(frames × joints).
+    /// Measures the clips; `contacts` has one entry per clip ([`Contacts::detect`]). O(frames ×
+    /// joints).
     #[must_use]
     pub fn new(set: Arc<FrameSet>, roles: &Roles, contacts: Vec<Contacts>) -> Self {
         let mut profile = Self::begun(set, roles, contacts);
@@ -45,10 +46,13 @@ impl WalkProfile {
         profile
     }
 
-    /// Likewise, with all joints still to be measured: call [`advance`](Self::advance) until it is complete.
+    /// Likewise, with all joints still to be measured: call [`advance`](Self::advance) until it is
+    /// complete.
     #[must_use]
     pub fn begun(set: Arc<FrameSet>, roles: &Roles, contacts: Vec<Contacts>) -> Self {
-        let steps = |clip: &Clip| -> Vec<f32> { clip.root_translations().windows(2).map(|pair| pair[0].distance(pair[1])).collect() };
+        let steps = |clip: &Clip| -> Vec<f32> {
+            clip.root_translations().windows(2).map(|pair| pair[0].distance(pair[1])).collect()
+        };
         let steps: Vec<f32> = set.clips().iter().flat_map(|source| steps(source.clip())).collect();
         Self {
             step: stats::percentile(&steps, 0.999).unwrap_or(0.0),
@@ -86,7 +90,9 @@ impl WalkProfile {
 
     fn planted(&self, place: Place, side: Side) -> bool {
         let contacts = self.contacts.get(place.clip);
-        contacts.is_some_and(|contacts| place.frame < self.set.frames_of(place.clip) && contacts.planted(side, place.frame))
+        contacts.is_some_and(|contacts| {
+            place.frame < self.set.frames_of(place.clip) && contacts.planted(side, place.frame)
+        })
     }
 
     /// The character's step into a frame of a clip; behind its end, the last one.
@@ -105,20 +111,25 @@ pub struct Seam {
     pub at: usize,
     /// Frames that it takes.
     pub frames: usize,
-    /// The largest turn of a joint in one step, less the 99th percentile of that joint's in the clips or what they do in the very frame, degrees.
+    /// The largest turn of a joint in one step, less the 99th percentile of that joint's in the
+    /// clips or what they do in the very frame, degrees.
     pub turn_deg: f32,
-    /// Likewise the largest change of a joint's angular velocity from one step to the next, degrees per second.
+    /// Likewise the largest change of a joint's angular velocity from one step to the next, degrees
+    /// per second.
     pub change_dps: f32,
     /// The most yaw in 0.2 s or less that neither clip turns meanwhile, degrees.
     pub spin_deg: f64,
-    /// The largest step of the root or turn of a joint, over the 99.9th percentile of the clips' own, or what they do in the very frame if that is
-    /// more: a jump that was recorded is none of the walk's.
+    /// The largest step of the root or turn of a joint, over the 99.9th percentile of the clips'
+    /// own, or what they do in the very frame if that is more: a jump that was recorded is none of
+    /// the walk's.
     pub flash: f32,
     /// The joint of it; none where it is the root's step.
     pub flash_joint: Option<usize>,
-    /// How far a foot slides in the worst stance that touches it, centimetres; none where no foot stands.
+    /// How far a foot slides in the worst stance that touches it, centimetres; none where no foot
+    /// stands.
     pub skate_cm: Option<f32>,
-    /// Seconds until the velocity has come 90 % of the way to the entered clip's; none where the two are alike.
+    /// Seconds until the velocity has come 90 % of the way to the entered clip's; none where the
+    /// two are alike.
     pub lag_s: Option<f64>,
 }
 
@@ -131,7 +142,8 @@ pub struct WalkMetrics {
     pub variety: f64,
     /// Its transitions.
     pub seams: Vec<Seam>,
-    /// How far feet slide in stances that no transition touches, centimetres: the median, for comparison.
+    /// How far feet slide in stances that no transition touches, centimetres: the median, for
+    /// comparison.
     pub own_skate_cm: Option<f32>,
 }
 
@@ -163,14 +175,15 @@ impl WalkMetrics {
         self.seams.iter().filter(|seam| seam.spin_deg > SPIN_DEG).count()
     }
 
-    /// Transitions with a step of the root or of a joint of more than twice the 99.9th percentile of the clips' own.
+    /// Transitions with a step of the root or of a joint of more than twice the 99.9th percentile
+    /// of the clips' own.
     #[must_use]
     pub fn flashes(&self) -> usize {
         self.seams.iter().filter(|seam| seam.flash > FLASH).count()
     }
 
-    /// What there is to say of a walk beyond what is measured of every result ([`ResultMetrics`](crate::metrics::ResultMetrics)), in the order in which
-    /// it is shown.
+    /// What there is to say of a walk beyond what is measured of every result
+    /// ([`ResultMetrics`](crate::metrics::ResultMetrics)), in the order in which it is shown.
     #[must_use]
     pub fn list(&self) -> [Metric; 5] {
         let median = |values: Vec<f32>| stats::percentile(&values, 0.5).map(f64::from);
@@ -267,7 +280,8 @@ impl WalkMeter {
         while !self.advance(piece, profile, usize::MAX) {}
     }
 
-    /// Up to so many frames more of a piece, at least one; `true` when all of it is measured. Until then the next call is given the same piece.
+    /// Up to so many frames more of a piece, at least one; `true` when all of it is measured. Until
+    /// then the next call is given the same piece.
     pub fn advance(&mut self, piece: &WalkPiece, profile: &WalkProfile, frames: usize) -> bool {
         if self.within == 0 {
             self.begin(piece, profile);
@@ -284,11 +298,10 @@ impl WalkMeter {
         self.first.get_or_insert(piece.start);
         self.seams.extend(piece.seam.map(|seam| (piece.start, seam)));
         for frame in piece.stay.from..piece.stay.to {
-            let place = Place {
-                clip: piece.stay.clip,
-                frame,
-            };
-            if let Some(seen) = profile.set.number(place).and_then(|number| self.seen.get_mut(number)) {
+            let place = Place { clip: piece.stay.clip, frame };
+            if let Some(seen) =
+                profile.set.number(place).and_then(|number| self.seen.get_mut(number))
+            {
                 *seen = true;
             }
         }
@@ -301,7 +314,8 @@ impl WalkMeter {
         let mut world = WorldPose::default();
         for frame in frames {
             let standing = piece.frames.get(frame).copied().unwrap_or(Planar::IDENTITY);
-            let (rotations, root) = (piece.clip.rotations(frame), piece.clip.root_translations()[frame]);
+            let (rotations, root) =
+                (piece.clip.rotations(frame), piece.clip.root_translations()[frame]);
             let sources = Sources::of(piece, frame, &profile.set);
             self.walked.step(
                 self.before.as_ref(),
@@ -319,8 +333,11 @@ impl WalkMeter {
                     .map(|&(joint, point)| world.point(joint, point))
                     .collect();
                 let stands = profile.planted(piece.shown_at(frame), side);
-                let (feet, stance) = (&mut self.feet[side.index()], &mut self.stances[side.index()]);
-                if let (Some(step), Some((_, most, slid))) = (stillest_step(feet, &now).filter(|_| stands), stance.as_mut()) {
+                let (feet, stance) =
+                    (&mut self.feet[side.index()], &mut self.stances[side.index()]);
+                if let (Some(step), Some((_, most, slid))) =
+                    (stillest_step(feet, &now).filter(|_| stands), stance.as_mut())
+                {
                     *slid += step;
                     *most = most.max(slid.length());
                 } else {
@@ -334,7 +351,8 @@ impl WalkMeter {
         }
     }
 
-    /// What is known of the last piece is brought into the next one: nothing is compared far from the origin.
+    /// What is known of the last piece is brought into the next one: nothing is compared far from
+    /// the origin.
     fn bring_over(&mut self, here_from_last: &Planar) {
         for point in self.feet.iter_mut().flatten() {
             *point = here_from_last.apply(*point);
@@ -367,11 +385,14 @@ impl WalkMeter {
         let first = self.first.unwrap_or(0);
         let last = self.walked.steps.len().saturating_sub(1);
         let open = self.stances.iter().flatten().map(|&(first, most, _)| (first, last, most));
-        let stances: Vec<(usize, usize, f32)> = self.walked.stances.iter().copied().chain(open).collect();
+        let stances: Vec<(usize, usize, f32)> =
+            self.walked.stances.iter().copied().chain(open).collect();
         let seams: Vec<Seam> = (self.seams.iter())
             .map(|(start, of)| seam(start - first, of, &self.walked, &stances, profile))
             .collect();
-        let touches = |stance: &(usize, usize, f32)| seams.iter().any(|seam| stance.0 <= seam.at + seam.frames && seam.at <= stance.1);
+        let touches = |stance: &(usize, usize, f32)| {
+            seams.iter().any(|seam| stance.0 <= seam.at + seam.frames && seam.at <= stance.1)
+        };
         let own: Vec<f32> = stances
             .iter()
             .filter(|stance| !touches(stance))
@@ -379,7 +400,8 @@ impl WalkMeter {
             .collect();
         WalkMetrics {
             secs: self.walked.steps.len() as f64 / fps,
-            variety: self.seen.iter().filter(|seen| **seen).count() as f64 / self.seen.len().max(1) as f64,
+            variety: self.seen.iter().filter(|seen| **seen).count() as f64
+                / self.seen.len().max(1) as f64,
             seams,
             own_skate_cm: stats::percentile(&own, 0.5),
         }
@@ -401,12 +423,16 @@ impl Walked {
         if let Some((stood, were, root_was)) = before {
             step = stood.inverse().after(standing);
             flash.0 = root.distance(*root_was) / profile.step.max(STILL_M).max(sources.step());
-            let turns: Vec<Vec3> = were.iter().zip(rotations).map(|(&from, &to)| turn(from, to)).collect();
+            let turns: Vec<Vec3> =
+                were.iter().zip(rotations).map(|(&from, &to)| turn(from, to)).collect();
             for (joint, turn) in turns.iter().enumerate() {
-                let (Some([p99, p999]), Some(change)) = (profile.turns.get(joint), profile.changes.get(joint)) else {
+                let (Some([p99, p999]), Some(change)) =
+                    (profile.turns.get(joint), profile.changes.get(joint))
+                else {
                     continue;
                 };
-                let (length, changed) = (turn.length(), turned.get(joint).map_or(0.0, |before| before.distance(*turn)));
+                let (length, changed) =
+                    (turn.length(), turned.get(joint).map_or(0.0, |before| before.distance(*turn)));
                 // What the clips do themselves is looked at only where it matters.
                 if length / p999.max(STILL_RADIANS) > flash.0 {
                     let unusual = length / p999.max(STILL_RADIANS).max(sources.turn(joint));
@@ -439,14 +465,11 @@ impl<'a> Sources<'a> {
             let clip = set.clip(place.clip)?.clip();
             (place.frame < clip.frames()).then_some((clip.as_ref(), place.frame))
         };
-        let entered = Place {
-            clip: piece.stay.clip,
-            frame: piece.stay.from + frame,
-        };
-        let left = piece.seam.filter(|seam| frame <= seam.frames).map(|seam| Place {
-            frame: seam.leave.frame + frame,
-            ..seam.leave
-        });
+        let entered = Place { clip: piece.stay.clip, frame: piece.stay.from + frame };
+        let left = piece
+            .seam
+            .filter(|seam| frame <= seam.frames)
+            .map(|seam| Place { frame: seam.leave.frame + frame, ..seam.leave });
         Self([clip(entered), left.and_then(clip)])
     }
 
@@ -477,14 +500,19 @@ impl<'a> Sources<'a> {
     }
 }
 
-fn seam(at: usize, of: &PieceSeam, walked: &Walked, stances: &[(usize, usize, f32)], profile: &WalkProfile) -> Seam {
+fn seam(
+    at: usize,
+    of: &PieceSeam,
+    walked: &Walked,
+    stances: &[(usize, usize, f32)],
+    profile: &WalkProfile,
+) -> Seam {
     let fps = profile.set.fps();
     let end = (at + of.frames).min(walked.steps.len().saturating_sub(1));
-    let most = |values: &[f32]| values.get(at..=end).unwrap_or_default().iter().copied().fold(0.0, f32::max);
-    let behind = |place: Place, steps: usize| Place {
-        frame: place.frame + steps,
-        ..place
+    let most = |values: &[f32]| {
+        values.get(at..=end).unwrap_or_default().iter().copied().fold(0.0, f32::max)
     };
+    let behind = |place: Place, steps: usize| Place { frame: place.frame + steps, ..place };
     let steps: Vec<[Planar; 3]> = (at..=end)
         .map(|frame| {
             let source = |place| profile.step_into(behind(place, frame - at));
@@ -492,7 +520,8 @@ fn seam(at: usize, of: &PieceSeam, walked: &Walked, stances: &[(usize, usize, f3
         })
         .collect();
     let flashes = walked.flashes.get(at..=end).unwrap_or_default().iter();
-    let (flash, flash_joint) = flashes.copied().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default();
+    let (flash, flash_joint) =
+        flashes.copied().max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default();
     let stances = stances.iter().filter(|stance| stance.0 <= end && at <= stance.1);
     Seam {
         at,
@@ -507,7 +536,8 @@ fn seam(at: usize, of: &PieceSeam, walked: &Walked, stances: &[(usize, usize, f3
     }
 }
 
-/// The most that the first turns beyond both others over any run of at most `longest` steps, radians.
+/// The most that the first turns beyond both others over any run of at most `longest` steps,
+/// radians.
 fn spin(steps: &[[Planar; 3]], longest: usize) -> f64 {
     let mut worst = 0.0_f64;
     for start in 0..steps.len() {

@@ -1,11 +1,12 @@
-//! Motion graphs: clips of one skeleton, cut into stretches, with transitions wherever two windows look alike. A walk through the graph is a
-//! motion without end.
+//! Motion graphs: clips of one skeleton, cut into stretches, with transitions wherever two windows
+//! look alike. A walk through the graph is a motion without end.
 //!
 //! # The idea
 //!
-//! Lay all clips end to end and compare every window with every other. Where the distance ([`crate::registration`]) is small, one may go
-//! over. Picture a railway map: stretches of clips are the tracks ([`Stretch`]), transitions the switches ([`Jump`]), and whoever comes to a
-//! switch throws a die.
+//! Lay all clips end to end and compare every window with every other. Where the distance
+//! ([`crate::registration`]) is small, one may go over. Picture a railway map: stretches of clips
+//! are the tracks ([`Stretch`]), transitions the switches ([`Jump`]), and whoever comes to a switch
+//! throws a die.
 //!
 //! ```text
 //! p(the clip goes on) = c                       c: continuity; or w₀ / (w₀ + Σ w)
@@ -13,17 +14,20 @@
 //! mean run            = 1 / (1 - c) stretches   before the next jump
 //! ```
 //!
-//! Dead ends are cut away: inside the largest strongly connected part ([`MotionGraph::pruned`]) every stretch can be reached from every
-//! other, for ever.
+//! Dead ends are cut away: inside the largest strongly connected part ([`MotionGraph::pruned`])
+//! every stretch can be reached from every other, for ever.
 //!
-//! A [`FrameSet`] is what the graph is made of. [`AllPairs`] compares all its windows, [`Candidates`] are the places where one may go over
-//! into another, a [`MotionGraph`] is made of them, [`Choices`] say how probable each way out of a stretch is, a [`Walker`] goes through the
-//! graph by a seed, and a [`Stitcher`] makes motion of where it goes. Each step is quick beside the one before it, and can be done again
-//! alone: a new blend window needs new running sums, a new threshold new candidates, another weight law other choices. [`follow`] searches a
-//! walk along a line on the ground.
+//! A [`FrameSet`] is what the graph is made of. [`AllPairs`] compares all its windows,
+//! [`Candidates`] are the places where one may go over into another, a [`MotionGraph`] is made of
+//! them, [`Choices`] say how probable each way out of a stretch is, a [`Walker`] goes through the
+//! graph by a seed, and a [`Stitcher`] makes motion of where it goes. Each step is quick beside the
+//! one before it, and can be done again alone: a new blend window needs new running sums, a new
+//! threshold new candidates, another weight law other choices. [`follow`] searches a walk along a
+//! line on the ground.
 //!
-//! A transition leaves clip A at frame `leave` and enters clip B at frame `enter`; `A[leave..leave + window)` and `B[enter..enter + window)`
-//! overlap. Distances are root-mean-square distances per point, centimetres on the reference body.
+//! A transition leaves clip A at frame `leave` and enters clip B at frame `enter`; `A[leave..leave
+//! + window)` and `B[enter..enter + window)` overlap. Distances are root-mean-square distances per
+//! point, centimetres on the reference body.
 //!
 //! # Example
 //!
@@ -66,31 +70,38 @@
 //!
 //! # Accuracy and cost
 //!
-//! Graph and walk are those of a `NumPy` program, stay by stay; walks run as long between jumps as [`Choices::expected_run_secs`] says, to
-//! 5 %. N frames are N²/2 pairs, compared once: O(N²J) time and 12 bytes a pair. [`CandidateStream`] does without the memory for long clips, and
-//! leaves a picture of their distances from afar.
+//! Graph and walk are those of a `NumPy` program, stay by stay; walks run as long between jumps as
+//! [`Choices::expected_run_secs`] says, to 5 %. N frames are N²/2 pairs, compared once: O(N²J) time
+//! and 12 bytes a pair. [`CandidateStream`] does without the memory for long clips, and leaves a
+//! picture of their distances from afar.
 //!
-//! *The same walk everywhere.* From clips that are equal to the last digit, every machine goes the same way: what is chosen depends on sums,
-//! products, quotients and square roots in one order, which are the same everywhere, and on an arc tangent, an exponential and a power of
-//! [`libm`], which is made of these. Distances are rounded to 0.001 cm before they are ordered or held against the threshold, probabilities are
-//! whole numbers, and chance is a generator (PCG) of whole numbers. The trigonometry of the platform, whose last digit is its own, places bodies
-//! along a walk and decides nothing.
+//! *The same walk everywhere.* From clips that are equal to the last digit, every machine goes the
+//! same way: what is chosen depends on sums, products, quotients and square roots in one order,
+//! which are the same everywhere, and on an arc tangent, an exponential and a power of [`libm`],
+//! which is made of these. Distances are rounded to 0.001 cm before they are ordered or held
+//! against the threshold, probabilities are whole numbers, and chance is a generator (PCG) of whole
+//! numbers. The trigonometry of the platform, whose last digit is its own, places bodies along a
+//! walk and decides nothing.
 //!
-//! *As far as the clips are equal.* Clips that are made, or read from angles, went through that trigonometry, and may differ by a last digit
-//! between two machines. Rounding hides nearly all of that; where two neighbours of a minimum are as good as equal, or a distance lies in the
-//! middle between two roundings, a transition may come to lie a frame beside. The walk of the built-in clips is held against one that was
-//! written down (`tests/golden/walk.json` of segue-session), natively and in the browser.
+//! *As far as the clips are equal.* Clips that are made, or read from angles, went through that
+//! trigonometry, and may differ by a last digit between two machines. Rounding hides nearly all of
+//! that; where two neighbours of a minimum are as good as equal, or a distance lies in the middle
+//! between two roundings, a transition may come to lie a frame beside. The walk of the built-in
+//! clips is held against one that was written down (`tests/golden/walk.json` of segue-session),
+//! natively and in the browser.
 //!
 //! # What it does not do
 //!
-//! It makes no motion that is not in the clips: what lacks a transition below the threshold is not reached, and [`GraphError`] says what
-//! would do. It does not know what a clip means: an idle stretch is as good a place to stay as any. It reacts at the next switch, not at
-//! once; for that see [`crate::matching`].
+//! It makes no motion that is not in the clips: what lacks a transition below the threshold is not
+//! reached, and [`GraphError`] says what would do. It does not know what a clip means: an idle
+//! stretch is as good a place to stay as any. It reacts at the next switch, not at once; for that
+//! see [`crate::matching`].
 //!
 //! # Sources
 //!
-//! Kovar, Gleicher, Pighin, "Motion Graphs", 2002. Lee, Chai, Reitsma, Hodgins, Pollard, "Interactive Control of Avatars Animated with Human
-//! Motion Data", 2002, section 4.1 (the exponential weights).
+//! Kovar, Gleicher, Pighin, "Motion Graphs", 2002. Lee, Chai, Reitsma, Hodgins, Pollard,
+//! "Interactive Control of Avatars Animated with Human Motion Data", 2002, section 4.1 (the
+//! exponential weights).
 
 mod build;
 mod candidates;
@@ -115,7 +126,9 @@ pub use follow::{Followed, GroundPath, PathSearch, follow};
 pub use frames::{FrameSet, JoltSearch, Place};
 pub use measure::{Seam, WalkMeter, WalkMetrics, WalkProfile};
 pub use overview::{DistanceDetail, DistanceOverview};
-pub use stitch::{Assembling, PieceSeam, StitchOptions, Stitcher, WalkMistake, WalkPiece, assembled};
+pub use stitch::{
+    Assembling, PieceSeam, StitchOptions, Stitcher, WalkMistake, WalkPiece, assembled,
+};
 pub use stream::CandidateStream;
 pub use walk::{Stay, Walker};
 pub use weights::{Choices, Continuity, DistanceLaw, RunLength, WeightOptions};

@@ -8,8 +8,9 @@ use std::sync::Arc;
 /// The most cells of an overview to a side: 8 MB.
 const MOST_CELLS: usize = 2_000;
 
-/// All distances of a set from afar: of every square of [`block`](Self::block) × `block` windows the smallest, and how many pairs are how far
-/// apart. What is left of the matrix of all distances where that is not held; a [`CandidateStream`](super::CandidateStream) gives it.
+/// All distances of a set from afar: of every square of [`block`](Self::block) × `block` windows
+/// the smallest, and how many pairs are how far apart. What is left of the matrix of all distances
+/// where that is not held; a [`CandidateStream`](super::CandidateStream) gives it.
 ///
 /// Nearer by, a [`DistanceDetail`] is computed when it is looked at.
 #[derive(Clone, Debug)]
@@ -17,7 +18,8 @@ pub struct DistanceOverview {
     parts: Arc<Parts>,
     block: usize,
     side: usize,
-    /// Of blocks (row, column) with row ≤ column, row by row, metres; infinity where no window starts.
+    /// Of blocks (row, column) with row ≤ column, row by row, metres; infinity where no window
+    /// starts.
     nearest_m: Vec<f32>,
     /// They do not go beyond what fits: 93,000 frames have more pairs than that.
     counts: Vec<u32>,
@@ -62,7 +64,8 @@ impl DistanceOverview {
             }
             let mut column = first;
             while !cells.is_empty() {
-                let (here, rest) = cells.split_at((self.block - column % self.block).min(cells.len()));
+                let (here, rest) =
+                    cells.split_at((self.block - column % self.block).min(cells.len()));
                 let nearest = here.iter().copied().fold(f32::INFINITY, f32::min);
                 let at = self.at(row / self.block, column / self.block);
                 if let Some(known) = self.nearest_m.get_mut(at) {
@@ -102,13 +105,15 @@ impl DistanceOverview {
         self.nearest_m.len()
     }
 
-    /// How many pairs of windows lie in each of [`Self::BINS`] ranges of [`Self::BIN_CM`]. Every pair counts once, a window with itself not.
+    /// How many pairs of windows lie in each of [`Self::BINS`] ranges of [`Self::BIN_CM`]. Every
+    /// pair counts once, a window with itself not.
     #[must_use]
     pub fn histogram(&self) -> &[u32] {
         &self.counts
     }
 
-    /// The distance of the windows that start at two frames, centimetres, straight from the clips; `None` where a window crosses the end of its clip.
+    /// The distance of the windows that start at two frames, centimetres, straight from the clips;
+    /// `None` where a window crosses the end of its clip.
     #[must_use]
     pub fn cm(&self, a: Place, b: Place) -> Option<f64> {
         let (set, window) = (self.set(), self.window());
@@ -117,18 +122,21 @@ impl DistanceOverview {
             return None;
         }
         let (source, target) = (set.clip(a.clip)?.clip(), set.clip(b.clip)?.clip());
-        let found = align_onto(source, a.frame, target, b.frame, window, set.weights(), 0.0).ok()?;
+        let found =
+            align_onto(source, a.frame, target, b.frame, window, set.weights(), 0.0).ok()?;
         Some(set.rounded_cm(found.rms_m() as f32))
     }
 
-    /// A picture of a part of the matrix: `rows` and `columns` are frames of the set, every value is the smallest distance (centimetres) in a square of `factor` × `factor` of
-    /// them, row-major; NaN where no window starts. It knows no more than the blocks do: squares that are not made of whole blocks take all that
-    /// they touch.
+    /// A picture of a part of the matrix: `rows` and `columns` are frames of the set, every value
+    /// is the smallest distance (centimetres) in a square of `factor` × `factor` of them,
+    /// row-major; NaN where no window starts. It knows no more than the blocks do: squares that are
+    /// not made of whole blocks take all that they touch.
     #[must_use]
     pub fn picture(&self, rows: Range<usize>, columns: Range<usize>, factor: usize) -> Vec<f32> {
         let (frames, scale) = (self.set().frames(), self.set().cm_per_m() as f32);
         let blocks = |of: &Range<usize>| of.start / self.block..of.end.div_ceil(self.block);
-        let columns: Vec<Range<usize>> = squares(columns, factor, frames).map(|columns| blocks(&columns)).collect();
+        let columns: Vec<Range<usize>> =
+            squares(columns, factor, frames).map(|columns| blocks(&columns)).collect();
         let mut picture = Vec::new();
         for rows in squares(rows, factor, frames).map(|rows| blocks(&rows)) {
             for columns in &columns {
@@ -136,7 +144,8 @@ impl DistanceOverview {
                 for row in rows.clone() {
                     for column in columns.clone() {
                         let at = self.at(row.min(column), row.max(column));
-                        nearest = nearest.min(self.nearest_m.get(at).copied().unwrap_or(f32::INFINITY));
+                        nearest =
+                            nearest.min(self.nearest_m.get(at).copied().unwrap_or(f32::INFINITY));
                     }
                 }
                 picture.push(if nearest.is_finite() { nearest * scale } else { f32::NAN });
@@ -145,9 +154,15 @@ impl DistanceOverview {
         picture
     }
 
-    /// A picture as [`Self::picture`] gives it, made of the distances themselves. Nothing is computed yet: call [`DistanceDetail::advance`].
+    /// A picture as [`Self::picture`] gives it, made of the distances themselves. Nothing is
+    /// computed yet: call [`DistanceDetail::advance`].
     #[must_use]
-    pub fn detail(&self, rows: Range<usize>, columns: Range<usize>, factor: usize) -> DistanceDetail {
+    pub fn detail(
+        &self,
+        rows: Range<usize>,
+        columns: Range<usize>,
+        factor: usize,
+    ) -> DistanceDetail {
         let (frames, factor) = (self.set().frames(), factor.max(1));
         let within = |of: Range<usize>| of.start.min(frames)..of.end.min(frames);
         let (rows, columns) = (within(rows), within(columns));
@@ -169,9 +184,7 @@ impl DistanceOverview {
 /// Frames `factor` by `factor`.
 fn squares(of: Range<usize>, factor: usize, frames: usize) -> impl Iterator<Item = Range<usize>> {
     let (factor, end) = (factor.max(1), of.end.min(frames));
-    (of.start.min(end)..end)
-        .step_by(factor)
-        .map(move |from| from..(from + factor).min(end))
+    (of.start.min(end)..end).step_by(factor).map(move |from| from..(from + factor).min(end))
 }
 
 /// A part of the matrix of all distances, computed tile by tile when it is looked at.
@@ -189,7 +202,8 @@ pub struct DistanceDetail {
 }
 
 impl DistanceDetail {
-    /// Computes up to `tiles` more tiles of at most 256 × 256 distances, 1.5 ms each, and says how many are done.
+    /// Computes up to `tiles` more tiles of at most 256 × 256 distances, 1.5 ms each, and says how
+    /// many are done.
     ///
     /// # Errors
     /// [`GraphError::Registration`]; not for an overview that a stream gave.
@@ -210,15 +224,20 @@ impl DistanceDetail {
     }
 
     fn tile(&mut self, at: usize) -> Result<(), GraphError> {
-        let Some(&(a, b)) = self.tiles.get(at) else { return Ok(()) };
+        let Some(&(a, b)) = self.tiles.get(at) else {
+            return Ok(());
+        };
         // One tile stands for both of its places in the matrix.
-        let (Some(p), Some(q)) = (self.parts.made().get(a.min(b)), self.parts.made().get(a.max(b))) else {
+        let (Some(p), Some(q)) = (self.parts.made().get(a.min(b)), self.parts.made().get(a.max(b)))
+        else {
             return Ok(());
         };
         let (_, distances) = p.tile(q, self.parts.window())?;
         let scale = self.parts.set().cm_per_m() as f32;
         let (down, across) = if a <= b { (p, q) } else { (q, p) };
-        let seen = |part: &Part, of: &Range<usize>| part.numbers().start.max(of.start)..part.numbers().end.min(of.end);
+        let seen = |part: &Part, of: &Range<usize>| {
+            part.numbers().start.max(of.start)..part.numbers().end.min(of.end)
+        };
         let columns = seen(across, &self.columns);
         for row in seen(down, &self.rows) {
             let i = row - down.number + (down.starts.start - down.from);
@@ -228,7 +247,10 @@ impl DistanceDetail {
                 // Of a part with itself, too, the two halves are the same.
                 let (i, j) = if row <= column { (i, j) } else { (j, i) };
                 let found = distances.get(i, j).map(|distance| distance * scale);
-                if let (Some(texel), Some(found)) = (self.picture.get_mut(start + (column - self.columns.start) / self.factor), found) {
+                if let (Some(texel), Some(found)) = (
+                    self.picture.get_mut(start + (column - self.columns.start) / self.factor),
+                    found,
+                ) {
                     // The smaller of the two, and not what is no number.
                     *texel = texel.min(found);
                 }

@@ -7,8 +7,9 @@ use std::sync::Arc;
 /// Frames of a part.
 pub(super) const PART: usize = 256;
 
-/// All windows of a set in parts of at most [`PART`], each with its points: a tile of the matrix of all distances is made of two of them. Parts
-/// are cut at the ends of clips and at every [`PART`]-th frame of the set, so that a picture of the matrix that is cut likewise is made of
+/// All windows of a set in parts of at most [`PART`], each with its points: a tile of the matrix of
+/// all distances is made of two of them. Parts are cut at the ends of clips and at every
+/// [`PART`]-th frame of the set, so that a picture of the matrix that is cut likewise is made of
 /// whole tiles.
 #[derive(Clone, Debug)]
 pub(super) struct Parts {
@@ -20,7 +21,8 @@ pub(super) struct Parts {
     made: Vec<Part>,
 }
 
-/// A part of a clip: the windows that start in `starts`, and one more to either side, so that a minimum is seen to be one.
+/// A part of a clip: the windows that start in `starts`, and one more to either side, so that a
+/// minimum is seen to be one.
 #[derive(Clone, Debug)]
 pub(super) struct Part {
     pub(super) clip: usize,
@@ -38,8 +40,13 @@ impl Part {
         self.number..self.number + self.starts.len()
     }
 
-    /// The pairs of frames of this and another part, and the distances of all their windows, also of those to either side.
-    pub(super) fn tile(&self, other: &Self, window: usize) -> Result<(PairTerms, DistanceMatrix), GraphError> {
+    /// The pairs of frames of this and another part, and the distances of all their windows, also
+    /// of those to either side.
+    pub(super) fn tile(
+        &self,
+        other: &Self,
+        window: usize,
+    ) -> Result<(PairTerms, DistanceMatrix), GraphError> {
         let mut terms = PairTerms::of_clouds(&self.clouds, &other.clouds)?;
         terms.finish();
         let everything = 0..usize::MAX;
@@ -77,13 +84,21 @@ impl Parts {
         let Some((clip, starts)) = self.to_come.pop() else {
             return Ok(false);
         };
-        if let (Some(source), Some(number)) = (self.set.clip(clip), self.set.number(Place { clip, frame: starts.start })) {
+        if let (Some(source), Some(number)) =
+            (self.set.clip(clip), self.set.number(Place { clip, frame: starts.start }))
+        {
             let from = starts.start.saturating_sub(1);
             self.made.push(Part {
                 clip,
                 number,
                 from,
-                clouds: PointClouds::new(source.clip(), from..starts.end + self.window, self.set.weights(), 1, self.level_m)?,
+                clouds: PointClouds::new(
+                    source.clip(),
+                    from..starts.end + self.window,
+                    self.set.weights(),
+                    1,
+                    self.level_m,
+                )?,
                 starts,
             });
         }

@@ -2,23 +2,27 @@ use super::{FrameSet, GraphError, Jump, MotionGraph, Place, Stay};
 use crate::blend::{AlignBy, Assembly, RootBlend, Source, WeightLaw, laid_on};
 use crate::clip::Clip;
 use crate::math::{Decay, Planar, wrap_angle};
-use crate::transition::{Inertialization, Method, Mistake, TransitionOptions, concatenate, concatenate_mistaken};
+use crate::transition::{
+    Inertialization, Method, Mistake, TransitionOptions, concatenate, concatenate_mistaken,
+};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// How much of what has played is kept for the next transition, seconds: a stride, over which its speed is taken.
+/// How much of what has played is kept for the next transition, seconds: a stride, over which its
+/// speed is taken.
 const PAST_SECS: f64 = 1.0;
-/// How far beyond a transition the clip that is left is made for it, seconds, if the transition does not ask for more.
+/// How far beyond a transition the clip that is left is made for it, seconds, if the transition
+/// does not ask for more.
 const AHEAD_SECS: f64 = 0.5;
 
 /// A classic mistake in laying one clip on the other, for experiments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub enum WalkMistake {
-    /// Only the entered clip's first frame is turned, in place of the whole clip: it begins in the right place, and goes on in the direction in which it
-    /// was recorded.
+    /// Only the entered clip's first frame is turned, in place of the whole clip: it begins in the
+    /// right place, and goes on in the direction in which it was recorded.
     FirstFrameOnly,
-    /// The transform is applied to the entered clip's first frame alone: all others stay in the place and the direction in which they were recorded, and the
-    /// character goes back there.
+    /// The transform is applied to the entered clip's first frame alone: all others stay in the
+    /// place and the direction in which they were recorded, and the character goes back there.
     FirstFrameThenRecorded,
     /// That of a single transition, made at each.
     Transition(Mistake),
@@ -41,21 +45,13 @@ impl StitchOptions {
     /// A method, with nothing wrong.
     #[must_use]
     pub fn new(method: Method) -> Self {
-        Self {
-            method,
-            align_by: AlignBy::default(),
-            root: RootBlend::default(),
-            mistake: None,
-        }
+        Self { method, align_by: AlignBy::default(), root: RootBlend::default(), mistake: None }
     }
 
     /// A dissolve over the graph's blend window.
     #[must_use]
     pub fn dissolve(window: usize) -> Self {
-        Self::new(Method::Dissolve {
-            window,
-            law: WeightLaw::default(),
-        })
+        Self::new(Method::Dissolve { window, law: WeightLaw::default() })
     }
 
     /// Inertialization by a spring.
@@ -68,7 +64,8 @@ impl StitchOptions {
 /// A piece of a walk, from where one clip is entered to where the next is.
 #[derive(Clone, Debug)]
 pub struct WalkPiece {
-    /// The motion, near where its clip was recorded: a walk may go far, and single precision does not.
+    /// The motion, near where its clip was recorded: a walk may go far, and single precision does
+    /// not.
     pub clip: Clip,
     /// Where the piece lies in the walk's world, accumulated in double precision.
     pub world_from_piece: Planar,
@@ -87,14 +84,8 @@ impl WalkPiece {
     #[must_use]
     pub fn shown_at(&self, frame: usize) -> Place {
         match self.seam.filter(|seam| frame < seam.handover) {
-            Some(seam) => Place {
-                frame: seam.leave.frame + frame,
-                ..seam.leave
-            },
-            None => Place {
-                clip: self.stay.clip,
-                frame: self.stay.from + frame,
-            },
+            Some(seam) => Place { frame: seam.leave.frame + frame, ..seam.leave },
+            None => Place { clip: self.stay.clip, frame: self.stay.from + frame },
         }
     }
 }
@@ -114,7 +105,8 @@ pub struct PieceSeam {
 
 /// Makes motion of the stays of a walk, piece by piece and without end.
 ///
-/// A transition starts from what plays, not from the clip that is left: transitions may follow each other so fast that they overlap.
+/// A transition starts from what plays, not from the clip that is left: transitions may follow each
+/// other so fast that they overlap.
 #[derive(Clone, Debug)]
 pub struct Stitcher {
     set: Arc<FrameSet>,
@@ -139,21 +131,17 @@ impl Stitcher {
     /// Nothing has played yet.
     #[must_use]
     pub fn new(set: Arc<FrameSet>, options: &StitchOptions) -> Self {
-        Self {
-            set,
-            options: *options,
-            playing: None,
-            made: 0,
-            world_from_first: Planar::IDENTITY,
-        }
+        Self { set, options: *options, playing: None, made: 0, world_from_first: Planar::IDENTITY }
     }
 
-    /// Where the first piece's clip lies in the walk's world, which it otherwise lies in as it was recorded. For a stitcher that has made nothing yet.
+    /// Where the first piece's clip lies in the walk's world, which it otherwise lies in as it was
+    /// recorded. For a stitcher that has made nothing yet.
     pub fn start_at(&mut self, world_from_first: Planar) {
         self.world_from_first = world_from_first;
     }
 
-    /// The next piece. Stays come in the order in which a walk gives them; `graph` is the one it goes through.
+    /// The next piece. Stays come in the order in which a walk gives them; `graph` is the one it
+    /// goes through.
     ///
     /// # Errors
     /// [`GraphError`] when a stay is none of the graph's, or a half-life is none.
@@ -203,17 +191,15 @@ impl Stitcher {
             source: tail.with_motion(renamed, tail.frames().to_vec()),
             leave: leave - kept,
             world_from_here: world_from_piece,
-            place: Place {
-                clip: stay.clip,
-                frame: stay.to,
-            },
+            place: Place { clip: stay.clip, frame: stay.to },
         });
         self.made += stay.to - stay.from;
         Ok(piece)
     }
 
-    /// Where the clip that a transition enters comes to lie on the one that it leaves, both as they were recorded: `left_from_entered`. In a walk in which
-    /// the clip that is left has played for a while, that is where [`stitch`](Self::stitch) lays it, too.
+    /// Where the clip that a transition enters comes to lie on the one that it leaves, both as they
+    /// were recorded: `left_from_entered`. In a walk in which the clip that is left has played for
+    /// a while, that is where [`stitch`](Self::stitch) lays it, too.
     ///
     /// # Errors
     /// As [`stitch`](Self::stitch).
@@ -228,12 +214,8 @@ impl Stitcher {
         };
         let (outgoing, leave) = around(jump.leave, secs(PAST_SECS).max(1))?;
         let (incoming, enter) = around(jump.enter, 1)?;
-        let tail = Tail {
-            source: outgoing,
-            leave,
-            world_from_here: Planar::IDENTITY,
-            place: jump.leave,
-        };
+        let tail =
+            Tail { source: outgoing, leave, world_from_here: Planar::IDENTITY, place: jump.leave };
         Ok(self.joined(&tail, &incoming, enter)?.tail_from_piece)
     }
 
@@ -250,11 +232,7 @@ impl Stitcher {
             root: self.options.root,
             ..TransitionOptions::new(self.options.method)
         };
-        let in_the_world = TransitionOptions {
-            align: false,
-            root: RootBlend::World,
-            ..options
-        };
+        let in_the_world = TransitionOptions { align: false, root: RootBlend::World, ..options };
         let (made, moved) = match self.options.mistake {
             None => (concatenate(a, leave, incoming, enter, &options)?, Planar::IDENTITY),
             Some(WalkMistake::Transition(mistake)) => (
@@ -279,7 +257,8 @@ impl Stitcher {
                     options.align_by,
                 )?;
                 let recorded = tail.world_from_here.inverse();
-                let incoming = first_frame_then_recorded(incoming, enter, &here_from_there, &recorded);
+                let incoming =
+                    first_frame_then_recorded(incoming, enter, &here_from_there, &recorded);
                 (concatenate(a, leave, &incoming, enter, &in_the_world)?, recorded)
             }
         };
@@ -303,9 +282,12 @@ struct Joined {
     handover: usize,
 }
 
-/// Where the incoming clip comes to lie if only its first frame is turned: in the right place, and in the direction in which it was recorded.
+/// Where the incoming clip comes to lie if only its first frame is turned: in the right place, and
+/// in the direction in which it was recorded.
 fn first_frame_only(tail: &Tail, incoming: &Source, enter: usize) -> Planar {
-    let (Some(here), Some(there)) = (tail.source.frames().get(tail.leave), incoming.frames().get(enter)) else {
+    let (Some(here), Some(there)) =
+        (tail.source.frames().get(tail.leave), incoming.frames().get(enter))
+    else {
         return Planar::IDENTITY;
     };
     let turned = Planar::new(wrap_angle(-tail.world_from_here.yaw), 0.0, 0.0);
@@ -313,15 +295,18 @@ fn first_frame_only(tail: &Tail, incoming: &Source, enter: usize) -> Planar {
     Planar { shift, ..turned }
 }
 
-/// The incoming clip with the transform on its frames up to the one where it is entered, and where it was recorded from the next one on.
-fn first_frame_then_recorded(incoming: &Source, enter: usize, transform: &Planar, recorded: &Planar) -> Source {
+/// The incoming clip with the transform on its frames up to the one where it is entered, and where
+/// it was recorded from the next one on.
+fn first_frame_then_recorded(
+    incoming: &Source,
+    enter: usize,
+    transform: &Planar,
+    recorded: &Planar,
+) -> Source {
     let place = |frame: usize| if frame <= enter { transform } else { recorded };
     let clip = incoming.clip();
-    let frames = incoming
-        .frames()
-        .iter()
-        .enumerate()
-        .map(|(frame, stands)| place(frame).after(stands));
+    let frames =
+        incoming.frames().iter().enumerate().map(|(frame, stands)| place(frame).after(stands));
     let moves: Vec<Planar> = (0..clip.frames()).map(|frame| *place(frame)).collect();
     incoming.with_motion(clip.transformed_by_frame(&moves), frames.collect())
 }
@@ -332,7 +317,8 @@ fn part(source: &Source, frames: Range<usize>) -> Result<Source, GraphError> {
     Ok(source.with_motion(clip, source.frames().get(frames).unwrap_or_default().to_vec()))
 }
 
-/// The pieces as one clip in the walk's world, and where the character stands in each frame. `None` for no pieces.
+/// The pieces as one clip in the walk's world, and where the character stands in each frame. `None`
+/// for no pieces.
 ///
 /// # Errors
 /// [`GraphError::Clip`]; not for pieces of one walk.
@@ -344,7 +330,8 @@ pub fn assembled(pieces: &[WalkPiece]) -> Result<Option<(Clip, Vec<Planar>)>, Gr
     assembling.finish().map(Some)
 }
 
-/// [`assembled`] in slices. Between them it does not hold the pieces: every call is given the same ones.
+/// [`assembled`] in slices. Between them it does not hold the pieces: every call is given the same
+/// ones.
 #[derive(Debug)]
 pub struct Assembling {
     made: Assembly,
@@ -361,14 +348,19 @@ impl Assembling {
     pub fn new(pieces: &[WalkPiece], most: usize) -> Option<Self> {
         let count = pieces.iter().map(|piece| piece.clip.frames()).sum::<usize>().min(most);
         Some(Self {
-            made: Assembly::of(&pieces.first()?.clip, pieces.iter().map(|piece| &piece.clip), count),
+            made: Assembly::of(
+                &pieces.first()?.clip,
+                pieces.iter().map(|piece| &piece.clip),
+                count,
+            ),
             frames: Vec::with_capacity(count),
             count,
             next: (0, 0),
         })
     }
 
-    /// Up to so many frames more, at least one; `true` when nothing is left to do. 10,000 frames of 31 joints take about 3 ms.
+    /// Up to so many frames more, at least one; `true` when nothing is left to do. 10,000 frames of
+    /// 31 joints take about 3 ms.
     pub fn advance(&mut self, pieces: &[WalkPiece], frames: usize) -> bool {
         let mut left = frames.max(1).min(self.count - self.frames.len());
         while let (1.., Some(piece)) = (left, pieces.get(self.next.0)) {

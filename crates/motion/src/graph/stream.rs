@@ -1,14 +1,17 @@
 use super::candidates::{Picker, is_minimum};
 use super::parts::Parts;
-use super::{Candidates, Construction, DistanceOverview, FrameSet, GraphError, GraphOptions, Place};
+use super::{
+    Candidates, Construction, DistanceOverview, FrameSet, GraphError, GraphOptions, Place,
+};
 use crate::registration::Progress;
 use std::sync::Arc;
 
-/// [`Candidates`] of clips that are too long for all pairs to be held: tile after tile of 256 × 256 windows is compared, searched, and dropped. A
-/// [`DistanceOverview`] is left of them.
+/// [`Candidates`] of clips that are too long for all pairs to be held: tile after tile of 256 × 256
+/// windows is compared, searched, and dropped. A [`DistanceOverview`] is left of them.
 ///
-/// 30,000 frames of 31 joints are 7,000 tiles of 1.5 ms each, and 1 MB at a time beside the points (12 bytes per joint and frame), the overview
-/// (8 MB) and what is found. A new window or threshold means to begin again.
+/// 30,000 frames of 31 joints are 7,000 tiles of 1.5 ms each, and 1 MB at a time beside the points
+/// (12 bytes per joint and frame), the overview (8 MB) and what is found. A new window or threshold
+/// means to begin again.
 #[derive(Clone, Debug)]
 pub struct CandidateStream {
     options: GraphOptions,
@@ -59,8 +62,8 @@ impl CandidateStream {
         })
     }
 
-    /// Does up to `steps` more steps, and says how many are done: each prepares one of the parts that the clips are cut into, or compares two of
-    /// them. A step takes about 1.5 ms.
+    /// Does up to `steps` more steps, and says how many are done: each prepares one of the parts
+    /// that the clips are cut into, or compares two of them. A step takes about 1.5 ms.
     ///
     /// # Errors
     /// [`GraphError::Registration`] when a position is not finite.
@@ -75,10 +78,7 @@ impl CandidateStream {
     /// How many steps are done.
     #[must_use]
     pub fn progress(&self) -> Progress {
-        Progress {
-            done: self.done,
-            total: self.total,
-        }
+        Progress { done: self.done, total: self.total }
     }
 
     /// The rest, what is found, and the distances from afar.
@@ -125,7 +125,9 @@ impl CandidateStream {
         let (terms, distances) = a.tile(b, window)?;
         overview.take(a, b, &distances);
         let align = |leave: Place, enter: Place| {
-            let [p, q] = [leave, enter].map(|place| set.clip(place.clip).and_then(|source| source.frames().get(place.frame)));
+            let [p, q] = [leave, enter].map(|place| {
+                set.clip(place.clip).and_then(|source| source.frames().get(place.frame))
+            });
             let fallback = p.zip(q).map_or(0.0, |(p, q)| p.yaw - q.yaw);
             Ok(terms.alignment(leave.frame, enter.frame, window, fallback)?.transform)
         };
@@ -140,10 +142,15 @@ impl CandidateStream {
             let cells = distances.row(row);
             for j in b.starts.clone() {
                 let column = j - b.from;
-                let Some(&distance) = cells.get(column) else { continue };
+                let Some(&distance) = cells.get(column) else {
+                    continue;
+                };
                 let enter = Place { clip: b.clip, frame: j };
                 // Of a clip with itself only one half counts.
-                if leave < enter && picker.is_worth(distance) && (only_minima || options.is_end(set, enter)) {
+                if leave < enter
+                    && picker.is_worth(distance)
+                    && (only_minima || options.is_end(set, enter))
+                {
                     let minimum = || !only_minima || is_minimum(at, row, column);
                     picker.offer(leave, enter, distance, minimum, align)?;
                 }

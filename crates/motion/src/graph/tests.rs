@@ -29,13 +29,7 @@ fn three(frames: [usize; 3]) -> Arc<FrameSet> {
     let walk = Walk::default();
     set_of(&[
         Walk { frames: frames[0], ..walk },
-        Walk {
-            frames: frames[1],
-            cadence: 1.1,
-            turning: 0.7,
-            speed: 1.5,
-            ..walk
-        },
+        Walk { frames: frames[1], cadence: 1.1, turning: 0.7, speed: 1.5, ..walk },
         Walk {
             frames: frames[2],
             phase: 0.3,
@@ -53,13 +47,12 @@ fn compared(set: &Arc<FrameSet>) -> AllPairs {
     all
 }
 
-fn options(construction: Construction, blend_window: usize, edge_threshold_cm: f64) -> GraphOptions {
-    GraphOptions {
-        construction,
-        blend_window,
-        edge_threshold_cm,
-        ..GraphOptions::default()
-    }
+fn options(
+    construction: Construction,
+    blend_window: usize,
+    edge_threshold_cm: f64,
+) -> GraphOptions {
+    GraphOptions { construction, blend_window, edge_threshold_cm, ..GraphOptions::default() }
 }
 
 fn built(set: &Arc<FrameSet>, options: &GraphOptions) -> Result<MotionGraph, GraphError> {
@@ -72,7 +65,12 @@ fn walker(graph: &Arc<MotionGraph>, weights: &WeightOptions, seed: u64) -> Walke
     Walker::new(Arc::clone(graph), Arc::new(Choices::new(graph, weights).unwrap()), seed)
 }
 
-fn pieces(graph: &Arc<MotionGraph>, walker: &mut Walker, options: &StitchOptions, stays: usize) -> Vec<WalkPiece> {
+fn pieces(
+    graph: &Arc<MotionGraph>,
+    walker: &mut Walker,
+    options: &StitchOptions,
+    stays: usize,
+) -> Vec<WalkPiece> {
     let mut stitcher = Stitcher::new(Arc::clone(graph.set()), options);
     let mut pieces = Vec::new();
     while let Some(stay) = walker.next_stay().filter(|_| pieces.len() < stays) {
@@ -101,10 +99,7 @@ fn frames_are_numbered_through() {
     assert_eq!(set.place(30), Some(Place { clip: 1, frame: 0 }));
     assert_eq!((set.place(75), set.number(Place { clip: 1, frame: 20 })), (None, None));
     assert_eq!(FrameSet::new(vec![], HEIGHT), Err(GraphError::NoClips));
-    let faster = Walk {
-        fps: 30.0,
-        ..Walk::default()
-    };
+    let faster = Walk { fps: 30.0, ..Walk::default() };
     let sources = [Walk::default(), faster].map(|walk| {
         let clip = Arc::new(walk.clip());
         let roles = Roles::detect(clip.skeleton());
@@ -122,7 +117,10 @@ fn overview_is_of(overview: &DistanceOverview, all: &FrameDistances) {
     let (frames, block) = (all.set().frames(), overview.block());
     assert_eq!(overview.window(), all.window());
     let held = all.picture(0..frames, 0..frames, 1);
-    let nearest = |rows: std::ops::Range<usize>, columns: std::ops::Range<usize>, factor: usize| -> Vec<f32> {
+    let nearest = |rows: std::ops::Range<usize>,
+                   columns: std::ops::Range<usize>,
+                   factor: usize|
+     -> Vec<f32> {
         let mut picture = Vec::new();
         for row in rows.clone().step_by(factor) {
             for column in columns.clone().step_by(factor) {
@@ -130,7 +128,9 @@ fn overview_is_of(overview: &DistanceOverview, all: &FrameDistances) {
                     let columns = column..(column + factor).min(columns.end);
                     columns.map(move |column| (row, column))
                 });
-                picture.push(cells.map(|(row, column)| held[row * frames + column]).fold(f32::NAN, f32::min));
+                picture.push(
+                    cells.map(|(row, column)| held[row * frames + column]).fold(f32::NAN, f32::min),
+                );
             }
         }
         picture
@@ -161,10 +161,8 @@ fn overview_is_of(overview: &DistanceOverview, all: &FrameDistances) {
         while !detail.advance(1).unwrap().is_complete() {}
         same(detail.picture(), &nearest(rows, columns, factor), "nearby");
     }
-    let counts = (
-        overview.histogram(),
-        all.histogram(DistanceOverview::BIN_CM, DistanceOverview::BINS),
-    );
+    let counts =
+        (overview.histogram(), all.histogram(DistanceOverview::BIN_CM, DistanceOverview::BINS));
     let off: usize = counts.0.iter().zip(&counts.1).map(|(a, b)| a.abs_diff(*b) as usize).sum();
     let total: usize = counts.0.iter().map(|&count| count as usize).sum();
     assert_eq!(total, counts.1.iter().map(|&count| count as usize).sum::<usize>());
@@ -175,7 +173,10 @@ fn overview_is_of(overview: &DistanceOverview, all: &FrameDistances) {
         let (found, wanted) = (overview.cm(a, b), all.cm(a, b));
         assert_eq!(found.is_some(), wanted.is_some());
         if let (Some(found), Some(wanted)) = (found, wanted) {
-            assert!((found * found - wanted * wanted).abs() < 4e-3 + 2e-3 * wanted, "{found} {wanted}");
+            assert!(
+                (found * found - wanted * wanted).abs() < 4e-3 + 2e-3 * wanted,
+                "{found} {wanted}"
+            );
         }
     }
 }
@@ -279,7 +280,10 @@ fn long_clips_are_tiled_without_a_gap() {
         .filter(|a| streamed.found().iter().any(|b| (a.leave, a.enter) == (b.leave, b.enter)))
         .count();
     // Equal neighbours may change places by a last digit.
-    assert!(same * 100 >= held.found().len() * 98 && held.found().len().abs_diff(streamed.found().len()) * 100 <= held.found().len());
+    assert!(
+        same * 100 >= held.found().len() * 98
+            && held.found().len().abs_diff(streamed.found().len()) * 100 <= held.found().len()
+    );
 }
 
 /// What a sentence tells one to do, as options.
@@ -289,32 +293,29 @@ fn remedies(error: &GraphError, options: &GraphOptions) -> Vec<(&'static str, Gr
         ..*options
     };
     let window = |blend_window| GraphOptions { blend_window, ..*options };
-    let threshold = |edge_threshold_cm| GraphOptions {
-        edge_threshold_cm,
-        ..*options
-    };
+    let threshold = |edge_threshold_cm| GraphOptions { edge_threshold_cm, ..*options };
     match *error {
         GraphError::SegmentTooShort { segment, window: found } => {
             let lowered = (segment > 1).then(|| ("lower the window", window(segment - 1)));
             [("raise the segment", segments(found + 1))].into_iter().chain(lowered).collect()
         }
-        GraphError::SegmentTooLong { longest, .. } => vec![("lower the segment", segments(longest))],
-        GraphError::WindowTooLong { longest, .. } if longest > 2 => vec![("lower the window", window(longest - 2))],
+        GraphError::SegmentTooLong { longest, .. } => {
+            vec![("lower the segment", segments(longest))]
+        }
+        GraphError::WindowTooLong { longest, .. } if longest > 2 => {
+            vec![("lower the window", window(longest - 2))]
+        }
         GraphError::NoTransition { nearest_cm, .. } => {
             let raised = error::above(nearest_cm);
-            assert!(raised <= GraphOptions::MOST_THRESHOLD_CM && error.to_string().contains(&format!("to {raised:.1} cm")));
+            assert!(
+                raised <= GraphOptions::MOST_THRESHOLD_CM
+                    && error.to_string().contains(&format!("to {raised:.1} cm"))
+            );
             vec![("raise the threshold", threshold(raised))]
         }
-        GraphError::NowhereToGo {
-            lower_window,
-            farthest_secs,
-            ..
-        } => {
+        GraphError::NowhereToGo { lower_window, farthest_secs, .. } => {
             let jump = (farthest_secs * 100.0 + 1e-6).floor() / 100.0;
-            let lowered = GraphOptions {
-                min_jump_secs: jump,
-                ..*options
-            };
+            let lowered = GraphOptions { min_jump_secs: jump, ..*options };
             let window = lower_window.map(|found| ("lower the window", window(found)));
             [("lower the jump", lowered)].into_iter().chain(window).collect()
         }
@@ -323,7 +324,8 @@ fn remedies(error: &GraphError, options: &GraphOptions) -> Vec<(&'static str, Gr
     }
 }
 
-/// For every segment size and blend window there is a graph that can be walked, or a sentence; and what the sentence says does it.
+/// For every segment size and blend window there is a graph that can be walked, or a sentence; and
+/// what the sentence says does it.
 #[test]
 fn any_setting_answers() {
     let set = three([34, 25, 9]);
@@ -352,10 +354,14 @@ fn any_setting_answers() {
                         graphs += 1;
                         let graph = Arc::new(graph);
                         let mut walker = walker(&graph, &WeightOptions::default(), 3);
-                        let pieces = pieces(&graph, &mut walker, &StitchOptions::dissolve(blend_window), 12);
+                        let pieces =
+                            pieces(&graph, &mut walker, &StitchOptions::dissolve(blend_window), 12);
                         assert_eq!(pieces.len(), 12, "{options:?}");
                         for piece in &pieces {
-                            assert!(piece.clip.frames() > 0 && piece.frames.len() == piece.clip.frames());
+                            assert!(
+                                piece.clip.frames() > 0
+                                    && piece.frames.len() == piece.clip.frames()
+                            );
                         }
                     }
                     Err(error) => {
@@ -365,17 +371,22 @@ fn any_setting_answers() {
                         let mended = remedies(&error, &options);
                         for (remedy, mended) in &mended {
                             let again = attempt(mended);
-                            let is_same = again
-                                .as_ref()
-                                .is_err_and(|again| std::mem::discriminant(again) == std::mem::discriminant(&error));
+                            let is_same = again.as_ref().is_err_and(|again| {
+                                std::mem::discriminant(again) == std::mem::discriminant(&error)
+                            });
                             assert!(!is_same, "{sentence}: {remedy} {mended:?} {again:?}");
                         }
                         // Each of them is named, and nothing is named that was not tried.
                         for word in ["lower", "raise", "cut"] {
-                            let tried = mended.iter().filter(|(remedy, _)| remedy.starts_with(word)).count();
+                            let tried = mended
+                                .iter()
+                                .filter(|(remedy, _)| remedy.starts_with(word))
+                                .count();
                             // "lower the jump to … s, the window to …"
-                            let named =
-                                sentence.matches(word).count() + usize::from(word == "lower" && sentence.contains(" s, the window to"));
+                            let named = sentence.matches(word).count()
+                                + usize::from(
+                                    word == "lower" && sentence.contains(" s, the window to"),
+                                );
                             assert_eq!(tried, named, "{sentence} {mended:?}");
                         }
                         *kinds
@@ -399,10 +410,7 @@ fn any_setting_answers() {
 /// One short clip: the window leaves no room for the jump.
 #[test]
 fn one_short_clip_is_told_what_would_do() {
-    let set = set_of(&[Walk {
-        frames: 60,
-        ..Walk::default()
-    }]);
+    let set = set_of(&[Walk { frames: 60, ..Walk::default() }]);
     let mut told = 0;
     for construction in [
         Construction::Minima,
@@ -411,28 +419,26 @@ fn one_short_clip_is_told_what_would_do() {
     ] {
         for blend_window in [5, 19, 40, 50, 56] {
             for min_jump_secs in [0.0, 0.2, 0.5, 2.0] {
-                let options = GraphOptions {
-                    min_jump_secs,
-                    ..options(construction, blend_window, 60.0)
+                let options =
+                    GraphOptions { min_jump_secs, ..options(construction, blend_window, 60.0) };
+                let Err(error) = built(&set, &options) else {
+                    continue;
                 };
-                let Err(error) = built(&set, &options) else { continue };
-                let is_told = matches!(error, GraphError::NowhereToGo { .. } | GraphError::NoMinimum { .. });
+                let is_told =
+                    matches!(error, GraphError::NowhereToGo { .. } | GraphError::NoMinimum { .. });
                 told += usize::from(is_told);
                 for (remedy, mended) in remedies(&error, &options) {
                     let again = built(&set, &mended);
-                    let is_same = again
-                        .as_ref()
-                        .is_err_and(|again| std::mem::discriminant(again) == std::mem::discriminant(&error));
+                    let is_same = again.as_ref().is_err_and(|again| {
+                        std::mem::discriminant(again) == std::mem::discriminant(&error)
+                    });
                     assert!(!is_same, "{error}: {remedy} {mended:?} {again:?}");
                 }
             }
         }
     }
     assert!(told > 10, "{told}");
-    let short = set_of(&[Walk {
-        frames: 2,
-        ..Walk::default()
-    }]);
+    let short = set_of(&[Walk { frames: 2, ..Walk::default() }]);
     let sentence = options(Construction::Minima, 1, 6.0).check(&short).unwrap_err().to_string();
     assert!(!sentence.contains("lower") && sentence.ends_with("add a longer clip"), "{sentence}");
     let far = |window| GraphError::TooFar { window, nearest_cm: 71.5 }.to_string();
@@ -445,10 +451,7 @@ fn a_long_walk_is_as_curious_as_a_short_one() {
     let most_seen = |factor: f64, before: usize| {
         let mut walker = self::walker(
             &graph,
-            &WeightOptions {
-                continuity: Continuity::Share(0.5),
-                ..WeightOptions::default()
-            },
+            &WeightOptions { continuity: Continuity::Share(0.5), ..WeightOptions::default() },
             4,
         );
         walker = walker.with_visited_discount(factor).unwrap();
@@ -477,7 +480,9 @@ fn what_is_found_for_a_threshold_serves_all_lower_ones() {
         for threshold in [3.0, 8.0, 19.9, 20.0] {
             let low = options(construction, 12, threshold);
             match (MotionGraph::new(&set, &found, &low), built(&set, &low)) {
-                (Ok(one), Ok(other)) => assert_eq!((one.jumps(), nodes(&one)), (other.jumps(), nodes(&other))),
+                (Ok(one), Ok(other)) => {
+                    assert_eq!((one.jumps(), nodes(&one)), (other.jumps(), nodes(&other)))
+                }
                 (one, other) => assert_eq!(one.err(), other.err()),
             }
         }
@@ -499,26 +504,11 @@ fn jolts_that_are_found_ahead_are_those_that_a_search_finds() {
 fn numbers_that_are_none_are_refused() {
     let set = three([30, 30, 30]);
     for wrong in [
-        GraphOptions {
-            edge_threshold_cm: f64::NAN,
-            ..GraphOptions::default()
-        },
-        GraphOptions {
-            edge_threshold_cm: -1.0,
-            ..GraphOptions::default()
-        },
-        GraphOptions {
-            min_jump_secs: f64::INFINITY,
-            ..GraphOptions::default()
-        },
-        GraphOptions {
-            most_ways_out: 0,
-            ..GraphOptions::default()
-        },
-        GraphOptions {
-            blend_window: usize::MAX,
-            ..GraphOptions::default()
-        },
+        GraphOptions { edge_threshold_cm: f64::NAN, ..GraphOptions::default() },
+        GraphOptions { edge_threshold_cm: -1.0, ..GraphOptions::default() },
+        GraphOptions { min_jump_secs: f64::INFINITY, ..GraphOptions::default() },
+        GraphOptions { most_ways_out: 0, ..GraphOptions::default() },
+        GraphOptions { blend_window: usize::MAX, ..GraphOptions::default() },
         options(Construction::Segments { segment_size: usize::MAX }, 3, 5.0),
     ] {
         assert!(matches!(wrong.check(&set), Err(GraphError::Setting { .. })), "{wrong:?}");
@@ -545,10 +535,7 @@ fn shares_add_up_and_follow_their_law() {
     ];
     for law in laws {
         for continuity in [0.0, 0.3, 1.0] {
-            let weights = WeightOptions {
-                continuity: Continuity::Share(continuity),
-                law,
-            };
+            let weights = WeightOptions { continuity: Continuity::Share(continuity), law };
             let choices = Choices::new(&graph, &weights).unwrap();
             for node in graph.graph().node_indices() {
                 let whole: u64 = choices.ways(node).iter().map(|way| way.1).sum();
@@ -578,23 +565,13 @@ fn shares_add_up_and_follow_their_law() {
     assert!(
         Choices::new(
             &graph,
-            &WeightOptions {
-                continuity: Continuity::Share(1.1),
-                ..WeightOptions::default()
-            }
+            &WeightOptions { continuity: Continuity::Share(1.1), ..WeightOptions::default() }
         )
         .is_err()
     );
     let nothing = DistanceLaw::Exponential { sigma_cm: 0.0 };
     assert!(
-        Choices::new(
-            &graph,
-            &WeightOptions {
-                law: nothing,
-                ..WeightOptions::default()
-            }
-        )
-        .is_err()
+        Choices::new(&graph, &WeightOptions { law: nothing, ..WeightOptions::default() }).is_err()
     );
 }
 
@@ -624,19 +601,16 @@ fn a_constant_weight_of_going_on_stays_less_often_the_more_ways_lead_out() {
         of_nodes.sort_by(|a, b| a.0.total_cmp(&b.0));
         of_nodes
     };
-    // With the same constant, the more there is to choose from the less often the clip goes on; with 1,000 it nearly always does.
+    // With the same constant, the more there is to choose from the less often the clip goes on;
+    // with 1,000 it nearly always does.
     let (one, thousand) = (shares(1.0), shares(1_000.0));
     assert!(one.first().unwrap().1 > 1.5 * one.last().unwrap().1, "{one:?}");
     assert!(
-        one.iter()
-            .zip(&thousand)
-            .all(|(one, thousand)| thousand.1 > one.1 && thousand.1 > 0.5)
+        one.iter().zip(&thousand).all(|(one, thousand)| thousand.1 > one.1 && thousand.1 > 0.5)
     );
     for wrong in [0.0, -1.0, f64::NAN] {
-        let weights = WeightOptions {
-            continuity: Continuity::Weight(wrong),
-            ..WeightOptions::default()
-        };
+        let weights =
+            WeightOptions { continuity: Continuity::Weight(wrong), ..WeightOptions::default() };
         assert!(Choices::new(&graph, &weights).is_err(), "{wrong}");
     }
 }
@@ -645,10 +619,8 @@ fn a_constant_weight_of_going_on_stays_less_often_the_more_ways_lead_out() {
 fn runs_are_as_long_as_expected() {
     let graph = minima_graph();
     for continuity in [0.2, 0.8] {
-        let weights = WeightOptions {
-            continuity: Continuity::Share(continuity),
-            ..WeightOptions::default()
-        };
+        let weights =
+            WeightOptions { continuity: Continuity::Share(continuity), ..WeightOptions::default() };
         let expected = Choices::new(&graph, &weights).unwrap().expected_run_secs(&graph).unwrap();
         let mut walker = walker(&graph, &weights, 11);
         let (mut frames, count) = (0, 20_000);
@@ -680,10 +652,7 @@ fn a_pruned_graph_has_no_end_and_a_seed_gives_one_walk() {
     let whole = Arc::new(whole);
     let mut walker = walker(
         &whole,
-        &WeightOptions {
-            continuity: Continuity::Share(1.0),
-            ..WeightOptions::default()
-        },
+        &WeightOptions { continuity: Continuity::Share(1.0), ..WeightOptions::default() },
         1,
     );
     let last = std::iter::from_fn(|| walker.next_stay()).last().unwrap();
@@ -727,27 +696,26 @@ fn pieces_follow_each_other_without_a_jump() {
     for stitch in [StitchOptions::dissolve(12), StitchOptions::inertialize(0.1)] {
         let mut walker = walker(
             &graph,
-            &WeightOptions {
-                continuity: Continuity::Share(0.4),
-                ..WeightOptions::default()
-            },
+            &WeightOptions { continuity: Continuity::Share(0.4), ..WeightOptions::default() },
             9,
         );
         let pieces = pieces(&graph, &mut walker, &stitch, 60);
         let mut start = 0;
         for piece in &pieces {
-            assert_eq!((piece.start, piece.clip.frames()), (start, piece.stay.to - piece.stay.from));
+            assert_eq!(
+                (piece.start, piece.clip.frames()),
+                (start, piece.stay.to - piece.stay.from)
+            );
             start += piece.clip.frames();
             // Behind the transition it is the clip itself, where it was recorded.
             let settled = piece.seam.map_or(0, |seam| seam.frames);
-            if let StitchOptions {
-                method: crate::transition::Method::Dissolve { .. },
-                ..
-            } = stitch
+            if let StitchOptions { method: crate::transition::Method::Dissolve { .. }, .. } = stitch
             {
                 for frame in (settled..piece.clip.frames()).step_by(5) {
-                    let own = set.clip(piece.stay.clip).unwrap().clip().pose(piece.stay.from + frame);
-                    let off = piece.clip.pose(frame).root_translation.distance(own.root_translation);
+                    let own =
+                        set.clip(piece.stay.clip).unwrap().clip().pose(piece.stay.from + frame);
+                    let off =
+                        piece.clip.pose(frame).root_translation.distance(own.root_translation);
                     assert!(off < 1e-4, "{off}");
                     assert_eq!(piece.clip.rotations(frame)[3], own.rotations[3]);
                 }
@@ -757,7 +725,10 @@ fn pieces_follow_each_other_without_a_jump() {
         let most = clip.frames() - 7;
         let mut assembling = Assembling::new(&pieces, most).unwrap();
         while !assembling.advance(&pieces, 23) {}
-        assert_eq!(assembling.finish().unwrap(), (clip.crop(0..most).unwrap(), frames[..most].to_vec()));
+        assert_eq!(
+            assembling.finish().unwrap(),
+            (clip.crop(0..most).unwrap(), frames[..most].to_vec())
+        );
         assert_eq!((clip.frames(), frames.len()), (start, start));
         let metrics = WalkMetrics::measure(&pieces, &graph, &profile);
         let mut meter = WalkMeter::new(set);
@@ -783,10 +754,7 @@ fn overlapping_blends_do_not_jump_either() {
     let graph = Arc::new(built(&set, &options).unwrap().pruned().unwrap());
     let mut walker = walker(
         &graph,
-        &WeightOptions {
-            continuity: Continuity::Share(0.1),
-            ..WeightOptions::default()
-        },
+        &WeightOptions { continuity: Continuity::Share(0.1), ..WeightOptions::default() },
         1,
     );
     let pieces = pieces(&graph, &mut walker, &StitchOptions::dissolve(17), 80);
@@ -802,20 +770,16 @@ fn mistakes_spin() {
     let measured = |mistake| {
         let mut walker = walker(
             &graph,
-            &WeightOptions {
-                continuity: Continuity::Share(0.4),
-                ..WeightOptions::default()
-            },
+            &WeightOptions { continuity: Continuity::Share(0.4), ..WeightOptions::default() },
             9,
         );
-        let options = StitchOptions {
-            mistake,
-            ..StitchOptions::dissolve(12)
-        };
+        let options = StitchOptions { mistake, ..StitchOptions::dissolve(12) };
         WalkMetrics::measure(&pieces(&graph, &mut walker, &options, 60), &graph, &profile)
     };
     assert_eq!(measured(None).spins(), 0);
-    let of_transition = [Mistake::AtanForAtan2, Mistake::DegreesInTransform, Mistake::WrongFacingAxis].map(WalkMistake::Transition);
+    let of_transition =
+        [Mistake::AtanForAtan2, Mistake::DegreesInTransform, Mistake::WrongFacingAxis]
+            .map(WalkMistake::Transition);
     let of_walk = [WalkMistake::FirstFrameOnly, WalkMistake::FirstFrameThenRecorded];
     for mistake in of_walk.into_iter().chain(of_transition) {
         let wrong = measured(Some(mistake));
@@ -827,8 +791,10 @@ fn mistakes_spin() {
 #[test]
 fn a_path_is_followed() {
     let set = three([300, 260, 240]);
-    let graph = Arc::new(built(&set, &options(Construction::Minima, 12, 12.0)).unwrap().pruned().unwrap());
-    let path = GroundPath::new(&[DVec2::new(3.0, 1.0), DVec2::new(3.0, 5.0), DVec2::new(8.0, 9.0)]).unwrap();
+    let graph =
+        Arc::new(built(&set, &options(Construction::Minima, 12, 12.0)).unwrap().pruned().unwrap());
+    let path = GroundPath::new(&[DVec2::new(3.0, 1.0), DVec2::new(3.0, 5.0), DVec2::new(8.0, 9.0)])
+        .unwrap();
     assert!((path.length() - 4.0 - 41.0_f64.sqrt()).abs() < 1e-12);
     assert_eq!(
         (path.at(-1.0), path.at(4.0), path.at(99.0)),
@@ -854,7 +820,11 @@ fn a_path_is_followed() {
             slices += 1;
             if slices % (2_100 / nodes) == 0 {
                 let (so_far, kept) = (search.so_far(&graph, &path), search.progress(&path));
-                assert!(!so_far.edges.is_empty() && kept >= before && so_far.along_m >= kept * path.length() - 1e-9);
+                assert!(
+                    !so_far.edges.is_empty()
+                        && kept >= before
+                        && so_far.along_m >= kept * path.length() - 1e-9
+                );
                 before = kept;
             }
         }
@@ -862,7 +832,8 @@ fn a_path_is_followed() {
         assert_eq!(search.so_far(&graph, &path), found);
     }
     for pair in found.edges.windows(2) {
-        let [before, after] = [pair[0], pair[1]].map(|edge| graph.graph().edge_endpoints(edge).unwrap());
+        let [before, after] =
+            [pair[0], pair[1]].map(|edge| graph.graph().edge_endpoints(edge).unwrap());
         assert_eq!(before.1, after.0);
     }
     // What is made of the way lies where the way was planned.
@@ -889,7 +860,10 @@ fn a_path_is_followed() {
     // A small budget gives a way, too, and hardly goes beyond.
     let hasty = follow(&graph, start, &path, 40, &stitched);
     assert!(!hasty.edges.is_empty() && hasty.looked_at < 1_000);
-    assert!(GroundPath::new(&[DVec2::ZERO]).is_err() && GroundPath::new(&[DVec2::NAN, DVec2::ZERO]).is_err());
+    assert!(
+        GroundPath::new(&[DVec2::ZERO]).is_err()
+            && GroundPath::new(&[DVec2::NAN, DVec2::ZERO]).is_err()
+    );
 }
 
 #[test]
@@ -921,7 +895,12 @@ fn pictures_and_histograms_count_every_pair() {
     let picture = distances.picture(0..70, 20..70, 10);
     assert_eq!(picture.len(), 7 * 5);
     let one = distances.picture(3..4, 40..41, 1)[0];
-    assert!((f64::from(one) - distances.cm(Place { clip: 0, frame: 3 }, Place { clip: 1, frame: 10 }).unwrap()).abs() < 1e-3);
+    assert!(
+        (f64::from(one)
+            - distances.cm(Place { clip: 0, frame: 3 }, Place { clip: 1, frame: 10 }).unwrap())
+        .abs()
+            < 1e-3
+    );
     assert!(distances.picture(27..28, 0..1, 1)[0].is_nan());
     let _: Planar = all
         .alignment(Place { clip: 1, frame: 3 }, Place { clip: 0, frame: 4 }, 5)
@@ -946,9 +925,13 @@ fn a_clip_whose_first_frame_alone_is_moved_goes_back_to_where_it_was_recorded() 
         for frame in (piece.seam.map_or(0, |seam| seam.frames)..piece.clip.frames()).step_by(7) {
             let stands = piece.world_from_piece.after(&piece.frames[frame]);
             let stood = recorded.frames()[piece.stay.from + frame];
-            assert!(stands.shift.distance(stood.shift) < 1e-4 && (stands.yaw - stood.yaw).abs() < 1e-4);
+            assert!(
+                stands.shift.distance(stood.shift) < 1e-4 && (stands.yaw - stood.yaw).abs() < 1e-4
+            );
             let root = piece.world_from_piece.apply(piece.clip.root_translations()[frame]);
-            assert!(root.distance(recorded.clip().root_translations()[piece.stay.from + frame]) < 1e-4);
+            assert!(
+                root.distance(recorded.clip().root_translations()[piece.stay.from + frame]) < 1e-4
+            );
         }
     }
     // In the frame of the seam it stands where the last clip does.
@@ -1014,7 +997,8 @@ struct Golden {
 
 #[test]
 fn graph_and_walk_are_those_of_numpy() {
-    let golden: Golden = serde_json::from_str(include_str!("../../tests/oracles/graph.json")).unwrap();
+    let golden: Golden =
+        serde_json::from_str(include_str!("../../tests/oracles/graph.json")).unwrap();
     let skeleton = points_skeleton(4);
     let sources = golden.clips.iter().map(|frames| {
         let clip = points_clip(&skeleton, 60.0, frames);

@@ -25,7 +25,8 @@ pub struct Stay {
     pub jump: Option<usize>,
 }
 
-/// Goes through a graph, by chance or to where it is told. The same graph, choices and seed give the same way on every machine.
+/// Goes through a graph, by chance or to where it is told. The same graph, choices and seed give
+/// the same way on every machine.
 #[derive(Clone, Debug)]
 pub struct Walker {
     graph: Arc<MotionGraph>,
@@ -68,8 +69,10 @@ impl Walker {
         Some(self)
     }
 
-    /// Every visit of a node makes the ways into it less probable: by this factor, 0 to 1, for each. 1 changes nothing, and is what a walk starts with; 0 goes
-    /// where one has been least. Visits count beyond those of the least visited of the ways out, so that a long walk is as curious as a short one.
+    /// Every visit of a node makes the ways into it less probable: by this factor, 0 to 1, for
+    /// each. 1 changes nothing, and is what a walk starts with; 0 goes where one has been least.
+    /// Visits count beyond those of the least visited of the ways out, so that a long walk is as
+    /// curious as a short one.
     ///
     /// # Errors
     /// [`GraphError::Setting`] outside 0 to 1.
@@ -98,11 +101,14 @@ impl Walker {
         &self.visits
     }
 
-    /// From here the shortest way (in frames) to a clip, then by chance again. False, and nothing changes, where there is no way.
+    /// From here the shortest way (in frames) to a clip, then by chance again. False, and nothing
+    /// changes, where there is no way.
     pub fn go_to_clip(&mut self, clip: usize) -> bool {
         let graph = &self.graph.graph;
-        let is_there = |node: NodeIndex| graph.node_weight(node).is_some_and(|stretch| stretch.clip == clip);
-        let frames = |edge: petgraph::graph::EdgeReference<'_, super::Way>| self.graph.frames_of(edge.id());
+        let is_there =
+            |node: NodeIndex| graph.node_weight(node).is_some_and(|stretch| stretch.clip == clip);
+        let frames =
+            |edge: petgraph::graph::EdgeReference<'_, super::Way>| self.graph.frames_of(edge.id());
         let Some((_, nodes)) = astar(graph, self.at, is_there, frames, |_| 0) else {
             return false;
         };
@@ -144,9 +150,12 @@ impl Walker {
         Some(edge)
     }
 
-    /// The edge that comes next, in front of those ahead: chance is asked once, and what it said holds.
+    /// The edge that comes next, in front of those ahead: chance is asked once, and what it said
+    /// holds.
     fn decided(&mut self) -> Option<EdgeIndex> {
-        let leads_from_here = |edge: &EdgeIndex| self.graph.graph.edge_endpoints(*edge).is_some_and(|(from, _)| from == self.at);
+        let leads_from_here = |edge: &EdgeIndex| {
+            self.graph.graph.edge_endpoints(*edge).is_some_and(|(from, _)| from == self.at)
+        };
         if let Some(edge) = self.ahead.front().copied().filter(leads_from_here) {
             return Some(edge);
         }
@@ -156,8 +165,10 @@ impl Walker {
         Some(edge)
     }
 
-    /// Goes on in its clip to the first node that begins at `frame` of the clip or behind it: whatever is decided there, what plays before that frame stays. It stops
-    /// where chance has chosen a transition; that one leaves the clip behind `frame` if the stay does that [`Self::next_stay`] would give now.
+    /// Goes on in its clip to the first node that begins at `frame` of the clip or behind it:
+    /// whatever is decided there, what plays before that frame stays. It stops where chance has
+    /// chosen a transition; that one leaves the clip behind `frame` if the stay does that
+    /// [`Self::next_stay`] would give now.
     pub fn go_on_to(&mut self, frame: usize) {
         while self.graph.graph.node_weight(self.at).is_some_and(|stretch| stretch.start < frame) {
             let way = self.decided().and_then(|edge| self.graph.graph.edge_weight(edge));
@@ -167,7 +178,8 @@ impl Walker {
         }
     }
 
-    /// Up to the next transition; the last stay, before a dead end, goes to where its node ends, and `None` comes behind it.
+    /// Up to the next transition; the last stay, before a dead end, goes to where its node ends,
+    /// and `None` comes behind it.
     pub fn next_stay(&mut self) -> Option<Stay> {
         if self.ended {
             return None;
@@ -176,12 +188,7 @@ impl Walker {
             let stretch = *self.graph.graph.node_weight(self.at)?;
             // Before the edge is gone: behind a transition begins the next stay.
             let (from, jump) = self.since;
-            let stay = |to: usize| Stay {
-                clip: stretch.clip,
-                from,
-                to,
-                jump,
-            };
+            let stay = |to: usize| Stay { clip: stretch.clip, from, to, jump };
             let Some(edge) = self.next_edge() else {
                 self.ended = true;
                 return Some(stay(stretch.end));
@@ -199,7 +206,8 @@ impl Walker {
             let to = self.graph.graph.edge_endpoints(edge).map_or(0, |(_, to)| to.index());
             self.visits.get(to).copied().unwrap_or(0)
         };
-        let worths = discounted(ways.iter().map(|&(edge, share)| (share, visits(edge))), self.discount);
+        let worths =
+            discounted(ways.iter().map(|&(edge, share)| (share, visits(edge))), self.discount);
         let whole: u64 = worths.iter().sum();
         let drawn = u128::from(self.rng.next_u64());
         let mut ticket = ((drawn * u128::from(whole)) >> 64) as u64;
@@ -213,8 +221,9 @@ impl Walker {
     }
 }
 
-/// What ways are worth, by their shares and how often their ends were visited. Only how much more often one was visited than another counts: however long a walk
-/// is, the least visited way keeps all of its share, and ratios stay what they are until they are too small for the whole numbers.
+/// What ways are worth, by their shares and how often their ends were visited. Only how much more
+/// often one was visited than another counts: however long a walk is, the least visited way keeps
+/// all of its share, and ratios stay what they are until they are too small for the whole numbers.
 ///
 /// The power is `libm`'s, which is the same on every machine.
 fn discounted(ways: impl Iterator<Item = (u64, u32)> + Clone, factor: f64) -> Vec<u64> {

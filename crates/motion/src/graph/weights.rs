@@ -6,7 +6,8 @@ use petgraph::graph::{EdgeIndex, NodeIndex};
 pub enum DistanceLaw {
     /// 1 / D: a transition twice as far is half as probable.
     Inverse,
-    /// exp(-D / σ), with D less the smallest of the node (Lee, Chai, Reitsma, Hodgins, Pollard 2002, section 4.1).
+    /// exp(-D / σ), with D less the smallest of the node (Lee, Chai, Reitsma, Hodgins, Pollard
+    /// 2002, section 4.1).
     Exponential {
         /// σ, centimetres.
         sigma_cm: f64,
@@ -22,7 +23,8 @@ pub enum DistanceLaw {
 pub enum Continuity {
     /// With this probability, 0 to 1, however many transitions there are.
     Share(f64),
-    /// With this weight, above 0, among the weights that [`DistanceLaw`] gives the transitions: every further way out makes it less probable.
+    /// With this weight, above 0, among the weights that [`DistanceLaw`] gives the transitions:
+    /// every further way out makes it less probable.
     Weight(f64),
 }
 
@@ -42,10 +44,7 @@ pub struct WeightOptions {
 
 impl Default for WeightOptions {
     fn default() -> Self {
-        Self {
-            continuity: Continuity::Share(0.95),
-            law: DistanceLaw::Inverse,
-        }
+        Self { continuity: Continuity::Share(0.95), law: DistanceLaw::Inverse }
     }
 }
 
@@ -59,15 +58,17 @@ const MOST_STEPS: usize = 2_000;
 /// The ways out of every node with their probabilities, as whole numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Choices {
-    /// Edges in the order of their indices, one node's behind the other's, with shares of [`WHOLE`] that add up to it for each node.
+    /// Edges in the order of their indices, one node's behind the other's, with shares of [`WHOLE`]
+    /// that add up to it for each node.
     ways: Vec<(EdgeIndex, u64)>,
     /// Where in `ways` those of a node end.
     ends: Vec<usize>,
 }
 
 impl Choices {
-    /// The probabilities of a graph's edges. Those of one node add up to 1, exactly: they are multiples of 2⁻³². A node whose clip ends has
-    /// transitions only; one without transitions goes on; one without both has none.
+    /// The probabilities of a graph's edges. Those of one node add up to 1, exactly: they are
+    /// multiples of 2⁻³². A node whose clip ends has transitions only; one without transitions goes
+    /// on; one without both has none.
     ///
     /// # Errors
     /// [`GraphError::Setting`] when the continuity is out of range, or σ not above 0.
@@ -81,7 +82,9 @@ impl Choices {
         };
         match options.continuity {
             Continuity::Share(share) => setting("a continuity", share, 0.0, 1.0)?,
-            Continuity::Weight(weight) => setting("a weight of going on", weight, 1e-6, Continuity::MOST_WEIGHT)?,
+            Continuity::Weight(weight) => {
+                setting("a weight of going on", weight, 1e-6, Continuity::MOST_WEIGHT)?
+            }
         }
         if let DistanceLaw::Exponential { sigma_cm } = options.law {
             setting("a width of the exponential law", sigma_cm, 1e-3, 1e6)?;
@@ -126,15 +129,17 @@ impl Choices {
         self.probabilities(node).filter(goes_on).map(|(_, p)| p).sum()
     }
 
-    /// How many nodes play on end until the next transition, on average, if all are like this one: 1 / (1 - p). Infinite where the clip always goes on.
+    /// How many nodes play on end until the next transition, on average, if all are like this one:
+    /// 1 / (1 - p). Infinite where the clip always goes on.
     #[must_use]
     pub fn expected_run_nodes(&self, graph: &MotionGraph, node: NodeIndex) -> f64 {
         (1.0 - self.p_continue(graph, node)).recip()
     }
 
-    /// Seconds from one transition to the next in a long walk, on average: frames per step over transitions per step, weighed by how often a
-    /// walk comes through each node (the stationary distribution, by power iteration). `None` where a walk has no transitions in the long run, or
-    /// comes to an end.
+    /// Seconds from one transition to the next in a long walk, on average: frames per step over
+    /// transitions per step, weighed by how often a walk comes through each node (the stationary
+    /// distribution, by power iteration). `None` where a walk has no transitions in the long run,
+    /// or comes to an end.
     #[must_use]
     pub fn expected_run_secs(&self, graph: &MotionGraph) -> Option<f64> {
         let mut run = RunLength::new(graph, self);
@@ -149,7 +154,8 @@ pub struct RunLength {
     /// How probable it is to be in each node.
     now: Vec<f64>,
     next: Vec<f64>,
-    /// The ways into every node, one node's behind the other's: where they come from, and half of how probable they are there.
+    /// The ways into every node, one node's behind the other's: where they come from, and half of
+    /// how probable they are there.
     ways: Vec<(u32, f64)>,
     /// Where in `ways` those of a node end.
     ends: Vec<usize>,
@@ -189,8 +195,11 @@ impl RunLength {
             self.steps += 1;
             let (mut from, mut change) = (0, 0.0);
             for ((next, &end), &now) in self.next.iter_mut().zip(&self.ends).zip(&self.now) {
-                // Half of it stays where it is: a walk that comes round in a fixed number of steps would never settle.
-                let arriving = self.ways[from..end].iter().map(|&(from, share)| self.now[from as usize] * share);
+                // Half of it stays where it is: a walk that comes round in a fixed number of steps
+                // would never settle.
+                let arriving = self.ways[from..end]
+                    .iter()
+                    .map(|&(from, share)| self.now[from as usize] * share);
                 *next = arriving.fold(0.5 * now, |sum, p| sum + p);
                 change += (*next - now).abs();
                 from = end;
@@ -222,8 +231,9 @@ fn share_of(share: u64) -> f64 {
     share as f64 / WHOLE as f64
 }
 
-/// Brings things together that belong to the same of `groups`: where those of each group end, and the numbers of the things in that order, in
-/// which things of one group stay in theirs. Three passes over flat arrays: of very many edges, lists of lists would take most of the time.
+/// Brings things together that belong to the same of `groups`: where those of each group end, and
+/// the numbers of the things in that order, in which things of one group stay in theirs. Three
+/// passes over flat arrays: of very many edges, lists of lists would take most of the time.
 fn grouped(groups: usize, of: impl Iterator<Item = NodeIndex> + Clone) -> (Vec<usize>, Vec<usize>) {
     let mut next = vec![0; groups + 1];
     let mut count = 0;
@@ -243,8 +253,13 @@ fn grouped(groups: usize, of: impl Iterator<Item = NodeIndex> + Clone) -> (Vec<u
     (next, order)
 }
 
-/// Appends the ways out of one node with their shares. `edges` are those of the node, with the distances of transitions.
-fn share_out(edges: &[(EdgeIndex, Option<f64>)], options: &WeightOptions, ways: &mut Vec<(EdgeIndex, u64)>) {
+/// Appends the ways out of one node with their shares. `edges` are those of the node, with the
+/// distances of transitions.
+fn share_out(
+    edges: &[(EdgeIndex, Option<f64>)],
+    options: &WeightOptions,
+    ways: &mut Vec<(EdgeIndex, u64)>,
+) {
     let distances = || edges.iter().filter_map(|&(_, distance)| distance);
     let nearest = distances().fold(f64::INFINITY, f64::min);
     let weight = |distance: f64| match options.law {

@@ -21,11 +21,13 @@ const GATHERED: usize = 3_000;
 /// Frames that are sorted into boxes in one step.
 const SLICE: usize = 100_000;
 
-/// Builds a [`Database`] in slices: [`advance`](Self::advance) until it is complete, then [`finish`](Self::finish).
+/// Builds a [`Database`] in slices: [`advance`](Self::advance) until it is complete, then
+/// [`finish`](Self::finish).
 ///
-/// Each clip is moved to the first clip's skeleton and to [`RATE`] frames per second, measured, and mirrored; one of these for one clip is a
-/// slice. Then features are normalised and frames sorted into boxes. A clip that is a cycle is closed and goes round
-/// ([`DatabaseOptions::cycles`]). Another one that is too short to look ahead in is left out and named in [`Database::skipped`].
+/// Each clip is moved to the first clip's skeleton and to [`RATE`] frames per second, measured, and
+/// mirrored; one of these for one clip is a slice. Then features are normalised and frames sorted
+/// into boxes. A clip that is a cycle is closed and goes round ([`DatabaseOptions::cycles`]).
+/// Another one that is too short to look ahead in is left out and named in [`Database::skipped`].
 #[derive(Clone, Debug)]
 pub struct DatabaseBuilder {
     clips: Vec<MatchClip>,
@@ -60,15 +62,19 @@ struct Round {
 }
 
 impl Round {
-    /// The contacts of the feet; in a cycle those of a round in the middle of others, where no stance is cut off.
+    /// The contacts of the feet; in a cycle those of a round in the middle of others, where no
+    /// stance is cut off.
     fn contacts(&self, roles: &Roles) -> Result<Contacts, MatchError> {
         let detect = |clip: &Clip| Contacts::detect(clip, roles, &ContactOptions::default());
-        let Some(cycle) = &self.cycle else { return Ok(detect(&self.clip)) };
+        let Some(cycle) = &self.cycle else {
+            return Ok(detect(&self.clip));
+        };
         let frames = self.clip.frames();
         let three = detect(&play_around(&self.clip, cycle, 3)?);
-        Ok(Contacts::from_flags(Side::BOTH.map(|side| {
-            (frames..2 * frames).map(|frame| three.planted(side, frame)).collect()
-        })))
+        Ok(Contacts::from_flags(
+            Side::BOTH
+                .map(|side| (frames..2 * frames).map(|frame| three.planted(side, frame)).collect()),
+        ))
     }
 }
 
@@ -82,11 +88,7 @@ struct Gathering {
 
 impl Gathering {
     fn new() -> Self {
-        Self {
-            starts: vec![0],
-            valid: Vec::new(),
-            rows: Vec::new(),
-        }
+        Self { starts: vec![0], valid: Vec::new(), rows: Vec::new() }
     }
 
     /// Motions that are through.
@@ -124,19 +126,18 @@ impl DatabaseBuilder {
     /// Checks what can be checked beforehand.
     ///
     /// # Errors
-    /// [`MatchError::NoClips`], [`MatchError::Times`], [`MatchError::TooManyFrames`], [`MatchError::NoFeet`] for the first clip.
+    /// [`MatchError::NoClips`], [`MatchError::Times`], [`MatchError::TooManyFrames`],
+    /// [`MatchError::NoFeet`] for the first clip.
     pub fn new(clips: Vec<MatchClip>, options: &DatabaseOptions) -> Result<Self, MatchError> {
         let layout = Layout::new(&options.features)?;
         let first = clips.first().ok_or(MatchError::NoClips)?;
         FeatureJoints::find(&first.clip, &first.roles)?;
         let (skeleton, roles) = (Arc::clone(first.clip.skeleton()), first.roles.clone());
         let copies = if options.mirrored { 2.0 } else { 1.0 };
-        let frames: f64 = clips.iter().map(|clip| clip.clip.duration_secs() * RATE as f64 * copies).sum();
+        let frames: f64 =
+            clips.iter().map(|clip| clip.clip.duration_secs() * RATE as f64 * copies).sum();
         if frames > MOST_FRAMES as f64 {
-            return Err(MatchError::TooManyFrames {
-                frames: frames as usize,
-                most: MOST_FRAMES,
-            });
+            return Err(MatchError::TooManyFrames { frames: frames as usize, most: MOST_FRAMES });
         }
         let longest_secs = clips.iter().map(|clip| clip.clip.duration_secs()).fold(0.0, f64::max);
         Ok(Self {
@@ -153,22 +154,20 @@ impl DatabaseBuilder {
         })
     }
 
-    /// The clips of a database with other features: nothing is measured again but where trajectories lead.
+    /// The clips of a database with other features: nothing is measured again but where
+    /// trajectories lead.
     ///
     /// # Errors
     /// [`MatchError::Times`].
-    pub fn retimed(database: &Database, features: &super::FeatureOptions) -> Result<Self, MatchError> {
-        let longest = database
-            .motions
-            .iter()
-            .map(|motion| motion.clip().duration_secs())
-            .fold(0.0, f64::max);
+    pub fn retimed(
+        database: &Database,
+        features: &super::FeatureOptions,
+    ) -> Result<Self, MatchError> {
+        let longest =
+            database.motions.iter().map(|motion| motion.clip().duration_secs()).fold(0.0, f64::max);
         Ok(Self {
             clips: Vec::new(),
-            options: DatabaseOptions {
-                features: features.clone(),
-                ..database.options.clone()
-            },
+            options: DatabaseOptions { features: features.clone(), ..database.options.clone() },
             layout: Layout::new(features)?,
             skeleton: Arc::clone(&database.skeleton),
             roles: database.roles.clone(),
@@ -183,17 +182,23 @@ impl DatabaseBuilder {
     /// How far it has come, out of 1000.
     #[must_use]
     pub fn progress(&self) -> Progress {
-        let of_clip = |part: usize| (4 * self.next + part) * CLIPS_SHARE / (4 * self.clips.len()).max(1);
+        let of_clip =
+            |part: usize| (4 * self.next + part) * CLIPS_SHARE / (4 * self.clips.len()).max(1);
         let done = match &self.stage {
             Stage::Prepare => of_clip(0),
             Stage::Measure(_) => of_clip(1),
             Stage::Mirror => of_clip(2),
             Stage::MeasureMirrored(_) => of_clip(3),
-            Stage::Gather(gathering) => CLIPS_SHARE + GATHER_SHARE * gathering.motions() / self.motions.len().max(1),
+            Stage::Gather(gathering) => {
+                CLIPS_SHARE + GATHER_SHARE * gathering.motions() / self.motions.len().max(1)
+            }
             Stage::Normalise(_) => CLIPS_SHARE + GATHER_SHARE,
             Stage::Sort(sorting) => {
                 let Progress { done, total } = sorting.progress;
-                CLIPS_SHARE + GATHER_SHARE + 50 + (950 - CLIPS_SHARE - GATHER_SHARE) * done / total.max(1)
+                CLIPS_SHARE
+                    + GATHER_SHARE
+                    + 50
+                    + (950 - CLIPS_SHARE - GATHER_SHARE) * done / total.max(1)
             }
         };
         Progress { done, total: 1_000 }
@@ -202,8 +207,8 @@ impl DatabaseBuilder {
     /// Does one slice.
     ///
     /// # Errors
-    /// [`MatchError`] when a clip cannot be moved to the first one's skeleton or mirrored, has no feet there or holds what is no number, or no clip
-    /// has a frame that can be searched.
+    /// [`MatchError`] when a clip cannot be moved to the first one's skeleton or mirrored, has no
+    /// feet there or holds what is no number, or no clip has a frame that can be searched.
     pub fn advance(&mut self) -> Result<Progress, MatchError> {
         match std::mem::replace(&mut self.stage, Stage::Prepare) {
             Stage::Prepare => match self.clips.get(self.next) {
@@ -224,7 +229,8 @@ impl DatabaseBuilder {
             },
             Stage::Measure(round) => {
                 let contacts = round.contacts(&self.roles)?;
-                let mut motion = Motion::new(round.clip, round.cycle, &self.roles, contacts, self.next, false)?;
+                let mut motion =
+                    Motion::new(round.clip, round.cycle, &self.roles, contacts, self.next, false)?;
                 motion.tags = self.tags_of(&motion);
                 self.motions.push(Arc::new(motion));
                 self.stage = if self.options.mirrored { Stage::Mirror } else { self.next_clip() };
@@ -232,9 +238,8 @@ impl DatabaseBuilder {
             Stage::Mirror => {
                 self.stage = match self.motions.last() {
                     Some(motion) => {
-                        let clip = mirror(motion.clip(), &self.roles).map_err(|error| MatchError::Mirror {
-                            name: motion.clip().name().to_owned(),
-                            error,
+                        let clip = mirror(motion.clip(), &self.roles).map_err(|error| {
+                            MatchError::Mirror { name: motion.clip().name().to_owned(), error }
                         })?;
                         Stage::MeasureMirrored(Round {
                             clip: Arc::new(clip),
@@ -247,7 +252,14 @@ impl DatabaseBuilder {
             Stage::MeasureMirrored(round) => {
                 if let Some(original) = self.motions.last() {
                     let contacts = mirrored_contacts(original.contacts());
-                    let mut motion = Motion::new(round.clip, round.cycle, &self.roles, contacts, self.next, true)?;
+                    let mut motion = Motion::new(
+                        round.clip,
+                        round.cycle,
+                        &self.roles,
+                        contacts,
+                        self.next,
+                        true,
+                    )?;
                     motion.tags.clone_from(&original.tags);
                     self.motions.push(Arc::new(motion));
                 }
@@ -291,7 +303,9 @@ impl DatabaseBuilder {
                         roles: self.roles,
                         masks: index.masks(&tags),
                         index: Arc::new(index),
-                        moving: moving_joints_of(self.motions.iter().map(|motion| &**motion.clip())),
+                        moving: moving_joints_of(
+                            self.motions.iter().map(|motion| &**motion.clip()),
+                        ),
                         pace: Pace::of_all(self.motions.iter().map(|motion| motion.pace())),
                         motions: self.motions,
                         starts: sorting.starts,
@@ -319,19 +333,15 @@ impl DatabaseBuilder {
         if clip.skeleton() != &self.skeleton
             && let Some(model) = self.clips.first()
         {
-            let moved = retarget_onto(&clip, &from.roles, &model.clip, &model.roles).map_err(|error| MatchError::Retarget {
-                name: clip.name().to_owned(),
-                error,
-            })?;
+            let moved = retarget_onto(&clip, &from.roles, &model.clip, &model.roles)
+                .map_err(|error| MatchError::Retarget { name: clip.name().to_owned(), error })?;
             clip = Arc::new(moved);
         }
         if self.options.cycles
-            && let Some((clip, cycle)) = round::closed(&clip, &self.roles).as_ref().and_then(round::at_rate)
+            && let Some((clip, cycle)) =
+                round::closed(&clip, &self.roles).as_ref().and_then(round::at_rate)
         {
-            return Ok(Round {
-                clip: Arc::new(clip),
-                cycle: Some(cycle),
-            });
+            return Ok(Round { clip: Arc::new(clip), cycle: Some(cycle) });
         }
         if clip.fps() != RATE as f64 {
             clip = Arc::new(resample(&clip, RATE as f64, Interpolation::Cubic)?);
@@ -340,7 +350,9 @@ impl DatabaseBuilder {
     }
 
     fn tags_of(&self, motion: &Motion) -> Vec<TagRange> {
-        let Some(from) = self.clips.get(self.next) else { return Vec::new() };
+        let Some(from) = self.clips.get(self.next) else {
+            return Vec::new();
+        };
         if let Some(tags) = &from.tags {
             let at = |frame: usize| (frame as f64 * RATE as f64 / from.clip.fps()).round() as usize;
             let range = |range: &TagRange| TagRange {
@@ -368,7 +380,8 @@ impl DatabaseBuilder {
             counts[frame as usize] = true;
         }
         let normalisation = self.options.features.normalisation;
-        let features = Features::normalise(self.layout.clone(), normalisation, rows, |row| counts[row]);
+        let features =
+            Features::normalise(self.layout.clone(), normalisation, rows, |row| counts[row]);
         let boxes = BoxBuilder::new(&valid, &Weights::default().spread(&self.layout));
         Ok(Sorting {
             starts,

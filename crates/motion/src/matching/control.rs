@@ -2,15 +2,18 @@ use super::tags::{TagFilter, TagSet};
 use glam::DVec2;
 use std::f64::consts::TAU;
 
-/// Steps of a velocity, metres per second, and of a facing, parts of a turn. A stick trembles by less.
+/// Steps of a velocity, metres per second, and of a facing, parts of a turn. A stick trembles by
+/// less.
 const SPEED_STEP: f64 = 0.05;
 const TURN_STEPS: f64 = 256.0;
 /// The fastest that can be asked for in x or z, metres per second.
 const MOST_MPS: f64 = 12.0;
 
-/// What the player asks for at one moment, in the world: already relative to the camera, already at the gait's speed.
+/// What the player asks for at one moment, in the world: already relative to the camera, already at
+/// the gait's speed.
 ///
-/// Rounded to 5 cm/s and to 1/256 of a turn, so that what was recorded and written down is what was played.
+/// Rounded to 5 cm/s and to 1/256 of a turn, so that what was recorded and written down is what was
+/// played.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Control {
     /// (x, z) in steps of 5 cm/s.
@@ -21,14 +24,16 @@ pub struct Control {
 }
 
 impl Control {
-    /// Asks for a velocity over the ground ((x, z), metres per second) and, to strafe, a yaw to face (radians about +Y, 0 is +Z). What is no number is 0.
+    /// Asks for a velocity over the ground ((x, z), metres per second) and, to strafe, a yaw to
+    /// face (radians about +Y, 0 is +Z). What is no number is 0.
     #[must_use]
     pub fn new(velocity_mps: DVec2, facing_yaw: Option<f64>) -> Self {
         // A cast from NaN gives 0.
         let step = |speed: f64| (speed.clamp(-MOST_MPS, MOST_MPS) / SPEED_STEP).round() as i16;
         Self {
             velocity: [step(velocity_mps.x), step(velocity_mps.y)],
-            facing: facing_yaw.map(|yaw| (yaw / TAU * TURN_STEPS).round().rem_euclid(TURN_STEPS) as u8),
+            facing: facing_yaw
+                .map(|yaw| (yaw / TAU * TURN_STEPS).round().rem_euclid(TURN_STEPS) as u8),
             filter: TagFilter::default(),
         }
     }
@@ -65,10 +70,12 @@ impl Control {
     }
 }
 
-/// Input over time: what was asked for in every tick of a controller. Playing it again gives the same motion, bit for bit.
+/// Input over time: what was asked for in every tick of a controller. Playing it again gives the
+/// same motion, bit for bit.
 ///
-/// As text it is made of letters that a link needs not escape: stretches joined by `_`, each `ticks.x.z`, then `.f` and the facing where there is one,
-/// `.a` and `.n` and the tags asked for and forbidden; numbers in base 36.
+/// As text it is made of letters that a link needs not escape: stretches joined by `_`, each
+/// `ticks.x.z`, then `.f` and the facing where there is one, `.a` and `.n` and the tags asked for
+/// and forbidden; numbers in base 36.
 ///
 /// ```
 /// use segue_motion::matching::{Control, Recording};
@@ -118,7 +125,8 @@ impl Recording {
         self.hold(control, 1)
     }
 
-    /// The same input for some ticks. `false`, and nothing is added, when that is longer than [`Self::MOST_TICKS`].
+    /// The same input for some ticks. `false`, and nothing is added, when that is longer than
+    /// [`Self::MOST_TICKS`].
     pub fn hold(&mut self, control: Control, ticks: u32) -> bool {
         if ticks > Self::MOST_TICKS - self.ticks {
             return false;
@@ -211,10 +219,7 @@ fn stretch(text: &str) -> Option<(Control, u32)> {
     let ticks = u32::try_from(number()?).ok()?;
     let most = (MOST_MPS / SPEED_STEP) as i64;
     let mut velocity = || number().filter(|step| step.abs() <= most).map(|step| step as i16);
-    let mut control = Control {
-        velocity: [velocity()?, velocity()?],
-        ..Control::default()
-    };
+    let mut control = Control { velocity: [velocity()?, velocity()?], ..Control::default() };
     for part in parts {
         let value = i64::from_str_radix(part.get(1..)?, 36).ok()?;
         match part.get(..1)? {
@@ -284,10 +289,8 @@ mod tests {
             Control::new(DVec2::splat(f64::INFINITY), Some(f64::NAN)).velocity(),
             DVec2::splat(12.0)
         );
-        let walk = Control::default().with_filter(TagFilter {
-            ask: TagSet::of(&[Tag::Walk]),
-            forbid: TagSet::NONE,
-        });
+        let walk = Control::default()
+            .with_filter(TagFilter { ask: TagSet::of(&[Tag::Walk]), forbid: TagSet::NONE });
         let mut recording = Recording::new();
         assert!(recording.push(walk) && recording.to_text() == "1.0.0.a1");
         assert!(!recording.hold(walk, Recording::MOST_TICKS));

@@ -10,7 +10,19 @@ use crate::skeleton::{Pose, Roles, Skeleton};
 use std::sync::Arc;
 
 /// A frame of one of the motions.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    Default,
+    PartialEq,
+    Eq,
+    PartialOrd,
+    Ord,
+    Hash,
+    serde::Serialize,
+    serde::Deserialize,
+)]
 pub struct Place {
     /// The motion's index in its [`Database`].
     pub motion: usize,
@@ -44,25 +56,22 @@ pub struct DatabaseOptions {
     pub features: FeatureOptions,
     /// Whether each clip is followed by its mirror image.
     pub mirrored: bool,
-    /// Whether a clip that is a cycle, by itself or but for a rest, goes round: it is searched to its last frame and plays on behind it. Without it
-    /// every clip ends.
+    /// Whether a clip that is a cycle, by itself or but for a rest, goes round: it is searched to
+    /// its last frame and plays on behind it. Without it every clip ends.
     pub cycles: bool,
 }
 
 impl Default for DatabaseOptions {
     fn default() -> Self {
-        Self {
-            features: FeatureOptions::default(),
-            mirrored: true,
-            cycles: true,
-        }
+        Self { features: FeatureOptions::default(), mirrored: true, cycles: true }
     }
 }
 
 /// Clips to match: their frames one behind the other, with features, tags, and an index of boxes.
 ///
-/// Made once ([`DatabaseBuilder`]), shared by any number of controllers. What it is made of is shared too: new tags ([`Self::retagged`]) or other
-/// trajectory times ([`DatabaseBuilder::retimed`]) give another database that holds the same clips.
+/// Made once ([`DatabaseBuilder`]), shared by any number of controllers. What it is made of is
+/// shared too: new tags ([`Self::retagged`]) or other trajectory times
+/// ([`DatabaseBuilder::retimed`]) give another database that holds the same clips.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Database {
     pub(super) options: DatabaseOptions,
@@ -97,15 +106,16 @@ impl Database {
         &self.options
     }
 
-    /// The height of the ground under all motions, metres: the lowest of theirs, so that no foot is lifted off the ground that its own clip has, nor moved
-    /// from one height to another by a jump.
+    /// The height of the ground under all motions, metres: the lowest of theirs, so that no foot is
+    /// lifted off the ground that its own clip has, nor moved from one height to another by a jump.
     #[must_use]
     pub fn ground_m(&self) -> f32 {
         let heights = self.motions.iter().map(|motion| motion.ground_m());
         heights.min_by(f32::total_cmp).unwrap_or(0.0)
     }
 
-    /// The height that the lowest point of a foot has as a rule while it is on the ground, metres: the middle one of the motions'.
+    /// The height that the lowest point of a foot has as a rule while it is on the ground, metres:
+    /// the middle one of the motions'.
     pub(super) fn stand_m(&self) -> f32 {
         let heights: Vec<f32> = self.motions.iter().map(|motion| motion.stand_m()).collect();
         stats::percentile(&heights, 0.5).unwrap_or(0.0)
@@ -141,7 +151,8 @@ impl Database {
         self.starts.last().copied().unwrap_or(0)
     }
 
-    /// Frames that can be found: those whose trajectory lies inside their motion, and all of a cycle.
+    /// Frames that can be found: those whose trajectory lies inside their motion, and all of a
+    /// cycle.
     #[must_use]
     pub fn valid(&self) -> &[u32] {
         &self.valid
@@ -159,7 +170,8 @@ impl Database {
         &self.pace
     }
 
-    /// The normalised features of all frames. Those of frames that cannot be found go on behind the end of their motion as it did last.
+    /// The normalised features of all frames. Those of frames that cannot be found go on behind the
+    /// end of their motion as it did last.
     #[must_use]
     pub fn features(&self) -> &Features {
         &self.features
@@ -180,11 +192,7 @@ impl Database {
     /// What a scan or a tree is made over.
     #[must_use]
     pub fn candidates(&self) -> Candidates<'_> {
-        Candidates {
-            features: &self.features,
-            tags: &self.tags,
-            valid: &self.valid,
-        }
+        Candidates { features: &self.features, tags: &self.tags, valid: &self.valid }
     }
 
     /// The tags of a frame.
@@ -198,10 +206,7 @@ impl Database {
     pub fn place(&self, frame: usize) -> Option<Place> {
         // Motions have frames, so that no two start at one number.
         let motion = self.starts.partition_point(|&start| start <= frame).checked_sub(1)?;
-        (motion < self.motions.len()).then(|| Place {
-            motion,
-            frame: frame - self.starts[motion],
-        })
+        (motion < self.motions.len()).then(|| Place { motion, frame: frame - self.starts[motion] })
     }
 
     /// The number of a motion's frame; `None` outside the motion.
@@ -211,14 +216,16 @@ impl Database {
         (place.frame < motion.frames()).then(|| self.starts[place.motion] + place.frame)
     }
 
-    /// Whether a frame can be found: its trajectory lies inside its motion, or that is a cycle. Tags are another matter.
+    /// Whether a frame can be found: its trajectory lies inside its motion, or that is a cycle.
+    /// Tags are another matter.
     #[must_use]
     pub fn is_valid(&self, place: Place) -> bool {
         self.motion(place.motion)
             .is_some_and(|motion| place.frame < motion.valid(self.features.layout()))
     }
 
-    /// The cost of a frame, block by block, in the order of [`Block::ALL`]. Zeros for a frame that is not there.
+    /// The cost of a frame, block by block, in the order of [`Block::ALL`]. Zeros for a frame that
+    /// is not there.
     #[must_use]
     pub fn split(&self, query: &[f32], weights: &Weights, frame: usize) -> [f32; Block::COUNT] {
         let Some(row) = self.features.row(frame) else {
@@ -236,7 +243,8 @@ impl Database {
         })
     }
 
-    /// The pose of a frame as it looks when the character stands at `world_from_character`; `None` for a frame that is not there.
+    /// The pose of a frame as it looks when the character stands at `world_from_character`; `None`
+    /// for a frame that is not there.
     #[must_use]
     pub fn pose(&self, place: Place, world_from_character: &Planar) -> Option<Pose> {
         let motion = self.motion(place.motion)?;
@@ -249,7 +257,8 @@ impl Database {
         Some(pose)
     }
 
-    /// Where the character will be at the trajectory times if a motion goes on from `place`, standing at `world_from_character`.
+    /// Where the character will be at the trajectory times if a motion goes on from `place`,
+    /// standing at `world_from_character`.
     #[must_use]
     pub fn trajectory(&self, place: Place, world_from_character: &Planar) -> Vec<Planar> {
         let Some(motion) = self.motion(place.motion) else {
@@ -257,13 +266,12 @@ impl Database {
         };
         let world_from_clip = world_from_character.after(&motion.root(place.frame).inverse());
         let ahead = self.features.layout().ahead().iter();
-        ahead
-            .map(|ahead| world_from_clip.after(&motion.root(place.frame + ahead)))
-            .collect()
+        ahead.map(|ahead| world_from_clip.after(&motion.root(place.frame + ahead))).collect()
     }
 
-    /// The same database with other tags on a clip and its mirror image: `source` is the clip's number among those it was built from, `tags` are
-    /// at [`RATE`]. O(frames); features and boxes stay.
+    /// The same database with other tags on a clip and its mirror image: `source` is the clip's
+    /// number among those it was built from, `tags` are at [`RATE`]. O(frames); features and boxes
+    /// stay.
     #[must_use]
     pub fn retagged(&self, source: usize, tags: &[TagRange]) -> Self {
         let mut tagged = self.clone();

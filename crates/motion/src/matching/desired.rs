@@ -4,9 +4,10 @@ use glam::DVec2;
 
 /// The simulation object: what the player steers, and what the character follows.
 ///
-/// Its velocity is a critically damped spring towards the velocity that is asked for, with an acceleration of its own, so that the way is smooth to
-/// the third derivative; its yaw is one towards the facing that is asked for (Holden, "Code vs Data Driven Displacement", 2021). Both are solved exactly: where it will be
-/// is the same formula with a longer time.
+/// Its velocity is a critically damped spring towards the velocity that is asked for, with an
+/// acceleration of its own, so that the way is smooth to the third derivative; its yaw is one
+/// towards the facing that is asked for (Holden, "Code vs Data Driven Displacement", 2021). Both
+/// are solved exactly: where it will be is the same formula with a longer time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Simulation {
     /// (x, z), metres.
@@ -41,15 +42,11 @@ impl Simulation {
     /// Stands.
     #[must_use]
     pub fn at_rest(at: &Planar) -> Self {
-        Self {
-            position: at.shift,
-            yaw: at.yaw,
-            goal_yaw: at.yaw,
-            ..Self::default()
-        }
+        Self { position: at.shift, yaw: at.yaw, goal_yaw: at.yaw, ..Self::default() }
     }
 
-    /// Takes over what is asked for. Who does not strafe faces where he goes, and when he stops, where he went.
+    /// Takes over what is asked for. Who does not strafe faces where he goes, and when he stops,
+    /// where he went.
     pub fn ask(&mut self, control: &Control) {
         self.goal_velocity = control.velocity();
         let v = self.goal_velocity;
@@ -71,11 +68,14 @@ impl Simulation {
         // Integral of e^(-ys) (off + j s), with j = a + y off.
         let j = self.acceleration + off * y;
         let e = libm::exp(-y * t);
-        later.position += self.goal_velocity * t + off * ((1.0 - e) / y) + j * ((1.0 - e * (1.0 + y * t)) / (y * y));
+        later.position += self.goal_velocity * t
+            + off * ((1.0 - e) / y)
+            + j * ((1.0 - e * (1.0 + y * t)) / (y * y));
         later.velocity = self.goal_velocity + off * response.xx + self.acceleration * response.xv;
         later.acceleration = off * response.vx + self.acceleration * response.vv;
         let turn = wrap_angle(self.yaw - self.goal_yaw);
-        let (left, rate) = spring::response(steering.facing_half_life_secs, t).of(turn, self.yaw_rate);
+        let (left, rate) =
+            spring::response(steering.facing_half_life_secs, t).of(turn, self.yaw_rate);
         later.yaw = wrap_angle(self.goal_yaw + left);
         later.yaw_rate = rate;
         later
@@ -84,10 +84,7 @@ impl Simulation {
     /// Where it stands and what it faces.
     #[must_use]
     pub fn place(&self) -> Planar {
-        Planar {
-            yaw: self.yaw,
-            shift: self.position,
-        }
+        Planar { yaw: self.yaw, shift: self.position }
     }
 }
 
@@ -95,10 +92,8 @@ impl Simulation {
 mod tests {
     use super::*;
 
-    const STEERING: Steering = Steering {
-        velocity_half_life_secs: 0.25,
-        facing_half_life_secs: 0.2,
-    };
+    const STEERING: Steering =
+        Steering { velocity_half_life_secs: 0.25, facing_half_life_secs: 0.2 };
 
     #[test]
     fn many_short_steps_are_a_long_one_and_the_velocity_is_that_of_the_way() {
@@ -116,15 +111,24 @@ mod tests {
             stepped = stepped.after(0.01, &STEERING);
         }
         let once = start.after(0.7, &STEERING);
-        assert!(stepped.position.distance(once.position) < 1e-12 && stepped.velocity.distance(once.velocity) < 1e-12);
-        assert!(wrap_angle(stepped.yaw - once.yaw).abs() < 1e-12 && (stepped.yaw_rate - once.yaw_rate).abs() < 1e-12);
+        assert!(
+            stepped.position.distance(once.position) < 1e-12
+                && stepped.velocity.distance(once.velocity) < 1e-12
+        );
+        assert!(
+            wrap_angle(stepped.yaw - once.yaw).abs() < 1e-12
+                && (stepped.yaw_rate - once.yaw_rate).abs() < 1e-12
+        );
         let (h, at) = (1e-5, |t: f64| start.after(t, &STEERING));
         let rate = (at(0.3 + h).position - at(0.3 - h).position) / (2.0 * h);
         assert!(rate.distance(at(0.3).velocity) < 1e-8);
         let rate = (at(0.3 + h).velocity - at(0.3 - h).velocity) / (2.0 * h);
         assert!(rate.distance(at(0.3).acceleration) < 1e-8);
         let far = start.after(9.0, &STEERING);
-        assert!(far.velocity.distance(start.goal_velocity) < 1e-9 && (far.yaw - start.goal_yaw).abs() < 1e-9);
+        assert!(
+            far.velocity.distance(start.goal_velocity) < 1e-9
+                && (far.yaw - start.goal_yaw).abs() < 1e-9
+        );
     }
 
     #[test]
@@ -136,10 +140,7 @@ mod tests {
         assert!((simulation.goal_yaw - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
         simulation.ask(&Control::new(DVec2::new(2.0, 0.0), Some(0.0)));
         assert_eq!(simulation.goal_yaw, 0.0);
-        let quick = Steering {
-            velocity_half_life_secs: 0.0,
-            facing_half_life_secs: 0.0,
-        };
+        let quick = Steering { velocity_half_life_secs: 0.0, facing_half_life_secs: 0.0 };
         let there = simulation.after(0.5, &quick);
         assert!((there.position.x - 2.0).abs() < 1e-6 && there.yaw == 0.0);
     }

@@ -43,7 +43,8 @@ pub struct Jump {
 
 /// A change of the facing that is asked for by more than this is a turn, radians.
 const TURN_RADIANS: f64 = 0.6;
-/// A turn is made when the body faces within this of what was asked for, and stays there, radians: 20°. Walking sways it by up to 10°.
+/// A turn is made when the body faces within this of what was asked for, and stays there, radians:
+/// 20°. Walking sways it by up to 10°.
 const FACES_RADIANS: f64 = 0.35;
 
 /// Numbers that tell how good a [`Drive`] is.
@@ -53,7 +54,8 @@ pub struct DriveMetrics {
     pub error_cm: f64,
     /// The largest, centimetres.
     pub worst_error_cm: f64,
-    /// The longest time from asking for a turn until the body faces there (within 20°, and stays), seconds. Infinite where it never does; `None` without turns.
+    /// The longest time from asking for a turn until the body faces there (within 20°, and stays),
+    /// seconds. Infinite where it never does; `None` without turns.
     pub turn_secs: Option<f64>,
     /// Mean slide of a stance, centimetres; `None` without stances.
     pub skate_cm: Option<f64>,
@@ -69,25 +71,28 @@ pub struct DriveMetrics {
 ///
 /// # Errors
 /// [`MatchError`] when an option is out of range.
-pub fn drive(database: &Arc<Database>, options: ControllerOptions, recording: &Recording) -> Result<Drive, MatchError> {
+pub fn drive(
+    database: &Arc<Database>,
+    options: ControllerOptions,
+    recording: &Recording,
+) -> Result<Drive, MatchError> {
     let mut controller = Controller::new(Arc::clone(database), options, &Planar::IDENTITY)?;
     let ticks = recording.ticks();
-    let (mut poses, mut planted) = (Vec::with_capacity(ticks), [Vec::with_capacity(ticks), Vec::with_capacity(ticks)]);
-    let (mut roots, mut desired, mut goals) = (Vec::with_capacity(ticks), Vec::with_capacity(ticks), Vec::with_capacity(ticks));
+    let (mut poses, mut planted) =
+        (Vec::with_capacity(ticks), [Vec::with_capacity(ticks), Vec::with_capacity(ticks)]);
+    let (mut roots, mut desired, mut goals) =
+        (Vec::with_capacity(ticks), Vec::with_capacity(ticks), Vec::with_capacity(ticks));
     let (mut jumps, mut searches, mut visited) = (Vec::new(), 0, 0);
     for (frame, control) in recording.controls().enumerate() {
         let before = controller.jumps();
         controller.tick(&control);
-        if let Some(search) = controller.last_search().filter(|search| search.tick + 1 == controller.ticks()) {
+        if let Some(search) =
+            controller.last_search().filter(|search| search.tick + 1 == controller.ticks())
+        {
             searches += 1;
             visited += search.visited;
             if let Some(to) = search.winner.filter(|_| controller.jumps() > before) {
-                jumps.push(Jump {
-                    frame,
-                    reason: search.reason,
-                    from: search.current,
-                    to,
-                });
+                jumps.push(Jump { frame, reason: search.reason, from: search.current, to });
             }
         }
         poses.push(controller.pose().clone());
@@ -120,10 +125,8 @@ impl Drive {
         let frames = errors.len().max(1) as f64;
         let slides = foot_slides_cm(&self.clip, database.roles(), &self.contacts);
         let mean = |sum: f64, count: usize| (count > 0).then(|| sum / count as f64);
-        let gaps = self
-            .jumps
-            .windows(2)
-            .map(|pair| (pair[1].frame - pair[0].frame) as f64 / RATE as f64);
+        let gaps =
+            self.jumps.windows(2).map(|pair| (pair[1].frame - pair[0].frame) as f64 / RATE as f64);
         DriveMetrics {
             error_cm: errors.iter().sum::<f64>() / frames,
             worst_error_cm: errors.iter().copied().fold(0.0, f64::max),
@@ -138,11 +141,15 @@ impl Drive {
     fn turn_secs(&self, database: &Database) -> Option<f64> {
         let faces = character_frames(&self.clip, database.roles());
         let asked: Vec<usize> = (1..self.goals.len())
-            .filter(|&frame| wrap_angle(self.goals[frame] - self.goals[frame - 1]).abs() > TURN_RADIANS)
+            .filter(|&frame| {
+                wrap_angle(self.goals[frame] - self.goals[frame - 1]).abs() > TURN_RADIANS
+            })
             .collect();
         let turn = |(index, &from): (usize, &usize)| {
             let to = asked.get(index + 1).copied().unwrap_or(self.goals.len());
-            let off = |frame: usize| wrap_angle(faces[frame].yaw - self.goals[frame]).abs() > FACES_RADIANS;
+            let off = |frame: usize| {
+                wrap_angle(faces[frame].yaw - self.goals[frame]).abs() > FACES_RADIANS
+            };
             match (from..to).rev().find(|&frame| off(frame)) {
                 None => 0.0,
                 Some(last) if last + 1 == to => f64::INFINITY,

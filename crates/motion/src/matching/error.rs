@@ -41,7 +41,9 @@ pub enum MatchError {
         horizon_secs: f64,
     },
     /// More frames than are held.
-    #[error("{frames} frames are more than the {most} that a database holds: take fewer or shorter clips")]
+    #[error(
+        "{frames} frames are more than the {most} that a database holds: take fewer or shorter clips"
+    )]
     TooManyFrames {
         /// Frames at the database's rate, mirrored copies included.
         frames: usize,
@@ -49,7 +51,9 @@ pub enum MatchError {
         most: usize,
     },
     /// The trajectory times are none.
-    #[error("trajectory times must rise from above 0 s to at most {most_secs} s, and be 1 to {most} in number")]
+    #[error(
+        "trajectory times must rise from above 0 s to at most {most_secs} s, and be 1 to {most} in number"
+    )]
     Times {
         /// The latest time, seconds.
         most_secs: f64,

@@ -1,7 +1,8 @@
 use super::MatchError;
 use std::ops::Range;
 
-/// Frames per second of every database: clips are resampled to it, and controllers go on in steps of it.
+/// Frames per second of every database: clips are resampled to it, and controllers go on in steps
+/// of it.
 pub const RATE: usize = 60;
 /// Features of the body: two feet's positions and velocities, and the hips' velocity.
 pub(super) const BODY: usize = 15;
@@ -54,7 +55,9 @@ impl Block {
 }
 
 /// Which numbers are brought to one scale together.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
+)]
 pub enum Normalisation {
     /// Each [`Block`]: where hardly anything varies sideways, that counts as little as it is.
     #[default]
@@ -84,8 +87,9 @@ impl Default for FeatureOptions {
 
 /// Which number of a row of features means what.
 ///
-/// All are in the character's frame: the simulation root ([`super::simulation_roots`]), +Z forward, +X to the left. For T trajectory times a row
-/// holds 2T numbers of positions (x, z), 2T of directions (x, z), and 15 of the body: left and right foot's position, left and right foot's
+/// All are in the character's frame: the simulation root ([`super::simulation_roots`]), +Z forward,
+/// +X to the left. For T trajectory times a row holds 2T numbers of positions (x, z), 2T of
+/// directions (x, z), and 15 of the body: left and right foot's position, left and right foot's
 /// velocity, hip velocity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
@@ -97,12 +101,10 @@ impl Layout {
     /// The layout for these times, each rounded to a frame.
     ///
     /// # Errors
-    /// [`MatchError::Times`] when there are none or more than six, or they do not rise from at least one frame to 3 s.
+    /// [`MatchError::Times`] when there are none or more than six, or they do not rise from at
+    /// least one frame to 3 s.
     pub fn new(options: &FeatureOptions) -> Result<Self, MatchError> {
-        let wrong = MatchError::Times {
-            most_secs: MOST_SECS,
-            most: MOST_TIMES,
-        };
+        let wrong = MatchError::Times { most_secs: MOST_SECS, most: MOST_TIMES };
         if !(1..=MOST_TIMES).contains(&options.trajectory_secs.len()) {
             return Err(wrong);
         }
@@ -157,7 +159,8 @@ impl Layout {
     }
 }
 
-/// How much each block counts: the factor of its normalised differences, so that a block's share of the cost grows with the square.
+/// How much each block counts: the factor of its normalised differences, so that a block's share of
+/// the cost grows with the square.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Weights(pub [f32; Block::COUNT]);
 
@@ -201,17 +204,21 @@ impl Weights {
     }
 }
 
-/// Normalised features are rounded to this grid: what is chosen then hardly ever hangs on a last digit in which machines' trigonometry differs.
+/// Normalised features are rounded to this grid: what is chosen then hardly ever hangs on a last
+/// digit in which machines' trigonometry differs.
 const GRID: f32 = 4096.0;
 
-/// No block varies by less: metres, metres per second, or the sine of an angle. A capture trembles by about that much.
+/// No block varies by less: metres, metres per second, or the sine of an angle. A capture trembles
+/// by about that much.
 const LEAST_SCALE: f32 = 0.02;
 
 /// Normalised features of frames, row by row, and how they were normalised.
 ///
-/// `(value - mean of its dimension) / scale of its block`; a block's scale is the mean of its dimensions' standard deviations (Clavet,
-/// "Motion Matching and The Road to Next-Gen Animation", GDC 2016; Holden et al., "Learned Motion Matching", 2020, section 3). With
-/// [`Normalisation::Dimension`] each dimension has a scale of its own. What does not vary at all has the scale 1. Rounded to 1/4096.
+/// `(value - mean of its dimension) / scale of its block`; a block's scale is the mean of its
+/// dimensions' standard deviations (Clavet, "Motion Matching and The Road to Next-Gen Animation",
+/// GDC 2016; Holden et al., "Learned Motion Matching", 2020, section 3). With
+/// [`Normalisation::Dimension`] each dimension has a scale of its own. What does not vary at all
+/// has the scale 1. Rounded to 1/4096.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Features {
     layout: Layout,
@@ -222,18 +229,20 @@ pub struct Features {
 }
 
 impl Features {
-    /// Normalises raw rows (row-major, [`Layout::dims`] numbers each; a last row that is not whole is left out). Means and scales are those of
-    /// the rows for which `counts` says so.
+    /// Normalises raw rows (row-major, [`Layout::dims`] numbers each; a last row that is not whole
+    /// is left out). Means and scales are those of the rows for which `counts` says so.
     #[must_use]
-    pub fn normalise(layout: Layout, normalisation: Normalisation, mut rows: Vec<f32>, counts: impl Fn(usize) -> bool) -> Self {
+    pub fn normalise(
+        layout: Layout,
+        normalisation: Normalisation,
+        mut rows: Vec<f32>,
+        counts: impl Fn(usize) -> bool,
+    ) -> Self {
         let dims = layout.dims();
         rows.truncate(rows.len() / dims * dims);
         let (mut sums, mut squares, mut number) = (vec![0.0f64; dims], vec![0.0f64; dims], 0usize);
         let counted = || {
-            rows.chunks_exact(dims)
-                .enumerate()
-                .filter(|(row, _)| counts(*row))
-                .map(|(_, row)| row)
+            rows.chunks_exact(dims).enumerate().filter(|(row, _)| counts(*row)).map(|(_, row)| row)
         };
         for row in counted() {
             number += 1;
@@ -251,10 +260,12 @@ impl Features {
             }
         }
         let scale_of = |dims: Range<usize>| {
-            let deviations: f64 = squares[dims.clone()].iter().map(|square| (square / number).sqrt()).sum();
+            let deviations: f64 =
+                squares[dims.clone()].iter().map(|square| (square / number).sqrt()).sum();
             match (deviations / dims.len() as f64) as f32 {
                 still if still <= 1e-6 || !still.is_finite() => 1.0,
-                // Clips that all go straight on: a tremble of the heading is not to be all that counts.
+                // Clips that all go straight on: a tremble of the heading is not to be all that
+                // counts.
                 scale => scale.max(LEAST_SCALE),
             }
         };
@@ -269,12 +280,7 @@ impl Features {
             }
         };
         let means = sums.into_iter().map(|mean| mean as f32).collect();
-        let mut features = Self {
-            layout,
-            rows: Vec::new(),
-            means,
-            scales,
-        };
+        let mut features = Self { layout, rows: Vec::new(), means, scales };
         for row in rows.chunks_exact_mut(dims) {
             features.normalise_row(row);
         }
@@ -350,10 +356,7 @@ mod tests {
             vec![9.0],
             vec![0.1; 7],
         ] {
-            let options = FeatureOptions {
-                trajectory_secs: times,
-                ..FeatureOptions::default()
-            };
+            let options = FeatureOptions { trajectory_secs: times, ..FeatureOptions::default() };
             assert!(matches!(Layout::new(&options), Err(MatchError::Times { .. })), "{options:?}");
         }
     }
@@ -372,7 +375,8 @@ mod tests {
             rows[row * dims] = 5.0 + sign;
             rows[row * dims + 1] = 3.0 * sign;
         }
-        let own = Features::normalise(layout.clone(), Normalisation::Dimension, rows.clone(), |_| true);
+        let own =
+            Features::normalise(layout.clone(), Normalisation::Dimension, rows.clone(), |_| true);
         let features = Features::normalise(layout, Normalisation::Block, rows, |_| true);
         assert_eq!(features.scales()[..3], [2.0, 2.0, 1.0]);
         assert_eq!(features.scales()[dims - 1], 1.0);

@@ -5,8 +5,9 @@ use crate::skeleton::Roles;
 use crate::synth::{Action, Params, synthesize};
 use std::sync::Arc;
 
-/// The motions of the synthesiser that are enough to steer a character by: standing, walks and runs at several speeds, straight and along curves to
-/// the left, starts, stops, and turns on the spot, some of them hasty. Curves to the right are their mirror images.
+/// The motions of the synthesiser that are enough to steer a character by: standing, walks and runs
+/// at several speeds, straight and along curves to the left, starts, stops, and turns on the spot,
+/// some of them hasty. Curves to the right are their mirror images.
 #[must_use]
 pub fn made_params() -> Vec<Params> {
     let of = |action, speed_mps: f32, turn_rate_dps: f32, duration_secs: f32| Params {
@@ -35,11 +36,7 @@ pub fn made_params() -> Vec<Params> {
         all.push(of(Action::Stop, 1.4, turn, 4.2));
     }
     for spin_degrees in [45.0, 90.0, 135.0, 180.0] {
-        all.push(Params {
-            spin_degrees,
-            duration_secs: 4.0,
-            ..Params::new(Action::Spin)
-        });
+        all.push(Params { spin_degrees, duration_secs: 4.0, ..Params::new(Action::Spin) });
     }
     // Hasty turns: made at two thirds of the rate that they are played at.
     for spin_degrees in [60.0, 90.0, 135.0, 180.0] {
@@ -69,7 +66,8 @@ pub fn made_clips(height_m: f32) -> Result<Vec<MatchClip>, MatchError> {
     Ok(clips)
 }
 
-/// Makes one of them; `roles` are those of another one, which has the same joints, so that they need not be found again.
+/// Makes one of them; `roles` are those of another one, which has the same joints, so that they
+/// need not be found again.
 ///
 /// # Errors
 /// [`MatchError::Synth`] for what cannot be made.
@@ -89,7 +87,9 @@ fn name_of(params: &Params) -> String {
     let going = |word: &str| format!("{word} {} m/s{turn}", params.speed_mps);
     match params.action {
         Action::Idle => "stand".to_owned(),
-        Action::Spin if params.fps < RATE as f32 => format!("quick turn by {}°", params.spin_degrees),
+        Action::Spin if params.fps < RATE as f32 => {
+            format!("quick turn by {}°", params.spin_degrees)
+        }
         Action::Spin => format!("turn by {}°", params.spin_degrees),
         Action::Walk => going("walk"),
         Action::Run => going("run"),

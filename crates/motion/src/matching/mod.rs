@@ -1,26 +1,33 @@
-//! Motion matching: at every moment the frame of all clips that fits best to where the character is and where the player wants it to go.
+//! Motion matching: at every moment the frame of all clips that fits best to where the character is
+//! and where the player wants it to go.
 //!
 //! # The idea
 //!
-//! Ten times a second the [`Controller`] asks a [`Database`]: which frame has its feet where mine are, moving as mine move, and leads where
-//! the player steers? It goes on from there; the difference dies away ([`crate::transition::Inertializer`]). In between, the clip plays.
-//! Picture a DJ who always has the record at hand that is in time with the one on the deck, and goes where the dancers want.
+//! Ten times a second the [`Controller`] asks a [`Database`]: which frame has its feet where mine
+//! are, moving as mine move, and leads where the player steers? It goes on from there; the
+//! difference dies away ([`crate::transition::Inertializer`]). In between, the clip plays. Picture
+//! a DJ who always has the record at hand that is in time with the one on the deck, and goes where
+//! the dancers want.
 //!
 //! ```text
 //! cost(frame) = Σ_d (w_d (q_d - x_d))²      x = (feature - mean) / scale of its block
 //! ```
 //!
-//! - *Features* ([`Layout`]): 27 numbers per frame in the character's own frame: where it will be and what it will face in 1/3, 2/3 and 1 s,
-//!   where its feet are, how feet and hips move. Normalised block by block; [`Weights`] come with the question, so that they are live.
-//! - *Searches* ([`search`]): a plain scan, boxes that look at few frames, a k-d tree. All find the same frame.
-//! - *Steering* ([`Simulation`]): critically damped springs from what the player asks for to a smooth way. The wish is one part of the
-//!   question, the body as it is the other.
+//! - *Features* ([`Layout`]): 27 numbers per frame in the character's own frame: where it will be
+//!   and what it will face in 1/3, 2/3 and 1 s, where its feet are, how feet and hips move.
+//!   Normalised block by block; [`Weights`] come with the question, so that they are live.
+//! - *Searches* ([`search`]): a plain scan, boxes that look at few frames, a k-d tree. All find the
+//!   same frame.
+//! - *Steering* ([`Simulation`]): critically damped springs from what the player asks for to a
+//!   smooth way. The wish is one part of the question, the body as it is the other.
 //! - *Input* ([`Control`], [`Recording`]): rounded as it is recorded, replayed exactly.
 //!
-//! A clip that is a cycle, such as one stride of a walk, goes round: it is searched to its last frame, its trajectories lead into the next round,
-//! and it plays on until another frame fits better.
+//! A clip that is a cycle, such as one stride of a walk, goes round: it is searched to its last
+//! frame, its trajectories lead into the next round, and it plays on until another frame fits
+//! better.
 //!
-//! The character's frame is the *simulation root*: the hips over the ground, without the sway of the stride ([`simulation_roots`]).
+//! The character's frame is the *simulation root*: the hips over the ground, without the sway of
+//! the stride ([`simulation_roots`]).
 //!
 //! # Example
 //!
@@ -62,19 +69,23 @@
 //!
 //! # Accuracy and cost
 //!
-//! The three searches agree, frame and cost, on 10,000 random questions. Features, roots and steering are those of an oracle in `NumPy` and
-//! `SciPy`. A recording replays bit for bit, at any rate of the screen. In the recorded scenarios the character stays within 10 cm of where
-//! it should be in the mean, and turns are made within 1.2 s. A scan is O(frames × dimensions), a tick without a search O(joints).
+//! The three searches agree, frame and cost, on 10,000 random questions. Features, roots and
+//! steering are those of an oracle in `NumPy` and `SciPy`. A recording replays bit for bit, at any
+//! rate of the screen. In the recorded scenarios the character stays within 10 cm of where it
+//! should be in the mean, and turns are made within 1.2 s. A scan is O(frames × dimensions), a tick
+//! without a search O(joints).
 //!
 //! # What it does not do
 //!
-//! It knows one ground plane, no obstacles, and no other characters. It looks one second ahead and plans nothing: what is not in the clips
-//! is not done. Retargeted clips keep their feet only as well as [`crate::clip::retarget`] does.
+//! It knows one ground plane, no obstacles, and no other characters. It looks one second ahead and
+//! plans nothing: what is not in the clips is not done. Retargeted clips keep their feet only as
+//! well as [`crate::clip::retarget`] does.
 //!
 //! # Sources
 //!
-//! Clavet, "Motion Matching and The Road to Next-Gen Animation", GDC 2016. Holden, Kanoun, Perepichka, Popa, "Learned Motion Matching",
-//! 2020, section 3 (features and their scales). Holden, "Code vs Data Driven Displacement", 2021 (the simulation object).
+//! Clavet, "Motion Matching and The Road to Next-Gen Animation", GDC 2016. Holden, Kanoun,
+//! Perepichka, Popa, "Learned Motion Matching", 2020, section 3 (features and their scales).
+//! Holden, "Code vs Data Driven Displacement", 2021 (the simulation object).
 
 mod builder;
 mod control;
@@ -96,7 +107,8 @@ mod tags;
 pub use builder::DatabaseBuilder;
 pub use control::{Control, Recording, RecordingError};
 pub use controller::{
-    Candidate, Controller, ControllerOptions, Following, FootPlanting, Held, Hysteresis, Reason, SearchMethod, SearchRecord,
+    Candidate, Controller, ControllerOptions, Following, FootPlanting, Held, Hysteresis, Reason,
+    SearchMethod, SearchRecord,
 };
 pub use database::{Database, DatabaseOptions, MatchClip, Place};
 pub use desired::{Simulation, Steering};

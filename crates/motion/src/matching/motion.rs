@@ -69,17 +69,17 @@ impl Motion {
             None => simulation_roots(&frames),
         };
         let body = body_features(&clip, cycle.as_ref(), joints, &roots);
-        let finite =
-            body.iter().flatten().all(|value| value.is_finite()) && roots.iter().all(|root| root.shift.is_finite() && root.yaw.is_finite());
+        let finite = body.iter().flatten().all(|value| value.is_finite())
+            && roots.iter().all(|root| root.shift.is_finite() && root.yaw.is_finite());
         if !finite {
             let name = clip.name().to_owned();
             return Err(MatchError::NotFinite { name });
         }
         let ground_m = estimate_ground(&clip, roles, &contacts);
-        let mut feet = Side::BOTH.map(|side| own_foot(&clip, &roots, cycle.as_ref(), roles, &contacts, side));
-        let standing: Vec<f32> = (feet.iter().flatten().filter(|foot| foot.planted))
-            .map(|foot| foot.above_m)
-            .collect();
+        let mut feet =
+            Side::BOTH.map(|side| own_foot(&clip, &roots, cycle.as_ref(), roles, &contacts, side));
+        let standing: Vec<f32> =
+            (feet.iter().flatten().filter(|foot| foot.planted)).map(|foot| foot.above_m).collect();
         let stand_m = stats::percentile(&standing, 0.5).unwrap_or(ground_m);
         for foot in feet.iter_mut().flatten() {
             foot.above_m -= stand_m;
@@ -130,8 +130,8 @@ impl Motion {
         self.ground_m
     }
 
-    /// The height that the lowest point of a foot has as a rule while it is on the ground, metres. Feet that dip into the floor at push-off set the ground
-    /// lower than this.
+    /// The height that the lowest point of a foot has as a rule while it is on the ground, metres.
+    /// Feet that dip into the floor at push-off set the ground lower than this.
     pub(super) fn stand_m(&self) -> f32 {
         self.stand_m
     }
@@ -159,7 +159,8 @@ impl Motion {
         self.cycle.is_some()
     }
 
-    /// Where a round of a cycle leads: the frame behind the last is the first, moved by this over the ground. `None` for a clip that ends.
+    /// Where a round of a cycle leads: the frame behind the last is the first, moved by this over
+    /// the ground. `None` for a clip that ends.
     #[must_use]
     pub fn cycle(&self) -> Option<Planar> {
         self.cycle
@@ -177,11 +178,7 @@ impl Motion {
     /// How many frames two of its frames are apart, in a cycle the shorter way round.
     pub(super) fn frames_between(&self, a: usize, b: usize) -> usize {
         let apart = a.abs_diff(b);
-        if self.is_cycle() {
-            apart.min(self.frames().saturating_sub(apart))
-        } else {
-            apart
-        }
+        if self.is_cycle() { apart.min(self.frames().saturating_sub(apart)) } else { apart }
     }
 
     /// Its tags, at [`RATE`].
@@ -202,40 +199,41 @@ impl Motion {
         self.frames().saturating_sub(behind)
     }
 
-    /// Where the simulation root is in a frame. Behind the clip's end a cycle begins again, and another clip goes on as it did over the last half
-    /// second.
+    /// Where the simulation root is in a frame. Behind the clip's end a cycle begins again, and
+    /// another clip goes on as it did over the last half second.
     #[must_use]
     pub fn root(&self, frame: usize) -> Planar {
         if let Some(root) = self.roots.get(frame) {
             return *root;
         }
-        let Some(last) = self.roots.last() else { return Planar::IDENTITY };
+        let Some(last) = self.roots.last() else {
+            return Planar::IDENTITY;
+        };
         if let Some(cycle) = &self.cycle {
             return standing(&self.roots, cycle, isize::try_from(frame).unwrap_or(0));
         }
         let behind = self.roots.len() - 1;
         let over = (frame - behind) as f64;
-        // The steps of half a second: a single one would go on with what the smoothing made of the end.
+        // The steps of half a second: a single one would go on with what the smoothing made of the
+        // end.
         let steps = behind.min(RATE / 2);
-        let Some(before) = behind.checked_sub(steps.max(1)).and_then(|at| self.roots.get(at)) else {
+        let Some(before) = behind.checked_sub(steps.max(1)).and_then(|at| self.roots.get(at))
+        else {
             return *last;
         };
         let made = before.inverse().after(last);
         // Along the circle that these steps are an arc of; straight where they do not turn.
         let share = over / steps as f64;
         let (turn, whole) = (made.yaw * share, made.yaw);
-        let stretch = if whole.abs() < 1e-6 {
-            share
-        } else {
-            libm::sin(0.5 * turn) / libm::sin(0.5 * whole)
-        };
+        let stretch =
+            if whole.abs() < 1e-6 { share } else { libm::sin(0.5 * turn) / libm::sin(0.5 * whole) };
         let middle = 0.5 * (turn - whole);
         let (sin, cos) = (libm::sin(middle), libm::cos(middle));
-        let way = DVec2::new(made.shift.x * cos + made.shift.y * sin, made.shift.y * cos - made.shift.x * sin) * stretch;
-        last.after(&Planar {
-            yaw: wrap_angle(turn),
-            shift: way,
-        })
+        let way = DVec2::new(
+            made.shift.x * cos + made.shift.y * sin,
+            made.shift.y * cos - made.shift.x * sin,
+        ) * stretch;
+        last.after(&Planar { yaw: wrap_angle(turn), shift: way })
     }
 
     /// The raw features of a frame into a row of the layout's length.
@@ -265,8 +263,14 @@ pub(super) fn write_trajectory(row: &mut [f32], times: usize, index: usize, ther
     }
 }
 
-/// Feet and hips in the character's frame. Velocities are those over the world by central differences, one-sided at the ends of a clip that is no cycle.
-fn body_features(clip: &Clip, cycle: Option<&Planar>, joints: FeatureJoints, roots: &[Planar]) -> Vec<[f32; BODY]> {
+/// Feet and hips in the character's frame. Velocities are those over the world by central
+/// differences, one-sided at the ends of a clip that is no cycle.
+fn body_features(
+    clip: &Clip,
+    cycle: Option<&Planar>,
+    joints: FeatureJoints,
+    roots: &[Planar],
+) -> Vec<[f32; BODY]> {
     let FeatureJoints { hips, feet } = joints;
     let needed = clip.skeleton().with_ancestors([hips, feet[0], feet[1]]);
     let mut world = WorldPose::default();
@@ -280,7 +284,8 @@ fn body_features(clip: &Clip, cycle: Option<&Planar>, joints: FeatureJoints, roo
     (0..positions.len())
         .map(|frame| {
             let here = roots[frame].inverse();
-            let (mut before, mut after) = (positions[frame.saturating_sub(1)], positions[(frame + 1).min(last)]);
+            let (mut before, mut after) =
+                (positions[frame.saturating_sub(1)], positions[(frame + 1).min(last)]);
             let mut steps = (frame + 1).min(last) - frame.saturating_sub(1);
             if let Some(cycle) = cycle {
                 steps = 2;
@@ -310,15 +315,23 @@ fn body_features(clip: &Clip, cycle: Option<&Planar>, joints: FeatureJoints, roo
         .collect()
 }
 
-/// So many frames before a foot lands it is told for how long it will stand, since it takes as many to lift one.
+/// So many frames before a foot lands it is told for how long it will stand, since it takes as many
+/// to lift one.
 const LOOK_AHEAD: usize = 8;
 
 /// So many frames before a foot is low it is lifted.
 const LIFT_AHEAD: usize = 4;
 
-/// What a foot does, frame by frame: its velocity is that of the step into the frame, in the first frame of a clip that is no cycle of the step out of it;
-/// its height is that in the world.
-fn own_foot(clip: &Clip, roots: &[Planar], cycle: Option<&Planar>, roles: &Roles, contacts: &Contacts, side: Side) -> Vec<OwnFoot> {
+/// What a foot does, frame by frame: its velocity is that of the step into the frame, in the first
+/// frame of a clip that is no cycle of the step out of it; its height is that in the world.
+fn own_foot(
+    clip: &Clip,
+    roots: &[Planar],
+    cycle: Option<&Planar>,
+    roles: &Roles,
+    contacts: &Contacts,
+    side: Side,
+) -> Vec<OwnFoot> {
     let points = roles.foot_points(clip.skeleton(), side);
     let needed = clip.skeleton().with_ancestors(points.iter().map(|&(joint, _)| joint));
     let mut world = WorldPose::default();
@@ -345,7 +358,8 @@ fn own_foot(clip: &Clip, roots: &[Planar], cycle: Option<&Planar>, roles: &Roles
         let lands = coming.clone().take(LOOK_AHEAD).position(|&planted| planted);
         lands.map_or(0, |lands| coming.skip(lands).take_while(|&&planted| planted).count())
     };
-    let lowest = |frame: usize| ways[frame].iter().map(|point| point.y).fold(f32::INFINITY, f32::min);
+    let lowest =
+        |frame: usize| ways[frame].iter().map(|point| point.y).fold(f32::INFINITY, f32::min);
     let falls = |frame: usize| {
         let coming = (frame..=frame + LIFT_AHEAD).map(|ahead| match cycle {
             Some(_) => lowest(ahead % ways.len()),
@@ -368,5 +382,7 @@ fn own_foot(clip: &Clip, roots: &[Planar], cycle: Option<&Planar>, roles: &Roles
 
 /// The contacts of the mirror image.
 pub(super) fn mirrored_contacts(contacts: &Contacts) -> Contacts {
-    Contacts::from_flags(Side::BOTH.map(|side| (0..contacts.frames()).map(|frame| contacts.planted(side.other(), frame)).collect()))
+    Contacts::from_flags(Side::BOTH.map(|side| {
+        (0..contacts.frames()).map(|frame| contacts.planted(side.other(), frame)).collect()
+    }))
 }

@@ -9,10 +9,12 @@ const SAMPLES: usize = 4_000;
 /// No joint counts as slower than this, radians per second: 60° per second.
 const LEAST_JOINT_RADPS: f32 = std::f32::consts::FRAC_PI_3;
 
-/// How fast the motions of a database go: what a transition or a pull towards the wish should not exceed by much, since nothing in the clips does.
+/// How fast the motions of a database go: what a transition or a pull towards the wish should not
+/// exceed by much, since nothing in the clips does.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pace {
-    /// Per joint: the angular speed against its parent that one step in a thousand exceeds, radians per second; at least 60° per second.
+    /// Per joint: the angular speed against its parent that one step in a thousand exceeds, radians
+    /// per second; at least 60° per second.
     pub joints_radps: Vec<f32>,
     /// The highest speed of the simulation root over the ground, metres per second.
     pub travel_mps: f64,
@@ -36,7 +38,9 @@ impl Pace {
         let steps = || roots.windows(2).map(|pair| (pair[0], pair[1]));
         Self {
             joints_radps: (0..clip.skeleton().len()).map(usual).collect(),
-            travel_mps: steps().map(|(from, to)| from.shift.distance(to.shift) * rate).fold(0.0, f64::max),
+            travel_mps: steps()
+                .map(|(from, to)| from.shift.distance(to.shift) * rate)
+                .fold(0.0, f64::max),
             turn_radps: steps()
                 .map(|(from, to)| wrap_angle(to.yaw - from.yaw).abs() * rate)
                 .fold(0.0, f64::max),
@@ -79,7 +83,10 @@ mod tests {
         assert!(run.travel_mps > 2.0 * walk.travel_mps && walk.turn_radps < 0.3);
         let both = Pace::of_all([&walk, &run]);
         assert_eq!(both.travel_mps, run.travel_mps);
-        assert!((0..both.joints_radps.len()).all(|joint| both.joints_radps[joint] >= walk.joints_radps[joint]));
+        assert!(
+            (0..both.joints_radps.len())
+                .all(|joint| both.joints_radps[joint] >= walk.joints_radps[joint])
+        );
         assert!(both.joints_radps.iter().all(|speed| *speed >= LEAST_JOINT_RADPS));
     }
 }

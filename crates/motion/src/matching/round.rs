@@ -9,15 +9,16 @@ use crate::skeleton::Roles;
 use crate::transition::{Loop, LoopOptions, WholeCycle};
 use std::sync::Arc;
 
-/// Ends that are this near to each other, as a share of the farthest that a pose of the clip is away from the first, make a cycle of any clip.
+/// Ends that are this near to each other, as a share of the farthest that a pose of the clip is
+/// away from the first, make a cycle of any clip.
 const MEETS: f64 = 0.05;
 /// Those of a single stride may be farther apart: cycles from a capture seldom close by themselves.
 const STRIDE_MEETS: f64 = 0.35;
 
 /// Closes a clip that is a cycle; `None` for one that is not.
 ///
-/// A cycle is a clip whose end leads into its beginning ([`WholeCycle`]): any clip whose ends all but meet, and a single stride, with one stance of each
-/// foot, whose ends are near each other.
+/// A cycle is a clip whose end leads into its beginning ([`WholeCycle`]): any clip whose ends all
+/// but meet, and a single stride, with one stance of each foot, whose ends are near each other.
 pub(super) fn closed(clip: &Arc<Clip>, roles: &Roles) -> Option<Loop> {
     let source = Source::new(Arc::clone(clip), roles);
     let whole = WholeCycle::of(&source).filter(|whole| whole.apart_share <= STRIDE_MEETS)?;
@@ -26,8 +27,9 @@ pub(super) fn closed(clip: &Arc<Clip>, roles: &Roles) -> Option<Loop> {
     (meets || events_of(&looped, roles).is_some()).then_some(looped)
 }
 
-/// One round of a cycle at [`RATE`] frames per second, and where it leads: the frame behind its last is its first, moved by that. A round takes a whole
-/// number of frames, so that it may be faster or slower by up to half a frame.
+/// One round of a cycle at [`RATE`] frames per second, and where it leads: the frame behind its
+/// last is its first, moved by that. A round takes a whole number of frames, so that it may be
+/// faster or slower by up to half a frame.
 pub(super) fn at_rate(looped: &Loop) -> Option<(Clip, Planar)> {
     let (clip, cycle) = (&looped.clip, looped.cycle);
     let secs = clip.frames() as f64 / clip.fps();
@@ -35,17 +37,23 @@ pub(super) fn at_rate(looped: &Loop) -> Option<(Clip, Planar)> {
     if clip.fps() == RATE as f64 {
         return Some((clip.clone(), cycle));
     }
-    // Read in the middle of three rounds, so that no end is in the way, and laid back onto the first.
+    // Read in the middle of three rounds, so that no end is in the way, and laid back onto the
+    // first.
     let three = looped.repeat(3).ok()?;
-    let poses = (0..frames).map(|frame| three.sample(secs * (1.0 + frame as f64 / frames as f64), Interpolation::Cubic));
+    let poses = (0..frames).map(|frame| {
+        three.sample(secs * (1.0 + frame as f64 / frames as f64), Interpolation::Cubic)
+    });
     let poses: Option<Vec<_>> = poses.collect();
-    let round = Clip::from_poses(clip.name(), Arc::clone(clip.skeleton()), RATE as f64, poses?).ok()?;
+    let round =
+        Clip::from_poses(clip.name(), Arc::clone(clip.skeleton()), RATE as f64, poses?).ok()?;
     Some((round.transformed(&cycle.inverse()).with_provenance(clip.provenance()), cycle))
 }
 
-/// Where the character stands in a frame of a cycle that goes round, of which `stands` are one round: also before it and behind it.
+/// Where the character stands in a frame of a cycle that goes round, of which `stands` are one
+/// round: also before it and behind it.
 pub(super) fn standing(stands: &[Planar], cycle: &Planar, frame: isize) -> Planar {
-    let (round, frame) = (frame.div_euclid(stands.len() as isize), frame.rem_euclid(stands.len() as isize));
+    let (round, frame) =
+        (frame.div_euclid(stands.len() as isize), frame.rem_euclid(stands.len() as isize));
     moved_by(cycle, round).after(&stands[frame as usize])
 }
 

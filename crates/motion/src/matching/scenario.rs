@@ -83,7 +83,9 @@ impl Scenario {
         match self {
             Self::WalkStraight => hold(12.0, WALK_MPS, 0.0),
             Self::TurnLeft => [0.0, FRAC_PI_2].into_iter().for_each(|yaw| hold(4.0, WALK_MPS, yaw)),
-            Self::TurnRight => [0.0, -FRAC_PI_2].into_iter().for_each(|yaw| hold(4.0, WALK_MPS, yaw)),
+            Self::TurnRight => {
+                [0.0, -FRAC_PI_2].into_iter().for_each(|yaw| hold(4.0, WALK_MPS, yaw))
+            }
             Self::Spin => [0.0, PI, 0.0].into_iter().for_each(|yaw| hold(4.0, WALK_MPS, yaw)),
             Self::StartStop => {
                 for _ in 0..3 {
@@ -92,9 +94,12 @@ impl Scenario {
                 }
                 hold(2.0, 0.0, 0.0);
             }
-            Self::WalkToRun => [WALK_MPS, RUN_MPS, WALK_MPS].into_iter().for_each(|speed| hold(4.0, speed, 0.0)),
+            Self::WalkToRun => {
+                [WALK_MPS, RUN_MPS, WALK_MPS].into_iter().for_each(|speed| hold(4.0, speed, 0.0))
+            }
             Self::FigureEight => {
-                // A tenth of a second at a time: a whole turn to the left in 9 s, then one to the right.
+                // A tenth of a second at a time: a whole turn to the left in 9 s, then one to the
+                // right.
                 for part in 0..180_u32 {
                     let share = f64::from(part % 90) / 90.0;
                     hold(0.1, WALK_MPS, if part < 90 { share * TAU } else { -share * TAU });

@@ -9,44 +9,42 @@ use glam::DVec2;
 const POSITION_SECS: f64 = 1.0;
 const DIRECTION_SECS: f64 = 1.6;
 
-/// The simulation root of a clip at [`RATE`] frames per second: `world_from_simulation` of each frame, from `frames`
-/// ([`crate::clip::character_frames`]).
+/// The simulation root of a clip at [`RATE`] frames per second: `world_from_simulation` of each
+/// frame, from `frames` ([`crate::clip::character_frames`]).
 ///
-/// Positions of the hips over the ground are smoothed by a Savitzky-Golay filter of third degree over a second, and facing directions, as
-/// vectors, over 1.6 s (Holden et al., "Learned Motion Matching", 2020, section 3, and his notes on the simulation bone). Unlike a mean it
-/// does not cut corners. The windows are longer than his (0.5 s and 1 s), which let the sway of a stride of a second pass: with it left in, every
-/// other half stride of a straight walk looks a little better than the one that is playing. At the ends of the clip the polynomial of the first or last window goes on; clips shorter than a window are
-/// smoothed over what there is.
+/// Positions of the hips over the ground are smoothed by a Savitzky-Golay filter of third degree
+/// over a second, and facing directions, as vectors, over 1.6 s (Holden et al., "Learned Motion
+/// Matching", 2020, section 3, and his notes on the simulation bone). Unlike a mean it does not cut
+/// corners. The windows are longer than his (0.5 s and 1 s), which let the sway of a stride of a
+/// second pass: with it left in, every other half stride of a straight walk looks a little better
+/// than the one that is playing. At the ends of the clip the polynomial of the first or last window
+/// goes on; clips shorter than a window are smoothed over what there is.
 #[must_use]
 pub fn simulation_roots(frames: &[Planar]) -> Vec<Planar> {
     let positions: Vec<DVec2> = frames.iter().map(|frame| frame.shift).collect();
-    let directions: Vec<DVec2> = frames
-        .iter()
-        .map(|frame| DVec2::new(libm::sin(frame.yaw), libm::cos(frame.yaw)))
-        .collect();
+    let directions: Vec<DVec2> =
+        frames.iter().map(|frame| DVec2::new(libm::sin(frame.yaw), libm::cos(frame.yaw))).collect();
     let half = |secs: f64| (0.5 * secs * RATE as f64).round() as usize;
     let positions = savitzky_golay(&positions, half(POSITION_SECS));
     let directions = savitzky_golay(&directions, half(DIRECTION_SECS));
     let mut yaw_before = None;
     (positions.into_iter().zip(directions).zip(frames))
         .map(|((shift, direction), frame)| {
-            // A body that turns by half a turn within the window may leave no direction; the one before goes on.
+            // A body that turns by half a turn within the window may leave no direction; the one
+            // before goes on.
             let yaw = if direction.length() > 0.05 {
                 libm::atan2(direction.x, direction.y)
             } else {
                 yaw_before.unwrap_or(frame.yaw)
             };
             yaw_before = Some(yaw);
-            Planar {
-                yaw: wrap_angle(yaw),
-                shift,
-            }
+            Planar { yaw: wrap_angle(yaw), shift }
         })
         .collect()
 }
 
-/// The simulation roots of a cycle, whose frame behind the last is the first, moved by `cycle`: smoothed over what comes before and behind when it goes
-/// round.
+/// The simulation roots of a cycle, whose frame behind the last is the first, moved by `cycle`:
+/// smoothed over what comes before and behind when it goes round.
 pub(super) fn simulation_roots_of_cycle(frames: &[Planar], cycle: &Planar) -> Vec<Planar> {
     // So much is looked at to either side.
     let around = (0.5 * POSITION_SECS.max(DIRECTION_SECS) * RATE as f64).round() as isize;
@@ -57,8 +55,9 @@ pub(super) fn simulation_roots_of_cycle(frames: &[Planar], cycle: &Planar) -> Ve
     roots.into_iter().skip(around as usize).take(frames.len()).collect()
 }
 
-/// Each value replaced by that of the cubic that fits it and `half` neighbours to either side best (Savitzky and Golay 1964). Near the ends the
-/// cubic of the outermost window is read beside its middle. O(values × half).
+/// Each value replaced by that of the cubic that fits it and `half` neighbours to either side best
+/// (Savitzky and Golay 1964). Near the ends the cubic of the outermost window is read beside its
+/// middle. O(values × half).
 fn savitzky_golay(values: &[DVec2], half: usize) -> Vec<DVec2> {
     let half = half.min(values.len().saturating_sub(1) / 2);
     // A cubic goes through four values: fewer than five cannot be smoothed.
@@ -71,7 +70,8 @@ fn savitzky_golay(values: &[DVec2], half: usize) -> Vec<DVec2> {
     let middle: Vec<f64> = (0..window)
         .map(|i| {
             let i = i as f64 - m;
-            3.0 * (3.0 * m * m + 3.0 * m - 1.0 - 5.0 * i * i) / ((2.0 * m + 3.0) * (2.0 * m + 1.0) * (2.0 * m - 1.0))
+            3.0 * (3.0 * m * m + 3.0 * m - 1.0 - 5.0 * i * i)
+                / ((2.0 * m + 3.0) * (2.0 * m + 1.0) * (2.0 * m - 1.0))
         })
         .collect();
     let ends = [0, last].map(|start| Cubic::fit(&values[start..start + window], m));
@@ -101,18 +101,15 @@ struct Cubic {
 
 impl Cubic {
     fn basis(m: f64, i: f64) -> [f64; 4] {
-        [
-            1.0,
-            i,
-            i * i - m * (m + 1.0) / 3.0,
-            i * (i * i - (3.0 * m * m + 3.0 * m - 1.0) / 5.0),
-        ]
+        [1.0, i, i * i - m * (m + 1.0) / 3.0, i * (i * i - (3.0 * m * m + 3.0 * m - 1.0) / 5.0)]
     }
 
     fn fit(values: &[DVec2], m: f64) -> Self {
         let (mut shares, mut norms) = ([DVec2::ZERO; 4], [0.0; 4]);
         for (index, &value) in values.iter().enumerate() {
-            for ((share, norm), basis) in shares.iter_mut().zip(&mut norms).zip(Self::basis(m, index as f64 - m)) {
+            for ((share, norm), basis) in
+                shares.iter_mut().zip(&mut norms).zip(Self::basis(m, index as f64 - m))
+            {
                 *share += value * basis;
                 *norm += basis * basis;
             }
@@ -124,11 +121,7 @@ impl Cubic {
     }
 
     fn at(&self, i: f64) -> DVec2 {
-        self.shares
-            .iter()
-            .zip(Self::basis(self.m, i))
-            .map(|(share, basis)| *share * basis)
-            .sum()
+        self.shares.iter().zip(Self::basis(self.m, i)).map(|(share, basis)| *share * basis).sum()
     }
 }
 
@@ -155,7 +148,9 @@ mod tests {
             })
             .collect();
         let roots = simulation_roots(&walk);
-        let most = |value: fn(&Planar) -> f64, frames: &[Planar]| frames.iter().map(|f| value(f).abs()).fold(0.0, f64::max);
+        let most = |value: fn(&Planar) -> f64, frames: &[Planar]| {
+            frames.iter().map(|f| value(f).abs()).fold(0.0, f64::max)
+        };
         assert!(most(|f| f.yaw, &roots[40..260]) < 0.4 * most(|f| f.yaw, &walk));
         assert_eq!(simulation_roots(&[]), []);
     }

@@ -3,7 +3,9 @@ use crate::math::{Planar, wrap_angle};
 use std::ops::Range;
 
 /// What can be said about a stretch of a clip.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
+)]
 pub enum Tag {
     /// Goes at a walk.
     Walk,
@@ -53,7 +55,9 @@ impl Tag {
 }
 
 /// Tags of one frame, or those that are asked for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
+)]
 pub struct TagSet(pub u32);
 
 impl TagSet {
@@ -75,11 +79,7 @@ impl TagSet {
     /// With a tag, or without it.
     #[must_use]
     pub const fn with(self, tag: Tag, wanted: bool) -> Self {
-        if wanted {
-            Self(self.0 | tag.bit())
-        } else {
-            Self(self.0 & !tag.bit())
-        }
+        if wanted { Self(self.0 | tag.bit()) } else { Self(self.0 & !tag.bit()) }
     }
 
     /// Whether both have a tag in common.
@@ -90,7 +90,9 @@ impl TagSet {
 }
 
 /// Which frames may be found.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
+)]
 pub struct TagFilter {
     /// A frame must have at least one of these; none asks for nothing.
     pub ask: TagSet,
@@ -105,7 +107,8 @@ impl TagFilter {
         (self.ask == TagSet::NONE || tags.meets(self.ask)) && !tags.meets(self.forbidden())
     }
 
-    /// Whether among frames that have `any` tags between them and `all` of these in common there can be one that is admitted.
+    /// Whether among frames that have `any` tags between them and `all` of these in common there
+    /// can be one that is admitted.
     pub(super) fn may_admit(self, any: TagSet, all: TagSet) -> bool {
         (self.ask == TagSet::NONE || any.meets(self.ask)) && !all.meets(self.forbidden())
     }
@@ -124,17 +127,20 @@ pub struct TagRange {
     pub frames: Range<usize>,
 }
 
-/// Below this speed a body of 1.75 m stands, above the other one it runs, metres per second: between walking (at most 2.2) and running there is
-/// the preferred transition at about 2 m/s (Hreljac 1993).
+/// Below this speed a body of 1.75 m stands, above the other one it runs, metres per second:
+/// between walking (at most 2.2) and running there is the preferred transition at about 2 m/s
+/// (Hreljac 1993).
 const STANDS_MPS: f64 = 0.25;
 const RUNS_MPS: f64 = 2.1;
 /// Above this rate it turns, radians per second: 17° per second.
 const TURNS_RPS: f64 = 0.3;
-/// Speed and turn rate are measured over this time to either side, and shorter stretches are noise, seconds.
+/// Speed and turn rate are measured over this time to either side, and shorter stretches are noise,
+/// seconds.
 const REACH_SECS: f64 = 0.2;
 
-/// Suggests walk, run, idle and turn from the speed and the turn rate of `roots` (`world_from_character` at `fps`), for a body `scale` times as
-/// high as 1.75 m. Ranges of one tag are in order and do not touch; turn overlaps the others.
+/// Suggests walk, run, idle and turn from the speed and the turn rate of `roots`
+/// (`world_from_character` at `fps`), for a body `scale` times as high as 1.75 m. Ranges of one tag
+/// are in order and do not touch; turn overlaps the others.
 #[must_use]
 pub fn suggest_tags(roots: &[Planar], fps: f64, scale: f64) -> Vec<TagRange> {
     let reach = ((REACH_SECS * fps).round() as usize).max(1);
@@ -204,9 +210,13 @@ mod tests {
             })
             .collect();
         let found = suggest_tags(&roots, fps, 1.0);
-        for (tag, from, to) in [(Tag::Walk, 120, 240), (Tag::Run, 240, 360), (Tag::Turn, 360, 480)] {
+        for (tag, from, to) in [(Tag::Walk, 120, 240), (Tag::Run, 240, 360), (Tag::Turn, 360, 480)]
+        {
             let range = &found.iter().find(|range| range.tag == tag).expect("suggested").frames;
-            assert!(range.start.abs_diff(from) < 13 && range.end.abs_diff(to) < 13, "{tag:?} {range:?}");
+            assert!(
+                range.start.abs_diff(from) < 13 && range.end.abs_diff(to) < 13,
+                "{tag:?} {range:?}"
+            );
         }
         let tags = spread(&found, fps, 480);
         assert!(tags[60].has(Tag::Idle) && !tags[60].has(Tag::Turn) && !tags[420].has(Tag::Idle));
@@ -216,22 +226,18 @@ mod tests {
     #[test]
     fn filters_ask_for_one_and_forbid_all() {
         let [walk, turn, own] = [Tag::Walk, Tag::Turn, Tag::Own(26)].map(|tag| TagSet::of(&[tag]));
-        let filter = TagFilter {
-            ask: TagSet(walk.0 | own.0),
-            forbid: turn,
-        };
-        assert!(filter.admits(walk) && filter.admits(own) && !filter.admits(TagSet::NONE) && !filter.admits(TagSet(walk.0 | turn.0)));
+        let filter = TagFilter { ask: TagSet(walk.0 | own.0), forbid: turn };
+        assert!(
+            filter.admits(walk)
+                && filter.admits(own)
+                && !filter.admits(TagSet::NONE)
+                && !filter.admits(TagSet(walk.0 | turn.0))
+        );
         assert!(!TagFilter::default().admits(TagSet::of(&[Tag::Exclude, Tag::Walk])));
         assert_eq!(TagSet::of(&[Tag::Own(27), Tag::Own(255)]), TagSet::NONE);
         // Ranges beyond the clip, and the other way round, say nothing.
-        let odd = TagRange {
-            tag: Tag::Run,
-            frames: Range { start: 9, end: 3 },
-        };
-        let far = TagRange {
-            tag: Tag::Run,
-            frames: 70..usize::MAX,
-        };
+        let odd = TagRange { tag: Tag::Run, frames: Range { start: 9, end: 3 } };
+        let far = TagRange { tag: Tag::Run, frames: 70..usize::MAX };
         assert!(spread(&[odd, far], 60.0, 50).iter().all(|tags| *tags == TagSet::NONE));
     }
 }

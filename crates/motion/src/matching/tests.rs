@@ -15,7 +15,9 @@ use std::sync::{Arc, OnceLock};
 /// A small database of the synthesiser's motions, built once.
 fn small() -> &'static Arc<Database> {
     static DATABASE: OnceLock<Arc<Database>> = OnceLock::new();
-    DATABASE.get_or_init(|| Arc::new(Database::new(made_clips(1.75).unwrap(), &DatabaseOptions::default()).unwrap()))
+    DATABASE.get_or_init(|| {
+        Arc::new(Database::new(made_clips(1.75).unwrap(), &DatabaseOptions::default()).unwrap())
+    })
 }
 
 fn golden() -> Value {
@@ -62,17 +64,15 @@ fn oracle_clip(golden: &Value) -> MatchClip {
         Vec3::new(at[0] as f32, at[1] as f32, at[2] as f32)
     });
     let roles = Roles::detect(&skeleton);
-    let clip = Clip::new("oracle", skeleton, RATE as f64, rotations.collect(), roots.collect()).unwrap();
+    let clip =
+        Clip::new("oracle", skeleton, RATE as f64, rotations.collect(), roots.collect()).unwrap();
     MatchClip::new(Arc::new(clip), roles)
 }
 
 #[test]
 fn roots_features_and_scales_are_the_oracle_s() {
     let golden = golden();
-    let options = DatabaseOptions {
-        mirrored: false,
-        ..DatabaseOptions::default()
-    };
+    let options = DatabaseOptions { mirrored: false, ..DatabaseOptions::default() };
     let database = Database::new(vec![oracle_clip(&golden)], &options).unwrap();
     let motion = &database.motions()[0];
     for (root, wanted) in motion.roots().iter().zip(golden["roots"].as_array().unwrap()) {
@@ -119,7 +119,9 @@ fn the_simulation_object_goes_the_oracle_s_way() {
         };
         let end = start.after(case["secs"].as_f64().unwrap(), &steering);
         let wanted = numbers(&case["end"]);
-        for (found, wanted) in [end.position, end.velocity, end.acceleration].into_iter().zip(wanted.chunks(2)) {
+        for (found, wanted) in
+            [end.position, end.velocity, end.acceleration].into_iter().zip(wanted.chunks(2))
+        {
             assert!(found.distance(DVec2::from_slice(wanted)) < 1e-7, "{found} {wanted:?}");
         }
     }
@@ -129,15 +131,12 @@ fn the_simulation_object_goes_the_oracle_s_way() {
 fn what_cannot_be_searched_is_told_in_a_sentence() {
     let options = DatabaseOptions::default();
     assert_eq!(Database::new(vec![], &options), Err(MatchError::NoClips));
-    let walk = MatchClip::new(Arc::new(synthesize(&Params::new(Action::Walk)).unwrap().clip), Roles::default());
-    let walk = MatchClip {
-        roles: Roles::detect(walk.clip.skeleton()),
-        ..walk
-    };
-    let short = MatchClip {
-        clip: Arc::new(walk.clip.crop(0..35).unwrap()),
-        ..walk.clone()
-    };
+    let walk = MatchClip::new(
+        Arc::new(synthesize(&Params::new(Action::Walk)).unwrap().clip),
+        Roles::default(),
+    );
+    let walk = MatchClip { roles: Roles::detect(walk.clip.skeleton()), ..walk };
+    let short = MatchClip { clip: Arc::new(walk.clip.crop(0..35).unwrap()), ..walk.clone() };
     let alone = Database::new(vec![short.clone()], &options);
     assert!(matches!(alone, Err(MatchError::NoValidFrame { clips: 1, .. })), "{alone:?}");
     assert!(alone.unwrap_err().to_string().contains("0.57 s"));
@@ -145,10 +144,7 @@ fn what_cannot_be_searched_is_told_in_a_sentence() {
     let both = Database::new(vec![short, walk.clone()], &options).unwrap();
     assert!(matches!(both.skipped(), [MatchError::TooShort { .. }]) && both.motions().len() == 2);
     assert_eq!(both.motions()[0].source(), 1);
-    let footless = MatchClip {
-        roles: Roles::default(),
-        ..walk.clone()
-    };
+    let footless = MatchClip { roles: Roles::default(), ..walk.clone() };
     let error = Database::new(vec![footless], &options).unwrap_err();
     assert!(error.to_string().contains("hips"), "{error}");
     let endless = Clip::new(
@@ -158,21 +154,19 @@ fn what_cannot_be_searched_is_told_in_a_sentence() {
         vec![Quat::IDENTITY; 2 * walk.clip.skeleton().len()],
         vec![Vec3::Y; 2],
     );
-    let endless = MatchClip {
-        clip: Arc::new(endless.unwrap()),
-        ..walk.clone()
-    };
+    let endless = MatchClip { clip: Arc::new(endless.unwrap()), ..walk.clone() };
     assert!(matches!(
         Database::new(vec![endless], &options),
         Err(MatchError::TooManyFrames { .. })
     ));
     let mut broken = walk.clip.root_translations().to_vec();
     broken[7].x = f32::NAN;
-    let rotations = (0..walk.clip.frames())
-        .flat_map(|frame| walk.clip.rotations(frame).to_vec())
-        .collect();
+    let rotations =
+        (0..walk.clip.frames()).flat_map(|frame| walk.clip.rotations(frame).to_vec()).collect();
     let broken = MatchClip {
-        clip: Arc::new(Clip::new("broken", walk.clip.skeleton().clone(), 60.0, rotations, broken).unwrap()),
+        clip: Arc::new(
+            Clip::new("broken", walk.clip.skeleton().clone(), 60.0, rotations, broken).unwrap(),
+        ),
         ..walk
     };
     assert!(matches!(Database::new(vec![broken], &options), Err(MatchError::NotFinite { .. })));
@@ -181,10 +175,7 @@ fn what_cannot_be_searched_is_told_in_a_sentence() {
 #[test]
 fn other_rates_other_times_and_other_tags_change_what_they_should() {
     let database = small();
-    let features = FeatureOptions {
-        trajectory_secs: vec![0.25, 0.5],
-        ..FeatureOptions::default()
-    };
+    let features = FeatureOptions { trajectory_secs: vec![0.25, 0.5], ..FeatureOptions::default() };
     let retimed = DatabaseBuilder::retimed(database, &features).unwrap().finish().unwrap();
     assert_eq!((retimed.frames(), retimed.features().layout().dims()), (database.frames(), 23));
     assert!(retimed.valid().len() > database.valid().len());
@@ -192,7 +183,8 @@ fn other_rates_other_times_and_other_tags_change_what_they_should() {
     // The same motion at another rate gives the same features.
     let clip = synthesize(&Params::new(Action::Walk)).unwrap().clip;
     let finer = resample(&clip, 120.0, Interpolation::Cubic).unwrap();
-    // As a clip that ends: a round takes a whole number of frames, which are not the same ones at every rate.
+    // As a clip that ends: a round takes a whole number of frames, which are not the same ones at
+    // every rate.
     let [usual, fine] = [clip, finer].map(|clip| {
         let roles = Roles::detect(clip.skeleton());
         Database::new(vec![MatchClip::new(Arc::new(clip), roles)], &rounds(false)).unwrap()
@@ -205,19 +197,9 @@ fn other_rates_other_times_and_other_tags_change_what_they_should() {
             assert!((a - b).abs() < 2e-3, "{frame}: {a} {b}");
         }
     }
-    let excluded = usual.retagged(
-        0,
-        &[TagRange {
-            tag: Tag::Exclude,
-            frames: 0..usual.frames(),
-        }],
-    );
+    let excluded = usual.retagged(0, &[TagRange { tag: Tag::Exclude, frames: 0..usual.frames() }]);
     let query = vec![0.0; 27];
-    let question = Question {
-        query: &query,
-        weights: &[1.0; 27],
-        filter: TagFilter::default(),
-    };
+    let question = Question { query: &query, weights: &[1.0; 27], filter: TagFilter::default() };
     assert_eq!(excluded.index().search(excluded.masks(), &question, None).best, None);
     assert!(scan(&usual.candidates(), &question).best.is_some());
     for number in (0..database.frames()).step_by(997) {
@@ -246,11 +228,15 @@ fn mirrored_copies_are_mirror_images() {
             };
             let (row, image) = (row(motion), row(motion + 1));
             for place in 0..6 {
-                assert!((row[2 * place] + image[2 * place]).abs() < 1e-3 && (row[2 * place + 1] - image[2 * place + 1]).abs() < 1e-3);
+                assert!(
+                    (row[2 * place] + image[2 * place]).abs() < 1e-3
+                        && (row[2 * place + 1] - image[2 * place + 1]).abs() < 1e-3
+                );
             }
             for (from, to) in [(12, 15), (15, 12), (18, 21), (21, 18), (24, 24)] {
                 assert!(
-                    (row[from] + image[to]).abs() < 5e-3 && (row[from + 2] - image[to + 2]).abs() < 5e-3,
+                    (row[from] + image[to]).abs() < 5e-3
+                        && (row[from + 2] - image[to + 2]).abs() < 5e-3,
                     "{motion} {frame} {from}"
                 );
             }
@@ -274,15 +260,19 @@ fn a_recording_replays_bit_for_bit_and_screens_do_not_matter() {
     }
     // 144 Hz, and 25 Hz, ask for the same ticks.
     for rate in [144.0, 25.0] {
-        let mut controller = Controller::new(Arc::clone(small()), options(), &Planar::IDENTITY).unwrap();
+        let mut controller =
+            Controller::new(Arc::clone(small()), options(), &Planar::IDENTITY).unwrap();
         let control = Control::new(DVec2::new(0.0, 1.4), None);
-        let ticks: usize = (0..(2.0 * rate) as usize).map(|_| controller.step(1.0 / rate, &control)).sum();
+        let ticks: usize =
+            (0..(2.0 * rate) as usize).map(|_| controller.step(1.0 / rate, &control)).sum();
         assert!(ticks.abs_diff(120) <= 1);
         while controller.ticks() < 120 {
             controller.tick(&control);
         }
         assert_eq!(controller.pose().root_translation, first.clip.root_translations()[119]);
-        assert!(controller.shown().root_translation.distance(controller.pose().root_translation) < 0.05);
+        assert!(
+            controller.shown().root_translation.distance(controller.pose().root_translation) < 0.05
+        );
         assert_eq!(controller.step(f64::NAN, &control) + controller.step(-1.0, &control), 0);
         assert!(controller.step(1e9, &control) <= 60);
     }
@@ -294,7 +284,10 @@ fn scenarios_are_followed_without_stutter_or_skating() {
         assert_eq!(Scenario::find(scenario.id()), Some(scenario));
         let driven = drive(small(), options(), &scenario.recording()).unwrap();
         let metrics = driven.metrics(small());
-        assert!(metrics.error_cm < 10.0 && metrics.worst_error_cm < 36.0, "{scenario:?} {metrics:?}");
+        assert!(
+            metrics.error_cm < 10.0 && metrics.worst_error_cm < 36.0,
+            "{scenario:?} {metrics:?}"
+        );
         assert!(metrics.turn_secs.unwrap_or(0.0) <= 1.2, "{scenario:?} {metrics:?}");
         assert!(metrics.skate_cm.unwrap() < 2.5, "{scenario:?} {metrics:?}");
         assert!(metrics.seams_per_minute < 100.0, "{scenario:?} {metrics:?}");
@@ -312,11 +305,7 @@ fn scenarios_are_followed_without_stutter_or_skating() {
 fn jumps_are_continuous() {
     let driven = drive(
         small(),
-        ControllerOptions {
-            planting: None,
-            following: None,
-            ..options()
-        },
+        ControllerOptions { planting: None, following: None, ..options() },
         &Scenario::FigureEight.recording(),
     )
     .unwrap();
@@ -328,7 +317,8 @@ fn jumps_are_continuous() {
     let most = (1..clip.frames()).map(step).fold(0.0, f32::max);
     assert!(driven.jumps.len() > 3);
     for jump in driven.jumps.iter().filter(|jump| jump.frame > 1) {
-        // It leaves with the velocity that it had; what an offset of half a radian is drawn back by in one tick is 0.03.
+        // It leaves with the velocity that it had; what an offset of half a radian is drawn back by
+        // in one tick is 0.03.
         let (before, at) = (step(jump.frame.saturating_sub(1)), step(jump.frame));
         // That is the step that the old clip makes next, which may be longer than the one before.
         let motion = &small().motions()[jump.from.place.motion];
@@ -355,7 +345,8 @@ fn options_that_change_during_a_jump_keep_the_velocity() {
     let recording = Scenario::StartStop.recording();
     let mut compared = 0;
     for ticks_after_jump in [1, 4, 8] {
-        let start = || Controller::new(Arc::clone(small()), options(0.15), &Planar::IDENTITY).unwrap();
+        let start =
+            || Controller::new(Arc::clone(small()), options(0.15), &Planar::IDENTITY).unwrap();
         let (mut kept, mut changed) = (start(), start());
         let mut since_jump = usize::MAX;
         for control in recording.controls() {
@@ -377,7 +368,8 @@ fn options_that_change_during_a_jump_keep_the_velocity() {
                 .zip(b)
                 .map(|(&a, &b)| crate::math::quat::angle_between(a, b))
                 .fold(0.0, f32::max);
-            // Nearly the same half-life, nearly the same pose a tick later: 1e-3 rad are 3.4 degrees per second.
+            // Nearly the same half-life, nearly the same pose a tick later: 1e-3 rad are 3.4
+            // degrees per second.
             assert!(apart < 1e-3, "{ticks_after_jump}: {apart}");
             compared += 1;
             break;
@@ -388,23 +380,17 @@ fn options_that_change_during_a_jump_keep_the_velocity() {
 
 /// One stride of a made gait, without the frame that stands for its first again.
 fn one_stride(action: Action, fps: f32, turn_rate_dps: f32) -> MatchClip {
-    let params = Params {
-        turn_rate_dps,
-        fps,
-        ..Params::new(action)
-    };
+    let params = Params { turn_rate_dps, fps, ..Params::new(action) };
     let clip = Arc::new(synthesize(&params).unwrap().clip);
     let roles = Roles::detect(clip.skeleton());
     let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
-    let cycle = GaitCycle::find(&Source::new(Arc::clone(&clip), &roles), &roles, &contacts).unwrap();
+    let cycle =
+        GaitCycle::find(&Source::new(Arc::clone(&clip), &roles), &roles, &contacts).unwrap();
     MatchClip::new(Arc::new(clip.crop(cycle.range()).unwrap()), roles)
 }
 
 fn rounds(cycles: bool) -> DatabaseOptions {
-    DatabaseOptions {
-        cycles,
-        ..DatabaseOptions::default()
-    }
+    DatabaseOptions { cycles, ..DatabaseOptions::default() }
 }
 
 #[test]
@@ -430,10 +416,15 @@ fn a_cycle_has_the_features_of_its_clip_played_again_and_again() {
             // The slow way: nine rounds as one long clip, of which the fifth is looked at.
             let frames = motion.frames();
             // Over the seam it goes on as before.
-            let step = |frame: usize| motion.root(frame).inverse().after(&motion.root(frame + 1)).shift;
+            let step =
+                |frame: usize| motion.root(frame).inverse().after(&motion.root(frame + 1)).shift;
             assert!(step(frames - 1).distance(step(frames - 2)) < 0.1 * step(0).length(), "{name}");
             let long = play_around(motion.clip(), &motion.cycle().unwrap(), 9).unwrap();
-            let long = Database::new(vec![MatchClip::new(Arc::new(long), stride.roles.clone())], &rounds(false)).unwrap();
+            let long = Database::new(
+                vec![MatchClip::new(Arc::new(long), stride.roles.clone())],
+                &rounds(false),
+            )
+            .unwrap();
             let long = &long.motions()[0];
             assert!(!long.is_cycle());
             for frame in 0..frames {
@@ -441,7 +432,10 @@ fn a_cycle_has_the_features_of_its_clip_played_again_and_again() {
                 motion.write_row(&layout, frame, &mut own);
                 long.write_row(&layout, 4 * frames + frame, &mut wanted);
                 for (dim, (own, wanted)) in own.iter().zip(&wanted).enumerate() {
-                    assert!((own - wanted).abs() < 2e-3, "{name}, frame {frame}, {dim}: {own} {wanted}");
+                    assert!(
+                        (own - wanted).abs() < 2e-3,
+                        "{name}, frame {frame}, {dim}: {own} {wanted}"
+                    );
                 }
                 for side in crate::skeleton::Side::BOTH {
                     assert_eq!(
@@ -452,7 +446,8 @@ fn a_cycle_has_the_features_of_its_clip_played_again_and_again() {
                 }
             }
         }
-        // Without rounds it ends, and is too short to look ahead in where it lasts less than a second.
+        // Without rounds it ends, and is too short to look ahead in where it lasts less than a
+        // second.
         let ends = Database::new(vec![stride.clone()], &rounds(false));
         assert_eq!(ends.is_err(), secs < 1.0, "{secs} {ends:?}");
     }
@@ -469,22 +464,21 @@ fn a_cycle_has_the_features_of_its_clip_played_again_and_again() {
 #[test]
 fn a_cycle_plays_round_and_round() {
     let stride = one_stride(Action::Walk, 60.0, 0.0);
-    let options = DatabaseOptions {
-        mirrored: false,
-        ..rounds(true)
-    };
+    let options = DatabaseOptions { mirrored: false, ..rounds(true) };
     let database = Arc::new(Database::new(vec![stride], &options).unwrap());
     let motion = Arc::clone(&database.motions()[0]);
     let frames = motion.frames();
     let control = Control::new(DVec2::new(0.0, 1.4), None);
-    let mut controller = Controller::new(Arc::clone(&database), self::options(), &Planar::IDENTITY).unwrap();
+    let mut controller =
+        Controller::new(Arc::clone(&database), self::options(), &Planar::IDENTITY).unwrap();
     let (mut rounds, mut most, mut ends) = (0, 0.0f32, 0);
     for tick in 0..1_200 {
         let before = controller.place().frame;
         let jumps = controller.jumps();
         let pose = controller.pose().rotations.clone();
         controller.tick(&control);
-        let search = controller.last_search().filter(|search| search.tick + 1 == controller.ticks());
+        let search =
+            controller.last_search().filter(|search| search.tick + 1 == controller.ticks());
         ends += usize::from(search.is_some_and(|search| search.reason == Reason::ClipEnd));
         if controller.jumps() == jumps {
             assert_eq!(controller.place().frame, (before + 1) % frames, "{tick}");
@@ -492,7 +486,8 @@ fn a_cycle_plays_round_and_round() {
         }
         if tick > 300 {
             let turned = pose.iter().zip(&controller.pose().rotations);
-            most = turned.map(|(&a, &b)| crate::math::quat::angle_between(a, b)).fold(most, f32::max);
+            most =
+                turned.map(|(&a, &b)| crate::math::quat::angle_between(a, b)).fold(most, f32::max);
         }
     }
     // Twenty seconds are nearly twenty strides, and none of them ends.
@@ -523,10 +518,14 @@ fn votes_for_another_clip_let_jumps_within_a_clip_pass() {
     for control in Scenario::FigureEight.recording().controls() {
         let (before, jumps) = (controller.place(), controller.jumps());
         controller.tick(&control);
-        let Some(search) = controller.last_search().filter(|search| search.tick + 1 == controller.ticks()) else {
+        let Some(search) =
+            controller.last_search().filter(|search| search.tick + 1 == controller.ticks())
+        else {
             continue;
         };
-        let Some(winner) = search.winner else { continue };
+        let Some(winner) = search.winner else {
+            continue;
+        };
         let jumped = controller.jumps() > jumps;
         let other = winner.place.motion != before.motion;
         elsewhere = if other { elsewhere + 1 } else { 0 };
@@ -544,27 +543,24 @@ fn votes_for_another_clip_let_jumps_within_a_clip_pass() {
     // In a database of one clip there is nothing to vote for.
     let walk = synthesize(&Params::new(Action::Walk)).unwrap().clip;
     let roles = Roles::detect(walk.skeleton());
-    let alone = DatabaseOptions {
-        mirrored: false,
-        ..rounds(false)
-    };
-    let alone = Arc::new(Database::new(vec![MatchClip::new(Arc::new(walk), roles)], &alone).unwrap());
+    let alone = DatabaseOptions { mirrored: false, ..rounds(false) };
+    let alone =
+        Arc::new(Database::new(vec![MatchClip::new(Arc::new(walk), roles)], &alone).unwrap());
     let jumps = |hysteresis| {
         let options = ControllerOptions { hysteresis, ..options };
         drive(&alone, options, &Scenario::StartStop.recording()).unwrap().jumps
     };
     let free = jumps(Hysteresis::None);
-    assert!(free.iter().any(|jump| jump.reason != Reason::ClipEnd) && free == jumps(options.hysteresis));
+    assert!(
+        free.iter().any(|jump| jump.reason != Reason::ClipEnd) && free == jumps(options.hysteresis)
+    );
 }
 
 #[test]
 fn a_clip_that_is_named_is_preferred_while_the_input_is_still() {
     let motions = small().motions();
-    let named = motions
-        .iter()
-        .find(|motion| motion.clip().name() == "walk 1.9 m/s")
-        .unwrap()
-        .source();
+    let named =
+        motions.iter().find(|motion| motion.clip().name() == "walk 1.9 m/s").unwrap().source();
     let share = |prefer_source, prefer_current| {
         let options = ControllerOptions {
             prefer_source,
@@ -573,7 +569,8 @@ fn a_clip_that_is_named_is_preferred_while_the_input_is_still() {
             candidates: 4,
             ..options()
         };
-        let mut controller = Controller::new(Arc::clone(small()), options, &Planar::IDENTITY).unwrap();
+        let mut controller =
+            Controller::new(Arc::clone(small()), options, &Planar::IDENTITY).unwrap();
         let mut there = 0;
         for tick in 0..480 {
             controller.tick(&Control::new(DVec2::new(0.0, 1.4), None));
@@ -592,11 +589,7 @@ fn a_clip_that_is_named_is_preferred_while_the_input_is_still() {
 fn hysteresis_holds_back_and_tags_are_obeyed() {
     let recording = Scenario::StartStop.recording();
     let jumps = |hysteresis| {
-        let options = ControllerOptions {
-            hysteresis,
-            prefer_current: 0.0,
-            ..options()
-        };
+        let options = ControllerOptions { hysteresis, prefer_current: 0.0, ..options() };
         drive(small(), options, &recording).unwrap().jumps
     };
     let free = jumps(Hysteresis::None).len();
@@ -612,11 +605,9 @@ fn hysteresis_holds_back_and_tags_are_obeyed() {
     let apart = apart.windows(2).filter(|pair| pair[1].reason != Reason::ClipEnd);
     assert!(apart.map(|pair| pair[1].frame - pair[0].frame).all(|frames| frames >= 30));
 
-    let walk = TagFilter {
-        ask: TagSet::of(&[Tag::Run]),
-        forbid: TagSet::of(&[Tag::Turn]),
-    };
-    let mut controller = Controller::new(Arc::clone(small()), options(), &Planar::IDENTITY).unwrap();
+    let walk = TagFilter { ask: TagSet::of(&[Tag::Run]), forbid: TagSet::of(&[Tag::Turn]) };
+    let mut controller =
+        Controller::new(Arc::clone(small()), options(), &Planar::IDENTITY).unwrap();
     let control = Control::new(DVec2::new(0.0, 1.4), None).with_filter(walk);
     let mut places = BTreeSet::new();
     for _ in 0..180 {
@@ -630,10 +621,8 @@ fn hysteresis_holds_back_and_tags_are_obeyed() {
         assert!(walk.admits(small().tags(small().number(place).unwrap())), "{place:?}");
     }
     // Nothing has such a tag: the clip goes on, and at its end the character stands.
-    let nowhere = control.with_filter(TagFilter {
-        ask: TagSet::of(&[Tag::Own(7)]),
-        forbid: TagSet::NONE,
-    });
+    let nowhere =
+        control.with_filter(TagFilter { ask: TagSet::of(&[Tag::Own(7)]), forbid: TagSet::NONE });
     for _ in 0..600 {
         controller.tick(&nowhere);
     }
@@ -643,11 +632,9 @@ fn hysteresis_holds_back_and_tags_are_obeyed() {
 
 #[test]
 fn a_search_tells_why() {
-    let options = ControllerOptions {
-        candidates: 6,
-        ..options()
-    };
-    let mut controller = Controller::new(Arc::clone(small()), options, &Planar::new(0.4, 2.0, -1.0)).unwrap();
+    let options = ControllerOptions { candidates: 6, ..options() };
+    let mut controller =
+        Controller::new(Arc::clone(small()), options, &Planar::new(0.4, 2.0, -1.0)).unwrap();
     assert!(controller.root().shift.distance(DVec2::new(2.0, -1.0)) < 1e-9);
     let control = Control::new(DVec2::new(1.0, 1.0), None);
     for _ in 0..90 {
@@ -655,9 +642,15 @@ fn a_search_tells_why() {
     }
     let search = controller.last_search().unwrap();
     assert_eq!(search.candidates.first(), search.winner.as_ref());
-    assert!(search.candidates.len() == 6 && search.candidates.windows(2).all(|pair| pair[0].cost <= pair[1].cost));
+    assert!(
+        search.candidates.len() == 6
+            && search.candidates.windows(2).all(|pair| pair[0].cost <= pair[1].cost)
+    );
     for candidate in search.candidates.iter().chain([&search.current]) {
-        assert!((candidate.split.iter().sum::<f32>() - candidate.cost).abs() < 1e-4 * candidate.cost.max(1.0));
+        assert!(
+            (candidate.split.iter().sum::<f32>() - candidate.cost).abs()
+                < 1e-4 * candidate.cost.max(1.0)
+        );
         assert!(small().pose(candidate.place, &controller.root()).is_some());
     }
     assert_eq!((controller.desired().len(), controller.matched().len()), (3, 3));
@@ -679,7 +672,8 @@ fn a_search_tells_why() {
 fn planted_feet_stand() {
     let recording = Scenario::WalkToRun.recording();
     let slide = |planting| {
-        let driven = drive(small(), ControllerOptions { planting, ..options() }, &recording).unwrap();
+        let driven =
+            drive(small(), ControllerOptions { planting, ..options() }, &recording).unwrap();
         driven.metrics(small()).skate_cm.unwrap()
     };
     let (with, without) = (slide(options().planting), slide(None));
@@ -697,8 +691,12 @@ fn contacts_of_a_mirror_image_are_swapped() {
 fn walks_are_neither_pulled_along_at_a_run_nor_spun_around() {
     let clip = synthesize(&Params::new(Action::Walk)).unwrap().clip;
     let roles = Roles::detect(clip.skeleton());
-    let database = Arc::new(Database::new(vec![MatchClip::new(Arc::new(clip), roles)], &DatabaseOptions::default()).unwrap());
-    let mut controller = Controller::new(Arc::clone(&database), options(), &Planar::IDENTITY).unwrap();
+    let database = Arc::new(
+        Database::new(vec![MatchClip::new(Arc::new(clip), roles)], &DatabaseOptions::default())
+            .unwrap(),
+    );
+    let mut controller =
+        Controller::new(Arc::clone(&database), options(), &Planar::IDENTITY).unwrap();
     let (rate, pace) = (RATE as f64, database.pace());
     assert!(pace.travel_mps < 1.6 && pace.turn_radps < 0.5, "{pace:?}");
     let (mut fastest, mut fastest_turn, mut farthest) = (0.0_f64, 0.0_f64, 0.0_f64);

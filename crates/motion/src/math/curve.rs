@@ -9,7 +9,8 @@ pub fn smoothstep(t: f32) -> f32 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// 6t⁵ - 15t⁴ + 10t³: from 0 to 1 with neither slope nor curvature at either end (C²; Perlin 2002). `t` is clamped.
+/// 6t⁵ - 15t⁴ + 10t³: from 0 to 1 with neither slope nor curvature at either end (C²; Perlin 2002).
+/// `t` is clamped.
 #[must_use]
 pub fn smootherstep(t: f32) -> f32 {
     let t = t.clamp(0.0, 1.0);
@@ -26,7 +27,8 @@ pub fn soft_limit(value: f32, from: f32, to: f32) -> f32 {
     from + room * (1.0 - (-(value - from) / room).exp())
 }
 
-/// Catmull-Rom: the cubic through `p1` (t = 0) and `p2` (t = 1) with slopes from the neighbours `p0` and `p3`, uniform knots.
+/// Catmull-Rom: the cubic through `p1` (t = 0) and `p2` (t = 1) with slopes from the neighbours
+/// `p0` and `p3`, uniform knots.
 #[must_use]
 pub fn catmull_rom(p0: Vec3, p1: Vec3, p2: Vec3, p3: Vec3, t: f32) -> Vec3 {
     hermite(p1, (p2 - p0) * 0.5, p2, (p3 - p1) * 0.5, t)
@@ -36,7 +38,10 @@ pub fn catmull_rom(p0: Vec3, p1: Vec3, p2: Vec3, p3: Vec3, t: f32) -> Vec3 {
 #[must_use]
 pub fn hermite(p0: Vec3, m0: Vec3, p1: Vec3, m1: Vec3, t: f32) -> Vec3 {
     let (t2, t3) = (t * t, t * t * t);
-    p0 * (2.0 * t3 - 3.0 * t2 + 1.0) + m0 * (t3 - 2.0 * t2 + t) + p1 * (3.0 * t2 - 2.0 * t3) + m1 * (t3 - t2)
+    p0 * (2.0 * t3 - 3.0 * t2 + 1.0)
+        + m0 * (t3 - 2.0 * t2 + t)
+        + p1 * (3.0 * t2 - 2.0 * t3)
+        + m1 * (t3 - t2)
 }
 
 #[cfg(test)]

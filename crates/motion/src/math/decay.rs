@@ -1,7 +1,8 @@
 use super::spring;
 use glam::Vec3;
 
-/// What is left of an offset `x` and its velocity `v` after some time, both linear in what they were at first.
+/// What is left of an offset `x` and its velocity `v` after some time, both linear in what they
+/// were at first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Response {
     /// The share of the offset in the offset.
@@ -16,12 +17,7 @@ pub struct Response {
 
 impl Response {
     /// Nothing is left.
-    pub const NOTHING: Self = Self {
-        xx: 0.0,
-        xv: 0.0,
-        vx: 0.0,
-        vv: 0.0,
-    };
+    pub const NOTHING: Self = Self { xx: 0.0, xv: 0.0, vx: 0.0, vv: 0.0 };
 
     /// The offset and its velocity.
     #[must_use]
@@ -39,7 +35,8 @@ impl Response {
 /// How an offset dies away that starts with a velocity of its own: the heart of inertialization.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Decay {
-    /// A critically damped spring ([`spring::response`]). Never quite at rest, and never in a hurry.
+    /// A critically damped spring ([`spring::response`]). Never quite at rest, and never in a
+    /// hurry.
     Spring {
         /// Half-life, seconds.
         half_life_secs: f64,
@@ -49,14 +46,16 @@ pub enum Decay {
         /// Seconds until nothing is left.
         blend_secs: f64,
     },
-    /// The quintic of Bollo, "Inertialization: High-Performance Animation Transitions in Gears of War" (GDC 2018): it ends without velocity and
-    /// acceleration, and does not overshoot.
+    /// The quintic of Bollo, "Inertialization: High-Performance Animation Transitions in Gears of
+    /// War" (GDC 2018): it ends without velocity and acceleration, and does not overshoot.
     ///
-    /// An offset that closes fast would fly past 0. So, with Bollo, the blend time is at most `5 |x| / closing speed`, and a first
-    /// acceleration `max(0, 8 · closing speed / T - 20 |x| / T²)` pushes against it; at the limit the curve is `(1 - t/T)⁵`. Bollo
-    /// works on the offset's length and drops the velocity across it and away from 0. Here the whole vector is kept, so that the
-    /// velocity stays continuous: the limits are those of the part along the offset, and they hold for the way along it. An offset near 0 with
-    /// a high closing speed ends nearly at once, as Bollo's does.
+    /// An offset that closes fast would fly past 0. So, with Bollo, the blend time is at most `5
+    /// |x| / closing speed`, and a first acceleration `max(0, 8 · closing speed / T - 20 |x| / T²)`
+    /// pushes against it; at the limit the curve is `(1 - t/T)⁵`. Bollo works on the offset's
+    /// length and drops the velocity across it and away from 0. Here the whole vector is kept, so
+    /// that the velocity stays continuous: the limits are those of the part along the offset, and
+    /// they hold for the way along it. An offset near 0 with a high closing speed ends nearly at
+    /// once, as Bollo's does.
     Quintic {
         /// Seconds until nothing is left, at most.
         blend_secs: f64,
@@ -78,7 +77,8 @@ impl Decay {
         self.response(closing, secs).of_vec3(x, v)
     }
 
-    /// The response after `secs` for an offset that closes at the rate `closing`: `-v·x / |x|²`, per second. Only the quintic asks for it.
+    /// The response after `secs` for an offset that closes at the rate `closing`: `-v·x / |x|²`,
+    /// per second. Only the quintic asks for it.
     #[must_use]
     pub fn response(self, closing: f64, secs: f64) -> Response {
         match self {
@@ -90,13 +90,15 @@ impl Decay {
                 vv: (1.0 - s) * (1.0 - 3.0 * s),
             }),
             Self::Quintic { blend_secs } => {
-                let limited = if closing > 0.0 { blend_secs.min(5.0 / closing) } else { blend_secs };
+                let limited =
+                    if closing > 0.0 { blend_secs.min(5.0 / closing) } else { blend_secs };
                 in_support(limited, secs, |s, period| {
                     // |x|/T² is the unit of acceleration here.
                     let push = (8.0 * closing * period - 20.0).max(0.0);
                     let rest = 1.0 - s;
                     Response {
-                        xx: rest.powi(3) * (1.0 + s * (3.0 + 6.0 * s)) + 0.5 * push * s * s * rest.powi(3),
+                        xx: rest.powi(3) * (1.0 + s * (3.0 + 6.0 * s))
+                            + 0.5 * push * s * s * rest.powi(3),
                         xv: period * s * rest.powi(3) * (1.0 + 3.0 * s),
                         vx: s * rest * rest * (-30.0 * s + 0.5 * push * (2.0 - 5.0 * s)) / period,
                         vv: rest * rest * (1.0 + s * (2.0 - 15.0 * s)),
@@ -127,7 +129,8 @@ impl Decay {
     }
 }
 
-/// A curve over `s` from 0 to 1 in `period` seconds; nothing is left behind it. No period at all is over at once, but not before it began.
+/// A curve over `s` from 0 to 1 in `period` seconds; nothing is left behind it. No period at all is
+/// over at once, but not before it began.
 fn in_support(period: f64, secs: f64, curve: impl Fn(f64, f64) -> Response) -> Response {
     let period = period.max(1e-9);
     let s = secs.max(0.0) / period;
@@ -191,9 +194,7 @@ mod tests {
     fn a_cubic_overshoots_where_the_quintic_does_not() {
         let (x, v) = (Vec3::new(0.1, 0.0, 0.0), Vec3::new(-4.0, 0.5, 0.0));
         let lowest = |decay: Decay| {
-            (0..100)
-                .map(|i| decay.of_vec3(x, v, f64::from(i) * 0.004).0.x)
-                .fold(f32::MAX, f32::min)
+            (0..100).map(|i| decay.of_vec3(x, v, f64::from(i) * 0.004).0.x).fold(f32::MAX, f32::min)
         };
         assert!(lowest(ALL[1]) < -0.1);
         assert!(lowest(ALL[2]) > -1e-6);
@@ -221,8 +222,11 @@ mod tests {
 
     #[test]
     fn agrees_with_scipy() {
-        let golden: Golden = serde_json::from_str(include_str!("../../tests/oracles/transition.json")).unwrap();
-        let near = |found: (f64, f64), wanted: (f64, f64)| (found.0 - wanted.0).abs() < 1e-10 && (found.1 - wanted.1).abs() < 1e-8;
+        let golden: Golden =
+            serde_json::from_str(include_str!("../../tests/oracles/transition.json")).unwrap();
+        let near = |found: (f64, f64), wanted: (f64, f64)| {
+            (found.0 - wanted.0).abs() < 1e-10 && (found.1 - wanted.1).abs() < 1e-8
+        };
         for case in &golden.decays {
             let (half_life_secs, blend_secs) = (case.half_life, case.period);
             let none = vec![];

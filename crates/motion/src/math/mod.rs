@@ -1,28 +1,31 @@
-//! The little mathematics that every other module shares: rotations as vectors, rigid transforms of the ground, springs, and curves. Vectors
-//! and quaternions themselves are those of the crate `glam`.
+//! The little mathematics that every other module shares: rotations as vectors, rigid transforms of
+//! the ground, springs, and curves. Vectors and quaternions themselves are those of the crate
+//! `glam`.
 //!
 //! # The idea
 //!
-//! *Rotations* do not add, but small ones nearly do. The logarithm turns a quaternion into a rotation vector (axis × angle), with which one
-//! can reckon; the exponential turns it back ([`quat`]). `q` and `-q` are one rotation: always take the one that is nearer.
+//! *Rotations* do not add, but small ones nearly do. The logarithm turns a quaternion into a
+//! rotation vector (axis × angle), with which one can reckon; the exponential turns it back
+//! ([`quat`]). `q` and `-q` are one rotation: always take the one that is nearer.
 //!
 //! ```text
 //! v = log(q), |v| ≤ π        q = exp(v)
 //! ω = log(q₂ · q₁⁻¹) / dt    angular velocity in the world
 //! ```
 //!
-//! *A character on the ground* has a place and a facing: a [`Planar`] transform, three numbers. A walk is a chain of them, each step in the
-//! frame of the one before: `here.after(&step)`.
+//! *A character on the ground* has a place and a facing: a [`Planar`] transform, three numbers. A
+//! walk is a chain of them, each step in the frame of the one before: `here.after(&step)`.
 //!
-//! *A spring* that is critically damped pulls an offset to zero as fast as it goes without swinging ([`spring`]). Picture a door closer: it
-//! takes over whatever speed the door has, and does not swing to and fro. There is a closed form, so a step may be of any length:
+//! *A spring* that is critically damped pulls an offset to zero as fast as it goes without swinging
+//! ([`spring`]). Picture a door closer: it takes over whatever speed the door has, and does not
+//! swing to and fro. There is a closed form, so a step may be of any length:
 //!
 //! ```text
 //! x(t) = e^(-yt) (x + (v + xy) t),   y = 2 ln 2 / half-life
 //! ```
 //!
-//! [`Decay`] puts two curves with an end beside it, a cubic and a quintic. All three are linear in offset and velocity: four numbers
-//! ([`Response`]) serve a whole body.
+//! [`Decay`] puts two curves with an end beside it, a cubic and a quintic. All three are linear in
+//! offset and velocity: four numbers ([`Response`]) serve a whole body.
 //!
 //! # Example
 //!
@@ -51,20 +54,23 @@
 //!
 //! # Accuracy and cost
 //!
-//! Decays agree with `SciPy` to 1e-10. `log` undoes `exp` to 2e-5 radians up to nearly half a turn, and rotations of a millionth of a radian
-//! keep their digits: logarithms do not go through `acos`, which loses half of them near the identity. Everything but curves through points
-//! and percentiles is O(1).
+//! Decays agree with `SciPy` to 1e-10. `log` undoes `exp` to 2e-5 radians up to nearly half a turn,
+//! and rotations of a millionth of a radian keep their digits: logarithms do not go through `acos`,
+//! which loses half of them near the identity. Everything but curves through points and percentiles
+//! is O(1).
 //!
 //! # What it does not do
 //!
-//! No scales, no rigid transforms of space, no general linear algebra. Only for small rotation vectors are their rate and the angular
-//! velocity the same: [`quat::rate_to_angular_velocity`] is the bridge.
+//! No scales, no rigid transforms of space, no general linear algebra. Only for small rotation
+//! vectors are their rate and the angular velocity the same: [`quat::rate_to_angular_velocity`] is
+//! the bridge.
 //!
 //! # Sources
 //!
-//! Holden, "Spring-It-On: The Game Developer's Spring-Roll-Call", 2021. Bollo, "Inertialization", GDC 2018 (the quintic). Solà, Deray,
-//! Atchuthan, "A micro Lie theory", 2018. Kovar, Gleicher, Pighin, "Motion Graphs", 2002, section 3.1 (ground transforms). Fritsch, Carlson
-//! 1980 and Fritsch, Butland 1984 ([`MonotoneCurve`]).
+//! Holden, "Spring-It-On: The Game Developer's Spring-Roll-Call", 2021. Bollo, "Inertialization",
+//! GDC 2018 (the quintic). Solà, Deray, Atchuthan, "A micro Lie theory", 2018. Kovar, Gleicher,
+//! Pighin, "Motion Graphs", 2002, section 3.1 (ground transforms). Fritsch, Carlson 1980 and
+//! Fritsch, Butland 1984 ([`MonotoneCurve`]).
 
 pub mod curve;
 mod decay;

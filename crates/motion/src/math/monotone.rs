@@ -1,5 +1,6 @@
-/// A strictly increasing, continuously differentiable curve through points: piecewise cubic (Fritsch, Carlson 1980), with the slopes of Fritsch and
-/// Butland (1984): the weighted harmonic mean of the neighbouring chords, which never overshoots.
+/// A strictly increasing, continuously differentiable curve through points: piecewise cubic
+/// (Fritsch, Carlson 1980), with the slopes of Fritsch and Butland (1984): the weighted harmonic
+/// mean of the neighbouring chords, which never overshoots.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MonotoneCurve {
     x: Vec<f64>,
@@ -8,12 +9,16 @@ pub struct MonotoneCurve {
 }
 
 impl MonotoneCurve {
-    /// The curve through `points` (x, y). `None` when there are none, a number is not finite, or x is not strictly increasing or y decreases. Where y stays
-    /// so does the curve: it then has no unique inverse there.
+    /// The curve through `points` (x, y). `None` when there are none, a number is not finite, or x
+    /// is not strictly increasing or y decreases. Where y stays so does the curve: it then has no
+    /// unique inverse there.
     #[must_use]
     pub fn through(points: &[(f64, f64)]) -> Option<Self> {
         let rises = points.windows(2).all(|pair| pair[0].0 < pair[1].0 && pair[0].1 <= pair[1].1);
-        if points.is_empty() || !rises || !points.iter().all(|(x, y)| x.is_finite() && y.is_finite()) {
+        if points.is_empty()
+            || !rises
+            || !points.iter().all(|(x, y)| x.is_finite() && y.is_finite())
+        {
             return None;
         }
         let (x, y): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
@@ -92,7 +97,8 @@ impl MonotoneCurve {
         let (x, step) = (self.x[k], self.x[k + 1] - self.x[k]);
         let (y, chord) = (self.y[k], (self.y[k + 1] - self.y[k]) / step);
         let (m0, m1) = (self.slopes[k], self.slopes[k + 1]);
-        let (c2, c3) = ((3.0 * chord - 2.0 * m0 - m1) / step, (m0 + m1 - 2.0 * chord) / (step * step));
+        let (c2, c3) =
+            ((3.0 * chord - 2.0 * m0 - m1) / step, (m0 + m1 - 2.0 * chord) / (step * step));
         (
             move |at| {
                 let t = at - x;
@@ -108,7 +114,8 @@ impl MonotoneCurve {
 
 fn slopes(x: &[f64], y: &[f64]) -> Vec<f64> {
     let steps: Vec<f64> = x.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let chords: Vec<f64> = y.windows(2).zip(&steps).map(|(pair, step)| (pair[1] - pair[0]) / step).collect();
+    let chords: Vec<f64> =
+        y.windows(2).zip(&steps).map(|(pair, step)| (pair[1] - pair[0]) / step).collect();
     let (Some(&first), Some(&last)) = (chords.first(), chords.last()) else {
         return vec![1.0; x.len()];
     };
@@ -125,8 +132,9 @@ fn slopes(x: &[f64], y: &[f64]) -> Vec<f64> {
         (w1 + w2) / (w1 / before + w2 / after)
     });
     // The parabola through the last three points, as far as it rises.
-    let end =
-        |chord: f64, next: f64, step: f64, next_step: f64| (((2.0 * step + next_step) * chord - step * next) / (step + next_step)).max(0.0);
+    let end = |chord: f64, next: f64, step: f64, next_step: f64| {
+        (((2.0 * step + next_step) * chord - step * next) / (step + next_step)).max(0.0)
+    };
     let begin = end(first, chords[1], steps[0], steps[1]);
     let finish = end(last, chords[n - 2], steps[n - 1], steps[n - 2]);
     std::iter::once(begin).chain(inner).chain(std::iter::once(finish)).collect()

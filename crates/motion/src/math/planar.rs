@@ -3,8 +3,9 @@ use std::f64::consts::{PI, TAU};
 
 /// A rigid transform of the ground plane: a turn about +Y, then a shift in x and z. Heights stay.
 ///
-/// `x = x' cos θ + z' sin θ + x₀`, `z = -x' sin θ + z' cos θ + z₀` (Kovar, Gleicher, Pighin 2002, section 3.1). In `f64`, because
-/// walks chain thousands of them. As a *frame* (where a character stands and what it faces) it reads `world_from_character`.
+/// `x = x' cos θ + z' sin θ + x₀`, `z = -x' sin θ + z' cos θ + z₀` (Kovar, Gleicher, Pighin 2002,
+/// section 3.1). In `f64`, because walks chain thousands of them. As a *frame* (where a character
+/// stands and what it faces) it reads `world_from_character`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Planar {
     /// The turn about +Y, radians. 0 faces +Z.
@@ -15,21 +16,16 @@ pub struct Planar {
 
 impl Planar {
     /// Leaves everything where it is.
-    pub const IDENTITY: Self = Self {
-        yaw: 0.0,
-        shift: DVec2::ZERO,
-    };
+    pub const IDENTITY: Self = Self { yaw: 0.0, shift: DVec2::ZERO };
 
     /// A turn of `yaw` radians about +Y followed by a shift of `(x, z)` metres.
     #[must_use]
     pub const fn new(yaw: f64, x: f64, z: f64) -> Self {
-        Self {
-            yaw,
-            shift: DVec2::new(x, z),
-        }
+        Self { yaw, shift: DVec2::new(x, z) }
     }
 
-    /// The frame of a character that stands at `position` (its height is ignored) and faces the ground projection of `facing`.
+    /// The frame of a character that stands at `position` (its height is ignored) and faces the
+    /// ground projection of `facing`.
     #[must_use]
     pub fn standing_at(position: Vec3, facing: Vec3) -> Self {
         Self::new(
@@ -82,26 +78,18 @@ impl Planar {
         Vec3::new(p.x as f32, v.y, p.y as f32)
     }
 
-    /// `self` after `first`: `a.after(b).apply(p) == a.apply(b.apply(p))`. The yaw is wrapped into `[-π, π)`.
+    /// `self` after `first`: `a.after(b).apply(p) == a.apply(b.apply(p))`. The yaw is wrapped into
+    /// `[-π, π)`.
     #[must_use]
     pub fn after(&self, first: &Self) -> Self {
-        Self {
-            yaw: wrap_angle(self.yaw + first.yaw),
-            shift: self.turned(first.shift) + self.shift,
-        }
+        Self { yaw: wrap_angle(self.yaw + first.yaw), shift: self.turned(first.shift) + self.shift }
     }
 
     /// The transform that undoes this one.
     #[must_use]
     pub fn inverse(&self) -> Self {
-        let back = Self {
-            yaw: -self.yaw,
-            shift: DVec2::ZERO,
-        };
-        Self {
-            yaw: wrap_angle(-self.yaw),
-            shift: -back.turned(self.shift),
-        }
+        let back = Self { yaw: -self.yaw, shift: DVec2::ZERO };
+        Self { yaw: wrap_angle(-self.yaw), shift: -back.turned(self.shift) }
     }
 }
 
@@ -111,7 +99,8 @@ pub fn wrap_angle(angle: f64) -> f64 {
     (angle + PI).rem_euclid(TAU) - PI
 }
 
-/// `angle` (radians) plus as many whole turns as bring it nearest to `reference`: angles that follow each other are unwrapped by it.
+/// `angle` (radians) plus as many whole turns as bring it nearest to `reference`: angles that
+/// follow each other are unwrapped by it.
 #[must_use]
 pub(crate) fn nearest_turn(angle: f64, reference: f64) -> f64 {
     reference + wrap_angle(angle - reference)

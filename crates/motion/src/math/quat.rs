@@ -2,19 +2,22 @@
 
 use glam::{Quat, Vec3};
 
-/// `q` or `-q`, whichever lies in the hemisphere of `reference`: the shorter way from one to the other.
+/// `q` or `-q`, whichever lies in the hemisphere of `reference`: the shorter way from one to the
+/// other.
 #[must_use]
 pub fn in_hemisphere_of(q: Quat, reference: Quat) -> Quat {
     if q.dot(reference) < 0.0 { -q } else { q }
 }
 
-/// `q` or `-q`, whichever has a scalar part that is not negative: the rotation by at most half a turn ("abs" in Holden's notes).
+/// `q` or `-q`, whichever has a scalar part that is not negative: the rotation by at most half a
+/// turn ("abs" in Holden's notes).
 #[must_use]
 pub fn shorter_way(q: Quat) -> Quat {
     if q.w < 0.0 { -q } else { q }
 }
 
-/// The rotation vector (axis × angle, radians, at most π long) of a unit quaternion, by the shorter way.
+/// The rotation vector (axis × angle, radians, at most π long) of a unit quaternion, by the shorter
+/// way.
 ///
 /// Exact near the identity, where `acos(w)` loses half of the digits.
 #[must_use]
@@ -22,7 +25,8 @@ pub fn log(q: Quat) -> Vec3 {
     log_as_given(shorter_way(q))
 }
 
-/// The rotation vector of a unit quaternion by the way that its sign stands for: at most 2π long, and continuous as long as the quaternion is.
+/// The rotation vector of a unit quaternion by the way that its sign stands for: at most 2π long,
+/// and continuous as long as the quaternion is.
 #[must_use]
 pub fn log_as_given(q: Quat) -> Vec3 {
     let v = Vec3::new(q.x, q.y, q.z);
@@ -49,7 +53,8 @@ pub fn exp(rotation_vector: Vec3) -> Quat {
 
 /// Spherical interpolation by the shorter way, `t` from 0 (`a`) to 1 (`b`).
 ///
-/// Neighbouring frames of a clip are near to each other: for those the two sines are taken from their series, a quarter of the time.
+/// Neighbouring frames of a clip are near to each other: for those the two sines are taken from
+/// their series, a quarter of the time.
 #[must_use]
 pub fn slerp(a: Quat, b: Quat, t: f32) -> Quat {
     let b = in_hemisphere_of(b, a);
@@ -61,8 +66,9 @@ pub fn slerp(a: Quat, b: Quat, t: f32) -> Quat {
     }
 }
 
-/// Spherical interpolation by the way that the signs of `a` and `b` stand for, `t` from 0 (`a`) to 1 (`b`): the longer way where they lie in opposite
-/// hemispheres. [`Hemispheres`] keeps the signs from changing while both rotations move.
+/// Spherical interpolation by the way that the signs of `a` and `b` stand for, `t` from 0 (`a`) to
+/// 1 (`b`): the longer way where they lie in opposite hemispheres. [`Hemispheres`] keeps the signs
+/// from changing while both rotations move.
 #[must_use]
 pub fn slerp_as_given(a: Quat, b: Quat, t: f32) -> Quat {
     if a.dot(b) < 0.0 {
@@ -72,16 +78,17 @@ pub fn slerp_as_given(a: Quat, b: Quat, t: f32) -> Quat {
     }
 }
 
-/// The side by which pairs of rotations are interpolated while both move: the shorter way at first, and the same way from then on.
+/// The side by which pairs of rotations are interpolated while both move: the shorter way at first,
+/// and the same way from then on.
 ///
-/// Where the shorter way is chosen anew in every frame, two rotations about half a turn apart change sides whenever they pass it, and what
-/// lies between them flips.
+/// Where the shorter way is chosen anew in every frame, two rotations about half a turn apart
+/// change sides whenever they pass it, and what lies between them flips.
 #[derive(Clone, Debug, Default)]
 pub struct Hemispheres(Vec<Option<Quat>>);
 
 impl Hemispheres {
-    /// Returns `to` with the sign by which [`slerp_as_given`] goes on from the frame before. `index` tells pairs apart; every pair is asked for
-    /// once in a frame, frames in their order.
+    /// Returns `to` with the sign by which [`slerp_as_given`] goes on from the frame before.
+    /// `index` tells pairs apart; every pair is asked for once in a frame, frames in their order.
     pub fn follow(&mut self, index: usize, from: Quat, to: Quat) -> Quat {
         if index >= self.0.len() {
             self.0.resize(index + 1, None);
@@ -94,14 +101,17 @@ impl Hemispheres {
     }
 }
 
-/// `cos θ − 1` of quaternions that are 26° apart, rotations by 52°: six terms of the series leave less than 1e-8 there.
+/// `cos θ − 1` of quaternions that are 26° apart, rotations by 52°: six terms of the series leave
+/// less than 1e-8 there.
 const NEAR: f32 = -0.1;
 
-/// `sin(tθ) / sin θ` for `t` in 0–1, as a series in `cos θ − 1` (Eberly, "A Fast and Accurate Algorithm for Computing SLERP", 2011, section 3).
+/// `sin(tθ) / sin θ` for `t` in 0–1, as a series in `cos θ − 1` (Eberly, "A Fast and Accurate
+/// Algorithm for Computing SLERP", 2011, section 3).
 fn sine_share(t: f32, behind: f32) -> f32 {
     let square = t * t;
     // The factors by which a term grows to the next.
-    let [one, two, three, four, five] = [1.0f32, 2.0, 3.0, 4.0, 5.0].map(|i| (square / i - i) / (2.0 * i + 1.0) * behind);
+    let [one, two, three, four, five] =
+        [1.0f32, 2.0, 3.0, 4.0, 5.0].map(|i| (square / i - i) / (2.0 * i + 1.0) * behind);
     t * (1.0 + one * (1.0 + two * (1.0 + three * (1.0 + four * (1.0 + five)))))
 }
 
@@ -113,16 +123,18 @@ pub fn angle_between(a: Quat, b: Quat) -> f32 {
 
 /// The world-frame angular velocity (radians per second) that takes `from` to `to` in `dt_secs`.
 ///
-/// `log(to · from⁻¹)/dt` by the shorter way (Holden, "Joint limits, quaternions and angular velocity").
+/// `log(to · from⁻¹)/dt` by the shorter way (Holden, "Joint limits, quaternions and angular
+/// velocity").
 #[must_use]
 pub fn angular_velocity(from: Quat, to: Quat, dt_secs: f32) -> Vec3 {
     log(to * from.conjugate()) / dt_secs
 }
 
-/// The angular velocity of `exp(x(t))` where `x` changes at the rate `rate`: the left Jacobian of the rotation group applied to it.
+/// The angular velocity of `exp(x(t))` where `x` changes at the rate `rate`: the left Jacobian of
+/// the rotation group applied to it.
 ///
-/// `J = I + (1 - cos θ)/θ² [x]ₓ + (θ - sin θ)/θ³ [x]ₓ²` (Solà, Deray, Atchuthan, "A micro Lie theory", 2018, eq. 145). Only for small `x`
-/// are rate and angular velocity the same.
+/// `J = I + (1 - cos θ)/θ² [x]ₓ + (θ - sin θ)/θ³ [x]ₓ²` (Solà, Deray, Atchuthan, "A micro Lie
+/// theory", 2018, eq. 145). Only for small `x` are rate and angular velocity the same.
 #[must_use]
 pub fn rate_to_angular_velocity(x: Vec3, rate: Vec3) -> Vec3 {
     let angle = x.length();
@@ -135,7 +147,8 @@ pub fn rate_to_angular_velocity(x: Vec3, rate: Vec3) -> Vec3 {
     rate + across * first + x.cross(across) * second
 }
 
-/// The rate at which `x` changes when `exp(x(t))` has this angular velocity: what [`rate_to_angular_velocity`] undoes (ibid., eq. 146).
+/// The rate at which `x` changes when `exp(x(t))` has this angular velocity: what
+/// [`rate_to_angular_velocity`] undoes (ibid., eq. 146).
 ///
 /// The map has no inverse at a whole turn; beyond 6 radians its value at 6 is taken.
 #[must_use]
@@ -151,7 +164,8 @@ pub fn vector_rate(x: Vec3, angular_velocity: Vec3) -> Vec3 {
     angular_velocity - across * 0.5 + x.cross(across) * second
 }
 
-/// `q` scaled back to unit length after a chain of products; the identity when there is no direction left in it.
+/// `q` scaled back to unit length after a chain of products; the identity when there is no
+/// direction left in it.
 #[must_use]
 pub fn renormalize(q: Quat) -> Quat {
     let length_squared = q.length_squared();
@@ -162,15 +176,19 @@ pub fn renormalize(q: Quat) -> Quat {
     }
 }
 
-/// The mean of rotations that are near each other: the sum of the quaternions in the hemisphere of the first, of unit length. The identity for none.
+/// The mean of rotations that are near each other: the sum of the quaternions in the hemisphere of
+/// the first, of unit length. The identity for none.
 #[must_use]
 pub fn mean(rotations: impl IntoIterator<Item = Quat>) -> Quat {
     let mut rotations = rotations.into_iter();
-    let Some(first) = rotations.next() else { return Quat::IDENTITY };
+    let Some(first) = rotations.next() else {
+        return Quat::IDENTITY;
+    };
     renormalize(rotations.fold(first, |sum, rotation| sum + in_hemisphere_of(rotation, first)))
 }
 
-/// The shortest rotation that takes the direction `from` to the direction `to`; the identity where either is too short to have one.
+/// The shortest rotation that takes the direction `from` to the direction `to`; the identity where
+/// either is too short to have one.
 #[must_use]
 pub fn between_directions(from: Vec3, to: Vec3) -> Quat {
     match (from.try_normalize(), to.try_normalize()) {
@@ -179,11 +197,12 @@ pub fn between_directions(from: Vec3, to: Vec3) -> Quat {
     }
 }
 
-/// The rotation that brings directions nearest to those that they belong to: the sum of the squared distances is least. Longer ones count
-/// more. `None` where that leaves a turn open, as for a single direction.
+/// The rotation that brings directions nearest to those that they belong to: the sum of the squared
+/// distances is least. Longer ones count more. `None` where that leaves a turn open, as for a
+/// single direction.
 ///
-/// The greatest eigenvector of a symmetric 4 × 4 matrix (Horn 1987, "Closed-form solution of absolute orientation using unit quaternions",
-/// section 4), found by squaring the matrix.
+/// The greatest eigenvector of a symmetric 4 × 4 matrix (Horn 1987, "Closed-form solution of
+/// absolute orientation using unit quaternions", section 4), found by squaring the matrix.
 #[must_use]
 pub fn best_fit(pairs: &[(Vec3, Vec3)]) -> Option<Quat> {
     /// Directions within this of one line leave the turn about it open: the sine of 3°.
@@ -192,10 +211,7 @@ pub fn best_fit(pairs: &[(Vec3, Vec3)]) -> Option<Quat> {
     const SQUARINGS: usize = 40;
     let &(longest, _) = pairs.iter().max_by(|a, b| a.0.length().total_cmp(&b.0.length()))?;
     let axis = longest.try_normalize()?;
-    if pairs
-        .iter()
-        .all(|(from, _)| from.cross(axis).length() <= ON_A_LINE * longest.length())
-    {
+    if pairs.iter().all(|(from, _)| from.cross(axis).length() <= ON_A_LINE * longest.length()) {
         return None;
     }
     let mut sums = glam::DMat3::ZERO;
@@ -224,7 +240,8 @@ pub fn best_fit(pairs: &[(Vec3, Vec3)]) -> Option<Quat> {
         s(2, 2) - s(0, 0) - s(1, 1),
     ]);
     let size = |m: &glam::DMat4| m.to_cols_array().into_iter().map(f64::abs).fold(0.0, f64::max);
-    // No eigenvalue is less than minus the largest row sum: none is negative now, and the greatest stays the greatest.
+    // No eigenvalue is less than minus the largest row sum: none is negative now, and the greatest
+    // stays the greatest.
     let mut power = matrix + glam::DMat4::IDENTITY * (4.0 * size(&matrix));
     for _ in 0..SQUARINGS {
         power = power * (1.0 / size(&power));
@@ -251,7 +268,8 @@ mod tests {
     }
 
     proptest! {
-        /// Turned directions are turned back; what is added to them in equal parts to either side changes nothing.
+        /// Turned directions are turned back; what is added to them in equal parts to either side
+        /// changes nothing.
         #[test]
         fn best_fit_finds_the_turn(x in -1.8f32..1.8, y in -1.8f32..1.8, z in -1.8f32..1.8, long in 0.2f32..5.0) {
             let turn = exp(Vec3::new(x, y, z));
@@ -311,7 +329,8 @@ mod tests {
 
     #[test]
     fn rotations_that_pass_half_a_turn_apart_are_interpolated_without_a_flip() {
-        // `to` sways about a place half a turn from `from`, through the place where the shorter way changes sides.
+        // `to` sways about a place half a turn from `from`, through the place where the shorter way
+        // changes sides.
         let (mut sides, mut before) = (Hemispheres::default(), None::<Quat>);
         for step in 0..=40 {
             let from = Quat::from_rotation_x(0.2);

@@ -1,14 +1,15 @@
 //! Order statistics and means.
 
-/// The value below which the share `p` (0 to 1) of `values` lies, with linear interpolation between neighbours (the "linear" definition that
-/// `NumPy` uses). `None` for no values; NaN sorts last.
+/// The value below which the share `p` (0 to 1) of `values` lies, with linear interpolation between
+/// neighbours (the "linear" definition that `NumPy` uses). `None` for no values; NaN sorts last.
 #[must_use]
 pub fn percentile(values: &[f32], p: f32) -> Option<f32> {
     let mut values = values.to_vec();
     let last = values.len().checked_sub(1)?;
     let at = p.clamp(0.0, 1.0) * last as f32;
     // Only these two need their places; all others are behind them or before them.
-    let (_, &mut below, rest) = values.select_nth_unstable_by((at.floor() as usize).min(last), f32::total_cmp);
+    let (_, &mut below, rest) =
+        values.select_nth_unstable_by((at.floor() as usize).min(last), f32::total_cmp);
     let above = rest.iter().copied().min_by(f32::total_cmp).unwrap_or(below);
     Some(below + (above - below) * at.fract())
 }

@@ -10,7 +10,8 @@ mod meter;
 pub(super) use joints::{JointTrace, Sizes};
 pub use meter::TraceMeter;
 
-/// The height that lengths are brought to, metres: the median, over the frames, of the height of all joints and end sites.
+/// The height that lengths are brought to, metres: the median, over the frames, of the height of
+/// all joints and end sites.
 const BODY_M: f32 = 1.7;
 /// What one step in a thousand exceeds is rare; what is above twice that is no part of the motion.
 const RARE: f32 = 0.999;
@@ -35,8 +36,9 @@ const SKATING_M: f32 = 0.025;
 /// A speed counts as higher than another one where it is by more than this share: less is rounding.
 const SAME_SPEED: f32 = 1.01;
 
-/// What the definitions of [`Artefacts`] and [`ResultMetrics`](super::ResultMetrics) need of a motion, taken once: how fast its joints turn, its root
-/// moves and its heading changes, and what its feet do. Lengths are those of a body of 1.7 m.
+/// What the definitions of [`Artefacts`] and [`ResultMetrics`](super::ResultMetrics) need of a
+/// motion, taken once: how fast its joints turn, its root moves and its heading changes, and what
+/// its feet do. Lengths are those of a body of 1.7 m.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotionTrace {
     pub(super) fps: f64,
@@ -61,17 +63,19 @@ impl MotionTrace {
         meter.finish(clip)
     }
 
-    /// For every stance how far the foot moves over the ground, centimetres: the diagonal of the box about the toe joint (the ankle without one) in the
-    /// middle three fifths of a stance. A stance is a run of frames of at least 0.1 s in which the toe is within 4 cm of the 5th percentile of its
-    /// heights, at a median speed below 0.6 m/s.
+    /// For every stance how far the foot moves over the ground, centimetres: the diagonal of the
+    /// box about the toe joint (the ankle without one) in the middle three fifths of a stance. A
+    /// stance is a run of frames of at least 0.1 s in which the toe is within 4 cm of the 5th
+    /// percentile of its heights, at a median speed below 0.6 m/s.
     #[must_use]
     pub fn stances_cm(&self) -> &[f64] {
         &self.stances_cm
     }
 
-    /// Skating, centimetres per second (Zhang et al. 2018, "Mode-Adaptive Neural Networks", section 7): the mean over the frames and both feet of
-    /// `|v| (2 - 2^(h / H))` for `h < H = 2.5 cm`, v being the velocity of the toe over the ground and h its height above the 2nd percentile of its
-    /// heights. `None` without feet.
+    /// Skating, centimetres per second (Zhang et al. 2018, "Mode-Adaptive Neural Networks", section
+    /// 7): the mean over the frames and both feet of `|v| (2 - 2^(h / H))` for `h < H = 2.5 cm`, v
+    /// being the velocity of the toe over the ground and h its height above the 2nd percentile of
+    /// its heights. `None` without feet.
     #[must_use]
     pub fn skating_cm_per_sec(&self) -> Option<f64> {
         self.skating_cm_per_sec
@@ -83,18 +87,21 @@ impl MotionTrace {
         f64::from(self.most_turned_deg)
     }
 
-    /// What this motion does that none of its sources does. Sources of another number of joints say nothing about joints; where no source has as many as
-    /// the motion, its own speeds stand for theirs. Without a source the motion is its own.
+    /// What this motion does that none of its sources does. Sources of another number of joints say
+    /// nothing about joints; where no source has as many as the motion, its own speeds stand for
+    /// theirs. Without a source the motion is its own.
     #[must_use]
     pub fn beside(&self, sources: &[&Self]) -> Artefacts {
         let own = [self];
         let sources = if sources.is_empty() { &own } else { sources };
         let like = self.alike(sources);
         let like = if like.is_empty() { &own[..] } else { &like };
-        let most = |of: fn(&Self) -> f32| sources.iter().map(|source| of(source)).fold(0.0, f32::max);
+        let most =
+            |of: fn(&Self) -> f32| sources.iter().map(|source| of(source)).fold(0.0, f32::max);
         let (flashes, new_flashes) = self.flashes(like);
         let (rare_mps, most_mps) = (most(|source| source.rare_mps), most(|source| source.most_mps));
-        let beyond = |limit: f32| self.root_mps.iter().filter(|speed| **speed > limit + 1e-6).count();
+        let beyond =
+            |limit: f32| self.root_mps.iter().filter(|speed| **speed > limit + 1e-6).count();
         let turned = LEAST_SPIN_DEG.max(BEYOND * most(|source| source.most_turned_deg));
         let spins = runs(self.turned_deg.iter().map(|deg| *deg > turned));
         Artefacts {
@@ -112,12 +119,14 @@ impl MotionTrace {
         others.iter().copied().filter(is_alike).collect()
     }
 
-    /// How far the hips turn within 0.2 s from every frame on, degrees; empty for hips that nothing is known of.
+    /// How far the hips turn within 0.2 s from every frame on, degrees; empty for hips that nothing
+    /// is known of.
     pub(super) fn turned_deg(&self) -> &[f32] {
         &self.turned_deg
     }
 
-    /// The frames where flashes begin, and those that turn a joint faster than any source ever does.
+    /// The frames where flashes begin, and those that turn a joint faster than any source ever
+    /// does.
     fn flashes(&self, sources: &[&Self]) -> (Vec<usize>, Vec<Flash>) {
         let dps = self.fps as f32;
         let of = |value: fn(&JointTrace) -> f32, joint: usize| {
@@ -146,7 +155,8 @@ impl MotionTrace {
     }
 }
 
-/// Of events in order of time those before which nothing happens for more than [`ONE_FLASH_FRAMES`] frames.
+/// Of events in order of time those before which nothing happens for more than [`ONE_FLASH_FRAMES`]
+/// frames.
 fn apart<T>(events: Vec<T>, frame: impl Fn(&T) -> usize) -> Vec<T> {
     let mut last = None;
     let begins = |event: &T| {
@@ -160,12 +170,15 @@ fn apart<T>(events: Vec<T>, frame: impl Fn(&T) -> usize) -> Vec<T> {
 /// What a motion does that the motions it was made from do not: what a viewer would point at.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Artefacts {
-    /// Times at which the hips begin to turn by more than 30° within 0.2 s, and by more than twice what any source ever turns in such a time.
+    /// Times at which the hips begin to turn by more than 30° within 0.2 s, and by more than twice
+    /// what any source ever turns in such a time.
     pub spins: usize,
-    /// Times at which a joint's local rotation changes faster than twice the 99.9th percentile of the sources for that joint, and by more than 2° in one
-    /// frame. Frames with no more than three between them are one time.
+    /// Times at which a joint's local rotation changes faster than twice the 99.9th percentile of
+    /// the sources for that joint, and by more than 2° in one frame. Frames with no more than three
+    /// between them are one time.
     pub flashes: usize,
-    /// Those in which the joint is also faster than it ever is in a source: what plays over a glitch of a source is not counted.
+    /// Those in which the joint is also faster than it ever is in a source: what plays over a
+    /// glitch of a source is not counted.
     pub new_flashes: Vec<Flash>,
     /// Steps in which the root is faster than twice the 99.9th percentile of the sources.
     pub root_jumps: usize,
@@ -213,7 +226,8 @@ struct Places {
     heights: Vec<f32>,
     /// Per foot, frame by frame.
     toes: Vec<Vec<Vec3>>,
-    /// Where the line from the right hip joint to the left one points to, radians; empty without these.
+    /// Where the line from the right hip joint to the left one points to, radians; empty without
+    /// these.
     headings: Vec<f64>,
 }
 
@@ -244,7 +258,9 @@ impl Places {
             clip.world_pose_into(frame, &mut world);
             let tips = self.ends.iter().map(|&(joint, end)| world.point(joint, end).y);
             let (low, high) = (world.positions.iter().map(|p| p.y).chain(tips))
-                .fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), y| (low.min(y), high.max(y)));
+                .fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), y| {
+                    (low.min(y), high.max(y))
+                });
             self.heights.push(high - low);
             for (path, &foot) in self.toes.iter_mut().zip(&self.feet) {
                 path.push(world.positions[foot]);
@@ -313,12 +329,17 @@ impl<'a> Foot<'a> {
         let low = runs(self.above(0.05).map(|height| height < LOW_M));
         let stands = |run: &Range<usize>| {
             let median = stats::percentile(&self.speeds[run.clone()], 0.5);
-            run.len() as f64 / self.fps >= LEAST_STANCE_SECS && median.is_some_and(|speed| speed < STANDING_MPS)
+            run.len() as f64 / self.fps >= LEAST_STANCE_SECS
+                && median.is_some_and(|speed| speed < STANDING_MPS)
         };
         let moved_cm = |run: Range<usize>| {
             let edge = run.len() / 5;
-            let middle = self.path[run.start + edge..run.end - edge].iter().map(|&point| flat(point));
-            let (low, high) = middle.fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
+            let middle =
+                self.path[run.start + edge..run.end - edge].iter().map(|&point| flat(point));
+            let (low, high) = middle
+                .fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(low, high), p| {
+                    (low.min(p), high.max(p))
+                });
             f64::from((high - low).length()) * 100.0
         };
         low.into_iter().filter(stands).map(moved_cm).collect()
@@ -327,7 +348,9 @@ impl<'a> Foot<'a> {
     fn skating_cm_per_sec(&self) -> f64 {
         let weighed = self.above(0.02).zip(&self.speeds).filter(|(height, _)| *height < SKATING_M);
         let sum: f64 = weighed
-            .map(|(height, &speed)| f64::from(speed * (2.0 - libm::exp2f(height.max(0.0) / SKATING_M))))
+            .map(|(height, &speed)| {
+                f64::from(speed * (2.0 - libm::exp2f(height.max(0.0) / SKATING_M)))
+            })
             .sum();
         sum / self.path.len().max(1) as f64 * 100.0
     }

@@ -32,8 +32,10 @@ const PARTS: [(&str, &str, &[BodyPart], &str); 4] = [
     ),
 ];
 
-/// How far a clip's joints are turned from those of another clip of the same skeleton, part by part: degrees, the mean over the joints of the part and
-/// over the frames that both have. Every joint is looked at against its parent, the root against the world. `None` for a part that the roles do not tell.
+/// How far a clip's joints are turned from those of another clip of the same skeleton, part by
+/// part: degrees, the mean over the joints of the part and over the frames that both have. Every
+/// joint is looked at against its parent, the root against the world. `None` for a part that the
+/// roles do not tell.
 #[must_use]
 pub fn deviations(result: &Clip, base: &Clip, roles: &Roles) -> [Metric; 4] {
     let frames = result.frames().min(base.frames());
@@ -73,7 +75,8 @@ mod tests {
         let roles = Roles::detect(clip.skeleton());
         let arm = roles.get(Role::LeftUpperArm).unwrap();
         let joints = clip.skeleton().len();
-        let mut rotations: Vec<Quat> = (0..clip.frames()).flat_map(|frame| clip.rotations(frame).to_vec()).collect();
+        let mut rotations: Vec<Quat> =
+            (0..clip.frames()).flat_map(|frame| clip.rotations(frame).to_vec()).collect();
         for pose in rotations.chunks_mut(joints) {
             pose[arm] = Quat::from_rotation_x(0.5) * pose[arm];
         }

@@ -1,7 +1,8 @@
 use crate::skeleton::{Skeleton, WorldPose};
 use glam::Vec3;
 
-/// The points of a skeleton that can touch the ground: its joints, and the ends behind the last ones.
+/// The points of a skeleton that can touch the ground: its joints, and the ends behind the last
+/// ones.
 #[derive(Clone, Debug)]
 pub(super) struct LowPoints {
     tips: Vec<(usize, Vec3)>,
@@ -11,9 +12,7 @@ impl LowPoints {
     /// Those of a skeleton.
     pub(super) fn of(skeleton: &Skeleton) -> Self {
         let joints = skeleton.joints().iter().enumerate();
-        Self {
-            tips: joints.filter_map(|(joint, j)| j.end_site.map(|end| (joint, end))).collect(),
-        }
+        Self { tips: joints.filter_map(|(joint, j)| j.end_site.map(|end| (joint, end))).collect() }
     }
 
     /// The height of the lowest one in a pose, metres; `None` without joints.

@@ -2,10 +2,12 @@
 //!
 //! # The idea
 //!
-//! A number helps where it is 0 for good motion and grows with what is seen. A jump of 5° is much for a spine and little for a runner's
-//! knee, so a joint is measured *beyond* the most that it does in the clips that the motion was made of.
+//! A number helps where it is 0 for good motion and grows with what is seen. A jump of 5° is much
+//! for a spine and little for a runner's knee, so a joint is measured *beyond* the most that it
+//! does in the clips that the motion was made of.
 //!
-//! Some numbers are told of every motion, whatever made it: [`ResultMetrics`], beside what a [`MotionTrace`] knows of the clips.
+//! Some numbers are told of every motion, whatever made it: [`ResultMetrics`], beside what a
+//! [`MotionTrace`] knows of the clips.
 //!
 //! | | unit | what is told |
 //! |---|---|---|
@@ -20,10 +22,12 @@
 //! spin          = max over frames |yaw(t + 0.2 s) - yaw(t)| - the same of the clips
 //! ```
 //!
-//! `ω(s, t)` is the mean angular velocity from s to t. A velocity jump does not hang on the frame rate: where a blend has an acceleration it is that
-//! times T, where the velocity jumps it is the jump.
+//! `ω(s, t)` is the mean angular velocity from s to t. A velocity jump does not hang on the frame
+//! rate: where a blend has an acceleration it is that times T, where the velocity jumps it is the
+//! jump.
 //!
-//! Others belong to a place or a kind of motion: [`foot_slide_cm`], [`ClipMetrics`], [`TransitionMetrics`].
+//! Others belong to a place or a kind of motion: [`foot_slide_cm`], [`ClipMetrics`],
+//! [`TransitionMetrics`].
 //!
 //! | | unit | what is told |
 //! |---|---|---|
@@ -36,11 +40,12 @@
 //! slide = max over a stance of  |Σ step of the foot's stillest point|
 //! ```
 //!
-//! Around one transition more is known, the frames of both clips that play: what its fields measure is beyond what the clips do in these very frames.
-//! A [`Profile`] is what is measured of a clip for that.
+//! Around one transition more is known, the frames of both clips that play: what its fields measure
+//! is beyond what the clips do in these very frames. A [`Profile`] is what is measured of a clip
+//! for that.
 //!
-//! A foot that rolls from heel to toe moves, but it has a point that stands: that one is followed. [`foot_slide_cm`] does so for a whole
-//! clip.
+//! A foot that rolls from heel to toe moves, but it has a point that stands: that one is followed.
+//! [`foot_slide_cm`] does so for a whole clip.
 //!
 //! # Example
 //!
@@ -87,14 +92,15 @@
 //!
 //! # Accuracy and cost
 //!
-//! A joint that is turned by 30° in one frame measures 30° to 0.001°, and a foot that is made to slide by 5 cm slides 5 cm. A clip that goes
-//! on as itself has no artefact. A transition costs O(its frames × joints) and half a second to either side, a profile O(frames × joints)
-//! once.
+//! A joint that is turned by 30° in one frame measures 30° to 0.001°, and a foot that is made to
+//! slide by 5 cm slides 5 cm. A clip that goes on as itself has no artefact. A transition costs
+//! O(its frames × joints) and half a second to either side, a profile O(frames × joints) once.
 //!
 //! # What it does not do
 //!
-//! No number says whether a motion is beautiful, or in character. Limbs that pass through each other are not seen. What is usual in a
-//! trembling capture hides a trembling seam. Feet are planted where the *sources* say so: a wrong contact is measured as a slide.
+//! No number says whether a motion is beautiful, or in character. Limbs that pass through each
+//! other are not seen. What is usual in a trembling capture hides a trembling seam. Feet are
+//! planted where the *sources* say so: a wrong contact is measured as a slide.
 //!
 //! # Sources
 //!
@@ -135,7 +141,8 @@ pub struct Metric {
     pub id: &'static str,
     /// What it is called.
     pub label: &'static str,
-    /// The number; `None` where there is nothing to measure (no feet, no foot on the ground, no change of speed).
+    /// The number; `None` where there is nothing to measure (no feet, no foot on the ground, no
+    /// change of speed).
     pub value: Option<f64>,
     /// The unit, as written behind the number.
     pub unit: &'static str,
@@ -148,23 +155,25 @@ pub struct Metric {
 impl Metric {
     /// A number that should be small; 0 is perfect.
     #[must_use]
-    pub fn lower(id: &'static str, label: &'static str, value: impl Into<Option<f64>>, unit: &'static str, help: &'static str) -> Self {
-        Self {
-            better: Better::Lower,
-            ..Self::fact(id, label, value, unit, help)
-        }
+    pub fn lower(
+        id: &'static str,
+        label: &'static str,
+        value: impl Into<Option<f64>>,
+        unit: &'static str,
+        help: &'static str,
+    ) -> Self {
+        Self { better: Better::Lower, ..Self::fact(id, label, value, unit, help) }
     }
 
     /// A number that only describes.
     #[must_use]
-    pub fn fact(id: &'static str, label: &'static str, value: impl Into<Option<f64>>, unit: &'static str, help: &'static str) -> Self {
-        Self {
-            id,
-            label,
-            value: value.into(),
-            unit,
-            better: Better::Neutral,
-            help,
-        }
+    pub fn fact(
+        id: &'static str,
+        label: &'static str,
+        value: impl Into<Option<f64>>,
+        unit: &'static str,
+        help: &'static str,
+    ) -> Self {
+        Self { id, label, value: value.into(), unit, better: Better::Neutral, help }
     }
 }

@@ -5,26 +5,31 @@ use crate::skeleton::{Roles, Side, WorldPose};
 use glam::{Quat, Vec3};
 use std::sync::Arc;
 
-/// Steps that are looked at for what is usual in a clip: enough for a 99th percentile, and bounded for long clips.
+/// Steps that are looked at for what is usual in a clip: enough for a 99th percentile, and bounded
+/// for long clips.
 const SAMPLES: usize = 1_000;
 
-/// What the metrics know of a source clip, measured once per clip: what is usual in it, and what its feet do.
+/// What the metrics know of a source clip, measured once per clip: what is usual in it, and what
+/// its feet do.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Profile {
     pub(super) source: Arc<Source>,
     pub(super) contacts: Contacts,
-    /// Per side and frame: how far the stillest point of the foot moves over the ground in the step into that frame, metres.
+    /// Per side and frame: how far the stillest point of the foot moves over the ground in the step
+    /// into that frame, metres.
     pub(super) slides: [Vec<f32>; 2],
     /// Per joint, 99th percentile: the turn from one frame to the next, radians.
     pub(super) usual_turn: Vec<f32>,
-    /// Per joint, 99th percentile: the change of that turn (as a rotation vector) from one step to the next, radians.
+    /// Per joint, 99th percentile: the change of that turn (as a rotation vector) from one step to
+    /// the next, radians.
     pub(super) usual_change: Vec<f32>,
     /// 99th percentile of the character's step over the ground, metres.
     pub(super) usual_step: f32,
 }
 
 impl Profile {
-    /// Measures a clip. `contacts` are those of the same clip ([`Contacts::detect`]). O(frames × joints).
+    /// Measures a clip. `contacts` are those of the same clip ([`Contacts::detect`]). O(frames ×
+    /// joints).
     #[must_use]
     pub fn new(source: Arc<Source>, roles: &Roles, contacts: Contacts) -> Self {
         let clip = source.clip();
@@ -36,14 +41,7 @@ impl Profile {
             .collect();
         let usual_step = stats::percentile(&steps, 0.99).unwrap_or(0.0);
         let slides = slides(clip, roles);
-        Self {
-            source,
-            contacts,
-            slides,
-            usual_turn,
-            usual_change,
-            usual_step,
-        }
+        Self { source, contacts, slides, usual_turn, usual_change, usual_step }
     }
 
     /// The clip with its character frames.
@@ -59,7 +57,8 @@ impl Profile {
     }
 }
 
-/// The rotation vector of the step from one local rotation to the next, radians, in the parent's frame.
+/// The rotation vector of the step from one local rotation to the next, radians, in the parent's
+/// frame.
 pub(super) fn turn(from: Quat, to: Quat) -> Vec3 {
     quat::log(to * from.conjugate())
 }
@@ -69,7 +68,8 @@ fn usual_turns(clip: &Clip) -> (Vec<f32>, Vec<f32>) {
     let p99 = |values: &[f32]| stats::percentile(values, 0.99).unwrap_or(0.0);
     (0..clip.skeleton().len())
         .map(|joint| {
-            let (mut turns, mut changes) = (Vec::with_capacity(SAMPLES), Vec::with_capacity(SAMPLES));
+            let (mut turns, mut changes) =
+                (Vec::with_capacity(SAMPLES), Vec::with_capacity(SAMPLES));
             for frame in (1..clip.frames()).step_by(stride) {
                 let of = |frame: usize| clip.rotations(frame)[joint];
                 turns.push(turn(of(frame - 1), of(frame)).length());
@@ -88,7 +88,8 @@ fn slides(clip: &Clip, roles: &Roles) -> [Vec<f32>; 2] {
     for frame in 0..clip.frames() {
         clip.world_pose_into(frame, &mut world);
         for ((points, slides), before) in points.iter().zip(&mut slides).zip(&mut before) {
-            let now: Vec<Vec3> = points.iter().map(|&(joint, point)| world.point(joint, point)).collect();
+            let now: Vec<Vec3> =
+                points.iter().map(|&(joint, point)| world.point(joint, point)).collect();
             slides.push(stillest_step(before, &now).map_or(0.0, Vec3::length));
             *before = now;
         }

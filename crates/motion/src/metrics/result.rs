@@ -2,27 +2,33 @@ use super::artefacts::{JointTrace, Sizes};
 use super::{Metric, MotionTrace};
 use crate::math::stats;
 
-/// Of a clip by itself the turn of the hips that it stays below for this share of the time is its own.
+/// Of a clip by itself the turn of the hips that it stays below for this share of the time is its
+/// own.
 const USUAL_TURN: f32 = 0.75;
 
-/// What a viewer would point at in a motion, whatever made it: measured on all of it, beside the clips that it was made of.
+/// What a viewer would point at in a motion, whatever made it: measured on all of it, beside the
+/// clips that it was made of.
 ///
-/// Only what exceeds the clips counts: a joint is measured beyond the most that it does in any of them. A clip by itself, with nothing to be
-/// measured beside, is measured beyond what is usual in it: for a joint the 99th percentile over its frames, for the heading what it stays below
-/// for three quarters of the time.
+/// Only what exceeds the clips counts: a joint is measured beyond the most that it does in any of
+/// them. A clip by itself, with nothing to be measured beside, is measured beyond what is usual in
+/// it: for a joint the 99th percentile over its frames, for the heading what it stays below for
+/// three quarters of the time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ResultMetrics {
-    /// Pose jump, degrees: over all joints and steps, the largest turn of a joint against its parent in one step, less what it turns in the clips in such
-    /// a time.
+    /// Pose jump, degrees: over all joints and steps, the largest turn of a joint against its
+    /// parent in one step, less what it turns in the clips in such a time.
     pub pose_jump_deg: Option<f64>,
     /// Where that is: at the frame before the step; `None` where nothing exceeds the clips.
     pub pose_jump_at: Option<JointFrame>,
-    /// Velocity jump, degrees per second: over all joints and frames, how much the mean angular velocity over the 1/30 s behind a frame differs (as a
-    /// vector in the parent's frame) from that over the 1/30 s before it, less what it does in the clips. The same at all frame rates from 30 on.
+    /// Velocity jump, degrees per second: over all joints and frames, how much the mean angular
+    /// velocity over the 1/30 s behind a frame differs (as a vector in the parent's frame) from
+    /// that over the 1/30 s before it, less what it does in the clips. The same at all frame rates
+    /// from 30 on.
     pub velocity_jump_dps: Option<f64>,
     /// Where that is; `None` where nothing exceeds the clips.
     pub velocity_jump_at: Option<JointFrame>,
-    /// Spin, degrees: how far the hips turn within 0.2 s at most, less what they turn in the clips in such a time. `None` without hip joints.
+    /// Spin, degrees: how far the hips turn within 0.2 s at most, less what they turn in the clips
+    /// in such a time. `None` without hip joints.
     pub spin_deg: Option<f64>,
     /// The frame from which they do; `None` where they do not exceed the clips.
     pub spin_at: Option<usize>,
@@ -40,8 +46,8 @@ pub struct JointFrame {
 }
 
 impl ResultMetrics {
-    /// Measures a result beside its clips; without any, as a clip by itself. Clips of another number of joints say nothing about joints. O(joints), and
-    /// O(frames) for a clip by itself.
+    /// Measures a result beside its clips; without any, as a clip by itself. Clips of another
+    /// number of joints say nothing about joints. O(joints), and O(frames) for a clip by itself.
     #[must_use]
     pub fn measure(result: &MotionTrace, clips: &[&MotionTrace]) -> Self {
         let alike = result.alike(clips);
@@ -59,11 +65,16 @@ impl ResultMetrics {
             beyond.reduce(|worst, other| if other.0 > worst.0 { other } else { worst })
         };
         let (pose, velocity) = (worst(|joint| joint.speed), worst(|joint| joint.change));
-        let place = |found: Option<(f32, JointFrame)>| found.filter(|(beyond, _)| *beyond > 0.0).map(|(_, at)| at);
-        let turned = (result.turned_deg().iter().copied().enumerate()).max_by(|a, b| a.1.total_cmp(&b.1));
+        let place = |found: Option<(f32, JointFrame)>| {
+            found.filter(|(beyond, _)| *beyond > 0.0).map(|(_, at)| at)
+        };
+        let turned =
+            (result.turned_deg().iter().copied().enumerate()).max_by(|a, b| a.1.total_cmp(&b.1));
         let own_turn = clips.iter().map(|clip| clip.most_turned_deg()).reduce(f64::max);
-        let own_turn = own_turn.or_else(|| stats::percentile(result.turned_deg(), USUAL_TURN).map(f64::from));
-        let spin = turned.map(|(frame, deg)| ((f64::from(deg) - own_turn.unwrap_or(0.0)).max(0.0), frame));
+        let own_turn =
+            own_turn.or_else(|| stats::percentile(result.turned_deg(), USUAL_TURN).map(f64::from));
+        let spin =
+            turned.map(|(frame, deg)| ((f64::from(deg) - own_turn.unwrap_or(0.0)).max(0.0), frame));
         Self {
             pose_jump_deg: pose.map(|(dps, _)| f64::from(dps) / result.fps),
             pose_jump_at: place(pose),

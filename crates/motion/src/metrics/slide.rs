@@ -5,9 +5,10 @@ use std::ops::Range;
 
 /// How far a planted foot slides in the worst stance of a clip, centimetres.
 ///
-/// In every step between two planted frames, the step over the ground of the foot's stillest point (ankle, ball or tip) is added up as a vector;
-/// the value is the farthest that this sum gets in any stance. A foot that rolls without sliding has a point that stands. `None` without
-/// feet or stances. O(frames × joints).
+/// In every step between two planted frames, the step over the ground of the foot's stillest point
+/// (ankle, ball or tip) is added up as a vector; the value is the farthest that this sum gets in
+/// any stance. A foot that rolls without sliding has a point that stands. `None` without feet or
+/// stances. O(frames × joints).
 #[must_use]
 pub fn foot_slide_cm(clip: &Clip, roles: &Roles, contacts: &Contacts) -> Option<f64> {
     let mut meter = SlideMeter::new(clip, roles);
@@ -15,8 +16,9 @@ pub fn foot_slide_cm(clip: &Clip, roles: &Roles, contacts: &Contacts) -> Option<
     meter.worst_cm()
 }
 
-/// How far a planted foot slides in each stance, centimetres, as [`foot_slide_cm`] has it: the stance's frames, and the slide; in the order in which
-/// stances end. A stance of a single frame is none.
+/// How far a planted foot slides in each stance, centimetres, as [`foot_slide_cm`] has it: the
+/// stance's frames, and the slide; in the order in which stances end. A stance of a single frame is
+/// none.
 #[must_use]
 pub fn foot_slides_cm(clip: &Clip, roles: &Roles, contacts: &Contacts) -> Vec<(Range<usize>, f64)> {
     let mut meter = SlideMeter::new(clip, roles);
@@ -24,7 +26,8 @@ pub fn foot_slides_cm(clip: &Clip, roles: &Roles, contacts: &Contacts) -> Vec<(R
     meter.finish()
 }
 
-/// [`foot_slides_cm`] in slices, for clips that take longer than there is time for at once. Every call is given the same clip and contacts.
+/// [`foot_slides_cm`] in slices, for clips that take longer than there is time for at once. Every
+/// call is given the same clip and contacts.
 #[derive(Debug)]
 pub struct SlideMeter {
     /// Per side: the foot's points, and where they were in the frame before.
@@ -51,7 +54,8 @@ impl SlideMeter {
         }
     }
 
-    /// Looks at so many more frames (at least one). `false` when it has seen all. A frame of 31 joints takes 1 µs.
+    /// Looks at so many more frames (at least one). `false` when it has seen all. A frame of 31
+    /// joints takes 1 µs.
     pub fn advance(&mut self, clip: &Clip, contacts: &Contacts, frames: usize) -> bool {
         if self.frame >= clip.frames() {
             return false;
@@ -62,8 +66,12 @@ impl SlideMeter {
             clip.world_pose_into(frame, &mut world);
             for side in Side::BOTH {
                 let index = side.index();
-                let now: Vec<Vec3> = self.points[index].iter().map(|&(joint, point)| world.point(joint, point)).collect();
-                let stands = contacts.planted(side, frame) && frame > 0 && contacts.planted(side, frame - 1);
+                let now: Vec<Vec3> = self.points[index]
+                    .iter()
+                    .map(|&(joint, point)| world.point(joint, point))
+                    .collect();
+                let stands =
+                    contacts.planted(side, frame) && frame > 0 && contacts.planted(side, frame - 1);
                 if let Some(step) = stillest_step(&self.before[index], &now).filter(|_| stands) {
                     self.slid[index] += step;
                     let (start, farthest) = self.stances[index].unwrap_or((frame - 1, 0.0));
@@ -112,7 +120,8 @@ mod tests {
         let made = synthesize(&Params::new(Action::Walk)).unwrap();
         let clip = made.clip;
         let roles = Roles::detect(clip.skeleton());
-        let flags = Side::BOTH.map(|side| made.truth.contacts.iter().map(|feet| feet[side.index()].any()).collect());
+        let flags = Side::BOTH
+            .map(|side| made.truth.contacts.iter().map(|feet| feet[side.index()].any()).collect());
         let contacts = Contacts::from_flags(flags);
         let still = foot_slide_cm(&clip, &roles, &contacts).unwrap();
         assert!(still < 3.0, "{still}");
@@ -123,7 +132,8 @@ mod tests {
             rotations.extend_from_slice(clip.rotations(frame));
             roots.push(pulled.apply(clip.root_translations()[frame]));
         }
-        let pulled = Clip::new("pulled", clip.skeleton().clone(), clip.fps(), rotations, roots).unwrap();
+        let pulled =
+            Clip::new("pulled", clip.skeleton().clone(), clip.fps(), rotations, roots).unwrap();
         let longest = Side::BOTH
             .into_iter()
             .flat_map(|side| contacts.intervals(side))

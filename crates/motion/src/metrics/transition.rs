@@ -14,8 +14,8 @@ const VISIBLE_DEG: f64 = 0.1;
 /// Below this difference of velocities, metres per second, there is no change of speed to wait for.
 const LEAST_CHANGE_MPS: f64 = 0.1;
 
-/// A transition to be measured: frame f of the result shows frame f of clip A before it, and frame `enter + (f - transition.start)` of clip B
-/// after it. Inside both are mixed.
+/// A transition to be measured: frame f of the result shows frame f of clip A before it, and frame
+/// `enter + (f - transition.start)` of clip B after it. Inside both are mixed.
 #[derive(Clone, Copy, Debug)]
 pub struct Subject<'a> {
     /// The clip with the transition in it.
@@ -24,8 +24,8 @@ pub struct Subject<'a> {
     pub start: usize,
     /// One past the last mixed frame; the start for a cut.
     pub end: usize,
-    /// The frame from which B has the greater part ([`crate::blend::Concatenation::handover`]): feet are planted as A says before it, as B says
-    /// from it on.
+    /// The frame from which B has the greater part ([`crate::blend::Concatenation::handover`]):
+    /// feet are planted as A says before it, as B says from it on.
     pub handover: usize,
     /// The frame of B that is shown, or mixed in, at `start`.
     pub enter: usize,
@@ -39,44 +39,56 @@ pub struct Subject<'a> {
     pub ground_m: f32,
 }
 
-/// What a viewer would point at in a transition, measured about its seam alone, beyond what the clips do in the very frames that play. What is told of
-/// every result is in [`ResultMetrics`](super::ResultMetrics).
+/// What a viewer would point at in a transition, measured about its seam alone, beyond what the
+/// clips do in the very frames that play. What is told of every result is in
+/// [`ResultMetrics`](super::ResultMetrics).
 ///
-/// "Usual" is the 99th percentile over the whole source clip or what the source does in the very frame that is shown, whichever is more; the
-/// larger of the two sources'. A clip that goes on as itself has no jump, then, however wild it is.
+/// "Usual" is the 99th percentile over the whole source clip or what the source does in the very
+/// frame that is shown, whichever is more; the larger of the two sources'. A clip that goes on as
+/// itself has no jump, then, however wild it is.
 ///
-/// "Steps" go from one frame to the next; those of the transition are all steps into its frames and the one out of it, so that both borders
-/// count.
+/// "Steps" go from one frame to the next; those of the transition are all steps into its frames and
+/// the one out of it, so that both borders count.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TransitionMetrics {
-    /// Turn at the seam, degrees. Over all joints and steps of the transition, the largest turn of a joint against its parent in one step, less what
-    /// is usual for that joint; 0 where no step is unusual.
+    /// Turn at the seam, degrees. Over all joints and steps of the transition, the largest turn of
+    /// a joint against its parent in one step, less what is usual for that joint; 0 where no step
+    /// is unusual.
     pub seam_deg: Option<f64>,
     /// The joint of [`seam_deg`](Self::seam_deg), where that is above 0.1°.
     pub seam_joint: Option<usize>,
-    /// Change of velocity at the seam, degrees per second. Likewise the largest change of a joint's angular velocity (a vector in the parent's frame) from one step
-    /// to the next, less what is usual for that joint.
+    /// Change of velocity at the seam, degrees per second. Likewise the largest change of a joint's
+    /// angular velocity (a vector in the parent's frame) from one step to the next, less what is
+    /// usual for that joint.
     pub seam_dps: Option<f64>,
-    /// Place jump, centimetres. The largest step of the character over the ground, less what is usual.
+    /// Place jump, centimetres. The largest step of the character over the ground, less what is
+    /// usual.
     pub jump_cm: Option<f64>,
-    /// Yaw of the blend, degrees. With `r`, `a`, `b` the yaw turned in a step by the result and by the sources: the largest sum, over any run of consecutive
-    /// steps of the transition, of `r - max(0, a, b)` or of `min(0, a, b) - r`. That is the turn beyond what either source turns meanwhile.
+    /// Yaw of the blend, degrees. With `r`, `a`, `b` the yaw turned in a step by the result and by
+    /// the sources: the largest sum, over any run of consecutive steps of the transition, of `r -
+    /// max(0, a, b)` or of `min(0, a, b) - r`. That is the turn beyond what either source turns
+    /// meanwhile.
     pub spin_deg: Option<f64>,
-    /// Slide at the seam, centimetres. A foot is planted while its source says so: A before B has the greater part, B from then on. In every step
-    /// between planted frames, the step over the ground of the foot's stillest point (ankle, ball or tip), less the length that the stillest
-    /// point moves in the source, is added up as a vector; the value is the farthest that this sum gets in any stance which touches
-    /// the transition. Stances are followed for half a second on each side. `None` without feet or stances.
+    /// Slide at the seam, centimetres. A foot is planted while its source says so: A before B has
+    /// the greater part, B from then on. In every step between planted frames, the step over the
+    /// ground of the foot's stillest point (ankle, ball or tip), less the length that the stillest
+    /// point moves in the source, is added up as a vector; the value is the farthest that this sum
+    /// gets in any stance which touches the transition. Stances are followed for half a second on
+    /// each side. `None` without feet or stances.
     pub skate_cm: Option<f64>,
-    /// Penetration, centimetres. How deep the deepest joint or end site is below the ground in the transition.
+    /// Penetration, centimetres. How deep the deepest joint or end site is below the ground in the
+    /// transition.
     pub penetration_cm: Option<f64>,
-    /// Lag, seconds from the transition's start until the last step whose velocity (forward and sideways, in the character's frame) is further
-    /// from the incoming clip's than 10 % of what lies between the two clips: the root mean square, over the transition, of the difference of
+    /// Lag, seconds from the transition's start until the last step whose velocity (forward and
+    /// sideways, in the character's frame) is further from the incoming clip's than 10 % of what
+    /// lies between the two clips: the root mean square, over the transition, of the difference of
     /// their velocities. `None` where that is below 0.1 m/s.
     pub lag_s: Option<f64>,
 }
 
 impl TransitionMetrics {
-    /// Measures a transition. Reads only its frames and half a second around it; frames that do not exist are left out.
+    /// Measures a transition. Reads only its frames and half a second around it; frames that do not
+    /// exist are left out.
     #[must_use]
     pub fn measure(subject: &Subject<'_>) -> Self {
         let last = subject.result.frames().saturating_sub(1);
@@ -93,13 +105,15 @@ impl TransitionMetrics {
             jump_cm: jump(subject, &steps, &around),
             spin_deg: spin(subject, &steps, &around),
             skate_cm: skate(subject, &steps, &around),
-            penetration_cm: around.depth_below(subject.ground_m).map(|depth| f64::from(depth) * 100.0),
+            penetration_cm: around
+                .depth_below(subject.ground_m)
+                .map(|depth| f64::from(depth) * 100.0),
             lag_s: lag(subject, &steps, &around),
         }
     }
 
-    /// What there is to say of a transition beyond what is measured of every result ([`ResultMetrics`](super::ResultMetrics)), in the order in which it
-    /// is shown.
+    /// What there is to say of a transition beyond what is measured of every result
+    /// ([`ResultMetrics`](super::ResultMetrics)), in the order in which it is shown.
     #[must_use]
     pub fn list(&self) -> [Metric; 3] {
         [
@@ -135,8 +149,9 @@ impl Subject<'_> {
         (frame < self.b.source.frames().len()).then_some(frame)
     }
 
-    /// The steps of A and B, in the characters' own frames, that belong to the step into `frame` of the result. A clip A that has ended goes on
-    /// with its last step: an inertialization may leave it there.
+    /// The steps of A and B, in the characters' own frames, that belong to the step into `frame` of
+    /// the result. A clip A that has ended goes on with its last step: an inertialization may leave
+    /// it there.
     fn source_steps(&self, frame: usize) -> [Option<Planar>; 2] {
         let last = self.a.source.frames().len().checked_sub(1);
         let a = last.map(|last| self.a.source.step_into(frame.min(last)));
@@ -148,17 +163,13 @@ impl Subject<'_> {
         get(self.a).max(get(self.b))
     }
 
-    /// Whether the source of `frame` has this foot on the ground, and how far it moves there in the step into the frame.
+    /// Whether the source of `frame` has this foot on the ground, and how far it moves there in the
+    /// step into the frame.
     fn foot_in_source(&self, side: Side, frame: usize) -> (bool, f32) {
-        let (profile, frame) = if frame < self.handover {
-            (self.a, Some(frame))
-        } else {
-            (self.b, self.in_b(frame))
-        };
-        let slide = frame
-            .and_then(|frame| profile.slides[side.index()].get(frame))
-            .copied()
-            .unwrap_or(0.0);
+        let (profile, frame) =
+            if frame < self.handover { (self.a, Some(frame)) } else { (self.b, self.in_b(frame)) };
+        let slide =
+            frame.and_then(|frame| profile.slides[side.index()].get(frame)).copied().unwrap_or(0.0);
         (frame.is_some_and(|frame| profile.contacts.planted(side, frame)), slide)
     }
 }
@@ -178,8 +189,8 @@ impl Around {
     fn new(subject: &Subject<'_>, steps: &RangeInclusive<usize>) -> Self {
         let clip = subject.result;
         let margin = (MARGIN_SECS * clip.fps()).round() as usize;
-        let frames =
-            subject.start.saturating_sub(margin.max(1)).min(clip.frames())..steps.end().saturating_add(margin + 1).min(clip.frames());
+        let frames = subject.start.saturating_sub(margin.max(1)).min(clip.frames())
+            ..steps.end().saturating_add(margin + 1).min(clip.frames());
         let points = Side::BOTH.map(|side| subject.roles.foot_points(clip.skeleton(), side));
         let low_points = LowPoints::of(clip.skeleton());
         let mut around = Self {
@@ -224,12 +235,14 @@ impl Around {
 /// How far a joint turns in the step into `frame`, radians.
 fn joint_turn(clip: &Clip, frame: usize, joint: usize) -> Option<f32> {
     let before = frame.checked_sub(1)?;
-    let at = |frame: usize| (frame < clip.frames()).then(|| clip.rotations(frame).get(joint).copied()).flatten();
+    let at = |frame: usize| {
+        (frame < clip.frames()).then(|| clip.rotations(frame).get(joint).copied()).flatten()
+    };
     Some(turn(at(before)?, at(frame)?).length())
 }
 
-/// The largest of a joint's values in `frames`, less what is usual for that joint or what its sources do in the same frames: the value, and
-/// the joint where it is above 0.
+/// The largest of a joint's values in `frames`, less what is usual for that joint or what its
+/// sources do in the same frames: the value, and the joint where it is above 0.
 fn unusual(
     subject: &Subject<'_>,
     frames: RangeInclusive<usize>,
@@ -241,14 +254,18 @@ fn unusual(
     let mut of_joint = None;
     for frame in frames {
         for joint in 0..clip.skeleton().len() {
-            let Some(found) = value(clip, frame, joint) else { continue };
+            let Some(found) = value(clip, frame, joint) else {
+                continue;
+            };
             let threshold = worst.unwrap_or(0.0);
             worst = Some(threshold);
             let excess = found - subject.usual(usual, joint);
             // The sources' own frames are looked at only where it matters.
             if excess > threshold {
                 let in_a = value(subject.a.source.clip(), frame, joint);
-                let in_b = subject.in_b(frame).and_then(|frame| value(subject.b.source.clip(), frame, joint));
+                let in_b = subject
+                    .in_b(frame)
+                    .and_then(|frame| value(subject.b.source.clip(), frame, joint));
                 let own = in_a.into_iter().chain(in_b).fold(0.0, f32::max);
                 let excess = excess.min(found - own);
                 if excess > threshold {
@@ -287,10 +304,11 @@ fn spin(subject: &Subject<'_>, steps: &RangeInclusive<usize>, around: &Around) -
     // The largest sum of a run of steps (Kadane), for left and right turns.
     let (mut left, mut right, mut worst) = (0.0_f64, 0.0_f64, None);
     for frame in steps.clone() {
-        let Some(result) = around.step_into(frame) else { continue };
-        let sources = subject
-            .source_steps(frame)
-            .map(|step| step.map_or(0.0, |step| wrap_angle(step.yaw)));
+        let Some(result) = around.step_into(frame) else {
+            continue;
+        };
+        let sources =
+            subject.source_steps(frame).map(|step| step.map_or(0.0, |step| wrap_angle(step.yaw)));
         let yaw = wrap_angle(result.yaw);
         left = (left + yaw - sources[0].max(sources[1]).max(0.0)).max(0.0);
         right = (right - yaw + sources[0].min(sources[1]).min(0.0)).max(0.0);
@@ -318,7 +336,9 @@ fn skate(subject: &Subject<'_>, steps: &RangeInclusive<usize>, around: &Around) 
             let stance = farthest.get_or_insert((0.0_f32, false));
             // Only between two planted frames: the step onto the ground is no slide.
             let before_planted = at > 0 && subject.foot_in_source(side, frame - 1).0;
-            if let Some(step) = before_planted.then(|| stillest_step(&feet[at - 1], &feet[at])).flatten() {
+            if let Some(step) =
+                before_planted.then(|| stillest_step(&feet[at - 1], &feet[at])).flatten()
+            {
                 let length = step.length();
                 if length > 0.0 {
                     drift += step * ((length - in_source).max(0.0) / length);
@@ -338,7 +358,8 @@ fn lag(subject: &Subject<'_>, steps: &RangeInclusive<usize>, around: &Around) ->
     let fps = subject.result.fps();
     let (mut squares, mut count, mut distances): (f64, usize, Vec<(usize, f64)>) = (0.0, 0, vec![]);
     for frame in steps.clone() {
-        let (Some(result), [a, Some(b)]) = (around.step_into(frame), subject.source_steps(frame)) else {
+        let (Some(result), [a, Some(b)]) = (around.step_into(frame), subject.source_steps(frame))
+        else {
             continue;
         };
         let off = |step: Planar| -> DVec2 { (step.shift - b.shift) * fps };

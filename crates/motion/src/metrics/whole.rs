@@ -7,29 +7,40 @@ use crate::skeleton::{Roles, WorldPose};
 /// What one frame in a hundred does is usual.
 const USUAL: f32 = 0.99;
 
-/// What there is to say of a whole clip of which nothing else is known, a capture or a motion that another program made, beyond what is measured of
-/// every result ([`ResultMetrics`](super::ResultMetrics)).
+/// What there is to say of a whole clip of which nothing else is known, a capture or a motion that
+/// another program made, beyond what is measured of every result
+/// ([`ResultMetrics`](super::ResultMetrics)).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ClipMetrics {
-    /// Foot slide, centimetres: [`foot_slide_cm`](super::foot_slide_cm). `None` without feet or stances.
+    /// Foot slide, centimetres: [`foot_slide_cm`](super::foot_slide_cm). `None` without feet or
+    /// stances.
     pub foot_slide_cm: Option<f64>,
-    /// Place jump, centimetres: the largest step of the character over the ground, less the 99th percentile of its steps.
+    /// Place jump, centimetres: the largest step of the character over the ground, less the 99th
+    /// percentile of its steps.
     pub jump_cm: Option<f64>,
     /// Penetration, centimetres: how deep the deepest joint or end site is below the ground.
     pub penetration_cm: Option<f64>,
 }
 
 impl ClipMetrics {
-    /// Measures a clip. `contacts` and `ground_frames` are the clip's own ([`Contacts::detect`], [`character_frames`](crate::clip::character_frames)).
-    /// `ground_m` is the height of the ground ([`estimate_ground`](crate::clip::estimate_ground)). O(frames × joints).
+    /// Measures a clip. `contacts` and `ground_frames` are the clip's own ([`Contacts::detect`],
+    /// [`character_frames`](crate::clip::character_frames)). `ground_m` is the height of the ground
+    /// ([`estimate_ground`](crate::clip::estimate_ground)). O(frames × joints).
     #[must_use]
-    pub fn measure(clip: &Clip, roles: &Roles, contacts: &Contacts, ground_frames: &[Planar], ground_m: f32) -> Self {
+    pub fn measure(
+        clip: &Clip,
+        roles: &Roles,
+        contacts: &Contacts,
+        ground_frames: &[Planar],
+        ground_m: f32,
+    ) -> Self {
         let mut meter = ClipMeter::new(clip, roles, ground_m);
         while meter.advance(clip, contacts, usize::MAX) {}
         meter.finish(ground_frames)
     }
 
-    /// The numbers but the slide of the feet, which has its name from where it stands, in the order in which they are shown.
+    /// The numbers but the slide of the feet, which has its name from where it stands, in the order
+    /// in which they are shown.
     #[must_use]
     pub fn list(&self) -> [Metric; 2] {
         [
@@ -51,7 +62,8 @@ impl ClipMetrics {
     }
 }
 
-/// [`ClipMetrics`] in slices, for clips that take longer than there is time for at once. Every call is given the same clip.
+/// [`ClipMetrics`] in slices, for clips that take longer than there is time for at once. Every call
+/// is given the same clip.
 #[derive(Debug)]
 pub struct ClipMeter {
     slide: SlideMeter,
@@ -62,7 +74,8 @@ pub struct ClipMeter {
 }
 
 impl ClipMeter {
-    /// Nothing is measured yet. `ground_m` is the height of the ground ([`estimate_ground`](crate::clip::estimate_ground)).
+    /// Nothing is measured yet. `ground_m` is the height of the ground
+    /// ([`estimate_ground`](crate::clip::estimate_ground)).
     #[must_use]
     pub fn new(clip: &Clip, roles: &Roles, ground_m: f32) -> Self {
         Self {
@@ -84,7 +97,11 @@ impl ClipMeter {
         let mut world = WorldPose::default();
         for frame in self.frame..end {
             clip.world_pose_into(frame, &mut world);
-            self.lowest = self.lowest.into_iter().chain(self.low_points.lowest(&world)).min_by(f32::total_cmp);
+            self.lowest = self
+                .lowest
+                .into_iter()
+                .chain(self.low_points.lowest(&world))
+                .min_by(f32::total_cmp);
         }
         self.frame = end;
         true
@@ -103,13 +120,14 @@ impl ClipMeter {
             .map(|pair| pair[0].shift.distance(pair[1].shift) as f32)
             .collect();
         let most = steps.iter().copied().max_by(f32::total_cmp);
-        let beyond = most
-            .zip(stats::percentile(&steps, USUAL))
-            .map(|(most, usual)| (most - usual).max(0.0));
+        let beyond =
+            most.zip(stats::percentile(&steps, USUAL)).map(|(most, usual)| (most - usual).max(0.0));
         ClipMetrics {
             foot_slide_cm: self.slide.worst_cm(),
             jump_cm: beyond.map(|metres| f64::from(metres) * 100.0),
-            penetration_cm: self.lowest.map(|lowest| f64::from((self.ground_m - lowest).max(0.0)) * 100.0),
+            penetration_cm: self
+                .lowest
+                .map(|lowest| f64::from((self.ground_m - lowest).max(0.0)) * 100.0),
         }
     }
 }
@@ -142,7 +160,8 @@ mod tests {
             rotations.extend_from_slice(clip.rotations(frame));
             roots.push(root);
         }
-        Clip::new("changed", std::sync::Arc::clone(clip.skeleton()), clip.fps(), rotations, roots).unwrap()
+        Clip::new("changed", std::sync::Arc::clone(clip.skeleton()), clip.fps(), rotations, roots)
+            .unwrap()
     }
 
     #[test]

@@ -14,16 +14,21 @@ const KNOTS: u64 = 2;
 const UNCLAMPED: u64 = 4;
 
 impl GroundSpline {
-    /// The path as a short word for links, letters, digits, `-` and `_`: control points to 1 cm, about three letters to a point and coordinate.
+    /// The path as a short word for links, letters, digits, `-` and `_`: control points to 1 cm,
+    /// about three letters to a point and coordinate.
     ///
-    /// The word is base64 of numbers of seven bits to a byte: a flag for "closed", one for "has knots of its own" and one for "unclamped", the number of points, the differences of
-    /// their coordinates, and the differences of the inner knots where they are not uniform. The ends of a closed path follow from its other points and are left out.
+    /// The word is base64 of numbers of seven bits to a byte: a flag for "closed", one for "has
+    /// knots of its own" and one for "unclamped", the number of points, the differences of their
+    /// coordinates, and the differences of the inner knots where they are not uniform. The ends of
+    /// a closed path follow from its other points and are left out.
     #[must_use]
     pub fn to_code(&self) -> String {
         let uniform = self.inner_knots() == uniform_knots(self.points().len());
         let mut bytes = Vec::new();
         let unclamped = self.ends() == SplineEnds::Uniform;
-        let flags = u64::from(self.is_closed()) * CLOSED + u64::from(!uniform) * KNOTS + u64::from(unclamped) * UNCLAMPED;
+        let flags = u64::from(self.is_closed()) * CLOSED
+            + u64::from(!uniform) * KNOTS
+            + u64::from(unclamped) * UNCLAMPED;
         write(&mut bytes, flags);
         write(&mut bytes, self.points().len() as u64);
         let mut before = I64Vec2::ZERO;
@@ -50,7 +55,8 @@ impl GroundSpline {
     /// The path of a word from [`Self::to_code`].
     ///
     /// # Errors
-    /// [`PathEditError::Code`] for a word that is none, and the errors of [`GroundSpline::with_knots`].
+    /// [`PathEditError::Code`] for a word that is none, and the errors of
+    /// [`GroundSpline::with_knots`].
     pub fn from_code(code: &str) -> Result<Self, PathEditError> {
         // Two numbers of at most ten bytes to a point are far less.
         let bytes = (code.len() <= MOST_POINTS * 40)

@@ -16,19 +16,22 @@ pub struct Pins {
 /// One thing that is done to a path. Positions are (x, z), metres.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum PathEdit {
-    /// A control point goes elsewhere. On a closed path the ends move as one, and their neighbours with them.
+    /// A control point goes elsewhere. On a closed path the ends move as one, and their neighbours
+    /// with them.
     Move {
         /// Which.
         index: usize,
         /// Where to.
         to: DVec2,
     },
-    /// One more control point at this parameter; the path stays as it is (Boehm, Inserting New Knots into B-spline Curves, 1980).
+    /// One more control point at this parameter; the path stays as it is (Boehm, Inserting New
+    /// Knots into B-spline Curves, 1980).
     Insert {
         /// The parameter, inside 0 and 1 and not on a knot.
         at: f64,
     },
-    /// One control point fewer; the others move as little as they must to keep the path (least squares). Undoes [`Self::Insert`].
+    /// One control point fewer; the others move as little as they must to keep the path (least
+    /// squares). Undoes [`Self::Insert`].
     Remove {
         /// Which; not an end.
         index: usize,
@@ -58,14 +61,16 @@ pub enum PathEdit {
         /// From 0.01 to 100.
         factor: f64,
     },
-    /// Left becomes right: the path is mirrored at the line from its start to its end. The character is not.
+    /// Left becomes right: the path is mirrored at the line from its start to its end. The
+    /// character is not.
     Mirror,
     /// Curves are bent open, the length stays; 1 makes a straight line.
     Straighten {
         /// From 0 to 1.
         share: f64,
     },
-    /// The path is bent by a whole turn, until it ends where and as it starts. The length stays nearly; a path whose ends are near each other is only joined.
+    /// The path is bent by a whole turn, until it ends where and as it starts. The length stays
+    /// nearly; a path whose ends are near each other is only joined.
     Close,
     /// A closed path becomes one with two ends, in the same place for the time being.
     Open,
@@ -86,13 +91,16 @@ impl GroundSpline {
     /// The path after an edit.
     ///
     /// # Errors
-    /// [`PathEditError`] says what is wrong: a point that is not there, a pinned end that would have to move, a number out of range, too few or too many points.
+    /// [`PathEditError`] says what is wrong: a point that is not there, a pinned end that would
+    /// have to move, a number out of range, too few or too many points.
     pub fn edited(&self, edit: &PathEdit, pins: Pins) -> Result<Self, PathEditError> {
         if self.ends() == SplineEnds::Uniform {
             return self.edited_unclamped(edit, pins);
         }
         let held = pins.start || pins.end;
-        let all = |f: &dyn Fn(DVec2) -> DVec2| self.with_points(self.points().iter().map(|&p| f(p)).collect());
+        let all = |f: &dyn Fn(DVec2) -> DVec2| {
+            self.with_points(self.points().iter().map(|&p| f(p)).collect())
+        };
         match *edit {
             PathEdit::Move { index, to } => self.with_moved(index, to, pins),
             PathEdit::Insert { at } => self.refined(at),
@@ -103,7 +111,8 @@ impl GroundSpline {
             }
             PathEdit::Snap { grid_m } => {
                 check("grid (m)", grid_m, 1e-3, MOST_GRID_M)?;
-                let mut points: Vec<DVec2> = self.points().iter().map(|p| (p / grid_m).round() * grid_m).collect();
+                let mut points: Vec<DVec2> =
+                    self.points().iter().map(|p| (p / grid_m).round() * grid_m).collect();
                 let last = points.len() - 1;
                 if pins.start {
                     points[0] = self.points()[0];
@@ -113,11 +122,7 @@ impl GroundSpline {
                 }
                 let snapped = self.with_points(points)?;
                 // The ends of a loop follow from their neighbours.
-                if self.is_closed() {
-                    snapped.held_by(self, pins)
-                } else {
-                    Ok(snapped)
-                }
+                if self.is_closed() { snapped.held_by(self, pins) } else { Ok(snapped) }
             }
             PathEdit::Shift { by } => {
                 if held {
@@ -145,7 +150,9 @@ impl GroundSpline {
                 check("straightening", share, 0.0, 1.0)?;
                 let yaw = self.overall_yaw();
                 let open = Self::with_knots(self.points().to_vec(), self.inner_knots())?;
-                let straight = |heading: f64, _: f64, mean: f64| heading + (mean + wrap_angle(yaw - mean) - heading) * share;
+                let straight = |heading: f64, _: f64, mean: f64| {
+                    heading + (mean + wrap_angle(yaw - mean) - heading) * share
+                };
                 open.bent(straight, false)?.held_by(self, pins)
             }
             PathEdit::Close => self.closed(pins),
@@ -153,7 +160,8 @@ impl GroundSpline {
         }
     }
 
-    /// A control point that is moved is the unclamped path's own; all else is done to the same curve, clamped.
+    /// A control point that is moved is the unclamped path's own; all else is done to the same
+    /// curve, clamped.
     fn edited_unclamped(&self, edit: &PathEdit, pins: Pins) -> Result<Self, PathEditError> {
         let count = self.points().len();
         let PathEdit::Move { index, to } = *edit else {
@@ -182,11 +190,7 @@ impl GroundSpline {
         let end = index == 0 || index == last;
         let pinned = (index == 0 && pins.start) || (index == last && pins.end);
         if !self.is_closed() {
-            return if pinned {
-                Err(PathEditError::Pinned)
-            } else {
-                self.with_points(points)
-            };
+            return if pinned { Err(PathEditError::Pinned) } else { self.with_points(points) };
         }
         let held = pins.start || pins.end;
         if end && held {
@@ -219,7 +223,8 @@ impl GroundSpline {
         // The knot that is nearest to where the point has its say goes with it.
         let at = self.greville()[index];
         let mut knots = self.inner_knots().to_vec();
-        let nearest = (knots.iter().enumerate()).min_by(|a, b| (a.1 - at).abs().total_cmp(&(b.1 - at).abs()));
+        let nearest =
+            (knots.iter().enumerate()).min_by(|a, b| (a.1 - at).abs().total_cmp(&(b.1 - at).abs()));
         if let Some((knot, _)) = nearest {
             knots.remove(knot);
         }
@@ -262,19 +267,23 @@ impl GroundSpline {
         }
     }
 
-    /// This path with its pinned ends where they are in `before`: shifted, or where both are pinned turned and scaled as well. Ends of a path whose own ends
-    /// coincide are put in place alone.
+    /// This path with its pinned ends where they are in `before`: shifted, or where both are pinned
+    /// turned and scaled as well. Ends of a path whose own ends coincide are put in place alone.
     fn held_by(self, before: &Self, pins: Pins) -> Result<Self, PathEditError> {
         let ends = |spline: &Self| (spline.points()[0], spline.points()[spline.points().len() - 1]);
         let ((start, end), (from, to)) = (ends(before), ends(&self));
-        let all = |f: &dyn Fn(DVec2) -> DVec2| self.with_points(self.points().iter().map(|&p| f(p)).collect());
+        let all = |f: &dyn Fn(DVec2) -> DVec2| {
+            self.with_points(self.points().iter().map(|&p| f(p)).collect())
+        };
         match (pins.start, pins.end) {
             (false, false) => Ok(self),
             (true, false) => all(&|p| p + (start - from)),
             (false, true) => all(&|p| p + (end - to)),
             (true, true) => {
                 let (way, own) = (end - start, to - from);
-                if way.length() < super::road::LEAST_LENGTH_M || own.length() < super::road::LEAST_LENGTH_M {
+                if way.length() < super::road::LEAST_LENGTH_M
+                    || own.length() < super::road::LEAST_LENGTH_M
+                {
                     return all(&|p| p + (start - from));
                 }
                 // As complex numbers: the quotient of the two ways turns and scales.
@@ -284,9 +293,14 @@ impl GroundSpline {
         }
     }
 
-    /// The path whose direction is another function of its direction (unwrapped), the share of the length that lies before, and the mean direction. It
-    /// has the same length and start. What is missing between its ends is spread evenly if it is to be a loop.
-    fn bent(&self, heading: impl Fn(f64, f64, f64) -> f64, to_loop: bool) -> Result<Self, PathEditError> {
+    /// The path whose direction is another function of its direction (unwrapped), the share of the
+    /// length that lies before, and the mean direction. It has the same length and start. What is
+    /// missing between its ends is spread evenly if it is to be a loop.
+    fn bent(
+        &self,
+        heading: impl Fn(f64, f64, f64) -> f64,
+        to_loop: bool,
+    ) -> Result<Self, PathEditError> {
         let road = Road::new(self.clone())?;
         let steps = self.points().len() * SAMPLES;
         let along = |k: f64| road.length_m() * k / steps as f64;
@@ -309,7 +323,8 @@ impl GroundSpline {
             }
         }
         // Each place keeps its parameter, so that the motion keeps its places.
-        let parameters: Vec<f64> = (0..=steps).map(|k| road.parameter_at(along(k as f64))).collect();
+        let parameters: Vec<f64> =
+            (0..=steps).map(|k| road.parameter_at(along(k as f64))).collect();
         fit_with_knots(&points, &parameters, self.inner_knots(), &pinned_fit())
     }
 
@@ -319,10 +334,7 @@ impl GroundSpline {
         }
         let (count, last) = (self.points().len(), self.points().len() - 1);
         if count < LEAST_CLOSED {
-            return Err(PathEditError::TooFewToClose {
-                points: count,
-                least: LEAST_CLOSED,
-            });
+            return Err(PathEditError::TooFewToClose { points: count, least: LEAST_CLOSED });
         }
         let gap = self.points()[0] - self.points()[last];
         if pins.start && pins.end && gap.length() > super::road::LEAST_LENGTH_M {
@@ -339,21 +351,19 @@ impl GroundSpline {
             let wanted = if whole == 0.0 { TAU.copysign(turn) } else { whole * TAU };
             self.bent(|heading, along, _| heading + (wanted - turn) * along, true)?
         };
-        bent.closed_in_place()?.held_by(
-            self,
-            Pins {
-                start: pins.start || !pins.end,
-                end: pins.end && !pins.start,
-            },
-        )
+        bent.closed_in_place()?
+            .held_by(self, Pins { start: pins.start || !pins.end, end: pins.end && !pins.start })
     }
 
-    /// A path whose ends coincide, closed: the neighbours of the end are put on one line through it.
+    /// A path whose ends coincide, closed: the neighbours of the end are put on one line through
+    /// it.
     fn closed_in_place(&self) -> Result<Self, PathEditError> {
         let mut points = self.points().to_vec();
         let last = points.len() - 1;
         let [first_span, last_span] = self.end_spans();
-        let derivative = ((points[1] - points[0]) / first_span + (points[last] - points[last - 1]) / last_span) * 0.5;
+        let derivative = ((points[1] - points[0]) / first_span
+            + (points[last] - points[last - 1]) / last_span)
+            * 0.5;
         points[1] = points[0] + derivative * first_span;
         points[last - 1] = points[last] - derivative * last_span;
         Ok(Self::with_knots(points, self.inner_knots())?.joined())
@@ -371,10 +381,7 @@ impl Road {
 
 /// Through both ends.
 fn pinned_fit() -> FitOptions {
-    FitOptions {
-        pin_ends: true,
-        ..FitOptions::default()
-    }
+    FitOptions { pin_ends: true, ..FitOptions::default() }
 }
 
 /// A turn about +Y of a point of the ground.

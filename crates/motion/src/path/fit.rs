@@ -6,7 +6,8 @@ use glam::DVec2;
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(default)]
 pub struct FitOptions {
-    /// Control points, from 4 to 256. Four cannot follow a turn; many follow every sway of the hips.
+    /// Control points, from 4 to 256. Four cannot follow a turn; many follow every sway of the
+    /// hips.
     pub control_points: usize,
     /// How much a bend counts against the distance from the points: 0 for least squares alone.
     pub smoothing: f64,
@@ -18,12 +19,7 @@ pub struct FitOptions {
 
 impl Default for FitOptions {
     fn default() -> Self {
-        Self {
-            control_points: 8,
-            smoothing: 0.0,
-            pin_ends: false,
-            ends: SplineEnds::default(),
-        }
+        Self { control_points: 8, smoothing: 0.0, pin_ends: false, ends: SplineEnds::default() }
     }
 }
 
@@ -56,17 +52,25 @@ impl FitOptions {
     }
 }
 
-/// The path with uniform knots that comes closest to `points` (x, z; metres) at their `parameters` (from 0 to 1, none of them falling).
+/// The path with uniform knots that comes closest to `points` (x, z; metres) at their `parameters`
+/// (from 0 to 1, none of them falling).
 ///
-/// What is made small is `mean |C(u_k) - p_k|² + smoothing · mean |h Δ_i|²`, with `Δ_i` the change of slope of the control polygon over the Greville
-/// abscissae at its inner point i, and h the mean spacing: a straight way costs nothing (after Eilers and Marx, Flexible Smoothing with B-splines
-/// and Penalties, 1996). Rows go one by one into a banded triangle by Givens rotations, which does not square the condition of the problem (Cox, in The State of
-/// the Art in Numerical Analysis, 1977; Dierckx, Curve and Surface Fitting with Splines, 1993, section 4.1): O(points + control points). Where points are
-/// missing for a control point, the path goes straight there.
+/// What is made small is `mean |C(u_k) - p_k|² + smoothing · mean |h Δ_i|²`, with `Δ_i` the change
+/// of slope of the control polygon over the Greville abscissae at its inner point i, and h the mean
+/// spacing: a straight way costs nothing (after Eilers and Marx, Flexible Smoothing with B-splines
+/// and Penalties, 1996). Rows go one by one into a banded triangle by Givens rotations, which does
+/// not square the condition of the problem (Cox, in The State of the Art in Numerical Analysis,
+/// 1977; Dierckx, Curve and Surface Fitting with Splines, 1993, section 4.1): O(points + control
+/// points). Where points are missing for a control point, the path goes straight there.
 ///
 /// # Errors
-/// [`PathEditError`] for options out of range, no points, lists of different length, and numbers that are none.
-pub fn fit_spline(points: &[DVec2], parameters: &[f64], options: &FitOptions) -> Result<GroundSpline, PathEditError> {
+/// [`PathEditError`] for options out of range, no points, lists of different length, and numbers
+/// that are none.
+pub fn fit_spline(
+    points: &[DVec2],
+    parameters: &[f64],
+    options: &FitOptions,
+) -> Result<GroundSpline, PathEditError> {
     // Before memory is taken for the knots.
     options.validate()?;
     let knots = uniform_knots(options.control_points);
@@ -83,7 +87,8 @@ pub(super) fn fit_with_knots(
     let (Some(&first), Some(&last)) = (points.first(), points.last()) else {
         return Err(PathEditError::Frames { frames: 0 });
     };
-    let rises = parameters.windows(2).all(|pair| pair[0] <= pair[1]) && parameters.iter().all(|u| (0.0..=1.0).contains(u));
+    let rises = parameters.windows(2).all(|pair| pair[0] <= pair[1])
+        && parameters.iter().all(|u| (0.0..=1.0).contains(u));
     if points.len() != parameters.len() || !rises {
         return Err(PathEditError::Parameters);
     }
@@ -93,17 +98,19 @@ pub(super) fn fit_with_knots(
     // Numbers stay small around the first point.
     let count = inner_knots.len() + 4;
     let shape = GroundSpline::with_knots(vec![DVec2::ZERO; count], inner_knots)?;
-    let pins: Vec<(usize, DVec2)> = if options.pin_ends {
-        vec![(0, DVec2::ZERO), (count - 1, last - first)]
-    } else {
-        vec![]
-    };
+    let pins: Vec<(usize, DVec2)> =
+        if options.pin_ends { vec![(0, DVec2::ZERO), (count - 1, last - first)] } else { vec![] };
     let solve = |smoothing: f64| {
         let mut band = Band::new(count);
         let weight = (points.len() as f64).sqrt().recip();
         for (&point, &u) in points.iter().zip(parameters) {
             let (start, shares) = shape.shares(u);
-            band.add_pinned(start, shares.map(|share| share * weight), (point - first) * weight, &pins);
+            band.add_pinned(
+                start,
+                shares.map(|share| share * weight),
+                (point - first) * weight,
+                &pins,
+            );
         }
         if smoothing > 0.0 {
             let g = shape.greville();
@@ -122,14 +129,19 @@ pub(super) fn fit_with_knots(
     let relative = solve(options.smoothing)
         .or_else(|| solve(options.smoothing.max(FILL)))
         .ok_or(PathEditError::Parameters)?;
-    let fitted = GroundSpline::with_knots(relative.into_iter().map(|point| point + first).collect(), inner_knots)?;
+    let fitted = GroundSpline::with_knots(
+        relative.into_iter().map(|point| point + first).collect(),
+        inner_knots,
+    )?;
     Ok(fitted.with_ends(options.ends))
 }
 
-/// A curve drawn by hand, (x, z) in metres in the order of drawing, as a path with uniform knots over its chord length.
+/// A curve drawn by hand, (x, z) in metres in the order of drawing, as a path with uniform knots
+/// over its chord length.
 ///
 /// # Errors
-/// [`PathEditError`] for options out of range, numbers that are none, and a curve that is shorter than 10 cm.
+/// [`PathEditError`] for options out of range, numbers that are none, and a curve that is shorter
+/// than 10 cm.
 pub fn drawn_path(points: &[DVec2], options: &FitOptions) -> Result<GroundSpline, PathEditError> {
     let (parameters, length_m) = chord_parameters(points);
     if !length_m.is_finite() {
@@ -142,7 +154,8 @@ pub fn drawn_path(points: &[DVec2], options: &FitOptions) -> Result<GroundSpline
     fit_spline(points, &parameters, options)
 }
 
-/// The share of the way that lies before each point, and the length of the whole, metres; the shares are 0 where there is no way.
+/// The share of the way that lies before each point, and the length of the whole, metres; the
+/// shares are 0 where there is no way.
 pub(super) fn chord_parameters(points: &[DVec2]) -> (Vec<f64>, f64) {
     let mut along = 0.0;
     let mut before = points.first().copied().unwrap_or_default();
@@ -166,7 +179,8 @@ pub(super) fn extent(points: &[DVec2]) -> f64 {
     high.distance(low)
 }
 
-/// The triangle of a QR decomposition whose rows hold four numbers from the diagonal on, and its right-hand side.
+/// The triangle of a QR decomposition whose rows hold four numbers from the diagonal on, and its
+/// right-hand side.
 struct Band {
     rows: Vec<[f64; 4]>,
     right: Vec<DVec2>,
@@ -174,14 +188,17 @@ struct Band {
 
 impl Band {
     fn new(size: usize) -> Self {
-        Self {
-            rows: vec![[0.0; 4]; size],
-            right: vec![DVec2::ZERO; size],
-        }
+        Self { rows: vec![[0.0; 4]; size], right: vec![DVec2::ZERO; size] }
     }
 
     /// One more equation, in which the unknowns of `pins` are known.
-    fn add_pinned(&mut self, start: usize, mut row: [f64; 4], mut right: DVec2, pins: &[(usize, DVec2)]) {
+    fn add_pinned(
+        &mut self,
+        start: usize,
+        mut row: [f64; 4],
+        mut right: DVec2,
+        pins: &[(usize, DVec2)],
+    ) {
         for &(index, point) in pins {
             if let Some(share) = index.checked_sub(start).and_then(|k| row.get_mut(k)) {
                 right -= point * *share;
@@ -203,7 +220,8 @@ impl Band {
                 for (a, b) in own.iter_mut().zip(&mut row) {
                     (*a, *b) = (cos * *a + sin * *b, cos * *b - sin * *a);
                 }
-                (*own_right, right) = (*own_right * cos + right * sin, right * cos - *own_right * sin);
+                (*own_right, right) =
+                    (*own_right * cos + right * sin, right * cos - *own_right * sin);
             }
             row = [row[1], row[2], row[3], 0.0];
         }

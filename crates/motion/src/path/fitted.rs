@@ -5,12 +5,14 @@ use crate::math::{Planar, wrap_angle};
 use glam::DVec2;
 use std::sync::Arc;
 
-/// The hips sway from step to step; the way that a frame has come is measured after a Gaussian of this deviation has calmed the sway, seconds.
+/// The hips sway from step to step; the way that a frame has come is measured after a Gaussian of
+/// this deviation has calmed the sway, seconds.
 const SWAY_SECS: f64 = 0.3;
 /// A motion that stays within this distance stands, metres.
 const STANDS_M: f64 = 0.2;
 
-/// A motion, the path that was fitted to its way over the ground, and where on that path each frame is.
+/// A motion, the path that was fitted to its way over the ground, and where on that path each frame
+/// is.
 #[derive(Clone, Debug)]
 pub struct FittedPath {
     source: Arc<Source>,
@@ -33,11 +35,13 @@ pub struct FitError {
 impl FittedPath {
     /// Fits a path to the way of a motion's root over the ground.
     ///
-    /// The parameter of a frame is the share of the way that lies before it, by chord length; sway of the hips and small steps on the spot do not count as way: it
-    /// is measured on the root's way smoothed over about one step. The fit is to the root itself.
+    /// The parameter of a frame is the share of the way that lies before it, by chord length; sway
+    /// of the hips and small steps on the spot do not count as way: it is measured on the root's
+    /// way smoothed over about one step. The fit is to the root itself.
     ///
     /// # Errors
-    /// [`PathEditError`] for options out of range, fewer than two frames, and a motion that stays within 20 cm.
+    /// [`PathEditError`] for options out of range, fewer than two frames, and a motion that stays
+    /// within 20 cm.
     pub fn new(source: Arc<Source>, options: &FitOptions) -> Result<Self, PathEditError> {
         options.validate()?;
         let way: Vec<DVec2> = source.frames().iter().map(|frame| frame.shift).collect();
@@ -55,12 +59,7 @@ impl FittedPath {
         let (parameters, _) = chord_parameters(&calm);
         let road = Road::new(fit_spline(&way, &parameters, options)?)?;
         let places = parameters.iter().map(|&u| road.at(u)).collect();
-        Ok(Self {
-            source,
-            road,
-            parameters,
-            places,
-        })
+        Ok(Self { source, road, parameters, places })
     }
 
     /// The motion.
@@ -87,7 +86,8 @@ impl FittedPath {
         &self.places
     }
 
-    /// What the path leaves over, frame by frame, `path_from_character`: metres to the left of the path (x) and along it (z), and the yaw against its direction.
+    /// What the path leaves over, frame by frame, `path_from_character`: metres to the left of the
+    /// path (x) and along it (z), and the yaw against its direction.
     pub fn residuals(&self) -> impl Iterator<Item = Planar> + '_ {
         let frames = self.places.iter().zip(self.source.frames());
         frames.map(|(place, character)| place.frame.inverse().after(character))
@@ -114,7 +114,8 @@ impl FittedPath {
     /// The parameter at a fractional frame, clamped to the motion.
     pub(super) fn parameter(&self, frame: f64) -> f64 {
         let (index, part) = self.between(frame);
-        let (from, to) = (self.parameters[index], self.parameters[(index + 1).min(self.parameters.len() - 1)]);
+        let (from, to) =
+            (self.parameters[index], self.parameters[(index + 1).min(self.parameters.len() - 1)]);
         from + (to - from) * part
     }
 
@@ -134,17 +135,16 @@ impl FittedPath {
     }
 }
 
-/// A Gaussian mean with the deviation given in frames. Behind the ends the way goes on as it came, turned about the end by half a turn: the ends
-/// stay where they are.
+/// A Gaussian mean with the deviation given in frames. Behind the ends the way goes on as it came,
+/// turned about the end by half a turn: the ends stay where they are.
 fn smoothed(way: &[DVec2], deviation: f64) -> Vec<DVec2> {
     let (Some(&first), Some(&last)) = (way.first(), way.last()) else {
         return vec![];
     };
     let count = way.len() as isize;
     let reach = ((3.0 * deviation).ceil() as isize).min(count - 1);
-    let weights: Vec<f64> = (0..=reach)
-        .map(|k| (-0.5 * (k as f64 / deviation.max(1e-9)).powi(2)).exp())
-        .collect();
+    let weights: Vec<f64> =
+        (0..=reach).map(|k| (-0.5 * (k as f64 / deviation.max(1e-9)).powi(2)).exp()).collect();
     let sum = 2.0 * weights.iter().sum::<f64>() - 1.0;
     let at = |index: isize| {
         if index < 0 {

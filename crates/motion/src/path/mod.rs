@@ -2,9 +2,10 @@
 //!
 //! # The idea
 //!
-//! Take a walk apart into where it goes and what the body does on the way. The way of the character's root over the ground is fitted by a
-//! cubic B-spline C(u) with N control points; what the fit leaves over, sway of the hips and the angle between body and path, is kept in the
-//! path's moving frame: +Z along the path, +X to its left.
+//! Take a walk apart into where it goes and what the body does on the way. The way of the
+//! character's root over the ground is fitted by a cubic B-spline C(u) with N control points; what
+//! the fit leaves over, sway of the hips and the angle between body and path, is kept in the path's
+//! moving frame: +Z along the path, +X to its left.
 //!
 //! ```text
 //! fit     min  mean |C(u_k) - p_k|² + smoothing · mean |h Δ_i|²
@@ -13,10 +14,11 @@
 //!         v_k: the place on the new path, by Timing
 //! ```
 //!
-//! Picture a tram with a dancer in it: bend the rails, and the dance goes along. When the path changes, every frame is moved with the frame
-//! of the path that it rides in ([`carry`]), and the feet are planted again ([`PathEditor`]). What happens to time where a path becomes
-//! longer, [`Timing`] says: metres stay, speed stays, or duration stays. Turns that are sharper than the motion knows are told
-//! ([`hard_turns`]: curvature × speed).
+//! Picture a tram with a dancer in it: bend the rails, and the dance goes along. When the path
+//! changes, every frame is moved with the frame of the path that it rides in ([`carry`]), and the
+//! feet are planted again ([`PathEditor`]). What happens to time where a path becomes longer,
+//! [`Timing`] says: metres stay, speed stays, or duration stays. Turns that are sharper than the
+//! motion knows are told ([`hard_turns`]: curvature × speed).
 //!
 //! # Example
 //!
@@ -52,20 +54,22 @@
 //!
 //! # Accuracy and cost
 //!
-//! A path that is not edited gives its motion back to 1e-4 m and 1e-4 radians, and one that is moved rigidly moves it rigidly. Control
-//! points are those of `SciPy`'s least squares to 1e-9 m. Joints of one frame keep their distances whatever is done to the path, until feet
-//! are planted. A fit is O(frames + control points), a carried motion O(frames × joints).
+//! A path that is not edited gives its motion back to 1e-4 m and 1e-4 radians, and one that is
+//! moved rigidly moves it rigidly. Control points are those of `SciPy`'s least squares to 1e-9 m.
+//! Joints of one frame keep their distances whatever is done to the path, until feet are planted. A
+//! fit is O(frames + control points), a carried motion O(frames × joints).
 //!
 //! # What it does not do
 //!
-//! It bends motions, and neither invents steps nor takes them away: a path of twice the length is walked halfway, or with strides twice as
-//! long, as [`Timing`] says. A motion that stays in place has no path. Balance is not looked after: whoever is sent around a hairpin does
-//! not lean.
+//! It bends motions, and neither invents steps nor takes them away: a path of twice the length is
+//! walked halfway, or with strides twice as long, as [`Timing`] says. A motion that stays in place
+//! has no path. Balance is not looked after: whoever is sent around a hairpin does not lean.
 //!
 //! # Sources
 //!
-//! Gleicher, "Motion Path Editing", 2001. de Boor, "A Practical Guide to Splines"; Boehm 1980 (adding a knot); Dierckx 1993, section 4.1
-//! (least squares by rotations); Eilers and Marx 1996 (smoothing).
+//! Gleicher, "Motion Path Editing", 2001. de Boor, "A Practical Guide to Splines"; Boehm 1980
+//! (adding a knot); Dierckx 1993, section 4.1 (least squares by rotations); Eilers and Marx 1996
+//! (smoothing).
 
 use crate::clip::ClipError;
 use crate::transition::FootLockError;
@@ -111,7 +115,9 @@ pub enum PathEditError {
         length_m: f64,
     },
     /// Too few or too many control points.
-    #[error("a path of {points} control points cannot be used: take {LEAST_POINTS} to {MOST_POINTS}")]
+    #[error(
+        "a path of {points} control points cannot be used: take {LEAST_POINTS} to {MOST_POINTS}"
+    )]
     ControlPoints {
         /// The number asked for.
         points: usize,
@@ -123,10 +129,14 @@ pub enum PathEditError {
         index: usize,
     },
     /// Knots that do not fit.
-    #[error("knots have to rise between 0 and 1, four fewer than control points and not too close to each other: take another place")]
+    #[error(
+        "knots have to rise between 0 and 1, four fewer than control points and not too close to each other: take another place"
+    )]
     Knots,
     /// Parameters that are none.
-    #[error("each point needs a parameter from 0 to 1, at least two of them different, and none below the one before")]
+    #[error(
+        "each point needs a parameter from 0 to 1, at least two of them different, and none below the one before"
+    )]
     Parameters,
     /// A control point that is not there.
     #[error("there is no control point {index} among {points}")]

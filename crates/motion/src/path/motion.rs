@@ -25,13 +25,15 @@ pub struct EditedMotion {
     pub frames: Vec<f64>,
     /// For every frame of it the frame of the edited path that it rides in.
     pub places: Vec<Waypoint>,
-    /// For every frame of it where the character stands and what it faces, before its feet are planted.
+    /// For every frame of it where the character stands and what it faces, before its feet are
+    /// planted.
     pub characters: Vec<Planar>,
     /// For every frame of it by how much the path turned the whole body, radians.
     pub turns: Vec<f64>,
     /// When which foot is on the ground.
     pub contacts: Contacts,
-    /// How far a planted foot slides in the worst stance, centimetres; `None` without feet or stances.
+    /// How far a planted foot slides in the worst stance, centimetres; `None` without feet or
+    /// stances.
     pub slide_cm: Slide,
     /// Where the path turns faster than the original does.
     pub hard_turns: Vec<HardTurn>,
@@ -62,12 +64,7 @@ impl PathEditor {
     #[must_use]
     pub fn new(path: FittedPath, roles: &Roles, contacts: Contacts) -> Self {
         let slide_cm = foot_slide_cm(path.source().clip(), roles, &contacts);
-        Self {
-            path,
-            roles: roles.clone(),
-            contacts,
-            slide_cm,
-        }
+        Self { path, roles: roles.clone(), contacts, slide_cm }
     }
 
     /// The fitted motion.
@@ -76,20 +73,23 @@ impl PathEditor {
         &self.path
     }
 
-    /// The motion on an edited path: laid on it, its feet planted, and measured. O(frames × joints).
+    /// The motion on an edited path: laid on it, its feet planted, and measured. O(frames ×
+    /// joints).
     ///
     /// # Errors
-    /// [`PathEditError`] when feet are to be planted and there are no legs or the options are out of range, or the result is no clip.
-    pub fn motion(&self, edited: &Road, options: &MotionOptions) -> Result<EditedMotion, PathEditError> {
+    /// [`PathEditError`] when feet are to be planted and there are no legs or the options are out
+    /// of range, or the result is no clip.
+    pub fn motion(
+        &self,
+        edited: &Road,
+        options: &MotionOptions,
+    ) -> Result<EditedMotion, PathEditError> {
         let carried = carry(&self.path, edited, &options.carry)?;
         let contacts = carried.contacts(&self.contacts);
         let hard_turns = hard_turns(&self.path, &carried);
         let slid = |clip: &Clip| foot_slide_cm(clip, &self.roles, &contacts);
-        let mut slide_cm = Slide {
-            original: self.slide_cm,
-            carried: slid(&carried.clip),
-            locked: None,
-        };
+        let mut slide_cm =
+            Slide { original: self.slide_cm, carried: slid(&carried.clip), locked: None };
         let clip = if let Some(lock) = &options.foot_lock {
             let locking = FootLocking::new(Arc::new(carried.clip), &self.roles, &contacts, lock)?;
             let locked = locking.with_body_yaws(&carried.turns).finish()?;

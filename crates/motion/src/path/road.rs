@@ -26,9 +26,9 @@ const SAME_M: f64 = 1e-8;
 
 /// A path that knows its length: read by parameter or by metres from its start.
 ///
-/// Lengths are integrals of the speed by adaptive Gauss-Legendre quadrature: at least eight parts of
-/// five nodes to a piece, halved until both halves agree with the whole to a micrometre. Only the
-/// tip of a hairpin, where the speed nearly vanishes, needs more parts.
+/// Lengths are integrals of the speed by adaptive Gauss-Legendre quadrature: at least eight parts
+/// of five nodes to a piece, halved until both halves agree with the whole to a micrometre. Only
+/// the tip of a hairpin, where the speed nearly vanishes, needs more parts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Road {
     spline: GroundSpline,
@@ -74,12 +74,7 @@ impl Road {
         if total < LEAST_LENGTH_M {
             return Err(PathEditError::NoLength { length_m: total });
         }
-        Ok(Self {
-            spline,
-            parameters,
-            lengths,
-            speeds,
-        })
+        Ok(Self { spline, parameters, lengths, speeds })
     }
 
     /// The path.
@@ -132,7 +127,8 @@ impl Road {
         u
     }
 
-    /// The parameter at a length inside of a part, nearly: the cubic that has its ends and its slopes there, or the straight line where the path stands.
+    /// The parameter at a length inside of a part, nearly: the cubic that has its ends and its
+    /// slopes there, or the straight line where the path stands.
     fn guess(&self, part: usize, wanted: f64) -> f64 {
         let (from, to) = (self.parameters[part], self.parameters[part + 1]);
         let length = self.lengths[part + 1] - self.lengths[part];
@@ -153,7 +149,8 @@ impl Road {
         self.waypoint(parameter, self.length_at(parameter))
     }
 
-    /// The frame of the path `along_m` metres from its start. Beyond its ends an open path goes straight on and a closed one round again.
+    /// The frame of the path `along_m` metres from its start. Beyond its ends an open path goes
+    /// straight on and a closed one round again.
     #[must_use]
     pub fn at_length(&self, along_m: f64) -> Waypoint {
         let length = self.length_m();
@@ -170,8 +167,9 @@ impl Road {
         waypoint
     }
 
-    /// [`Self::at_length`] for one who would be at `parameter` if nothing had changed: where that is as far from the start, it is the place. In the tip of a hairpin
-    /// many parameters lie within less than any tolerance on the length, and the path turns round between them.
+    /// [`Self::at_length`] for one who would be at `parameter` if nothing had changed: where that
+    /// is as far from the start, it is the place. In the tip of a hairpin many parameters lie
+    /// within less than any tolerance on the length, and the path turns round between them.
     pub(super) fn at_length_near(&self, along_m: f64, parameter: f64) -> Waypoint {
         if (self.length_at(parameter) - along_m).abs() < SAME_M {
             self.waypoint(parameter, along_m)
@@ -183,13 +181,18 @@ impl Road {
     fn waypoint(&self, parameter: f64, along_m: f64) -> Waypoint {
         let jet = self.spline.jet(parameter);
         Waypoint {
-            frame: Planar::new(self.spline.heading_of(parameter, &jet), jet.position.x, jet.position.y),
+            frame: Planar::new(
+                self.spline.heading_of(parameter, &jet),
+                jet.position.x,
+                jet.position.y,
+            ),
             curvature: jet.curvature(),
             along_m,
         }
     }
 
-    /// Points along the path, evenly spaced by length, for drawing and for fits: `count` of them, at least two.
+    /// Points along the path, evenly spaced by length, for drawing and for fits: `count` of them,
+    /// at least two.
     #[must_use]
     pub fn evenly(&self, count: usize) -> Vec<Waypoint> {
         let last = count.max(2) - 1;
@@ -207,8 +210,15 @@ fn part_of(ends: &[f64], value: f64) -> usize {
     ends.partition_point(|&end| end <= value).clamp(1, ends.len() - 1) - 1
 }
 
-/// Measures `from..to` of one piece and hands `add` the end and the length of each part of it, in order.
-fn measure(spline: &GroundSpline, from: f64, to: f64, halvings: u32, add: &mut impl FnMut(f64, f64)) {
+/// Measures `from..to` of one piece and hands `add` the end and the length of each part of it, in
+/// order.
+fn measure(
+    spline: &GroundSpline,
+    from: f64,
+    to: f64,
+    halvings: u32,
+    add: &mut impl FnMut(f64, f64),
+) {
     let middle = 0.5 * (from + to);
     let whole = length_between(spline, from, to);
     let halves = length_between(spline, from, middle) + length_between(spline, middle, to);

@@ -5,7 +5,8 @@ use glam::DVec2;
 const DEGREE: usize = 3;
 /// The fewest control points that a cubic has.
 pub const LEAST_POINTS: usize = DEGREE + 1;
-/// The most control points of a path: far more than a hand can hold apart, and few enough for a link.
+/// The most control points of a path: far more than a hand can hold apart, and few enough for a
+/// link.
 pub const MOST_POINTS: usize = 256;
 /// The farthest that a control point may lie from the origin, metres.
 pub const FARTHEST_M: f64 = 10_000.0;
@@ -22,16 +23,19 @@ pub enum SplineEnds {
     /// It begins in the first and ends in the last: the outer knots coincide.
     #[default]
     Clamped,
-    /// It begins and ends between three points: the knots go on evenly beyond its ends, and every piece has the same matrix (1, 4, 1)/6.
+    /// It begins and ends between three points: the knots go on evenly beyond its ends, and every
+    /// piece has the same matrix (1, 4, 1)/6.
     Uniform,
 }
 
 /// A path over the ground: a cubic B-spline in (x, z), metres, over the parameter `[0, 1]`.
 ///
-/// Clamped, which is how it is fitted and edited, it starts in its first control point and ends in its last; [`Self::with_ends`] gives the same curve the control
-/// points of an unclamped one. Knots are uniform as fitted; [`PathEdit::Insert`](super::PathEdit::Insert) adds one where it is asked
-/// to. Position, direction and curvature are continuous (C²). A *closed* path ends where it starts, in the same direction (C¹ there).
-/// Source: de Boor, A Practical Guide to Splines, chapters IX and X.
+/// Clamped, which is how it is fitted and edited, it starts in its first control point and ends in
+/// its last; [`Self::with_ends`] gives the same curve the control points of an unclamped one. Knots
+/// are uniform as fitted; [`PathEdit::Insert`](super::PathEdit::Insert) adds one where it is asked
+/// to. Position, direction and curvature are continuous (C²). A *closed* path ends where it starts,
+/// in the same direction (C¹ there). Source: de Boor, A Practical Guide to Splines, chapters IX and
+/// X.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroundSpline {
     points: Vec<DVec2>,
@@ -56,10 +60,13 @@ impl Piece {
     fn new(points: &[DVec2], knots: &[f64], span: usize) -> Self {
         let t = &knots[span + 1 - DEGREE..=span + DEGREE];
         let p = &points[span - DEGREE..=span];
-        // Differences of the control points are the control points of the derivatives, of lower degree.
+        // Differences of the control points are the control points of the derivatives, of lower
+        // degree.
         let d = |i: usize| (p[i + 1] - p[i]) * (3.0 / (t[i + 3] - t[i]).max(f64::MIN_POSITIVE));
         let first = [d(0), d(1), d(2)];
-        let dd = |i: usize| (first[i + 1] - first[i]) * (2.0 / (t[i + 3] - t[i + 1]).max(f64::MIN_POSITIVE));
+        let dd = |i: usize| {
+            (first[i + 1] - first[i]) * (2.0 / (t[i + 3] - t[i + 1]).max(f64::MIN_POSITIVE))
+        };
         let second = [dd(0), dd(1)];
         let third = (second[1] - second[0]) / (t[3] - t[2]);
         let start = t[2];
@@ -76,7 +83,8 @@ impl Piece {
         }
     }
 
-    /// The polar form of the piece: the control point of a B-spline whose three inner knots these are (Ramshaw, Blossoms are Polar Forms, 1989).
+    /// The polar form of the piece: the control point of a B-spline whose three inner knots these
+    /// are (Ramshaw, Blossoms are Polar Forms, 1989).
     fn blossom(&self, knots: [f64; 3]) -> DVec2 {
         let ([r, s, t], [a, b, c, d]) = (knots.map(|knot| knot - self.start), self.powers);
         a + b * ((r + s + t) / 3.0) + c * ((r * s + s * t + t * r) / 3.0) + d * (r * s * t)
@@ -124,13 +132,15 @@ impl GroundSpline {
     /// The path of these control points with uniform knots.
     ///
     /// # Errors
-    /// [`PathEditError`] for fewer than [`LEAST_POINTS`], more than [`MOST_POINTS`], or a point that is farther away than [`FARTHEST_M`] or no number.
+    /// [`PathEditError`] for fewer than [`LEAST_POINTS`], more than [`MOST_POINTS`], or a point
+    /// that is farther away than [`FARTHEST_M`] or no number.
     pub fn uniform(points: Vec<DVec2>) -> Result<Self, PathEditError> {
         let knots = uniform_knots(points.len());
         Self::with_knots(points, &knots)
     }
 
-    /// The path of these control points with these inner knots, which rise strictly between 0 and 1: four fewer than points.
+    /// The path of these control points with these inner knots, which rise strictly between 0 and
+    /// 1: four fewer than points.
     ///
     /// # Errors
     /// As [`Self::uniform`], and for knots that do not fit or come too close to each other.
@@ -151,12 +161,7 @@ impl GroundSpline {
 
     fn of(points: Vec<DVec2>, knots: Vec<f64>, closed: bool) -> Self {
         let pieces = (DEGREE..points.len()).map(|span| Piece::new(&points, &knots, span)).collect();
-        Self {
-            points,
-            knots,
-            closed,
-            pieces,
-        }
+        Self { points, knots, closed, pieces }
     }
 
     /// The control points, (x, z) in metres.
@@ -190,14 +195,11 @@ impl GroundSpline {
     /// Where the path lies beside its outer control points.
     #[must_use]
     pub fn ends(&self) -> SplineEnds {
-        if self.knots[0] < self.knots[DEGREE] {
-            SplineEnds::Uniform
-        } else {
-            SplineEnds::Clamped
-        }
+        if self.knots[0] < self.knots[DEGREE] { SplineEnds::Uniform } else { SplineEnds::Clamped }
     }
 
-    /// The same curve with control points for other ends; a closed path is clamped whatever is asked for. Exact but for rounding.
+    /// The same curve with control points for other ends; a closed path is clamped whatever is
+    /// asked for. Exact but for rounding.
     #[must_use]
     pub fn with_ends(&self, ends: SplineEnds) -> Self {
         if self.closed || ends == self.ends() {
@@ -206,22 +208,31 @@ impl GroundSpline {
         let knots = all_knots(self.inner_knots(), ends);
         let points = (0..self.points.len()).map(|i| {
             // On every piece that a control point has a say in, the polar form gives the same.
-            self.pieces[i.saturating_sub(DEGREE)].blossom([knots[i + 1], knots[i + 2], knots[i + 3]])
+            self.pieces[i.saturating_sub(DEGREE)].blossom([
+                knots[i + 1],
+                knots[i + 2],
+                knots[i + 3],
+            ])
         });
         Self::of(points.collect(), knots, false)
     }
 
     /// The path of unclamped control points.
-    pub(super) fn unclamped(points: Vec<DVec2>, inner_knots: &[f64]) -> Result<Self, PathEditError> {
+    pub(super) fn unclamped(
+        points: Vec<DVec2>,
+        inner_knots: &[f64],
+    ) -> Result<Self, PathEditError> {
         let checked = Self::with_knots(points, inner_knots)?;
         Ok(Self::of(checked.points, all_knots(inner_knots, SplineEnds::Uniform), false))
     }
 
-    /// Closed: both ends are put where the path goes on through them without a step in its derivative, between their neighbours.
+    /// Closed: both ends are put where the path goes on through them without a step in its
+    /// derivative, between their neighbours.
     pub(super) fn joined(mut self) -> Self {
         let last = self.points.len() - 1;
         let [first_span, last_span] = self.end_spans();
-        let end = (self.points[last - 1] * first_span + self.points[1] * last_span) / (first_span + last_span);
+        let end = (self.points[last - 1] * first_span + self.points[1] * last_span)
+            / (first_span + last_span);
         (self.points[0], self.points[last]) = (end, end);
         Self::of(self.points, self.knots, true)
     }
@@ -232,8 +243,8 @@ impl GroundSpline {
         [inner.first().copied().unwrap_or(1.0), 1.0 - inner.last().copied().unwrap_or(0.0)]
     }
 
-    /// Where along the parameter each control point has its say: the mean of its three knots (Greville). A path whose points are these numbers is the
-    /// parameter itself.
+    /// Where along the parameter each control point has its say: the mean of its three knots
+    /// (Greville). A path whose points are these numbers is the parameter itself.
     #[must_use]
     pub fn greville(&self) -> Vec<f64> {
         let mean = |i: usize| (self.knots[i + 1] + self.knots[i + 2] + self.knots[i + 3]) / 3.0;
@@ -252,7 +263,9 @@ impl GroundSpline {
         let jet = self.piece(u).jet(u);
         match self.points.last() {
             // The path ends in its last point, without a digit lost on the way there.
-            Some(&position) if u == 1.0 && self.ends() == SplineEnds::Clamped => Jet { position, ..jet },
+            Some(&position) if u == 1.0 && self.ends() == SplineEnds::Clamped => {
+                Jet { position, ..jet }
+            }
             _ => jet,
         }
     }
@@ -274,8 +287,9 @@ impl GroundSpline {
         (span - DEGREE, basis(&self.knots[span + 1 - DEGREE..=span + DEGREE], u))
     }
 
-    /// The direction of the path at `parameter`, radians about +Y, 0 along +Z. Where the path stands for a moment (control points that coincide) it is that
-    /// of the path behind, else before that place; 0 for a path without length.
+    /// The direction of the path at `parameter`, radians about +Y, 0 along +Z. Where the path
+    /// stands for a moment (control points that coincide) it is that of the path behind, else
+    /// before that place; 0 for a path without length.
     #[must_use]
     pub fn heading(&self, parameter: f64) -> f64 {
         self.heading_of(parameter, &self.jet(parameter))
@@ -313,7 +327,8 @@ impl GroundSpline {
         Ok(Self::of(points, knots, self.closed))
     }
 
-    /// The index of the last knot at or below `parameter`, which is clamped to the path; the last piece at the end.
+    /// The index of the last knot at or below `parameter`, which is clamped to the path; the last
+    /// piece at the end.
     fn span(&self, parameter: f64) -> (usize, f64) {
         let u = unit(parameter);
         let inner = self.inner_knots().partition_point(|&knot| knot <= u);
@@ -331,7 +346,9 @@ pub(super) fn uniform_knots(points: usize) -> Vec<f64> {
 fn all_knots(inner: &[f64], ends: SplineEnds) -> Vec<f64> {
     let (first, last) = match ends {
         SplineEnds::Clamped => (0.0, 0.0),
-        SplineEnds::Uniform => (inner.first().copied().unwrap_or(1.0), 1.0 - inner.last().copied().unwrap_or(0.0)),
+        SplineEnds::Uniform => {
+            (inner.first().copied().unwrap_or(1.0), 1.0 - inner.last().copied().unwrap_or(0.0))
+        }
     };
     let before = (0..=DEGREE).rev().map(|k| -first * k as f64);
     let behind = (0..=DEGREE).map(|k| 1.0 + last * k as f64);
@@ -367,22 +384,14 @@ fn quadratic(t: &[f64], u: f64) -> [f64; 3] {
     let share = |from: f64, to: f64| (u - from) / (to - from);
     let upper = share(t[2], t[3]);
     let (left, right) = (share(t[1], t[3]), share(t[2], t[4]));
-    [
-        (1.0 - upper) * (1.0 - left),
-        (1.0 - upper) * left + upper * (1.0 - right),
-        upper * right,
-    ]
+    [(1.0 - upper) * (1.0 - left), (1.0 - upper) * left + upper * (1.0 - right), upper * right]
 }
 
-/// Cubic shares at u in `[t2, t3]`: the recurrence of Cox and de Boor. `t` are the three knots up to the piece and the three behind it.
+/// Cubic shares at u in `[t2, t3]`: the recurrence of Cox and de Boor. `t` are the three knots up
+/// to the piece and the three behind it.
 fn basis(t: &[f64], u: f64) -> [f64; 4] {
     let share = |from: f64, to: f64| (u - from) / (to - from);
     let [a, b, c] = quadratic(t, u);
     let (left, middle, right) = (share(t[0], t[3]), share(t[1], t[4]), share(t[2], t[5]));
-    [
-        a * (1.0 - left),
-        a * left + b * (1.0 - middle),
-        b * middle + c * (1.0 - right),
-        c * right,
-    ]
+    [a * (1.0 - left), a * left + b * (1.0 - middle), b * middle + c * (1.0 - right), c * right]
 }

@@ -10,9 +10,11 @@ pub struct Alignment {
     pub transform: Planar,
     /// The weighted sum of squared distances that is left, m²: the minimum over all transforms.
     pub distance: f64,
-    /// The weights' sum over all points. `(distance / weight).sqrt()` is the root-mean-square distance per point, metres.
+    /// The weights' sum over all points. `(distance / weight).sqrt()` is the root-mean-square
+    /// distance per point, metres.
     pub weight: f64,
-    /// Every turn is equally good (all weight over one point of the ground, or a cloud as round as a ring): the yaw is the caller's fallback.
+    /// Every turn is equally good (all weight over one point of the ground, or a cloud as round as
+    /// a ring): the yaw is the caller's fallback.
     pub turn_is_free: bool,
 }
 
@@ -24,18 +26,27 @@ impl Alignment {
     }
 }
 
-/// The rigid ground-plane transform that best lays the `target` points on the `source` points, in closed form (Kovar, Gleicher, Pighin
-/// 2002, section 3.1), and the squared distance that is left. Everything is summed in `f64`.
+/// The rigid ground-plane transform that best lays the `target` points on the `source` points, in
+/// closed form (Kovar, Gleicher, Pighin 2002, section 3.1), and the squared distance that is left.
+/// Everything is summed in `f64`.
 ///
-/// Both clouds hold the same points in the same order: `frames × weights.len()` positions, metres, frame-major. `weights` has one weight
-/// per joint and is used again in every frame. Where every turn fits equally well, `fallback_yaw` is taken and
-/// [`Alignment::turn_is_free`] set: pass the yaw of a neighbouring window, or the difference of the facings.
+/// Both clouds hold the same points in the same order: `frames × weights.len()` positions, metres,
+/// frame-major. `weights` has one weight per joint and is used again in every frame. Where every
+/// turn fits equally well, `fallback_yaw` is taken and [`Alignment::turn_is_free`] set: pass the
+/// yaw of a neighbouring window, or the difference of the facings.
 ///
-/// The turn comes from `atan2`: `atan` of the quotient is off by half a turn for half of all clouds.
+/// The turn comes from `atan2`: `atan` of the quotient is off by half a turn for half of all
+/// clouds.
 ///
 /// # Errors
-/// [`RegistrationError`] when the clouds differ in size, the weights do not fit, or a position is not finite.
-pub fn align(source: &[Vec3], target: &[Vec3], weights: &[f64], fallback_yaw: f64) -> Result<Alignment, RegistrationError> {
+/// [`RegistrationError`] when the clouds differ in size, the weights do not fit, or a position is
+/// not finite.
+pub fn align(
+    source: &[Vec3],
+    target: &[Vec3],
+    weights: &[f64],
+    fallback_yaw: f64,
+) -> Result<Alignment, RegistrationError> {
     if source.len() != target.len() {
         return Err(RegistrationError::Points {
             source_points: source.len(),
@@ -44,10 +55,7 @@ pub fn align(source: &[Vec3], target: &[Vec3], weights: &[f64], fallback_yaw: f6
     }
     checked_sum(weights, weights.len())?;
     if source.is_empty() || !source.len().is_multiple_of(weights.len()) {
-        return Err(RegistrationError::Weights {
-            found: weights.len(),
-            expected: source.len(),
-        });
+        return Err(RegistrationError::Weights { found: weights.len(), expected: source.len() });
     }
     let (source_centre, target_centre) = (ground_mean(source), ground_mean(target));
     let mut sums = PairMoments::default();
@@ -59,7 +67,8 @@ pub fn align(source: &[Vec3], target: &[Vec3], weights: &[f64], fallback_yaw: f6
     sums.alignment(fallback_yaw, ground(source_centre), ground(target_centre), 1e-9)
 }
 
-/// The mean of the points on the ground (its height is 0): sums about it keep their digits however far from the origin a clip walks.
+/// The mean of the points on the ground (its height is 0): sums about it keep their digits however
+/// far from the origin a clip walks.
 fn ground_mean(points: &[Vec3]) -> DVec3 {
     let sum: DVec3 = points.iter().map(|p| DVec3::new(f64::from(p.x), 0.0, f64::from(p.z))).sum();
     sum / points.len().max(1) as f64
@@ -98,8 +107,8 @@ impl PairMoments {
         self.height += w * (p.y - q.y) * (p.y - q.y);
     }
 
-    /// The minimiser and the minimum, for clouds that were summed about the given centres on the ground. `rounding` is what share of the spread the
-    /// sums may be off by.
+    /// The minimiser and the minimum, for clouds that were summed about the given centres on the
+    /// ground. `rounding` is what share of the spread the sums may be off by.
     pub(super) fn alignment(
         &self,
         fallback_yaw: f64,
@@ -110,7 +119,8 @@ impl PairMoments {
         let (w, p, q) = (self.weight, self.source, self.target);
         let a = self.cross - (p.x * q.y - q.x * p.y) / w;
         let b = self.dot - p.dot(q) / w;
-        let spread = (self.source_square - p.length_squared() / w) + (self.target_square - q.length_squared() / w);
+        let spread = (self.source_square - p.length_squared() / w)
+            + (self.target_square - q.length_squared() / w);
         let strength = a.hypot(b);
         // What rounding alone makes of a perfectly round or point-like cloud.
         let noise = rounding * spread + 1e-14 * (self.source_square + self.target_square);
@@ -124,12 +134,7 @@ impl PairMoments {
         if !(distance.is_finite() && spread.is_finite() && shift.is_finite() && yaw.is_finite()) {
             return Err(RegistrationError::NotFinite);
         }
-        Ok(Alignment {
-            transform: Planar { yaw, shift },
-            distance,
-            weight: w,
-            turn_is_free,
-        })
+        Ok(Alignment { transform: Planar { yaw, shift }, distance, weight: w, turn_is_free })
     }
 }
 

@@ -10,7 +10,8 @@ pub(super) const LANES: usize = 4;
 /// Four samples of one joint: x, z and height.
 pub(super) type Lanes = [Vec4; 3];
 
-/// Four samples of one joint, each spread over a whole register and weighted: what is multiplied with [`Lanes`].
+/// Four samples of one joint, each spread over a whole register and weighted: what is multiplied
+/// with [`Lanes`].
 pub(super) type Spread = [[Vec4; 3]; LANES];
 
 /// The joints that weigh something, with their weights as shares of 1.
@@ -30,15 +31,17 @@ impl Shares {
     /// The weighted mean height of a clip's frame, metres.
     pub(super) fn mean_height(&self, clip: &Clip, frame: usize) -> f64 {
         let world = clip.world_pose(frame);
-        let heights = self.0.iter().map(|&(joint, w)| f64::from(w) * f64::from(world.positions[joint].y));
+        let heights =
+            self.0.iter().map(|&(joint, w)| f64::from(w) * f64::from(world.positions[joint].y));
         heights.sum()
     }
 }
 
-/// Every `stride`-th frame of a part of a clip as a cloud of points about the cloud's own centre of mass on the ground.
+/// Every `stride`-th frame of a part of a clip as a cloud of points about the cloud's own centre of
+/// mass on the ground.
 ///
-/// About their own centre the points are never farther off than a body is long, so that their products keep their digits in `f32`; the centres,
-/// which walk away, are kept in `f64`.
+/// About their own centre the points are never farther off than a body is long, so that their
+/// products keep their digits in `f32`; the centres, which walk away, are kept in `f64`.
 #[derive(Clone, Debug)]
 pub(super) struct Cloud {
     pub(super) start: usize,
@@ -50,7 +53,8 @@ pub(super) struct Cloud {
     /// The weighted centres on the ground, one per sample.
     pub(super) x: Vec<f64>,
     pub(super) z: Vec<f64>,
-    /// Σw(x² + z²) + Σwy² of every sample, about its centre: rounded exactly as a pair's products are, so that equal poses are 0 apart.
+    /// Σw(x² + z²) + Σwy² of every sample, about its centre: rounded exactly as a pair's products
+    /// are, so that equal poses are 0 apart.
     pub(super) square: Vec<f64>,
     /// Samples in groups of [`LANES`], each `shares.len()` long.
     points: Vec<Lanes>,
@@ -59,7 +63,13 @@ pub(super) struct Cloud {
 
 impl Cloud {
     /// `frames` lie inside the clip and are not empty. Heights are measured from `level`.
-    pub(super) fn new(clip: &Clip, frames: Range<usize>, stride: usize, shares: &Shares, level: f64) -> Result<Self, RegistrationError> {
+    pub(super) fn new(
+        clip: &Clip,
+        frames: Range<usize>,
+        stride: usize,
+        shares: &Shares,
+        level: f64,
+    ) -> Result<Self, RegistrationError> {
         let mut cloud = Self::begun(frames, stride, shares);
         cloud.advance(clip, stride, shares, level, usize::MAX)?;
         Ok(cloud)
@@ -86,7 +96,8 @@ impl Cloud {
         self.square.len()
     }
 
-    /// The points of at least `samples` more samples of the clip that it was begun for, in whole groups.
+    /// The points of at least `samples` more samples of the clip that it was begun for, in whole
+    /// groups.
     pub(super) fn advance(
         &mut self,
         clip: &Clip,
@@ -110,7 +121,8 @@ impl Cloud {
             spread.clear();
             self.spread(group, shares, &mut spread);
             let [flat, _, height] = tile(&spread, self.group(group));
-            let own = (0..LANES).map(|lane| f64::from(flat[lane][lane]) + f64::from(height[lane][lane]));
+            let own =
+                (0..LANES).map(|lane| f64::from(flat[lane][lane]) + f64::from(height[lane][lane]));
             self.square.extend(own.take(samples.len()));
         }
         Ok(())
@@ -151,7 +163,9 @@ impl Cloud {
     /// Adds a group to `out` in the form of the left factor.
     pub(super) fn spread(&self, group: usize, shares: &Shares, out: &mut Vec<Spread>) {
         let spread = self.group(group).iter().zip(&shares.0);
-        out.extend(spread.map(|(lanes, &(_, w))| std::array::from_fn(|lane| lanes.map(|of| Vec4::splat(of[lane] * w)))));
+        out.extend(spread.map(|(lanes, &(_, w))| {
+            std::array::from_fn(|lane| lanes.map(|of| Vec4::splat(of[lane] * w)))
+        }));
     }
 
     /// Where the centre of a sample lies.
@@ -159,8 +173,14 @@ impl Cloud {
         DVec2::new(self.x[sample], self.z[sample])
     }
 
-    /// Samples whose window of `window` frames starts in `starts` (clip frames) and does not cross the end of the part.
-    pub(super) fn starts(&self, starts: &Range<usize>, window: usize, stride: usize) -> Range<usize> {
+    /// Samples whose window of `window` frames starts in `starts` (clip frames) and does not cross
+    /// the end of the part.
+    pub(super) fn starts(
+        &self,
+        starts: &Range<usize>,
+        window: usize,
+        stride: usize,
+    ) -> Range<usize> {
         let end = starts.end.min((self.start + self.span + 1).saturating_sub(window));
         let first = starts.start.saturating_sub(self.start).div_ceil(stride);
         let last = end.saturating_sub(self.start).div_ceil(stride).min(self.samples);
@@ -168,10 +188,11 @@ impl Cloud {
     }
 }
 
-/// The products of 4 × 4 pairs of samples, summed over the joints: Σw(x x' + z z'), Σw(x z' - z x') and Σw y y', each by row.
+/// The products of 4 × 4 pairs of samples, summed over the joints: Σw(x x' + z z'), Σw(x z' - z x')
+/// and Σw y y', each by row.
 ///
-/// Twelve sums stay in registers while the joints run through. The order of all operations is fixed, and none is fused: every machine, with
-/// whatever registers, gets the same bits.
+/// Twelve sums stay in registers while the joints run through. The order of all operations is
+/// fixed, and none is fused: every machine, with whatever registers, gets the same bits.
 pub(super) fn tile(rows: &[Spread], columns: &[Lanes]) -> [[Vec4; LANES]; 3] {
     let mut dot = [Vec4::ZERO; LANES];
     let mut cross = [Vec4::ZERO; LANES];

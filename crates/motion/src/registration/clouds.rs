@@ -6,7 +6,8 @@ use crate::clip::Clip;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Every `stride`-th frame of a part of a clip as a cloud of weighted points: made once, compared with many others.
+/// Every `stride`-th frame of a part of a clip as a cloud of weighted points: made once, compared
+/// with many others.
 #[derive(Clone, Debug)]
 pub struct PointClouds {
     pub(super) cloud: Arc<Cloud>,
@@ -17,12 +18,20 @@ pub struct PointClouds {
 }
 
 impl PointClouds {
-    /// The clouds of `frames` (clamped to the clip), every `stride`-th (at least 1), with one weight per joint. Heights are summed from
-    /// `level_m`: about the middle of the body, the same for all that are compared ([`Self::level_m`]).
+    /// The clouds of `frames` (clamped to the clip), every `stride`-th (at least 1), with one
+    /// weight per joint. Heights are summed from `level_m`: about the middle of the body, the same
+    /// for all that are compared ([`Self::level_m`]).
     ///
     /// # Errors
-    /// [`RegistrationError`] when the part is empty, the weights do not fit, or a position is not finite.
-    pub fn new(clip: &Clip, frames: Range<usize>, weights: &[f64], stride: usize, level_m: f64) -> Result<Self, RegistrationError> {
+    /// [`RegistrationError`] when the part is empty, the weights do not fit, or a position is not
+    /// finite.
+    pub fn new(
+        clip: &Clip,
+        frames: Range<usize>,
+        weights: &[f64],
+        stride: usize,
+        level_m: f64,
+    ) -> Result<Self, RegistrationError> {
         PointCloudsBegun::new(clip, frames, weights, stride, level_m)?.finish(clip)
     }
 
@@ -45,7 +54,8 @@ impl PointClouds {
     }
 }
 
-/// [`PointClouds`] in slices. Between them it does not hold the clip: every call is given the same one.
+/// [`PointClouds`] in slices. Between them it does not hold the clip: every call is given the same
+/// one.
 #[derive(Clone, Debug)]
 pub struct PointCloudsBegun {
     cloud: Cloud,
@@ -60,7 +70,13 @@ impl PointCloudsBegun {
     ///
     /// # Errors
     /// [`RegistrationError`] when the part is empty, or the weights do not fit.
-    pub fn new(clip: &Clip, frames: Range<usize>, weights: &[f64], stride: usize, level_m: f64) -> Result<Self, RegistrationError> {
+    pub fn new(
+        clip: &Clip,
+        frames: Range<usize>,
+        weights: &[f64],
+        stride: usize,
+        level_m: f64,
+    ) -> Result<Self, RegistrationError> {
         let frame_weight = checked_sum(weights, clip.skeleton().len())?;
         let frames = frames.start.min(clip.frames())..frames.end.min(clip.frames());
         if frames.is_empty() {
@@ -88,10 +104,7 @@ impl PointCloudsBegun {
     /// [`RegistrationError::NotFinite`].
     pub fn advance(&mut self, clip: &Clip, samples: usize) -> Result<Progress, RegistrationError> {
         self.cloud.advance(clip, self.stride, &self.shares, self.level_m, samples)?;
-        Ok(Progress {
-            done: self.cloud.done(),
-            total: self.cloud.samples,
-        })
+        Ok(Progress { done: self.cloud.done(), total: self.cloud.samples })
     }
 
     /// The rest, and the clouds.

@@ -15,19 +15,18 @@ impl RegistrationOptions {
     /// The default path, smoothed over a tenth of a second to either side at `fps`.
     #[must_use]
     pub fn new(fps: f64) -> Self {
-        Self {
-            path: PathOptions::default(),
-            smoothing: (0.1 * fps).round() as usize,
-        }
+        Self { path: PathOptions::default(), smoothing: (0.1 * fps).round() as usize }
     }
 }
 
-/// Which frame of a clip (the *target*) is like which frame of another (the *source*), and how the target then lies on the source: the registration
-/// curve of Kovar and Gleicher (2003), its timewarp and its alignment curve.
+/// Which frame of a clip (the *target*) is like which frame of another (the *source*), and how the
+/// target then lies on the source: the registration curve of Kovar and Gleicher (2003), its
+/// timewarp and its alignment curve.
 ///
-/// Cells of a path are the first frames of two windows; what is alike is their middle. So a cell (i, j) of windows of K frames stands for the frames
-/// i + (K - 1)/2 and j + (K - 1)/2, and the curves reach from the first frames of the first windows to the last frames of the last ones, at equal
-/// speed in the two half windows at the ends.
+/// Cells of a path are the first frames of two windows; what is alike is their middle. So a cell
+/// (i, j) of windows of K frames stands for the frames i + (K - 1)/2 and j + (K - 1)/2, and the
+/// curves reach from the first frames of the first windows to the last frames of the last ones, at
+/// equal speed in the two half windows at the ends.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Registration {
     path: RegistrationPath,
@@ -40,7 +39,11 @@ impl Registration {
     ///
     /// # Errors
     /// [`PathError`] when no path is possible, or the terms are not those of the matrix.
-    pub fn new(terms: &PairTerms, matrix: &DistanceMatrix, options: &RegistrationOptions) -> Result<Self, PathError> {
+    pub fn new(
+        terms: &PairTerms,
+        matrix: &DistanceMatrix,
+        options: &RegistrationOptions,
+    ) -> Result<Self, PathError> {
         Self::along(terms, matrix, optimal_path(matrix, &options.path)?, options.smoothing)
     }
 
@@ -48,7 +51,12 @@ impl Registration {
     ///
     /// # Errors
     /// [`PathError`] when the path is empty or leaves what the terms compare.
-    pub fn along(terms: &PairTerms, matrix: &DistanceMatrix, path: RegistrationPath, smoothing: usize) -> Result<Self, PathError> {
+    pub fn along(
+        terms: &PairTerms,
+        matrix: &DistanceMatrix,
+        path: RegistrationPath,
+        smoothing: usize,
+    ) -> Result<Self, PathError> {
         let half_window = (matrix.window() - 1) as f64 / 2.0;
         let middle = |&(row, column): &(usize, usize)| {
             let (i, j) = matrix.frames(row, column);
@@ -81,21 +89,24 @@ impl Registration {
         &self.path
     }
 
-    /// Frames of the target over frames of the source, strictly increasing. Its ends are those of what is registered.
+    /// Frames of the target over frames of the source, strictly increasing. Its ends are those of
+    /// what is registered.
     #[must_use]
     pub fn warp(&self) -> &MonotoneCurve {
         &self.warp
     }
 
-    /// How the target lies on the source where the source shows `source_frame` (may lie between frames): `source_world_from_target_world`. Its yaw is
-    /// unwrapped: it may pass half a turn, and never jumps.
+    /// How the target lies on the source where the source shows `source_frame` (may lie between
+    /// frames): `source_world_from_target_world`. Its yaw is unwrapped: it may pass half a turn,
+    /// and never jumps.
     #[must_use]
     pub fn alignment_at(&self, source_frame: f64) -> Planar {
         self.alignment.at(0.5 * (source_frame + self.warp.at(source_frame)))
     }
 }
 
-/// A polyline that is read as its mean over a stretch to either side: continuously differentiable, and never steeper than the polyline.
+/// A polyline that is read as its mean over a stretch to either side: continuously differentiable,
+/// and never steeper than the polyline.
 #[derive(Clone, Debug, PartialEq)]
 struct Smoothed {
     x: Vec<f64>,
@@ -127,7 +138,8 @@ impl Smoothed {
         }
         let k = self.x.partition_point(|&x| x <= at).clamp(1, last);
         let step = at - self.x[k - 1];
-        let value = self.y[k - 1] + (self.y[k] - self.y[k - 1]) * step / (self.x[k] - self.x[k - 1]);
+        let value =
+            self.y[k - 1] + (self.y[k] - self.y[k - 1]) * step / (self.x[k] - self.x[k - 1]);
         (self.integral[k - 1] + 0.5 * (self.y[k - 1] + value) * step, value)
     }
 
@@ -139,15 +151,19 @@ impl Smoothed {
     }
 }
 
-/// How slow one clip may become against the mean of both: a twentieth, where the fixed points allow it.
+/// How slow one clip may become against the mean of both: a twentieth, where the fixed points allow
+/// it.
 const LEAST_RATE: f64 = 0.05;
 
-/// The strictly increasing curve fitted to a path of frames (i, j), through the `fixed` ones of its points.
+/// The strictly increasing curve fitted to a path of frames (i, j), through the `fixed` ones of its
+/// points.
 ///
-/// Both clips are treated alike: the lead v = j - i over the mean u = (i + j)/2, which rises with every step. It is smoothed over `smoothing` frames to
-/// either side, less towards a fixed point, which stays; i = u - v/2 and j = u + v/2 both rise while |dv/du| < 2. Where a run of steps makes it
-/// steeper than a twentieth less than that, the stretch between its fixed points is drawn towards the straight line. Then a monotone cubic goes
-/// through the knots, two for every width of smoothing.
+/// Both clips are treated alike: the lead v = j - i over the mean u = (i + j)/2, which rises with
+/// every step. It is smoothed over `smoothing` frames to either side, less towards a fixed point,
+/// which stays; i = u - v/2 and j = u + v/2 both rise while |dv/du| < 2. Where a run of steps makes
+/// it steeper than a twentieth less than that, the stretch between its fixed points is drawn
+/// towards the straight line. Then a monotone cubic goes through the knots, two for every width of
+/// smoothing.
 fn timewarp(path: &[(f64, f64)], fixed: &[(f64, f64)], smoothing: f64) -> Option<MonotoneCurve> {
     let (mean, lead) = path.iter().map(|&(i, j)| (0.5 * (i + j), j - i)).unzip();
     let lead = Smoothed::new(mean, lead);
@@ -178,11 +194,7 @@ fn timewarp(path: &[(f64, f64)], fixed: &[(f64, f64)], smoothing: f64) -> Option
         let steepest = 2.0 - 2.0 * LEAST_RATE.min((2.0 - line.abs()) / 4.0);
         let straighten = leads.windows(2).map(|pair| (pair[1] - pair[0]) / step).map(|slope| {
             let over = slope.abs() - steepest;
-            if over > 0.0 {
-                over / (slope.abs() - slope.signum() * line)
-            } else {
-                0.0
-            }
+            if over > 0.0 { over / (slope.abs() - slope.signum() * line) } else { 0.0 }
         });
         let straighten = straighten.fold(0.0, f64::max);
         for (k, v) in leads.into_iter().enumerate().skip(1) {
@@ -197,8 +209,9 @@ fn timewarp(path: &[(f64, f64)], fixed: &[(f64, f64)], smoothing: f64) -> Option
 
 /// How the target lies on the source along a path.
 ///
-/// Kept as the turn and the centres of both windows, and put together when asked: each is smoothed where it is small and continuous. Smoothing x and z
-/// of the transform themselves would couple them to the turn by the distance from the origin.
+/// Kept as the turn and the centres of both windows, and put together when asked: each is smoothed
+/// where it is small and continuous. Smoothing x and z of the transform themselves would couple
+/// them to the turn by the distance from the origin.
 #[derive(Clone, Debug, PartialEq)]
 struct AlignmentCurve {
     yaw: Smoothed,
@@ -230,29 +243,19 @@ impl AlignmentCurve {
         }
         let over = |values: Vec<f64>| Smoothed::new(mean.clone(), values);
         let both = |points: &[DVec2]| {
-            [
-                over(points.iter().map(|p| p.x).collect()),
-                over(points.iter().map(|p| p.y).collect()),
-            ]
+            [over(points.iter().map(|p| p.x).collect()), over(points.iter().map(|p| p.y).collect())]
         };
-        Ok(Self {
-            yaw: over(yaws),
-            source: both(&sources),
-            target: both(&targets),
-            smoothing,
-        })
+        Ok(Self { yaw: over(yaws), source: both(&sources), target: both(&targets), smoothing })
     }
 
     fn at(&self, mean_frame: f64) -> Planar {
         let (first, last) = (self.yaw.x[0], self.yaw.x[self.yaw.x.len() - 1]);
         let at = mean_frame.clamp(first, last);
         let half_width = self.smoothing.min(at - first).min(last - at);
-        let [source, target] = [&self.source, &self.target].map(|[x, z]| DVec2::new(x.mean(at, half_width), z.mean(at, half_width)));
+        let [source, target] = [&self.source, &self.target]
+            .map(|[x, z]| DVec2::new(x.mean(at, half_width), z.mean(at, half_width)));
         let yaw = self.yaw.mean(at, half_width);
-        Planar {
-            yaw,
-            shift: source - turned(yaw, target),
-        }
+        Planar { yaw, shift: source - turned(yaw, target) }
     }
 }
 

@@ -1,6 +1,7 @@
 use super::REFERENCE_HEIGHT_M;
 
-/// Distances between windows of two clips: one row per source frame, one column per target frame, every `stride` frames.
+/// Distances between windows of two clips: one row per source frame, one column per target frame,
+/// every `stride` frames.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DistanceMatrix {
     pub(super) stride: usize,
@@ -43,7 +44,8 @@ impl DistanceMatrix {
         (self.source_start + row * self.stride, self.target_start + column * self.stride)
     }
 
-    /// All root-mean-square distances per point, row-major, metres of the clips' own body (see [`Self::cm_scale`]).
+    /// All root-mean-square distances per point, row-major, metres of the clips' own body (see
+    /// [`Self::cm_scale`]).
     #[must_use]
     pub fn rms_m(&self) -> &[f32] {
         &self.rms_m
@@ -66,7 +68,8 @@ impl DistanceMatrix {
         self.rms_m.get(start..start.saturating_add(self.columns)).unwrap_or_default()
     }
 
-    /// The mean of every block of `factor` × `factor` cells, less at the far borders: the same picture with fewer cells.
+    /// The mean of every block of `factor` × `factor` cells, less at the far borders: the same
+    /// picture with fewer cells.
     #[must_use]
     pub fn pooled(&self, factor: usize) -> Self {
         let factor = factor.max(1);
@@ -83,13 +86,7 @@ impl DistanceMatrix {
             }
             rms_m.extend(sums.iter().map(|sum| sum / block.len() as f32));
         }
-        Self {
-            stride: self.stride * factor,
-            rows,
-            columns,
-            rms_m,
-            ..*self
-        }
+        Self { stride: self.stride * factor, rows, columns, rms_m, ..*self }
     }
 
     /// What turns [`rms_m`](Self::rms_m) into centimetres on the reference body.
@@ -105,7 +102,8 @@ impl DistanceMatrix {
         Some((at / self.columns, at % self.columns))
     }
 
-    /// Cells no larger than their eight neighbours, smallest first. Of a plateau its first cell is taken; the border counts.
+    /// Cells no larger than their eight neighbours, smallest first. Of a plateau its first cell is
+    /// taken; the border counts.
     #[must_use]
     pub fn local_minima(&self) -> Vec<(usize, usize)> {
         let mut minima = Vec::new();
@@ -116,7 +114,9 @@ impl DistanceMatrix {
                 }
             }
         }
-        minima.sort_by(|a, b| self.rms_m[a.0 * self.columns + a.1].total_cmp(&self.rms_m[b.0 * self.columns + b.1]));
+        minima.sort_by(|a, b| {
+            self.rms_m[a.0 * self.columns + a.1].total_cmp(&self.rms_m[b.0 * self.columns + b.1])
+        });
         minima
     }
 
@@ -155,6 +155,9 @@ mod tests {
         assert_eq!(matrix.get(0, 4), None);
         let pooled = matrix.pooled(3);
         assert_eq!((pooled.rows(), pooled.columns(), pooled.frames(0, 1)), (1, 2, (0, 3)));
-        assert!((pooled.rms_m()[0] - 55.0 / 9.0).abs() < 1e-6 && (pooled.rms_m()[1] - 20.0 / 3.0).abs() < 1e-6);
+        assert!(
+            (pooled.rms_m()[0] - 55.0 / 9.0).abs() < 1e-6
+                && (pooled.rms_m()[1] - 20.0 / 3.0).abs() < 1e-6
+        );
     }
 }

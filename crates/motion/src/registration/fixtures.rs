@@ -5,7 +5,8 @@ use crate::skeleton::{Joint, Skeleton};
 use glam::{Quat, Vec3};
 use std::sync::Arc;
 
-/// Hips, spine, head, two arms of two bones, two legs of three: 13 joints, about 1.7 m, facing +Z at rest.
+/// Hips, spine, head, two arms of two bones, two legs of three: 13 joints, about 1.7 m, facing +Z
+/// at rest.
 pub fn body() -> Arc<Skeleton> {
     let joint = |name: &str, parent: Option<usize>, x: f32, y: f32, z: f32| Joint {
         name: name.into(),
@@ -111,7 +112,9 @@ impl Walk {
                 knee(-c),
                 x(-0.2 * swing * c),
             ]);
-            at += Quat::from_rotation_y(yaw) * Vec3::Z * (self.speed * dt * (1.0 + 0.1 * (2.0 * phase).sin()));
+            at += Quat::from_rotation_y(yaw)
+                * Vec3::Z
+                * (self.speed * dt * (1.0 + 0.1 * (2.0 * phase).sin()));
         }
         Clip::new("walk", skeleton, self.fps, rotations, roots).unwrap()
     }

@@ -1,32 +1,38 @@
-//! Laying one motion on another: point clouds, their best rigid alignment on the ground, distances between windows of two clips, the best
-//! place to go from one clip to the other, and the timewarp between them.
+//! Laying one motion on another: point clouds, their best rigid alignment on the ground, distances
+//! between windows of two clips, the best place to go from one clip to the other, and the timewarp
+//! between them.
 //!
 //! # The idea
 //!
-//! When are two moments of motion alike? Not when their joint angles are: a degree in the hip moves the foot, a degree in the finger
-//! nothing. Take the joints' *positions* over a window of frames as a cloud of points, slide and turn the second cloud over the ground until
-//! it lies best on the first, and measure what is left. There is a closed form; with weights w, W = Σw and bars for weighted sums:
+//! When are two moments of motion alike? Not when their joint angles are: a degree in the hip moves
+//! the foot, a degree in the finger nothing. Take the joints' *positions* over a window of frames
+//! as a cloud of points, slide and turn the second cloud over the ground until it lies best on the
+//! first, and measure what is left. There is a closed form; with weights w, W = Σw and bars for
+//! weighted sums:
 //!
 //! ```text
 //! A = Σw(x z' - x' z) - (x̄ z̄' - x̄' z̄)/W       θ = atan2(A, B)
 //! B = Σw(x x' + z z') - (x̄ x̄' + z̄ z̄')/W       D = S + S' - 2·hypot(A, B) + Σw(y - y')²
 //! ```
 //!
-//! S and S' are the centred spreads of both clouds over the ground. `atan(A / B)` in place of `atan2` lands half a turn off for half of all
-//! clouds: the cause of sudden spins.
+//! S and S' are the centred spreads of both clouds over the ground. `atan(A / B)` in place of
+//! `atan2` lands half a turn off for half of all clouds: the cause of sudden spins.
 //!
-//! The distances of all pairs of windows are a picture, a row for each frame of A and a column for each of B. Two walks give dark diagonal
-//! valleys, one for every stride; their floors are the places to go over ([`TransitionSearch`]). Each term of D is a sum along a diagonal,
-//! so the products of single frames are made once, and another window is a running sum ([`PairTerms`]). A path along a valley
-//! ([`optimal_path`]) tells which frame of A is like which of B: smoothed, it is the timewarp of a [`Registration`], with the alignment
-//! along it.
+//! The distances of all pairs of windows are a picture, a row for each frame of A and a column for
+//! each of B. Two walks give dark diagonal valleys, one for every stride; their floors are the
+//! places to go over ([`TransitionSearch`]). Each term of D is a sum along a diagonal, so the
+//! products of single frames are made once, and another window is a running sum ([`PairTerms`]). A
+//! path along a valley ([`optimal_path`]) tells which frame of A is like which of B: smoothed, it
+//! is the timewarp of a [`Registration`], with the alignment along it.
 //!
 //! # Windows and units
 //!
-//! One convention holds for search, blending and pictures. A transition from clip A to clip B *leaves* A at frame `i`, *enters* B at frame
-//! `j` and overlaps `k` frames: the source window runs forward from `i`, `A[i..i + k)`; the target window runs forward from `j`,
-//! `B[j..j + k)`. A window never crosses the end of its clip. Distances are root-mean-square distances per point, scaled to a body of
-//! [`REFERENCE_HEIGHT_M`] and given in centimetres ([`rms_cm`]), so that a threshold found with one character carries over to a taller one.
+//! One convention holds for search, blending and pictures. A transition from clip A to clip B
+//! *leaves* A at frame `i`, *enters* B at frame `j` and overlaps `k` frames: the source window runs
+//! forward from `i`, `A[i..i + k)`; the target window runs forward from `j`, `B[j..j + k)`. A
+//! window never crosses the end of its clip. Distances are root-mean-square distances per point,
+//! scaled to a body of [`REFERENCE_HEIGHT_M`] and given in centimetres ([`rms_cm`]), so that a
+//! threshold found with one character carries over to a taller one.
 //!
 //! # Example
 //!
@@ -59,20 +65,24 @@
 //!
 //! # Accuracy and cost
 //!
-//! Alignments agree with `SciPy`'s least squares to 1e-9 of the distance, and with a search through 20,000 turns. The fast distances differ
-//! from the definition ([`distances_directly`]) by less than 3e-7 m² in the mean square. Paths are the cheapest of *all* paths, tried one by
-//! one on small matrices. The search over a coarse grid comes within 5 % or 0.2 cm of the best pair of all frames. Cost for N frames, J
-//! joints, windows of K: O(N²J) once and O(N²) per window, in place of O(N²JK).
+//! Alignments agree with `SciPy`'s least squares to 1e-9 of the distance, and with a search through
+//! 20,000 turns. The fast distances differ from the definition ([`distances_directly`]) by less
+//! than 3e-7 m² in the mean square. Paths are the cheapest of *all* paths, tried one by one on
+//! small matrices. The search over a coarse grid comes within 5 % or 0.2 cm of the best pair of all
+//! frames. Cost for N frames, J joints, windows of K: O(N²J) once and O(N²) per window, in place of
+//! O(N²JK).
 //!
 //! # What it does not do
 //!
-//! It compares where joints are, neither forces nor meanings. Turns are about the vertical alone: a climb is not laid on a walk. Heights are
-//! compared, but never shifted. Clips must have one skeleton and one frame rate.
+//! It compares where joints are, neither forces nor meanings. Turns are about the vertical alone: a
+//! climb is not laid on a walk. Heights are compared, but never shifted. Clips must have one
+//! skeleton and one frame rate.
 //!
 //! # Sources
 //!
-//! Kovar, Gleicher, Pighin, "Motion Graphs", 2002, section 3.1 (clouds, alignment, distance). Kovar, Gleicher, "Flexible Automatic Motion
-//! Blending with Registration Curves", 2003 (path, timewarp, alignment curve). Sakoe, Chiba 1978 (the path's weights).
+//! Kovar, Gleicher, Pighin, "Motion Graphs", 2002, section 3.1 (clouds, alignment, distance).
+//! Kovar, Gleicher, "Flexible Automatic Motion Blending with Registration Curves", 2003 (path,
+//! timewarp, alignment curve). Sakoe, Chiba 1978 (the path's weights).
 
 mod align;
 mod cloud;
@@ -100,7 +110,10 @@ pub use align::{Alignment, align};
 pub use clouds::{PointClouds, PointCloudsBegun};
 pub use curves::{Registration, RegistrationOptions};
 pub use distance::DistanceMatrix;
-pub use path::{MAX_SLOPE_LIMIT, PathEnd, PathOptions, PathSearch, RegistrationPath, optimal_path, path_in_corridor};
+pub use path::{
+    MAX_SLOPE_LIMIT, PathEnd, PathOptions, PathSearch, RegistrationPath, optimal_path,
+    path_in_corridor,
+};
 pub use path_error::PathError;
 pub use points::{REFERENCE_HEIGHT_M, limb_weights, rms_cm, uniform_weights};
 pub use pose::{PoseMatch, PoseSearch, PoseWeights};
@@ -124,7 +137,9 @@ pub enum RegistrationError {
         target_points: usize,
     },
     /// The weights do not fit the points, or weigh nothing.
-    #[error("{found} weights for {expected} joints: give one weight per joint, none negative, and at least one above 0")]
+    #[error(
+        "{found} weights for {expected} joints: give one weight per joint, none negative, and at least one above 0"
+    )]
     Weights {
         /// Weights given.
         found: usize,
@@ -135,7 +150,9 @@ pub enum RegistrationError {
     #[error("a joint position is not a finite number: repair or crop the clip first")]
     NotFinite,
     /// The clips' skeletons differ.
-    #[error("the clips move different skeletons ({source_joints} and {target_joints} joints): retarget one onto the other first")]
+    #[error(
+        "the clips move different skeletons ({source_joints} and {target_joints} joints): retarget one onto the other first"
+    )]
     Skeletons {
         /// Joints of the source clip's skeleton.
         source_joints: usize,
@@ -143,7 +160,9 @@ pub enum RegistrationError {
         target_joints: usize,
     },
     /// The clips' frame rates differ.
-    #[error("the clips run at {source_fps} and {target_fps} frames per second: resample one to the other's rate first")]
+    #[error(
+        "the clips run at {source_fps} and {target_fps} frames per second: resample one to the other's rate first"
+    )]
     FrameRates {
         /// Frame rate of the source clip.
         source_fps: f64,
@@ -169,7 +188,9 @@ pub enum RegistrationError {
         which: &'static str,
     },
     /// More pairs than can be held.
-    #[error("{pairs} pairs of frames are more than can be compared at once ({most}): crop the clips, or compare every {stride} frames")]
+    #[error(
+        "{pairs} pairs of frames are more than can be compared at once ({most}): crop the clips, or compare every {stride} frames"
+    )]
     TooManyPairs {
         /// Pairs of frames asked for.
         pairs: usize,

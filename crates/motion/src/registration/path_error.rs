@@ -13,7 +13,9 @@ pub enum PathError {
         window: usize,
     },
     /// A limit that is none.
-    #[error("a slope limit of {slope_limit} cannot be used: give a number from 1 to {MAX_SLOPE_LIMIT}")]
+    #[error(
+        "a slope limit of {slope_limit} cannot be used: give a number from 1 to {MAX_SLOPE_LIMIT}"
+    )]
     SlopeLimit {
         /// The limit given.
         slope_limit: usize,
@@ -32,7 +34,8 @@ pub enum PathError {
         /// Columns of the matrix.
         columns: usize,
     },
-    /// Two pins of which one lies before the other in one clip and behind it, or beside it, in the other.
+    /// Two pins of which one lies before the other in one clip and behind it, or beside it, in the
+    /// other.
     #[error(
         "the pins at frames {} | {} and {} | {} exclude each other, for both clips only go forward: remove one, or move the later one on in both clips",
         first.0, first.1, second.0, second.1

@@ -6,9 +6,10 @@ pub const REFERENCE_HEIGHT_M: f64 = 1.75;
 
 /// The root-mean-square distance per point, centimetres on a body of [`REFERENCE_HEIGHT_M`].
 ///
-/// `distance` is a weighted sum of squared distances (m²) over points that weigh `weight` in all (section A's D and W), measured on a body
-/// `body_height` metres tall ([`crate::skeleton::Roles::body_height`]): `100 · √(D / W) · 1.75 / height`. A height or weight that is not above 0 leaves nothing to scale by; the
-/// result is then NaN.
+/// `distance` is a weighted sum of squared distances (m²) over points that weigh `weight` in all
+/// (section A's D and W), measured on a body `body_height` metres tall
+/// ([`crate::skeleton::Roles::body_height`]): `100 · √(D / W) · 1.75 / height`. A height or weight
+/// that is not above 0 leaves nothing to scale by; the result is then NaN.
 #[must_use]
 pub fn rms_cm(distance: f64, weight: f64, body_height: f64) -> f64 {
     if !(weight > 0.0 && body_height > 0.0) {
@@ -25,8 +26,9 @@ pub fn uniform_weights(skeleton: &Skeleton) -> Vec<f64> {
 
 /// Weights by limb length; they add up to 1.
 ///
-/// Every joint gets half of each bone that meets in it, so that the weighted sum is the integral over the limbs by the trapezoid rule.
-/// Thirty finger joints then weigh what the hands' length weighs, not what thirty joints weigh. Uniform for a skeleton without lengths.
+/// Every joint gets half of each bone that meets in it, so that the weighted sum is the integral
+/// over the limbs by the trapezoid rule. Thirty finger joints then weigh what the hands' length
+/// weighs, not what thirty joints weigh. Uniform for a skeleton without lengths.
 #[must_use]
 pub fn limb_weights(skeleton: &Skeleton) -> Vec<f64> {
     let mut weights = vec![0.0; skeleton.len()];
@@ -50,16 +52,18 @@ pub fn limb_weights(skeleton: &Skeleton) -> Vec<f64> {
 /// The sum of the weights.
 ///
 /// # Errors
-/// [`RegistrationError::Weights`] unless there are `expected` of them, none negative or not finite, and at least one above 0.
+/// [`RegistrationError::Weights`] unless there are `expected` of them, none negative or not finite,
+/// and at least one above 0.
 pub(super) fn checked_sum(weights: &[f64], expected: usize) -> Result<f64, RegistrationError> {
     let sum: f64 = weights.iter().sum();
-    if weights.len() == expected && weights.iter().all(|&w| w >= 0.0) && sum > 0.0 && sum.is_finite() {
+    if weights.len() == expected
+        && weights.iter().all(|&w| w >= 0.0)
+        && sum > 0.0
+        && sum.is_finite()
+    {
         Ok(sum)
     } else {
-        Err(RegistrationError::Weights {
-            found: weights.len(),
-            expected,
-        })
+        Err(RegistrationError::Weights { found: weights.len(), expected })
     }
 }
 
@@ -70,13 +74,7 @@ mod tests {
     use glam::Vec3;
 
     fn joint(parent: Option<usize>, offset: Vec3, end_site: Option<Vec3>) -> Joint {
-        Joint {
-            name: "j".into(),
-            parent,
-            offset,
-            end_site,
-            channels: vec![],
-        }
+        Joint { name: "j".into(), parent, offset, end_site, channels: vec![] }
     }
 
     #[test]
@@ -88,7 +86,8 @@ mod tests {
         ])
         .unwrap();
         let weights = limb_weights(&skeleton);
-        // Halves: 0.3 | 0.3 + 0.1 | 0.1 + 0.1, of 0.9 (the outer half of the end site belongs to no joint).
+        // Halves: 0.3 | 0.3 + 0.1 | 0.1 + 0.1, of 0.9 (the outer half of the end site belongs to no
+        // joint).
         for (weight, expected) in weights.iter().zip([3.0 / 9.0, 4.0 / 9.0, 2.0 / 9.0]) {
             assert!((weight - expected).abs() < 1e-6);
         }
@@ -96,7 +95,9 @@ mod tests {
 
     #[test]
     fn a_skeleton_without_lengths_has_uniform_weights() {
-        let skeleton = Skeleton::new(vec![joint(None, Vec3::ZERO, None), joint(Some(0), Vec3::ZERO, None)]).unwrap();
+        let skeleton =
+            Skeleton::new(vec![joint(None, Vec3::ZERO, None), joint(Some(0), Vec3::ZERO, None)])
+                .unwrap();
         assert_eq!(limb_weights(&skeleton), [0.5, 0.5]);
     }
 

@@ -20,17 +20,14 @@ pub struct PoseWeights {
 
 impl Default for PoseWeights {
     fn default() -> Self {
-        Self {
-            position: 0.6,
-            rotation: 0.4,
-            velocity: 0.0,
-        }
+        Self { position: 0.6, rotation: 0.4, velocity: 0.0 }
     }
 }
 
 impl PoseWeights {
     fn of(self) -> [f64; 3] {
-        [self.position, self.rotation, self.velocity].map(|weight| if weight > 0.0 { weight } else { 0.0 })
+        [self.position, self.rotation, self.velocity]
+            .map(|weight| if weight > 0.0 { weight } else { 0.0 })
     }
 }
 
@@ -41,11 +38,13 @@ pub struct PoseMatch {
     pub leave: usize,
     /// The frame at which the incoming clip is entered.
     pub enter: usize,
-    /// The weighted cost that was smallest; 1 is that of an average pair of frames of the two clips.
+    /// The weighted cost that was smallest; 1 is that of an average pair of frames of the two
+    /// clips.
     pub cost: f64,
     /// Root mean square over the joints of their distances, centimetres on the reference body.
     pub position_cm: f64,
-    /// Likewise of the angles between their rotations, degrees (chords: right up to about 60°, smaller than the angle above).
+    /// Likewise of the angles between their rotations, degrees (chords: right up to about 60°,
+    /// smaller than the angle above).
     pub rotation_deg: f64,
     /// Likewise of the differences of their velocities, metres per second on the reference body.
     pub velocity_mps: f64,
@@ -57,27 +56,33 @@ pub struct PoseMatch {
 const CANDIDATES: usize = 8;
 /// Frames of a clip that are compared at most before the close look.
 const COARSE_FRAMES: usize = 1_000;
-/// A seam takes over what joints do in its two frames, trembling too. A jolt ([`jolts`]) up to this leaves room for what the transition itself adds.
+/// A seam takes over what joints do in its two frames, trembling too. A jolt ([`jolts`]) up to this
+/// leaves room for what the transition itself adds.
 const CALM_JOLT: f32 = 0.7;
-/// Calm frames may cost so much more than the lowest cost, 1 being that of an average pair, and twice as much at most: frames that are the same
-/// need no others.
+/// Calm frames may cost so much more than the lowest cost, 1 being that of an average pair, and
+/// twice as much at most: frames that are the same need no others.
 const CALM_COST: f64 = 0.03;
 /// They are looked for this far around each candidate, seconds.
 const CALM_REACH_SECS: f64 = 0.05;
 
-/// The search for the two frames that are most alike as single poses: positions, rotations and velocities with weights.
+/// The search for the two frames that are most alike as single poses: positions, rotations and
+/// velocities with weights.
 ///
-/// Beside [`super::TransitionSearch`], which looks at windows of the whole body's points and finds their alignment. This one looks at one frame of each
-/// clip in the character's own frame. The three terms are mean squares over joints (weighted, [`super::limb_weights`]); each is divided by its mean over
-/// all pairs of frames, so that weights compare shares and no unit wins by its size: `cost = Σ wₖ Dₖ / mean(Dₖ) / Σ wₖ`.
+/// Beside [`super::TransitionSearch`], which looks at windows of the whole body's points and finds
+/// their alignment. This one looks at one frame of each clip in the character's own frame. The
+/// three terms are mean squares over joints (weighted, [`super::limb_weights`]); each is divided by
+/// its mean over all pairs of frames, so that weights compare shares and no unit wins by its size:
+/// `cost = Σ wₖ Dₖ / mean(Dₖ) / Σ wₖ`.
 ///
-/// The terms are kept apart: new weights or regions cost a pass over the grid, not a new comparison. Pairs are compared every
-/// `max(⌈fps / 60⌉, ⌈frames / 1000⌉)` frames, in slices; the eight lowest minima are searched again at every frame, within one
-/// stride or 0.05 s.
+/// The terms are kept apart: new weights or regions cost a pass over the grid, not a new
+/// comparison. Pairs are compared every `max(⌈fps / 60⌉, ⌈frames / 1000⌉)` frames, in slices; the
+/// eight lowest minima are searched again at every frame, within one stride or 0.05 s.
 ///
-/// Of pairs that are nearly as good as the best, within 3 % of a mean pair's cost, the answer is the first that is calm: no joint jolts there as only
-/// few frames of its clip do, for a jolt at the seam would be carried over as a velocity, and swing the joint out. The answer's cost is within 5 %
-/// of a mean pair's cost of the smallest over all pairs (tested against them), and it is exact for the pair it names.
+/// Of pairs that are nearly as good as the best, within 3 % of a mean pair's cost, the answer is
+/// the first that is calm: no joint jolts there as only few frames of its clip do, for a jolt at
+/// the seam would be carried over as a velocity, and swing the joint out. The answer's cost is
+/// within 5 % of a mean pair's cost of the smallest over all pairs (tested against them), and it is
+/// exact for the pair it names.
 #[derive(Clone, Debug)]
 pub struct PoseSearch {
     outgoing: Poses,
@@ -142,16 +147,20 @@ impl Poses {
     }
 
     fn is_finite(&self) -> bool {
-        self.positions.iter().chain(&self.velocities).all(|v| v.is_finite()) && self.rotations.iter().all(|q| q.is_finite())
+        self.positions.iter().chain(&self.velocities).all(|v| v.is_finite())
+            && self.rotations.iter().all(|q| q.is_finite())
     }
 }
 
 impl PoseSearch {
-    /// Prepares a search. `outgoing` and `incoming` come with their [`crate::clip::character_frames`]; `weights` has one weight per joint,
-    /// `body_height` is in metres ([`crate::skeleton::Roles::body_height`]). Nothing is compared yet: call [`advance`](Self::advance).
+    /// Prepares a search. `outgoing` and `incoming` come with their
+    /// [`crate::clip::character_frames`]; `weights` has one weight per joint, `body_height` is in
+    /// metres ([`crate::skeleton::Roles::body_height`]). Nothing is compared yet: call
+    /// [`advance`](Self::advance).
     ///
     /// # Errors
-    /// [`RegistrationError`] when a clip is empty or holds numbers that are none, the skeletons or frame rates differ, or the weights do not fit.
+    /// [`RegistrationError`] when a clip is empty or holds numbers that are none, the skeletons or
+    /// frame rates differ, or the weights do not fit.
     pub fn new(
         outgoing: (&Arc<Clip>, &[Planar]),
         incoming: (&Arc<Clip>, &[Planar]),
@@ -162,12 +171,10 @@ impl PoseSearch {
         if (source_fps - target_fps).abs() > 1e-4 * source_fps {
             return Err(RegistrationError::FrameRates { source_fps, target_fps });
         }
-        let (source_joints, target_joints) = (outgoing.0.skeleton().len(), incoming.0.skeleton().len());
+        let (source_joints, target_joints) =
+            (outgoing.0.skeleton().len(), incoming.0.skeleton().len());
         if source_joints != target_joints {
-            return Err(RegistrationError::Skeletons {
-                source_joints,
-                target_joints,
-            });
+            return Err(RegistrationError::Skeletons { source_joints, target_joints });
         }
         let sum = checked_sum(weights, source_joints)?;
         for (which, (clip, frames)) in [("outgoing", outgoing), ("incoming", incoming)] {
@@ -175,12 +182,14 @@ impl PoseSearch {
                 return Err(RegistrationError::Empty { which });
             }
         }
-        let (outgoing, incoming) = (Poses::new(outgoing.0, outgoing.1), Poses::new(incoming.0, incoming.1));
+        let (outgoing, incoming) =
+            (Poses::new(outgoing.0, outgoing.1), Poses::new(incoming.0, incoming.1));
         if !(outgoing.is_finite() && incoming.is_finite()) {
             return Err(RegistrationError::NotFinite);
         }
         let longest = outgoing.frames.max(incoming.frames);
-        let stride = ((source_fps / 60.0).ceil() as usize).max(longest.div_ceil(COARSE_FRAMES)).max(1);
+        let stride =
+            ((source_fps / 60.0).ceil() as usize).max(longest.div_ceil(COARSE_FRAMES)).max(1);
         let columns = incoming.frames.div_ceil(stride);
         let pairs = outgoing.frames.div_ceil(stride) * columns;
         Ok(Self {
@@ -197,7 +206,8 @@ impl PoseSearch {
         })
     }
 
-    /// Compares up to `rows` more frames of the outgoing clip with all of the incoming one, and says how far it has come.
+    /// Compares up to `rows` more frames of the outgoing clip with all of the incoming one, and
+    /// says how far it has come.
     pub fn advance(&mut self, rows: usize) -> Progress {
         let total = self.outgoing.frames.div_ceil(self.stride);
         for row in self.done..self.done.saturating_add(rows).min(total) {
@@ -220,16 +230,17 @@ impl PoseSearch {
         let (a, b) = (of(i), of(j));
         let mut terms = [0.0_f32; 3];
         let vectors = |p: &[Vec3], q: &[Vec3]| {
-            let squares = p.iter().zip(q).zip(&self.weights).map(|((p, q), w)| w * p.distance_squared(*q));
+            let squares =
+                p.iter().zip(q).zip(&self.weights).map(|((p, q), w)| w * p.distance_squared(*q));
             squares.sum::<f32>()
         };
-        terms[0] = vectors(&self.outgoing.positions[a.clone()], &self.incoming.positions[b.clone()]);
-        terms[2] = vectors(&self.outgoing.velocities[a.clone()], &self.incoming.velocities[b.clone()]);
+        terms[0] =
+            vectors(&self.outgoing.positions[a.clone()], &self.incoming.positions[b.clone()]);
+        terms[2] =
+            vectors(&self.outgoing.velocities[a.clone()], &self.incoming.velocities[b.clone()]);
         // 4 sin²(θ/2) = 4 (1 - (p·q)²): θ² for small angles, and the same for q and -q.
-        let rotations = self.outgoing.rotations[a]
-            .iter()
-            .zip(&self.incoming.rotations[b])
-            .zip(&self.weights);
+        let rotations =
+            self.outgoing.rotations[a].iter().zip(&self.incoming.rotations[b]).zip(&self.weights);
         terms[1] = rotations
             .map(|((p, q), w)| {
                 let cosine = p.dot(*q);
@@ -239,11 +250,17 @@ impl PoseSearch {
         terms
     }
 
-    /// The best pair for these weights and regions. The window of `options` is only what must fit behind both frames.
+    /// The best pair for these weights and regions. The window of `options` is only what must fit
+    /// behind both frames.
     ///
     /// # Errors
-    /// [`RegistrationError::Unfinished`] before the comparison is complete, [`RegistrationError::TooShort`] when the window does not fit.
-    pub fn best(&self, weights: PoseWeights, options: &SearchOptions) -> Result<PoseMatch, RegistrationError> {
+    /// [`RegistrationError::Unfinished`] before the comparison is complete,
+    /// [`RegistrationError::TooShort`] when the window does not fit.
+    pub fn best(
+        &self,
+        weights: PoseWeights,
+        options: &SearchOptions,
+    ) -> Result<PoseMatch, RegistrationError> {
         let total = self.outgoing.frames.div_ceil(self.stride);
         if self.done < total {
             return Err(RegistrationError::Unfinished { done: self.done, total });
@@ -259,9 +276,12 @@ impl PoseSearch {
         let reach = self.stride.max((CALM_REACH_SECS * self.fps).round() as usize);
         let mut pairs = Vec::new();
         for (i, j) in candidates {
-            let around = |at: usize, region: &Range<usize>| at.saturating_sub(reach).max(region.start)..(at + reach + 1).min(region.end);
+            let around = |at: usize, region: &Range<usize>| {
+                at.saturating_sub(reach).max(region.start)..(at + reach + 1).min(region.end)
+            };
             for i in around(i, &leave) {
-                pairs.extend(around(j, &enter).map(|j| (cost(&factors, &self.compare(i, j)), i, j)));
+                pairs
+                    .extend(around(j, &enter).map(|j| (cost(&factors, &self.compare(i, j)), i, j)));
             }
         }
         // Among equals the earliest frames, whatever the order in which candidates were found.
@@ -271,8 +291,10 @@ impl PoseSearch {
         let jolt = |&&(_, i, j): &&(f64, usize, usize)| self.jolt(i, j);
         let calm = alike.clone().find(|pair| jolt(pair) <= CALM_JOLT);
         let best = calm.or_else(|| alike.min_by(|a, b| jolt(a).total_cmp(&jolt(b))));
-        let (cost, leave, enter) = best.copied().unwrap_or((f64::INFINITY, leave.start, enter.start));
-        let [position, rotation, velocity] = self.compare(leave, enter).map(|term| f64::from(term).sqrt());
+        let (cost, leave, enter) =
+            best.copied().unwrap_or((f64::INFINITY, leave.start, enter.start));
+        let [position, rotation, velocity] =
+            self.compare(leave, enter).map(|term| f64::from(term).sqrt());
         Ok(PoseMatch {
             leave,
             enter,
@@ -284,21 +306,22 @@ impl PoseSearch {
         })
     }
 
-    /// How much a joint jolts where the two clips meet: in the last frame before the outgoing one is left, and in the first of the incoming one.
+    /// How much a joint jolts where the two clips meet: in the last frame before the outgoing one
+    /// is left, and in the first of the incoming one.
     fn jolt(&self, leave: usize, enter: usize) -> f32 {
-        let of = |poses: &Poses, frame: Option<usize>| frame.and_then(|frame| poses.jolts.get(frame)).copied().unwrap_or(0.0);
+        let of = |poses: &Poses, frame: Option<usize>| {
+            frame.and_then(|frame| poses.jolts.get(frame)).copied().unwrap_or(0.0)
+        };
         of(&self.outgoing, leave.checked_sub(1)).max(of(&self.incoming, Some(enter)))
     }
 
-    /// What every term is multiplied with. A term that is 0 everywhere counts nothing; without any weight positions count.
+    /// What every term is multiplied with. A term that is 0 everywhere counts nothing; without any
+    /// weight positions count.
     fn factors(&self, weights: PoseWeights) -> [f64; 3] {
         let weights = weights.of();
         let sum: f64 = weights.iter().sum();
-        let weights = if sum > 0.0 && sum.is_finite() {
-            weights.map(|w| w / sum)
-        } else {
-            [1.0, 0.0, 0.0]
-        };
+        let weights =
+            if sum > 0.0 && sum.is_finite() { weights.map(|w| w / sum) } else { [1.0, 0.0, 0.0] };
         let pairs = self.terms.len().max(1) as f64;
         let mut factors = [0.0; 3];
         for ((factor, weight), sum) in factors.iter_mut().zip(weights).zip(self.sums) {
@@ -309,8 +332,15 @@ impl PoseSearch {
     }
 
     /// The lowest local minima of the grid in the regions, as frames.
-    fn candidates(&self, factors: &[f64; 3], leave: &Range<usize>, enter: &Range<usize>) -> Vec<(usize, usize)> {
-        let samples = |region: &Range<usize>| region.start.div_ceil(self.stride)..region.end.div_ceil(self.stride);
+    fn candidates(
+        &self,
+        factors: &[f64; 3],
+        leave: &Range<usize>,
+        enter: &Range<usize>,
+    ) -> Vec<(usize, usize)> {
+        let samples = |region: &Range<usize>| {
+            region.start.div_ceil(self.stride)..region.end.div_ceil(self.stride)
+        };
         let (rows, columns) = (samples(leave), samples(enter));
         let width = columns.len();
         let costs: Vec<f64> = rows
@@ -326,8 +356,9 @@ impl PoseSearch {
                 if minima.len() == CANDIDATES && minima.last().is_some_and(|last| here >= last.0) {
                     continue;
                 }
-                let around = (row.saturating_sub(1)..(row + 2).min(rows.len()))
-                    .flat_map(|r| (column.saturating_sub(1)..(column + 2).min(width)).map(move |c| (r, c)));
+                let around = (row.saturating_sub(1)..(row + 2).min(rows.len())).flat_map(|r| {
+                    (column.saturating_sub(1)..(column + 2).min(width)).map(move |c| (r, c))
+                });
                 // Strictly smaller than what comes before it, so that a plateau counts once.
                 let lowest = around
                     .map(|(r, c)| (costs[r * width + c], (r, c)))
@@ -341,7 +372,9 @@ impl PoseSearch {
         }
         minima
             .into_iter()
-            .map(|(_, row, column)| ((rows.start + row) * self.stride, (columns.start + column) * self.stride))
+            .map(|(_, row, column)| {
+                ((rows.start + row) * self.stride, (columns.start + column) * self.stride)
+            })
             .collect()
     }
 }
@@ -361,7 +394,8 @@ mod tests {
     fn search(a: &Arc<Clip>, b: &Arc<Clip>) -> PoseSearch {
         let roles = Roles::detect(a.skeleton());
         let (fa, fb) = (character_frames(a, &roles), character_frames(b, &roles));
-        let mut search = PoseSearch::new((a, &fa), (b, &fb), &limb_weights(a.skeleton()), 1.75).unwrap();
+        let mut search =
+            PoseSearch::new((a, &fa), (b, &fb), &limb_weights(a.skeleton()), 1.75).unwrap();
         while !search.advance(7).is_complete() {}
         search
     }
@@ -373,11 +407,7 @@ mod tests {
     #[test]
     fn close_to_the_best_of_all_pairs() {
         for (frames, fps) in [(240, 60.0), (300, 120.0), (400, 240.0), (1_500, 120.0)] {
-            let a = clip(Walk {
-                frames,
-                fps,
-                ..Walk::default()
-            });
+            let a = clip(Walk { frames, fps, ..Walk::default() });
             let b = clip(Walk {
                 frames: frames * 3 / 4,
                 fps,
@@ -389,12 +419,10 @@ mod tests {
                 ..Walk::default()
             });
             let search = search(&a, &b);
-            for (position, rotation, velocity) in [(0.6, 0.4, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 2.0), (0.2, 0.3, 0.5)] {
-                let weights = PoseWeights {
-                    position,
-                    rotation,
-                    velocity,
-                };
+            for (position, rotation, velocity) in
+                [(0.6, 0.4, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 2.0), (0.2, 0.3, 0.5)]
+            {
+                let weights = PoseWeights { position, rotation, velocity };
                 let options = SearchOptions::new(9);
                 let found = search.best(weights, &options).unwrap();
                 let factors = search.factors(weights);
@@ -406,52 +434,41 @@ mod tests {
                     found.cost >= best && found.cost <= best + 0.02 + CALM_COST,
                     "{frames} {fps} {weights:?} {found:?} {best}"
                 );
-                assert!(found.leave >= frames / 2 && found.leave + 9 <= frames && found.enter <= b.frames() / 2);
+                assert!(
+                    found.leave >= frames / 2
+                        && found.leave + 9 <= frames
+                        && found.enter <= b.frames() / 2
+                );
             }
         }
     }
 
     #[test]
     fn the_same_frame_is_found_again_wherever_the_clip_lies() {
-        let whole = Walk {
-            frames: 300,
-            fps: 240.0,
-            turning: 0.5,
-            ..Walk::default()
-        }
-        .clip();
+        let whole = Walk { frames: 300, fps: 240.0, turning: 0.5, ..Walk::default() }.clip();
         let a = Arc::new(whole.crop(0..180).unwrap());
         let b = Arc::new(whole.crop(141..300).unwrap().transformed(&Planar::new(1.9, -3.0, 8.0)));
-        let weights = PoseWeights {
-            velocity: 0.3,
-            ..PoseWeights::default()
-        };
+        let weights = PoseWeights { velocity: 0.3, ..PoseWeights::default() };
         let found = search(&a, &b).best(weights, &SearchOptions::new(1)).unwrap();
         assert_eq!(found.leave, found.enter + 141, "{found:?}");
-        assert!(found.cost < 1e-3 && found.position_cm < 0.01 && found.rotation_deg < 0.1 && found.velocity_mps < 0.01);
+        assert!(
+            found.cost < 1e-3
+                && found.position_cm < 0.01
+                && found.rotation_deg < 0.1
+                && found.velocity_mps < 0.01
+        );
         assert!(!found.grown);
     }
 
     #[test]
     fn frames_in_which_a_joint_jolts_are_passed_by() {
-        let walk = Walk {
-            frames: 300,
-            fps: 120.0,
-            ..Walk::default()
-        };
-        let (a, b) = (
-            clip(walk),
-            clip(Walk {
-                cadence: 1.25,
-                swing: 0.6,
-                speed: 1.9,
-                ..walk
-            }),
-        );
+        let walk = Walk { frames: 300, fps: 120.0, ..Walk::default() };
+        let (a, b) = (clip(walk), clip(Walk { cadence: 1.25, swing: 0.6, speed: 1.9, ..walk }));
         let (weights, options) = (PoseWeights::default(), SearchOptions::new(9));
         let smooth = search(&a, &b).best(weights, &options).unwrap();
         let joints = a.skeleton().len();
-        let mut rotations: Vec<Quat> = (0..a.frames()).flat_map(|f| a.rotations(f).to_vec()).collect();
+        let mut rotations: Vec<Quat> =
+            (0..a.frames()).flat_map(|f| a.rotations(f).to_vec()).collect();
         rotations[(smooth.leave - 1) * joints + 4] *= Quat::from_rotation_x(0.3);
         let jerked = Clip::new(
             "jerked",
@@ -473,22 +490,29 @@ mod tests {
 
     #[test]
     fn numbers_are_in_their_units() {
-        let still = Walk {
-            frames: 30,
-            speed: 0.0,
-            cadence: 0.0,
-            swing: 0.0,
-            ..Walk::default()
-        };
+        let still = Walk { frames: 30, speed: 0.0, cadence: 0.0, swing: 0.0, ..Walk::default() };
         let a = clip(still);
         let glide = clip(Walk { speed: 0.5, ..still });
         let roots = a.root_translations().iter().map(|p| *p + Vec3::Y * 0.1).collect();
         let rotations = (0..30).flat_map(|f| a.rotations(f).to_vec()).collect();
-        let raised = Arc::new(Clip::new("raised", Arc::clone(a.skeleton()), a.fps(), rotations, roots).unwrap());
+        let raised = Arc::new(
+            Clip::new("raised", Arc::clone(a.skeleton()), a.fps(), rotations, roots).unwrap(),
+        );
         let bent: Vec<Quat> = (0..30)
-            .flat_map(|f| a.rotations(f).iter().map(|q| -*q * Quat::from_rotation_x(0.3)).collect::<Vec<_>>())
+            .flat_map(|f| {
+                a.rotations(f).iter().map(|q| -*q * Quat::from_rotation_x(0.3)).collect::<Vec<_>>()
+            })
             .collect();
-        let bent = Arc::new(Clip::new("bent", Arc::clone(a.skeleton()), a.fps(), bent, a.root_translations().to_vec()).unwrap());
+        let bent = Arc::new(
+            Clip::new(
+                "bent",
+                Arc::clone(a.skeleton()),
+                a.fps(),
+                bent,
+                a.root_translations().to_vec(),
+            )
+            .unwrap(),
+        );
         let options = SearchOptions::new(1);
         let to = |b| search(&a, b).best(PoseWeights::default(), &options).unwrap();
         assert!((to(&raised).position_cm - 10.0).abs() < 1e-3, "{:?}", to(&raised));
@@ -501,26 +525,14 @@ mod tests {
 
     #[test]
     fn regions_weights_and_slices() {
-        let (a, b) = (
-            clip(Walk::default()),
-            clip(Walk {
-                phase: 0.4,
-                frames: 50,
-                ..Walk::default()
-            }),
-        );
+        let (a, b) =
+            (clip(Walk::default()), clip(Walk { phase: 0.4, frames: 50, ..Walk::default() }));
         let search = search(&a, &b);
-        let options = SearchOptions {
-            enter: Region::ALL,
-            ..SearchOptions::new(1).leaving_at(77, 120)
-        };
+        let options =
+            SearchOptions { enter: Region::ALL, ..SearchOptions::new(1).leaving_at(77, 120) };
         let found = search.best(PoseWeights::default(), &options).unwrap();
         assert_eq!(found.leave, 77);
-        let none = PoseWeights {
-            position: f64::NAN,
-            rotation: -1.0,
-            velocity: 0.0,
-        };
+        let none = PoseWeights { position: f64::NAN, rotation: -1.0, velocity: 0.0 };
         assert!(search.best(none, &options).unwrap().cost.is_finite());
         assert!(matches!(
             search.best(none, &SearchOptions::new(51)),

@@ -1,23 +1,27 @@
 use super::sweep::{PausedSweep, Sweep, packed_start};
 use super::{Alignment, PairTerms, PointClouds, Progress, RegistrationError};
 
-/// The terms of all pairs of frames of one clip with itself: [`PairTerms`] at half the time and half the memory, since the distance of two
-/// windows is the same both ways.
+/// The terms of all pairs of frames of one clip with itself: [`PairTerms`] at half the time and
+/// half the memory, since the distance of two windows is the same both ways.
 ///
-/// Pairs (i, j) with j ≥ i lie on and above the diagonal, and so does every pair that a window adds to them: (i + 1, j + 1) and on.
+/// Pairs (i, j) with j ≥ i lie on and above the diagonal, and so does every pair that a window adds
+/// to them: (i + 1, j + 1) and on.
 #[derive(Clone, Debug)]
 pub struct SelfTerms(PairTerms);
 
 impl SelfTerms {
-    /// Prepares the comparison. Nothing is compared yet: call [`advance`](Self::advance). Memory: 6 bytes per pair (i, j) of samples.
+    /// Prepares the comparison. Nothing is compared yet: call [`advance`](Self::advance). Memory: 6
+    /// bytes per pair (i, j) of samples.
     ///
     /// # Errors
-    /// [`RegistrationError::TooManyPairs`] when the pairs are more than memory should be taken for: above 11,500 samples.
+    /// [`RegistrationError::TooManyPairs`] when the pairs are more than memory should be taken for:
+    /// above 11,500 samples.
     pub fn new(clouds: &PointClouds) -> Result<Self, RegistrationError> {
         Ok(Self(PairTerms::of_itself(clouds)?))
     }
 
-    /// Compares at least `rows` more frames with those behind them (rows come in fours), and says how far it has come. Rows get shorter and shorter.
+    /// Compares at least `rows` more frames with those behind them (rows come in fours), and says
+    /// how far it has come. Rows get shorter and shorter.
     pub fn advance(&mut self, rows: usize) -> Progress {
         self.0.advance(rows)
     }
@@ -28,33 +32,35 @@ impl SelfTerms {
         self.0.progress()
     }
 
-    /// The distances between all windows of `window` frames, in slices; none where the window is longer than what was compared.
+    /// The distances between all windows of `window` frames, in slices; none where the window is
+    /// longer than what was compared.
     ///
     /// # Errors
     /// [`RegistrationError::Unfinished`] before all rows are compared.
     pub fn sweep(&self, window: usize) -> Result<SelfSweep<'_>, RegistrationError> {
         let all = 0..usize::MAX;
         let rows = self.0.source.starts(&all, window.max(1), self.0.stride()).len();
-        Ok(SelfSweep {
-            sweep: self.0.sweep(window, &all, &all)?,
-            rows,
-        })
+        Ok(SelfSweep { sweep: self.0.sweep(window, &all, &all)?, rows })
     }
 
-    /// The alignment of the windows of `window` frames that start at the samples next to frame `source` and frame `target`:
-    /// `source_from_target`. O(window).
+    /// The alignment of the windows of `window` frames that start at the samples next to frame
+    /// `source` and frame `target`: `source_from_target`. O(window).
     ///
     /// # Errors
-    /// [`RegistrationError`] before all rows are compared, or when a window crosses the end of what was compared.
-    pub fn alignment(&self, source: usize, target: usize, window: usize, fallback_yaw: f64) -> Result<Alignment, RegistrationError> {
+    /// [`RegistrationError`] before all rows are compared, or when a window crosses the end of what
+    /// was compared.
+    pub fn alignment(
+        &self,
+        source: usize,
+        target: usize,
+        window: usize,
+        fallback_yaw: f64,
+    ) -> Result<Alignment, RegistrationError> {
         if source <= target {
             return self.0.alignment(source, target, window, fallback_yaw);
         }
         let found = self.0.alignment(target, source, window, -fallback_yaw)?;
-        Ok(Alignment {
-            transform: found.transform.inverse(),
-            ..found
-        })
+        Ok(Alignment { transform: found.transform.inverse(), ..found })
     }
 }
 
@@ -76,10 +82,7 @@ impl PausedSelfSweep {
     /// Goes on where it was left. `terms` are those that the sweep was made of.
     #[must_use]
     pub fn resume(self, terms: &SelfTerms) -> SelfSweep<'_> {
-        SelfSweep {
-            sweep: self.sweep.resume(&terms.0),
-            rows: self.rows,
-        }
+        SelfSweep { sweep: self.sweep.resume(&terms.0), rows: self.rows }
     }
 }
 
@@ -87,10 +90,7 @@ impl SelfSweep<'_> {
     /// Lets go of the terms, so that the rest can be done later.
     #[must_use]
     pub fn pause(self) -> PausedSelfSweep {
-        PausedSelfSweep {
-            sweep: self.sweep.pause(),
-            rows: self.rows,
-        }
+        PausedSelfSweep { sweep: self.sweep.pause(), rows: self.rows }
     }
 
     /// Does up to `rows` more rows, and says how far it has come.
@@ -101,14 +101,12 @@ impl SelfSweep<'_> {
     /// The rest, and the distances.
     #[must_use]
     pub fn finish(self) -> SymmetricDistances {
-        SymmetricDistances {
-            rows: self.rows,
-            rms_m: self.sweep.finish_packed(),
-        }
+        SymmetricDistances { rows: self.rows, rms_m: self.sweep.finish_packed() }
     }
 }
 
-/// Distances between windows of a clip and windows of the same clip; those above the diagonal are held.
+/// Distances between windows of a clip and windows of the same clip; those above the diagonal are
+/// held.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SymmetricDistances {
     rows: usize,
@@ -122,7 +120,8 @@ impl SymmetricDistances {
         self.rows
     }
 
-    /// One root-mean-square distance per point, metres, the same for (a, b) and (b, a); `None` outside the matrix.
+    /// One root-mean-square distance per point, metres, the same for (a, b) and (b, a); `None`
+    /// outside the matrix.
     #[must_use]
     pub fn get(&self, a: usize, b: usize) -> Option<f32> {
         self.row(a.min(b)).get(a.abs_diff(b)).copied()

@@ -5,8 +5,9 @@ use std::ops::Range;
 
 /// The distances of all windows of one length, summed along the diagonals row by row.
 ///
-/// Each row's sums are those of the row above, one column to the left, plus the pair that enters the window, less the pair that leaves it. The sums
-/// are `f64` over `f32` terms, so that what is taken away again leaves nothing behind: at most 1e-12 of the spread after 10,000 rows.
+/// Each row's sums are those of the row above, one column to the left, plus the pair that enters
+/// the window, less the pair that leaves it. The sums are `f64` over `f32` terms, so that what is
+/// taken away again leaves nothing behind: at most 1e-12 of the spread after 10,000 rows.
 #[derive(Clone, Debug)]
 pub struct Sweep<'a> {
     terms: &'a PairTerms,
@@ -44,7 +45,8 @@ struct Sums {
     rows: Range<usize>,
     columns: Range<usize>,
     done: usize,
-    /// Sums of the row that was done last, one entry per diagonal: column c of row r at c + (rows - 1 - r), so that nothing is moved.
+    /// Sums of the row that was done last, one entry per diagonal: column c of row r at c + (rows -
+    /// 1 - r), so that nothing is moved.
     dot: Vec<f64>,
     cross: Vec<f64>,
     height: Vec<f64>,
@@ -66,7 +68,9 @@ impl Moments {
     fn new(cloud: &super::cloud::Cloud, starts: &Range<usize>, samples: usize) -> Self {
         let mut sums = Self::default();
         let (mut centre, mut square) = (DVec2::ZERO, 0.0);
-        let of = |sample: usize| (cloud.centre(sample), cloud.square[sample] + cloud.centre(sample).length_squared());
+        let of = |sample: usize| {
+            (cloud.centre(sample), cloud.square[sample] + cloud.centre(sample).length_squared())
+        };
         for start in starts.clone() {
             if start == starts.start {
                 for sample in start..start + samples {
@@ -86,7 +90,12 @@ impl Moments {
 }
 
 impl<'a> Sweep<'a> {
-    pub(super) fn new(terms: &'a PairTerms, window: usize, rows: Range<usize>, columns: Range<usize>) -> Self {
+    pub(super) fn new(
+        terms: &'a PairTerms,
+        window: usize,
+        rows: Range<usize>,
+        columns: Range<usize>,
+    ) -> Self {
         let samples = terms.samples_in(window);
         let diagonals = rows.len() + columns.len();
         let sums = Sums {
@@ -145,7 +154,8 @@ impl<'a> Sweep<'a> {
         }
     }
 
-    /// Likewise where a clip is compared with itself: rows are as long as it is from them to the end, one behind the other.
+    /// Likewise where a clip is compared with itself: rows are as long as it is from them to the
+    /// end, one behind the other.
     pub(super) fn finish_packed(mut self) -> Vec<f32> {
         self.advance(usize::MAX);
         self.sums.rms_m
@@ -165,8 +175,8 @@ impl Sums {
         }
     }
 
-    /// Brings the sums to `row` (counted from the first row that is swept). A function of its own: a browser compiles well what is called often, from
-    /// one call to the next.
+    /// Brings the sums to `row` (counted from the first row that is swept). A function of its own:
+    /// a browser compiles well what is called often, from one call to the next.
     #[inline(never)]
     fn enter_row(&mut self, terms: &PairTerms, row: usize, samples: usize) {
         let (first, shift) = (self.rows.start + row, self.rows.len() - 1 - row);
@@ -174,7 +184,8 @@ impl Sums {
         if row == 0 {
             for k in 0..samples {
                 let centre = terms.source.centre(first + k);
-                let entering = Entering::new(terms, terms.row(first + k), self.columns.start + k, columns);
+                let entering =
+                    Entering::new(terms, terms.row(first + k), self.columns.start + k, columns);
                 let sums = self.dot[shift..]
                     .iter_mut()
                     .zip(&mut self.cross[shift..])
@@ -195,7 +206,12 @@ impl Sums {
         let from = first_column(terms, row).max(1);
         let n = columns - from;
         let (p, q) = (terms.source.centre(first + samples - 1), terms.source.centre(first - 1));
-        let new = Entering::new(terms, terms.row(first + samples - 1), self.columns.start + from + samples - 1, n);
+        let new = Entering::new(
+            terms,
+            terms.row(first + samples - 1),
+            self.columns.start + from + samples - 1,
+            n,
+        );
         let old = Entering::new(terms, terms.row(first - 1), self.columns.start + from - 1, n);
         let dot = &mut self.dot[shift + from..][..n];
         let cross = &mut self.cross[shift + from..][..n];
@@ -210,11 +226,20 @@ impl Sums {
     }
 
     /// The first column's windows have none before them.
-    fn enter_first_column(&mut self, terms: &PairTerms, first: usize, shift: usize, samples: usize) {
+    fn enter_first_column(
+        &mut self,
+        terms: &PairTerms,
+        first: usize,
+        shift: usize,
+        samples: usize,
+    ) {
         let (mut dot, mut cross, mut height) = (0.0, 0.0, 0.0);
         for k in 0..samples {
             let entering = Entering::new(terms, terms.row(first + k), self.columns.start + k, 1);
-            let (d, x) = centre_product(terms.source.centre(first + k), DVec2::new(entering.x[0], entering.z[0]));
+            let (d, x) = centre_product(
+                terms.source.centre(first + k),
+                DVec2::new(entering.x[0], entering.z[0]),
+            );
             dot += f64::from(entering.terms.dot[0]) + d;
             cross += f64::from(entering.terms.cross[0]) + x;
             height += f64::from(entering.terms.height[0]);
@@ -229,22 +254,22 @@ impl Sums {
         let n = self.columns.len() - from;
         let shift = self.rows.len() - 1 - row + from;
         let inverse = (samples as f64).recip();
-        let (x, z, spread) = (self.source.x[row] * inverse, self.source.z[row] * inverse, self.source.spread[row]);
-        let start = if terms.is_triangle() {
-            packed_start(self.rows.len(), row)
-        } else {
-            row * n
-        };
+        let (x, z, spread) =
+            (self.source.x[row] * inverse, self.source.z[row] * inverse, self.source.spread[row]);
+        let start = if terms.is_triangle() { packed_start(self.rows.len(), row) } else { row * n };
         self.rms_m.resize(start + n, 0.0);
         let out = &mut self.rms_m[start..][..n];
-        let (dot, cross, height) = (&self.dot[shift..][..n], &self.cross[shift..][..n], &self.height[shift..][..n]);
+        let (dot, cross, height) =
+            (&self.dot[shift..][..n], &self.cross[shift..][..n], &self.height[shift..][..n]);
         let target = &self.target;
-        let (tx, tz, ts) = (&target.x[from..][..n], &target.z[from..][..n], &target.spread[from..][..n]);
+        let (tx, tz, ts) =
+            (&target.x[from..][..n], &target.z[from..][..n], &target.spread[from..][..n]);
         for c in 0..n {
             let a = cross[c] - (x * tz[c] - z * tx[c]);
             let b = dot[c] - (x * tx[c] + z * tz[c]);
             let left = spread + ts[c] - 2.0 * ((a * a + b * b).sqrt() + height[c]);
-            // Rounding leaves tiny negative numbers where windows are equal. Not by `max`, which takes pains over what is no number.
+            // Rounding leaves tiny negative numbers where windows are equal. Not by `max`, which
+            // takes pains over what is no number.
             let mean = (left * inverse) as f32;
             out[c] = if mean > 0.0 { mean } else { 0.0 }.sqrt();
         }

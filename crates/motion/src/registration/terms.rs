@@ -28,26 +28,33 @@ impl Progress {
 /// The most pairs that are held: 768 MiB of terms.
 pub(crate) const MOST_PAIRS: usize = 1 << 26;
 
-/// What strength of a turn is rounding alone, as a share of the clouds' spread, where products are `f32`.
+/// What strength of a turn is rounding alone, as a share of the clouds' spread, where products are
+/// `f32`.
 const ROUNDING: f64 = 1e-6;
 
-/// Groups of source samples that are multiplied with a group of target samples while that lies in the nearest cache.
+/// Groups of source samples that are multiplied with a group of target samples while that lies in
+/// the nearest cache.
 const GROUPS_AT_ONCE: usize = 4;
 
-/// The terms of all pairs of frames of two clips, from which the distance of any two windows of any length follows.
+/// The terms of all pairs of frames of two clips, from which the distance of any two windows of any
+/// length follows.
 ///
-/// Every term of the window distance (section A) is a sum over the frame pairs on a diagonal of the frame-by-frame matrix. The terms of one
-/// pair are products of two point clouds, summed over the joints: for all pairs together a matrix product, O(N²J), made once. A window of any length is then a
-/// sum that runs along the diagonals: O(N²) for a new window length in place of O(N²JK) (Kovar, Gleicher, Pighin 2002, section 3.1). Frames are
-/// sampled every `stride`; a window of K frames uses the samples `i, i + stride, … < i + K`, which is exact at stride 1.
+/// Every term of the window distance (section A) is a sum over the frame pairs on a diagonal of the
+/// frame-by-frame matrix. The terms of one pair are products of two point clouds, summed over the
+/// joints: for all pairs together a matrix product, O(N²J), made once. A window of any length is
+/// then a sum that runs along the diagonals: O(N²) for a new window length in place of O(N²JK)
+/// (Kovar, Gleicher, Pighin 2002, section 3.1). Frames are sampled every `stride`; a window of K
+/// frames uses the samples `i, i + stride, … < i + K`, which is exact at stride 1.
 ///
 /// # Accuracy
-/// The clouds are multiplied about their own centres in `f32`, all else is `f64`. The mean squared distance per point is off by less than
-/// 3e-7 m² for a body of human size: 0.5 mm where windows are all but equal, 6 µm at 2.5 cm. Equal poses are 0 apart. The bits are the
-/// same on every machine.
+/// The clouds are multiplied about their own centres in `f32`, all else is `f64`. The mean squared
+/// distance per point is off by less than 3e-7 m² for a body of human size: 0.5 mm where windows
+/// are all but equal, 6 µm at 2.5 cm. Equal poses are 0 apart. The bits are the same on every
+/// machine.
 ///
 /// # Slices
-/// The work comes in slices: [`advance`](Self::advance) until it is complete. A row of 1,500 pairs of 31 joints takes about 15 µs.
+/// The work comes in slices: [`advance`](Self::advance) until it is complete. A row of 1,500 pairs
+/// of 31 joints takes about 15 µs.
 #[derive(Clone, Debug)]
 pub struct PairTerms {
     stride: usize,
@@ -58,7 +65,8 @@ pub struct PairTerms {
     pub(super) target: Arc<Cloud>,
     /// Only pairs with |row - column| ≤ band are multiplied.
     band: usize,
-    /// A clip with itself: only pairs with column ≥ row are multiplied and held, to the whole group.
+    /// A clip with itself: only pairs with column ≥ row are multiplied and held, to the whole
+    /// group.
     triangle: bool,
     done: usize,
     /// Per row: the products of [`tile`], `width` of each.
@@ -78,14 +86,16 @@ pub(super) struct TermRow<'a> {
 }
 
 impl PairTerms {
-    /// Prepares the comparison of `source_frames` of one clip with `target_frames` of another, every `stride`-th frame of each (at least 1), with
-    /// one weight per joint. Ranges are clamped to the clips. Nothing is compared yet: call [`advance`](Self::advance).
+    /// Prepares the comparison of `source_frames` of one clip with `target_frames` of another,
+    /// every `stride`-th frame of each (at least 1), with one weight per joint. Ranges are clamped
+    /// to the clips. Nothing is compared yet: call [`advance`](Self::advance).
     ///
     /// Memory: 12 bytes per pair of samples.
     ///
     /// # Errors
-    /// [`RegistrationError`] when a clip or range is empty, the skeletons' sizes differ, the weights do not fit, a position is not finite, or the pairs are
-    /// more than memory should be taken for (67 million).
+    /// [`RegistrationError`] when a clip or range is empty, the skeletons' sizes differ, the
+    /// weights do not fit, a position is not finite, or the pairs are more than memory should be
+    /// taken for (67 million).
     pub fn new(
         source: &Clip,
         source_frames: Range<usize>,
@@ -97,7 +107,8 @@ impl PairTerms {
         Self::banded(source, source_frames, target, target_frames, weights, stride, usize::MAX)
     }
 
-    /// Likewise, for pairs with |row - column| ≤ `band` only: what windows that start within `band` samples of both ranges' starts need.
+    /// Likewise, for pairs with |row - column| ≤ `band` only: what windows that start within `band`
+    /// samples of both ranges' starts need.
     pub(super) fn banded(
         source: &Clip,
         source_frames: Range<usize>,
@@ -109,14 +120,13 @@ impl PairTerms {
     ) -> Result<Self, RegistrationError> {
         let (source_joints, target_joints) = (source.skeleton().len(), target.skeleton().len());
         if source_joints != target_joints {
-            return Err(RegistrationError::Skeletons {
-                source_joints,
-                target_joints,
-            });
+            return Err(RegistrationError::Skeletons { source_joints, target_joints });
         }
         let frame_weight = checked_sum(weights, source_joints)?;
-        let clamped = |range: Range<usize>, frames: usize| range.start.min(frames)..range.end.min(frames);
-        let (source_frames, target_frames) = (clamped(source_frames, source.frames()), clamped(target_frames, target.frames()));
+        let clamped =
+            |range: Range<usize>, frames: usize| range.start.min(frames)..range.end.min(frames);
+        let (source_frames, target_frames) =
+            (clamped(source_frames, source.frames()), clamped(target_frames, target.frames()));
         for (which, frames) in [("outgoing", &source_frames), ("incoming", &target_frames)] {
             if frames.is_empty() {
                 return Err(RegistrationError::Empty { which });
@@ -129,7 +139,9 @@ impl PairTerms {
                 .div_ceil(stride)
                 .saturating_mul(target_frames.len().div_ceil(stride))
         };
-        check_pairs(pairs(stride), || (pairs(1) as f64 / MOST_PAIRS as f64).sqrt().ceil() as usize + 1)?;
+        check_pairs(pairs(stride), || {
+            (pairs(1) as f64 / MOST_PAIRS as f64).sqrt().ceil() as usize + 1
+        })?;
         let shares = Shares::new(weights, frame_weight);
         let level = shares.mean_height(source, source_frames.start);
         let clouds = |clip, frames| {
@@ -140,12 +152,7 @@ impl PairTerms {
                 stride,
             })
         };
-        Ok(Self::of(
-            &clouds(source, source_frames)?,
-            &clouds(target, target_frames)?,
-            band,
-            false,
-        ))
+        Ok(Self::of(&clouds(source, source_frames)?, &clouds(target, target_frames)?, band, false))
     }
 
     /// Nothing is compared yet. The pairs are few enough.
@@ -168,11 +175,16 @@ impl PairTerms {
         terms
     }
 
-    /// The frames of two clips whose points are known. Both clouds are of one skeleton and were made with the same weights, stride and level.
+    /// The frames of two clips whose points are known. Both clouds are of one skeleton and were
+    /// made with the same weights, stride and level.
     ///
     /// # Errors
-    /// [`RegistrationError::TooManyPairs`] when the pairs are more than memory should be taken for (67 million).
-    pub fn of_clouds(source: &PointClouds, target: &PointClouds) -> Result<Self, RegistrationError> {
+    /// [`RegistrationError::TooManyPairs`] when the pairs are more than memory should be taken for
+    /// (67 million).
+    pub fn of_clouds(
+        source: &PointClouds,
+        target: &PointClouds,
+    ) -> Result<Self, RegistrationError> {
         let pairs = source.cloud.samples.saturating_mul(target.cloud.samples);
         check_pairs(pairs, || source.stride * 2)?;
         Ok(Self::of(source, target, usize::MAX, false))
@@ -185,7 +197,8 @@ impl PairTerms {
         Ok(Self::of(of, of, usize::MAX, true))
     }
 
-    /// Compares at least `rows` more frames of the source with all frames of the target (rows come in fours), and says how far it has come.
+    /// Compares at least `rows` more frames of the source with all frames of the target (rows come
+    /// in fours), and says how far it has come.
     pub fn advance(&mut self, rows: usize) -> Progress {
         let end = self.done.saturating_add(rows).min(self.source.samples).div_ceil(LANES);
         let mut group = self.done / LANES;
@@ -206,10 +219,7 @@ impl PairTerms {
     /// How far it has come.
     #[must_use]
     pub fn progress(&self) -> Progress {
-        Progress {
-            done: self.done,
-            total: self.source.samples,
-        }
+        Progress { done: self.done, total: self.source.samples }
     }
 
     /// Frames from one sample to the next.
@@ -220,11 +230,8 @@ impl PairTerms {
 
     fn multiply(&mut self, groups: Range<usize>) {
         let rows = groups.start * LANES..groups.end * LANES;
-        let first = if self.triangle {
-            groups.start
-        } else {
-            rows.start.saturating_sub(self.band) / LANES
-        };
+        let first =
+            if self.triangle { groups.start } else { rows.start.saturating_sub(self.band) / LANES };
         let last = rows.end.saturating_add(self.band).div_ceil(LANES).min(self.target.groups());
         self.terms.resize(self.row_start(rows.end.min(self.source.samples)), 0.0);
         self.spread.clear();
@@ -244,7 +251,8 @@ impl PairTerms {
                     if row >= self.source.samples {
                         break;
                     }
-                    let (at, width) = (self.row_start(row) + column * LANES - first, self.width - first);
+                    let (at, width) =
+                        (self.row_start(row) + column * LANES - first, self.width - first);
                     for (term, sums) in [dot, cross, height].into_iter().enumerate() {
                         sums[lane].write_to_slice(&mut self.terms[at + term * width..][..LANES]);
                     }
@@ -292,19 +300,21 @@ impl PairTerms {
 
     pub(super) fn complete(&self) -> Result<(), RegistrationError> {
         let Progress { done, total } = self.progress();
-        if done < total {
-            Err(RegistrationError::Unfinished { done, total })
-        } else {
-            Ok(())
-        }
+        if done < total { Err(RegistrationError::Unfinished { done, total }) } else { Ok(()) }
     }
 
-    /// The distances between all windows of `window` frames that start in `sources` and `targets` (frames of the clips; clamped to what was
-    /// compared), in slices. Windows that would cross an end are left out: the matrix may be empty.
+    /// The distances between all windows of `window` frames that start in `sources` and `targets`
+    /// (frames of the clips; clamped to what was compared), in slices. Windows that would cross an
+    /// end are left out: the matrix may be empty.
     ///
     /// # Errors
     /// [`RegistrationError::Unfinished`] before all rows are compared.
-    pub fn sweep(&self, window: usize, sources: &Range<usize>, targets: &Range<usize>) -> Result<Sweep<'_>, RegistrationError> {
+    pub fn sweep(
+        &self,
+        window: usize,
+        sources: &Range<usize>,
+        targets: &Range<usize>,
+    ) -> Result<Sweep<'_>, RegistrationError> {
         self.complete()?;
         let window = window.max(1);
         let rows = self.source.starts(sources, window, self.stride);
@@ -316,22 +326,37 @@ impl PairTerms {
     ///
     /// # Errors
     /// [`RegistrationError::Unfinished`] before all rows are compared.
-    pub fn distances(&self, window: usize, sources: &Range<usize>, targets: &Range<usize>) -> Result<DistanceMatrix, RegistrationError> {
+    pub fn distances(
+        &self,
+        window: usize,
+        sources: &Range<usize>,
+        targets: &Range<usize>,
+    ) -> Result<DistanceMatrix, RegistrationError> {
         Ok(self.sweep(window, sources, targets)?.finish())
     }
 
-    /// The alignment of the windows of `window` frames that start at the samples next to frame `source` and frame `target`. O(window).
+    /// The alignment of the windows of `window` frames that start at the samples next to frame
+    /// `source` and frame `target`. O(window).
     ///
     /// # Errors
-    /// [`RegistrationError`] before all rows are compared, or when a window crosses the end of what was compared.
-    pub fn alignment(&self, source: usize, target: usize, window: usize, fallback_yaw: f64) -> Result<Alignment, RegistrationError> {
+    /// [`RegistrationError`] before all rows are compared, or when a window crosses the end of what
+    /// was compared.
+    pub fn alignment(
+        &self,
+        source: usize,
+        target: usize,
+        window: usize,
+        fallback_yaw: f64,
+    ) -> Result<Alignment, RegistrationError> {
         self.complete()?;
         let (row, column) = (
             source.saturating_sub(self.source.start) / self.stride,
             target.saturating_sub(self.target.start) / self.stride,
         );
         let samples = self.samples_in(window);
-        for (which, start, cloud) in [("outgoing", row, &self.source), ("incoming", column, &self.target)] {
+        for (which, start, cloud) in
+            [("outgoing", row, &self.source), ("incoming", column, &self.target)]
+        {
             if start.saturating_add(samples) > cloud.samples {
                 return Err(RegistrationError::TooShort {
                     which,
@@ -347,7 +372,8 @@ impl PairTerms {
             sums.weight += w;
             sums.source += w * p;
             sums.target += w * q;
-            // The squares hold the heights', which belong to the height term: their sum is what counts.
+            // The squares hold the heights', which belong to the height term: their sum is what
+            // counts.
             sums.source_square += w * (self.source.square[row + k] + p.length_squared());
             sums.target_square += w * (self.target.square[column + k] + q.length_squared());
             let at = column + k - terms.first;
@@ -360,9 +386,11 @@ impl PairTerms {
 }
 
 impl PairTerms {
-    /// The weighted centre on the ground of the target's window of `window` frames next to frame `target`, metres, as far as it lies inside.
+    /// The weighted centre on the ground of the target's window of `window` frames next to frame
+    /// `target`, metres, as far as it lies inside.
     pub(super) fn target_centre(&self, target: usize, window: usize) -> DVec2 {
-        let first = (target.saturating_sub(self.target.start) / self.stride).min(self.target.samples - 1);
+        let first =
+            (target.saturating_sub(self.target.start) / self.stride).min(self.target.samples - 1);
         let samples = first..(first + self.samples_in(window)).min(self.target.samples);
         let count = samples.len() as f64;
         self.target.origin + samples.map(|sample| self.target.centre(sample)).sum::<DVec2>() / count
@@ -372,17 +400,14 @@ impl PairTerms {
 /// Refuses more pairs than are held; `stride` is one that would do.
 fn check_pairs(pairs: usize, stride: impl FnOnce() -> usize) -> Result<(), RegistrationError> {
     if pairs > MOST_PAIRS {
-        return Err(RegistrationError::TooManyPairs {
-            pairs,
-            most: MOST_PAIRS,
-            stride: stride(),
-        });
+        return Err(RegistrationError::TooManyPairs { pairs, most: MOST_PAIRS, stride: stride() });
     }
     Ok(())
 }
 
-/// What [`PairTerms::distances`] gives, straight from the definition: every pair of windows, of those that start in `sources` and `targets`, laid on each
-/// other point by point, O(N²JK) in `f64`. The slow way that the fast one is tested and timed against.
+/// What [`PairTerms::distances`] gives, straight from the definition: every pair of windows, of
+/// those that start in `sources` and `targets`, laid on each other point by point, O(N²JK) in
+/// `f64`. The slow way that the fast one is tested and timed against.
 ///
 /// # Errors
 /// [`RegistrationError`] when the clips cannot be compared.
@@ -397,7 +422,8 @@ pub fn distances_directly(
     let windows = |clip: &Clip, starts: &Range<usize>| {
         let positions = clip.world_positions(0..clip.frames());
         let joints = clip.skeleton().len();
-        let starts = (starts.start..starts.end.min((clip.frames() + 1).saturating_sub(window))).step_by(stride);
+        let starts = (starts.start..starts.end.min((clip.frames() + 1).saturating_sub(window)))
+            .step_by(stride);
         let windows = starts.map(|start| {
             let samples = (start..start + window).step_by(stride);
             samples

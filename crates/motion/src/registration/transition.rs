@@ -3,7 +3,8 @@ use crate::clip::Clip;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The part of a clip in which a window may start, as shares of its frames: 0 is the first, 1 the end.
+/// The part of a clip in which a window may start, as shares of its frames: 0 is the first, 1 the
+/// end.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Region {
     /// Where it starts, 0 to 1.
@@ -24,14 +25,12 @@ impl Region {
     fn frame(frame: usize, frames: usize) -> Self {
         // Half a frame to both sides, so that rounding cannot move it to a neighbour.
         let share = |at: f64| at / frames.max(1) as f64;
-        Self {
-            from: share(frame as f64 - 0.5),
-            to: share(frame as f64 + 0.5),
-        }
+        Self { from: share(frame as f64 - 0.5), to: share(frame as f64 + 0.5) }
     }
 
-    /// The frames at which a window of `window` frames may start, and whether the region had to grow to the whole clip because no window that
-    /// starts in it ends before the clip does. `None` when the window is longer than the clip.
+    /// The frames at which a window of `window` frames may start, and whether the region had to
+    /// grow to the whole clip because no window that starts in it ends before the clip does. `None`
+    /// when the window is longer than the clip.
     fn starts(self, frames: usize, window: usize) -> Option<(Range<usize>, bool)> {
         let end = (frames + 1).checked_sub(window.max(1)).filter(|&end| end > 0)?;
         // `as usize` takes NaN and negative numbers to 0.
@@ -56,22 +55,20 @@ impl SearchOptions {
     /// Leave in the second half, enter in the first half.
     #[must_use]
     pub fn new(window: usize) -> Self {
-        Self {
-            window,
-            leave: Region::SECOND_HALF,
-            enter: Region::FIRST_HALF,
-        }
+        Self { window, leave: Region::SECOND_HALF, enter: Region::FIRST_HALF }
     }
 
-    /// Leaves an outgoing clip of `frames` at `frame` and nowhere else. The window becomes no longer than what is left of the clip there, so that the
-    /// frame asked for is the one that is compared.
+    /// Leaves an outgoing clip of `frames` at `frame` and nowhere else. The window becomes no
+    /// longer than what is left of the clip there, so that the frame asked for is the one that is
+    /// compared.
     #[must_use]
     pub fn leaving_at(self, frame: usize, frames: usize) -> Self {
         let (leave, window) = self.fixed_at(frame, frames);
         Self { window, leave, ..self }
     }
 
-    /// Enters an incoming clip of `frames` at `frame` and nowhere else; the window is shortened as in [`leaving_at`](Self::leaving_at).
+    /// Enters an incoming clip of `frames` at `frame` and nowhere else; the window is shortened as
+    /// in [`leaving_at`](Self::leaving_at).
     #[must_use]
     pub fn entering_at(self, frame: usize, frames: usize) -> Self {
         let (enter, window) = self.fixed_at(frame, frames);
@@ -83,17 +80,30 @@ impl SearchOptions {
         (Region::frame(frame, frames), self.window.min(frames - frame).max(1))
     }
 
-    /// The frames at which an outgoing clip of `frames` may be left, and whether its region had to grow.
-    pub(super) fn leave_starts(&self, frames: usize) -> Result<(Range<usize>, bool), RegistrationError> {
+    /// The frames at which an outgoing clip of `frames` may be left, and whether its region had to
+    /// grow.
+    pub(super) fn leave_starts(
+        &self,
+        frames: usize,
+    ) -> Result<(Range<usize>, bool), RegistrationError> {
         self.starts(self.leave, "outgoing", frames)
     }
 
-    /// The frames at which an incoming clip of `frames` may be entered, and whether its region had to grow.
-    pub(super) fn enter_starts(&self, frames: usize) -> Result<(Range<usize>, bool), RegistrationError> {
+    /// The frames at which an incoming clip of `frames` may be entered, and whether its region had
+    /// to grow.
+    pub(super) fn enter_starts(
+        &self,
+        frames: usize,
+    ) -> Result<(Range<usize>, bool), RegistrationError> {
         self.starts(self.enter, "incoming", frames)
     }
 
-    fn starts(&self, region: Region, which: &'static str, frames: usize) -> Result<(Range<usize>, bool), RegistrationError> {
+    fn starts(
+        &self,
+        region: Region,
+        which: &'static str,
+        frames: usize,
+    ) -> Result<(Range<usize>, bool), RegistrationError> {
         let window = self.window.max(1);
         let starts = region.starts(frames, window);
         starts.ok_or(RegistrationError::TooShort { which, frames, window })
@@ -107,7 +117,8 @@ pub struct Transition {
     pub leave: usize,
     /// The frame at which the incoming clip is entered: its window is `enter..enter + window`.
     pub enter: usize,
-    /// How the incoming window lies best on the outgoing one (`outgoing_from_incoming`), and what distance is left.
+    /// How the incoming window lies best on the outgoing one (`outgoing_from_incoming`), and what
+    /// distance is left.
     pub alignment: Alignment,
     /// The root-mean-square distance per point, centimetres on the reference body.
     pub rms_cm: f64,
@@ -118,11 +129,14 @@ pub struct Transition {
 /// How many minima of the coarse matrix are looked at closely.
 const CANDIDATES: usize = 4;
 
-/// The search for the best transition between two clips, with everything cached that does not depend on the window.
+/// The search for the best transition between two clips, with everything cached that does not
+/// depend on the window.
 ///
-/// Coarse to fine. All pairs of windows are compared every `max(⌈fps / 30⌉, ⌈frames / 400⌉)` frames; the four lowest minima of that
-/// grid are searched again at the full frame rate, within one stride. The answer's root-mean-square distance is within 5 % or 0.2 cm of the
-/// smallest over *all* pairs of frames (tested against them); an answer that is refined is exact for the pair it names.
+/// Coarse to fine. All pairs of windows are compared every `max(⌈fps / 30⌉, ⌈frames / 400⌉)`
+/// frames; the four lowest minima of that grid are searched again at the full frame rate, within
+/// one stride. The answer's root-mean-square distance is within 5 % or 0.2 cm of the smallest over
+/// *all* pairs of frames (tested against them); an answer that is refined is exact for the pair it
+/// names.
 #[derive(Clone, Debug)]
 pub struct TransitionSearch {
     outgoing: Arc<Clip>,
@@ -133,26 +147,34 @@ pub struct TransitionSearch {
 }
 
 impl TransitionSearch {
-    /// Prepares a search; `weights` has one weight per joint ([`super::limb_weights`]), `body_height` (metres,
-    /// [`crate::skeleton::Roles::body_height`]) is what distances are scaled by.
+    /// Prepares a search; `weights` has one weight per joint ([`super::limb_weights`]),
+    /// `body_height` (metres, [`crate::skeleton::Roles::body_height`]) is what distances are scaled
+    /// by.
     ///
     /// # Errors
-    /// [`RegistrationError`] when a clip is empty, the skeletons or frame rates differ, or the weights do not fit.
-    pub fn new(outgoing: Arc<Clip>, incoming: Arc<Clip>, weights: &[f64], body_height: f64) -> Result<Self, RegistrationError> {
+    /// [`RegistrationError`] when a clip is empty, the skeletons or frame rates differ, or the
+    /// weights do not fit.
+    pub fn new(
+        outgoing: Arc<Clip>,
+        incoming: Arc<Clip>,
+        weights: &[f64],
+        body_height: f64,
+    ) -> Result<Self, RegistrationError> {
         let (source_fps, target_fps) = (outgoing.fps(), incoming.fps());
         if (source_fps - target_fps).abs() > 1e-4 * source_fps {
             return Err(RegistrationError::FrameRates { source_fps, target_fps });
         }
         let longest = outgoing.frames().max(incoming.frames());
         let stride = ((source_fps / 30.0).ceil() as usize).max(longest.div_ceil(400)).max(1);
-        let terms = PairTerms::new(&outgoing, 0..outgoing.frames(), &incoming, 0..incoming.frames(), weights, stride)?;
-        Ok(Self {
-            outgoing,
-            incoming,
-            weights: weights.to_vec(),
-            body_height,
-            terms,
-        })
+        let terms = PairTerms::new(
+            &outgoing,
+            0..outgoing.frames(),
+            &incoming,
+            0..incoming.frames(),
+            weights,
+            stride,
+        )?;
+        Ok(Self { outgoing, incoming, weights: weights.to_vec(), body_height, terms })
     }
 
     /// Compares up to `rows` more rows of the coarse matrix; there are at most about 400.
@@ -169,15 +191,17 @@ impl TransitionSearch {
     /// The best transition for these options.
     ///
     /// # Errors
-    /// [`RegistrationError::Unfinished`] before the comparison is complete, [`RegistrationError::TooShort`] when the window does not fit.
+    /// [`RegistrationError::Unfinished`] before the comparison is complete,
+    /// [`RegistrationError::TooShort`] when the window does not fit.
     pub fn best(&self, options: &SearchOptions) -> Result<Transition, RegistrationError> {
         let window = options.window.max(1);
         let (leave, leave_grew) = options.leave_starts(self.outgoing.frames())?;
         let (enter, enter_grew) = options.enter_starts(self.incoming.frames())?;
         let grid = self.terms.distances(window, &leave, &enter)?;
-        let mut candidates: Vec<(usize, usize)> = (grid.local_minima().into_iter().take(CANDIDATES))
-            .map(|(r, c)| grid.frames(r, c))
-            .collect();
+        let mut candidates: Vec<(usize, usize)> =
+            (grid.local_minima().into_iter().take(CANDIDATES))
+                .map(|(r, c)| grid.frames(r, c))
+                .collect();
         if candidates.is_empty() {
             // The region lies between two samples of the grid.
             candidates.push((leave.start, enter.start));
@@ -202,7 +226,8 @@ impl TransitionSearch {
         })
     }
 
-    /// The best pair within `radius` frames of (i, j). In two passes where the radius is large: 17 × 17 pairs each.
+    /// The best pair within `radius` frames of (i, j). In two passes where the radius is large: 17
+    /// × 17 pairs each.
     fn refined(
         &self,
         i: usize,
@@ -212,7 +237,9 @@ impl TransitionSearch {
         leave: &Range<usize>,
         enter: &Range<usize>,
     ) -> Result<(f32, usize, usize), RegistrationError> {
-        let around = |at: usize, region: &Range<usize>| at.saturating_sub(radius).max(region.start)..(at + radius + 1).min(region.end);
+        let around = |at: usize, region: &Range<usize>| {
+            at.saturating_sub(radius).max(region.start)..(at + radius + 1).min(region.end)
+        };
         let (rows, columns) = (around(i, leave), around(j, enter));
         let stride = radius.div_ceil(8).max(1);
         let band = rows.len().max(columns.len()).div_ceil(stride);
@@ -238,7 +265,14 @@ impl TransitionSearch {
 }
 
 /// The alignment of two windows at the full frame rate.
-fn exact(a: &Clip, i: usize, b: &Clip, j: usize, window: usize, weights: &[f64]) -> Result<Alignment, RegistrationError> {
+fn exact(
+    a: &Clip,
+    i: usize,
+    b: &Clip,
+    j: usize,
+    window: usize,
+    weights: &[f64],
+) -> Result<Alignment, RegistrationError> {
     super::align(&a.world_positions(i..i + window), &b.world_positions(j..j + window), weights, 0.0)
 }
 
@@ -253,7 +287,8 @@ pub fn best_transition(
     body_height: f64,
     options: &SearchOptions,
 ) -> Result<Transition, RegistrationError> {
-    let mut search = TransitionSearch::new(Arc::clone(outgoing), Arc::clone(incoming), weights, body_height)?;
+    let mut search =
+        TransitionSearch::new(Arc::clone(outgoing), Arc::clone(incoming), weights, body_height)?;
     search.terms.finish();
     search.best(options)
 }

@@ -1,7 +1,8 @@
 use super::Skeleton;
 
-/// Which joint lies below which, answered in constant time: joints are numbered in depth-first order, so that what lies below a joint is a
-/// range. Files may hold thousands of joints in one chain.
+/// Which joint lies below which, answered in constant time: joints are numbered in depth-first
+/// order, so that what lies below a joint is a range. Files may hold thousands of joints in one
+/// chain.
 #[derive(Clone, Debug)]
 pub(crate) struct Ancestry {
     /// Place of each joint in depth-first order.
@@ -52,8 +53,14 @@ mod tests {
                 let ancestry = Ancestry::of(&skeleton);
                 for joint in 0..skeleton.len() {
                     for above in 0..skeleton.len() {
-                        let walked = std::iter::successors(skeleton.parent(joint), |&j| skeleton.parent(j)).any(|j| j == above);
-                        assert_eq!(ancestry.is_below(joint, above), walked, "{rig}: {joint} below {above}");
+                        let walked =
+                            std::iter::successors(skeleton.parent(joint), |&j| skeleton.parent(j))
+                                .any(|j| j == above);
+                        assert_eq!(
+                            ancestry.is_below(joint, above),
+                            walked,
+                            "{rig}: {joint} below {above}"
+                        );
                     }
                 }
             }

@@ -8,22 +8,26 @@ const HOLDS_THE_BODY: f32 = 0.9;
 
 /// Returns the joint where legs and trunk meet: it carries the body through the world.
 ///
-/// With both hip joints known that is their lowest common ancestor together with spine, arms and head, as far as the rig has these. Without legs
-/// it is the first joint from the root at which the body branches: as long as one child holds nine tenths of the length of all bones below a
-/// joint, and branches itself, the joint only holds that child. Depends on names and bone lengths alone, so that it is the same for all clips of
-/// a rig.
+/// With both hip joints known that is their lowest common ancestor together with spine, arms and
+/// head, as far as the rig has these. Without legs it is the first joint from the root at which the
+/// body branches: as long as one child holds nine tenths of the length of all bones below a joint,
+/// and branches itself, the joint only holds that child. Depends on names and bone lengths alone,
+/// so that it is the same for all clips of a rig.
 #[must_use]
 pub fn carrier(skeleton: &Skeleton, roles: &Roles) -> usize {
     let joint = |role| roles.get_within(role, skeleton.len());
-    let thighs: Vec<usize> = Side::BOTH.into_iter().filter_map(|side| joint(Role::thigh(side))).collect();
+    let thighs: Vec<usize> =
+        Side::BOTH.into_iter().filter_map(|side| joint(Role::thigh(side))).collect();
     if thighs.len() < 2 {
         return first_branching(skeleton);
     }
     let arms = Side::BOTH.map(Role::upper_arm);
     let trunk = [Role::Spine, Role::Head].into_iter().chain(arms).filter_map(joint);
-    // Hips that were named count where the legs hang on them alone: thighs may start at a joint of their own below.
+    // Hips that were named count where the legs hang on them alone: thighs may start at a joint of
+    // their own below.
     let meet = |a, b| lowest_common_ancestor(skeleton, a, b);
-    let below_hips = joint(Role::Hips).filter(|&hips| thighs.iter().all(|&thigh| meet(hips, thigh) == hips));
+    let below_hips =
+        joint(Role::Hips).filter(|&hips| thighs.iter().all(|&thigh| meet(hips, thigh) == hips));
     thighs.into_iter().chain(trunk).chain(below_hips).reduce(meet).unwrap_or(0)
 }
 
@@ -60,21 +64,25 @@ fn first_branching(skeleton: &Skeleton) -> usize {
     // Where a body hangs on the root the bone between them belongs to neither.
     while let Some(child) = skeleton.children(carrier).find(|&child| {
         let own = joints[child].offset.length();
-        branches[child] && below[child] > 0.0 && below[child] >= HOLDS_THE_BODY * (below[carrier] - own)
+        branches[child]
+            && below[child] > 0.0
+            && below[child] >= HOLDS_THE_BODY * (below[carrier] - own)
     }) {
         carrier = child;
     }
     carrier
 }
 
-/// The joints that a file has above the carrier, and how they go along with it: what an exporter needs to write them again.
+/// The joints that a file has above the carrier, and how they go along with it: what an exporter
+/// needs to write them again.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Above {
     /// From the file's root to the parent of the carrier; each hangs on the one before.
     pub(crate) chain: Vec<AboveJoint>,
     /// Rest translation of the carrier from its parent, in the parent's frame, metres.
     pub(crate) carrier_offset: Vec3,
-    /// Joints of the file that hang on the chain beside the carrier. Inside they hang on the carrier.
+    /// Joints of the file that hang on the chain beside the carrier. Inside they hang on the
+    /// carrier.
     pub(crate) beside: Vec<Beside>,
     /// For each joint of the skeleton its index in the file.
     pub(crate) file_index: Vec<usize>,
@@ -111,7 +119,8 @@ pub(crate) struct Beside {
 pub(crate) enum Follows {
     /// They stand still.
     Still,
-    /// One of them stays level and goes along the ground below the character, as game engines have it.
+    /// One of them stays level and goes along the ground below the character, as game engines have
+    /// it.
     OnGround {
         /// Its place in the chain.
         joint: usize,
@@ -141,7 +150,8 @@ impl Above {
         self.chain.iter().map(|above| &above.joint)
     }
 
-    /// For each joint of the file the joint of the skeleton that took its place; those above the carrier are the carrier.
+    /// For each joint of the file the joint of the skeleton that took its place; those above the
+    /// carrier are the carrier.
     #[must_use]
     pub fn from_file(&self) -> Vec<usize> {
         let mut taken = vec![0; self.chain.len() + self.file_index.len()];
@@ -164,11 +174,8 @@ impl Above {
     pub fn fits(&self, joints: usize) -> bool {
         let all = joints + self.chain.len();
         let mut seen = vec![false; all];
-        let places = self
-            .file_index
-            .iter()
-            .copied()
-            .chain(self.chain.iter().map(|above| above.file_index));
+        let places =
+            self.file_index.iter().copied().chain(self.chain.iter().map(|above| above.file_index));
         let each_once = places
             .filter(|&place| seen.get_mut(place).is_some_and(|seen| !std::mem::replace(seen, true)))
             .count();
@@ -233,7 +240,8 @@ mod tests {
         ]);
         assert_eq!(carrier(&spider, &Roles::default()), 2);
         // A chain never branches: its own root carries it, however long.
-        let chain = tree(&[(None, "a", Vec3::ZERO), (Some(0), "b", Vec3::Y), (Some(1), "c", Vec3::Y)]);
+        let chain =
+            tree(&[(None, "a", Vec3::ZERO), (Some(0), "b", Vec3::Y), (Some(1), "c", Vec3::Y)]);
         assert_eq!(carrier(&chain, &Roles::default()), 0);
         // A body that hangs on its chest is carried by it, whatever the names of what hangs below.
         let chest = tree(&[

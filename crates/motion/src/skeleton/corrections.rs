@@ -4,42 +4,65 @@ use super::{Role, Roles, Side, Skeleton};
 use crate::math::quat;
 use glam::{Mat3, Quat, Vec3};
 
-/// Rest directions that differ by less are the same by intention, radians (2°): local rotations are then copied as they are.
+/// Rest directions that differ by less are the same by intention, radians (2°): local rotations are
+/// then copied as they are.
 const SAME_DIRECTION_RADIANS: f32 = 0.035;
-/// In the back, neck and head the same holds up to 15°: there rigs place their joints differently in one and the same body.
+/// In the back, neck and head the same holds up to 15°: there rigs place their joints differently
+/// in one and the same body.
 const SAME_BACK_RADIANS: f32 = 0.26;
-/// Collar bones start anywhere between breast bone and spine, so their directions differ by more in one body: up to 45°.
+/// Collar bones start anywhere between breast bone and spine, so their directions differ by more in
+/// one body: up to 45°.
 const SAME_COLLAR_RADIANS: f32 = 0.79;
-/// Ankles lie higher or lower above one and the same sole: up to 35° the foot counts as flat in both rigs, and only its heading is corrected.
+/// Ankles lie higher or lower above one and the same sole: up to 35° the foot counts as flat in
+/// both rigs, and only its heading is corrected.
 const SAME_FOOT_RADIANS: f32 = 0.61;
 
-/// For every driven joint of the target the rotation that takes its bone at rest to that of the joint which drives it; the identity for others.
-pub(super) fn corrections(source: &Skeleton, source_body: &BodyAxes, target: &Skeleton, target_roles: &Roles, map: &JointMap) -> Vec<Quat> {
-    let whole_body = source_body.rotation * BodyAxes::at_rest(target, target_roles).rotation.conjugate();
+/// For every driven joint of the target the rotation that takes its bone at rest to that of the
+/// joint which drives it; the identity for others.
+pub(super) fn corrections(
+    source: &Skeleton,
+    source_body: &BodyAxes,
+    target: &Skeleton,
+    target_roles: &Roles,
+    map: &JointMap,
+) -> Vec<Quat> {
+    let whole_body =
+        source_body.rotation * BodyAxes::at_rest(target, target_roles).rotation.conjugate();
     let (left, up) = (source_body.left, source_body.rotation * Vec3::Y);
     let landmarks = Landmarks::of(target, target_roles);
     let back = back(target, target_roles);
     let bones = Bones::new(source, target, target_roles, map, landmarks.chest);
-    let is_any = |joint: usize, role: fn(Side) -> Role| Side::BOTH.into_iter().any(|side| target_roles.get(role(side)) == Some(joint));
+    let is_any = |joint: usize, role: fn(Side) -> Role| {
+        Side::BOTH.into_iter().any(|side| target_roles.get(role(side)) == Some(joint))
+    };
     let mut corrections = vec![Quat::IDENTITY; target.len()];
     // The correction of the nearest driven joint at or above each joint; parents come first.
     let mut nearest = vec![whole_body; target.len()];
     for joint in 0..target.len() {
         let inherited = target.parent(joint).map_or(whole_body, |parent| nearest[parent]);
         nearest[joint] = inherited;
-        let Some(from) = map.source_of(joint) else { continue };
+        let Some(from) = map.source_of(joint) else {
+            continue;
+        };
         corrections[joint] = match bones.at(joint, from) {
             Bone::Trunk => whole_body,
-            // A hand without fingers is straight where the other one is: it bends against its forearm as in the source.
+            // A hand without fingers is straight where the other one is: it bends against its
+            // forearm as in the source.
             Bone::None => inherited,
             Bone::Direction { target, source } => {
                 let target = whole_body * target;
                 let turn = match quat::log(quat::between_directions(target, source)).length() {
                     a if a < SAME_DIRECTION_RADIANS => Quat::IDENTITY,
                     a if a < SAME_BACK_RADIANS && back.contains(&joint) => Quat::IDENTITY,
-                    a if a < SAME_COLLAR_RADIANS && landmarks.collars.contains(&Some(joint)) => Quat::IDENTITY,
-                    a if a < SAME_FOOT_RADIANS && is_any(joint, Role::foot) => heading_turn(target, source, up),
-                    a if a < SAME_FOOT_RADIANS && is_any(joint, Role::toe) => inherited * whole_body.conjugate(),
+                    a if a < SAME_COLLAR_RADIANS && landmarks.collars.contains(&Some(joint)) => {
+                        Quat::IDENTITY
+                    }
+                    a if a < SAME_FOOT_RADIANS && is_any(joint, Role::foot) => {
+                        heading_turn(target, source, up)
+                    }
+                    a if a < SAME_FOOT_RADIANS && is_any(joint, Role::toe) => {
+                        inherited * whole_body.conjugate()
+                    }
                     _ => turn_about(target, source, left),
                 };
                 quat::renormalize(turn * whole_body)
@@ -59,14 +82,20 @@ struct Bones<'a> {
     target_rest: Vec<Vec3>,
     source_tree: Ancestry,
     target_tree: Ancestry,
-    /// How well each joint of the target shows where the bones above it lead: 0 the chest, 1 joints with roles (toes come before a heel), 2
-    /// all others.
+    /// How well each joint of the target shows where the bones above it lead: 0 the chest, 1 joints
+    /// with roles (toes come before a heel), 2 all others.
     ranks: Vec<u8>,
     hips: Option<usize>,
 }
 
 impl<'a> Bones<'a> {
-    fn new(source: &'a Skeleton, target: &'a Skeleton, target_roles: &Roles, map: &'a JointMap, chest: Option<usize>) -> Self {
+    fn new(
+        source: &'a Skeleton,
+        target: &'a Skeleton,
+        target_roles: &Roles,
+        map: &'a JointMap,
+        chest: Option<usize>,
+    ) -> Self {
         let rank = |joint: usize| match target_roles.role_of(joint) {
             _ if chest == Some(joint) => 0,
             Some(_) => 1,
@@ -85,9 +114,11 @@ impl<'a> Bones<'a> {
         }
     }
 
-    /// The bones that start at a joint of the target and at the one that drives it, both to joints (or ends) that correspond.
+    /// The bones that start at a joint of the target and at the one that drives it, both to joints
+    /// (or ends) that correspond.
     fn at(&self, joint: usize, from: usize) -> Bone {
-        if self.hips == Some(joint) || self.ranks[joint] == 0 || (joint == 0 && self.ranks[0] == 2) {
+        if self.hips == Some(joint) || self.ranks[joint] == 0 || (joint == 0 && self.ranks[0] == 2)
+        {
             return Bone::Trunk;
         }
         let long = |v: Vec3| v.length() > 1e-4;
@@ -97,8 +128,13 @@ impl<'a> Bones<'a> {
                 self.target_rest[below] - self.target_rest[joint],
                 self.source_rest[end] - self.source_rest[from],
             );
-            let below_both = self.target_tree.is_below(below, joint) && self.source_tree.is_below(end, from);
-            (below_both && long(bones.0) && long(bones.1)).then_some((self.ranks[below], below, bones))
+            let below_both =
+                self.target_tree.is_below(below, joint) && self.source_tree.is_below(end, from);
+            (below_both && long(bones.0) && long(bones.1)).then_some((
+                self.ranks[below],
+                below,
+                bones,
+            ))
         };
         let best = (joint + 1..self.target.len())
             .filter_map(bone_to)
@@ -107,7 +143,9 @@ impl<'a> Bones<'a> {
             return Bone::Direction { target, source };
         }
         match (self.target.joints()[joint].end_site, self.source.joints()[from].end_site) {
-            (Some(target), Some(source)) if long(target) && long(source) => Bone::Direction { target, source },
+            (Some(target), Some(source)) if long(target) && long(source) => {
+                Bone::Direction { target, source }
+            }
             _ => Bone::None,
         }
     }
@@ -123,7 +161,8 @@ enum Bone {
     None,
 }
 
-/// The turn from the direction `from` to `to`. Where they are opposite there are many; this one is about `left`, as legs and spines bend.
+/// The turn from the direction `from` to `to`. Where they are opposite there are many; this one is
+/// about `left`, as legs and spines bend.
 fn turn_about(from: Vec3, to: Vec3, left: Vec3) -> Quat {
     let turn = quat::between_directions(from, to);
     let opposite = quat::log(turn).length() > std::f32::consts::PI - SAME_DIRECTION_RADIANS;
@@ -138,11 +177,7 @@ fn turn_about(from: Vec3, to: Vec3, left: Vec3) -> Quat {
 fn heading_turn(from: Vec3, to: Vec3, up: Vec3) -> Quat {
     let level = |v: Vec3| v - up * up.dot(v);
     let turn = quat::between_directions(level(from), level(to));
-    if quat::log(turn).length() < SAME_DIRECTION_RADIANS {
-        Quat::IDENTITY
-    } else {
-        turn
-    }
+    if quat::log(turn).length() < SAME_DIRECTION_RADIANS { Quat::IDENTITY } else { turn }
 }
 
 /// How a body lies at rest.
@@ -154,29 +189,28 @@ pub(super) struct BodyAxes {
 }
 
 impl BodyAxes {
-    /// Axes from hips or shoulders and the back; those of the world where roles are missing. An axis within 15° of a world axis is that axis.
+    /// Axes from hips or shoulders and the back; those of the world where roles are missing. An
+    /// axis within 15° of a world axis is that axis.
     pub(super) fn at_rest(skeleton: &Skeleton, roles: &Roles) -> Self {
         let rest = skeleton.rest_positions();
         let at = |role| roles.get(role).and_then(|joint| rest.get(joint).copied());
-        let across = |role: fn(Side) -> Role| Some(at(role(Side::Left))? - at(role(Side::Right))?).filter(|v| v.length() > 1e-4);
-        let middle = |role: fn(Side) -> Role| Some((at(role(Side::Left))? + at(role(Side::Right))?) * 0.5);
+        let across = |role: fn(Side) -> Role| {
+            Some(at(role(Side::Left))? - at(role(Side::Right))?).filter(|v| v.length() > 1e-4)
+        };
+        let middle =
+            |role: fn(Side) -> Role| Some((at(role(Side::Left))? + at(role(Side::Right))?) * 0.5);
         let low = middle(Role::thigh).or_else(|| at(Role::Hips));
         let high = at(Role::Head).or_else(|| middle(Role::upper_arm)).or_else(|| at(Role::Spine));
         let left = snapped(across(Role::thigh).or_else(|| across(Role::upper_arm)));
         let up = snapped(low.zip(high).map(|(low, high)| high - low));
         let (Some(left), Some(up)) = (left, up) else {
-            return Self {
-                left: Vec3::X,
-                rotation: Quat::IDENTITY,
-            };
+            return Self { left: Vec3::X, rotation: Quat::IDENTITY };
         };
         let Some(up) = (up - left * left.dot(up)).try_normalize() else {
-            return Self {
-                left,
-                rotation: Quat::IDENTITY,
-            };
+            return Self { left, rotation: Quat::IDENTITY };
         };
-        let rotation = quat::renormalize(Quat::from_mat3(&Mat3::from_cols(left, up, left.cross(up))));
+        let rotation =
+            quat::renormalize(Quat::from_mat3(&Mat3::from_cols(left, up, left.cross(up))));
         Self { left, rotation }
     }
 }
@@ -193,7 +227,8 @@ fn snapped(v: Option<Vec3>) -> Option<Vec3> {
     )
 }
 
-/// The joints from the hips up to the head, both included; none where either is unknown or they are not above each other.
+/// The joints from the hips up to the head, both included; none where either is unknown or they are
+/// not above each other.
 pub(super) fn back(skeleton: &Skeleton, roles: &Roles) -> Vec<usize> {
     let joint = |role| roles.get_within(role, skeleton.len());
     let (Some(hips), Some(head)) = (joint(Role::Hips), joint(Role::Head)) else {

@@ -2,7 +2,8 @@ use super::ancestry::Ancestry;
 use super::{Role, Roles, Side, Skeleton};
 use std::collections::HashMap;
 
-/// Which joint of a source skeleton drives which joint of a target: by name and by role, never by index.
+/// Which joint of a source skeleton drives which joint of a target: by name and by role, never by
+/// index.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct JointMap {
     sources: Vec<Option<usize>>,
@@ -11,11 +12,18 @@ pub struct JointMap {
 impl JointMap {
     /// Maps joint by joint.
     ///
-    /// Joints that have a role go to the joint of that role, because one name means different joints in different rigs (`LeftShoulder` is a
-    /// collar bone here and an upper arm there). Then the joints where both arms meet go to each other, and the collar bones. All others go
-    /// to the joint of the same name (name spaces such as `mixamorig:` apart), if it lies below the joint that drives their parent.
+    /// Joints that have a role go to the joint of that role, because one name means different
+    /// joints in different rigs (`LeftShoulder` is a collar bone here and an upper arm there). Then
+    /// the joints where both arms meet go to each other, and the collar bones. All others go to the
+    /// joint of the same name (name spaces such as `mixamorig:` apart), if it lies below the joint
+    /// that drives their parent.
     #[must_use]
-    pub fn between(target: &Skeleton, target_roles: &Roles, source: &Skeleton, source_roles: &Roles) -> Self {
+    pub fn between(
+        target: &Skeleton,
+        target_roles: &Roles,
+        source: &Skeleton,
+        source_roles: &Roles,
+    ) -> Self {
         let mut sources: Vec<Option<usize>> = vec![None; target.len()];
         for role in Role::ALL {
             if let (Some(to), Some(from)) = (
@@ -49,9 +57,14 @@ impl JointMap {
     }
 }
 
-/// Maps every joint that is not yet mapped to the first joint of its name that has no role, drives no other joint, and lies below what
-/// drives the nearest driven joint above.
-fn map_by_name(target: &Skeleton, source: &Skeleton, source_roles: &Roles, sources: &mut [Option<usize>]) {
+/// Maps every joint that is not yet mapped to the first joint of its name that has no role, drives
+/// no other joint, and lies below what drives the nearest driven joint above.
+fn map_by_name(
+    target: &Skeleton,
+    source: &Skeleton,
+    source_roles: &Roles,
+    sources: &mut [Option<usize>],
+) {
     let mut by_name: HashMap<&str, Vec<usize>> = HashMap::new();
     let mut taken = vec![false; source.len()];
     for (from, joint) in source.joints().iter().enumerate() {
@@ -67,7 +80,9 @@ fn map_by_name(target: &Skeleton, source: &Skeleton, source_roles: &Roles, sourc
     for (joint, ours) in target.joints().iter().enumerate() {
         let above = ours.parent.and_then(|parent| nearest[parent]);
         if sources[joint].is_none() {
-            let fits = |from: usize| !taken[from] && above.is_none_or(|above| ancestry.is_below(from, above));
+            let fits = |from: usize| {
+                !taken[from] && above.is_none_or(|above| ancestry.is_below(from, above))
+            };
             let found = by_name
                 .get(own_name(&ours.name))
                 .and_then(|named| named.iter().copied().find(|&from| fits(from)));
@@ -93,7 +108,8 @@ pub(super) struct Landmarks {
 
 impl Landmarks {
     pub(super) fn of(skeleton: &Skeleton, roles: &Roles) -> Self {
-        let above = |joint: usize| std::iter::successors(skeleton.parent(joint), |&j| skeleton.parent(j));
+        let above =
+            |joint: usize| std::iter::successors(skeleton.parent(joint), |&j| skeleton.parent(j));
         let ancestry = Ancestry::of(skeleton);
         let arms = Side::BOTH.map(|side| roles.get_within(Role::upper_arm(side), skeleton.len()));
         let chest = match arms {
@@ -103,15 +119,9 @@ impl Landmarks {
         // A chest that is the hips says nothing about a back.
         let chest = chest.filter(|&chest| roles.role_of(chest) != Some(Role::Hips) && chest > 0);
         let collar = |arm: Option<usize>| {
-            above(arm?)
-                .take_while(|&joint| Some(joint) != chest)
-                .last()
-                .filter(|_| chest.is_some())
+            above(arm?).take_while(|&joint| Some(joint) != chest).last().filter(|_| chest.is_some())
         };
-        Self {
-            chest,
-            collars: arms.map(collar),
-        }
+        Self { chest, collars: arms.map(collar) }
     }
 
     fn pairs(&self, source: &Self) -> impl Iterator<Item = (usize, usize)> {
@@ -127,7 +137,8 @@ mod tests {
     use crate::skeleton::fixtures;
 
     fn drives(target: &Skeleton, source: &Skeleton, joint: &str) -> Option<String> {
-        let map = JointMap::between(target, &fixtures::roles(target), source, &fixtures::roles(source));
+        let map =
+            JointMap::between(target, &fixtures::roles(target), source, &fixtures::roles(source));
         map.source_of(target.find(joint)?).map(|from| source.joints()[from].name.clone())
     }
 
@@ -136,7 +147,12 @@ mod tests {
         let rigs = fixtures::all();
         for (from_rig, source, from_names) in &rigs {
             for (to_rig, target, to_names) in &rigs {
-                let map = JointMap::between(target, &fixtures::roles(target), source, &fixtures::roles(source));
+                let map = JointMap::between(
+                    target,
+                    &fixtures::roles(target),
+                    source,
+                    &fixtures::roles(source),
+                );
                 for (to, from) in to_names.iter().zip(from_names) {
                     assert_eq!(
                         map.source_of(target.find(to).unwrap()),
@@ -165,10 +181,14 @@ mod tests {
         let (cmu, mixamo) = (fixtures::cmu_bvh(), fixtures::mixamo());
         assert_eq!(drives(&cmu, &cmu, "LeftThumb").as_deref(), Some("LeftThumb"));
         // The name space of a program is no part of the name.
-        assert_eq!(drives(&mixamo, &cmu, "mixamorig:LeftHandIndex1").as_deref(), Some("LeftHandIndex1"));
+        assert_eq!(
+            drives(&mixamo, &cmu, "mixamorig:LeftHandIndex1").as_deref(),
+            Some("LeftHandIndex1")
+        );
         assert_eq!(drives(&mixamo, &cmu, "mixamorig:LeftHandThumb1"), None);
         assert_eq!(
-            drives(&mixamo, &fixtures::shuffled(&mixamo, 5).0, "mixamorig:RightHandIndex1").as_deref(),
+            drives(&mixamo, &fixtures::shuffled(&mixamo, 5).0, "mixamorig:RightHandIndex1")
+                .as_deref(),
             Some("mixamorig:RightHandIndex1")
         );
     }
@@ -189,7 +209,12 @@ mod tests {
         }
         let source = Skeleton::new(joints).unwrap();
         let (target, order) = fixtures::shuffled(&source, 3);
-        let map = JointMap::between(&target, &fixtures::roles(&target), &source, &fixtures::roles(&source));
+        let map = JointMap::between(
+            &target,
+            &fixtures::roles(&target),
+            &source,
+            &fixtures::roles(&source),
+        );
         assert_eq!((0..target.len()).map(|j| map.source_of(j).unwrap()).collect::<Vec<_>>(), order);
     }
 }

@@ -46,7 +46,8 @@ pub fn world_pose(skeleton: &Skeleton, pose: &Pose) -> WorldPose {
 
 /// Forward kinematics into a buffer that is used again, from borrowed parts of a pose.
 ///
-/// `rotations` holds one local rotation per joint; joints beyond its end rest. `translations` replace rest offsets, sorted by joint.
+/// `rotations` holds one local rotation per joint; joints beyond its end rest. `translations`
+/// replace rest offsets, sorted by joint.
 pub fn world_pose_into(
     skeleton: &Skeleton,
     root_translation: Vec3,
@@ -57,8 +58,9 @@ pub fn world_pose_into(
     place(skeleton, root_translation, rotations, translations, 0..skeleton.len(), world);
 }
 
-/// As [`world_pose_into`], of `joints` alone: in rising order and with all their ancestors, as [`Skeleton::with_ancestors`] gives them. The entries
-/// of other joints mean nothing. Indices that are no joints are passed over.
+/// As [`world_pose_into`], of `joints` alone: in rising order and with all their ancestors, as
+/// [`Skeleton::with_ancestors`] gives them. The entries of other joints mean nothing. Indices that
+/// are no joints are passed over.
 pub fn world_pose_of(
     skeleton: &Skeleton,
     root_translation: Vec3,
@@ -70,8 +72,8 @@ pub fn world_pose_of(
     place(skeleton, root_translation, rotations, translations, joints.iter().copied(), world);
 }
 
-/// The way back from [`world_pose`]: the local rotations, and the translations of joints that are not where their offset puts them (by more than
-/// 0.1 mm). Joints that the pose does not have rest.
+/// The way back from [`world_pose`]: the local rotations, and the translations of joints that are
+/// not where their offset puts them (by more than 0.1 mm). Joints that the pose does not have rest.
 #[must_use]
 pub fn local_pose(skeleton: &Skeleton, world: &WorldPose) -> Pose {
     const SAME_PLACE_M: f32 = 1e-4;
@@ -80,7 +82,9 @@ pub fn local_pose(skeleton: &Skeleton, world: &WorldPose) -> Pose {
         ..Pose::default()
     };
     for (index, joint) in skeleton.joints().iter().enumerate() {
-        let (Some(&position), Some(&rotation)) = (world.positions.get(index), world.rotations.get(index)) else {
+        let (Some(&position), Some(&rotation)) =
+            (world.positions.get(index), world.rotations.get(index))
+        else {
             break;
         };
         let Some(parent) = joint.parent else {
@@ -110,7 +114,9 @@ fn place(
     world.rotations.resize(skeleton.len(), Quat::IDENTITY);
     let mut moved = translations.into_iter().peekable();
     for index in joints {
-        let Some(joint) = skeleton.joints().get(index) else { continue };
+        let Some(joint) = skeleton.joints().get(index) else {
+            continue;
+        };
         let local = rotations.get(index).copied().unwrap_or(Quat::IDENTITY);
         let mut translation = joint.offset;
         while let Some((at, value)) = moved.next_if(|&(at, _)| at <= index) {

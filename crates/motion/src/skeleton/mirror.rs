@@ -9,35 +9,44 @@ const NEARLY_AN_AXIS: f32 = 0.966;
 const LEAST_BONE_M: f32 = 1e-6;
 /// Corrections below this are none, radians.
 const SAME_RADIANS: f32 = 1e-4;
-/// What lies nearer to the line of a bone than this share of its length says nothing about turns about it.
+/// What lies nearer to the line of a bone than this share of its length says nothing about turns
+/// about it.
 const BESIDE_BONE: f32 = 0.05;
-/// Two subtrees are counterparts by shape when one's mirror image misses the other by at most this share of its distance.
+/// Two subtrees are counterparts by shape when one's mirror image misses the other by at most this
+/// share of its distance.
 const SHAPE_TOLERANCE: f32 = 0.35;
 
-/// Joints with more children than this (no body has them) are compared by role and name only: comparing shapes takes their number squared.
+/// Joints with more children than this (no body has them) are compared by role and name only:
+/// comparing shapes takes their number squared.
 const MOST_SIBLINGS: usize = 256;
 
 /// A skeleton in which no joint of the left has a counterpart on the right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("no joint on the left has a counterpart on the right: say by hand which joints are the left and right thigh or upper arm")]
+#[error(
+    "no joint on the left has a counterpart on the right: say by hand which joints are the left and right thigh or upper arm"
+)]
 pub struct NoSides;
 
 /// How a skeleton looks in a mirror: which joint stands for which, and how their frames differ.
 ///
-/// With S the reflection `x → -x` of the world and M that of the rest pose in its own plane of symmetry, a joint `j` with the
-/// counterpart `p` gets the world rotation `S · R(p) · M · C(j)`, where `C(j)` takes the bones that start at `j` to the mirror images of those that start
-/// at `p`, each in its own joint's frame: the one bone of a limb exactly, several (hips, chest, hand) as nearly as a rotation can. With a
-/// symmetric rest pose C is the identity. With any other the bones' directions are those of the mirror image all the same, and only their
-/// lengths are the skeleton's own: nothing depends on how the file lays the joints' axes. Mirroring twice gives the original back, because
-/// `C(p) = M · C(j)⁻¹ · M`.
+/// With S the reflection `x → -x` of the world and M that of the rest pose in its own plane of
+/// symmetry, a joint `j` with the counterpart `p` gets the world rotation `S · R(p) · M · C(j)`,
+/// where `C(j)` takes the bones that start at `j` to the mirror images of those that start at `p`,
+/// each in its own joint's frame: the one bone of a limb exactly, several (hips, chest, hand) as
+/// nearly as a rotation can. With a symmetric rest pose C is the identity. With any other the
+/// bones' directions are those of the mirror image all the same, and only their lengths are the
+/// skeleton's own: nothing depends on how the file lays the joints' axes. Mirroring twice gives the
+/// original back, because `C(p) = M · C(j)⁻¹ · M`.
 ///
-/// One bone leaves the turn about itself open. A symmetric rest pose tells it, too; one that shows no creature does not, and a spine could come out
-/// of it turned half round. There the motion tells ([`Mirror::of_motion`]): on the whole the left does what the right does.
+/// One bone leaves the turn about itself open. A symmetric rest pose tells it, too; one that shows
+/// no creature does not, and a spine could come out of it turned half round. There the motion tells
+/// ([`Mirror::of_motion`]): on the whole the left does what the right does.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mirror {
     /// Unit normal of the rest pose's plane of symmetry.
     normal: Vec3,
-    /// The counterpart of every joint: itself in the middle of the body, `None` where there is none.
+    /// The counterpart of every joint: itself in the middle of the body, `None` where there is
+    /// none.
     counterparts: Vec<Option<usize>>,
     parents: Vec<Option<usize>>,
     offsets: Vec<Vec3>,
@@ -45,7 +54,8 @@ pub struct Mirror {
 }
 
 impl Mirror {
-    /// Pairs the joints of a skeleton: those that have roles (or lead to one) by role, others by name, then by where they are at rest.
+    /// Pairs the joints of a skeleton: those that have roles (or lead to one) by role, others by
+    /// name, then by where they are at rest.
     ///
     /// # Errors
     /// [`NoSides`] when roles and names give no pair at all.
@@ -53,8 +63,9 @@ impl Mirror {
         Self::turned_by(skeleton, roles, None)
     }
 
-    /// As [`of`](Self::of), for a skeleton whose rest pose shows no creature: `usual` is the mean rotation of each joint against its parent in a motion. What
-    /// the bones leave open is chosen so that the mirror image has these means, too, as nearly as it can.
+    /// As [`of`](Self::of), for a skeleton whose rest pose shows no creature: `usual` is the mean
+    /// rotation of each joint against its parent in a motion. What the bones leave open is chosen
+    /// so that the mirror image has these means, too, as nearly as it can.
     ///
     /// # Errors
     /// As [`of`](Self::of).
@@ -62,7 +73,11 @@ impl Mirror {
         Self::turned_by(skeleton, roles, Some(usual))
     }
 
-    fn turned_by(skeleton: &Skeleton, roles: &Roles, usual: Option<&[Quat]>) -> Result<Self, NoSides> {
+    fn turned_by(
+        skeleton: &Skeleton,
+        roles: &Roles,
+        usual: Option<&[Quat]>,
+    ) -> Result<Self, NoSides> {
         let rest = skeleton.rest_positions();
         let normal = left_right_axis(skeleton, roles, &rest).ok_or(NoSides)?;
         let pairing = Pairing::new(skeleton, roles, &rest, normal);
@@ -82,16 +97,21 @@ impl Mirror {
             corrections: vec![Quat::IDENTITY; skeleton.len()],
         };
         for joint in 0..skeleton.len() {
-            let Some(other) = mirror.counterparts[joint] else { continue };
+            let Some(other) = mirror.counterparts[joint] else {
+                continue;
+            };
             let bones = mirror.bones_below(joint);
-            // All of several bones may lie on one line, and then leave the turn about it open. The longest stands for them; in the middle of the body their
-            // sum does, for a bone of one side would be turned to that of the other, and the mirror image of the mirror image would be another pose.
+            // All of several bones may lie on one line, and then leave the turn about it open. The
+            // longest stands for them; in the middle of the body their sum does, for a bone of one
+            // side would be turned to that of the other, and the mirror image of the mirror image
+            // would be another pose.
             let sum = |bones: &[(Vec3, Vec3)]| {
                 bones
                     .iter()
                     .fold((Vec3::ZERO, Vec3::ZERO), |sum, bone| (sum.0 + bone.0, sum.1 + bone.1))
             };
-            let longest = bones.iter().copied().max_by(|a, b| a.0.length().total_cmp(&b.0.length()));
+            let longest =
+                bones.iter().copied().max_by(|a, b| a.0.length().total_cmp(&b.0.length()));
             let bone = match (pairing.bone(joint), pairing.bone(other)) {
                 (Some(bone), Some(others)) => Some((bone, mirror.reflected(others))),
                 _ if other == joint => Some(sum(&bones)),
@@ -100,13 +120,20 @@ impl Mirror {
             let bone = bone.filter(|(bone, _)| bone.length() > LEAST_BONE_M);
             let near = usual.and_then(|usual| mirror.usual_correction(joint, other, usual));
             mirror.corrections[joint] = match (bone, quat::best_fit(&bones)) {
-                // The second of a pair is made from the first, so that both undo each other to the last bit.
-                _ if other < joint => mirror.reflected_rotation(mirror.corrections[other].conjugate()),
+                // The second of a pair is made from the first, so that both undo each other to the
+                // last bit.
+                _ if other < joint => {
+                    mirror.reflected_rotation(mirror.corrections[other].conjugate())
+                }
                 (_, Some(turn)) if pairing.bone(joint).is_none() => turn,
-                (Some((bone, others)), _) => turned_about_bone(bone, others, &bones, near.unwrap_or(Quat::IDENTITY)),
+                (Some((bone, others)), _) => {
+                    turned_about_bone(bone, others, &bones, near.unwrap_or(Quat::IDENTITY))
+                }
                 _ if near.is_some() => near.unwrap_or(Quat::IDENTITY),
-                // What has no bones follows its parent, except in the middle: there it is the mirror image of itself.
-                _ if other != joint => mirror.parents[joint].map_or(Quat::IDENTITY, |parent| mirror.corrections[parent]),
+                // What has no bones follows its parent, except in the middle: there it is the
+                // mirror image of itself.
+                _ if other != joint => mirror.parents[joint]
+                    .map_or(Quat::IDENTITY, |parent| mirror.corrections[parent]),
                 _ => Quat::IDENTITY,
             };
             if quat::angle_between(mirror.corrections[joint], Quat::IDENTITY) < SAME_RADIANS {
@@ -116,46 +143,62 @@ impl Mirror {
         Ok(mirror)
     }
 
-    /// The correction with which the mirror image of what the counterpart usually does is what the joint itself usually does.
+    /// The correction with which the mirror image of what the counterpart usually does is what the
+    /// joint itself usually does.
     fn usual_correction(&self, joint: usize, other: usize, usual: &[Quat]) -> Option<Quat> {
         let parent = self.parents[joint]?;
-        let image = self.corrections[parent].conjugate() * self.reflected_rotation(*usual.get(other)?);
+        let image =
+            self.corrections[parent].conjugate() * self.reflected_rotation(*usual.get(other)?);
         Some(quat::renormalize(image.conjugate() * *usual.get(joint)?))
     }
 
-    /// The bones that start at a joint, each with the mirror image of the one that starts at its counterpart and ends at theirs.
+    /// The bones that start at a joint, each with the mirror image of the one that starts at its
+    /// counterpart and ends at theirs.
     fn bones_below(&self, joint: usize) -> Vec<(Vec3, Vec3)> {
-        let below = (joint + 1..self.parents.len()).filter(|&child| self.parents[child] == Some(joint));
+        let below =
+            (joint + 1..self.parents.len()).filter(|&child| self.parents[child] == Some(joint));
         let pair = |child: usize| {
-            let other = self.counterparts[child].filter(|&other| self.parents[other] == self.counterparts[joint])?;
+            let other = self.counterparts[child]
+                .filter(|&other| self.parents[other] == self.counterparts[joint])?;
             Some((self.offsets[child], self.reflected(self.offsets[other])))
         };
         below.filter_map(pair).collect()
     }
 
-    /// The joint that moves in a mirror as this one does: itself in the middle of the body; `None` for a joint without counterpart.
+    /// The joint that moves in a mirror as this one does: itself in the middle of the body; `None`
+    /// for a joint without counterpart.
     #[must_use]
     pub fn counterpart(&self, joint: usize) -> Option<usize> {
         self.counterparts.get(joint).copied().flatten()
     }
 
-    /// The mirror image of a pose in the plane x = 0 of the world. Joints without counterpart keep what they do.
+    /// The mirror image of a pose in the plane x = 0 of the world. Joints without counterpart keep
+    /// what they do.
     #[must_use]
     pub fn pose(&self, pose: &Pose) -> Pose {
         let local = |joint: usize| pose.rotations.get(joint).copied().unwrap_or(Quat::IDENTITY);
-        let rotations = (0..self.counterparts.len()).map(|joint| match (self.counterparts[joint], self.parents[joint]) {
-            (Some(other), Some(parent)) => {
-                let mirrored = self.reflected_rotation(local(other));
-                quat::renormalize(self.corrections[parent].conjugate() * mirrored * self.corrections[joint])
+        let rotations = (0..self.counterparts.len()).map(|joint| {
+            match (self.counterparts[joint], self.parents[joint]) {
+                (Some(other), Some(parent)) => {
+                    let mirrored = self.reflected_rotation(local(other));
+                    quat::renormalize(
+                        self.corrections[parent].conjugate() * mirrored * self.corrections[joint],
+                    )
+                }
+                (_, None) => {
+                    // S · R · M = (S · R · S) · (S · M), and two reflections are the product of
+                    // their normals as pure quaternions.
+                    let q = local(joint);
+                    let (x, n) = (Quat::from_xyzw(1.0, 0.0, 0.0, 0.0), self.normal);
+                    let reflections = x * Quat::from_xyzw(n.x, n.y, n.z, 0.0);
+                    quat::renormalize(
+                        Quat::from_xyzw(q.x, -q.y, -q.z, q.w)
+                            * reflections
+                            * self.corrections[joint],
+                    )
+                }
+                (None, Some(_)) => local(joint),
             }
-            (_, None) => {
-                // S · R · M = (S · R · S) · (S · M), and two reflections are the product of their normals as pure quaternions.
-                let q = local(joint);
-                let (x, n) = (Quat::from_xyzw(1.0, 0.0, 0.0, 0.0), self.normal);
-                let reflections = x * Quat::from_xyzw(n.x, n.y, n.z, 0.0);
-                quat::renormalize(Quat::from_xyzw(q.x, -q.y, -q.z, q.w) * reflections * self.corrections[joint])
-            }
-            (None, Some(_)) => local(joint),
         });
         let mut translations: Vec<(usize, Vec3)> = pose
             .translations
@@ -172,18 +215,18 @@ impl Mirror {
 
     /// The mirror image of a translation of `joint` against its parent, and whose it is then.
     fn translation(&self, joint: usize, value: Vec3) -> (usize, Vec3) {
-        let (Some(other), Some(Some(parent))) = (self.counterpart(joint), self.parents.get(joint)) else {
+        let (Some(other), Some(Some(parent))) = (self.counterpart(joint), self.parents.get(joint))
+        else {
             return (joint, value);
         };
-        let into_parent = self.parents[other].map_or(Quat::IDENTITY, |parent| self.corrections[parent].conjugate());
+        let into_parent = self.parents[other]
+            .map_or(Quat::IDENTITY, |parent| self.corrections[parent].conjugate());
         if other == joint {
             return (joint, self.corrections[*parent].conjugate() * self.reflected(value));
         }
-        // What differs from rest is mirrored, so that a bone at its rest length keeps its own length.
-        (
-            other,
-            self.offsets[other] + into_parent * self.reflected(value - self.offsets[joint]),
-        )
+        // What differs from rest is mirrored, so that a bone at its rest length keeps its own
+        // length.
+        (other, self.offsets[other] + into_parent * self.reflected(value - self.offsets[joint]))
     }
 
     /// M · v.
@@ -198,11 +241,14 @@ impl Mirror {
     }
 }
 
-/// The rotation that takes a bone to another, turned about that so that what else starts at the joint comes as near as it can to where it belongs; where
-/// nothing else does, the one that is nearest to `near`.
+/// The rotation that takes a bone to another, turned about that so that what else starts at the
+/// joint comes as near as it can to where it belongs; where nothing else does, the one that is
+/// nearest to `near`.
 fn turned_about_bone(from: Vec3, to: Vec3, bones: &[(Vec3, Vec3)], near: Quat) -> Quat {
     let turn = quat::renormalize(quat::between_directions(near * from, to) * near);
-    let Some(axis) = to.try_normalize() else { return turn };
+    let Some(axis) = to.try_normalize() else {
+        return turn;
+    };
     let (mut sin, mut cos, mut size) = (0.0, 0.0, 0.0_f32);
     for &(bone, wanted) in bones {
         let across = |v: Vec3| v - axis * axis.dot(v);
@@ -221,10 +267,12 @@ fn turned_about_bone(from: Vec3, to: Vec3, bones: &[(Vec3, Vec3)], near: Quat) -
 fn left_right_axis(skeleton: &Skeleton, roles: &Roles, rest: &[Vec3]) -> Option<Vec3> {
     let at = |role| roles.get(role).and_then(|joint| rest.get(joint).copied());
     let by_role = Role::ALL.into_iter().filter(|role| role.side() == Some(Side::Left));
-    let mut differences: Vec<Vec3> = by_role.filter_map(|role| Some(at(role)? - at(role.mirrored())?)).collect();
+    let mut differences: Vec<Vec3> =
+        by_role.filter_map(|role| Some(at(role)? - at(role.mirrored())?)).collect();
     if differences.is_empty() {
         let names: Vec<Tokens> = skeleton.joints().iter().map(|joint| read(&joint.name)).collect();
-        for (a, first) in names.iter().enumerate().filter(|(_, name)| name.side == Some(Side::Left)) {
+        for (a, first) in names.iter().enumerate().filter(|(_, name)| name.side == Some(Side::Left))
+        {
             let second = names.iter().position(|second| are_counterparts(first, second));
             differences.extend(second.map(|b| rest[a] - rest[b]));
         }
@@ -237,9 +285,8 @@ fn left_right_axis(skeleton: &Skeleton, roles: &Roles, rest: &[Vec3]) -> Option<
         .sum::<Vec3>()
         .try_normalize()
         .unwrap_or(Vec3::X);
-    let snapped = [Vec3::X, Vec3::Y, Vec3::Z]
-        .into_iter()
-        .find(|unit| axis.dot(*unit).abs() > NEARLY_AN_AXIS);
+    let snapped =
+        [Vec3::X, Vec3::Y, Vec3::Z].into_iter().find(|unit| axis.dot(*unit).abs() > NEARLY_AN_AXIS);
     Some(snapped.unwrap_or(axis))
 }
 
@@ -250,7 +297,8 @@ struct Pairing<'a> {
     children: Vec<Vec<usize>>,
     /// For every joint, the roles of itself and all joints below, as bits.
     roles_below: Vec<u32>,
-    /// For every joint, the mean of itself, the joints and the end sites below, relative to its parent.
+    /// For every joint, the mean of itself, the joints and the end sites below, relative to its
+    /// parent.
     centres: Vec<Vec3>,
     normal: Vec3,
 }
@@ -283,29 +331,26 @@ impl<'a> Pairing<'a> {
             .map(|(index, (sum, count))| *sum / *count - from(index))
             .collect();
         let names = joints.iter().map(|joint| read(&joint.name)).collect();
-        Self {
-            skeleton,
-            names,
-            children,
-            roles_below,
-            centres,
-            normal,
-        }
+        Self { skeleton, names, children, roles_below, centres, normal }
     }
 
-    /// The counterpart of every joint, from the root down: children of counterparts are compared with each other.
+    /// The counterpart of every joint, from the root down: children of counterparts are compared
+    /// with each other.
     fn counterparts(&self) -> Vec<Option<usize>> {
         let mut counterparts: Vec<Option<usize>> = vec![None; self.skeleton.len()];
         counterparts[0] = Some(0);
         for joint in 0..self.skeleton.len() {
-            // Parents come before children, so a joint's own counterpart is known when its children's turn comes.
+            // Parents come before children, so a joint's own counterpart is known when its
+            // children's turn comes.
             let Some(other) = counterparts[joint].filter(|&other| joint <= other) else {
                 continue;
             };
             let mut candidates: Vec<(u8, f32, usize, usize)> = Vec::new();
             for &a in &self.children[joint] {
                 for &b in self.children[other].iter().filter(|&&b| joint != other || a <= b) {
-                    candidates.extend(self.likeness(a, b, joint == other).map(|(rank, cost)| (rank, cost, a, b)));
+                    candidates.extend(
+                        self.likeness(a, b, joint == other).map(|(rank, cost)| (rank, cost, a, b)),
+                    );
                 }
             }
             candidates.sort_by(|x, y| x.0.cmp(&y.0).then(x.1.total_cmp(&y.1)));
@@ -319,7 +364,8 @@ impl<'a> Pairing<'a> {
         counterparts
     }
 
-    /// How good a pair two joints make: rank (roles, names, shape), then the distance by which the mirror image misses. `None` for no pair.
+    /// How good a pair two joints make: rank (roles, names, shape), then the distance by which the
+    /// mirror image misses. `None` for no pair.
     fn likeness(&self, a: usize, b: usize, in_the_middle: bool) -> Option<(u8, f32)> {
         let reflected = self.centres[a] - 2.0 * self.normal * self.normal.dot(self.centres[a]);
         let cost = reflected.distance(self.centres[b]);
@@ -337,23 +383,26 @@ impl<'a> Pairing<'a> {
             return Some((1, cost));
         }
         let siblings = self.skeleton.parent(a).map_or(0, |parent| self.children[parent].len());
-        let fits = siblings <= MOST_SIBLINGS && cost <= SHAPE_TOLERANCE * self.centres[a].length() + 1e-4;
-        // What lies off the middle without a partner is its own counterpart: a rucksack's strap, a tail.
-        if fits {
-            Some((2, cost))
-        } else {
-            (in_the_middle && a == b).then_some((3, cost))
-        }
+        let fits =
+            siblings <= MOST_SIBLINGS && cost <= SHAPE_TOLERANCE * self.centres[a].length() + 1e-4;
+        // What lies off the middle without a partner is its own counterpart: a rucksack's strap, a
+        // tail.
+        if fits { Some((2, cost)) } else { (in_the_middle && a == b).then_some((3, cost)) }
     }
 
-    /// The direction of the bone that starts at a joint, not of unit length: to the only child, or the only one that leads to a role; for a
-    /// leaf to its end site. Joints at the same place count as one.
+    /// The direction of the bone that starts at a joint, not of unit length: to the only child, or
+    /// the only one that leads to a role; for a leaf to its end site. Joints at the same place
+    /// count as one.
     fn bone(&self, joint: usize) -> Option<Vec3> {
         let mut at = joint;
         loop {
             let children = &self.children[at];
             let next = match children.as_slice() {
-                [] => return self.skeleton.joints()[at].end_site.filter(|end| end.length() > LEAST_BONE_M),
+                [] => {
+                    return self.skeleton.joints()[at]
+                        .end_site
+                        .filter(|end| end.length() > LEAST_BONE_M);
+                }
                 [only] => *only,
                 several => {
                     let mut leading = several.iter().filter(|&&child| self.roles_below[child] != 0);
@@ -381,7 +430,11 @@ mod tests {
     use super::super::{Joint, fixtures};
     use super::*;
 
-    fn counterpart_names(skeleton: &Skeleton, roles: &Roles, names: &Skeleton) -> Vec<(String, String)> {
+    fn counterpart_names(
+        skeleton: &Skeleton,
+        roles: &Roles,
+        names: &Skeleton,
+    ) -> Vec<(String, String)> {
         let mirror = Mirror::of(skeleton, roles).unwrap();
         let name = |joint: usize| names.joints()[joint].name.clone();
         (0..skeleton.len())
@@ -394,17 +447,18 @@ mod tests {
     fn every_joint_of_every_rig_has_its_counterpart() {
         for (rig, skeleton, _) in fixtures::all() {
             for seed in 0..3 {
-                let (skeleton, _) = fixtures::shuffled(&fixtures::uneven(&skeleton, 1.0, 0.02, 0.03, seed), seed);
+                let (skeleton, _) =
+                    fixtures::shuffled(&fixtures::uneven(&skeleton, 1.0, 0.02, 0.03, seed), seed);
                 let roles = fixtures::roles(&skeleton);
                 for names_count in [true, false] {
-                    let seen = if names_count {
-                        skeleton.clone()
-                    } else {
-                        fixtures::nameless(&skeleton)
-                    };
+                    let seen =
+                        if names_count { skeleton.clone() } else { fixtures::nameless(&skeleton) };
                     for (name, other) in counterpart_names(&seen, &roles, &skeleton) {
                         let (ours, theirs) = (read(&name), read(&other));
-                        assert!(name == other || are_counterparts(&ours, &theirs), "{rig}: {name} and {other}");
+                        assert!(
+                            name == other || are_counterparts(&ours, &theirs),
+                            "{rig}: {name} and {other}"
+                        );
                         let is_sided = ours.side.is_some() && name != "L5";
                         assert_eq!(name != other, is_sided, "{rig}: {name} and {other}");
                     }
@@ -427,10 +481,7 @@ mod tests {
         let skeleton = Skeleton::new(joints).unwrap();
         let mirror = Mirror::of(&skeleton, &fixtures::roles(&skeleton)).unwrap();
         assert_eq!(mirror.counterpart(skeleton.len() - 1), None);
-        let mut pose = Pose {
-            rotations: vec![Quat::IDENTITY; skeleton.len()],
-            ..Pose::default()
-        };
+        let mut pose = Pose { rotations: vec![Quat::IDENTITY; skeleton.len()], ..Pose::default() };
         pose.rotations[skeleton.len() - 1] = Quat::from_rotation_x(0.5);
         assert_eq!(mirror.pose(&pose).rotations[skeleton.len() - 1], Quat::from_rotation_x(0.5));
     }
@@ -441,7 +492,8 @@ mod tests {
         let mirror = Mirror::of(&skeleton, &fixtures::roles(&skeleton)).unwrap();
         for joint in 0..skeleton.len() {
             let other = mirror.counterpart(joint).unwrap();
-            let back = mirror.reflected_rotation(mirror.corrections[other]) * mirror.corrections[joint];
+            let back =
+                mirror.reflected_rotation(mirror.corrections[other]) * mirror.corrections[joint];
             assert!(quat::log(back).length() < 1e-6, "{joint}");
         }
     }

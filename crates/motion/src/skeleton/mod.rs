@@ -1,9 +1,11 @@
-//! Skeletons: trees of joints, where a pose puts them, what each joint is for, and how a pose comes onto another body or into a mirror.
+//! Skeletons: trees of joints, where a pose puts them, what each joint is for, and how a pose comes
+//! onto another body or into a mirror.
 //!
 //! # The idea
 //!
-//! A joint is a pivot that hangs on its parent by an offset. A [`Pose`] turns every joint against its parent; forward kinematics
-//! ([`world_pose`]) adds that up from the root outwards. Since parents stand before their children, one pass does it:
+//! A joint is a pivot that hangs on its parent by an offset. A [`Pose`] turns every joint against
+//! its parent; forward kinematics ([`world_pose`]) adds that up from the root outwards. Since
+//! parents stand before their children, one pass does it:
 //!
 //! ```text
 //! rotation(j) = rotation(parent) · local(j)                       world_from_joint
@@ -12,15 +14,17 @@
 //!
 //! So a turn of the hip carries the whole leg along, and no bone changes its length.
 //!
-//! Files name joints as they like. [`Roles`] say which joint is the left knee, by its name, else by the shape at rest, else by hand; from
-//! there on nobody asks for names. With roles known on both sides a pose moves to another body ([`Retargeting`]): a joint takes the *world*
-//! rotation of the joint that drives it, corrected by how the two bones differ at rest.
+//! Files name joints as they like. [`Roles`] say which joint is the left knee, by its name, else by
+//! the shape at rest, else by hand; from there on nobody asks for names. With roles known on both
+//! sides a pose moves to another body ([`Retargeting`]): a joint takes the *world* rotation of the
+//! joint that drives it, corrected by how the two bones differ at rest.
 //!
 //! ```text
 //! world_target = world_source · C      C takes the target's bone at rest to the source's
 //! ```
 //!
-//! [`Mirror`] swaps the sides in the same way, and [`two_bones`] bends a leg so that its ankle lies at a given place.
+//! [`Mirror`] swaps the sides in the same way, and [`two_bones`] bends a leg so that its ankle lies
+//! at a given place.
 //!
 //! # Example
 //!
@@ -59,19 +63,21 @@
 //!
 //! # Accuracy and cost
 //!
-//! Kinematics agree with 4 × 4 matrices to 2e-6 of a point's distance. Between any two of eleven kinds of rig, limbs point where the
-//! source's do, within the 2° below which rest poses count as the same; mirroring twice gives the pose back to 1e-5. Kinematics and
-//! retargeting are O(joints) for a pose.
+//! Kinematics agree with 4 × 4 matrices to 2e-6 of a point's distance. Between any two of eleven
+//! kinds of rig, limbs point where the source's do, within the 2° below which rest poses count as
+//! the same; mirroring twice gives the pose back to 1e-5. Kinematics and retargeting are O(joints)
+//! for a pose.
 //!
 //! # What it does not do
 //!
-//! No limits of joints, no scaled bones, no muscles. Inverse kinematics are those of two bones. Feet are not planted after retargeting
-//! ([`crate::transition::foot_lock`] does that), and hands do not reach for what they held.
+//! No limits of joints, no scaled bones, no muscles. Inverse kinematics are those of two bones.
+//! Feet are not planted after retargeting ([`crate::transition::foot_lock`] does that), and hands
+//! do not reach for what they held.
 //!
 //! # Sources
 //!
-//! Retargeting and mirror images are described where they are made ([`Retargeting`], [`Mirror`]). Roles follow the names of the rigs that
-//! [`Roles::detect`] lists.
+//! Retargeting and mirror images are described where they are made ([`Retargeting`], [`Mirror`]).
+//! Roles follow the names of the rigs that [`Roles::detect`] lists.
 
 mod ancestry;
 mod carrier;

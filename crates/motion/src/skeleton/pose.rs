@@ -7,6 +7,7 @@ pub struct Pose {
     pub root_translation: Vec3,
     /// Local rotation of every joint (`parent_from_joint`), unit quaternions.
     pub rotations: Vec<Quat>,
-    /// Local translations of the joints that move against their parent, metres; they replace the rest offset. Sorted by joint.
+    /// Local translations of the joints that move against their parent, metres; they replace the
+    /// rest offset. Sorted by joint.
     pub translations: Vec<(usize, Vec3)>,
 }

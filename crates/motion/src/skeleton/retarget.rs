@@ -10,12 +10,15 @@ const SAME_OFFSET_M: f32 = 1e-5;
 
 /// How poses of one skeleton become poses of another.
 ///
-/// A driven joint gets the world rotation of the joint that drives it, times the rotation that takes the target's bone at rest to the
-/// source's bone at rest: `world_target = world_source · C`. Where rest directions agree within 2°, C is that of the body as a whole, most
-/// often the identity, and what local rotations the files have survives. Joints of the back that nothing drives share the bend between the
-/// driven ones around them; other joints that nothing drives keep their rest rotation. A skeleton whose rest pose shows no creature is taken as one that
-/// rests in a stance ([`Retargeting::standing`]): bones that correspond by chance would twist the body. The hips' way through the world is scaled by the
-/// ratio of the legs' lengths, so that steps keep their proportion and feet do not slide.
+/// A driven joint gets the world rotation of the joint that drives it, times the rotation that
+/// takes the target's bone at rest to the source's bone at rest: `world_target = world_source · C`.
+/// Where rest directions agree within 2°, C is that of the body as a whole, most often the
+/// identity, and what local rotations the files have survives. Joints of the back that nothing
+/// drives share the bend between the driven ones around them; other joints that nothing drives keep
+/// their rest rotation. A skeleton whose rest pose shows no creature is taken as one that rests in
+/// a stance ([`Retargeting::standing`]): bones that correspond by chance would twist the body. The
+/// hips' way through the world is scaled by the ratio of the legs' lengths, so that steps keep
+/// their proportion and feet do not slide.
 #[derive(Clone, Debug)]
 pub struct Retargeting {
     source: Arc<Skeleton>,
@@ -23,26 +26,34 @@ pub struct Retargeting {
     map: JointMap,
     corrections: Vec<Quat>,
     whole_body: Quat,
-    /// For joints of the back that nothing drives: (driven above, driven below, share of the way from one to the other).
+    /// For joints of the back that nothing drives: (driven above, driven below, share of the way
+    /// from one to the other).
     shares: Vec<Option<(usize, usize, f32)>>,
     /// Hips of the source and of the target.
     hips: (usize, usize),
     scale: f32,
     same_rig: bool,
-    /// The world rotations of the joints in the stances that stand in for rest poses; none where the rest pose itself counts.
+    /// The world rotations of the joints in the stances that stand in for rest poses; none where
+    /// the rest pose itself counts.
     source_stance: Option<Vec<Quat>>,
     target_stance: Option<Vec<Quat>>,
 }
 
 impl Retargeting {
-    /// Prepares the way from `source` to `target`; `None` when no joint of the source drives any joint of the target.
+    /// Prepares the way from `source` to `target`; `None` when no joint of the source drives any
+    /// joint of the target.
     #[must_use]
-    pub fn new(source: &Arc<Skeleton>, source_roles: &Roles, target: &Arc<Skeleton>, target_roles: &Roles) -> Option<Self> {
+    pub fn new(
+        source: &Arc<Skeleton>,
+        source_roles: &Roles,
+        target: &Arc<Skeleton>,
+        target_roles: &Roles,
+    ) -> Option<Self> {
         Self::standing(source, source_roles, None, target, target_roles, None)
     }
 
-    /// As [`new`](Self::new), with stances ([`canonical_stance`](super::canonical_stance)) in place of rest poses that show no creature: of the source, and of
-    /// the target.
+    /// As [`new`](Self::new), with stances ([`canonical_stance`](super::canonical_stance)) in place
+    /// of rest poses that show no creature: of the source, and of the target.
     #[must_use]
     pub fn standing(
         source: &Arc<Skeleton>,
@@ -57,24 +68,27 @@ impl Retargeting {
             return None;
         }
         let same_rig = is_same_rig(source, target, &map);
-        let stands = |stance: Option<&WorldPose>| stance.filter(|_| !same_rig).map(|stance| stance.rotations.clone());
-        let resting = |skeleton: &Arc<Skeleton>, stance: Option<&WorldPose>| match stance.filter(|_| !same_rig) {
+        let stands = |stance: Option<&WorldPose>| {
+            stance.filter(|_| !same_rig).map(|stance| stance.rotations.clone())
+        };
+        let resting = |skeleton: &Arc<Skeleton>, stance: Option<&WorldPose>| match stance
+            .filter(|_| !same_rig)
+        {
             Some(stance) => Arc::new(skeleton.resting_in(stance)),
             None => Arc::clone(skeleton),
         };
         let (source, target) = (&resting(source, source_stance), &resting(target, target_stance));
-        let (source_body, target_body) = (BodyAxes::at_rest(source, source_roles), BodyAxes::at_rest(target, target_roles));
+        let (source_body, target_body) =
+            (BodyAxes::at_rest(source, source_roles), BodyAxes::at_rest(target, target_roles));
         let corrections = if same_rig {
             vec![Quat::IDENTITY; target.len()]
         } else {
             corrections(source, &source_body, target, target_roles, &map)
         };
-        let scale = if same_rig {
-            1.0
-        } else {
-            scale(source, source_roles, target, target_roles)
+        let scale = if same_rig { 1.0 } else { scale(source, source_roles, target, target_roles) };
+        let hips_of = |skeleton: &Skeleton, roles: &Roles| {
+            roles.get_within(Role::Hips, skeleton.len()).unwrap_or(0)
         };
-        let hips_of = |skeleton: &Skeleton, roles: &Roles| roles.get_within(Role::Hips, skeleton.len()).unwrap_or(0);
         Some(Self {
             shares: back_shares(target, target_roles, &map),
             hips: (hips_of(source, source_roles), hips_of(target, target_roles)),
@@ -96,10 +110,12 @@ impl Retargeting {
         &self.map
     }
 
-    /// Whether anything of the source moves a joint of the target: a joint that drives it, or the bend that it shares with its neighbours.
+    /// Whether anything of the source moves a joint of the target: a joint that drives it, or the
+    /// bend that it shares with its neighbours.
     #[must_use]
     pub fn moves(&self, target_joint: usize) -> bool {
-        self.map.source_of(target_joint).is_some() || self.shares.get(target_joint).is_some_and(Option::is_some)
+        self.map.source_of(target_joint).is_some()
+            || self.shares.get(target_joint).is_some_and(Option::is_some)
     }
 
     /// By how much lengths of the source are multiplied on the target.
@@ -108,13 +124,15 @@ impl Retargeting {
         self.scale
     }
 
-    /// Whether the skeletons differ in nothing but the order of their joints, and in joints that one of them lacks at its ends.
+    /// Whether the skeletons differ in nothing but the order of their joints, and in joints that
+    /// one of them lacks at its ends.
     #[must_use]
     pub fn is_same_rig(&self) -> bool {
         self.same_rig
     }
 
-    /// The rotation that takes the target's bone at rest, or in its stance, to that of the source which drives it; the identity for joints that nothing drives.
+    /// The rotation that takes the target's bone at rest, or in its stance, to that of the source
+    /// which drives it; the identity for joints that nothing drives.
     #[must_use]
     pub fn correction(&self, target_joint: usize) -> Quat {
         self.corrections.get(target_joint).copied().unwrap_or(Quat::IDENTITY)
@@ -126,7 +144,8 @@ impl Retargeting {
         if self.same_rig {
             return self.copied(pose);
         }
-        let against_stance = self.source_stance.as_ref().map(|stance| turned_in(&self.source, stance, pose));
+        let against_stance =
+            self.source_stance.as_ref().map(|stance| turned_in(&self.source, stance, pose));
         let pose = against_stance.as_ref().unwrap_or(pose);
         let world = world_pose(&self.source, pose);
         let mut worlds: Vec<Quat> = Vec::with_capacity(self.target.len());
@@ -136,21 +155,16 @@ impl Retargeting {
             let turned = self.world_rotation(joint, &world);
             // The root has no rest rotation of its own where the whole body lies another way.
             let rest = if parent.is_none() { self.whole_body } else { Quat::IDENTITY };
-            let computed = || turned.map_or(rest, |turned| quat::renormalize(above.conjugate() * turned));
+            let computed =
+                || turned.map_or(rest, |turned| quat::renormalize(above.conjugate() * turned));
             let local = self.local_copy(joint, parent, pose).unwrap_or_else(computed);
             rotations.push(local);
             worlds.push(quat::renormalize(above * local));
         }
-        let standing = Pose {
-            root_translation: Vec3::ZERO,
-            rotations,
-            translations: Vec::new(),
-        };
+        let standing = Pose { root_translation: Vec3::ZERO, rotations, translations: Vec::new() };
         let hips = world_pose(&self.target, &standing).positions[self.hips.1];
-        let made = Pose {
-            root_translation: world.positions[self.hips.0] * self.scale - hips,
-            ..standing
-        };
+        let made =
+            Pose { root_translation: world.positions[self.hips.0] * self.scale - hips, ..standing };
         match &self.target_stance {
             Some(stance) => turned_back(&self.target, stance, made),
             None => made,
@@ -173,13 +187,13 @@ impl Retargeting {
         let plain = |joint: usize| self.corrections[joint] == Quat::IDENTITY;
         let same_parent = match parent {
             None => from == 0,
-            Some(parent) => self.map.source_of(parent).is_some() && self.map.source_of(parent) == self.source.parent(from) && plain(parent),
+            Some(parent) => {
+                self.map.source_of(parent).is_some()
+                    && self.map.source_of(parent) == self.source.parent(from)
+                    && plain(parent)
+            }
         };
-        if same_parent && plain(joint) {
-            pose.rotations.get(from).copied()
-        } else {
-            None
-        }
+        if same_parent && plain(joint) { pose.rotations.get(from).copied() } else { None }
     }
 
     /// The pose of the same rig with its joints in another order.
@@ -204,10 +218,15 @@ impl Retargeting {
     }
 }
 
-/// A pose as one of the skeleton that rests in a stance ([`Skeleton::resting_in`]): every joint at the same place in the world.
+/// A pose as one of the skeleton that rests in a stance ([`Skeleton::resting_in`]): every joint at
+/// the same place in the world.
 fn turned_in(skeleton: &Skeleton, stance: &[Quat], pose: &Pose) -> Pose {
-    let of = |joint: Option<usize>| joint.and_then(|joint| stance.get(joint)).copied().unwrap_or(Quat::IDENTITY);
-    let local = |(joint, rotation): (usize, &Quat)| quat::renormalize(of(skeleton.parent(joint)) * *rotation * of(Some(joint)).conjugate());
+    let of = |joint: Option<usize>| {
+        joint.and_then(|joint| stance.get(joint)).copied().unwrap_or(Quat::IDENTITY)
+    };
+    let local = |(joint, rotation): (usize, &Quat)| {
+        quat::renormalize(of(skeleton.parent(joint)) * *rotation * of(Some(joint)).conjugate())
+    };
     let moved = |&(joint, value): &(usize, Vec3)| (joint, of(skeleton.parent(joint)) * value);
     Pose {
         root_translation: pose.root_translation,
@@ -218,12 +237,13 @@ fn turned_in(skeleton: &Skeleton, stance: &[Quat], pose: &Pose) -> Pose {
 
 /// The way back from [`turned_in`], for a pose without translations.
 fn turned_back(skeleton: &Skeleton, stance: &[Quat], pose: Pose) -> Pose {
-    let of = |joint: Option<usize>| joint.and_then(|joint| stance.get(joint)).copied().unwrap_or(Quat::IDENTITY);
-    let local = |(joint, rotation): (usize, &Quat)| quat::renormalize(of(skeleton.parent(joint)).conjugate() * *rotation * of(Some(joint)));
-    Pose {
-        rotations: pose.rotations.iter().enumerate().map(local).collect(),
-        ..pose
-    }
+    let of = |joint: Option<usize>| {
+        joint.and_then(|joint| stance.get(joint)).copied().unwrap_or(Quat::IDENTITY)
+    };
+    let local = |(joint, rotation): (usize, &Quat)| {
+        quat::renormalize(of(skeleton.parent(joint)).conjugate() * *rotation * of(Some(joint)))
+    };
+    Pose { rotations: pose.rotations.iter().enumerate().map(local).collect(), ..pose }
 }
 
 /// Whether the map keeps parents and offsets.
@@ -231,20 +251,15 @@ fn is_same_rig(source: &Skeleton, target: &Skeleton, map: &JointMap) -> bool {
     if map.source_of(0) != Some(0) {
         return false;
     }
-    target
-        .joints()
-        .iter()
-        .enumerate()
-        .skip(1)
-        .all(|(joint, ours)| match map.source_of(joint) {
-            // What nothing drives may hang at the ends only.
-            None => !target.children(joint).any(|child| map.source_of(child).is_some()),
-            Some(from) => {
-                let theirs = &source.joints()[from];
-                ours.parent.map(|parent| map.source_of(parent)) == Some(theirs.parent)
-                    && ours.offset.distance(theirs.offset) < SAME_OFFSET_M
-            }
-        })
+    target.joints().iter().enumerate().skip(1).all(|(joint, ours)| match map.source_of(joint) {
+        // What nothing drives may hang at the ends only.
+        None => !target.children(joint).any(|child| map.source_of(child).is_some()),
+        Some(from) => {
+            let theirs = &source.joints()[from];
+            ours.parent.map(|parent| map.source_of(parent)) == Some(theirs.parent)
+                && ours.offset.distance(theirs.offset) < SAME_OFFSET_M
+        }
+    })
 }
 
 /// The ratio of the legs' lengths, else that of the bodies' heights.
@@ -256,14 +271,24 @@ fn scale(source: &Skeleton, source_roles: &Roles, target: &Skeleton, target_role
     if ratio.is_finite() && ratio > 0.0 { ratio } else { 1.0 }
 }
 
-/// For the joints between hips and head that nothing drives: between which driven joints they lie, and how far along.
-fn back_shares(target: &Skeleton, roles: &Roles, map: &JointMap) -> Vec<Option<(usize, usize, f32)>> {
+/// For the joints between hips and head that nothing drives: between which driven joints they lie,
+/// and how far along.
+fn back_shares(
+    target: &Skeleton,
+    roles: &Roles,
+    map: &JointMap,
+) -> Vec<Option<(usize, usize, f32)>> {
     let mut shares = vec![None; target.len()];
     let back = back(target, roles);
-    let driven: Vec<usize> = (0..back.len()).filter(|&i| map.source_of(back[i]).is_some()).collect();
+    let driven: Vec<usize> =
+        (0..back.len()).filter(|&i| map.source_of(back[i]).is_some()).collect();
     for pair in driven.windows(2) {
         for i in pair[0] + 1..pair[1] {
-            shares[back[i]] = Some((back[pair[0]], back[pair[1]], (i - pair[0]) as f32 / (pair[1] - pair[0]) as f32));
+            shares[back[i]] = Some((
+                back[pair[0]],
+                back[pair[1]],
+                (i - pair[0]) as f32 / (pair[1] - pair[0]) as f32,
+            ));
         }
     }
     shares

@@ -1,5 +1,8 @@
-/// One side of the body, as the character itself calls it: a character that faces +Z has its left at +X.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
+/// One side of the body, as the character itself calls it: a character that faces +Z has its left
+/// at +X.
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
+)]
 #[expect(missing_docs, reason = "the names say it")]
 pub enum Side {
     Left,
@@ -35,10 +38,13 @@ impl Side {
 
 /// What a joint is for, in any rig.
 ///
-/// A joint is named for the bone that *starts* at it: `LeftThigh` is the joint whose rotation swings the left thigh (the hip joint),
-/// `LeftShin` is the knee, `LeftFoot` the ankle, `LeftToe` the ball of the foot, `LeftForearm` the elbow, `LeftHand` the wrist. `Spine` is
-/// the lowest joint of the back, next above `Hips`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
+/// A joint is named for the bone that *starts* at it: `LeftThigh` is the joint whose rotation
+/// swings the left thigh (the hip joint), `LeftShin` is the knee, `LeftFoot` the ankle, `LeftToe`
+/// the ball of the foot, `LeftForearm` the elbow, `LeftHand` the wrist. `Spine` is the lowest joint
+/// of the back, next above `Hips`.
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
+)]
 #[expect(missing_docs, reason = "the type's text explains the names")]
 pub enum Role {
     Hips,
@@ -120,9 +126,13 @@ impl Role {
     pub const fn side(self) -> Option<Side> {
         match self {
             Self::Hips | Self::Spine | Self::Head => None,
-            Self::LeftThigh | Self::LeftShin | Self::LeftFoot | Self::LeftToe | Self::LeftUpperArm | Self::LeftForearm | Self::LeftHand => {
-                Some(Side::Left)
-            }
+            Self::LeftThigh
+            | Self::LeftShin
+            | Self::LeftFoot
+            | Self::LeftToe
+            | Self::LeftUpperArm
+            | Self::LeftForearm
+            | Self::LeftHand => Some(Side::Left),
             _ => Some(Side::Right),
         }
     }
@@ -219,7 +229,11 @@ mod tests {
         for side in Side::BOTH {
             for role in Role::leg(side).into_iter().chain(Role::arm(side)) {
                 assert_eq!(role.side(), Some(side));
-                assert!(role.name().starts_with(if side == Side::Left { "left " } else { "right " }));
+                assert!(role.name().starts_with(if side == Side::Left {
+                    "left "
+                } else {
+                    "right "
+                }));
             }
         }
     }

@@ -1,4 +1,5 @@
-//! The pose in which a body is made around a skeleton: upright, legs apart from each other and arms from the trunk, whatever pose the file calls rest.
+//! The pose in which a body is made around a skeleton: upright, legs apart from each other and arms
+//! from the trunk, whatever pose the file calls rest.
 
 use super::joint_map::Landmarks;
 use super::{Joint, Role, Roles, Side, Skeleton, WorldPose};
@@ -6,19 +7,24 @@ use crate::math::quat;
 use glam::{Mat3, Quat, Vec3};
 use std::f32::consts::PI;
 
-/// Arms are lowered by so much from level, radians (40°): between where they are most often and where they can go, so that shoulders bend least.
+/// Arms are lowered by so much from level, radians (40°): between where they are most often and
+/// where they can go, so that shoulders bend least.
 const ARMS_DOWN: f32 = 0.70;
-/// The bone from the ankle to the ball of the foot falls by so much where the sole is level, radians (27°).
+/// The bone from the ankle to the ball of the foot falls by so much where the sole is level,
+/// radians (27°).
 const FOOT_DOWN: f32 = 0.47;
-/// Bones that point up the back or out of the head by nature lean by up to this from the vertical, radians (25°).
+/// Bones that point up the back or out of the head by nature lean by up to this from the vertical,
+/// radians (25°).
 const LEAN: f32 = 0.44;
-/// Limbs of a rest pose that are farther than this from where they are in the stance are brought there, radians (57°): arms may be level or hang.
+/// Limbs of a rest pose that are farther than this from where they are in the stance are brought
+/// there, radians (57°): arms may be level or hang.
 const FAR: f32 = 1.0;
 /// A body whose own axes are nearer to those of the world than this stands as it is, radians (15°).
 const UPRIGHT: f32 = 0.26;
 
 impl Skeleton {
-    /// Returns the skeleton that rests in `stance`: at rest its joints are where the stance has them, and their axes are those of the world.
+    /// Returns the skeleton that rests in `stance`: at rest its joints are where the stance has
+    /// them, and their axes are those of the world.
     #[must_use]
     pub fn resting_in(&self, stance: &WorldPose) -> Self {
         let at = |joint: usize| stance.positions.get(joint).copied().unwrap_or_default();
@@ -34,15 +40,12 @@ impl Skeleton {
     /// Returns the pose of the skeleton at rest, the root at the origin.
     #[must_use]
     pub fn rest_pose(&self) -> WorldPose {
-        WorldPose {
-            positions: self.rest_positions(),
-            rotations: vec![Quat::IDENTITY; self.len()],
-        }
+        WorldPose { positions: self.rest_positions(), rotations: vec![Quat::IDENTITY; self.len()] }
     }
 }
 
-/// Returns whether the rest pose shows a body as it stands: on two legs below its trunk, its head above and its feet ahead, or on four legs. `None`
-/// where the roles do not tell.
+/// Returns whether the rest pose shows a body as it stands: on two legs below its trunk, its head
+/// above and its feet ahead, or on four legs. `None` where the roles do not tell.
 ///
 /// Files may call anything rest: all bones along one axis, or every joint turned by a constant.
 #[must_use]
@@ -52,26 +55,33 @@ pub fn rest_is_plausible(skeleton: &Skeleton, roles: &Roles) -> Option<bool> {
     Some(body.stands_on_two() || body.stands_on_four())
 }
 
-/// Returns how upright a pose is, from -1 (upside down) to 1 (standing straight): the mean over trunk and legs of the cosine of their angle to the
-/// vertical, a bent leg counting for less. `None` where the roles do not tell.
+/// Returns how upright a pose is, from -1 (upside down) to 1 (standing straight): the mean over
+/// trunk and legs of the cosine of their angle to the vertical, a bent leg counting for less.
+/// `None` where the roles do not tell.
 #[must_use]
 pub fn uprightness(pose: &WorldPose, roles: &Roles) -> Option<f32> {
     let body = Landmark::of(&pose.positions, roles)?;
-    let legs: f32 = body.legs.iter().map(|leg| (leg.start - leg.end).y / leg.length().max(1e-6)).sum();
+    let legs: f32 =
+        body.legs.iter().map(|leg| (leg.start - leg.end).y / leg.length().max(1e-6)).sum();
     Some((body.up.y + legs) / 3.0)
 }
 
 /// Returns the stance of a skeleton: the body stands upright and faces +Z, the root at the origin.
 ///
-/// `reference` is any pose that shows how the bones lie to each other, and above all how they are twisted: the rest pose where that is plausible, else
-/// a frame in which the body is upright. The whole body is turned upright. Where the reference is a rest pose that stands on its legs, that is all;
-/// else the trunk becomes vertical, legs point down, feet ahead, arms to the sides and 40° down. Each bone comes there by the shortest rotation,
-/// which leaves its twist alone; joints without a role go with their parents. Where the roles do not tell what is what, the reference is the stance.
+/// `reference` is any pose that shows how the bones lie to each other, and above all how they are
+/// twisted: the rest pose where that is plausible, else a frame in which the body is upright. The
+/// whole body is turned upright. Where the reference is a rest pose that stands on its legs, that
+/// is all; else the trunk becomes vertical, legs point down, feet ahead, arms to the sides and 40°
+/// down. Each bone comes there by the shortest rotation, which leaves its twist alone; joints
+/// without a role go with their parents. Where the roles do not tell what is what, the reference is
+/// the stance.
 #[must_use]
 pub fn canonical_stance(skeleton: &Skeleton, roles: &Roles, reference: &WorldPose) -> WorldPose {
     let mut stance = Stance::new(skeleton, reference);
     let body = Landmark::of(&reference.positions, roles).filter(|body| !body.stands_on_four());
-    let Some(body) = body else { return stance.made() };
+    let Some(body) = body else {
+        return stance.made();
+    };
     if quat::log(body.world_from_body.conjugate()).length() > UPRIGHT {
         stance.turn(0, body.world_from_body.conjugate());
     }
@@ -123,11 +133,7 @@ impl Landmark {
     fn of(positions: &[Vec3], roles: &Roles) -> Option<Self> {
         let at = |role| roles.get_within(role, positions.len()).map(|joint| positions[joint]);
         let limb = |[start, middle, end]: [Role; 3]| {
-            Some(Limb {
-                start: at(start)?,
-                middle: at(middle)?,
-                end: at(end)?,
-            })
+            Some(Limb { start: at(start)?, middle: at(middle)?, end: at(end)? })
         };
         let leg = |side| limb([Role::thigh(side), Role::shin(side), Role::foot(side)]);
         let legs = [leg(Side::Left)?, leg(Side::Right)?];
@@ -143,7 +149,8 @@ impl Landmark {
         };
         let up = (high - low).try_normalize()?;
         let hips = legs[0].start - legs[1].start;
-        let across = hips + arms.as_ref().map_or(Vec3::ZERO, |[left, right]| left.start - right.start);
+        let across =
+            hips + arms.as_ref().map_or(Vec3::ZERO, |[left, right]| left.start - right.start);
         // Where the one is turned half round against the other nothing is left.
         let left = [across, hips]
             .into_iter()
@@ -156,11 +163,16 @@ impl Landmark {
             arms,
             left,
             up,
-            world_from_body: quat::renormalize(Quat::from_mat3(&Mat3::from_cols(left, up, left.cross(up)))),
+            world_from_body: quat::renormalize(Quat::from_mat3(&Mat3::from_cols(
+                left,
+                up,
+                left.cross(up),
+            ))),
         })
     }
 
-    /// Whether legs point down from the trunk, feet ahead, shoulders lie as hips do, and arms point to their own sides or down.
+    /// Whether legs point down from the trunk, feet ahead, shoulders lie as hips do, and arms point
+    /// to their own sides or down.
     fn stands_on_two(&self) -> bool {
         let Self { left, up, .. } = *self;
         let forward = left.cross(up);
@@ -170,7 +182,8 @@ impl Landmark {
             .iter()
             .all(|leg| down(leg.start, leg.middle) > 0.75 && down(leg.middle, leg.end) > 0.6);
         let hips = (self.legs[0].start - self.legs[1].start).normalize_or_zero().dot(left) > 0.7;
-        let feet = (self.feet.into_iter().flatten()).all(|foot| foot.normalize_or_zero().dot(forward) > 0.1);
+        let feet = (self.feet.into_iter().flatten())
+            .all(|foot| foot.normalize_or_zero().dot(forward) > 0.1);
         let arms = self.arms.as_ref().is_none_or(|arms| {
             let shoulders = (arms[0].start - arms[1].start).normalize_or_zero().dot(left) > 0.7;
             let above = self
@@ -204,11 +217,7 @@ struct Stance<'a> {
 
 impl<'a> Stance<'a> {
     fn new(skeleton: &'a Skeleton, reference: &'a WorldPose) -> Self {
-        Self {
-            skeleton,
-            reference,
-            turns: vec![Quat::IDENTITY; skeleton.len()],
-        }
+        Self { skeleton, reference, turns: vec![Quat::IDENTITY; skeleton.len()] }
     }
 
     /// Turns a joint and all that hangs on it, about axes of the world.
@@ -223,8 +232,10 @@ impl<'a> Stance<'a> {
         let mut made = WorldPose::default();
         // The turn of every joint in the world; parents come first.
         let mut whole: Vec<Quat> = Vec::with_capacity(self.skeleton.len());
-        let rotation = |joint: usize| self.reference.rotations.get(joint).copied().unwrap_or_default();
-        let position = |joint: usize| self.reference.positions.get(joint).copied().unwrap_or_default();
+        let rotation =
+            |joint: usize| self.reference.rotations.get(joint).copied().unwrap_or_default();
+        let position =
+            |joint: usize| self.reference.positions.get(joint).copied().unwrap_or_default();
         for (index, turn) in self.turns.iter().enumerate() {
             let (turn, place) = match self.skeleton.parent(index) {
                 None => (*turn, Vec3::ZERO),
@@ -240,10 +251,20 @@ impl<'a> Stance<'a> {
         made
     }
 
-    /// Turns `joint` so that the way from `from` to `to`, as they are now, comes to point in `direction`; nothing where they are at one place. Of the
-    /// turns by half a circle it is one about `half`.
-    fn swing(&mut self, joint: usize, way: impl Fn(&WorldPose) -> Option<Vec3>, direction: Vec3, half: Vec3, least: f32) {
-        let Some(from) = way(&self.made()).filter(|way| way.length() > 1e-4).map(Vec3::normalize_or_zero) else {
+    /// Turns `joint` so that the way from `from` to `to`, as they are now, comes to point in
+    /// `direction`; nothing where they are at one place. Of the turns by half a circle it is one
+    /// about `half`.
+    fn swing(
+        &mut self,
+        joint: usize,
+        way: impl Fn(&WorldPose) -> Option<Vec3>,
+        direction: Vec3,
+        half: Vec3,
+        least: f32,
+    ) {
+        let Some(from) =
+            way(&self.made()).filter(|way| way.length() > 1e-4).map(Vec3::normalize_or_zero)
+        else {
             return;
         };
         let angle = from.angle_between(direction);
@@ -259,13 +280,16 @@ impl<'a> Stance<'a> {
         self.turn(joint, turn);
     }
 
-    /// Brings trunk, head and limbs of a body that is upright as a whole to where they are in the stance, from the hips outwards; what is nearer to that
-    /// than `least`, radians, stays as it is.
+    /// Brings trunk, head and limbs of a body that is upright as a whole to where they are in the
+    /// stance, from the hips outwards; what is nearer to that than `least`, radians, stays as it
+    /// is.
     fn straighten(&mut self, roles: &Roles, least: f32) {
         let joints = self.skeleton.len();
         let joint = |role| roles.get_within(role, joints);
         let at = |pose: &WorldPose, joint: Option<usize>| pose.positions.get(joint?).copied();
-        let between = |from: Option<usize>, to: Option<usize>| move |pose: &WorldPose| Some(at(pose, to)? - at(pose, from)?);
+        let between = |from: Option<usize>, to: Option<usize>| {
+            move |pose: &WorldPose| Some(at(pose, to)? - at(pose, from)?)
+        };
         let across = |role: fn(Side) -> Role| {
             let [left, right] = Side::BOTH.map(|side| joint(role(side)));
             between(right, left)
@@ -274,7 +298,9 @@ impl<'a> Stance<'a> {
         self.swing(joint(Role::Hips).unwrap_or(0), thighs, Vec3::X, Vec3::Y, least);
         let [left_arm, right_arm] = Side::BOTH.map(|side| joint(Role::upper_arm(side)));
         if let Some(spine) = joint(Role::Spine) {
-            let trunk = |pose: &WorldPose| Some((at(pose, left_arm)? + at(pose, right_arm)?) * 0.5 - at(pose, Some(spine))?);
+            let trunk = |pose: &WorldPose| {
+                Some((at(pose, left_arm)? + at(pose, right_arm)?) * 0.5 - at(pose, Some(spine))?)
+            };
             self.swing(spine, trunk, Vec3::Y, Vec3::X, least);
         }
         let chest = Landmarks::of(self.skeleton, roles).chest;
@@ -282,11 +308,19 @@ impl<'a> Stance<'a> {
             self.swing(chest, shoulders, Vec3::X, Vec3::Y, least);
         }
         if let Some(head) = joint(Role::Head) {
-            let neck = std::iter::successors(self.skeleton.parent(head), |&joint| self.skeleton.parent(joint))
-                .take_while(|&joint| Some(joint) != chest && Some(joint) != roles.get(Role::Hips))
-                .last();
+            let neck = std::iter::successors(self.skeleton.parent(head), |&joint| {
+                self.skeleton.parent(joint)
+            })
+            .take_while(|&joint| Some(joint) != chest && Some(joint) != roles.get(Role::Hips))
+            .last();
             if let Some(neck) = neck {
-                self.swing(neck, between(Some(neck), Some(head)), Vec3::Y, Vec3::X, LEAN.max(least));
+                self.swing(
+                    neck,
+                    between(Some(neck), Some(head)),
+                    Vec3::Y,
+                    Vec3::X,
+                    LEAN.max(least),
+                );
             }
             self.swing(head, self.end_of(head), Vec3::Y, Vec3::X, LEAN.max(least));
         }
@@ -339,13 +373,24 @@ mod tests {
     fn assert_stands(name: &str, skeleton: &Skeleton, roles: &Roles, stance: &WorldPose) {
         let body = Landmark::of(&stance.positions, roles).unwrap();
         assert!(body.stands_on_two(), "{name}");
-        assert!(body.up.y > 0.95 && body.left.x > 0.95, "{name}: up {}, left {}", body.up, body.left);
+        assert!(
+            body.up.y > 0.95 && body.left.x > 0.95,
+            "{name}: up {}, left {}",
+            body.up,
+            body.left
+        );
         for (joint, parent) in skeleton.joints().iter().map(|joint| joint.parent).enumerate() {
             let Some(parent) = parent else { continue };
             let length = stance.positions[joint].distance(stance.positions[parent]);
-            assert!((length - skeleton.joints()[joint].offset.length()).abs() < 1e-4, "{name}: {joint}");
+            assert!(
+                (length - skeleton.joints()[joint].offset.length()).abs() < 1e-4,
+                "{name}: {joint}"
+            );
             let offset = stance.rotations[parent] * skeleton.joints()[joint].offset;
-            assert!(offset.distance(stance.positions[joint] - stance.positions[parent]) < 1e-4, "{name}");
+            assert!(
+                offset.distance(stance.positions[joint] - stance.positions[parent]) < 1e-4,
+                "{name}"
+            );
         }
     }
 
@@ -376,7 +421,10 @@ mod tests {
         let along = Skeleton::new(along.collect()).unwrap();
         assert_ne!(rest_is_plausible(&along, &roles), Some(true));
         for seed in 0..5 {
-            assert_eq!(rest_is_plausible(&fixtures::turned(&skeleton, seed).0, &roles), Some(false));
+            assert_eq!(
+                rest_is_plausible(&fixtures::turned(&skeleton, seed).0, &roles),
+                Some(false)
+            );
         }
     }
 
@@ -387,20 +435,27 @@ mod tests {
             let expected = canonical_stance(&skeleton, &roles, &skeleton.rest_pose());
             let (turned, frames) = fixtures::turned(&skeleton, 7);
             assert_eq!(rest_is_plausible(&turned, &roles), Some(false), "{name}");
-            let pose = fixtures::turned_pose(&skeleton, &frames, &fixtures::step(&skeleton, &roles));
+            let pose =
+                fixtures::turned_pose(&skeleton, &frames, &fixtures::step(&skeleton, &roles));
             let reference = world_pose(&turned, &pose);
             let stance = canonical_stance(&turned, &roles, &reference);
             assert_stands(name, &turned, &roles, &stance);
-            // Axes come out as they would have lain in the rest pose, within what feet and a bent spine leave open.
+            // Axes come out as they would have lain in the rest pose, within what feet and a bent
+            // spine leave open.
             let resting = turned.resting_in(&stance);
             assert_stands(name, &resting, &roles, &resting.rest_pose());
             for role in [Role::LeftThigh, Role::RightShin, Role::LeftUpperArm, Role::RightForearm] {
                 let joint = roles.get(role).unwrap();
                 let child = skeleton.children(joint).next().unwrap();
-                let bone = |positions: &[Vec3]| (positions[child] - positions[joint]).normalize_or_zero();
-                // From the stance of the plain skeleton to this one's: a swing of the bone, and no twist about it.
-                let swing = quat::between_directions(bone(&expected.positions), bone(&stance.positions));
-                let plain = stance.rotations[joint] * frames[joint].conjugate() * expected.rotations[joint].conjugate();
+                let bone =
+                    |positions: &[Vec3]| (positions[child] - positions[joint]).normalize_or_zero();
+                // From the stance of the plain skeleton to this one's: a swing of the bone, and no
+                // twist about it.
+                let swing =
+                    quat::between_directions(bone(&expected.positions), bone(&stance.positions));
+                let plain = stance.rotations[joint]
+                    * frames[joint].conjugate()
+                    * expected.rotations[joint].conjugate();
                 let apart = quat::angle_between(plain, swing).to_degrees();
                 assert!(apart < 20.0, "{name}, {role:?}: twisted by {apart}°");
             }

@@ -54,10 +54,12 @@ pub enum SkeletonError {
     },
 }
 
-/// A tree of joints in topological order: parents first, the root at index 0. At rest every joint's rotation is the identity.
+/// A tree of joints in topological order: parents first, the root at index 0. At rest every joint's
+/// rotation is the identity.
 ///
-/// Two skeletons are equal when their bodies are: where the root rests is not of the body, for every frame says where it is, and neither is what a
-/// file had above it ([`Above`]). Files of one rig differ in both.
+/// Two skeletons are equal when their bodies are: where the root rests is not of the body, for
+/// every frame says where it is, and neither is what a file had above it ([`Above`]). Files of one
+/// rig differ in both.
 #[derive(Clone, Debug)]
 pub struct Skeleton {
     joints: Vec<Joint>,
@@ -66,8 +68,11 @@ pub struct Skeleton {
 
 impl PartialEq for Skeleton {
     fn eq(&self, other: &Self) -> bool {
-        let [(root, body), (other_root, other_body)] = [self, other].map(|skeleton| (&skeleton.joints[0], &skeleton.joints[1..]));
-        let same_root = root.name == other_root.name && root.end_site == other_root.end_site && root.channels == other_root.channels;
+        let [(root, body), (other_root, other_body)] =
+            [self, other].map(|skeleton| (&skeleton.joints[0], &skeleton.joints[1..]));
+        let same_root = root.name == other_root.name
+            && root.end_site == other_root.end_site
+            && root.channels == other_root.channels;
         same_root && body == other_body
     }
 }
@@ -93,17 +98,15 @@ impl Skeleton {
                 Some(_) if index > 0 => {}
                 None if index == 0 => {}
                 _ => {
-                    return Err(SkeletonError::NotOneRoot {
-                        index,
-                        name: joint.name.clone(),
-                    });
+                    return Err(SkeletonError::NotOneRoot { index, name: joint.name.clone() });
                 }
             }
         }
         Ok(Self { joints, above: None })
     }
 
-    /// The same skeleton with what its file has above the root. Left out where it does not belong to a skeleton of this many joints.
+    /// The same skeleton with what its file has above the root. Left out where it does not belong
+    /// to a skeleton of this many joints.
     #[must_use]
     pub fn with_above(mut self, above: Option<Above>) -> Self {
         self.above = above.filter(|above| above.fits(self.joints.len())).map(Box::new);
@@ -135,7 +138,8 @@ impl Skeleton {
         self.joints.get(joint).and_then(|j| j.parent)
     }
 
-    /// These joints, all their ancestors and the root, in rising order: what kinematics of them needs. What is no joint is left out.
+    /// These joints, all their ancestors and the root, in rising order: what kinematics of them
+    /// needs. What is no joint is left out.
     #[must_use]
     pub fn with_ancestors(&self, joints: impl IntoIterator<Item = usize>) -> Vec<usize> {
         let mut needed = vec![false; self.len()];
@@ -152,7 +156,8 @@ impl Skeleton {
 
     /// The children of `joint`, in order.
     pub fn children(&self, joint: usize) -> impl Iterator<Item = usize> + '_ {
-        (joint + 1..self.joints.len()).filter(move |&child| self.joints[child].parent == Some(joint))
+        (joint + 1..self.joints.len())
+            .filter(move |&child| self.joints[child].parent == Some(joint))
     }
 
     /// The first joint of that name.
@@ -169,18 +174,17 @@ impl Skeleton {
             end_site: joint.end_site.map(|end| end * factor),
             ..joint.clone()
         });
-        Self {
-            joints: joints.collect(),
-            above: None,
-        }
+        Self { joints: joints.collect(), above: None }
     }
 
-    /// The joints' positions at rest with the root's offset left out: the root stands at the origin. Metres.
+    /// The joints' positions at rest with the root's offset left out: the root stands at the
+    /// origin. Metres.
     #[must_use]
     pub fn rest_positions(&self) -> Vec<Vec3> {
         let mut positions: Vec<Vec3> = Vec::with_capacity(self.joints.len());
         for joint in &self.joints {
-            positions.push(joint.parent.map_or(Vec3::ZERO, |parent| positions[parent] + joint.offset));
+            positions
+                .push(joint.parent.map_or(Vec3::ZERO, |parent| positions[parent] + joint.offset));
         }
         positions
     }
@@ -191,19 +195,14 @@ mod tests {
     use super::*;
 
     fn joint(parent: Option<usize>) -> Joint {
-        Joint {
-            name: "j".into(),
-            parent,
-            offset: Vec3::Y,
-            end_site: None,
-            channels: vec![],
-        }
+        Joint { name: "j".into(), parent, offset: Vec3::Y, end_site: None, channels: vec![] }
     }
 
     #[test]
     fn skeletons_are_equal_wherever_their_roots_rest() {
         let with = |root: Vec3, child: Vec3| {
-            let joints = [(None, root), (Some(0), child)].map(|(parent, offset)| Joint { offset, ..joint(parent) });
+            let joints = [(None, root), (Some(0), child)]
+                .map(|(parent, offset)| Joint { offset, ..joint(parent) });
             Skeleton::new(joints.to_vec()).unwrap()
         };
         assert_eq!(with(Vec3::ZERO, Vec3::Y), with(Vec3::new(0.8, 93.9, -452.0), Vec3::Y));
@@ -225,7 +224,9 @@ mod tests {
             Skeleton::new(vec![joint(None), joint(Some(1))]),
             Err(SkeletonError::ParentAfterChild { index: 1, .. })
         ));
-        let skeleton = Skeleton::new(vec![joint(None), joint(Some(0)), joint(Some(0)), joint(Some(1))]).unwrap();
+        let skeleton =
+            Skeleton::new(vec![joint(None), joint(Some(0)), joint(Some(0)), joint(Some(1))])
+                .unwrap();
         assert_eq!(skeleton.children(0).collect::<Vec<_>>(), [1, 2]);
         assert_eq!(skeleton.rest_positions()[3], Vec3::Y * 2.0);
     }

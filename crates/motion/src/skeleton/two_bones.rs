@@ -7,21 +7,25 @@ pub struct TwoBones {
     pub upper: Vec3,
     /// Unit direction of the lower bone, from the middle joint to the end.
     pub lower: Vec3,
-    /// Unit axis about which the lower bone is turned against the upper one, square to both; the bend about it is never negative.
+    /// Unit axis about which the lower bone is turned against the upper one, square to both; the
+    /// bend about it is never negative.
     pub hinge: Vec3,
 }
 
-/// Bends two bones so that their end lies at `line` from their start (the law of cosines), the middle joint bent about `hinge` as nearly as the line
-/// allows: a knee for a hip-to-ankle line and a hinge to the character's left.
+/// Bends two bones so that their end lies at `line` from their start (the law of cosines), the
+/// middle joint bent about `hinge` as nearly as the line allows: a knee for a hip-to-ankle line and
+/// a hinge to the character's left.
 ///
-/// A target out of reach is pointed at with the bones straight, one that is too near with the bones folded. Only a line along the hinge has no
-/// plane to bend in; any is taken then. Lengths in metres, above 0; everything in one frame of reference.
+/// A target out of reach is pointed at with the bones straight, one that is too near with the bones
+/// folded. Only a line along the hinge has no plane to bend in; any is taken then. Lengths in
+/// metres, above 0; everything in one frame of reference.
 #[must_use]
 pub fn two_bones(line: Vec3, upper: f32, lower: f32, hinge: Vec3) -> TwoBones {
     let (distance, along) = (line.length(), line.normalize_or(Vec3::NEG_Y));
     let hinge = hinge.reject_from_normalized(along).normalize_or(along.any_orthonormal_vector());
     let distance = distance.clamp((upper - lower).abs() + 1e-4, upper + lower);
-    // How far along the line, and beside it, the middle joint lies. In f64: near full stretch the root takes half of the digits.
+    // How far along the line, and beside it, the middle joint lies. In f64: near full stretch the
+    // root takes half of the digits.
     let [a, b, d] = [upper, lower, distance].map(f64::from);
     let foot = (a * a + d * d - b * b) / (2.0 * d);
     let beside = (a * a - foot * foot).max(0.0).sqrt();
@@ -69,7 +73,10 @@ mod tests {
         for line in [Vec3::ZERO, Vec3::NEG_Y * 1e-6, Vec3::X] {
             for (upper, lower) in [(0.4, 0.4), (0.5, 0.3)] {
                 let bones = two_bones(line, upper, lower, Vec3::X);
-                assert!((bones.upper.length() - 1.0).abs() < 1e-5 && (bones.lower.length() - 1.0).abs() < 1e-5);
+                assert!(
+                    (bones.upper.length() - 1.0).abs() < 1e-5
+                        && (bones.lower.length() - 1.0).abs() < 1e-5
+                );
             }
         }
         let folded = two_bones(Vec3::NEG_Y * 1e-6, 0.5, 0.3, Vec3::X);

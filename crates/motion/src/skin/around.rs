@@ -1,5 +1,5 @@
-//! A smooth body around any skeleton: its shapes, one surface around those that may flow into each other, and weights along the tree.
-//! All of it is made piece by piece.
+//! A smooth body around any skeleton: its shapes, one surface around those that may flow into each
+//! other, and weights along the tree. All of it is made piece by piece.
 
 use super::capsules::capsules;
 use super::contour::{Contour, Contouring};
@@ -21,7 +21,8 @@ const MOST_VERTICES: f32 = 14_000.0;
 const MOST_BLENDED: usize = 400;
 /// Of even more, only the largest are shown.
 const MOST_SHAPES: usize = 4000;
-/// A joint and its ancestor this many steps above are near enough in the tree to flow into each other.
+/// A joint and its ancestor this many steps above are near enough in the tree to flow into each
+/// other.
 const NEAR_STEPS: usize = 2;
 /// Cells of a contour that are looked at in one piece of work.
 const CELLS_AT_ONCE: usize = 400;
@@ -30,7 +31,8 @@ const FAIRING_ROUNDS: usize = 8;
 /// How often the ways that vertices take with the girth are.
 const REACH_ROUNDS: usize = 8;
 
-/// The body of a skeleton as it comes to be: [`Sculptor::advance`] makes a little more of it, so that a page can go on meanwhile.
+/// The body of a skeleton as it comes to be: [`Sculptor::advance`] makes a little more of it, so
+/// that a page can go on meanwhile.
 #[derive(Clone, Debug)]
 pub struct Sculptor {
     pose: WorldPose,
@@ -45,7 +47,8 @@ pub struct Sculptor {
 
 /// A body that any girth can be given in a moment.
 ///
-/// A mesh for the girth 1, and how its vertices move for another: away from the axis of the limb that they lie on, as limbs grow.
+/// A mesh for the girth 1, and how its vertices move for another: away from the axis of the limb
+/// that they lie on, as limbs grow.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sculpture {
     mesh: SkinnedMesh,
@@ -71,9 +74,11 @@ enum Stage {
 }
 
 impl Sculptor {
-    /// Begins the body of a skeleton: a mannequin of human proportions where the roles are those of a human, else limbs along the bones. It is made on the
-    /// skeleton's [`canonical_stance`], for which `reference` is a pose that shows how its bones lie to each other
-    /// ([`crate::clip::reference_pose`]). The joints of the mesh are those of the skeleton (at most the first 65,536 of them).
+    /// Begins the body of a skeleton: a mannequin of human proportions where the roles are those of
+    /// a human, else limbs along the bones. It is made on the skeleton's [`canonical_stance`], for
+    /// which `reference` is a pose that shows how its bones lie to each other
+    /// ([`crate::clip::reference_pose`]). The joints of the mesh are those of the skeleton (at most
+    /// the first 65,536 of them).
     #[must_use]
     pub fn new(skeleton: &Skeleton, roles: &Roles, reference: &WorldPose) -> Self {
         let stance = canonical_stance(skeleton, roles, reference);
@@ -94,7 +99,8 @@ impl Sculptor {
             shapes.sort_by(|x, y| y.weight(&rest).total_cmp(&x.weight(&rest)));
             shapes.truncate(MOST_SHAPES);
         }
-        let shapes: Vec<Shape> = shapes.into_iter().map(|shape| shape.in_axes_of(&stance)).collect();
+        let shapes: Vec<Shape> =
+            shapes.into_iter().map(|shape| shape.in_axes_of(&stance)).collect();
         if is_blended {
             sculptor.begin_shells(standing, roles, &shapes);
         } else {
@@ -103,28 +109,33 @@ impl Sculptor {
         sculptor
     }
 
-    /// A field around the shapes: one for those that may flow into each other, and one for each shell that must not.
+    /// A field around the shapes: one for those that may flow into each other, and one for each
+    /// shell that must not.
     fn begin_shells(&mut self, skeleton: &Skeleton, roles: &Roles, shapes: &[Shape]) {
-        let placed: Vec<(&Shape, PlacedShape)> = (shapes.iter())
-            .filter_map(|shape| Some((shape, shape.placed(&self.pose)?)))
-            .collect();
+        let placed: Vec<(&Shape, PlacedShape)> =
+            (shapes.iter()).filter_map(|shape| Some((shape, shape.placed(&self.pose)?))).collect();
         let cones: Vec<Cone> = placed.iter().map(|(_, placed)| Cone::new(placed)).collect();
         self.paths = (placed.iter())
             .map(|(shape, placed)| path(skeleton, shape, placed, &self.pose))
             .collect();
         let largest = LARGEST_CELL * roles.body_height(skeleton);
         // Cells are halved and halved again, so sizes are rounded to that.
-        let size = |cone: &Cone| largest * (CELL_SHARE * cone.thinness() / largest).clamp(0.2, 1.0).log2().round().exp2();
+        let size = |cone: &Cone| {
+            largest * (CELL_SHARE * cone.thinness() / largest).clamp(0.2, 1.0).log2().round().exp2()
+        };
         let sizes: Vec<f32> = cones.iter().map(size).collect();
         // A surface passes through about 1.5 cells for each square of a cell's size.
-        let vertices: f32 = cones.iter().zip(&sizes).map(|(cone, size)| 0.8 * cone.area() / (size * size)).sum();
+        let vertices: f32 =
+            cones.iter().zip(&sizes).map(|(cone, size)| 0.8 * cone.area() / (size * size)).sum();
         let coarser = (vertices / MOST_VERTICES).max(1.0).sqrt();
         let mut shells: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (index, (shape, _)) in placed.iter().enumerate() {
             shells.entry(shape.shell).or_default().push(index);
         }
         for members in shells.into_values().rev() {
-            let are_neighbours = |i: usize, j: usize| are_near(skeleton, &self.paths[members[i]], &self.paths[members[j]]);
+            let are_neighbours = |i: usize, j: usize| {
+                are_near(skeleton, &self.paths[members[i]], &self.paths[members[j]])
+            };
             let own: Vec<Cone> = members.iter().map(|&index| cones[index]).collect();
             let field = Field::new(own.clone(), are_neighbours);
             let sizes = members.iter().map(|&index| sizes[index] * coarser).collect();
@@ -136,7 +147,8 @@ impl Sculptor {
         }
     }
 
-    /// Makes a little more of it: a millisecond's work, or two in a browser. The body, once it is whole; after that an empty one.
+    /// Makes a little more of it: a millisecond's work, or two in a browser. The body, once it is
+    /// whole; after that an empty one.
     pub fn advance(&mut self) -> Option<Sculpture> {
         let Some(Shell { members, cones, stage }) = self.shells.last_mut() else {
             return Some(self.finished());
@@ -152,9 +164,14 @@ impl Sculptor {
                 fair(&mut surface.positions, neighbours);
                 *rounds += 1;
                 if *rounds >= FAIRING_ROUNDS {
-                    let first = (surface.owners.iter()).map(|&(shape, share)| joint_at(&self.paths[members[shape]], share) as u16);
+                    let first = (surface.owners.iter())
+                        .map(|&(shape, share)| joint_at(&self.paths[members[shape]], share) as u16);
                     let sharing = Sharing::new(first);
-                    *stage = Stage::Sharing(std::mem::take(surface), std::mem::take(neighbours), sharing);
+                    *stage = Stage::Sharing(
+                        std::mem::take(surface),
+                        std::mem::take(neighbours),
+                        sharing,
+                    );
                 }
             }
             Stage::Sharing(surface, neighbours, sharing) => {
@@ -172,7 +189,8 @@ impl Sculptor {
         done.mesh.bind = bind::joint_from_bind(&self.pose);
         if done.powers.len() < done.mesh.joints.len() {
             // Plain capsules: each vertex follows one joint.
-            let power_of = |joints: &[u16; 4]| self.powers.get(usize::from(joints[0])).copied().unwrap_or(1.0);
+            let power_of =
+                |joints: &[u16; 4]| self.powers.get(usize::from(joints[0])).copied().unwrap_or(1.0);
             done.powers = done.mesh.joints.iter().map(power_of).collect();
         }
         done
@@ -181,13 +199,21 @@ impl Sculptor {
 
 impl Sculpture {
     /// Adds a finished surface.
-    fn add(&mut self, surface: &Contour, neighbours: &Neighbours, sharing: &Sharing, cones: &[Cone], powers: &[f32]) {
+    fn add(
+        &mut self,
+        surface: &Contour,
+        neighbours: &Neighbours,
+        sharing: &Sharing,
+        cones: &[Cone],
+        powers: &[f32],
+    ) {
         let before = self.mesh.positions.len() as u32;
         let axis_of = |&(shape, share): &(usize, f32)| cones.get(shape).map(|cone| cone.at(share));
         let mut reach: Vec<Vec3> = (surface.positions.iter().zip(&surface.owners))
             .map(|(position, owner)| axis_of(owner).map_or(Vec3::ZERO, |axis| *position - axis))
             .collect();
-        // Where one limb goes over into another the axis changes at once; the skin must not tear there.
+        // Where one limb goes over into another the axis changes at once; the skin must not tear
+        // there.
         for _ in 0..REACH_ROUNDS {
             reach = drawn_together(&reach, neighbours, 0.5);
         }
@@ -203,12 +229,14 @@ impl Sculpture {
         self.reach.extend(reach);
         self.mesh.normals.extend(normals(&surface.positions, &surface.triangles));
         self.mesh.positions.extend(&surface.positions);
-        let corners = surface.triangles.iter().map(|triangle| triangle.map(|corner| corner + before));
+        let corners =
+            surface.triangles.iter().map(|triangle| triangle.map(|corner| corner + before));
         self.mesh.triangles.extend(corners);
     }
 
-    /// The mesh of a body so stout beside an average adult, 0.4 to 2.5 (1 is average, and taken for what is no number): the trunk so many times as
-    /// wide, arms and legs less so, head, hands and feet hardly.
+    /// The mesh of a body so stout beside an average adult, 0.4 to 2.5 (1 is average, and taken for
+    /// what is no number): the trunk so many times as wide, arms and legs less so, head, hands and
+    /// feet hardly.
     #[must_use]
     pub fn with_girth(&self, girth: f32) -> SkinnedMesh {
         let girth = if girth.is_nan() { 1.0 } else { girth.clamp(0.4, 2.5) };
@@ -216,7 +244,9 @@ impl Sculpture {
         if girth == 1.0 {
             return mesh;
         }
-        for ((position, reach), power) in mesh.positions.iter_mut().zip(&self.reach).zip(&self.powers) {
+        for ((position, reach), power) in
+            mesh.positions.iter_mut().zip(&self.reach).zip(&self.powers)
+        {
             *position += *reach * (girth.powf(*power) - 1.0);
         }
         mesh.normals = normals(&mesh.positions, &mesh.triangles);
@@ -224,7 +254,8 @@ impl Sculpture {
     }
 }
 
-/// The power of the girth that the radii at each joint grow with: a stout body has a stout trunk, but not as much larger a head, hands and feet.
+/// The power of the girth that the radii at each joint grow with: a stout body has a stout trunk,
+/// but not as much larger a head, hands and feet.
 fn powers(skeleton: &Skeleton, roles: &Roles) -> Vec<f32> {
     let power = |joint: usize| {
         let role = roles.role_of(joint)?;
@@ -246,13 +277,21 @@ fn powers(skeleton: &Skeleton, roles: &Roles) -> Vec<f32> {
     powers
 }
 
-/// The joints along a shape, each from where on (0 at its start to 1 at its end) it moves what lies there.
-fn path(skeleton: &Skeleton, shape: &Shape, placed: &PlacedShape, pose: &WorldPose) -> Vec<(f32, usize)> {
+/// The joints along a shape, each from where on (0 at its start to 1 at its end) it moves what lies
+/// there.
+fn path(
+    skeleton: &Skeleton,
+    shape: &Shape,
+    placed: &PlacedShape,
+    pose: &WorldPose,
+) -> Vec<(f32, usize)> {
     let above = |joint: usize| std::iter::successors(Some(joint), |&joint| skeleton.parent(joint));
     let (start, end) = (shape.a.joint, shape.b.joint);
     let mut joints: Vec<usize> = above(start).collect();
     let shared = above(end).find(|joint| joints.contains(joint));
-    joints.truncate(joints.iter().position(|joint| Some(*joint) == shared).map_or(1, |place| place + 1));
+    joints.truncate(
+        joints.iter().position(|joint| Some(*joint) == shared).map_or(1, |place| place + 1),
+    );
     let mut down: Vec<usize> = above(end).take_while(|joint| Some(*joint) != shared).collect();
     down.reverse();
     joints.extend(down);
@@ -260,7 +299,8 @@ fn path(skeleton: &Skeleton, shape: &Shape, placed: &PlacedShape, pose: &WorldPo
     let mut from = 0.0f32;
     let steps = joints.into_iter().enumerate().map(|(step, joint)| {
         if step > 0 {
-            let share = (pose.positions[joint] - placed.a).dot(along) / along.length_squared().max(1e-12);
+            let share =
+                (pose.positions[joint] - placed.a).dot(along) / along.length_squared().max(1e-12);
             from = from.max(share.clamp(0.0, 1.0));
         }
         (from, joint)
@@ -277,13 +317,13 @@ fn joint_at(path: &[(f32, usize)], share: f32) -> usize {
         .map_or(0, |(_, joint)| *joint)
 }
 
-/// Whether two shapes lie on one way along the tree: joints of theirs are one, or the one is a little above the other.
+/// Whether two shapes lie on one way along the tree: joints of theirs are one, or the one is a
+/// little above the other.
 fn are_near(skeleton: &Skeleton, one: &[(f32, usize)], other: &[(f32, usize)]) -> bool {
     let is_above = |above: usize, below: usize| {
         std::iter::successors(Some(below), |&joint| skeleton.parent(joint))
             .take(NEAR_STEPS + 1)
             .any(|joint| joint == above)
     };
-    one.iter()
-        .any(|&(_, i)| other.iter().any(|&(_, j)| is_above(i, j) || is_above(j, i)))
+    one.iter().any(|&(_, i)| other.iter().any(|&(_, j)| is_above(i, j) || is_above(j, i)))
 }

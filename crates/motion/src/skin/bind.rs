@@ -5,13 +5,14 @@ use crate::math::quat;
 use crate::skeleton::{Role, Roles, Side, Skeleton, WorldPose};
 use glam::{Quat, Vec3};
 
-/// Arms hang so far from the side, radians (40° under level): between where they are most often and where they can go, so that the shoulders bend least.
+/// Arms hang so far from the side, radians (40° under level): between where they are most often and
+/// where they can go, so that the shoulders bend least.
 const ARMS_DOWN: f32 = 0.70;
 /// Legs stand so far out, radians (7°): the thighs part below the crotch.
 const LEGS_OUT: f32 = 0.12;
 
-/// The bind pose of a skeleton that rests in `stance`, with its joints' own axes: limbs that roles tell are spread, all else is as in the stance. The root
-/// stands at the origin.
+/// The bind pose of a skeleton that rests in `stance`, with its joints' own axes: limbs that roles
+/// tell are spread, all else is as in the stance. The root stands at the origin.
 pub(super) fn bind_pose(skeleton: &Skeleton, roles: &Roles, stance: &WorldPose) -> WorldPose {
     let rest = skeleton.rest_positions();
     let joint = |role| roles.get_within(role, rest.len());
@@ -64,11 +65,13 @@ fn turn(from: Vec3, to: Vec3, left: Vec3) -> Quat {
     quat::between_directions(from, to)
 }
 
-/// From right to left, and up the back: unit vectors at right angles. `None` where the roles do not tell.
+/// From right to left, and up the back: unit vectors at right angles. `None` where the roles do not
+/// tell.
 fn axes(rest: &[Vec3], roles: &Roles) -> Option<(Vec3, Vec3)> {
     let at = |role| roles.get_within(role, rest.len()).map(|joint| rest[joint]);
     let across = |role: fn(Side) -> Role| Some(at(role(Side::Left))? - at(role(Side::Right))?);
-    let middle = |role: fn(Side) -> Role| Some((at(role(Side::Left))? + at(role(Side::Right))?) * 0.5);
+    let middle =
+        |role: fn(Side) -> Role| Some((at(role(Side::Left))? + at(role(Side::Right))?) * 0.5);
     let low = middle(Role::thigh)?;
     let up = (at(Role::Head).or_else(|| middle(Role::upper_arm))? - low).try_normalize()?;
     let across = across(Role::thigh)? + across(Role::upper_arm).unwrap_or_default();

@@ -1,4 +1,5 @@
-//! One closed surface per shape, side by side: what is left for skeletons of too many bones for a common surface.
+//! One closed surface per shape, side by side: what is left for skeletons of too many bones for a
+//! common surface.
 
 use super::SkinnedMesh;
 use super::shapes::Shape;
@@ -11,17 +12,20 @@ const SIDES: u32 = 8;
 /// Rings of corners over each end, the pole apart.
 const RINGS: u32 = 2;
 
-/// A rounded cone for each shape, in the bind pose; each end follows the joint of its anchor. With it how far each vertex is from its shape's axis.
+/// A rounded cone for each shape, in the bind pose; each end follows the joint of its anchor. With
+/// it how far each vertex is from its shape's axis.
 pub(super) fn capsules(shapes: &[Shape], bind: &WorldPose) -> (SkinnedMesh, Vec<Vec3>) {
     let mut mesh = SkinnedMesh::default();
     let mut reach = Vec::new();
     for shape in shapes {
         let joints = [shape.a.joint, shape.b.joint].map(u16::try_from);
-        let (Ok(joint_a), Ok(joint_b), Some(placed)) = (joints[0], joints[1], shape.placed(bind)) else {
+        let (Ok(joint_a), Ok(joint_b), Some(placed)) = (joints[0], joints[1], shape.placed(bind))
+        else {
             continue;
         };
         let axis = (placed.b - placed.a).normalize_or(Vec3::Y);
-        let flat = placed.flat.reject_from_normalized(axis).normalize_or(axis.any_orthonormal_vector());
+        let flat =
+            placed.flat.reject_from_normalized(axis).normalize_or(axis.any_orthonormal_vector());
         let other = axis.cross(flat);
         let first = mesh.positions.len() as u32;
         let mut corner = |center: Vec3, direction: Vec3, radius: f32, joint: u16| {
@@ -33,12 +37,14 @@ pub(super) fn capsules(shapes: &[Shape], bind: &WorldPose) -> (SkinnedMesh, Vec<
             mesh.joints.push([joint, 0, 0, 0]);
             mesh.weights.push([1.0, 0.0, 0.0, 0.0]);
         };
-        // From the pole at `a` to the pole at `b`; the waist lies as high on both balls as their cone touches them.
+        // From the pole at `a` to the pole at `b`; the waist lies as high on both balls as their
+        // cone touches them.
         let lean = ((placed.radius_a - placed.radius_b) / placed.a.distance(placed.b).max(1e-6))
             .clamp(-0.9, 0.9)
             .asin();
         corner(placed.a, -axis, placed.radius_a, joint_a);
-        let up_a = (1..=RINGS).map(|ring| -FRAC_PI_2 + (FRAC_PI_2 + lean) * ring as f32 / RINGS as f32);
+        let up_a =
+            (1..=RINGS).map(|ring| -FRAC_PI_2 + (FRAC_PI_2 + lean) * ring as f32 / RINGS as f32);
         let up_b = (0..RINGS).map(|ring| lean + (FRAC_PI_2 - lean) * ring as f32 / RINGS as f32);
         let rings = up_a
             .map(|up| (placed.a, placed.radius_a, joint_a, up))
@@ -46,7 +52,12 @@ pub(super) fn capsules(shapes: &[Shape], bind: &WorldPose) -> (SkinnedMesh, Vec<
         for (center, radius, joint, up) in rings {
             for side in 0..SIDES {
                 let (sin, cos) = (TAU * side as f32 / SIDES as f32).sin_cos();
-                corner(center, axis * up.sin() + (flat * cos + other * sin) * up.cos(), radius, joint);
+                corner(
+                    center,
+                    axis * up.sin() + (flat * cos + other * sin) * up.cos(),
+                    radius,
+                    joint,
+                );
             }
         }
         corner(placed.b, axis, placed.radius_b, joint_b);

@@ -3,7 +3,10 @@
 use super::{RigidTransform, SkinnedMesh};
 use crate::clip::{Clip, ClipError, stance_for_rest};
 use crate::math::stats;
-use crate::skeleton::{JointMap, Pose, Retargeting, Role, Roles, Side, Skeleton, WorldPose, local_pose, world_pose_into};
+use crate::skeleton::{
+    JointMap, Pose, Retargeting, Role, Roles, Side, Skeleton, WorldPose, local_pose,
+    world_pose_into,
+};
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -13,9 +16,11 @@ const SAMPLES: usize = 48;
 const LEAST_LIMBS: usize = 2;
 /// Vertices of the sole that are looked at.
 const SOLE_VERTICES: usize = 32;
-/// The lowest point of a clip's feet lies within this share of the leg's length of the ground where the clip stands on it.
+/// The lowest point of a clip's feet lies within this share of the leg's length of the ground where
+/// the clip stands on it.
 const NEAR_GROUND: f32 = 0.2;
-/// The share of frames, per cent, in which a foot is lower than what counts as its ground: slips of single frames.
+/// The share of frames, per cent, in which a foot is lower than what counts as its ground: slips of
+/// single frames.
 const GROUND_PERCENTILE: f32 = 5.0;
 
 /// A skeleton with a mesh of its own.
@@ -30,14 +35,16 @@ pub struct Character {
 }
 
 impl Character {
-    /// Whether it has limbs that clips of other bodies can move: parts of two, such as thigh and shin.
+    /// Whether it has limbs that clips of other bodies can move: parts of two, such as thigh and
+    /// shin.
     #[must_use]
     pub fn has_limbs(&self) -> bool {
         self.limbs().count() >= LEAST_LIMBS
     }
 
-    /// Whether the poses of a skeleton move it to more than a place: its own, one with parts of limbs in common, or one that moves half of its joints
-    /// by their names. A figure that only has its hips carried about stands stiffly where the motion is.
+    /// Whether the poses of a skeleton move it to more than a place: its own, one with parts of
+    /// limbs in common, or one that moves half of its joints by their names. A figure that only has
+    /// its hips carried about stands stiffly where the motion is.
     #[must_use]
     pub fn is_moved_by(&self, skeleton: &Arc<Skeleton>, roles: &Roles) -> bool {
         if Arc::ptr_eq(skeleton, &self.skeleton) || *skeleton == self.skeleton {
@@ -49,15 +56,17 @@ impl Character {
     }
 
     fn limbs(&self) -> impl Iterator<Item = usize> + '_ {
-        let of_side = |side| [Role::thigh(side), Role::shin(side), Role::upper_arm(side), Role::forearm(side)];
+        let of_side = |side| {
+            [Role::thigh(side), Role::shin(side), Role::upper_arm(side), Role::forearm(side)]
+        };
         Side::BOTH
             .into_iter()
             .flat_map(of_side)
             .filter_map(|role| self.roles.get_within(role, self.skeleton.len()))
     }
 
-    /// Returns how many times as large the character is as a body of another skeleton, as [`Retargeting::scale`] measures it; `None` where the two
-    /// have no joint in common.
+    /// Returns how many times as large the character is as a body of another skeleton, as
+    /// [`Retargeting::scale`] measures it; `None` where the two have no joint in common.
     #[must_use]
     pub fn size_beside(&self, skeleton: &Arc<Skeleton>, roles: &Roles) -> Option<f32> {
         if Arc::ptr_eq(skeleton, &self.skeleton) || *skeleton == self.skeleton {
@@ -116,8 +125,10 @@ pub struct Drive {
 }
 
 impl Drive {
-    /// Prepares the way from the skeleton of `clip` to the character; `None` when it is not moved by it ([`Character::is_moved_by`]). Some frames of the clip are looked at,
-    /// so that the character's soles stand where the clip's feet stand: on the ground. The clip may be any that is like those to come.
+    /// Prepares the way from the skeleton of `clip` to the character; `None` when it is not moved
+    /// by it ([`Character::is_moved_by`]). Some frames of the clip are looked at, so that the
+    /// character's soles stand where the clip's feet stand: on the ground. The clip may be any that
+    /// is like those to come.
     #[must_use]
     pub fn new(clip: &Clip, roles: &Roles, character: &Character) -> Option<Self> {
         let (source, target) = (clip.skeleton(), &character.skeleton);
@@ -137,12 +148,8 @@ impl Drive {
                 None,
             )?)
         };
-        let mut drive = Self {
-            source: Arc::clone(source),
-            target: Arc::clone(target),
-            lift: 0.0,
-            way,
-        };
+        let mut drive =
+            Self { source: Arc::clone(source), target: Arc::clone(target), lift: 0.0, way };
         drive.lift = drive
             .way
             .as_ref()
@@ -150,12 +157,15 @@ impl Drive {
         Some(drive)
     }
 
-    /// Returns the character's joint that a joint of the clip's skeleton drives; `None` where it drives none.
+    /// Returns the character's joint that a joint of the clip's skeleton drives; `None` where it
+    /// drives none.
     #[must_use]
     pub fn joint_driven_by(&self, source: usize) -> Option<usize> {
         match &self.way {
             None => Some(source),
-            Some(way) => (0..self.target.len()).find(|&joint| way.map().source_of(joint) == Some(source)),
+            Some(way) => {
+                (0..self.target.len()).find(|&joint| way.map().source_of(joint) == Some(source))
+            }
         }
     }
 
@@ -178,24 +188,31 @@ impl Drive {
         }
     }
 
-    /// Returns the motion of the character that a clip moves: a clip of the character's skeleton, frame by frame as [`Drive::pose`] has it.
+    /// Returns the motion of the character that a clip moves: a clip of the character's skeleton,
+    /// frame by frame as [`Drive::pose`] has it.
     ///
     /// # Errors
     /// [`ClipError`] when the clip is not one of the skeleton that the drive was prepared for.
     pub fn clip(&self, clip: &Clip) -> Result<Clip, ClipError> {
-        let Some(way) = &self.way else { return Ok(clip.clone()) };
+        let Some(way) = &self.way else {
+            return Ok(clip.clone());
+        };
         let poses = (0..clip.frames()).map(|frame| {
             let pose = way.pose(&clip.pose(frame));
-            Pose {
-                root_translation: pose.root_translation + Vec3::Y * self.lift,
-                ..pose
-            }
+            Pose { root_translation: pose.root_translation + Vec3::Y * self.lift, ..pose }
         });
-        Ok(Clip::from_poses(clip.name(), Arc::clone(&self.target), clip.fps(), poses)?.with_provenance(clip.provenance()))
+        Ok(Clip::from_poses(clip.name(), Arc::clone(&self.target), clip.fps(), poses)?
+            .with_provenance(clip.provenance()))
     }
 
-    /// The transforms that move the character's mesh for a pose of the clip's skeleton: [`Drive::pose`], then [`SkinnedMesh::joint_transforms`].
-    pub fn transforms(&self, source: &WorldPose, mesh: &SkinnedMesh, out: &mut Vec<RigidTransform>) {
+    /// The transforms that move the character's mesh for a pose of the clip's skeleton:
+    /// [`Drive::pose`], then [`SkinnedMesh::joint_transforms`].
+    pub fn transforms(
+        &self,
+        source: &WorldPose,
+        mesh: &SkinnedMesh,
+        out: &mut Vec<RigidTransform>,
+    ) {
         let mut pose = WorldPose::default();
         self.pose(source, &mut pose);
         mesh.joint_transforms(&pose, out);
@@ -204,8 +221,11 @@ impl Drive {
     fn found_lift(&self, clip: &Clip, roles: &Roles, character: &Character, scale: f32) -> f32 {
         let sole = Sole::of(character);
         let feet = |pose: &WorldPose| {
-            let points = Side::BOTH.into_iter().flat_map(|side| roles.foot_points(&self.source, side));
-            let heights = points.filter_map(|(joint, point)| Some((*pose.positions.get(joint)? + *pose.rotations.get(joint)? * point).y));
+            let points =
+                Side::BOTH.into_iter().flat_map(|side| roles.foot_points(&self.source, side));
+            let heights = points.filter_map(|(joint, point)| {
+                Some((*pose.positions.get(joint)? + *pose.rotations.get(joint)? * point).y)
+            });
             heights.min_by(f32::total_cmp)
         };
         let (mut from, mut to) = (WorldPose::default(), WorldPose::default());
@@ -251,19 +271,20 @@ impl Sole {
                 feet.contains(&joint).then_some((joint, in_joint))
             })
             .collect();
-        // Joints rest without rotation, so down is down in all of their frames; the lowest at rest, over all of the foot.
+        // Joints rest without rotation, so down is down in all of their frames; the lowest at rest,
+        // over all of the foot.
         let rest = character.skeleton.rest_positions();
         points.sort_by(|x, y| (rest[x.0] + x.1).y.total_cmp(&(rest[y.0] + y.1).y));
         // Every so often one, over the lower half: heel, ball and tips.
         points.truncate(points.len() / 2);
         let step = points.len().div_ceil(SOLE_VERTICES).max(1);
-        Self {
-            points: points.into_iter().step_by(step).collect(),
-        }
+        Self { points: points.into_iter().step_by(step).collect() }
     }
 
     fn height(&self, pose: &WorldPose) -> Option<f32> {
-        let height = |&(joint, point): &(usize, Vec3)| Some((*pose.positions.get(joint)? + *pose.rotations.get(joint)? * point).y);
+        let height = |&(joint, point): &(usize, Vec3)| {
+            Some((*pose.positions.get(joint)? + *pose.rotations.get(joint)? * point).y)
+        };
         self.points.iter().filter_map(height).min_by(f32::total_cmp)
     }
 }

@@ -1,8 +1,10 @@
-//! From a field to a closed mesh: dual contouring on an octree that is as fine as what is thin there (Ju, Losasso, Schaefer, Warren, "Dual Contouring
-//! of Hermite Data", 2002), with vertices on the field's zero instead of at features: nothing here has sharp edges.
+//! From a field to a closed mesh: dual contouring on an octree that is as fine as what is thin
+//! there (Ju, Losasso, Schaefer, Warren, "Dual Contouring of Hermite Data", 2002), with vertices on
+//! the field's zero instead of at features: nothing here has sharp edges.
 //!
-//! Each cell that an edge with a change of sign touches has one vertex; the cells around such an edge are one face. An edge is looked at where it is
-//! smallest, so cells of different sizes meet without a crack.
+//! Each cell that an edge with a change of sign touches has one vertex; the cells around such an
+//! edge are one face. An edge is looked at where it is smallest, so cells of different sizes meet
+//! without a crack.
 
 use super::field::{Field, Measured};
 use glam::{IVec3, Vec3};
@@ -27,9 +29,11 @@ pub(super) struct Contour {
 #[derive(Clone, Debug)]
 pub(super) struct Contouring {
     tree: Octree,
-    /// Cells of the tree that are still to be looked at: corner, level, and the shapes that matter to the cell they are in.
+    /// Cells of the tree that are still to be looked at: corner, level, and the shapes that matter
+    /// to the cell they are in.
     growing: Vec<(IVec3, u32, Arc<[u16]>)>,
-    /// Leaves that the surface may pass through, and how many of them were looked at; none while the tree grows.
+    /// Leaves that the surface may pass through, and how many of them were looked at; none while
+    /// the tree grows.
     open: Option<Vec<usize>>,
     seen: usize,
     rings: Vec<[usize; 4]>,
@@ -44,7 +48,8 @@ impl Contouring {
         let finest = sizes.iter().copied().fold(f32::INFINITY, f32::min);
         let [low, high] = field.bounds().unwrap_or_default();
         let extent = (high - low).max_element() + 4.0 * finest;
-        let all: Arc<[u16]> = (0..field.cones.len()).filter_map(|index| u16::try_from(index).ok()).collect();
+        let all: Arc<[u16]> =
+            (0..field.cones.len()).filter_map(|index| u16::try_from(index).ok()).collect();
         let can_be_meshed = !all.is_empty() && extent.is_finite() && finest > 0.0;
         let levels = (extent / finest).log2().ceil().clamp(1.0, MOST_LEVELS as f32) as u32;
         let cell = finest.max(extent / (1u32 << levels) as f32);
@@ -79,9 +84,9 @@ impl Contouring {
                 continue;
             }
             let leaves = &self.tree.leaves;
-            let open = self
-                .open
-                .get_or_insert_with(|| (0..leaves.len()).filter(|&leaf| leaves[leaf].is_open).collect());
+            let open = self.open.get_or_insert_with(|| {
+                (0..leaves.len()).filter(|&leaf| leaves[leaf].is_open).collect()
+            });
             if let Some(&leaf) = open.get(self.seen) {
                 self.seen += 1;
                 self.tree.cross_edges(leaf, open, &mut self.rings);
@@ -165,15 +170,21 @@ impl Octree {
     }
 
     /// Divides a cell, or makes it a leaf. The parts of a divided one are put on `growing`.
-    fn grow(&mut self, at: IVec3, level: u32, near: &[u16], growing: &mut Vec<(IVec3, u32, Arc<[u16]>)>) {
+    fn grow(
+        &mut self,
+        at: IVec3,
+        level: u32,
+        near: &[u16],
+        growing: &mut Vec<(IVec3, u32, Arc<[u16]>)>,
+    ) {
         let size = self.cell * (1u32 << level) as f32;
         let center = self.place(at) + Vec3::splat(0.5 * size);
         let reach = 0.5 * size * 3f32.sqrt();
         let mut narrowed = Vec::with_capacity(near.len());
-        let around = self
-            .field
-            .narrowed(center, reach, near, &self.sizes, &mut narrowed, &mut self.scratch);
-        let is_near = around.least <= 1.1 * reach && self.field.sample(center, &narrowed, &mut self.scratch).value.abs() <= 1.6 * reach;
+        let around =
+            self.field.narrowed(center, reach, near, &self.sizes, &mut narrowed, &mut self.scratch);
+        let is_near = around.least <= 1.1 * reach
+            && self.field.sample(center, &narrowed, &mut self.scratch).value.abs() <= 1.6 * reach;
         // Where no single surface is near there may still be the blend of two.
         let wanted = if around.size.is_finite() { around.size } else { self.coarsest };
         if is_near && level > 0 && size > 1.01 * wanted {
@@ -226,7 +237,8 @@ impl Octree {
             .map(|&leaf| leaf as usize)
     }
 
-    /// Finds where the surface crosses the edges of a leaf: `rings` are given the leaves around each such edge, `open` all that have a part of it.
+    /// Finds where the surface crosses the edges of a leaf: `rings` are given the leaves around
+    /// each such edge, `open` all that have a part of it.
     fn cross_edges(&mut self, leaf: usize, open: &mut Vec<usize>, rings: &mut Vec<[usize; 4]>) {
         let (at, level) = (self.leaves[leaf].at, self.leaves[leaf].level);
         let values: [f32; 8] = std::array::from_fn(|c| {
@@ -250,10 +262,14 @@ impl Octree {
                 let Some(ring) = self.ring(leaf, axis, side, 0) else {
                     continue;
                 };
-                // The surface passes here, whatever the bounds said: all that have the edge are looked at.
+                // The surface passes here, whatever the bounds said: all that have the edge are
+                // looked at.
                 for (place, other) in ring.into_iter().enumerate() {
-                    let smaller = if self.leaves[other].level < level { 1..1 << level } else { 1..1 };
-                    let along = smaller.filter_map(|step| self.ring(leaf, axis, side, step).map(|ring| ring[place]));
+                    let smaller =
+                        if self.leaves[other].level < level { 1..1 << level } else { 1..1 };
+                    let along = smaller.filter_map(|step| {
+                        self.ring(leaf, axis, side, step).map(|ring| ring[place])
+                    });
                     let all: Vec<usize> = std::iter::once(other).chain(along).collect();
                     for other in all {
                         if !std::mem::replace(&mut self.leaves[other].is_open, true) {
@@ -261,21 +277,26 @@ impl Octree {
                         }
                     }
                 }
-                // An edge is taken where it is smallest, and of those that have it so, by the first.
+                // An edge is taken where it is smallest, and of those that have it so, by the
+                // first.
                 let is_first = ring.iter().all(|&other| {
                     let (theirs, ours) = (self.leaves[other].level, level);
                     theirs > ours || (theirs == ours && other >= leaf)
                 });
                 if is_first {
                     self.cross(leaf, low, axis, [from, to], &ring);
-                    rings.push(if from < 0.0 { ring } else { [ring[3], ring[2], ring[1], ring[0]] });
+                    rings.push(if from < 0.0 {
+                        ring
+                    } else {
+                        [ring[3], ring[2], ring[1], ring[0]]
+                    });
                 }
             }
         }
     }
 
-    /// The leaves around an edge of a leaf, counter-clockwise as seen from its far end. Where smaller ones lie along it, those `step` of the
-    /// finest cells from its near end.
+    /// The leaves around an edge of a leaf, counter-clockwise as seen from its far end. Where
+    /// smaller ones lie along it, those `step` of the finest cells from its near end.
     fn ring(&self, leaf: usize, axis: usize, side: [i32; 2], step: i32) -> Option<[usize; 4]> {
         let (at, level) = (self.leaves[leaf].at, self.leaves[leaf].level);
         let size = 1 << level;
@@ -292,9 +313,17 @@ impl Octree {
     }
 
     /// Notes with the leaves around an edge where the surface crosses it.
-    fn cross(&mut self, leaf: usize, low: usize, axis: usize, [from, to]: [f32; 2], ring: &[usize; 4]) {
+    fn cross(
+        &mut self,
+        leaf: usize,
+        low: usize,
+        axis: usize,
+        [from, to]: [f32; 2],
+        ring: &[usize; 4],
+    ) {
         let (at, level) = (self.leaves[leaf].at, self.leaves[leaf].level);
-        let offset = IVec3::new(low as i32 & 1, low as i32 >> 1 & 1, low as i32 >> 2) << level as i32;
+        let offset =
+            IVec3::new(low as i32 & 1, low as i32 >> 1 & 1, low as i32 >> 2) << level as i32;
         let mut end = at + offset;
         end[axis] += 1 << level;
         let (start, end) = (self.place(at + offset), self.place(end));
@@ -308,9 +337,7 @@ impl Octree {
 
     /// Gives a leaf its vertex, where the surface passes through it.
     fn place_vertex(&mut self, leaf: usize, contour: &mut Contour) {
-        let Leaf {
-            crossings, count, level, ..
-        } = self.leaves[leaf];
+        let Leaf { crossings, count, level, .. } = self.leaves[leaf];
         if count == 0.0 {
             return;
         }
@@ -326,16 +353,16 @@ impl Octree {
         }
         self.leaves[leaf].vertex = contour.positions.len() as u32;
         contour.positions.push(point);
-        contour
-            .owners
-            .push(self.field.nearest(point, self.near_of(leaf)).unwrap_or_default());
+        contour.owners.push(self.field.nearest(point, self.near_of(leaf)).unwrap_or_default());
     }
 
     /// Makes faces of the rings of leaves.
     fn close(&self, rings: &[[usize; 4]], contour: &mut Contour) {
         for ring in rings {
             let [a, b, c, d] = ring.map(|leaf| self.leaves[leaf].vertex);
-            let between = |x: u32, y: u32| contour.positions[x as usize].distance_squared(contour.positions[y as usize]);
+            let between = |x: u32, y: u32| {
+                contour.positions[x as usize].distance_squared(contour.positions[y as usize])
+            };
             // The shorter diagonal; a ring of three leaves is one triangle.
             let pair = if between(a, c) <= between(b, d) {
                 [[a, b, c], [a, c, d]]

@@ -22,10 +22,7 @@ impl Default for RigidTransform {
 
 impl RigidTransform {
     /// What moves nothing.
-    pub const IDENTITY: Self = Self {
-        rotation: Quat::IDENTITY,
-        translation: Vec3::ZERO,
-    };
+    pub const IDENTITY: Self = Self { rotation: Quat::IDENTITY, translation: Vec3::ZERO };
 
     /// Where a point goes.
     #[must_use]
@@ -37,10 +34,7 @@ impl RigidTransform {
     #[must_use]
     pub fn inverse(self) -> Self {
         let rotation = self.rotation.conjugate();
-        Self {
-            rotation,
-            translation: -(rotation * self.translation),
-        }
+        Self { rotation, translation: -(rotation * self.translation) }
     }
 }
 
@@ -56,7 +50,8 @@ impl Mul for RigidTransform {
     }
 }
 
-/// The transforms that move a vertex, each with its weight above 0. A joint without a transform moves nothing.
+/// The transforms that move a vertex, each with its weight above 0. A joint without a transform
+/// moves nothing.
 fn influences<'a>(
     mesh: &'a SkinnedMesh,
     world_from_bind: &'a [RigidTransform],
@@ -72,10 +67,16 @@ fn influences<'a>(
 
 /// Linear blend skinning: each vertex is the weighted mean of where its joints would take it.
 ///
-/// `world_from_bind` is what [`SkinnedMesh::joint_transforms`] gives; `positions` (metres) and `normals` (unit) are overwritten, one of each per
-/// vertex. Rotations need not be of unit length. The mean of two rotations half a turn apart is no rotation but a flattening: a limb that is
+/// `world_from_bind` is what [`SkinnedMesh::joint_transforms`] gives; `positions` (metres) and
+/// `normals` (unit) are overwritten, one of each per vertex. Rotations need not be of unit length.
+/// The mean of two rotations half a turn apart is no rotation but a flattening: a limb that is
 /// twisted by 180° collapses to its axis.
-pub fn linear_blend(mesh: &SkinnedMesh, world_from_bind: &[RigidTransform], positions: &mut Vec<Vec3>, normals: &mut Vec<Vec3>) {
+pub fn linear_blend(
+    mesh: &SkinnedMesh,
+    world_from_bind: &[RigidTransform],
+    positions: &mut Vec<Vec3>,
+    normals: &mut Vec<Vec3>,
+) {
     deform(mesh, positions, normals, |vertex, position, normal| {
         let (mut point, mut axes, mut total) = (Vec3::ZERO, Mat3::ZERO, 0.0);
         for (transform, weight) in influences(mesh, world_from_bind, vertex) {
@@ -92,15 +93,23 @@ pub fn linear_blend(mesh: &SkinnedMesh, world_from_bind: &[RigidTransform], posi
     });
 }
 
-/// Dual quaternion skinning (Kavan, Collins, Žára, O'Sullivan, "Skinning with Dual Quaternions", I3D 2007, algorithm 1): the mean is taken of the
-/// motions, as unit dual quaternions, and is a rigid motion again.
+/// Dual quaternion skinning (Kavan, Collins, Žára, O'Sullivan, "Skinning with Dual Quaternions",
+/// I3D 2007, algorithm 1): the mean is taken of the motions, as unit dual quaternions, and is a
+/// rigid motion again.
 ///
-/// Arguments as of [`linear_blend`]. `q` and `-q` are one rotation: all are brought into the hemisphere of the joint with the greatest weight first
-/// (ibid., section 4.1). Where what is left has no length, that joint alone moves the vertex.
-pub fn dual_quaternion(mesh: &SkinnedMesh, world_from_bind: &[RigidTransform], positions: &mut Vec<Vec3>, normals: &mut Vec<Vec3>) {
+/// Arguments as of [`linear_blend`]. `q` and `-q` are one rotation: all are brought into the
+/// hemisphere of the joint with the greatest weight first (ibid., section 4.1). Where what is left
+/// has no length, that joint alone moves the vertex.
+pub fn dual_quaternion(
+    mesh: &SkinnedMesh,
+    world_from_bind: &[RigidTransform],
+    positions: &mut Vec<Vec3>,
+    normals: &mut Vec<Vec3>,
+) {
     deform(mesh, positions, normals, |vertex, position, normal| {
         let mut pivot: Option<RigidTransform> = None;
-        let (mut real, mut dual) = (Quat::from_xyzw(0.0, 0.0, 0.0, 0.0), Quat::from_xyzw(0.0, 0.0, 0.0, 0.0));
+        let (mut real, mut dual) =
+            (Quat::from_xyzw(0.0, 0.0, 0.0, 0.0), Quat::from_xyzw(0.0, 0.0, 0.0, 0.0));
         for (transform, weight) in influences(mesh, world_from_bind, vertex) {
             let rotation = quat::renormalize(transform.rotation);
             let first = *pivot.get_or_insert(RigidTransform { rotation, ..transform });
@@ -108,7 +117,9 @@ pub fn dual_quaternion(mesh: &SkinnedMesh, world_from_bind: &[RigidTransform], p
             real += rotation * weight;
             dual += dual_part(rotation, transform.translation) * weight;
         }
-        let Some(pivot) = pivot else { return (position, normal) };
+        let Some(pivot) = pivot else {
+            return (position, normal);
+        };
         let length = real.length();
         if length < 1e-6 {
             return (pivot.point(position), pivot.rotation * normal);
@@ -123,13 +134,19 @@ fn dual_part(rotation: Quat, translation: Vec3) -> Quat {
     Quat::from_xyzw(translation.x, translation.y, translation.z, 0.0) * rotation * 0.5
 }
 
-/// The translation of a dual quaternion with a real part of unit length: the vector part of `2 dual real*`. What of the dual part is not at right
-/// angles to the real one ends up in the scalar part, and is dropped.
+/// The translation of a dual quaternion with a real part of unit length: the vector part of `2 dual
+/// real*`. What of the dual part is not at right angles to the real one ends up in the scalar part,
+/// and is dropped.
 fn translation(real: Quat, dual: Quat) -> Vec3 {
     (dual * real.conjugate() * 2.0).xyz()
 }
 
-fn deform(mesh: &SkinnedMesh, positions: &mut Vec<Vec3>, normals: &mut Vec<Vec3>, moved: impl Fn(usize, Vec3, Vec3) -> (Vec3, Vec3)) {
+fn deform(
+    mesh: &SkinnedMesh,
+    positions: &mut Vec<Vec3>,
+    normals: &mut Vec<Vec3>,
+    moved: impl Fn(usize, Vec3, Vec3) -> (Vec3, Vec3),
+) {
     positions.clear();
     normals.clear();
     for (vertex, &position) in mesh.positions.iter().enumerate() {

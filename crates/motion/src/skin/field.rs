@@ -1,7 +1,9 @@
-//! The surface around a set of rounded cones, as the zero of a field: negative inside, about metres of distance near the surface.
+//! The surface around a set of rounded cones, as the zero of a field: negative inside, about metres
+//! of distance near the surface.
 //!
-//! Where two shapes meet they flow into each other (the quadratic smooth minimum of Quilez, "Smooth minimum"), but only those that are neighbours in
-//! the tree, and only as far as their surfaces differ in direction: two pieces of one straight limb must not swell where they meet (the idea of
+//! Where two shapes meet they flow into each other (the quadratic smooth minimum of Quilez, "Smooth
+//! minimum"), but only those that are neighbours in the tree, and only as far as their surfaces
+//! differ in direction: two pieces of one straight limb must not swell where they meet (the idea of
 //! Gourmel et al., "A Gradient-Based Implicit Blend", 2013).
 
 use super::shapes::PlacedShape;
@@ -11,7 +13,8 @@ use glam::Vec3;
 const BLEND: f32 = 0.75;
 /// Surfaces whose normals differ by this (1 − cosine; 70°) flow together fully.
 const FULL_BLEND: f32 = 0.66;
-/// The field says at most this many times the distance from a squashed shape, and never less than one part in this.
+/// The field says at most this many times the distance from a squashed shape, and never less than
+/// one part in this.
 const FLATTEST: f32 = 0.1;
 
 /// One rounded cone, ready to be measured.
@@ -59,11 +62,8 @@ impl Cone {
             (shape.a, length, shape.radius_a, fall)
         };
         let sine = if length > 0.0 { fall / length } else { 0.0 };
-        let across = if length > 0.0 {
-            shape.flat.reject_from_normalized(along)
-        } else {
-            shape.flat
-        };
+        let across =
+            if length > 0.0 { shape.flat.reject_from_normalized(along) } else { shape.flat };
         let flat = across.try_normalize();
         Self {
             a,
@@ -96,7 +96,8 @@ impl Cone {
     /// A box around it: corners with the least and the greatest coordinates.
     fn bounds(&self) -> [Vec3; 2] {
         let b = self.a + self.along * self.length;
-        let [reach_a, reach_b] = [self.radius_a, self.radius_a - self.fall].map(|radius| Vec3::splat(radius * self.flatness.max(1.0)));
+        let [reach_a, reach_b] = [self.radius_a, self.radius_a - self.fall]
+            .map(|radius| Vec3::splat(radius * self.flatness.max(1.0)));
         [(self.a - reach_a).min(b - reach_b), (self.a + reach_a).max(b + reach_b)]
     }
 
@@ -157,7 +158,10 @@ pub(super) struct Sample {
 
 impl Field {
     /// `are_neighbours` is asked once for each two indices into `cones`.
-    pub(super) fn new(cones: Vec<Cone>, mut are_neighbours: impl FnMut(usize, usize) -> bool) -> Self {
+    pub(super) fn new(
+        cones: Vec<Cone>,
+        mut are_neighbours: impl FnMut(usize, usize) -> bool,
+    ) -> Self {
         let count = cones.len();
         let mut neighbours = vec![false; count * count];
         for i in 0..count {
@@ -170,7 +174,8 @@ impl Field {
         Self { cones, neighbours }
     }
 
-    /// A box around the surface: corners with the least and the greatest coordinates; `None` without a shape.
+    /// A box around the surface: corners with the least and the greatest coordinates; `None`
+    /// without a shape.
     pub(super) fn bounds(&self) -> Option<[Vec3; 2]> {
         let [low, high] = self
             .cones
@@ -178,28 +183,29 @@ impl Field {
             .map(Cone::bounds)
             .reduce(|[low, high], [a, b]| [low.min(a), high.max(b)])?;
         // A blend may rise over both of its shapes.
-        let blend = Vec3::splat(0.25 * BLEND * self.cones.iter().map(Cone::thickest).fold(0.0, f32::max));
+        let blend =
+            Vec3::splat(0.25 * BLEND * self.cones.iter().map(Cone::thickest).fold(0.0, f32::max));
         Some([low - blend, high + blend])
     }
 
     /// The field, where no shapes but those in `near` matter. `scratch` is room to work in.
-    pub(super) fn sample(&self, point: Vec3, near: &[u16], scratch: &mut Vec<(usize, Measured)>) -> Sample {
+    pub(super) fn sample(
+        &self,
+        point: Vec3,
+        near: &[u16],
+        scratch: &mut Vec<(usize, Measured)>,
+    ) -> Sample {
         scratch.clear();
         scratch.extend(
             near.iter()
                 .map(|&index| (usize::from(index), self.cones[usize::from(index)].measure(point))),
         );
-        let nearest = scratch.iter().map(|(_, measured)| measured.distance).fold(f32::INFINITY, f32::min);
+        let nearest =
+            scratch.iter().map(|(_, measured)| measured.distance).fold(f32::INFINITY, f32::min);
         scratch.retain(|(_, measured)| measured.distance <= nearest + BLEND * measured.radius);
-        let mut best = Sample {
-            value: f32::INFINITY,
-            normal: Vec3::Y,
-        };
+        let mut best = Sample { value: f32::INFINITY, normal: Vec3::Y };
         for &(i, one) in scratch.iter() {
-            let mut sum = Sample {
-                value: one.distance,
-                normal: one.normal,
-            };
+            let mut sum = Sample { value: one.distance, normal: one.normal };
             for &(j, other) in scratch.iter() {
                 if self.neighbours[i * self.cones.len() + j] {
                     let turn = ((1.0 - sum.normal.dot(other.normal)) / FULL_BLEND).min(1.0);
@@ -213,7 +219,8 @@ impl Field {
         best
     }
 
-    /// What matters within `reach` of `center`: the shapes of `near` that do are put into `out`. `scratch` is room to work in.
+    /// What matters within `reach` of `center`: the shapes of `near` that do are put into `out`.
+    /// `scratch` is room to work in.
     pub(super) fn narrowed(
         &self,
         center: Vec3,
@@ -223,10 +230,7 @@ impl Field {
         out: &mut Vec<u16>,
         scratch: &mut Vec<(usize, Measured)>,
     ) -> Around {
-        let mut around = Around {
-            least: f32::INFINITY,
-            size: f32::INFINITY,
-        };
+        let mut around = Around { least: f32::INFINITY, size: f32::INFINITY };
         let mut nearest = f32::INFINITY;
         scratch.clear();
         for &index in near {
@@ -242,7 +246,8 @@ impl Field {
             }
         }
         let matter = near.iter().zip(scratch.iter()).filter(|(_, (index, measured))| {
-            measured.at_least.min(measured.distance) <= nearest + 2.0 * reach + BLEND * self.cones[*index].thickest()
+            measured.at_least.min(measured.distance)
+                <= nearest + 2.0 * reach + BLEND * self.cones[*index].thickest()
         });
         out.clear();
         out.extend(matter.map(|(&index, _)| index));
@@ -260,11 +265,8 @@ impl Field {
 }
 
 fn smooth_min(a: Sample, b: Measured, width: f32) -> Sample {
-    let overlap = if width > 1e-9 {
-        (width - (a.value - b.distance).abs()).max(0.0) / width
-    } else {
-        0.0
-    };
+    let overlap =
+        if width > 1e-9 { (width - (a.value - b.distance).abs()).max(0.0) / width } else { 0.0 };
     // The share of `b`: all of it where it is nearer by the width, half where both are as near.
     let share = if width > 1e-9 {
         (0.5 + 0.5 * (a.value - b.distance) / width).clamp(0.0, 1.0)

@@ -1,4 +1,5 @@
-//! Skinning against numbers of another program and closed forms; bodies against what every body must be.
+//! Skinning against numbers of another program and closed forms; bodies against what every body
+//! must be.
 
 use super::*;
 use crate::clip::Clip;
@@ -25,7 +26,8 @@ struct Golden {
 
 #[test]
 fn both_ways_agree_with_numpy() {
-    let golden: Golden = serde_json::from_str(include_str!("../../tests/oracles/skinning.json")).unwrap();
+    let golden: Golden =
+        serde_json::from_str(include_str!("../../tests/oracles/skinning.json")).unwrap();
     let transforms: Vec<RigidTransform> = (golden.rotations.iter().zip(&golden.translations))
         .map(|(rotation, &translation)| RigidTransform {
             rotation: Quat::from_array(*rotation),
@@ -60,7 +62,8 @@ fn both_ways_agree_with_numpy() {
     }
 }
 
-/// A tube along X about two joints, at 0 and at 0.3 m, of 4 cm radius: weights go over evenly from 0.25 to 0.35 m.
+/// A tube along X about two joints, at 0 and at 0.3 m, of 4 cm radius: weights go over evenly from
+/// 0.25 to 0.35 m.
 fn tube() -> SkinnedMesh {
     let mut mesh = SkinnedMesh::default();
     for ring in 0..=60 {
@@ -79,16 +82,15 @@ fn tube() -> SkinnedMesh {
             mesh.weights.push(weights);
         }
     }
-    let bind = |x: f32| RigidTransform {
-        rotation: Quat::IDENTITY,
-        translation: Vec3::new(-x, 0.0, 0.0),
-    };
+    let bind =
+        |x: f32| RigidTransform { rotation: Quat::IDENTITY, translation: Vec3::new(-x, 0.0, 0.0) };
     mesh.bind = vec![bind(0.0), bind(0.3)];
     mesh
 }
 
 #[test]
-fn a_forearm_twisted_by_half_a_turn_collapses_under_linear_blend_and_keeps_its_girth_under_dual_quaternions() {
+fn a_forearm_twisted_by_half_a_turn_collapses_under_linear_blend_and_keeps_its_girth_under_dual_quaternions()
+ {
     let mesh = tube();
     // Just short of a half turn, where both ways round would be as near.
     let twist = Quat::from_rotation_x(std::f32::consts::PI - 1e-3);
@@ -98,13 +100,15 @@ fn a_forearm_twisted_by_half_a_turn_collapses_under_linear_blend_and_keeps_its_g
     };
     let (mut transforms, mut positions, mut normals) = (vec![], vec![], vec![]);
     mesh.joint_transforms(&pose, &mut transforms);
-    let mut thinnest = |way: fn(&SkinnedMesh, &[RigidTransform], &mut Vec<Vec3>, &mut Vec<Vec3>)| {
-        way(&mesh, &transforms, &mut positions, &mut normals);
-        let radius = |p: &Vec3| p.y.hypot(p.z);
-        let [low, high] = [f32::min, f32::max].map(|of| positions.iter().map(radius).reduce(of).unwrap());
-        assert!(normals.iter().all(|normal| normal.is_normalized()));
-        [low, high]
-    };
+    let mut thinnest =
+        |way: fn(&SkinnedMesh, &[RigidTransform], &mut Vec<Vec3>, &mut Vec<Vec3>)| {
+            way(&mesh, &transforms, &mut positions, &mut normals);
+            let radius = |p: &Vec3| p.y.hypot(p.z);
+            let [low, high] =
+                [f32::min, f32::max].map(|of| positions.iter().map(radius).reduce(of).unwrap());
+            assert!(normals.iter().all(|normal| normal.is_normalized()));
+            [low, high]
+        };
     let [low, high] = thinnest(linear_blend);
     assert!(low < 1e-4 && (high - 0.04).abs() < 1e-6, "linear blend: {low} to {high} m");
     let [low, high] = thinnest(dual_quaternion);
@@ -130,10 +134,12 @@ fn the_wrist_of_the_mannequin_shows_the_candy_wrapper() {
         positions: skeleton.rest_positions(),
         rotations: vec![Quat::IDENTITY; skeleton.len()],
     };
-    let (elbow, wrist) = (roles.get(Role::LeftForearm).unwrap(), roles.get(Role::LeftHand).unwrap());
+    let (elbow, wrist) =
+        (roles.get(Role::LeftForearm).unwrap(), roles.get(Role::LeftHand).unwrap());
     let mut twisted = rest.clone();
     twisted.rotations[wrist] = Quat::from_rotation_x(3.1);
-    // The section of the arm where hand and forearm share: its mean distance from the axis of the arm, at rest and twisted.
+    // The section of the arm where hand and forearm share: its mean distance from the axis of the
+    // arm, at rest and twisted.
     let shared: Vec<usize> = (0..mesh.positions.len())
         .filter(|&vertex| {
             let weight = |joint: usize| {
@@ -147,16 +153,18 @@ fn the_wrist_of_the_mannequin_shows_the_candy_wrapper() {
         .collect();
     assert!(shared.len() >= 6, "{} vertices", shared.len());
     let (mut transforms, mut positions, mut normals) = (vec![], vec![], vec![]);
-    let mut girth = |pose: &WorldPose, way: fn(&SkinnedMesh, &[RigidTransform], &mut Vec<Vec3>, &mut Vec<Vec3>)| {
-        mesh.joint_transforms(pose, &mut transforms);
-        way(&mesh, &transforms, &mut positions, &mut normals);
-        let axis = rest.positions[wrist];
-        shared
-            .iter()
-            .map(|&vertex| (positions[vertex].y - axis.y).hypot(positions[vertex].z - axis.z))
-            .sum::<f32>()
-            / shared.len() as f32
-    };
+    let mut girth =
+        |pose: &WorldPose,
+         way: fn(&SkinnedMesh, &[RigidTransform], &mut Vec<Vec3>, &mut Vec<Vec3>)| {
+            mesh.joint_transforms(pose, &mut transforms);
+            way(&mesh, &transforms, &mut positions, &mut normals);
+            let axis = rest.positions[wrist];
+            shared
+                .iter()
+                .map(|&vertex| (positions[vertex].y - axis.y).hypot(positions[vertex].z - axis.z))
+                .sum::<f32>()
+                / shared.len() as f32
+        };
     let before = girth(&rest, linear_blend);
     let (linear, dual) = (girth(&twisted, linear_blend), girth(&twisted, dual_quaternion));
     assert!(linear < 0.15 * before, "linear blend: {linear} of {before} m");
@@ -168,14 +176,13 @@ fn check(name: &str, skeleton: &Skeleton, mesh: &SkinnedMesh) {
     let count = mesh.positions.len();
     assert!(count > 0, "{name}");
     assert!(
-        [mesh.normals.len(), mesh.joints.len(), mesh.weights.len()]
-            .iter()
-            .all(|&len| len == count),
+        [mesh.normals.len(), mesh.joints.len(), mesh.weights.len()].iter().all(|&len| len == count),
         "{name}"
     );
     assert_eq!(mesh.bind.len(), skeleton.len(), "{name}");
     assert!(
-        mesh.positions.iter().all(|p| p.is_finite()) && mesh.normals.iter().all(|n| n.is_normalized()),
+        mesh.positions.iter().all(|p| p.is_finite())
+            && mesh.normals.iter().all(|n| n.is_normalized()),
         "{name}"
     );
     for (joints, weights) in mesh.joints.iter().zip(&mesh.weights) {
@@ -184,7 +191,9 @@ fn check(name: &str, skeleton: &Skeleton, mesh: &SkinnedMesh) {
             "{name}: {joints:?}"
         );
         assert!(
-            (weights.iter().sum::<f32>() - 1.0).abs() < 1e-5 && weights.is_sorted_by(|a, b| a >= b) && weights[3] >= 0.0,
+            (weights.iter().sum::<f32>() - 1.0).abs() < 1e-5
+                && weights.is_sorted_by(|a, b| a >= b)
+                && weights[3] >= 0.0,
             "{name}: {weights:?}"
         );
     }
@@ -193,7 +202,8 @@ fn check(name: &str, skeleton: &Skeleton, mesh: &SkinnedMesh) {
     for &[a, b, c] in &mesh.triangles {
         assert!(a.max(b).max(c) < count as u32 && a != b && b != c && c != a, "{name}");
         for (from, to) in [(a, b), (b, c), (c, a)] {
-            *edges.entry((from.min(to), from.max(to))).or_default() += if from < to { 1 } else { -1 };
+            *edges.entry((from.min(to), from.max(to))).or_default() +=
+                if from < to { 1 } else { -1 };
         }
     }
     assert!(
@@ -314,19 +324,15 @@ fn odd_skeletons_have_a_body_of_bounded_size() {
 fn a_character_of_another_rig_stands_where_the_clip_stands() {
     let walk = synthesize(&Params::new(Action::Walk)).unwrap().clip;
     let roles = Roles::detect(walk.skeleton());
-    for (name, skeleton, _) in fixtures::all()
-        .into_iter()
-        .filter(|(name, ..)| ["mixamo", "lafan", "smpl"].contains(name))
+    for (name, skeleton, _) in
+        fixtures::all().into_iter().filter(|(name, ..)| ["mixamo", "lafan", "smpl"].contains(name))
     {
         let own = Roles::detect(&skeleton);
         let mesh = Arc::new(SkinnedMesh::around(&skeleton, &own, 1.0));
-        let character = Character {
-            skeleton,
-            roles: own,
-            mesh,
-        };
+        let character = Character { skeleton, roles: own, mesh };
         let drive = Drive::new(&walk, &roles, &character).unwrap();
-        let (mut pose, mut transforms, mut positions, mut normals) = (WorldPose::default(), vec![], vec![], vec![]);
+        let (mut pose, mut transforms, mut positions, mut normals) =
+            (WorldPose::default(), vec![], vec![], vec![]);
         let mut lowest = f32::INFINITY;
         for frame in (0..walk.frames()).step_by(20) {
             drive.pose(&walk.world_pose(frame), &mut pose);
@@ -341,7 +347,8 @@ fn a_character_of_another_rig_stands_where_the_clip_stands() {
                     } else {
                         (role, Role::hand(Side::Right))
                     };
-                    let at = |role| world.positions[roles.get_within(role, skeleton.len()).unwrap()];
+                    let at =
+                        |role| world.positions[roles.get_within(role, skeleton.len()).unwrap()];
                     (at(end) - at(start)).normalize_or_zero()
                 };
                 let theirs = direction(walk.skeleton(), &roles, &walk.world_pose(frame));
@@ -354,22 +361,14 @@ fn a_character_of_another_rig_stands_where_the_clip_stands() {
     // On its own skeleton nothing is changed.
     let skeleton = Arc::clone(walk.skeleton());
     let mesh = Arc::new(SkinnedMesh::around(&skeleton, &roles, 1.0));
-    let own = Character {
-        skeleton,
-        roles: roles.clone(),
-        mesh,
-    };
+    let own = Character { skeleton, roles: roles.clone(), mesh };
     let mut pose = WorldPose::default();
     Drive::new(&walk, &roles, &own).unwrap().pose(&walk.world_pose(3), &mut pose);
     assert_eq!(pose, walk.world_pose(3));
     // Nothing in common: no way.
     let rope = Arc::new(chain(3, Vec3::Y));
     let mesh = Arc::new(SkinnedMesh::around(&rope, &Roles::default(), 1.0));
-    let rope = Character {
-        skeleton: rope,
-        roles: Roles::default(),
-        mesh,
-    };
+    let rope = Character { skeleton: rope, roles: Roles::default(), mesh };
     assert!(Drive::new(&walk, &roles, &rope).is_none());
 }
 
@@ -411,7 +410,9 @@ fn a_body_does_not_depend_on_how_a_file_writes_joint_axes() {
         let roles = fixtures::roles(&skeleton);
         let step = fixtures::step(&skeleton, &roles);
         let (turned, turns) = fixtures::turned(&skeleton, 5);
-        let clip = |skeleton: &Arc<Skeleton>, pose: Pose| Clip::from_poses("step", Arc::clone(skeleton), 30.0, [pose]).unwrap();
+        let clip = |skeleton: &Arc<Skeleton>, pose: Pose| {
+            Clip::from_poses("step", Arc::clone(skeleton), 30.0, [pose]).unwrap()
+        };
         let other = clip(&turned, fixtures::turned_pose(&skeleton, &turns, &step));
         let plain = clip(&skeleton, step);
         let [expected, found] = [&plain, &other].map(|clip| {
@@ -420,7 +421,9 @@ fn a_body_does_not_depend_on_how_a_file_writes_joint_axes() {
             posed(&mesh, &clip.world_pose(0))
         });
         // Every so many of the points of one body lie near the other.
-        let nearest = |point: &Vec3| expected.iter().map(|other| other.distance(*point)).fold(f32::INFINITY, f32::min);
+        let nearest = |point: &Vec3| {
+            expected.iter().map(|other| other.distance(*point)).fold(f32::INFINITY, f32::min)
+        };
         let mut apart: Vec<f32> = found.iter().step_by(23).map(nearest).collect();
         apart.sort_by(f32::total_cmp);
         let (middle, last) = (apart[apart.len() / 2], apart[apart.len() * 99 / 100]);

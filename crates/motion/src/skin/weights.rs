@@ -1,8 +1,10 @@
-//! Which joints move a vertex: each vertex begins with the one whose bone it lies on, and neighbours share.
+//! Which joints move a vertex: each vertex begins with the one whose bone it lies on, and
+//! neighbours share.
 
 use glam::Vec3;
 
-/// How often neighbours share: joints reach about three vertices to each side, and vertices are as near to each other as the limb is thin.
+/// How often neighbours share: joints reach about three vertices to each side, and vertices are as
+/// near to each other as the limb is thin.
 const ROUNDS: usize = 10;
 /// Joints that a vertex keeps while it shares.
 const KEPT: usize = 6;
@@ -25,7 +27,8 @@ impl Neighbours {
         for vertex in 0..vertices {
             starts[vertex + 1] += starts[vertex];
         }
-        // On a closed surface every edge is in one triangle in each direction: each gives its corner the next one.
+        // On a closed surface every edge is in one triangle in each direction: each gives its
+        // corner the next one.
         let mut free = starts.clone();
         let mut neighbours = vec![0u32; triangles.len() * 3];
         for &[a, b, c] in triangles {
@@ -58,11 +61,7 @@ impl Sharing {
         let now: Vec<Shares> = first
             .map(|joint| std::array::from_fn(|i| (joint, f32::from(u8::from(i == 0)))))
             .collect();
-        Self {
-            next: now.clone(),
-            now,
-            rounds: 0,
-        }
+        Self { next: now.clone(), now, rounds: 0 }
     }
 
     /// One more round; `true` when none is left.
@@ -109,15 +108,19 @@ impl Sharing {
 
 /// The greatest weights, scaled to the sum 1.
 fn greatest(sum: &mut [(u16, f32)]) -> Shares {
-    sum.sort_unstable_by(|(joint, weight), (other, than)| than.total_cmp(weight).then(joint.cmp(other)));
+    sum.sort_unstable_by(|(joint, weight), (other, than)| {
+        than.total_cmp(weight).then(joint.cmp(other))
+    });
     let kept = &sum[..sum.len().min(KEPT)];
     let total: f32 = kept.iter().map(|(_, weight)| weight).sum();
     let spare = kept.first().map_or(0, |(joint, _)| *joint);
-    std::array::from_fn(|i| kept.get(i).map_or((spare, 0.0), |&(joint, weight)| (joint, weight / total)))
+    std::array::from_fn(|i| {
+        kept.get(i).map_or((spare, 0.0), |&(joint, weight)| (joint, weight / total))
+    })
 }
 
-/// Smooths a surface without shrinking it (Taubin, "A Signal Processing Approach to Fair Surface Design", 1995): a step towards the neighbours' mean and
-/// a longer one back.
+/// Smooths a surface without shrinking it (Taubin, "A Signal Processing Approach to Fair Surface
+/// Design", 1995): a step towards the neighbours' mean and a longer one back.
 pub(super) fn fair(positions: &mut Vec<Vec3>, neighbours: &Neighbours) {
     for step in [0.5, -0.53] {
         *positions = drawn_together(positions, neighbours, step);
@@ -131,13 +134,15 @@ pub(super) fn drawn_together(values: &[Vec3], neighbours: &Neighbours, share: f3
         if around.is_empty() {
             return own;
         }
-        let mean = around.iter().map(|&other| values[other as usize]).sum::<Vec3>() / around.len() as f32;
+        let mean =
+            around.iter().map(|&other| values[other as usize]).sum::<Vec3>() / around.len() as f32;
         own + (mean - own) * share
     });
     drawn.collect()
 }
 
-/// Returns the unit normal of each vertex: the mean of the normals of its triangles, weighted by area.
+/// Returns the unit normal of each vertex: the mean of the normals of its triangles, weighted by
+/// area.
 ///
 /// # Panics
 ///

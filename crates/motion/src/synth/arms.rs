@@ -24,8 +24,9 @@ fn degrees(value: f64) -> f64 {
     value.to_radians()
 }
 
-/// Swing and elbows after Murray, Sepic and Barnard 1967 (walking: 24° back to 8° forward at a free speed, elbow 15 to 45°) and Hinrichs 1987
-/// (running: elbow near 90°, the hand crossing towards the middle in front).
+/// Swing and elbows after Murray, Sepic and Barnard 1967 (walking: 24° back to 8° forward at a free
+/// speed, elbow 15 to 45°) and Hinrichs 1987 (running: elbow near 90°, the hand crossing towards
+/// the middle in front).
 pub(super) fn arm(plan: &Plan, posture: &Posture, params: &Params, side: usize, secs: f64) -> Arm {
     let gait = &plan.gait;
     let going = plan.going(secs);
@@ -101,8 +102,8 @@ pub(super) fn arm(plan: &Plan, posture: &Posture, params: &Params, side: usize, 
 }
 
 impl Arm {
-    /// The upper arm in the frame that the arms hang in, from the T-pose. Turns about its own axis are alike on both sides, for the T-pose is
-    /// mirrored in x.
+    /// The upper arm in the frame that the arms hang in, from the T-pose. Turns about its own axis
+    /// are alike on both sides, for the T-pose is mirrored in x.
     pub(super) fn upper(&self, side: usize) -> Quat {
         let mirror = if side == 0 { 1.0 } else { -1.0 };
         Quat::from_rotation_x(-self.flexion as f32)

@@ -36,11 +36,18 @@ pub(super) fn hips(plan: &Plan, posture: &Posture, params: &Params, body: &Body)
 
 /// The way of the hips over the ground (x, z).
 ///
-/// The body is a linear inverted pendulum on the centre of pressure p: ẍ = ω²(x - p). Its only bounded motion is p seen through the kernel
-/// ω/2·e^(-ω|t|), which looks ahead as far as back (the preview of Kajita et al. 2003, in closed form): the sway over the stance foot, the
-/// shift of weight before a first step and the lean before a stop are all in it. What is filtered is how far p is from the foothold that the planned
-/// way itself calls for, so that a steady gait keeps its speed and its circle exactly.
-fn over_the_ground(plan: &Plan, feet: &[[Foot; 2]], posture: &Posture, params: &Params) -> Vec<DVec2> {
+/// The body is a linear inverted pendulum on the centre of pressure p: ẍ = ω²(x - p). Its only
+/// bounded motion is p seen through the kernel ω/2·e^(-ω|t|), which looks ahead as far as back (the
+/// preview of Kajita et al. 2003, in closed form): the sway over the stance foot, the shift of
+/// weight before a first step and the lean before a stop are all in it. What is filtered is how far
+/// p is from the foothold that the planned way itself calls for, so that a steady gait keeps its
+/// speed and its circle exactly.
+fn over_the_ground(
+    plan: &Plan,
+    feet: &[[Foot; 2]],
+    posture: &Posture,
+    params: &Params,
+) -> Vec<DVec2> {
     let height = pendulum_height(params.height_m);
     let rate = (gravity() / height).sqrt();
     let places: Vec<_> = (0..plan.len()).map(|step| plan.path.at(plan.secs(step))).collect();
@@ -48,7 +55,8 @@ fn over_the_ground(plan: &Plan, feet: &[[Foot; 2]], posture: &Posture, params: &
         .map(|(pair, place)| {
             let load: f64 = pair.iter().map(|foot| foot.load).sum();
             let pressure = pair.iter().map(|foot| foot.pressure * foot.load).sum::<DVec2>() / load;
-            (load > 1e-6).then(|| place.to_local(pressure - place.position + place.lean(gravity()) * height))
+            (load > 1e-6)
+                .then(|| place.to_local(pressure - place.position + place.lean(gravity()) * height))
         })
         .collect();
     bridge(&mut away);
@@ -60,10 +68,13 @@ fn over_the_ground(plan: &Plan, feet: &[[Foot; 2]], posture: &Posture, params: &
             *sway -= mean;
         }
     }
-    // The hips sway farther than the centre of mass, for the trunk leans the other way (Orendurff et al. 2004 find the hips' 20 to 40 % larger).
+    // The hips sway farther than the centre of mass, for the trunk leans the other way (Orendurff
+    // et al. 2004 find the hips' 20 to 40 % larger).
     let gain = DVec2::new(if plan.gait.running { 0.8 } else { 1.3 }, 1.0);
     (swayed.iter().zip(&places).enumerate())
-        .map(|(step, (sway, place))| place.position + place.to_world(*sway * gain + posture.drift(plan.secs(step))))
+        .map(|(step, (sway, place))| {
+            place.position + place.to_world(*sway * gain + posture.drift(plan.secs(step)))
+        })
         .collect()
 }
 

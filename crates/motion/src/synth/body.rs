@@ -23,9 +23,10 @@ pub(super) mod joint {
     pub(in crate::synth) const COUNT: usize = 22;
 }
 
-// Fractions of body height after Drillis and Contini 1966, as tabulated in Winter, "Biomechanics and Motor Control of Human Movement",
-// figure 4.1: ankle 0.039, knee 0.285 and hip 0.530 above the ground, shoulder 0.818, upper arm 0.186, forearm 0.146, hand 0.108,
-// foot 0.152 long. The division of the trunk and of the foot follows the usual joint centres.
+// Fractions of body height after Drillis and Contini 1966, as tabulated in Winter, "Biomechanics
+// and Motor Control of Human Movement", figure 4.1: ankle 0.039, knee 0.285 and hip 0.530 above the
+// ground, shoulder 0.818, upper arm 0.186, forearm 0.146, hand 0.108, foot 0.152 long. The division
+// of the trunk and of the foot follows the usual joint centres.
 const ANKLE_HEIGHT: f32 = 0.039;
 const SHANK: f32 = 0.246;
 const THIGH: f32 = 0.245;
@@ -82,7 +83,8 @@ impl Body {
         -self.heel_in_foot.y
     }
 
-    /// Height of the hip joints of a body that stands straight: the leg length of the gait literature.
+    /// Height of the hip joints of a body that stands straight: the leg length of the gait
+    /// literature.
     pub(super) fn hip_height(&self) -> f32 {
         self.leg() + self.ankle_height()
     }
@@ -94,37 +96,34 @@ impl Body {
     }
 }
 
-/// The contact point of the heel in the frame of `LeftFoot` and `RightFoot` of [`humanoid`], metres.
+/// The contact point of the heel in the frame of `LeftFoot` and `RightFoot` of [`humanoid`],
+/// metres.
 ///
-/// No joint lies there; with the joints `LeftToe` and `RightToe` it is what stands still while [`super::FootContact`] says so.
+/// No joint lies there; with the joints `LeftToe` and `RightToe` it is what stands still while
+/// [`super::FootContact`] says so.
 #[must_use]
 pub fn heel_in_foot(height_m: f32) -> Vec3 {
     Body::new(height_m).heel_in_foot
 }
 
-/// A person of `height_m` metres: 22 joints named as in `LaFAN1`, in a T-pose that faces +Z, +Y up, left on +X.
+/// A person of `height_m` metres: 22 joints named as in `LaFAN1`, in a T-pose that faces +Z, +Y up,
+/// left on +X.
 ///
-/// Proportions after Drillis and Contini 1966 (Winter, "Biomechanics and Motor Control of Human Movement", figure 4.1). Channels as in most BVH
-/// files: position and ZYX rotation for the root, ZYX rotation for the rest. The root's offset is its height at rest.
+/// Proportions after Drillis and Contini 1966 (Winter, "Biomechanics and Motor Control of Human
+/// Movement", figure 4.1). Channels as in most BVH files: position and ZYX rotation for the root,
+/// ZYX rotation for the rest. The root's offset is its height at rest.
 ///
 /// # Errors
 /// [`SynthError::OutOfRange`] when the height is not between 1.0 and 2.2 m.
 pub fn humanoid(height_m: f32) -> Result<Arc<Skeleton>, SynthError> {
-    super::Params {
-        height_m,
-        ..super::Params::default()
-    }
-    .validate()?;
+    super::Params { height_m, ..super::Params::default() }.validate()?;
     let body = Body::new(height_m);
     let mut joints: Vec<Joint> = Vec::with_capacity(joint::COUNT);
     let mut add = |name: &str, parent: Option<usize>, offset: Vec3, end_site: Option<Vec3>| {
         let rotations = [Channel::ZRotation, Channel::YRotation, Channel::XRotation];
         let positions = [Channel::XPosition, Channel::YPosition, Channel::ZPosition];
-        let channels = if parent.is_none() {
-            [positions, rotations].concat()
-        } else {
-            rotations.to_vec()
-        };
+        let channels =
+            if parent.is_none() { [positions, rotations].concat() } else { rotations.to_vec() };
         joints.push(Joint {
             name: name.to_owned(),
             parent,
@@ -162,12 +161,7 @@ pub fn humanoid(height_m: f32) -> Result<Arc<Skeleton>, SynthError> {
         let first = joint::SHOULDER[side];
         add(&format!("{name}Shoulder"), Some(11), Vec3::new(mirror * 0.024, 0.082, 0.006), None);
         add(&format!("{name}Arm"), Some(first), Vec3::new(mirror * 0.088, 0.005, -0.008), None);
-        add(
-            &format!("{name}ForeArm"),
-            Some(first + 1),
-            Vec3::new(mirror * 0.186, 0.0, 0.0),
-            None,
-        );
+        add(&format!("{name}ForeArm"), Some(first + 1), Vec3::new(mirror * 0.186, 0.0, 0.0), None);
         add(
             &format!("{name}Hand"),
             Some(first + 2),

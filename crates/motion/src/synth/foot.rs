@@ -4,10 +4,12 @@ use super::body::Body;
 use super::track::{Spline, State, cubic_start_acceleration, quintic, ramp};
 use glam::{DVec2, DVec3, Quat, Vec3};
 
-/// A foot on the ground: where, when, and how it arrives and leaves. Times in seconds, `±∞` for a foot that stands.
+/// A foot on the ground: where, when, and how it arrives and leaves. Times in seconds, `±∞` for a
+/// foot that stands.
 ///
-/// The foot rolls over two rockers (Perry and Burnfield 2010, chapter 3): about the heel from `from` to `flat_from`, flat on the ground to
-/// `flat_to`, and about the ball, with the toes flat, to `to`. A foot that arrives with its heel up lands on the ball instead.
+/// The foot rolls over two rockers (Perry and Burnfield 2010, chapter 3): about the heel from
+/// `from` to `flat_from`, flat on the ground to `flat_to`, and about the ball, with the toes flat,
+/// to `to`. A foot that arrives with its heel up lands on the ball instead.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Plant {
     pub(super) from: f64,
@@ -21,7 +23,8 @@ pub(super) struct Plant {
     /// Pitch at `from` and `to`, radians, positive with the heel up.
     pub(super) strike_pitch: f64,
     pub(super) release_pitch: f64,
-    /// The ankle's distance from the middle of the body across its heading, metres; positive on either side.
+    /// The ankle's distance from the middle of the body across its heading, metres; positive on
+    /// either side.
     pub(super) half_width: f64,
     /// How the weight comes and goes, seconds after `from` and before `to`.
     pub(super) load_secs: f64,
@@ -31,7 +34,8 @@ pub(super) struct Plant {
     pub(super) swing: Swing,
 }
 
-/// The way of a foot through the air. Times are shares of the swing; heights are those of the ball over its height on the ground, metres.
+/// The way of a foot through the air. Times are shares of the swing; heights are those of the ball
+/// over its height on the ground, metres.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Swing {
     pub(super) peak: (f64, f64),
@@ -40,12 +44,15 @@ pub(super) struct Swing {
     pub(super) pitch: [(f64, f64); 2],
     /// Pitch shortly before the strike, over that at the strike.
     pub(super) toes_up: f64,
-    /// How much of the least bending way's acceleration the foot starts and ends with, over the ground.
+    /// How much of the least bending way's acceleration the foot starts and ends with, over the
+    /// ground.
     pub(super) eager: f64,
     pub(super) late: f64,
-    /// What the way over the ground bulges by in the middle, world (x, z), metres: around the other leg on a curve, where the chord would go through it.
+    /// What the way over the ground bulges by in the middle, world (x, z), metres: around the other
+    /// leg on a curve, where the chord would go through it.
     pub(super) aside: DVec2,
-    /// Rate of the ball straight up at its start and end, m/s; not 0 only where it leaves the ground with the whole body.
+    /// Rate of the ball straight up at its start and end, m/s; not 0 only where it leaves the
+    /// ground with the whole body.
     pub(super) spring: f64,
 }
 
@@ -101,45 +108,28 @@ fn planted_ball(plant: &Plant, body: &Body, pitch: f64) -> (DVec3, DVec3) {
     }
     let heel = f64::from(body.heel_in_foot.z);
     let (arm, turn) = pitched(body.ball_in_foot - body.heel_in_foot, pitch);
-    (
-        place(heel + arm.x, arm.y),
-        DVec3::new(forward.x * turn.x, turn.y, forward.y * turn.x),
-    )
+    (place(heel + arm.x, arm.y), DVec3::new(forward.x * turn.x, turn.y, forward.y * turn.x))
 }
 
 impl Plant {
     fn strike_rate(&self) -> f64 {
         let span = self.flat_from - self.from;
-        if span.is_finite() && span > 0.0 {
-            -1.1 * self.strike_pitch / span
-        } else {
-            0.0
-        }
+        if span.is_finite() && span > 0.0 { -1.1 * self.strike_pitch / span } else { 0.0 }
     }
 
     fn release_rate(&self) -> f64 {
         let span = self.to - self.flat_to;
-        if span.is_finite() && span > 0.0 {
-            1.9 * self.release_pitch / span
-        } else {
-            0.0
-        }
+        if span.is_finite() && span > 0.0 { 1.9 * self.release_pitch / span } else { 0.0 }
     }
 
     fn pitch(&self, secs: f64) -> f64 {
         if secs < self.flat_from {
-            let strike = State {
-                value: self.strike_pitch,
-                rate: self.strike_rate(),
-                acceleration: 0.0,
-            };
+            let strike =
+                State { value: self.strike_pitch, rate: self.strike_rate(), acceleration: 0.0 };
             quintic(strike, State::rest(0.0), self.flat_from - self.from, secs - self.from)
         } else if secs > self.flat_to {
-            let release = State {
-                value: self.release_pitch,
-                rate: self.release_rate(),
-                acceleration: 0.0,
-            };
+            let release =
+                State { value: self.release_pitch, rate: self.release_rate(), acceleration: 0.0 };
             quintic(State::rest(0.0), release, self.to - self.flat_to, secs - self.flat_to)
         } else {
             0.0
@@ -180,7 +170,8 @@ pub(super) fn foot_at(plants: &[Plant], body: &Body, secs: f64) -> Option<Foot> 
     let down = next.is_none();
     let rotation = Quat::from_rotation_y(yaw as f32) * Quat::from_rotation_x(pitch as f32);
     let ankle = ball.as_vec3() - rotation * body.ball_in_foot;
-    // The centre of pressure runs from the heel to the ball: early in stance behind the middle of the foot, late in front of it.
+    // The centre of pressure runs from the heel to the ball: early in stance behind the middle of
+    // the foot, late in front of it.
     let scale = f64::from(body.scale);
     let roll = 0.05 - 0.07 * (1.0 - ramp(secs, plant.from, plant.from + 2.0 * plant.load_secs))
         + 0.07 * ramp(secs, plant.to - 3.0 * plant.load_secs, plant.to);
@@ -192,7 +183,8 @@ pub(super) fn foot_at(plants: &[Plant], body: &Body, secs: f64) -> Option<Foot> 
         heel_down: down && pitch <= 0.0,
         toe_down: down && pitch >= 0.0,
         load: if down {
-            ramp(secs, plant.from, plant.from + plant.load_secs) * (1.0 - ramp(secs, plant.to - plant.load_secs, plant.to))
+            ramp(secs, plant.from, plant.from + plant.load_secs)
+                * (1.0 - ramp(secs, plant.to - plant.load_secs, plant.to))
         } else {
             0.0
         },
@@ -210,17 +202,11 @@ fn swing_at(plant: &Plant, next: &Plant, body: &Body, secs: f64) -> (DVec3, f64,
     let (start, _) = planted_ball(plant, body, plant.release_pitch);
     let (end, end_turn) = planted_ball(next, body, next.strike_pitch);
     let end_rate = end_turn * next.strike_rate();
-    // Over the ground: from rest to the rate of the heel rocker, quicker off than a curve of least jerk.
-    let mut from = State {
-        value: start.with_y(0.0),
-        rate: DVec3::ZERO,
-        acceleration: DVec3::ZERO,
-    };
-    let mut to = State {
-        value: end.with_y(0.0),
-        rate: end_rate.with_y(0.0),
-        acceleration: DVec3::ZERO,
-    };
+    // Over the ground: from rest to the rate of the heel rocker, quicker off than a curve of least
+    // jerk.
+    let mut from = State { value: start.with_y(0.0), rate: DVec3::ZERO, acceleration: DVec3::ZERO };
+    let mut to =
+        State { value: end.with_y(0.0), rate: end_rate.with_y(0.0), acceleration: DVec3::ZERO };
     let reversed = (State { rate: -to.rate, ..to }, State { rate: -from.rate, ..from });
     let (a0, a1) = (
         cubic_start_acceleration(from, to, span),
@@ -229,7 +215,8 @@ fn swing_at(plant: &Plant, next: &Plant, body: &Body, secs: f64) -> (DVec3, f64,
     from.acceleration = a0 * swing.eager;
     to.acceleration = a1 * swing.late;
     let bulge = 16.0 * (share * (1.0 - share)).powi(2);
-    let ground = quintic(from, to, span, now) + DVec3::new(swing.aside.x, 0.0, swing.aside.y) * bulge;
+    let ground =
+        quintic(from, to, span, now) + DVec3::new(swing.aside.x, 0.0, swing.aside.y) * bulge;
     let timed = |(share, value): (f64, f64)| (share * span, value);
     let height = Spline::clamped(
         &[
@@ -254,16 +241,19 @@ fn swing_at(plant: &Plant, next: &Plant, body: &Body, secs: f64) -> (DVec3, f64,
         next.strike_rate(),
     )
     .at(now);
-    // The toes leave the ground flat, come into line with the foot, and are flat again where the ball lands first.
+    // The toes leave the ground flat, come into line with the foot, and are flat again where the
+    // ball lands first.
     let landing = if next.strike_pitch > 0.0 { ramp(share, 0.55, 1.0) } else { 0.0 };
     let in_line = ramp(share, 0.0, 0.5) * (1.0 - landing);
     let toe_pitch = pitch * in_line + pitch.min(0.0) * (1.0 - in_line);
     let yaw = plant.yaw + (next.yaw - plant.yaw) * ramp(share, 0.05, 0.92);
-    // Whatever the knots say, heel and toes clear the ground: a lift that begins with no slope and makes up for most of what is missing.
+    // Whatever the knots say, heel and toes clear the ground: a lift that begins with no slope and
+    // makes up for most of what is missing.
     let ball = height.at(now);
     let heel = ball + pitched(body.heel_in_foot - body.ball_in_foot, pitch).0.y;
     let tip = ball + pitched(body.tip_in_toes, toe_pitch).0.y;
-    let clearance = 0.02 * f64::from(body.scale) * ramp(share, 0.0, 0.3) * (1.0 - ramp(share, 0.7, 1.0));
+    let clearance =
+        0.02 * f64::from(body.scale) * ramp(share, 0.0, 0.3) * (1.0 - ramp(share, 0.7, 1.0));
     let missing = (clearance - heel.min(tip)).max(0.0);
     let lift = missing * missing / (missing + 0.006);
     (ground.with_y(ball + lift), yaw, pitch, toe_pitch, share)

@@ -7,7 +7,8 @@ const GRAVITY: f64 = 9.81;
 /// Hip height of the adult of 1.75 m that the speeds below refer to.
 const REFERENCE_LEG: f64 = 0.530 * 1.75;
 
-/// One way of going at one speed. Angles in radians; a foot's pitch is positive when its heel is higher than its ball.
+/// One way of going at one speed. Angles in radians; a foot's pitch is positive when its heel is
+/// higher than its ball.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Gait {
     pub(super) running: bool,
@@ -30,10 +31,11 @@ pub(super) struct Gait {
 impl Gait {
     /// Walking.
     ///
-    /// Cadence: step length over cadence (the walk ratio) is the same at all comfortable speeds, 0.0065 to 0.0072 m per step/min (Inman, Ralston
-    /// and Todd 1981; Sekiya and Nagasaki 1998), which is the square-root law of Grieve and Gear 1966. Stance falls from 68 % of the cycle
-    /// in slow to 57 % in fast walking (Murray 1967; Perry and Burnfield 2010: 62 % at a free speed). Bodies of other size: equal Froude number
-    /// v²/gl, times as √(l/g) (Alexander and Jayes 1983).
+    /// Cadence: step length over cadence (the walk ratio) is the same at all comfortable speeds,
+    /// 0.0065 to 0.0072 m per step/min (Inman, Ralston and Todd 1981; Sekiya and Nagasaki 1998),
+    /// which is the square-root law of Grieve and Gear 1966. Stance falls from 68 % of the cycle in
+    /// slow to 57 % in fast walking (Murray 1967; Perry and Burnfield 2010: 62 % at a free speed).
+    /// Bodies of other size: equal Froude number v²/gl, times as √(l/g) (Alexander and Jayes 1983).
     pub(super) fn walk(speed_mps: f64, body: &Body, style: &Style) -> Self {
         let size = f64::from(body.hip_height()) / REFERENCE_LEG;
         let alike = speed_mps / size.sqrt();
@@ -43,7 +45,9 @@ impl Gait {
             running: false,
             cycle_secs: 2.0 * step_secs * size.sqrt(),
             duty: (0.603 - 0.055 * (alike - 1.4)).clamp(0.56, 0.67),
-            half_width: f64::from(body.scale) * (0.055 - 0.012 * (quick - 1.0)) * f64::from(0.35 + 0.65 * style.stance_width),
+            half_width: f64::from(body.scale)
+                * (0.055 - 0.012 * (quick - 1.0))
+                * f64::from(0.35 + 0.65 * style.stance_width),
             flat_from: 0.085,
             flat_to: 0.35 - 0.05 * (quick - 1.0),
             strike_pitch: -(19.0 * quick.powf(0.6)).to_radians(),
@@ -54,20 +58,26 @@ impl Gait {
 
     /// Running.
     ///
-    /// Stride rate: nearly constant at slow speeds and rising with the square of fast ones, 1.39 strides/s at 3.5 m/s (Cavanagh and Kram 1989;
-    /// Luhtanen and Komi 1978). Contact time falls with speed as v^-0.64 from 0.33 s at 2 m/s to 0.16 s at 6 m/s (Weyand et al. 2000; Minetti 1998).
+    /// Stride rate: nearly constant at slow speeds and rising with the square of fast ones, 1.39
+    /// strides/s at 3.5 m/s (Cavanagh and Kram 1989; Luhtanen and Komi 1978). Contact time falls
+    /// with speed as v^-0.64 from 0.33 s at 2 m/s to 0.16 s at 6 m/s (Weyand et al. 2000; Minetti
+    /// 1998).
     pub(super) fn run(speed_mps: f64, body: &Body, style: &Style) -> Self {
         let size = f64::from(body.hip_height()) / REFERENCE_LEG;
         let alike = speed_mps / size.sqrt();
         let strides_per_sec = 1.2 + 0.025 * alike + 0.008 * alike * alike;
-        // A bouncier runner spends less of the cycle on the ground and so flies higher; gravity is not for sale.
-        let contact_secs = 0.45 * alike.max(1.0).powf(-0.64) * (1.12 - 0.12 * f64::from(style.bounce));
+        // A bouncier runner spends less of the cycle on the ground and so flies higher; gravity is
+        // not for sale.
+        let contact_secs =
+            0.45 * alike.max(1.0).powf(-0.64) * (1.12 - 0.12 * f64::from(style.bounce));
         let quick = ((alike - 1.8) / 4.7).clamp(0.0, 1.0);
         Self {
             running: true,
             cycle_secs: size.sqrt() / strides_per_sec,
             duty: (contact_secs * strides_per_sec).clamp(0.2, 0.47),
-            half_width: f64::from(body.scale) * (0.035 - 0.015 * quick) * f64::from(0.3 + 0.7 * style.stance_width),
+            half_width: f64::from(body.scale)
+                * (0.035 - 0.015 * quick)
+                * f64::from(0.3 + 0.7 * style.stance_width),
             flat_from: 0.055,
             flat_to: 0.48 * contact_secs * strides_per_sec,
             strike_pitch: -(10.0 * (1.0 - quick * 1.2)).max(0.0).to_radians(),
@@ -87,7 +97,8 @@ impl Gait {
     }
 }
 
-/// Height of the centre of mass, metres: 0.56 of body height (Winter, table 4.1). The length of the inverted pendulum.
+/// Height of the centre of mass, metres: 0.56 of body height (Winter, table 4.1). The length of the
+/// inverted pendulum.
 pub(super) fn pendulum_height(height_m: f32) -> f64 {
     0.56 * f64::from(height_m)
 }

@@ -18,8 +18,9 @@ use glam::{Quat, Vec3};
 
 /// Makes the motion that `params` describe.
 ///
-/// The clip begins at the origin, facing +Z, with its left heel striking if it walks or runs. Walks and runs hold whole cycles and end in the
-/// pose that they began with. The same parameters give the same clip.
+/// The clip begins at the origin, facing +Z, with its left heel striking if it walks or runs. Walks
+/// and runs hold whole cycles and end in the pose that they began with. The same parameters give
+/// the same clip.
 ///
 /// # Errors
 /// [`SynthError::OutOfRange`] names the first parameter that lies outside its range.
@@ -29,11 +30,7 @@ pub fn synthesize(params: &Params) -> Result<Synthesized, SynthError> {
     let body = Body::new(params.height_m);
     let plan = plan(params, &body);
     let posture = Posture::new(&plan, params);
-    let missing = ClipError::Length {
-        what: "footholds",
-        found: 0,
-        expected: 2,
-    };
+    let missing = ClipError::Length { what: "footholds", found: 0, expected: 2 };
     let moved = hips(&plan, &posture, params, &body).ok_or(missing)?;
     let mut rotations = Vec::with_capacity(plan.frames * joint::COUNT);
     let mut roots = Vec::with_capacity(plan.frames);
@@ -50,11 +47,13 @@ pub fn synthesize(params: &Params) -> Result<Synthesized, SynthError> {
             let hip = moved.positions[step] + trunk.pelvis * body.hip_in_hips[side];
             let ankle = given_way(&body, foot, hip, plan.gait.running);
             // The knee points between where the hips and where the toes point.
-            let hinge = trunk.pelvis * Vec3::X * 0.45 + Quat::from_rotation_y(foot.yaw as f32) * Vec3::X * 0.55;
+            let hinge = trunk.pelvis * Vec3::X * 0.45
+                + Quat::from_rotation_y(foot.yaw as f32) * Vec3::X * 0.55;
             let (thigh, shank) = leg(hip, ankle, body.thigh, body.shank, hinge);
             local[joint::UP_LEG[side]] = trunk.pelvis.conjugate() * thigh;
             local[joint::LEG[side]] = thigh.conjugate() * shank;
-            local[joint::FOOT[side]] = bent_ankle(shank.conjugate() * foot.rotation, foot, body.ankle_height());
+            local[joint::FOOT[side]] =
+                bent_ankle(shank.conjugate() * foot.rotation, foot, body.ankle_height());
             local[joint::TOE[side]] = Quat::from_rotation_x(foot.toe_bend as f32);
             let arm = arm(&plan, &posture, params, side, secs);
             local[joint::SHOULDER[side]] = shoulder(arm.flexion, posture.breath(secs), side);
@@ -72,14 +71,12 @@ pub fn synthesize(params: &Params) -> Result<Synthesized, SynthError> {
         phase.push(plan.cycles(secs).rem_euclid(1.0) as f32);
     }
     let clip = Clip::new(name(params), skeleton, f64::from(params.fps), rotations, roots)?;
-    Ok(Synthesized {
-        clip,
-        truth: truth(&plan, params, phase, contacts),
-    })
+    Ok(Synthesized { clip, truth: truth(&plan, params, phase, contacts) })
 }
 
 fn truth(plan: &Plan, params: &Params, phase: Vec<f32>, contacts: Vec<[FootContact; 2]>) -> Truth {
-    let strides = matches!(params.action, Action::Walk | Action::Run | Action::Start | Action::Stop);
+    let strides =
+        matches!(params.action, Action::Walk | Action::Run | Action::Start | Action::Stop);
     let cycle_secs = plan.gait.cycle_secs;
     let speed = if Params::speed_range(params.action).is_some() {
         f64::from(params.speed_mps)
@@ -130,10 +127,12 @@ fn pose_trunk(trunk: &Trunk, local: &mut [Quat; joint::COUNT]) {
 fn shoulder(flexion: f64, breath: f64, side: usize) -> Quat {
     let mirror = if side == 0 { 1.0 } else { -1.0 };
     let raised = 0.10 * (flexion - 0.9).max(0.0) + 0.008 * breath;
-    Quat::from_rotation_y((-mirror * 0.12 * flexion) as f32) * Quat::from_rotation_z((mirror * (raised - 0.05)) as f32)
+    Quat::from_rotation_y((-mirror * 0.12 * flexion) as f32)
+        * Quat::from_rotation_z((mirror * (raised - 0.05)) as f32)
 }
 
-/// The rotation of a foot against its shank, kept to what an ankle can do while the foot is well off the ground.
+/// The rotation of a foot against its shank, kept to what an ankle can do while the foot is well
+/// off the ground.
 fn bent_ankle(rotation: Quat, foot: &Foot, ankle_height: f32) -> Quat {
     if foot.planted() {
         return rotation;
@@ -141,11 +140,13 @@ fn bent_ankle(rotation: Quat, foot: &Foot, ankle_height: f32) -> Quat {
     let turn = log(rotation);
     let angle = turn.length();
     let high = ramp(f64::from(foot.ankle.y / ankle_height), 2.5, 4.5);
-    let free = (high * ramp(foot.progress, 0.0, 0.25) * (1.0 - ramp(foot.progress, 0.65, 0.95))) as f32;
+    let free =
+        (high * ramp(foot.progress, 0.0, 0.25) * (1.0 - ramp(foot.progress, 0.65, 0.95))) as f32;
     exp(turn * (1.0 + free * (soft_limit(angle, 0.5, 0.9) / angle.max(1e-6) - 1.0)))
 }
 
-/// The ankle that a leg can reach: in the air the foot gives way before the knee locks; close to the ground it does as planned.
+/// The ankle that a leg can reach: in the air the foot gives way before the knee locks; close to
+/// the ground it does as planned.
 fn given_way(body: &Body, foot: &Foot, hip: Vec3, running: bool) -> Vec3 {
     if foot.planted() {
         return foot.ankle;
@@ -156,7 +157,12 @@ fn given_way(body: &Body, foot: &Foot, hip: Vec3, running: bool) -> Vec3 {
     let limited = soft_limit(length, from * body.leg(), to * body.leg());
     let share = ramp(foot.progress, 0.0, 0.14) * (1.0 - ramp(foot.progress, 0.84, 0.98));
     let given = length + (limited - length) * share as f32;
-    // Planted legs are never longer than this second limit leaves alone, so that nothing jumps as the foot meets the ground.
-    let longest = soft_limit(given, body.reach_at_flexion(least_flexion(running)), body.reach_at_flexion(0.02));
+    // Planted legs are never longer than this second limit leaves alone, so that nothing jumps as
+    // the foot meets the ground.
+    let longest = soft_limit(
+        given,
+        body.reach_at_flexion(least_flexion(running)),
+        body.reach_at_flexion(0.02),
+    );
     foot.ankle + line * (longest / length.max(1e-6) - 1.0)
 }

@@ -2,7 +2,9 @@ use crate::clip::ClipError;
 use crate::skeleton::SkeletonError;
 
 /// What the made person does.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
+)]
 pub enum Action {
     /// Walks at a steady speed, straight or along a circle. Loops.
     #[default]
@@ -23,7 +25,8 @@ pub enum Action {
 
 impl Action {
     /// All actions, in the order in which a menu lists them.
-    pub const ALL: [Self; 7] = [Self::Walk, Self::Run, Self::Idle, Self::Start, Self::Stop, Self::Spin, Self::Jump];
+    pub const ALL: [Self; 7] =
+        [Self::Walk, Self::Run, Self::Idle, Self::Start, Self::Stop, Self::Spin, Self::Jump];
 }
 
 /// Sliders of manner, each from 0 to 2; 1 is natural.
@@ -44,13 +47,7 @@ pub struct Style {
 
 impl Default for Style {
     fn default() -> Self {
-        Self {
-            bounce: 1.0,
-            arm_swing: 1.0,
-            stance_width: 1.0,
-            energy: 1.0,
-            lean: 1.0,
-        }
+        Self { bounce: 1.0, arm_swing: 1.0, stance_width: 1.0, energy: 1.0, lean: 1.0 }
     }
 }
 
@@ -62,7 +59,8 @@ pub struct Params {
     pub action: Action,
     /// Speed over the ground, metres per second. Ignored by [`Action::Idle`] and [`Action::Spin`].
     pub speed_mps: f32,
-    /// How fast the path turns, degrees per second, positive to the left. Ignored by [`Action::Idle`], [`Action::Spin`] and [`Action::Jump`].
+    /// How fast the path turns, degrees per second, positive to the left. Ignored by
+    /// [`Action::Idle`], [`Action::Spin`] and [`Action::Jump`].
     pub turn_rate_dps: f32,
     /// How far [`Action::Spin`] turns, degrees, positive to the left.
     pub spin_degrees: f32,
@@ -70,9 +68,11 @@ pub struct Params {
     pub height_m: f32,
     /// Manner.
     pub style: Style,
-    /// Which person: 0 is perfectly regular and symmetric, any other number differs slightly in posture and between left and right.
+    /// Which person: 0 is perfectly regular and symmetric, any other number differs slightly in
+    /// posture and between left and right.
     pub seed: u32,
-    /// Length that is asked for, seconds. Walks and runs take the nearest number of whole cycles, at least one.
+    /// Length that is asked for, seconds. Walks and runs take the nearest number of whole cycles,
+    /// at least one.
     pub duration_secs: f32,
     /// Frames per second.
     pub fps: f32,
@@ -140,13 +140,7 @@ impl Params {
             if (min..=max).contains(&value) {
                 Ok(())
             } else {
-                Err(SynthError::OutOfRange {
-                    what,
-                    value,
-                    min,
-                    max,
-                    unit,
-                })
+                Err(SynthError::OutOfRange { what, value, min, max, unit })
             }
         };
         if let Some((min, max)) = Self::speed_range(self.action) {
@@ -211,11 +205,8 @@ pub struct Preset {
 pub fn presets() -> Vec<Preset> {
     let of = |id, title, action, speed_mps: Option<f32>, turn_rate_dps| {
         let natural = Params::new(action);
-        let params = Params {
-            speed_mps: speed_mps.unwrap_or(natural.speed_mps),
-            turn_rate_dps,
-            ..natural
-        };
+        let params =
+            Params { speed_mps: speed_mps.unwrap_or(natural.speed_mps), turn_rate_dps, ..natural };
         Preset { id, title, params }
     };
     vec![

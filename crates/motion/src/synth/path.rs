@@ -33,8 +33,9 @@ impl Place {
         self.forward() * self.thrust + self.left() * (self.speed * self.yaw_rate)
     }
 
-    /// How far a body leans here, as the tangent of the angle, world (x, z): acceleration over gravity. True up to a good
-    /// quarter of g and never more than 21°: who runs faster into a curve would slip.
+    /// How far a body leans here, as the tangent of the angle, world (x, z): acceleration over
+    /// gravity. True up to a good quarter of g and never more than 21°: who runs faster into a
+    /// curve would slip.
     pub(super) fn lean(&self, gravity: f64) -> DVec2 {
         const MOST: f64 = 0.38;
         let lean = self.acceleration() / gravity;
@@ -52,7 +53,8 @@ impl Place {
     }
 }
 
-/// A way sampled at equal steps of time; between samples it is an arc, before and after it goes on as at its ends.
+/// A way sampled at equal steps of time; between samples it is an arc, before and after it goes on
+/// as at its ends.
 #[derive(Clone, Debug)]
 pub(super) struct Path {
     start_secs: f64,
@@ -60,7 +62,8 @@ pub(super) struct Path {
     places: Vec<Place>,
 }
 
-/// The chord of an arc of length `speed × dt` that turns by `yaw_rate × dt`, from heading `yaw`. Exact for constant rates.
+/// The chord of an arc of length `speed × dt` that turns by `yaw_rate × dt`, from heading `yaw`.
+/// Exact for constant rates.
 fn arc(yaw: f64, speed: f64, yaw_rate: f64, dt: f64) -> DVec2 {
     let half_turn = 0.5 * yaw_rate * dt;
     let sinc = if half_turn.abs() < 1e-6 {
@@ -73,35 +76,29 @@ fn arc(yaw: f64, speed: f64, yaw_rate: f64, dt: f64) -> DVec2 {
 }
 
 impl Path {
-    /// Integrates `rates(time) = (speed, yaw rate)` over `count` samples from `start_secs`; at time 0 it passes the origin with heading 0.
-    pub(super) fn integrate(start_secs: f64, dt_secs: f64, count: usize, rates: impl Fn(f64) -> (f64, f64)) -> Self {
+    /// Integrates `rates(time) = (speed, yaw rate)` over `count` samples from `start_secs`; at time
+    /// 0 it passes the origin with heading 0.
+    pub(super) fn integrate(
+        start_secs: f64,
+        dt_secs: f64,
+        count: usize,
+        rates: impl Fn(f64) -> (f64, f64),
+    ) -> Self {
         let mut places = Vec::with_capacity(count);
         let mut here = Place::default();
         for i in 0..count {
             let time = start_secs + i as f64 * dt_secs;
             let (speed, yaw_rate) = rates(time);
             let thrust = (rates(time + 0.5 * dt_secs).0 - rates(time - 0.5 * dt_secs).0) / dt_secs;
-            here = Place {
-                speed,
-                yaw_rate,
-                thrust,
-                ..here
-            };
+            here = Place { speed, yaw_rate, thrust, ..here };
             places.push(here);
             let (speed, yaw_rate) = rates(time + 0.5 * dt_secs);
             here.position += arc(here.yaw, speed, yaw_rate, dt_secs);
             here.yaw += yaw_rate * dt_secs;
         }
-        let mut path = Self {
-            start_secs,
-            dt_secs,
-            places,
-        };
+        let mut path = Self { start_secs, dt_secs, places };
         let origin = path.at(0.0);
-        let turn = Place {
-            yaw: -origin.yaw,
-            ..Place::default()
-        };
+        let turn = Place { yaw: -origin.yaw, ..Place::default() };
         for place in &mut path.places {
             place.position = turn.to_world(place.position - origin.position);
             place.yaw -= origin.yaw;
@@ -140,7 +137,11 @@ mod tests {
             let place = path.at(secs);
             let angle: f64 = 0.5 * secs;
             let expected = DVec2::new(radius * (1.0 - angle.cos()), radius * angle.sin());
-            assert!((place.position - expected).length() < 1e-9, "{secs}: {} {expected}", place.position);
+            assert!(
+                (place.position - expected).length() < 1e-9,
+                "{secs}: {} {expected}",
+                place.position
+            );
             assert!((place.yaw - angle).abs() < 1e-9);
         }
     }

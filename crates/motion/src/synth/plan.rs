@@ -8,9 +8,11 @@ use super::path::{Path, Place};
 use super::track::ramp;
 use glam::DVec2;
 
-/// Seconds that are made before and after the clip, so that filters see what comes and came: e^(-3.2 × 3) of an edge's centimetres is left.
+/// Seconds that are made before and after the clip, so that filters see what comes and came:
+/// e^(-3.2 × 3) of an edge's centimetres is left.
 const MARGIN_SECS: f64 = 3.0;
-/// How far the ankles of a standing adult of 1.75 m are behind the middle of the body, metres: it rests over the middle of the feet.
+/// How far the ankles of a standing adult of 1.75 m are behind the middle of the body, metres: it
+/// rests over the middle of the feet.
 pub(super) const STANDING_BEHIND: f64 = 0.05;
 /// The coarsest time step that is planned with.
 const COARSEST_SECS: f64 = 1.0 / 110.0;
@@ -103,7 +105,8 @@ pub(super) fn plan(params: &Params, body: &Body) -> Plan {
     let mut frames = asked as usize + 1;
     let mut period = None;
     if matches!(params.action, Action::Walk | Action::Run) {
-        // Whole cycles are whole frames: the cadence gives way by less than half a frame per clip, the speed does not.
+        // Whole cycles are whole frames: the cadence gives way by less than half a frame per clip,
+        // the speed does not.
         let cycles = (asked / (gait.cycle_secs * fps)).round().max(1.0);
         let whole = (cycles * gait.cycle_secs * fps).round();
         gait.cycle_secs = whole / (cycles * fps);
@@ -142,37 +145,58 @@ impl Plan {
         self.path = Path::integrate(self.secs(0), self.dt_secs, self.len(), rates);
     }
 
-    /// Where the foot of a body belongs that stands at the place of `secs`: wider apart, and under the body.
-    pub(super) fn standing_foothold(&self, side: usize, secs: f64, params: &Params, body: &Body) -> DVec2 {
+    /// Where the foot of a body belongs that stands at the place of `secs`: wider apart, and under
+    /// the body.
+    pub(super) fn standing_foothold(
+        &self,
+        side: usize,
+        secs: f64,
+        params: &Params,
+        body: &Body,
+    ) -> DVec2 {
         let place = self.path.at(secs);
         let half_width = standing_half_width(params, body);
         let outward = if side == 0 { half_width } else { -half_width };
-        place.position + place.left() * outward - place.forward() * (STANDING_BEHIND * f64::from(body.scale))
+        place.position + place.left() * outward
+            - place.forward() * (STANDING_BEHIND * f64::from(body.scale))
     }
 
-    /// Where the foot of a side belongs while the body passes the place of `secs`: to its side, and, since an inverted pendulum accelerates away
-    /// from its foot by ω²(x - foot), away from where the body is heading.
-    pub(super) fn foothold(&self, side: usize, secs: f64, half_width: f64, params: &Params, body: &Body) -> DVec2 {
+    /// Where the foot of a side belongs while the body passes the place of `secs`: to its side,
+    /// and, since an inverted pendulum accelerates away from its foot by ω²(x - foot), away from
+    /// where the body is heading.
+    pub(super) fn foothold(
+        &self,
+        side: usize,
+        secs: f64,
+        half_width: f64,
+        params: &Params,
+        body: &Body,
+    ) -> DVec2 {
         foothold_at(&self.path.at(secs), side, half_width, self.gait, params, body)
     }
 }
 
 /// Where the foot of a side belongs while the body passes `place`; see [`Plan::foothold`].
-fn foothold_at(place: &Place, side: usize, half_width: f64, gait: Gait, params: &Params, body: &Body) -> DVec2 {
+fn foothold_at(
+    place: &Place,
+    side: usize,
+    half_width: f64,
+    gait: Gait,
+    params: &Params,
+    body: &Body,
+) -> DVec2 {
     let outward = if side == 0 { half_width } else { -half_width };
     // Half of speeding up and slowing down is done by the ankles and by the sway of the trunk.
-    let eased = Place {
-        thrust: 0.5 * place.thrust,
-        ..*place
-    };
+    let eased = Place { thrust: 0.5 * place.thrust, ..*place };
     let support = eased.lean(gravity()) * -pendulum_height(params.height_m);
-    let behind = f64::from(body.scale) * if gait.running { 0.20 - 0.03 * gait.quick_run() } else { 0.105 };
+    let behind =
+        f64::from(body.scale) * if gait.running { 0.20 - 0.03 * gait.quick_run() } else { 0.105 };
     place.position + support + place.left() * outward - place.forward() * behind
 }
 
 impl Plan {
-    /// Bends the way of every swing around the other leg: half-way, the foot is as far to its side of the body as on the ground, and a little
-    /// farther where it turns on the spot.
+    /// Bends the way of every swing around the other leg: half-way, the foot is as far to its side
+    /// of the body as on the ground, and a little farther where it turns on the spot.
     fn keep_legs_apart(&mut self, params: &Params, body: &Body) {
         let spinning = self.action == Action::Spin;
         let room = if spinning { 0.06 * f64::from(body.scale) } else { 0.0 };
@@ -182,10 +206,7 @@ impl Plan {
                 let middle = 0.5 * (from.to + to.from);
                 let place = self.path.at(middle);
                 let facing = if spinning {
-                    Place {
-                        yaw: 0.5 * (from.yaw + to.yaw) - toe_out(side, false),
-                        ..place
-                    }
+                    Place { yaw: 0.5 * (from.yaw + to.yaw) - toe_out(side, false), ..place }
                 } else {
                     place
                 };
@@ -251,7 +272,8 @@ fn swing_of(gait: &Gait, share: f64, params: &Params, body: &Body) -> Swing {
     }
 }
 
-/// The plant of a regular gait that begins at `from`; `share` of the full step (0 to 1) tempers its angles.
+/// The plant of a regular gait that begins at `from`; `share` of the full step (0 to 1) tempers its
+/// angles.
 fn regular(plan: &Plan, side: usize, from: f64, share: f64, params: &Params, body: &Body) -> Plant {
     let gait = &plan.gait;
     let cycle = gait.cycle_secs;
@@ -267,18 +289,15 @@ fn regular(plan: &Plan, side: usize, from: f64, share: f64, params: &Params, bod
         yaw: plan.path.at(middle).yaw + toe_out(side, gait.running),
         strike_pitch: gait.strike_pitch * share,
         release_pitch: gait.release_pitch * (0.35 + 0.65 * share),
-        load_secs: if gait.running {
-            0.3 * gait.duty * cycle
-        } else {
-            (gait.duty - 0.5) * cycle
-        },
+        load_secs: if gait.running { 0.3 * gait.duty * cycle } else { (gait.duty - 0.5) * cycle },
         stances_per_sec: (gait.duty * cycle).recip(),
         swing: swing_of(gait, share, params, body),
     }
 }
 
 fn steady(plan: &mut Plan, params: &Params, body: &Body) {
-    let (speed, yaw_rate) = (f64::from(params.speed_mps), f64::from(params.turn_rate_dps).to_radians());
+    let (speed, yaw_rate) =
+        (f64::from(params.speed_mps), f64::from(params.turn_rate_dps).to_radians());
     plan.set_path(|_| (speed, yaw_rate));
     let cycle = plan.gait.cycle_secs;
     let (first, last) = (
@@ -293,7 +312,14 @@ fn steady(plan: &mut Plan, params: &Params, body: &Body) {
 }
 
 /// A plant that has stood since ever (`from` = -∞) or will for ever (`to` = ∞).
-fn standing(mut plant: Plant, plan: &Plan, side: usize, params: &Params, body: &Body, before: bool) -> Plant {
+fn standing(
+    mut plant: Plant,
+    plan: &Plan,
+    side: usize,
+    params: &Params,
+    body: &Body,
+    before: bool,
+) -> Plant {
     let at = if before { f64::NEG_INFINITY } else { f64::INFINITY };
     plant.half_width = standing_half_width(params, body);
     plant.ankle = plan.standing_foothold(side, at, params, body);
@@ -307,10 +333,12 @@ fn standing(mut plant: Plant, plan: &Plan, side: usize, params: &Params, body: &
 }
 
 fn start(plan: &mut Plan, params: &Params, body: &Body) {
-    let (speed, yaw_rate) = (f64::from(params.speed_mps), f64::from(params.turn_rate_dps).to_radians());
+    let (speed, yaw_rate) =
+        (f64::from(params.speed_mps), f64::from(params.turn_rate_dps).to_radians());
     let (cycle, duty) = (plan.gait.cycle_secs, plan.gait.duty);
-    // The right foot lifts first. The body falls forward before that: 0.4 to 0.5 s from the first shift of weight to the first
-    // toe-off, full speed after about two steps (Breniere and Do 1986; Jian et al. 1993).
+    // The right foot lifts first. The body falls forward before that: 0.4 to 0.5 s from the first
+    // shift of weight to the first toe-off, full speed after about two steps (Breniere and Do 1986;
+    // Jian et al. 1993).
     let lift = 0.85;
     plan.phase_zero = lift - (duty - 0.5) * cycle;
     plan.moving = (lift - 0.1, f64::INFINITY);
@@ -326,20 +354,18 @@ fn start(plan: &mut Plan, params: &Params, body: &Body) {
             let strike = plan.phase_zero + (k as f64 + 0.5 * side as f64) * cycle;
             let share = plan.going(strike + 0.35 * duty * cycle).sqrt();
             let plant = regular(plan, side, strike, share, params, body);
-            if k > first {
-                plant
-            } else {
-                standing(plant, plan, side, params, body, true)
-            }
+            if k > first { plant } else { standing(plant, plan, side, params, body, true) }
         });
         plan.plants[side] = plants.collect();
     }
 }
 
 fn stop(plan: &mut Plan, params: &Params, body: &Body) {
-    let (speed, yaw_rate) = (f64::from(params.speed_mps), f64::from(params.turn_rate_dps).to_radians());
+    let (speed, yaw_rate) =
+        (f64::from(params.speed_mps), f64::from(params.turn_rate_dps).to_radians());
     let (cycle, duty) = (plan.gait.cycle_secs, plan.gait.duty);
-    // The right foot closes up last, 1.2 s before the end; the speed is lost over the two steps before (Jaeger and Vanitchatchavan 1992).
+    // The right foot closes up last, 1.2 s before the end; the speed is lost over the two steps
+    // before (Jaeger and Vanitchatchavan 1992).
     let end = plan.secs(plan.step_of(plan.frames - 1));
     let closed = end - 1.2;
     plan.phase_zero = closed - 0.5 * cycle;
@@ -355,11 +381,7 @@ fn stop(plan: &mut Plan, params: &Params, body: &Body) {
             let strike = plan.phase_zero + (k as f64 + 0.5 * side as f64) * cycle;
             let share = plan.going(strike + 0.2 * duty * cycle).sqrt();
             let plant = regular(plan, side, strike, share, params, body);
-            if k < 0 {
-                plant
-            } else {
-                standing(plant, plan, side, params, body, false)
-            }
+            if k < 0 { plant } else { standing(plant, plan, side, params, body, false) }
         });
         plan.plants[side] = plants.collect();
     }

@@ -1,4 +1,5 @@
-//! How the trunk is held: tilt, list and turn of the pelvis, the counter-turn of the chest, the steady head.
+//! How the trunk is held: tilt, list and turn of the pelvis, the counter-turn of the chest, the
+//! steady head.
 
 use super::gait::gravity;
 use super::params::{Action, Params};
@@ -105,7 +106,8 @@ impl Posture {
         TAU * if self.loops { at * whole / self.period_secs } else { at / secs }
     }
 
-    /// Slow sway of a standing body, (left, forward), metres: a few millimetres in quiet stance, centimetres when the weight is shifted.
+    /// Slow sway of a standing body, (left, forward), metres: a few millimetres in quiet stance,
+    /// centimetres when the weight is shifted.
     pub(super) fn drift(&self, secs: f64) -> DVec2 {
         if !self.idle {
             return DVec2::ZERO;
@@ -145,19 +147,26 @@ impl Posture {
         if self.running {
             a.pelvis_turn = degrees(3.5) * energy * wave(0.0);
             a.pelvis_list = degrees(4.5) * energy * wave(0.14);
-            a.pelvis_tilt = (degrees(8.0) + degrees(3.0) * quick) * self.lean + degrees(2.0) * energy * twice(0.02);
+            a.pelvis_tilt = (degrees(8.0) + degrees(3.0) * quick) * self.lean
+                + degrees(2.0) * energy * twice(0.02);
             a.chest_turn = degrees(11.0) * energy * wave(-0.08);
             a.chest_list = degrees(1.5) * energy * wave(0.64);
-            a.chest_bow = (degrees(4.5) + degrees(4.5) * quick) * self.lean + degrees(1.5) * twice(0.06);
+            a.chest_bow =
+                (degrees(4.5) + degrees(4.5) * quick) * self.lean + degrees(1.5) * twice(0.06);
             a.head_bow = degrees(2.0) + 0.15 * a.chest_bow;
         } else {
             a.pelvis_turn = -degrees(3.0 + 2.5 * quick) * energy * wave(-0.01);
-            a.pelvis_list =
-                degrees(1.8 + 2.8 * quick) * energy * (0.85 * wave(0.20) + 0.15 * (3.0 * (phase - 0.20 * TAU) + 0.5 * TAU).cos());
-            a.pelvis_tilt = degrees(3.0) + degrees(1.5) * going * quick * self.lean + degrees(1.2) * energy * twice(0.04);
+            a.pelvis_list = degrees(1.8 + 2.8 * quick)
+                * energy
+                * (0.85 * wave(0.20) + 0.15 * (3.0 * (phase - 0.20 * TAU) + 0.5 * TAU).cos());
+            a.pelvis_tilt = degrees(3.0)
+                + degrees(1.5) * going * quick * self.lean
+                + degrees(1.2) * energy * twice(0.04);
             a.chest_turn = degrees(2.0 + 2.6 * quick) * energy * wave(0.02);
             a.chest_list = degrees(1.4) * energy * wave(0.68);
-            a.chest_bow = degrees(1.0) + degrees(3.0) * quick * going * self.lean + degrees(0.8) * energy * twice(0.05);
+            a.chest_bow = degrees(1.0)
+                + degrees(3.0) * quick * going * self.lean
+                + degrees(0.8) * energy * twice(0.05);
             a.head_bow = degrees(2.5);
         }
         a.chest_bow += thrust_lean;
@@ -203,7 +212,11 @@ impl Posture {
     /// World rotation of the hips.
     pub(super) fn pelvis(&self, plan: &Plan, secs: f64) -> Quat {
         let a = self.angles(plan, secs);
-        turn(a.heading) * list(-a.into_curve) * turn(a.pelvis_turn) * list(a.pelvis_list) * bow(a.pelvis_tilt)
+        turn(a.heading)
+            * list(-a.into_curve)
+            * turn(a.pelvis_turn)
+            * list(a.pelvis_list)
+            * bow(a.pelvis_tilt)
     }
 
     /// World rotations of pelvis, chest and head.
@@ -212,9 +225,16 @@ impl Posture {
         let leaning = list(-a.into_curve);
         let chest_turn = turn(a.chest_heading) * leaning * turn(a.chest_turn);
         Trunk {
-            pelvis: turn(a.heading) * leaning * turn(a.pelvis_turn) * list(a.pelvis_list) * bow(a.pelvis_tilt),
+            pelvis: turn(a.heading)
+                * leaning
+                * turn(a.pelvis_turn)
+                * list(a.pelvis_list)
+                * bow(a.pelvis_tilt),
             chest: chest_turn * list(a.chest_list) * bow(a.chest_bow),
-            head: turn(a.head_heading) * list(-0.4 * a.into_curve) * turn(0.12 * a.chest_turn) * bow(a.head_bow),
+            head: turn(a.head_heading)
+                * list(-0.4 * a.into_curve)
+                * turn(0.12 * a.chest_turn)
+                * bow(a.head_bow),
             arms: chest_turn * list(0.5 * a.chest_list) * bow(0.35 * a.chest_bow),
         }
     }

@@ -40,7 +40,8 @@ pub(super) fn on_the_spot(plan: &mut Plan, params: &Params, body: &Body) {
         plan.plants = [0, 1].map(|side| vec![stand(plan, side, params, body)]);
         return;
     }
-    // Each foot takes the same number of steps; the one on the inner side opens first, the other closes up.
+    // Each foot takes the same number of steps; the one on the inner side opens first, the other
+    // closes up.
     let degrees = angle.abs().to_degrees();
     let pairs = if degrees <= 60.0 { 1.0 } else { (degrees / 100.0).ceil().max(2.0) };
     let steps = 2 * pairs as usize;
@@ -57,16 +58,14 @@ pub(super) fn on_the_spot(plan: &mut Plan, params: &Params, body: &Body) {
         let side = if step % 2 == 0 { inner } else { 1 - inner };
         let off = lift + period * step as f64;
         let on = off + air;
-        // A foot is set down where the body will face when it lifts again, less for the first and all of it for the last steps.
+        // A foot is set down where the body will face when it lifts again, less for the first and
+        // all of it for the last steps.
         let share = if step + 2 >= steps {
             1.0
         } else {
             ((step as f64 + 1.35) / (steps as f64 - 0.3)).min(1.0)
         };
-        let facing = super::path::Place {
-            yaw: angle * share,
-            ..plan.path.at(f64::NEG_INFINITY)
-        };
+        let facing = super::path::Place { yaw: angle * share, ..plan.path.at(f64::NEG_INFINITY) };
         let outward = if side == 0 { wide } else { -wide };
         let swing = Swing {
             peak: (0.35, 0.055 * f64::from(body.scale)),
@@ -78,14 +77,17 @@ pub(super) fn on_the_spot(plan: &mut Plan, params: &Params, body: &Body) {
             aside: DVec2::ZERO,
             spring: 0.0,
         };
-        // On the way the feet are set wider, the leading one farther ahead and the trailing one farther back, so that no toe comes to stand on a heel.
+        // On the way the feet are set wider, the leading one farther ahead and the trailing one
+        // farther back, so that no toe comes to stand on a heel.
         let passing = if step + 2 >= steps { 0.0 } else { f64::from(body.scale) };
         let outward = outward * (1.0 + 0.5 * passing);
-        let behind = STANDING_BEHIND * f64::from(body.scale) + if side == inner { -0.03 } else { 0.06 } * passing;
+        let behind = STANDING_BEHIND * f64::from(body.scale)
+            + if side == inner { -0.03 } else { 0.06 } * passing;
         let ankle = facing.left() * outward - facing.forward() * behind;
         let resting = stand(plan, side, params, body);
         if let Some(before) = plants[side].last_mut() {
-            (before.flat_to, before.to, before.release_pitch, before.swing) = (off - 0.17, off, 0.42, swing);
+            (before.flat_to, before.to, before.release_pitch, before.swing) =
+                (off - 0.17, off, 0.42, swing);
         }
         let strike_pitch = 0.10;
         plants[side].push(Plant {
@@ -110,7 +112,10 @@ pub(super) fn jump(plan: &mut Plan, params: &Params, body: &Body) {
     plan.moving = (0.0, 0.0);
     let size = f64::from(body.scale).sqrt();
     // A countermovement jump of about 0.3 m: dip in 0.45 s, push in 0.3 s (Bobbert et al. 1996).
-    let rise = 0.27 * f64::from(body.scale) * (0.5 + 0.5 * f64::from(params.style.energy)) * (0.6 + 0.4 * f64::from(params.style.bounce));
+    let rise = 0.27
+        * f64::from(body.scale)
+        * (0.5 + 0.5 * f64::from(params.style.energy))
+        * (0.6 + 0.4 * f64::from(params.style.bounce));
     let air = 2.0 * (2.0 * rise / gravity()).sqrt();
     let dip = 0.40;
     let bottom = dip + 0.48 * size;
@@ -144,13 +149,8 @@ pub(super) fn jump(plan: &mut Plan, params: &Params, body: &Body) {
             aside: DVec2::ZERO,
             spring: 0.3 * gravity() * air * 0.5,
         };
-        let away = Plant {
-            flat_to: off - 0.2 * size,
-            to: off,
-            release_pitch: OFF_PITCH,
-            swing,
-            ..first
-        };
+        let away =
+            Plant { flat_to: off - 0.2 * size, to: off, release_pitch: OFF_PITCH, swing, ..first };
         let back = Plant {
             from: land,
             flat_from: land + 0.10 * size,

@@ -13,15 +13,12 @@ pub(super) struct State<V> {
 impl<V: Default> State<V> {
     /// At rest at a value.
     pub(super) fn rest(value: V) -> Self {
-        Self {
-            value,
-            rate: V::default(),
-            acceleration: V::default(),
-        }
+        Self { value, rate: V::default(), acceleration: V::default() }
     }
 }
 
-/// The polynomial of degree five that takes `from` to `to` in `span_secs`, at `secs` from its start (clamped to the piece).
+/// The polynomial of degree five that takes `from` to `to` in `span_secs`, at `secs` from its start
+/// (clamped to the piece).
 pub(super) fn quintic<V>(from: State<V>, to: State<V>, span_secs: f64, secs: f64) -> V
 where
     V: Copy + Add<Output = V> + Sub<Output = V> + Mul<f64, Output = V>,
@@ -31,10 +28,8 @@ where
     }
     let t = (secs / span_secs).clamp(0.0, 1.0);
     let (v0, v1) = (from.rate * span_secs, to.rate * span_secs);
-    let (a0, a1) = (
-        from.acceleration * (span_secs * span_secs),
-        to.acceleration * (span_secs * span_secs),
-    );
+    let (a0, a1) =
+        (from.acceleration * (span_secs * span_secs), to.acceleration * (span_secs * span_secs));
     let d = to.value - from.value;
     let c3 = d * 10.0 - v0 * 6.0 - v1 * 4.0 - a0 * 1.5 + a1 * 0.5;
     let c4 = v0 * 8.0 + v1 * 7.0 - d * 15.0 + a0 * 1.5 - a1;
@@ -42,7 +37,8 @@ where
     from.value + (v0 + (a0 * 0.5 + (c3 + (c4 + c5 * t) * t) * t) * t) * t
 }
 
-/// The acceleration at the start of the cubic that takes `from` to `to` in `span_secs`: the smallest bend that gets there.
+/// The acceleration at the start of the cubic that takes `from` to `to` in `span_secs`: the
+/// smallest bend that gets there.
 pub(super) fn cubic_start_acceleration<V>(from: State<V>, to: State<V>, span_secs: f64) -> V
 where
     V: Copy + Add<Output = V> + Sub<Output = V> + Mul<f64, Output = V>,
@@ -53,7 +49,8 @@ where
 
 const MOST_KNOTS: usize = 10;
 
-/// A cubic spline through up to ten knots with given slopes at both ends: twice continuously differentiable inside.
+/// A cubic spline through up to ten knots with given slopes at both ends: twice continuously
+/// differentiable inside.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spline {
     count: usize,
@@ -79,13 +76,16 @@ impl Spline {
         if count < 2 {
             return spline;
         }
-        // Slopes from continuity of the second derivative: a tridiagonal system, solved forwards and back (Thomas).
+        // Slopes from continuity of the second derivative: a tridiagonal system, solved forwards
+        // and back (Thomas).
         let last = count - 1;
         let mut upper = [0.0; MOST_KNOTS];
         spline.slope[0] = start_slope;
         for i in 1..last {
             let (h0, h1) = (spline.at[i] - spline.at[i - 1], spline.at[i + 1] - spline.at[i]);
-            let right = 3.0 * ((spline.value[i] - spline.value[i - 1]) * h1 / h0 + (spline.value[i + 1] - spline.value[i]) * h0 / h1);
+            let right = 3.0
+                * ((spline.value[i] - spline.value[i - 1]) * h1 / h0
+                    + (spline.value[i + 1] - spline.value[i]) * h0 / h1);
             let pivot = 2.0 * (h0 + h1) - h1 * upper[i - 1];
             upper[i] = h0 / pivot;
             spline.slope[i] = (right - h1 * spline.slope[i - 1]) / pivot;
@@ -136,16 +136,8 @@ mod tests {
 
     #[test]
     fn a_quintic_meets_both_ends() {
-        let from = State {
-            value: 1.0,
-            rate: -2.0,
-            acceleration: 3.0,
-        };
-        let to = State {
-            value: 4.0,
-            rate: 0.5,
-            acceleration: -1.0,
-        };
+        let from = State { value: 1.0, rate: -2.0, acceleration: 3.0 };
+        let to = State { value: 4.0, rate: 0.5, acceleration: -1.0 };
         let f = |t: f64| quintic(from, to, 0.8, t);
         let h = 1e-4;
         assert!((f(0.0) - 1.0).abs() < 1e-12 && (f(0.8) - 4.0).abs() < 1e-12);

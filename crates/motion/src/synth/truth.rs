@@ -36,7 +36,8 @@ pub struct Truth {
     pub cadence_spm: f32,
     /// Length of two steps along the path at full gait, metres.
     pub stride_m: f32,
-    /// One per frame: 0 at the left heel strike, rising to 1 at the next; it stands still while nobody walks.
+    /// One per frame: 0 at the left heel strike, rising to 1 at the next; it stands still while
+    /// nobody walks.
     pub phase: Vec<f32>,
     /// One per frame: left and right foot.
     pub contacts: Vec<[FootContact; 2]>,

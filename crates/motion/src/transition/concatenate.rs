@@ -1,7 +1,8 @@
 use super::moving::View;
 use super::{Inertialization, Inertializer, MovingPose};
 use crate::blend::{
-    AlignBy, Assembly, BlendError, Concatenation, DissolveOptions, RootBlend, Source, WeightLaw, check, dissolve, laid_on, moving_joints,
+    AlignBy, Assembly, BlendError, Concatenation, DissolveOptions, RootBlend, Source, WeightLaw,
+    check, dissolve, laid_on, moving_joints,
 };
 use crate::math::{Planar, nearest_turn, quat, wrap_angle};
 use glam::Vec3;
@@ -27,8 +28,8 @@ pub enum Method {
 pub struct TransitionOptions {
     /// The method.
     pub method: Method,
-    /// Whether B is first laid on A, on the ground and in facing. Without, B stays where its file put it, and the way over the ground is made in
-    /// the world whatever `root` says.
+    /// Whether B is first laid on A, on the ground and in facing. Without, B stays where its file
+    /// put it, and the way over the ground is made in the world whatever `root` says.
     pub align: bool,
     /// By what it is laid there.
     pub align_by: AlignBy,
@@ -40,53 +41,57 @@ impl TransitionOptions {
     /// Aligned, and with velocities in the character's own frame.
     #[must_use]
     pub fn new(method: Method) -> Self {
-        Self {
-            method,
-            align: true,
-            align_by: AlignBy::default(),
-            root: RootBlend::Velocity,
-        }
+        Self { method, align: true, align_by: AlignBy::default(), root: RootBlend::Velocity }
     }
 }
 
-/// Plays clip A up to its frame `leave`, then clip B from its frame `enter`, with the transition that `options` ask for.
+/// Plays clip A up to its frame `leave`, then clip B from its frame `enter`, with the transition
+/// that `options` ask for.
 ///
-/// All methods mean the same by their frames: `A[..leave]` plays unchanged, frame `leave` of the result is the first that B has a part in, and it
-/// stands for `A[leave]` and `B[enter]`; the result is as long as `A[..leave]` and `B[enter..]` together. A dissolve needs its window of frames
-/// behind both; the others need none of A and one of B.
+/// All methods mean the same by their frames: `A[..leave]` plays unchanged, frame `leave` of the
+/// result is the first that B has a part in, and it stands for `A[leave]` and `B[enter]`; the
+/// result is as long as `A[..leave]` and `B[enter..]` together. A dissolve needs its window of
+/// frames behind both; the others need none of A and one of B.
 ///
-/// Inertialization starts from the frame before: the differences of pose and velocity are those of A at `leave - 1` and of B at `enter - 1`, each
-/// velocity being that of the step into the next frame ([`MovingPose`](super::MovingPose)), and frame `leave + p` of the result has
-/// what is left of them after `(p + 1) / fps` seconds. So the frame before the transition is all A, as in a dissolve, and a clip that is
-/// entered at the frame where it is left goes on as it was (but for dead blending, which damps it all the same). Before its first frame and behind its last one a clip is taken to move as in the step next
-/// to it.
+/// Inertialization starts from the frame before: the differences of pose and velocity are those of
+/// A at `leave - 1` and of B at `enter - 1`, each velocity being that of the step into the next
+/// frame ([`MovingPose`](super::MovingPose)), and frame `leave + p` of the result has what is left
+/// of them after `(p + 1) / fps` seconds. So the frame before the transition is all A, as in a
+/// dissolve, and a clip that is entered at the frame where it is left goes on as it was (but for
+/// dead blending, which damps it all the same). Before its first frame and behind its last one a
+/// clip is taken to move as in the step next to it.
 ///
-/// Poses are joined in the character's frame: rotations, heights, and translations of joints. Over the ground, the velocities (forward, sideways, yaw)
-/// are joined and integrated from A's last frame ([`RootBlend::Velocity`]); B then goes on from where that leads, and nothing jumps. With
-/// [`RootBlend::World`] B is laid on A at the seam and the root's remaining offset in the world decays like any other; the root then does not
-/// leave B's own way, but its speed over the ground is neither clip's.
+/// Poses are joined in the character's frame: rotations, heights, and translations of joints. Over
+/// the ground, the velocities (forward, sideways, yaw) are joined and integrated from A's last
+/// frame ([`RootBlend::Velocity`]); B then goes on from where that leads, and nothing jumps. With
+/// [`RootBlend::World`] B is laid on A at the seam and the root's remaining offset in the world
+/// decays like any other; the root then does not leave B's own way, but its speed over the ground
+/// is neither clip's.
 ///
 /// # Errors
-/// [`BlendError`] when the clips move different skeletons or run at different rates (retarget, resample first), B has no such frame, a window
-/// crosses the end of its clip, or a time is none.
-pub fn concatenate(a: &Source, leave: usize, b: &Source, enter: usize, options: &TransitionOptions) -> Result<Concatenation, BlendError> {
+/// [`BlendError`] when the clips move different skeletons or run at different rates (retarget,
+/// resample first), B has no such frame, a window crosses the end of its clip, or a time is none.
+pub fn concatenate(
+    a: &Source,
+    leave: usize,
+    b: &Source,
+    enter: usize,
+    options: &TransitionOptions,
+) -> Result<Concatenation, BlendError> {
     let (window, law) = match options.method {
         Method::Cut => (0, WeightLaw::default()),
         Method::Dissolve { window, law } => (window, law),
-        Method::Inertialize(how) => return inertialize(a, leave, b, enter, how, options, |_, _| {}),
+        Method::Inertialize(how) => {
+            return inertialize(a, leave, b, enter, how, options, |_, _| {});
+        }
     };
     let &TransitionOptions { align, align_by, root, .. } = options;
-    let options = DissolveOptions {
-        window,
-        law,
-        align,
-        align_by,
-        root,
-    };
+    let options = DissolveOptions { window, law, align, align_by, root };
     dissolve(a, leave, b, enter, &options)
 }
 
-/// `seen` gets the two poses between which the differences are taken, and the frame rate, before they are.
+/// `seen` gets the two poses between which the differences are taken, and the frame rate, before
+/// they are.
 pub(super) fn inertialize(
     a: &Source,
     leave: usize,
@@ -124,7 +129,11 @@ pub(super) fn inertialize(
             let next = stands.after(&step);
             let (here, there) = (world.after(stands), world.after(&next));
             let shift = (there.shift - here.shift) * source.clip().fps();
-            Vec3::new(shift.x as f32, (wrap_angle(step.yaw) * source.clip().fps()) as f32, shift.y as f32)
+            Vec3::new(
+                shift.x as f32,
+                (wrap_angle(step.yaw) * source.clip().fps()) as f32,
+                shift.y as f32,
+            )
         };
         old_pose.velocities.push(velocity(a, Planar::IDENTITY, leave, &a_stands));
         new_pose.velocities.push(velocity(b, aligned_b, enter, &b_stands));
@@ -135,7 +144,8 @@ pub(super) fn inertialize(
     // One more, so that the last frame computed has nothing left.
     let settling = frames_in(how.settled_secs() + fps.recip());
     let carried = old_pose.steady_travel.y - new_pose.steady_travel.y;
-    old_pose.steady_travel.y = new_pose.steady_travel.y + turning_between(carried, (a, leave), (b, enter), how, settling);
+    old_pose.steady_travel.y =
+        new_pose.steady_travel.y + turning_between(carried, (a, leave), (b, enter), how, settling);
     seen(&mut old_pose, fps);
     seen(&mut new_pose, fps);
     let mut inertia = Inertializer::new(how);
@@ -183,10 +193,18 @@ pub(super) fn inertialize(
     })
 }
 
-/// How much of a difference of steady yaw rates, `carried` (A's less B's, rad/s), is handed over: no more than lets the result turn, while the
-/// difference dies away, as far as the two clips do meanwhile with the weights that it leaves them. What is steady over a stride may lie ahead of B
-/// or behind A: carried whole, a turn that B is yet to make would first be made the other way round.
-fn turning_between(carried: f32, (a, leave): (&Source, usize), (b, enter): (&Source, usize), how: Inertialization, steps: usize) -> f32 {
+/// How much of a difference of steady yaw rates, `carried` (A's less B's, rad/s), is handed over:
+/// no more than lets the result turn, while the difference dies away, as far as the two clips do
+/// meanwhile with the weights that it leaves them. What is steady over a stride may lie ahead of B
+/// or behind A: carried whole, a turn that B is yet to make would first be made the other way
+/// round.
+fn turning_between(
+    carried: f32,
+    (a, leave): (&Source, usize),
+    (b, enter): (&Source, usize),
+    how: Inertialization,
+    steps: usize,
+) -> f32 {
     let fps = b.clip().fps();
     let frames_of_a = a.frames().len();
     let (mut between, mut weights) = (0.0, 0.0);
@@ -219,12 +237,10 @@ struct Place {
 impl Place {
     /// `a` and `b` are less than half a turn apart.
     fn new(a: &Planar, b: &Planar) -> Self {
-        let vector = |frame: &Planar, yaw: f64| Vec3::new(frame.shift.x as f32, yaw as f32, frame.shift.y as f32);
-        Self {
-            of_a: vector(a, nearest_turn(a.yaw, b.yaw)),
-            of_b: vector(b, b.yaw),
-            yaw: b.yaw,
-        }
+        let vector = |frame: &Planar, yaw: f64| {
+            Vec3::new(frame.shift.x as f32, yaw as f32, frame.shift.y as f32)
+        };
+        Self { of_a: vector(a, nearest_turn(a.yaw, b.yaw)), of_b: vector(b, b.yaw), yaw: b.yaw }
     }
 
     /// The next frame of B as a vector.

@@ -8,7 +8,8 @@ use std::ops::Range;
 /// Where to look for a cycle.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct CycleSearch {
-    /// Frames that are compared from both ends on; fewer where the clip is too short for the shortest cycle and that many, 0 counts as 1.
+    /// Frames that are compared from both ends on; fewer where the clip is too short for the
+    /// shortest cycle and that many, 0 counts as 1.
     pub window: usize,
     /// The shortest cycle, seconds.
     pub min_secs: f64,
@@ -37,41 +38,53 @@ impl CycleSearch {
 /// The ends of a cycle, and how well they fit each other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CutPoints {
-    /// The frames that play; `cycle.end` is the frame that stands for `cycle.start` again. What [`super::close_loop`] takes.
+    /// The frames that play; `cycle.end` is the frame that stands for `cycle.start` again. What
+    /// [`super::close_loop`] takes.
     pub cycle: Range<usize>,
-    /// Root mean square distance of the windows from both ends after the best alignment, centimetres on the reference body.
+    /// Root mean square distance of the windows from both ends after the best alignment,
+    /// centimetres on the reference body.
     pub rms_cm: f64,
-    /// By how much the feet's phases differ, in cycles, 0 to 0.5; `None` when no foot has two touchdowns.
+    /// By how much the feet's phases differ, in cycles, 0 to 0.5; `None` when no foot has two
+    /// touchdowns.
     pub phase_gap: Option<f32>,
 }
 
 /// What a whole cycle of difference between the feet's phases counts as, centimetres of distance.
 const CM_PER_CYCLE: f64 = 20.0;
-/// The feet's phases choose between cycles whose distances differ by no more than this, as a share of the least and in centimetres.
+/// The feet's phases choose between cycles whose distances differ by no more than this, as a share
+/// of the least and in centimetres.
 const ALIKE_SHARE: f64 = 0.05;
 const ALIKE_CM: f64 = 0.02;
-/// A foot that stands all through a cycle in which the body goes on by more than this has to slide, centimetres on the reference body.
+/// A foot that stands all through a cycle in which the body goes on by more than this has to slide,
+/// centimetres on the reference body.
 const DRAGGED_CM: f64 = 5.0;
 /// How many minima of the coarse grid are looked at closely.
 const CANDIDATES: usize = 16;
 
-/// Finds where a clip repeats itself: the pair of frames with the smallest distance between the windows that begin there, among all cycles of the
-/// durations asked for. Of distances that are all but equal the one is taken at which the feet's phases ([`Contacts::phase`]) agree best.
+/// Finds where a clip repeats itself: the pair of frames with the smallest distance between the
+/// windows that begin there, among all cycles of the durations asked for. Of distances that are all
+/// but equal the one is taken at which the feet's phases ([`Contacts::phase`]) agree best.
 ///
-/// Where a foot comes down somewhere in the clip, it does so in the cycle: a character that stands for a moment fits itself best, and is no gait. Nor does
-/// a foot stand all through a cycle that goes on, as in the last step of a run that stops: round after round it would be dragged along.
-/// Coarse to fine: every minimum of a grid of about 1/30 s is looked at frame by frame. A clip that is one whole cycle has no window behind its last
-/// frame: its first and last frame are compared alone, and taken if nothing fits better. `contacts` are those of the clip; `body_height` in metres.
+/// Where a foot comes down somewhere in the clip, it does so in the cycle: a character that stands
+/// for a moment fits itself best, and is no gait. Nor does a foot stand all through a cycle that
+/// goes on, as in the last step of a run that stops: round after round it would be dragged along.
+/// Coarse to fine: every minimum of a grid of about 1/30 s is looked at frame by frame. A clip that
+/// is one whole cycle has no window behind its last frame: its first and last frame are compared
+/// alone, and taken if nothing fits better. `contacts` are those of the clip; `body_height` in
+/// metres.
 ///
 /// # Errors
-/// [`LoopError::TooShort`] when no cycle of the shortest duration fits, into the clip or to an end that is given; [`LoopError::Registration`] when positions are no numbers.
-pub fn find_cycle(source: &Source, contacts: &Contacts, body_height: f64, search: &CycleSearch) -> Result<CutPoints, LoopError> {
+/// [`LoopError::TooShort`] when no cycle of the shortest duration fits, into the clip or to an end
+/// that is given; [`LoopError::Registration`] when positions are no numbers.
+pub fn find_cycle(
+    source: &Source,
+    contacts: &Contacts,
+    body_height: f64,
+    search: &CycleSearch,
+) -> Result<CutPoints, LoopError> {
     let clip = source.clip();
     let (fps, frames) = (clip.fps(), clip.frames());
-    let too_short = LoopError::TooShort {
-        min_secs: search.min_secs,
-        secs: clip.duration_secs(),
-    };
+    let too_short = LoopError::TooShort { min_secs: search.min_secs, secs: clip.duration_secs() };
     // `as usize` takes NaN and negative numbers to 0.
     let shortest = ((search.min_secs * fps).ceil() as usize).max(2);
     let longest = ((search.max_secs * fps).floor() as usize).max(shortest);
@@ -96,17 +109,25 @@ pub fn find_cycle(source: &Source, contacts: &Contacts, body_height: f64, search
     let mut places = Vec::new();
     for place in finder.pairs(&(0..frames), &(0..frames), stride, finder.window, true)? {
         let around = |at: usize| at.saturating_sub(stride)..(at + stride + 1).min(frames);
-        places.extend(finder.pairs(&around(place.start), &around(place.end), 1, finder.window, false)?);
+        places.extend(finder.pairs(
+            &around(place.start),
+            &around(place.end),
+            1,
+            finder.window,
+            false,
+        )?);
     }
     places.extend(finder.pairs(&(0..1), &(frames - 1..frames), 1, 1, false)?);
     let best = finder.choose(&places).ok_or(too_short)?;
     Ok(best.cut(contacts))
 }
 
-/// The frames in which a foot comes down, in order. One that stands in the first frame came down at some time before.
+/// The frames in which a foot comes down, in order. One that stands in the first frame came down at
+/// some time before.
 fn touchdowns(contacts: &Contacts) -> Vec<usize> {
     let starts = |side| contacts.intervals(side).into_iter().map(|stance| stance.start);
-    let mut all: Vec<usize> = Side::BOTH.into_iter().flat_map(starts).filter(|&at| at > 0).collect();
+    let mut all: Vec<usize> =
+        Side::BOTH.into_iter().flat_map(starts).filter(|&at| at > 0).collect();
     all.sort_unstable();
     all
 }
@@ -144,12 +165,15 @@ struct Finder<'a> {
 }
 
 impl Finder<'_> {
-    /// The best cycle with an end that is given. One row, or one column, of the grid is cheap: every frame is compared. With both ends
-    /// given there is nothing to find, and any length will do.
+    /// The best cycle with an end that is given. One row, or one column, of the grid is cheap:
+    /// every frame is compared. With both ends given there is nothing to find, and any length will
+    /// do.
     fn pinned(&self, search: &CycleSearch, frames: usize) -> Result<Option<Place>, LoopError> {
         let (shortest, longest) = (self.lengths.start, self.lengths.end);
         let (starts, ends) = match (search.start, search.end) {
-            (Some(start), Some(end)) => (start..start.saturating_add(1), end..end.saturating_add(1)),
+            (Some(start), Some(end)) => {
+                (start..start.saturating_add(1), end..end.saturating_add(1))
+            }
             (Some(start), None) => (
                 start..start.saturating_add(1),
                 start.saturating_add(shortest)..start.saturating_add(longest).min(frames),
@@ -184,7 +208,8 @@ impl Finder<'_> {
 
     /// Whether a foot stands all through a cycle that goes on.
     fn drags_in(&self, place: &Place) -> bool {
-        let stays = |side| (place.start..=place.end).all(|frame| self.contacts.planted(side, frame));
+        let stays =
+            |side| (place.start..=place.end).all(|frame| self.contacts.planted(side, frame));
         let [from, to] = [place.start, place.end].map(|frame| self.source.frames()[frame].shift);
         from.distance(to) * self.cm > DRAGGED_CM && Side::BOTH.into_iter().any(stays)
     }
@@ -194,16 +219,19 @@ impl Finder<'_> {
         [!self.steps_in(place), self.drags_in(place)]
     }
 
-    /// The best of these cycles: of those with the fewest flaws that are about as close as the closest, the one with the least score.
+    /// The best of these cycles: of those with the fewest flaws that are about as close as the
+    /// closest, the one with the least score.
     fn choose(&self, places: &[Place]) -> Option<Place> {
         let fewest = places.iter().map(|place| self.flaws(place)).min()?;
         let admitted = || places.iter().filter(|place| self.flaws(place) == fewest);
         let least = admitted().map(|place| place.rms_cm).min_by(f64::total_cmp)?;
-        let alike = admitted().filter(|place| place.rms_cm <= least * (1.0 + ALIKE_SHARE) + ALIKE_CM);
+        let alike =
+            admitted().filter(|place| place.rms_cm <= least * (1.0 + ALIKE_SHARE) + ALIKE_CM);
         alike.min_by(|a, b| a.score.total_cmp(&b.score)).copied()
     }
 
-    /// The cycles that start in `starts` and end in `ends`; of a whole grid (`minima`) only its lowest minima, and those of cycles with the fewest flaws.
+    /// The cycles that start in `starts` and end in `ends`; of a whole grid (`minima`) only its
+    /// lowest minima, and those of cycles with the fewest flaws.
     fn pairs(
         &self,
         starts: &Range<usize>,
@@ -212,24 +240,38 @@ impl Finder<'_> {
         window: usize,
         minima: bool,
     ) -> Result<Vec<Place>, LoopError> {
-        let with_window = |starts: &Range<usize>| starts.start..starts.end.saturating_add(window - 1);
-        let mut terms = PairTerms::new(self.clip, with_window(starts), self.clip, with_window(ends), &self.weights, stride)?;
+        let with_window =
+            |starts: &Range<usize>| starts.start..starts.end.saturating_add(window - 1);
+        let mut terms = PairTerms::new(
+            self.clip,
+            with_window(starts),
+            self.clip,
+            with_window(ends),
+            &self.weights,
+            stride,
+        )?;
         terms.finish();
         let grid = terms.distances(window, starts, ends)?;
         let allowed = |&(row, column): &(usize, usize)| {
             let (start, end) = grid.frames(row, column);
-            end.checked_sub(start).is_some_and(|length| self.lengths.contains(&length)) && end < self.clip.frames()
+            end.checked_sub(start).is_some_and(|length| self.lengths.contains(&length))
+                && end < self.clip.frames()
         };
-        let distance = |(row, column): (usize, usize)| grid.get(row, column).unwrap_or(f32::INFINITY);
+        let distance =
+            |(row, column): (usize, usize)| grid.get(row, column).unwrap_or(f32::INFINITY);
         // No farther than its eight neighbours, of which those that are no cycles do not count.
         let is_minimum = |&(row, column): &(usize, usize)| {
             let here = distance((row, column));
             (row.saturating_sub(1)..(row + 2).min(grid.rows()))
-                .flat_map(|r| (column.saturating_sub(1)..(column + 2).min(grid.columns())).map(move |c| (r, c)))
+                .flat_map(|r| {
+                    (column.saturating_sub(1)..(column + 2).min(grid.columns()))
+                        .map(move |c| (r, c))
+                })
                 .filter(allowed)
                 .all(|there| distance(there) >= here)
         };
-        let all = (0..grid.rows()).flat_map(|row| (0..grid.columns()).map(move |column| (row, column)));
+        let all =
+            (0..grid.rows()).flat_map(|row| (0..grid.columns()).map(move |column| (row, column)));
         let cells = all.filter(allowed).filter(|cell| !minima || is_minimum(cell));
         let mut places: Vec<Place> = cells
             .filter_map(|(row, column)| {
@@ -283,20 +325,15 @@ mod tests {
     fn a_walk_repeats_after_whole_strides() {
         for (cadence, turning, fps) in [(0.9, 0.0, 60.0), (1.3, 0.4, 120.0), (1.1, -0.7, 30.0)] {
             let clip = Arc::new(
-                Walk {
-                    frames: (5.0 * fps) as usize,
-                    fps,
-                    cadence,
-                    turning,
-                    ..Walk::default()
-                }
-                .clip(),
+                Walk { frames: (5.0 * fps) as usize, fps, cadence, turning, ..Walk::default() }
+                    .clip(),
             );
             let cut = found(&clip, &CycleSearch::new(fps)).unwrap();
             let strides = cut.cycle.len() as f64 / fps * f64::from(cadence);
             // Never a half stride, whose poses are mirrored. Half a frame is what frames can miss.
             assert!(
-                (strides - strides.round()).abs() <= 0.6 / fps * f64::from(cadence) + 1e-6 && strides > 0.9,
+                (strides - strides.round()).abs() <= 0.6 / fps * f64::from(cadence) + 1e-6
+                    && strides > 0.9,
                 "{strides} {cut:?}"
             );
             assert!(cut.rms_cm < 1.5, "{cut:?}");
@@ -324,17 +361,11 @@ mod tests {
         }
     }
 
-    /// As in the last step of a run that stops, where one foot stands while the body is still going on.
+    /// As in the last step of a run that stops, where one foot stands while the body is still going
+    /// on.
     #[test]
     fn cycle_in_which_a_foot_is_dragged_is_not_taken() {
-        let clip = Arc::new(
-            Walk {
-                frames: 400,
-                cadence: 1.0,
-                ..Walk::default()
-            }
-            .clip(),
-        );
+        let clip = Arc::new(Walk { frames: 400, cadence: 1.0, ..Walk::default() }.clip());
         let roles = Roles::detect(clip.skeleton());
         let height = f64::from(roles.body_height(clip.skeleton()));
         let source = Source::new(Arc::clone(&clip), &roles);
@@ -343,42 +374,30 @@ mod tests {
         let right = (0..400).map(|frame| frame < 200 || (frame + 30) % 60 < 36).collect();
         let contacts = Contacts::from_flags([left, right]);
         let search = CycleSearch::new(60.0);
-        let finds = |contacts: &Contacts, search: &CycleSearch| find_cycle(&source, contacts, height, search).unwrap().cycle;
+        let finds = |contacts: &Contacts, search: &CycleSearch| {
+            find_cycle(&source, contacts, height, search).unwrap().cycle
+        };
         let cycle = finds(&contacts, &search);
         assert!(cycle.clone().any(|frame| !contacts.planted(Side::Right, frame)), "{cycle:?}");
         // Where every cycle drags it, or the ends are given, it is a cycle all the same.
-        let always = Contacts::from_flags([(0..400).map(|frame| frame % 60 < 36).collect(), vec![true; 400]]);
+        let always = Contacts::from_flags([
+            (0..400).map(|frame| frame % 60 < 36).collect(),
+            vec![true; 400],
+        ]);
         assert_eq!(finds(&always, &search).len() % 60, 0);
-        let given = CycleSearch {
-            start: Some(20),
-            end: Some(80),
-            ..search
-        };
+        let given = CycleSearch { start: Some(20), end: Some(80), ..search };
         assert_eq!(finds(&contacts, &given), 20..80);
     }
 
     #[test]
     fn a_clip_that_is_one_cycle_is_taken_whole() {
-        let clip = Arc::new(
-            Walk {
-                frames: 61,
-                cadence: 1.0,
-                ..Walk::default()
-            }
-            .clip(),
-        );
+        let clip = Arc::new(Walk { frames: 61, cadence: 1.0, ..Walk::default() }.clip());
         assert_eq!(found(&clip, &CycleSearch::new(60.0)).unwrap().cycle, 0..60);
     }
 
     #[test]
     fn durations_are_kept_and_what_does_not_fit_is_said() {
-        let clip = Arc::new(
-            Walk {
-                frames: 400,
-                ..Walk::default()
-            }
-            .clip(),
-        );
+        let clip = Arc::new(Walk { frames: 400, ..Walk::default() }.clip());
         let between = |min_secs, max_secs| CycleSearch {
             window: 6,
             min_secs,
@@ -397,29 +416,16 @@ mod tests {
         let one = Arc::new(clip.crop(0..1).unwrap());
         assert!(found(&one, &between(0.0, 1.0)).is_err());
         assert!(found(&Arc::new(clip.crop(0..0).unwrap()), &between(0.0, 1.0)).is_err());
-        assert_eq!(found(&Arc::new(clip.crop(0..3).unwrap()), &between(0.0, 1.0)).unwrap().cycle, 0..2);
+        assert_eq!(
+            found(&Arc::new(clip.crop(0..3).unwrap()), &between(0.0, 1.0)).unwrap().cycle,
+            0..2
+        );
     }
 
     #[test]
     fn ends_that_are_given_are_kept() {
-        let clip = Arc::new(
-            Walk {
-                frames: 400,
-                cadence: 1.0,
-                ..Walk::default()
-            }
-            .clip(),
-        );
-        let with = |start, end| {
-            found(
-                &clip,
-                &CycleSearch {
-                    start,
-                    end,
-                    ..CycleSearch::new(60.0)
-                },
-            )
-        };
+        let clip = Arc::new(Walk { frames: 400, cadence: 1.0, ..Walk::default() }.clip());
+        let with = |start, end| found(&clip, &CycleSearch { start, end, ..CycleSearch::new(60.0) });
         // One stride is 60 frames; strides beside it are as good.
         let cut = with(Some(100), None).unwrap().cycle;
         assert!(cut.start == 100 && cut.len() % 60 == 0 && !cut.is_empty(), "{cut:?}");
@@ -436,7 +442,10 @@ mod tests {
             (Some(usize::MAX), None),
             (None, Some(usize::MAX)),
         ] {
-            assert!(matches!(with(start, end), Err(LoopError::TooShort { .. })), "{start:?} {end:?}");
+            assert!(
+                matches!(with(start, end), Err(LoopError::TooShort { .. })),
+                "{start:?} {end:?}"
+            );
         }
     }
 }

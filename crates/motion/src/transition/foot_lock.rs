@@ -11,29 +11,30 @@ mod anchor;
 mod envelope;
 mod hips;
 
-/// How feet are planted. Lengths are those of a character 1.75 m tall and are scaled to the clip's character.
+/// How feet are planted. Lengths are those of a character 1.75 m tall and are scaled to the clip's
+/// character.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct FootLockOptions {
-    /// Seconds over which a foot leaves its own way before a stance, and comes back to it after one; less where the next stance is nearer.
+    /// Seconds over which a foot leaves its own way before a stance, and comes back to it after
+    /// one; less where the next stance is nearer.
     pub blend_secs: f64,
-    /// How far a foot may be moved over the ground, metres. The correction bends towards this limit from its half on; what is beyond it
-    /// slides as before. A foot that is said to stand while it swings would tear the leg otherwise.
+    /// How far a foot may be moved over the ground, metres. The correction bends towards this limit
+    /// from its half on; what is beyond it slides as before. A foot that is said to stand while it
+    /// swings would tear the leg otherwise.
     pub max_shift_m: f32,
-    /// The height of the ground, metres: planted feet are lifted out of it. `None` leaves heights as they are.
+    /// The height of the ground, metres: planted feet are lifted out of it. `None` leaves heights
+    /// as they are.
     pub ground_m: Option<f32>,
-    /// How high above where it stands a foot is that swings, metres: what is lower scrapes over the ground, and is lifted. People clear it by 1 to 2 cm
-    /// with their toes (Winter 1992, "The foot trajectory in human gait"); a little more is not seen as sliding. `None` leaves swings as they are.
+    /// How high above where it stands a foot is that swings, metres: what is lower scrapes over the
+    /// ground, and is lifted. People clear it by 1 to 2 cm with their toes (Winter 1992, "The foot
+    /// trajectory in human gait"); a little more is not seen as sliding. `None` leaves swings as
+    /// they are.
     pub clearance_m: Option<f32>,
 }
 
 impl Default for FootLockOptions {
     fn default() -> Self {
-        Self {
-            blend_secs: 0.2,
-            max_shift_m: 0.3,
-            ground_m: Some(0.0),
-            clearance_m: Some(0.025),
-        }
+        Self { blend_secs: 0.2, max_shift_m: 0.3, ground_m: Some(0.0), clearance_m: Some(0.025) }
     }
 }
 
@@ -41,10 +42,14 @@ impl Default for FootLockOptions {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FootLockError {
     /// No leg of thigh, shin and foot, one below the other.
-    #[error("this skeleton has no leg with thigh, shin and foot: choose these joints by hand to lock its feet")]
+    #[error(
+        "this skeleton has no leg with thigh, shin and foot: choose these joints by hand to lock its feet"
+    )]
     NoLegs,
     /// The contacts are those of another clip.
-    #[error("the contacts are known for {contacts} frames, but the clip has {frames}: detect them on this clip")]
+    #[error(
+        "the contacts are known for {contacts} frames, but the clip has {frames}: detect them on this clip"
+    )]
     Contacts {
         /// Frames of the contacts.
         contacts: usize,
@@ -66,44 +71,60 @@ pub enum FootLockError {
     Clip(#[from] ClipError),
 }
 
-/// A leg is not stretched beyond this flexion of the knee, unless the clip itself does so: near full stretch the knee would snap. A leg of bones `a` and `b`
-/// that becomes longer by `d` turns its knee by `d l / (a b sin φ)`: 1.2° a millimetre here on a leg of 0.85 m, and the hips are lowered by 5 mm more than
-/// for a straight leg.
+/// A leg is not stretched beyond this flexion of the knee, unless the clip itself does so: near
+/// full stretch the knee would snap. A leg of bones `a` and `b` that becomes longer by `d` turns
+/// its knee by `d l / (a b sin φ)`: 1.2° a millimetre here on a leg of 0.85 m, and the hips are
+/// lowered by 5 mm more than for a straight leg.
 const LEAST_FLEXION_RADIANS: f32 = 0.22;
-/// Below this sine of the flexion the knee's own plane is uncertain, and the leg's usual plane takes over.
+/// Below this sine of the flexion the knee's own plane is uncertain, and the leg's usual plane
+/// takes over.
 const PLANE_SINE: f32 = 0.2;
 
 /// Plants the feet: while `contacts` say that a foot is on the ground, it does not slide.
 ///
-/// *What is held.* In every step between two planted frames the point of the foot (ball, tip, or ankle; the ankle alone where there are no
-/// toes) that moves least over the ground is the one that stands. The foot is moved so that it stands exactly; the foot's own turning stays, so it still
-/// rolls from heel to ball to tip, and stays as flat as in the clip. Over a stance this fixes the foot's place up to a constant, which
-/// is chosen so that the correction vanishes where the foot is stillest: a mean over the stance with weights of inverse squared speed.
-/// What is below the ground is lifted out of it. Before and behind a stance the correction dies away with its own velocity
+/// *What is held.* In every step between two planted frames the point of the foot (ball, tip, or
+/// ankle; the ankle alone where there are no toes) that moves least over the ground is the one that
+/// stands. The foot is moved so that it stands exactly; the foot's own turning stays, so it still
+/// rolls from heel to ball to tip, and stays as flat as in the clip. Over a stance this fixes the
+/// foot's place up to a constant, which is chosen so that the correction vanishes where the foot is
+/// stillest: a mean over the stance with weights of inverse squared speed. What is below the ground
+/// is lifted out of it. Before and behind a stance the correction dies away with its own velocity
 /// ([`Decay::Cubic`](crate::math::Decay)), so that a foot does not jerk off the ground.
 ///
-/// *What is lifted.* Where the foot swings from one stance to the next, each of its points is brought [`FootLockOptions::clearance_m`] above the height that it
-/// has in these, smoothly, while it goes faster than a slow step. Between two motions a foot may pass the ground lower than in either.
+/// *What is lifted.* Where the foot swings from one stance to the next, each of its points is
+/// brought [`FootLockOptions::clearance_m`] above the height that it has in these, smoothly, while
+/// it goes faster than a slow step. Between two motions a foot may pass the ground lower than in
+/// either.
 ///
-/// *How the leg follows.* Thigh and shin are turned about the knee's own axis to bring the ankle to its place, then the leg is swung the shortest way
-/// ([`two_bones`]); joints between hip, knee and ankle keep their local rotations. Only the *difference* to how the leg was is applied, so that
+/// *How the leg follows.* Thigh and shin are turned about the knee's own axis to bring the ankle to
+/// its place, then the leg is swung the shortest way ([`two_bones`]); joints between hip, knee and
+/// ankle keep their local rotations. Only the *difference* to how the leg was is applied, so that
 /// the knee keeps its plane, also when it is nearly straight.
 ///
-/// *How the hips help.* A nearly straight leg has to bend a lot to become a little shorter, and cannot become longer. The hips are raised or lowered to
-/// where both knees change least (least squares of the change of flexion), smoothed, and lowered further where a leg would have to
+/// *How the hips help.* A nearly straight leg has to bend a lot to become a little shorter, and
+/// cannot become longer. The hips are raised or lowered to where both knees change least (least
+/// squares of the change of flexion), smoothed, and lowered further where a leg would have to
 /// stretch past its reach; where even that does not help, the foot slides.
 ///
-/// Frames where nothing needs to be corrected stay exactly as they are. Cost: O(frames × joints), one pass of forward kinematics.
+/// Frames where nothing needs to be corrected stay exactly as they are. Cost: O(frames × joints),
+/// one pass of forward kinematics.
 ///
 /// # Errors
-/// [`FootLockError`] when there are no legs, the contacts do not fit the clip, or an option is out of range.
-pub fn foot_lock(clip: &Clip, roles: &Roles, contacts: &Contacts, options: &FootLockOptions) -> Result<Clip, FootLockError> {
+/// [`FootLockError`] when there are no legs, the contacts do not fit the clip, or an option is out
+/// of range.
+pub fn foot_lock(
+    clip: &Clip,
+    roles: &Roles,
+    contacts: &Contacts,
+    options: &FootLockOptions,
+) -> Result<Clip, FootLockError> {
     let mut state = State::new(clip, roles, contacts, options)?;
     while state.advance(clip, clip.frames()) {}
     state.finish(clip)
 }
 
-/// Whether a skeleton has a leg of thigh, shin and foot, one below the other: feet of others cannot be planted.
+/// Whether a skeleton has a leg of thigh, shin and foot, one below the other: feet of others cannot
+/// be planted.
 #[must_use]
 pub fn has_legs(skeleton: &Skeleton, roles: &Roles) -> bool {
     Side::BOTH.into_iter().any(|side| Leg::find(skeleton, roles, side).is_some())
@@ -121,13 +142,20 @@ impl FootLocking {
     ///
     /// # Errors
     /// As [`foot_lock`].
-    pub fn new(clip: Arc<Clip>, roles: &Roles, contacts: &Contacts, options: &FootLockOptions) -> Result<Self, FootLockError> {
+    pub fn new(
+        clip: Arc<Clip>,
+        roles: &Roles,
+        contacts: &Contacts,
+        options: &FootLockOptions,
+    ) -> Result<Self, FootLockError> {
         let state = State::new(&clip, roles, contacts, options)?;
         Ok(Self { clip, state })
     }
 
-    /// Says by how much the whole body was turned in every frame, as on a path that was bent, radians; frames without a number were not. A foot that stands does not
-    /// turn with it over the ground: in its stances it is turned back, by up to 30°, about the vertical. Its own turning stays.
+    /// Says by how much the whole body was turned in every frame, as on a path that was bent,
+    /// radians; frames without a number were not. A foot that stands does not turn with it over the
+    /// ground: in its stances it is turned back, by up to 30°, about the vertical. Its own turning
+    /// stays.
     ///
     /// To be said before the first [`advance`](Self::advance).
     #[must_use]
@@ -136,7 +164,8 @@ impl FootLocking {
         self
     }
 
-    /// Goes on by so many frames (at least one). `false` when nothing is left to do. A frame of 31 joints takes 2 µs, in each of two passes.
+    /// Goes on by so many frames (at least one). `false` when nothing is left to do. A frame of 31
+    /// joints takes 2 µs, in each of two passes.
     pub fn advance(&mut self, frames: usize) -> bool {
         self.state.advance(&self.clip, frames)
     }
@@ -189,22 +218,22 @@ struct Plan {
 }
 
 impl State {
-    fn new(clip: &Clip, roles: &Roles, contacts: &Contacts, options: &FootLockOptions) -> Result<Self, FootLockError> {
+    fn new(
+        clip: &Clip,
+        roles: &Roles,
+        contacts: &Contacts,
+        options: &FootLockOptions,
+    ) -> Result<Self, FootLockError> {
         let check = |what, value: f64, most: f64| {
             let fits = (0.0..=most).contains(&value);
-            if fits {
-                Ok(())
-            } else {
-                Err(FootLockError::Option { what, value, most })
-            }
+            if fits { Ok(()) } else { Err(FootLockError::Option { what, value, most }) }
         };
         check("blend time (s)", options.blend_secs, MOST_SECS)?;
         check("largest shift (m)", f64::from(options.max_shift_m), 10.0)?;
         check("clearance (m)", f64::from(options.clearance_m.unwrap_or(0.0)), 1.0)?;
         let sides = Side::BOTH.into_iter();
-        let (sides, legs): (Vec<Side>, Vec<Leg>) = sides
-            .filter_map(|side| Some((side, Leg::find(clip.skeleton(), roles, side)?)))
-            .unzip();
+        let (sides, legs): (Vec<Side>, Vec<Leg>) =
+            sides.filter_map(|side| Some((side, Leg::find(clip.skeleton(), roles, side)?))).unzip();
         if legs.is_empty() {
             return Err(FootLockError::NoLegs);
         }
@@ -252,7 +281,8 @@ impl State {
             for (index, leg) in self.legs.iter().enumerate() {
                 let (shift, turn) = (plan.shifts[index][frame], plan.turns[index][frame]);
                 if shift != Vec3::ZERO || turn != Vec3::ZERO || height != 0.0 {
-                    let [upper, lower] = self.posed[index][frame].turned(shift - Vec3::Y * height, plan.axes[index]);
+                    let [upper, lower] =
+                        self.posed[index][frame].turned(shift - Vec3::Y * height, plan.axes[index]);
                     let turns = [upper, lower, Quat::from_scaled_axis(turn)];
                     leg.write(&self.posed[index][frame], turns, local);
                 }
@@ -277,7 +307,8 @@ impl State {
         let corrections = self.stances.iter().zip(&self.feet).map(|(stances, foot)| {
             let stances = foot.parted(stances, clip.fps(), self.scale);
             let turns = foot.turns(&stances, &self.body_yaws, clip.fps(), &self.options);
-            let shifts = |foot: &anchor::Foot| foot.shifts(&stances, clip.fps(), self.scale, &self.options);
+            let shifts =
+                |foot: &anchor::Foot| foot.shifts(&stances, clip.fps(), self.scale, &self.options);
             let stays = turns.iter().all(|turn| *turn == Vec3::ZERO);
             (if stays { shifts(foot) } else { shifts(&foot.turned(&turns)) }, turns)
         });
@@ -286,7 +317,11 @@ impl State {
         Plan {
             heights: hips::heights(&self.posed, &shifts, clip.fps()),
             axes: self.posed.iter().map(|posed| usual_axis(posed)).collect(),
-            rotations: Vec::with_capacity(if is_idle { 0 } else { clip.frames() * clip.skeleton().len() }),
+            rotations: Vec::with_capacity(if is_idle {
+                0
+            } else {
+                clip.frames() * clip.skeleton().len()
+            }),
             turned: 0,
             shifts,
             turns,
@@ -302,7 +337,8 @@ impl State {
         for (root, height) in roots.iter_mut().zip(&plan.heights) {
             root.y += height;
         }
-        let locked = Clip::new(clip.name(), clip.skeleton().clone(), clip.fps(), plan.rotations, roots)?;
+        let locked =
+            Clip::new(clip.name(), clip.skeleton().clone(), clip.fps(), plan.rotations, roots)?;
         Ok(locked
             .with_translations(clip.translations().to_vec())?
             .with_provenance(clip.provenance()))
@@ -329,20 +365,21 @@ struct Posed {
 impl Leg {
     /// `None` where thigh, shin and foot are not one below the other.
     pub(crate) fn find(skeleton: &Skeleton, roles: &Roles, side: Side) -> Option<Self> {
-        let [thigh, shin, foot, _] = Role::leg(side).map(|role| roles.get_within(role, skeleton.len()));
+        let [thigh, shin, foot, _] =
+            Role::leg(side).map(|role| roles.get_within(role, skeleton.len()));
         let joints = [thigh?, shin?, foot?];
-        let above =
-            |joint: usize, wanted: usize| std::iter::successors(skeleton.parent(joint), |&j| skeleton.parent(j)).any(|j| j == wanted);
+        let above = |joint: usize, wanted: usize| {
+            std::iter::successors(skeleton.parent(joint), |&j| skeleton.parent(j))
+                .any(|j| j == wanted)
+        };
         let [Some(a), Some(b), Some(c)] = joints.map(|joint| skeleton.parent(joint)) else {
             return None;
         };
         let chain = above(joints[1], joints[0]) && above(joints[2], joints[1]);
         let rest = skeleton.rest_positions();
         let bones = [0, 1].map(|bone| rest[joints[bone]].distance(rest[joints[bone + 1]]));
-        (chain && bones.iter().all(|length| *length > 1e-3)).then_some(Self {
-            joints,
-            parents: [a, b, c],
-        })
+        (chain && bones.iter().all(|length| *length > 1e-3))
+            .then_some(Self { joints, parents: [a, b, c] })
     }
 
     /// Thigh, shin and foot.
@@ -355,9 +392,16 @@ impl Leg {
         usual_axis(&worlds.map(|world| self.pose(world)).collect::<Vec<_>>())
     }
 
-    /// Moves the ankle by `shift` (metres, world) as [`foot_lock`] does, the hips staying where they are: writes the local rotations of thigh, shin
-    /// and foot. `world` is the pose before; it may hold these joints and their ancestors alone.
-    pub(crate) fn move_ankle(&self, world: &WorldPose, shift: Vec3, usual_axis: Vec3, local: &mut [Quat]) {
+    /// Moves the ankle by `shift` (metres, world) as [`foot_lock`] does, the hips staying where
+    /// they are: writes the local rotations of thigh, shin and foot. `world` is the pose before; it
+    /// may hold these joints and their ancestors alone.
+    pub(crate) fn move_ankle(
+        &self,
+        world: &WorldPose,
+        shift: Vec3,
+        usual_axis: Vec3,
+        local: &mut [Quat],
+    ) {
         let posed = self.pose(world);
         let [upper, lower] = posed.turned(shift, usual_axis);
         self.write(&posed, [upper, lower, Quat::IDENTITY], local);
@@ -393,7 +437,8 @@ impl Posed {
         self.thigh + self.shin
     }
 
-    /// The area that the bones span, which points along the axis that the knee is bent about, over both lengths: the sine of the flexion.
+    /// The area that the bones span, which points along the axis that the knee is bent about, over
+    /// both lengths: the sine of the flexion.
     fn bend(&self) -> Vec3 {
         self.thigh.cross(self.shin) / (self.thigh.length() * self.shin.length()).max(1e-9)
     }
@@ -407,8 +452,9 @@ impl Posed {
 
     /// World turns of thigh and shin that move the ankle by `shift` against the hip.
     ///
-    /// `usual_axis` is the axis of the knee in the thigh's frame. Where the leg is not bent in one plane about the axis used, or the knee is bent
-    /// the wrong way, a difference of angles does not quite reach; what is missing is asked for once more.
+    /// `usual_axis` is the axis of the knee in the thigh's frame. Where the leg is not bent in one
+    /// plane about the axis used, or the knee is bent the wrong way, a difference of angles does
+    /// not quite reach; what is missing is asked for once more.
     fn turned(&self, shift: Vec3, usual_axis: Vec3) -> [Quat; 2] {
         let (a, b) = (self.thigh.length(), self.shin.length());
         let bend = self.bend();
@@ -424,8 +470,9 @@ impl Posed {
         for _ in 0..3 {
             let swing = quat::between_directions(line, asked);
             let to = two_bones(asked, a, b, swing * from.hinge);
-            turns = [(from.upper, to.upper), (from.lower, to.lower)]
-                .map(|(bone, turned)| quat::renormalize(basis(turned, to.hinge) * basis(bone, from.hinge).conjugate()));
+            turns = [(from.upper, to.upper), (from.lower, to.lower)].map(|(bone, turned)| {
+                quat::renormalize(basis(turned, to.hinge) * basis(bone, from.hinge).conjugate())
+            });
             let missing = wanted - (turns[0] * self.thigh + turns[1] * self.shin);
             if missing.length_squared() < 1e-10 {
                 break;
@@ -441,7 +488,8 @@ fn basis(bone: Vec3, hinge: Vec3) -> Quat {
     Quat::from_mat3(&Mat3::from_cols(hinge, bone, hinge.cross(bone)))
 }
 
-/// The axis about which a knee bends over the whole clip, in the thigh's frame; bent frames count more.
+/// The axis about which a knee bends over the whole clip, in the thigh's frame; bent frames count
+/// more.
 fn usual_axis(posed: &[Posed]) -> Vec3 {
     let sum: Vec3 = posed.iter().map(|posed| posed.rotations[0].conjugate() * posed.bend()).sum();
     // A clip of straight legs: across the body, which at rest faces +Z.

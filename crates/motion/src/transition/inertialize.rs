@@ -9,8 +9,8 @@ use glam::{Quat, Vec3};
 pub enum Inertialization {
     /// The offset decays into the new motion (Bollo 2018; springs: Holden 2021).
     Offset(Decay),
-    /// The old pose runs on with decaying velocity, and a smooth weight fades to the new motion (Holden, "Dead Blending", 2023). Safer for very
-    /// different poses; damps more.
+    /// The old pose runs on with decaying velocity, and a smooth weight fades to the new motion
+    /// (Holden, "Dead Blending", 2023). Safer for very different poses; damps more.
     DeadBlend {
         /// Seconds of the fade.
         blend_secs: f64,
@@ -26,14 +26,15 @@ impl Inertialization {
     /// [`BlendError::Time`] names the first that is not from 0 to 60 s.
     pub fn validate(self) -> Result<(), BlendError> {
         let times = match self {
-            Self::Offset(Decay::Spring { half_life_secs }) => [("half-life", half_life_secs), ("half-life", half_life_secs)],
+            Self::Offset(Decay::Spring { half_life_secs }) => {
+                [("half-life", half_life_secs), ("half-life", half_life_secs)]
+            }
             Self::Offset(Decay::Cubic { blend_secs } | Decay::Quintic { blend_secs }) => {
                 [("blend time", blend_secs), ("blend time", blend_secs)]
             }
-            Self::DeadBlend {
-                blend_secs,
-                extrapolation_half_life_secs,
-            } => [("blend time", blend_secs), ("half-life", extrapolation_half_life_secs)],
+            Self::DeadBlend { blend_secs, extrapolation_half_life_secs } => {
+                [("blend time", blend_secs), ("half-life", extrapolation_half_life_secs)]
+            }
         };
         match times.into_iter().find(|(_, secs)| !(0.0..=MOST_SECS).contains(secs)) {
             Some((what, secs)) => Err(BlendError::Time { what, secs }),
@@ -54,31 +55,32 @@ impl Inertialization {
     #[must_use]
     fn stretched(self, times: f64) -> Self {
         match self {
-            Self::Offset(Decay::Spring { half_life_secs }) => Self::Offset(Decay::Spring {
-                half_life_secs: half_life_secs * times,
-            }),
-            Self::Offset(Decay::Cubic { blend_secs }) => Self::Offset(Decay::Cubic {
-                blend_secs: blend_secs * times,
-            }),
-            Self::Offset(Decay::Quintic { blend_secs }) => Self::Offset(Decay::Quintic {
-                blend_secs: blend_secs * times,
-            }),
-            Self::DeadBlend {
-                blend_secs,
-                extrapolation_half_life_secs,
-            } => Self::DeadBlend {
-                blend_secs: blend_secs * times,
-                extrapolation_half_life_secs,
-            },
+            Self::Offset(Decay::Spring { half_life_secs }) => {
+                Self::Offset(Decay::Spring { half_life_secs: half_life_secs * times })
+            }
+            Self::Offset(Decay::Cubic { blend_secs }) => {
+                Self::Offset(Decay::Cubic { blend_secs: blend_secs * times })
+            }
+            Self::Offset(Decay::Quintic { blend_secs }) => {
+                Self::Offset(Decay::Quintic { blend_secs: blend_secs * times })
+            }
+            Self::DeadBlend { blend_secs, extrapolation_half_life_secs } => {
+                Self::DeadBlend { blend_secs: blend_secs * times, extrapolation_half_life_secs }
+            }
         }
     }
 
-    /// How fast an offset of 1 at rest is at most while it dies away, per second: the extremum of the curve's derivative.
+    /// How fast an offset of 1 at rest is at most while it dies away, per second: the extremum of
+    /// the curve's derivative.
     fn fastest(self) -> f64 {
         match self {
-            Self::Offset(Decay::Spring { half_life_secs }) => spring::rate(half_life_secs) / std::f64::consts::E,
+            Self::Offset(Decay::Spring { half_life_secs }) => {
+                spring::rate(half_life_secs) / std::f64::consts::E
+            }
             Self::Offset(Decay::Quintic { blend_secs }) => 1.875 / blend_secs,
-            Self::Offset(Decay::Cubic { blend_secs }) | Self::DeadBlend { blend_secs, .. } => 1.5 / blend_secs,
+            Self::Offset(Decay::Cubic { blend_secs }) | Self::DeadBlend { blend_secs, .. } => {
+                1.5 / blend_secs
+            }
         }
     }
 
@@ -91,23 +93,26 @@ impl Inertialization {
         }
     }
 
-    /// Seconds until nothing is left that could be seen or measured: the end of a compact curve; a millionth for a spring.
+    /// Seconds until nothing is left that could be seen or measured: the end of a compact curve; a
+    /// millionth for a spring.
     #[must_use]
     pub fn settled_secs(self) -> f64 {
         match self {
             Self::Offset(decay @ Decay::Spring { .. }) => decay.secs_until(1e-6),
-            Self::Offset(Decay::Cubic { blend_secs } | Decay::Quintic { blend_secs }) | Self::DeadBlend { blend_secs, .. } => blend_secs,
+            Self::Offset(Decay::Cubic { blend_secs } | Decay::Quintic { blend_secs })
+            | Self::DeadBlend { blend_secs, .. } => blend_secs,
         }
     }
 }
 
-/// Of the speed that a joint usually does not exceed, what an offset may add to it while it dies away.
+/// Of the speed that a joint usually does not exceed, what an offset may add to it while it dies
+/// away.
 const ADDED_SPEED: f32 = 0.75;
 /// An offset takes no more than so many times as long as others.
 const MOST_STRETCH: f32 = 6.0;
 
-/// The fade's weight of the old motion, and how fast it changes, per second: [`crate::blend::WeightLaw::Smooth`], which is the cubic's answer to
-/// an offset without velocity.
+/// The fade's weight of the old motion, and how fast it changes, per second:
+/// [`crate::blend::WeightLaw::Smooth`], which is the cubic's answer to an offset without velocity.
 fn fade(blend_secs: f64, secs: f64) -> (f64, f64) {
     let response = Decay::Cubic { blend_secs }.response(0.0, secs);
     (response.xx, response.vx)
@@ -115,12 +120,14 @@ fn fade(blend_secs: f64, secs: f64) -> (f64, f64) {
 
 /// Carries the inertia of what was playing over into what plays now, frame by frame.
 ///
-/// [`trigger`](Self::trigger) at a jump; then, every frame, [`advance`](Self::advance) the time and [`apply`](Self::apply) it to the new pose. A
-/// jump while another is still dying away adds to it: offsets are composed, not replaced, so that the motion stays continuous.
+/// [`trigger`](Self::trigger) at a jump; then, every frame, [`advance`](Self::advance) the time and
+/// [`apply`](Self::apply) it to the new pose. A jump while another is still dying away adds to it:
+/// offsets are composed, not replaced, so that the motion stays continuous.
 ///
-/// The offset of a rotation is the rotation vector of `q_old · q_new⁻¹` by the shorter way, applied on the left. Its rate is such that the joint
-/// leaves with the old angular velocity *exactly*: `J⁻¹ (ω_old - R ω_new)` with J the left Jacobian ([`quat::vector_rate`]) and R the offset. The usual
-/// `ω_old - ω_new` is that for small offsets only.
+/// The offset of a rotation is the rotation vector of `q_old · q_new⁻¹` by the shorter way, applied
+/// on the left. Its rate is such that the joint leaves with the old angular velocity *exactly*:
+/// `J⁻¹ (ω_old - R ω_new)` with J the left Jacobian ([`quat::vector_rate`]) and R the offset. The
+/// usual `ω_old - ω_new` is that for small offsets only.
 #[derive(Clone, Debug)]
 pub struct Inertializer {
     how: Inertialization,
@@ -137,7 +144,8 @@ struct Turn {
     /// The old rotation and its angular velocity: what runs on.
     from: Quat,
     angular_velocity: Vec3,
-    /// The difference that was applied last; the next one is taken in its hemisphere, so that it does not jump to the other way round.
+    /// The difference that was applied last; the next one is taken in its hemisphere, so that it
+    /// does not jump to the other way round.
     last: Quat,
     /// So many times as long as others it takes to die away, from 1 on.
     stretch: f32,
@@ -164,13 +172,7 @@ impl Inertializer {
     /// At rest: it changes nothing until it is triggered.
     #[must_use]
     pub fn new(how: Inertialization) -> Self {
-        Self {
-            how,
-            elapsed_secs: 0.0,
-            turns: Vec::new(),
-            shifts: Vec::new(),
-            travel: None,
-        }
+        Self { how, elapsed_secs: 0.0, turns: Vec::new(), shifts: Vec::new(), travel: None }
     }
 
     /// Seconds since the last jump.
@@ -179,15 +181,17 @@ impl Inertializer {
         self.elapsed_secs
     }
 
-    /// A jump from one motion to another: what the old one does at this moment and what the new one does, both as they are without inertia. What
-    /// is still left of an earlier jump is taken along. Joints that one of the two does not have are left out.
+    /// A jump from one motion to another: what the old one does at this moment and what the new one
+    /// does, both as they are without inertia. What is still left of an earlier jump is taken
+    /// along. Joints that one of the two does not have are left out.
     pub fn trigger(&mut self, old: &MovingPose, new: &MovingPose) {
         self.trigger_within(old, new, &[]);
     }
 
-    /// As [`trigger`](Self::trigger), with what angular speed each joint usually does not exceed, radians per second: a joint whose offset would die away
-    /// faster than three quarters of that takes as much longer, up to six times as long. So an arm that hangs in one motion and is bent in the other comes
-    /// up in its own time, while the legs are in step at once.
+    /// As [`trigger`](Self::trigger), with what angular speed each joint usually does not exceed,
+    /// radians per second: a joint whose offset would die away faster than three quarters of that
+    /// takes as much longer, up to six times as long. So an arm that hangs in one motion and is
+    /// bent in the other comes up in its own time, while the legs are in step at once.
     pub fn trigger_within(&mut self, old: &MovingPose, new: &MovingPose, usual_radps: &[f32]) {
         let fastest = self.how.fastest() as f32;
         let stretch = |joint: usize, offset: Vec3| {
@@ -236,8 +240,9 @@ impl Inertializer {
         self.elapsed_secs = 0.0;
     }
 
-    /// Continues with another method from this moment on. What is left of every offset is kept with its velocity, so that neither pose nor velocity
-    /// jumps. `live` is what plays now, as it is without inertia.
+    /// Continues with another method from this moment on. What is left of every offset is kept with
+    /// its velocity, so that neither pose nor velocity jumps. `live` is what plays now, as it is
+    /// without inertia.
     pub fn change(&mut self, how: Inertialization, live: &MovingPose) {
         self.trigger(live, live);
         self.how = how;
@@ -261,12 +266,15 @@ impl Inertializer {
         }
     }
 
-    /// The step over the ground of a new motion that takes `dt_secs` and ends now, with what is left of the old travel: steps as in
-    /// [`crate::clip::character_frames`] from one frame to the next, each in the character's frame at its start.
+    /// The step over the ground of a new motion that takes `dt_secs` and ends now, with what is
+    /// left of the old travel: steps as in [`crate::clip::character_frames`] from one frame to the
+    /// next, each in the character's frame at its start.
     ///
-    /// What decays is the difference of steady velocities, without a rate of its own: from a walk into a run the speed rises and never overshoots.
-    /// The rest, the sway of the moment, is carried over as the velocity of an offset that comes back to 0: kept as a velocity, the quarter of a
-    /// stride's turning or swaying that was going on would lead the character off its way. Both are taken at the middle of the step.
+    /// What decays is the difference of steady velocities, without a rate of its own: from a walk
+    /// into a run the speed rises and never overshoots. The rest, the sway of the moment, is
+    /// carried over as the velocity of an offset that comes back to 0: kept as a velocity, the
+    /// quarter of a stride's turning or swaying that was going on would lead the character off its
+    /// way. Both are taken at the middle of the step.
     #[must_use]
     pub fn step(&self, step: &Planar, dt_secs: f64) -> Planar {
         let Some(old) = self.travel.filter(|_| dt_secs > 0.0) else {
@@ -295,7 +303,8 @@ impl Inertializer {
         }
         let translations = pose.translations.iter_mut().zip(&mut pose.velocities);
         for (shift, (translation, velocity)) in self.shifts.iter().zip(translations) {
-            let (offset, rate) = (now.shifted(shift, *translation), now.shifting(shift, *translation, *velocity));
+            let (offset, rate) =
+                (now.shifted(shift, *translation), now.shifting(shift, *translation, *velocity));
             *translation += offset;
             *velocity += rate;
         }
@@ -328,10 +337,7 @@ impl Now {
         match how {
             Inertialization::Offset(decay @ Decay::Quintic { .. }) => Self::Quintic(decay, secs),
             Inertialization::Offset(decay) => Self::Linear(decay.response(0.0, secs)),
-            Inertialization::DeadBlend {
-                blend_secs,
-                extrapolation_half_life_secs,
-            } => {
+            Inertialization::DeadBlend { blend_secs, extrapolation_half_life_secs } => {
                 let (weight, falling) = fade(blend_secs, secs);
                 let (speed_left, run_on_secs) = spring::run_on(extrapolation_half_life_secs, secs);
                 Self::Dead {
@@ -373,17 +379,16 @@ impl Now {
         }
     }
 
-    /// The rate of the vector that [`turned`](Self::turned) gave last, when `live` turns with `live_velocity`.
+    /// The rate of the vector that [`turned`](Self::turned) gave last, when `live` turns with
+    /// `live_velocity`.
     fn turning(self, turn: &Turn, live_velocity: Vec3) -> Vec3 {
         match self {
-            Self::Dead {
-                weight,
-                falling,
-                speed_left,
-                ..
-            } => {
+            Self::Dead { weight, falling, speed_left, .. } => {
                 let whole = quat::log_as_given(turn.last);
-                let rate = quat::vector_rate(whole, turn.angular_velocity * speed_left - turn.last * live_velocity);
+                let rate = quat::vector_rate(
+                    whole,
+                    turn.angular_velocity * speed_left - turn.last * live_velocity,
+                );
                 whole * falling + rate * weight
             }
             _ => self.of(turn.offset, turn.rate).1,
@@ -392,19 +397,16 @@ impl Now {
 
     fn shifted(self, shift: &Shift, live: Vec3) -> Vec3 {
         match self {
-            Self::Dead { weight, run_on_secs, .. } => (shift.from + shift.velocity * run_on_secs - live) * weight,
+            Self::Dead { weight, run_on_secs, .. } => {
+                (shift.from + shift.velocity * run_on_secs - live) * weight
+            }
             _ => self.of(shift.offset, shift.rate).0,
         }
     }
 
     fn shifting(self, shift: &Shift, live: Vec3, live_velocity: Vec3) -> Vec3 {
         match self {
-            Self::Dead {
-                weight,
-                falling,
-                speed_left,
-                run_on_secs,
-            } => {
+            Self::Dead { weight, falling, speed_left, run_on_secs } => {
                 let off = shift.from + shift.velocity * run_on_secs - live;
                 off * falling + (shift.velocity * speed_left - live_velocity) * weight
             }

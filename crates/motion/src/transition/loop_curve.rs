@@ -8,14 +8,15 @@ pub enum LoopMethod {
         /// Half-life, seconds.
         half_life_secs: f64,
     },
-    /// Springs from both ends, fed with the difference itself (Holden, "Creating Looping Animations from Motion Capture", 2022). What has not died
-    /// away at the other end stays as a seam: `(1 + yT) e^(-yT)` of the difference, 14 % for a half-life of 0.2 s in a cycle of 0.5 s.
+    /// Springs from both ends, fed with the difference itself (Holden, "Creating Looping Animations
+    /// from Motion Capture", 2022). What has not died away at the other end stays as a seam: `(1 +
+    /// yT) e^(-yT)` of the difference, 14 % for a half-life of 0.2 s in a cycle of 0.5 s.
     Classic {
         /// Half-life, seconds.
         half_life_secs: f64,
     },
-    /// As [`Self::Classic`], but the head takes `1 - r` of the velocities' difference beside `r` of the poses': what results when the two shares are mixed
-    /// up, and the same for `r = 0.5`.
+    /// As [`Self::Classic`], but the head takes `1 - r` of the velocities' difference beside `r` of
+    /// the poses': what results when the two shares are mixed up, and the same for `r = 0.5`.
     Crossed {
         /// Half-life, seconds.
         half_life_secs: f64,
@@ -26,17 +27,20 @@ pub enum LoopMethod {
     Cubic,
 }
 
-/// The half-life of a spring in a cycle is at most this many of its durations: beyond, the equations for the exact loop lose their digits, and the
-/// curve is the same straight pull.
+/// The half-life of a spring in a cycle is at most this many of its durations: beyond, the
+/// equations for the exact loop lose their digits, and the curve is the same straight pull.
 const MOST_CYCLES: f64 = 10.0;
 
-/// The offset that closes a cycle, as shares of the difference `D` of its ends (last less first) and of their velocities' difference `V`.
+/// The offset that closes a cycle, as shares of the difference `D` of its ends (last less first)
+/// and of their velocities' difference `V`.
 ///
-/// With the ratio `r`, `r D` is added at the head and `(1 - r) D` taken off at the tail, so that `offset(0) - offset(T) = D`, and likewise for
-/// velocities. The springs' offset is `decay(r X, r W; t) - decay((1 - r) X, -(1 - r) W; T - t)`. Each spring still has something left at the other
+/// With the ratio `r`, `r D` is added at the head and `(1 - r) D` taken off at the tail, so that
+/// `offset(0) - offset(T) = D`, and likewise for velocities. The springs' offset is `decay(r X, r
+/// W; t) - decay((1 - r) X, -(1 - r) W; T - t)`. Each spring still has something left at the other
 /// end; X and W are the solution of
 ///
-/// `(1 - k) X + (1 - 2r) T e W = D` and `(2r - 1) y² T e X + (1 - (1 - yT) e) W = V`, with `e = e^(-yT)` and `k = (1 + yT) e`.
+/// `(1 - k) X + (1 - 2r) T e W = D` and `(2r - 1) y² T e X + (1 - (1 - yT) e) W = V`, with `e =
+/// e^(-yT)` and `k = (1 + yT) e`.
 #[derive(Clone, Copy, Debug)]
 pub struct LoopCurve {
     method: LoopMethod,
@@ -47,25 +51,21 @@ pub struct LoopCurve {
 }
 
 impl LoopCurve {
-    /// The curve for a cycle of `duration_secs` (above 0). `ratio` is clamped to [0, 1]: 1 bends only the start, 0 only the end. Half-lives are at
-    /// most ten durations.
+    /// The curve for a cycle of `duration_secs` (above 0). `ratio` is clamped to [0, 1]: 1 bends
+    /// only the start, 0 only the end. Half-lives are at most ten durations.
     #[must_use]
     pub fn new(method: LoopMethod, ratio: f64, duration_secs: f64) -> Self {
         let ratio = if ratio > 0.0 { ratio.min(1.0) } else { 0.0 };
         let duration_secs = duration_secs.max(1e-9);
         let held = |half_life_secs: f64| half_life_secs.min(MOST_CYCLES * duration_secs);
-        let as_it_is = Response {
-            xx: 1.0,
-            xv: 0.0,
-            vx: 0.0,
-            vv: 1.0,
-        };
+        let as_it_is = Response { xx: 1.0, xv: 0.0, vx: 0.0, vv: 1.0 };
         let (method, fed) = match method {
             LoopMethod::Exact { half_life_secs } => {
                 let half_life_secs = held(half_life_secs);
                 let far = spring::response(half_life_secs, duration_secs);
                 let skew = 1.0 - 2.0 * ratio;
-                // The two equations, and their solution by Cramer's rule. The determinant is positive for every cycle with a duration.
+                // The two equations, and their solution by Cramer's rule. The determinant is
+                // positive for every cycle with a duration.
                 let [a, b, c, d] = [1.0 - far.xx, skew * far.xv, skew * far.vx, 1.0 - far.vv];
                 let determinant = a * d - b * c;
                 let fed = Response {
@@ -76,26 +76,15 @@ impl LoopCurve {
                 };
                 (LoopMethod::Exact { half_life_secs }, fed)
             }
-            LoopMethod::Classic { half_life_secs } => (
-                LoopMethod::Classic {
-                    half_life_secs: held(half_life_secs),
-                },
-                as_it_is,
-            ),
-            LoopMethod::Crossed { half_life_secs } => (
-                LoopMethod::Crossed {
-                    half_life_secs: held(half_life_secs),
-                },
-                as_it_is,
-            ),
+            LoopMethod::Classic { half_life_secs } => {
+                (LoopMethod::Classic { half_life_secs: held(half_life_secs) }, as_it_is)
+            }
+            LoopMethod::Crossed { half_life_secs } => {
+                (LoopMethod::Crossed { half_life_secs: held(half_life_secs) }, as_it_is)
+            }
             other => (other, as_it_is),
         };
-        Self {
-            method,
-            ratio,
-            duration_secs,
-            fed,
-        }
+        Self { method, ratio, duration_secs, fed }
     }
 
     /// The offset and its rate `secs` after the start of the cycle, as shares of D and V.
@@ -104,12 +93,7 @@ impl LoopCurve {
         let (r, q, period) = (self.ratio, 1.0 - self.ratio, self.duration_secs);
         let s = secs / period;
         match self.method {
-            LoopMethod::Linear => Response {
-                xx: r - s,
-                xv: 0.0,
-                vx: -period.recip(),
-                vv: 0.0,
-            },
+            LoopMethod::Linear => Response { xx: r - s, xv: 0.0, vx: -period.recip(), vv: 0.0 },
             LoopMethod::Cubic => {
                 // Hermite from (rD, rV) to (-qD, -qV).
                 let fall = (1.0 - s) * (1.0 - s) * (1.0 + 2.0 * s);
@@ -121,10 +105,13 @@ impl LoopCurve {
                     vv: r * (1.0 - s) * (1.0 - 3.0 * s) + q * s * (2.0 - 3.0 * s),
                 }
             }
-            LoopMethod::Exact { half_life_secs } | LoopMethod::Classic { half_life_secs } | LoopMethod::Crossed { half_life_secs } => {
+            LoopMethod::Exact { half_life_secs }
+            | LoopMethod::Classic { half_life_secs }
+            | LoopMethod::Crossed { half_life_secs } => {
                 let head = spring::response(half_life_secs, secs);
                 let tail = spring::response(half_life_secs, period - secs);
-                let of_velocity = if matches!(self.method, LoopMethod::Crossed { .. }) { q } else { r };
+                let of_velocity =
+                    if matches!(self.method, LoopMethod::Crossed { .. }) { q } else { r };
                 // In X and W; the tail runs backwards.
                 let [xx, xv] = [r * head.xx - q * tail.xx, of_velocity * head.xv + q * tail.xv];
                 let [vx, vv] = [r * head.vx + q * tail.vx, of_velocity * head.vv - q * tail.vv];
@@ -197,16 +184,24 @@ mod tests {
     fn crossed_shares_differ_in_the_head_s_velocity_alone() {
         let half_life_secs = 0.15;
         let of = |method, ratio| LoopCurve::new(method, ratio, 1.0).at(0.0);
-        let [crossed, both] = [LoopMethod::Crossed { half_life_secs }, LoopMethod::Classic { half_life_secs }];
+        let [crossed, both] =
+            [LoopMethod::Crossed { half_life_secs }, LoopMethod::Classic { half_life_secs }];
         assert_eq!(of(crossed, 0.5), of(both, 0.5));
-        // At the head the spring is the offset and the velocity that it is given; what the tail has left there is the same.
+        // At the head the spring is the offset and the velocity that it is given; what the tail has
+        // left there is the same.
         let (a, b) = (of(crossed, 0.8), of(both, 0.8));
-        assert!((a.vv - b.vv - (0.2 - 0.8)).abs() < 1e-12 && (a.xx - b.xx).abs() < 1e-12 && (a.vx - b.vx).abs() < 1e-12);
+        assert!(
+            (a.vv - b.vv - (0.2 - 0.8)).abs() < 1e-12
+                && (a.xx - b.xx).abs() < 1e-12
+                && (a.vx - b.vx).abs() < 1e-12
+        );
     }
 
     #[test]
     fn the_ratio_says_which_end_bends() {
-        for method in [LoopMethod::Exact { half_life_secs: 0.05 }, LoopMethod::Cubic, LoopMethod::Linear] {
+        for method in
+            [LoopMethod::Exact { half_life_secs: 0.05 }, LoopMethod::Cubic, LoopMethod::Linear]
+        {
             assert!((LoopCurve::new(method, 1.0, 2.0).at(0.0).xx - 1.0).abs() < 1e-9);
             assert!(LoopCurve::new(method, 1.0, 2.0).at(2.0).xx.abs() < 1e-9);
             assert!((LoopCurve::new(method, f64::NAN, 2.0).at(2.0).xx + 1.0).abs() < 1e-9);
@@ -235,11 +230,10 @@ mod tests {
 
     #[test]
     fn agrees_with_scipy() {
-        let golden: Golden = serde_json::from_str(include_str!("../../tests/oracles/transition.json")).unwrap();
+        let golden: Golden =
+            serde_json::from_str(include_str!("../../tests/oracles/transition.json")).unwrap();
         for case in &golden.loops {
-            let method = LoopMethod::Exact {
-                half_life_secs: case.half_life,
-            };
+            let method = LoopMethod::Exact { half_life_secs: case.half_life };
             let curve = LoopCurve::new(method, case.ratio, case.duration);
             for (&share, wanted) in case.shares.iter().zip(&case.offsets) {
                 let found = curve.at(share * case.duration).of(case.d, case.v);

@@ -17,10 +17,7 @@ pub struct LoopOptions {
 
 impl Default for LoopOptions {
     fn default() -> Self {
-        Self {
-            method: LoopMethod::Exact { half_life_secs: 0.2 },
-            ratio: 0.5,
-        }
+        Self { method: LoopMethod::Exact { half_life_secs: 0.2 }, ratio: 0.5 }
     }
 }
 
@@ -40,7 +37,9 @@ pub enum LoopError {
         frames: usize,
     },
     /// The clip is shorter than the shortest cycle asked for.
-    #[error("no cycle of {min_secs} s and more fits into {secs:.2} s: allow shorter cycles or use a longer clip")]
+    #[error(
+        "no cycle of {min_secs} s and more fits into {secs:.2} s: allow shorter cycles or use a longer clip"
+    )]
     TooShort {
         /// The shortest cycle asked for, seconds.
         min_secs: f64,
@@ -67,7 +66,8 @@ pub struct LoopSeam {
     pub turn_joint: usize,
     /// The largest difference of angular velocities, degrees per second.
     pub turn_dps: f64,
-    /// The largest difference of translations (the root's height, joints that move against their parent), centimetres.
+    /// The largest difference of translations (the root's height, joints that move against their
+    /// parent), centimetres.
     pub shift_cm: f64,
 }
 
@@ -115,8 +115,8 @@ impl Loop {
     }
 }
 
-/// Plays a clip `times` times, at most 1,024, each time moved over the ground by `cycle` from where it lay. Where each repetition lies is accumulated in `f64`:
-/// poses do not drift.
+/// Plays a clip `times` times, at most 1,024, each time moved over the ground by `cycle` from where
+/// it lay. Where each repetition lies is accumulated in `f64`: poses do not drift.
 ///
 /// # Errors
 /// [`ClipError`] when the result is no clip.
@@ -131,40 +131,41 @@ pub fn play_around(clip: &Clip, cycle: &Planar, times: usize) -> Result<Clip, Cl
     made.finish(clip.name().to_owned())
 }
 
-/// Closes a part of a clip into a cycle: frames `cycle.start..cycle.end` play, and frame `cycle.end`, which the clip must have, is bent to be the
-/// first one again.
+/// Closes a part of a clip into a cycle: frames `cycle.start..cycle.end` play, and frame
+/// `cycle.end`, which the clip must have, is bent to be the first one again.
 ///
-/// Rotations, heights and translations of joints are closed in the character's own frame, with their velocities. Ground position and yaw do not
-/// belong to the difference: over the ground the *velocities* of both ends are brought together (sideways, forward, yaw rate), and the cycle
-/// walks on in its own curve. Offsets of rotations are rotation vectors applied on the left; since angular velocities do not add, what is left
-/// after the first solution is solved again, until it is below a millionth of a radian.
+/// Rotations, heights and translations of joints are closed in the character's own frame, with
+/// their velocities. Ground position and yaw do not belong to the difference: over the ground the
+/// *velocities* of both ends are brought together (sideways, forward, yaw rate), and the cycle
+/// walks on in its own curve. Offsets of rotations are rotation vectors applied on the left; since
+/// angular velocities do not add, what is left after the first solution is solved again, until it
+/// is below a millionth of a radian.
 ///
-/// Velocities of the two ends are steps of the same kind: into the frames behind them if the clip goes on behind the end, from the frames before them
-/// if it begins before the start; where the cycle is the whole clip, one-sided differences of second order.
+/// Velocities of the two ends are steps of the same kind: into the frames behind them if the clip
+/// goes on behind the end, from the frames before them if it begins before the start; where the
+/// cycle is the whole clip, one-sided differences of second order.
 ///
 /// # Errors
-/// [`LoopError`] when the cycle has fewer than two frames or is not inside the clip, or the half-life is none.
-pub fn close_loop(source: &Source, cycle: Range<usize>, options: &LoopOptions) -> Result<Loop, LoopError> {
+/// [`LoopError`] when the cycle has fewer than two frames or is not inside the clip, or the
+/// half-life is none.
+pub fn close_loop(
+    source: &Source,
+    cycle: Range<usize>,
+    options: &LoopOptions,
+) -> Result<Loop, LoopError> {
     let clip = source.clip();
     if cycle.end >= clip.frames() || cycle.start.saturating_add(2) > cycle.end {
-        return Err(LoopError::Range {
-            start: cycle.start,
-            end: cycle.end,
-            frames: clip.frames(),
-        });
+        return Err(LoopError::Range { start: cycle.start, end: cycle.end, frames: clip.frames() });
     }
-    if let LoopMethod::Exact { half_life_secs } | LoopMethod::Classic { half_life_secs } | LoopMethod::Crossed { half_life_secs } =
-        options.method
+    if let LoopMethod::Exact { half_life_secs }
+    | LoopMethod::Classic { half_life_secs }
+    | LoopMethod::Crossed { half_life_secs } = options.method
         && !(0.0..=MOST_SECS).contains(&half_life_secs)
     {
         return Err(LoopError::HalfLife(half_life_secs));
     }
     let moving = moving_joints(clip, clip);
-    let view = View {
-        source,
-        moving: &moving,
-        fixed: None,
-    };
+    let view = View { source, moving: &moving, fixed: None };
     let dt_secs = clip.fps().recip();
     let curve = LoopCurve::new(options.method, options.ratio, cycle.len() as f64 * dt_secs);
     let [first, last] = view.ends(&cycle);
@@ -177,7 +178,8 @@ pub fn close_loop(source: &Source, cycle: Range<usize>, options: &LoopOptions) -
     let mut before = LoopSeam::default();
     let closings: Vec<Closing> = (0..first.rotations.len())
         .map(|joint| {
-            let [start, end] = [&first, &last].map(|pose| (pose.rotations[joint], pose.angular_velocities[joint]));
+            let [start, end] =
+                [&first, &last].map(|pose| (pose.rotations[joint], pose.angular_velocities[joint]));
             before.turn(joint, &start, &end);
             let (closing, start, end) = ends.close(start, end);
             seam.turn(joint, &start, &end);
@@ -228,13 +230,15 @@ pub fn close_loop(source: &Source, cycle: Range<usize>, options: &LoopOptions) -
     })
 }
 
-/// The offsets that close one joint: differences of rotation and velocity, one pair for every time that it was solved.
+/// The offsets that close one joint: differences of rotation and velocity, one pair for every time
+/// that it was solved.
 struct Closing {
     solved: [(Vec3, Vec3); SOLUTIONS],
     count: usize,
 }
 
-/// The first solution and what is left after it; each has about the square of the error of the one before.
+/// The first solution and what is left after it; each has about the square of the error of the one
+/// before.
 const SOLUTIONS: usize = 4;
 /// Below these, radians and radians per second, nothing is left to be solved that `f32` can hold.
 const CLOSED: [f32; 2] = [1e-6, 1e-4];
@@ -257,12 +261,14 @@ struct Ends {
 }
 
 impl Ends {
-    /// Solves for one joint from its rotation and angular velocity at both ends; gives both ends as they are then.
-    fn close(&self, mut start: (Quat, Vec3), mut end: (Quat, Vec3)) -> (Closing, (Quat, Vec3), (Quat, Vec3)) {
-        let mut closing = Closing {
-            solved: [(Vec3::ZERO, Vec3::ZERO); SOLUTIONS],
-            count: 0,
-        };
+    /// Solves for one joint from its rotation and angular velocity at both ends; gives both ends as
+    /// they are then.
+    fn close(
+        &self,
+        mut start: (Quat, Vec3),
+        mut end: (Quat, Vec3),
+    ) -> (Closing, (Quat, Vec3), (Quat, Vec3)) {
+        let mut closing = Closing { solved: [(Vec3::ZERO, Vec3::ZERO); SOLUTIONS], count: 0 };
         for slot in &mut closing.solved {
             let difference = quat::shorter_way(end.0 * start.0.conjugate());
             let d = quat::log(difference);
@@ -312,7 +318,8 @@ impl View<'_> {
         } else {
             [&[(1, 2.0), (2, -0.5)], &[(-1, -2.0), (-2, 0.5)]]
         };
-        [(cycle.start, stencils[0]), (cycle.end, stencils[1])].map(|(frame, stencil)| self.moving_by(frame, stencil))
+        [(cycle.start, stencils[0]), (cycle.end, stencils[1])]
+            .map(|(frame, stencil)| self.moving_by(frame, stencil))
     }
 
     fn moving_by(&self, frame: usize, stencil: &[(isize, f32)]) -> MovingPose {
@@ -330,10 +337,14 @@ impl View<'_> {
             let other = frame.saturating_add_signed(steps);
             let rate = weight * fps as f32;
             let (rotations, translations) = self.pose(other);
-            for ((velocity, &from), &to) in pose.angular_velocities.iter_mut().zip(&pose.rotations).zip(&rotations) {
+            for ((velocity, &from), &to) in
+                pose.angular_velocities.iter_mut().zip(&pose.rotations).zip(&rotations)
+            {
                 *velocity += quat::log(to * from.conjugate()) * rate;
             }
-            for ((velocity, &from), &to) in pose.velocities.iter_mut().zip(&pose.translations).zip(&translations) {
+            for ((velocity, &from), &to) in
+                pose.velocities.iter_mut().zip(&pose.translations).zip(&translations)
+            {
                 *velocity += (to - from) * rate;
             }
             let step = self.source.frames()[frame].inverse().after(&self.source.frames()[other]);

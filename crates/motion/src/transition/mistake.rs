@@ -1,12 +1,16 @@
-//! The classic mistakes of transitions, made on purpose: what each looks like is easier learned from the picture than from the formula.
+//! The classic mistakes of transitions, made on purpose: what each looks like is easier learned
+//! from the picture than from the formula.
 //!
-//! Nothing here is on the way of a right transition. A mistake of placing moves B before the right code runs, or turns one of its options; a mistake of
-//! interpolating makes the right transition and then puts its own rotations into the frames that were mixed.
+//! Nothing here is on the way of a right transition. A mistake of placing moves B before the right
+//! code runs, or turns one of its options; a mistake of interpolating makes the right transition
+//! and then puts its own rotations into the frames that were mixed.
 
 use super::concatenate::inertialize;
 use super::moving::{MovingPose, View};
 use super::{Inertialization, Method, TransitionOptions, concatenate};
-use crate::blend::{BlendError, Concatenation, RootBlend, Source, WeightLaw, align_facing, laid_on};
+use crate::blend::{
+    BlendError, Concatenation, RootBlend, Source, WeightLaw, align_facing, laid_on,
+};
 use crate::clip::Clip;
 use crate::math::{Decay, Planar, quat, spring, wrap_angle};
 use crate::registration::limb_weights;
@@ -16,26 +20,29 @@ use std::f64::consts::PI;
 /// A mistake that nearly everybody makes once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub enum Mistake {
-    /// Quaternions are mixed with the signs that they come with. Half of B's joints (every second one) come with the other sign: the same
-    /// rotations, as files may hold them; without the check for the nearer of `q` and `-q` they go the long way round.
+    /// Quaternions are mixed with the signs that they come with. Half of B's joints (every second
+    /// one) come with the other sign: the same rotations, as files may hold them; without the check
+    /// for the nearer of `q` and `-q` they go the long way round.
     NoHemisphereCheck,
     /// Three Euler angles (Z, Y, X) are mixed, or decay, each for itself.
     EulerLerp,
     /// The difference of two rotations is told in degrees and used as if it were in radians.
     DegreesForRadians,
-    /// The turn that lays B on A is `atan(A / B)`: half of all turns are off by half a turn. So that it shows, B is taken to face the other way in
-    /// its file where it does not do so already.
+    /// The turn that lays B on A is `atan(A / B)`: half of all turns are off by half a turn. So
+    /// that it shows, B is taken to face the other way in its file where it does not do so already.
     AtanForAtan2,
-    /// The turn that lays B on A is told in degrees and used as if it were in radians. B is taken to face the other way in its file, as for
-    /// [`Self::AtanForAtan2`].
+    /// The turn that lays B on A is told in degrees and used as if it were in radians. B is taken
+    /// to face the other way in its file, as for [`Self::AtanForAtan2`].
     DegreesInTransform,
-    /// B is laid on A by the first posture, and what counts as its facing is the root's own Y axis, `rotation · Y`. That axis points up, so that its
-    /// shadow on the ground says which way the hips tilt.
+    /// B is laid on A by the first posture, and what counts as its facing is the root's own Y axis,
+    /// `rotation · Y`. That axis points up, so that its shadow on the ground says which way the
+    /// hips tilt.
     WrongFacingAxis,
     /// B stays where its file has it.
     NoAlignment,
-    /// Differences from frame to frame are divided by the frame rate where they must be multiplied by it to be velocities. A dissolve has only the
-    /// velocity over the ground to do that to, and is made with it.
+    /// Differences from frame to frame are divided by the frame rate where they must be multiplied
+    /// by it to be velocities. A dissolve has only the velocity over the ground to do that to, and
+    /// is made with it.
     VelocityDividedTwice,
     /// Where A and B are in the world is mixed instead of how they go.
     WorldRoot,
@@ -55,7 +62,8 @@ impl Mistake {
         Self::WorldRoot,
     ];
 
-    /// Whether a method gives the mistake an opportunity: a cut mixes nothing, and can only be laid down wrongly.
+    /// Whether a method gives the mistake an opportunity: a cut mixes nothing, and can only be laid
+    /// down wrongly.
     #[must_use]
     pub fn concerns(self, method: &Method) -> bool {
         let mixes = match method {
@@ -72,7 +80,8 @@ impl Mistake {
     }
 }
 
-/// [`concatenate`] with one mistake in it. A method that the mistake does not [concern](Mistake::concerns) comes out right.
+/// [`concatenate`] with one mistake in it. A method that the mistake does not
+/// [concern](Mistake::concerns) comes out right.
 ///
 /// # Errors
 /// As [`concatenate`].
@@ -138,8 +147,15 @@ impl Mix {
     }
 
     /// How fast the difference changes, per second.
-    fn rate(self, joint: usize, [a, b]: [Quat; 2], [a_velocity, b_velocity]: [Vec3; 2], dt_secs: f32) -> Vec3 {
-        let rate = |vector| quat::vector_rate(vector, a_velocity - (a * b.conjugate()) * b_velocity);
+    fn rate(
+        self,
+        joint: usize,
+        [a, b]: [Quat; 2],
+        [a_velocity, b_velocity]: [Vec3; 2],
+        dt_secs: f32,
+    ) -> Vec3 {
+        let rate =
+            |vector| quat::vector_rate(vector, a_velocity - (a * b.conjugate()) * b_velocity);
         match self {
             Self::Euler => {
                 let next = |q: Quat, velocity: Vec3| quat::exp(velocity * dt_secs) * q;
@@ -181,7 +197,14 @@ struct Mixing<'a> {
 }
 
 impl<'a> Mixing<'a> {
-    fn new(a: &'a Source, leave: usize, b: &'a Source, enter: usize, options: &'a TransitionOptions, mix: Mix) -> Self {
+    fn new(
+        a: &'a Source,
+        leave: usize,
+        b: &'a Source,
+        enter: usize,
+        options: &'a TransitionOptions,
+        mix: Mix,
+    ) -> Self {
         Self {
             a,
             leave,
@@ -194,11 +217,7 @@ impl<'a> Mixing<'a> {
     }
 
     fn view(&self, source: &'a Source, fixed: Planar) -> View<'a> {
-        View {
-            source,
-            moving: &[],
-            fixed: (!self.in_character).then_some(fixed),
-        }
+        View { source, moving: &[], fixed: (!self.in_character).then_some(fixed) }
     }
 
     /// The transition with its rotations mixed anew.
@@ -209,7 +228,9 @@ impl<'a> Mixing<'a> {
         let (mut of_a, mut of_b, mut unused) = (Vec::new(), Vec::new(), Vec::new());
         let (parting, _) = old.before(self.leave);
         let (meeting, _) = new.before(self.enter);
-        for (p, made) in rotations.chunks_mut(joints).skip(self.leave).take(self.frames(&right)).enumerate() {
+        for (p, made) in
+            rotations.chunks_mut(joints).skip(self.leave).take(self.frames(&right)).enumerate()
+        {
             new.pose_into(self.enter + p, &mut of_b, &mut unused);
             if let Method::Dissolve { .. } = self.options.method {
                 old.pose_into(self.leave + p, &mut of_a, &mut unused);
@@ -224,7 +245,9 @@ impl<'a> Mixing<'a> {
                 let b = of_b[joint];
                 let left = match self.options.method {
                     Method::Cut => Vec3::ZERO,
-                    Method::Dissolve { window, law } => self.mix.difference(joint, of_a[joint], b) * weight(law, p, window),
+                    Method::Dissolve { window, law } => {
+                        self.mix.difference(joint, of_a[joint], b) * weight(law, p, window)
+                    }
                     Method::Inertialize(how) => self.left(how, joint, b, &parting, &meeting, p),
                 };
                 *made = quat::renormalize(here * self.mix.on(left, b));
@@ -234,20 +257,26 @@ impl<'a> Mixing<'a> {
     }
 
     /// What an inertialization has left of the difference in its frame `p`.
-    fn left(&self, how: Inertialization, joint: usize, b: Quat, old: &MovingPose, new: &MovingPose, p: usize) -> Vec3 {
+    fn left(
+        &self,
+        how: Inertialization,
+        joint: usize,
+        b: Quat,
+        old: &MovingPose,
+        new: &MovingPose,
+        p: usize,
+    ) -> Vec3 {
         let fps = self.b.clip().fps();
         let secs = (p + 1) as f64 / fps;
         let (from, velocity) = (old.rotations[joint], old.angular_velocities[joint]);
         match how {
             Inertialization::Offset(decay) => {
                 let (to, to_velocity) = (new.rotations[joint], new.angular_velocities[joint]);
-                let rate = self.mix.rate(joint, [from, to], [velocity, to_velocity], fps.recip() as f32);
+                let rate =
+                    self.mix.rate(joint, [from, to], [velocity, to_velocity], fps.recip() as f32);
                 Decay::of_vec3(decay, self.mix.difference(joint, from, to), rate, secs).0
             }
-            Inertialization::DeadBlend {
-                extrapolation_half_life_secs,
-                ..
-            } => {
+            Inertialization::DeadBlend { extrapolation_half_life_secs, .. } => {
                 let (_, run_on_secs) = spring::run_on(extrapolation_half_life_secs, secs);
                 let running = quat::exp(velocity * run_on_secs as f32) * from;
                 self.mix.difference(joint, running, b) * how.left(secs) as f32
@@ -258,7 +287,9 @@ impl<'a> Mixing<'a> {
     /// The frames in which something of A is left.
     fn frames(&self, right: &Concatenation) -> usize {
         match self.options.method {
-            Method::Inertialize(how) => (how.settled_secs() * self.b.clip().fps()).ceil() as usize + 1,
+            Method::Inertialize(how) => {
+                (how.settled_secs() * self.b.clip().fps()).ceil() as usize + 1
+            }
             _ => right.transition.len(),
         }
     }
@@ -281,9 +312,7 @@ fn with_rotations(right: Concatenation, rotations: Vec<Quat>) -> Result<Concaten
 
 fn rebuilt(clip: &Clip, rotations: Vec<Quat>, roots: Vec<Vec3>) -> Result<Clip, BlendError> {
     let made = Clip::new(clip.name(), clip.skeleton().clone(), clip.fps(), rotations, roots)?;
-    Ok(made
-        .with_translations(clip.translations().to_vec())?
-        .with_provenance(clip.provenance()))
+    Ok(made.with_translations(clip.translations().to_vec())?.with_provenance(clip.provenance()))
 }
 
 /// Lays B on A by a wrong transform, and leaves it there.
@@ -309,7 +338,13 @@ fn laid_wrongly(
         let turn = if mistake == Mistake::AtanForAtan2 { by_atan } else { by_degrees };
         turned_wrongly(&right, middle(b.clip(), enter, window), turn)
     };
-    let made = concatenate(a, leave, &b.moved(&wrong), enter, &TransitionOptions { align: false, ..*options })?;
+    let made = concatenate(
+        a,
+        leave,
+        &b.moved(&wrong),
+        enter,
+        &TransitionOptions { align: false, ..*options },
+    )?;
     let placed = |world_from_moved: &Planar| world_from_moved.after(&wrong);
     Ok(Concatenation {
         aligned_b: placed(&made.aligned_b),
@@ -332,13 +367,11 @@ fn by_degrees(yaw: f64) -> f64 {
 /// Where the character stands, facing along the shadow of its root's Y axis.
 fn standing_by_y(source: &Source, frame: usize) -> Planar {
     let axis = source.clip().rotations(frame).first().map_or(Vec3::Y, |root| *root * Vec3::Y);
-    Planar {
-        yaw: f64::from(axis.x).atan2(axis.z.into()),
-        ..source.frames()[frame]
-    }
+    Planar { yaw: f64::from(axis.x).atan2(axis.z.into()), ..source.frames()[frame] }
 }
 
-/// The alignment of a program that gets the angle wrong: the right one, with the point cloud turned about its middle by another angle.
+/// The alignment of a program that gets the angle wrong: the right one, with the point cloud turned
+/// about its middle by another angle.
 fn turned_wrongly(right: &Planar, middle: DVec2, wrong: fn(f64) -> f64) -> Planar {
     // As if B's file had it face the other way: the turn is one that hides no mistake.
     let facing = if right.yaw.cos() > 0.0 { PI } else { 0.0 };
@@ -346,10 +379,7 @@ fn turned_wrongly(right: &Planar, middle: DVec2, wrong: fn(f64) -> f64) -> Plana
     let turned = |yaw: f64| Planar { yaw, shift: DVec2::ZERO };
     let to = right.after(&Planar { yaw: 0.0, shift: middle });
     let back = turned(mistaken).after(&Planar { yaw: 0.0, shift: -middle });
-    Planar {
-        yaw: back.yaw,
-        shift: back.shift + to.shift,
-    }
+    Planar { yaw: back.yaw, shift: back.shift + to.shift }
 }
 
 /// The middle of the point cloud that an alignment looks at, on the ground.
@@ -375,23 +405,19 @@ fn divided_again(pose: &mut MovingPose, fps: f64) {
     pose.steady_travel *= by;
 }
 
-/// A dissolve whose character goes over the ground with velocities that were divided by the frame rate where they had to be multiplied.
+/// A dissolve whose character goes over the ground with velocities that were divided by the frame
+/// rate where they had to be multiplied.
 fn standing_still(right: Concatenation) -> Result<Concatenation, BlendError> {
     let by = (right.clip.fps() * right.clip.fps()).recip();
     let window = right.transition.clone();
-    let (mut frames, mut moved) = (Vec::with_capacity(right.frames.len()), Vec::with_capacity(right.frames.len()));
+    let (mut frames, mut moved) =
+        (Vec::with_capacity(right.frames.len()), Vec::with_capacity(right.frames.len()));
     for (frame, right_here) in right.frames.iter().enumerate() {
         let here = match (frame.checked_sub(1), frames.last()) {
             (Some(before), Some(here)) => {
                 let step = right.frames[before].inverse().after(right_here);
                 let by = if window.contains(&frame) { by } else { 1.0 };
-                Planar::after(
-                    here,
-                    &Planar {
-                        yaw: step.yaw * by,
-                        shift: step.shift * by,
-                    },
-                )
+                Planar::after(here, &Planar { yaw: step.yaw * by, shift: step.shift * by })
             }
             _ => *right_here,
         };

@@ -1,30 +1,33 @@
-//! Transitions that start at once, and clips that close into a cycle: inertialization, dead blending, loops, and the cut and the dissolve
-//! beside them.
+//! Transitions that start at once, and clips that close into a cycle: inertialization, dead
+//! blending, loops, and the cut and the dissolve beside them.
 //!
 //! # The idea
 //!
-//! A dissolve plays two clips at once and looks like neither for its whole window. Inertialization plays only the new clip, from the first
-//! frame on, and lets the *difference* to what was playing, in pose and in velocity, die away. Picture a passenger in a bus that brakes: the
-//! bus is the new motion, and the lean of the passenger is the offset.
+//! A dissolve plays two clips at once and looks like neither for its whole window. Inertialization
+//! plays only the new clip, from the first frame on, and lets the *difference* to what was playing,
+//! in pose and in velocity, die away. Picture a passenger in a bus that brakes: the bus is the new
+//! motion, and the lean of the passenger is the offset.
 //!
 //! ```text
 //! x = log(q_old · q_new⁻¹),  v = ω_old - ω_new      at the seam, joint by joint; v for small x
 //! q(t) = exp(decay(x, v; t)) · q_new(t)             decay: spring, cubic or quintic
 //! ```
 //!
-//! [`concatenate`] is one entry point for all methods, with one meaning of "leave" and "enter", so that they can be compared;
-//! [`Inertializer`] does it frame by frame for whoever jumps while playing. Dead blending lets the old *pose* run on with dying velocity,
-//! and fades from that to the new clip: safer for poses that are far apart.
+//! [`concatenate`] is one entry point for all methods, with one meaning of "leave" and "enter", so
+//! that they can be compared; [`Inertializer`] does it frame by frame for whoever jumps while
+//! playing. Dead blending lets the old *pose* run on with dying velocity, and fades from that to
+//! the new clip: safer for poses that are far apart.
 //!
-//! [`close_loop`] makes a cycle: the difference between its ends, D in pose and V in velocity, is bent away from both sides, a share r at
-//! the head and the rest at the tail.
+//! [`close_loop`] makes a cycle: the difference between its ends, D in pose and V in velocity, is
+//! bent away from both sides, a share r at the head and the rest at the tail.
 //!
 //! ```text
 //! offset(t) = decay(r X, r W; t) - decay((1 - r) X, -(1 - r) W; T - t)
 //! ```
 //!
-//! With X = D and W = V, as is usual, each spring has something left at the other end, `(1 + yT) e^(-yT)` of it; [`LoopCurve`] solves for
-//! the X and W that close exactly. [`find_cycle`] finds ends that differ little. [`foot_lock`] plants feet that slide meanwhile.
+//! With X = D and W = V, as is usual, each spring has something left at the other end, `(1 + yT)
+//! e^(-yT)` of it; [`LoopCurve`] solves for the X and W that close exactly. [`find_cycle`] finds
+//! ends that differ little. [`foot_lock`] plants feet that slide meanwhile.
 //! [`concatenate_mistaken`] makes the classic mistakes, one at a time.
 //!
 //! # Example
@@ -72,21 +75,24 @@
 //!
 //! # Accuracy and cost
 //!
-//! Decaying rotations agree with `SciPy` to 2e-5 radians; velocities stay continuous over every jump, also over one that comes while the
-//! last is still dying away (the quintic may brake hard: it must not overshoot). Exact and cubic loops close to 0.001°, 0.1 °/s and
-//! 0.001 cm, and a hundred cycles do not drift. The foot lock takes nine tenths of the slide from made walks and runs that go over into each
-//! other. Making is O(frames × joints), searching more.
+//! Decaying rotations agree with `SciPy` to 2e-5 radians; velocities stay continuous over every
+//! jump, also over one that comes while the last is still dying away (the quintic may brake hard:
+//! it must not overshoot). Exact and cubic loops close to 0.001°, 0.1 °/s and 0.001 cm, and a
+//! hundred cycles do not drift. The foot lock takes nine tenths of the slide from made walks and
+//! runs that go over into each other. Making is O(frames × joints), searching more.
 //!
 //! # What it does not do
 //!
-//! An offset knows nothing of the body: between poses that are very different a limb may pass through another. Inertialization plans
-//! nothing, so that feet slide while the difference in speed dies away. The foot lock knows one flat ground, and stretches no leg beyond its
-//! reach: what is farther slides.
+//! An offset knows nothing of the body: between poses that are very different a limb may pass
+//! through another. Inertialization plans nothing, so that feet slide while the difference in speed
+//! dies away. The foot lock knows one flat ground, and stretches no leg beyond its reach: what is
+//! farther slides.
 //!
 //! # Sources
 //!
-//! Bollo, "Inertialization: High-Performance Animation Transitions in Gears of War", GDC 2018. Holden, "Spring-It-On", 2021; "Dead
-//! Blending", 2023; "Creating Looping Animations from Motion Capture", 2022. Kovar, Gleicher, Pighin 2002 (the dissolve).
+//! Bollo, "Inertialization: High-Performance Animation Transitions in Gears of War", GDC 2018.
+//! Holden, "Spring-It-On", 2021; "Dead Blending", 2023; "Creating Looping Animations from Motion
+//! Capture", 2022. Kovar, Gleicher, Pighin 2002 (the dissolve).
 
 mod concatenate;
 mod cut_points;

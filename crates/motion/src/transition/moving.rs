@@ -7,23 +7,27 @@ use glam::{Quat, Vec3};
 pub struct MovingPose {
     /// Local rotations of all joints; the root's is `character_from_root`.
     pub rotations: Vec<Quat>,
-    /// Angular velocities of these rotations, radians per second, in the frame that each rotation turns into.
+    /// Angular velocities of these rotations, radians per second, in the frame that each rotation
+    /// turns into.
     pub angular_velocities: Vec<Vec3>,
-    /// Translations, metres: the root's in the character's frame first, then those of other joints that move against their parent.
+    /// Translations, metres: the root's in the character's frame first, then those of other joints
+    /// that move against their parent.
     pub translations: Vec<Vec3>,
     /// Their velocities, metres per second.
     pub velocities: Vec<Vec3>,
-    /// How the character goes over the ground, in its own frame: (sideways m/s, yaw rate rad/s, forward m/s).
+    /// How the character goes over the ground, in its own frame: (sideways m/s, yaw rate rad/s,
+    /// forward m/s).
     pub travel: Vec3,
-    /// The same without the sway of the stride: its mean over about a second. What a transition hands over; sway only swings out. Equal to `travel`
-    /// where nothing sways.
+    /// The same without the sway of the stride: its mean over about a second. What a transition
+    /// hands over; sway only swings out. Equal to `travel` where nothing sways.
     pub steady_travel: Vec3,
 }
 
 /// A stride, seconds: over it the sway of walking and running averages out.
 const STRIDE_SECS: f64 = 1.0;
 
-/// One frame of a clip, as seen from where the character stands, or from a fixed place when `at` says so.
+/// One frame of a clip, as seen from where the character stands, or from a fixed place when `at`
+/// says so.
 pub(super) struct View<'a> {
     pub(super) source: &'a Source,
     /// The joints other than the root that have translations of their own.
@@ -38,7 +42,12 @@ impl View<'_> {
     }
 
     /// Rotations and translations of a frame, into buffers that are used again.
-    pub(super) fn pose_into(&self, frame: usize, rotations: &mut Vec<Quat>, translations: &mut Vec<Vec3>) {
+    pub(super) fn pose_into(
+        &self,
+        frame: usize,
+        rotations: &mut Vec<Quat>,
+        translations: &mut Vec<Vec3>,
+    ) {
         let (clip, here) = (self.source.clip(), self.here_from_clip(frame));
         rotations.clear();
         rotations.extend_from_slice(clip.rotations(frame));
@@ -56,11 +65,13 @@ impl View<'_> {
         (rotations, translations)
     }
 
-    /// The pose right before `frame`, moving as the step into `frame` does, and where the character stands in it.
+    /// The pose right before `frame`, moving as the step into `frame` does, and where the character
+    /// stands in it.
     ///
-    /// Before its first frame a clip is taken to have moved as in its first step, and behind its last one to go on as in its last; a clip of one
-    /// frame stands still. One step at the clip's own rate, forward in time from the pose: two clips that are seen at frames where they do the same
-    /// thing have no difference.
+    /// Before its first frame a clip is taken to have moved as in its first step, and behind its
+    /// last one to go on as in its last; a clip of one frame stands still. One step at the clip's
+    /// own rate, forward in time from the pose: two clips that are seen at frames where they do the
+    /// same thing have no difference.
     pub(super) fn before(&self, frame: usize) -> (MovingPose, Planar) {
         let clip = self.source.clip();
         let (fps, frames) = (clip.fps() as f32, self.source.frames());
@@ -79,7 +90,8 @@ impl View<'_> {
             .zip(&next)
             .map(|(&from, &to)| quat::log(to * from.conjugate()))
             .collect();
-        let shifts: Vec<Vec3> = translations.iter().zip(&next_translations).map(|(&from, &to)| to - from).collect();
+        let shifts: Vec<Vec3> =
+            translations.iter().zip(&next_translations).map(|(&from, &to)| to - from).collect();
         let step = frames[from].inverse().after(&frames[to]);
         let mut standing = frames[from];
         if frame > last && frame > 0 {
@@ -105,13 +117,15 @@ impl View<'_> {
         (pose, standing)
     }
 
-    /// The mean travel over a stride around the step into `frame`; near an end of the clip, over the first or the last stride of it: a part of a stride
-    /// has a sway of its own.
+    /// The mean travel over a stride around the step into `frame`; near an end of the clip, over
+    /// the first or the last stride of it: a part of a stride has a sway of its own.
     fn steady_travel(&self, frame: usize) -> Vec3 {
         let (fps, last) = (self.source.clip().fps(), self.source.clip().frames().saturating_sub(1));
         let count = ((STRIDE_SECS * fps).round() as usize).clamp(1, last.max(1));
-        let first = frame.saturating_sub(count / 2).clamp(1, (last + 1).saturating_sub(count).max(1));
-        let sum: Vec3 = (first..first + count).map(|frame| travel(&self.source.step_into(frame), fps)).sum();
+        let first =
+            frame.saturating_sub(count / 2).clamp(1, (last + 1).saturating_sub(count).max(1));
+        let sum: Vec3 =
+            (first..first + count).map(|frame| travel(&self.source.step_into(frame), fps)).sum();
         sum / count as f32
     }
 }
@@ -145,23 +159,16 @@ mod tests {
     }
 
     fn free(source: &Source) -> View<'_> {
-        View {
-            source,
-            moving: &[],
-            fixed: None,
-        }
+        View { source, moving: &[], fixed: None }
     }
 
     #[test]
     fn clips_go_on_beyond_their_ends_as_in_their_last_step() {
-        let source = source_of(&Walk {
-            frames: 40,
-            turning: 0.7,
-            ..Walk::default()
-        });
+        let source = source_of(&Walk { frames: 40, turning: 0.7, ..Walk::default() });
         let (clip, view) = (source.clip(), free(&source));
         let dt = clip.dt_secs();
-        // The pose before a frame, one step on, is the frame; before the first frame with the step behind it, behind the last with the one before.
+        // The pose before a frame, one step on, is the frame; before the first frame with the step
+        // behind it, behind the last with the one before.
         for (frame, arrives_at, step) in [
             (0, Some(0), 1),
             (1, Some(1), 1),
@@ -173,10 +180,18 @@ mod tests {
             let stepped = standing.after(&source.step_into(step));
             if let Some(at) = arrives_at {
                 let (rotations, translations) = view.pose(at);
-                for ((from, velocity), to) in pose.rotations.iter().zip(&pose.angular_velocities).zip(&rotations) {
-                    assert!(quat::angle_between(quat::exp(*velocity * dt) * *from, *to) < 1e-5, "{frame}");
+                for ((from, velocity), to) in
+                    pose.rotations.iter().zip(&pose.angular_velocities).zip(&rotations)
+                {
+                    assert!(
+                        quat::angle_between(quat::exp(*velocity * dt) * *from, *to) < 1e-5,
+                        "{frame}"
+                    );
                 }
-                assert!((pose.translations[0] + pose.velocities[0] * dt).distance(translations[0]) < 1e-5);
+                assert!(
+                    (pose.translations[0] + pose.velocities[0] * dt).distance(translations[0])
+                        < 1e-5
+                );
                 assert!(stepped.shift.distance(source.frames()[at].shift) < 1e-5, "{frame}");
             } else {
                 assert_eq!((&pose.rotations, standing), (&view.pose(39).0, source.frames()[39]));
@@ -189,11 +204,7 @@ mod tests {
 
     #[test]
     fn steady_travel_has_no_sway() {
-        let source = source_of(&Walk {
-            frames: 400,
-            cadence: 1.0,
-            ..Walk::default()
-        });
+        let source = source_of(&Walk { frames: 400, cadence: 1.0, ..Walk::default() });
         let view = free(&source);
         for frame in [0, 7, 200, 395, 400] {
             let (pose, _) = view.before(frame);

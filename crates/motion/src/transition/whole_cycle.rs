@@ -9,41 +9,53 @@ use std::ops::Range;
 
 /// A clip that is one cycle by itself, or most of one: its end leads into its beginning.
 ///
-/// Captured cycles rarely hold the frame that stands for the first one again. The time that passes from the last frame to the first one is
-/// the one that fits the velocities of both ends best: with the difference of the poses `D` and the mean of the velocities `v`, both in the
-/// character's frame and over all joints, `(D · v)/|v|²` were steady motion; along a sine of the cycle's period, whose chord is shorter than its
-/// tangents, it is `t = (T/π) atan(π/T · (D · v)/|v|²)`. The frames of that time are made: the clip runs on with its last velocity, which takes on
-/// the first frame's. What then remains between the ends is left to [`close_loop`].
+/// Captured cycles rarely hold the frame that stands for the first one again. The time that passes
+/// from the last frame to the first one is the one that fits the velocities of both ends best: with
+/// the difference of the poses `D` and the mean of the velocities `v`, both in the character's
+/// frame and over all joints, `(D · v)/|v|²` were steady motion; along a sine of the cycle's
+/// period, whose chord is shorter than its tangents, it is `t = (T/π) atan(π/T · (D · v)/|v|²)`.
+/// The frames of that time are made: the clip runs on with its last velocity, which takes on the
+/// first frame's. What then remains between the ends is left to [`close_loop`].
 #[derive(Clone, Debug)]
 pub struct WholeCycle {
     source: Source,
-    /// The frames that play; the end stands for the first frame again. It lies behind the clip's last frame where frames were made.
+    /// The frames that play; the end stands for the first frame again. It lies behind the clip's
+    /// last frame where frames were made.
     pub frames: Range<usize>,
-    /// Frames behind the clip's last one that had to be made, the one that stands for the first frame again among them.
+    /// Frames behind the clip's last one that had to be made, the one that stands for the first
+    /// frame again among them.
     pub made: usize,
-    /// Root mean square distance between the joints of both ends that [`close_loop`] has to bridge, centimetres.
+    /// Root mean square distance between the joints of both ends that [`close_loop`] has to bridge,
+    /// centimetres.
     pub apart_cm: f64,
-    /// The same as a share of the farthest that any frame of the clip is away from its first one. Small for a cycle; 1 where the clip leads away.
+    /// The same as a share of the farthest that any frame of the clip is away from its first one.
+    /// Small for a cycle; 1 where the clip leads away.
     pub apart_share: f64,
 }
 
 /// A clip is most of a cycle when at most this share of the cycle is missing.
 const MOST_MISSING: f64 = 0.25;
-/// A cycle goes through its ends at this share of its mean speed in the joints at least: what comes to rest there is a deed that is done once.
+/// A cycle goes through its ends at this share of its mean speed in the joints at least: what comes
+/// to rest there is a deed that is done once.
 const LEAST_SPEED: f64 = 0.3;
 /// The velocities of the ends are measured over this time, seconds.
 const MEASURED_SECS: f64 = 1.0 / 30.0;
-/// Where frames are made, the change of velocity takes at least this share of the clip: over fewer frames it would be a jerk.
+/// Where frames are made, the change of velocity takes at least this share of the clip: over fewer
+/// frames it would be a jerk.
 const LEAST_CHANGE: f64 = 0.15;
-/// The ends of a cycle are at most this far apart, as a share of the farthest that any of its poses is away from the first.
+/// The ends of a cycle are at most this far apart, as a share of the farthest that any of its poses
+/// is away from the first.
 const MOST_APART: f64 = 0.5;
-/// The speeds over the ground at both ends differ by at most this share of the mean speed, and this much, metres per second.
+/// The speeds over the ground at both ends differ by at most this share of the mean speed, and this
+/// much, metres per second.
 const SPEED_SHARE: f64 = 0.5;
 const SPEED_MPS: f64 = 0.2;
 
 impl WholeCycle {
-    /// Looks at a clip as a cycle. `None` for a clip that is not: of fewer than eight frames; with ends that are more than half as far apart as any
-    /// two of its poses; one that is much faster at one end than at the other, as a start or a stop; or one that rests at an end, as a turn on the spot.
+    /// Looks at a clip as a cycle. `None` for a clip that is not: of fewer than eight frames; with
+    /// ends that are more than half as far apart as any two of its poses; one that is much faster
+    /// at one end than at the other, as a start or a stop; or one that rests at an end, as a turn
+    /// on the spot.
     #[must_use]
     pub fn of(source: &Source) -> Option<Self> {
         let clip = source.clip();
@@ -67,9 +79,14 @@ impl WholeCycle {
         let rate = 0.5 / reach as f32;
         let ends = || first.iter().zip(&second).zip(before.iter().zip(&end)).zip(&weights);
         // Differences from the last frame to the first, and mean velocities per frame.
-        let pairs =
-            || ends().map(|(((&first, &second), (&before, &end)), &weight)| (first - end, (second - first + end - before) * rate, weight));
-        let sum = |of: &dyn Fn(Vec3, Vec3) -> f32| -> f64 { pairs().map(|(d, v, weight)| weight * f64::from(of(d, v))).sum() };
+        let pairs = || {
+            ends().map(|(((&first, &second), (&before, &end)), &weight)| {
+                (first - end, (second - first + end - before) * rate, weight)
+            })
+        };
+        let sum = |of: &dyn Fn(Vec3, Vec3) -> f32| -> f64 {
+            pairs().map(|(d, v, weight)| weight * f64::from(of(d, v))).sum()
+        };
         let along = sum(&|d, v| d.dot(v));
         let square = sum(&|_, v| v.length_squared());
         let most = MOST_MISSING / (1.0 - MOST_MISSING) * last as f64;
@@ -103,11 +120,7 @@ impl WholeCycle {
             return None;
         }
         Some(Self {
-            source: if made > 0 {
-                with_frames_behind(source, made)?
-            } else {
-                source.clone()
-            },
+            source: if made > 0 { with_frames_behind(source, made)? } else { source.clone() },
             frames: 0..last + made,
             made,
             apart_cm: 100.0 * apart,
@@ -129,29 +142,30 @@ fn keeps_its_speed(source: &Source, reach: usize) -> bool {
     let stands = source.frames();
     let fps = source.clip().fps();
     let last = stands.len() - 1;
-    let velocity = |from: usize, to: usize| stands[from].inverse().after(&stands[to]).shift * (fps / (to - from) as f64);
+    let velocity = |from: usize, to: usize| {
+        stands[from].inverse().after(&stands[to]).shift * (fps / (to - from) as f64)
+    };
     let way: f64 = stands.windows(2).map(|pair| pair[0].shift.distance(pair[1].shift)).sum();
     let mean = way * fps / last as f64;
     velocity(0, reach).distance(velocity(last - reach, last)) <= SPEED_SHARE * mean + SPEED_MPS
 }
 
-/// A clip that runs on behind its end until it moves as at its beginning: `made` frames, and one more to tell the velocity there. `None` when that is
-/// no clip.
+/// A clip that runs on behind its end until it moves as at its beginning: `made` frames, and one
+/// more to tell the velocity there. `None` when that is no clip.
 fn with_frames_behind(source: &Source, made: usize) -> Option<Source> {
     let clip = source.clip();
     let (frames, fps) = (clip.frames(), clip.fps());
     let last = frames - 1;
     let moving = moving_joints(clip, clip);
-    let view = View {
-        source,
-        moving: &moving,
-        fixed: None,
-    };
+    let view = View { source, moving: &moving, fixed: None };
     let poses = [0, 1, last - 1, last].map(|frame| view.pose(frame));
     let [first, second, before, end] = &poses;
     let over = (made as f64).max(LEAST_CHANGE * last as f64) as f32;
-    // From the velocity at the end to that at the beginning, evenly over `over` frames; all per frame.
-    let run_on = |from: Vec3, to: Vec3, frame: f32| from * frame + (to - from) * (0.5 * frame * frame / over);
+    // From the velocity at the end to that at the beginning, evenly over `over` frames; all per
+    // frame.
+    let run_on = |from: Vec3, to: Vec3, frame: f32| {
+        from * frame + (to - from) * (0.5 * frame * frame / over)
+    };
     let turn = |from: Quat, to: Quat| quat::log(to * from.conjugate());
     let turns: Vec<(Vec3, Vec3)> = (0..end.0.len())
         .map(|joint| (turn(before.0[joint], end.0[joint]), turn(first.0[joint], second.0[joint])))
@@ -170,7 +184,9 @@ fn with_frames_behind(source: &Source, made: usize) -> Option<Source> {
         let step = steps[0] + (steps[1] - steps[0]) * ((at - 0.5) / over);
         here = here.after(&further(&crate::math::Planar::IDENTITY, step, fps.recip()));
         let mut rotations: Vec<Quat> = (end.0.iter().zip(&turns))
-            .map(|(&rotation, &(from, to))| quat::renormalize(quat::exp(run_on(from, to, at)) * rotation))
+            .map(|(&rotation, &(from, to))| {
+                quat::renormalize(quat::exp(run_on(from, to, at)) * rotation)
+            })
             .collect();
         if let Some(root) = rotations.first_mut() {
             *root = quat::renormalize(here.rotation() * *root);
@@ -201,13 +217,7 @@ mod tests {
 
     /// A walk whose stride takes 60 frames, cut to so many of them.
     fn walk(frames: usize, turning: f32) -> Source {
-        source_of(&Walk {
-            frames,
-            cadence: 1.0,
-            turning,
-            phase: 0.15,
-            ..Walk::default()
-        })
+        source_of(&Walk { frames, cadence: 1.0, turning, phase: 0.15, ..Walk::default() })
     }
 
     #[test]
@@ -218,7 +228,12 @@ mod tests {
             let cycle = WholeCycle::of(&walk(frames, 0.5)).unwrap();
             assert!(cycle.frames.len().abs_diff(60) <= within, "{frames}: {:?}", cycle.frames);
             assert_eq!(cycle.made, cycle.frames.end + 1 - frames);
-            assert!(cycle.apart_share < 0.2, "{frames}: {} cm, {}", cycle.apart_cm, cycle.apart_share);
+            assert!(
+                cycle.apart_share < 0.2,
+                "{frames}: {} cm, {}",
+                cycle.apart_cm,
+                cycle.apart_share
+            );
             let looped = cycle.close(&LoopOptions::default()).unwrap();
             assert!(looped.seam.turn_deg < 1e-3 && looped.seam.turn_dps < 0.1, "{:?}", looped.seam);
             // The cycle is where the walk is, after three rounds as well.

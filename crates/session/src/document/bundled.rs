@@ -42,7 +42,8 @@ impl Session {
         &self.awaited.samples
     }
 
-    /// How many of the takes that were asked for together have come, and how many these are; `None` while none is waited for.
+    /// How many of the takes that were asked for together have come, and how many these are; `None`
+    /// while none is waited for.
     #[must_use]
     pub fn samples_progress(&self) -> Option<(usize, usize)> {
         let AwaitedSamples { samples, asked, .. } = &self.awaited;
@@ -61,9 +62,11 @@ impl Session {
         self.library.change(sample.id, |entry| entry.unread = None);
     }
 
-    /// Puts all takes of a set into the library. Their motions are asked for; the first ones take the places of built-in clips in A and B.
+    /// Puts all takes of a set into the library. Their motions are asked for; the first ones take
+    /// the places of built-in clips in A and B.
     pub(super) fn load_samples(&mut self, set: &'static SampleSet) {
-        let new: Vec<_> = set.samples.iter().filter(|sample| self.library.get(sample.id).is_none()).collect();
+        let new: Vec<_> =
+            set.samples.iter().filter(|sample| self.library.get(sample.id).is_none()).collect();
         if new.is_empty() {
             self.say(Level::Info, format!("{} is in the library already.", set.label));
         } else {
@@ -88,57 +91,62 @@ impl Session {
         true
     }
 
-    /// The id of a clip that a parameter may name: one of the library, or a bundled take, which joins the library when it is named.
+    /// The id of a clip that a parameter may name: one of the library, or a bundled take, which
+    /// joins the library when it is named.
     #[must_use]
     pub fn nameable(&self, reference: &str) -> Option<String> {
         let in_library = self.library.find(reference).map(|entry| entry.id.clone());
         in_library.or_else(|| {
-            samples::all()
-                .find(|sample| sample.id == reference)
-                .map(|sample| sample.id.to_owned())
+            samples::all().find(|sample| sample.id == reference).map(|sample| sample.id.to_owned())
         })
     }
 
     /// Asks for the motions of all takes in the library that have none.
     pub(super) fn ask_for_missing_samples(&mut self) {
-        let missing: Vec<_> = (self.library.entries().iter())
-            .filter(|entry| entry.motion.is_none())
-            .filter_map(|entry| {
-                if let Origin::Sample(sample) = entry.origin {
-                    Some(sample)
-                } else {
-                    None
-                }
-            })
-            .collect();
+        let missing: Vec<_> =
+            (self.library.entries().iter())
+                .filter(|entry| entry.motion.is_none())
+                .filter_map(|entry| {
+                    if let Origin::Sample(sample) = entry.origin { Some(sample) } else { None }
+                })
+                .collect();
         for sample in missing {
             self.ask_for_sample(sample);
         }
     }
 
-    /// Takes a bundled take that was asked for with [`Request::Sample`]; `packed` is its gzip file. Where files are read elsewhere, so is it, and is
-    /// not there yet.
+    /// Takes a bundled take that was asked for with [`Request::Sample`]; `packed` is its gzip file.
+    /// Where files are read elsewhere, so is it, and is not there yet.
     ///
     /// # Errors
-    /// [`ImportError`] when it is damaged; of one that is read elsewhere, that is told when it was read.
-    pub fn load_sample(&mut self, sample: &'static Sample, packed: &[u8]) -> Result<(), ImportError> {
+    /// [`ImportError`] when it is damaged; of one that is read elsewhere, that is told when it was
+    /// read.
+    pub fn load_sample(
+        &mut self,
+        sample: &'static Sample,
+        packed: &[u8],
+    ) -> Result<(), ImportError> {
         let setup = ReadSetup {
-            options: ImportOptions {
-                max_bytes: LARGEST_SAMPLE,
-                ..ImportOptions::default()
-            },
+            options: ImportOptions { max_bytes: LARGEST_SAMPLE, ..ImportOptions::default() },
             ..ReadSetup::default()
         };
         let Some(read) = self.reads else {
             let size = packed.len() as u64;
-            self.begin(sample.file, Content::Here(Arc::from(packed)), size, setup, Purpose::Sample(sample));
+            self.begin(
+                sample.file,
+                Content::Here(Arc::from(packed)),
+                size,
+                setup,
+                Purpose::Sample(sample),
+            );
             return Ok(());
         };
         let report = read(sample.file, packed, &setup, &mut |_| true).unwrap_or_default();
         self.take_sample(sample, report)
     }
 
-    /// Says why a bundled take that was asked for has not come. It is asked for again when something else is done that needs it.
+    /// Says why a bundled take that was asked for has not come. It is asked for again when
+    /// something else is done that needs it.
     pub fn fail_sample(&mut self, sample: &'static Sample, reason: &str) {
         let text = format!("{} could not be loaded: {reason}.", sample.label);
         self.library.change(sample.id, |entry| entry.unread = Some(text.clone()));
@@ -154,7 +162,11 @@ impl Session {
     }
 
     /// Gives a bundled take its motion.
-    pub(super) fn take_sample(&mut self, sample: &'static Sample, report: ReadReport) -> Result<(), ImportError> {
+    pub(super) fn take_sample(
+        &mut self,
+        sample: &'static Sample,
+        report: ReadReport,
+    ) -> Result<(), ImportError> {
         let read = report.files.into_iter().next().map(|file| file.result).transpose();
         let mut clips = match read {
             Ok(clips) => clips.unwrap_or_default(),

@@ -14,18 +14,15 @@ fn ids() -> Vec<&'static str> {
 }
 
 fn packed(sample: &Sample) -> Vec<u8> {
-    std::fs::read(format!("{}/../../assets/samples/{}", env!("CARGO_MANIFEST_DIR"), sample.file)).unwrap()
+    std::fs::read(format!("{}/../../assets/samples/{}", env!("CARGO_MANIFEST_DIR"), sample.file))
+        .unwrap()
 }
 
 /// The takes that are asked for.
 fn asked(session: &mut Session) -> Vec<&'static Sample> {
     let requests = session.take_requests().into_iter();
     let sample = |request| {
-        if let Request::Sample(sample) = request {
-            Some(sample)
-        } else {
-            None
-        }
+        if let Request::Sample(sample) = request { Some(sample) } else { None }
     };
     requests.filter_map(sample).collect()
 }
@@ -198,7 +195,8 @@ fn takes_in_the_library_survive_a_reload_and_others_do_not_appear() {
         assert_eq!(here(&restored), (all - 1, all - 1), "late: {late}");
         assert!(restored.library().get("cmu_climb").is_none());
     }
-    // What was loaded before the stored work came is not taken for something that was removed on an earlier visit.
+    // What was loaded before the stored work came is not taken for something that was removed on an
+    // earlier visit.
     let mut waiting = Session::new();
     waiting.apply(load()).unwrap();
     waiting.restore_late(&Session::new().saved(), |_| None);
@@ -210,7 +208,11 @@ fn takes_in_the_library_survive_a_reload_and_others_do_not_appear() {
         entry.as_object_mut().unwrap().remove("is_sample");
     }
     let mut restored = Session::new();
-    restored.restore(&serde_json::from_value(text).unwrap(), |_| None, Some("lab=view&a=cmu16_turn_left"));
+    restored.restore(
+        &serde_json::from_value(text).unwrap(),
+        |_| None,
+        Some("lab=view&a=cmu16_turn_left"),
+    );
     serve(&mut restored);
     assert_eq!(here(&restored), (1, 1));
 }

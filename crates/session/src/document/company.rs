@@ -1,4 +1,5 @@
-//! Who plays along on the stage of the Path lab: clips of the library, most of them motions on paths of their own.
+//! Who plays along on the stage of the Path lab: clips of the library, most of them motions on
+//! paths of their own.
 
 use super::Session;
 use crate::LabId;
@@ -52,7 +53,8 @@ impl Session {
             self.bring(&id);
             let motion = self.motion_of(&id);
             let entry = self.library.find(&id);
-            let name = entry.map_or_else(|| split_reference(&id).0.to_owned(), |entry| entry.name.clone());
+            let name =
+                entry.map_or_else(|| split_reference(&id).0.to_owned(), |entry| entry.name.clone());
             self.company.push(Companion { id, name, motion });
         }
     }
@@ -106,8 +108,8 @@ impl Session {
     /// The result of a pane, as an entry of the library.
     fn made_by(&self, pane: usize) -> Result<Entry, CommandError> {
         let made = self.pane(pane)?.recipe()?;
-        let id =
-            recipe_id(made.params, made.outcome, [1.0; 2]).ok_or(CommandError::NotPossible("there is no result to put on the stage"))?;
+        let id = recipe_id(made.params, made.outcome, [1.0; 2])
+            .ok_or(CommandError::NotPossible("there is no result to put on the stage"))?;
         Ok(Entry {
             motion: (!made.outcome.awaits_feet()).then(|| Arc::clone(&made.outcome.motion)),
             ..Entry::new(id, recipe_name(made.params), Origin::Made)
@@ -125,7 +127,8 @@ impl Session {
     }
 }
 
-/// Sets everything that a clip on a path is made from; any other clip goes on the path that is fitted to it.
+/// Sets everything that a clip on a path is made from; any other clip goes on the path that is
+/// fitted to it.
 fn take_up(params: &mut Params, id: &str) -> Result<(), CommandError> {
     let made = recipe_params(id).filter(|made| made.lab() == LabId::Path);
     for key in recipe_ingredients(LabId::Path) {

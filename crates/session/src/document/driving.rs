@@ -1,11 +1,14 @@
-//! The character of the Match lab at the user's hand: it goes on by itself while time runs, and everything that it was told is written down.
+//! The character of the Match lab at the user's hand: it goes on by itself while time runs, and
+//! everything that it was told is written down.
 
 use super::Session;
 use super::panes::{Answer, Pane};
 use crate::LabId;
 use crate::choices;
 use crate::command::CommandError;
-use crate::labs::{Crowd, Gauge, HandTag, Live, filter_of, options_in, read_ids, read_tags, recording_of};
+use crate::labs::{
+    Crowd, Gauge, HandTag, Live, filter_of, options_in, read_ids, read_tags, recording_of,
+};
 use crate::params::{Key, Params, Value};
 use segue_motion::matching::{Control, ControllerOptions, Database, RATE, Recording};
 use segue_motion::metrics::Metric;
@@ -47,7 +50,8 @@ impl Session {
     /// Whether a character is driven now: it goes on with time, and has no end.
     #[must_use]
     pub fn is_driven(&self) -> bool {
-        let is_one = |(pane, live): (&Pane, &Option<Live>)| pane.problem.is_none() && live.is_some();
+        let is_one =
+            |(pane, live): (&Pane, &Option<Live>)| pane.problem.is_none() && live.is_some();
         self.panes.iter().zip(&self.driving.lives).any(is_one)
     }
 
@@ -75,22 +79,29 @@ impl Session {
         Some((crowd.database(), crowd.poses().collect()))
     }
 
-    /// The ids of the clips of the Match lab; none where the synthesiser's set is used or the list cannot be read.
+    /// The ids of the clips of the Match lab; none where the synthesiser's set is used or the list
+    /// cannot be read.
     #[must_use]
     pub fn match_clip_ids(&self) -> Vec<String> {
         read_ids(self.params.text(Key::MatchClips)).unwrap_or_default()
     }
 
-    /// The time in what was seen last that is shown now: one tick behind, so that it is smooth at any rate of the screen.
+    /// The time in what was seen last that is shown now: one tick behind, so that it is smooth at
+    /// any rate of the screen.
     pub(super) fn driven_secs(&self) -> Option<f64> {
         let live = self.main_live().filter(|_| self.is_driven())?;
         Some((live.kept_secs() - TICK_SECS + self.driving.left_secs).max(0.0))
     }
 
-    /// What the character is asked for from now on. Whoever begins to push wants it to move: time runs then.
+    /// What the character is asked for from now on. Whoever begins to push wants it to move: time
+    /// runs then.
     pub(super) fn steer(&mut self, control: Control) {
         let before = std::mem::replace(&mut self.driving.control, control);
-        if self.is_driven() && before.is_at_rest() && !control.is_at_rest() && !self.params.is_on(Key::Play) {
+        if self.is_driven()
+            && before.is_at_rest()
+            && !control.is_at_rest()
+            && !self.params.is_on(Key::Play)
+        {
             self.set_unchecked(Key::Play, Value::Switch(true));
             self.revision += 1;
         }
@@ -98,10 +109,7 @@ impl Session {
 
     /// The characters stand at the origin again, and nothing is written down.
     pub(super) fn restart_driving(&mut self) {
-        self.driving = Driving {
-            control: self.driving.control,
-            ..Driving::default()
-        };
+        self.driving = Driving { control: self.driving.control, ..Driving::default() };
     }
 
     /// What was written down becomes the input.
@@ -145,15 +153,8 @@ impl Session {
     pub(super) fn drive_ticks(&mut self, ticks: usize) {
         // One that cannot be read is told where the database is asked for.
         let filter = filter_of(&self.params).unwrap_or_default();
-        let Driving {
-            lives,
-            crowd,
-            control,
-            recording,
-            unmeasured,
-            tick_ms,
-            ..
-        } = &mut self.driving;
+        let Driving { lives, crowd, control, recording, unmeasured, tick_ms, .. } =
+            &mut self.driving;
         *unmeasured = ticks;
         let control = control.with_filter(filter);
         for _ in 0..ticks {
@@ -212,7 +213,9 @@ impl Session {
         }
         let mut main = None;
         for (index, (params, database)) in wanted.into_iter().enumerate() {
-            let (Some(pane), Some(live)) = (self.panes.get_mut(index), self.driving.lives.get_mut(index)) else {
+            let (Some(pane), Some(live)) =
+                (self.panes.get_mut(index), self.driving.lives.get_mut(index))
+            else {
                 continue;
             };
             let answer = match database {
@@ -231,7 +234,9 @@ impl Session {
         let count = self.params.number(Key::Crowd) as usize - 1;
         self.driving.crowd = match (self.driving.crowd.take(), main) {
             (_, Some(_)) if count == 0 => None,
-            (Some(mut crowd), Some((database, options))) if crowd.is_of(&database, count) => crowd.change(options).is_ok().then_some(crowd),
+            (Some(mut crowd), Some((database, options))) if crowd.is_of(&database, count) => {
+                crowd.change(options).is_ok().then_some(crowd)
+            }
             (_, Some((database, options))) => {
                 let about = self.main_live().map(Live::root).unwrap_or_default();
                 Crowd::new(&database, options, &about, count).ok()
@@ -247,12 +252,16 @@ impl Session {
     }
 
     /// The database that the parameters ask for; `None` while it is built.
-    pub(super) fn match_database(&mut self, params: &Params) -> Result<Option<Arc<Database>>, String> {
+    pub(super) fn match_database(
+        &mut self,
+        params: &Params,
+    ) -> Result<Option<Arc<Database>>, String> {
         let clips = self.lab_clips(params)?;
         self.labs.match_database(clips, params)
     }
 
-    /// The parameters under which what a driven pane shows is made again: the input is written down.
+    /// The parameters under which what a driven pane shows is made again: the input is written
+    /// down.
     pub(super) fn with_recording(&self, mut params: Params) -> Params {
         if self.is_driven() {
             let text = Value::Text(self.driving.recording.to_text());
@@ -274,7 +283,8 @@ fn is_shown(pane: &Pane, database: &Arc<Database>) -> bool {
     driven.is_some_and(|driven| driven.is_live && Arc::ptr_eq(&driven.database, database))
 }
 
-/// What a pane shows of its character, which is told what has changed, and begins where there is none.
+/// What a pane shows of its character, which is told what has changed, and begins where there is
+/// none.
 fn driven(
     live: &mut Option<Live>,
     pane: &Pane,
@@ -289,9 +299,5 @@ fn driven(
     if !changed && is_shown(pane, database) {
         return Ok(Answer::Same { is_draft: false });
     }
-    Ok(Answer::Made {
-        outcome: Arc::new(live.outcome(gauge)?),
-        is_draft: false,
-        inputs: None,
-    })
+    Ok(Answer::Made { outcome: Arc::new(live.outcome(gauge)?), is_draft: false, inputs: None })
 }

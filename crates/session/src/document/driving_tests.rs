@@ -4,7 +4,8 @@ use super::*;
 use crate::Driven;
 use glam::DVec2;
 use segue_motion::matching::{
-    Control, Controller, Database, DatabaseOptions, Normalisation, RATE, Scenario, Tag, TagSet, drive, made_clips,
+    Control, Controller, Database, DatabaseOptions, Normalisation, RATE, Scenario, Tag, TagSet,
+    drive, made_clips,
 };
 
 fn open(link: &str) -> Session {
@@ -15,7 +16,8 @@ fn open(link: &str) -> Session {
 }
 
 /// A database that is built in a moment.
-const SMALL: &str = "lab=match&mirrored=off&match_clips=idle,walk,walk_left,walk_right,walk(make_seconds:6)";
+const SMALL: &str =
+    "lab=match&mirrored=off&match_clips=idle,walk,walk_left,walk_right,walk(make_seconds:6)";
 
 fn driven(session: &Session) -> &Driven {
     assert_eq!(session.panes()[0].problem, None);
@@ -30,7 +32,8 @@ fn ask(session: &mut Session, x: f64, z: f64) {
 fn a_scenario_by_link_is_what_the_core_makes_of_it() {
     let session = open("lab=match&scenario=spin");
     let outcome = session.main_outcome().unwrap();
-    let database = Arc::new(Database::new(made_clips(1.75).unwrap(), &DatabaseOptions::default()).unwrap());
+    let database =
+        Arc::new(Database::new(made_clips(1.75).unwrap(), &DatabaseOptions::default()).unwrap());
     assert_eq!(driven(&session).database.frames(), database.frames());
     let mut options = crate::labs::options_of(session.params());
     options.candidates = 1;
@@ -41,7 +44,9 @@ fn a_scenario_by_link_is_what_the_core_makes_of_it() {
     let metrics = played.metrics(&database).list();
     // Behind those that every lab has.
     assert_eq!(outcome.metrics[4..][..metrics.len()], metrics);
-    assert!(driven(&session).jumps_secs().count() == played.jumps.len() && !played.jumps.is_empty());
+    assert!(
+        driven(&session).jumps_secs().count() == played.jumps.len() && !played.jumps.is_empty()
+    );
 }
 
 #[test]
@@ -146,24 +151,14 @@ fn a_character_comes_to_a_pane_whose_neighbour_waits() {
     // The second database is known, the first is not.
     let mut session = open(&format!("{SMALL}&ahead_far=1.2"));
     session.apply(Command::OpenLink("lab=view".into())).unwrap();
-    session
-        .apply(Command::OpenLink(format!("{SMALL}&compare=ahead_far:1.1,1.2")))
-        .unwrap();
+    session.apply(Command::OpenLink(format!("{SMALL}&compare=ahead_far:1.1,1.2"))).unwrap();
     assert!(session.panes()[0].result().is_err() && session.panes()[1].result().is_ok());
     while session.work() {}
     assert!(session.panes().iter().all(|pane| pane.result().is_ok()));
     ask(&mut session, 0.0, 1.4);
     session.tick(0.2);
     let moments = |pane: usize| {
-        session.panes()[pane]
-            .outcome
-            .as_ref()
-            .unwrap()
-            .driven
-            .as_ref()
-            .unwrap()
-            .moments
-            .len()
+        session.panes()[pane].outcome.as_ref().unwrap().driven.as_ref().unwrap().moments.len()
     };
     assert_eq!(moments(0), moments(1), "both begin together");
 }
@@ -177,7 +172,9 @@ fn sliders_change_the_character_on_its_way_and_panes_have_one_input() {
     }
     let database = Arc::clone(&driven(&session).database);
     let roots = |session: &Session| -> Vec<_> {
-        let last = |pane: &Pane| pane.outcome.as_ref().unwrap().driven.as_ref().unwrap().moments.last().unwrap().root;
+        let last = |pane: &Pane| {
+            pane.outcome.as_ref().unwrap().driven.as_ref().unwrap().moments.last().unwrap().root
+        };
         session.panes().iter().map(last).collect()
     };
     let before = roots(&session);
@@ -239,17 +236,20 @@ fn tags_by_hand_are_asked_for_and_excluded() {
         database.tags(before + frame)
     };
     assert!(at(0, 30).has(Tag::Exclude) && !at(1, 30).has(Tag::Exclude));
-    assert!(at(1, 10).meets(own) && at(1, 10).has(Tag::Walk) && !at(1, 45).has(Tag::Walk) && !at(1, 90).meets(own));
+    assert!(
+        at(1, 10).meets(own)
+            && at(1, 10).has(Tag::Walk)
+            && !at(1, 45).has(Tag::Walk)
+            && !at(1, 90).meets(own)
+    );
     // A word that no frame has is told, with what to do.
     let problem = open(&format!("{SMALL}&scenario=straight&forbid_tag=tired")).panes()[0]
         .problem
         .clone()
         .unwrap();
     assert!(problem.contains("`tired`"), "{problem}");
-    let problem = open(&format!("{SMALL}&scenario=straight&tags=walk:1")).panes()[0]
-        .problem
-        .clone()
-        .unwrap();
+    let problem =
+        open(&format!("{SMALL}&scenario=straight&tags=walk:1")).panes()[0].problem.clone().unwrap();
     assert!(problem.contains("`walk:1`"), "{problem}");
     // Tags change while one drives: the character goes on from where it is.
     let mut session = open(SMALL);
@@ -322,19 +322,28 @@ fn what_cannot_be_done_is_a_sentence() {
 
 #[test]
 fn the_literal_forms_of_a_course_are_choices() {
-    let given = "lab=match&mirrored=off&match_clips=walk,walk_left,walk(make_seconds:6)&scenario=straight";
+    let given =
+        "lab=match&mirrored=off&match_clips=walk,walk_left,walk(make_seconds:6)&scenario=straight";
     let usual = open(given);
     let options = |session: &Session| driven(session).database.options().clone();
-    assert!(options(&usual).cycles && options(&usual).features.normalisation == Normalisation::Block);
+    assert!(
+        options(&usual).cycles && options(&usual).features.normalisation == Normalisation::Block
+    );
     let literal = open(&format!(
         "{given}&normalisation=dimension&hysteresis=clip_votes&prefer_clip=walk_left&prefer_current=1&match_cycles=off"
     ));
-    assert!(!options(&literal).cycles && options(&literal).features.normalisation == Normalisation::Dimension);
+    assert!(
+        !options(&literal).cycles
+            && options(&literal).features.normalisation == Normalisation::Dimension
+    );
     // The clip that is preferred plays, although it leads elsewhere.
     let played = |session: &Session| {
         let driven = driven(session);
-        let left = |moment: &&Arc<crate::DriveMoment>| driven.database.motions()[moment.place.motion].source() == 1;
-        driven.moments.iter().skip(120).filter(left).count() as f64 / (driven.moments.len() - 120) as f64
+        let left = |moment: &&Arc<crate::DriveMoment>| {
+            driven.database.motions()[moment.place.motion].source() == 1
+        };
+        driven.moments.iter().skip(120).filter(left).count() as f64
+            / (driven.moments.len() - 120) as f64
     };
     assert!(
         played(&literal) > 0.8 && played(&usual) < 0.3,

@@ -1,5 +1,5 @@
-//! Results that go round: they walk on when the playhead begins again, and go on in the same phase when they give way to another. A gait
-//! takes on another speed little by little.
+//! Results that go round: they walk on when the playhead begins again, and go on in the same phase
+//! when they give way to another. A gait takes on another speed little by little.
 
 use super::Session;
 use super::panes::Pane;
@@ -12,8 +12,8 @@ use segue_motion::math::{Planar, spring};
 use std::mem::discriminant;
 use std::sync::Arc;
 
-/// A gait on its way to the speed that was asked for: the speed is a critically damped spring, as that of a
-/// [`SpeedPlayer`](segue_motion::gait::SpeedPlayer).
+/// A gait on its way to the speed that was asked for: the speed is a critically damped spring, as
+/// that of a [`SpeedPlayer`](segue_motion::gait::SpeedPlayer).
 #[derive(Clone, Debug)]
 pub(super) struct Glide {
     speed_mps: f64,
@@ -45,7 +45,8 @@ struct Showing {
     character: Planar,
 }
 
-/// The cycles' durations, if one result can go on where the other is: both are cycles, and of the same kind.
+/// The cycles' durations, if one result can go on where the other is: both are cycles, and of the
+/// same kind.
 pub(super) fn durations(old: &Outcome, new: &Outcome) -> Option<[f64; 2]> {
     let (old, new) = (old.cycle?, new.cycle?);
     let kind = |made: &CycleMade| discriminant(made);
@@ -83,13 +84,15 @@ impl Pane {
         };
         let target = speed_of(outcome);
         let half_life_secs = SpeedOptions::default().half_life_secs;
-        let (speed, acceleration) = spring::towards(glide.speed_mps, glide.acceleration, target, half_life_secs, dt_secs);
+        let (speed, acceleration) =
+            spring::towards(glide.speed_mps, glide.acceleration, target, half_life_secs, dt_secs);
         let arrived = (speed - target).abs() < ARRIVED[0] && acceleration.abs() < ARRIVED[1];
         // A picture that stands shows what was asked for.
         if let (true, false, Some(Inputs::Speed(inputs))) = (playing, arrived, &self.inputs)
             && let Ok(outcome) = inputs.run_at(speed)
         {
-            (glide.speed_mps, glide.acceleration, glide.outcome) = (speed, acceleration, Arc::new(outcome));
+            (glide.speed_mps, glide.acceleration, glide.outcome) =
+                (speed, acceleration, Arc::new(outcome));
             self.glide = Some(glide);
         }
         if let Some(character) = character {
@@ -124,8 +127,9 @@ impl Session {
         }
     }
 
-    /// Goes on with what was shown: where a cycle gave way to another, the playhead keeps its phase and the character its place, and a gait that
-    /// plays changes its speed from the one that it has. Unless the playhead was put elsewhere: then everything begins where it lies.
+    /// Goes on with what was shown: where a cycle gave way to another, the playhead keeps its phase
+    /// and the character its place, and a gait that plays changes its speed from the one that it
+    /// has. Unless the playhead was put elsewhere: then everything begins where it lies.
     pub(super) fn go_on_from(&mut self, held: &Held) {
         let moved = self.params.number(Key::Time) != held.time;
         let playing = self.params.is_on(Key::Play);
@@ -155,7 +159,8 @@ impl Session {
             if moved || alike.is_none() {
                 continue;
             }
-            if let (true, Some(Inputs::Speed(old)), Some(Inputs::Speed(new))) = (playing, &shown.inputs, &pane.inputs)
+            if let (true, Some(Inputs::Speed(old)), Some(Inputs::Speed(new))) =
+                (playing, &shown.inputs, &pane.inputs)
                 && old.differs_in_speed_alone(new)
             {
                 pane.glide = Some(shown.glide.clone());
@@ -181,11 +186,13 @@ impl Session {
         any
     }
 
-    /// The playhead has come to the end of what plays, `rounds` times, and begins again. The character goes on from there if the camera is with it;
-    /// if the camera stands, or several panes run against each other, it goes back to the start.
+    /// The playhead has come to the end of what plays, `rounds` times, and begins again. The
+    /// character goes on from there if the camera is with it; if the camera stands, or several
+    /// panes run against each other, it goes back to the start.
     pub(super) fn come_round(&mut self, rounds: usize) {
         let span = self.span();
-        let walks_on = self.panes.len() == 1 && self.params.choice::<choices::Follow>() != choices::Follow::Off;
+        let walks_on = self.panes.len() == 1
+            && self.params.choice::<choices::Follow>() != choices::Follow::Off;
         for pane in &mut self.panes {
             if !walks_on || pane.outcome.as_ref().is_none_or(|outcome| outcome.cycle.is_none()) {
                 pane.place = Planar::IDENTITY;

@@ -24,7 +24,8 @@ fn cycle(session: &Session) -> Cycle {
     session.main_outcome().unwrap().cycle.unwrap()
 }
 
-/// What is on the stage: rotations in the character's own frame, the root's height, and where the character stands.
+/// What is on the stage: rotations in the character's own frame, the root's height, and where the
+/// character stands.
 fn shown(session: &Session) -> (Vec<Quat>, f32, Planar) {
     shown_at(session, session.now_secs())
 }
@@ -52,9 +53,7 @@ fn distance(a: &Planar, b: &Planar) -> f64 {
 #[test]
 fn the_speed_asked_for_is_measured_over_the_whole_range() {
     let mut session = open("lab=speed");
-    let CycleMade::Gait { clips_mps: [a, b], .. } = cycle(&session).made else {
-        panic!()
-    };
+    let CycleMade::Gait { clips_mps: [a, b], .. } = cycle(&session).made else { panic!() };
     assert!((a - 1.4).abs() < 0.02 && (b - 3.5).abs() < 0.02);
     assert_eq!(session.automatic_value(Key::Speed), Some(2.45));
     for lock in [false, true] {
@@ -65,18 +64,20 @@ fn the_speed_asked_for_is_measured_over_the_whole_range() {
             assert_eq!(session.panes()[0].problem, None);
             let measured = metric(&session, 0, "speed_mps");
             assert!((measured / speed - 1.0).abs() < 0.02, "{speed}: {measured}");
-            let (stride, cadence) = (metric(&session, 0, "stride_m"), metric(&session, 0, "cadence_spm"));
+            let (stride, cadence) =
+                (metric(&session, 0, "stride_m"), metric(&session, 0, "cadence_spm"));
             assert!((stride * cadence / 120.0 / speed - 1.0).abs() < 0.02, "{stride} {cadence}");
-            let CycleMade::Gait { facts, .. } = cycle(&session).made else {
-                panic!()
-            };
+            let CycleMade::Gait { facts, .. } = cycle(&session).made else { panic!() };
             assert!(!facts.limited && !facts.extrapolated, "{speed} {facts:?}");
         }
     }
-    let (before, after) = (metric(&session, 0, "foot_slide_before_cm"), metric(&session, 0, "foot_slide_cm"));
+    let (before, after) =
+        (metric(&session, 0, "foot_slide_before_cm"), metric(&session, 0, "foot_slide_cm"));
     assert!(after < 0.5 * before && after < 1.0, "{before} {after}");
     set(&mut session, Key::Speed, 3.9);
-    assert!(matches!(cycle(&session).made, CycleMade::Gait { facts, .. } if facts.extrapolated && !facts.limited));
+    assert!(
+        matches!(cycle(&session).made, CycleMade::Gait { facts, .. } if facts.extrapolated && !facts.limited)
+    );
     set(&mut session, Key::Speed, 9.0);
     assert!(matches!(cycle(&session).made, CycleMade::Gait { facts, .. } if facts.limited));
 }
@@ -124,8 +125,12 @@ fn a_speed_that_is_dragged_changes_the_gait_without_a_jump() {
                 .max(distance(&at, &at_after))
                 .max(f64::from((height - height_after).abs()));
         }
-        // A step of the slider turns no joint by half as much as a frame of the gait itself does, and nobody leaves his place.
-        assert!(largest.0 < 0.5 * in_a_frame && largest.1 < 5e-3, "{lock}: {largest:?} {in_a_frame}");
+        // A step of the slider turns no joint by half as much as a frame of the gait itself does,
+        // and nobody leaves his place.
+        assert!(
+            largest.0 < 0.5 * in_a_frame && largest.1 < 5e-3,
+            "{lock}: {largest:?} {in_a_frame}"
+        );
         assert!(session.params().number(Key::Speed) >= 3.5);
     }
 }
@@ -150,7 +155,11 @@ fn a_speed_that_is_set_at_once_is_taken_on_little_by_little() {
         // The numbers are those of the speed asked for, and on the stage nothing has moved.
         assert!((metric(&session, 0, "speed_mps") / to - 1.0).abs() < 0.02);
         let (after, height_after, at_after) = shown(&session);
-        assert!(turned(&before, &after) < 0.5 && distance(&at, &at_after) < 1e-3 && (height - height_after).abs() < 1e-3);
+        assert!(
+            turned(&before, &after) < 0.5
+                && distance(&at, &at_after) < 1e-3
+                && (height - height_after).abs() < 1e-3
+        );
         assert!(session.panes()[0].glide.is_some());
         let (mut last, mut most, mut fastest) = (after, 0.0f32, 0.0f64);
         let mut here = at_after;
@@ -202,24 +211,24 @@ fn a_playhead_that_is_put_somewhere_stays_there() {
 
 #[test]
 fn a_loop_goes_round_a_hundred_times_without_drift() {
-    for link in [
-        "lab=loop&a=walk",
-        "lab=loop&a=walk_left&foot_lock=on",
-        "lab=loop&a=run&loop_method=cubic",
-    ] {
+    for link in
+        ["lab=loop&a=walk", "lab=loop&a=walk_left&foot_lock=on", "lab=loop&a=run&loop_method=cubic"]
+    {
         let mut session = open(link);
         let Cycle { secs, .. } = cycle(&session);
         let duration = session.duration_secs();
         let cycles = (duration / secs).round() as usize;
         assert!((duration - cycles as f64 * secs).abs() < 1e-9 && cycles >= 2);
-        // The same phase in every cycle, a hundred of them, however often the timeline begins again.
+        // The same phase in every cycle, a hundred of them, however often the timeline begins
+        // again.
         let begin = 0.3 * secs;
         session.apply(Command::Seek(begin)).unwrap();
         let (first, height, mut at) = shown_at(&session, begin);
         let mut steps: Vec<Planar> = Vec::new();
         for round in 1..=100 {
             session.tick(secs);
-            // The playhead counts in milliseconds; what is compared is compared at the same time of the cycle.
+            // The playhead counts in milliseconds; what is compared is compared at the same time of
+            // the cycle.
             let now = begin + (round % cycles) as f64 * secs;
             assert!((session.now_secs() - now).abs() < 0.1, "{round}");
             session.apply(Command::Seek(now)).unwrap();
@@ -261,7 +270,8 @@ fn the_frames_of_every_cycle_are_those_of_the_first() {
             assert!(distance(&step(frame), &step(frame + frames)) < 1e-3, "{frame}");
         }
     }
-    // At the end of the timeline the character walks on from where it is, also where the curve has led it.
+    // At the end of the timeline the character walks on from where it is, also where the curve has
+    // led it.
     session.tick(session.duration_secs() - 0.01);
     let (before, _, at) = shown(&session);
     session.tick(0.02);
@@ -280,7 +290,10 @@ fn the_classic_ways_to_close_a_loop_leave_what_the_exact_one_does_not() {
     let [exact, end, both] = [0, 1, 2].map(|pane| metric(&session, pane, "loop_seam_deg"));
     assert!(exact < 1e-2 && end > 10.0 * exact && both > 10.0 * exact, "{exact} {end} {both}");
     let before = metric(&session, 0, "loop_before_deg");
-    assert!((0..3).all(|pane| metric(&session, pane, "loop_before_deg") == before) && before > end.max(both));
+    assert!(
+        (0..3).all(|pane| metric(&session, pane, "loop_before_deg") == before)
+            && before > end.max(both)
+    );
     assert!(metric(&session, 0, "loop_seam_dps") < 1.0);
     let place = |pane: usize| session.panes()[pane].outcome.as_ref().unwrap().cycle.unwrap().made;
     assert_eq!(place(0), place(2));
@@ -294,9 +307,7 @@ fn the_classic_ways_to_close_a_loop_leave_what_the_exact_one_does_not() {
 #[test]
 fn ends_are_found_or_set_by_hand() {
     let mut session = open("lab=loop");
-    let CycleMade::Cut { from_secs, to_secs, .. } = cycle(&session).made else {
-        panic!()
-    };
+    let CycleMade::Cut { from_secs, to_secs, .. } = cycle(&session).made else { panic!() };
     assert_eq!(session.automatic_value(Key::LoopFrom), Some(from_secs));
     assert_eq!(session.automatic_value(Key::LoopTo), Some(to_secs));
     let now = |session: &Session| match cycle(session).made {

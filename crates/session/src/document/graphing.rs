@@ -18,19 +18,22 @@ impl Session {
         clips_of(self.params.text(Key::Clips)).unwrap_or_default()
     }
 
-    /// The clips of the graph, on one skeleton; `None` outside of the Graph lab and while they are made ready.
+    /// The clips of the graph, on one skeleton; `None` outside of the Graph lab and while they are
+    /// made ready.
     #[must_use]
     pub fn graph_cast(&self) -> Option<&Arc<Cast>> {
         self.labs.grapher.cast().filter(|_| self.is_graph_lab())
     }
 
-    /// The distances that the Graph lab looks at: those of the first pane's window, or the last ones while these are made.
+    /// The distances that the Graph lab looks at: those of the first pane's window, or the last
+    /// ones while these are made.
     #[must_use]
     pub fn graph_field(&self) -> Option<&Arc<Field>> {
         self.labs.grapher.field().filter(|_| self.is_graph_lab())
     }
 
-    /// The graph of the first pane: the one that is asked for where it is made, else the one that is walked in.
+    /// The graph of the first pane: the one that is asked for where it is made, else the one that
+    /// is walked in.
     #[must_use]
     pub fn graph_built(&self) -> Option<&Arc<Built>> {
         let walked = || self.graph_walk().map(|walk| &walk.built);

@@ -85,7 +85,10 @@ fn a_sequence_of_kept_results_keeps_its_middle() {
 #[test]
 fn results_with_a_further_clip_of_a_file_are_kept() {
     let mut session = opened("lab=view&a=walk");
-    let bytes = segue_formats::bvh::write(&motion(&session, "walk").clip, &segue_formats::bvh::WriteOptions::default());
+    let bytes = segue_formats::bvh::write(
+        &motion(&session, "walk").clip,
+        &segue_formats::bvh::WriteOptions::default(),
+    );
     let id = session.load("two.bvh", bytes.into_bytes().into()).unwrap().ids.remove(0);
     // As a file with several motions has them.
     let first = Arc::clone(session.library().find(&id).unwrap());

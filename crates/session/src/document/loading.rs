@@ -41,7 +41,8 @@ pub(super) struct Reading {
 pub(super) enum Purpose {
     /// Its clips join the library.
     New(Came),
-    /// Its clips are there already, and only want their motion. Those that waited for a skeleton, which has come so, are offered A and B.
+    /// Its clips are there already, and only want their motion. Those that waited for a skeleton,
+    /// which has come so, are offered A and B.
     Again(Option<Came>),
     /// It is the motion of a bundled take.
     Sample(&'static Sample),
@@ -58,9 +59,11 @@ impl Reading {
 }
 
 impl Session {
-    /// Reads one file, exactly as if it were dropped on the page: its clips join the library, and the first ones take the places of
-    /// built-in clips in A and B. It is read at once, unless it is larger than [`LARGE_BYTES`] or the session has all files read elsewhere: then it is
-    /// asked for with [`Request::Read`], nothing is loaded yet, and what is wrong with it is told when it was read.
+    /// Reads one file, exactly as if it were dropped on the page: its clips join the library, and
+    /// the first ones take the places of built-in clips in A and B. It is read at once, unless it
+    /// is larger than [`LARGE_BYTES`] or the session has all files read elsewhere: then it is asked
+    /// for with [`Request::Read`], nothing is loaded yet, and what is wrong with it is told when it
+    /// was read.
     ///
     /// # Errors
     /// [`ImportError`] with name, line, column, found and expected; nothing already loaded changes.
@@ -68,8 +71,9 @@ impl Session {
         self.load_that_came(name, bytes, Came::ByHand)
     }
 
-    /// Reads a file that was fetched from an address in the link: as [`Session::load`], but where the link names a clip for a slot, that one stays,
-    /// and a file that is in the library already takes no slot.
+    /// Reads a file that was fetched from an address in the link: as [`Session::load`], but where
+    /// the link names a clip for a slot, that one stays, and a file that is in the library already
+    /// takes no slot.
     ///
     /// # Errors
     /// As [`Session::load`].
@@ -77,8 +81,14 @@ impl Session {
         self.load_that_came(name, bytes, Came::ByLink)
     }
 
-    fn load_that_came(&mut self, name: &str, bytes: Arc<[u8]>, came: Came) -> Result<Loaded, ImportError> {
-        let (name, setup, size) = (&outside::file_name(name), self.setup_for_new(), bytes.len() as u64);
+    fn load_that_came(
+        &mut self,
+        name: &str,
+        bytes: Arc<[u8]>,
+        came: Came,
+    ) -> Result<Loaded, ImportError> {
+        let (name, setup, size) =
+            (&outside::file_name(name), self.setup_for_new(), bytes.len() as u64);
         let Some(read) = self.reads.filter(|_| size <= LARGE_BYTES) else {
             self.begin(name, Content::Here(bytes), size, setup, Purpose::New(came));
             return Ok(Loaded::default());
@@ -87,27 +97,31 @@ impl Session {
         self.admit(report, &Content::Here(bytes), &setup, came)
     }
 
-    /// Asks for a file to be read elsewhere ([`Request::Read`]) and joined to the library then, as by [`Session::load`]. Returns the task's number.
+    /// Asks for a file to be read elsewhere ([`Request::Read`]) and joined to the library then, as
+    /// by [`Session::load`]. Returns the task's number.
     pub fn begin_reading(&mut self, name: &str, content: Content, size: u64) -> u64 {
         let setup = self.setup_for_new();
         self.begin(name, content, size, setup, Purpose::New(Came::ByHand))
     }
 
-    /// As [`Session::begin_reading`], for a file that was fetched: its clips join the library as by [`Session::load_fetched`].
+    /// As [`Session::begin_reading`], for a file that was fetched: its clips join the library as by
+    /// [`Session::load_fetched`].
     pub fn begin_reading_fetched(&mut self, name: &str, content: Content, size: u64) -> u64 {
         let setup = self.setup_for_new();
         self.begin(name, content, size, setup, Purpose::New(Came::ByLink))
     }
 
-    pub(super) fn begin(&mut self, name: &str, content: Content, size: u64, setup: ReadSetup, purpose: Purpose) -> u64 {
+    pub(super) fn begin(
+        &mut self,
+        name: &str,
+        content: Content,
+        size: u64,
+        setup: ReadSetup,
+        purpose: Purpose,
+    ) -> u64 {
         self.tasks += 1;
-        let task = ReadTask {
-            id: self.tasks,
-            name: outside::file_name(name),
-            content,
-            size,
-            setup,
-        };
+        let task =
+            ReadTask { id: self.tasks, name: outside::file_name(name), content, size, setup };
         self.ask(task, purpose);
         self.tasks
     }
@@ -118,11 +132,15 @@ impl Session {
         self.revision += 1;
     }
 
-    /// Has a file of the library read anew elsewhere, as its entries say, unless that is under way. `came`: see [`Purpose::Again`].
+    /// Has a file of the library read anew elsewhere, as its entries say, unless that is under way.
+    /// `came`: see [`Purpose::Again`].
     pub(super) fn read_again(&mut self, file: SourceFile, came: Option<Came>) {
         let setup = self.setup_of(&file);
-        let same =
-            |reading: &Reading| reading.task.setup == setup && reading.task.name == file.name && reading.task.content == file.content;
+        let same = |reading: &Reading| {
+            reading.task.setup == setup
+                && reading.task.name == file.name
+                && reading.task.content == file.content
+        };
         if !self.reading.iter().any(same) {
             self.mark_unread(&file.sha256, None);
             self.begin(&file.name, file.content, file.size, setup, Purpose::Again(came));
@@ -137,7 +155,9 @@ impl Session {
 
     fn roles_by_hand(&self, file: &SourceFile) -> BTreeMap<usize, segue_motion::skeleton::Roles> {
         let entries = self.library.entries().iter().filter_map(|entry| match &entry.origin {
-            Origin::File(own) if own.sha256 == file.sha256 => Some((own.index, entry.roles_by_hand.clone()?)),
+            Origin::File(own) if own.sha256 == file.sha256 => {
+                Some((own.index, entry.roles_by_hand.clone()?))
+            }
             _ => None,
         });
         entries.collect()
@@ -161,8 +181,13 @@ impl Session {
         }
     }
 
-    /// Takes what reading a file gave, or why it could not be read at all. `None` where nobody waits for it any longer.
-    pub fn finish_reading(&mut self, task: u64, report: Result<ReadReport, String>) -> Option<Result<Loaded, String>> {
+    /// Takes what reading a file gave, or why it could not be read at all. `None` where nobody
+    /// waits for it any longer.
+    pub fn finish_reading(
+        &mut self,
+        task: u64,
+        report: Result<ReadReport, String>,
+    ) -> Option<Result<Loaded, String>> {
         let report = match report {
             Ok(report) => report,
             Err(reason) => {
@@ -174,7 +199,9 @@ impl Session {
         let Reading { task, purpose, .. } = self.end_task(task)?;
         // What lies outside is from now on known by what it holds.
         let content = match (task.content.clone(), report.files.as_slice()) {
-            (Content::Outside(_), [file]) if report.is_one_file() => Content::Outside(file.sha256.clone()),
+            (Content::Outside(_), [file]) if report.is_one_file() => {
+                Content::Outside(file.sha256.clone())
+            }
             (content, _) => content,
         };
         let loaded = match purpose {
@@ -185,7 +212,10 @@ impl Session {
                     .collect();
                 let refilled = self.refill(report, &task.setup.options);
                 if let Err(error) = &refilled {
-                    self.mark_unread(task.setup.sha256.as_deref().unwrap_or_default(), Some(&error.to_string()));
+                    self.mark_unread(
+                        task.setup.sha256.as_deref().unwrap_or_default(),
+                        Some(&error.to_string()),
+                    );
                     self.tell_unread(error);
                 }
                 if let Some(came) = came {
@@ -197,8 +227,11 @@ impl Session {
                 self.refresh();
                 refilled
             }
-            // Its skeleton was dropped with it, and has come meanwhile. What came out of an archive is read again from there.
-            Purpose::New(_) if report.is_one_file() && self.misses_skeleton(&report, &task.setup) => {
+            // Its skeleton was dropped with it, and has come meanwhile. What came out of an archive
+            // is read again from there.
+            Purpose::New(_)
+                if report.is_one_file() && self.misses_skeleton(&report, &task.setup) =>
+            {
                 let setup = self.setup_for_new();
                 self.ask(ReadTask { content, setup, ..task }, purpose);
                 return None;
@@ -210,10 +243,16 @@ impl Session {
     }
 
     /// Ends a task whose file is not read, for that reason; `text` is what is said of it.
-    pub(super) fn fail_reading(&mut self, task: u64, reason: String, text: String) -> Option<Result<Loaded, String>> {
+    pub(super) fn fail_reading(
+        &mut self,
+        task: u64,
+        reason: String,
+        text: String,
+    ) -> Option<Result<Loaded, String>> {
         let Reading { task, purpose, .. } = self.end_task(task)?;
         if let Purpose::Sample(sample) = purpose {
-            // It would be asked for at once, and so on for ever: the next thing that is done asks for it.
+            // It would be asked for at once, and so on for ever: the next thing that is done asks
+            // for it.
             self.fail_sample(sample, &reason);
             return Some(Err(reason));
         }
@@ -279,13 +318,12 @@ impl Session {
             let text = format!("Reading {} was stopped: drop the file again.", task.name);
             self.mark_unread(task.setup.sha256.as_deref().unwrap_or_default(), Some(&text));
         }
-        self.requests.push(Request::StopReading {
-            task: task.id,
-            forget: forget.filter(|_| !again),
-        });
+        self.requests
+            .push(Request::StopReading { task: task.id, forget: forget.filter(|_| !again) });
     }
 
-    /// Notes with the clips of a file why they have no motion, so that it is not read over and over.
+    /// Notes with the clips of a file why they have no motion, so that it is not read over and
+    /// over.
     fn mark_unread(&mut self, sha256: &str, why: Option<&str>) {
         let entries = self.library.entries().to_vec();
         for entry in entries.iter().filter(|entry| entry.sha256() == Some(sha256)) {
@@ -304,7 +342,13 @@ impl Session {
     }
 
     /// Brings the clips of a report into the library.
-    fn admit(&mut self, report: ReadReport, content: &Content, setup: &ReadSetup, came: Came) -> Result<Loaded, ImportError> {
+    fn admit(
+        &mut self,
+        report: ReadReport,
+        content: &Content,
+        setup: &ReadSetup,
+        came: Came,
+    ) -> Result<Loaded, ImportError> {
         // Of several files some may be good; one alone fails as a whole.
         if let [ReadFile { result: Err(error), .. }] = report.files.as_slice() {
             let error = error.clone();
@@ -314,22 +358,31 @@ impl Session {
         self.remember(None);
         let mut loaded = Loaded::default();
         let (mut names, mut t_poses, mut failures) = (Vec::new(), 0, Vec::new());
-        let brings_skeleton =
-            |file: &ReadFile| file.kind == FileKind::Asf || file.result.as_ref().is_ok_and(|read| read.companion.is_some());
-        let skeleton_came = report.files.iter().any(brings_skeleton) || self.misses_skeleton(&report, setup);
+        let brings_skeleton = |file: &ReadFile| {
+            file.kind == FileKind::Asf
+                || file.result.as_ref().is_ok_and(|read| read.companion.is_some())
+        };
+        let skeleton_came =
+            report.files.iter().any(brings_skeleton) || self.misses_skeleton(&report, setup);
         for file in report.files {
             let name = file.name.clone();
             match file_entries(file, content, &setup.options) {
                 Ok((entries, warnings)) => {
                     names.push(name);
-                    let has_t_pose = |entry: &Entry| entry.about.as_ref().is_some_and(|about| about.t_pose_first_row);
+                    let has_t_pose = |entry: &Entry| {
+                        entry.about.as_ref().is_some_and(|about| about.t_pose_first_row)
+                    };
                     t_poses += usize::from(entries.iter().any(has_t_pose));
                     loaded.warnings.extend(warnings);
                     let first = entries.iter().find(|entry| entry.mesh.is_some());
-                    if first.and_then(Entry::character).is_some_and(|character| !character.has_limbs()) {
-                        loaded
-                            .warnings
-                            .push("its figure has no limbs that are known: only its own clips move it".to_owned());
+                    if first
+                        .and_then(Entry::character)
+                        .is_some_and(|character| !character.has_limbs())
+                    {
+                        loaded.warnings.push(
+                            "its figure has no limbs that are known: only its own clips move it"
+                                .to_owned(),
+                        );
                     }
                     if let Some(first) = first.filter(|entry| self.takes_character(entry, came)) {
                         self.set_unchecked(Key::Character, Value::Text(first.id.clone()));
@@ -367,20 +420,25 @@ impl Session {
                 told.push(format!("{more} more remarks stand with the clips."));
             }
             let text = told.join(" ");
-            // A T-pose in front is how the takes of whole databases come: good to know, and nothing to do about it.
+            // A T-pose in front is how the takes of whole databases come: good to know, and nothing
+            // to do about it.
             let is_odd = loaded.warnings.len() > t_poses;
-            let mends: Vec<String> = loaded.ids.iter().filter(|id| self.mend_of(id).is_some()).cloned().collect();
+            let mends: Vec<String> =
+                loaded.ids.iter().filter(|id| self.mend_of(id).is_some()).cloned().collect();
             match loaded.ids.as_slice() {
                 // Until its other half comes.
                 [id] if is_odd && self.is_half(id) => self.notices.miss(id, text),
                 // A skeleton that was waited for: it has its motion.
-                [id] if self.library.get(id).is_none() => self.say(Level::Info, in_the_library(&names)),
+                [id] if self.library.get(id).is_none() => {
+                    self.say(Level::Info, in_the_library(&names))
+                }
                 _ if !mends.is_empty() => self.offer_mends(text, mends),
                 _ => self.say(if is_odd { Level::Warning } else { Level::Info }, text),
             }
         } else if !loaded.warnings.is_empty() {
             // What holds for the archive holds though nothing in it can be read.
-            let told: Vec<String> = loaded.warnings.iter().map(|warning| sentence(warning)).collect();
+            let told: Vec<String> =
+                loaded.warnings.iter().map(|warning| sentence(warning)).collect();
             self.say(Level::Warning, told.join(" "));
         }
         // Listeners are told of each.
@@ -413,12 +471,15 @@ impl Session {
         self.revision += 1;
     }
 
-    /// Reads the clips better that a message offers to mend, as one step for undo. What cannot be read stays as it is, and is told.
+    /// Reads the clips better that a message offers to mend, as one step for undo. What cannot be
+    /// read stays as it is, and is told.
     pub(super) fn mend(&mut self, notice: u64) {
         let found = self.notices.list().iter().find(|found| found.id == notice);
         let clips = found.map(|found| found.mends.clone()).unwrap_or_default();
         let library = self.library.clone();
-        for (id, options) in clips.iter().filter_map(|id| Some((id, self.mend_of(id)?))).collect::<Vec<_>>() {
+        for (id, options) in
+            clips.iter().filter_map(|id| Some((id, self.mend_of(id)?))).collect::<Vec<_>>()
+        {
             if let Err(error) = self.reread(id, &options) {
                 self.say(Level::Error, error.to_string());
             }
@@ -447,18 +508,23 @@ impl Session {
         self.revision += 1;
     }
 
-    /// Says why the files of an archive were not read: of the first ones each, and how many there are besides.
+    /// Says why the files of an archive were not read: of the first ones each, and how many there
+    /// are besides.
     fn tell_all_unread(&mut self, errors: &[ImportError]) {
         let (first, rest) = errors.split_at_checked(MOST_FAILURES).unwrap_or((errors, &[]));
         for error in first {
             self.tell_unread(error);
         }
         if !rest.is_empty() {
-            let mut named: Vec<&str> = rest.iter().take(MOST_FAILURES).map(|error| error.file.as_str()).collect();
+            let mut named: Vec<&str> =
+                rest.iter().take(MOST_FAILURES).map(|error| error.file.as_str()).collect();
             if rest.len() > named.len() {
                 named.push("…");
             }
-            self.say(Level::Error, format!("{} more did not work: {}.", rest.len(), named.join(", ")));
+            self.say(
+                Level::Error,
+                format!("{} more did not work: {}.", rest.len(), named.join(", ")),
+            );
         }
     }
 
@@ -470,14 +536,16 @@ impl Session {
             Some(known) => self.join_again(known, entry),
             None => self.library.put(entry),
         }
-        // A skeleton alone plays nothing, nor does a character that comes without a motion of its own; a motion that waits for one may come into its place when it can be read.
+        // A skeleton alone plays nothing, nor does a character that comes without a motion of its
+        // own; a motion that waits for one may come into its place when it can be read.
         let plays = self.library.get(&id).is_some_and(|entry| {
             entry
                 .motion
                 .as_ref()
                 .is_some_and(|motion| motion.clip.frames() > usize::from(entry.mesh.is_some()))
         });
-        // What the link fetches once more, after a reload, has the place that it was given then, or none.
+        // What the link fetches once more, after a reload, has the place that it was given then, or
+        // none.
         if plays && (known.is_none() || came == Came::ByHand) {
             self.offer(&id, came);
         }
@@ -492,10 +560,7 @@ impl Session {
             return;
         }
         let is_read_as_said = had.options == has.options && known.roles_by_hand.is_none();
-        let file = SourceFile {
-            options: had.options,
-            ..has.clone()
-        };
+        let file = SourceFile { options: had.options, ..has.clone() };
         self.library.put(Entry {
             name: known.name.clone(),
             roles_by_hand: known.roles_by_hand.clone(),
@@ -510,7 +575,8 @@ impl Session {
         }
     }
 
-    /// Whether a file with a skin becomes the character. One that the link fetches does not when it was here before, or the link names another.
+    /// Whether a file with a skin becomes the character. One that the link fetches does not when it
+    /// was here before, or the link names another.
     fn takes_character(&self, entry: &Entry, came: Came) -> bool {
         let is_free = self.params.text(Key::Character).is_empty();
         // One that only its own clips move is no character for all the others.
@@ -521,8 +587,13 @@ impl Session {
         }
     }
 
-    /// Gives the clips that are in the library what was read anew. One that is to be read otherwise by now waits for that.
-    fn refill(&mut self, report: ReadReport, options: &ImportOptions) -> Result<Loaded, ImportError> {
+    /// Gives the clips that are in the library what was read anew. One that is to be read otherwise
+    /// by now waits for that.
+    fn refill(
+        &mut self,
+        report: ReadReport,
+        options: &ImportOptions,
+    ) -> Result<Loaded, ImportError> {
         let mut loaded = Loaded::default();
         for file in report.files {
             // Where the bytes are is known: the entries say it.
@@ -530,7 +601,9 @@ impl Session {
             loaded.warnings.extend(warnings);
             for new in entries {
                 self.library.change(&new.id, |entry| {
-                    let (Origin::File(file), Origin::File(new_file)) = (&mut entry.origin, new.origin) else {
+                    let (Origin::File(file), Origin::File(new_file)) =
+                        (&mut entry.origin, new.origin)
+                    else {
                         return;
                     };
                     if file.options != *options {
@@ -550,9 +623,16 @@ impl Session {
         Ok(loaded)
     }
 
-    /// Reads a file of the library anew, as its entries say: at once, or asked for. Says whether it was read. An error changes nothing.
-    pub(super) fn read_anew(&mut self, file: &SourceFile, came: Option<Came>) -> Result<bool, ImportError> {
-        let (Content::Here(bytes), Some(read)) = (&file.content, self.reads.filter(|_| !file.is_large())) else {
+    /// Reads a file of the library anew, as its entries say: at once, or asked for. Says whether it
+    /// was read. An error changes nothing.
+    pub(super) fn read_anew(
+        &mut self,
+        file: &SourceFile,
+        came: Option<Came>,
+    ) -> Result<bool, ImportError> {
+        let (Content::Here(bytes), Some(read)) =
+            (&file.content, self.reads.filter(|_| !file.is_large()))
+        else {
             self.read_again(file.clone(), came);
             return Ok(false);
         };
@@ -575,17 +655,17 @@ impl Session {
     }
 
     fn setup_for_new(&self) -> ReadSetup {
-        ReadSetup {
-            companions: self.companions(),
-            ..ReadSetup::default()
-        }
+        ReadSetup { companions: self.companions(), ..ReadSetup::default() }
     }
 
-    /// The skeleton files that there are: those that lie in the library, and those that its motions were read with.
+    /// The skeleton files that there are: those that lie in the library, and those that its motions
+    /// were read with.
     fn companions(&self) -> Vec<Companion> {
         let mut all: Vec<Companion> = Vec::new();
         for entry in self.library.entries() {
-            let Origin::File(file) = &entry.origin else { continue };
+            let Origin::File(file) = &entry.origin else {
+                continue;
+            };
             let found = match (&file.companion, &file.content) {
                 (Some(companion), _) => companion.clone(),
                 (None, Content::Here(bytes)) if file.kind == FileKind::Asf => Companion {
@@ -602,12 +682,11 @@ impl Session {
         all
     }
 
-    /// Whether a clip of the library is a motion without its skeleton, or a skeleton without a motion.
+    /// Whether a clip of the library is a motion without its skeleton, or a skeleton without a
+    /// motion.
     pub(super) fn is_half(&self, id: &str) -> bool {
         let is_skeleton = |entry: &Entry| matches!(&entry.origin, Origin::File(file) if file.kind == FileKind::Asf);
-        self.library
-            .get(id)
-            .is_some_and(|entry| entry.awaits_skeleton() || is_skeleton(entry))
+        self.library.get(id).is_some_and(|entry| entry.awaits_skeleton() || is_skeleton(entry))
     }
 
     /// Whether a motion leans on a skeleton, and one has come since it was read.
@@ -619,20 +698,22 @@ impl Session {
     /// A skeleton has come: motions that waited for it are read.
     fn read_waiting(&mut self, came: Came) {
         let (entries, skeletons) = (self.library.entries().to_vec(), self.companions());
-        let is_named = |file: &SourceFile, skeleton: &Companion| acclaim::goes_by_name(&file.name, &skeleton.name);
+        let is_named = |file: &SourceFile, skeleton: &Companion| {
+            acclaim::goes_by_name(&file.name, &skeleton.name)
+        };
         for entry in &entries {
-            let Origin::File(file) = &entry.origin else { continue };
+            let Origin::File(file) = &entry.origin else {
+                continue;
+            };
             let awaits = entry.awaits_skeleton();
             // One that had to make do with another subject's skeleton has its own now.
-            let made_do = (file.companion.as_ref())
-                .is_some_and(|had| !is_named(file, had) && skeletons.iter().any(|skeleton| is_named(file, skeleton)));
+            let made_do = (file.companion.as_ref()).is_some_and(|had| {
+                !is_named(file, had) && skeletons.iter().any(|skeleton| is_named(file, skeleton))
+            });
             if !(awaits || made_do) {
                 continue;
             }
-            let file = SourceFile {
-                companion: None,
-                ..file.clone()
-            };
+            let file = SourceFile { companion: None, ..file.clone() };
             match self.read_anew(&file, awaits.then_some(came)) {
                 Ok(true) if awaits => {
                     self.offer_moving(&entry.id, came);
@@ -647,7 +728,8 @@ impl Session {
     /// Says why a motion still waits though a skeleton has come.
     fn tell_misfit(&mut self, id: &str) {
         if let Some(entry) = self.library.get(id).filter(|entry| entry.awaits_skeleton()) {
-            let told: Vec<String> = entry.warnings.iter().map(|warning| sentence(warning)).collect();
+            let told: Vec<String> =
+                entry.warnings.iter().map(|warning| sentence(warning)).collect();
             self.notices.miss(id, told.join(" "));
         }
     }
@@ -664,18 +746,25 @@ impl Session {
         let entries = self.library.entries().to_vec();
         let used = |sha256: &str| {
             entries.iter().any(|entry| match &entry.origin {
-                Origin::File(file) => file.companion.as_ref().is_some_and(|companion| companion.sha256 == sha256),
+                Origin::File(file) => {
+                    file.companion.as_ref().is_some_and(|companion| companion.sha256 == sha256)
+                }
                 _ => false,
             })
         };
         for entry in &entries {
-            if matches!(&entry.origin, Origin::File(file) if file.kind == FileKind::Asf && used(&file.sha256)) {
+            if matches!(&entry.origin, Origin::File(file) if file.kind == FileKind::Asf && used(&file.sha256))
+            {
                 self.library.remove(&entry.id);
             }
         }
     }
 
-    pub(super) fn reimport(&mut self, id: &str, options: &ImportOptions) -> Result<(), CommandError> {
+    pub(super) fn reimport(
+        &mut self,
+        id: &str,
+        options: &ImportOptions,
+    ) -> Result<(), CommandError> {
         let library = self.library.clone();
         self.reread(id, options)?;
         self.history.before_change(&self.params, &library, None);
@@ -684,16 +773,17 @@ impl Session {
 
     /// Reads a clip's file again with other options. An error changes nothing.
     fn reread(&mut self, id: &str, options: &ImportOptions) -> Result<(), CommandError> {
-        let entry = Arc::clone(self.library.find(id).ok_or_else(|| CommandError::NoClip(id.to_owned()))?);
+        let entry =
+            Arc::clone(self.library.find(id).ok_or_else(|| CommandError::NoClip(id.to_owned()))?);
         let Origin::File(file) = &entry.origin else {
-            return Err(CommandError::NotPossible("only a clip that came from a file can be read again"));
+            return Err(CommandError::NotPossible(
+                "only a clip that came from a file can be read again",
+            ));
         };
-        let file = SourceFile {
-            options: *options,
-            ..file.clone()
-        };
+        let file = SourceFile { options: *options, ..file.clone() };
         let library = self.library.clone();
-        // At once, wherever it is read: what is chosen meanwhile adds to it, and taking it back stops it from coming.
+        // At once, wherever it is read: what is chosen meanwhile adds to it, and taking it back
+        // stops it from coming.
         for entry in library.entries().iter().filter(|entry| entry.sha256() == Some(&file.sha256)) {
             self.library.change(&entry.id, |entry| {
                 if let Origin::File(file) = &mut entry.origin {
@@ -718,8 +808,13 @@ fn in_the_library(names: &[String]) -> String {
     }
 }
 
-/// An entry for every clip of a file, and the file's warnings. `content` is the file's, unless it came out of an archive.
-fn file_entries(file: ReadFile, content: &Content, options: &ImportOptions) -> Result<(Vec<Entry>, Vec<String>), ImportError> {
+/// An entry for every clip of a file, and the file's warnings. `content` is the file's, unless it
+/// came out of an archive.
+fn file_entries(
+    file: ReadFile,
+    content: &Content,
+    options: &ImportOptions,
+) -> Result<(Vec<Entry>, Vec<String>), ImportError> {
     let read = file.result?;
     let source = SourceFile {
         name: file.name,
@@ -753,7 +848,11 @@ fn file_entries(file: ReadFile, content: &Content, options: &ImportOptions) -> R
             mesh: clip.mesh,
             about: Some(clip.about),
             warnings: warnings.clone(),
-            ..Entry::new(file_id(&source.name, &source.sha256, index), String::new(), Origin::File(source))
+            ..Entry::new(
+                file_id(&source.name, &source.sha256, index),
+                String::new(),
+                Origin::File(source),
+            )
         }
     });
     let named = entries.map(|mut entry| {

@@ -42,8 +42,7 @@ pub(super) const ASF: &str = "\
     root thigh spine
   end
 ";
-pub(super) const AMC: &str =
-    ":FULLY-SPECIFIED\n:DEGREES\n1\nroot 0 85 0 0 0 0\nthigh 10\nspine 1\n2\nroot 0 85 1 0 0 0\nthigh 20\nspine 2\n";
+pub(super) const AMC: &str = ":FULLY-SPECIFIED\n:DEGREES\n1\nroot 0 85 0 0 0 0\nthigh 10\nspine 1\n2\nroot 0 85 1 0 0 0\nthigh 20\nspine 2\n";
 
 pub(super) fn bytes(text: &str) -> Arc<[u8]> {
     Arc::from(text.as_bytes())
@@ -78,7 +77,9 @@ fn a_motion_waits_for_its_skeleton() {
 fn a_waiting_motion_is_read_again_only_when_a_skeleton_comes() {
     let mut session = Session::new();
     let task = session.begin_reading("01_02.amc", Content::Outside("file 1".into()), 2 << 20);
-    let report = |setup: &crate::reading::ReadSetup| crate::reading::read("01_02.amc", AMC.as_bytes(), setup, &mut |_| true).unwrap();
+    let report = |setup: &crate::reading::ReadSetup| {
+        crate::reading::read("01_02.amc", AMC.as_bytes(), setup, &mut |_| true).unwrap()
+    };
     session
         .finish_reading(task, Ok(report(&crate::reading::ReadSetup::default())))
         .unwrap()
@@ -114,7 +115,8 @@ fn told(session: &Session, level: Level) -> usize {
     session.notices().list().iter().filter(|notice| notice.level == level).count()
 }
 
-/// Reads what the session asks to have read, as a worker does: in order, with the setup that it was asked with.
+/// Reads what the session asks to have read, as a worker does: in order, with the setup that it was
+/// asked with.
 pub(super) fn serve(session: &mut Session) {
     loop {
         let asked: Vec<_> = (session.take_requests().into_iter())
@@ -128,8 +130,13 @@ pub(super) fn serve(session: &mut Session) {
         }
         for task in asked {
             let Content::Here(bytes) = &task.content else { panic!("{task:?}") };
-            let report = crate::reading::read(&task.name, bytes, &task.setup, &mut |_| true).unwrap();
-            assert!(session.is_reading(task.id) && session.is_reading_small() && session.jobs().iter().all(|job| job.task.is_none()));
+            let report =
+                crate::reading::read(&task.name, bytes, &task.setup, &mut |_| true).unwrap();
+            assert!(
+                session.is_reading(task.id)
+                    && session.is_reading_small()
+                    && session.jobs().iter().all(|job| job.task.is_none())
+            );
             session.finish_reading(task.id, Ok(report));
         }
     }
@@ -163,7 +170,11 @@ fn files_that_are_read_elsewhere_give_what_those_give_that_are_read_at_once() {
         let (mut at_once, mut elsewhere) = (Session::new(), Session::that_has_files_read());
         for (name, bytes) in files {
             at_once.load(name, Arc::clone(bytes)).ok();
-            assert_eq!(elsewhere.load(name, Arc::clone(bytes)), Ok(Loaded::default()), "it is asked for");
+            assert_eq!(
+                elsewhere.load(name, Arc::clone(bytes)),
+                Ok(Loaded::default()),
+                "it is asked for"
+            );
         }
         assert!(elsewhere.clip_infos().iter().all(|info| info.sha256.is_none()));
         serve(&mut elsewhere);
@@ -177,10 +188,7 @@ fn files_that_are_read_elsewhere_give_what_those_give_that_are_read_at_once() {
         serve(&mut restored);
         assert_eq!(shown(&restored), shown(&at_once));
         let id = restored.clip_infos().into_iter().find(|info| info.sha256.is_some()).unwrap().id;
-        let options = segue_formats::ImportOptions {
-            fps: Some(60.0),
-            ..Default::default()
-        };
+        let options = segue_formats::ImportOptions { fps: Some(60.0), ..Default::default() };
         restored.apply(Command::Reimport(id.clone(), options)).unwrap();
         serve(&mut restored);
         assert_eq!(restored.clip_infos().into_iter().find(|info| info.id == id).unwrap().fps, 60.0);
@@ -194,9 +202,7 @@ fn a_bundled_take_that_cannot_be_read_is_asked_for_again_with_the_next_command_o
     session.apply(Command::Assign(Slot::A, sample.id.into())).unwrap();
     assert!(session.take_requests().contains(&Request::Sample(sample)));
     session.load_sample(sample, b"").unwrap();
-    let Some(Request::Read(task)) = session.take_requests().pop() else {
-        panic!()
-    };
+    let Some(Request::Read(task)) = session.take_requests().pop() else { panic!() };
     session
         .finish_reading(task.id, Err("the worker could not be started".into()))
         .unwrap()
@@ -219,11 +225,14 @@ fn what_was_read_stays_read_when_a_step_is_taken_back() {
     session.load("01.asf", bytes(ASF)).unwrap();
     session.load("01_02.amc", bytes(AMC)).unwrap();
     serve(&mut session);
-    let unread = |session: &Session| files(session).iter().filter(|(.., frames)| *frames == 0).count();
+    let unread =
+        |session: &Session| files(session).iter().filter(|(.., frames)| *frames == 0).count();
     let (mut before, mut late) = (Session::that_has_files_read(), Session::that_has_files_read());
     before.restore(&session.saved(), stored(&session), None);
     // Something is changed while they are read, or before they come.
-    let change = |session: &mut Session| session.apply(Command::Set(vec![(Key::BlendWindow, Value::Number(9.0))])).unwrap();
+    let change = |session: &mut Session| {
+        session.apply(Command::Set(vec![(Key::BlendWindow, Value::Number(9.0))])).unwrap()
+    };
     change(&mut before);
     change(&mut late);
     late.restore_late(&session.saved(), stored(&session));
@@ -244,17 +253,15 @@ fn how_a_file_is_read_can_be_changed_while_it_is_read() {
     session.load("walk.bvh", bytes(BVH)).unwrap();
     serve(&mut session);
     let id = session.clip_infos().into_iter().find(|info| info.sha256.is_some()).unwrap().id;
-    let fps_of = |session: &Session| session.clip_infos().into_iter().find(|info| info.id == id).unwrap().fps;
+    let fps_of = |session: &Session| {
+        session.clip_infos().into_iter().find(|info| info.id == id).unwrap().fps
+    };
     let options_of = |session: &Session| match &session.library().get(&id).unwrap().origin {
         Origin::File(file) => file.options,
         _ => panic!(),
     };
     let reimport = |session: &mut Session, fps: Option<f64>, metres_per_unit: Option<f64>| {
-        let options = segue_formats::ImportOptions {
-            metres_per_unit,
-            fps,
-            ..options_of(session)
-        };
+        let options = segue_formats::ImportOptions { metres_per_unit, fps, ..options_of(session) };
         session.apply(Command::Reimport(id.clone(), options)).unwrap();
     };
     reimport(&mut session, Some(60.0), None);
@@ -278,7 +285,12 @@ fn how_a_file_is_read_can_be_changed_while_it_is_read() {
 #[test]
 fn a_bundled_take_is_read_elsewhere_without_a_word() {
     let sample = &Session::samples()[2];
-    let packed = std::fs::read(format!("{}/../../assets/samples/{}", env!("CARGO_MANIFEST_DIR"), sample.file)).unwrap();
+    let packed = std::fs::read(format!(
+        "{}/../../assets/samples/{}",
+        env!("CARGO_MANIFEST_DIR"),
+        sample.file
+    ))
+    .unwrap();
     let mut session = Session::that_has_files_read();
     session.apply(Command::Assign(Slot::A, sample.id.into())).unwrap();
     let asks = |session: &mut Session| session.take_requests().contains(&Request::Sample(sample));
@@ -289,7 +301,9 @@ fn a_bundled_take_is_read_elsewhere_without_a_word() {
     let told = session.notices().list().len();
     let reads: Vec<_> = session.take_requests();
     assert!(!reads.contains(&Request::Sample(sample)), "it has come");
-    let Some(Request::Read(task)) = reads.into_iter().find(|request| matches!(request, Request::Read(_))) else {
+    let Some(Request::Read(task)) =
+        reads.into_iter().find(|request| matches!(request, Request::Read(_)))
+    else {
         panic!()
     };
     let report = crate::reading::read(&task.name, &packed, &task.setup, &mut |_| true).unwrap();
@@ -318,7 +332,8 @@ fn a_motion_has_the_skeleton_of_its_name() {
             };
             come(&[("16.asf", &of_16), ("16_22.amc", AMC)]);
             // Its own comes behind it, or only later.
-            let own = [("01_01.amc", AMC.replace("spine 2", "spine 3")), ("01_01.asf", ASF.to_owned())];
+            let own =
+                [("01_01.amc", AMC.replace("spine 2", "spine 3")), ("01_01.asf", ASF.to_owned())];
             let own = [(own[0].0, own[0].1.as_str()), (own[1].0, own[1].1.as_str())];
             if ahead {
                 come(&[own[1], own[0]]);
@@ -326,11 +341,15 @@ fn a_motion_has_the_skeleton_of_its_name() {
                 assert!(come(&own[..1]).contains("It is on the skeleton of 16.asf."));
                 come(&own[1..]);
             }
-            assert_eq!(files(&session), [("16_22".to_owned(), "amc", 2), ("01_01".to_owned(), "amc", 2)]);
-            let companions = session.library().entries().iter().filter_map(|entry| match &entry.origin {
-                Origin::File(file) => Some(file.companion.as_ref()?.name.as_str()),
-                _ => None,
-            });
+            assert_eq!(
+                files(&session),
+                [("16_22".to_owned(), "amc", 2), ("01_01".to_owned(), "amc", 2)]
+            );
+            let companions =
+                session.library().entries().iter().filter_map(|entry| match &entry.origin {
+                    Origin::File(file) => Some(file.companion.as_ref()?.name.as_str()),
+                    _ => None,
+                });
             assert_eq!(companions.collect::<Vec<_>>(), ["16.asf", "01_01.asf"]);
         }
     }
@@ -345,7 +364,8 @@ fn what_waits_for_its_other_half_says_so_until_that_has_come() {
             assert_eq!(told(&session, Level::Warning), 1);
             session.load(files[1].0, bytes(files[1].1)).unwrap();
             serve(&mut session);
-            let texts: Vec<&str> = session.notices().list().iter().map(|notice| notice.text.as_str()).collect();
+            let texts: Vec<&str> =
+                session.notices().list().iter().map(|notice| notice.text.as_str()).collect();
             assert!(
                 !texts.iter().any(|text| text.contains("no motion") || text.contains("waits")),
                 "{texts:?}"
@@ -360,21 +380,15 @@ fn a_skeleton_serves_all_its_motions() {
     session.load("01.asf", bytes(ASF)).unwrap();
     assert_eq!(files(&session), [("01".to_owned(), "asf", 0)]);
     session.load("01_01.amc", bytes(AMC)).unwrap();
-    let id = session
-        .load("01_02.amc", bytes(&AMC.replace("spine 2", "spine 9")))
-        .unwrap()
-        .ids
-        .remove(0);
+    let id =
+        session.load("01_02.amc", bytes(&AMC.replace("spine 2", "spine 9"))).unwrap().ids.remove(0);
     assert_eq!(files(&session), [("01_01".to_owned(), "amc", 2), ("01_02".to_owned(), "amc", 2)]);
     // The skeleton is stored with each, and used when the file is read again.
     let saved = session.saved();
     let mut restored = Session::new();
     restored.restore(&saved, stored(&session), None);
     assert_eq!(files(&restored), files(&session));
-    let options = segue_formats::ImportOptions {
-        fps: Some(60.0),
-        ..Default::default()
-    };
+    let options = segue_formats::ImportOptions { fps: Some(60.0), ..Default::default() };
     restored.apply(Command::Reimport(id.clone(), options)).unwrap();
     let info = restored.clip_infos().into_iter().find(|info| info.id == id).unwrap();
     assert_eq!((info.frames, info.fps), (2, 60.0));
@@ -382,7 +396,8 @@ fn a_skeleton_serves_all_its_motions() {
 
 #[test]
 fn an_archive_brings_all_its_motions() {
-    // A zip archive with stored files, by hand: the crate that reads them writes none in tests of the core.
+    // A zip archive with stored files, by hand: the crate that reads them writes none in tests of
+    // the core.
     let names = [
         ("take/01.asf", ASF),
         ("take/01_01.amc", AMC),
@@ -409,8 +424,7 @@ fn an_archive_brings_all_its_motions() {
     assert!(session.load("cut.zip", Arc::from(&zip(&names)[..200])).is_err());
 }
 
-const BVH: &str =
-    "HIERARCHY ROOT Hips { OFFSET 0 1 0 CHANNELS 1 Yrotation End Site { OFFSET 0 0.7 0 } } MOTION Frames: 2 Frame Time: .1\n1\n2";
+const BVH: &str = "HIERARCHY ROOT Hips { OFFSET 0 1 0 CHANNELS 1 Yrotation End Site { OFFSET 0 0.7 0 } } MOTION Frames: 2 Frame Time: .1\n1\n2";
 
 /// A zip archive of files that are not packed (PKWARE's application note, 4.3).
 fn zip(files: &[(&str, &str)]) -> Vec<u8> {
@@ -447,9 +461,11 @@ fn zip(files: &[(&str, &str)]) -> Vec<u8> {
 
 /// A person in a file of another program: a mesh with a skin, and `frames` frames of a walk.
 fn person(frames: usize) -> Arc<[u8]> {
-    let walk = segue_motion::synth::synthesize(&segue_motion::synth::Params::new(segue_motion::synth::Action::Walk))
-        .unwrap()
-        .clip;
+    let walk = segue_motion::synth::synthesize(&segue_motion::synth::Params::new(
+        segue_motion::synth::Action::Walk,
+    ))
+    .unwrap()
+    .clip;
     figure(&walk.crop(0..frames).unwrap())
 }
 
@@ -464,28 +480,26 @@ fn spider() -> Arc<[u8]> {
     };
     let legs: String = (0..8).map(leg).collect();
     let row = |frame: u32| {
-        let turns: Vec<String> = (0..48).map(|channel| (5 * ((channel + frame) % 3)).to_string()).collect();
+        let turns: Vec<String> =
+            (0..48).map(|channel| (5 * ((channel + frame) % 3)).to_string()).collect();
         format!("0 30 {frame} 0 0 0 {}\n", turns.join(" "))
     };
     let rows: String = (0..40).map(row).collect();
     let text = format!(
         "HIERARCHY\nROOT trunk\n{{\n  OFFSET 0 0 0\n  CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n{legs}}}\nMOTION\nFrames: 40\nFrame Time: 0.033333\n{rows}"
     );
-    let read = segue_formats::import("spider.bvh", text.as_bytes(), &segue_formats::ImportOptions::default());
+    let read = segue_formats::import(
+        "spider.bvh",
+        text.as_bytes(),
+        &segue_formats::ImportOptions::default(),
+    );
     figure(&read.unwrap().clips[0].clip)
 }
 
 /// A clip in a file of another program, with a mesh around its bones.
 fn figure(clip: &segue_motion::clip::Clip) -> Arc<[u8]> {
     use segue_formats::gltf::{GlbOptions, write_glb};
-    let mut bytes = write_glb(
-        clip,
-        &GlbOptions {
-            smooth: true,
-            ..GlbOptions::default()
-        },
-    )
-    .unwrap();
+    let mut bytes = write_glb(clip, &GlbOptions { smooth: true, ..GlbOptions::default() }).unwrap();
     let at = bytes.windows(6).position(|w| w == b"Segue ").unwrap();
     bytes[at..at + 5].copy_from_slice(b"Other");
     bytes.into()
@@ -503,14 +517,16 @@ fn a_dropped_file_with_a_skin_becomes_the_character_and_drives() {
     // A character without a motion plays nothing.
     assert_eq!(session.params().text(Key::A), before);
     let outcome = Arc::clone(session.main_outcome().unwrap());
-    let drive = segue_motion::skin::Drive::new(&outcome.motion.clip, &outcome.motion.roles, &character).unwrap();
+    let drive =
+        segue_motion::skin::Drive::new(&outcome.motion.clip, &outcome.motion.roles, &character)
+            .unwrap();
     let mut transforms = Vec::new();
     drive.transforms(&outcome.motion.clip.world_pose(10), &character.mesh, &mut transforms);
     assert_eq!(transforms.len(), character.skeleton.len());
     assert!(
-        transforms
-            .iter()
-            .all(|transform| transform.translation.is_finite() && transform.rotation.is_normalized())
+        transforms.iter().all(
+            |transform| transform.translation.is_finite() && transform.rotation.is_normalized()
+        )
     );
     // It is stored with the library and comes back with it.
     let saved = session.saved();
@@ -519,9 +535,7 @@ fn a_dropped_file_with_a_skin_becomes_the_character_and_drives() {
     again.restore(&saved, |_| Some(Content::Here(Arc::clone(&bytes))), None);
     assert_eq!(again.character().unwrap().mesh, character.mesh);
     // And goes again: by the parameter, by undo, and with its clip.
-    session
-        .apply(Command::Set(vec![(Key::Character, Value::Text(String::new()))]))
-        .unwrap();
+    session.apply(Command::Set(vec![(Key::Character, Value::Text(String::new()))])).unwrap();
     assert!(session.character().is_none());
     session.apply(Command::Undo).unwrap();
     assert!(session.character().is_some());
@@ -630,12 +644,8 @@ fn files_of_an_archive_that_cannot_be_read_are_counted_before_they_are_told() {
     let files: Vec<(&str, &str)> = names.iter().map(|name| (name.as_str(), "")).collect();
     let mut session = Session::new();
     let loaded = session.load("many.zip", Arc::from(zip(&files))).unwrap();
-    let errors: Vec<&str> = session
-        .notices()
-        .errors_since(0)
-        .iter()
-        .map(|notice| notice.text.as_str())
-        .collect();
+    let errors: Vec<&str> =
+        session.notices().errors_since(0).iter().map(|notice| notice.text.as_str()).collect();
     assert_eq!(errors.len(), MOST_FAILURES + 1, "{errors:#?}");
     assert_eq!(
         errors[MOST_FAILURES],
@@ -650,7 +660,8 @@ fn limit_of_an_archive_is_told_though_nothing_in_it_can_be_read() {
     let files: Vec<(&str, &str)> = names.iter().map(|name| (name.as_str(), "")).collect();
     let mut session = Session::new();
     session.load("many.zip", Arc::from(zip(&files))).unwrap();
-    let told: Vec<&str> = session.notices().list().iter().map(|notice| notice.text.as_str()).collect();
+    let told: Vec<&str> =
+        session.notices().list().iter().map(|notice| notice.text.as_str()).collect();
     assert!(
         told.contains(&"50 motion files of the archive left out: the first 2000 are read."),
         "{told:#?}"
@@ -671,14 +682,14 @@ fn name_of_a_file_is_cleaned_and_its_id_is_short() {
     assert!(entry.id.chars().count() < 120, "{}", entry.id);
     session.load("b.asf", bytes(ASF)).unwrap();
     assert_eq!(files(&session)[0].2, 2, "it is read by that name");
-    session
-        .apply(Command::Rename(loaded.ids[0].clone(), "x\ny\u{202e}".into()))
-        .unwrap();
+    session.apply(Command::Rename(loaded.ids[0].clone(), "x\ny\u{202e}".into())).unwrap();
     assert_eq!(files(&session)[0].0, "x y");
 }
 
 fn walk_bvh() -> String {
-    let walk = segue_motion::synth::synthesize(&segue_motion::synth::Params::new(segue_motion::synth::Action::Walk));
+    let walk = segue_motion::synth::synthesize(&segue_motion::synth::Params::new(
+        segue_motion::synth::Action::Walk,
+    ));
     segue_formats::bvh::write(&walk.unwrap().clip, &segue_formats::bvh::WriteOptions::default())
 }
 
@@ -699,7 +710,8 @@ fn with_size(text: &str, factor: f64) -> String {
             .collect();
         Some(format!("{head}OFFSET {}", numbers.join(" ")))
     };
-    let lines: Vec<String> = text.lines().map(|line| offset(line).unwrap_or_else(|| line.to_owned())).collect();
+    let lines: Vec<String> =
+        text.lines().map(|line| offset(line).unwrap_or_else(|| line.to_owned())).collect();
     lines.join("\n")
 }
 
@@ -757,12 +769,8 @@ fn clip_in_a_wrong_unit_or_with_a_wild_row_is_mended_by_what_its_notice_offers()
 fn several_absurd_clips_are_mended_at_once_whether_they_come_packed_or_one_by_one() {
     let text = walk_bvh();
     let (tiny, huge, wild) = (with_size(&text, 1e-4), with_size(&text, 1e4), with_wild_row(&text));
-    let files = [
-        ("tiny.bvh", &*tiny),
-        ("usual.bvh", &*text),
-        ("huge.bvh", &*huge),
-        ("wild.bvh", &*wild),
-    ];
+    let files =
+        [("tiny.bvh", &*tiny), ("usual.bvh", &*text), ("huge.bvh", &*huge), ("wild.bvh", &*wild)];
     for is_packed in [true, false] {
         let mut session = Session::new();
         let mut ids = Vec::new();
@@ -773,17 +781,17 @@ fn several_absurd_clips_are_mended_at_once_whether_they_come_packed_or_one_by_on
                 ids.extend(session.load(name, bytes(text)).unwrap().ids);
             }
             let text = offer(&session).text;
-            assert_eq!(text, "3 clips are of a size or at a place that cannot be right: tiny, huge, wild.");
+            assert_eq!(
+                text,
+                "3 clips are of a size or at a place that cannot be right: tiny, huge, wild."
+            );
         }
         let notice = offer(&session);
         assert_eq!((ids.len(), notice.mends.len()), (4, 3), "{notice:?}");
         // What was taken away, or set by hand meanwhile, is left alone.
         let (tiny, wild) = (ids_named(&session, "tiny"), ids_named(&session, "wild"));
         session.apply(Command::Remove(ids_named(&session, "huge"))).unwrap();
-        let by_hand = ImportOptions {
-            metres_per_unit: Some(150.0),
-            ..ImportOptions::default()
-        };
+        let by_hand = ImportOptions { metres_per_unit: Some(150.0), ..ImportOptions::default() };
         session.apply(Command::Reimport(tiny.clone(), by_hand)).unwrap();
         let tall = height_metres(&session, &tiny);
         session.apply(Command::Mend(notice.id)).unwrap();
@@ -794,7 +802,9 @@ fn several_absurd_clips_are_mended_at_once_whether_they_come_packed_or_one_by_on
             session.apply(Command::Undo).unwrap();
             settle(&mut session);
         }
-        assert!(longest_step_metres(&session, &wild) > 1e17 && session.library().get(&ids[3]).is_some());
+        assert!(
+            longest_step_metres(&session, &wild) > 1e17 && session.library().get(&ids[3]).is_some()
+        );
         assert!(session.library().entries().iter().any(|entry| entry.name == "huge"));
     }
 }
@@ -835,7 +845,8 @@ fn empty_motion_is_told_as_an_empty_file_and_waits_for_no_skeleton() {
             let before = files(&session);
             let error = session.load("01_02.amc", bytes(empty)).unwrap_err().to_string();
             assert_eq!(error, "01_02.amc:1:1: found an empty file, expected a motion file");
-            let told: Vec<&str> = session.notices().list().iter().map(|notice| notice.text.as_str()).collect();
+            let told: Vec<&str> =
+                session.notices().list().iter().map(|notice| notice.text.as_str()).collect();
             assert!(told.contains(&&*error), "{told:?}");
             assert_eq!(files(&session), before, "nothing waits");
         }

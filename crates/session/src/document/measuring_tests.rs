@@ -38,20 +38,13 @@ fn opened(link: &str) -> Session {
 
 /// The first numbers of the first pane.
 fn common(session: &Session) -> Vec<Metric> {
-    session.panes()[0]
-        .result()
-        .unwrap()
-        .outcome
-        .metrics
-        .iter()
-        .take(4)
-        .copied()
-        .collect()
+    session.panes()[0].result().unwrap().outcome.metrics.iter().take(4).copied().collect()
 }
 
 #[test]
 fn every_lab_has_the_same_numbers_first_and_a_clean_result_shows_nothing() {
-    let labs: BTreeSet<&str> = LABS.iter().map(|link| link[4..].split('&').next().unwrap()).collect();
+    let labs: BTreeSet<&str> =
+        LABS.iter().map(|link| link[4..].split('&').next().unwrap()).collect();
     let Kind::Choice(all) = Key::Lab.param().kind else { panic!() };
     assert_eq!(labs, all.iter().map(|choice| choice.key).collect());
     let expected = ResultMetrics::default().list();
@@ -83,9 +76,7 @@ fn every_lab_has_the_same_numbers_first_and_a_clean_result_shows_nothing() {
             assert_eq!(found.better, Better::Lower);
         }
         let values: Vec<f64> = found.iter().map(|metric| metric.value.unwrap()).collect();
-        let [jump, _, spin, skating] = values[..] else {
-            panic!("{values:?}")
-        };
+        let [jump, _, spin, skating] = values[..] else { panic!("{values:?}") };
         assert!(jump < 6.0 && spin < 4.0 && skating < 15.0, "{link}: {values:?}");
         // A slide has one name and one measure wherever it stands, and each number stands once.
         let metrics = &session.main_outcome().unwrap().metrics;
@@ -106,12 +97,10 @@ fn spoiled(outcome: &Outcome, change: impl Fn(usize, &mut [Quat])) -> Outcome {
         rotations.extend(pose);
     }
     let roots = clip.root_translations().to_vec();
-    let clip = Clip::new("spoiled", Arc::clone(clip.skeleton()), clip.fps(), rotations, roots).unwrap();
+    let clip =
+        Clip::new("spoiled", Arc::clone(clip.skeleton()), clip.fps(), rotations, roots).unwrap();
     Outcome {
-        motion: Arc::new(Motion {
-            clip: Arc::new(clip),
-            ..Motion::clone(&outcome.motion)
-        }),
+        motion: Arc::new(Motion { clip: Arc::new(clip), ..Motion::clone(&outcome.motion) }),
         measured: Measured::Motion,
         ..outcome.clone()
     }
@@ -148,7 +137,10 @@ fn a_fault_in_the_result_of_any_lab_is_told() {
         }));
         assert!(flash.pose_jump_deg.unwrap() > 30.0, "{link}: {flash:?}");
         let at = flash.pose_jump_at.unwrap();
-        assert!(at.joint == joint && (at.frame == half || at.frame + 1 == half), "{link}: {flash:?}");
+        assert!(
+            at.joint == joint && (at.frame == half || at.frame + 1 == half),
+            "{link}: {flash:?}"
+        );
         assert!(flash.velocity_jump_dps.unwrap() > 900.0, "{link}: {flash:?}");
         let turn = 0.2 * clip.fps();
         let spin = measured(&spoiled(outcome, |frame, pose| {
@@ -162,7 +154,8 @@ fn a_fault_in_the_result_of_any_lab_is_told() {
 
 #[test]
 fn long_results_are_shown_at_once_and_measured_in_slices() {
-    let mut session = opened("lab=blend&a=walk(make_seconds:25)&b=walk(make_seconds:25)&leave_a=20&enter_b=1");
+    let mut session =
+        opened("lab=blend&a=walk(make_seconds:25)&b=walk(make_seconds:25)&leave_a=20&enter_b=1");
     let shorter = Command::Set(vec![(Key::BlendWindow, Value::Number(20.0))]);
     session.apply(shorter).unwrap();
     let outcome = Arc::clone(session.main_outcome().unwrap());

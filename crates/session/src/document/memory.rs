@@ -6,8 +6,8 @@ use crate::motion::FeetReader;
 use crate::reading::ReadTask;
 
 impl Session {
-    /// Takes what the page says of its memory. Once more than half of it is taken, motion that only steps back hold is let go: it is read again
-    /// when it comes back.
+    /// Takes what the page says of its memory. Once more than half of it is taken, motion that only
+    /// steps back hold is let go: it is read again when it comes back.
     pub fn note_memory(&mut self, page: PageMemory) {
         let memory = Memory::follow(self.memory, page, library_bytes(&self.library));
         self.memory = Some(memory);
@@ -33,7 +33,8 @@ impl Session {
         self.memory().is_some_and(|memory| needed > memory.left()).then_some(needed)
     }
 
-    /// Ends a task because there is no memory for the `needed` bytes of its clips. `None` where nobody waits for it any longer.
+    /// Ends a task because there is no memory for the `needed` bytes of its clips. `None` where
+    /// nobody waits for it any longer.
     pub fn refuse_for_memory(&mut self, task: u64, needed: u64) -> Option<Result<Loaded, String>> {
         let (name, size) = self.file_of_task(task)?;
         let memory = self.memory().unwrap_or(MemoryUse { used: 0, limit: 0 });

@@ -10,11 +10,7 @@ use segue_motion::synth::{Action, Params as SynthParams, synthesize};
 const LIMIT: u64 = 3_000_000_000;
 
 fn page(bytes: u64) -> PageMemory {
-    PageMemory {
-        bytes,
-        limit: LIMIT,
-        coming: 0,
-    }
+    PageMemory { bytes, limit: LIMIT, coming: 0 }
 }
 
 fn walk() -> Arc<[u8]> {

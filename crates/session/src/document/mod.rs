@@ -23,8 +23,13 @@ pub use teaching::{Lesson, LessonPage};
 
 use super::command::{Command, CommandError, Request};
 use super::compare::Compare;
-use super::labs::{CycleMade, DistanceMap, LabSet, Outcome, Slot, read_also, read_pins, read_weights};
-use super::labs::{is_as_it_is, made_motion_has, middle_mps, range_of, recipe_id, recipe_name, recipe_params, synth_action};
+use super::labs::{
+    CycleMade, DistanceMap, LabSet, Outcome, Slot, read_also, read_pins, read_weights,
+};
+use super::labs::{
+    is_as_it_is, made_motion_has, middle_mps, range_of, recipe_id, recipe_name, recipe_params,
+    synth_action,
+};
 use super::lesson::Shelf;
 use super::library::{Entry, Library, Origin};
 use super::link;
@@ -115,8 +120,8 @@ impl Session {
         Self::that_reads(Some(read))
     }
 
-    /// One that asks for every file to be read elsewhere ([`Request::Read`]), however small. A page that only has this one needs no code that reads
-    /// files.
+    /// One that asks for every file to be read elsewhere ([`Request::Read`]), however small. A page
+    /// that only has this one needs no code that reads files.
     #[must_use]
     pub fn that_has_files_read() -> Self {
         Self::that_reads(None)
@@ -230,14 +235,16 @@ impl Session {
     pub fn query(&self) -> String {
         let query = link::write(&self.params);
         if self.would_set_up() {
-            // The lab, which is named only where it is not the first one, says that there is a state besides.
+            // The lab, which is named only where it is not the first one, says that there is a
+            // state besides.
             format!("{query}&{}={}", Key::Lab.param().name, self.params.lab().word())
         } else {
             query
         }
     }
 
-    /// Returns what the panes have of a choice: the values that are compared, or the one that is set.
+    /// Returns what the panes have of a choice: the values that are compared, or the one that is
+    /// set.
     #[must_use]
     pub fn choices<C: Selected>(&self) -> Vec<C> {
         match self.compare().filter(|compare| compare.key == C::KEY) {
@@ -252,13 +259,15 @@ impl Session {
         Compare::parse(self.params.text(Key::Compare)).ok()
     }
 
-    /// What is on the stage in the pane that stands for all where only one can: the first. As [`Pane::outcome`], it may be of earlier parameters.
+    /// What is on the stage in the pane that stands for all where only one can: the first. As
+    /// [`Pane::outcome`], it may be of earlier parameters.
     #[must_use]
     pub fn main_outcome(&self) -> Option<&Arc<Outcome>> {
         self.panes.first().and_then(|pane| pane.outcome.as_ref())
     }
 
-    /// The duration of the longest result, of the clips that stand in for one that cannot be made, or of who plays along, seconds.
+    /// The duration of the longest result, of the clips that stand in for one that cannot be made,
+    /// or of who plays along, seconds.
     #[must_use]
     pub fn duration_secs(&self) -> f64 {
         let results = self.panes.iter().filter_map(|pane| pane.outcome.as_ref());
@@ -280,23 +289,30 @@ impl Session {
     /// The part that plays.
     #[must_use]
     pub fn span(&self) -> Span {
-        Span::between(self.params.optional(Key::In), self.params.optional(Key::Out), self.duration_secs())
+        Span::between(
+            self.params.optional(Key::In),
+            self.params.optional(Key::Out),
+            self.duration_secs(),
+        )
     }
 
-    /// The character that is moved in place of bodies made around bones: the one of the clip that the parameter `character` names.
+    /// The character that is moved in place of bodies made around bones: the one of the clip that
+    /// the parameter `character` names.
     #[must_use]
     pub fn character(&self) -> Option<Character> {
         self.library.find(self.params.text(Key::Character))?.character()
     }
 
-    /// Why the chosen character is not to be seen, in a sentence: what is on the stage cannot move it. `None` where it can, or none is chosen.
+    /// Why the chosen character is not to be seen, in a sentence: what is on the stage cannot move
+    /// it. `None` where it can, or none is chosen.
     #[must_use]
     pub fn character_note(&self) -> Option<String> {
         let entry = self.library.find(self.params.text(Key::Character))?;
         let character = entry.character()?;
         let shown = self.panes.iter().filter_map(|pane| pane.outcome.as_ref());
         let mut motions = shown.map(|outcome| &outcome.motion);
-        let moves = |motion: &Arc<Motion>| character.is_moved_by(motion.clip.skeleton(), &motion.roles);
+        let moves =
+            |motion: &Arc<Motion>| character.is_moved_by(motion.clip.skeleton(), &motion.roles);
         let is_left_out = motions.any(|motion| !moves(motion));
         is_left_out.then(|| {
             format!(
@@ -330,7 +346,8 @@ impl Session {
         if self.params.is_on(Key::Play) && self.drive_on(dt_secs * self.params.number(Key::Rate)) {
             changed = true;
         } else if self.is_playing() && !self.is_own_drive() {
-            let (span, before, rate) = (self.span(), self.now_secs(), self.params.number(Key::Rate));
+            let (span, before, rate) =
+                (self.span(), self.now_secs(), self.params.number(Key::Rate));
             let (now, moving) = span.advance(before, dt_secs, rate, self.params.is_on(Key::Loop));
             let rounds = span.rounds(before, dt_secs, rate);
             if moving && rounds > 0 {
@@ -347,7 +364,8 @@ impl Session {
         self.glide(gait_secs) || changed
     }
 
-    /// Whether time moves anything. Where nothing is there yet, playing is not over: what comes then plays.
+    /// Whether time moves anything. Where nothing is there yet, playing is not over: what comes
+    /// then plays.
     #[must_use]
     pub fn is_playing(&self) -> bool {
         self.params.is_on(Key::Play) && (self.is_driven() || self.duration_secs() > 0.0)
@@ -402,11 +420,7 @@ impl Session {
             Command::ReplayDrive => self.replay_driving()?,
             Command::Seek(_) if self.is_driven() => {}
             Command::Seek(secs) => {
-                let to = if secs.is_finite() {
-                    secs.clamp(0.0, self.duration_secs())
-                } else {
-                    0.0
-                };
+                let to = if secs.is_finite() { secs.clamp(0.0, self.duration_secs()) } else { 0.0 };
                 self.set_unchecked(Key::Time, Value::Number(to));
             }
             Command::Step(frames) => self.step(frames),
@@ -418,10 +432,16 @@ impl Session {
                 self.set_unchecked(Key::Play, Value::Switch(!playing));
             }
             Command::Compare(key) => {
-                let full = self.params.optional(key).or_else(|| self.automatic_value(key)).unwrap_or_default();
+                let full = self
+                    .params
+                    .optional(key)
+                    .or_else(|| self.automatic_value(key))
+                    .unwrap_or_default();
                 let compare = Compare::full_half_third(key, full, self.range_of(key))
                     .or_else(|| Compare::choices(key, self.params.get(key)))
-                    .ok_or(CommandError::NotPossible("only a number or a choice of the lab can be compared"))?;
+                    .ok_or(CommandError::NotPossible(
+                        "only a number or a choice of the lab can be compared",
+                    ))?;
                 self.set(vec![(Key::Compare, Value::Text(compare.to_string()))])?;
                 self.history.settle();
             }
@@ -430,7 +450,9 @@ impl Session {
             Command::Undo | Command::Redo => {
                 let (params, library) = (&mut self.params, &mut self.library);
                 let undoes = matches!(command, Command::Undo);
-                if (undoes && self.history.undo(params, library)) || (!undoes && self.history.redo(params, library)) {
+                if (undoes && self.history.undo(params, library))
+                    || (!undoes && self.history.redo(params, library))
+                {
                     self.library_revision += 1;
                     // What had not been read by then.
                     self.read_stored(Vec::new());
@@ -454,7 +476,9 @@ impl Session {
         let outcome = self.main_outcome()?;
         let (transition, made) = (outcome.transition, outcome.cycle.map(|cycle| cycle.made));
         match (key, made) {
-            (Key::Speed, Some(CycleMade::Gait { clips_mps, .. })) => return Some(middle_mps(clips_mps)),
+            (Key::Speed, Some(CycleMade::Gait { clips_mps, .. })) => {
+                return Some(middle_mps(clips_mps));
+            }
             (Key::LoopFrom, Some(CycleMade::Cut { from_secs, .. })) => return Some(from_secs),
             (Key::LoopTo, Some(CycleMade::Cut { to_secs, .. })) => return Some(to_secs),
             _ => {}
@@ -464,27 +488,33 @@ impl Session {
             Key::EnterB => transition.map(|t| t.enter_b_secs),
             Key::MixFrameA => self.frame_in(Slot::A, transition?.leave_a_secs),
             Key::MixFrameB => self.frame_in(Slot::B, transition?.enter_b_secs),
-            Key::GaitSpeed => Some(f64::from(synth::Params::new(synth_action(&self.params)).speed_mps)),
+            Key::GaitSpeed => {
+                Some(f64::from(synth::Params::new(synth_action(&self.params)).speed_mps))
+            }
             Key::WarpFrom => Some(outcome.registered.as_ref()?.part_secs[0]),
             Key::WarpTo => Some(outcome.registered.as_ref()?.part_secs[1]),
             Key::WarpSmoothing => Some((0.1 * outcome.motion.clip.fps()).round()),
             Key::Ground => Some(f64::from(outcome.motion.ground_m) * 100.0),
             Key::PlaceX => Some(to_step(outcome.motion.standing_at(0.0).shift.x, 0.01)),
             Key::PlaceZ => Some(to_step(outcome.motion.standing_at(0.0).shift.y, 0.01)),
-            Key::PlaceHeading => Some(to_step(outcome.motion.standing_at(0.0).yaw.to_degrees(), 0.1)),
+            Key::PlaceHeading => {
+                Some(to_step(outcome.motion.standing_at(0.0).yaw.to_degrees(), 0.1))
+            }
             Key::In => Some(0.0),
             Key::Out => Some(self.duration_secs()),
             _ => None,
         }
     }
 
-    /// Whether the View lab shows its clip otherwise than it is: with its feet held, moved, or in place.
+    /// Whether the View lab shows its clip otherwise than it is: with its feet held, moved, or in
+    /// place.
     #[must_use]
     pub fn view_is_changed(&self) -> bool {
         self.params.lab() == LabId::View && !is_as_it_is(&self.params)
     }
 
-    /// The distances that the Register lab looks at: those of the first pane, newer ones where it has no result for them.
+    /// The distances that the Register lab looks at: those of the first pane, newer ones where it
+    /// has no result for them.
     #[must_use]
     pub fn distance_map(&self) -> Option<&Arc<DistanceMap>> {
         if self.params.lab() != LabId::Register {
@@ -502,7 +532,8 @@ impl Session {
         read_pins(self.params.text(Key::Pins)).unwrap_or_default()
     }
 
-    /// The weight of B over the course of a registered blend, in per cent of both; empty where it stays the same, or cannot be read.
+    /// The weight of B over the course of a registered blend, in per cent of both; empty where it
+    /// stays the same, or cannot be read.
     #[must_use]
     pub fn weight_keys(&self) -> Vec<(usize, usize)> {
         read_weights(self.params.text(Key::WarpCurve)).unwrap_or_default()
@@ -599,7 +630,8 @@ impl Session {
         made_motion_has(&self.params, key)
     }
 
-    /// What of a number's range makes sense now, where that is less than the table says: the speeds and lengths of a made motion.
+    /// What of a number's range makes sense now, where that is less than the table says: the speeds
+    /// and lengths of a made motion.
     #[must_use]
     pub fn range_of(&self, key: Key) -> Option<(f64, f64)> {
         range_of(&self.params, key)
@@ -608,19 +640,17 @@ impl Session {
     /// The addresses of files that were not named before. `had` is the parameter as it was.
     fn sources_beyond(&self, had: &str) -> Vec<String> {
         let is_new = |address: &&str| had.split_whitespace().all(|known| known != *address);
-        self.params
-            .text(Key::Src)
-            .split_whitespace()
-            .filter(is_new)
-            .map(str::to_owned)
-            .collect()
+        self.params.text(Key::Src).split_whitespace().filter(is_new).map(str::to_owned).collect()
     }
 
     fn fetch(&mut self, addresses: Vec<String>) {
         if addresses.len() > MOST_SOURCES {
             self.say(
                 Level::Warning,
-                format!("The link names {} files; the first {MOST_SOURCES} are loaded.", addresses.len()),
+                format!(
+                    "The link names {} files; the first {MOST_SOURCES} are loaded.",
+                    addresses.len()
+                ),
             );
         }
         for address in addresses.into_iter().take(MOST_SOURCES) {
@@ -638,7 +668,11 @@ impl Session {
         }
     }
 
-    fn change_entry(&mut self, id: &str, change: impl FnOnce(&mut Entry)) -> Result<(), CommandError> {
+    fn change_entry(
+        &mut self,
+        id: &str,
+        change: impl FnOnce(&mut Entry),
+    ) -> Result<(), CommandError> {
         if self.library.find(id).is_none() {
             return Err(CommandError::NoClip(id.to_owned()));
         }
@@ -649,7 +683,8 @@ impl Session {
     }
 
     fn remove(&mut self, id: &str) -> Result<(), CommandError> {
-        let entry = Arc::clone(self.library.find(id).ok_or_else(|| CommandError::NoClip(id.to_owned()))?);
+        let entry =
+            Arc::clone(self.library.find(id).ok_or_else(|| CommandError::NoClip(id.to_owned()))?);
         self.remember(None);
         self.library.remove(&entry.id);
         self.leave_company(&entry.id);
@@ -678,12 +713,15 @@ impl Session {
         Ok(())
     }
 
-    fn correct_role(&mut self, id: &str, role: segue_motion::skeleton::Role, joint: Option<usize>) -> Result<(), CommandError> {
+    fn correct_role(
+        &mut self,
+        id: &str,
+        role: segue_motion::skeleton::Role,
+        joint: Option<usize>,
+    ) -> Result<(), CommandError> {
         let entry = self.library.find(id).ok_or_else(|| CommandError::NoClip(id.to_owned()))?;
-        let motion = entry
-            .motion
-            .as_ref()
-            .ok_or(CommandError::NotPossible("the clip is not loaded yet"))?;
+        let motion =
+            entry.motion.as_ref().ok_or(CommandError::NotPossible("the clip is not loaded yet"))?;
         if joint.is_some_and(|joint| joint >= motion.clip.skeleton().len()) {
             return Err(CommandError::NotPossible("the skeleton has no such joint"));
         }
@@ -708,7 +746,8 @@ impl Session {
     /// Puts a pane's result into the library.
     fn keep(&mut self, pane: usize) -> Result<(), CommandError> {
         let made = self.pane(pane)?.recipe()?;
-        let (params, outcome) = (self.with_recording(made.params.clone()), Arc::clone(made.outcome));
+        let (params, outcome) =
+            (self.with_recording(made.params.clone()), Arc::clone(made.outcome));
         if outcome.walk.as_ref().is_some_and(|walk| walk.is_guided) {
             return Err(CommandError::NotPossible(
                 "this walk goes like the one in the first pane: open it alone to keep it",
@@ -778,12 +817,11 @@ fn to_step(value: f64, step: f64) -> f64 {
 
 /// What the library holds at first.
 fn preset_entries() -> impl Iterator<Item = Entry> {
-    synth::presets()
-        .into_iter()
-        .map(|preset| Entry::new(preset.id, preset.title, Origin::Preset))
+    synth::presets().into_iter().map(|preset| Entry::new(preset.id, preset.title, Origin::Preset))
 }
 
-/// What comes with Segue: the presets, and the bundled takes, which join the library when they are asked for.
+/// What comes with Segue: the presets, and the bundled takes, which join the library when they are
+/// asked for.
 fn built_in_entries() -> impl Iterator<Item = Entry> {
     preset_entries().chain(samples::all().map(bundled::sample_entry))
 }

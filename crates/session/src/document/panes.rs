@@ -1,4 +1,5 @@
-//! From the library and the parameters to results: what has changed is computed again, and nothing else.
+//! From the library and the parameters to results: what has changed is computed again, and nothing
+//! else.
 
 use super::Session;
 use super::going_round::{Glide, durations};
@@ -15,18 +16,20 @@ use std::sync::Arc;
 
 /// One pane of the stage: a result under one value of the compared parameter.
 ///
-/// What is shown and what is handed on are not the same: while a result is computed, an older one may stay on the stage. Whatever hands a
-/// result on (as a clip, a file, a number, a report) takes it from [`Pane::result`].
+/// What is shown and what is handed on are not the same: while a result is computed, an older one
+/// may stay on the stage. Whatever hands a result on (as a clip, a file, a number, a report) takes
+/// it from [`Pane::result`].
 #[derive(Clone, Debug, Default)]
 pub struct Pane {
     /// The compared parameter and this pane's value; `None` when there is nothing to compare.
     pub variant: Option<(Key, Value)>,
-    /// What is on the stage: the result, or, while that is computed, an earlier one ([`Pane::is_outdated`]). Always `None` beside a
-    /// [`problem`](Self::problem).
+    /// What is on the stage: the result, or, while that is computed, an earlier one
+    /// ([`Pane::is_outdated`]). Always `None` beside a [`problem`](Self::problem).
     pub outcome: Option<Arc<Outcome>>,
     /// Why the result cannot be made: what is missing and what to do.
     pub problem: Option<String>,
-    /// The clips that the result would have been made of, as they lie on the stage in its place. Empty where there is no problem.
+    /// The clips that the result would have been made of, as they lie on the stage in its place.
+    /// Empty where there is no problem.
     pub sources: Vec<Source>,
     /// What `outcome` was made from.
     made_from: Option<Arc<Params>>,
@@ -44,7 +47,8 @@ enum Standing {
     /// It is of earlier parameters; that of the present ones is being computed.
     #[default]
     Earlier,
-    /// It is of the present parameters, and not finished: its place is not found yet, or its feet are not planted.
+    /// It is of the present parameters, and not finished: its place is not found yet, or its feet
+    /// are not planted.
     Draft,
     /// It is the result.
     Finished,
@@ -59,11 +63,7 @@ impl Standing {
 /// What becomes of a pane.
 pub(super) enum Answer {
     /// The result, or a draft of it.
-    Made {
-        outcome: Arc<Outcome>,
-        is_draft: bool,
-        inputs: Option<Inputs>,
-    },
+    Made { outcome: Arc<Outcome>, is_draft: bool, inputs: Option<Inputs> },
     /// What it shows is the result of the present parameters, too, or a draft of it.
     Same { is_draft: bool },
     /// The result is being computed.
@@ -107,7 +107,8 @@ impl Pane {
     /// The result of the present parameters, to be kept, saved, measured or told of.
     ///
     /// # Errors
-    /// [`NoResult`] where it cannot be made, and while it is computed: what is on the stage then is of earlier parameters, or a draft.
+    /// [`NoResult`] where it cannot be made, and while it is computed: what is on the stage then is
+    /// of earlier parameters, or a draft.
     pub fn result(&self) -> Result<Made<'_>, NoResult> {
         if let Some(problem) = &self.problem {
             return Err(NoResult::Refused(problem.clone()));
@@ -115,7 +116,8 @@ impl Pane {
         self.made().filter(|_| self.standing == Standing::Finished).ok_or(NoResult::Awaited)
     }
 
-    /// As [`Pane::result`], for what makes it anew from its parameters: its feet may still have to be planted.
+    /// As [`Pane::result`], for what makes it anew from its parameters: its feet may still have to
+    /// be planted.
     pub(super) fn recipe(&self) -> Result<Made<'_>, NoResult> {
         let drafted = self
             .made()
@@ -135,20 +137,23 @@ impl Pane {
         self.made().map(|made| made.params)
     }
 
-    /// The compared parameter and its value in what is on the stage; without anything there, in what is asked for.
+    /// The compared parameter and its value in what is on the stage; without anything there, in
+    /// what is asked for.
     #[must_use]
     pub fn compared(&self) -> Option<(Key, &Value)> {
         let (key, value) = self.variant.as_ref()?;
         Some((*key, self.made_from().map_or(value, |from| from.get(*key))))
     }
 
-    /// Whether the result on the stage is of earlier parameters: that of the present ones is being computed.
+    /// Whether the result on the stage is of earlier parameters: that of the present ones is being
+    /// computed.
     #[must_use]
     pub fn is_outdated(&self) -> bool {
         self.outcome.is_some() && self.standing == Standing::Earlier
     }
 
-    /// Takes the answer to what `params` ask for. Every lab's comes here: where there is no result, no earlier one stands for it.
+    /// Takes the answer to what `params` ask for. Every lab's comes here: where there is no result,
+    /// no earlier one stands for it.
     pub(super) fn take(&mut self, answer: Answer, params: &Arc<Params>) {
         self.problem = None;
         self.sources.clear();
@@ -177,9 +182,11 @@ impl Pane {
         }
     }
 
-    /// Puts the numbers that every lab has first in the list of a new result. Until they are measured it is a draft.
+    /// Puts the numbers that every lab has first in the list of a new result. Until they are
+    /// measured it is a draft.
     pub(super) fn measure(&mut self, gauge: &mut Gauge) {
-        let Some(outcome) = self.outcome.as_mut().filter(|_| self.standing != Standing::Earlier) else {
+        let Some(outcome) = self.outcome.as_mut().filter(|_| self.standing != Standing::Earlier)
+        else {
             return;
         };
         if outcome.is_measured {
@@ -205,8 +212,8 @@ impl Pane {
         self.standing = Standing::Earlier;
     }
 
-    /// What is shown at a time of the timeline; nothing while there is no result. A result that goes round and is shorter than the timeline begins
-    /// again, and walks on from where it is.
+    /// What is shown at a time of the timeline; nothing while there is no result. A result that
+    /// goes round and is shorter than the timeline begins again, and walks on from where it is.
     #[must_use]
     pub fn shown_at(&self, secs: f64) -> Option<Shown<'_>> {
         let own = self.outcome.as_ref()?;
@@ -216,11 +223,7 @@ impl Pane {
         });
         let (outcome, secs) = gliding.unwrap_or((own, secs));
         let (secs, place) = outcome.around(secs);
-        Some(Shown {
-            outcome,
-            secs,
-            place: self.place.after(&place),
-        })
+        Some(Shown { outcome, secs, place: self.place.after(&place) })
     }
 }
 
@@ -238,7 +241,8 @@ pub struct Job {
 }
 
 impl Session {
-    /// One slice of the work that is left over when a change would take longer than a frame. `true` while there is more.
+    /// One slice of the work that is left over when a change would take longer than a frame. `true`
+    /// while there is more.
     pub fn work(&mut self) -> bool {
         if self.labs.work(self.params.number(Key::Time)) {
             return true;
@@ -252,12 +256,15 @@ impl Session {
         self.make_next()
     }
 
-    /// Makes one built-in clip that was not needed yet, so that the library can tell what it is. `false` when all are made.
+    /// Makes one built-in clip that was not needed yet, so that the library can tell what it is.
+    /// `false` when all are made.
     pub(super) fn make_next(&mut self) -> bool {
         // What another lab made takes its time, and is made when it is used.
         let is_quick = |entry: &Entry| match entry.origin {
             Origin::Preset => true,
-            Origin::Made => recipe_params(&entry.id).is_some_and(|params| params.lab() == LabId::Make),
+            Origin::Made => {
+                recipe_params(&entry.id).is_some_and(|params| params.lab() == LabId::Make)
+            }
             _ => false,
         };
         let unmade = |entry: &&Arc<Entry>| entry.motion.is_none() && is_quick(entry);
@@ -310,13 +317,16 @@ impl Session {
             }
             Origin::Preset => Arc::new(preset_motion(&id)?),
             Origin::Made => {
-                let params = recipe_params(&id).ok_or_else(|| format!("`{}` names no motion.", outside::short(&id)))?;
+                let params = recipe_params(&id)
+                    .ok_or_else(|| format!("`{}` names no motion.", outside::short(&id)))?;
                 self.made_again(&params)?
             }
             Origin::File(file) if entry.awaits_skeleton() => {
                 return Err(format!("{} waits for its skeleton: drop its .asf file.", file.name));
             }
-            Origin::File(_) if entry.unread.is_some() => return Err(entry.unread.clone().unwrap_or_default()),
+            Origin::File(_) if entry.unread.is_some() => {
+                return Err(entry.unread.clone().unwrap_or_default());
+            }
             Origin::File(file) => {
                 let file = file.clone();
                 if !self.read_anew(&file, None).map_err(|error| error.to_string())? {
@@ -337,14 +347,20 @@ impl Session {
         Ok(motion)
     }
 
-    /// The motions of several clips with their feet read as the parameters ask for, as [`Self::motions_of`].
-    fn motions_read(&mut self, ids: &[String], params: &Params) -> Result<Vec<Arc<Motion>>, String> {
+    /// The motions of several clips with their feet read as the parameters ask for, as
+    /// [`Self::motions_of`].
+    fn motions_read(
+        &mut self,
+        ids: &[String],
+        params: &Params,
+    ) -> Result<Vec<Arc<Motion>>, String> {
         let motions = self.motions_of(ids)?;
         let reading = FeetReading::of(params);
         Ok(motions.iter().map(|motion| self.feet.read(motion, reading)).collect())
     }
 
-    /// The motions of several clips. What is not there yet is made or asked for, all of it, before the first that is missing is told.
+    /// The motions of several clips. What is not there yet is made or asked for, all of it, before
+    /// the first that is missing is told.
     pub(super) fn motions_of(&mut self, ids: &[String]) -> Result<Vec<Arc<Motion>>, String> {
         let motion = |id: &String| {
             self.bring(id);
@@ -380,8 +396,8 @@ impl Session {
         params
     }
 
-    /// What a person calls that in which a pane differs from the others: the value with its unit, or the clip's name. `None` where there is nothing
-    /// to compare.
+    /// What a person calls that in which a pane differs from the others: the value with its unit,
+    /// or the clip's name. `None` where there is nothing to compare.
     #[must_use]
     pub fn variant_name(&self, pane: &Pane) -> Option<String> {
         let (key, value) = pane.compared()?;
@@ -445,7 +461,8 @@ impl Session {
         self.refresh_company();
     }
 
-    /// Where a result cannot be made, the clips that it was to be made of stand in its place, as far as they are there.
+    /// Where a result cannot be made, the clips that it was to be made of stand in its place, as
+    /// far as they are there.
     fn stand_in(&mut self) {
         for index in 0..self.panes.len() {
             let Some(pane) = self.panes.get(index).filter(|pane| pane.problem.is_some()) else {
@@ -464,29 +481,23 @@ impl Session {
         }
     }
 
-    /// The clips that the lab of the parameters makes its result from. All are asked for before the first that is missing is told: what is to be
-    /// fetched comes together.
+    /// The clips that the lab of the parameters makes its result from. All are asked for before the
+    /// first that is missing is told: what is to be fetched comes together.
     pub(super) fn lab_clips(&mut self, params: &Params) -> Result<LabClips, String> {
         let lab = lab::of(params.lab());
         let slots: Vec<_> = (lab.slots().iter())
             .map(|slot| self.motion_read(params.text(slot.key()), params))
             .collect();
         let ids = lab.more_clips(params)?;
-        let motions = if lab.has_feet() {
-            self.motions_read(&ids, params)
-        } else {
-            self.motions_of(&ids)
-        };
+        let motions =
+            if lab.has_feet() { self.motions_read(&ids, params) } else { self.motions_of(&ids) };
         let slots = slots.into_iter().collect::<Result<_, _>>()?;
         let more = ids.into_iter().zip(motions?).map(|(id, motion)| MoreClip {
             name: self.library.find(&id).map_or_else(|| id.clone(), |entry| entry.name.clone()),
             id,
             motion,
         });
-        Ok(LabClips {
-            slots,
-            more: more.collect(),
-        })
+        Ok(LabClips { slots, more: more.collect() })
     }
 
     /// What a pane's result depends on; `None` while that is still being computed.
@@ -498,9 +509,9 @@ impl Session {
     fn refresh_pane(&mut self, pane: &mut Pane, params: &Arc<Params>, match_window: usize) {
         let answer = match self.inputs(params, match_window) {
             Ok(None) => Answer::Awaited,
-            Ok(Some(inputs)) if pane.inputs.as_ref() == Some(&inputs) => Answer::Same {
-                is_draft: inputs.is_draft(),
-            },
+            Ok(Some(inputs)) if pane.inputs.as_ref() == Some(&inputs) => {
+                Answer::Same { is_draft: inputs.is_draft() }
+            }
             Ok(Some(inputs)) => match inputs.run() {
                 Ok(outcome) => Answer::Made {
                     outcome: Arc::new(outcome),
@@ -515,7 +526,8 @@ impl Session {
     }
 }
 
-/// Clips on the stage, the first on the left of the second, as seen from behind; one alone lies where its file has it.
+/// Clips on the stage, the first on the left of the second, as seen from behind; one alone lies
+/// where its file has it.
 fn beside_each_other(clips: Vec<(Slot, Arc<Motion>)>) -> Vec<Source> {
     /// From the middle to either side, metres.
     const ASIDE_METRES: f64 = 0.6;
@@ -523,15 +535,17 @@ fn beside_each_other(clips: Vec<(Slot, Arc<Motion>)>) -> Vec<Source> {
         return Vec::new();
     };
     let alone = clips.len() == 1;
-    let placed = clips.into_iter().zip([ASIDE_METRES, -ASIDE_METRES]).map(|((slot, motion), side)| {
-        let aside = Planar::new(0.0, if alone { 0.0 } else { side }, 0.0);
-        let world_from_clip = stands.after(&aside).after(&motion.standing_at(0.0).inverse());
-        Source::new(slot, &motion, 0.0, world_from_clip)
-    });
+    let placed =
+        clips.into_iter().zip([ASIDE_METRES, -ASIDE_METRES]).map(|((slot, motion), side)| {
+            let aside = Planar::new(0.0, if alone { 0.0 } else { side }, 0.0);
+            let world_from_clip = stands.after(&aside).after(&motion.standing_at(0.0).inverse());
+            Source::new(slot, &motion, 0.0, world_from_clip)
+        });
     placed.collect()
 }
 
-/// The window that the automatic match uses: one for all panes, so that they differ in the compared value alone.
+/// The window that the automatic match uses: one for all panes, so that they differ in the compared
+/// value alone.
 fn widest_window(params: &Params, compare: Option<&Compare>) -> usize {
     let windows = compare
         .filter(|compare| compare.key == Key::BlendWindow)
@@ -540,9 +554,5 @@ fn widest_window(params: &Params, compare: Option<&Compare>) -> usize {
         Value::Number(frames) => widest.max(*frames),
         _ => widest,
     });
-    if widest > 0.0 {
-        widest as usize
-    } else {
-        params.number(Key::BlendWindow) as usize
-    }
+    if widest > 0.0 { widest as usize } else { params.number(Key::BlendWindow) as usize }
 }

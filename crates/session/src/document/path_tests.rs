@@ -40,12 +40,17 @@ fn a_path_that_nobody_edited_gives_the_clip_back() {
         let original = path(&session).fitted.motion();
         assert_eq!(made.clip.frames(), original.clip.frames());
         for frame in 0..made.clip.frames() {
-            let apart = made.clip.root_translations()[frame].distance(original.clip.root_translations()[frame]);
+            let apart = made.clip.root_translations()[frame]
+                .distance(original.clip.root_translations()[frame]);
             assert!(apart < 1e-4, "{keep}, frame {frame}: {apart} m");
-            let stands = made.ground_frames[frame].shift.distance(original.ground_frames[frame].shift);
+            let stands =
+                made.ground_frames[frame].shift.distance(original.ground_frames[frame].shift);
             assert!(stands < 1e-4, "{keep}, frame {frame}: {stands} m");
         }
-        assert!((metric(&session, "foot_slide_cm") - metric(&session, "foot_slide_original_cm")).abs() < 0.05);
+        assert!(
+            (metric(&session, "foot_slide_cm") - metric(&session, "foot_slide_original_cm")).abs()
+                < 0.05
+        );
     }
 }
 
@@ -58,7 +63,9 @@ fn a_dragged_point_takes_the_character_with_it_and_is_one_step() {
         let value = {
             let spline = fitted.road().spline();
             let to = spline.points()[4] + DVec2::new(0.2 * f64::from(step), 0.0);
-            Value::Text(spline.edited(&PathEdit::Move { index: 4, to }, Pins::default()).unwrap().to_code())
+            Value::Text(
+                spline.edited(&PathEdit::Move { index: 4, to }, Pins::default()).unwrap().to_code(),
+            )
         };
         set(&mut session, Key::Path, value);
         assert!(Arc::ptr_eq(&path(&session).fitted, &fitted), "the fit stays while a point moves");
@@ -94,7 +101,10 @@ fn where_a_character_stands_is_where_its_clip_has_it() {
             let turned = segue_motion::math::wrap_angle(told.yaw - measured.yaw).abs();
             // Planted feet pull at the hips a little.
             let tolerance = if link == "foot_lock=on" { 0.05 } else { 0.003 };
-            assert!(apart < tolerance && turned < 0.02, "{link}, frame {frame}: {apart} m, {turned} rad");
+            assert!(
+                apart < tolerance && turned < 0.02,
+                "{link}, frame {frame}: {apart} m, {turned} rad"
+            );
         }
     }
 }
@@ -117,15 +127,8 @@ fn what_is_no_path_says_so_and_loses_nothing() {
     session.apply(Command::Reset(Key::Path)).unwrap();
     assert!(!path(&session).is_edited);
     // Closed and crossing itself is fine.
-    let eight = [
-        (0.0, 0.0),
-        (2.0, 1.0),
-        (2.0, -1.0),
-        (-2.0, 1.0),
-        (-2.0, -1.0),
-        (-1.0, 0.5),
-        (0.0, 0.0),
-    ];
+    let eight =
+        [(0.0, 0.0), (2.0, 1.0), (2.0, -1.0), (-2.0, 1.0), (-2.0, -1.0), (-1.0, 0.5), (0.0, 0.0)];
     let eight = GroundSpline::uniform(eight.map(DVec2::from).to_vec()).unwrap();
     let closed = eight.edited(&PathEdit::Close, Pins::default()).unwrap();
     set(&mut session, Key::Path, Value::Text(closed.to_code()));
@@ -173,10 +176,12 @@ fn characters_on_paths_of_their_own_play_together_from_a_link() {
     session.apply(Command::Settle).unwrap();
 
     let other = open(&session.query());
-    let names = |session: &Session| session.company().iter().map(|one| one.id.clone()).collect::<Vec<_>>();
+    let names =
+        |session: &Session| session.company().iter().map(|one| one.id.clone()).collect::<Vec<_>>();
     assert_eq!(names(&other), [id.clone(), "run".to_owned()]);
     for (one, two) in session.company().iter().zip(other.company()) {
-        let [one, two] = [one, two].map(|companion| Arc::clone(&companion.motion.as_ref().unwrap().clip));
+        let [one, two] =
+            [one, two].map(|companion| Arc::clone(&companion.motion.as_ref().unwrap().clip));
         assert_eq!(one.root_translations(), two.root_translations());
     }
     assert!(other.duration_secs() >= other.company()[1].duration_secs().unwrap());
@@ -230,11 +235,15 @@ fn feet_of_a_short_clip_are_held_on_its_own_ground() {
     let session = open("lab=path&a=run&foot_lock=on&ground=4");
     let free = open("lab=path&a=run&ground=4");
     let carried = &free.main_outcome().unwrap().motion;
-    let options = segue_motion::transition::FootLockOptions {
-        ground_m: Some(0.04),
-        ..Default::default()
-    };
-    let locked = segue_motion::transition::foot_lock(&carried.clip, &carried.roles, &carried.contacts, &options).unwrap();
+    let options =
+        segue_motion::transition::FootLockOptions { ground_m: Some(0.04), ..Default::default() };
+    let locked = segue_motion::transition::foot_lock(
+        &carried.clip,
+        &carried.roles,
+        &carried.contacts,
+        &options,
+    )
+    .unwrap();
     let clip = &session.main_outcome().unwrap().motion.clip;
     assert!((0..clip.frames()).all(|frame| clip.rotations(frame) == locked.rotations(frame)));
     assert!(!path(&session).awaits_feet);
@@ -246,7 +255,9 @@ const LONG: &str = "walk(make_seconds:12)";
 #[test]
 fn the_feet_of_a_long_walk_are_planted_when_the_hand_rests() {
     let mut session = Session::new();
-    let open = |session: &mut Session, query: &str| session.apply(Command::OpenLink(query.to_owned())).unwrap();
+    let open = |session: &mut Session, query: &str| {
+        session.apply(Command::OpenLink(query.to_owned())).unwrap()
+    };
     open(&mut session, &format!("lab=path&a={LONG}&foot_lock=on"));
     assert!(path(&session).awaits_feet);
     assert!(session.jobs().iter().any(|job| job.kind == JobKind::HoldingFeet));
@@ -273,7 +284,13 @@ fn the_feet_of_a_long_walk_are_planted_when_the_hand_rests() {
     let frames = carried.ground_frames.iter().zip(&known.ground_frames);
     let turns: Vec<f64> = frames.map(|(new, old)| new.yaw - old.yaw).collect();
     let options = segue_motion::transition::FootLockOptions::default();
-    let locking = segue_motion::transition::FootLocking::new(Arc::clone(&carried.clip), roles, &carried.contacts, &options).unwrap();
+    let locking = segue_motion::transition::FootLocking::new(
+        Arc::clone(&carried.clip),
+        roles,
+        &carried.contacts,
+        &options,
+    )
+    .unwrap();
     let locked = locking.with_body_yaws(&turns).finish().unwrap();
     let apart = locked.rotations(300).iter().zip(now.motion.clip.rotations(300));
     assert!(apart.map(|(a, b)| a.angle_between(*b)).all(|angle| angle < 1e-3));
@@ -285,5 +302,8 @@ fn the_feet_of_a_long_walk_are_planted_when_the_hand_rests() {
     assert!(session.company()[0].motion.is_err());
     while session.work() {}
     let kept = session.company()[0].motion.as_ref().unwrap();
-    assert_eq!(kept.clip.rotations(300), session.main_outcome().unwrap().motion.clip.rotations(300));
+    assert_eq!(
+        kept.clip.rotations(300),
+        session.main_outcome().unwrap().motion.clip.rotations(300)
+    );
 }

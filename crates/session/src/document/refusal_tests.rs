@@ -75,7 +75,10 @@ impl Clips {
             Self::Empty => {
                 let text = String::from_utf8(first_frames(1).to_vec()).unwrap();
                 let end = text.find("Frame Time").unwrap();
-                let text = format!("{}Frame Time: 0.0166667\n", text[..end].replace("Frames: 1", "Frames: 0"));
+                let text = format!(
+                    "{}Frame Time: 0.0166667\n",
+                    text[..end].replace("Frames: 1", "Frames: 0")
+                );
                 ("empty.bvh", text.into_bytes().into())
             }
             Self::Snake => ("snake.bvh", SNAKE.into()),
@@ -101,7 +104,8 @@ enum Change {
 }
 
 const GRAPH: &str = "lab=graph&clips=walk,walk_left,walk_right&walk_seconds=20";
-const MATCH: &str = "lab=match&mirrored=off&match_clips=idle,walk,walk_left,walk_right,walk(make_seconds:6)";
+const MATCH: &str =
+    "lab=match&mirrored=off&match_clips=idle,walk,walk_left,walk_right,walk(make_seconds:6)";
 const REPLAY: &str = "lab=match&mirrored=off&match_clips=idle,walk,walk_left,walk_right,walk(make_seconds:6)&scenario=straight";
 
 /// Every lab with what it cannot make, and a part of the sentence that says so.
@@ -181,9 +185,7 @@ fn change(session: &mut Session, change: &Change) -> Vec<Slot> {
         }
         Change::Clips(clips) => {
             let key = if lab == "graph" { Key::Clips } else { Key::MatchClips };
-            let (_, Value::Text(id)) = put(session, key, *clips) else {
-                panic!()
-            };
+            let (_, Value::Text(id)) = put(session, key, *clips) else { panic!() };
             values.push((key, Value::Text(format!("walk,{id}"))));
             if *clips != Clips::Snake && lab == "graph" || lab == "match" {
                 values[0].1 = Value::Text(id);
@@ -193,16 +195,16 @@ fn change(session: &mut Session, change: &Change) -> Vec<Slot> {
     }
     set(session, &values);
     let used = [Slot::A, Slot::B].into_iter().zip(is_here);
-    used.filter(|(slot, is_here)| *is_here && session.uses(*slot))
-        .map(|(slot, _)| slot)
-        .collect()
+    used.filter(|(slot, is_here)| *is_here && session.uses(*slot)).map(|(slot, _)| slot).collect()
 }
 
 #[test]
 fn nothing_stands_for_a_result_that_cannot_be_made() {
     // All of them are told at once.
     let stale = refusals().into_iter().filter(|(link, bad, part)| {
-        let checked = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| stands_for_nothing(link, bad, part)));
+        let checked = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
+            stands_for_nothing(link, bad, part)
+        }));
         checked.is_err()
     });
     assert_eq!(stale.count(), 0);
@@ -245,7 +247,8 @@ fn stands_for_nothing(link: &str, bad: &Change, part: &str) {
     assert!(session.panes()[0].outcome.is_none() && session.params().is_on(Key::Play), "{state}");
     session.apply(Command::OpenLink(link.into())).unwrap();
     settle(&mut session);
-    let motion = |session: &Session| Arc::clone(&session.panes()[0].result().unwrap().outcome.motion);
+    let motion =
+        |session: &Session| Arc::clone(&session.panes()[0].result().unwrap().outcome.motion);
     if !session.is_driven() {
         assert_eq!(motion(&session).clip, motion(&opened(link)).clip, "{state}");
     }
@@ -283,7 +286,10 @@ fn an_earlier_result_is_told_from_the_one_that_is_computed() {
     assert!(!pane.is_outdated() && pane.made_from().unwrap().number(Key::BlendWindow) == 25.0);
     // What another lab showed is not of this one.
     session.apply(Command::Set(vec![(Key::Lab, Value::Choice("match"))])).unwrap();
-    assert!(session.panes()[0].outcome.is_none() && session.panes()[0].result().err() == Some(NoResult::Awaited));
+    assert!(
+        session.panes()[0].outcome.is_none()
+            && session.panes()[0].result().err() == Some(NoResult::Awaited)
+    );
 }
 
 #[test]

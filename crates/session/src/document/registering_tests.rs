@@ -23,9 +23,11 @@ fn registered(session: &Session) -> &Registered {
     session.main_outcome().unwrap().registered.as_ref().unwrap()
 }
 
-/// The largest distance of any joint, metres, between a frame of one clip and one of another that is moved.
+/// The largest distance of any joint, metres, between a frame of one clip and one of another that
+/// is moved.
 fn apart(one: &Clip, frame: usize, other: &Clip, in_other: usize, moved: &Planar) -> f32 {
-    let (a, b) = (one.world_positions(frame..frame + 1), other.world_positions(in_other..in_other + 1));
+    let (a, b) =
+        (one.world_positions(frame..frame + 1), other.world_positions(in_other..in_other + 1));
     a.iter().zip(&b).map(|(a, b)| a.distance(moved.apply(*b))).fold(0.0, f32::max)
 }
 
@@ -55,12 +57,7 @@ fn a_walk_is_registered_to_a_run_at_once() {
         });
         off.fold(0.0, f64::max)
     };
-    assert!(
-        worst(&session) < 0.16 && worst(&plain) > 0.2,
-        "{} {}",
-        worst(&session),
-        worst(&plain)
-    );
+    assert!(worst(&session) < 0.16 && worst(&plain) > 0.2, "{} {}", worst(&session), worst(&plain));
     let registered = registered(&session);
     assert!(registered.beats.windows(2).all(|pair| pair[1].frames[0] > pair[0].frames[0]));
     // From a pair to the time that shows it, and back.
@@ -99,24 +96,36 @@ fn no_weight_is_a_and_all_weight_is_b() {
 #[test]
 fn a_join_is_a_then_b_with_less_sliding_than_a_dissolve() {
     let session = opened("lab=register&warp_mode=join&compare=warp_with:registered,plain");
-    let outcomes: Vec<_> = session.panes().iter().map(|pane| pane.outcome.clone().unwrap()).collect();
+    let outcomes: Vec<_> =
+        session.panes().iter().map(|pane| pane.outcome.clone().unwrap()).collect();
     let skate = |pane: usize| number_of(&outcomes[pane], "foot_slide_cm");
     assert!(skate(0) < 0.5 * skate(1), "{} {}", skate(0), skate(1));
     for outcome in &outcomes {
-        let (registered, transition) = (outcome.registered.as_ref().unwrap(), outcome.transition.unwrap());
+        let (registered, transition) =
+            (outcome.registered.as_ref().unwrap(), outcome.transition.unwrap());
         assert_eq!(registered.beats.len(), outcome.motion.clip.frames());
         assert_eq!(outcome.motion.ground_frames.len(), outcome.motion.clip.frames());
         let at = |secs: f64| registered.beat_at(secs).unwrap();
-        assert_eq!((at(0.0).weights, at(outcome.duration_secs()).weights), ([1.0, 0.0], [0.0, 1.0]));
+        assert_eq!(
+            (at(0.0).weights, at(outcome.duration_secs()).weights),
+            ([1.0, 0.0], [0.0, 1.0])
+        );
         assert_eq!(at(0.0).frames[0], 0.0);
-        assert!((at(transition.start_secs).frames[0] / 60.0 - registered.part_secs[0]).abs() < 1e-6);
+        assert!(
+            (at(transition.start_secs).frames[0] / 60.0 - registered.part_secs[0]).abs() < 1e-6
+        );
         let walk = session.slot(Slot::A).unwrap().motion.clone().unwrap();
         for frame in 0..(transition.start_secs * 60.0) as usize {
-            assert!(apart(&outcome.motion.clip, frame, &walk.clip, frame, &Planar::IDENTITY) < 1e-5);
+            assert!(
+                apart(&outcome.motion.clip, frame, &walk.clip, frame, &Planar::IDENTITY) < 1e-5
+            );
         }
     }
     // Chosen by Segue, and by hand.
-    assert!(session.automatic_value(Key::WarpFrom).unwrap() < session.automatic_value(Key::WarpTo).unwrap());
+    assert!(
+        session.automatic_value(Key::WarpFrom).unwrap()
+            < session.automatic_value(Key::WarpTo).unwrap()
+    );
     let by_hand = opened("lab=register&warp_mode=join&warp_from=1&warp_to=2");
     assert_eq!(registered(&by_hand).part_secs, [1.0, 2.0]);
     let back = opened("lab=register&warp_mode=join&warp_from=2&warp_to=1");
@@ -140,11 +149,7 @@ fn pins_are_in_the_link_and_the_curve_passes_them() {
 fn what_cannot_be_is_said_and_no_earlier_result_stands_for_it() {
     let mut session = opened("lab=register");
     for (key, value, sentence) in [
-        (
-            Key::Pins,
-            "100-90,120-80",
-            "The pins at frames 100 | 90 and 120 | 80 exclude each other",
-        ),
+        (Key::Pins, "100-90,120-80", "The pins at frames 100 | 90 and 120 | 80 exclude each other"),
         (Key::Pins, "12", "Pins: found `12`"),
         (Key::Pins, "5-9999", "The pin at frames 5 | 9999 lies beyond the clips"),
         (Key::Pins, "100-90,110-170", "raise the slope limit to"),
@@ -153,7 +158,10 @@ fn what_cannot_be_is_said_and_no_earlier_result_stands_for_it() {
         assert!(session.panes()[0].result().is_ok());
         let mut values = vec![(key, Value::Text(value.into()))];
         if key == Key::B {
-            values.extend([(Key::SlopeLimit, Value::Number(1.0)), (Key::Ends, Value::Choice("corner"))]);
+            values.extend([
+                (Key::SlopeLimit, Value::Number(1.0)),
+                (Key::Ends, Value::Choice("corner")),
+            ]);
             session.bring(value);
         }
         session.apply(Command::Set(values)).unwrap();
@@ -184,7 +192,9 @@ fn long_clips_are_registered_in_slices() {
         session.apply(Command::Set(vec![(key, Value::Number(value))])).unwrap();
         let before = session.main_outcome().cloned().unwrap();
         let (mut count, mut progress) = (0, -1.0);
-        while let Some(job) = session.jobs().into_iter().find(|job| job.kind == JobKind::Registering) {
+        while let Some(job) =
+            session.jobs().into_iter().find(|job| job.kind == JobKind::Registering)
+        {
             assert!(job.progress >= progress && session.panes()[0].problem.is_none());
             assert!(Arc::ptr_eq(&before, session.main_outcome().unwrap()));
             progress = job.progress;
@@ -203,9 +213,7 @@ fn long_clips_are_registered_in_slices() {
     while session.work() {}
     assert_eq!(session.main_outcome().unwrap().motion, first.motion);
     // A lab that is left is not worked for.
-    session
-        .apply(Command::Set(vec![(Key::RegistrationWindow, Value::Number(15.0))]))
-        .unwrap();
+    session.apply(Command::Set(vec![(Key::RegistrationWindow, Value::Number(15.0))])).unwrap();
     session.apply(Command::Set(vec![(Key::Lab, Value::Choice("view"))])).unwrap();
     assert!(session.jobs().is_empty());
 }
@@ -251,7 +259,8 @@ fn more_than_two_clips_are_blended() {
     ));
     assert_eq!(again.main_outcome().unwrap().motion.clip.rotations(20), before.rotations(20));
     for (bad, word) in [("0.5:nobody", "nobody"), ("2:run", "`2:run`")] {
-        let problem = opened(&format!("lab=register&warp_also={bad}")).panes()[0].problem.clone().unwrap();
+        let problem =
+            opened(&format!("lab=register&warp_also={bad}")).panes()[0].problem.clone().unwrap();
         assert!(problem.contains(word), "{problem}");
     }
 }

@@ -1,5 +1,5 @@
-//! What A and B hold, and other places that name clips: chosen by hand or by a link, brought by a file, or built in and back from where it was
-//! taken out.
+//! What A and B hold, and other places that name clips: chosen by hand or by a link, brought by a
+//! file, or built in and back from where it was taken out.
 
 use super::{Session, built_in_entries};
 use crate::LabId;
@@ -32,8 +32,8 @@ impl Session {
         Ok(())
     }
 
-    /// Offers a clip that just came the slot where a user expects it: what is looked at in View; else A, then B, as long as they hold clips
-    /// that nobody brought.
+    /// Offers a clip that just came the slot where a user expects it: what is looked at in View;
+    /// else A, then B, as long as they hold clips that nobody brought.
     pub(super) fn offer(&mut self, id: &str, came: Came) {
         if [Slot::A, Slot::B]
             .iter()
@@ -41,7 +41,9 @@ impl Session {
         {
             return;
         }
-        let is_looked_at = came == Came::ByHand && self.params.lab() == LabId::View && self.slot(Slot::A).is_some();
+        let is_looked_at = came == Came::ByHand
+            && self.params.lab() == LabId::View
+            && self.slot(Slot::A).is_some();
         let free = [Slot::A, Slot::B]
             .into_iter()
             .find(|slot| (is_looked_at && *slot == Slot::A) || self.is_free(*slot, came));
@@ -50,7 +52,8 @@ impl Session {
         }
     }
 
-    /// Offers clips that came together the slots in turn: in View that of the one that is looked at; else those with clips that nobody brought.
+    /// Offers clips that came together the slots in turn: in View that of the one that is looked
+    /// at; else those with clips that nobody brought.
     pub(super) fn offer_together<'a>(&mut self, ids: impl IntoIterator<Item = &'a str>) {
         let slots = match self.params.lab() {
             LabId::View => vec![Slot::A],
@@ -73,15 +76,19 @@ impl Session {
         }
     }
 
-    /// Whether a clip that comes may take a slot. One that waits for a clip keeps waiting: the link is completed by that clip and no other.
+    /// Whether a clip that comes may take a slot. One that waits for a clip keeps waiting: the link
+    /// is completed by that clip and no other.
     fn is_free(&self, slot: Slot, came: Came) -> bool {
         match self.slot(slot) {
-            Some(entry) => is_built_in(entry) && !(came == Came::ByLink && self.named[slot as usize]),
+            Some(entry) => {
+                is_built_in(entry) && !(came == Came::ByLink && self.named[slot as usize])
+            }
             None => self.params.text(slot.key()).is_empty(),
         }
     }
 
-    /// Remembers which slots were named: what the link's own addresses bring leaves them alone. New addresses begin anew.
+    /// Remembers which slots were named: what the link's own addresses bring leaves them alone. New
+    /// addresses begin anew.
     pub(super) fn note_named(&mut self, named: &[Key], has_new_sources: bool) {
         for slot in [Slot::A, Slot::B] {
             let before = self.named[slot as usize] && !has_new_sources;
@@ -106,7 +113,8 @@ impl Session {
 
     /// The clips that stand side by side.
     pub(super) fn compared_clips(&self) -> Vec<String> {
-        let compare = self.compare().filter(|compare| matches!(compare.key.param().kind, Kind::Clip));
+        let compare =
+            self.compare().filter(|compare| matches!(compare.key.param().kind, Kind::Clip));
         let values = compare.map(|compare| compare.values).unwrap_or_default();
         let clips = values.into_iter().filter_map(|value| match value {
             Value::Text(id) => Some(id),
@@ -115,7 +123,8 @@ impl Session {
         clips.collect()
     }
 
-    /// Tells who opened a link to a clip that is neither here nor can be brought which file to drop.
+    /// Tells who opened a link to a clip that is neither here nor can be brought which file to
+    /// drop.
     fn look_for(&mut self, what: &str, reference: &str) {
         if reference.is_empty() || self.bring_back(reference) || self.bring(reference) {
             return;
@@ -123,9 +132,13 @@ impl Session {
         let (name, sha, _) = split_reference(reference);
         let [name, sha] = [name, sha].map(outside::short);
         let text = if sha.is_empty() {
-            format!("{what} is `{name}`, which is not here: drop that file, or choose another clip.")
+            format!(
+                "{what} is `{name}`, which is not here: drop that file, or choose another clip."
+            )
         } else {
-            format!("{what} is `{name}` (SHA-256 {sha}…), which is not here: drop that file to complete the link.")
+            format!(
+                "{what} is `{name}` (SHA-256 {sha}…), which is not here: drop that file to complete the link."
+            )
         };
         self.notices.miss(reference, text);
     }
@@ -134,7 +147,8 @@ impl Session {
     pub(super) fn forget_found(&mut self) {
         let slots = [Slot::A, Slot::B].map(|slot| self.params.text(slot.key()).to_owned());
         let others = self.also_blended().into_iter().map(|(reference, _)| reference);
-        let named: Vec<String> = slots.into_iter().chain(self.compared_clips()).chain(others).collect();
+        let named: Vec<String> =
+            slots.into_iter().chain(self.compared_clips()).chain(others).collect();
         let is_missing = |reference: &str| match self.library.find(reference) {
             Some(entry) => self.is_half(&entry.id),
             None => named.iter().any(|name| name == reference),
@@ -145,8 +159,7 @@ impl Session {
             .filter(|reference| is_missing(reference))
             .map(str::to_owned)
             .collect();
-        self.notices
-            .keep_missing(|reference| missing.iter().any(|known| known == reference));
+        self.notices.keep_missing(|reference| missing.iter().any(|known| known == reference));
     }
 
     /// Whether the clip is in the library, or can be made or fetched by its id.
@@ -154,7 +167,9 @@ impl Session {
         if self.library.find(reference).is_some() || self.bring_sample(reference) {
             return true;
         }
-        let Some(params) = recipe_params(reference) else { return false };
+        let Some(params) = recipe_params(reference) else {
+            return false;
+        };
         self.library.put(Entry::new(reference, recipe_name(&params), Origin::Made));
         self.library_revision += 1;
         true
@@ -166,9 +181,12 @@ impl Session {
         is_gone.then(|| built_in_entries().find(|entry| entry.id == id)).flatten()
     }
 
-    /// Puts a built-in clip back that was taken out of the library, now that it is asked for. Says whether it did.
+    /// Puts a built-in clip back that was taken out of the library, now that it is asked for. Says
+    /// whether it did.
     pub(super) fn bring_back(&mut self, id: &str) -> bool {
-        let Some(entry) = self.removed_built_in(id) else { return false };
+        let Some(entry) = self.removed_built_in(id) else {
+            return false;
+        };
         self.library.put(entry);
         self.library_revision += 1;
         true
@@ -187,8 +205,8 @@ pub(super) fn is_built_in(entry: &Entry) -> bool {
     matches!(entry.origin, Origin::Preset | Origin::Sample(_))
 }
 
-/// Sets back what says where in a slot's clip something happens, but for what was `given` for the clip that is there now: it means nothing in
-/// another clip. Returns what has changed.
+/// Sets back what says where in a slot's clip something happens, but for what was `given` for the
+/// clip that is there now: it means nothing in another clip. Returns what has changed.
 pub(super) fn forget_places(params: &mut Params, slot: Slot, given: &[Key]) -> Vec<Key> {
     let places: &[Key] = match slot {
         Slot::A => &[

@@ -18,7 +18,8 @@ fn ids(session: &Session) -> [&str; 2] {
 }
 
 fn said(session: &Session) -> String {
-    let texts: Vec<&str> = session.notices().list().iter().map(|notice| notice.text.as_str()).collect();
+    let texts: Vec<&str> =
+        session.notices().list().iter().map(|notice| notice.text.as_str()).collect();
     texts.join("\n")
 }
 
@@ -37,7 +38,8 @@ fn a_fetched_file_takes_what_the_link_does_not_name() {
     let id = session.load_fetched("x.bvh", made_bvh(1.0)).unwrap().ids.remove(0);
     assert_eq!(ids(&session), ["idle", &id]);
     let mut session = opened("lab=view&src=https://example.org/x.bvh%20https://example.org/y.bvh");
-    let [x, y] = [1.0, 2.0].map(|seed| session.load_fetched("x.bvh", made_bvh(seed)).unwrap().ids.remove(0));
+    let [x, y] =
+        [1.0, 2.0].map(|seed| session.load_fetched("x.bvh", made_bvh(seed)).unwrap().ids.remove(0));
     assert_eq!(ids(&session), [x, y]);
     // What is dropped takes a built-in clip, named or not.
     let mut session = opened("a=walk&b=run");
@@ -46,30 +48,31 @@ fn a_fetched_file_takes_what_the_link_does_not_name() {
     // A large one that is read elsewhere, likewise.
     // Where files are read elsewhere, likewise.
     let mut session = Session::that_has_files_read();
-    session
-        .apply(Command::OpenLink("src=https://example.org/x.bvh&a=walk&b=run".into()))
-        .unwrap();
+    session.apply(Command::OpenLink("src=https://example.org/x.bvh&a=walk&b=run".into())).unwrap();
     session.load_fetched("x.bvh", made_bvh(1.0)).unwrap();
     serve(&mut session);
     assert!(files(&session).len() == 1 && ids(&session) == ["walk", "run"]);
     // And a motion whose skeleton comes behind it.
     for (link, wanted) in [("a=walk", ["walk", "01_02"]), ("lab=view&a=walk", ["walk", "01_02"])] {
         for mut session in [Session::new(), Session::that_has_files_read()] {
-            session
-                .apply(Command::OpenLink(format!("src=https://example.org/x&{link}")))
-                .unwrap();
+            session.apply(Command::OpenLink(format!("src=https://example.org/x&{link}"))).unwrap();
             for (name, text) in [("01_02.amc", AMC), ("01.asf", ASF)] {
                 session.load_fetched(name, bytes(text)).unwrap();
                 serve(&mut session);
             }
-            assert_eq!(ids(&session).map(|id| id.split('~').next().unwrap_or_default()), wanted, "{link}");
+            assert_eq!(
+                ids(&session).map(|id| id.split('~').next().unwrap_or_default()),
+                wanted,
+                "{link}"
+            );
         }
     }
 }
 
 #[test]
 fn an_address_that_is_given_up_leaves_the_others_as_they_are() {
-    let mut session = opened("src=https://example.org/x.bvh%20https://example.org/y.bvh&a=walk&b=run");
+    let mut session =
+        opened("src=https://example.org/x.bvh%20https://example.org/y.bvh&a=walk&b=run");
     session.take_requests();
     set(&mut session, "src=https://example.org/y.bvh");
     assert!(
@@ -120,10 +123,7 @@ fn a_file_that_comes_again_leaves_what_was_said_of_it() {
     let mut session = Session::new();
     let bytes = made_bvh(1.0);
     let id = session.load("x.bvh", Arc::clone(&bytes)).unwrap().ids.remove(0);
-    let options = ImportOptions {
-        fps: Some(60.0),
-        ..ImportOptions::default()
-    };
+    let options = ImportOptions { fps: Some(60.0), ..ImportOptions::default() };
     session.apply(Command::Reimport(id.clone(), options)).unwrap();
     session.apply(Command::CorrectRole(id.clone(), Role::Head, Some(1))).unwrap();
     session.apply(Command::Rename(id.clone(), "my walk".into())).unwrap();

@@ -18,7 +18,12 @@ fn reloaded(session: &Session, bytes: &Arc<[u8]>) -> Session {
 fn roles_that_were_corrected_by_hand_survive_for_every_kind_of_clip() {
     let bytes = made_bvh(1.0);
     let sample = &Session::samples()[2];
-    let packed = std::fs::read(format!("{}/../../assets/samples/{}", env!("CARGO_MANIFEST_DIR"), sample.file)).unwrap();
+    let packed = std::fs::read(format!(
+        "{}/../../assets/samples/{}",
+        env!("CARGO_MANIFEST_DIR"),
+        sample.file
+    ))
+    .unwrap();
     let mut session = Session::new();
     let file = session.load("x.bvh", Arc::clone(&bytes)).unwrap().ids.remove(0);
     session.apply(Command::OpenLink("lab=make&gait=run&turn_rate=20".into())).unwrap();
@@ -71,12 +76,7 @@ fn roles_for_joints_that_are_not_there_are_left_alone() {
     restored.restore(&saved, |_| None, None);
     settle(&mut restored);
     let motion = restored.library().get("idle").unwrap().motion.clone().unwrap();
-    assert!(
-        motion
-            .roles
-            .get(Role::Head)
-            .is_some_and(|joint| joint < motion.clip.skeleton().len())
-    );
+    assert!(motion.roles.get(Role::Head).is_some_and(|joint| joint < motion.clip.skeleton().len()));
 }
 
 #[test]
@@ -85,9 +85,7 @@ fn work_that_comes_late_completes_what_waits_for_it() {
     let mut before = Session::new();
     let id = before.load("x.bvh", Arc::clone(&bytes)).unwrap().ids.remove(0);
     before.apply(Command::Rename(id.clone(), "mine".into())).unwrap();
-    before
-        .apply(Command::Set(link::read("lang=zh-Hant&blend_window=12").values))
-        .unwrap();
+    before.apply(Command::Set(link::read("lang=zh-Hant&blend_window=12").values)).unwrap();
     let late = before.saved();
     let content = |_: &str| Some(Content::Here(Arc::clone(&bytes)));
 
@@ -105,7 +103,8 @@ fn work_that_comes_late_completes_what_waits_for_it() {
         "as for every link"
     );
 
-    // The same file came meanwhile: what was said of it on the last visit is said of it still, unless it was said anew.
+    // The same file came meanwhile: what was said of it on the last visit is said of it still,
+    // unless it was said anew.
     for (renamed, name) in [(false, "mine"), (true, "yours")] {
         let mut session = Session::new();
         session.load("x.bvh", Arc::clone(&bytes)).unwrap();

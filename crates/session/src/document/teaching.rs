@@ -1,4 +1,5 @@
-//! The lesson that is open: its text is asked for when it is needed, and its links lay a state over the document.
+//! The lesson that is open: its text is asked for when it is needed, and its links lay a state over
+//! the document.
 
 use super::Session;
 use crate::command::{CommandError, Request};
@@ -29,7 +30,8 @@ pub enum Lesson<'a> {
 pub struct LessonPage<'a> {
     /// What it says.
     pub page: &'a Page,
-    /// Its place, counted from 1: among the lessons that come with Segue, or among the pages of a teacher's own.
+    /// Its place, counted from 1: among the lessons that come with Segue, or among the pages of a
+    /// teacher's own.
     pub number: usize,
     /// How many there are.
     pub of: usize,
@@ -69,7 +71,9 @@ impl Session {
         let page = match source {
             Source::BuiltIn(_) => {
                 let at = LESSONS.iter().position(|lesson| *lesson == name).unwrap_or_default();
-                let named = |at: Option<usize>| at.and_then(|at| LESSONS.get(at)).map(|name| (*name).to_owned());
+                let named = |at: Option<usize>| {
+                    at.and_then(|at| LESSONS.get(at)).map(|name| (*name).to_owned())
+                };
                 LessonPage {
                     page,
                     number: at + 1,
@@ -89,14 +93,20 @@ impl Session {
         Some(Lesson::Page(page))
     }
 
-    /// Whether what a link of the open page sets is what there is. Where the camera stands and what time it is do not matter.
+    /// Whether what a link of the open page sets is what there is. Where the camera stands and what
+    /// time it is do not matter.
     #[must_use]
     pub fn is_tried(&self, query: &str) -> bool {
-        let Some(page) = self.lesson_page() else { return false };
-        let links = [page.state.as_ref().map_or("", |state| state.query.as_str()), query].map(link::read);
+        let Some(page) = self.lesson_page() else {
+            return false;
+        };
+        let links =
+            [page.state.as_ref().map_or("", |state| state.query.as_str()), query].map(link::read);
         let wanted = self.laid_over(&links, false);
         let named = |key: Key| links.iter().any(|link| names(link, key));
-        let counts = |param: &&Param| is_of_page_state(param) || (param.group == Group::Stage && named(param.key));
+        let counts = |param: &&Param| {
+            is_of_page_state(param) || (param.group == Group::Stage && named(param.key))
+        };
         PARAMS
             .iter()
             .filter(counts)
@@ -118,7 +128,8 @@ impl Session {
         self.revision += 1;
     }
 
-    /// From now on, the lessons that come with Segue are those in this language: a folder of theirs, `en` or `zh-Hant`.
+    /// From now on, the lessons that come with Segue are those in this language: a folder of
+    /// theirs, `en` or `zh-Hant`.
     pub fn read_lessons_in(&mut self, language: &'static str) {
         if self.shelf.language != language {
             self.shelf.language = language;
@@ -148,8 +159,9 @@ impl Session {
         }
     }
 
-    /// Values were taken over together. A lesson that is opened and nothing besides sets the document up, at once or when its text is here; with
-    /// other values it is read beside what they say.
+    /// Values were taken over together. A lesson that is opened and nothing besides sets the
+    /// document up, at once or when its text is here; with other values it is read beside what they
+    /// say.
     pub(super) fn lesson_was_set(&mut self, values: impl IntoIterator<Item = Key>) {
         // What did not come may come now.
         self.shelf.texts.retain(|_, text| !matches!(text, Text::Failed(_)));
@@ -159,19 +171,23 @@ impl Session {
         self.set_up();
     }
 
-    /// Whether a link that names only what is not as in the table would set the document up for a lesson, in place of what is there.
+    /// Whether a link that names only what is not as in the table would set the document up for a
+    /// lesson, in place of what is there.
     pub(super) fn would_set_up(&self) -> bool {
         let mut changed = self.params.changed().map(|(param, _)| param.key);
         !self.params.text(Key::Lesson).is_empty() && changed.all(is_about_the_reader)
     }
 
-    /// Sets the document up as the open page says, if it waits for that and the text is here. Whether it did.
+    /// Sets the document up as the open page says, if it waits for that and the text is here.
+    /// Whether it did.
     fn set_up(&mut self) -> bool {
         if self.shelf.to_set_up.as_deref() != Some(self.params.text(Key::Lesson)) {
             self.shelf.to_set_up = None;
             return false;
         }
-        let Some(page) = self.lesson_page() else { return false };
+        let Some(page) = self.lesson_page() else {
+            return false;
+        };
         let state = page.state.as_ref().map(|state| link::read(&state.query));
         self.shelf.to_set_up = None;
         let Some(state) = state else { return false };
@@ -198,19 +214,22 @@ impl Session {
         let state = link::read(page.state.as_ref().map_or("", |state| state.query.as_str()));
         let problems = link.problems.clone();
         let links = [state, link];
-        let named: Vec<Key> = links.iter().flat_map(|link| &link.values).map(|(key, _)| *key).collect();
+        let named: Vec<Key> =
+            links.iter().flat_map(|link| &link.values).map(|(key, _)| *key).collect();
         let params = self.laid_over(&links, false);
         self.remember(None);
         self.take_over(params, &problems, &named);
         Ok(())
     }
 
-    /// What the parameters are when links are laid over each other, and over nothing else that makes a result. What is about the reader stays as it
-    /// is, as do A and B where no link names them; stage, camera and time too, unless the page is `new`.
+    /// What the parameters are when links are laid over each other, and over nothing else that
+    /// makes a result. What is about the reader stays as it is, as do A and B where no link names
+    /// them; stage, camera and time too, unless the page is `new`.
     fn laid_over(&self, links: &[Link], new: bool) -> Params {
         let mut params = self.params.clone();
         let defaults = Params::default();
-        let starts_anew = |param: &&Param| is_of_page_state(param) || (new && param.group != Group::Page);
+        let starts_anew =
+            |param: &&Param| is_of_page_state(param) || (new && param.group != Group::Page);
         for param in PARAMS.iter().filter(starts_anew) {
             if !matches!(param.key, Key::A | Key::B) {
                 params.copy_from(&defaults, param.key);
@@ -225,19 +244,25 @@ impl Session {
         params
     }
 
-    /// Takes over all parameters, as those of a link that names some of them: says what is wrong with it and what is missing.
+    /// Takes over all parameters, as those of a link that names some of them: says what is wrong
+    /// with it and what is missing.
     pub(super) fn take_over(&mut self, params: Params, problems: &[String], named: &[Key]) {
         let had = std::mem::replace(&mut self.params, params).text(Key::Src).to_owned();
         let new_sources = self.sources_beyond(&had);
         self.note_named(named, !new_sources.is_empty());
         match problems.get(MOST_PROBLEMS..).map_or(0, <[_]>::len) {
             _ if problems.is_empty() => {}
-            0 => self.say(Level::Warning, format!("The link was used, but for this: {}.", problems.join("; "))),
+            0 => self.say(
+                Level::Warning,
+                format!("The link was used, but for this: {}.", problems.join("; ")),
+            ),
             more => {
                 let first = problems.get(..MOST_PROBLEMS).unwrap_or(problems).join("; ");
                 self.say(
                     Level::Warning,
-                    format!("The link was used, but for this: {first}; and {more} more like these."),
+                    format!(
+                        "The link was used, but for this: {first}; and {more} more like these."
+                    ),
                 );
             }
         }

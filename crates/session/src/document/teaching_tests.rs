@@ -8,7 +8,8 @@ const PAGE: &str = "# One\n\n[Begin](?lab=blend&a=walk&b=run&blend_window=30)\n\
 const ADDRESS: &str = "https://example.org/steps.md";
 
 fn set(session: &mut Session, values: &[(Key, &str)]) {
-    let values = values.iter().map(|(key, text)| (*key, key.param().parse(text).unwrap())).collect();
+    let values =
+        values.iter().map(|(key, text)| (*key, key.param().parse(text).unwrap())).collect();
     session.apply(Command::Set(values)).unwrap();
     session.apply(Command::Settle).unwrap();
 }
@@ -110,10 +111,7 @@ fn a_try_lays_its_link_over_the_page_and_is_one_step() {
     assert_eq!(params.number(Key::BlendWindow), 10.0);
     assert!(params.is_on(Key::Align), "what no link names is as on the page");
     assert_eq!(
-        (
-            params.choice::<choices::PageTheme>().word(),
-            params.choice::<choices::Look>().word()
-        ),
+        (params.choice::<choices::PageTheme>().word(), params.choice::<choices::Look>().word()),
         ("light", "bones")
     );
     assert_eq!(params.text(Key::Lesson), ADDRESS);
@@ -172,7 +170,9 @@ fn what_goes_wrong_is_said_and_can_be_asked_for_again() {
     set(&mut session, &[(Key::Lesson, ADDRESS)]);
     assert_eq!(session.take_requests(), [Request::Lesson(source.clone())]);
     session.finish_lesson(&source, Ok(b"nothing"));
-    assert!(matches!(session.lesson(), Some(Lesson::Failed(reason)) if reason.contains("begins with its title")));
+    assert!(
+        matches!(session.lesson(), Some(Lesson::Failed(reason)) if reason.contains("begins with its title"))
+    );
     for (lesson, said) in [("cooking", "expected contents"), (&format!("{ADDRESS}#9"), "page 9")] {
         set(&mut session, &[(Key::Lesson, lesson)]);
         deliver(&mut session);

@@ -8,9 +8,7 @@ use segue_motion::metrics::foot_slide_cm;
 use segue_motion::transition::{FootLockOptions, foot_lock};
 
 fn blend_window(session: &mut Session, frames: f64) {
-    session
-        .apply(Command::Set(vec![(Key::BlendWindow, Value::Number(frames))]))
-        .unwrap();
+    session.apply(Command::Set(vec![(Key::BlendWindow, Value::Number(frames))])).unwrap();
 }
 
 pub(super) fn settle(session: &mut Session) {
@@ -25,9 +23,7 @@ fn the_first_visit_blends_a_walk_into_a_run_in_three_panes() {
     for pane in session.panes() {
         assert_eq!(pane.problem, None);
         let outcome = pane.outcome.as_ref().unwrap();
-        let Some((Key::BlendWindow, Value::Number(window))) = pane.variant else {
-            panic!()
-        };
+        let Some((Key::BlendWindow, Value::Number(window))) = pane.variant else { panic!() };
         let window = window as usize;
         assert_eq!(outcome.transition.unwrap().window_frames, window);
         assert_eq!(outcome.sources.len(), 2);
@@ -39,11 +35,8 @@ fn the_first_visit_blends_a_walk_into_a_run_in_three_panes() {
         .iter()
         .map(|pane| pane.outcome.as_ref().unwrap().transition.unwrap())
         .collect();
-    assert!(
-        places
-            .windows(2)
-            .all(|pair| pair[0].leave_a_secs == pair[1].leave_a_secs && pair[0].enter_b_secs == pair[1].enter_b_secs)
-    );
+    assert!(places.windows(2).all(|pair| pair[0].leave_a_secs == pair[1].leave_a_secs
+        && pair[0].enter_b_secs == pair[1].enter_b_secs));
     assert!(session.params().is_on(Key::Play));
 }
 
@@ -54,9 +47,7 @@ fn what_did_not_change_is_not_computed_again() {
     let before = Arc::clone(session.main_outcome().unwrap());
     session.apply(Command::Set(vec![(Key::CameraYaw, Value::Number(10.0))])).unwrap();
     assert!(Arc::ptr_eq(&before, session.main_outcome().unwrap()));
-    session
-        .apply(Command::Set(vec![(Key::WeightLaw, Value::Choice("linear"))]))
-        .unwrap();
+    session.apply(Command::Set(vec![(Key::WeightLaw, Value::Choice("linear"))])).unwrap();
     assert!(!Arc::ptr_eq(&before, session.main_outcome().unwrap()));
 }
 
@@ -137,10 +128,11 @@ fn a_motion_is_made_whatever_was_set_for_another() {
             session.apply(Command::Compare(Key::GaitSpeed)).unwrap();
             let values = session.compare().unwrap().values;
             assert!(values[0] != values[1] && values[1] != values[2], "{gait}: {values:?}");
-            assert!(session.panes().iter().all(|pane| pane.problem.is_none()), "{gait}: {values:?}");
-            session
-                .apply(Command::Set(vec![(Key::Compare, Value::Text(String::new()))]))
-                .unwrap();
+            assert!(
+                session.panes().iter().all(|pane| pane.problem.is_none()),
+                "{gait}: {values:?}"
+            );
+            session.apply(Command::Set(vec![(Key::Compare, Value::Text(String::new()))])).unwrap();
         }
     }
 }
@@ -229,7 +221,8 @@ fn a_link_to_a_dropped_file_waits_for_it() {
         sender.slot(Slot::A).map(|entry| entry.sha256().map(str::to_owned))
     );
     assert_eq!(receiver.panes()[0].problem, None);
-    let said: Vec<&str> = receiver.notices().list().iter().map(|notice| notice.text.as_str()).collect();
+    let said: Vec<&str> =
+        receiver.notices().list().iter().map(|notice| notice.text.as_str()).collect();
     assert!(!said.iter().any(|text| text.contains("drop that file")), "{said:?}");
     assert_eq!(receiver.params().number(Key::BlendWindow), 24.0);
 }
@@ -273,7 +266,12 @@ fn a_bundled_take_is_asked_for_and_takes_its_place() {
     let sample = &Session::samples()[2];
     session.apply(Command::Assign(Slot::A, sample.id.into())).unwrap();
     assert!(session.take_requests().contains(&Request::Sample(sample)));
-    let packed = std::fs::read(format!("{}/../../assets/samples/{}", env!("CARGO_MANIFEST_DIR"), sample.file)).unwrap();
+    let packed = std::fs::read(format!(
+        "{}/../../assets/samples/{}",
+        env!("CARGO_MANIFEST_DIR"),
+        sample.file
+    ))
+    .unwrap();
     session.load_sample(sample, &packed).unwrap();
     settle(&mut session);
     assert_eq!(session.panes()[0].problem, None);
@@ -403,7 +401,8 @@ fn asked(session: &mut Session) -> crate::reading::ReadTask {
 fn a_large_file_is_read_elsewhere_and_then_joins_the_library() {
     let bytes = made_bvh(6.0);
     let mut session = Session::new();
-    let task = session.begin_reading("long.bvh", Content::Outside("file 1".into()), LARGE_BYTES + 1);
+    let task =
+        session.begin_reading("long.bvh", Content::Outside("file 1".into()), LARGE_BYTES + 1);
     let asked_for = asked(&mut session);
     assert_eq!((asked_for.id, asked_for.name.as_str()), (task, "long.bvh"));
     session.progress_reading(task, LARGE_BYTES / 2);
@@ -418,9 +417,7 @@ fn a_large_file_is_read_elsewhere_and_then_joins_the_library() {
     let loaded = session.finish_reading(task, Ok(report.clone())).unwrap().unwrap();
     assert_eq!(session.slot(Slot::A).unwrap().id, loaded.ids[0]);
     assert!(session.jobs().iter().all(|job| job.task.is_none()));
-    let Origin::File(file) = &session.slot(Slot::A).unwrap().origin else {
-        panic!()
-    };
+    let Origin::File(file) = &session.slot(Slot::A).unwrap().origin else { panic!() };
     assert_eq!(
         file.content,
         Content::Outside(sha256.clone()),
@@ -462,12 +459,10 @@ fn a_large_file_is_read_elsewhere_and_then_joins_the_library() {
 fn reading_can_be_given_up() {
     let mut session = Session::new();
     let clips = session.clip_infos();
-    let task = session.begin_reading("long.bvh", Content::Outside("file 1".into()), LARGE_BYTES + 1);
+    let task =
+        session.begin_reading("long.bvh", Content::Outside("file 1".into()), LARGE_BYTES + 1);
     session.apply(Command::StopReading(task)).unwrap();
-    let stop = Request::StopReading {
-        task,
-        forget: Some("file 1".into()),
-    };
+    let stop = Request::StopReading { task, forget: Some("file 1".into()) };
     assert!(session.take_requests().contains(&stop));
     assert!(session.finish_reading(task, Err("stopped".into())).is_none());
     assert_eq!(session.clip_infos(), clips);
@@ -482,27 +477,16 @@ fn methods_are_compared_on_one_transition() {
         ))
         .unwrap();
     settle(&mut session);
-    let outcomes: Vec<_> = session.panes().iter().map(|pane| pane.outcome.clone().unwrap()).collect();
+    let outcomes: Vec<_> =
+        session.panes().iter().map(|pane| pane.outcome.clone().unwrap()).collect();
     assert!(session.panes().iter().all(|pane| pane.problem.is_none()));
     let places: Vec<_> = outcomes.iter().map(|outcome| outcome.transition.unwrap()).collect();
-    assert!(
-        places
-            .windows(2)
-            .all(|pair| (pair[0].leave_a_secs, pair[0].enter_b_secs) == (pair[1].leave_a_secs, pair[1].enter_b_secs))
-    );
+    assert!(places.windows(2).all(|pair| (pair[0].leave_a_secs, pair[0].enter_b_secs)
+        == (pair[1].leave_a_secs, pair[1].enter_b_secs)));
     let seam = |outcome: &Arc<Outcome>| {
-        outcome
-            .metrics
-            .iter()
-            .find(|metric| metric.id == "pose_jump_deg")
-            .unwrap()
-            .value
-            .unwrap()
+        outcome.metrics.iter().find(|metric| metric.id == "pose_jump_deg").unwrap().value.unwrap()
     };
-    assert!(
-        seam(&outcomes[3]) > 4.0 * seam(&outcomes[0]),
-        "a cut jumps, inertialization does not"
-    );
+    assert!(seam(&outcomes[3]) > 4.0 * seam(&outcomes[0]), "a cut jumps, inertialization does not");
     // What the slider changes shows at once, and the match stays.
     session.apply(Command::OpenLink("lab=transition".into())).unwrap();
     settle(&mut session);
@@ -534,21 +518,16 @@ fn mix_frames_are_frames_of_each_clip() {
 #[test]
 fn foot_lock_stills_the_feet_and_tells_what_it_did() {
     let mut session = Session::new();
-    session
-        .apply(Command::OpenLink("lab=transition&half_life=0.3&foot_lock=on".into()))
-        .unwrap();
+    session.apply(Command::OpenLink("lab=transition&half_life=0.3&foot_lock=on".into())).unwrap();
     settle(&mut session);
     let outcome = session.main_outcome().unwrap();
-    let value = |id: &str| outcome.metrics.iter().find(|metric| metric.id == id).unwrap().value.unwrap();
+    let value =
+        |id: &str| outcome.metrics.iter().find(|metric| metric.id == id).unwrap().value.unwrap();
     let (before, after) = (value("foot_slide_before_cm"), value("foot_slide_cm"));
     assert!(before > 3.0 && after < 0.1 * before, "{before} cm, {after} cm");
     session.apply(Command::Set(vec![(Key::FootLock, Value::Switch(false))])).unwrap();
-    let skate = session
-        .main_outcome()
-        .unwrap()
-        .metrics
-        .iter()
-        .find(|metric| metric.id == "foot_slide_cm");
+    let skate =
+        session.main_outcome().unwrap().metrics.iter().find(|metric| metric.id == "foot_slide_cm");
     assert_eq!(skate.unwrap().value, Some(before));
 }
 
@@ -597,7 +576,8 @@ fn lock_settings_change_a_held_result_in_every_lab() {
 
 #[test]
 fn each_lock_setting_changes_a_held_result_and_no_other() {
-    let [held, free] = ["on", "off"].map(|lock| format!("lab=transition&half_life=0.3&foot_lock={lock}"));
+    let [held, free] =
+        ["on", "off"].map(|lock| format!("lab=transition&half_life=0.3&foot_lock={lock}"));
     let (usual_held, usual_free) = (rotations(&opened(&held)), rotations(&opened(&free)));
     for setting in ["lock_blend=0.6", "lock_reach=3", "lock_clearance=8"] {
         assert_ne!(rotations(&opened(&format!("{held}&{setting}"))), usual_held, "{setting}");
@@ -638,7 +618,8 @@ fn lock_settings_come_back_from_a_link() {
     assert_eq!(again.query(), query);
     assert_eq!(rotations(&again), rotations(&session));
     let panes = opened("lab=transition&foot_lock=on&compare=lock_reach:30,3");
-    let of_pane = |pane: usize| rotations_of(&panes.panes()[pane].outcome.as_ref().unwrap().motion.clip);
+    let of_pane =
+        |pane: usize| rotations_of(&panes.panes()[pane].outcome.as_ref().unwrap().motion.clip);
     assert_ne!(of_pane(0), of_pane(1));
 }
 
@@ -649,7 +630,9 @@ fn one_switch_holds_the_feet_in_every_lab() {
         session.apply(Command::OpenLink(format!("{lab}&foot_lock=on"))).unwrap();
         settle(&mut session);
         let metrics = &session.main_outcome().unwrap().metrics;
-        let value = |wanted: &str| metrics.iter().find(|metric| metric.id.starts_with(wanted)).unwrap().value.unwrap();
+        let value = |wanted: &str| {
+            metrics.iter().find(|metric| metric.id.starts_with(wanted)).unwrap().value.unwrap()
+        };
         let before = value("foot_slide_before_cm");
         let after = value("foot_slide_cm");
         assert!(after <= before && after < 1.0, "{lab}: {before} cm, {after} cm");
@@ -684,7 +667,10 @@ fn a_long_clip_is_held_in_slices_while_the_free_one_stays() {
     let long = "walk(make_seconds:25)";
     session.apply(Command::OpenLink(format!("lab=view&a={long}"))).unwrap();
     let free = session.main_outcome().unwrap().clone();
-    assert!(free.motion.clip.frames() > 1_000 && free.metrics.iter().all(|metric| metric.value.is_none()));
+    assert!(
+        free.motion.clip.frames() > 1_000
+            && free.metrics.iter().all(|metric| metric.value.is_none())
+    );
     session.apply(Command::Set(vec![(Key::FootLock, Value::Switch(true))])).unwrap();
     assert!(Arc::ptr_eq(session.main_outcome().unwrap(), &free));
     let mut last = 0.0;
@@ -697,7 +683,9 @@ fn a_long_clip_is_held_in_slices_while_the_free_one_stays() {
     settle(&mut session);
     let held = session.main_outcome().unwrap();
     let motion = &free.motion;
-    let whole = foot_lock(&motion.clip, &motion.roles, &motion.contacts, &FootLockOptions::default()).unwrap();
+    let whole =
+        foot_lock(&motion.clip, &motion.roles, &motion.contacts, &FootLockOptions::default())
+            .unwrap();
     assert_eq!(*held.motion.clip, whole);
     let before = held.metrics.iter().find(|metric| metric.id == "foot_slide_before_cm");
     assert_eq!(before.unwrap().value, foot_slide_cm(&motion.clip, &motion.roles, &motion.contacts));
@@ -707,7 +695,8 @@ fn a_long_clip_is_held_in_slices_while_the_free_one_stays() {
 fn with_stored_large_file() -> (Session, crate::reading::ReadTask) {
     let bytes = made_bvh(6.0);
     let mut session = Session::new();
-    let task = session.begin_reading("long.bvh", Content::Outside("file 1".into()), LARGE_BYTES + 1);
+    let task =
+        session.begin_reading("long.bvh", Content::Outside("file 1".into()), LARGE_BYTES + 1);
     let setup = asked(&mut session).setup;
     session
         .finish_reading(task, Ok(read("long.bvh", &bytes, &setup, &mut |_| true).unwrap()))
@@ -722,11 +711,7 @@ fn with_stored_large_file() -> (Session, crate::reading::ReadTask) {
 #[test]
 fn a_stored_file_that_cannot_be_read_is_not_read_again_and_again() {
     let reads = |session: &mut Session| {
-        session
-            .take_requests()
-            .iter()
-            .filter(|request| matches!(request, Request::Read(_)))
-            .count()
+        session.take_requests().iter().filter(|request| matches!(request, Request::Read(_))).count()
     };
     let (mut session, task) = with_stored_large_file();
     session.finish_reading(task.id, Err("it is gone".into())).unwrap().unwrap_err();
@@ -745,9 +730,7 @@ fn a_stored_file_that_cannot_be_read_is_not_read_again_and_again() {
     assert!(session.panes()[0].problem.as_ref().is_some_and(|text| text.contains("stopped")));
     // Asked for by hand it is read once more.
     let id = session.slot(Slot::A).unwrap().id.clone();
-    session
-        .apply(Command::Reimport(id, segue_formats::ImportOptions::default()))
-        .unwrap();
+    session.apply(Command::Reimport(id, segue_formats::ImportOptions::default())).unwrap();
     assert_eq!(reads(&mut session), 1);
 }
 
@@ -768,7 +751,9 @@ fn number_of(outcome: &Outcome, id: &str) -> f64 {
 fn right_and_wrong_stand_side_by_side() {
     let right = opened("lab=transition");
     let both = opened("lab=transition&compare=mistake:none,euler,hemisphere");
-    let outcome = |session: &Session, pane: usize| Arc::clone(session.panes()[pane].outcome.as_ref().unwrap());
+    let outcome = |session: &Session, pane: usize| {
+        Arc::clone(session.panes()[pane].outcome.as_ref().unwrap())
+    };
     // No mistake is the transition itself, bit for bit.
     assert_eq!(outcome(&right, 0).motion, outcome(&both, 0).motion);
     assert_eq!(outcome(&right, 0).metrics, outcome(&both, 0).metrics);
@@ -787,15 +772,19 @@ fn right_and_wrong_stand_side_by_side() {
     let spins = [0, 2].map(|pane| of(pane, "spin_deg"));
     assert!(spins[0] < 5.0 && spins[1] > 60.0, "{spins:?}");
     // The other labs know nothing of mistakes.
-    let [plain, spoiled] = ["lab=blend&compare=", "lab=blend&mistake=degrees"].map(|link| outcome(&opened(link), 0));
+    let [plain, spoiled] =
+        ["lab=blend&compare=", "lab=blend&mistake=degrees"].map(|link| outcome(&opened(link), 0));
     assert_eq!(plain.motion, spoiled.motion);
     // Every mistake has a picture and the same numbers, by every method.
-    for mistake in ["hemisphere", "euler", "degrees", "atan", "alignment", "velocity", "world_root"] {
+    for mistake in ["hemisphere", "euler", "degrees", "atan", "alignment", "velocity", "world_root"]
+    {
         for method in ["inertialize", "cubic", "quintic", "dead", "smooth", "linear", "cut"] {
             let session = opened(&format!("lab=transition&method={method}&mistake={mistake}"));
             let good = opened(&format!("lab=transition&method={method}"));
             let differs = outcome(&session, 0).motion != outcome(&good, 0).motion;
-            let told = |session: &Session| outcome(session, 0).metrics.iter().map(|metric| metric.id).collect::<Vec<_>>();
+            let told = |session: &Session| {
+                outcome(session, 0).metrics.iter().map(|metric| metric.id).collect::<Vec<_>>()
+            };
             assert_eq!(told(&session), told(&good));
             assert_eq!(differs, crate::mistake_shows(session.params()), "{mistake} {method}");
         }
@@ -822,12 +811,7 @@ fn the_layers_lab_opens_with_a_run_on_walking_legs() {
     assert!(jump < 60.0, "{jump}");
     assert!(number_of(outcome, "off_arms_deg") > 10.0);
     // B's track and A's have the length of A.
-    assert!(
-        outcome
-            .sources
-            .iter()
-            .all(|source| source.motion.clip.frames() == walk.clip.frames())
-    );
+    assert!(outcome.sources.iter().all(|source| source.motion.clip.frames() == walk.clip.frames()));
 }
 
 #[test]
@@ -878,15 +862,22 @@ fn layers_are_live_and_say_how_their_time_goes() {
         "mask:upper,head,legs,whole",
     ] {
         session.apply(Command::OpenLink(format!("lab=layers&compare={compare}"))).unwrap();
-        let outcomes = |session: &Session| session.panes().iter().map(|pane| pane.outcome.clone().unwrap()).collect::<Vec<_>>();
+        let outcomes = |session: &Session| {
+            session.panes().iter().map(|pane| pane.outcome.clone().unwrap()).collect::<Vec<_>>()
+        };
         let before = outcomes(&session);
         session.apply(Command::Set(vec![(Key::CameraYaw, Value::Number(12.0))])).unwrap();
-        assert!(before.iter().zip(outcomes(&session)).all(|(a, b)| Arc::ptr_eq(a, &b)), "{compare}");
+        assert!(
+            before.iter().zip(outcomes(&session)).all(|(a, b)| Arc::ptr_eq(a, &b)),
+            "{compare}"
+        );
         assert!(before.windows(2).all(|pair| pair[0].motion != pair[1].motion), "{compare}");
     }
-    // Against the mean, an additive layer leaves the posture; against the rest pose it adds all of it.
+    // Against the mean, an additive layer leaves the posture; against the rest pose it adds all of
+    // it.
     let off = |reference: &str| {
-        let session = opened(&format!("lab=layers&layer_mode=additive&layer_reference={reference}"));
+        let session =
+            opened(&format!("lab=layers&layer_mode=additive&layer_reference={reference}"));
         number_of(session.main_outcome().unwrap(), "off_arms_deg")
     };
     assert!(

@@ -11,8 +11,12 @@ use segue_motion::blend::{AlignBy, RootBlend, WeightLaw};
 use segue_motion::clip::{Clip, Contacts};
 use segue_motion::math::{Decay, Planar};
 use segue_motion::metrics::{Subject, TransitionMetrics, foot_slide_cm};
-use segue_motion::registration::{PoseSearch, PoseWeights, SearchOptions, TransitionSearch, limb_weights};
-use segue_motion::transition::{Inertialization, Method, Mistake, TransitionOptions, concatenate, concatenate_mistaken};
+use segue_motion::registration::{
+    PoseSearch, PoseWeights, SearchOptions, TransitionSearch, limb_weights,
+};
+use segue_motion::transition::{
+    Inertialization, Method, Mistake, TransitionOptions, concatenate, concatenate_mistaken,
+};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
@@ -33,12 +37,15 @@ impl Lab for BlendLab {
     }
 
     fn found(&self, outcome: &Outcome, _fps: [f64; 2]) -> Vec<(Key, f64)> {
-        let found = |transition: &Transition| vec![(Key::LeaveA, transition.leave_a_secs), (Key::EnterB, transition.enter_b_secs)];
+        let found = |transition: &Transition| {
+            vec![(Key::LeaveA, transition.leave_a_secs), (Key::EnterB, transition.enter_b_secs)]
+        };
         outcome.transition.as_ref().map(found).unwrap_or_default()
     }
 }
 
-/// The Transition lab: A goes over into B by one of several methods. One of them is a dissolve, which has the Blend lab's parameters.
+/// The Transition lab: A goes over into B by one of several methods. One of them is a dissolve,
+/// which has the Blend lab's parameters.
 pub(super) struct TransitionLab;
 
 impl Lab for TransitionLab {
@@ -124,10 +131,13 @@ fn mistake_of(params: &Params) -> Option<Mistake> {
     }
 }
 
-/// Whether the method of the Transition lab gives the mistake that it is to make an opportunity. `true` where it is to make none.
+/// Whether the method of the Transition lab gives the mistake that it is to make an opportunity.
+/// `true` where it is to make none.
 #[must_use]
 pub fn mistake_shows(params: &Params) -> bool {
-    mistake_of(params).is_none_or(|mistake| mistake.concerns(&method_of(params, params.number(Key::BlendWindow) as usize)))
+    mistake_of(params).is_none_or(|mistake| {
+        mistake.concerns(&method_of(params, params.number(Key::BlendWindow) as usize))
+    })
 }
 
 /// How the weight moves from A to B.
@@ -149,11 +159,7 @@ pub(super) fn align_by(params: &Params) -> AlignBy {
 
 /// How the way over the ground is made.
 pub(super) fn root_blend(params: &Params) -> RootBlend {
-    if params.is_on(Key::RootBlend) {
-        RootBlend::Velocity
-    } else {
-        RootBlend::World
-    }
+    if params.is_on(Key::RootBlend) { RootBlend::Velocity } else { RootBlend::World }
 }
 
 /// The method of the Transition lab; `window` is that of its dissolves.
@@ -161,28 +167,28 @@ fn method_of(params: &Params, window: usize) -> Method {
     let blend_secs = params.number(Key::BlendTime);
     match params.choice::<choices::TransitionMethod>() {
         choices::TransitionMethod::Cut => Method::Cut,
-        choices::TransitionMethod::Linear => Method::Dissolve {
-            window,
-            law: WeightLaw::Linear,
-        },
-        choices::TransitionMethod::Smooth => Method::Dissolve {
-            window,
-            law: WeightLaw::Smooth,
-        },
-        choices::TransitionMethod::Cubic => Method::Inertialize(Inertialization::Offset(Decay::Cubic { blend_secs })),
-        choices::TransitionMethod::Quintic => Method::Inertialize(Inertialization::Offset(Decay::Quintic { blend_secs })),
+        choices::TransitionMethod::Linear => Method::Dissolve { window, law: WeightLaw::Linear },
+        choices::TransitionMethod::Smooth => Method::Dissolve { window, law: WeightLaw::Smooth },
+        choices::TransitionMethod::Cubic => {
+            Method::Inertialize(Inertialization::Offset(Decay::Cubic { blend_secs }))
+        }
+        choices::TransitionMethod::Quintic => {
+            Method::Inertialize(Inertialization::Offset(Decay::Quintic { blend_secs }))
+        }
         choices::TransitionMethod::Dead => Method::Inertialize(Inertialization::DeadBlend {
             blend_secs,
             extrapolation_half_life_secs: params.number(Key::ExtrapolationHalfLife),
         }),
-        choices::TransitionMethod::Inertialize => Method::Inertialize(Inertialization::Offset(Decay::Spring {
-            half_life_secs: params.number(Key::HalfLife),
-        })),
+        choices::TransitionMethod::Inertialize => {
+            Method::Inertialize(Inertialization::Offset(Decay::Spring {
+                half_life_secs: params.number(Key::HalfLife),
+            }))
+        }
     }
 }
 
-/// Where to look for what is left to Segue: A is left in its second half, B entered in its first, and no seam of a kept clip is left out. The window fits
-/// behind the last one of A.
+/// Where to look for what is left to Segue: A is left in its second half, B entered in its first,
+/// and no seam of a kept clip is left out. The window fits behind the last one of A.
 fn open_search(pair: &Pair, window: usize) -> SearchOptions {
     let mut options = SearchOptions::new(window);
     let share = |frame: f64, motion: &Motion| frame / motion.clip.frames().max(1) as f64;
@@ -193,10 +199,8 @@ fn open_search(pair: &Pair, window: usize) -> SearchOptions {
         options.leave.from = share(from as f64 - 0.5, &pair.a);
     }
     if !pair.incoming.seams.is_empty() {
-        options.enter.to = options
-            .enter
-            .to
-            .min(share(pair.incoming.before_seams() as f64 + 0.5, &pair.incoming));
+        options.enter.to =
+            options.enter.to.min(share(pair.incoming.before_seams() as f64 + 0.5, &pair.incoming));
     }
     options
 }
@@ -212,14 +216,16 @@ fn pose_search(pair: &Pair) -> Result<PoseSearch, String> {
     search.map_err(|error| error.to_string())
 }
 
-/// Makes blends, and keeps what does not change from one to the next: the pair of clips and the distances between their frames.
+/// Makes blends, and keeps what does not change from one to the next: the pair of clips and the
+/// distances between their frames.
 #[derive(Debug, Default)]
 pub(crate) struct Blender {
     pair: Option<Arc<Pair>>,
     search: Option<TransitionSearch>,
     /// Begun when a lab asks for it.
     poses: Option<PoseSearch>,
-    /// The last matches that were found, and what was asked: panes share one, or have one each, and most changes leave them as they are.
+    /// The last matches that were found, and what was asked: panes share one, or have one each, and
+    /// most changes leave them as they are.
     found: VecDeque<(Wanted, Place)>,
     progress: f32,
     /// All distances have just been computed, and no pane has asked for the place yet.
@@ -228,12 +234,19 @@ pub(crate) struct Blender {
 
 /// Rows of the distance grid in one slice: about 2 ms for 31 joints in a browser.
 const ROWS_PER_SLICE: usize = 16;
-/// Rows that are compared at once when the clips change: a few seconds of motion need no second slice.
+/// Rows that are compared at once when the clips change: a few seconds of motion need no second
+/// slice.
 const ROWS_AT_ONCE: usize = 160;
 
 impl Blender {
-    /// Brings everything to the point where the blend itself is a pure function: finds the place, makes the clips fit each other.
-    pub(crate) fn inputs(&mut self, pair: &Arc<Pair>, params: &Params, match_window: usize) -> Result<BlendInputs, String> {
+    /// Brings everything to the point where the blend itself is a pure function: finds the place,
+    /// makes the clips fit each other.
+    pub(crate) fn inputs(
+        &mut self,
+        pair: &Arc<Pair>,
+        params: &Params,
+        match_window: usize,
+    ) -> Result<BlendInputs, String> {
         self.meet(pair)?;
         let (frames_a, frames_b) = (pair.a.clip.frames(), pair.incoming.clip.frames());
         let in_transition = params.lab() == LabId::Transition;
@@ -261,27 +274,21 @@ impl Blender {
             Method::Dissolve { window, law }
         };
         let match_window = match_window.min(most);
-        // A dissolve needs its window behind both frames, the widest one where several stand side by side, so that all show the same place. The other
-        // methods need one frame of B.
-        let behind = if let Method::Dissolve { window, .. } = method {
-            match_window.max(window)
-        } else {
-            1
-        };
-        let [leave, enter] = [(given[0], frames_a), (given[1], frames_b)]
-            .map(|(frame, frames)| frame.map(|frame| (frame.round() as usize).min(frames.saturating_sub(behind))));
-        let weights = (in_transition && params.choice::<choices::MatchBy>() == choices::MatchBy::Pose).then(|| PoseWeights {
-            position: params.number(Key::MatchPosition),
-            rotation: params.number(Key::MatchRotation),
-            velocity: params.number(Key::MatchVelocity),
+        // A dissolve needs its window behind both frames, the widest one where several stand side
+        // by side, so that all show the same place. The other methods need one frame of B.
+        let behind =
+            if let Method::Dissolve { window, .. } = method { match_window.max(window) } else { 1 };
+        let [leave, enter] = [(given[0], frames_a), (given[1], frames_b)].map(|(frame, frames)| {
+            frame.map(|frame| (frame.round() as usize).min(frames.saturating_sub(behind)))
         });
-        let wanted = Wanted {
-            window: match_window,
-            behind,
-            leave,
-            enter,
-            weights,
-        };
+        let weights = (in_transition
+            && params.choice::<choices::MatchBy>() == choices::MatchBy::Pose)
+            .then(|| PoseWeights {
+                position: params.number(Key::MatchPosition),
+                rotation: params.number(Key::MatchRotation),
+                velocity: params.number(Key::MatchVelocity),
+            });
+        let wanted = Wanted { window: match_window, behind, leave, enter, weights };
         let place = self.place(pair, wanted)?;
         Ok(BlendInputs {
             pair: Arc::clone(pair),
@@ -327,12 +334,15 @@ impl Blender {
         };
         let share = |done: usize, total: usize| done as f32 / total.max(1) as f32;
         self.progress = match (windows, poses) {
-            (Some(progress), None) | (_, Some(progress)) if !progress.is_complete() => share(progress.done, progress.total),
+            (Some(progress), None) | (_, Some(progress)) if !progress.is_complete() => {
+                share(progress.done, progress.total)
+            }
             _ => 1.0,
         };
     }
 
-    /// The frames that the user named, and the best match for what is left open. Until the distances are known, the middle of what is allowed.
+    /// The frames that the user named, and the best match for what is left open. Until the
+    /// distances are known, the middle of what is allowed.
     fn place(&mut self, pair: &Pair, wanted: Wanted) -> Result<Place, String> {
         if wanted.weights.is_some() && self.poses.is_none() {
             self.poses = Some(pose_search(pair)?);
@@ -342,7 +352,11 @@ impl Blender {
         let (frames_a, frames_b) = (pair.a.clip.frames(), pair.incoming.clip.frames());
         if self.is_searching() {
             return Ok(Place {
-                leave: leave.unwrap_or((frames_a * 3 / 4).max(pair.a.behind_seams()).min(frames_a.saturating_sub(window))),
+                leave: leave.unwrap_or(
+                    (frames_a * 3 / 4)
+                        .max(pair.a.behind_seams())
+                        .min(frames_a.saturating_sub(window)),
+                ),
                 enter: enter.unwrap_or(0),
                 distance_cm: f32::NAN,
                 search: None,
@@ -359,18 +373,20 @@ impl Blender {
         if let Some(frame) = enter {
             options = options.entering_at(frame, frames_b);
         }
-        let (leave, enter, distance_cm, is_widened) = match (wanted.weights, &self.poses, &self.search) {
-            (Some(weights), Some(search), _) => {
-                let best = search.best(weights, &options).map_err(|error| error.to_string())?;
-                (best.leave, best.enter, best.position_cm, best.grown)
-            }
-            (_, _, Some(search)) => {
-                let best = search.best(&options).map_err(|error| error.to_string())?;
-                (best.leave, best.enter, best.rms_cm, best.grown)
-            }
-            _ => return Err("there are no clips to match".to_owned()),
-        };
-        let latest = |frames: usize| frames.saturating_sub(wanted.behind) as f64 / pair.a.clip.fps();
+        let (leave, enter, distance_cm, is_widened) =
+            match (wanted.weights, &self.poses, &self.search) {
+                (Some(weights), Some(search), _) => {
+                    let best = search.best(weights, &options).map_err(|error| error.to_string())?;
+                    (best.leave, best.enter, best.position_cm, best.grown)
+                }
+                (_, _, Some(search)) => {
+                    let best = search.best(&options).map_err(|error| error.to_string())?;
+                    (best.leave, best.enter, best.rms_cm, best.grown)
+                }
+                _ => return Err("there are no clips to match".to_owned()),
+            };
+        let latest =
+            |frames: usize| frames.saturating_sub(wanted.behind) as f64 / pair.a.clip.fps();
         let place = Place {
             leave,
             enter,
@@ -426,17 +442,13 @@ impl BlendInputs {
 
     /// The blend.
     pub(crate) fn run(&self) -> Result<Outcome, String> {
-        let Self {
-            pair,
-            place,
-            options,
-            mistake,
-            foot_lock,
-        } = self;
+        let Self { pair, place, options, mistake, foot_lock } = self;
         let [a, b] = &pair.profiles;
         let (from, to) = (a.source(), b.source());
         let made = match *mistake {
-            Some(mistake) => concatenate_mistaken(from, place.leave, to, place.enter, options, mistake),
+            Some(mistake) => {
+                concatenate_mistaken(from, place.leave, to, place.enter, options, mistake)
+            }
             None => concatenate(from, place.leave, to, place.enter, options),
         };
         let made = made.map_err(|error| error.to_string())?;
@@ -452,7 +464,13 @@ impl BlendInputs {
             distance_cm: place.distance_cm,
             search: place.search,
         };
-        let contacts = Contacts::joined(&pair.a.contacts, &pair.incoming.contacts, place.leave, place.enter, made.handover);
+        let contacts = Contacts::joined(
+            &pair.a.contacts,
+            &pair.incoming.contacts,
+            place.leave,
+            place.enter,
+            made.handover,
+        );
         let name = format!("{} to {}", pair.a.clip.name(), pair.b.clip.name());
         let roles = pair.a.roles.clone();
         let free = Arc::new(made.clip.with_name(name));
@@ -485,7 +503,12 @@ impl BlendInputs {
         metrics.extend(at_seam.list());
         let sources = vec![
             Source::new(Slot::A, &pair.a, 0.0, Planar::IDENTITY),
-            Source::new(Slot::B, &pair.incoming, secs(place.leave) - secs(place.enter), made.world_from_b),
+            Source::new(
+                Slot::B,
+                &pair.incoming,
+                secs(place.leave) - secs(place.enter),
+                made.world_from_b,
+            ),
         ];
         Ok(Outcome {
             motion: Arc::new(motion),

@@ -28,22 +28,13 @@ impl Lock {
 
     /// Returns the options on ground of a height, metres.
     pub(super) fn on_ground(self, ground_m: f32) -> FootLockOptions {
-        let Self {
-            blend_secs,
-            max_shift_m,
-            clearance_m,
-        } = self;
-        FootLockOptions {
-            blend_secs,
-            max_shift_m,
-            ground_m: Some(ground_m),
-            clearance_m,
-        }
+        let Self { blend_secs, max_shift_m, clearance_m } = self;
+        FootLockOptions { blend_secs, max_shift_m, ground_m: Some(ground_m), clearance_m }
     }
 }
 
-/// Begins to hold the planted feet of a clip above ground of a height, metres. `None` for a body without legs, which stays as it is: what cannot be held
-/// is no reason to have no result.
+/// Begins to hold the planted feet of a clip above ground of a height, metres. `None` for a body
+/// without legs, which stays as it is: what cannot be held is no reason to have no result.
 pub(super) fn locking(
     clip: Arc<Clip>,
     roles: &Roles,
@@ -75,7 +66,8 @@ pub(super) fn with_feet(
     }
 }
 
-/// How far the feet of a whole result slide: in all labs as [`foot_slide_cm`](segue_motion::metrics::foot_slide_cm) has it.
+/// How far the feet of a whole result slide: in all labs as
+/// [`foot_slide_cm`](segue_motion::metrics::foot_slide_cm) has it.
 pub(super) fn slide(cm: Option<f64>) -> Metric {
     Metric::lower(
         "foot_slide_cm",
@@ -121,7 +113,9 @@ mod tests {
     #[test]
     fn every_parameter_is_one_option() {
         let mut params = locked();
-        for (key, value) in [(Key::LockBlend, 0.5), (Key::LockReach, 12.0), (Key::LockClearance, 6.0)] {
+        for (key, value) in
+            [(Key::LockBlend, 0.5), (Key::LockReach, 12.0), (Key::LockClearance, 6.0)]
+        {
             params.set(key, Value::Number(value)).unwrap();
         }
         let options = FootLockOptions {

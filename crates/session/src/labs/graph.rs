@@ -1,4 +1,5 @@
-//! The Graph lab: several clips as a motion graph, and a walk through it that goes on while it plays.
+//! The Graph lab: several clips as a motion graph, and a walk through it that goes on while it
+//! plays.
 
 use super::lab::Lab;
 use crate::params::{Group, Key, Params, Value};
@@ -29,14 +30,7 @@ impl Lab for GraphLab {
     }
 
     fn shared_keys(&self) -> &'static [Key] {
-        &[
-            Key::BlendWindow,
-            Key::WeightLaw,
-            Key::AlignBy,
-            Key::RootBlend,
-            Key::HalfLife,
-            Key::Seed,
-        ]
+        &[Key::BlendWindow, Key::WeightLaw, Key::AlignBy, Key::RootBlend, Key::HalfLife, Key::Seed]
     }
 
     fn slots(&self) -> &'static [Slot] {
@@ -110,7 +104,13 @@ impl GraphInputs {
             transition,
             walk: Some(Arc::clone(walk)),
             metrics: walk.metrics.clone(),
-            beside: walk.built.cast.motions().iter().map(|motion| Arc::clone(&motion.clip)).collect(),
+            beside: walk
+                .built
+                .cast
+                .motions()
+                .iter()
+                .map(|motion| Arc::clone(&motion.clip))
+                .collect(),
             measured: walk.trace.clone().map_or(Measured::Motion, Measured::Trace),
             ..Outcome::plain(Arc::clone(&walk.motion))
         }

@@ -49,9 +49,11 @@ pub(crate) fn recipe_ingredients(lab: LabId) -> impl Iterator<Item = Key> {
     PARAMS.iter().map(|param| param.key).filter(move |&key| is_ingredient(key, lab))
 }
 
-/// The id of what the parameters make: `run(turn_rate:20)` of the Make lab, `transition(a:walk,b:run,half_life:0.3)` of another. `None` for a clip as it is.
+/// The id of what the parameters make: `run(turn_rate:20)` of the Make lab,
+/// `transition(a:walk,b:run,half_life:0.3)` of another. `None` for a clip as it is.
 ///
-/// What was left to Segue is written down as it was found, so that the same comes out again, and at once. `fps` are the clips' own frame rates.
+/// What was left to Segue is written down as it was found, so that the same comes out again, and at
+/// once. `fps` are the clips' own frame rates.
 pub(crate) fn recipe_id(params: &Params, outcome: &Outcome, fps: [f64; 2]) -> Option<String> {
     let lab = params.lab();
     match lab {
@@ -70,9 +72,8 @@ pub(crate) fn recipe_id(params: &Params, outcome: &Outcome, fps: [f64; 2]) -> Op
             params.set(key, Value::Number(value)).ok()?;
         }
     }
-    let ingredients = PARAMS
-        .iter()
-        .filter(|param| is_ingredient(param.key, lab) && counts(&params, param.key));
+    let ingredients =
+        PARAMS.iter().filter(|param| is_ingredient(param.key, lab) && counts(&params, param.key));
     let ingredients = ingredients.filter(|param| {
         let named = matches!(param.kind, Kind::Clip);
         named || *params.get(param.key) != param.default_value()
@@ -99,7 +100,8 @@ pub(crate) fn recipe_params(id: &str) -> Option<Params> {
         let (name, value) = pair.split_once(':')?;
         let key = Key::from_name(name)?;
         let allowed = if is_lab { is_ingredient(key, lab) } else { belongs_to(key, lab) };
-        let value = if matches!(key.param().kind, Kind::Clip | Kind::Text) && !value.ends_with(')') {
+        let value = if matches!(key.param().kind, Kind::Clip | Kind::Text) && !value.ends_with(')')
+        {
             percent_decode_str(value).decode_utf8().ok()?
         } else {
             value.into()
@@ -113,7 +115,8 @@ pub(crate) fn recipe_params(id: &str) -> Option<Params> {
 /// Whether the View lab changes nothing of its clip.
 pub(crate) fn is_as_it_is(params: &Params) -> bool {
     let matters = |key: Key| belongs_to(key, LabId::View) && counts(params, key);
-    let changes = |param: &Param| matters(param.key) && *params.get(param.key) != param.default_value();
+    let changes =
+        |param: &Param| matters(param.key) && *params.get(param.key) != param.default_value();
     !PARAMS.iter().any(changes)
 }
 
@@ -164,7 +167,8 @@ fn written(param: &Param, value: &Value) -> String {
     }
 }
 
-/// The list's parts: at the commas outside of brackets. `None` when the brackets do not close, or lie too deep.
+/// The list's parts: at the commas outside of brackets. `None` when the brackets do not close, or
+/// lie too deep.
 fn parts(list: &str) -> Option<Vec<&str>> {
     let (mut parts, mut depth, mut start) = (Vec::new(), 0_usize, 0);
     for (at, letter) in list.char_indices() {

@@ -1,6 +1,9 @@
-//! What the document knows of a lab without running it: what its result depends on, and what that is called.
+//! What the document knows of a lab without running it: what its result depends on, and what that
+//! is called.
 
-use super::{Outcome, Slot, blend, graph, layers, loop_, make, match_, path, register, speed, view};
+use super::{
+    Outcome, Slot, blend, graph, layers, loop_, make, match_, path, register, speed, view,
+};
 use crate::LabId;
 use crate::params::{Group, Key, Params, Value};
 
@@ -24,7 +27,8 @@ pub(crate) trait Lab: Sync {
         &[Slot::A, Slot::B]
     }
 
-    /// The ids of the clips that the lab's own list names; none where it has no list, and where that cannot be read.
+    /// The ids of the clips that the lab's own list names; none where it has no list, and where
+    /// that cannot be read.
     fn listed(&self, _params: &Params) -> Vec<String> {
         Vec::new()
     }
@@ -37,7 +41,8 @@ pub(crate) trait Lab: Sync {
         Ok(Vec::new())
     }
 
-    /// What is to be set so that the lab works with these clips; `None` where it takes no list of clips.
+    /// What is to be set so that the lab works with these clips; `None` where it takes no list of
+    /// clips.
     fn with_clips(&self, _ids: &[String]) -> Option<Vec<(Key, Value)>> {
         None
     }
@@ -48,19 +53,23 @@ pub(crate) trait Lab: Sync {
     /// What a file of the result is called, without its ending.
     fn file_stem(&self, params: &Params) -> String;
 
-    /// The values that were found for parameters left to Segue; `fps` are the frame rates of the clips in A and B.
+    /// The values that were found for parameters left to Segue; `fps` are the frame rates of the
+    /// clips in A and B.
     fn found(&self, _outcome: &Outcome, _fps: [f64; 2]) -> Vec<(Key, f64)> {
         Vec::new()
     }
 
-    /// A link to the lab's bundled captured clips; `None` where it takes a list of clips or has none.
+    /// A link to the lab's bundled captured clips; `None` where it takes a list of clips or has
+    /// none.
     fn captured_link(&self) -> Option<&'static str> {
         None
     }
 
     /// Whether the result depends on a parameter.
     fn depends_on(&self, key: Key) -> bool {
-        self.groups().contains(&key.param().group) || self.shared_keys().contains(&key) || (self.has_feet() && is_of_feet(key))
+        self.groups().contains(&key.param().group)
+            || self.shared_keys().contains(&key)
+            || (self.has_feet() && is_of_feet(key))
     }
 }
 
@@ -83,7 +92,8 @@ pub(crate) fn of(lab: LabId) -> &'static dyn Lab {
 
 /// Returns whether a parameter says how feet are read and held: every lab with clips has these.
 fn is_of_feet(key: Key) -> bool {
-    matches!(key, Key::FootLock | Key::Ground | Key::ContactHeight | Key::ContactSpeed) || is_of_lock(key)
+    matches!(key, Key::FootLock | Key::Ground | Key::ContactHeight | Key::ContactSpeed)
+        || is_of_lock(key)
 }
 
 /// Returns whether a parameter says how planted feet are held.

@@ -1,4 +1,5 @@
-//! All labs with what they remember: inputs for results, and the work that takes longer than a frame.
+//! All labs with what they remember: inputs for results, and the work that takes longer than a
+//! frame.
 
 use super::Outcome;
 use super::blend::{BlendInputs, Blender};
@@ -7,7 +8,10 @@ use super::graph::{GraphInputs, Grapher};
 use super::layers::{LayerInputs, Layerer};
 use super::loop_::{CycleFinder, LoopInputs};
 use super::make::MakeInputs;
-use super::match_::{Driver, HandTag, ReplayInputs, Source as MatchSource, filter_of, options_in, read_tags, recording_of};
+use super::match_::{
+    Driver, HandTag, ReplayInputs, Source as MatchSource, filter_of, options_in, read_tags,
+    recording_of,
+};
 use super::pair::Pairs;
 use super::path::{PathInputs, Paths};
 use super::register::{RegisterInputs, Registrars, read_also};
@@ -65,7 +69,8 @@ pub(crate) trait Sliced {
     /// Returns whether something that a pane waits for is there, so that it should ask again.
     fn is_ready(&self) -> bool;
 
-    /// Returns what is worked on and how much of it is done, 0 to 1; `None` when there is nothing to tell.
+    /// Returns what is worked on and how much of it is done, 0 to 1; `None` when there is nothing
+    /// to tell.
     fn progress(&self) -> Option<(JobKind, f64)>;
 }
 
@@ -146,7 +151,8 @@ impl LabSet {
         }
     }
 
-    /// Does one slice of work; `now_secs` is where the playhead stands. Returns `false` when there was nothing to do.
+    /// Does one slice of work; `now_secs` is where the playhead stands. Returns `false` when there
+    /// was nothing to do.
     pub(crate) fn work(&mut self, now_secs: f64) -> bool {
         self.grapher.play_at(now_secs);
         self.sliced_mut().into_iter().any(Sliced::work)
@@ -168,20 +174,33 @@ impl LabSet {
         found
     }
 
-    /// Returns what a result depends on; `None` while that is still being computed. `match_window` is the window of the automatic match, in frames.
-    pub(crate) fn inputs(&mut self, clips: LabClips, params: &Params, match_window: usize) -> Result<Option<Inputs>, String> {
+    /// Returns what a result depends on; `None` while that is still being computed. `match_window`
+    /// is the window of the automatic match, in frames.
+    pub(crate) fn inputs(
+        &mut self,
+        clips: LabClips,
+        params: &Params,
+        match_window: usize,
+    ) -> Result<Option<Inputs>, String> {
         let inputs = match params.lab() {
             LabId::View => return Ok(self.viewer.inputs(clips.first()?, params).map(Inputs::View)),
             LabId::Make => Inputs::Make(MakeInputs::of(params)),
-            LabId::Blend | LabId::Transition => {
-                Inputs::Blend(self.blender.inputs(&self.pairs.of_slots(&clips.slots)?, params, match_window)?)
+            LabId::Blend | LabId::Transition => Inputs::Blend(self.blender.inputs(
+                &self.pairs.of_slots(&clips.slots)?,
+                params,
+                match_window,
+            )?),
+            LabId::Speed => {
+                Inputs::Speed(self.gaits.inputs(&self.pairs.of_slots(&clips.slots)?, params)?)
             }
-            LabId::Speed => Inputs::Speed(self.gaits.inputs(&self.pairs.of_slots(&clips.slots)?, params)?),
             LabId::Loop => Inputs::Loop(self.cycles.inputs(clips.first()?, params)?),
-            LabId::Layers => Inputs::Layers(self.layerer.inputs(&self.pairs.of_slots(&clips.slots)?, params)?),
+            LabId::Layers => {
+                Inputs::Layers(self.layerer.inputs(&self.pairs.of_slots(&clips.slots)?, params)?)
+            }
             LabId::Register => {
                 let pair = self.pairs.of_slots(&clips.slots)?;
-                let weights = read_also(params.text(Key::WarpAlso))?.into_iter().map(|(_, weight)| weight);
+                let weights =
+                    read_also(params.text(Key::WarpAlso))?.into_iter().map(|(_, weight)| weight);
                 let also: Vec<_> = clips.motions().into_iter().zip(weights).collect();
                 return Ok(self.registrars.inputs(&pair, &also, params)?.map(Inputs::Register));
             }
@@ -196,7 +215,11 @@ impl LabSet {
     }
 
     /// Returns the database of the Match lab; `None` while it is built.
-    pub(crate) fn match_database(&mut self, clips: LabClips, params: &Params) -> Result<Option<Arc<Database>>, String> {
+    pub(crate) fn match_database(
+        &mut self,
+        clips: LabClips,
+        params: &Params,
+    ) -> Result<Option<Arc<Database>>, String> {
         let tags: Vec<HandTag> = read_tags(params.text(Key::Tags))?;
         filter_of(params)?;
         let database = self.driver.database(&MatchSource::new(clips.motions(), params))?;
@@ -248,7 +271,8 @@ impl Inputs {
         }
     }
 
-    /// Returns whether the result is shown while more of it is computed: it will be another motion then, or have numbers.
+    /// Returns whether the result is shown while more of it is computed: it will be another motion
+    /// then, or have numbers.
     pub(crate) fn is_draft(&self) -> bool {
         match self {
             Self::View(view) => view.awaits_numbers(),

@@ -6,7 +6,9 @@ use crate::choices;
 use crate::compare::MAX_PANES;
 use crate::motion::Motion;
 use crate::params::{Group, Key, Params};
-use segue_motion::blend::{BodyPart, LayerMode, LayerOptions, LayerTime, Reference, layer_timed, mask};
+use segue_motion::blend::{
+    BodyPart, LayerMode, LayerOptions, LayerTime, Reference, layer_timed, mask,
+};
 use segue_motion::clip::{Clip, Contacts, character_frames};
 use segue_motion::gait::{GaitCycle, strike_phases};
 use segue_motion::math::Planar;
@@ -106,7 +108,11 @@ pub(crate) struct Layerer {
 
 impl Layerer {
     /// Brings everything to the point where the layer itself is a pure function.
-    pub(crate) fn inputs(&mut self, pair: &Arc<Pair>, params: &Params) -> Result<LayerInputs, String> {
+    pub(crate) fn inputs(
+        &mut self,
+        pair: &Arc<Pair>,
+        params: &Params,
+    ) -> Result<LayerInputs, String> {
         Ok(LayerInputs {
             pair: Arc::clone(pair),
             timed: self.timed(pair, params)?,
@@ -132,19 +138,17 @@ impl Layerer {
         Ok(timed)
     }
 
-    fn read(&mut self, pair: &Arc<Pair>, wanted: (choices::LayerFit, f64)) -> Result<Timed, String> {
+    fn read(
+        &mut self,
+        pair: &Arc<Pair>,
+        wanted: (choices::LayerFit, f64),
+    ) -> Result<Timed, String> {
         let (a, b) = (&pair.a.clip, &pair.incoming.clip);
-        let times = || Arc::new((0..a.frames()).map(|frame| a.time_of(frame)).collect::<Vec<f64>>());
-        let plain = || Reading {
-            over: Arc::clone(b),
-            times: times(),
-        };
+        let times =
+            || Arc::new((0..a.frames()).map(|frame| a.time_of(frame)).collect::<Vec<f64>>());
+        let plain = || Reading { over: Arc::clone(b), times: times() };
         let (wanted_fit, start) = wanted;
-        let in_step = if wanted_fit == choices::LayerFit::Step {
-            self.in_step(pair)
-        } else {
-            None
-        };
+        let in_step = if wanted_fit == choices::LayerFit::Step { self.in_step(pair) } else { None };
         let fits = start >= 0.0 && start + a.duration_secs() <= b.duration_secs();
         let (reading, fit) = match (in_step, wanted_fit) {
             (Some(reading), _) => (reading, LayerFit::InStep),
@@ -163,8 +167,13 @@ impl Layerer {
             time: time_of(fit),
             ..LayerOptions::default()
         };
-        let shown = layer_timed(a, roles, &reading.over, &whole, &reading.times).map_err(|error| error.to_string())?;
-        let shown = Arc::new(Motion::analyze_feet(shown.with_name(b.name()), Some(roles.clone()), pair.b.feet));
+        let shown = layer_timed(a, roles, &reading.over, &whole, &reading.times)
+            .map_err(|error| error.to_string())?;
+        let shown = Arc::new(Motion::analyze_feet(
+            shown.with_name(b.name()),
+            Some(roles.clone()),
+            pair.b.feet,
+        ));
         let source = source_of(&shown);
         Ok(Timed {
             pair: Arc::clone(pair),
@@ -177,22 +186,27 @@ impl Layerer {
         })
     }
 
-    /// One cycle of B, and for every frame of A the time of that cycle at which B's feet are where A's are.
+    /// One cycle of B, and for every frame of A the time of that cycle at which B's feet are where
+    /// A's are.
     fn in_step(&mut self, pair: &Arc<Pair>) -> Option<Reading> {
         if let Some((known, reading)) = &self.in_step
             && Arc::ptr_eq(known, pair)
         {
             return reading.clone();
         }
-        let reading = GaitCycle::find(pair.profiles[1].source(), &pair.incoming.roles, &pair.incoming.contacts)
-            .ok()
-            .and_then(|cycle| {
-                let phases = strike_phases(&pair.a.contacts, cycle.events().right_strike)?;
-                Some(Reading {
-                    over: once_more(cycle.looped())?,
-                    times: Arc::new(phases.into_iter().map(|phase| phase * cycle.secs()).collect()),
-                })
-            });
+        let reading = GaitCycle::find(
+            pair.profiles[1].source(),
+            &pair.incoming.roles,
+            &pair.incoming.contacts,
+        )
+        .ok()
+        .and_then(|cycle| {
+            let phases = strike_phases(&pair.a.contacts, cycle.events().right_strike)?;
+            Some(Reading {
+                over: once_more(cycle.looped())?,
+                times: Arc::new(phases.into_iter().map(|phase| phase * cycle.secs()).collect()),
+            })
+        });
         self.in_step = Some((Arc::clone(pair), reading.clone()));
         reading
     }
@@ -254,12 +268,10 @@ impl LayerInputs {
     pub(crate) fn run(&self) -> Result<Outcome, String> {
         let (pair, timed) = (&self.pair, &self.timed);
         let (a, roles) = (&pair.a, pair.a.roles.clone());
-        let options = LayerOptions {
-            time: time_of(timed.fit),
-            ..self.options.clone()
-        };
+        let options = LayerOptions { time: time_of(timed.fit), ..self.options.clone() };
         let Reading { over, times } = &timed.reading;
-        let made = layer_timed(&a.clip, &roles, over, &options, times).map_err(|error| error.to_string())?;
+        let made = layer_timed(&a.clip, &roles, over, &options, times)
+            .map_err(|error| error.to_string())?;
         let free = Arc::new(made.with_name(format!("{} + {}", a.clip.name(), pair.b.clip.name())));
         let shares: Vec<f32> = mask(a.clip.skeleton(), &roles, &options.parts, options.feather)
             .into_iter()
@@ -291,7 +303,8 @@ impl LayerInputs {
             roles: &roles,
             ground_m,
         });
-        metrics.extend(everywhere.list().into_iter().filter(|metric| metric.id == "penetration_cm"));
+        metrics
+            .extend(everywhere.list().into_iter().filter(|metric| metric.id == "penetration_cm"));
         metrics.extend(deviations(&clip, &a.clip, &roles));
         let motion = Motion {
             ground_frames: character_frames(&clip, &roles),
@@ -309,11 +322,7 @@ impl LayerInputs {
             transition: None,
             cycle: None,
             retargeted: pair.retargeted.clone(),
-            layer: Some(LayerFacts {
-                shares,
-                fit: timed.fit,
-                has_no_steps: timed.has_no_steps,
-            }),
+            layer: Some(LayerFacts { shares, fit: timed.fit, has_no_steps: timed.has_no_steps }),
             registered: None,
             path: None,
             walk: None,

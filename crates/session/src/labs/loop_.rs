@@ -11,7 +11,9 @@ use crate::params::{Group, Key, Params};
 use segue_motion::blend;
 use segue_motion::math::Planar;
 use segue_motion::metrics::Metric;
-use segue_motion::transition::{CutPoints, CycleSearch, LoopMethod, LoopOptions, close_loop, find_cycle};
+use segue_motion::transition::{
+    CutPoints, CycleSearch, LoopMethod, LoopOptions, close_loop, find_cycle,
+};
 use std::sync::Arc;
 
 /// The Loop lab: a cycle cut from a clip, its ends brought together.
@@ -40,7 +42,9 @@ impl Lab for LoopLab {
 
     fn found(&self, outcome: &Outcome, _fps: [f64; 2]) -> Vec<(Key, f64)> {
         match outcome.cycle.map(|cycle| cycle.made) {
-            Some(CycleMade::Cut { from_secs, to_secs, .. }) => vec![(Key::LoopFrom, from_secs), (Key::LoopTo, to_secs)],
+            Some(CycleMade::Cut { from_secs, to_secs, .. }) => {
+                vec![(Key::LoopFrom, from_secs), (Key::LoopTo, to_secs)]
+            }
             _ => Vec::new(),
         }
     }
@@ -60,7 +64,9 @@ pub(crate) struct LoopInputs {
 
 impl PartialEq for LoopInputs {
     fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.found, &other.found) && self.options == other.options && self.foot_lock == other.foot_lock
+        Arc::ptr_eq(&self.found, &other.found)
+            && self.options == other.options
+            && self.foot_lock == other.foot_lock
     }
 }
 
@@ -82,10 +88,15 @@ pub(crate) struct CycleFinder {
 
 impl CycleFinder {
     /// What the parameters ask for, of this clip.
-    pub(crate) fn inputs(&mut self, motion: &Arc<Motion>, params: &Params) -> Result<LoopInputs, String> {
+    pub(crate) fn inputs(
+        &mut self,
+        motion: &Arc<Motion>,
+        params: &Params,
+    ) -> Result<LoopInputs, String> {
         let fps = motion.clip.fps();
         let last = motion.clip.frames().saturating_sub(1);
-        let mut given = [Key::LoopFrom, Key::LoopTo].map(|key| params.optional(key).map(|secs| ((secs * fps).round() as usize).min(last)));
+        let mut given = [Key::LoopFrom, Key::LoopTo]
+            .map(|key| params.optional(key).map(|secs| ((secs * fps).round() as usize).min(last)));
         if let [Some(from), Some(to)] = &mut given
             && from > to
         {
@@ -98,7 +109,11 @@ impl CycleFinder {
         })
     }
 
-    fn found(&mut self, motion: &Arc<Motion>, given: [Option<usize>; 2]) -> Result<Arc<Found>, String> {
+    fn found(
+        &mut self,
+        motion: &Arc<Motion>,
+        given: [Option<usize>; 2],
+    ) -> Result<Arc<Found>, String> {
         if let Some(found) = &self.known
             && Arc::ptr_eq(&found.motion, motion)
             && found.given == given
@@ -106,19 +121,12 @@ impl CycleFinder {
             return Ok(Arc::clone(found));
         }
         let source = source_of(motion);
-        let search = CycleSearch {
-            start: given[0],
-            end: given[1],
-            ..CycleSearch::new(motion.clip.fps())
-        };
+        let search =
+            CycleSearch { start: given[0], end: given[1], ..CycleSearch::new(motion.clip.fps()) };
         let body_height = motion.roles.body_height(motion.clip.skeleton());
-        let cut = find_cycle(&source, &motion.contacts, body_height.into(), &search).map_err(|error| error.to_string())?;
-        let found = Arc::new(Found {
-            motion: Arc::clone(motion),
-            source,
-            given,
-            cut,
-        });
+        let cut = find_cycle(&source, &motion.contacts, body_height.into(), &search)
+            .map_err(|error| error.to_string())?;
+        let found = Arc::new(Found { motion: Arc::clone(motion), source, given, cut });
         self.known = Some(Arc::clone(&found));
         Ok(found)
     }
@@ -144,16 +152,15 @@ impl LoopInputs {
     /// The loop.
     pub(crate) fn run(&self) -> Result<Outcome, String> {
         let Found { motion, source, cut, .. } = &*self.found;
-        let looped = close_loop(source, cut.cycle.clone(), &self.options).map_err(|error| error.to_string())?;
+        let looped = close_loop(source, cut.cycle.clone(), &self.options)
+            .map_err(|error| error.to_string())?;
         let (fps, frames) = (looped.clip.fps(), cut.cycle.len());
         // One more, of which the first frame is the one behind the last.
         let three = looped.repeat(4).and_then(|clip| clip.crop(0..3 * frames + 1));
         let three = three.map_err(|error| error.to_string())?;
         let contacts = repeated(&motion.contacts, &cut.cycle, 3 * frames + 1);
-        let Rounds {
-            motion: played,
-            mut slides,
-        } = rounds(&motion.roles, frames, three, &contacts, motion.ground_m, self.foot_lock)?;
+        let Rounds { motion: played, mut slides } =
+            rounds(&motion.roles, frames, three, &contacts, motion.ground_m, self.foot_lock)?;
         let secs = |frame: usize| frame as f64 / fps;
         let step = looped
             .frames
@@ -185,8 +192,20 @@ impl LoopInputs {
                 "The angle that was to be bridged: the same number if nothing were done.",
             ),
             Metric::fact("cycle_s", "Cycle", secs(frames), "s", "How long one cycle takes."),
-            Metric::fact("cycle_frames", "Cycle", frames as f64, "frames", "The same in frames of A."),
-            Metric::fact("cycle_m", "Way of a cycle", step.shift.length(), "m", "How far one cycle goes."),
+            Metric::fact(
+                "cycle_frames",
+                "Cycle",
+                frames as f64,
+                "frames",
+                "The same in frames of A.",
+            ),
+            Metric::fact(
+                "cycle_m",
+                "Way of a cycle",
+                step.shift.length(),
+                "m",
+                "How far one cycle goes.",
+            ),
             Metric::fact(
                 "cycle_turn_deg",
                 "Turn of a cycle",

@@ -67,8 +67,12 @@ pub(crate) fn has(params: &Params, key: Key) -> bool {
 /// What of a number's range the chosen motion can be made with, where it is not all of it.
 pub(crate) fn range_of(params: &Params, key: Key) -> Option<(f64, f64)> {
     let (own, table) = match (key, key.param().kind) {
-        (Key::GaitSpeed, Kind::Number { min, max, .. }) => (synth::Params::speed_range(synth_action(params))?, (min, max)),
-        (Key::MakeSeconds, Kind::Number { min, max, .. }) => (synth::Params::duration_range(synth_action(params)), (min, max)),
+        (Key::GaitSpeed, Kind::Number { min, max, .. }) => {
+            (synth::Params::speed_range(synth_action(params))?, (min, max))
+        }
+        (Key::MakeSeconds, Kind::Number { min, max, .. }) => {
+            (synth::Params::duration_range(synth_action(params)), (min, max))
+        }
         _ => return None,
     };
     // As the decimals are written: 0.4 of an f32 is a little more than 0.4.
@@ -106,7 +110,8 @@ fn synth_params(params: &Params) -> synth::Params {
 /// The motion that the Make lab is set to.
 fn make(params: &Params) -> Result<Outcome, String> {
     let made = synth::synthesize(&synth_params(params)).map_err(|error| error.to_string())?;
-    let mut motion = Motion::analyze_feet(made.clip.with_name(made_id(params)), None, FeetReading::of(params));
+    let mut motion =
+        Motion::analyze_feet(made.clip.with_name(made_id(params)), None, FeetReading::of(params));
     let slid = |motion: &Motion| foot_slide_cm(&motion.clip, &motion.roles, &motion.contacts);
     let mut metrics = vec![slide(slid(&motion))];
     let lock = Lock::of(params);
@@ -114,10 +119,7 @@ fn make(params: &Params) -> Result<Outcome, String> {
     if lock.is_some() {
         metrics = vec![slide(slid(&motion)), slide_before(metrics[0].value)];
     }
-    Ok(Outcome {
-        metrics,
-        ..Outcome::plain(Arc::new(motion))
-    })
+    Ok(Outcome { metrics, ..Outcome::plain(Arc::new(motion)) })
 }
 
 /// A built-in motion by its id.
@@ -130,7 +132,8 @@ pub(crate) fn preset_motion(id: &str) -> Result<Motion, String> {
     Ok(Motion::analyze(made.clip.with_name(preset.title), None))
 }
 
-/// The id of a made clip: the motion and what differs from its default, `run(turn_rate:20,seed:9)`. It is all that is needed to make it again.
+/// The id of a made clip: the motion and what differs from its default, `run(turn_rate:20,seed:9)`.
+/// It is all that is needed to make it again.
 pub(crate) fn made_id(params: &Params) -> String {
     let changed = params
         .changed()
@@ -139,7 +142,9 @@ pub(crate) fn made_id(params: &Params) -> String {
     let list: Vec<String> = changed
         .map(|(param, value)| match (value, range_of(params, param.key)) {
             // As it is made, not as it was set for another motion.
-            (Value::Number(number), Some((min, max))) => (param, Value::Number(number.clamp(min, max))),
+            (Value::Number(number), Some((min, max))) => {
+                (param, Value::Number(number.clamp(min, max)))
+            }
             _ => (param, value.clone()),
         })
         .map(|(param, value)| format!("{}:{}", param.name, param.format(&value)))
@@ -156,10 +161,7 @@ pub(crate) struct MakeInputs {
 
 impl MakeInputs {
     pub(crate) fn of(params: &Params) -> Self {
-        Self {
-            params: Arc::new(params.clone()),
-            id: made_id(params),
-        }
+        Self { params: Arc::new(params.clone()), id: made_id(params) }
     }
 
     pub(crate) fn run(&self) -> Result<Outcome, String> {

@@ -47,7 +47,9 @@ impl Lab for MatchLab {
     }
 
     fn more_clips(&self, params: &Params) -> Result<Vec<String>, String> {
-        read_ids(params.text(Key::MatchClips)).ok_or_else(|| "The list of clips cannot be read: its brackets do not close.".to_owned())
+        read_ids(params.text(Key::MatchClips)).ok_or_else(|| {
+            "The list of clips cannot be read: its brackets do not close.".to_owned()
+        })
     }
 
     fn with_clips(&self, ids: &[String]) -> Option<Vec<(Key, Value)>> {

@@ -20,7 +20,8 @@ pub(crate) struct Pair {
 }
 
 impl Pair {
-    /// The height of the ground under both clips, metres: the lower one, so that no foot is lifted off the ground that its own clip has.
+    /// The height of the ground under both clips, metres: the lower one, so that no foot is lifted
+    /// off the ground that its own clip has.
     pub(super) fn ground_m(&self) -> f32 {
         self.a.ground_m.min(self.incoming.ground_m)
     }
@@ -32,30 +33,32 @@ impl Pair {
 
     fn new(a: &Arc<Motion>, b: &Arc<Motion>) -> Result<Self, String> {
         let (incoming, retargeted) = fitted(a, b)?;
-        let profiles = [a, &incoming].map(|motion| Profile::new(Arc::new(source_of(motion)), &motion.roles, motion.contacts.clone()));
-        Ok(Self {
-            a: Arc::clone(a),
-            b: Arc::clone(b),
-            incoming,
-            profiles,
-            retargeted,
-        })
+        let profiles = [a, &incoming].map(|motion| {
+            Profile::new(Arc::new(source_of(motion)), &motion.roles, motion.contacts.clone())
+        });
+        Ok(Self { a: Arc::clone(a), b: Arc::clone(b), incoming, profiles, retargeted })
     }
 }
 
 /// B on the skeleton and at the frame rate of A, and how it came there if that is not its own.
-pub(super) fn fitted(a: &Arc<Motion>, b: &Arc<Motion>) -> Result<(Arc<Motion>, Option<Arc<Retargeted>>), String> {
-    let same_skeleton = Arc::ptr_eq(a.clip.skeleton(), b.clip.skeleton()) || a.clip.skeleton() == b.clip.skeleton();
+pub(super) fn fitted(
+    a: &Arc<Motion>,
+    b: &Arc<Motion>,
+) -> Result<(Arc<Motion>, Option<Arc<Retargeted>>), String> {
+    let same_skeleton =
+        Arc::ptr_eq(a.clip.skeleton(), b.clip.skeleton()) || a.clip.skeleton() == b.clip.skeleton();
     let same_rate = (a.clip.fps() - b.clip.fps()).abs() <= 1e-4 * a.clip.fps();
     if same_skeleton && same_rate {
         return Ok((Arc::clone(b), None));
     }
     let mut clip = (*b.clip).clone();
     if !same_skeleton {
-        clip = retarget_onto(&clip, &b.roles, &a.clip, &a.roles).map_err(|error| error.to_string())?;
+        clip =
+            retarget_onto(&clip, &b.roles, &a.clip, &a.roles).map_err(|error| error.to_string())?;
     }
     if !same_rate {
-        clip = resample(&clip, a.clip.fps(), Interpolation::Cubic).map_err(|error| error.to_string())?;
+        clip = resample(&clip, a.clip.fps(), Interpolation::Cubic)
+            .map_err(|error| error.to_string())?;
     }
     let roles = if same_skeleton { b.roles.clone() } else { a.roles.clone() };
     let retargeted = (!same_skeleton).then(|| Arc::new(Retargeted::between(a, b)));
@@ -79,9 +82,7 @@ impl Retargeted {
         let way = Retargeting::new(b.clip.skeleton(), &b.roles, skeleton, &a.roles);
         let joints = skeleton.joints().iter().enumerate();
         let unmoved = joints.filter(|(joint, _)| way.as_ref().is_none_or(|way| !way.moves(*joint)));
-        Self {
-            unmatched: unmoved.map(|(_, joint)| joint.name.clone()).collect(),
-        }
+        Self { unmatched: unmoved.map(|(_, joint)| joint.name.clone()).collect() }
     }
 }
 
@@ -119,26 +120,27 @@ mod tests {
     use segue_motion::math::quat;
     use segue_motion::synth::{Action, Params, synthesize};
 
-    /// The largest change of a joint's angular velocity from one frame to the next, radians per second.
+    /// The largest change of a joint's angular velocity from one frame to the next, radians per
+    /// second.
     fn roughest(clip: &Clip) -> f32 {
         let step = |frame: usize, joint: usize| {
             let (from, to) = (clip.rotations(frame)[joint], clip.rotations(frame + 1)[joint]);
             quat::angular_velocity(from, to, clip.fps().recip() as f32)
         };
         let inner = 8..clip.frames() - 10;
-        let changes =
-            inner.flat_map(|frame| (0..clip.skeleton().len()).map(move |joint| (step(frame + 1, joint) - step(frame, joint)).length()));
+        let changes = inner.flat_map(|frame| {
+            (0..clip.skeleton().len())
+                .map(move |joint| (step(frame + 1, joint) - step(frame, joint)).length())
+        });
         changes.fold(0.0, f32::max)
     }
 
-    /// Between the frames of a slower clip the velocity changes evenly, and not in a step at each of them.
+    /// Between the frames of a slower clip the velocity changes evenly, and not in a step at each
+    /// of them.
     #[test]
     fn slower_incoming_clip_is_resampled_without_velocity_steps() {
         let at = |fps: f32| {
-            let params = Params {
-                fps,
-                ..Params::new(Action::Walk)
-            };
+            let params = Params { fps, ..Params::new(Action::Walk) };
             Arc::new(Motion::analyze(synthesize(&params).unwrap().clip, None))
         };
         let (a, b) = (at(120.0), at(30.0));

@@ -15,8 +15,8 @@ use segue_motion::clip::{Clip, Contacts};
 use segue_motion::math::Planar;
 use segue_motion::metrics::{Metric, foot_slide_cm};
 use segue_motion::path::{
-    CarryOptions, EditedMotion, FitError, FitOptions, FittedPath, GroundSpline, HardTurn, MotionOptions, Offset, Orientation, PathEditor,
-    Road, SplineEnds, Timing, Waypoint,
+    CarryOptions, EditedMotion, FitError, FitOptions, FittedPath, GroundSpline, HardTurn,
+    MotionOptions, Offset, Orientation, PathEditor, Road, SplineEnds, Timing, Waypoint,
 };
 use segue_motion::transition::FootLocking;
 use std::sync::Arc;
@@ -66,14 +66,21 @@ pub struct FittedMotion {
 impl FittedMotion {
     fn new(motion: &Arc<Motion>, options: FitOptions) -> Result<Self, String> {
         let source = source_of(motion);
-        let path = FittedPath::new(Arc::new(source), &options).map_err(|error| error.to_string())?;
+        let path =
+            FittedPath::new(Arc::new(source), &options).map_err(|error| error.to_string())?;
         let off = path.residuals().map(|residual| residual.shift.length() * 100.0);
         Ok(Self {
             motion: Arc::clone(motion),
             options,
             road: Arc::new(path.road().clone()),
             error: path.error(),
-            errors_cm: path.places().iter().map(|place| place.along_m).zip(off).map(Into::into).collect(),
+            errors_cm: path
+                .places()
+                .iter()
+                .map(|place| place.along_m)
+                .zip(off)
+                .map(Into::into)
+                .collect(),
             editor: PathEditor::new(path, &motion.roles, motion.contacts.clone()),
         })
     }
@@ -147,13 +154,16 @@ enum Feet {
     Planted(Arc<Planted>),
 }
 
-/// The feet of so many frames are planted while the hand moves: about 3 ms for 31 joints in a browser.
+/// The feet of so many frames are planted while the hand moves: about 3 ms for 31 joints in a
+/// browser.
 const AT_ONCE: usize = 400;
 
 impl PathInputs {
     /// Whether it is the same motion on the same path with its feet held alike, at once or later.
     fn makes_the_same(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.fitted, &other.fitted) && self.code == other.code && (self.carry, self.lock) == (other.carry, other.lock)
+        Arc::ptr_eq(&self.fitted, &other.fitted)
+            && self.code == other.code
+            && (self.carry, self.lock) == (other.carry, other.lock)
     }
 }
 
@@ -176,7 +186,11 @@ pub(crate) struct Paths {
 
 impl Paths {
     /// What the parameters ask for, of this clip.
-    pub(crate) fn inputs(&mut self, motion: &Arc<Motion>, params: &Params) -> Result<PathInputs, String> {
+    pub(crate) fn inputs(
+        &mut self,
+        motion: &Arc<Motion>,
+        params: &Params,
+    ) -> Result<PathInputs, String> {
         let options = FitOptions {
             control_points: params.number(Key::ControlPoints) as usize,
             smoothing: params.number(Key::PathSmoothing),
@@ -200,8 +214,14 @@ impl Paths {
         Ok(inputs)
     }
 
-    fn fitted(&mut self, motion: &Arc<Motion>, options: FitOptions) -> Result<Arc<FittedMotion>, String> {
-        let is_it = |known: &&Arc<FittedMotion>| Arc::ptr_eq(&known.motion, motion) && known.options == options;
+    fn fitted(
+        &mut self,
+        motion: &Arc<Motion>,
+        options: FitOptions,
+    ) -> Result<Arc<FittedMotion>, String> {
+        let is_it = |known: &&Arc<FittedMotion>| {
+            Arc::ptr_eq(&known.motion, motion) && known.options == options
+        };
         if let Some(known) = self.fitted.iter().find(is_it) {
             return Ok(Arc::clone(known));
         }
@@ -268,10 +288,7 @@ fn free_motion(inputs: &PathInputs) -> Result<(Arc<Road>, EditedMotion), String>
         let spline = GroundSpline::from_code(&inputs.code);
         Arc::new(spline.and_then(Road::new).map_err(|error| error.to_string())?)
     };
-    let options = MotionOptions {
-        carry: inputs.carry,
-        foot_lock: None,
-    };
+    let options = MotionOptions { carry: inputs.carry, foot_lock: None };
     let made = fitted.editor.motion(&road, &options).map_err(|error| error.to_string())?;
     Ok((road, made))
 }
@@ -282,9 +299,14 @@ impl PathInputs {
         matches!(self.feet, Feet::Awaited)
     }
 
-    /// Begins to hold the planted feet of the motion on the path, which turned the whole body by so many radians in every frame. `None` where they are not to be
-    /// held, or there are no legs.
-    fn locking(&self, free: &Arc<Clip>, contacts: &Contacts, turns: &[f64]) -> Result<Option<FootLocking>, String> {
+    /// Begins to hold the planted feet of the motion on the path, which turned the whole body by so
+    /// many radians in every frame. `None` where they are not to be held, or there are no legs.
+    fn locking(
+        &self,
+        free: &Arc<Clip>,
+        contacts: &Contacts,
+        turns: &[f64],
+    ) -> Result<Option<FootLocking>, String> {
         let Some(lock) = self.lock else {
             return Ok(None);
         };

@@ -19,7 +19,8 @@ use crate::choices;
 use crate::motion::Motion;
 use registrar::Found;
 use segue_motion::blend::{
-    self, DissolveOptions, Instant, Partner, RegisteredBlend, WeightCurve, WeightLaw, dissolve, registered_blend, registered_join,
+    self, DissolveOptions, Instant, Partner, RegisteredBlend, WeightCurve, WeightLaw, dissolve,
+    registered_blend, registered_join,
 };
 use segue_motion::clip::{Clip, Contacts};
 use segue_motion::math::Planar;
@@ -61,9 +62,11 @@ impl Lab for RegisterLab {
 /// What a frame of a registered result is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Beat {
-    /// The frame of A and that of B, at A's rate; beyond the clips where one of them is over, or has not begun.
+    /// The frame of A and that of B, at A's rate; beyond the clips where one of them is over, or
+    /// has not begun.
     pub frames: [f64; 2],
-    /// How much of A there is, and of B, 0 to 1; where more clips are blended, less than 1 together.
+    /// How much of A there is, and of B, 0 to 1; where more clips are blended, less than 1
+    /// together.
     pub weights: [f64; 2],
 }
 
@@ -72,7 +75,8 @@ pub struct Beat {
 pub struct Registered {
     /// The distances that were looked at.
     pub map: Arc<DistanceMap>,
-    /// Path and curves through them: those that the result follows, or the ones that it leaves out where it is plain.
+    /// Path and curves through them: those that the result follows, or the ones that it leaves out
+    /// where it is plain.
     pub registration: Arc<Registration>,
     /// Both clips run at their own speed.
     pub is_plain: bool,
@@ -80,7 +84,8 @@ pub struct Registered {
     pub beats: Vec<Beat>,
     /// When the feet of the result stand, by its own motion.
     pub steps: Contacts,
-    /// The part of A that can be registered, or that a join takes to go over: from and to, seconds in A.
+    /// The part of A that can be registered, or that a join takes to go over: from and to, seconds
+    /// in A.
     pub part_secs: [f64; 2],
 }
 
@@ -114,16 +119,19 @@ impl Registered {
         nearest.map(|(frame, _)| frame as f64 / self.fps())
     }
 
-    /// When a foot of a source stands, in the result's time; of the result itself where there is none.
+    /// When a foot of a source stands, in the result's time; of the result itself where there is
+    /// none.
     #[must_use]
     pub fn stances(&self, of: Option<Slot>, side: Side) -> Vec<Range<f64>> {
-        let secs = |frames: Range<usize>| frames.start as f64 / self.fps()..frames.end as f64 / self.fps();
+        let secs =
+            |frames: Range<usize>| frames.start as f64 / self.fps()..frames.end as f64 / self.fps();
         let Some(slot) = of else {
             return self.steps.intervals(side).into_iter().map(secs).collect();
         };
         let clip = usize::from(slot == Slot::B);
         let contacts = &self.map.motions()[clip].contacts;
-        let flags = self.beats.iter().map(|beat| stands(contacts, side, beat.frames[clip])).collect();
+        let flags =
+            self.beats.iter().map(|beat| stands(contacts, side, beat.frames[clip])).collect();
         let in_result = Contacts::from_flags([flags, Vec::new()]);
         in_result.intervals(Side::BOTH[0]).into_iter().map(secs).collect()
     }
@@ -195,7 +203,9 @@ struct Also {
 
 impl PartialEq for Also {
     fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.pair, &other.pair) && Arc::ptr_eq(&self.found, &other.found) && self.weight == other.weight
+        Arc::ptr_eq(&self.pair, &other.pair)
+            && Arc::ptr_eq(&self.found, &other.found)
+            && self.weight == other.weight
     }
 }
 
@@ -259,12 +269,9 @@ impl RegisterInputs {
 
     fn blend(&self, weight: &WeightCurve) -> Result<Draft, String> {
         let [a, b] = self.sources();
-        let partner = Partner {
-            source: b,
-            registration: self.found.way(self.is_plain),
-            weight,
-        };
-        let weights: Vec<WeightCurve> = self.also.iter().map(|also| WeightCurve::constant(also.weight)).collect();
+        let partner = Partner { source: b, registration: self.found.way(self.is_plain), weight };
+        let weights: Vec<WeightCurve> =
+            self.also.iter().map(|also| WeightCurve::constant(also.weight)).collect();
         let also = self.also.iter().zip(&weights).map(|(also, weight)| Partner {
             source: also.pair.profiles[1].source(),
             registration: also.found.way(self.is_plain),
@@ -288,18 +295,22 @@ impl RegisterInputs {
 
     /// Where the seams of A and B lie in the result, and its own, where it is a join.
     fn seams(&self, beats: &[Beat], own: Option<&Range<usize>>) -> Vec<Range<usize>> {
-        let plays = |of: usize, frame: usize| beats.partition_point(|beat| beat.frames[of] < frame as f64);
+        let plays =
+            |of: usize, frame: usize| beats.partition_point(|beat| beat.frames[of] < frame as f64);
         let [of_a, of_b] = [&self.pair.a, &self.pair.incoming];
         let of_a = of_a.seams_at(|frame| plays(0, frame)).into_iter();
         let of_b = of_b.seams_at(|frame| plays(1, frame)).into_iter();
-        let Some(own) = own else { return of_a.chain(of_b).collect() };
+        let Some(own) = own else {
+            return of_a.chain(of_b).collect();
+        };
         let before = of_a.filter(|seam| seam.start < own.start);
         let behind = of_b.filter(|seam| seam.start >= own.start);
         before.chain([own.clone()]).chain(behind).collect()
     }
 
-    /// From and to in frames of A: what was asked for, inside of what is registered; the middle half of it where nothing was, so that no seam of
-    /// a kept clip is left out: behind the last one of A, before the first one of B.
+    /// From and to in frames of A: what was asked for, inside of what is registered; the middle
+    /// half of it where nothing was, so that no seam of a kept clip is left out: behind the last
+    /// one of A, before the first one of B.
     fn part(&self, part_secs: [Option<f64>; 2]) -> Result<[usize; 2], String> {
         let [from, to] = self.span();
         let fps = self.pair.a.clip.fps();
@@ -309,7 +320,8 @@ impl RegisterInputs {
             room[0] = from.max(a.behind_seams() as f64);
         }
         if !incoming.seams.is_empty() {
-            room[1] = to.min(self.found.registration.warp().inverse(incoming.before_seams() as f64));
+            room[1] =
+                to.min(self.found.registration.warp().inverse(incoming.before_seams() as f64));
         }
         if part_secs.contains(&None) && room != [from, to] && room[0] + 2.0 > room[1] {
             return Err(format!(
@@ -320,7 +332,8 @@ impl RegisterInputs {
         }
         let asked = |secs: Option<f64>, share: f64| {
             let frame = secs.map_or(room[0] + share * (room[1] - room[0]), |secs| secs * fps);
-            (frame.round() as usize).clamp(from.ceil() as usize, (to.floor() as usize).max(from.ceil() as usize))
+            (frame.round() as usize)
+                .clamp(from.ceil() as usize, (to.floor() as usize).max(from.ceil() as usize))
         };
         let [leave, arrive] = [asked(part_secs[0], 0.25), asked(part_secs[1], 0.75)];
         if leave + 2 > arrive {
@@ -342,12 +355,9 @@ impl RegisterInputs {
         let (joined, during, contacts) = if self.is_plain {
             let enter = (warp.at(leave as f64).round().max(0.0)) as usize;
             let window = (arrive - leave).min(b.clip().frames().saturating_sub(enter + 1));
-            let options = DissolveOptions {
-                window,
-                law,
-                ..DissolveOptions::default()
-            };
-            let joined = dissolve(a, leave, b, enter, &options).map_err(|error| sentence(&error))?;
+            let options = DissolveOptions { window, law, ..DissolveOptions::default() };
+            let joined =
+                dissolve(a, leave, b, enter, &options).map_err(|error| sentence(&error))?;
             let beat = |p: usize| Beat {
                 frames: [(leave + p) as f64, (enter + p) as f64],
                 weights: of_two(1.0 - law.alpha((p + 1) as f64 / window.max(1) as f64)),
@@ -356,7 +366,8 @@ impl RegisterInputs {
             let contacts = Contacts::joined(contacts_a, contacts_b, leave, enter, joined.handover);
             (joined, during, contacts)
         } else {
-            let made = registered_join(a, b, &self.found.registration, leave, arrive, law).map_err(|error| sentence(&error))?;
+            let made = registered_join(a, b, &self.found.registration, leave, arrive, law)
+                .map_err(|error| sentence(&error))?;
             let contacts = made.contacts(contacts_a, contacts_b);
             (made.joined, made.during.iter().map(beat).collect(), contacts)
         };
@@ -369,10 +380,7 @@ impl RegisterInputs {
         let after = (1..=left).map(|step| {
             let in_b = last[1] + step as f64;
             let in_a = if self.is_plain { last[0] + step as f64 } else { warp.inverse(in_b) };
-            Beat {
-                frames: [in_a, in_b],
-                weights: of_two(1.0),
-            }
+            Beat { frames: [in_a, in_b], weights: of_two(1.0) }
         });
         Ok(Draft {
             beats: before.chain(during).chain(after).collect(),
@@ -395,19 +403,17 @@ impl RegisterInputs {
                 (self.join(part, *law)?, part.map(|frame| frame as f64), true)
             }
         };
-        let Draft {
-            clip: free,
-            frames,
-            beats,
-            contacts,
-            mixed,
-            world_from_b,
-        } = draft;
+        let Draft { clip: free, frames, beats, contacts, mixed, world_from_b } = draft;
         let roles = pair.a.roles.clone();
         let sign = if is_join { "→" } else { "+" };
         let also = self.also.iter().map(|also| &also.pair.b);
-        let others: Vec<&str> = std::iter::once(&pair.b).chain(also).map(|motion| motion.clip.name()).collect();
-        let free = Arc::new(free.with_name(format!("{} {sign} {}", pair.a.clip.name(), others.join(" + "))));
+        let others: Vec<&str> =
+            std::iter::once(&pair.b).chain(also).map(|motion| motion.clip.name()).collect();
+        let free = Arc::new(free.with_name(format!(
+            "{} {sign} {}",
+            pair.a.clip.name(),
+            others.join(" + ")
+        )));
         let clip = with_feet(&free, &roles, &contacts, self.ground_m(), self.foot_lock)?;
         let distance_cm = mean(
             beats

@@ -21,8 +21,10 @@ pub(super) struct Rounds {
 
 /// Plays a cycle of `cycle_frames` several times.
 ///
-/// `three` are three cycles and the frame behind them, with the contacts of the feet. The one in the middle is played again and again: a stance that
-/// the end of a clip cuts in two would be planted elsewhere than the same stance with all that is around it. `ground_m` is the height of the ground.
+/// `three` are three cycles and the frame behind them, with the contacts of the feet. The one in
+/// the middle is played again and again: a stance that the end of a clip cuts in two would be
+/// planted elsewhere than the same stance with all that is around it. `ground_m` is the height of
+/// the ground.
 pub(super) fn rounds(
     roles: &Roles,
     cycle_frames: usize,
@@ -66,7 +68,11 @@ pub(super) fn rounds(
 }
 
 /// The contacts of `frames` frames that go round in those of a part of a clip.
-pub(super) fn repeated(contacts: &Contacts, cycle: &std::ops::Range<usize>, frames: usize) -> Contacts {
+pub(super) fn repeated(
+    contacts: &Contacts,
+    cycle: &std::ops::Range<usize>,
+    frames: usize,
+) -> Contacts {
     let flags = |side: Side| {
         (0..frames)
             .map(|frame| contacts.planted(side, cycle.start + frame % cycle.len().max(1)))

@@ -72,7 +72,11 @@ pub(crate) struct GaitFinder {
 
 impl GaitFinder {
     /// What the parameters ask for, of these two clips.
-    pub(crate) fn inputs(&mut self, pair: &Arc<Pair>, params: &Params) -> Result<SpeedInputs, String> {
+    pub(crate) fn inputs(
+        &mut self,
+        pair: &Arc<Pair>,
+        params: &Params,
+    ) -> Result<SpeedInputs, String> {
         let gaits = self.gaits(pair)?;
         let clips_mps = [0, 1].map(|clip: usize| gaits.cycles[clip].speed_mps());
         Ok(SpeedInputs {
@@ -99,10 +103,7 @@ impl GaitFinder {
         };
         let [first, second] = &pair.profiles;
         let cycles = [find(first, &pair.a.roles)?, find(second, &pair.incoming.roles)?];
-        let gaits = Arc::new(Gaits {
-            pair: Arc::clone(pair),
-            cycles,
-        });
+        let gaits = Arc::new(Gaits { pair: Arc::clone(pair), cycles });
         self.known = Some(Arc::clone(&gaits));
         Ok(gaits)
     }
@@ -132,16 +133,20 @@ impl SpeedInputs {
     /// The gait.
     pub(crate) fn run(&self) -> Result<Outcome, String> {
         let (pair, [a, b]) = (&self.gaits.pair, &self.gaits.cycles);
-        let options = SpeedOptions {
-            alignment: self.alignment,
-            ..SpeedOptions::default()
-        };
+        let options = SpeedOptions { alignment: self.alignment, ..SpeedOptions::default() };
         let roles = &pair.a.roles;
         let blend = SpeedBlend::new(a, b, roles, &options).map_err(|error| error.to_string())?;
         let fps = pair.a.clip.fps();
         let three = blend.cycles_at(self.asked_mps, 3).map_err(|error| error.to_string())?;
         let (facts, cycle_frames) = (three.facts, (three.clip.frames() - 1) / 3);
-        let Rounds { motion, mut slides } = rounds(roles, cycle_frames, three.clip, &three.contacts, pair.ground_m(), self.foot_lock)?;
+        let Rounds { motion, mut slides } = rounds(
+            roles,
+            cycle_frames,
+            three.clip,
+            &three.contacts,
+            pair.ground_m(),
+            self.foot_lock,
+        )?;
         let measured = f64::from(ground_speed(&motion.ground_frames, fps));
         let mut metrics = vec![
             Metric::fact(
@@ -151,8 +156,20 @@ impl SpeedInputs {
                 "m/s",
                 "The way over the ground by its time, measured on the result.",
             ),
-            Metric::fact("stride_m", "Stride", facts.stride_m, "m", "The way of one cycle: two steps."),
-            Metric::fact("cadence_spm", "Cadence", facts.cadence_spm, "steps/min", "Steps per minute."),
+            Metric::fact(
+                "stride_m",
+                "Stride",
+                facts.stride_m,
+                "m",
+                "The way of one cycle: two steps.",
+            ),
+            Metric::fact(
+                "cadence_spm",
+                "Cadence",
+                facts.cadence_spm,
+                "steps/min",
+                "Steps per minute.",
+            ),
             Metric::fact(
                 "weight_percent",
                 "Weight of B",
@@ -174,7 +191,8 @@ impl SpeedInputs {
                     clips_mps: blend.speeds_mps(),
                     cuts_secs: [a, b].map(|cycle| {
                         let range = cycle.range();
-                        [range.start, range.end].map(|frame| frame as f64 / cycle.looped().clip.fps())
+                        [range.start, range.end]
+                            .map(|frame| frame as f64 / cycle.looped().clip.fps())
                     }),
                 },
             }),

@@ -1,4 +1,5 @@
-//! The View lab: a clip as it is, with its planted feet held, elsewhere or without its way over the ground, and what there is to say of it in numbers.
+//! The View lab: a clip as it is, with its planted feet held, elsewhere or without its way over the
+//! ground, and what there is to say of it in numbers.
 
 use super::feet::{Lock, locking, slide, slide_before};
 use super::lab::Lab;
@@ -32,11 +33,8 @@ impl Lab for ViewLab {
         let is_placed = [Key::PlaceX, Key::PlaceZ, Key::PlaceHeading]
             .iter()
             .any(|&key| params.optional(key).is_some());
-        let held = if params.is_on(Key::FootLock) {
-            format!("{a}, feet held")
-        } else {
-            a.to_owned()
-        };
+        let held =
+            if params.is_on(Key::FootLock) { format!("{a}, feet held") } else { a.to_owned() };
         match params.choice() {
             choices::RootMotion::InPlace => format!("{held}, in place"),
             choices::RootMotion::Residual => format!("{held}, beside its path"),
@@ -80,7 +78,8 @@ impl ViewInputs {
         self.viewed.is_none()
     }
 
-    /// The clip, with what is known of it by now. Numbers are those of the clip on its own ground: what goes on the spot slides with every step.
+    /// The clip, with what is known of it by now. Numbers are those of the clip on its own ground:
+    /// what goes on the spot slides with every step.
     pub(crate) fn run(&self) -> Result<Outcome, String> {
         let shown = match &self.viewed {
             None => Outcome::plain(Arc::clone(&self.motion)),
@@ -107,7 +106,8 @@ enum RootMotion {
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Ground {
     root_motion: RootMotion,
-    /// Where the first frame stands, (x, z) in metres, and what it faces, degrees; as it comes where nothing is given.
+    /// Where the first frame stands, (x, z) in metres, and what it faces, degrees; as it comes
+    /// where nothing is given.
     start: [Option<f64>; 2],
     heading_deg: Option<f64>,
 }
@@ -129,16 +129,21 @@ impl Ground {
     fn moved(&self, motion: &Arc<Motion>) -> Result<Arc<Motion>, String> {
         let frames = &motion.ground_frames;
         let mut moves = match self.root_motion {
-            RootMotion::World if self.start == [None; 2] && self.heading_deg.is_none() => return Ok(Arc::clone(motion)),
+            RootMotion::World if self.start == [None; 2] && self.heading_deg.is_none() => {
+                return Ok(Arc::clone(motion));
+            }
             RootMotion::World => vec![Planar::IDENTITY; frames.len()],
             RootMotion::InPlace => frames.iter().map(Planar::inverse).collect(),
             RootMotion::Residual => {
                 let source = source_of(motion);
-                let path = FittedPath::new(Arc::new(source), &FitOptions::default()).map_err(|error| sentence(&error.to_string()))?;
+                let path = FittedPath::new(Arc::new(source), &FitOptions::default())
+                    .map_err(|error| sentence(&error.to_string()))?;
                 path.places().iter().map(|place| place.frame.inverse()).collect()
             }
         };
-        let Some(first) = frames.first().zip(moves.first()).map(|(frame, planar)| planar.after(frame)) else {
+        let Some(first) =
+            frames.first().zip(moves.first()).map(|(frame, planar)| planar.after(frame))
+        else {
             return Ok(Arc::clone(motion));
         };
         let wanted = Planar::new(
@@ -152,7 +157,11 @@ impl Ground {
         }
         Ok(Arc::new(Motion {
             clip: Arc::new(motion.clip.transformed_by_frame(&moves)),
-            ground_frames: moves.iter().zip(frames).map(|(planar, frame)| planar.after(frame)).collect(),
+            ground_frames: moves
+                .iter()
+                .zip(frames)
+                .map(|(planar, frame)| planar.after(frame))
+                .collect(),
             ..Motion::clone(motion)
         }))
     }
@@ -166,7 +175,8 @@ struct Viewed {
     made: Result<Outcome, String>,
 }
 
-/// Holds feet and measures clips slice by slice, and keeps what as many panes as there can be have asked for.
+/// Holds feet and measures clips slice by slice, and keeps what as many panes as there can be have
+/// asked for.
 #[derive(Debug, Default)]
 pub(crate) struct Viewer {
     /// The newest last.
@@ -209,13 +219,16 @@ impl Stage {
 }
 
 impl Viewer {
-    /// The clip as the parameters ask for it, with its feet held if they are to be. `None` when that takes longer than a frame: [`work`](Self::work), then ask again. A clip as it is
-    /// comes at once, and again with its numbers.
+    /// The clip as the parameters ask for it, with its feet held if they are to be. `None` when
+    /// that takes longer than a frame: [`work`](Self::work), then ask again. A clip as it is comes
+    /// at once, and again with its numbers.
     pub(crate) fn inputs(&mut self, motion: &Arc<Motion>, params: &Params) -> Option<ViewInputs> {
         let lock = Lock::of(params);
         let viewed = self.known(motion, lock).or_else(|| {
             let index = self.begin(motion, lock);
-            while motion.clip.frames() <= AT_ONCE && self.under_way.get(index).is_some_and(|at| Arc::ptr_eq(&at.motion, motion)) {
+            while motion.clip.frames() <= AT_ONCE
+                && self.under_way.get(index).is_some_and(|at| Arc::ptr_eq(&at.motion, motion))
+            {
                 self.step(index);
             }
             self.known(motion, lock)
@@ -252,22 +265,11 @@ impl Viewer {
     }
 
     fn step(&mut self, index: usize) {
-        let UnderWay {
-            motion,
-            lock,
-            is_wanted,
-            stage,
-        } = self.under_way.remove(index);
+        let UnderWay { motion, lock, is_wanted, stage } = self.under_way.remove(index);
         match next(&motion, stage) {
-            Step::On(stage) => self.under_way.insert(
-                index,
-                UnderWay {
-                    motion,
-                    lock,
-                    is_wanted,
-                    stage: *stage,
-                },
-            ),
+            Step::On(stage) => {
+                self.under_way.insert(index, UnderWay { motion, lock, is_wanted, stage: *stage })
+            }
             Step::Done(made) => {
                 let made = *made;
                 self.known.push(Arc::new(Viewed { of: motion, lock, made }));
@@ -331,10 +333,7 @@ fn next(of: &Arc<Motion>, stage: Stage) -> Step {
             }
             let before_cm = meter.worst_cm();
             match locking(Arc::clone(&of.clip), &of.roles, &of.contacts, of.ground_m, lock) {
-                Ok(Some(locking)) => on(Stage::Locking {
-                    before_cm,
-                    locking: Box::new(locking),
-                }),
+                Ok(Some(locking)) => on(Stage::Locking { before_cm, locking: Box::new(locking) }),
                 Ok(None) => on(Stage::measuring(Arc::clone(of), Some(slide_before(before_cm)))),
                 Err(error) => Step::Done(Box::new(Err(error))),
             }
@@ -346,10 +345,7 @@ fn next(of: &Arc<Motion>, stage: Stage) -> Step {
             match locking.finish() {
                 // Hips are only raised and lowered: the character stands where it stood.
                 Ok(locked) => {
-                    let motion = Motion {
-                        clip: Arc::new(locked),
-                        ..Motion::clone(of)
-                    };
+                    let motion = Motion { clip: Arc::new(locked), ..Motion::clone(of) };
                     on(Stage::measuring(Arc::new(motion), Some(slide_before(before_cm))))
                 }
                 Err(error) => Step::Done(Box::new(Err(error.to_string()))),

@@ -4,10 +4,12 @@
 const MOST_PARENTHESES: usize = 32;
 
 /// The entities that are known.
-const ENTITIES: [(&str, char); 5] = [("&amp;", '&'), ("&lt;", '<'), ("&gt;", '>'), ("&quot;", '"'), ("&nbsp;", '\u{a0}')];
+const ENTITIES: [(&str, char); 5] =
+    [("&amp;", '&'), ("&lt;", '<'), ("&gt;", '>'), ("&quot;", '"'), ("&nbsp;", '\u{a0}')];
 
-/// Returns the host that an address with `://` leads to, with its port: as browsers read it, so that nothing before an `@` and nothing behind a
-/// slash of either kind passes for it. The address itself where it has none.
+/// Returns the host that an address with `://` leads to, with its port: as browsers read it, so
+/// that nothing before an `@` and nothing behind a slash of either kind passes for it. The address
+/// itself where it has none.
 #[must_use]
 pub fn host_of(address: &str) -> &str {
     let rest = address.split_once("://").map_or(address, |(_, rest)| rest);
@@ -16,7 +18,8 @@ pub fn host_of(address: &str) -> &str {
     if host.is_empty() { address } else { host }
 }
 
-/// The sign that an entity at the beginning of a text stands for, and how many bytes the entity has.
+/// The sign that an entity at the beginning of a text stands for, and how many bytes the entity
+/// has.
 pub(super) fn entity(text: &str) -> Option<(char, usize)> {
     let (name, letter) = ENTITIES.iter().find(|(name, _)| text.starts_with(name))?;
     Some((*letter, name.len()))
@@ -28,12 +31,15 @@ pub(super) fn bare_address(text: &str) -> Option<&str> {
     if !(inner.starts_with("https://") || inner.starts_with("http://")) {
         return None;
     }
-    let end = inner.find(|letter: char| letter == '<' || letter == '>' || letter.is_whitespace() || letter.is_control())?;
+    let end = inner.find(|letter: char| {
+        letter == '<' || letter == '>' || letter.is_whitespace() || letter.is_control()
+    })?;
     let (address, after) = inner.split_at_checked(end)?;
     after.starts_with('>').then_some(address)
 }
 
-/// What stands behind `](` up to the `)` that belongs to it: the address, and the text after all that.
+/// What stands behind `](` up to the `)` that belongs to it: the address, and the text after all
+/// that.
 pub(super) fn address(text: &str) -> Option<(String, &str)> {
     let text = text.trim_start();
     let (address, after) = match text.strip_prefix('<') {
@@ -69,7 +75,8 @@ fn address_len(text: &str) -> Option<usize> {
     None
 }
 
-/// What follows on the words that browsers show over a link, if there are any: they are not shown here.
+/// What follows on the words that browsers show over a link, if there are any: they are not shown
+/// here.
 fn without_title(text: &str) -> Option<&str> {
     let Some(begin) = text.chars().next().filter(|begin| ['"', '\'', '('].contains(begin)) else {
         return Some(text);

@@ -1,6 +1,8 @@
-//! A lesson's lines into headings, paragraphs, items of lists, and code. One pass, whose effort is in proportion to the text.
+//! A lesson's lines into headings, paragraphs, items of lists, and code. One pass, whose effort is
+//! in proportion to the text.
 //!
-//! What a line is follows `CommonMark` (spec 0.31, sections 4 and 5) as far as `docs/lessons.md` says what a lesson may hold.
+//! What a line is follows `CommonMark` (spec 0.31, sections 4 and 5) as far as `docs/lessons.md`
+//! says what a lesson may hold.
 
 use super::html::Html;
 
@@ -129,7 +131,8 @@ impl Lines {
         }
     }
 
-    /// Reads a line that goes on with a paragraph, or begins something. It lies inside of the first `reach` lists.
+    /// Reads a line that goes on with a paragraph, or begins something. It lies inside of the first
+    /// `reach` lists.
     fn begin(&mut self, line: &str, mut start: Start<'_>, mut reach: usize) {
         loop {
             let in_paragraph = matches!(self.open, Open::Paragraph(_));
@@ -146,9 +149,10 @@ impl Lines {
             if is_rule(start.rest) {
                 return self.leave(reach);
             }
-            if let Some(item) =
-                Item::of(start).filter(|item| reach < MOST_LEVELS && (!in_paragraph || reach < self.levels.len() || item.interrupts()))
-            {
+            if let Some(item) = Item::of(start).filter(|item| {
+                reach < MOST_LEVELS
+                    && (!in_paragraph || reach < self.levels.len() || item.interrupts())
+            }) {
                 self.item(item, reach);
                 start = item.start;
                 self.quoted = start.quoted;
@@ -168,7 +172,9 @@ impl Lines {
                 self.open = Open::Fence(fence, String::new());
                 return;
             }
-            if let Some(html) = Html::begins(start.rest).filter(|html| !in_paragraph || html.interrupts) {
+            if let Some(html) =
+                Html::begins(start.rest).filter(|html| !in_paragraph || html.interrupts)
+            {
                 self.leave(reach);
                 if !html.ends(start.rest) {
                     self.open = Open::Html(html);
@@ -194,11 +200,7 @@ impl Lines {
         self.levels.truncate(reach + 1);
         if self.levels.get(reach).is_none_or(|level| level.sign != item.sign) {
             self.levels.truncate(reach);
-            self.levels.push(Level {
-                sign: item.sign,
-                next: item.number,
-                content: item.content,
-            });
+            self.levels.push(Level { sign: item.sign, next: item.number, content: item.content });
         }
         if let Some(level) = self.levels.last_mut() {
             level.content = item.content;
@@ -241,12 +243,7 @@ struct Start<'a> {
 
 impl<'a> Start<'a> {
     fn of(line: &'a str) -> Self {
-        let mut start = Self {
-            column: 0,
-            rest: line,
-            quoted: false,
-            base: 0,
-        };
+        let mut start = Self { column: 0, rest: line, quoted: false, base: 0 };
         start.skip_spaces();
         start.skip_quotes();
         start
@@ -266,11 +263,7 @@ impl<'a> Start<'a> {
         let rest = self.rest.trim_start_matches([' ', '\t']);
         let spaces = self.rest.len() - rest.len();
         for space in self.rest.bytes().take(spaces) {
-            self.column = if space == b'\t' {
-                (self.column / 4 + 1) * 4
-            } else {
-                self.column + 1
-            };
+            self.column = if space == b'\t' { (self.column / 4 + 1) * 4 } else { self.column + 1 };
         }
         self.rest = rest;
     }
@@ -315,30 +308,17 @@ impl<'a> Item<'a> {
             return None;
         }
         let mark_ends = start.column + digits + 1;
-        let mut inner = Start {
-            column: mark_ends,
-            rest,
-            quoted: start.quoted,
-            base: 0,
-        };
+        let mut inner = Start { column: mark_ends, rest, quoted: start.quoted, base: 0 };
         inner.skip_spaces();
         let is_far = inner.column > mark_ends + CODE_INDENT;
-        let content = if is_far || inner.rest.is_empty() {
-            mark_ends + 1
-        } else {
-            inner.column
-        };
+        let content = if is_far || inner.rest.is_empty() { mark_ends + 1 } else { inner.column };
         inner.base = content;
         inner.skip_quotes();
-        Some(Self {
-            sign,
-            number: number.parse().ok(),
-            content,
-            start: inner,
-        })
+        Some(Self { sign, number: number.parse().ok(), content, start: inner })
     }
 
-    /// Whether it may stand right under a line of text. A number at the beginning of a line is seldom meant as an item's, unless it is 1.
+    /// Whether it may stand right under a line of text. A number at the beginning of a line is
+    /// seldom meant as an item's, unless it is 1.
     fn interrupts(self) -> bool {
         !self.start.rest.is_empty() && self.number.is_none_or(|number| number == 1)
     }
@@ -358,7 +338,9 @@ impl Fence {
 
     fn is_closed_by(self, start: Start<'_>) -> bool {
         let line = start.rest.trim_ascii_end();
-        line.len() >= self.len && line.chars().all(|letter| letter == self.sign) && start.column < self.column + CODE_INDENT
+        line.len() >= self.len
+            && line.chars().all(|letter| letter == self.sign)
+            && start.column < self.column + CODE_INDENT
     }
 }
 
@@ -386,5 +368,6 @@ fn is_rule(line: &str) -> bool {
     let Some(sign) = line.chars().next().filter(|sign| ['-', '*', '_'].contains(sign)) else {
         return false;
     };
-    line.chars().all(|letter| letter == sign || letter == ' ' || letter == '\t') && line.matches(sign).count() >= 3
+    line.chars().all(|letter| letter == sign || letter == ' ' || letter == '\t')
+        && line.matches(sign).count() >= 3
 }

@@ -1,4 +1,5 @@
-//! What marks mean, one line to each rule. Expected values are those of the `CommonMark` spec, or say why not.
+//! What marks mean, one line to each rule. Expected values are those of the `CommonMark` spec, or
+//! say why not.
 
 use super::parse::parse;
 use super::{Block, Page, Span, Target};
@@ -30,7 +31,8 @@ fn line(spans: &[Span]) -> String {
     line
 }
 
-/// The blocks of a text as lines: `= heading`, `- item`, `1. item`, two spaces to each list around it, `| code`.
+/// The blocks of a text as lines: `= heading`, `- item`, `1. item`, two spaces to each list around
+/// it, `| code`.
 fn lines(text: &str) -> Vec<String> {
     let as_line = |block: &Block| match block {
         Block::Heading(words) => format!("= {words}"),
@@ -185,8 +187,7 @@ fn html_is_left_out() {
         ("a <b, c> d", "a <b, c> d"),
         ("a <!-- b", "a <!-- b"),
     ]);
-    let blocks =
-        "<div class=\"x\">\ngone\n</div>\n\n<script>\n\nalert(1)\n</script>\n<!-- a\n\nb -->\n<b>Here</b> is text\n\n<b>\ngone\n\nend";
+    let blocks = "<div class=\"x\">\ngone\n</div>\n\n<script>\n\nalert(1)\n</script>\n<!-- a\n\nb -->\n<b>Here</b> is text\n\n<b>\ngone\n\nend";
     assert_eq!(lines(blocks), ["Here is text", "end"]);
 }
 

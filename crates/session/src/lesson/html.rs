@@ -62,12 +62,7 @@ pub(super) struct Html {
 impl Html {
     /// What begins with this line; `None` where it is text.
     pub(super) fn begins(line: &str) -> Option<Self> {
-        let until = |end: &str| {
-            Some(Self {
-                until: Some(end.to_owned()),
-                interrupts: true,
-            })
-        };
+        let until = |end: &str| Some(Self { until: Some(end.to_owned()), interrupts: true });
         let inner = line.strip_prefix('<')?;
         if let Some((_, end)) = SPECIAL.into_iter().find(|(start, _)| inner.starts_with(start)) {
             return until(end);
@@ -88,9 +83,7 @@ impl Html {
 
     /// Whether a line is the last. The first may be that too.
     pub(super) fn ends(&self, line: &str) -> bool {
-        self.until
-            .as_ref()
-            .is_some_and(|end| line.to_ascii_lowercase().contains(end.as_str()))
+        self.until.as_ref().is_some_and(|end| line.to_ascii_lowercase().contains(end.as_str()))
     }
 
     /// Whether a blank line ends them.
@@ -102,7 +95,8 @@ impl Html {
 /// What is no element: how it goes on after `<`, and how it ends.
 const SPECIAL: [(&str, &str); 3] = [("!--", "-->"), ("?", "?>"), ("!", ">")];
 
-/// How many bytes the tag has that a text begins with. What lies between `<` and `>` holds no other `<`, so that no text is searched twice.
+/// How many bytes the tag has that a text begins with. What lies between `<` and `>` holds no other
+/// `<`, so that no text is searched twice.
 pub(super) fn tag_len(text: &str) -> Option<usize> {
     let inner = text.strip_prefix('<')?;
     let inner = inner.strip_prefix(['/', '!', '?']).unwrap_or(inner);

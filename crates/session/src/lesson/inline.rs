@@ -1,7 +1,9 @@
-//! The marks inside of a text: code, bold, italic, links. One pass, and one over the stars of each link, so that no text is searched twice.
+//! The marks inside of a text: code, bold, italic, links. One pass, and one over the stars of each
+//! link, so that no text is searched twice.
 //!
-//! What marks mean follows `CommonMark` (spec 0.31, section 6) with three differences: `_` is a letter; a single star between two letters or
-//! digits, as in `2*3`, is a times sign; and full-width punctuation counts as a letter, or `**「腳」**` would not be bold inside of a sentence.
+//! What marks mean follows `CommonMark` (spec 0.31, section 6) with three differences: `_` is a
+//! letter; a single star between two letters or digits, as in `2*3`, is a times sign; and
+//! full-width punctuation counts as a letter, or `**「腳」**` would not be bold inside of a sentence.
 
 use super::address::{address, bare_address, entity};
 use super::html::tag_len;
@@ -72,7 +74,9 @@ impl Run {
     /// The rule of three: `*a**b*` is one run of italics, not two.
     fn fits(self, end: Self) -> bool {
         let is_either = self.ends || end.begins;
-        !is_either || !(self.len + end.len).is_multiple_of(3) || (self.len.is_multiple_of(3) && end.len.is_multiple_of(3))
+        !is_either
+            || !(self.len + end.len).is_multiple_of(3)
+            || (self.len.is_multiple_of(3) && end.len.is_multiple_of(3))
     }
 
     /// Ends of the same class fit the same beginnings.
@@ -99,7 +103,8 @@ struct Marks<'a> {
     pieces: Vec<Piece>,
     runs: Vec<Run>,
     brackets: Vec<Bracket>,
-    /// The brackets before that stand around a link, and begin none: links do not lie in each other.
+    /// The brackets before that stand around a link, and begin none: links do not lie in each
+    /// other.
     links_from: usize,
     /// Where runs of backticks begin, by their lengths.
     backticks: BTreeMap<usize, Vec<usize>>,
@@ -232,7 +237,8 @@ impl<'a> Marks<'a> {
         let len = run_len(self.rest, '*');
         let stars = self.eat(len);
         let after = self.rest.chars().next();
-        let is_word = |letter: Option<char>| letter.is_some_and(|letter| letter.is_ascii_alphanumeric());
+        let is_word =
+            |letter: Option<char>| letter.is_some_and(|letter| letter.is_ascii_alphanumeric());
         if len == 1 && is_word(before) && is_word(after) {
             self.plain.push_str(stars);
             return;
@@ -242,28 +248,21 @@ impl<'a> Marks<'a> {
         let begins = !is_space(after) && (!is_sign(after) || is_space(before) || is_sign(before));
         let ends = !is_space(before) && (!is_sign(before) || is_space(after) || is_sign(after));
         self.flush();
-        self.runs.push(Run {
-            piece: self.pieces.len(),
-            len,
-            left: len,
-            begins,
-            ends,
-        });
-        self.pieces.push(Piece::Stars(Stars {
-            left: len,
-            ..Stars::default()
-        }));
+        self.runs.push(Run { piece: self.pieces.len(), len, left: len, begins, ends });
+        self.pieces.push(Piece::Stars(Stars { left: len, ..Stars::default() }));
     }
 
     /// Finds the halves of all runs of stars from one on; none of them has another half outside.
     fn pair(&mut self, from: usize) {
         let mut begun: Vec<Run> = Vec::new();
-        // Runs before that are known to fit no end of a class; without it, stars that begin and end nothing would take quadratic time.
+        // Runs before that are known to fit no end of a class; without it, stars that begin and end
+        // nothing would take quadratic time.
         let mut searched = [0; 6];
         for mut end in self.runs.split_off(from.min(self.runs.len())) {
             while end.ends && end.left > 0 {
                 let searched_to = searched.get(end.class()).copied().unwrap_or_default();
-                let fitting = begun.iter().enumerate().skip(searched_to).rfind(|(_, run)| run.fits(end));
+                let fitting =
+                    begun.iter().enumerate().skip(searched_to).rfind(|(_, run)| run.fits(end));
                 let Some(at) = fitting.map(|(at, _)| at) else {
                     if let Some(to) = searched.get_mut(end.class()) {
                         *to = begun.len();
@@ -321,7 +320,9 @@ impl<'a> Marks<'a> {
         self.rest = left;
         self.flush();
         self.pair(bracket.runs);
-        let Some(piece) = self.pieces.get_mut(bracket.piece) else { return };
+        let Some(piece) = self.pieces.get_mut(bracket.piece) else {
+            return;
+        };
         // Of a picture, what it shows is left.
         if bracket.is_picture {
             *piece = Piece::Text(String::new());
@@ -356,5 +357,6 @@ fn run_len(text: &str, sign: char) -> usize {
 
 /// Whether stars beside a sign can tell by it what they begin or end.
 fn is_punctuation(letter: char) -> bool {
-    letter.is_ascii_punctuation() || matches!(letter, '\u{a1}'..='\u{bf}' | '×' | '÷' | '\u{2010}'..='\u{2bff}')
+    letter.is_ascii_punctuation()
+        || matches!(letter, '\u{a1}'..='\u{bf}' | '×' | '÷' | '\u{2010}'..='\u{2bff}')
 }

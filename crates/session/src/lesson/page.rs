@@ -3,7 +3,8 @@
 pub struct Page {
     /// Its heading.
     pub title: String,
-    /// What sets the page up, and what that is called; `None` where the page is about whatever is open.
+    /// What sets the page up, and what that is called; `None` where the page is about whatever is
+    /// open.
     pub state: Option<Try>,
     /// The text.
     pub body: Vec<Block>,
@@ -73,10 +74,7 @@ pub enum Target {
 impl Span {
     /// Plain text.
     pub fn plain(text: impl Into<String>) -> Self {
-        Self {
-            text: text.into(),
-            ..Self::default()
-        }
+        Self { text: text.into(), ..Self::default() }
     }
 }
 
@@ -94,7 +92,9 @@ impl Try {
     /// What a line says that begins with a link to a state; `None` for any other.
     pub(super) fn of(spans: &[Span]) -> Option<Self> {
         let target = spans.first()?.target.as_ref()?;
-        let Target::State(query) = target else { return None };
+        let Target::State(query) = target else {
+            return None;
+        };
         let in_link = spans.iter().take_while(|span| span.target.as_ref() == Some(target)).count();
         let (link, rest) = spans.split_at_checked(in_link)?;
         let mut about = rest.to_vec();

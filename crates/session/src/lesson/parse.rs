@@ -1,5 +1,5 @@
-//! Markdown into pages. Nothing that a file holds can do more than be shown: its size is limited, HTML and pictures are left out, and a link that
-//! leads neither to a state nor to the web is text.
+//! Markdown into pages. Nothing that a file holds can do more than be shown: its size is limited,
+//! HTML and pictures are left out, and a link that leads neither to a state nor to the web is text.
 
 use super::blocks::{Marker, Part, parts_of};
 use super::inline::spans_of;
@@ -38,7 +38,8 @@ pub enum LessonError {
     NoTitle,
 }
 
-/// Reads the pages of a lesson: each begins with a heading of the first level. What stands before the first is left out.
+/// Reads the pages of a lesson: each begins with a heading of the first level. What stands before
+/// the first is left out.
 ///
 /// # Errors
 /// [`LessonError`]; Markdown itself is never wrong.
@@ -96,7 +97,10 @@ impl Reader {
         if spans.iter().all(|span| span.text.trim().is_empty()) {
             return;
         }
-        let begins = page.body.is_empty() && page.state.is_none() && self.section == Section::Body && marker.is_none();
+        let begins = page.body.is_empty()
+            && page.state.is_none()
+            && self.section == Section::Body
+            && marker.is_none();
         let link = Try::of(&spans);
         match (link, marker) {
             (Some(link), None) if begins && link.about.is_empty() => page.state = Some(link),
@@ -105,11 +109,9 @@ impl Reader {
                     page.tries.push(link);
                 }
             }
-            (_, Some(Marker { depth, number })) => self.push(Block::Item {
-                depth: depth.min(DEEPEST),
-                number,
-                spans,
-            }),
+            (_, Some(Marker { depth, number })) => {
+                self.push(Block::Item { depth: depth.min(DEEPEST), number, spans })
+            }
             (_, None) => self.push(Block::Paragraph(spans)),
         }
     }
@@ -132,10 +134,7 @@ impl Reader {
         if level == 1 {
             self.end_page();
             self.section = Section::Body;
-            self.page = Some(Page {
-                title: words.to_owned(),
-                ..Page::default()
-            });
+            self.page = Some(Page { title: words.to_owned(), ..Page::default() });
             return;
         }
         let lower = words.to_lowercase();

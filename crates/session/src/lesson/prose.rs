@@ -3,7 +3,8 @@
 use super::page::{Span, Target};
 use super::shelf::lesson_of_file;
 
-/// A link that is longer looks the same from there on. Each span holds its address, so that a long address with many of them would fill the memory.
+/// A link that is longer looks the same from there on. Each span holds its address, so that a long
+/// address with many of them would fill the memory.
 const MOST_SPANS_OF_A_LINK: usize = 64;
 
 /// A block of text that is being put together.
@@ -38,7 +39,8 @@ impl Prose {
     }
 
     pub(super) fn text(&mut self, text: &str, code: bool) {
-        let mut text: String = text.chars().filter(|&letter| letter == '\n' || !letter.is_control()).collect();
+        let mut text: String =
+            text.chars().filter(|&letter| letter == '\n' || !letter.is_control()).collect();
         if text.is_empty() {
             return;
         }
@@ -53,7 +55,12 @@ impl Prose {
         let is_long = target.is_some() && self.spans.len() >= self.link_from + MOST_SPANS_OF_A_LINK;
         let look = (self.strong > 0, self.emphasis > 0, code, target);
         match self.spans.last_mut() {
-            Some(last) if is_long || (last.strong, last.emphasis, last.code, last.target.as_ref()) == look => last.text.push_str(&text),
+            Some(last)
+                if is_long
+                    || (last.strong, last.emphasis, last.code, last.target.as_ref()) == look =>
+            {
+                last.text.push_str(&text)
+            }
             _ => self.spans.push(Span {
                 text,
                 strong: self.strong > 0,
@@ -98,7 +105,8 @@ fn with_units_held(text: &str) -> String {
     while let Some(piece) = pieces.next() {
         held.push_str(piece);
         if let Some(next) = pieces.peek() {
-            let unit = next.trim_end_matches(|letter: char| letter.is_ascii_punctuation() && letter != '%');
+            let unit = next
+                .trim_end_matches(|letter: char| letter.is_ascii_punctuation() && letter != '%');
             let is_unit = UNITS.contains(&unit) || next.starts_with('°') || next.starts_with('%');
             let after_number = piece.ends_with(|letter: char| letter.is_ascii_digit());
             held.push(if after_number && is_unit { '\u{a0}' } else { ' ' });

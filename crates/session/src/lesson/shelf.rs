@@ -35,7 +35,8 @@ pub enum Source {
     Web(String),
 }
 
-/// The file of a lesson that comes with Segue, as in `01-alignment.md`; of the list of all for [`CONTENTS`].
+/// The file of a lesson that comes with Segue, as in `01-alignment.md`; of the list of all for
+/// [`CONTENTS`].
 #[must_use]
 pub fn file_name(lesson: &str) -> Option<String> {
     if lesson == CONTENTS {
@@ -52,7 +53,8 @@ pub(super) fn lesson_of_file(name: &str) -> Option<&'static str> {
     (file_name(lesson)? == name).then_some(lesson)
 }
 
-/// Where the text of what the parameter `lesson` names is, in a language, and which page of it, counted from 0.
+/// Where the text of what the parameter `lesson` names is, in a language, and which page of it,
+/// counted from 0.
 ///
 /// # Errors
 /// What was found in place of a lesson, and what there is.
@@ -96,11 +98,7 @@ pub(crate) struct Shelf {
 
 impl Default for Shelf {
     fn default() -> Self {
-        Self {
-            language: "en",
-            texts: BTreeMap::new(),
-            to_set_up: None,
-        }
+        Self { language: "en", texts: BTreeMap::new(), to_set_up: None }
     }
 }
 

@@ -76,15 +76,11 @@ fn a_lesson_is_pages_with_their_parts() {
         ]
     );
     assert_eq!((more.as_str(), code.as_str()), ("More", "y = 2x"));
-    let [short] = page.tries.as_slice() else {
-        panic!("{:?}", page.tries)
-    };
+    let [short] = page.tries.as_slice() else { panic!("{:?}", page.tries) };
     assert_eq!((short.label.as_str(), short.query.as_str()), ("Short", "blend_window=10"));
     assert_eq!(plain(&short.about), "It bursts.");
     assert_eq!(page.question.len(), 1);
-    let [Block::Paragraph(answer)] = page.answer.as_slice() else {
-        panic!("{:?}", page.answer)
-    };
+    let [Block::Paragraph(answer)] = page.answer.as_slice() else { panic!("{:?}", page.answer) };
     let targets: Vec<&Target> = answer.iter().filter_map(|span| span.target.as_ref()).collect();
     assert_eq!(
         targets,
@@ -97,10 +93,12 @@ fn a_lesson_is_pages_with_their_parts() {
 
 #[test]
 fn chinese_lines_are_joined_without_a_space() {
-    let pages = parse("# 對齊\n\n兩段動作\n沒有關係，A\nand B。\n\n## 想一想\n\n為什麼？\n\n## 解答\n\n因為。".as_bytes()).unwrap();
-    let [Block::Paragraph(text)] = pages[0].body.as_slice() else {
-        panic!("{:?}", pages[0].body)
-    };
+    let pages = parse(
+        "# 對齊\n\n兩段動作\n沒有關係，A\nand B。\n\n## 想一想\n\n為什麼？\n\n## 解答\n\n因為。"
+            .as_bytes(),
+    )
+    .unwrap();
+    let [Block::Paragraph(text)] = pages[0].body.as_slice() else { panic!("{:?}", pages[0].body) };
     assert_eq!(plain(text), "兩段動作沒有關係，A and B。");
     assert_eq!((pages[0].question.len(), pages[0].answer.len()), (1, 1));
 }
@@ -109,9 +107,7 @@ fn chinese_lines_are_joined_without_a_space() {
 fn links_that_may_not_be_opened_are_text() {
     let text = "# L\n\n[a](javascript:alert(1)) [b](data:text/html,x) ![p](https://example.org/p.png) <script>x</script> [c](//evil)";
     let pages = parse(text.as_bytes()).unwrap();
-    let [Block::Paragraph(spans)] = pages[0].body.as_slice() else {
-        panic!("{:?}", pages[0].body)
-    };
+    let [Block::Paragraph(spans)] = pages[0].body.as_slice() else { panic!("{:?}", pages[0].body) };
     assert!(spans.iter().all(|span| span.target.is_none()), "{spans:?}");
     assert_eq!(plain(spans), "a (javascript:alert(1)) b (data:text/html,x) p x c (//evil)");
 }
@@ -126,7 +122,9 @@ fn what_is_no_lesson_is_refused() {
 
 #[test]
 fn hostile_lessons_are_cut_short() {
-    let fill = |piece: &str, times: usize| parse(format!("# L\n\n{}", piece.repeat(times)).as_bytes()).unwrap();
+    let fill = |piece: &str, times: usize| {
+        parse(format!("# L\n\n{}", piece.repeat(times)).as_bytes()).unwrap()
+    };
     for (piece, times) in [
         ("> ", 100_000),
         ("[", 200_000),
@@ -152,9 +150,7 @@ fn lessons_are_found_by_name_and_by_address() {
     assert_eq!(source_of("https://a.org/x.md#3", "en"), Ok((web.clone(), 2)));
     assert_eq!(source_of("https://a.org/x.md#top", "en"), Ok((web, 0)));
     assert!(
-        source_of("cooking", "en")
-            .unwrap_err()
-            .contains("expected contents, alignment, slerp")
+        source_of("cooking", "en").unwrap_err().contains("expected contents, alignment, slerp")
     );
     assert_eq!(shelf::lesson_of_file("02-slerp.md"), Some("slerp"));
     assert_eq!(shelf::lesson_of_file("03-slerp.md"), None);

@@ -1,5 +1,5 @@
-//! Reading files apart from the document: a pure function of names and bytes, so that a large file can be read by another thread or worker and
-//! handed over when it is done.
+//! Reading files apart from the document: a pure function of names and bytes, so that a large file
+//! can be read by another thread or worker and handed over when it is done.
 
 mod wire;
 
@@ -9,7 +9,10 @@ use super::motion::Motion;
 use super::outside;
 use segue_formats::acclaim::{self, AcclaimSkeleton};
 use segue_formats::archive::{self, ArchiveLimits};
-use segue_formats::{FileKind, ImportError, ImportOptions, Imported, ImportedClip, gltf, import_with_progress, kind_of, unpack_gzip};
+use segue_formats::{
+    FileKind, ImportError, ImportOptions, Imported, ImportedClip, gltf, import_with_progress,
+    kind_of, unpack_gzip,
+};
 use segue_motion::skeleton::Roles;
 use segue_motion::skin::SkinnedMesh;
 use serde::{Deserialize, Serialize};
@@ -25,7 +28,8 @@ pub const LARGE_BYTES: u64 = 1 << 20;
 pub enum Content {
     /// In the document.
     Here(Arc<[u8]>),
-    /// With the platform, under this key: too large to be copied about. Once the file was read, the key is its SHA-256.
+    /// With the platform, under this key: too large to be copied about. Once the file was read, the
+    /// key is its SHA-256.
     Outside(String),
 }
 
@@ -136,7 +140,8 @@ pub struct About {
     pub t_pose_first_row: bool,
     /// Whether that row was left out.
     pub t_pose_dropped: bool,
-    /// Metres per unit that would make the body as tall as a person, where it is of no size that people have.
+    /// Metres per unit that would make the body as tall as a person, where it is of no size that
+    /// people have.
     #[serde(default)]
     pub fitting_unit: Option<f64>,
     /// Whether the root is far away in single rows.
@@ -147,18 +152,20 @@ pub struct About {
 /// [`read`], or none of it.
 pub type Reads = fn(&str, &[u8], &ReadSetup, &mut dyn FnMut(usize) -> bool) -> Option<ReadReport>;
 
-/// Reads a file, or all motion files of an archive. `progress` hears how much of it is done, in bytes, and says whether to go on; `None` when it
-/// said no.
-pub fn read(name: &str, bytes: &[u8], setup: &ReadSetup, progress: &mut dyn FnMut(usize) -> bool) -> Option<ReadReport> {
+/// Reads a file, or all motion files of an archive. `progress` hears how much of it is done, in
+/// bytes, and says whether to go on; `None` when it said no.
+pub fn read(
+    name: &str,
+    bytes: &[u8],
+    setup: &ReadSetup,
+    progress: &mut dyn FnMut(usize) -> bool,
+) -> Option<ReadReport> {
     let most = setup.options.max_bytes;
     let unpacked = match kind_of(name, bytes) {
         FileKind::Zip => archive::unpack(
             name,
             bytes,
-            &ArchiveLimits {
-                max_bytes: most,
-                ..ArchiveLimits::default()
-            },
+            &ArchiveLimits { max_bytes: most, ..ArchiveLimits::default() },
         )
         .map(|unpacked| {
             let files = unpacked
@@ -168,7 +175,8 @@ pub fn read(name: &str, bytes: &[u8], setup: &ReadSetup, progress: &mut dyn FnMu
                 .collect();
             (files, unpacked.warnings.iter().map(ToString::to_string).collect())
         }),
-        FileKind::Gzip => unpack_gzip(name, bytes, most).map(|bytes| (vec![(without_gz(name).to_owned(), bytes)], Vec::new())),
+        FileKind::Gzip => unpack_gzip(name, bytes, most)
+            .map(|bytes| (vec![(without_gz(name).to_owned(), bytes)], Vec::new())),
         kind => {
             // Only a motion leans on them.
             let companions = if kind == FileKind::Amc { setup.companions.as_slice() } else { &[] };
@@ -207,7 +215,8 @@ fn read_several(
 ) -> Option<ReadReport> {
     let kinds: Vec<FileKind> = files.iter().map(|(name, bytes)| kind_of(name, bytes)).collect();
     let own = files.iter().zip(&kinds).filter(|(_, kind)| **kind == FileKind::Asf);
-    let mut companions: Vec<Companion> = own.map(|((name, bytes), _)| Companion::new(name, bytes)).collect();
+    let mut companions: Vec<Companion> =
+        own.map(|((name, bytes), _)| Companion::new(name, bytes)).collect();
     companions.extend(setup.companions.iter().cloned());
     let skeletons = skeletons_of(&companions, &setup.options);
     let beside = |path: &str| {
@@ -222,14 +231,14 @@ fn read_several(
         if kind == FileKind::Unknown {
             continue;
         }
-        let mut scaled = |done: usize| progress(((before + done) as f64 / total * packed as f64) as usize);
-        let file = One {
-            name,
-            bytes,
-            kind,
-            sha256: None,
-        }
-        .read(setup, &skeletons, &beside, &mut scaled)?;
+        let mut scaled =
+            |done: usize| progress(((before + done) as f64 / total * packed as f64) as usize);
+        let file = One { name, bytes, kind, sha256: None }.read(
+            setup,
+            &skeletons,
+            &beside,
+            &mut scaled,
+        )?;
         read.push((index, file));
         before += bytes.len();
     }
@@ -241,14 +250,14 @@ fn read_several(
     for (index, file) in &mut read {
         file.unpacked = files.get_mut(*index).map(|(_, bytes)| std::mem::take(bytes));
     }
-    Some(ReadReport {
-        files: read.into_iter().map(|(_, file)| file).collect(),
-        notes,
-    })
+    Some(ReadReport { files: read.into_iter().map(|(_, file)| file).collect(), notes })
 }
 
 /// The skeleton files that can be read.
-fn skeletons_of<'a>(companions: &'a [Companion], options: &ImportOptions) -> Vec<(&'a Companion, AcclaimSkeleton)> {
+fn skeletons_of<'a>(
+    companions: &'a [Companion],
+    options: &ImportOptions,
+) -> Vec<(&'a Companion, AcclaimSkeleton)> {
     let read = |companion: &'a Companion| {
         let skeleton = acclaim::read_skeleton(&companion.name, &companion.bytes, options).ok()?;
         Some((companion, skeleton))
@@ -276,8 +285,10 @@ impl One<'_> {
         let (mut companion, mut warnings) = (None, Vec::new());
         let imported = match kind {
             FileKind::Amc => {
-                let named: Vec<(&str, &AcclaimSkeleton)> = skeletons.iter().map(|(own, read)| (own.name.as_str(), read)).collect();
-                let best = acclaim::best_skeleton(name, bytes, &named).and_then(|index| skeletons.get(index));
+                let named: Vec<(&str, &AcclaimSkeleton)> =
+                    skeletons.iter().map(|(own, read)| (own.name.as_str(), read)).collect();
+                let best = acclaim::best_skeleton(name, bytes, &named)
+                    .and_then(|index| skeletons.get(index));
                 match best {
                     // It is one that waits for its skeleton, where it is one at all.
                     None => acclaim::check_motion(name, bytes).map(|()| {
@@ -289,7 +300,13 @@ impl One<'_> {
                         if !acclaim::goes_by_name(name, &own.name) {
                             warnings.push(format!("it is on the skeleton of {}", own.name));
                         }
-                        let read = acclaim::read_motion_with_progress(name, bytes, skeleton, &setup.options, progress);
+                        let read = acclaim::read_motion_with_progress(
+                            name,
+                            bytes,
+                            skeleton,
+                            &setup.options,
+                            progress,
+                        );
                         match read {
                             Ok(None) => return None,
                             other => other,
@@ -313,23 +330,19 @@ impl One<'_> {
                 let awaits_skeleton = imported.is_none();
                 let clips = ReadClips::of(imported.unwrap_or_default(), setup);
                 warnings.extend(clips.warnings.iter().cloned());
-                ReadClips {
-                    warnings,
-                    companion,
-                    awaits_skeleton,
-                    ..clips
-                }
+                ReadClips { warnings, companion, awaits_skeleton, ..clips }
             }),
         })
     }
 }
 
-/// What is to be said where there are skeletons, and none is that of the motion: of the one that is most like it.
+/// What is to be said where there are skeletons, and none is that of the motion: of the one that is
+/// most like it.
 fn misfit(name: &str, bytes: &[u8], skeletons: &[(&Companion, AcclaimSkeleton)]) -> Option<String> {
-    let fits = skeletons
-        .iter()
-        .map(|(own, skeleton)| (own, acclaim::matching_bones(bytes, skeleton)));
-    let (own, (fitting, bones)) = fits.max_by_key(|(own, (fitting, _))| (acclaim::goes_by_name(name, &own.name), *fitting))?;
+    let fits =
+        skeletons.iter().map(|(own, skeleton)| (own, acclaim::matching_bones(bytes, skeleton)));
+    let (own, (fitting, bones)) =
+        fits.max_by_key(|(own, (fitting, _))| (acclaim::goes_by_name(name, &own.name), *fitting))?;
     Some(format!(
         "the skeleton of {} does not fit: {fitting} of {bones} bones have its names and degrees of freedom",
         own.name
@@ -352,11 +365,7 @@ impl Companion {
     /// A file that was just read.
     #[must_use]
     pub fn new(name: &str, bytes: &[u8]) -> Self {
-        Self {
-            name: name.to_owned(),
-            sha256: sha256_hex(bytes),
-            bytes: Arc::from(bytes),
-        }
+        Self { name: name.to_owned(), sha256: sha256_hex(bytes), bytes: Arc::from(bytes) }
     }
 }
 
@@ -382,11 +391,7 @@ impl From<&ImportedClip> for About {
 impl ReadClip {
     fn new(imported: ImportedClip, roles: Option<Roles>) -> Self {
         let about = About::from(&imported);
-        Self {
-            mesh: imported.mesh,
-            motion: Motion::analyze(imported.clip, roles),
-            about,
-        }
+        Self { mesh: imported.mesh, motion: Motion::analyze(imported.clip, roles), about }
     }
 }
 

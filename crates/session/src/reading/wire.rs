@@ -1,5 +1,5 @@
-//! A report on its way from a worker: a head of JSON, and the long arrays as bytes in pieces, so that neither side copies for longer than a
-//! frame lasts.
+//! A report on its way from a worker: a head of JSON, and the long arrays as bytes in pieces, so
+//! that neither side copies for longer than a frame lasts.
 
 use super::{About, Companion, ReadClip, ReadClips, ReadFile, ReadReport};
 use crate::memory::motion_bytes;
@@ -14,7 +14,8 @@ use serde::{Deserialize, Serialize};
 use std::collections::TryReserveError;
 use std::sync::Arc;
 
-/// The length of a piece, bytes: a whole number of every kind of value below, and copied in well under a millisecond.
+/// The length of a piece, bytes: a whole number of every kind of value below, and copied in well
+/// under a millisecond.
 const PIECE_BYTES: usize = 48 << 14;
 
 /// Why pieces do not make a report.
@@ -120,10 +121,7 @@ impl Parcel {
             files: report.files.iter().map(FileHead::of).collect(),
             notes: report.notes.clone(),
         };
-        Ok(Self {
-            head: serde_json::to_string(&head)?,
-            report,
-        })
+        Ok(Self { head: serde_json::to_string(&head)?, report })
     }
 
     /// Everything but the arrays.
@@ -134,10 +132,7 @@ impl Parcel {
 
     /// Hands out the arrays, piece by piece, in the order in which [`Unpacker::push`] wants them.
     pub fn pieces(&self, mut send: impl FnMut(&[u8])) {
-        let mut piece = Piece {
-            bytes: Vec::with_capacity(PIECE_BYTES),
-            send: &mut send,
-        };
+        let mut piece = Piece { bytes: Vec::with_capacity(PIECE_BYTES), send: &mut send };
         for file in &self.report.files {
             for part in file.unpacked.as_deref().unwrap_or_default().chunks(PIECE_BYTES) {
                 piece.put(part);
@@ -218,7 +213,11 @@ impl Piece<'_> {
     /// Puts the bytes of one value after the other: `N` numbers of `M` bytes each.
     // Not inlined: browsers optimise a function from one call to its next.
     #[inline(never)]
-    fn put_each<T, const N: usize, const M: usize>(&mut self, mut values: &[T], bytes_of: impl Fn(&T) -> [[u8; M]; N]) {
+    fn put_each<T, const N: usize, const M: usize>(
+        &mut self,
+        mut values: &[T],
+        bytes_of: impl Fn(&T) -> [[u8; M]; N],
+    ) {
         while !values.is_empty() {
             if PIECE_BYTES - self.bytes.len() < N * M {
                 self.flush();
@@ -226,7 +225,8 @@ impl Piece<'_> {
             let start = self.bytes.len();
             let (now, later) = values.split_at(values.len().min((PIECE_BYTES - start) / (N * M)));
             self.bytes.resize(start + now.len() * N * M, 0);
-            let room = self.bytes.get_mut(start..).unwrap_or_default().as_chunks_mut().0.as_chunks_mut().0;
+            let room =
+                self.bytes.get_mut(start..).unwrap_or_default().as_chunks_mut().0.as_chunks_mut().0;
             for (room, value) in room.iter_mut().zip(now) {
                 *room = bytes_of(value);
             }
@@ -252,8 +252,15 @@ impl FileHead {
             unpacked: file.unpacked.as_ref().map(Vec::len),
             result: match &file.result {
                 Ok(read) => Ok(ClipsHead {
-                    clips: read.clips.iter().map(|clip| ClipHead::of(clip, &meshes(&read.clips))).collect(),
-                    meshes: meshes(&read.clips).into_iter().map(|mesh| MeshHead::of(mesh)).collect(),
+                    clips: read
+                        .clips
+                        .iter()
+                        .map(|clip| ClipHead::of(clip, &meshes(&read.clips)))
+                        .collect(),
+                    meshes: meshes(&read.clips)
+                        .into_iter()
+                        .map(|mesh| MeshHead::of(mesh))
+                        .collect(),
                     warnings: read.warnings.clone(),
                     companion: read.companion.clone(),
                     awaits_skeleton: read.awaits_skeleton,
@@ -274,7 +281,8 @@ impl FileHead {
     /// How many bytes of arrays come with it.
     fn bytes(&self) -> usize {
         let clips: usize = self.clips().iter().map(ClipHead::bytes).sum();
-        let meshes = self.meshes().iter().fold(0usize, |sum, mesh| sum.saturating_add(mesh.bytes()));
+        let meshes =
+            self.meshes().iter().fold(0usize, |sum, mesh| sum.saturating_add(mesh.bytes()));
         clips.saturating_add(meshes).saturating_add(self.unpacked.unwrap_or(0))
     }
 }
@@ -401,10 +409,7 @@ impl Arrays {
         }
         fill(&mut self.ground_frames, frames, bytes, |b: &[u8; 24]| {
             let number = |at: usize| f64::from_le_bytes(std::array::from_fn(|i| b[8 * at + i]));
-            Planar {
-                yaw: number(0),
-                shift: DVec2::new(number(1), number(2)),
-            }
+            Planar { yaw: number(0), shift: DVec2::new(number(1), number(2)) }
         });
         let mut pairs: Vec<[bool; 2]> = Vec::new();
         fill(&mut pairs, frames - self.contacts[0].len().min(frames), bytes, |b: &[u8; 2]| {
@@ -441,7 +446,12 @@ impl Arrays {
 }
 
 /// Moves values from the front of `bytes` to `values` until there are `wanted` or no more bytes.
-fn fill<T, const N: usize>(values: &mut Vec<T>, wanted: usize, bytes: &mut &[u8], read: impl Fn(&[u8; N]) -> T) {
+fn fill<T, const N: usize>(
+    values: &mut Vec<T>,
+    wanted: usize,
+    bytes: &mut &[u8],
+    read: impl Fn(&[u8; N]) -> T,
+) {
     let missing = wanted.saturating_sub(values.len());
     let (all, _) = bytes.as_chunks::<N>();
     let coming = &all[..missing.min(all.len())];
@@ -482,10 +492,12 @@ impl std::fmt::Debug for Unpacker {
 }
 
 impl Unpacker {
-    /// Begins with the head, and takes all the memory that the arrays will need, up to `room` bytes: nothing grows when the pieces come.
+    /// Begins with the head, and takes all the memory that the arrays will need, up to `room`
+    /// bytes: nothing grows when the pieces come.
     ///
     /// # Errors
-    /// [`WireError::Head`] when it is none, and [`WireError::NoRoom`] where there is no memory for what it tells of.
+    /// [`WireError::Head`] when it is none, and [`WireError::NoRoom`] where there is no memory for
+    /// what it tells of.
     pub fn new(head: &str, room: u64) -> Result<Self, WireError> {
         let head: Head = serde_json::from_str(head)?;
         let bytes = (head.files.iter().map(FileHead::bytes)).fold(0, usize::saturating_add);
@@ -497,13 +509,7 @@ impl Unpacker {
         for file in &head.files {
             files.push(Incoming::with_room_for(file).map_err(|_| no_room())?);
         }
-        Ok(Self {
-            head,
-            files,
-            bytes,
-            at: 0,
-            found: 0,
-        })
+        Ok(Self { head, files, bytes, at: 0, found: 0 })
     }
 
     /// How many bytes the arrays take.
@@ -516,7 +522,9 @@ impl Unpacker {
     pub fn push(&mut self, piece: &[u8]) {
         self.found += piece.len();
         let mut rest = piece;
-        while let (Some(head), Some(file)) = (self.head.files.get(self.at), self.files.get_mut(self.at)) {
+        while let (Some(head), Some(file)) =
+            (self.head.files.get(self.at), self.files.get_mut(self.at))
+        {
             file.take(head, &mut rest);
             if rest.is_empty() {
                 // There may be more of this one.
@@ -532,17 +540,12 @@ impl Unpacker {
     /// [`WireError`] when something is missing or makes no clip.
     pub fn finish(self) -> Result<ReadReport, WireError> {
         if self.found != self.bytes {
-            return Err(WireError::Length {
-                expected: self.bytes,
-                found: self.found,
-            });
+            return Err(WireError::Length { expected: self.bytes, found: self.found });
         }
         let files = self.head.files.into_iter().zip(self.files);
-        let files: Result<Vec<ReadFile>, WireError> = files.map(|(head, file)| file.into_file(head)).collect();
-        Ok(ReadReport {
-            files: files?,
-            notes: self.head.notes,
-        })
+        let files: Result<Vec<ReadFile>, WireError> =
+            files.map(|(head, file)| file.into_file(head)).collect();
+        Ok(ReadReport { files: files?, notes: self.head.notes })
     }
 }
 
@@ -551,13 +554,11 @@ impl Incoming {
     fn with_room_for(head: &FileHead) -> Result<Self, TryReserveError> {
         let mut unpacked = Vec::new();
         unpacked.try_reserve_exact(head.unpacked.unwrap_or(0))?;
-        let clips: Result<Vec<Arrays>, TryReserveError> = head.clips().iter().map(Arrays::with_room_for).collect();
-        let meshes: Result<Vec<SkinnedMesh>, TryReserveError> = head.meshes().iter().map(MeshHead::room).collect();
-        Ok(Self {
-            unpacked,
-            clips: clips?,
-            meshes: meshes?,
-        })
+        let clips: Result<Vec<Arrays>, TryReserveError> =
+            head.clips().iter().map(Arrays::with_room_for).collect();
+        let meshes: Result<Vec<SkinnedMesh>, TryReserveError> =
+            head.meshes().iter().map(MeshHead::room).collect();
+        Ok(Self { unpacked, clips: clips?, meshes: meshes? })
     }
 
     fn take(&mut self, head: &FileHead, bytes: &mut &[u8]) {
@@ -575,7 +576,8 @@ impl Incoming {
             Ok(read) => {
                 let clips = read.clips.into_iter().zip(self.clips);
                 let meshes: Vec<Arc<SkinnedMesh>> = self.meshes.into_iter().map(Arc::new).collect();
-                let clips: Result<Vec<ReadClip>, WireError> = clips.map(|(head, arrays)| arrays.into_clip(head, &meshes)).collect();
+                let clips: Result<Vec<ReadClip>, WireError> =
+                    clips.map(|(head, arrays)| arrays.into_clip(head, &meshes)).collect();
                 Ok(ReadClips {
                     clips: clips?,
                     warnings: read.warnings,
@@ -599,7 +601,8 @@ impl Incoming {
 impl ClipHead {
     /// How many bytes its arrays take.
     fn bytes(&self) -> usize {
-        usize::try_from(motion_bytes(self.frames, self.joints.len(), self.moving.len())).unwrap_or(usize::MAX)
+        usize::try_from(motion_bytes(self.frames, self.joints.len(), self.moving.len()))
+            .unwrap_or(usize::MAX)
     }
 }
 
@@ -619,7 +622,10 @@ mod tests {
                 [clip.rotations.capacity(), translations, clip.ground_frames.capacity(), contacts]
             };
             let of_mesh = |mesh: &SkinnedMesh| {
-                let vertices = mesh.positions.capacity() + mesh.normals.capacity() + mesh.joints.capacity() + mesh.weights.capacity();
+                let vertices = mesh.positions.capacity()
+                    + mesh.normals.capacity()
+                    + mesh.joints.capacity()
+                    + mesh.weights.capacity();
                 [vertices, mesh.colors.capacity(), mesh.triangles.capacity(), mesh.bind.capacity()]
             };
             let of_file = |file: &Incoming| {
@@ -634,10 +640,7 @@ mod tests {
     }
 
     fn report(secs: f32) -> ReadReport {
-        let made = synthesize(&Params {
-            duration_secs: secs,
-            ..Params::new(Action::Walk)
-        });
+        let made = synthesize(&Params { duration_secs: secs, ..Params::new(Action::Walk) });
         let text = bvh::write(&made.unwrap().clip, &bvh::WriteOptions::default());
         read("walk.bvh", text.as_bytes(), &ReadSetup::default(), &mut |_| true).unwrap()
     }
@@ -673,11 +676,10 @@ mod tests {
     fn what_is_sent_arrives_as_it_was() {
         // Long enough for several pieces.
         let mut long = report(60.0);
-        long.files.push(ReadFile {
-            unpacked: Some((0..=255).collect()),
-            ..report(1.0).files.remove(0)
-        });
-        let skeleton = long.files[0].result.as_ref().unwrap().clips[0].motion.clip.skeleton().clone();
+        long.files
+            .push(ReadFile { unpacked: Some((0..=255).collect()), ..report(1.0).files.remove(0) });
+        let skeleton =
+            long.files[0].result.as_ref().unwrap().clips[0].motion.clip.skeleton().clone();
         let mesh = Arc::new(SkinnedMesh {
             colors: vec![[0.5, 0.25, 1.0, 1.0]; 3],
             ..SkinnedMesh::around(&skeleton, &Roles::detect(&skeleton), 1.0)

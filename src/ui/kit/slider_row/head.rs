@@ -1,14 +1,25 @@
-//! The line above the track: the label, who decides, the value and its unit, and the field to type one.
+//! The line above the track: the label, who decides, the value and its unit, and the field to type
+//! one.
 
 use super::super::paint::{Run, faded, focus_ring, line_of, put};
 use super::super::words::Words;
 use super::{SliderResponse, SliderRow, Source};
 use crate::ui::language::tr;
 use crate::ui::theme::{self, Type, palette_of, space, theme_of};
-use eframe::egui::{self, Align2, CursorIcon, Id, Key, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2};
+use eframe::egui::{
+    self, Align2, CursorIcon, Id, Key, Pos2, Rect, Response, Role, Sense, Stroke, StrokeKind, Ui,
+    WidgetInfo, pos2, vec2,
+};
 
 /// The line with label and value; returns the label, which may be double-clicked.
-pub(super) fn head_ui(value: f64, row: &SliderRow<'_>, head: Rect, id: Id, out: &mut SliderResponse, ui: &mut Ui) -> Response {
+pub(super) fn head_ui(
+    value: f64,
+    row: &SliderRow<'_>,
+    head: Rect,
+    id: Id,
+    out: &mut SliderResponse,
+    ui: &mut Ui,
+) -> Response {
     let (theme, palette, words) = (theme_of(ui), palette_of(ui), Words::of(ui));
     let enabled = ui.is_enabled();
     let (text, muted) = (faded(palette.text, enabled), faded(palette.muted, enabled));
@@ -53,7 +64,13 @@ pub(super) fn head_ui(value: f64, row: &SliderRow<'_>, head: Rect, id: Id, out: 
         }
         put(ui.painter(), number_rect.center(), Align2::CENTER_CENTER, number);
         focus_ring(number_rect, theme::radius::S, &number_response, ui);
-        number_response.widget_info(|| WidgetInfo::labeled(Role::Button, enabled, format!("{}: {}", row.label, words.type_value)));
+        number_response.widget_info(|| {
+            WidgetInfo::labeled(
+                Role::Button,
+                enabled,
+                format!("{}: {}", row.label, words.type_value),
+            )
+        });
         if number_response.clicked() {
             let start = row.written(value).replace('−', "-");
             ui.data_mut(|data| data.insert_temp(edit_id, start));
@@ -67,14 +84,21 @@ pub(super) fn head_ui(value: f64, row: &SliderRow<'_>, head: Rect, id: Id, out: 
         right = auto_tag_ui(row, pos2(right - space::XS, head.center().y), id, out, ui).left();
     }
 
-    let label = line_of(&[Run::new(row.label, Type::Label, text)], right - head.left() - space::S, ui);
+    let label =
+        line_of(&[Run::new(row.label, Type::Label, text)], right - head.left() - space::S, ui);
     let rect = put(ui.painter(), head.left_center(), Align2::LEFT_CENTER, label);
-    ui.interact(rect, id.with("label"), Sense::CLICK)
-        .on_hover_text(tr(words.reset_hint, ui))
+    ui.interact(rect, id.with("label"), Sense::CLICK).on_hover_text(tr(words.reset_hint, ui))
 }
 
-/// The word that says who decides: filled while the app does; an outline to press while the user does and the app could.
-fn auto_tag_ui(row: &SliderRow<'_>, right_center: Pos2, id: Id, out: &mut SliderResponse, ui: &Ui) -> Rect {
+/// The word that says who decides: filled while the app does; an outline to press while the user
+/// does and the app could.
+fn auto_tag_ui(
+    row: &SliderRow<'_>,
+    right_center: Pos2,
+    id: Id,
+    out: &mut SliderResponse,
+    ui: &Ui,
+) -> Rect {
     let (theme, palette, words) = (theme_of(ui), palette_of(ui), Words::of(ui));
     let auto = row.source == Source::Auto;
     let hit_id = id.with("auto");
@@ -96,7 +120,8 @@ fn auto_tag_ui(row: &SliderRow<'_>, right_center: Pos2, id: Id, out: &mut Slider
     put(ui.painter(), at.center(), Align2::CENTER_CENTER, tag);
     if !auto {
         let hit = Rect::from_center_size(at.center(), at.size().max(vec2(theme::HIT, theme::HIT)));
-        let response = ui.interact(hit, hit_id, Sense::click()).on_hover_cursor(CursorIcon::PointingHand);
+        let response =
+            ui.interact(hit, hit_id, Sense::click()).on_hover_cursor(CursorIcon::PointingHand);
         focus_ring(at, 8, &response, ui);
         let (enabled, name) = (ui.is_enabled(), format!("{}: {}", row.label, words.auto));
         response.widget_info(|| WidgetInfo::labeled(Role::Button, enabled, &name));
@@ -105,11 +130,19 @@ fn auto_tag_ui(row: &SliderRow<'_>, right_center: Pos2, id: Id, out: &mut Slider
     at
 }
 
-fn edit_ui(typed: &mut String, edit_id: Id, field: Rect, row: &SliderRow<'_>, out: &mut SliderResponse, ui: &mut Ui) {
+fn edit_ui(
+    typed: &mut String,
+    edit_id: Id,
+    field: Rect,
+    row: &SliderRow<'_>,
+    out: &mut SliderResponse,
+    ui: &mut Ui,
+) {
     let fresh_id = edit_id.with("fresh");
     let fresh = ui.data_mut(|data| data.remove_temp::<bool>(fresh_id)).unwrap_or(false);
     let font = theme_of(ui).font(Type::Number);
-    // Asked before the field sees the keys: Esc also takes the focus away, and that must not commit.
+    // Asked before the field sees the keys: Esc also takes the focus away, and that must not
+    // commit.
     let escape = ui.input(|input| input.key_pressed(Key::Escape));
     let edit = egui::TextEdit::singleline(typed)
         .id(edit_id.with("field"))
@@ -122,10 +155,7 @@ fn edit_ui(typed: &mut String, edit_id: Id, field: Rect, row: &SliderRow<'_>, ou
         if let Some(mut state) = egui::TextEdit::load_state(ui.ctx(), response.id) {
             let all = egui::text::CCursorRange::two(
                 egui::text::CCursor::default(),
-                egui::text::CCursor {
-                    index: typed.chars().count().into(),
-                    ..Default::default()
-                },
+                egui::text::CCursor { index: typed.chars().count().into(), ..Default::default() },
             );
             state.cursor.set_char_range(Some(all));
             state.store(ui.ctx(), response.id);

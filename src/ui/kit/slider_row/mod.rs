@@ -7,7 +7,9 @@ use self::head::head_ui;
 use self::track::{assistive, drag, keys, paint_track};
 use super::paint::{faded, full_width, paragraph, put};
 use crate::ui::theme::{self, Type, palette_of, space, theme_of};
-use eframe::egui::{Align2, Color32, Rect, Response, Sense, Ui, WidgetInfo, accesskit::Action, pos2};
+use eframe::egui::{
+    Align2, Color32, Rect, Response, Sense, Ui, WidgetInfo, accesskit::Action, pos2,
+};
 use std::ops::RangeInclusive;
 
 /// Who decides the value.
@@ -49,7 +51,8 @@ pub(crate) struct SliderRow<'a> {
 }
 
 impl<'a> SliderRow<'a> {
-    /// A row for values of `range`, which must rise. One step is a hundredth of it until [`Self::step`] says otherwise.
+    /// A row for values of `range`, which must rise. One step is a hundredth of it until
+    /// [`Self::step`] says otherwise.
     pub(crate) fn new(label: &'a str, range: RangeInclusive<f64>, default: f64) -> Self {
         let step = (range.end() - range.start()).abs() / 100.0;
         Self {
@@ -92,7 +95,8 @@ impl<'a> SliderRow<'a> {
         self
     }
 
-    /// How much an arrow key changes the value; dragging lands on multiples of it too. The fine step (shift) is a tenth.
+    /// How much an arrow key changes the value; dragging lands on multiples of it too. The fine
+    /// step (shift) is a tenth.
     pub(crate) fn step(mut self, step: f64) -> Self {
         self.step = step;
         self.fine = step / 10.0;
@@ -162,12 +166,10 @@ impl<'a> SliderRow<'a> {
     }
 
     fn snapped(&self, value: f64, step: f64) -> f64 {
-        // Where the steps of a logarithmic track are wide compared to the value they would swallow it.
-        let step = if self.log {
-            step.min(value.abs() / 50.0).max(f64::MIN_POSITIVE)
-        } else {
-            step
-        };
+        // Where the steps of a logarithmic track are wide compared to the value they would swallow
+        // it.
+        let step =
+            if self.log { step.min(value.abs() / 50.0).max(f64::MIN_POSITIVE) } else { step };
         let value = if step > 0.0 { (value / step).round() * step } else { value };
         value.clamp(*self.range.start(), *self.range.end())
     }
@@ -182,7 +184,8 @@ impl<'a> SliderRow<'a> {
 pub(crate) struct SliderResponse {
     /// The value asked for, if it differs from the one shown. In the row's range.
     pub(crate) changed: Option<f64>,
-    /// The default was asked for; for a value the app can find, that it find it. `changed` has the default as well.
+    /// The default was asked for; for a value the app can find, that it find it. `changed` has the
+    /// default as well.
     pub(crate) reset: bool,
     /// A drag began: what follows until [`Self::drag_ended`] is one thing to undo.
     pub(crate) drag_started: bool,
@@ -192,10 +195,12 @@ pub(crate) struct SliderResponse {
     pub(crate) response: Response,
 }
 
-/// A parameter: label, value and unit on one line, the track below, and a sentence of help where there is one.
+/// A parameter: label, value and unit on one line, the track below, and a sentence of help where
+/// there is one.
 ///
-/// Drag the track, hold shift for a tenth of the speed. Arrow keys step (shift: finely), page keys step tenfold, home and end
-/// go to the ends. Click the number to type one; Enter takes it, Esc does not. A double click on label or track resets.
+/// Drag the track, hold shift for a tenth of the speed. Arrow keys step (shift: finely), page keys
+/// step tenfold, home and end go to the ends. Click the number to type one; Enter takes it, Esc
+/// does not. A double click on label or track resets.
 pub(crate) fn slider_row_ui(value: f64, row: &SliderRow<'_>, ui: &mut Ui) -> SliderResponse {
     let theme = theme_of(ui);
     let scale = theme.scale();
@@ -228,9 +233,8 @@ pub(crate) fn slider_row_ui(value: f64, row: &SliderRow<'_>, ui: &mut Ui) -> Sli
     if out.reset {
         out.changed = Some(row.default.clamp(*row.range.start(), *row.range.end()));
     }
-    out.changed = out
-        .changed
-        .filter(|&changed| changed != value || row.source == Source::Auto || out.reset);
+    out.changed =
+        out.changed.filter(|&changed| changed != value || row.source == Source::Auto || out.reset);
 
     let shown = out.changed.unwrap_or(value);
     paint_track(shown, row, track_area, &out.response, ui);
@@ -285,7 +289,10 @@ mod tests {
         for row in [row(), row().log()] {
             for value in [0.01, 0.1, 0.5, 3.0, 10.0] {
                 let back = row.value_at(row.position(value), 0.0);
-                assert!((back - value).abs() < 1e-9 * value.max(1.0), "{value} came back as {back}");
+                assert!(
+                    (back - value).abs() < 1e-9 * value.max(1.0),
+                    "{value} came back as {back}"
+                );
             }
         }
         // A logarithmic track gives every tenfold a third of its length.

@@ -10,8 +10,8 @@ use eframe::egui::{
     pos2, vec2,
 };
 
-/// Where the pointer holds the handle, kept between frames: unclamped, so that the way back from beyond an end is as long as
-/// the way there.
+/// Where the pointer holds the handle, kept between frames: unclamped, so that the way back from
+/// beyond an end is as long as the way there.
 #[derive(Clone, Copy, Debug)]
 struct Held {
     position: f64,
@@ -60,11 +60,8 @@ pub(super) fn keys(value: f64, row: &SliderRow<'_>, out: &mut SliderResponse, ui
     if !out.response.has_focus() {
         return;
     }
-    let filter = EventFilter {
-        horizontal_arrows: true,
-        vertical_arrows: true,
-        ..EventFilter::default()
-    };
+    let filter =
+        EventFilter { horizontal_arrows: true, vertical_arrows: true, ..EventFilter::default() };
     ui.memory_mut(|memory| memory.set_focus_lock_filter(out.response.id, filter));
     let mut next = value;
     for (key, modifiers) in keys_pressed(ui) {
@@ -85,7 +82,8 @@ pub(super) fn keys(value: f64, row: &SliderRow<'_>, out: &mut SliderResponse, ui
         };
         let step = if modifiers.shift { row.fine } else { row.step };
         next = if row.log {
-            // On a logarithmic track a step is a fiftieth of the way, or the small values could not be reached.
+            // On a logarithmic track a step is a fiftieth of the way, or the small values could not
+            // be reached.
             let share = if modifiers.shift { 0.002 } else { 0.02 };
             row.value_at(row.position(next) + steps * share, row.fine)
         } else {
@@ -125,7 +123,13 @@ fn handle_radius(ui: &Ui) -> f32 {
     7.0 * theme_of(ui).scale()
 }
 
-pub(super) fn paint_track(value: f64, row: &SliderRow<'_>, area: Rect, response: &Response, ui: &Ui) {
+pub(super) fn paint_track(
+    value: f64,
+    row: &SliderRow<'_>,
+    area: Rect,
+    response: &Response,
+    ui: &Ui,
+) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let enabled = ui.is_enabled();
     let thickness = 4.0 * theme.scale();
@@ -136,19 +140,20 @@ pub(super) fn paint_track(value: f64, row: &SliderRow<'_>, area: Rect, response:
     painter.rect_filled(bar, thickness / 2.0, palette.track);
     let auto = row.source == Source::Auto;
     // A value the app found is there but not asserted: its bar is quieter.
-    let fill = faded(
-        if auto {
-            palette.accent.gamma_multiply(0.45)
-        } else {
-            palette.accent
-        },
-        enabled,
-    );
+    let fill =
+        faded(if auto { palette.accent.gamma_multiply(0.45) } else { palette.accent }, enabled);
     let handle = pos2(x_of(value), bar.center().y);
-    painter.rect_filled(Rect::from_min_max(bar.min, pos2(handle.x, bar.bottom())), thickness / 2.0, fill);
+    painter.rect_filled(
+        Rect::from_min_max(bar.min, pos2(handle.x, bar.bottom())),
+        thickness / 2.0,
+        fill,
+    );
     for mark in row.marks {
         let x = x_of(mark.value);
-        let tick = Rect::from_center_size(pos2(x, bar.center().y), vec2(2.0 * theme.scale(), thickness + 6.0));
+        let tick = Rect::from_center_size(
+            pos2(x, bar.center().y),
+            vec2(2.0 * theme.scale(), thickness + 6.0),
+        );
         painter.rect_filled(tick, 1.0, mark.color);
     }
     let radius = handle_radius(ui);
@@ -175,7 +180,8 @@ pub(super) fn paint_track(value: f64, row: &SliderRow<'_>, area: Rect, response:
         let tone = if enabled { palette.handle } else { palette.muted };
         painter.circle_filled(handle, radius, tone);
     }
-    // The default, as a nick below the track: where a double click would go. Only for whoever is at this track.
+    // The default, as a nick below the track: where a double click would go. Only for whoever is at
+    // this track.
     let default_x = x_of(row.default);
     if !auto && grown > 0.0 && (default_x - handle.x).abs() > radius + 2.0 {
         let nick = Rect::from_center_size(pos2(default_x, bar.bottom() + 4.0), vec2(2.0, 4.0));

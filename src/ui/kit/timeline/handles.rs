@@ -4,7 +4,10 @@ use super::super::keys::keys_pressed;
 use super::super::paint::focus_ring;
 use super::{TimeAxis, Timeline, TimelineEvent};
 use crate::ui::theme::{HIT, palette_of, radius, theme_of};
-use eframe::egui::{CursorIcon, EventFilter, Id, Key, Rangef, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
+use eframe::egui::{
+    CursorIcon, EventFilter, Id, Key, Rangef, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo,
+    pos2, vec2,
+};
 
 /// Things on the timeline that can be dragged along it.
 pub(super) struct Handles {
@@ -40,15 +43,22 @@ impl Handles {
             ui,
         );
         let palette = palette_of(ui);
-        let hot = ui
-            .ctx()
-            .animate_bool(response.id, response.hovered() || response.dragged() || response.has_focus());
+        let hot = ui.ctx().animate_bool(
+            response.id,
+            response.hovered() || response.dragged() || response.has_focus(),
+        );
         let x = ui.painter().round_to_pixel_center(self.axis.x_of(time));
         let tone = palette.accent.gamma_multiply(0.35 + 0.65 * hot);
-        ui.painter()
-            .vline(x, self.top..=self.bottom, Stroke::new(theme_of(ui).hairline() + hot, tone));
+        ui.painter().vline(
+            x,
+            self.top..=self.bottom,
+            Stroke::new(theme_of(ui).hairline() + hot, tone),
+        );
         if hot > 0.0 {
-            let grip = Rect::from_center_size(pos2(x, f32::midpoint(self.top, self.bottom)), vec2(5.0, 22.0));
+            let grip = Rect::from_center_size(
+                pos2(x, f32::midpoint(self.top, self.bottom)),
+                vec2(5.0, 22.0),
+            );
             ui.painter().rect_filled(grip, 2.5, palette.accent.gamma_multiply(hot));
         }
     }
@@ -79,9 +89,10 @@ impl Handles {
             ui,
         );
         let palette = palette_of(ui);
-        let hot = ui
-            .ctx()
-            .animate_bool(response.id, response.hovered() || response.dragged() || response.has_focus());
+        let hot = ui.ctx().animate_bool(
+            response.id,
+            response.hovered() || response.dragged() || response.has_focus(),
+        );
         let x = ui.painter().round_to_pixel_center(self.axis.x_of(time));
         let tone = palette.muted.lerp_to_gamma(palette.text, hot);
         ui.painter().vline(
@@ -125,19 +136,15 @@ impl Handles {
             events.push(TimelineEvent::EditEnded);
         }
         if response.has_focus() {
-            let filter = EventFilter {
-                horizontal_arrows: true,
-                ..EventFilter::default()
-            };
+            let filter = EventFilter { horizontal_arrows: true, ..EventFilter::default() };
             ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
-            let frame = if timeline.fps > 0.0 {
-                1.0 / timeline.fps
-            } else {
-                timeline.duration / 100.0
-            };
+            let frame =
+                if timeline.fps > 0.0 { 1.0 / timeline.fps } else { timeline.duration / 100.0 };
             let frames = keys_pressed(ui).into_iter().map(|(key, modifiers)| {
                 let frames = if modifiers.shift { 10.0 } else { 1.0 };
-                frames * (f64::from(u8::from(key == Key::ArrowRight)) - f64::from(u8::from(key == Key::ArrowLeft)))
+                frames
+                    * (f64::from(u8::from(key == Key::ArrowRight))
+                        - f64::from(u8::from(key == Key::ArrowLeft)))
             });
             let presses: f64 = frames.sum();
             if presses != 0.0 {

@@ -4,7 +4,10 @@ use super::super::paint::{Run, gradient_bar, line_of, put};
 use super::{Moment, Part, Stripe, TimeAxis, Timeline, Track};
 use crate::ui::language::tr;
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
-use eframe::egui::{Align2, Id, Pos2, Rangef, Rect, Response, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2, vec2};
+use eframe::egui::{
+    Align2, Id, Pos2, Rangef, Rect, Response, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2,
+    vec2,
+};
 
 pub(super) fn paint_track(track: &Track<'_>, row: Rangef, axis: TimeAxis, duration: f64, ui: &Ui) {
     let palette = palette_of(ui);
@@ -14,7 +17,8 @@ pub(super) fn paint_track(track: &Track<'_>, row: Rangef, axis: TimeAxis, durati
     if bar.width() < 1.0 {
         return;
     }
-    // What fades is a veil of the panel's colour, not nothing: the bar's shape stays in sight to its end.
+    // What fades is a veil of the panel's colour, not nothing: the bar's shape stays in sight to
+    // its end.
     let faint = palette.panel.lerp_to_gamma(fill, 0.14);
     let length = (end - start).max(f64::EPSILON);
     let (fade_in, fade_out) = ((track.fade_in / length) as f32, (track.fade_out / length) as f32);
@@ -30,7 +34,8 @@ pub(super) fn paint_track(track: &Track<'_>, row: Rangef, axis: TimeAxis, durati
     gradient_bar(bar, f32::from(radius::S), &stops, ui.painter());
 
     // The name stands where the bar is full: at its beginning, or at its end if it fades in.
-    let name = line_of(&[Run::new(track.name, Type::SmallStrong, ink)], bar.width() - 2.0 * space::S, ui);
+    let name =
+        line_of(&[Run::new(track.name, Type::SmallStrong, ink)], bar.width() - 2.0 * space::S, ui);
     let (anchor, x) = if fade_in > 0.0 {
         (Align2::RIGHT_CENTER, bar.right() - space::S)
     } else {
@@ -91,8 +96,11 @@ pub(super) fn outside_loop(timeline: &Timeline<'_>, axis: TimeAxis, area: Rect, 
     let veil = palette_of(ui).panel.gamma_multiply(0.66);
     let cover = |from: f64, to: f64| {
         if to > from {
-            ui.painter()
-                .rect_filled(Rect::from_x_y_ranges(axis.x_of(from)..=axis.x_of(to), area.y_range()), 0.0, veil);
+            ui.painter().rect_filled(
+                Rect::from_x_y_ranges(axis.x_of(from)..=axis.x_of(to), area.y_range()),
+                0.0,
+                veil,
+            );
         }
     };
     if let Some(time) = timeline.in_point {
@@ -107,31 +115,33 @@ pub(super) fn paint_playhead(x: f32, top: f32, bottom: f32, scrub: &Response, ui
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let x = ui.painter().round_to_pixel_center(x);
     let width = if theme.projector { 2.0 } else { 1.5 };
-    ui.painter()
-        .vline(x, top..=bottom, Stroke::new(width + 2.0, palette.panel.gamma_multiply(0.45)));
+    ui.painter().vline(
+        x,
+        top..=bottom,
+        Stroke::new(width + 2.0, palette.panel.gamma_multiply(0.45)),
+    );
     ui.painter().vline(x, top..=bottom, Stroke::new(width, palette.handle));
     let hot = ui
         .ctx()
         .animate_bool(scrub.id.with("hot"), scrub.hovered() || scrub.is_pointer_button_down_on());
-    ui.painter()
-        .circle_filled(pos2(x, top + 2.0), (3.5 + hot) * theme.scale(), palette.handle);
+    ui.painter().circle_filled(pos2(x, top + 2.0), (3.5 + hot) * theme.scale(), palette.handle);
 }
 
 /// The feet of a motion: a bar wherever one stands.
 pub(super) fn paint_stripe(stripe: &Stripe<'_>, row: Rangef, axis: TimeAxis, ui: &Ui) {
     let palette = palette_of(ui);
-    let color = if stripe.part == Part::Result {
-        palette.accent
-    } else {
-        stripe.part.fill(palette).0
-    };
+    let color =
+        if stripe.part == Part::Result { palette.accent } else { stripe.part.fill(palette).0 };
     let half = 0.5 * (row.span() - 1.0);
     for (foot, stances) in stripe.feet.iter().enumerate() {
         let top = row.min + foot as f32 * (half + 1.0);
         let lane = Rect::from_x_y_ranges(axis.x, top..=top + half);
         ui.painter().rect_filled(lane, 1.0, palette.track.gamma_multiply(0.5));
         for stance in stances {
-            let bar = Rect::from_x_y_ranges(axis.x_of(stance.start)..=axis.x_of(stance.end.min(axis.duration)), lane.y_range());
+            let bar = Rect::from_x_y_ranges(
+                axis.x_of(stance.start)..=axis.x_of(stance.end.min(axis.duration)),
+                lane.y_range(),
+            );
             ui.painter().rect_filled(bar, 1.0, color);
         }
     }
@@ -147,7 +157,8 @@ pub(super) fn moment_ui(moment: &Moment<'_>, center: Pos2, id: Id, ui: &Ui) {
         center - vec2(size, 0.0),
     ];
     ui.painter().add(Shape::convex_polygon(diamond, moment.color, Stroke::NONE));
-    let response = ui.interact(Rect::from_center_size(center, vec2(12.0, 12.0)), id, Sense::hover());
+    let response =
+        ui.interact(Rect::from_center_size(center, vec2(12.0, 12.0)), id, Sense::hover());
     let said = format!("{}, {:.2} s", moment.name, moment.time);
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &said));
     response.on_hover_text(tr(&said, ui));
@@ -165,7 +176,10 @@ mod tests {
         assert_eq!(nice_step(0.0, 8.0), 1.0);
         for span in [0.3, 1.7, 9.9, 128.0] {
             let step = nice_step(span, 8.0);
-            assert!(span / step <= 8.0 + 1e-9 && span / step > 8.0 / 5.1, "{span} in steps of {step}");
+            assert!(
+                span / step <= 8.0 + 1e-9 && span / step > 8.0 / 5.1,
+                "{span} in steps of {step}"
+            );
         }
     }
 }

@@ -1,4 +1,5 @@
-//! What happens in time: bars for the clips, the transition between them, a playhead over all, and the curves below.
+//! What happens in time: bars for the clips, the transition between them, a playhead over all, and
+//! the curves below.
 
 mod handles;
 mod look;
@@ -131,24 +132,16 @@ impl TimeAxis {
     }
 }
 
-/// The bars, the curves, and the playhead over both. Press anywhere to go there, drag to scrub, use the arrow keys for frames.
+/// The bars, the curves, and the playhead over both. Press anywhere to go there, drag to scrub, use
+/// the arrow keys for frames.
 pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineEvent> {
     let (theme, palette, words) = (theme_of(ui), palette_of(ui), Words::of(ui));
     let scale = theme.scale();
     let id = ui.make_persistent_id("timeline");
     let spacing = std::mem::replace(&mut ui.spacing_mut().item_spacing.y, 0.0);
 
-    let gutter = if ui.available_width() < 560.0 * scale {
-        0.0
-    } else {
-        (112.0 * scale).round()
-    };
-    let Heights {
-        head,
-        bar: bar_height,
-        pitch,
-        ..
-    } = Heights::of(ui);
+    let gutter = if ui.available_width() < 560.0 * scale { 0.0 } else { (112.0 * scale).round() };
+    let Heights { head, bar: bar_height, pitch, .. } = Heights::of(ui);
     // Of several panes each has less room.
     let crowded = timeline.stripes.len() > 3;
     let stripe_pitch = ((if crowded { 0.8 } else { 1.0 }) * STRIPE * scale).round();
@@ -193,7 +186,11 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineE
         let y = bars.top() + head + index as f32 * pitch;
         let row = Rangef::new(y, y + bar_height);
         if gutter > 0.0 {
-            let label = line_of(&[Run::new(track.label, Type::Small, palette.muted)], gutter - space::S, ui);
+            let label = line_of(
+                &[Run::new(track.label, Type::Small, palette.muted)],
+                gutter - space::S,
+                ui,
+            );
             put(ui.painter(), pos2(bars.left(), row.center()), Align2::LEFT_CENTER, label);
         }
         paint_track(track, row, axis, timeline.duration, ui);
@@ -202,7 +199,11 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineE
         let y = bars.top() + tracks_height + index as f32 * stripe_pitch;
         let row = Rangef::new(y, y + stripe_pitch - 2.0);
         if gutter > 0.0 {
-            let label = line_of(&[Run::new(stripe.label, Type::Small, palette.muted)], gutter - space::S, ui);
+            let label = line_of(
+                &[Run::new(stripe.label, Type::Small, palette.muted)],
+                gutter - space::S,
+                ui,
+            );
             put(ui.painter(), pos2(bars.left(), row.center()), Align2::LEFT_CENTER, label);
         }
         paint_stripe(stripe, row, axis, ui);
@@ -223,12 +224,7 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineE
     }
     outside_loop(timeline, axis, area, ui);
 
-    let handles = Handles {
-        axis,
-        top: bars.top(),
-        bottom: plot_row.bottom(),
-        id,
-    };
+    let handles = Handles { axis, top: bars.top(), bottom: plot_row.bottom(), id };
     if let (Some(transition), true) = (&timeline.transition, timeline.transition_editable) {
         handles.edge_ui(
             words.transition_start,
@@ -248,10 +244,26 @@ pub(crate) fn timeline_ui(timeline: &Timeline<'_>, ui: &mut Ui) -> Vec<TimelineE
         );
     }
     if let Some(time) = timeline.in_point {
-        handles.flag_ui(words.in_point, time, true, TimelineEvent::SetIn, timeline, &mut events, ui);
+        handles.flag_ui(
+            words.in_point,
+            time,
+            true,
+            TimelineEvent::SetIn,
+            timeline,
+            &mut events,
+            ui,
+        );
     }
     if let Some(time) = timeline.out_point {
-        handles.flag_ui(words.out_point, time, false, TimelineEvent::SetOut, timeline, &mut events, ui);
+        handles.flag_ui(
+            words.out_point,
+            time,
+            false,
+            TimelineEvent::SetOut,
+            timeline,
+            &mut events,
+            ui,
+        );
     }
     paint_playhead(axis.x_of(now), bars.top(), plot_row.bottom(), &scrub, ui);
     focus_ring(area, radius::S, &scrub, ui);
@@ -271,11 +283,7 @@ impl Heights {
     fn of(ui: &Ui) -> Self {
         let scale = theme_of(ui).scale();
         let bar = (16.0 * scale).round();
-        Self {
-            head: (10.0 * scale).round(),
-            bar,
-            pitch: bar + space::S,
-        }
+        Self { head: (10.0 * scale).round(), bar, pitch: bar + space::S }
     }
 }
 
@@ -287,10 +295,7 @@ const RULER: f32 = 18.0;
 
 /// A read-only look at the pointer's place in time, for panes that want to show it too.
 pub(crate) fn hovered_time(axis: TimeAxis, plot: Rect, response: &Response) -> Option<f64> {
-    response
-        .hover_pos()
-        .filter(|pos| plot.contains(*pos))
-        .map(|pos| axis.time_at(pos.x))
+    response.hover_pos().filter(|pos| plot.contains(*pos)).map(|pos| axis.time_at(pos.x))
 }
 
 #[cfg(test)]
@@ -299,18 +304,12 @@ mod tests {
 
     #[test]
     fn places_and_times_are_inverse_and_stay_inside() {
-        let axis = TimeAxis {
-            x: Rangef::new(100.0, 500.0),
-            duration: 8.0,
-        };
+        let axis = TimeAxis { x: Rangef::new(100.0, 500.0), duration: 8.0 };
         assert_eq!(axis.x_of(2.0), 200.0);
         assert_eq!(axis.time_at(200.0), 2.0);
         assert_eq!(axis.time_at(-50.0), 0.0);
         assert_eq!(axis.time_at(900.0), 8.0);
-        let empty = TimeAxis {
-            x: Rangef::new(100.0, 500.0),
-            duration: 0.0,
-        };
+        let empty = TimeAxis { x: Rangef::new(100.0, 500.0), duration: 0.0 };
         assert_eq!((empty.x_of(3.0), empty.time_at(300.0)), (100.0, 0.0));
     }
 }

@@ -9,7 +9,14 @@ use eframe::egui::{
 };
 
 /// Moves `now` as it was asked to, and says so in `events`.
-pub(super) fn scrub_ui(timeline: &Timeline<'_>, axis: TimeAxis, scrub: &Response, now: &mut f64, events: &mut Vec<TimelineEvent>, ui: &Ui) {
+pub(super) fn scrub_ui(
+    timeline: &Timeline<'_>,
+    axis: TimeAxis,
+    scrub: &Response,
+    now: &mut f64,
+    events: &mut Vec<TimelineEvent>,
+    ui: &Ui,
+) {
     let held_id = scrub.id.with("held");
     let was_held = ui.data(|data| data.get_temp::<bool>(held_id)).unwrap_or(false);
     let pointer = scrub.interact_pointer_pos().filter(|_| scrub.is_pointer_button_down_on());
@@ -30,16 +37,9 @@ pub(super) fn scrub_ui(timeline: &Timeline<'_>, axis: TimeAxis, scrub: &Response
     }
 
     let mut asked = *now;
-    let frame = if timeline.fps > 0.0 {
-        1.0 / timeline.fps
-    } else {
-        timeline.duration / 100.0
-    };
+    let frame = if timeline.fps > 0.0 { 1.0 / timeline.fps } else { timeline.duration / 100.0 };
     if scrub.has_focus() {
-        let filter = EventFilter {
-            horizontal_arrows: true,
-            ..EventFilter::default()
-        };
+        let filter = EventFilter { horizontal_arrows: true, ..EventFilter::default() };
         ui.memory_mut(|memory| memory.set_focus_lock_filter(scrub.id, filter));
         for (key, modifiers) in keys_pressed(ui) {
             let frames = if modifiers.shift { 10.0 } else { 1.0 };

@@ -77,7 +77,8 @@ impl Drawn {
             }
         }
         let number = |place: Place| set.number(place).unwrap_or(0);
-        let ends: Vec<[Place; 2]> = whole.jumps().iter().map(|jump| [jump.leave, jump.enter]).collect();
+        let ends: Vec<[Place; 2]> =
+            whole.jumps().iter().map(|jump| [jump.leave, jump.enter]).collect();
         let marks = ends.iter().map(|ends| MatrixMark {
             at: ends.map(|end| number(end) as f32),
             faint: !probable.contains_key(ends),
@@ -90,21 +91,14 @@ impl Drawn {
         let dead = whole.dead_ends();
         let stretches = whole.graph().node_indices().filter_map(|node| {
             let stretch = whole.graph().node_weight(node)?;
-            let from = set.number(Place {
-                clip: stretch.clip,
-                frame: stretch.start,
-            })?;
+            let from = set.number(Place { clip: stretch.clip, frame: stretch.start })?;
             let fate = match built.ring_of(node.index()) {
                 Some(0) => Fate::Main,
                 Some(ring) => Fate::Apart(ring - 1),
                 None if dead.contains(&node) => Fate::End,
                 None => Fate::Astray,
             };
-            Some(Stretch {
-                from,
-                to: from + stretch.end - stretch.start,
-                fate,
-            })
+            Some(Stretch { from, to: from + stretch.end - stretch.start, fate })
         });
         Self {
             marks: marks.collect(),
@@ -117,7 +111,12 @@ impl Drawn {
     }
 
     /// The transition that is pointed at, else the one that plays.
-    pub(super) fn pointed_or_lit(&self, pointed: Option<[Place; 2]>, walk: Option<&Walk>, secs: f64) -> Option<usize> {
+    pub(super) fn pointed_or_lit(
+        &self,
+        pointed: Option<[Place; 2]>,
+        walk: Option<&Walk>,
+        secs: f64,
+    ) -> Option<usize> {
         let pointed = pointed.and_then(|ends| self.ends.iter().position(|known| *known == ends));
         pointed.or_else(|| self.lit(walk, secs))
     }
@@ -136,25 +135,31 @@ impl Drawn {
 }
 
 /// The map, what is under the pointer in words, and what the colours mean.
-pub(crate) fn map_ui(session: &Session, most_height: f32, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+pub(crate) fn map_ui(
+    session: &Session,
+    most_height: f32,
+    state: &mut UiState,
+    out: &mut Out,
+    ui: &mut Ui,
+) {
     let palette = palette_of(ui);
     let Some(cast) = session.graph_cast() else {
         kit::note_ui(text::EMPTY_PANE, palette.muted, ui);
         return;
     };
     let (walk, built) = (session.graph_walk(), session.graph_built());
-    let Some(field) = session.graph_field() else { return };
+    let Some(field) = session.graph_field() else {
+        return;
+    };
     let drawn = built.map(|built| Drawn::of(built, walk.map(|walk| &**walk), ui));
     let set = cast.set();
     let parts: Vec<(usize, &str)> = (cast.names().iter().enumerate())
         .filter_map(|(clip, name)| Some((set.number(Place { clip, frame: 0 })?, name.as_str())))
         .collect();
-    let lit = drawn
-        .as_ref()
-        .and_then(|drawn| drawn.pointed_or_lit(state.last_jump, walk.map(|walk| &**walk), session.now_secs()));
-    let now = walk
-        .and_then(|walk| walk.at(session.now_secs()))
-        .and_then(|at| set.number(at.place));
+    let lit = drawn.as_ref().and_then(|drawn| {
+        drawn.pointed_or_lit(state.last_jump, walk.map(|walk| &**walk), session.now_secs())
+    });
+    let now = walk.and_then(|walk| walk.at(session.now_secs())).and_then(|at| set.number(at.place));
     let matrix = Matrix {
         label: text::ALL_DISTANCES,
         size: set.frames(),
@@ -183,7 +188,10 @@ pub(crate) fn map_ui(session: &Session, most_height: f32, state: &mut UiState, o
         } else if let Some([row, column]) = response.at {
             let place = |at: f32| set.place(at.max(0.0) as usize);
             if let (Some(leave), Some(enter)) = (place(row), place(column)) {
-                words = text::windows_apart([named(built, leave), named(built, enter)], field.cm(leave, enter));
+                words = text::windows_apart(
+                    [named(built, leave), named(built, enter)],
+                    field.cm(leave, enter),
+                );
             }
         }
         if let Some(&ends) = response.clicked.and_then(|mark| drawn.ends.get(mark)) {
@@ -243,7 +251,11 @@ impl Tiles {
         }
     }
 
-    fn texture(&mut self, tile: Tile, ctx: &eframe::egui::Context) -> Option<eframe::egui::TextureId> {
+    fn texture(
+        &mut self,
+        tile: Tile,
+        ctx: &eframe::egui::Context,
+    ) -> Option<eframe::egui::TextureId> {
         if let Some(at) = self.made.iter().position(|(known, _)| *known == tile) {
             // What is used last goes last.
             let used = self.made.remove(at);
@@ -283,19 +295,12 @@ impl Tiles {
             }
         };
         let (per_cm, shades) = ((self.high_cm as f32).recip(), kit::Shades::new(&self.heat));
-        let colors = cm.into_iter().map(|cm| {
-            if cm.is_nan() {
-                Color32::TRANSPARENT
-            } else {
-                shades.at(cm * per_cm)
-            }
-        });
+        let colors = cm
+            .into_iter()
+            .map(|cm| if cm.is_nan() { Color32::TRANSPARENT } else { shades.at(cm * per_cm) });
         let image = ColorImage::new(size, colors.collect());
-        let options = if tile.factor == 1 {
-            TextureOptions::NEAREST
-        } else {
-            TextureOptions::LINEAR
-        };
+        let options =
+            if tile.factor == 1 { TextureOptions::NEAREST } else { TextureOptions::LINEAR };
         let texture = ctx.load_texture("distances", image, options);
         let id = texture.id();
         if self.made.len() >= MOST_TILES {
@@ -305,13 +310,20 @@ impl Tiles {
         Some(id)
     }
 
-    /// A tile that nobody knows yet: a piece of it in this frame. One tile after the other, so that there is soon something to see.
-    fn computed(&mut self, tile: Tile, detail: impl FnOnce() -> DistanceDetail, ctx: &eframe::egui::Context) -> Option<Vec<f32>> {
+    /// A tile that nobody knows yet: a piece of it in this frame. One tile after the other, so that
+    /// there is soon something to see.
+    fn computed(
+        &mut self,
+        tile: Tile,
+        detail: impl FnOnce() -> DistanceDetail,
+        ctx: &eframe::egui::Context,
+    ) -> Option<Vec<f32>> {
         ctx.request_repaint();
         if self.begun.as_ref().is_some_and(|(known, ..)| *known != tile) {
             return None;
         }
-        let (_, mut detail, _) = self.begun.take().unwrap_or_else(|| (tile, Arc::new(detail()), true));
+        let (_, mut detail, _) =
+            self.begun.take().unwrap_or_else(|| (tile, Arc::new(detail()), true));
         let mut complete = Ok(false);
         while self.budget > 0 && complete == Ok(false) {
             self.budget = self.budget.saturating_sub(COMPUTED);
@@ -327,7 +339,8 @@ impl Tiles {
 
     fn keep(mut self, ui: &Ui) {
         // One that is not seen any more makes room for another.
-        self.begun = self.begun.filter(|(.., seen)| *seen).map(|(tile, detail, _)| (tile, detail, false));
+        self.begun =
+            self.begun.filter(|(.., seen)| *seen).map(|(tile, detail, _)| (tile, detail, false));
         ui.data_mut(|data| data.insert_temp(kit::tiles_id(), self));
     }
 }

@@ -1,4 +1,5 @@
-//! The Graph lab: the clips and what is set of graph and walk, the picture of all distances, the graph as bars and arcs, and the table of numbers.
+//! The Graph lab: the clips and what is set of graph and walk, the picture of all distances, the
+//! graph as bars and arcs, and the table of numbers.
 
 mod map;
 mod rows;
@@ -20,7 +21,8 @@ fn shows_jump(session: &Session) -> bool {
     !session.params().text(Key::Jump).is_empty()
 }
 
-/// Plays one transition, also where all stands still: whoever asks for it wants to see it. The walk is kept where it is.
+/// Plays one transition, also where all stands still: whoever asks for it wants to see it. The walk
+/// is kept where it is.
 fn open_jump([leave, enter]: [Place; 2], session: &Session, state: &mut UiState, out: &mut Out) {
     if !shows_jump(session) {
         state.walk_secs = session.now_secs();
@@ -63,7 +65,8 @@ fn jump_words(built: &Built, walk: Option<&Walk>, ends: [Place; 2]) -> Option<St
     ))
 }
 
-/// Shows both poses of a transition that is pointed at, unless it is the one that plays: then it is looked at itself.
+/// Shows both poses of a transition that is pointed at, unless it is the one that plays: then it is
+/// looked at itself.
 fn point_at(ends: [Place; 2], walk: Option<&Walk>, state: &mut UiState) {
     let jump = walk.filter(|walk| walk.is_jump);
     let seam = jump.and_then(|walk| walk.passed.get(1)?.seam);

@@ -25,7 +25,9 @@ pub(crate) fn graph_ui(session: &Session, state: &mut UiState, out: &mut Out, ui
     kit::note_ui(text::GRAPH_ABOUT, palette.muted, ui);
     clip_sets_ui(session, out, ui);
     progress_ui(session, out, ui);
-    if shows_jump(session) && kit::button_ui(Button::new(text::BACK_TO_WALK).icon(Icon::Undo).outlined(), ui).clicked() {
+    if shows_jump(session)
+        && kit::button_ui(Button::new(text::BACK_TO_WALK).icon(Icon::Undo).outlined(), ui).clicked()
+    {
         close_jump(state, out);
     }
     if let Some(problem) = session.panes().iter().find_map(|pane| pane.problem.as_deref()) {
@@ -59,7 +61,8 @@ fn progress_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         }
         return;
     }
-    let Some(job) = session.jobs().into_iter().find(|job| job.kind == JobKind::BuildingGraph) else {
+    let Some(job) = session.jobs().into_iter().find(|job| job.kind == JobKind::BuildingGraph)
+    else {
         return;
     };
     let percent = format!("{:.0} %", 100.0 * job.progress);
@@ -82,11 +85,18 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
                 .map(|motion| motion.clip.duration_secs());
             ui.push_id(id, |ui| {
                 ui.horizontal(|ui| {
-                    ui.label(RichText::new(tr(name, ui)).font(theme.font(Type::Label)).color(palette.text));
+                    ui.label(
+                        RichText::new(tr(name, ui))
+                            .font(theme.font(Type::Label))
+                            .color(palette.text),
+                    );
                     ui.with_layout(Flow::right_to_left(Align::Center), |ui| {
                         let leave_out = format!("{} {name}", text::LEAVE_OUT);
-                        if ids.len() > 1 && kit::icon_button_ui(Icon::Close, &leave_out, ui).clicked() {
-                            let rest: Vec<String> = ids.iter().filter(|other| *other != id).cloned().collect();
+                        if ids.len() > 1
+                            && kit::icon_button_ui(Icon::Close, &leave_out, ui).clicked()
+                        {
+                            let rest: Vec<String> =
+                                ids.iter().filter(|other| *other != id).cloned().collect();
                             set_clips(&rest, out);
                         }
                         if let Some(secs) = secs {
@@ -105,7 +115,9 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         .filter(|(_, entry)| !ids.contains(&entry.id))
         .map(|(index, entry)| (index, entry.name.as_str()))
         .collect();
-    if let Some(entry) = kit::choice_row_ui(text::ADD_CLIP, usize::MAX, &free, ui).and_then(|index| entries.get(index)) {
+    if let Some(entry) = kit::choice_row_ui(text::ADD_CLIP, usize::MAX, &free, ui)
+        .and_then(|index| entries.get(index))
+    {
         let mut all = ids.clone();
         all.push(entry.id.clone());
         set_clips(&all, out);
@@ -149,10 +161,7 @@ fn construction_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
             compare_ui(Key::SegmentSize, session, out, ui);
         });
     }
-    let quiet = Detail {
-        help: Some(String::new()),
-        ..Detail::default()
-    };
+    let quiet = Detail { help: Some(String::new()), ..Detail::default() };
     param_row_ui(Key::EdgeThreshold, &quiet, session, out, ui);
     if let Some(field) = session.graph_field() {
         let histogram = Histogram {
@@ -173,7 +182,11 @@ fn construction_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     }
     if let Some(built) = session.graph_built() {
         let walk = session.graph_walk().filter(|walk| Arc::ptr_eq(&walk.built, built));
-        kit::note_ui(&text::graph_in_words(built, walk.and_then(|walk| walk.run_secs)), palette.muted, ui);
+        kit::note_ui(
+            &text::graph_in_words(built, walk.and_then(|walk| walk.run_secs)),
+            palette.muted,
+            ui,
+        );
         if let Some(words) = text::ways_left_out(built) {
             kit::note_ui(&words, palette.warning, ui);
         }
@@ -189,10 +202,7 @@ fn construction_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
 /// What the seed does here.
 pub(crate) fn seed_detail(session: &Session) -> Detail {
     let is_graph = session.params().lab() == LabId::Graph;
-    Detail {
-        help: is_graph.then(|| text::GRAPH_SEED_HELP.to_owned()),
-        ..Detail::default()
-    }
+    Detail { help: is_graph.then(|| text::GRAPH_SEED_HELP.to_owned()), ..Detail::default() }
 }
 
 fn walk_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
@@ -279,25 +289,22 @@ fn ways_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
 
 /// The clips that the walk can go to from where it is; none before there is a walk.
 fn reached(session: &Session, ui: &Ui) -> Arc<Vec<bool>> {
-    let at = session
-        .graph_walk()
-        .and_then(|walk| Some((walk, walk.at(session.now_secs())?.place)));
+    let at = session.graph_walk().and_then(|walk| Some((walk, walk.at(session.now_secs())?.place)));
     let Some((walk, place)) = at.filter(|(walk, _)| !walk.is_jump) else {
         return Arc::default();
     };
-    // All that can be reached from a stretch can be reached from all of it, and to find it takes a while in a large graph.
+    // All that can be reached from a stretch can be reached from all of it, and to find it takes a
+    // while in a large graph.
     let node = walk.built.graph().node_at(place);
     let id = Id::unique("graph reached");
     let known: Option<Reached> = ui.data(|data| data.get_temp(id));
-    if let Some(known) = known.filter(|known| Arc::ptr_eq(&known.built, &walk.built) && known.node == node) {
+    if let Some(known) =
+        known.filter(|known| Arc::ptr_eq(&known.built, &walk.built) && known.node == node)
+    {
         return known.clips;
     }
     let clips = Arc::new(walk.built.clips_from(place));
-    let found = Reached {
-        built: Arc::clone(&walk.built),
-        node,
-        clips: Arc::clone(&clips),
-    };
+    let found = Reached { built: Arc::clone(&walk.built), node, clips: Arc::clone(&clips) };
     ui.data_mut(|data| data.insert_temp(id, found));
     clips
 }
@@ -325,7 +332,8 @@ fn experiments_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     for experiment in text::GRAPH_EXPERIMENTS {
         let mut values = link::read(experiment.query).values;
         let on = values.iter().all(|(key, value)| params.get(*key) == value);
-        let response = kit::button_ui(Button::new(experiment.name).selected(on).hint(experiment.help), ui);
+        let response =
+            kit::button_ui(Button::new(experiment.name).selected(on).hint(experiment.help), ui);
         kit::note_ui(experiment.help, palette_of(ui).muted, ui);
         if response.clicked() {
             if on {
@@ -348,7 +356,9 @@ pub(crate) fn compare_windows(out: &mut Out) {
 }
 
 fn files_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
-    let Some(walk) = session.graph_walk() else { return };
+    let Some(walk) = session.graph_walk() else {
+        return;
+    };
     ui.label(RichText::new(tr(text::GRAPH_FILES, ui)).font(theme_of(ui).font(Type::Label)));
     ui.horizontal(|ui| {
         let (graph, choices) = (walk.built.graph(), &walk.choices);

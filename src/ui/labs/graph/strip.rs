@@ -20,7 +20,14 @@ const MOST_SEAMS: usize = 160;
 const TOLD_SECS: f64 = 5.0;
 
 /// The whole panel of a walk.
-pub(crate) fn walk_panel_ui(session: &Session, walk: &Arc<Walk>, layout: Layout, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+pub(crate) fn walk_panel_ui(
+    session: &Session,
+    walk: &Arc<Walk>,
+    layout: Layout,
+    state: &mut UiState,
+    out: &mut Out,
+    ui: &mut Ui,
+) {
     let caption = caption(session, walk, state);
     let playhead = Playhead {
         secs: session.now_secs(),
@@ -72,7 +79,9 @@ fn time_ui(session: &Session, walk: &Walk, out: &mut Out, ui: &mut Ui) {
 }
 
 fn strip_ui(session: &Session, walk: &Arc<Walk>, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    let Some(built) = session.graph_built() else { return };
+    let Some(built) = session.graph_built() else {
+        return;
+    };
     let drawn = Drawn::of(built, Some(walk), ui);
     let (cast, set) = (built.cast(), built.cast().set());
     let bars: Vec<(&str, usize)> = cast
@@ -85,10 +94,7 @@ fn strip_ui(session: &Session, walk: &Arc<Walk>, state: &mut UiState, out: &mut 
     let lit_stretch = at.and_then(|at| {
         let graph = built.graph();
         let stretch = graph.graph().node_weight(graph.node_at(at.place)?)?;
-        let from = set.number(Place {
-            clip: stretch.clip,
-            frame: stretch.start,
-        })?;
+        let from = set.number(Place { clip: stretch.clip, frame: stretch.start })?;
         Some([from, from + stretch.end - stretch.start])
     });
     let strip = Strip {
@@ -113,7 +119,8 @@ fn strip_ui(session: &Session, walk: &Arc<Walk>, state: &mut UiState, out: &mut 
     }
 }
 
-/// The transition under the pointer, else why it does not go to the clip that was pressed, else the transition that plays, else where the walk is.
+/// The transition under the pointer, else why it does not go to the clip that was pressed, else the
+/// transition that plays, else where the walk is.
 fn caption(session: &Session, walk: &Walk, state: &UiState) -> String {
     let built = session.graph_built();
     let pointed = state.last_jump.and_then(|ends| jump_words(built?, Some(walk), ends));
@@ -128,11 +135,8 @@ fn caption(session: &Session, walk: &Walk, state: &UiState) -> String {
     let Some(at) = walk.at(now) else {
         return String::new();
     };
-    let seam = walk
-        .passed
-        .get(at.stay)
-        .and_then(|passed| passed.seam)
-        .filter(|_| at.left.is_some());
+    let seam =
+        walk.passed.get(at.stay).and_then(|passed| passed.seam).filter(|_| at.left.is_some());
     if let Some(seam) = seam {
         return jump_words(&walk.built, Some(walk), [seam.leave, seam.enter]).unwrap_or_default();
     }

@@ -12,7 +12,9 @@ use segue_session::{NumberTable, Session, digits};
 pub(crate) fn table_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let table = NumberTable::of(session);
-    let small = |words: &str, color, ui: &Ui| RichText::new(tr(words, ui)).font(theme.font(Type::Small)).color(color);
+    let small = |words: &str, color, ui: &Ui| {
+        RichText::new(tr(words, ui)).font(theme.font(Type::Small)).color(color)
+    };
     ui.spacing_mut().interact_size.y = 0.0;
     let grid = Grid::new("numbers").num_columns(table.panes.len() + 1).spacing([space::M, 2.0]);
     grid.show(ui, |ui| {

@@ -80,7 +80,9 @@ pub(crate) fn steer(session: &Session, state: &mut UiState, out: &mut Out, ctx: 
     let focused = ctx.memory(|memory| memory.focused().is_some());
     let (keys, shift) = ctx.input(|input| {
         let free = !typing && !input.modifiers.command && !input.modifiers.alt;
-        let down = |letter: Keyboard, arrow: Keyboard| free && (input.key_down(letter) || (!focused && input.key_down(arrow)));
+        let down = |letter: Keyboard, arrow: Keyboard| {
+            free && (input.key_down(letter) || (!focused && input.key_down(arrow)))
+        };
         let axis = |more: bool, less: bool| f32::from(i8::from(more) - i8::from(less));
         let keys = vec2(
             axis(down(Keyboard::D, Keyboard::ArrowRight), down(Keyboard::A, Keyboard::ArrowLeft)),
@@ -103,12 +105,9 @@ pub(crate) fn steer(session: &Session, state: &mut UiState, out: &mut Out, ctx: 
         live(Vec2::from(pad.walk)),
     ];
     // The hand that pushes hardest.
-    let push = pushes.into_iter().fold(
-        Vec2::ZERO,
-        |most, push| {
-            if push.length_sq() > most.length_sq() { push } else { most }
-        },
-    );
+    let push = pushes.into_iter().fold(Vec2::ZERO, |most, push| {
+        if push.length_sq() > most.length_sq() { push } else { most }
+    });
     let runs = shift || pad.run || (state.drive.runs && state.drive.stick.is_some());
     let speed = params.number(if runs { Key::RunSpeed } else { Key::WalkSpeed });
     let yaw = params.number(Key::CameraYaw).to_radians();
@@ -135,7 +134,13 @@ pub(crate) fn steer(session: &Session, state: &mut UiState, out: &mut Out, ctx: 
 }
 
 /// The stick over the lower left of the stage, above its numbers.
-pub(crate) fn stick_on_stage_ui(session: &Session, stage: Rect, layout: Layout, state: &mut UiState, ui: &mut Ui) {
+pub(crate) fn stick_on_stage_ui(
+    session: &Session,
+    stage: Rect,
+    layout: Layout,
+    state: &mut UiState,
+    ui: &mut Ui,
+) {
     state.drive.stick = None;
     if !session.is_driven() {
         return;
@@ -158,7 +163,12 @@ pub(crate) fn stick_on_stage_ui(session: &Session, stage: Rect, layout: Layout, 
     );
     if layout == Layout::Phone {
         ui.scope_builder(UiBuilder::new().id_salt("run").max_rect(button), |ui| {
-            if kit::button_ui(Button::new(text::RUN).hint(text::RUN_HELP).selected(state.drive.runs), ui).clicked() {
+            if kit::button_ui(
+                Button::new(text::RUN).hint(text::RUN_HELP).selected(state.drive.runs),
+                ui,
+            )
+            .clicked()
+            {
                 state.drive.runs = !state.drive.runs;
             }
         });

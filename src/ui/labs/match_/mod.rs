@@ -1,4 +1,5 @@
-//! The Match lab: the hand that drives, what is set, why a frame was chosen, and all clips in a strip.
+//! The Match lab: the hand that drives, what is set, why a frame was chosen, and all clips in a
+//! strip.
 
 mod hand;
 mod rows;

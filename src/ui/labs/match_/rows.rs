@@ -93,13 +93,19 @@ fn input_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
             if kit::button_ui(replay, ui).clicked() {
                 out.commands.push(Command::ReplayDrive);
             }
-            if kit::button_ui(Button::new(text::START_OVER).hint(text::START_OVER_HELP), ui).clicked() {
+            if kit::button_ui(Button::new(text::START_OVER).hint(text::START_OVER_HELP), ui)
+                .clicked()
+            {
                 out.commands.push(Command::RestartDrive);
             }
         });
-    } else if session.params().choice::<choices::Scenario>() != choices::Scenario::Own || !session.params().text(Key::Drive).is_empty() {
+    } else if session.params().choice::<choices::Scenario>() != choices::Scenario::Own
+        || !session.params().text(Key::Drive).is_empty()
+    {
         kit::note_ui(text::RECORDED, muted, ui);
-        if kit::button_ui(Button::new(text::DRIVE_YOURSELF).icon(Icon::Play).outlined(), ui).clicked() {
+        if kit::button_ui(Button::new(text::DRIVE_YOURSELF).icon(Icon::Play).outlined(), ui)
+            .clicked()
+        {
             out.commands.push(Command::Set(vec![
                 (Key::Scenario, choices::Scenario::Own.into()),
                 (Key::Drive, Value::Text(String::new())),
@@ -139,19 +145,20 @@ fn hysteresis_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
 
 /// Which clip is preferred while the input is still.
 fn preferred_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
-    let Some((driven, _)) = super::shown(session) else { return };
+    let Some((driven, _)) = super::shown(session) else {
+        return;
+    };
     let ids = session.match_clip_ids();
     let originals = driven.database.motions().iter().filter(|motion| !motion.is_mirrored());
-    let words: Vec<&str> = std::iter::once("")
-        .chain(originals.map(|motion| ids.get(motion.source()).map_or(motion.clip().name(), String::as_str)))
-        .collect();
+    let words: Vec<&str> =
+        std::iter::once("")
+            .chain(originals.map(|motion| {
+                ids.get(motion.source()).map_or(motion.clip().name(), String::as_str)
+            }))
+            .collect();
     let label = |word: &str| -> String {
         let name = session.library().find(word).map_or(word, |entry| entry.name.as_str());
-        if word.is_empty() {
-            text::THE_CLIP_THAT_PLAYS.to_owned()
-        } else {
-            name.to_owned()
-        }
+        if word.is_empty() { text::THE_CLIP_THAT_PLAYS.to_owned() } else { name.to_owned() }
     };
     let labels: Vec<String> = words.iter().map(|word| label(word)).collect();
     let options: Vec<(usize, &str)> = labels.iter().map(String::as_str).enumerate().collect();
@@ -197,11 +204,13 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     if ids.is_empty() {
         kit::note_ui(text::MADE_SET, palette.muted, ui);
     }
-    let set = |ids: &[String], out: &mut Out| out.set_once(Key::MatchClips, Value::Text(write_ids(ids)));
+    let set =
+        |ids: &[String], out: &mut Out| out.set_once(Key::MatchClips, Value::Text(write_ids(ids)));
     for (index, id) in ids.iter().enumerate() {
         ui.push_id(("clip", index), |ui| {
             ui.horizontal(|ui| {
-                let name = session.library().find(id).map_or(id.as_str(), |entry| entry.name.as_str());
+                let name =
+                    session.library().find(id).map_or(id.as_str(), |entry| entry.name.as_str());
                 if kit::icon_button_ui(Icon::Close, &text::leave_clip_out(name), ui).clicked() {
                     let mut rest = ids.clone();
                     rest.remove(index);
@@ -213,7 +222,8 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     }
     let entries = session.library().entries();
     let clips = entries.iter().enumerate().map(|(index, entry)| (index, entry.name.as_str()));
-    let options: Vec<(usize, &str)> = std::iter::once((usize::MAX, text::CHOOSE_CLIP)).chain(clips).collect();
+    let options: Vec<(usize, &str)> =
+        std::iter::once((usize::MAX, text::CHOOSE_CLIP)).chain(clips).collect();
     let picked = kit::choice_row_ui(text::ADD_CLIP, usize::MAX, &options, ui);
     if let Some(entry) = picked.and_then(|index| entries.get(index)) {
         let mut more = ids.clone();

@@ -1,7 +1,9 @@
 //! Below the stage: the clips with the place that plays jumping on them, and the costs over time.
 
 use super::shown;
-use crate::ui::kit::{self, Curves, Moment, PlaceBar, Places, Series, StripPlace, Timeline, TimelineEvent};
+use crate::ui::kit::{
+    self, Curves, Moment, PlaceBar, Places, Series, StripPlace, Timeline, TimelineEvent,
+};
 use crate::ui::out::Out;
 use crate::ui::state::{Layout, UiState};
 use crate::ui::text;
@@ -29,24 +31,12 @@ pub(crate) fn drive_panel_ui(
     ui: &mut Ui,
 ) {
     let now = session.now_secs();
-    let frames = if driven.is_live {
-        session.recording().ticks()
-    } else {
-        driven.moments.len()
-    };
+    let frames = if driven.is_live { session.recording().ticks() } else { driven.moments.len() };
     let caption = caption(session, driven);
     let playhead = if driven.is_live {
-        Playhead {
-            secs: frames as f64 / RATE as f64,
-            frame: frames,
-            frames,
-        }
+        Playhead { secs: frames as f64 / RATE as f64, frame: frames, frames }
     } else {
-        Playhead {
-            secs: now,
-            frame: (now * RATE as f64).round() as usize,
-            frames,
-        }
+        Playhead { secs: now, frame: (now * RATE as f64).round() as usize, frames }
     };
     transport_row_ui(playhead, &caption, layout, session, out, ui);
     let scale = theme_of(ui).scale();
@@ -100,21 +90,13 @@ fn time_ui(session: &Session, outcome: &Outcome, driven: &Driven, out: &mut Out,
     ];
     let mut jumps: Vec<Moment<'_>> = driven
         .jumps_secs()
-        .map(|time| Moment {
-            time,
-            color: palette.accent,
-            name: text::JUMP,
-        })
+        .map(|time| Moment { time, color: palette.accent, name: text::JUMP })
         .collect();
     if jumps.len() > MOST_MARKS {
         jumps.clear();
     }
     let timeline = Timeline {
-        duration: if driven.is_live {
-            outcome.duration_secs()
-        } else {
-            session.duration_secs()
-        },
+        duration: if driven.is_live { outcome.duration_secs() } else { session.duration_secs() },
         now: session.now_secs(),
         fps: RATE as f64,
         in_point: session.params().optional(Key::In).filter(|_| !driven.is_live),
@@ -173,20 +155,22 @@ fn strip_ui(driven: &Driven, now_secs: f64, height: f32, state: &mut UiState, ui
     let frame = (now_secs * RATE as f64).round().max(0.0) as usize;
     let moment = driven.at(now_secs);
     let reach = (JUMP_SECS * RATE as f64) as usize;
-    let moments = driven
-        .moments
-        .get(frame.saturating_sub(reach)..(frame + 1).min(driven.moments.len()));
+    let moments =
+        driven.moments.get(frame.saturating_sub(reach)..(frame + 1).min(driven.moments.len()));
     let mut jumps = Vec::new();
     for (index, moment) in moments.unwrap_or(&[]).iter().rev().enumerate() {
         if let (true, Some(search)) = (moment.jumped, &moment.search)
-            && let (Some(from), Some(to)) = (at(search.current.place), search.winner.and_then(|winner| at(winner.place)))
+            && let (Some(from), Some(to)) =
+                (at(search.current.place), search.winner.and_then(|winner| at(winner.place)))
         {
             jumps.push((from, to, 1.0 - index as f32 / reach as f32));
         }
     }
     let marks: Vec<StripPlace> = moment
         .and_then(|moment| moment.search.as_ref())
-        .map(|search| search.candidates.iter().filter_map(|candidate| at(candidate.place)).collect())
+        .map(|search| {
+            search.candidates.iter().filter_map(|candidate| at(candidate.place)).collect()
+        })
         .unwrap_or_default();
     let legend: Vec<(&str, Color32)> = [Tag::Idle, Tag::Walk, Tag::Run, Tag::Turn]
         .into_iter()
@@ -207,14 +191,11 @@ fn strip_ui(driven: &Driven, now_secs: f64, height: f32, state: &mut UiState, ui
     }
 }
 
-/// Where a frame lies in the strip. A clip's mirror image follows it, so that half of the number of a motion is the number of its clip.
+/// Where a frame lies in the strip. A clip's mirror image follows it, so that half of the number of
+/// a motion is the number of its clip.
 pub(crate) fn strip_place(database: &Database, place: Place) -> Option<StripPlace> {
     let motion = database.motion(place.motion)?;
-    let bar = if database.options().mirrored {
-        place.motion / 2
-    } else {
-        place.motion
-    };
+    let bar = if database.options().mirrored { place.motion / 2 } else { place.motion };
     (bar < MOST_BARS).then_some(StripPlace {
         bar,
         row: usize::from(motion.is_mirrored()),

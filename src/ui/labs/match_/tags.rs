@@ -35,17 +35,25 @@ pub(crate) fn tags_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
                 .library()
                 .find(&tag.clip)
                 .map_or(tag.clip.as_str(), |entry| entry.name.as_str());
-            kit::note_ui(&text::hand_tag(name, tag.secs, &tag.word, tag.takes_away), palette_of(ui).text, ui);
+            kit::note_ui(
+                &text::hand_tag(name, tag.secs, &tag.word, tag.takes_away),
+                palette_of(ui).text,
+                ui,
+            );
         });
     }
-    let Some((driven, moment)) = shown(session) else { return };
+    let Some((driven, moment)) = shown(session) else {
+        return;
+    };
     if kit::button_ui(Button::new(text::TAG_WHAT_PLAYS), ui).clicked() {
         state.drive.stretch = strip_place(&driven.database, moment.place).map(|at| Chosen {
             bar: at.bar,
             frames: at.frame.saturating_sub(AROUND)..at.frame + AROUND,
         });
     }
-    let Some(stretch) = &mut state.drive.stretch else { return };
+    let Some(stretch) = &mut state.drive.stretch else {
+        return;
+    };
     let Some(motion) = motion_of(&driven.database, stretch.bar) else {
         state.drive.stretch = None;
         return;
@@ -87,7 +95,8 @@ pub(crate) fn tags_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
         ui.spacing_mut().item_spacing = vec2(space::XS, space::XS);
         let has = |tag: Tag| {
             let mut ranges = motion.tags().iter();
-            ranges.any(|range| range.tag == tag && range.frames.start < to && from < range.frames.end)
+            ranges
+                .any(|range| range.tag == tag && range.frames.start < to && from < range.frames.end)
         };
         for tag in Tag::FIXED {
             // What is there is taken away, what is not is put.
@@ -119,11 +128,16 @@ fn motion_of(database: &Database, bar: usize) -> Option<&Motion> {
 }
 
 /// Which tag is asked for, or forbidden.
-fn wanted_ui(key: Key, none: &str, tags: &[HandTag], session: &Session, out: &mut Out, ui: &mut Ui) {
-    let searched = Tag::FIXED
-        .into_iter()
-        .filter(|tag| *tag != Tag::Exclude)
-        .map(|tag| -> &str { tag.name() });
+fn wanted_ui(
+    key: Key,
+    none: &str,
+    tags: &[HandTag],
+    session: &Session,
+    out: &mut Out,
+    ui: &mut Ui,
+) {
+    let searched =
+        Tag::FIXED.into_iter().filter(|tag| *tag != Tag::Exclude).map(|tag| -> &str { tag.name() });
     let words: Vec<&str> = std::iter::once(none).chain(searched).chain(own_words(tags)).collect();
     let options: Vec<(usize, &str)> = words.iter().copied().enumerate().collect();
     let asked = session.params().text(key);

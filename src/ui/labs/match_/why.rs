@@ -23,7 +23,11 @@ pub(crate) fn place_name(database: &Database, candidate: &Candidate) -> String {
     let Some(motion) = database.motion(place.motion) else {
         return String::new();
     };
-    text::frame_of_clip(motion.clip().name(), motion.is_mirrored(), motion.clip().time_of(place.frame))
+    text::frame_of_clip(
+        motion.clip().name(),
+        motion.is_mirrored(),
+        motion.clip().time_of(place.frame),
+    )
 }
 
 /// The rows.
@@ -31,7 +35,8 @@ pub(crate) fn why_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: 
     state.drive.hovered = None;
     let palette = palette_of(ui);
     ui.label(RichText::new(tr(text::WHY, ui)).font(theme_of(ui).font(Type::Strong)));
-    let search = shown(session).and_then(|(driven, moment)| Some((driven, moment.search.as_ref()?)));
+    let search =
+        shown(session).and_then(|(driven, moment)| Some((driven, moment.search.as_ref()?)));
     let Some((driven, search)) = search else {
         kit::note_ui(text::NO_SEARCH, palette.muted, ui);
         return;
@@ -43,7 +48,8 @@ pub(crate) fn why_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: 
         strong,
         shown,
     };
-    let current = row(text::going_on(&place_name(database, &search.current)), &search.current, true, false);
+    let current =
+        row(text::going_on(&place_name(database, &search.current)), &search.current, true, false);
     let found = search.candidates.iter().enumerate().map(|(index, candidate)| {
         row(
             place_name(database, candidate),
@@ -54,14 +60,9 @@ pub(crate) fn why_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: 
     });
     let rows: Vec<CostRow> = std::iter::once(current).chain(found).collect();
     let colors = block_colors(palette);
-    let parts: Vec<(&str, Color32)> = Block::ALL.iter().map(|block| text::block(*block)).zip(colors).collect();
-    let response = kit::cost_bars_ui(
-        &CostBars {
-            rows: &rows,
-            parts: &parts,
-        },
-        ui,
-    );
+    let parts: Vec<(&str, Color32)> =
+        Block::ALL.iter().map(|block| text::block(*block)).zip(colors).collect();
+    let response = kit::cost_bars_ui(&CostBars { rows: &rows, parts: &parts }, ui);
     // The first row is what was left: it has no ghost.
     state.drive.hovered = response.hovered.and_then(|row| row.checked_sub(1));
     if let Some(clicked) = response.clicked {

@@ -7,7 +7,8 @@ use segue::scene::Camera;
 
 /// Drawn points are at least this far apart, metres.
 const STEP_M: f64 = 0.02;
-/// The ground is drawn on up to here, in distances of the camera from what it looks at: near the horizon a hair's breadth is a mile.
+/// The ground is drawn on up to here, in distances of the camera from what it looks at: near the
+/// horizon a hair's breadth is a mile.
 const FARTHEST: f32 = 6.0;
 
 /// A pane as its camera sees it.
@@ -48,7 +49,12 @@ pub(crate) enum GroundLine {
 }
 
 /// Draws the line that is wanted now, if one is.
-pub(crate) fn ground_line(shown: &[(usize, Rect)], response: &Response, state: &mut UiState, ui: &Ui) -> GroundLine {
+pub(crate) fn ground_line(
+    shown: &[(usize, Rect)],
+    response: &Response,
+    state: &mut UiState,
+    ui: &Ui,
+) -> GroundLine {
     let Some(drawn) = &mut state.drawing else {
         return GroundLine::None;
     };
@@ -61,9 +67,8 @@ pub(crate) fn ground_line(shown: &[(usize, Rect)], response: &Response, state: &
         return GroundLine::None;
     }
     let started = ui.input(|input| input.pointer.press_origin());
-    let pos = response
-        .interact_pointer_pos()
-        .filter(|_| response.dragged_by(PointerButton::Primary));
+    let pos =
+        response.interact_pointer_pos().filter(|_| response.dragged_by(PointerButton::Primary));
     if let (Some(origin), Some(pos)) = (started, pos) {
         let pane = shown.iter().find(|(_, rect)| rect.contains(origin));
         let view = pane.and_then(|&(index, rect)| {

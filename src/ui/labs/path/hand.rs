@@ -3,7 +3,9 @@
 use crate::ui::out::Out;
 use crate::ui::text;
 use glam::DVec2;
-use segue_motion::path::{FitOptions, GroundSpline, PathEdit, PathEditError, Pins, Road, SplineEnds, drawn_path};
+use segue_motion::path::{
+    FitOptions, GroundSpline, PathEdit, PathEditError, Pins, Road, SplineEnds, drawn_path,
+};
 use segue_session::LabId;
 use segue_session::{Command, Key, OnPath, Pane, Session, Value, sentence, spline_ends};
 
@@ -46,19 +48,36 @@ const LOOP_POINTS: usize = 6;
 
 impl PathHand {
     /// Edits a path, and says why where that is not possible. The caller ends the step.
-    pub(crate) fn edit(&mut self, from: &GroundSpline, edit: &PathEdit, session: &Session, out: &mut Out) -> bool {
+    pub(crate) fn edit(
+        &mut self,
+        from: &GroundSpline,
+        edit: &PathEdit,
+        session: &Session,
+        out: &mut Out,
+    ) -> bool {
         let edited = from.edited(edit, pins(session));
         self.take(edited, session, out)
     }
 
     /// The same as one step of undo.
-    pub(crate) fn edit_once(&mut self, from: &GroundSpline, edit: &PathEdit, session: &Session, out: &mut Out) -> bool {
+    pub(crate) fn edit_once(
+        &mut self,
+        from: &GroundSpline,
+        edit: &PathEdit,
+        session: &Session,
+        out: &mut Out,
+    ) -> bool {
         let done = self.edit(from, edit, session, out);
         out.commands.push(Command::Settle);
         done
     }
 
-    fn take(&mut self, edited: Result<GroundSpline, PathEditError>, session: &Session, out: &mut Out) -> bool {
+    fn take(
+        &mut self,
+        edited: Result<GroundSpline, PathEditError>,
+        session: &Session,
+        out: &mut Out,
+    ) -> bool {
         // What the link can hold is what is shown.
         let edited = edited.and_then(|spline| spline.rounded()).and_then(Road::new);
         match edited {
@@ -80,7 +99,8 @@ impl PathHand {
     /// Makes a path of what was drawn.
     pub(crate) fn take_drawn(&mut self, drawn: &[DVec2], session: &Session, out: &mut Out) {
         let length: f64 = drawn.windows(2).map(|pair| pair[0].distance(pair[1])).sum();
-        let gap = drawn.first().zip(drawn.last()).map_or(0.0, |(first, last)| first.distance(*last));
+        let gap =
+            drawn.first().zip(drawn.last()).map_or(0.0, |(first, last)| first.distance(*last));
         let is_loop = gap < LOOP_SHARE * length;
         let wanted = session.params().number(Key::ControlPoints) as usize;
         let options = FitOptions {
@@ -90,11 +110,7 @@ impl PathHand {
             ends: spline_ends(session.params()),
         };
         let path = drawn_path(drawn, &options).and_then(|path| {
-            if is_loop {
-                path.edited(&PathEdit::Close, Pins::default())
-            } else {
-                Ok(path)
-            }
+            if is_loop { path.edited(&PathEdit::Close, Pins::default()) } else { Ok(path) }
         });
         if self.take(path, session, out) {
             self.chosen = None;
@@ -137,10 +153,7 @@ impl PathHand {
 
 /// Which ends stay.
 fn pins(session: &Session) -> Pins {
-    Pins {
-        start: session.params().is_on(Key::PinStart),
-        end: session.params().is_on(Key::PinEnd),
-    }
+    Pins { start: session.params().is_on(Key::PinStart), end: session.params().is_on(Key::PinEnd) }
 }
 
 /// The path of a pane, if there is one to be edited: not while its lab has nothing to show.

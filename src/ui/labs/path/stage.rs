@@ -7,13 +7,17 @@ use crate::ui::out::Out;
 use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::space;
-use eframe::egui::{CursorIcon, EventFilter, Key as Keyboard, Modifiers, Rect, Response, Role, Sense, Ui, Vec2, WidgetInfo};
+use eframe::egui::{
+    CursorIcon, EventFilter, Key as Keyboard, Modifiers, Rect, Response, Role, Sense, Ui, Vec2,
+    WidgetInfo,
+};
 use glam::DVec2;
 use segue_motion::path::{GroundSpline, PathEdit, SplineEnds};
 use segue_session::LabId;
 use segue_session::{Command, Group, Key, OnPath, Session};
 
-/// Side of the square in which a control point is taken hold of, points: fingers need more than the standard's 24.
+/// Side of the square in which a control point is taken hold of, points: fingers need more than the
+/// standard's 24.
 const GRIP: f32 = 30.0;
 /// The path is pointed at within this distance, points.
 const REACH: f32 = 12.0;
@@ -23,11 +27,21 @@ const KEY_STEP_M: f64 = 0.05;
 const PITCH_DEG: f64 = 34.0;
 
 /// The control points of one pane, and the place on the path that the pointer is at.
-pub(crate) fn handles_ui(session: &Session, pane: usize, rect: Rect, stage: &Response, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+pub(crate) fn handles_ui(
+    session: &Session,
+    pane: usize,
+    rect: Rect,
+    stage: &Response,
+    state: &mut UiState,
+    out: &mut Out,
+    ui: &mut Ui,
+) {
     let Some(path) = session.panes().get(pane).and_then(|pane| path_of(session, pane)) else {
         return;
     };
-    let Some(camera) = state.cameras.get(pane).copied().flatten().filter(|_| state.drawing.is_none()) else {
+    let Some(camera) =
+        state.cameras.get(pane).copied().flatten().filter(|_| state.drawing.is_none())
+    else {
         return;
     };
     let view = View { camera: &camera, rect };
@@ -44,15 +58,15 @@ pub(crate) fn handles_ui(session: &Session, pane: usize, rect: Rect, stage: &Res
         let hit = Rect::from_center_size(at, Vec2::splat(GRIP)).intersect(rect);
         let response = ui.interact(hit, id, Sense::click_and_drag());
         let chosen = state.path.chosen == Some(index);
-        response.widget_info(|| WidgetInfo::selected(Role::Button, true, chosen, text::control_point(index, shown, point)));
-        let handle = Handle {
-            index,
-            pane,
-            point,
-            view: &view,
-            path,
-            response: &response,
-        };
+        response.widget_info(|| {
+            WidgetInfo::selected(
+                Role::Button,
+                true,
+                chosen,
+                text::control_point(index, shown, point),
+            )
+        });
+        let handle = Handle { index, pane, point, view: &view, path, response: &response };
         handle.input(session, state, out, ui);
     }
     if state.path.held.is_none() && state.path.hovered.is_none() {
@@ -72,22 +86,11 @@ struct Handle<'a> {
 
 impl Handle<'_> {
     fn input(&self, session: &Session, state: &mut UiState, out: &mut Out, ui: &Ui) {
-        let Self {
-            index,
-            pane,
-            point,
-            view,
-            path,
-            response,
-        } = *self;
+        let Self { index, pane, point, view, path, response } = *self;
         let hand = &mut state.path;
         if response.hovered() || response.dragged() {
             hand.hovered = Some(index);
-            let icon = if response.dragged() {
-                CursorIcon::Grabbing
-            } else {
-                CursorIcon::Grab
-            };
+            let icon = if response.dragged() { CursorIcon::Grabbing } else { CursorIcon::Grab };
             ui.ctx().set_cursor_icon(icon);
         }
         if response.clicked() || response.drag_started() {
@@ -95,7 +98,8 @@ impl Handle<'_> {
             response.request_focus();
         }
         if response.drag_started() {
-            let pressed = ui.input(|input| input.pointer.press_origin()).and_then(|pos| view.on_ground(pos));
+            let pressed =
+                ui.input(|input| input.pointer.press_origin()).and_then(|pos| view.on_ground(pos));
             hand.held = Some(Held {
                 index,
                 pane,
@@ -106,7 +110,9 @@ impl Handle<'_> {
         let held = hand.held.clone().filter(|held| held.index == index && held.pane == pane);
         if let Some(held) = held {
             let to = response.interact_pointer_pos().and_then(|pos| view.on_ground(pos));
-            if let Some(to) = to.filter(|_| response.dragged() && response.drag_delta() != Vec2::ZERO) {
+            if let Some(to) =
+                to.filter(|_| response.dragged() && response.drag_delta() != Vec2::ZERO)
+            {
                 let to = snapped(to + held.grip, session);
                 hand.edit(&held.start, &PathEdit::Move { index, to }, session, out);
             }
@@ -123,31 +129,29 @@ impl Handle<'_> {
 
     /// Arrows move the point as it is seen, Delete takes it away.
     fn keys(&self, session: &Session, state: &mut UiState, out: &mut Out, ui: &Ui) {
-        let Self {
-            index,
-            point,
-            view,
-            path,
-            response,
-            ..
-        } = *self;
+        let Self { index, point, view, path, response, .. } = *self;
         let filter = EventFilter {
             horizontal_arrows: true,
             vertical_arrows: true,
             ..EventFilter::default()
         };
         ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
-        let pressed = |modifiers: Modifiers, key: Keyboard| ui.input_mut(|input| input.count_and_consume_key(modifiers, key)) as f64;
+        let pressed = |modifiers: Modifiers, key: Keyboard| {
+            ui.input_mut(|input| input.count_and_consume_key(modifiers, key)) as f64
+        };
         let moved = |modifiers: Modifiers| {
-            let across = pressed(modifiers, Keyboard::ArrowRight) - pressed(modifiers, Keyboard::ArrowLeft);
-            let ahead = pressed(modifiers, Keyboard::ArrowUp) - pressed(modifiers, Keyboard::ArrowDown);
+            let across =
+                pressed(modifiers, Keyboard::ArrowRight) - pressed(modifiers, Keyboard::ArrowLeft);
+            let ahead =
+                pressed(modifiers, Keyboard::ArrowUp) - pressed(modifiers, Keyboard::ArrowDown);
             DVec2::new(across, ahead)
         };
         let steps = moved(Modifiers::SHIFT) * 5.0 + moved(Modifiers::NONE);
         if steps != DVec2::ZERO {
             let grid = session.params().number(Key::PathGrid);
             let step = if grid > 0.0 { grid } else { KEY_STEP_M };
-            // On the axis of the ground that is nearest to where it is seen to go, so that a key and its opposite undo each other.
+            // On the axis of the ground that is nearest to where it is seen to go, so that a key
+            // and its opposite undo each other.
             let quarter = std::f64::consts::FRAC_PI_2;
             let yaw = (f64::from(view.camera.yaw) / quarter).round() * quarter;
             let (sin, cos) = yaw.sin_cos();
@@ -156,7 +160,10 @@ impl Handle<'_> {
             let spline = path.road.spline();
             state.path.edit_once(spline, &PathEdit::Move { index, to }, session, out);
         }
-        if pressed(Modifiers::NONE, Keyboard::Delete) + pressed(Modifiers::NONE, Keyboard::Backspace) > 0.0 {
+        if pressed(Modifiers::NONE, Keyboard::Delete)
+            + pressed(Modifiers::NONE, Keyboard::Backspace)
+            > 0.0
+        {
             state.path.chosen = Some(index);
             state.path.remove_point(path, session, out);
         }
@@ -164,7 +171,15 @@ impl Handle<'_> {
 }
 
 /// Shows where a point would be added, and adds it at a double click.
-fn place_input(spline: &GroundSpline, view: &View<'_>, stage: &Response, session: &Session, state: &mut UiState, out: &mut Out, ui: &Ui) {
+fn place_input(
+    spline: &GroundSpline,
+    view: &View<'_>,
+    stage: &Response,
+    session: &Session,
+    state: &mut UiState,
+    out: &mut Out,
+    ui: &Ui,
+) {
     let pos = stage.interact_pointer_pos().or(stage.hover_pos());
     let Some(pos) = pos.filter(|pos| view.rect.contains(*pos) && !stage.dragged()) else {
         return;
@@ -181,7 +196,9 @@ fn place_input(spline: &GroundSpline, view: &View<'_>, stage: &Response, session
     };
     state.path.place = Some((place, parameter));
     ui.ctx().set_cursor_icon(CursorIcon::Copy);
-    if stage.double_clicked() && state.path.edit_once(spline, &PathEdit::Insert { at: parameter }, session, out) {
+    if stage.double_clicked()
+        && state.path.edit_once(spline, &PathEdit::Insert { at: parameter }, session, out)
+    {
         let before = spline
             .with_ends(SplineEnds::Clamped)
             .greville()
@@ -202,7 +219,8 @@ pub(crate) fn said_ui(stage: Rect, numbers_top: f32, state: &UiState, ui: &mut U
     kit::caption_ui(words, stage.with_max_y(numbers_top - space::S), ui);
 }
 
-/// When the lab opens, the whole path comes into sight, unless somebody has put the camera elsewhere; when it is left, the camera is as before.
+/// When the lab opens, the whole path comes into sight, unless somebody has put the camera
+/// elsewhere; when it is left, the camera is as before.
 pub(crate) fn frame_once(session: &Session, state: &mut UiState, out: &mut Out) {
     let is_open = session.params().lab() == LabId::Path;
     let untouched = || session.params().changed().all(|(param, _)| param.group != Group::Camera);
@@ -210,16 +228,17 @@ pub(crate) fn frame_once(session: &Session, state: &mut UiState, out: &mut Out) 
         (true, None) if !untouched() => state.path.framed = Some(Vec::new()),
         (true, None) => {
             if session.main_outcome().is_some_and(|outcome| outcome.path.is_some())
-                && let Some(values) = crate::ui::stage_panel::framing(session, state, Some(PITCH_DEG))
+                && let Some(values) =
+                    crate::ui::stage_panel::framing(session, state, Some(PITCH_DEG))
             {
                 state.path.framed = Some(values.clone());
                 out.commands.push(Command::Set(values));
             }
         }
         (false, Some(values)) => {
-            let as_set = values
-                .iter()
-                .all(|(key, value)| key.param().check(value.clone()).as_ref() == Ok(session.params().get(*key)));
+            let as_set = values.iter().all(|(key, value)| {
+                key.param().check(value.clone()).as_ref() == Ok(session.params().get(*key))
+            });
             if as_set && !values.is_empty() {
                 let defaults = values.iter().map(|(key, _)| (*key, key.param().default_value()));
                 out.commands.push(Command::Set(defaults.collect()));

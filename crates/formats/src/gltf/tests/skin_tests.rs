@@ -12,21 +12,31 @@ pub(super) fn check(mesh: &SkinnedMesh, joints: usize) {
         (count, count, count, joints)
     );
     assert!(mesh.colors.is_empty() || mesh.colors.len() == count);
-    assert!(mesh.positions.iter().all(|p| p.is_finite()) && mesh.normals.iter().all(|n| n.is_normalized()));
+    assert!(
+        mesh.positions.iter().all(|p| p.is_finite())
+            && mesh.normals.iter().all(|n| n.is_normalized())
+    );
     assert!(mesh.triangles.iter().flatten().all(|&corner| (corner as usize) < count));
     for (joints_of, weights) in mesh.joints.iter().zip(&mesh.weights) {
         assert!(joints_of.iter().all(|&joint| usize::from(joint) < joints));
-        assert!((weights.iter().sum::<f32>() - 1.0).abs() < 1e-5 && weights.is_sorted_by(|a, b| a >= b) && weights[3] >= 0.0);
+        assert!(
+            (weights.iter().sum::<f32>() - 1.0).abs() < 1e-5
+                && weights.is_sorted_by(|a, b| a >= b)
+                && weights[3] >= 0.0
+        );
     }
 }
 
-/// A square of two triangles on two bones, `Hips` at 1 m and `Chest` 0.5 m above: its lower edge follows the hips, its upper one both.
+/// A square of two triangles on two bones, `Hips` at 1 m and `Chest` 0.5 m above: its lower edge
+/// follows the hips, its upper one both.
 fn square() -> Made {
     let mut made = Made::new(&two_bones(), &[0, 1]);
-    let positions = made.floats("VEC3", 3, &[-0.1, 1.0, 0.0, 0.1, 1.0, 0.0, 0.1, 1.5, 0.0, -0.1, 1.5, 0.0]);
+    let positions =
+        made.floats("VEC3", 3, &[-0.1, 1.0, 0.0, 0.1, 1.0, 0.0, 0.1, 1.5, 0.0, -0.1, 1.5, 0.0]);
     let bytes: Vec<u8> = [[0, 9, 9, 9], [0, 9, 9, 9], [0, 1, 0, 0], [0, 1, 0, 0]].concat();
     let view = made.view(&bytes);
-    let joints = made.accessor(json!({ "bufferView": view, "componentType": 5121, "count": 4, "type": "VEC4" }));
+    let joints = made
+        .accessor(json!({ "bufferView": view, "componentType": 5121, "count": 4, "type": "VEC4" }));
     let weights = made.floats(
         "VEC4",
         4,
@@ -39,18 +49,19 @@ fn square() -> Made {
         .concat(),
     );
     let view = made.view(&[0u16, 1, 2, 0, 2, 3].map(u16::to_le_bytes).concat());
-    let indices = made.accessor(json!({ "bufferView": view, "componentType": 5123, "count": 6, "type": "SCALAR" }));
+    let indices = made.accessor(
+        json!({ "bufferView": view, "componentType": 5123, "count": 6, "type": "SCALAR" }),
+    );
     // A bind pose at 1 and 1.5 m, as the nodes rest.
     let matrix = |y: f32| {
-        DMat4::from_translation(DVec3::new(0.0, -f64::from(y), 0.0))
-            .as_mat4()
-            .to_cols_array()
+        DMat4::from_translation(DVec3::new(0.0, -f64::from(y), 0.0)).as_mat4().to_cols_array()
     };
     let matrices = made.floats("MAT4", 16, &[matrix(1.0), matrix(1.5)].concat());
     made.root["skins"][0]["inverseBindMatrices"] = json!(matrices);
     made.root["meshes"] = json!([{ "primitives": [{
         "attributes": { "POSITION": positions, "JOINTS_0": joints, "WEIGHTS_0": weights }, "indices": indices, "material": 0 }] }]);
-    made.root["materials"] = json!([{ "pbrMetallicRoughness": { "baseColorFactor": [1.0, 0.0, 0.5, 1.0] } }]);
+    made.root["materials"] =
+        json!([{ "pbrMetallicRoughness": { "baseColorFactor": [1.0, 0.0, 0.5, 1.0] } }]);
     made.root["nodes"]
         .as_array_mut()
         .unwrap()
@@ -85,9 +96,12 @@ fn a_mesh_comes_with_its_skin_colour_and_computed_normals() {
 #[test]
 fn the_mesh_follows_the_clip_as_the_format_says() {
     let mut made = square();
-    // Mesh and bones in centimetres of another pose: the bind matrices scale by 2, turn, and stretch one axis.
+    // Mesh and bones in centimetres of another pose: the bind matrices scale by 2, turn, and
+    // stretch one axis.
     let bind = |y: f64| {
-        DMat4::from_rotation_z(0.3) * DMat4::from_scale(DVec3::new(2.0, 1.5, 2.0)) * DMat4::from_translation(DVec3::new(0.0, -y, 0.1))
+        DMat4::from_rotation_z(0.3)
+            * DMat4::from_scale(DVec3::new(2.0, 1.5, 2.0))
+            * DMat4::from_translation(DVec3::new(0.0, -y, 0.1))
     };
     let matrices = [bind(1.0), bind(1.5)];
     let values: Vec<f32> = matrices.iter().flat_map(|m| m.as_mat4().to_cols_array()).collect();
@@ -103,8 +117,10 @@ fn the_mesh_follows_the_clip_as_the_format_says() {
         let hips = DMat4::from_translation(DVec3::Y);
         let chest = hips * DMat4::from_translation(DVec3::Y * 0.5) * DMat4::from_rotation_z(angle);
         let vertex = DVec3::new(0.1, 1.5, 0.0);
-        let expected = (hips * matrices[0]).transform_point3(vertex) * 0.25 + (chest * matrices[1]).transform_point3(vertex) * 0.75;
-        // Bound anew at rest, a vertex that two joints share follows them a little differently: not at all at rest.
+        let expected = (hips * matrices[0]).transform_point3(vertex) * 0.25
+            + (chest * matrices[1]).transform_point3(vertex) * 0.75;
+        // Bound anew at rest, a vertex that two joints share follows them a little differently: not
+        // at all at rest.
         let slack = if angle == 0.0 { 1e-6 } else { 0.2 };
         assert!(positions[2].distance(expected.as_vec3()) < slack, "{} {expected}", positions[2]);
         let lower = (hips * matrices[0]).transform_point3(DVec3::new(-0.1, 1.0, 0.0));
@@ -166,7 +182,9 @@ fn hostile_meshes_are_left_out_and_the_motion_stays() {
         change(&mut made);
         made.read()
     };
-    let primitive = |made: &Made, key: &str| made.root["meshes"][0]["primitives"][0]["attributes"][key].as_u64().unwrap() as usize;
+    let primitive = |made: &Made, key: &str| {
+        made.root["meshes"][0]["primitives"][0]["attributes"][key].as_u64().unwrap() as usize
+    };
     let count = |key: &'static str, count: u64| {
         spoilt(&move |made| {
             let at = primitive(made, key);
@@ -181,7 +199,8 @@ fn hostile_meshes_are_left_out_and_the_motion_stays() {
             "4 billion zeros",
             spoilt(&|made| {
                 let at = primitive(made, "POSITION");
-                made.root["accessors"][at] = json!({ "componentType": 5126, "count": 2_000_000u32, "type": "VEC3" });
+                made.root["accessors"][at] =
+                    json!({ "componentType": 5126, "count": 2_000_000u32, "type": "VEC3" });
             }),
         ),
         (
@@ -217,7 +236,8 @@ fn hostile_meshes_are_left_out_and_the_motion_stays() {
             "{name}: {told:?}"
         );
     }
-    // Numbers that are none: a weight counts nothing, a triangle with such a corner is left out, a normal is computed.
+    // Numbers that are none: a weight counts nothing, a triangle with such a corner is left out, a
+    // normal is computed.
     let nan = spoilt(&|made| {
         let weights = made.floats("VEC4", 4, &[f32::NAN; 16]);
         made.root["meshes"][0]["primitives"][0]["attributes"]["WEIGHTS_0"] = json!(weights);
@@ -225,7 +245,8 @@ fn hostile_meshes_are_left_out_and_the_motion_stays() {
     assert!(nan.clips[0].mesh.is_none());
     let nan = spoilt(&|made| {
         let (mut places, mut weights) = ([0.0; 12], [0.0; 16]);
-        (places[0], places[4], places[6], weights[0], weights[4], weights[5]) = (f32::NAN, 1.0, 1.0, 1.0, 1.0, f32::INFINITY);
+        (places[0], places[4], places[6], weights[0], weights[4], weights[5]) =
+            (f32::NAN, 1.0, 1.0, 1.0, 1.0, f32::INFINITY);
         let attributes = [
             ("POSITION", made.floats("VEC3", 3, &places)),
             ("WEIGHTS_0", made.floats("VEC4", 4, &weights)),
@@ -245,10 +266,7 @@ fn hostile_meshes_are_left_out_and_the_motion_stays() {
 #[test]
 fn our_own_body_comes_back_when_another_program_wrote_it() {
     let clip = wander(&fixtures::cmu_bvh(), 3, 2);
-    let options = GlbOptions {
-        smooth: true,
-        ..GlbOptions::default()
-    };
+    let options = GlbOptions { smooth: true, ..GlbOptions::default() };
     let bytes = write_glb(&clip, &options).unwrap();
     // Segue makes that body itself.
     assert!(
@@ -256,7 +274,8 @@ fn our_own_body_comes_back_when_another_program_wrote_it() {
             .mesh
             .is_none()
     );
-    let imported = read("x.glb", &by_another_program(bytes), &|_| None, &ImportOptions::default()).unwrap();
+    let imported =
+        read("x.glb", &by_another_program(bytes), &|_| None, &ImportOptions::default()).unwrap();
     let mesh = mesh_of(&imported);
     let skeleton = clip.skeleton();
     let made = SkinnedMesh::around(skeleton, &Roles::detect(skeleton), 1.0);
@@ -264,7 +283,8 @@ fn our_own_body_comes_back_when_another_program_wrote_it() {
         (mesh.triangles.len(), mesh.positions.len()),
         (made.triangles.len(), made.positions.len())
     );
-    // Bound at rest instead of where it was made; the motion is the same, but for weights in parts of 255 and what limbs share.
+    // Bound at rest instead of where it was made; the motion is the same, but for weights in parts
+    // of 255 and what limbs share.
     let (mut transforms, mut read_back, mut direct, mut normals) = (vec![], vec![], vec![], vec![]);
     let rest = segue_motion::skeleton::world_pose(
         skeleton,

@@ -12,10 +12,7 @@ fn source(walk: Walk) -> Source {
 }
 
 fn two() -> (Source, Source) {
-    let a = source(Walk {
-        frames: 100,
-        ..Walk::default()
-    });
+    let a = source(Walk { frames: 100, ..Walk::default() });
     let b = source(Walk {
         frames: 80,
         speed: 2.2,
@@ -36,7 +33,9 @@ fn worst_distance(a: &Clip, b: &Clip) -> f32 {
 }
 
 fn laws() -> impl Strategy<Value = (WeightLaw, RootBlend)> {
-    (0usize..3, any::<bool>()).prop_map(|(law, world)| (WeightLaw::ALL[law], if world { RootBlend::World } else { RootBlend::Velocity }))
+    (0usize..3, any::<bool>()).prop_map(|(law, world)| {
+        (WeightLaw::ALL[law], if world { RootBlend::World } else { RootBlend::Velocity })
+    })
 }
 
 proptest! {
@@ -114,7 +113,8 @@ struct Motion {
 
 #[test]
 fn agrees_with_numpy() {
-    let golden: Golden = serde_json::from_str(include_str!("../../../tests/golden/dissolve.json")).unwrap();
+    let golden: Golden =
+        serde_json::from_str(include_str!("../../../tests/golden/dissolve.json")).unwrap();
     let joint = |parent, offset| Joint {
         name: "joint".into(),
         parent,
@@ -122,7 +122,9 @@ fn agrees_with_numpy() {
         end_site: None,
         channels: vec![],
     };
-    let skeleton = Arc::new(Skeleton::new(vec![joint(None, Vec3::ZERO), joint(Some(0), golden.offset)]).unwrap());
+    let skeleton = Arc::new(
+        Skeleton::new(vec![joint(None, Vec3::ZERO), joint(Some(0), golden.offset)]).unwrap(),
+    );
     let source = |motion: &Motion| {
         let clip = Clip::new(
             "golden",
@@ -136,21 +138,22 @@ fn agrees_with_numpy() {
     };
     assert_eq!(golden.cases.len(), 6);
     for case in &golden.cases {
-        let options = DissolveOptions {
-            window: case.window,
-            root: case.root,
-            ..DissolveOptions::default()
-        };
-        let out = dissolve(&source(&case.a), case.leave, &source(&case.b), case.enter, &options).unwrap();
+        let options =
+            DissolveOptions { window: case.window, root: case.root, ..DissolveOptions::default() };
+        let out =
+            dissolve(&source(&case.a), case.leave, &source(&case.b), case.enter, &options).unwrap();
         for p in 0..case.window {
-            let (found, expected) = (out.clip.root_translations()[case.leave + p], case.during.roots[p]);
+            let (found, expected) =
+                (out.clip.root_translations()[case.leave + p], case.during.roots[p]);
             assert!(
                 found.distance(expected) < 2e-5,
                 "{:?} {} frame {p}: {found} {expected}",
                 case.root,
                 case.window
             );
-            for (found, expected) in out.clip.rotations(case.leave + p).iter().zip(case.during.rotations[p]) {
+            for (found, expected) in
+                out.clip.rotations(case.leave + p).iter().zip(case.during.rotations[p])
+            {
                 assert!(quat::angle_between(*found, expected) < 2e-5);
             }
         }
@@ -164,24 +167,19 @@ fn agrees_with_numpy() {
 fn blended_velocities_neither_turn_nor_stray_where_neither_source_does() {
     // Two straight walks, far apart and 143° off each other.
     let (a, b) = two();
-    let out = dissolve(
-        &a,
-        50,
-        &b,
-        10,
-        &DissolveOptions {
-            window: 30,
-            ..DissolveOptions::default()
-        },
-    )
-    .unwrap();
+    let out =
+        dissolve(&a, 50, &b, 10, &DissolveOptions { window: 30, ..DissolveOptions::default() })
+            .unwrap();
     // The body sways about its heading by what the sources sway, and A's heading goes on.
-    let sway = |s: &Source, heading: f64| s.frames().iter().map(|f| wrap_angle(f.yaw - heading).abs()).fold(0.0, f64::max);
+    let sway = |s: &Source, heading: f64| {
+        s.frames().iter().map(|f| wrap_angle(f.yaw - heading).abs()).fold(0.0, f64::max)
+    };
     let most = sway(&a, 0.0).max(sway(&b, 2.5)) * 2.0 + 0.02;
     for frame in &out.frames {
         assert!(frame.yaw.abs() < most, "{} {most}", frame.yaw);
     }
-    // And the steps grow from 1.3 m/s to 2.2 m/s, without ever being outside (10 % more or less within a stride).
+    // And the steps grow from 1.3 m/s to 2.2 m/s, without ever being outside (10 % more or less
+    // within a stride).
     for pair in out.frames.windows(2) {
         let speed = (pair[1].shift - pair[0].shift).length() * 60.0;
         assert!((1.1..2.5).contains(&speed), "{speed}");
@@ -198,12 +196,7 @@ fn without_alignment_the_character_flies_to_b() {
                 50,
                 &b,
                 10,
-                &DissolveOptions {
-                    window,
-                    align,
-                    root,
-                    ..DissolveOptions::default()
-                },
+                &DissolveOptions { window, align, root, ..DissolveOptions::default() },
             )
             .unwrap();
             let roots = out.clip.root_translations();
@@ -231,11 +224,7 @@ fn windows_of_0_and_1_are_the_same_cut() {
                 50,
                 &b,
                 10,
-                &DissolveOptions {
-                    window,
-                    root,
-                    ..DissolveOptions::default()
-                },
+                &DissolveOptions { window, root, ..DissolveOptions::default() },
             )
             .unwrap()
         };
@@ -248,11 +237,7 @@ fn windows_of_0_and_1_are_the_same_cut() {
                 leave,
                 &b,
                 0,
-                &DissolveOptions {
-                    window: 0,
-                    root,
-                    ..DissolveOptions::default()
-                },
+                &DissolveOptions { window: 0, root, ..DissolveOptions::default() },
             )
             .unwrap();
             assert_eq!(out.clip.frames(), leave + 80);
@@ -268,35 +253,22 @@ fn windows_of_0_and_1_are_the_same_cut() {
 #[test]
 fn a_cut_goes_on_with_the_step_of_b() {
     let (a, b) = two();
-    let out = dissolve(
-        &a,
-        50,
-        &b,
-        10,
-        &DissolveOptions {
-            window: 0,
-            ..DissolveOptions::default()
-        },
-    )
-    .unwrap();
+    let out =
+        dissolve(&a, 50, &b, 10, &DissolveOptions { window: 0, ..DissolveOptions::default() })
+            .unwrap();
     let step = out.frames[49].inverse().after(&out.frames[50]);
     let own = b.frames()[9].inverse().after(&b.frames()[10]);
-    assert!((step.shift - own.shift).length() < 1e-9 && wrap_angle(step.yaw - own.yaw).abs() < 1e-9);
+    assert!(
+        (step.shift - own.shift).length() < 1e-9 && wrap_angle(step.yaw - own.yaw).abs() < 1e-9
+    );
 }
 
 #[test]
 fn joints_that_move_against_their_parent_are_blended_too() {
-    let clip = Walk {
-        frames: 30,
-        ..Walk::default()
-    }
-    .clip();
+    let clip = Walk { frames: 30, ..Walk::default() }.clip();
     let roles = Roles::detect(clip.skeleton());
     let tracked = |joint: usize, at: Vec3| {
-        let track = JointTranslations {
-            joint,
-            values: vec![at; 30],
-        };
+        let track = JointTranslations { joint, values: vec![at; 30] };
         Source::new(Arc::new(clip.clone().with_translations(vec![track]).unwrap()), &roles)
     };
     let (a, b) = (tracked(2, Vec3::X), tracked(4, Vec3::Z));
@@ -305,11 +277,7 @@ fn joints_that_move_against_their_parent_are_blended_too() {
         10,
         &b,
         10,
-        &DissolveOptions {
-            window: 4,
-            law: WeightLaw::Linear,
-            ..DissolveOptions::default()
-        },
+        &DissolveOptions { window: 4, law: WeightLaw::Linear, ..DissolveOptions::default() },
     )
     .unwrap();
     let rest = body();
@@ -323,37 +291,23 @@ fn joints_that_move_against_their_parent_are_blended_too() {
 #[test]
 fn what_cannot_be_blended_is_refused() {
     let (a, b) = two();
-    let options = DissolveOptions {
-        window: 30,
-        ..DissolveOptions::default()
+    let options = DissolveOptions { window: 30, ..DissolveOptions::default() };
+    let refused = |leave, enter, options: &DissolveOptions| {
+        dissolve(&a, leave, &b, enter, options).unwrap_err()
     };
-    let refused = |leave, enter, options: &DissolveOptions| dissolve(&a, leave, &b, enter, options).unwrap_err();
     assert_eq!(
         refused(71, 0, &options),
-        BlendError::Window {
-            which: "outgoing",
-            frames: 100,
-            at: 71,
-            window: 30
-        }
+        BlendError::Window { which: "outgoing", frames: 100, at: 71, window: 30 }
     );
     assert!(refused(71, 0, &options).to_string().contains("lower the window to 29"));
     assert_eq!(
         refused(10, 51, &options),
-        BlendError::Window {
-            which: "incoming",
-            frames: 80,
-            at: 51,
-            window: 30
-        }
+        BlendError::Window { which: "incoming", frames: 80, at: 51, window: 30 }
     );
     let cut = DissolveOptions { window: 0, ..options };
     assert!(matches!(refused(100, 80, &cut), BlendError::Window { which: "incoming", .. }));
     assert!(matches!(refused(usize::MAX, 0, &cut), BlendError::Window { which: "outgoing", .. }));
-    let slow = source(Walk {
-        fps: 30.0,
-        ..Walk::default()
-    });
+    let slow = source(Walk { fps: 30.0, ..Walk::default() });
     assert!(matches!(dissolve(&a, 0, &slow, 0, &options), Err(BlendError::FrameRates { .. })));
     let joint = Joint {
         name: "Hips".into(),
@@ -376,25 +330,22 @@ fn what_cannot_be_blended_is_refused() {
     assert!(dissolve(&empty, 0, &b, 0, &cut).is_err() && dissolve(&b, 0, &empty, 0, &cut).is_err());
 }
 
-/// A character that stands in place and sways about a heading, its left arm turned about its bone likewise.
+/// A character that stands in place and sways about a heading, its left arm turned about its bone
+/// likewise.
 fn swaying(heading: f32, phase: f32, arm: f32) -> Source {
-    let still = Walk {
-        frames: 90,
-        speed: 0.0,
-        cadence: 0.0,
-        swing: 0.0,
-        ..Walk::default()
-    };
+    let still = Walk { frames: 90, speed: 0.0, cadence: 0.0, swing: 0.0, ..Walk::default() };
     let clip = still.clip();
     let joints = clip.skeleton().len();
-    let mut rotations: Vec<Quat> = (0..clip.frames()).flat_map(|f| clip.rotations(f).to_vec()).collect();
+    let mut rotations: Vec<Quat> =
+        (0..clip.frames()).flat_map(|f| clip.rotations(f).to_vec()).collect();
     for (frame, pose) in rotations.chunks_mut(joints).enumerate() {
         let sway = 0.08 * (frame as f32 * 0.5 + phase).sin();
         pose[0] = Quat::from_rotation_y(heading + sway) * pose[0];
         pose[joints - 1] = Quat::from_rotation_x(arm + sway) * pose[joints - 1];
     }
     let roots = clip.root_translations().to_vec();
-    let swaying = Clip::new("swaying", Arc::clone(clip.skeleton()), clip.fps(), rotations, roots).unwrap();
+    let swaying =
+        Clip::new("swaying", Arc::clone(clip.skeleton()), clip.fps(), rotations, roots).unwrap();
     let roles = Roles::detect(swaying.skeleton());
     Source::new(Arc::new(swaying), &roles)
 }
@@ -402,7 +353,8 @@ fn swaying(heading: f32, phase: f32, arm: f32) -> Source {
 #[test]
 fn bodies_that_sway_back_to_back_are_dissolved_by_one_way_round() {
     for (arm, align) in [(0.0, false), (PI, true), (PI, false)] {
-        let (a, b) = (swaying(0.3, 0.0, 0.0), swaying(if align { 0.3 } else { 0.3 + PI }, 1.5, arm));
+        let (a, b) =
+            (swaying(0.3, 0.0, 0.0), swaying(if align { 0.3 } else { 0.3 + PI }, 1.5, arm));
         // Without the sway either way round is half a turn in 39 steps.
         let options = DissolveOptions {
             window: 40,
@@ -426,7 +378,10 @@ fn bodies_that_sway_back_to_back_are_dissolved_by_one_way_round() {
             let yaw = wrap_angle(out.frames[frame].yaw - out.frames[frame - 1].yaw);
             assert!(yaw.abs() < f64::from(steady), "{frame}: {yaw}");
             let body = out.clip.rotations(frame)[0] * out.frames[frame].rotation().conjugate();
-            let apart = quat::angle_between(body, out.clip.rotations(0)[0] * out.frames[0].rotation().conjugate());
+            let apart = quat::angle_between(
+                body,
+                out.clip.rotations(0)[0] * out.frames[0].rotation().conjugate(),
+            );
             assert!(apart < 0.02, "the body faces where its frame does: {apart}");
         }
     }
@@ -434,13 +389,7 @@ fn bodies_that_sway_back_to_back_are_dissolved_by_one_way_round() {
 
 #[test]
 fn the_first_posture_alone_may_say_where_b_lies() {
-    let (a, b) = (
-        source(Walk {
-            turning: 0.6,
-            ..Walk::default()
-        }),
-        source(Walk::default()),
-    );
+    let (a, b) = (source(Walk { turning: 0.6, ..Walk::default() }), source(Walk::default()));
     let options = DissolveOptions {
         window: 30,
         align_by: AlignBy::FirstPose,
@@ -449,19 +398,14 @@ fn the_first_posture_alone_may_say_where_b_lies() {
     };
     let out = dissolve(&a, 40, &b, 12, &options).unwrap();
     let (stands, wanted) = (out.aligned_b.after(&b.frames()[12]), a.frames()[40]);
-    assert!(stands.shift.distance(wanted.shift) < 1e-9 && wrap_angle(stands.yaw - wanted.yaw).abs() < 1e-9);
+    assert!(
+        stands.shift.distance(wanted.shift) < 1e-9
+            && wrap_angle(stands.yaw - wanted.yaw).abs() < 1e-9
+    );
     assert_eq!(out.world_from_b, out.aligned_b);
     // The window as a whole turns on, and lies better elsewhere.
-    let by_window = dissolve(
-        &a,
-        40,
-        &b,
-        12,
-        &DissolveOptions {
-            align_by: AlignBy::Window,
-            ..options
-        },
-    )
-    .unwrap();
+    let by_window =
+        dissolve(&a, 40, &b, 12, &DissolveOptions { align_by: AlignBy::Window, ..options })
+            .unwrap();
     assert!(wrap_angle(by_window.aligned_b.yaw - out.aligned_b.yaw).abs() > 0.02);
 }

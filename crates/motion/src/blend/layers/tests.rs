@@ -7,11 +7,7 @@ use proptest::prelude::*;
 use std::sync::Arc;
 
 fn options(parts: &[BodyPart]) -> LayerOptions {
-    LayerOptions {
-        parts: parts.to_vec(),
-        feather: 0,
-        ..LayerOptions::default()
-    }
+    LayerOptions { parts: parts.to_vec(), feather: 0, ..LayerOptions::default() }
 }
 
 #[test]
@@ -29,10 +25,12 @@ fn agrees_with_scipy() {
     struct Golden {
         layers: Vec<Case>,
     }
-    let golden: Golden = serde_json::from_str(include_str!("../../../tests/oracles/gaits.json")).unwrap();
+    let golden: Golden =
+        serde_json::from_str(include_str!("../../../tests/oracles/gaits.json")).unwrap();
     for case in golden.layers {
         let [base, over, reference, additive, in_place] =
-            [case.base, case.over, case.reference, case.additive, case.in_place].map(Quat::from_array);
+            [case.base, case.over, case.reference, case.additive, case.in_place]
+                .map(Quat::from_array);
         assert!(quat::angle_between(added(base, over, reference, case.weight), additive) < 1e-6);
         assert!(quat::angle_between(quat::slerp(base, over, case.weight), in_place) < 1e-4);
     }
@@ -45,11 +43,7 @@ fn agrees_with_scipy() {
         &base,
         &roles,
         &over,
-        &LayerOptions {
-            mode,
-            weight: 0.7,
-            ..options(&[BodyPart::UpperBody])
-        },
+        &LayerOptions { mode, weight: 0.7, ..options(&[BodyPart::UpperBody]) },
     )
     .unwrap();
     let joint = roles.get(Role::LeftForearm).unwrap();
@@ -120,7 +114,8 @@ fn a_layer_of_itself_changes_nothing() {
 
 #[test]
 fn a_whole_layer_goes_its_own_way_from_where_the_base_stands() {
-    let [walk, run] = [Action::Walk, Action::Run].map(|action| synthesize(&Params::new(action)).unwrap().clip);
+    let [walk, run] =
+        [Action::Walk, Action::Run].map(|action| synthesize(&Params::new(action)).unwrap().clip);
     let roles = Roles::detect(walk.skeleton());
     let placed = walk.transformed(&Planar::new(1.0, 3.0, -2.0));
     let out = layer(&placed, &roles, &run, &options(&[BodyPart::Whole])).unwrap();
@@ -131,7 +126,8 @@ fn a_whole_layer_goes_its_own_way_from_where_the_base_stands() {
         assert!(got[frame].shift.distance(here.shift) < 1e-3, "{frame}");
     }
     // The run is shorter, and goes on from its beginning without a jump.
-    let steps: Vec<f64> = got.windows(2).map(|pair| pair[0].shift.distance(pair[1].shift)).collect();
+    let steps: Vec<f64> =
+        got.windows(2).map(|pair| pair[0].shift.distance(pair[1].shift)).collect();
     assert!(
         out.frames() > run.frames() && steps.iter().all(|step| (step * 60.0 - 3.5).abs() < 0.6),
         "{steps:?}"
@@ -140,24 +136,27 @@ fn a_whole_layer_goes_its_own_way_from_where_the_base_stands() {
 
 #[test]
 fn an_upper_body_can_keep_its_orientation() {
-    let [walk, idle] = [Action::Walk, Action::Idle].map(|action| synthesize(&Params::new(action)).unwrap().clip);
+    let [walk, idle] =
+        [Action::Walk, Action::Idle].map(|action| synthesize(&Params::new(action)).unwrap().clip);
     let roles = Roles::detect(walk.skeleton());
     let head = roles.get(Role::Head).unwrap();
     let off = |keep_orientation, feather| {
-        let upper = LayerOptions {
-            feather,
-            keep_orientation,
-            ..options(&[BodyPart::UpperBody])
-        };
+        let upper = LayerOptions { feather, keep_orientation, ..options(&[BodyPart::UpperBody]) };
         let out = layer(&walk, &roles, &idle, &upper).unwrap();
         let stands = [&out, &idle].map(|clip| character_frames(clip, &roles));
-        let orientation =
-            |clip: &Clip, frame: usize, stands: &[Planar]| stands[frame].inverse().rotation() * clip.world_pose(frame).rotations[head];
-        let angles =
-            (0..out.frames()).map(|frame| quat::angle_between(orientation(&out, frame, &stands[0]), orientation(&idle, frame, &stands[1])));
+        let orientation = |clip: &Clip, frame: usize, stands: &[Planar]| {
+            stands[frame].inverse().rotation() * clip.world_pose(frame).rotations[head]
+        };
+        let angles = (0..out.frames()).map(|frame| {
+            quat::angle_between(
+                orientation(&out, frame, &stands[0]),
+                orientation(&idle, frame, &stands[1]),
+            )
+        });
         angles.fold(0.0, f32::max).to_degrees()
     };
-    // The facing of a body is the mean of hips and shoulders: half of the walk's turn of the hips is still between the two.
+    // The facing of a body is the mean of hips and shoulders: half of the walk's turn of the hips
+    // is still between the two.
     assert!(off(false, 0) > 5.0, "{}", off(false, 0));
     assert!(off(true, 0) < 3.5 && off(true, 2) < 3.5, "{} {}", off(true, 0), off(true, 2));
 }
@@ -169,18 +168,18 @@ fn layers_begin_and_end_when_they_are_told() {
     let (base, over) = (wander(&skeleton, 40, 1), wander(&skeleton, 11, 2));
     let joint = roles.get(Role::RightHand).unwrap();
     let at = |time, start_secs, frame: usize| {
-        let told = LayerOptions {
-            time,
-            start_secs,
-            ..options(&[BodyPart::RightArm])
-        };
+        let told = LayerOptions { time, start_secs, ..options(&[BodyPart::RightArm]) };
         layer(&base, &roles, &over, &told).unwrap().rotations(frame)[joint]
     };
     let of = |frame: usize| over.rotations(frame)[joint];
     let same = |a: Quat, b: Quat| quat::angle_between(a, b) < 1e-5;
-    assert!(same(at(LayerTime::Loop, 0.0, 23), of(3)) && same(at(LayerTime::Hold, 0.0, 23), of(10)));
+    assert!(
+        same(at(LayerTime::Loop, 0.0, 23), of(3)) && same(at(LayerTime::Hold, 0.0, 23), of(10))
+    );
     assert!(same(at(LayerTime::Loop, 0.1, 0), of(3)) && same(at(LayerTime::Hold, -0.5, 14), of(0)));
-    assert!(same(at(LayerTime::Loop, -0.1, 0), of(7)) && same(at(LayerTime::Hold, -0.5, 17), of(2)));
+    assert!(
+        same(at(LayerTime::Loop, -0.1, 0), of(7)) && same(at(LayerTime::Hold, -0.5, 17), of(2))
+    );
     assert!(same(at(LayerTime::Hold, 0.05, 1), quat::slerp(of(2), of(3), 0.5)));
 }
 
@@ -189,10 +188,7 @@ fn a_layer_can_have_a_time_of_its_own() {
     let skeleton = fixtures::bandai();
     let roles = fixtures::roles(&skeleton);
     let (base, over) = (wander(&skeleton, 12, 1), wander(&skeleton, 11, 2));
-    let told = LayerOptions {
-        start_secs: over.time_of(1),
-        ..options(&[BodyPart::Whole])
-    };
+    let told = LayerOptions { start_secs: over.time_of(1), ..options(&[BodyPart::Whole]) };
     // Twice as fast, and around its end.
     let times: Vec<f64> = (0..8).map(|frame| over.time_of(2 * frame)).collect();
     let out = layer_timed(&base, &roles, &over, &told, &times).unwrap();
@@ -242,24 +238,19 @@ fn joints_that_move_are_blended_too() {
     let skeleton = fixtures::lafan();
     let roles = fixtures::roles(&skeleton);
     let hand = roles.get(Role::LeftHand).unwrap();
-    let track = |x: f32| {
-        vec![JointTranslations {
-            joint: hand,
-            values: vec![Vec3::X * x; 5],
-        }]
-    };
+    let track = |x: f32| vec![JointTranslations { joint: hand, values: vec![Vec3::X * x; 5] }];
     let base = wander(&skeleton, 5, 1).with_translations(track(0.2)).unwrap();
     let over = wander(&skeleton, 5, 2).with_translations(track(0.6)).unwrap();
-    let half = LayerOptions {
-        weight: 0.5,
-        ..options(&[BodyPart::LeftArm])
-    };
-    assert!((layer(&base, &roles, &over, &half).unwrap().translations()[0].values[3].x - 0.4).abs() < 1e-6);
-    let against = LayerOptions {
-        mode: LayerMode::Additive(Reference::Frame(0)),
-        ..half
-    };
-    assert!((layer(&base, &roles, &over, &against).unwrap().translations()[0].values[3].x - 0.2).abs() < 1e-6);
+    let half = LayerOptions { weight: 0.5, ..options(&[BodyPart::LeftArm]) };
+    assert!(
+        (layer(&base, &roles, &over, &half).unwrap().translations()[0].values[3].x - 0.4).abs()
+            < 1e-6
+    );
+    let against = LayerOptions { mode: LayerMode::Additive(Reference::Frame(0)), ..half };
+    assert!(
+        (layer(&base, &roles, &over, &against).unwrap().translations()[0].values[3].x - 0.2).abs()
+            < 1e-6
+    );
 }
 
 #[test]
@@ -274,7 +265,9 @@ fn masks_know_the_body() {
             let at = |weights: &[f32], role| weights[roles.get(role).unwrap()];
             // A spine that carries the legs is a part of the pelvis.
             let spine = roles.get(Role::Spine).unwrap();
-            let pelvis = std::iter::successors(roles.get(Role::LeftThigh), |&joint| skeleton.parent(joint)).any(|joint| joint == spine);
+            let pelvis =
+                std::iter::successors(roles.get(Role::LeftThigh), |&joint| skeleton.parent(joint))
+                    .any(|joint| joint == spine);
             let first = if pelvis { 0.0 } else { 1.0 / (feather + 1) as f32 };
             assert_eq!(
                 (upper[spine], at(&lower, Role::LeftToe), at(&upper, Role::LeftHand)),
@@ -283,15 +276,21 @@ fn masks_know_the_body() {
             );
             let [arm, head, back] = [BodyPart::RightArm, BodyPart::Head, BodyPart::Spine].map(of);
             assert!(
-                at(&arm, Role::RightHand) > 0.9 && at(&arm, Role::LeftHand) == 0.0 && at(&arm, Role::Head) == 0.0,
+                at(&arm, Role::RightHand) > 0.9
+                    && at(&arm, Role::LeftHand) == 0.0
+                    && at(&arm, Role::Head) == 0.0,
                 "{rig}"
             );
             assert!(
-                at(&head, Role::Head) > 0.2 && at(&head, Role::RightUpperArm) == 0.0 && at(&head, Role::Spine) == 0.0,
+                at(&head, Role::Head) > 0.2
+                    && at(&head, Role::RightUpperArm) == 0.0
+                    && at(&head, Role::Spine) == 0.0,
                 "{rig}"
             );
             assert!(
-                (pelvis || at(&back, Role::Spine) > 0.0) && at(&back, Role::Head) == 0.0 && at(&back, Role::LeftUpperArm) == 0.0,
+                (pelvis || at(&back, Role::Spine) > 0.0)
+                    && at(&back, Role::Head) == 0.0
+                    && at(&back, Role::LeftUpperArm) == 0.0,
                 "{rig}"
             );
             assert!(
@@ -313,12 +312,7 @@ fn what_cannot_be_layered_is_said() {
             &base,
             &roles,
             &over,
-            &LayerOptions {
-                weight,
-                mode,
-                start_secs,
-                ..options(&[BodyPart::Head])
-            },
+            &LayerOptions { weight, mode, start_secs, ..options(&[BodyPart::Head]) },
         )
     };
     for weight in [-0.1, 1.1, f32::NAN] {

@@ -12,7 +12,8 @@ fn source(walk: Walk) -> Source {
 
 fn register(a: &Source, b: &Source) -> Registration {
     let (a, b) = (a.clip(), b.clip());
-    let mut terms = PairTerms::new(a, 0..a.frames(), b, 0..b.frames(), &limb_weights(a.skeleton()), 1).unwrap();
+    let mut terms =
+        PairTerms::new(a, 0..a.frames(), b, 0..b.frames(), &limb_weights(a.skeleton()), 1).unwrap();
     terms.finish();
     let matrix = terms.distances(5, &(0..a.frames()), &(0..b.frames())).unwrap();
     Registration::new(&terms, &matrix, &RegistrationOptions::new(a.fps())).unwrap()
@@ -38,17 +39,11 @@ fn walks() -> [Source; 3] {
         turning: -0.3,
         ..Walk::default()
     };
-    [
-        source(Walk {
-            frames: 280,
-            ..Walk::default()
-        }),
-        source(brisk),
-        source(slow),
-    ]
+    [source(Walk { frames: 280, ..Walk::default() }), source(brisk), source(slow)]
 }
 
-/// The largest distance of any joint between a frame of one clip and a frame of another, which is moved.
+/// The largest distance of any joint between a frame of one clip and a frame of another, which is
+/// moved.
 fn apart(result: &Clip, frame: usize, of: &Clip, in_of: usize, moved: &Planar) -> f32 {
     let (a, b) = (result.world_positions(frame..frame + 1), of.world_positions(in_of..in_of + 1));
     a.iter().zip(&b).map(|(a, b)| a.distance(moved.apply(*b))).fold(0.0, f32::max)
@@ -59,27 +54,17 @@ fn a_clip_that_has_all_the_weight_plays_as_it_is() {
     let [a, b, c] = walks();
     let (to_b, to_c) = (register(&a, &b), register(&a, &c));
     for alone in 0..3 {
-        let weights = [1, 2].map(|partner| WeightCurve::constant(if partner == alone { 1.0 } else { 0.0 }));
+        let weights =
+            [1, 2].map(|partner| WeightCurve::constant(if partner == alone { 1.0 } else { 0.0 }));
         let partners = [
-            Partner {
-                source: &b,
-                registration: &to_b,
-                weight: &weights[0],
-            },
-            Partner {
-                source: &c,
-                registration: &to_c,
-                weight: &weights[1],
-            },
+            Partner { source: &b, registration: &to_b, weight: &weights[0] },
+            Partner { source: &c, registration: &to_c, weight: &weights[1] },
         ];
         let out = registered_blend(&a, &partners).unwrap();
         let of = [&a, &b, &c][alone];
         assert_eq!(out.clip.frames(), of.clip().frames(), "all of it plays");
-        let lies = if alone == 0 {
-            Planar::IDENTITY
-        } else {
-            [&to_b, &to_c][alone - 1].alignment_at(0.0)
-        };
+        let lies =
+            if alone == 0 { Planar::IDENTITY } else { [&to_b, &to_c][alone - 1].alignment_at(0.0) };
         for frame in 0..out.clip.frames() {
             assert!(
                 (out.instants[frame].frames[alone] - frame as f64).abs() < 1e-5,
@@ -98,17 +83,14 @@ fn halfway_lasts_and_strides_between_both() {
     let (to_b, to_c) = (register(&a, &b), register(&a, &c));
     let half = WeightCurve::constant(0.5);
     let blend = |source, registration| {
-        let partner = Partner {
-            source,
-            registration,
-            weight: &half,
-        };
+        let partner = Partner { source, registration, weight: &half };
         registered_blend(&a, &[partner]).unwrap()
     };
     // Clocks go on by their mean: 280 and 240 frames make 260, 280 and 330 make 305.
     for (out, frames) in [(blend(&b, &to_b), 260), (blend(&c, &to_c), 305)] {
         assert!(out.clip.frames().abs_diff(frames) <= 1, "{}", out.clip.frames());
-        // The legs swing in step in all clips, so that the blend swings as far as they do in the mean.
+        // The legs swing in step in all clips, so that the blend swings as far as they do in the
+        // mean.
         let swing = |clip: &Clip| {
             (0..clip.frames())
                 .map(|frame| quat::log(clip.rotations(frame)[7]).x)
@@ -149,11 +131,16 @@ fn a_join_is_all_a_then_all_b() {
     // Clocks run at their own speed, but for what the last frame asks for.
     for pair in join.during.windows(2) {
         let step = |k: usize| pair[1].frames[k] - pair[0].frames[k];
-        let mean = 0.5 * (step(0) * (pair[0].weights[0] + pair[1].weights[0]) + step(1) * (pair[0].weights[1] + pair[1].weights[1]));
+        let mean = 0.5
+            * (step(0) * (pair[0].weights[0] + pair[1].weights[0])
+                + step(1) * (pair[0].weights[1] + pair[1].weights[1]));
         assert!((mean - 1.0).abs() < 0.02, "{mean}");
     }
     for pair in join.joined.frames.windows(2) {
-        assert!(pair[0].shift.distance(pair[1].shift) < 0.04 && wrap_angle(pair[1].yaw - pair[0].yaw).abs() < 0.05);
+        assert!(
+            pair[0].shift.distance(pair[1].shift) < 0.04
+                && wrap_angle(pair[1].yaw - pair[0].yaw).abs() < 0.05
+        );
     }
     assert!(transition.contains(&join.joined.handover));
     let contacts = |source: &Source| {
@@ -176,16 +163,9 @@ fn what_is_not_registered_is_not_blended() {
             "{leave} {arrive}"
         );
     }
-    let other = source(Walk {
-        fps: 30.0,
-        ..Walk::default()
-    });
+    let other = source(Walk { fps: 30.0, ..Walk::default() });
     let half = WeightCurve::constant(0.5);
-    let partner = Partner {
-        source: &other,
-        registration: &registration,
-        weight: &half,
-    };
+    let partner = Partner { source: &other, registration: &registration, weight: &half };
     assert!(matches!(registered_blend(&a, &[partner]), Err(BlendError::FrameRates { .. })));
     let all = registered_blend(&a, &[]).unwrap();
     assert_eq!(all.clip.frames(), a.clip().frames());

@@ -4,7 +4,8 @@ use crate::clip::{Provenance, UpAxis};
 use crate::skeleton::{Role, fixtures};
 use proptest::prelude::*;
 
-/// A walk of a body, with joints above its hips: a root and, below it, one more, which are where `above` says in every frame.
+/// A walk of a body, with joints above its hips: a root and, below it, one more, which are where
+/// `above` says in every frame.
 fn hung(clip: &Clip, above: impl Fn(usize) -> (Vec3, Quat)) -> Clip {
     let joint = |name: &str, parent, offset| Joint {
         name: name.into(),
@@ -29,16 +30,17 @@ fn hung(clip: &Clip, above: impl Fn(usize) -> (Vec3, Quat)) -> Clip {
     for frame in 0..clip.frames() {
         let (at, turned) = above(frame);
         let own = clip.rotations(frame);
-        rotations.extend([turned, Quat::from_rotation_x(0.1 * frame as f32), turned.conjugate() * own[0]]);
+        rotations.extend([
+            turned,
+            Quat::from_rotation_x(0.1 * frame as f32),
+            turned.conjugate() * own[0],
+        ]);
         rotations.extend_from_slice(&own[1..]);
         roots.push(at);
         hips.push(turned.conjugate() * (clip.root_translations()[frame] - at));
     }
     let hips = JointTranslations { joint: 2, values: hips };
-    let provenance = Provenance {
-        metres_per_unit: 0.0254,
-        up: UpAxis::Z,
-    };
+    let provenance = Provenance { metres_per_unit: 0.0254, up: UpAxis::Z };
     let clip = Clip::new("hung", skeleton, 30.0, rotations, roots).unwrap();
     clip.with_translations(vec![hips]).unwrap().with_provenance(provenance)
 }
@@ -50,7 +52,8 @@ fn largest(a: &[Vec3], b: &[Vec3]) -> f32 {
 
 /// World positions of the joints of a body, the marker left out.
 fn body_of(clip: &Clip, joints: &[&str]) -> Vec<Vec3> {
-    let places: Vec<usize> = joints.iter().map(|name| clip.skeleton().find(name).unwrap()).collect();
+    let places: Vec<usize> =
+        joints.iter().map(|name| clip.skeleton().find(name).unwrap()).collect();
     let all = clip.world_positions(0..clip.frames());
     all.chunks(clip.skeleton().len())
         .flat_map(|frame| places.iter().map(|&joint| frame[joint]).collect::<Vec<_>>())
@@ -101,7 +104,8 @@ fn root_on_the_ground_goes_along_the_ground() {
     let body = wander(&fixtures::lafan(), 120, 3);
     let frames = character_frames(&body, &Roles::detect(body.skeleton()));
     let below: Vec<Planar> = smoothed(&frames, body.fps());
-    let file = hung(&body, |frame| (below[frame].origin() + Vec3::Y * 0.01, below[frame].rotation()));
+    let file =
+        hung(&body, |frame| (below[frame].origin() + Vec3::Y * 0.01, below[frame].rotation()));
     check_way_back(&file, &body);
     let folded = file.clone().folded().unwrap();
     let back = folded.unfolded().unwrap();

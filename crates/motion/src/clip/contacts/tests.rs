@@ -13,14 +13,16 @@ const FPS: f64 = 60.0;
 const STEP_SECS: f32 = 1.0;
 const STANCE_SECS: f32 = 0.6;
 
-/// Where a foot is, seconds after it touched down for the first time: it stands, then swings 1.3 m forward and 12 cm up.
+/// Where a foot is, seconds after it touched down for the first time: it stands, then swings 1.3 m
+/// forward and 12 cm up.
 fn step(since_secs: f32) -> Vec3 {
     let (steps, phase) = ((since_secs / STEP_SECS).floor(), since_secs.rem_euclid(STEP_SECS));
     let swing = ((phase - STANCE_SECS) / (STEP_SECS - STANCE_SECS)).max(0.0);
     Vec3::new(0.0, 0.12 * (PI * swing).sin(), 1.3 * (steps + swing - (TAU * swing).sin() / TAU))
 }
 
-/// A clip of known steps: the feet are moved by translations, the left one touches down at 0 s, the right one half a step later.
+/// A clip of known steps: the feet are moved by translations, the left one touches down at 0 s, the
+/// right one half a step later.
 fn steps(frames: usize, scale: f32, way: impl Fn(Side, f32) -> Vec3) -> (Clip, Roles) {
     let skeleton = fixtures::uneven(&fixtures::lafan(), scale, 0.0, 0.0, 0);
     let roles = fixtures::roles(&skeleton);
@@ -37,11 +39,10 @@ fn steps(frames: usize, scale: f32, way: impl Fn(Side, f32) -> Vec3) -> (Clip, R
         .into_iter()
         .map(|side| {
             let joint = roles.get(Role::foot(side)).unwrap();
-            let at = |frame: usize| skeleton.joints()[joint].offset + way(side, frame as f32 / FPS as f32) * scale;
-            JointTranslations {
-                joint,
-                values: (0..frames).map(at).collect(),
-            }
+            let at = |frame: usize| {
+                skeleton.joints()[joint].offset + way(side, frame as f32 / FPS as f32) * scale
+            };
+            JointTranslations { joint, values: (0..frames).map(at).collect() }
         })
         .collect();
     tracks.sort_by_key(|track| track.joint);
@@ -87,7 +88,8 @@ fn a_walk_has_the_contacts_that_it_was_made_with() {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
-    /// Neither the height of the capture's floor nor the character's size changes what touches the ground.
+    /// Neither the height of the capture's floor nor the character's size changes what touches the
+    /// ground.
     #[test]
     fn floor_and_size_do_not_count(floor in -0.2f32..0.2, scale in 0.3f32..3.0) {
         let (clip, roles) = steps(150, 1.0, walk);
@@ -97,7 +99,8 @@ proptest! {
         prop_assert!((risen - floor).abs() < 1e-4);
     }
 
-    /// At other frame rates contacts begin and end at the same time, to within two of the coarser frames.
+    /// At other frame rates contacts begin and end at the same time, to within two of the coarser
+    /// frames.
     #[test]
     fn the_frame_rate_does_not_count(fps in 24.0f64..240.0) {
         let (clip, roles) = steps(150, 1.0, walk);
@@ -114,19 +117,22 @@ proptest! {
     }
 }
 
-/// A standing foot that trembles between the thresholds is one contact with hysteresis and many without.
+/// A standing foot that trembles between the thresholds is one contact with hysteresis and many
+/// without.
 #[test]
 fn hysteresis_keeps_a_trembling_foot_planted() {
-    // The left foot stands, rises slowly to 4 cm and trembles there by 5 mm at 2.5 Hz: speeds stay below 0.2 m/s.
+    // The left foot stands, rises slowly to 4 cm and trembles there by 5 mm at 2.5 Hz: speeds stay
+    // below 0.2 m/s.
     let tremble = |side: Side, t: f32| match side {
-        Side::Left => Vec3::Y * (0.04 * ((t - 0.4) / 0.4).clamp(0.0, 1.0) + 0.005 * (2.5 * TAU * t.max(0.4)).sin()),
+        Side::Left => {
+            Vec3::Y
+                * (0.04 * ((t - 0.4) / 0.4).clamp(0.0, 1.0)
+                    + 0.005 * (2.5 * TAU * t.max(0.4)).sin())
+        }
         Side::Right => Vec3::ZERO,
     };
     let (clip, roles) = steps(100, 1.0, tremble);
-    let options = ContactOptions {
-        min_secs: 0.0,
-        ..ContactOptions::default()
-    };
+    let options = ContactOptions { min_secs: 0.0, ..ContactOptions::default() };
     let steady = Contacts::detect(&clip, &roles, &options).intervals(Side::Left).len();
     let sharp = ContactOptions {
         leave_height_m: options.enter_height_m,
@@ -181,13 +187,16 @@ fn clips_without_feet_or_frames_have_no_contacts() {
     assert!(found(&clip, &strange).intervals(Side::Left).is_empty());
 }
 
-/// In a sprint a standing foot moves at 1 m/s and the floor leans by 4 cm from one foot to the other.
+/// In a sprint a standing foot moves at 1 m/s and the floor leans by 4 cm from one foot to the
+/// other.
 #[test]
 fn a_sprint_over_a_leaning_floor_has_contacts() {
     let sprint = |side: Side, t: f32| {
         let lean = if side == Side::Left { 0.04 } else { 0.0 };
         let creep = Vec3::Z * 0.9 * t.rem_euclid(STEP_SECS / 4.0);
-        step(4.0 * t + if side == Side::Left { 0.0 } else { 0.5 }) * Vec3::new(1.0, 1.5, 1.0) + creep + Vec3::Y * lean
+        step(4.0 * t + if side == Side::Left { 0.0 } else { 0.5 }) * Vec3::new(1.0, 1.5, 1.0)
+            + creep
+            + Vec3::Y * lean
     };
     let (still, roles) = steps(120, 1.0, sprint);
     let roots = (0..120).map(|frame| Vec3::new(0.0, 0.95, 5.2 * frame as f32 / FPS as f32));
@@ -217,9 +226,8 @@ fn phases_run_from_touchdown_to_touchdown() {
         }
         flags
     };
-    let contacts = Contacts {
-        planted: [stances(&[0..5, 20..30, 40..50, 80..90]), stances(&[0..40, 60..70])],
-    };
+    let contacts =
+        Contacts { planted: [stances(&[0..5, 20..30, 40..50, 80..90]), stances(&[0..40, 60..70])] };
     let phase = |frame| contacts.phase(Side::Left, frame).unwrap();
     assert_eq!([phase(20), phase(25), phase(40), phase(60)], [0.0, 0.25, 0.0, 0.5]);
     // The rhythm goes on beyond the first and the last touchdown.

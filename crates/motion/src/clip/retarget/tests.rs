@@ -84,7 +84,9 @@ proptest! {
 fn missing_fingers_change_nothing_else() {
     let full = fixtures::mixamo();
     let kept: Vec<usize> = (0..full.len())
-        .filter(|&j| !full.joints()[j].name.contains("Index") && !full.joints()[j].name.contains("Thumb"))
+        .filter(|&j| {
+            !full.joints()[j].name.contains("Index") && !full.joints()[j].name.contains("Thumb")
+        })
         .collect();
     let joints = kept.iter().map(|&old| {
         let joint = &full.joints()[old];
@@ -99,7 +101,8 @@ fn missing_fingers_change_nothing_else() {
     let there = retarget(&clip, &full_roles, &fingerless, &roles).unwrap();
     let back = retarget(&there, &roles, &full, &full_roles).unwrap();
     for frame in 0..5 {
-        let (original, without, again) = (clip.world_pose(frame), there.world_pose(frame), back.world_pose(frame));
+        let (original, without, again) =
+            (clip.world_pose(frame), there.world_pose(frame), back.world_pose(frame));
         for (new, &old) in kept.iter().enumerate() {
             assert!(original.positions[old].distance(without.positions[new]) < 1e-5);
             assert!(original.positions[old].distance(again.positions[old]) < 1e-5);
@@ -123,7 +126,8 @@ fn another_size_keeps_rotations_and_scales_the_way() {
     }
 }
 
-/// From arms stretched out at rest to arms hanging at rest, and to a rest pose that lies on its side: the motion looks the same.
+/// From arms stretched out at rest to arms hanging at rest, and to a rest pose that lies on its
+/// side: the motion looks the same.
 #[test]
 fn another_rest_pose_shows_the_same_motion() {
     let source = fixtures::mixamo();
@@ -133,9 +137,10 @@ fn another_rest_pose_shows_the_same_motion() {
     let hang = |side: Side| Quat::from_rotation_z(if side == Side::Left { -1.2 } else { 1.2 });
     let arms = Side::BOTH.map(|side| roles.get(Role::upper_arm(side)).unwrap());
     let in_arm = |joint: usize| {
-        Side::BOTH
-            .into_iter()
-            .find(|side| std::iter::successors(source.parent(joint), |&j| source.parent(j)).any(|j| j == arms[side.index()]))
+        Side::BOTH.into_iter().find(|side| {
+            std::iter::successors(source.parent(joint), |&j| source.parent(j))
+                .any(|j| j == arms[side.index()])
+        })
     };
     for turn in [Quat::IDENTITY, lie, Quat::from_rotation_x(-std::f32::consts::FRAC_PI_2)] {
         let joints = source.joints().iter().enumerate().map(|(index, joint)| {
@@ -154,7 +159,10 @@ fn another_rest_pose_shows_the_same_motion() {
             for role in Role::ALL {
                 let joint = roles.get(role).unwrap();
                 let lift = b.positions[0] - a.positions[0];
-                assert!((a.positions[joint] + lift).distance(b.positions[joint]) < 1e-4, "{role:?}");
+                assert!(
+                    (a.positions[joint] + lift).distance(b.positions[joint]) < 1e-4,
+                    "{role:?}"
+                );
                 assert!(lift.length() < 1e-3);
             }
         }
@@ -163,13 +171,15 @@ fn another_rest_pose_shows_the_same_motion() {
     }
 }
 
-/// Legs that point up along the back at rest, as in rigs whose bones all lie along one axis: knees still bend backwards.
+/// Legs that point up along the back at rest, as in rigs whose bones all lie along one axis: knees
+/// still bend backwards.
 #[test]
 fn legs_folded_up_at_rest_bend_the_right_way() {
     let source = fixtures::lafan();
     let roles = fixtures::roles(&source);
     let up = |joint: &Joint| {
-        let is_leg = ["LeftLeg", "RightLeg", "LeftFoot", "RightFoot", "LeftToe", "RightToe"].contains(&joint.name.as_str());
+        let is_leg = ["LeftLeg", "RightLeg", "LeftFoot", "RightFoot", "LeftToe", "RightToe"]
+            .contains(&joint.name.as_str());
         let offset = if is_leg { Vec3::Y * joint.offset.length() } else { joint.offset };
         Joint {
             offset,
@@ -198,14 +208,17 @@ fn legs_folded_up_at_rest_bend_the_right_way() {
 
 #[test]
 fn feet_stand_as_high_as_before() {
-    let (source, target) = (fixtures::cmu_bvh(), fixtures::uneven(&fixtures::games105(), 0.8, 0.2, 0.1, 2));
+    let (source, target) =
+        (fixtures::cmu_bvh(), fixtures::uneven(&fixtures::games105(), 0.8, 0.2, 0.1, 2));
     let (source_roles, target_roles) = (fixtures::roles(&source), fixtures::roles(&target));
     let clip = wander_by(&source, 30, 2, 0.2);
     let there = retarget(&clip, &source_roles, &target, &target_roles).unwrap();
-    let scale = target_roles.leg_length(&target).unwrap() / source_roles.leg_length(&source).unwrap();
+    let scale =
+        target_roles.leg_length(&target).unwrap() / source_roles.leg_length(&source).unwrap();
     // Of the points that both feet have: one of these rigs has no toe tips.
     let level = |clip: &Clip, roles: &Roles| {
-        let joints = [Role::LeftFoot, Role::RightFoot, Role::LeftToe, Role::RightToe].map(|role| roles.get(role).unwrap());
+        let joints = [Role::LeftFoot, Role::RightFoot, Role::LeftToe, Role::RightToe]
+            .map(|role| roles.get(role).unwrap());
         let lowest = |frame| {
             joints
                 .map(|joint| clip.world_pose(frame).positions[joint].y)
@@ -217,20 +230,22 @@ fn feet_stand_as_high_as_before() {
     let (before, after) = (level(&clip, &source_roles), level(&there, &target_roles));
     assert!((before * scale - after).abs() < 1e-5, "{before} {after}");
     // Over the ground the hips go the scaled way.
-    let hips = |clip: &Clip, roles: &Roles, frame| clip.world_pose(frame).positions[roles.get(Role::Hips).unwrap()];
+    let hips = |clip: &Clip, roles: &Roles, frame| {
+        clip.world_pose(frame).positions[roles.get(Role::Hips).unwrap()]
+    };
     let way = |clip: &Clip, roles: &Roles| hips(clip, roles, 29) - hips(clip, roles, 0);
     let (ours, theirs) = (way(&there, &target_roles), way(&clip, &source_roles) * scale);
     assert!((ours - theirs).length() < 1e-4);
 }
 
-/// A body without toes and one with toe tips: an ankle stands higher than a tip, and is no measure for it.
+/// A body without toes and one with toe tips: an ankle stands higher than a tip, and is no measure
+/// for it.
 #[test]
 fn feet_of_rigs_with_and_without_toes_neither_sink_nor_float() {
     let with_toes = fixtures::lafan();
     let small = fixtures::uneven(&with_toes, 0.8, 0.0, 0.0, 0);
-    let kept: Vec<usize> = (0..small.len())
-        .filter(|&joint| !small.joints()[joint].name.ends_with("Toe"))
-        .collect();
+    let kept: Vec<usize> =
+        (0..small.len()).filter(|&joint| !small.joints()[joint].name.ends_with("Toe")).collect();
     let joint = |&joint: &usize| {
         let joint = &small.joints()[joint];
         Joint {
@@ -244,11 +259,14 @@ fn feet_of_rigs_with_and_without_toes_neither_sink_nor_float() {
         let (source_roles, target_roles) = (Roles::detect(source), Roles::detect(target));
         let clip = wander_by(source, 30, 2, 0.2);
         let there = retarget(&clip, &source_roles, target, &target_roles).unwrap();
-        let scale = target_roles.leg_length(target).unwrap() / source_roles.leg_length(source).unwrap();
+        let scale =
+            target_roles.leg_length(target).unwrap() / source_roles.leg_length(source).unwrap();
         for frame in 0..clip.frames() {
             let (a, b) = (clip.world_pose(frame), there.world_pose(frame));
             for side in Side::BOTH {
-                let height = |world: &WorldPose, roles: &Roles| world.positions[roles.get(Role::foot(side)).unwrap()].y;
+                let height = |world: &WorldPose, roles: &Roles| {
+                    world.positions[roles.get(Role::foot(side)).unwrap()].y
+                };
                 let off = height(&b, &target_roles) - height(&a, &source_roles) * scale;
                 assert!(off.abs() < 0.01, "{} cm in frame {frame}", off * 100.0);
             }
@@ -287,7 +305,8 @@ fn hips_that_move_below_a_still_root_carry_the_way() {
         })
         .collect();
     let values: Vec<Vec3> = (0..4).map(|i| Vec3::new(0.1, 0.95, 0.3 * i as f32)).collect();
-    let clip = Clip::new("walk", Arc::clone(&source), 30.0, rotations, vec![Vec3::ZERO; 4]).unwrap();
+    let clip =
+        Clip::new("walk", Arc::clone(&source), 30.0, rotations, vec![Vec3::ZERO; 4]).unwrap();
     let clip = clip
         .with_translations(vec![JointTranslations {
             joint: source_roles.get(Role::Hips).unwrap(),
@@ -299,7 +318,8 @@ fn hips_that_move_below_a_still_root_carry_the_way() {
         let (a, b) = (clip.world_pose(frame), there.world_pose(frame));
         // Between chest and head these rigs have different joints.
         for role in Side::BOTH.into_iter().flat_map(Role::leg).chain([Role::Hips, Role::Spine]) {
-            let distance = a.positions[source_roles.get(role).unwrap()].distance(b.positions[target_roles.get(role).unwrap()]);
+            let distance = a.positions[source_roles.get(role).unwrap()]
+                .distance(b.positions[target_roles.get(role).unwrap()]);
             assert!(distance < 1e-3, "{role:?}: {distance}");
         }
     }
@@ -315,12 +335,14 @@ fn nothing_in_common_is_refused() {
     );
 }
 
-/// The ankles of one rig lie higher above the sole, and its feet point outwards at rest: soles stay flat, headings stay.
+/// The ankles of one rig lie higher above the sole, and its feet point outwards at rest: soles stay
+/// flat, headings stay.
 #[test]
 fn soles_stay_flat_and_feet_keep_their_heading() {
     let source = fixtures::lafan();
     let roles = fixtures::roles(&source);
-    let outwards = |name: &str| Quat::from_rotation_y(if name.starts_with("Left") { 0.35 } else { -0.35 });
+    let outwards =
+        |name: &str| Quat::from_rotation_y(if name.starts_with("Left") { 0.35 } else { -0.35 });
     let joints = source.joints().iter().map(|joint| {
         let is_toe = joint.name.ends_with("Toe");
         let offset = if is_toe {
@@ -330,7 +352,9 @@ fn soles_stay_flat_and_feet_keep_their_heading() {
         };
         Joint {
             offset,
-            end_site: joint.end_site.map(|end| if is_toe { outwards(&joint.name) * end } else { end }),
+            end_site: joint
+                .end_site
+                .map(|end| if is_toe { outwards(&joint.name) * end } else { end }),
             ..joint.clone()
         }
     });
@@ -340,7 +364,8 @@ fn soles_stay_flat_and_feet_keep_their_heading() {
     for frame in 0..clip.frames() {
         let (a, b) = (clip.world_pose(frame), there.world_pose(frame));
         for side in Side::BOTH {
-            for joint in [roles.get(Role::foot(side)).unwrap(), roles.get(Role::toe(side)).unwrap()] {
+            for joint in [roles.get(Role::foot(side)).unwrap(), roles.get(Role::toe(side)).unwrap()]
+            {
                 let (ours, theirs) = (b.rotations[joint], a.rotations[joint]);
                 // What is up on a sole stays up, what is forward on it stays forward.
                 assert!((ours * Vec3::Y).distance(theirs * Vec3::Y) < 1e-5);
@@ -374,12 +399,18 @@ fn strange_trees_come_through() {
         let mut sided = Roles::default();
         sided.set(Role::LeftThigh, Some(1));
         sided.set(Role::RightThigh, Some(2));
-        let twice = crate::clip::mirror(&clip, &sided).and_then(|once| crate::clip::mirror(&once, &sided));
-        assert!(twice.is_err() || twice.is_ok_and(|twice| twice.world_positions(0..2).iter().all(|p| p.is_finite())));
+        let twice =
+            crate::clip::mirror(&clip, &sided).and_then(|once| crate::clip::mirror(&once, &sided));
+        assert!(
+            twice.is_err()
+                || twice
+                    .is_ok_and(|twice| twice.world_positions(0..2).iter().all(|p| p.is_finite()))
+        );
     }
 }
 
-/// A rest pose that shows no creature tells nothing of how bones are twisted: a collar bone came out turned half round.
+/// A rest pose that shows no creature tells nothing of how bones are twisted: a collar bone came
+/// out turned half round.
 #[test]
 fn joints_turned_by_constants_come_over_as_the_plain_ones_do() {
     let clip = synthesize(&Params::new(Action::Walk)).unwrap().clip;
@@ -389,19 +420,23 @@ fn joints_turned_by_constants_come_over_as_the_plain_ones_do() {
     let plain = retarget(&clip, &roles, &target, &target_roles).unwrap();
     for seed in 0..3 {
         let (turned, turns) = fixtures::turned(clip.skeleton(), seed);
-        let poses = (0..clip.frames()).map(|frame| fixtures::turned_pose(clip.skeleton(), &turns, &clip.pose(frame)));
+        let poses = (0..clip.frames())
+            .map(|frame| fixtures::turned_pose(clip.skeleton(), &turns, &clip.pose(frame)));
         let rewritten = Clip::from_poses("turned", turned, clip.fps(), poses).unwrap();
         let moved = retarget(&rewritten, &roles, &target, &target_roles).unwrap();
         let back = retarget_onto(&plain, &target_roles, &rewritten, &roles).unwrap();
         for frame in (0..clip.frames()).step_by(20) {
-            let [plain, moved, back, clip] = [&plain, &moved, &back, &rewritten].map(|clip| clip.world_pose(frame));
+            let [plain, moved, back, clip] =
+                [&plain, &moved, &back, &rewritten].map(|clip| clip.world_pose(frame));
             for role in Role::ALL {
                 if let Some(joint) = target_roles.get(role) {
-                    let apart = quat::angle_between(plain.rotations[joint], moved.rotations[joint]).to_degrees();
+                    let apart = quat::angle_between(plain.rotations[joint], moved.rotations[joint])
+                        .to_degrees();
                     assert!(apart < 25.0, "{seed} {frame} {role:?}: {apart}°");
                 }
                 if let Some(joint) = roles.get(role) {
-                    let apart = quat::angle_between(clip.rotations[joint], back.rotations[joint]).to_degrees();
+                    let apart = quat::angle_between(clip.rotations[joint], back.rotations[joint])
+                        .to_degrees();
                     assert!(apart < 25.0, "{seed} {frame} {role:?} and back: {apart}°");
                 }
             }

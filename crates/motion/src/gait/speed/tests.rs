@@ -71,7 +71,8 @@ fn agrees_with_numpy() {
         ats: Vec<f64>,
         speeds: Vec<Case>,
     }
-    let golden: Golden = serde_json::from_str(include_str!("../../../tests/oracles/gaits.json")).unwrap();
+    let golden: Golden =
+        serde_json::from_str(include_str!("../../../tests/oracles/gaits.json")).unwrap();
     let (mut blend, _) = blend(&SpeedOptions::default());
     for (gait, of) in blend.gaits.iter_mut().zip([&golden.walk, &golden.run]) {
         (gait.speed_mps, gait.secs, gait.events) = (of.speed, of.secs, of.events);
@@ -122,7 +123,8 @@ fn the_speed_asked_for_is_the_speed_made() {
         let (steps, thrice) = (one.clip.frames() - 1, blend.cycles_at(speed, 3).unwrap().clip);
         assert_eq!(thrice.frames(), 3 * steps + 1);
         for frame in [0, steps / 3, steps] {
-            let [here, later] = [&one.clip, &thrice].map(|clip| clip.rotations(frame + if clip == &thrice { steps } else { 0 }));
+            let [here, later] = [&one.clip, &thrice]
+                .map(|clip| clip.rotations(frame + if clip == &thrice { steps } else { 0 }));
             assert!(
                 here.iter().zip(later).skip(1).all(|(a, b)| quat::angle_between(*a, *b) < 1e-4),
                 "{speed} {frame}"
@@ -134,10 +136,7 @@ fn the_speed_asked_for_is_the_speed_made() {
 #[test]
 fn the_gaits_own_speeds_give_the_gaits() {
     for alignment in [PhaseAlignment::Feet, PhaseAlignment::Strikes, PhaseAlignment::None] {
-        let options = SpeedOptions {
-            alignment,
-            ..SpeedOptions::default()
-        };
+        let options = SpeedOptions { alignment, ..SpeedOptions::default() };
         let (blend, _) = blend(&options);
         for (gait, action) in [Action::Walk, Action::Run].into_iter().enumerate() {
             let (cycle, _) = cycle(action);
@@ -172,16 +171,14 @@ fn the_gaits_own_speeds_give_the_gaits() {
 #[test]
 fn aligned_feet_slide_less_and_a_lock_plants_them() {
     let of = |alignment| {
-        let (blend, roles) = blend(&SpeedOptions {
-            alignment,
-            ..SpeedOptions::default()
-        });
+        let (blend, roles) = blend(&SpeedOptions { alignment, ..SpeedOptions::default() });
         let made = blend.clip_of(2.3, 4.0).unwrap();
         (skate(&made.clip, &made.contacts, &roles), made, roles)
     };
     let (feet, made, roles) = of(PhaseAlignment::Feet);
     assert!(feet < 0.6 * of(PhaseAlignment::None).0, "{feet}");
-    let locked = foot_lock(&made.clip, &roles, &made.contacts, &FootLockOptions::default()).unwrap();
+    let locked =
+        foot_lock(&made.clip, &roles, &made.contacts, &FootLockOptions::default()).unwrap();
     assert!(skate(&locked, &made.contacts, &roles) < 0.02 * feet);
 }
 
@@ -197,7 +194,10 @@ fn a_hundred_cycles_do_not_drift() {
     for cycle in [1, 50, 99] {
         let apart = made.rotations(7).iter().zip(made.rotations(cycle * steps + 7)).skip(1);
         assert!(apart.map(|(a, b)| quat::angle_between(*a, *b)).fold(0.0, f32::max) < 1e-4);
-        assert!(stride(cycle).shift.distance(stride(0).shift) < 1e-3 && (stride(cycle).yaw - stride(0).yaw).abs() < 1e-3);
+        assert!(
+            stride(cycle).shift.distance(stride(0).shift) < 1e-3
+                && (stride(cycle).yaw - stride(0).yaw).abs() < 1e-3
+        );
     }
 }
 
@@ -215,10 +215,12 @@ fn a_dragged_speed_changes_the_gait_without_a_jump() {
     };
     let made = blend.clip_along(8.0, wanted).unwrap();
     let turns = |clip: &Clip| -> f32 {
-        let steps = (1..clip.frames()).flat_map(|frame| clip.rotations(frame - 1).iter().zip(clip.rotations(frame)));
+        let steps = (1..clip.frames())
+            .flat_map(|frame| clip.rotations(frame - 1).iter().zip(clip.rotations(frame)));
         steps.map(|(a, b)| quat::angle_between(*a, *b)).fold(0.0, f32::max)
     };
-    let steady = turns(&blend.clip_of(3.5, 3.0).unwrap().clip).max(turns(&blend.clip_of(1.4, 3.0).unwrap().clip));
+    let steady = turns(&blend.clip_of(3.5, 3.0).unwrap().clip)
+        .max(turns(&blend.clip_of(1.4, 3.0).unwrap().clip));
     assert!(turns(&made.clip) < 1.5 * steady, "{} {steady}", turns(&made.clip));
     let frames = character_frames(&made.clip, &roles);
     for pair in frames.windows(2) {
@@ -240,9 +242,15 @@ fn a_dragged_speed_changes_the_gait_without_a_jump() {
     for frame in 1..made.clip.frames() {
         let pose = player.advance(&blend, 1.0 / 60.0, wanted(frame as f64 / 60.0));
         close(&pose, frame);
-        assert_eq!(player.planted(&blend), Side::BOTH.map(|side| made.contacts.planted(side, frame)));
+        assert_eq!(
+            player.planted(&blend),
+            Side::BOTH.map(|side| made.contacts.planted(side, frame))
+        );
     }
-    assert!((player.here().shift.length() - frames[480].shift.length()).abs() < 0.05 && player.phase() > 8.0);
+    assert!(
+        (player.here().shift.length() - frames[480].shift.length()).abs() < 0.05
+            && player.phase() > 8.0
+    );
     // What is no step is none.
     let before = player;
     for dt in [0.0, -1.0, f64::NAN] {
@@ -278,7 +286,10 @@ fn a_clip_that_is_one_cycle_or_most_of_one_is_closed_by_its_ends() {
                     found.right_strike - wanted.right_strike,
                     found.right_lift - wanted.right_lift,
                 ];
-                assert!(apart.iter().all(|apart| apart.abs() < 0.1), "{name}: {found:?} {wanted:?}");
+                assert!(
+                    apart.iter().all(|apart| apart.abs() < 0.1),
+                    "{name}: {found:?} {wanted:?}"
+                );
                 assert!(cycle.looped().seam.turn_deg < 1e-3, "{name}");
                 let own = measured(&cycle.looped().repeat(3).unwrap(), &roles);
                 assert!((own / cycle.speed_mps() - 1.0).abs() < 0.02, "{name}");
@@ -290,7 +301,8 @@ fn a_clip_that_is_one_cycle_or_most_of_one_is_closed_by_its_ends() {
 #[test]
 fn speeds_between_two_clips_of_one_cycle_are_made() {
     for (share, from) in [(1.0, 40), (0.9, 55), (1.02, 71)] {
-        let [(walk, roles), (run, _)] = [Action::Walk, Action::Run].map(|action| found(part_of_a_cycle(action, from, share).0).unwrap());
+        let [(walk, roles), (run, _)] = [Action::Walk, Action::Run]
+            .map(|action| found(part_of_a_cycle(action, from, share).0).unwrap());
         let blend = SpeedBlend::new(&walk, &run, &roles, &SpeedOptions::default()).unwrap();
         for speed in [1.5, 2.0, 3.0] {
             let off = measured(&blend.clip_of(speed, 6.0).unwrap().clip, &roles) / speed - 1.0;
@@ -349,7 +361,8 @@ fn cycles_begin_where_the_left_foot_strikes() {
         assert!((cycle.secs() - f64::from(truth.cycle_secs)).abs() < 0.03);
         let events = cycle.events();
         assert!(
-            (events.left_lift - duty).abs() < 0.08 && (events.right_lift - events.right_strike - duty).abs() < 0.08,
+            (events.left_lift - duty).abs() < 0.08
+                && (events.right_lift - events.right_strike - duty).abs() < 0.08,
             "{events:?}"
         );
         assert!((events.right_strike - 0.5).abs() < 0.05);
@@ -362,7 +375,8 @@ fn cycles_begin_where_the_left_foot_strikes() {
 fn rates_may_differ_and_what_does_not_go_is_said() {
     let (walk, roles) = cycle(Action::Walk);
     let run = synthesize(&Params::new(Action::Run)).unwrap().clip;
-    let (coarse, _) = found(resample(&run, 30.0, crate::clip::Interpolation::Cubic).unwrap()).unwrap();
+    let (coarse, _) =
+        found(resample(&run, 30.0, crate::clip::Interpolation::Cubic).unwrap()).unwrap();
     let options = SpeedOptions::default();
     let mixed = SpeedBlend::new(&walk, &coarse, &roles, &options).unwrap();
     let made = mixed.clip_of(2.5, 5.0).unwrap();
@@ -371,22 +385,14 @@ fn rates_may_differ_and_what_does_not_go_is_said() {
         SpeedBlend::new(&walk, &walk, &roles, &options),
         Err(GaitError::Speeds { .. })
     ));
-    let small = Walk {
-        frames: 400,
-        speed: 1.0,
-        cadence: 0.9,
-        ..Walk::default()
-    };
+    let small = Walk { frames: 400, speed: 1.0, cadence: 0.9, ..Walk::default() };
     if let Ok((other, _)) = found(small.clip()) {
         assert!(matches!(
             SpeedBlend::new(&walk, &other, &roles, &options),
             Err(GaitError::Skeletons { .. })
         ));
     }
-    let wrong = SpeedOptions {
-        half_life_secs: -1.0,
-        ..options
-    };
+    let wrong = SpeedOptions { half_life_secs: -1.0, ..options };
     assert!(matches!(
         SpeedBlend::new(&walk, &coarse, &roles, &wrong),
         Err(GaitError::Option { .. })

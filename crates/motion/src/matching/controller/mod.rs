@@ -27,7 +27,8 @@ use std::sync::Arc;
 const TICK_SECS: f64 = 1.0 / RATE as f64;
 /// A character is pulled along no faster than this share of the fastest that its clips go.
 const PULL_SHARE: f64 = 1.1;
-/// Clips that go nowhere, or straight on alone, count as this fast, metres and radians per second: 0.5 m/s and 80° per second.
+/// Clips that go nowhere, or straight on alone, count as this fast, metres and radians per second:
+/// 0.5 m/s and 80° per second.
 const LEAST_PULL_MPS: f64 = 0.5;
 const LEAST_TWIST_RADPS: f64 = 1.4;
 /// After a pause of the page nobody wants to wait for all that was missed, ticks.
@@ -35,9 +36,11 @@ const MOST_TICKS_AT_ONCE: usize = 30;
 
 /// A character that is driven by a database.
 ///
-/// It goes on in ticks of 1/60 s ([`Self::tick`]) whatever the screen's rate is: the same input gives the same motion, bit for bit. Features and queries are
-/// rounded to a grid, so that machines whose trigonometry differs in its last digit choose the same frames, but for ties of less than that.
-/// [`Self::step`] runs as many ticks as fit into a frame of the screen; [`Self::shown`] is the pose between the last two.
+/// It goes on in ticks of 1/60 s ([`Self::tick`]) whatever the screen's rate is: the same input
+/// gives the same motion, bit for bit. Features and queries are rounded to a grid, so that machines
+/// whose trigonometry differs in its last digit choose the same frames, but for ties of less than
+/// that. [`Self::step`] runs as many ticks as fit into a frame of the screen; [`Self::shown`] is
+/// the pose between the last two.
 #[derive(Debug)]
 pub struct Controller {
     database: Arc<Database>,
@@ -74,11 +77,16 @@ struct Asked {
 }
 
 impl Controller {
-    /// A character that stands at `start`, in the frame of the database that looks most like standing still.
+    /// A character that stands at `start`, in the frame of the database that looks most like
+    /// standing still.
     ///
     /// # Errors
     /// [`MatchError::Setting`] when an option is out of range.
-    pub fn new(database: Arc<Database>, options: ControllerOptions, start: &Planar) -> Result<Self, MatchError> {
+    pub fn new(
+        database: Arc<Database>,
+        options: ControllerOptions,
+        start: &Planar,
+    ) -> Result<Self, MatchError> {
         options.validate()?;
         let feet = Feet::new(&database);
         let mut controller = Self {
@@ -120,7 +128,8 @@ impl Controller {
         &self.options
     }
 
-    /// Other options from the next tick on. A transition that is under way continues from where it is, pose and velocity.
+    /// Other options from the next tick on. A transition that is under way continues from where it
+    /// is, pose and velocity.
     ///
     /// # Errors
     /// [`MatchError::Setting`] when one is out of range; the old ones stay.
@@ -157,7 +166,8 @@ impl Controller {
         &self.pose
     }
 
-    /// The pose between the last two ticks that belongs to the time that [`Self::step`] has been given: one tick behind it, and smooth at any rate of the screen.
+    /// The pose between the last two ticks that belongs to the time that [`Self::step`] has been
+    /// given: one tick behind it, and smooth at any rate of the screen.
     #[must_use]
     pub fn shown(&self) -> Pose {
         let part = (self.left_secs / TICK_SECS).clamp(0.0, 1.0) as f32;
@@ -191,7 +201,8 @@ impl Controller {
         self.place
     }
 
-    /// Which feet stand: left, right. The clip has them on the ground, and they have come down there.
+    /// Which feet stand: left, right. The clip has them on the ground, and they have come down
+    /// there.
     #[must_use]
     pub fn planted(&self) -> [bool; 2] {
         self.planted
@@ -231,7 +242,8 @@ impl Controller {
         self.database.trajectory(self.place, &self.root)
     }
 
-    /// Real time passes: runs the ticks that fit in, all with the same input. How many they were is what a recording must hold.
+    /// Real time passes: runs the ticks that fit in, all with the same input. How many they were is
+    /// what a recording must hold.
     pub fn step(&mut self, dt_secs: f64, control: &Control) -> usize {
         if dt_secs > 0.0 && dt_secs.is_finite() {
             self.left_secs += dt_secs;
@@ -265,7 +277,8 @@ impl Controller {
         if let Some(motion) = self.database.motion(self.place.motion)
             && let Some(next) = motion.next(self.place.frame)
         {
-            step = motion.root(self.place.frame).inverse().after(&motion.root(self.place.frame + 1));
+            step =
+                motion.root(self.place.frame).inverse().after(&motion.root(self.place.frame + 1));
             self.place.frame = next;
         }
         self.inertializer.advance(TICK_SECS);
@@ -274,12 +287,16 @@ impl Controller {
         step
     }
 
-    /// Draws the character to the simulation object, and holds it near (Holden, "Code vs Data Driven Displacement", 2021).
+    /// Draws the character to the simulation object, and holds it near (Holden, "Code vs Data
+    /// Driven Displacement", 2021).
     ///
-    /// It is drawn and held no faster than anything in the clips goes: walks alone cannot be pulled along at a run, nor spun around. The simulation object
-    /// then waits, so that it is never farther away than it may be.
+    /// It is drawn and held no faster than anything in the clips goes: walks alone cannot be pulled
+    /// along at a run, nor spun around. The simulation object then waits, so that it is never
+    /// farther away than it may be.
     fn follow(&mut self, travelled: &Planar) {
-        let Some(following) = self.options.following else { return };
+        let Some(following) = self.options.following else {
+            return;
+        };
         let (off, turn) = (
             self.simulation.position - self.root.shift,
             wrap_angle(self.simulation.yaw - self.root.yaw),
@@ -294,16 +311,17 @@ impl Controller {
         let left_turn = (turn - turned).clamp(-following.most_radians, following.most_radians);
         let pace = self.database.pace();
         let room = |fastest: f64, own: f64| (fastest * TICK_SECS - own).max(0.0);
-        let most_pull = room(PULL_SHARE * pace.travel_mps.max(LEAST_PULL_MPS), travelled.shift.length());
-        let most_twist = room(PULL_SHARE * pace.turn_radps.max(LEAST_TWIST_RADPS), travelled.yaw.abs());
+        let most_pull =
+            room(PULL_SHARE * pace.travel_mps.max(LEAST_PULL_MPS), travelled.shift.length());
+        let most_twist =
+            room(PULL_SHARE * pace.turn_radps.max(LEAST_TWIST_RADPS), travelled.yaw.abs());
         let pulled = (off - left).clamp_length_max(most_pull);
         let twisted = (turn - left_turn).clamp(-most_twist, most_twist);
-        self.root = Planar {
-            yaw: wrap_angle(self.root.yaw + twisted),
-            shift: self.root.shift + pulled,
-        };
+        self.root =
+            Planar { yaw: wrap_angle(self.root.yaw + twisted), shift: self.root.shift + pulled };
         if pulled.length() < (off - left).length() {
-            self.simulation.position = self.root.shift + (off - pulled).clamp_length_max(following.most_m);
+            self.simulation.position =
+                self.root.shift + (off - pulled).clamp_length_max(following.most_m);
         }
         if twisted.abs() < (turn - left_turn).abs() {
             let ahead = (turn - twisted).clamp(-following.most_radians, following.most_radians);
@@ -315,7 +333,8 @@ impl Controller {
         let Some(motion) = self.database.motion(self.place.motion) else {
             return;
         };
-        let (clip, frame) = (motion.clip(), self.place.frame.min(motion.frames().saturating_sub(1)));
+        let (clip, frame) =
+            (motion.clip(), self.place.frame.min(motion.frames().saturating_sub(1)));
         let here = motion.root(frame).inverse();
         let pose = &mut self.pose;
         pose.rotations.clear();
@@ -323,7 +342,8 @@ impl Controller {
         let root_translation = here.apply(clip.root_translations()[frame]);
         let mut translations = Vec::with_capacity(1 + self.database.moving.len());
         translations.push(root_translation);
-        translations.extend(self.database.moving.iter().map(|&joint| translation_of(clip, joint, frame)));
+        translations
+            .extend(self.database.moving.iter().map(|&joint| translation_of(clip, joint, frame)));
         if let Some(root) = pose.rotations.first_mut() {
             *root = here.rotation() * *root;
         }
@@ -338,7 +358,8 @@ impl Controller {
         let own = motion.feet(frame).map(|own| own.turned(&self.root));
         let planting = self.options.planting.as_ref();
         let usual = &self.database.pace().joints_radps;
-        self.planted = self.feet.apply(self.database.skeleton(), pose, own, planting, usual, TICK_SECS);
+        self.planted =
+            self.feet.apply(self.database.skeleton(), pose, own, planting, usual, TICK_SECS);
     }
 
     /// Stands where the simulation object is.
@@ -362,7 +383,8 @@ impl Controller {
         };
         let last = motion.frames().saturating_sub(1);
         let (clip, frame) = (motion.clip(), place.frame.min(last));
-        // The step from this frame to the next; behind the last one of a clip that ends it is the one before.
+        // The step from this frame to the next; behind the last one of a clip that ends it is the
+        // one before.
         let (from, to) = if motion.next(frame).is_some() {
             (frame, frame + 1)
         } else {
@@ -376,7 +398,9 @@ impl Controller {
                 *root = quat::renormalize(here.rotation() * *root);
             }
             let mut translations = vec![here.apply(clip.root_translations()[frame])];
-            translations.extend(self.database.moving.iter().map(|&joint| translation_of(clip, joint, frame)));
+            translations.extend(
+                self.database.moving.iter().map(|&joint| translation_of(clip, joint, frame)),
+            );
             (rotations, translations)
         };
         let (before, after) = (at(from), at(to));
@@ -386,7 +410,9 @@ impl Controller {
         let angular_velocities = before.0.iter().zip(&after.0);
         let velocities = before.1.iter().zip(&after.1);
         MovingPose {
-            angular_velocities: angular_velocities.map(|(&a, &b)| quat::log(b * a.conjugate()) * rate).collect(),
+            angular_velocities: angular_velocities
+                .map(|(&a, &b)| quat::log(b * a.conjugate()) * rate)
+                .collect(),
             velocities: velocities.map(|(&a, &b)| (b - a) * rate).collect(),
             rotations: if frame == from { before.0 } else { after.0 },
             translations: if frame == from { before.1 } else { after.1 },

@@ -8,7 +8,8 @@ use crate::transition::Inertialization;
 pub enum Hysteresis {
     /// Nothing: the best frame is taken.
     None,
-    /// The frame that is playing counts as this much better than it is: a share of its cost from 0 to 1, and a constant.
+    /// The frame that is playing counts as this much better than it is: a share of its cost from 0
+    /// to 1, and a constant.
     ContinuingBias {
         /// The share of its cost.
         share: f32,
@@ -22,12 +23,15 @@ pub enum Hysteresis {
     },
     /// A jump needs three searches in a row that want one.
     ThreeVotes,
-    /// A jump into another clip needs three searches in a row that want one; within its clip it jumps at once.
+    /// A jump into another clip needs three searches in a row that want one; within its clip it
+    /// jumps at once.
     ThreeVotesForAnotherClip,
 }
 
 /// Which search is asked. All find the same frame.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
+)]
 pub enum SearchMethod {
     /// Boxes ([`crate::matching::search::BoxIndex`]).
     #[default]
@@ -56,7 +60,8 @@ pub struct Following {
 pub struct FootPlanting {
     /// Half-life with which a foot that was lifted comes back to its own way, seconds.
     pub half_life_secs: f64,
-    /// The farthest that a foot is held from its own way, metres, for a body of 1.75 m; then it is let go.
+    /// The farthest that a foot is held from its own way, metres, for a body of 1.75 m; then it is
+    /// let go.
     pub most_shift_m: f32,
 }
 
@@ -71,9 +76,11 @@ pub struct ControllerOptions {
     pub method: SearchMethod,
     /// What keeps it from jumping too often.
     pub hysteresis: Hysteresis,
-    /// While the input stays as it is, one clip is preferred: a frame of another clip must be cheaper by this share of the cost, from 0 (no matter) to 1.
+    /// While the input stays as it is, one clip is preferred: a frame of another clip must be
+    /// cheaper by this share of the cost, from 0 (no matter) to 1.
     pub prefer_current: f32,
-    /// Which clip that is, by its number among those that the database was built from; `None` prefers the clip that is playing.
+    /// Which clip that is, by its number among those that the database was built from; `None`
+    /// prefers the clip that is playing.
     pub prefer_source: Option<usize>,
     /// How a jump is hidden.
     pub transition: Inertialization,
@@ -93,27 +100,18 @@ impl Default for ControllerOptions {
             weights: Weights::default(),
             search_interval_secs: 0.1,
             method: SearchMethod::default(),
-            hysteresis: Hysteresis::ContinuingBias {
-                share: 0.15,
-                constant: 0.2,
-            },
+            hysteresis: Hysteresis::ContinuingBias { share: 0.15, constant: 0.2 },
             prefer_current: 0.2,
             prefer_source: None,
             transition: Inertialization::Offset(Decay::Spring { half_life_secs: 0.1 }),
-            steering: Steering {
-                velocity_half_life_secs: 0.28,
-                facing_half_life_secs: 0.3,
-            },
+            steering: Steering { velocity_half_life_secs: 0.28, facing_half_life_secs: 0.3 },
             following: Some(Following {
                 half_life_secs: 0.1,
                 most_share: 0.5,
                 most_m: 0.35,
                 most_radians: 1.0,
             }),
-            planting: Some(FootPlanting {
-                half_life_secs: 0.08,
-                most_shift_m: 0.3,
-            }),
+            planting: Some(FootPlanting { half_life_secs: 0.08, most_shift_m: 0.3 }),
             candidates: 1,
         }
     }
@@ -145,11 +143,12 @@ impl ControllerOptions {
         check("a preference for a clip", f64::from(self.prefer_current), 0.0, 1.0)?;
         let times = match self.transition {
             Inertialization::Offset(Decay::Spring { half_life_secs }) => [half_life_secs; 2],
-            Inertialization::Offset(Decay::Cubic { blend_secs } | Decay::Quintic { blend_secs }) => [blend_secs; 2],
-            Inertialization::DeadBlend {
-                blend_secs,
-                extrapolation_half_life_secs,
-            } => [blend_secs, extrapolation_half_life_secs],
+            Inertialization::Offset(
+                Decay::Cubic { blend_secs } | Decay::Quintic { blend_secs },
+            ) => [blend_secs; 2],
+            Inertialization::DeadBlend { blend_secs, extrapolation_half_life_secs } => {
+                [blend_secs, extrapolation_half_life_secs]
+            }
         };
         for secs in times {
             check("a transition time (s)", secs, 0.0, 10.0)?;

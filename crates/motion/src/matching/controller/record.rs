@@ -50,7 +50,8 @@ pub struct SearchRecord {
     pub current: Candidate,
     /// The frame of least cost among those admitted, or that of a clip that is preferred.
     pub winner: Option<Candidate>,
-    /// The best frames of the neighbourhoods, the winner first: [`super::ControllerOptions::candidates`] of them at most. Beside the winner they are frames
+    /// The best frames of the neighbourhoods, the winner first:
+    /// [`super::ControllerOptions::candidates`] of them at most. Beside the winner they are frames
     /// that cost less than those next to them in their clip, the cheapest first.
     pub candidates: Vec<Candidate>,
     /// What kept it from going to the winner; `None` when it went.

@@ -9,7 +9,8 @@ const GROUPS: usize = LEAF / LANES;
 
 type Lane = [f32; LANES];
 
-/// One level of boxes, eight side by side: for each pack of eight and each dimension their low ends, then their high ends.
+/// One level of boxes, eight side by side: for each pack of eight and each dimension their low
+/// ends, then their high ends.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Level {
     packs: Vec<f32>,
@@ -30,21 +31,21 @@ impl Level {
                 }
             }
         }
-        Self {
-            packs,
-            boxes: bounds.len(),
-        }
+        Self { packs, boxes: bounds.len() }
     }
 }
 
-/// Boxes around frames that lie near each other, eight boxes to a larger one: an exact search that looks at few frames.
+/// Boxes around frames that lie near each other, eight boxes to a larger one: an exact search that
+/// looks at few frames.
 ///
-/// A leaf holds 16 frames that are alike, by whatever clip; above it every box has eight children. Boxes are opened nearest first, and not at all
-/// once they are farther than the best frame so far, which the caller may already have (the frame that is playing). Distances to eight frames or
+/// A leaf holds 16 frames that are alike, by whatever clip; above it every box has eight children.
+/// Boxes are opened nearest first, and not at all once they are farther than the best frame so far,
+/// which the caller may already have (the frame that is playing). Distances to eight frames or
 /// eight boxes are computed side by side.
 ///
-/// Boxes hold normalised features; weights come with the question. So sliders of weights need no new index. Where boxes do not help, as for a
-/// query unlike anything in the database, what is left is scanned leaf by leaf.
+/// Boxes hold normalised features; weights come with the question. So sliders of weights need no
+/// new index. Where boxes do not help, as for a query unlike anything in the database, what is left
+/// is scanned leaf by leaf.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BoxIndex {
     dims: usize,
@@ -56,7 +57,8 @@ pub struct BoxIndex {
     levels: Vec<Level>,
 }
 
-/// Tags of the boxes: those that any of the frames has, and those that all of them have; for each level of a [`BoxIndex`] one pair per box.
+/// Tags of the boxes: those that any of the frames has, and those that all of them have; for each
+/// level of a [`BoxIndex`] one pair per box.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BoxMasks {
     levels: Vec<Vec<(TagSet, TagSet)>>,
@@ -94,7 +96,8 @@ impl BoxIndex {
         self.ids.is_empty()
     }
 
-    /// What the tags of all frames come to for the boxes. O(frames): tags change without a new index.
+    /// What the tags of all frames come to for the boxes. O(frames): tags change without a new
+    /// index.
     #[must_use]
     pub fn masks(&self, tags: &[TagSet]) -> BoxMasks {
         let frames: Vec<TagSet> = (self.ids.iter())
@@ -112,7 +115,10 @@ impl BoxIndex {
                     .chunks(LEAF)
                     .map(|leaf| joined(&mut leaf.iter().map(|&tags| (tags, tags))))
                     .collect(),
-                Some(below) => below.chunks(LANES).map(|children| joined(&mut children.iter().copied())).collect(),
+                Some(below) => below
+                    .chunks(LANES)
+                    .map(|children| joined(&mut children.iter().copied()))
+                    .collect(),
             };
             levels.push(level);
         }
@@ -120,7 +126,8 @@ impl BoxIndex {
         BoxMasks { levels, frames, free }
     }
 
-    /// The best admitted frame. `known` is one that the filter admits and that is in the index; it is beaten or returned.
+    /// The best admitted frame. `known` is one that the filter admits and that is in the index; it
+    /// is beaten or returned.
     #[must_use]
     pub fn search(&self, masks: &BoxMasks, question: &Question<'_>, known: Option<Hit>) -> Found {
         if !question.is_sound(self.dims) || self.ids.is_empty() {
@@ -135,10 +142,7 @@ impl BoxIndex {
             visited: 0,
         };
         search.run();
-        Found {
-            best: search.best,
-            visited: search.visited,
-        }
+        Found { best: search.best, visited: search.visited }
     }
 }
 
@@ -183,7 +187,8 @@ impl Search<'_> {
                 seen[index / 64] |= 1 << (index % 64);
             }
             if opened >= most {
-                // What was opened before the notes began is looked at again: an eighth of a quarter.
+                // What was opened before the notes began is looked at again: an eighth of a
+                // quarter.
                 for leaf in 0..leaves {
                     if seen[leaf / 64] >> (leaf % 64) & 1 == 0 {
                         self.leaf(leaf);
@@ -194,7 +199,8 @@ impl Search<'_> {
         }
     }
 
-    /// Measures the eight children in a pack and puts those that may hold something better on the stack.
+    /// Measures the eight children in a pack and puts those that may hold something better on the
+    /// stack.
     fn open(&mut self, level: usize, pack: usize, stack: &mut Vec<Open>) {
         let boxes = &self.index.levels[level];
         let size = self.index.dims * 2 * LANES;
@@ -210,11 +216,7 @@ impl Search<'_> {
             if bound > limit || (self.filtered && !self.may_admit(level, first + lane)) {
                 continue;
             }
-            let open = Open {
-                bound,
-                level: level as u32,
-                index: (first + lane) as u32,
-            };
+            let open = Open { bound, level: level as u32, index: (first + lane) as u32 };
             // Insertion keeps the nearest on top.
             let mut at = stack.len();
             stack.push(open);
@@ -254,7 +256,8 @@ impl Search<'_> {
     }
 
     fn admits(&self, slot: usize) -> bool {
-        !self.filtered || self.masks.frames.get(slot).is_some_and(|tags| self.question.filter.admits(*tags))
+        !self.filtered
+            || self.masks.frames.get(slot).is_some_and(|tags| self.question.filter.admits(*tags))
     }
 }
 
@@ -286,7 +289,8 @@ fn frame_costs(cells: &[f32], question: &Question<'_>, limit: f32) -> Option<Lan
 #[inline]
 fn box_bounds(cells: &[f32], question: &Question<'_>, limit: f32) -> Lane {
     let mut bounds = [0.0; LANES];
-    let parts = (cells.chunks(STRIDE * 2 * LANES)).zip(question.query.chunks(STRIDE).zip(question.weights.chunks(STRIDE)));
+    let parts = (cells.chunks(STRIDE * 2 * LANES))
+        .zip(question.query.chunks(STRIDE).zip(question.weights.chunks(STRIDE)));
     for (cells, (query, weights)) in parts {
         let ends = cells.as_chunks::<{ 2 * LANES }>().0;
         for (ends, (&q, &w)) in ends.iter().zip(query.iter().zip(weights)) {

@@ -6,8 +6,9 @@ use crate::registration::Progress;
 
 /// Builds a [`BoxIndex`] in slices.
 ///
-/// Frames are sorted into leaves by halving: a range of frames is split at a whole number of leaves, along the dimension in which it is widest.
-/// Splits lie at powers of two, so that eight leaves, eight times eight and so on are whole branches of that tree. O(n log n).
+/// Frames are sorted into leaves by halving: a range of frames is split at a whole number of
+/// leaves, along the dimension in which it is widest. Splits lie at powers of two, so that eight
+/// leaves, eight times eight and so on are whole branches of that tree. O(n log n).
 #[derive(Clone, Debug)]
 pub struct BoxBuilder {
     ids: Vec<u32>,
@@ -21,8 +22,9 @@ pub struct BoxBuilder {
 const SAMPLE: usize = 256;
 
 impl BoxBuilder {
-    /// For the rows `valid` of some features. `factors` say how wide a dimension counts (the weights that are most likely asked with): any will
-    /// do, but boxes are best where they are right.
+    /// For the rows `valid` of some features. `factors` say how wide a dimension counts (the
+    /// weights that are most likely asked with): any will do, but boxes are best where they are
+    /// right.
     #[must_use]
     pub fn new(valid: &[u32], factors: &[f32]) -> Self {
         let leaves = valid.len().div_ceil(LEAF);
@@ -47,9 +49,14 @@ impl BoxBuilder {
             let range = self.ids.get_mut(start..end).unwrap_or_default();
             if middle < range.len() {
                 let dim = widest(features, range, &self.factors);
-                let value = |id: u32| features.row(id as usize).and_then(|row| row.get(dim)).copied().unwrap_or(0.0);
-                // Equal values keep the order of frames, so that the same rows give the same tree everywhere.
-                range.select_nth_unstable_by(middle, |&a, &b| value(a).total_cmp(&value(b)).then(a.cmp(&b)));
+                let value = |id: u32| {
+                    features.row(id as usize).and_then(|row| row.get(dim)).copied().unwrap_or(0.0)
+                };
+                // Equal values keep the order of frames, so that the same rows give the same tree
+                // everywhere.
+                range.select_nth_unstable_by(middle, |&a, &b| {
+                    value(a).total_cmp(&value(b)).then(a.cmp(&b))
+                });
             }
             for (from, count) in [(first, half), (first + half, leaves - half)] {
                 if count > 1 {
@@ -65,10 +72,7 @@ impl BoxBuilder {
         if self.open.is_empty() {
             self.done = self.total;
         }
-        Progress {
-            done: self.done,
-            total: self.total,
-        }
+        Progress { done: self.done, total: self.total }
     }
 
     /// Does what is left, and makes the boxes.
@@ -98,7 +102,12 @@ impl BoxBuilder {
         }
         let mut levels = Vec::new();
         let mut bounds: Vec<(Vec<f32>, Vec<f32>)> = (self.ids.chunks(LEAF))
-            .map(|leaf| bounds_of(dims, leaf.iter().filter_map(|&id| features.row(id as usize)).map(|row| (row, row))))
+            .map(|leaf| {
+                bounds_of(
+                    dims,
+                    leaf.iter().filter_map(|&id| features.row(id as usize)).map(|row| (row, row)),
+                )
+            })
             .collect();
         while !bounds.is_empty() {
             levels.push(Level::pack(dims, &bounds));
@@ -106,7 +115,9 @@ impl BoxBuilder {
                 break;
             }
             bounds = (bounds.chunks(LANES))
-                .map(|children| bounds_of(dims, children.iter().map(|(low, high)| (&low[..], &high[..]))))
+                .map(|children| {
+                    bounds_of(dims, children.iter().map(|(low, high)| (&low[..], &high[..])))
+                })
                 .collect();
         }
         BoxIndex::new(dims, self.ids, cells, levels)
@@ -136,10 +147,15 @@ fn widest(features: &Features, ids: &[u32], factors: &[f32]) -> usize {
         .map_or(0, |(dim, _)| dim)
 }
 
-fn bounds_of<'a>(dims: usize, parts: impl Iterator<Item = (&'a [f32], &'a [f32])>) -> (Vec<f32>, Vec<f32>) {
+fn bounds_of<'a>(
+    dims: usize,
+    parts: impl Iterator<Item = (&'a [f32], &'a [f32])>,
+) -> (Vec<f32>, Vec<f32>) {
     let (mut low, mut high) = (vec![f32::INFINITY; dims], vec![f32::NEG_INFINITY; dims]);
     for (lower, upper) in parts {
-        for ((low, high), (&lower, &upper)) in low.iter_mut().zip(&mut high).zip(lower.iter().zip(upper)) {
+        for ((low, high), (&lower, &upper)) in
+            low.iter_mut().zip(&mut high).zip(lower.iter().zip(upper))
+        {
             *low = low.min(lower);
             *high = high.max(upper);
         }

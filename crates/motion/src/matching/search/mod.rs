@@ -1,8 +1,10 @@
 //! Three searches that agree: a plain scan, boxes, and a k-d tree.
 //!
-//! Each returns the frame of least cost that a filter admits; of equal costs the first frame. The cost of a frame is `Σ (w_d (q_d - x_d))²`,
-//! summed in the order of dimensions in `f32`, so that every search computes the same bits. Bounds are computed in the same order from the nearest
-//! value in a box: as rounding never turns an order round, a bound is never above the cost of a frame in its box, and no slack is needed.
+//! Each returns the frame of least cost that a filter admits; of equal costs the first frame. The
+//! cost of a frame is `Σ (w_d (q_d - x_d))²`, summed in the order of dimensions in `f32`, so that
+//! every search computes the same bits. Bounds are computed in the same order from the nearest
+//! value in a box: as rounding never turns an order round, a bound is never above the cost of a
+//! frame in its box, and no slack is needed.
 
 mod boxes;
 mod build;
@@ -47,7 +49,8 @@ pub struct Question<'a> {
 /// What was found.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Found {
-    /// The frame of least cost; `None` where no frame is admitted, or the query is no row of numbers.
+    /// The frame of least cost; `None` where no frame is admitted, or the query is no row of
+    /// numbers.
     pub best: Option<Hit>,
     /// Frames whose cost was computed, in whole or in part.
     pub visited: usize,

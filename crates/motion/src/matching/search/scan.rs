@@ -10,14 +10,12 @@ pub fn scan(candidates: &Candidates<'_>, question: &Question<'_>) -> Found {
     for &frame in candidates.valid {
         let frame = frame as usize;
         let tags = candidates.tags.get(frame).copied().unwrap_or_default();
-        let Some(row) = candidates.features.row(frame).filter(|_| question.filter.admits(tags)) else {
+        let Some(row) = candidates.features.row(frame).filter(|_| question.filter.admits(tags))
+        else {
             continue;
         };
         found.visited += 1;
-        let hit = Hit {
-            frame,
-            cost: question.cost(row),
-        };
+        let hit = Hit { frame, cost: question.cost(row) };
         if found.best.is_none_or(|best| hit.beats(&best)) {
             found.best = Some(hit);
         }

@@ -15,15 +15,13 @@ struct Field {
     valid: Vec<u32>,
 }
 
-/// Frames that wander through the space of features as a motion does, with clips whose ends cannot be found, and tags.
+/// Frames that wander through the space of features as a motion does, with clips whose ends cannot
+/// be found, and tags.
 fn field(times: usize, frames: usize, seed: u64) -> Field {
     let mut random = Pcg64Mcg::seed_from_u64(seed);
     let trajectory_secs = (1..=times).map(|i| i as f64 / 3.0).collect();
-    let layout = Layout::new(&FeatureOptions {
-        trajectory_secs,
-        ..FeatureOptions::default()
-    })
-    .unwrap();
+    let layout =
+        Layout::new(&FeatureOptions { trajectory_secs, ..FeatureOptions::default() }).unwrap();
     let (mut rows, mut tags, mut valid) = (Vec::new(), Vec::new(), Vec::new());
     let (mut at, mut speed) = (vec![0.0f32; layout.dims()], vec![0.0f32; layout.dims()]);
     for frame in 0..frames {
@@ -62,11 +60,7 @@ fn field(times: usize, frames: usize, seed: u64) -> Field {
 
 impl Field {
     fn candidates(&self) -> Candidates<'_> {
-        Candidates {
-            features: &self.features,
-            tags: &self.tags,
-            valid: &self.valid,
-        }
+        Candidates { features: &self.features, tags: &self.tags, valid: &self.valid }
     }
 
     fn index(&self) -> BoxIndex {
@@ -79,35 +73,22 @@ fn filters() -> [TagFilter; 6] {
     let none = TagSet::NONE;
     [
         TagFilter::default(),
-        TagFilter {
-            ask: of(&[Tag::Walk]),
-            forbid: none,
-        },
-        TagFilter {
-            ask: none,
-            forbid: of(&[Tag::Turn, Tag::Idle]),
-        },
-        TagFilter {
-            ask: of(&[Tag::Run, Tag::Own(3)]),
-            forbid: of(&[Tag::Idle]),
-        },
-        TagFilter {
-            ask: of(&[Tag::Own(3)]),
-            forbid: none,
-        },
-        TagFilter {
-            ask: of(&[Tag::Own(9)]),
-            forbid: none,
-        },
+        TagFilter { ask: of(&[Tag::Walk]), forbid: none },
+        TagFilter { ask: none, forbid: of(&[Tag::Turn, Tag::Idle]) },
+        TagFilter { ask: of(&[Tag::Run, Tag::Own(3)]), forbid: of(&[Tag::Idle]) },
+        TagFilter { ask: of(&[Tag::Own(3)]), forbid: none },
+        TagFilter { ask: of(&[Tag::Own(9)]), forbid: none },
     ]
 }
 
-/// 10,000 random queries: noise, frames of the field with a little noise, and frames as they are; random weights, some of them 0; filters; with and
-/// without a frame that is known already.
+/// 10,000 random queries: noise, frames of the field with a little noise, and frames as they are;
+/// random weights, some of them 0; filters; with and without a frame that is known already.
 #[test]
 fn all_searches_agree_on_ten_thousand_queries() {
     let mut asked = 0;
-    for (round, (times, frames)) in [(3, 3_000), (1, 700), (6, 900), (3, 20), (3, 90)].into_iter().enumerate() {
+    for (round, (times, frames)) in
+        [(3, 3_000), (1, 700), (6, 900), (3, 20), (3, 90)].into_iter().enumerate()
+    {
         let field = field(times, frames, round as u64);
         let (candidates, index) = (field.candidates(), field.index());
         let masks = index.masks(&field.tags);
@@ -131,11 +112,7 @@ fn all_searches_agree_on_ten_thousand_queries() {
                 let query: Vec<f32> = (near.iter())
                     .map(|x| if kind % 4 == 0 { 0.0 } else { *x } + noise * number(&mut random))
                     .collect();
-                let question = Question {
-                    query: &query,
-                    weights: &weights,
-                    filter,
-                };
+                let question = Question { query: &query, weights: &weights, filter };
                 let oracle = scan(&candidates, &question);
                 let boxes = index.search(&masks, &question, None);
                 assert_eq!(boxes.best, oracle.best, "{round} {set} {kind}");
@@ -169,11 +146,7 @@ fn near_frames_are_found_without_looking_at_many() {
     let mut visited = 0;
     for frame in (0..20_000).step_by(501) {
         let query: Vec<f32> = field.features.row(frame).unwrap().iter().map(|x| x + 0.02).collect();
-        let question = Question {
-            query: &query,
-            weights: &weights,
-            filter: TagFilter::default(),
-        };
+        let question = Question { query: &query, weights: &weights, filter: TagFilter::default() };
         visited += index.search(&masks, &question, None).visited;
     }
     assert!(visited / 40 < 3_000, "{}", visited / 40);
@@ -186,21 +159,13 @@ fn what_is_no_question_finds_nothing() {
     let masks = index.masks(&field.tags);
     let weights = vec![1.0; 27];
     for query in [vec![0.0; 26], vec![f32::NAN; 27], vec![f32::INFINITY; 27], vec![]] {
-        let question = Question {
-            query: &query,
-            weights: &weights,
-            filter: TagFilter::default(),
-        };
+        let question = Question { query: &query, weights: &weights, filter: TagFilter::default() };
         assert_eq!(scan(&candidates, &question), Found::default());
         assert_eq!(index.search(&masks, &question, None), Found::default());
     }
     // Costs that overflow are all the same.
     let far = vec![1e30; 27];
-    let question = Question {
-        query: &far,
-        weights: &weights,
-        filter: TagFilter::default(),
-    };
+    let question = Question { query: &far, weights: &weights, filter: TagFilter::default() };
     assert_eq!(index.search(&masks, &question, None).best, scan(&candidates, &question).best);
     let empty = Candidates { valid: &[], ..candidates };
     assert!(TreeIndex::new(&empty, &weights, TagFilter::default()).is_none());
@@ -209,23 +174,14 @@ fn what_is_no_question_finds_nothing() {
     let layout = Layout::new(&FeatureOptions::default()).unwrap();
     let same = Features::normalise(layout, Normalisation::Block, vec![1.0; 27 * 5_000], |_| true);
     let valid: Vec<u32> = (0..5_000).collect();
-    let candidates = Candidates {
-        features: &same,
-        tags: &[],
-        valid: &valid,
-    };
+    let candidates = Candidates { features: &same, tags: &[], valid: &valid };
     let query = vec![0.5; 27];
-    let question = Question {
-        query: &query,
-        weights: &weights,
-        filter: TagFilter::default(),
-    };
+    let question = Question { query: &query, weights: &weights, filter: TagFilter::default() };
     let index = BoxBuilder::new(&valid, &[]).finish(&same);
     assert_eq!(index.search(&index.masks(&[]), &question, None).best.map(|hit| hit.frame), Some(0));
     let tree = TreeIndex::new(&candidates, &weights, TagFilter::default());
     assert_eq!(
-        tree.and_then(|tree| tree.search(&candidates, &question).best)
-            .map_or(0, |hit| hit.frame),
+        tree.and_then(|tree| tree.search(&candidates, &question).best).map_or(0, |hit| hit.frame),
         0
     );
 }

@@ -8,9 +8,10 @@ const USUAL_DIMS: usize = 27;
 
 /// The crate `kiddo`'s k-d tree over the admitted frames.
 ///
-/// Its coordinates are features times weights, and it holds admitted frames only: new weights or another filter need a new tree, where
-/// [`super::BoxIndex`] needs none. The tree computes distances in an order of its own; what it finds within a hair of the nearest is
-/// costed again, so that cost and frame are those of the other searches.
+/// Its coordinates are features times weights, and it holds admitted frames only: new weights or
+/// another filter need a new tree, where [`super::BoxIndex`] needs none. The tree computes
+/// distances in an order of its own; what it finds within a hair of the nearest is costed again, so
+/// that cost and frame are those of the other searches.
 #[derive(Debug)]
 pub struct TreeIndex {
     tree: Tree,
@@ -31,25 +32,27 @@ enum Tree {
 const HAIR: f32 = 2e-5;
 
 impl TreeIndex {
-    /// A tree for these weights and this filter; `None` where no frame is admitted, or the tree cannot be built (very many equal rows).
+    /// A tree for these weights and this filter; `None` where no frame is admitted, or the tree
+    /// cannot be built (very many equal rows).
     #[must_use]
     pub fn new(candidates: &Candidates<'_>, weights: &[f32], filter: TagFilter) -> Option<Self> {
-        let admitted = |&&id: &&u32| filter.admits(candidates.tags.get(id as usize).copied().unwrap_or_default());
+        let admitted = |&&id: &&u32| {
+            filter.admits(candidates.tags.get(id as usize).copied().unwrap_or_default())
+        };
         let ids: Vec<u32> = candidates.valid.iter().filter(admitted).copied().collect();
         if ids.is_empty() {
             return None;
         }
         let tree = if candidates.features.layout().dims() == USUAL_DIMS {
-            Tree::Usual(Box::new(ImmutableKdTree::new_from_slice(&points(candidates, &ids, weights)).ok()?))
+            Tree::Usual(Box::new(
+                ImmutableKdTree::new_from_slice(&points(candidates, &ids, weights)).ok()?,
+            ))
         } else {
-            Tree::Any(Box::new(ImmutableKdTree::new_from_slice(&points(candidates, &ids, weights)).ok()?))
+            Tree::Any(Box::new(
+                ImmutableKdTree::new_from_slice(&points(candidates, &ids, weights)).ok()?,
+            ))
         };
-        Some(Self {
-            tree,
-            ids,
-            weights: weights.to_vec(),
-            filter,
-        })
+        Some(Self { tree, ids, weights: weights.to_vec(), filter })
     }
 
     /// Whether it answers questions with these weights and this filter.
@@ -58,12 +61,14 @@ impl TreeIndex {
         self.weights == weights && self.filter == filter
     }
 
-    /// The best admitted frame; nothing for a question that the tree was not built for. The tree does not tell what it visits: `visited` counts the
-    /// frames that were costed again.
+    /// The best admitted frame; nothing for a question that the tree was not built for. The tree
+    /// does not tell what it visits: `visited` counts the frames that were costed again.
     #[must_use]
     pub fn search(&self, candidates: &Candidates<'_>, question: &Question<'_>) -> Found {
         let mut found = Found::default();
-        if !question.is_sound(candidates.features.layout().dims()) || !self.fits(question.weights, question.filter) {
+        if !question.is_sound(candidates.features.layout().dims())
+            || !self.fits(question.weights, question.filter)
+        {
             return found;
         }
         let near = match &self.tree {
@@ -71,15 +76,14 @@ impl TreeIndex {
             Tree::Any(tree) => near(tree, &point(question.query, question.weights)),
         };
         for item in near {
-            let Some(&id) = self.ids.get(item) else { continue };
+            let Some(&id) = self.ids.get(item) else {
+                continue;
+            };
             let Some(row) = candidates.features.row(id as usize) else {
                 continue;
             };
             found.visited += 1;
-            let hit = Hit {
-                frame: id as usize,
-                cost: question.cost(row),
-            };
+            let hit = Hit { frame: id as usize, cost: question.cost(row) };
             if found.best.is_none_or(|best| hit.beats(&best)) {
                 found.best = Some(hit);
             }
@@ -104,7 +108,11 @@ fn point<const K: usize>(row: &[f32], weights: &[f32]) -> [f32; K] {
     point
 }
 
-fn points<const K: usize>(candidates: &Candidates<'_>, ids: &[u32], weights: &[f32]) -> Vec<[f32; K]> {
+fn points<const K: usize>(
+    candidates: &Candidates<'_>,
+    ids: &[u32],
+    weights: &[f32],
+) -> Vec<[f32; K]> {
     let row = |id: u32| candidates.features.row(id as usize).unwrap_or(&[]);
     ids.iter().map(|&id| point(row(id), weights)).collect()
 }

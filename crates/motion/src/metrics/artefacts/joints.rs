@@ -3,7 +3,8 @@ use crate::math::stats;
 use crate::metrics::profile::turn;
 use glam::Vec3;
 
-/// Angular velocities are compared over this long, seconds: what an eye that sees thirty pictures a second takes for one moment.
+/// Angular velocities are compared over this long, seconds: what an eye that sees thirty pictures a
+/// second takes for one moment.
 const MOMENT_SECS: f64 = 1.0 / 30.0;
 /// What one step in a hundred exceeds is no longer usual.
 const USUAL: f32 = 0.99;
@@ -17,7 +18,8 @@ pub(in crate::metrics) struct JointTrace {
     pub(super) rare_dps: f32,
     /// Its angular speed, degrees per second: at a frame, in the step behind it.
     pub(in crate::metrics) speed: Sizes,
-    /// How much its angular velocity changes, degrees per second: at a frame, between the means over 1/30 s before it and behind it.
+    /// How much its angular velocity changes, degrees per second: at a frame, between the means
+    /// over 1/30 s before it and behind it.
     pub(in crate::metrics) change: Sizes,
 }
 
@@ -68,12 +70,14 @@ impl JointTrace {
     }
 }
 
-/// How much the mean angular velocity over [`MOMENT_SECS`] behind a frame differs from that before it: the first frame with both, and the size for it
-/// and the following ones. `steps` are rotation vectors, degrees.
+/// How much the mean angular velocity over [`MOMENT_SECS`] behind a frame differs from that before
+/// it: the first frame with both, and the size for it and the following ones. `steps` are rotation
+/// vectors, degrees.
 ///
-/// Of a motion whose angular acceleration is `a` that is `a / 30 s`, and where its velocity jumps the size of the jump, both at any frame rate from 30
-/// on. A pose that jumps by 1° counts 30°/s. A moment that is no whole number of frames takes its share of the last step. Below 30 frames per second a
-/// moment is one step.
+/// Of a motion whose angular acceleration is `a` that is `a / 30 s`, and where its velocity jumps
+/// the size of the jump, both at any frame rate from 30 on. A pose that jumps by 1° counts 30°/s. A
+/// moment that is no whole number of frames takes its share of the last step. Below 30 frames per
+/// second a moment is one step.
 fn changes_dps(steps: &[Vec3], fps: f64) -> (usize, Vec<f32>) {
     let moment = (MOMENT_SECS * fps).max(1.0);
     // Not one more for what rounding leaves over.
@@ -81,17 +85,15 @@ fn changes_dps(steps: &[Vec3], fps: f64) -> (usize, Vec<f32>) {
     let share = ((moment - whole) as f32).max(0.0);
     let (whole, reach) = (whole as usize, whole as usize + usize::from(share > 1e-3));
     let part = |step: Option<&Vec3>| {
-        if reach > whole {
-            step.map_or(Vec3::ZERO, |step| *step * share)
-        } else {
-            Vec3::ZERO
-        }
+        if reach > whole { step.map_or(Vec3::ZERO, |step| *step * share) } else { Vec3::ZERO }
     };
     let last = (steps.len() + 1).saturating_sub(reach);
     let per_sec = (fps / moment) as f32;
     let changes = (reach..last).map(|frame| {
-        let behind = steps[frame..frame + whole].iter().sum::<Vec3>() + part(steps.get(frame + whole));
-        let before = steps[frame - whole..frame].iter().sum::<Vec3>() + part(steps.get((frame - whole).wrapping_sub(1)));
+        let behind =
+            steps[frame..frame + whole].iter().sum::<Vec3>() + part(steps.get(frame + whole));
+        let before = steps[frame - whole..frame].iter().sum::<Vec3>()
+            + part(steps.get((frame - whole).wrapping_sub(1)));
         behind.distance(before) * per_sec
     });
     (reach, changes.collect())

@@ -4,7 +4,8 @@ use crate::clip::Clip;
 use crate::math::stats;
 use crate::skeleton::Roles;
 
-/// [`MotionTrace`] in slices, for clips that take longer than there is time for at once. Every call is given the same clip.
+/// [`MotionTrace`] in slices, for clips that take longer than there is time for at once. Every call
+/// is given the same clip.
 #[derive(Debug)]
 pub struct TraceMeter {
     places: Places,
@@ -23,8 +24,8 @@ impl TraceMeter {
         }
     }
 
-    /// Looks at so many more frames of the whole body, or, behind those, at ten times as many of single joints, at least at one joint. `false` when it
-    /// has seen all.
+    /// Looks at so many more frames of the whole body, or, behind those, at ten times as many of
+    /// single joints, at least at one joint. `false` when it has seen all.
     pub fn advance(&mut self, clip: &Clip, frames: usize) -> bool {
         if self.frame < clip.frames() {
             let end = self.frame.saturating_add(frames.max(1)).min(clip.frames());
@@ -60,7 +61,8 @@ impl TraceMeter {
             most_turned_deg: largest(&turned_deg),
             turned_deg,
             stances_cm: feet.iter().flat_map(Foot::stances_cm).collect(),
-            skating_cm_per_sec: (!feet.is_empty()).then(|| skating.sum::<f64>() / feet.len() as f64),
+            skating_cm_per_sec: (!feet.is_empty())
+                .then(|| skating.sum::<f64>() / feet.len() as f64),
         }
     }
 }

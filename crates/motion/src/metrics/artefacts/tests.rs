@@ -14,7 +14,8 @@ fn a_made_walk_stands_still_where_it_stands() {
     assert!(walk.stances_cm().len() >= 4);
     // Wherever it lies, and however large it is.
     let elsewhere = MotionTrace::new(&clip.transformed(&Planar::new(2.0, 30.0, -4.0)), &roles);
-    let (own, other) = (walk.skating_cm_per_sec().unwrap(), elsewhere.skating_cm_per_sec().unwrap());
+    let (own, other) =
+        (walk.skating_cm_per_sec().unwrap(), elsewhere.skating_cm_per_sec().unwrap());
     assert!((own - other).abs() < 0.02 * own.max(0.1), "{own} {other}");
 }
 

@@ -8,7 +8,8 @@ use std::sync::Arc;
 
 const JOINT: usize = 3;
 
-/// Three seconds of a body that stands but for one joint, which is turned by so many degrees at a time.
+/// Three seconds of a body that stands but for one joint, which is turned by so many degrees at a
+/// time.
 fn turned(fps: f64, degrees: impl Fn(f64) -> f64) -> MotionTrace {
     let skeleton = fixtures::lafan();
     let frames = (3.0 * fps) as usize + 1;
@@ -28,7 +29,8 @@ fn beside_standing(result: &MotionTrace) -> ResultMetrics {
 
 #[test]
 fn velocity_jump_of_a_smooth_turn_is_that_of_its_acceleration_at_every_frame_rate() {
-    // By 60° in half a second along 3x² - 2x³: both velocities are met, the acceleration jumps to 1440°/s².
+    // By 60° in half a second along 3x² - 2x³: both velocities are met, the acceleration jumps to
+    // 1440°/s².
     let smooth = |secs: f64| {
         let x = ((secs - 1.0) / 0.5).clamp(0.0, 1.0);
         60.0 * x * x * (3.0 - 2.0 * x)
@@ -65,11 +67,7 @@ fn jumps_have_their_size_at_every_frame_rate() {
 #[test]
 fn what_a_clip_does_itself_is_no_artefact() {
     let glitch = |secs: f64| {
-        if (1.0..1.02).contains(&secs) {
-            25.0
-        } else {
-            10.0 * (2.0 * secs).sin()
-        }
+        if (1.0..1.02).contains(&secs) { 25.0 } else { 10.0 * (2.0 * secs).sin() }
     };
     let clip = turned(60.0, glitch);
     let itself = ResultMetrics::measure(&clip, &[&turned(60.0, |_| 0.0), &clip]);
@@ -107,7 +105,10 @@ fn a_spin_is_told_alone_and_beside_its_clip() {
     let spun = MotionTrace::new(&spun, &roles);
     for clips in [&[][..], &[&walk]] {
         let before = ResultMetrics::measure(&walk, clips);
-        assert!(before.spin_deg.unwrap() < 3.0 && before.pose_jump_deg.unwrap() < 1.0, "{before:?}");
+        assert!(
+            before.spin_deg.unwrap() < 3.0 && before.pose_jump_deg.unwrap() < 1.0,
+            "{before:?}"
+        );
         let after = ResultMetrics::measure(&spun, clips);
         assert!((160.0..=190.0).contains(&after.spin_deg.unwrap()), "{after:?}");
         assert!(after.spin_at.unwrap().abs_diff(half) < 6, "{after:?}");

@@ -10,28 +10,12 @@ const FPS: f64 = 60.0;
 
 /// Stands with both feet on the ground, 3 cm above y = 0 at the tips of the feet.
 fn still(frames: usize) -> Clip {
-    Walk {
-        frames,
-        fps: FPS,
-        speed: 0.0,
-        cadence: 0.0,
-        swing: 0.0,
-        ..Walk::default()
-    }
-    .clip()
+    Walk { frames, fps: FPS, speed: 0.0, cadence: 0.0, swing: 0.0, ..Walk::default() }.clip()
 }
 
 /// Glides without moving a limb.
 fn gliding(speed: f32) -> Clip {
-    Walk {
-        frames: 120,
-        fps: FPS,
-        speed,
-        cadence: 0.0,
-        swing: 0.0,
-        ..Walk::default()
-    }
-    .clip()
+    Walk { frames: 120, fps: FPS, speed, cadence: 0.0, swing: 0.0, ..Walk::default() }.clip()
 }
 
 fn edited(clip: &Clip, edit: impl Fn(usize, &mut [Quat], &mut Vec3)) -> Clip {
@@ -51,7 +35,13 @@ fn profile(clip: &Clip) -> Profile {
     Profile::new(Arc::new(Source::new(Arc::new(clip.clone()), &roles)), &roles, contacts)
 }
 
-fn measure(result: &Clip, transition: Range<usize>, enter: usize, a: &Profile, b: &Profile) -> TransitionMetrics {
+fn measure(
+    result: &Clip,
+    transition: Range<usize>,
+    enter: usize,
+    a: &Profile,
+    b: &Profile,
+) -> TransitionMetrics {
     let roles = Roles::detect(result.skeleton());
     let (start, end) = (transition.start, transition.end);
     TransitionMetrics::measure(&Subject {
@@ -67,7 +57,13 @@ fn measure(result: &Clip, transition: Range<usize>, enter: usize, a: &Profile, b
     })
 }
 
-fn blended(a: &Profile, leave: usize, b: &Profile, enter: usize, options: &DissolveOptions) -> (Concatenation, TransitionMetrics) {
+fn blended(
+    a: &Profile,
+    leave: usize,
+    b: &Profile,
+    enter: usize,
+    options: &DissolveOptions,
+) -> (Concatenation, TransitionMetrics) {
     let out = dissolve(&a.source, leave, &b.source, enter, options).unwrap();
     let metrics = measure(&out.clip, out.transition.clone(), enter, a, b);
     (out, metrics)
@@ -122,7 +118,8 @@ fn a_jump_of_30_degrees_is_30_degrees() {
 
 #[test]
 fn what_is_usual_in_the_clip_is_no_seam() {
-    // A joint that turns at a steady 300° per second: no jump. The same joint that stops dead: 300° per second.
+    // A joint that turns at a steady 300° per second: no jump. The same joint that stops dead: 300°
+    // per second.
     let turning = |stop: usize| {
         edited(&still(200), |frame, pose, _| {
             pose[4] = Quat::from_rotation_x(5_f32.to_radians() * frame.min(stop) as f32);
@@ -154,7 +151,9 @@ fn a_spin_is_counted_beyond_what_the_sources_turn() {
     }
     // There and back again is a spin of one way.
     let back = edited(&still(90), |frame, pose, _| {
-        pose[0] = Quat::from_rotation_y((ramp(frame, 30..45) - ramp(frame, 45..60)) * 90_f32.to_radians()) * pose[0];
+        pose[0] = Quat::from_rotation_y(
+            (ramp(frame, 30..45) - ramp(frame, 45..60)) * 90_f32.to_radians(),
+        ) * pose[0];
     });
     near(measure(&back, 31..61, 31, &a, &a).spin_deg, 90.0, 0.01);
     // A source that turns 60° per second allows as much, to its side.
@@ -178,7 +177,8 @@ fn a_spin_is_counted_beyond_what_the_sources_turn() {
 fn a_planted_foot_that_slides_5_cm_slides_5_cm() {
     let a = profile(&still(120));
     assert!(a.contacts().planted(Side::Left, 40) && a.contacts().planted(Side::Right, 40));
-    let slid = |way: &dyn Fn(usize) -> f32| edited(&still(120), |frame, _, root| root.x += way(frame));
+    let slid =
+        |way: &dyn Fn(usize) -> f32| edited(&still(120), |frame, _, root| root.x += way(frame));
     let once = measure(&slid(&|f| 0.05 * ramp(f, 50..60)), 45..65, 45, &a, &a);
     near(once.skate_cm, 5.0, 1e-3);
     near(once.jump_cm, 0.5, 1e-3);
@@ -190,7 +190,8 @@ fn a_planted_foot_that_slides_5_cm_slides_5_cm() {
         pose[7] = Quat::from_rotation_x(-0.2 * ramp(frame, 50..60));
     });
     let metrics = measure(&leg, 45..65, 45, &a, &a);
-    // The foot's points turn about the hip joint; the ankle, 0.85 m below it, moves least over the ground.
+    // The foot's points turn about the hip joint; the ankle, 0.85 m below it, moves least over the
+    // ground.
     let way = |point: Vec3| (point - Quat::from_rotation_x(-0.2) * point).z.abs();
     let least = way(Vec3::new(0.0, -0.85, 0.0)).min(way(Vec3::new(0.0, -0.91, 0.2)));
     near(metrics.skate_cm, f64::from(least) * 100.0, 0.05);
@@ -211,7 +212,9 @@ fn a_foot_in_the_air_does_not_slide() {
 #[test]
 fn penetration_is_the_deepest_point_during_the_transition() {
     let a = profile(&still(90));
-    let lowered = |at: usize| edited(&still(90), move |frame, _, root| root.y -= if frame == at { 0.08 } else { 0.0 });
+    let lowered = |at: usize| {
+        edited(&still(90), move |frame, _, root| root.y -= if frame == at { 0.08 } else { 0.0 })
+    };
     near(measure(&lowered(40), 35..45, 35, &a, &a).penetration_cm, 5.0, 1e-3);
     near(measure(&lowered(20), 35..45, 35, &a, &a).penetration_cm, 0.0, 1e-9);
 }
@@ -219,30 +222,17 @@ fn penetration_is_the_deepest_point_during_the_transition() {
 #[test]
 fn lag_is_where_the_weights_say() {
     let (a, b) = (profile(&gliding(1.0)), profile(&gliding(2.0)));
-    // The share 1 - w of the way is made: 0.9 at t = 0.9 for the line, at t = 0.8042 for 3t² - 2t³ (NumPy's roots), and at t = 0.7534 for the quintic.
-    for (law, t) in [
-        (WeightLaw::Linear, 0.9),
-        (WeightLaw::Smooth, 0.804_200),
-        (WeightLaw::Smoother, 0.753_364),
-    ] {
-        let options = DissolveOptions {
-            window: 60,
-            law,
-            ..DissolveOptions::default()
-        };
+    // The share 1 - w of the way is made: 0.9 at t = 0.9 for the line, at t = 0.8042 for 3t² - 2t³
+    // (NumPy's roots), and at t = 0.7534 for the quintic.
+    for (law, t) in
+        [(WeightLaw::Linear, 0.9), (WeightLaw::Smooth, 0.804_200), (WeightLaw::Smoother, 0.753_364)]
+    {
+        let options = DissolveOptions { window: 60, law, ..DissolveOptions::default() };
         let (_, metrics) = blended(&a, 40, &b, 20, &options);
         near(metrics.lag_s, t * 60.0 / FPS, 0.6 / FPS);
     }
-    let (_, cut) = blended(
-        &a,
-        40,
-        &b,
-        20,
-        &DissolveOptions {
-            window: 0,
-            ..DissolveOptions::default()
-        },
-    );
+    let (_, cut) =
+        blended(&a, 40, &b, 20, &DissolveOptions { window: 0, ..DissolveOptions::default() });
     assert_eq!(cut.lag_s, Some(0.0));
     let (_, alike) = blended(&a, 40, &profile(&gliding(1.05)), 20, &DissolveOptions::default());
     assert_eq!(alike.lag_s, None);
@@ -254,10 +244,7 @@ fn made(params: &Params) -> Profile {
 
 #[test]
 fn a_walk_that_goes_on_as_itself_has_no_artefact() {
-    let walk = made(&Params {
-        turn_rate_dps: 20.0,
-        ..Params::new(Action::Walk)
-    });
+    let walk = made(&Params { turn_rate_dps: 20.0, ..Params::new(Action::Walk) });
     for root in [RootBlend::Velocity, RootBlend::World] {
         for window in [0, 12, 30] {
             let (_, metrics) = blended(
@@ -265,11 +252,7 @@ fn a_walk_that_goes_on_as_itself_has_no_artefact() {
                 60,
                 &walk,
                 60,
-                &DissolveOptions {
-                    window,
-                    root,
-                    ..DissolveOptions::default()
-                },
+                &DissolveOptions { window, root, ..DissolveOptions::default() },
             );
             near(metrics.skate_cm, 0.0, 0.01);
             near(metrics.jump_cm, 0.0, 0.01);
@@ -284,17 +267,16 @@ fn a_walk_that_goes_on_as_itself_has_no_artefact() {
 #[test]
 fn shorter_windows_have_bigger_seams() {
     let walk = made(&Params::new(Action::Walk));
-    for (other, enter) in [(made(&Params::new(Action::Run)), 17), (made(&Params::new(Action::Idle)), 40)] {
+    for (other, enter) in
+        [(made(&Params::new(Action::Run)), 17), (made(&Params::new(Action::Idle)), 40)]
+    {
         let at = |window: usize| {
             blended(
                 &walk,
                 70,
                 &other,
                 enter,
-                &DissolveOptions {
-                    window,
-                    ..DissolveOptions::default()
-                },
+                &DissolveOptions { window, ..DissolveOptions::default() },
             )
             .1
         };
@@ -313,12 +295,7 @@ fn shorter_windows_have_bigger_seams() {
 fn the_ways_to_blend_differ_where_they_should() {
     // A walk to the north and one to the south, 5 m apart.
     let north = made(&Params::new(Action::Walk));
-    let clip = synthesize(&Params {
-        speed_mps: 1.0,
-        ..Params::new(Action::Walk)
-    })
-    .unwrap()
-    .clip;
+    let clip = synthesize(&Params { speed_mps: 1.0, ..Params::new(Action::Walk) }).unwrap().clip;
     let south = profile(&clip.transformed(&Planar::new(3.0, 5.0, 0.0)));
     let at = |align: bool, root: RootBlend, window: usize| {
         blended(
@@ -326,12 +303,7 @@ fn the_ways_to_blend_differ_where_they_should() {
             70,
             &south,
             30,
-            &DissolveOptions {
-                window,
-                align,
-                root,
-                ..DissolveOptions::default()
-            },
+            &DissolveOptions { window, align, root, ..DissolveOptions::default() },
         )
         .1
     };
@@ -354,21 +326,26 @@ fn the_ways_to_blend_differ_where_they_should() {
 fn nothing_breaks_on_odd_subjects() {
     let clip = still(20);
     let (a, empty) = (profile(&clip), profile(&clip.crop(0..0).unwrap()));
-    for result in [
-        clip.clone(),
-        clip.crop(0..0).unwrap(),
-        clip.crop(0..1).unwrap(),
-        clip.crop(0..2).unwrap(),
-    ] {
-        for transition in [0..0, 0..20, 19..20, 20..20, 5..500, 900..1000, usize::MAX - 1..usize::MAX] {
+    for result in
+        [clip.clone(), clip.crop(0..0).unwrap(), clip.crop(0..1).unwrap(), clip.crop(0..2).unwrap()]
+    {
+        for transition in
+            [0..0, 0..20, 19..20, 20..20, 5..500, 900..1000, usize::MAX - 1..usize::MAX]
+        {
             for enter in [0, 19, 20, usize::MAX] {
                 for (a, b) in [(&a, &a), (&empty, &a), (&a, &empty)] {
                     let metrics = measure(&result, transition.clone(), enter, a, b);
-                    assert!(metrics.list().iter().all(|m| m.value.is_none_or(|v| v.is_finite() && v >= 0.0)));
+                    assert!(
+                        metrics
+                            .list()
+                            .iter()
+                            .all(|m| m.value.is_none_or(|v| v.is_finite() && v >= 0.0))
+                    );
                 }
             }
         }
     }
-    let ids: std::collections::BTreeSet<_> = TransitionMetrics::default().list().map(|m| m.id).into();
+    let ids: std::collections::BTreeSet<_> =
+        TransitionMetrics::default().list().map(|m| m.id).into();
     assert_eq!(ids.len(), 3);
 }

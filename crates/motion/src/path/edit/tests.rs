@@ -216,10 +216,7 @@ fn what_cannot_be_done_is_said() {
         edited(PathEdit::Move { index: 1, to: DVec2::NAN }, FREE),
         PathEditError::Point { index: 1 }
     );
-    assert!(matches!(
-        edited(PathEdit::Scale { factor: 0.0 }, FREE),
-        PathEditError::Option { .. }
-    ));
+    assert!(matches!(edited(PathEdit::Scale { factor: 0.0 }, FREE), PathEditError::Option { .. }));
     assert_eq!(line(8).edited(&PathEdit::Close, BOTH), Err(PathEditError::Pinned));
     assert!(PathEditError::Pinned.to_string().contains("free it first"));
 }

@@ -70,7 +70,9 @@ fn places_derivatives_lengths_and_inserted_knots_are_those_of_scipy() {
     for curve in golden().curves {
         let spline = GroundSpline::uniform(points(&curve.points)).unwrap();
         let road = Road::new(spline.clone()).unwrap();
-        let near = |own: DVec2, other: [f64; 2], tolerance: f64| own.distance(DVec2::from(other)) < tolerance;
+        let near = |own: DVec2, other: [f64; 2], tolerance: f64| {
+            own.distance(DVec2::from(other)) < tolerance
+        };
         for (k, &at) in curve.at.iter().enumerate() {
             let jet = spline.jet(at);
             assert!(near(jet.position, curve.position[k], 1e-10), "{} {at}", curve.name);
@@ -115,7 +117,8 @@ proptest! {
         prop_assert!(sums.iter().all(|sum| sum.length() < 1e-10), "{sums:?}");
     }
 
-    /// A path is fitted by itself, and a straight way by a straight path however strong the smoothing.
+    /// A path is fitted by itself, and a straight way by a straight path however strong the
+    /// smoothing.
     #[test]
     fn what_is_a_path_is_found_again(way in prop::collection::vec((-3.0f64..3.0, -3.0f64..3.0), 4..9), smoothing in 0.0f64..1e4, pin_ends: bool) {
         let control: Vec<DVec2> = way.into_iter().map(DVec2::from).collect();
@@ -141,19 +144,12 @@ fn smoothing_trades_distance_for_straightness() {
     let (parameters, _) = chord_parameters(&way);
     let mut before = 0.0;
     for smoothing in [0.0, 0.01, 1.0, 100.0] {
-        let options = FitOptions {
-            control_points: 14,
-            smoothing,
-            pin_ends: true,
-            ..FitOptions::default()
-        };
+        let options =
+            FitOptions { control_points: 14, smoothing, pin_ends: true, ..FitOptions::default() };
         let spline = fit_spline(&way, &parameters, &options).unwrap();
         assert_eq!((spline.points()[0], spline.points()[13]), (way[0], way[89]));
-        let rest: f64 = way
-            .iter()
-            .zip(&parameters)
-            .map(|(p, &u)| p.distance_squared(spline.position(u)))
-            .sum();
+        let rest: f64 =
+            way.iter().zip(&parameters).map(|(p, &u)| p.distance_squared(spline.position(u))).sum();
         assert!(rest > before, "{smoothing}: {rest}");
         before = rest;
     }
@@ -162,17 +158,15 @@ fn smoothing_trades_distance_for_straightness() {
 /// Three points and fourteen control points; gaps between points; all points in two places.
 #[test]
 fn missing_points_leave_the_path_straight() {
-    let options = FitOptions {
-        control_points: 14,
-        ..FitOptions::default()
-    };
+    let options = FitOptions { control_points: 14, ..FitOptions::default() };
     let few = [DVec2::ZERO, DVec2::new(0.0, 1.0), DVec2::new(0.0, 3.0)];
     let spline = drawn_path(&few, &options).unwrap();
     for k in 0..=50 {
         let place = spline.position(f64::from(k) / 50.0);
         assert!(place.x.abs() < 1e-6 && (-1e-3..3.001).contains(&place.y), "{place}");
     }
-    let gap: Vec<f64> = (0..40).map(|k| if k < 20 { 0.01 } else { 0.8 } + 0.005 * f64::from(k)).collect();
+    let gap: Vec<f64> =
+        (0..40).map(|k| if k < 20 { 0.01 } else { 0.8 } + 0.005 * f64::from(k)).collect();
     let way: Vec<DVec2> = gap.iter().map(|&u| DVec2::new(3.0 * u, u * u)).collect();
     let spline = fit_spline(&way, &gap, &options).unwrap();
     for (&u, p) in gap.iter().zip(&way) {
@@ -185,11 +179,7 @@ fn missing_points_leave_the_path_straight() {
 fn what_cannot_be_fitted_is_said() {
     let (way, u) = ([DVec2::ZERO, DVec2::ONE], [0.0, 1.0]);
     let with = |control_points, smoothing| {
-        let options = FitOptions {
-            control_points,
-            smoothing,
-            ..FitOptions::default()
-        };
+        let options = FitOptions { control_points, smoothing, ..FitOptions::default() };
         fit_spline(&way, &u, &options)
     };
     assert_eq!(with(3, 0.0), Err(PathEditError::ControlPoints { points: 3 }));

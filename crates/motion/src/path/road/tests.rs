@@ -3,7 +3,8 @@ use proptest::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 
 fn road(points: &[(f64, f64)]) -> Road {
-    Road::new(GroundSpline::uniform(points.iter().map(|&p| DVec2::from(p)).collect()).unwrap()).unwrap()
+    Road::new(GroundSpline::uniform(points.iter().map(|&p| DVec2::from(p)).collect()).unwrap())
+        .unwrap()
 }
 
 proptest! {
@@ -75,11 +76,13 @@ fn an_open_path_goes_straight_on_and_a_closed_one_round() {
     let left = road(&[(0.0, 0.0), (0.0, 1.0), (0.0, 2.0), (2.0, 3.0)]);
     assert!(left.at(0.9).curvature > 0.0 && left.at(0.9).frame.yaw > 0.0);
 
-    let ring: Vec<DVec2> = (0..9).map(|k| DVec2::from_angle(f64::from(k) * FRAC_PI_2 / 2.0) * 3.0).collect();
+    let ring: Vec<DVec2> =
+        (0..9).map(|k| DVec2::from_angle(f64::from(k) * FRAC_PI_2 / 2.0) * 3.0).collect();
     let ring = Road::new(GroundSpline::uniform(ring).unwrap().joined()).unwrap();
     let (a, b) = (ring.at_length(1.0), ring.at_length(1.0 + 2.0 * ring.length_m()));
     assert!(a.frame.shift.distance(b.frame.shift) < 1e-9 && b.along_m > a.along_m);
-    let (before, after) = (ring.at_length(ring.length_m() - 1e-6), ring.at_length(ring.length_m() + 1e-6));
+    let (before, after) =
+        (ring.at_length(ring.length_m() - 1e-6), ring.at_length(ring.length_m() + 1e-6));
     assert!(before.frame.shift.distance(after.frame.shift) < 3e-6);
     assert!(crate::math::wrap_angle(after.frame.yaw - before.frame.yaw).abs() < 1e-5);
 }

@@ -34,16 +34,13 @@ fn cost(transform: &Planar, source: &[Vec3], target: &[Vec3], weights: &[f64]) -
         .sum()
 }
 
-/// The best of `steps` turns, each with the shift that fits it best: the difference of the weighted means.
+/// The best of `steps` turns, each with the shift that fits it best: the difference of the weighted
+/// means.
 fn by_grid_search(source: &[Vec3], target: &[Vec3], weights: &[f64], steps: usize) -> f64 {
     let weight = |index: usize| weights[index % weights.len()];
     let total: f64 = (0..source.len()).map(weight).sum();
     let mean = |points: &[Vec3]| {
-        points
-            .iter()
-            .enumerate()
-            .map(|(index, p)| weight(index) * p.as_dvec3())
-            .sum::<DVec3>()
+        points.iter().enumerate().map(|(index, p)| weight(index) * p.as_dvec3()).sum::<DVec3>()
             / total
     };
     let (p, q) = (mean(source), mean(target));
@@ -59,7 +56,8 @@ fn by_grid_search(source: &[Vec3], target: &[Vec3], weights: &[f64], steps: usiz
 
 #[test]
 fn agrees_with_least_squares() {
-    let golden: Golden = serde_json::from_str(include_str!("../../../tests/golden/align.json")).unwrap();
+    let golden: Golden =
+        serde_json::from_str(include_str!("../../../tests/golden/align.json")).unwrap();
     assert_eq!(golden.cases.len(), 5);
     for case in golden.cases {
         let found = align(&case.source, &case.target, &case.weights, 0.0).unwrap();
@@ -84,7 +82,8 @@ fn agrees_with_least_squares() {
 
 #[test]
 fn equals_a_search_of_20_000_turns() {
-    let golden: Golden = serde_json::from_str(include_str!("../../../tests/golden/align.json")).unwrap();
+    let golden: Golden =
+        serde_json::from_str(include_str!("../../../tests/golden/align.json")).unwrap();
     for case in golden.cases {
         let found = align(&case.source, &case.target, &case.weights, 0.0).unwrap();
         let searched = by_grid_search(&case.source, &case.target, &case.weights, 20_000);
@@ -163,10 +162,7 @@ fn what_cannot_be_aligned_is_refused() {
     let two = [Vec3::ZERO, Vec3::X];
     assert_eq!(
         align(&two, &two[..1], &[1.0], 0.0),
-        Err(RegistrationError::Points {
-            source_points: 2,
-            target_points: 1
-        })
+        Err(RegistrationError::Points { source_points: 2, target_points: 1 })
     );
     for weights in [&[][..], &[0.0], &[-1.0, 2.0], &[f64::NAN], &[1.0, 1.0, 1.0]] {
         assert!(

@@ -8,7 +8,8 @@ use proptest::prelude::*;
 use std::f64::consts::PI;
 
 fn registered(a: &Clip, b: &Clip, window: usize, options: &RegistrationOptions) -> Registration {
-    let mut terms = PairTerms::new(a, 0..a.frames(), b, 0..b.frames(), &limb_weights(a.skeleton()), 1).unwrap();
+    let mut terms =
+        PairTerms::new(a, 0..a.frames(), b, 0..b.frames(), &limb_weights(a.skeleton()), 1).unwrap();
     terms.finish();
     let matrix = terms.distances(window, &(0..a.frames()), &(0..b.frames())).unwrap();
     Registration::new(&terms, &matrix, options).unwrap()
@@ -53,19 +54,8 @@ proptest! {
 #[test]
 fn a_clip_played_slower_is_found_at_its_speed() {
     let (fast, slow) = (
-        Walk {
-            frames: 150,
-            cadence: 0.9,
-            ..Walk::default()
-        }
-        .clip(),
-        Walk {
-            frames: 200,
-            cadence: 0.9 * 0.75,
-            speed: 1.3 * 0.75,
-            ..Walk::default()
-        }
-        .clip(),
+        Walk { frames: 150, cadence: 0.9, ..Walk::default() }.clip(),
+        Walk { frames: 200, cadence: 0.9 * 0.75, speed: 1.3 * 0.75, ..Walk::default() }.clip(),
     );
     let found = registered(&fast, &slow, 5, &RegistrationOptions::new(60.0));
     let warp = found.warp();
@@ -82,22 +72,14 @@ fn a_clip_played_slower_is_found_at_its_speed() {
     assert!(found.path().mean_m < 0.01, "{}", found.path().mean_m);
 }
 
-/// One walks straight on, the other in circles: the turn between them grows over whole turns, and the transform lays one on the other all the way.
+/// One walks straight on, the other in circles: the turn between them grows over whole turns, and
+/// the transform lays one on the other all the way.
 #[test]
 fn the_turn_is_unwrapped_and_the_clips_lie_on_each_other() {
-    let straight = Walk {
-        frames: 500,
-        ..Walk::default()
-    }
-    .clip();
-    let circling = Walk {
-        frames: 500,
-        turning: 1.5,
-        start: (300.0, -200.0),
-        heading: 2.0,
-        ..Walk::default()
-    }
-    .clip();
+    let straight = Walk { frames: 500, ..Walk::default() }.clip();
+    let circling =
+        Walk { frames: 500, turning: 1.5, start: (300.0, -200.0), heading: 2.0, ..Walk::default() }
+            .clip();
     let found = registered(&straight, &circling, 5, &RegistrationOptions::new(60.0));
     let mut before = found.alignment_at(0.0).yaw;
     let begin = before;
@@ -108,7 +90,8 @@ fn the_turn_is_unwrapped_and_the_clips_lie_on_each_other() {
         before = here.yaw;
         if step % 2 == 0 && frame > 15.0 && frame < 485.0 {
             let in_b = found.warp().at(frame).round() as usize;
-            let off = here.apply(circling.root_translations()[in_b]) - straight.root_translations()[frame as usize];
+            let off = here.apply(circling.root_translations()[in_b])
+                - straight.root_translations()[frame as usize];
             assert!(off.length() < 0.06, "{frame}: {off}");
         }
     }
@@ -119,18 +102,16 @@ fn the_turn_is_unwrapped_and_the_clips_lie_on_each_other() {
 
 #[test]
 fn pins_hold_the_warp() {
-    let walk = Walk {
-        frames: 160,
-        ..Walk::default()
-    }
-    .clip();
+    let walk = Walk { frames: 160, ..Walk::default() }.clip();
     let mut options = RegistrationOptions::new(60.0);
     options.path.pins = vec![(60, 75)];
     let found = registered(&walk, &walk, 5, &options);
     assert!((found.warp().at(62.0) - 77.0).abs() < 1e-9);
     options.path.pins.push((70, 71));
     let terms = {
-        let mut terms = PairTerms::new(&walk, 0..160, &walk, 0..160, &limb_weights(walk.skeleton()), 1).unwrap();
+        let mut terms =
+            PairTerms::new(&walk, 0..160, &walk, 0..160, &limb_weights(walk.skeleton()), 1)
+                .unwrap();
         terms.finish();
         terms
     };
@@ -141,12 +122,7 @@ fn pins_hold_the_warp() {
 /// A clip against itself, moved: the warp is the identity and the alignment the way back.
 #[test]
 fn a_moved_clip_lies_where_it_was() {
-    let walk = Walk {
-        frames: 120,
-        turning: 0.8,
-        ..Walk::default()
-    }
-    .clip();
+    let walk = Walk { frames: 120, turning: 0.8, ..Walk::default() }.clip();
     let there = Planar::new(2.5, 40.0, -7.0);
     let found = registered(&walk, &walk.transformed(&there), 9, &RegistrationOptions::new(60.0));
     for frame in 0..120 {
@@ -189,7 +165,8 @@ struct GoldenWarp {
 
 #[test]
 fn matrix_path_and_warp_agree_with_scipy() {
-    let golden: Golden = serde_json::from_str(include_str!("../../../tests/oracles/registration.json")).unwrap();
+    let golden: Golden =
+        serde_json::from_str(include_str!("../../../tests/oracles/registration.json")).unwrap();
     let skeleton = points_skeleton(golden.source[0].len());
     let (source, target) = (
         points_clip(&skeleton, 30.0, &golden.source),
@@ -206,16 +183,15 @@ fn matrix_path_and_warp_agree_with_scipy() {
             }
         }
         let found = terms.alignment(5, 9, case.window, 0.0).unwrap().transform;
-        for (found, wanted) in [found.yaw, found.shift.x, found.shift.y].into_iter().zip(case.at_5_9) {
+        for (found, wanted) in
+            [found.yaw, found.shift.x, found.shift.y].into_iter().zip(case.at_5_9)
+        {
             assert!((found - wanted).abs() < 1e-5, "{found} {wanted}");
         }
         for path in &case.paths {
             for warp in &path.warps {
                 let options = RegistrationOptions {
-                    path: PathOptions {
-                        slope_limit: path.slope_limit,
-                        ..PathOptions::default()
-                    },
+                    path: PathOptions { slope_limit: path.slope_limit, ..PathOptions::default() },
                     smoothing: warp.smoothing,
                 };
                 let found = Registration::new(&terms, &matrix, &options).unwrap();
@@ -224,7 +200,11 @@ fn matrix_path_and_warp_agree_with_scipy() {
                 for (frame, &wanted) in warp.at_frames.iter().enumerate() {
                     let at = found.warp().at(frame as f64);
                     // The straightening is known to 1e-5 there.
-                    assert!((at - wanted).abs() < 1e-3, "{} {frame}: {at} {wanted}", warp.smoothing);
+                    assert!(
+                        (at - wanted).abs() < 1e-3,
+                        "{} {frame}: {at} {wanted}",
+                        warp.smoothing
+                    );
                 }
             }
         }

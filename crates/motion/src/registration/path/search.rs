@@ -1,15 +1,20 @@
 use super::stretch::{Ground, Stretch};
-use super::{DistanceMatrix, MAX_SLOPE_LIMIT, PathEnd, PathError, PathOptions, RegistrationPath, checked_pins, no_path};
+use super::{
+    DistanceMatrix, MAX_SLOPE_LIMIT, PathEnd, PathError, PathOptions, RegistrationPath,
+    checked_pins, no_path,
+};
 use std::ops::Range;
 
 /// From so many rows and columns on, a path in a corridor is found before the best one.
 const WORTH_A_CORRIDOR: usize = 256;
-/// Cells to a side that are one in the matrix that the corridor is sought in, and its cells to either side of the path found there.
+/// Cells to a side that are one in the matrix that the corridor is sought in, and its cells to
+/// either side of the path found there.
 const CORRIDOR: (usize, usize) = (8, 12);
 /// Rounds of Dinkelbach's iteration: a handful; the limit is for NaN.
 const MOST_ROUNDS: usize = 32;
 
-/// The search of [`optimal_path`](super::optimal_path), a few rows at a time. Every call is given the matrix that it was begun with.
+/// The search of [`optimal_path`](super::optimal_path), a few rows at a time. Every call is given
+/// the matrix that it was begun with.
 #[derive(Clone, Debug)]
 pub struct PathSearch {
     options: PathOptions,
@@ -37,7 +42,8 @@ impl PathSearch {
     pub fn new(matrix: &DistanceMatrix, options: &PathOptions) -> Result<Self, PathError> {
         let is_free = options.start != PathEnd::Corner || options.end != PathEnd::Corner;
         let rounds = Rounds::new(matrix, options, None)?;
-        // Every round of Dinkelbach's iteration is a pass over the whole matrix. The mean of a path that is nearly the best saves most of them.
+        // Every round of Dinkelbach's iteration is a pass over the whole matrix. The mean of a path
+        // that is nearly the best saves most of them.
         let has_lead = is_free && matrix.rows().min(matrix.columns()) >= WORTH_A_CORRIDOR;
         Ok(Self {
             options: options.clone(),
@@ -49,14 +55,22 @@ impl PathSearch {
 
     /// The search without a lead: it takes longer, and finds the same.
     #[cfg(test)]
-    pub(super) fn without_lead(matrix: &DistanceMatrix, options: &PathOptions) -> Result<Self, PathError> {
+    pub(super) fn without_lead(
+        matrix: &DistanceMatrix,
+        options: &PathOptions,
+    ) -> Result<Self, PathError> {
         let search = Self::new(matrix, options)?;
         let stage = search.whole(matrix, None)?;
         Ok(Self { stage, ..search })
     }
 
     /// Begins the search of [`path_in_corridor`](super::path_in_corridor).
-    pub(super) fn in_corridor(matrix: &DistanceMatrix, options: &PathOptions, factor: usize, radius: usize) -> Result<Self, PathError> {
+    pub(super) fn in_corridor(
+        matrix: &DistanceMatrix,
+        options: &PathOptions,
+        factor: usize,
+        radius: usize,
+    ) -> Result<Self, PathError> {
         Rounds::new(matrix, options, None)?;
         Ok(Self {
             options: options.clone(),
@@ -70,20 +84,28 @@ impl PathSearch {
     ///
     /// # Errors
     /// [`PathError`] says what excludes every path.
-    pub fn advance(&mut self, matrix: &DistanceMatrix, rows: usize) -> Result<Option<RegistrationPath>, PathError> {
+    pub fn advance(
+        &mut self,
+        matrix: &DistanceMatrix,
+        rows: usize,
+    ) -> Result<Option<RegistrationPath>, PathError> {
         let next = match &mut self.stage {
             Stage::Pooling => self.coarse(matrix),
-            Stage::Coarse(coarse, rounds) => match rounds.advance(coarse, rows.saturating_mul(self.corridor.0)) {
-                Ok(None) => return Ok(None),
-                Ok(Some(guide)) => self.beside(matrix, &guide).map(Stage::Corridor),
-                Err(error) => Err(error),
-            },
-            Stage::Corridor(rounds) => match rounds.advance(matrix, rows.saturating_mul(self.corridor.0)) {
-                Ok(None) => return Ok(None),
-                Ok(Some(path)) if self.is_rough => return Ok(Some(path)),
-                Ok(Some(path)) => self.whole(matrix, Some(&path)),
-                Err(error) => Err(error),
-            },
+            Stage::Coarse(coarse, rounds) => {
+                match rounds.advance(coarse, rows.saturating_mul(self.corridor.0)) {
+                    Ok(None) => return Ok(None),
+                    Ok(Some(guide)) => self.beside(matrix, &guide).map(Stage::Corridor),
+                    Err(error) => Err(error),
+                }
+            }
+            Stage::Corridor(rounds) => {
+                match rounds.advance(matrix, rows.saturating_mul(self.corridor.0)) {
+                    Ok(None) => return Ok(None),
+                    Ok(Some(path)) if self.is_rough => return Ok(Some(path)),
+                    Ok(Some(path)) => self.whole(matrix, Some(&path)),
+                    Err(error) => Err(error),
+                }
+            }
             Stage::Whole(rounds) => return rounds.advance(matrix, rows),
         };
         self.stage = match next {
@@ -107,23 +129,28 @@ impl PathSearch {
     fn coarse(&self, matrix: &DistanceMatrix) -> Result<Stage, PathError> {
         let factor = self.corridor.0;
         let coarse = matrix.pooled(factor);
-        let mut pins: Vec<(usize, usize)> = self.options.pins.iter().map(|pin| (pin.0 / factor, pin.1 / factor)).collect();
+        let mut pins: Vec<(usize, usize)> =
+            self.options.pins.iter().map(|pin| (pin.0 / factor, pin.1 / factor)).collect();
         pins.sort_unstable();
         // Pins that fall into one row or column of the coarse matrix cannot all be passed there.
         pins.dedup_by(|next, before| next.0 <= before.0 || next.1 <= before.1);
-        let (last_row, last_column) = (coarse.rows().saturating_sub(1), coarse.columns().saturating_sub(1));
-        let inner = |&(row, column): &(usize, usize)| row > 0 && column > 0 && row < last_row && column < last_column;
-        pins.retain(inner);
-        let options = PathOptions {
-            pins,
-            ..self.options.clone()
+        let (last_row, last_column) =
+            (coarse.rows().saturating_sub(1), coarse.columns().saturating_sub(1));
+        let inner = |&(row, column): &(usize, usize)| {
+            row > 0 && column > 0 && row < last_row && column < last_column
         };
+        pins.retain(inner);
+        let options = PathOptions { pins, ..self.options.clone() };
         let rounds = Rounds::new(&coarse, &options, None)?;
         Ok(Stage::Coarse(coarse, rounds))
     }
 
     /// The corridor beside a path of the coarse matrix.
-    fn beside(&self, matrix: &DistanceMatrix, guide: &RegistrationPath) -> Result<Rounds, PathError> {
+    fn beside(
+        &self,
+        matrix: &DistanceMatrix,
+        guide: &RegistrationPath,
+    ) -> Result<Rounds, PathError> {
         let (factor, radius) = self.corridor;
         let columns = matrix.columns();
         let mut spans: Vec<Range<usize>> = vec![columns..0; matrix.rows()];
@@ -143,7 +170,11 @@ impl PathSearch {
     }
 
     /// The search through the whole matrix, from the mean of a path that there is.
-    fn whole(&self, matrix: &DistanceMatrix, lead: Option<&RegistrationPath>) -> Result<Stage, PathError> {
+    fn whole(
+        &self,
+        matrix: &DistanceMatrix,
+        lead: Option<&RegistrationPath>,
+    ) -> Result<Stage, PathError> {
         let mut rounds = Rounds::new(matrix, &self.options, None)?;
         rounds.mean = lead.map(|path| {
             let (cost, weight) = weigh(matrix, &path.cells, self.options.side_step_m);
@@ -153,13 +184,15 @@ impl PathSearch {
     }
 }
 
-/// Dinkelbach's iteration: the best path at the mean of the best path so far, until it is no better.
+/// Dinkelbach's iteration: the best path at the mean of the best path so far, until it is no
+/// better.
 #[derive(Clone, Debug)]
 struct Rounds {
     options: PathOptions,
     spans: Option<Vec<Range<usize>>>,
     pins: Vec<(usize, usize)>,
-    /// Where one stretch ends and the next begins: pins, and the last corner where the path ends there.
+    /// Where one stretch ends and the next begins: pins, and the last corner where the path ends
+    /// there.
     anchors: Vec<(usize, usize)>,
     mean: Option<f64>,
     count: usize,
@@ -179,7 +212,11 @@ struct Pass {
 }
 
 impl Rounds {
-    fn new(matrix: &DistanceMatrix, options: &PathOptions, spans: Option<Vec<Range<usize>>>) -> Result<Self, PathError> {
+    fn new(
+        matrix: &DistanceMatrix,
+        options: &PathOptions,
+        spans: Option<Vec<Range<usize>>>,
+    ) -> Result<Self, PathError> {
         let (rows, columns) = (matrix.rows(), matrix.columns());
         let slope_limit = options.slope_limit;
         if rows == 0 || columns == 0 {
@@ -203,7 +240,11 @@ impl Rounds {
         })
     }
 
-    fn advance(&mut self, matrix: &DistanceMatrix, rows: usize) -> Result<Option<RegistrationPath>, PathError> {
+    fn advance(
+        &mut self,
+        matrix: &DistanceMatrix,
+        rows: usize,
+    ) -> Result<Option<RegistrationPath>, PathError> {
         let ground = Ground {
             matrix,
             options: &self.options,
@@ -215,7 +256,8 @@ impl Rounds {
         };
         self.pass = Pass::default();
         self.count += 1;
-        let both_given = self.options.start == PathEnd::Corner && self.options.end == PathEnd::Corner;
+        let both_given =
+            self.options.start == PathEnd::Corner && self.options.end == PathEnd::Corner;
         let (cost, weight) = weigh(matrix, &found, self.options.side_step_m);
         let mean = cost / weight;
         if both_given || self.mean.is_some_and(|best| mean >= best - 1e-12 * best.abs()) {
@@ -227,17 +269,18 @@ impl Rounds {
             }));
         }
         self.mean = Some(mean);
-        if self.count < MOST_ROUNDS {
-            Ok(None)
-        } else {
-            Err(PathError::NotFinite)
-        }
+        if self.count < MOST_ROUNDS { Ok(None) } else { Err(PathError::NotFinite) }
     }
 }
 
 impl Pass {
     /// Goes on by so many rows of one stretch. The cells of the best path, once all of it is there.
-    fn advance(&mut self, ground: &Ground<'_>, anchors: &[(usize, usize)], rows: usize) -> Result<Option<Vec<(usize, usize)>>, PathError> {
+    fn advance(
+        &mut self,
+        ground: &Ground<'_>,
+        anchors: &[(usize, usize)],
+        rows: usize,
+    ) -> Result<Option<Vec<(usize, usize)>>, PathError> {
         let (matrix, options) = (ground.matrix, ground.options);
         let corner = (matrix.rows() - 1, matrix.columns() - 1);
         let from = self.carried.as_ref().map(|(from, _)| *from);
@@ -248,7 +291,12 @@ impl Pass {
                 return Ok(Some(self.trace(corner, None, ground)));
             }
             let states = self.carried.as_ref().map(|(_, states)| states.clone());
-            let stretch = Stretch::new(from.unwrap_or_default(), to.unwrap_or(corner), options.slope_limit, states);
+            let stretch = Stretch::new(
+                from.unwrap_or_default(),
+                to.unwrap_or(corner),
+                options.slope_limit,
+                states,
+            );
             self.under_way = Some((stretch, to));
             return Ok(None);
         };
@@ -272,7 +320,12 @@ impl Pass {
     }
 
     /// Back from the end to the start.
-    fn trace(&mut self, end: (usize, usize), last: Option<Stretch>, ground: &Ground<'_>) -> Vec<(usize, usize)> {
+    fn trace(
+        &mut self,
+        end: (usize, usize),
+        last: Option<Stretch>,
+        ground: &Ground<'_>,
+    ) -> Vec<(usize, usize)> {
         self.done.extend(last);
         let mut cells = Vec::new();
         let mut cell = end;
@@ -287,7 +340,11 @@ impl Pass {
 }
 
 /// The cost of a path and what it weighs.
-pub(super) fn weigh(matrix: &DistanceMatrix, cells: &[(usize, usize)], side_step_m: f64) -> (f64, f64) {
+pub(super) fn weigh(
+    matrix: &DistanceMatrix,
+    cells: &[(usize, usize)],
+    side_step_m: f64,
+) -> (f64, f64) {
     let (mut cost, mut weight) = (0.0, 0.0);
     let mut before = None;
     for &(row, column) in cells {

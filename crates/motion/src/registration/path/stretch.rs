@@ -1,14 +1,15 @@
 use super::{DistanceMatrix, PathEnd, PathOptions, within};
 use std::ops::Range;
 
-/// Of so many rows the last is kept, and those behind it are filled again on the way back: to note in each cell where its states come from would take as
-/// long as to fill it.
+/// Of so many rows the last is kept, and those behind it are filled again on the way back: to note
+/// in each cell where its states come from would take as long as to fill it.
 const BLOCK: usize = 32;
 /// Columns that are filled together: what that takes stays in the processor's nearest memory.
 const TILE: usize = 192;
 
-/// The states of one row of cells: how cheaply each is reached by a diagonal step (0), by the k-th step in a row along rows (k = 1…s), or along
-/// columns (s + k). Column c is at c + 1 - first; entry 0 is the border.
+/// The states of one row of cells: how cheaply each is reached by a diagonal step (0), by the k-th
+/// step in a row along rows (k = 1…s), or along columns (s + k). Column c is at c + 1 - first;
+/// entry 0 is the border.
 #[derive(Clone, Debug)]
 struct Row {
     states: Vec<Vec<f64>>,
@@ -50,8 +51,16 @@ impl Row {
         }
     }
 
-    /// What is not diagonal of some entries. `corner` holds the states of the first entry of all, where they are given.
-    fn fill(&mut self, s: usize, tile: &Range<usize>, before: &Self, costs: &[f64], corner: Option<&[f64]>) {
+    /// What is not diagonal of some entries. `corner` holds the states of the first entry of all,
+    /// where they are given.
+    fn fill(
+        &mut self,
+        s: usize,
+        tile: &Range<usize>,
+        before: &Self,
+        costs: &[f64],
+        corner: Option<&[f64]>,
+    ) {
         if let Some(states) = corner {
             self.states[0][1] = states[0];
         }
@@ -65,7 +74,9 @@ impl Row {
                 self.states[k][1] = states[k];
             }
         }
-        let least = |states: &[Vec<f64>], best: f64| states.iter().fold(best, |best, of| if of[1] < best { of[1] } else { best });
+        let least = |states: &[Vec<f64>], best: f64| {
+            states.iter().fold(best, |best, of| if of[1] < best { of[1] } else { best })
+        };
         if corner.is_some() {
             self.not_columns[1] = least(&self.states[1..=s], self.states[0][1]);
         }
@@ -73,7 +84,12 @@ impl Row {
             let (shorter, longer) = self.states.split_at_mut(s + k);
             let from_run = if k == 1 { &self.not_columns } else { &shorter[s + k - 1] };
             let best = &mut self.not_rows[tile.clone()];
-            step_on(&mut longer[0][tile.clone()], &from_run[tile.start - 1..tile.end - 1], costs, best);
+            step_on(
+                &mut longer[0][tile.clone()],
+                &from_run[tile.start - 1..tile.end - 1],
+                costs,
+                best,
+            );
             if let Some(states) = corner {
                 longer[0][1] = states[s + k];
             }
@@ -87,7 +103,8 @@ impl Row {
         }
     }
 
-    /// What the next row needs: steps along rows go on from where they are, and everything else from the cheapest.
+    /// What the next row needs: steps along rows go on from where they are, and everything else
+    /// from the cheapest.
     fn keep(&self, slope_limit: usize) -> Kept {
         self.kept(self.states[1..=slope_limit].iter().chain([&self.not_rows, &self.any]))
     }
@@ -98,15 +115,13 @@ impl Row {
         for part in parts {
             values.extend_from_slice(&part[self.used.clone()]);
         }
-        Kept {
-            values,
-            used: self.used.clone(),
-        }
+        Kept { values, used: self.used.clone() }
     }
 
     fn restore(&mut self, kept: &Kept, slope_limit: usize) {
         self.open(kept.used.clone());
-        let parts = self.states[1..=slope_limit].iter_mut().chain([&mut self.not_rows, &mut self.any]);
+        let parts =
+            self.states[1..=slope_limit].iter_mut().chain([&mut self.not_rows, &mut self.any]);
         let mut from = kept.values.as_slice();
         for values in parts {
             let (values_of_one, rest) = from.split_at(kept.used.len());
@@ -116,7 +131,8 @@ impl Row {
     }
 }
 
-/// The cheapest states of a cell: without those along columns, without those along rows, and of all.
+/// The cheapest states of a cell: without those along columns, without those along rows, and of
+/// all.
 #[derive(Clone, Copy, Debug)]
 struct Choice {
     not_columns: usize,
@@ -125,11 +141,14 @@ struct Choice {
 }
 
 impl Kept {
-    /// Of a row with all its states, the cheapest of an entry. The diagonal wins a tie, and the shorter run.
+    /// Of a row with all its states, the cheapest of an entry. The diagonal wins a tie, and the
+    /// shorter run.
     fn choice(&self, entry: usize, slope_limit: usize) -> Choice {
         let cost = |state: usize| self.values[state * self.used.len() + entry - self.used.start];
-        let run =
-            |first: usize| (first + 1..first + slope_limit).fold(first, |best, state| if cost(state) < cost(best) { state } else { best });
+        let run = |first: usize| {
+            (first + 1..first + slope_limit)
+                .fold(first, |best, state| if cost(state) < cost(best) { state } else { best })
+        };
         let (rows, columns) = (run(1), run(slope_limit + 1));
         let not_columns = if cost(rows) < cost(0) { rows } else { 0 };
         Choice {
@@ -151,11 +170,13 @@ pub(super) struct Stretch {
     filled: usize,
     /// The last row of every block.
     kept: Vec<Kept>,
-    /// All states of the rows that a path is walked back through; those of narrow rows from the start.
+    /// All states of the rows that a path is walked back through; those of narrow rows from the
+    /// start.
     known: Vec<Kept>,
 }
 
-/// A rectangle of cells, first and last; how many steps may go one way; and what the states of the first cell cost where a stretch before led there.
+/// A rectangle of cells, first and last; how many steps may go one way; and what the states of the
+/// first cell cost where a stretch before led there.
 #[derive(Clone, Debug)]
 struct Shape {
     first: (usize, usize),
@@ -165,7 +186,8 @@ struct Shape {
 }
 
 impl Shape {
-    /// So many columns to the left a path of so many rows can come from: the steps that may go along columns, and a diagonal one, in each row.
+    /// So many columns to the left a path of so many rows can come from: the steps that may go
+    /// along columns, and a diagonal one, in each row.
     fn reach(&self, rows: usize) -> usize {
         (self.slope_limit + 1) * (rows + 2)
     }
@@ -192,19 +214,16 @@ pub(super) struct Ground<'a> {
 }
 
 impl Front {
-    /// The next row, as far as its columns lie in `limit`. A function of its own: a browser compiles well what is called often, from one call to the next.
+    /// The next row, as far as its columns lie in `limit`. A function of its own: a browser
+    /// compiles well what is called often, from one call to the next.
     #[inline(never)]
     fn fill_row(&mut self, row: usize, limit: &Range<usize>, shape: &Shape, ground: &Ground<'_>) {
-        let Ground {
-            matrix,
-            options,
-            spans,
-            bias,
-        } = *ground;
+        let Ground { matrix, options, spans, bias } = *ground;
         let (s, (first_row, first_column)) = (shape.slope_limit, shape.first);
         let Self { before, here, costs } = self;
         std::mem::swap(before, here);
-        let span = spans.map_or(0..matrix.columns(), |spans| spans.get(row).cloned().unwrap_or_default());
+        let span =
+            spans.map_or(0..matrix.columns(), |spans| spans.get(row).cloned().unwrap_or_default());
         let end = shape.last.1 + 1;
         // A row beside the corridor has no cells, wherever that is.
         let low = span.start.max(first_column).max(limit.start).min(end);
@@ -223,7 +242,9 @@ impl Front {
             let tile = start..(start + TILE).min(to);
             let costs = &mut costs[start - from..tile.end - from];
             let diagonal = &mut here.states[0][tile.clone()];
-            for ((out, from), &cost) in diagonal.iter_mut().zip(&before.any[start - 1..tile.end - 1]).zip(&*costs) {
+            for ((out, from), &cost) in
+                diagonal.iter_mut().zip(&before.any[start - 1..tile.end - 1]).zip(&*costs)
+            {
                 *out = from + 2.0 * cost;
             }
             if shape.carried.is_none() {
@@ -231,7 +252,8 @@ impl Front {
                 let begins = |row, column| match options.start {
                     PathEnd::Corner => (row, column) == (0, 0),
                     PathEnd::Border { slack } => {
-                        row == 0 && within(column, matrix.columns(), slack) || column == 0 && within(row, matrix.rows(), slack)
+                        row == 0 && within(column, matrix.columns(), slack)
+                            || column == 0 && within(row, matrix.rows(), slack)
                     }
                 };
                 let first = first_column + start - 1;
@@ -249,21 +271,18 @@ impl Front {
 }
 
 impl Stretch {
-    /// Of the rectangle of two cells. It begins with the states carried from the stretch before, or at the path's start.
-    pub(super) fn new(first: (usize, usize), last: (usize, usize), slope_limit: usize, carried: Option<Vec<f64>>) -> Self {
+    /// Of the rectangle of two cells. It begins with the states carried from the stretch before, or
+    /// at the path's start.
+    pub(super) fn new(
+        first: (usize, usize),
+        last: (usize, usize),
+        slope_limit: usize,
+        carried: Option<Vec<f64>>,
+    ) -> Self {
         let row = || Row::new(last.1 - first.1 + 1, 2 * slope_limit + 1);
         Self {
-            shape: Shape {
-                first,
-                last,
-                slope_limit,
-                carried,
-            },
-            front: Front {
-                here: row(),
-                before: row(),
-                costs: Vec::new(),
-            },
+            shape: Shape { first, last, slope_limit, carried },
+            front: Front { here: row(), before: row(), costs: Vec::new() },
             last_column: Vec::with_capacity(last.0 - first.0 + 1),
             filled: 0,
             kept: Vec::new(),
@@ -300,7 +319,8 @@ impl Stretch {
         self.shape.last.1 - self.shape.first.1 + 1
     }
 
-    /// What is cheapest in a cell. Asked for from below upwards and from right to left, as a path is walked back.
+    /// What is cheapest in a cell. Asked for from below upwards and from right to left, as a path
+    /// is walked back.
     fn choice(&mut self, row: usize, column: usize, ground: &Ground<'_>) -> Choice {
         let at = row - self.shape.first.0;
         let entry = column + 1 - self.shape.first.1;
@@ -332,8 +352,13 @@ impl Stretch {
         self.choice(row, column, ground).any
     }
 
-    /// The cheapest cell on the last row and the last column, where at most `slack` of the other clip is left out.
-    pub(super) fn best_end(&self, slack: f64, (rows, columns): (usize, usize)) -> Option<(usize, usize)> {
+    /// The cheapest cell on the last row and the last column, where at most `slack` of the other
+    /// clip is left out.
+    pub(super) fn best_end(
+        &self,
+        slack: f64,
+        (rows, columns): (usize, usize),
+    ) -> Option<(usize, usize)> {
         let on_row = self.front.here.any[1..]
             .iter()
             .enumerate()
@@ -344,14 +369,17 @@ impl Stretch {
             .enumerate()
             .map(|(r, &cost)| (cost, (self.shape.first.0 + r, self.shape.last.1)));
         let allowed = |&(cost, (row, column)): &(f64, (usize, usize))| {
-            cost.is_finite() && within(rows - 1 - row, rows, slack) && within(columns - 1 - column, columns, slack)
+            cost.is_finite()
+                && within(rows - 1 - row, rows, slack)
+                && within(columns - 1 - column, columns, slack)
         };
         let best = on_row.chain(on_column).filter(allowed).min_by(|a, b| a.0.total_cmp(&b.0))?;
         Some(best.1)
     }
 
-    /// Walks back from a cell to the stretch's first one, or to where the path begins. Adds the cells, the first one only if it is not `shared` with the
-    /// stretch before; returns the first cell with its state.
+    /// Walks back from a cell to the stretch's first one, or to where the path begins. Adds the
+    /// cells, the first one only if it is not `shared` with the stretch before; returns the first
+    /// cell with its state.
     pub(super) fn trace(
         &mut self,
         mut cell: (usize, usize),
@@ -380,19 +408,21 @@ impl Stretch {
                 (before, self.any(before.0, before.1, ground))
             } else if state <= s {
                 let before = (row - 1, column);
-                let first = |stretch: &mut Self| stretch.choice(before.0, before.1, ground).not_rows;
+                let first =
+                    |stretch: &mut Self| stretch.choice(before.0, before.1, ground).not_rows;
                 (before, if state == 1 { first(self) } else { state - 1 })
             } else {
                 let before = (row, column - 1);
-                let first = |stretch: &mut Self| stretch.choice(before.0, before.1, ground).not_columns;
+                let first =
+                    |stretch: &mut Self| stretch.choice(before.0, before.1, ground).not_columns;
                 (before, if state == s + 1 { first(self) } else { state - 1 })
             };
         }
     }
 }
 
-/// One step further in runs, and the cheapest so far. A function of its own, over slices that share nothing: then it takes two cells at a time, without
-/// a branch.
+/// One step further in runs, and the cheapest so far. A function of its own, over slices that share
+/// nothing: then it takes two cells at a time, without a branch.
 #[inline(never)]
 fn step_on(out: &mut [f64], from: &[f64], costs: &[f64], best: &mut [f64]) {
     for (((out, from), cost), best) in out.iter_mut().zip(from).zip(costs).zip(best) {

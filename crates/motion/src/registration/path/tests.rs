@@ -27,7 +27,12 @@ fn keeps_limit(cells: &[(usize, usize)], limit: usize) -> bool {
 }
 
 /// All ways from `cells` on, one by one.
-fn all_ways(matrix: &DistanceMatrix, options: &PathOptions, cells: &mut Vec<(usize, usize)>, offer: &mut impl FnMut(&[(usize, usize)])) {
+fn all_ways(
+    matrix: &DistanceMatrix,
+    options: &PathOptions,
+    cells: &mut Vec<(usize, usize)>,
+    offer: &mut impl FnMut(&[(usize, usize)]),
+) {
     let &(row, column) = cells.last().unwrap();
     let (rows, columns) = (matrix.rows(), matrix.columns());
     let ends = match options.end {
@@ -38,7 +43,10 @@ fn all_ways(matrix: &DistanceMatrix, options: &PathOptions, cells: &mut Vec<(usi
                 && within(columns - 1 - column, columns, slack)
         }
     };
-    if ends && keeps_limit(cells, options.slope_limit) && options.pins.iter().all(|pin| cells.contains(pin)) {
+    if ends
+        && keeps_limit(cells, options.slope_limit)
+        && options.pins.iter().all(|pin| cells.contains(pin))
+    {
         offer(cells);
     }
     for (down, right) in [(1, 1), (1, 0), (0, 1)] {
@@ -57,9 +65,7 @@ fn brute_force(matrix: &DistanceMatrix, options: &PathOptions) -> Option<f64> {
     if let PathEnd::Border { slack } = options.start {
         starts.extend((1..rows).filter(|&row| within(row, rows, slack)).map(|row| (row, 0)));
         starts.extend(
-            (1..columns)
-                .filter(|&column| within(column, columns, slack))
-                .map(|column| (0, column)),
+            (1..columns).filter(|&column| within(column, columns, slack)).map(|column| (0, column)),
         );
     }
     let mut best: Option<f64> = None;
@@ -96,7 +102,8 @@ proptest! {
                 prop_assert!((cost / weight - best).abs() < 1e-9, "{} {best} {:?}", cost / weight, found.cells);
             }
             Err(PathError::NoPath { .. }) => prop_assert_eq!(best, None),
-            // Refused although steps along a border lead there: the clip that stands still meanwhile could not be warped.
+            // Refused although steps along a border lead there: the clip that stands still
+            // meanwhile could not be warped.
             Err(PathError::Pins { .. } | PathError::PinAtEnd { .. }) => prop_assert!(options.pins.len() > usize::from(start != PathEnd::Corner && end != PathEnd::Corner)),
             Err(other) => prop_assert!(false, "{other}"),
         }
@@ -116,33 +123,16 @@ fn a_plateau_is_crossed_by_its_diagonal() {
 fn the_run_belongs_to_the_state() {
     let valley = |row: usize, column: usize| (2.0 * row as f32 - column as f32).abs();
     let steep = matrix(30, 59, valley);
-    let path = optimal_path(
-        &steep,
-        &PathOptions {
-            slope_limit: 1,
-            ..PathOptions::default()
-        },
-    )
-    .unwrap();
+    let path =
+        optimal_path(&steep, &PathOptions { slope_limit: 1, ..PathOptions::default() }).unwrap();
     assert!(path.cells.iter().all(|&(row, column)| valley(row, column) <= 1.0));
     assert!(keeps_limit(&path.cells, 1));
     let three = matrix(20, 58, |row, column| (3.0 * row as f32 - column as f32).abs());
-    let error = optimal_path(
-        &three,
-        &PathOptions {
-            slope_limit: 1,
-            ..PathOptions::default()
-        },
-    )
-    .unwrap_err();
+    let error = optimal_path(&three, &PathOptions { slope_limit: 1, ..PathOptions::default() })
+        .unwrap_err();
     assert_eq!(
         error,
-        PathError::NoPath {
-            from: Some((0, 0)),
-            to: Some((19, 57)),
-            slope_limit: 1,
-            needed: 2
-        }
+        PathError::NoPath { from: Some((0, 0)), to: Some((19, 57)), slope_limit: 1, needed: 2 }
     );
     assert!(error.to_string().contains("raise the slope limit to 2"), "{error}");
     assert!(optimal_path(&three, &PathOptions::default()).is_ok());
@@ -152,37 +142,19 @@ fn the_run_belongs_to_the_state() {
 fn what_cannot_be_is_told() {
     let some = matrix(20, 30, |row, column| (row as f32 - column as f32).abs());
     let with = |pins: &[(usize, usize)]| {
-        optimal_path(
-            &some,
-            &PathOptions {
-                pins: pins.to_vec(),
-                ..PathOptions::default()
-            },
-        )
+        optimal_path(&some, &PathOptions { pins: pins.to_vec(), ..PathOptions::default() })
     };
     let crossing = with(&[(12, 8), (5, 9)]).unwrap_err();
-    assert_eq!(
-        crossing,
-        PathError::Pins {
-            first: (5, 9),
-            second: (12, 8)
-        }
-    );
+    assert_eq!(crossing, PathError::Pins { first: (5, 9), second: (12, 8) });
     assert!(
-        crossing
-            .to_string()
-            .starts_with("the pins at frames 5 | 9 and 12 | 8 exclude each other")
+        crossing.to_string().starts_with("the pins at frames 5 | 9 and 12 | 8 exclude each other")
     );
     assert!(matches!(with(&[(20, 3)]), Err(PathError::PinOutside { .. })));
     assert!(matches!(with(&[(0, 3)]), Err(PathError::PinAtEnd { end: "start", .. })));
     assert!(matches!(with(&[(3, 29)]), Err(PathError::PinAtEnd { end: "end", .. })));
     assert!(matches!(
         with(&[(5, 29 - 15), (6, 29 - 2)]),
-        Err(PathError::NoPath {
-            from: Some((5, 14)),
-            to: Some((6, 27)),
-            ..
-        })
+        Err(PathError::NoPath { from: Some((5, 14)), to: Some((6, 27)), .. })
     ));
     assert!(with(&[(5, 9), (12, 14), (0, 0), (19, 29)]).is_ok());
     assert_eq!(
@@ -190,10 +162,7 @@ fn what_cannot_be_is_told() {
         Err(PathError::TooShort { window: 1 })
     );
     for slope_limit in [0, MAX_SLOPE_LIMIT + 1] {
-        let options = PathOptions {
-            slope_limit,
-            ..PathOptions::default()
-        };
+        let options = PathOptions { slope_limit, ..PathOptions::default() };
         assert_eq!(optimal_path(&some, &options), Err(PathError::SlopeLimit { slope_limit }));
     }
 }
@@ -202,7 +171,8 @@ fn what_cannot_be_is_told() {
 fn strides(rows: usize, columns: usize) -> DistanceMatrix {
     let phase = |t: f64, bend: f64| t * 20.0 + bend * (t * 7.0).sin();
     matrix(rows, columns, |row, column| {
-        let (a, b) = (phase(row as f64 / rows as f64, 2.0), phase(column as f64 / columns as f64, -1.0));
+        let (a, b) =
+            (phase(row as f64 / rows as f64, 2.0), phase(column as f64 / columns as f64, -1.0));
         (0.02 + 0.1 * (1.0 - (a - b).cos()) + 0.01 * (a - b).abs()) as f32
     })
 }
@@ -214,12 +184,7 @@ fn the_corridor_finds_what_the_whole_matrix_gives() {
         (PathEnd::Corner, PathEnd::Corner),
         (PathEnd::Border { slack: 0.1 }, PathEnd::Border { slack: 0.1 }),
     ] {
-        let options = PathOptions {
-            start,
-            end,
-            pins: vec![(200, 150)],
-            ..PathOptions::default()
-        };
+        let options = PathOptions { start, end, pins: vec![(200, 150)], ..PathOptions::default() };
         let whole = optimal_path(&matrix, &options).unwrap();
         let narrow = path_in_corridor(&matrix, &options, 8, 24).unwrap();
         assert_eq!(narrow, whole);
@@ -249,9 +214,14 @@ fn a_path_that_is_nearly_the_best_changes_nothing_but_the_time() {
     }
 }
 
-/// The smallest cost from corner to corner through a pin, by a table of all that a step may depend on: its way, how many such steps there were before it,
-/// and whether the pin was passed.
-fn cheapest_through(matrix: &DistanceMatrix, pin: (usize, usize), limit: usize, side_step_m: f64) -> f64 {
+/// The smallest cost from corner to corner through a pin, by a table of all that a step may depend
+/// on: its way, how many such steps there were before it, and whether the pin was passed.
+fn cheapest_through(
+    matrix: &DistanceMatrix,
+    pin: (usize, usize),
+    limit: usize,
+    side_step_m: f64,
+) -> f64 {
     let (rows, columns) = (matrix.rows(), matrix.columns());
     let mut table = vec![vec![[[f64::INFINITY; 16]; 2]; rows * columns]; 3];
     let mut least = f64::INFINITY;
@@ -317,19 +287,17 @@ proptest! {
     }
 }
 
-/// Rows beside the corridor have no cells: with a pin far from the last column they must not be looked for there.
+/// Rows beside the corridor have no cells: with a pin far from the last column they must not be
+/// looked for there.
 #[test]
 fn a_pin_in_a_corridor_that_begins_late_is_passed() {
     let (rows, columns) = (400, 400);
     for (late, pin) in [(60.0f32, (200, 140)), (-60.0, (140, 200))] {
-        let valley = matrix(rows, columns, |row, column| (row as f32 - column as f32 - late).abs() / 400.0);
+        let valley =
+            matrix(rows, columns, |row, column| (row as f32 - column as f32 - late).abs() / 400.0);
         let border = PathEnd::Border { slack: 0.3 };
-        let options = PathOptions {
-            start: border,
-            end: border,
-            pins: vec![pin],
-            ..PathOptions::default()
-        };
+        let options =
+            PathOptions { start: border, end: border, pins: vec![pin], ..PathOptions::default() };
         let path = optimal_path(&valley, &options).unwrap();
         assert!(path.cells.contains(&pin) && path.mean_m < 1e-3, "{}", path.mean_m);
     }

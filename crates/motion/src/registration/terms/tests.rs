@@ -4,13 +4,7 @@ use crate::registration::limb_weights;
 use proptest::prelude::*;
 
 fn pair() -> (Clip, Clip) {
-    let a = Walk {
-        frames: 67,
-        turning: 0.7,
-        start: (30.0, -12.0),
-        ..Walk::default()
-    }
-    .clip();
+    let a = Walk { frames: 67, turning: 0.7, start: (30.0, -12.0), ..Walk::default() }.clip();
     let b = Walk {
         frames: 53,
         speed: 2.0,
@@ -25,7 +19,9 @@ fn pair() -> (Clip, Clip) {
 }
 
 fn terms(a: &Clip, b: &Clip, stride: usize) -> PairTerms {
-    let mut terms = PairTerms::new(a, 0..a.frames(), b, 0..b.frames(), &limb_weights(a.skeleton()), stride).unwrap();
+    let mut terms =
+        PairTerms::new(a, 0..a.frames(), b, 0..b.frames(), &limb_weights(a.skeleton()), stride)
+            .unwrap();
     terms.finish();
     terms
 }
@@ -44,7 +40,14 @@ fn equals_the_definition_at_every_window() {
         let terms = terms(&a, &b, stride);
         for window in [1, 2, 5, 30, 53] {
             let fast = terms.distances(window, &(0..67), &(0..53)).unwrap();
-            let slow = distances_directly((&a, 0..67), (&b, 0..53), &limb_weights(a.skeleton()), window, stride).unwrap();
+            let slow = distances_directly(
+                (&a, 0..67),
+                (&b, 0..53),
+                &limb_weights(a.skeleton()),
+                window,
+                stride,
+            )
+            .unwrap();
             assert_eq!(
                 (fast.rows(), fast.columns(), fast.frames(0, 0)),
                 (slow.rows(), slow.columns(), slow.frames(0, 0))
@@ -54,7 +57,9 @@ fn equals_the_definition_at_every_window() {
                 assert!(near(fast, slow), "{fast} {slow}");
             }
             let part = terms.distances(window, &(10..40), &(7..31)).unwrap();
-            for (row, column) in (0..part.rows()).flat_map(|row| (0..part.columns()).map(move |column| (row, column))) {
+            for (row, column) in (0..part.rows())
+                .flat_map(|row| (0..part.columns()).map(move |column| (row, column)))
+            {
                 let (i, j) = part.frames(row, column);
                 let whole = fast.get(i / stride, j / stride).unwrap();
                 assert!((part.get(row, column).unwrap() - whole).abs() < 1e-6);
@@ -63,25 +68,17 @@ fn equals_the_definition_at_every_window() {
     }
 }
 
-/// A mile from the origin, at walking pace for minutes: the centres are large, and what is left is not.
+/// A mile from the origin, at walking pace for minutes: the centres are large, and what is left is
+/// not.
 #[test]
 fn digits_survive_a_long_walk_far_away() {
-    let walk = Walk {
-        frames: 400,
-        fps: 10.0,
-        start: (1600.0, -900.0),
-        speed: 3.0,
-        ..Walk::default()
-    };
+    let walk =
+        Walk { frames: 400, fps: 10.0, start: (1600.0, -900.0), speed: 3.0, ..Walk::default() };
     let a = walk.clip();
-    let b = Walk {
-        cadence: 0.91,
-        start: (-3.0, 0.0),
-        ..walk
-    }
-    .clip();
+    let b = Walk { cadence: 0.91, start: (-3.0, 0.0), ..walk }.clip();
     let fast = terms(&a, &b, 1).distances(4, &(0..400), &(0..400)).unwrap();
-    let slow = distances_directly((&a, 0..400), (&b, 0..400), &limb_weights(a.skeleton()), 4, 1).unwrap();
+    let slow =
+        distances_directly((&a, 0..400), (&b, 0..400), &limb_weights(a.skeleton()), 4, 1).unwrap();
     // The positions themselves are rounded to a tenth of a millimetre there.
     for (&fast, &slow) in fast.rms_m().iter().zip(slow.rms_m()) {
         assert!(near(fast, slow), "{fast} {slow}");
@@ -95,7 +92,9 @@ fn equals_aligning_the_point_clouds() {
     let matrix = terms.distances(9, &(0..67), &(0..53)).unwrap();
     assert_eq!((matrix.rows(), matrix.columns()), (67 - 9 + 1, 53 - 9 + 1));
     for (i, j) in [(0, 0), (17, 31), (58, 44)] {
-        let clouds = align(&a.world_positions(i..i + 9), &b.world_positions(j..j + 9), &weights, 0.0).unwrap();
+        let clouds =
+            align(&a.world_positions(i..i + 9), &b.world_positions(j..j + 9), &weights, 0.0)
+                .unwrap();
         let cached = terms.alignment(i, j, 9, 0.0).unwrap();
         assert!(near(matrix.get(i, j).unwrap(), clouds.rms_m() as f32));
         assert!((cached.distance - clouds.distance).abs() < BOUND * cached.weight);
@@ -136,7 +135,8 @@ fn slices_add_up_to_the_whole() {
 fn a_band_gives_what_the_whole_gives() {
     let (a, b) = pair();
     let weights = limb_weights(a.skeleton());
-    let mut banded = PairTerms::banded(&a, 20..20 + 6 + 24, &b, 8..8 + 6 + 24, &weights, 1, 6).unwrap();
+    let mut banded =
+        PairTerms::banded(&a, 20..20 + 6 + 24, &b, 8..8 + 6 + 24, &weights, 1, 6).unwrap();
     banded.finish();
     let (rows, columns) = (20..26, 8..14);
     let near = banded.distances(25, &rows, &columns).unwrap();
@@ -149,11 +149,7 @@ fn a_band_gives_what_the_whole_gives() {
 
 #[test]
 fn a_clip_against_itself_is_zero_on_the_diagonal() {
-    let a = Walk {
-        start: (80.0, 3.0),
-        ..Walk::default()
-    }
-    .clip();
+    let a = Walk { start: (80.0, 3.0), ..Walk::default() }.clip();
     let matrix = terms(&a, &a, 1).distances(12, &(0..120), &(0..120)).unwrap();
     for i in 0..matrix.rows() {
         assert!(matrix.get(i, i).unwrap() < 1e-5, "{:?}", matrix.get(i, i));
@@ -167,7 +163,11 @@ fn windows_never_cross_an_end() {
     for window in [1, 4, 5, 52, 53, 54, 1000] {
         let matrix = terms.distances(window, &(0..1000), &(0..1000)).unwrap();
         if window > 53 {
-            assert!(matrix.rms_m().is_empty() && matrix.minimum().is_none() && matrix.local_minima().is_empty());
+            assert!(
+                matrix.rms_m().is_empty()
+                    && matrix.minimum().is_none()
+                    && matrix.local_minima().is_empty()
+            );
         } else {
             let (i, j) = matrix.frames(matrix.rows() - 1, matrix.columns() - 1);
             assert!(i + window <= 67 && j + window <= 53);
@@ -206,11 +206,7 @@ fn what_cannot_be_compared_is_refused() {
         PairTerms::new(&a, 0..5, &b, 0..5, &weights[1..], 1),
         Err(RegistrationError::Weights { .. })
     ));
-    let long = Walk {
-        frames: 9000,
-        ..Walk::default()
-    }
-    .clip();
+    let long = Walk { frames: 9000, ..Walk::default() }.clip();
     assert!(matches!(
         PairTerms::new(&long, 0..9000, &long, 0..9000, &weights, 1),
         Err(RegistrationError::TooManyPairs { stride: 3, .. })

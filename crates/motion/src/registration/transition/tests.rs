@@ -24,15 +24,7 @@ fn close_to_the_best_of_all_pairs() {
         (100, 30.0, 8),
     ] {
         for (cadence, turning) in [(1.25, 0.0), (0.7, 0.9), (0.93, -0.4)] {
-            let a = Arc::new(
-                Walk {
-                    frames,
-                    fps,
-                    start: (4.0, 9.0),
-                    ..Walk::default()
-                }
-                .clip(),
-            );
+            let a = Arc::new(Walk { frames, fps, start: (4.0, 9.0), ..Walk::default() }.clip());
             let b = Arc::new(
                 Walk {
                     frames: frames * 3 / 4,
@@ -65,23 +57,9 @@ fn close_to_the_best_of_all_pairs() {
 
 #[test]
 fn long_clips_are_searched_in_two_passes() {
-    let a = Arc::new(
-        Walk {
-            frames: 8_000,
-            fps: 60.0,
-            ..Walk::default()
-        }
-        .clip(),
-    );
+    let a = Arc::new(Walk { frames: 8_000, fps: 60.0, ..Walk::default() }.clip());
     let b = Arc::new(
-        Walk {
-            frames: 7_000,
-            fps: 60.0,
-            phase: 0.21,
-            heading: 1.0,
-            ..Walk::default()
-        }
-        .clip(),
+        Walk { frames: 7_000, fps: 60.0, phase: 0.21, heading: 1.0, ..Walk::default() }.clip(),
     );
     let weights = uniform_weights(a.skeleton());
     let found = best_transition(&a, &b, &weights, 1.75, &SearchOptions::new(30)).unwrap();
@@ -91,13 +69,7 @@ fn long_clips_are_searched_in_two_passes() {
 
 #[test]
 fn a_clip_that_continues_another_is_entered_where_it_does() {
-    let whole = Walk {
-        frames: 300,
-        fps: 60.0,
-        turning: 0.5,
-        ..Walk::default()
-    }
-    .clip();
+    let whole = Walk { frames: 300, fps: 60.0, turning: 0.5, ..Walk::default() }.clip();
     let a = Arc::new(whole.crop(0..180).unwrap());
     let moved = crate::math::Planar::new(1.9, -3.0, 8.0);
     let b = Arc::new(whole.crop(140..300).unwrap().transformed(&moved));
@@ -107,11 +79,7 @@ fn a_clip_that_continues_another_is_entered_where_it_does() {
         &b,
         &limb_weights(a.skeleton()),
         1.75,
-        &SearchOptions {
-            window: 25,
-            leave: Region::SECOND_HALF,
-            enter: Region::FIRST_HALF,
-        },
+        &SearchOptions { window: 25, leave: Region::SECOND_HALF, enter: Region::FIRST_HALF },
     );
     let found = found.unwrap();
     assert_eq!(found.leave, found.enter + 140, "{found:?}");
@@ -122,48 +90,27 @@ fn a_clip_that_continues_another_is_entered_where_it_does() {
 
 #[test]
 fn short_clips_grow_the_region_or_say_why_not() {
-    let a = Arc::new(
-        Walk {
-            frames: 40,
-            ..Walk::default()
-        }
-        .clip(),
-    );
-    let b = Arc::new(
-        Walk {
-            frames: 30,
-            cadence: 1.1,
-            ..Walk::default()
-        }
-        .clip(),
-    );
+    let a = Arc::new(Walk { frames: 40, ..Walk::default() }.clip());
+    let b = Arc::new(Walk { frames: 30, cadence: 1.1, ..Walk::default() }.clip());
     let weights = limb_weights(a.skeleton());
     // In the second half of a, no window of 25 frames ends before the clip does.
     let found = best_transition(&a, &b, &weights, 1.75, &SearchOptions::new(25)).unwrap();
     assert!(found.grown && found.leave + 25 <= 40 && found.enter + 25 <= 30);
     assert!(!best_transition(&a, &b, &weights, 1.75, &SearchOptions::new(20)).unwrap().grown);
     let error = best_transition(&a, &b, &weights, 1.75, &SearchOptions::new(31)).unwrap_err();
-    assert_eq!(
-        error,
-        RegistrationError::TooShort {
-            which: "incoming",
-            frames: 30,
-            window: 31
-        }
-    );
+    assert_eq!(error, RegistrationError::TooShort { which: "incoming", frames: 30, window: 31 });
     assert!(error.to_string().contains("lower the window to 30"));
     assert_eq!(
-        best_transition(&a, &b, &weights, 1.75, &SearchOptions::new(0))
-            .unwrap()
-            .alignment
-            .weight,
+        best_transition(&a, &b, &weights, 1.75, &SearchOptions::new(0)).unwrap().alignment.weight,
         1.0
     );
 }
 
 #[test]
 fn regions_are_any_numbers() {
-    for (from, to) in [(f64::NAN, f64::NAN), (2.0, -1.0), (0.3, 0.3), (-1.0, f64::INFINITY), (0.999, 1.0)] {
+    for (from, to) in
+        [(f64::NAN, f64::NAN), (2.0, -1.0), (0.3, 0.3), (-1.0, f64::INFINITY), (0.999, 1.0)]
+    {
         let (starts, _) = Region { from, to }.starts(50, 10).unwrap();
         assert!(!starts.is_empty() && starts.end <= 41, "{from} {to} {starts:?}");
     }
@@ -175,13 +122,7 @@ fn regions_are_any_numbers() {
 #[test]
 fn clips_that_do_not_fit_are_refused() {
     let a = Arc::new(Walk::default().clip());
-    let b = Arc::new(
-        Walk {
-            fps: 30.0,
-            ..Walk::default()
-        }
-        .clip(),
-    );
+    let b = Arc::new(Walk { fps: 30.0, ..Walk::default() }.clip());
     let weights = limb_weights(a.skeleton());
     assert!(matches!(
         best_transition(&a, &b, &weights, 1.75, &SearchOptions::new(5)),
@@ -197,11 +138,7 @@ fn clips_that_do_not_fit_are_refused() {
 #[test]
 fn search_with_a_fixed_frame_near_the_end_compares_that_frame_with_a_shorter_window() {
     let walk = |cadence| {
-        let walk = Walk {
-            frames: 60,
-            cadence,
-            ..Walk::default()
-        };
+        let walk = Walk { frames: 60, cadence, ..Walk::default() };
         Arc::new(walk.clip())
     };
     let (a, b) = (walk(1.0), walk(1.2));

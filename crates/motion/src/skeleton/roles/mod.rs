@@ -1,4 +1,5 @@
-//! Which joint is the hips, which the left foot: found by name, else by shape, and corrected by hand.
+//! Which joint is the hips, which the left foot: found by name, else by shape, and corrected by
+//! hand.
 
 mod names;
 mod shape;
@@ -30,8 +31,9 @@ struct Assigned {
 
 /// At most one joint per [`Role`].
 ///
-/// Stored (serde) as a map from role to joint index. The indices belong to one skeleton; when roles come from elsewhere, every user of them
-/// treats an index that the skeleton does not have as a missing role.
+/// Stored (serde) as a map from role to joint index. The indices belong to one skeleton; when roles
+/// come from elsewhere, every user of them treats an index that the skeleton does not have as a
+/// missing role.
 ///
 /// ```
 /// use segue_motion::skeleton::{Joint, Role, Roles, Skeleton};
@@ -69,12 +71,14 @@ impl From<Roles> for BTreeMap<Role, Assigned> {
 }
 
 impl Roles {
-    /// Finds the roles of a skeleton by its joints' names, and those that no name tells by its shape at rest.
+    /// Finds the roles of a skeleton by its joints' names, and those that no name tells by its
+    /// shape at rest.
     ///
-    /// Names: whole words are compared, without regard to case, after the side (`left`, `L_`, `.L`, `lFemur`, …), name spaces
-    /// (`mixamorig:`) and numbers are taken off; CMU (ASF and BVH), Mixamo, `LaFAN1`, Bandai-Namco, Biped, SMPL, `OptiTrack`, Rokoko, Xsens and
-    /// Unreal rigs are covered. Shape: needs Y up and arms that are not folded over the legs; left and right follow from the toes, which
-    /// point forward.
+    /// Names: whole words are compared, without regard to case, after the side (`left`, `L_`, `.L`,
+    /// `lFemur`, …), name spaces (`mixamorig:`) and numbers are taken off; CMU (ASF and BVH),
+    /// Mixamo, `LaFAN1`, Bandai-Namco, Biped, SMPL, `OptiTrack`, Rokoko, Xsens and Unreal rigs are
+    /// covered. Shape: needs Y up and arms that are not folded over the legs; left and right follow
+    /// from the toes, which point forward.
     #[must_use]
     pub fn detect(skeleton: &Skeleton) -> Self {
         let mut roles = names::detect(skeleton);
@@ -93,7 +97,9 @@ impl Roles {
     /// Takes over what is missing, where it does not contradict what is there.
     fn fill(&mut self, skeleton: &Skeleton, other: &Self) {
         for role in Role::ALL {
-            let Some(candidate) = other.assigned[role.index()] else { continue };
+            let Some(candidate) = other.assigned[role.index()] else {
+                continue;
+            };
             if self.assigned[role.index()].is_none()
                 && self.role_of(candidate.joint).is_none()
                 && self.fits(skeleton, role, candidate.joint)
@@ -134,15 +140,13 @@ impl Roles {
         self.assigned[role.index()].map(|a| a.found)
     }
 
-    /// Says by hand which joint has a role, or that none has it. A joint that had another role loses that one.
+    /// Says by hand which joint has a role, or that none has it. A joint that had another role
+    /// loses that one.
     pub fn set(&mut self, role: Role, joint: Option<usize>) {
         if let Some(previous) = joint.and_then(|joint| self.role_of(joint)) {
             self.assigned[previous.index()] = None;
         }
-        self.assigned[role.index()] = joint.map(|joint| Assigned {
-            joint,
-            found: Found::ByHand,
-        });
+        self.assigned[role.index()] = joint.map(|joint| Assigned { joint, found: Found::ByHand });
     }
 
     fn assign(&mut self, role: Role, joint: Option<usize>, found: Found) {
@@ -186,8 +190,8 @@ impl Roles {
         }
     }
 
-    /// The points of a foot that may stand on the ground: ankle, ball and tip, as far as the skeleton has them, each as a joint and a point in its
-    /// frame (metres).
+    /// The points of a foot that may stand on the ground: ankle, ball and tip, as far as the
+    /// skeleton has them, each as a joint and a point in its frame (metres).
     #[must_use]
     pub fn foot_points(&self, skeleton: &Skeleton, side: Side) -> Vec<(usize, Vec3)> {
         let joint = |role| self.get_within(role, skeleton.len());
@@ -197,15 +201,17 @@ impl Roles {
         foot.into_iter().chain(toe).map(|j| (j, Vec3::ZERO)).chain(tip).collect()
     }
 
-    /// Returns the length of a leg from hip joint over knee to ankle, metres: the mean of both sides. `None` without a whole leg. Adds up the bones
-    /// between, so that it does not depend on the rest pose.
+    /// Returns the length of a leg from hip joint over knee to ankle, metres: the mean of both
+    /// sides. `None` without a whole leg. Adds up the bones between, so that it does not depend on
+    /// the rest pose.
     #[must_use]
     pub fn leg_length(&self, skeleton: &Skeleton) -> Option<f32> {
         let joint = |role| self.get_within(role, skeleton.len());
         let legs: Vec<f32> = Side::BOTH
             .into_iter()
             .filter_map(|side| {
-                let (hip, knee, ankle) = (joint(Role::thigh(side))?, joint(Role::shin(side))?, joint(Role::foot(side))?);
+                let (hip, knee, ankle) =
+                    (joint(Role::thigh(side))?, joint(Role::shin(side))?, joint(Role::foot(side))?);
                 Some(length_between(skeleton, hip, knee)? + length_between(skeleton, knee, ankle)?)
             })
             .filter(|&length| length > 0.0)
@@ -213,9 +219,10 @@ impl Roles {
         (!legs.is_empty()).then(|| legs.iter().sum::<f32>() / legs.len() as f32)
     }
 
-    /// Returns the character's height standing upright, metres: thigh and shin are 0.491 of it (Winter, "Biomechanics and Motor Control of Human
-    /// Movement", table 4.1). Without legs the longest way through the skeleton along its bones, and without any length 1. Only bone lengths
-    /// count, which no rest pose changes.
+    /// Returns the character's height standing upright, metres: thigh and shin are 0.491 of it
+    /// (Winter, "Biomechanics and Motor Control of Human Movement", table 4.1). Without legs the
+    /// longest way through the skeleton along its bones, and without any length 1. Only bone
+    /// lengths count, which no rest pose changes.
     #[must_use]
     pub fn body_height(&self, skeleton: &Skeleton) -> f32 {
         if let Some(leg) = self.leg_length(skeleton) {
@@ -226,7 +233,8 @@ impl Roles {
     }
 }
 
-/// The lengths of the bones from a joint down to one below it, added up; `None` where it is not below.
+/// The lengths of the bones from a joint down to one below it, added up; `None` where it is not
+/// below.
 fn length_between(skeleton: &Skeleton, above: usize, below: usize) -> Option<f32> {
     let mut length = 0.0;
     let mut joint = below;

@@ -2,7 +2,8 @@ use super::tokens::{self, Tokens};
 use super::{Found, Roles, is_below};
 use crate::skeleton::{Role, Side, Skeleton};
 
-/// For each part of the body the words for it, in groups: a word of an earlier group wins over those of later ones.
+/// For each part of the body the words for it, in groups: a word of an earlier group wins over
+/// those of later ones.
 type Vocabulary = &'static [&'static [&'static str]];
 
 const HIPS: Vocabulary = &[&["hips", "pelvis", "hip"], &["root"]];
@@ -25,25 +26,24 @@ const SPINE: Vocabulary = &[&[
     "upperspine",
 ]];
 const HEAD: Vocabulary = &[&["head", "skull"]];
-// A lone "LeftHip" is the thigh, but beside "LeftUpLeg" it is the bone that leads there (CMU); "LeftLeg" is the shin, unless it is
-// followed by a "LeftKnee".
+// A lone "LeftHip" is the thigh, but beside "LeftUpLeg" it is the bone that leads there (CMU);
+// "LeftLeg" is the shin, unless it is followed by a "LeftKnee".
 const THIGH: Vocabulary = &[&["thigh", "upleg", "upperleg", "uleg", "femur"], &["hip"], &["leg"]];
-const SHIN: Vocabulary = &[&["shin", "calf", "lowerleg", "lowleg", "tibia", "shank", "knee"], &["leg"]];
-// SMPL: "L_Ankle" has a child "L_Foot", and that is the ball of the foot. Likewise "L_Wrist" and "L_Hand", and CMU's ASF "lwrist" and "lhand".
+const SHIN: Vocabulary =
+    &[&["shin", "calf", "lowerleg", "lowleg", "tibia", "shank", "knee"], &["leg"]];
+// SMPL: "L_Ankle" has a child "L_Foot", and that is the ball of the foot. Likewise "L_Wrist" and
+// "L_Hand", and CMU's ASF "lwrist" and "lhand".
 const FOOT: Vocabulary = &[&["ankle"], &["foot"]];
 const TOE: Vocabulary = &[&["toe", "toes", "ball"], &["foot"]];
 // "LeftShoulder" is the upper arm only where no "LeftArm" follows it.
-const UPPER_ARM: Vocabulary = &[&["upperarm", "uparm", "uarm", "humerus"], &["arm"], &["shoulder", "shldr"]];
+const UPPER_ARM: Vocabulary =
+    &[&["upperarm", "uparm", "uarm", "humerus"], &["arm"], &["shoulder", "shldr"]];
 const FOREARM: Vocabulary = &[&["forearm", "lowerarm", "lowarm", "farm", "radius", "elbow"]];
 const HAND: Vocabulary = &[&["wrist"], &["hand"]];
 
 pub(super) fn detect(skeleton: &Skeleton) -> Roles {
     let names: Vec<Tokens> = skeleton.joints().iter().map(|j| tokens::read(&j.name)).collect();
-    let search = Search {
-        skeleton,
-        names: &names,
-        depths: depths(skeleton),
-    };
+    let search = Search { skeleton, names: &names, depths: depths(skeleton) };
     let mut roles = Roles::default();
     let hips = search.best(HIPS, None, None);
     roles.assign(Role::Hips, hips, Found::ByName);
@@ -72,28 +72,34 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The joint of that side, below `above`, with the best word; of several the one nearest the root.
+    /// The joint of that side, below `above`, with the best word; of several the one nearest the
+    /// root.
     fn best(&self, words: Vocabulary, side: Option<Side>, above: Option<usize>) -> Option<usize> {
         let rank = |joint: usize, tokens: &Tokens| {
-            if tokens.helper || tokens.side != side || above.is_some_and(|above| !is_below(self.skeleton, joint, above)) {
+            if tokens.helper
+                || tokens.side != side
+                || above.is_some_and(|above| !is_below(self.skeleton, joint, above))
+            {
                 return None;
             }
             let group = |core: &str| words.iter().position(|group| group.contains(&core));
-            // "torso_head" is read as the joint where the head starts, if no joint is called "head" outright.
+            // "torso_head" is read as the joint where the head starts, if no joint is called "head"
+            // outright.
             group(&tokens.core).or_else(|| group(&tokens.last).map(|g| g + words.len()))
         };
-        let ranked = self
-            .names
-            .iter()
-            .enumerate()
-            .filter_map(|(joint, tokens)| Some((rank(joint, tokens)?, self.depths[joint], joint)));
+        let ranked =
+            self.names.iter().enumerate().filter_map(|(joint, tokens)| {
+                Some((rank(joint, tokens)?, self.depths[joint], joint))
+            });
         ranked.min().map(|(_, _, joint)| joint)
     }
 
     /// Xsens calls the lowest joint of the back by its vertebra: `L5`.
     fn lumbar(&self, hips: Option<usize>) -> Option<usize> {
         self.names.iter().enumerate().find_map(|(joint, t)| {
-            let is = t.core.is_empty() && t.side == Some(Side::Left) && matches!(t.numbers.as_slice(), [n] if n == "5");
+            let is = t.core.is_empty()
+                && t.side == Some(Side::Left)
+                && matches!(t.numbers.as_slice(), [n] if n == "5");
             (is && hips.is_none_or(|hips| is_below(self.skeleton, joint, hips))).then_some(joint)
         })
     }

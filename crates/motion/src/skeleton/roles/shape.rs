@@ -2,19 +2,23 @@ use super::{Found, Roles, is_below};
 use crate::skeleton::{Role, Side, Skeleton};
 use glam::Vec3;
 
-/// A bone belongs to the limb proper when it has at least this share of the limb's longest bone; clavicles often do, feet and hands do not.
+/// A bone belongs to the limb proper when it has at least this share of the limb's longest bone;
+/// clavicles often do, feet and hands do not.
 const LONG: f32 = 0.55;
 /// The hips lie above the feet by at least this share of the skeleton's height.
 const LEAST_LEG: f32 = 0.25;
 /// The hands reach to either side by at least this share of the skeleton's height.
 const LEAST_REACH: f32 = 0.05;
 
-/// Finds roles by the tree and the rest positions alone: the two lowest chains are legs, the two that reach farthest sideways above them
-/// are arms, what rises highest between is the head. +Y must be up at rest.
+/// Finds roles by the tree and the rest positions alone: the two lowest chains are legs, the two
+/// that reach farthest sideways above them are arms, what rises highest between is the head. +Y
+/// must be up at rest.
 pub(super) fn detect(skeleton: &Skeleton) -> Roles {
     let mut roles = Roles::default();
     let shape = Shape::of(skeleton);
-    let Some((hips, legs)) = shape.legs() else { return roles };
+    let Some((hips, legs)) = shape.legs() else {
+        return roles;
+    };
     roles.assign(Role::Hips, Some(hips), Found::ByShape);
     let legs: Vec<Leg> = legs.into_iter().map(|tip| shape.leg(hips, tip)).collect();
     let [Some(a), Some(b)] = [legs[0].thigh, legs[1].thigh] else {
@@ -24,16 +28,23 @@ pub(super) fn detect(skeleton: &Skeleton) -> Roles {
     let forward = legs.iter().filter_map(|leg| leg.forward).sum::<Vec3>();
     let forward = if forward.length() > 0.01 * shape.height { forward } else { Vec3::Z };
     let left = Vec3::Y.cross(forward).normalize_or(Vec3::X);
-    let side_of = |of: Vec3, other: Vec3| if (of - other).dot(left) > 0.0 { Side::Left } else { Side::Right };
+    let side_of = |of: Vec3, other: Vec3| {
+        if (of - other).dot(left) > 0.0 { Side::Left } else { Side::Right }
+    };
     let first = side_of(shape.rest[a], shape.rest[b]);
     for (leg, side) in legs.iter().zip([first, first.other()]) {
-        for (role, joint) in Role::leg(side).into_iter().zip([leg.thigh, leg.shin, leg.foot, leg.toe]) {
+        for (role, joint) in
+            Role::leg(side).into_iter().zip([leg.thigh, leg.shin, leg.foot, leg.toe])
+        {
             roles.assign(role, joint, Found::ByShape);
         }
     }
     let body: Vec<usize> = legs.iter().filter_map(|leg| leg.thigh).collect();
     let above: Vec<usize> = (shape.leaves.iter().copied())
-        .filter(|&leaf| is_below(skeleton, leaf, hips) && !body.iter().any(|&thigh| leaf == thigh || is_below(skeleton, leaf, thigh)))
+        .filter(|&leaf| {
+            is_below(skeleton, leaf, hips)
+                && !body.iter().any(|&thigh| leaf == thigh || is_below(skeleton, leaf, thigh))
+        })
         .collect();
     let chest = shape.arms(&above, left, hips, &mut roles);
     shape.back_and_head(&above, hips, chest, &mut roles);
@@ -66,12 +77,7 @@ impl<'a> Shape<'a> {
             has_child[parent] = true;
         }
         let leaves: Vec<usize> = (0..skeleton.len()).filter(|&joint| !has_child[joint]).collect();
-        let mut shape = Self {
-            skeleton,
-            rest,
-            leaves,
-            height: 0.0,
-        };
+        let mut shape = Self { skeleton, rest, leaves, height: 0.0 };
         let heights = || (0..skeleton.len()).map(|joint| shape.tip(joint).y);
         shape.height = heights().fold(f32::MIN, f32::max) - heights().fold(f32::MAX, f32::min);
         shape
@@ -84,9 +90,10 @@ impl<'a> Shape<'a> {
 
     /// The joints from below `top` down to `bottom`.
     fn path(&self, top: usize, bottom: usize) -> Vec<usize> {
-        let mut path: Vec<usize> = std::iter::successors(Some(bottom), |&j| self.skeleton.parent(j))
-            .take_while(|&joint| joint != top)
-            .collect();
+        let mut path: Vec<usize> =
+            std::iter::successors(Some(bottom), |&j| self.skeleton.parent(j))
+                .take_while(|&joint| joint != top)
+                .collect();
         path.reverse();
         path
     }
@@ -110,18 +117,25 @@ impl<'a> Shape<'a> {
         by_height.iter().skip(1).find_map(|&second| {
             let meeting = self.meeting(first, second);
             let lower = self.tip(first).y.max(self.tip(second).y);
-            (self.rest[meeting].y - lower > LEAST_LEG * self.height).then_some((meeting, [first, second]))
+            (self.rest[meeting].y - lower > LEAST_LEG * self.height)
+                .then_some((meeting, [first, second]))
         })
     }
 
-    /// The last two long bones of a limb on its way from `top` to the leaf `tip`: (upper, lower, the joint at the lower one's end).
+    /// The last two long bones of a limb on its way from `top` to the leaf `tip`: (upper, lower,
+    /// the joint at the lower one's end).
     fn limb(&self, top: usize, tip: usize) -> Option<(usize, usize, Option<usize>)> {
-        // Joints at one place (bones without length) count as one. The last of them turns the bone that starts there, and the first one
-        // carries all that hangs on the end of the bone before.
+        // Joints at one place (bones without length) count as one. The last of them turns the bone
+        // that starts there, and the first one carries all that hangs on the end of the bone
+        // before.
         let mut places: Vec<(usize, usize)> = Vec::new();
         for joint in self.path(top, tip) {
             match places.last_mut() {
-                Some((_, last)) if self.rest[*last].distance(self.rest[joint]) < 1e-4 * self.height => *last = joint,
+                Some((_, last))
+                    if self.rest[*last].distance(self.rest[joint]) < 1e-4 * self.height =>
+                {
+                    *last = joint
+                }
                 _ => places.push((joint, joint)),
             }
         }
@@ -130,7 +144,8 @@ impl<'a> Shape<'a> {
             None => self.rest[places[i].1].distance(self.tip(places[i].1)),
         };
         let longest = (0..places.len()).map(bone).fold(0.0, f32::max);
-        let mut long = (0..places.len()).rev().filter(|&i| bone(i) > 0.0 && bone(i) >= LONG * longest);
+        let mut long =
+            (0..places.len()).rev().filter(|&i| bone(i) > 0.0 && bone(i) >= LONG * longest);
         let (lower, upper) = (long.next()?, long.next()?);
         Some((places[upper].1, places[lower].1, places.get(lower + 1).map(|&(first, _)| first)))
     }
@@ -140,20 +155,18 @@ impl<'a> Shape<'a> {
             return Leg::default();
         };
         let Some(ankle) = foot else {
-            return Leg {
-                thigh: Some(thigh),
-                shin: Some(shin),
-                ..Leg::default()
-            };
+            return Leg { thigh: Some(thigh), shin: Some(shin), ..Leg::default() };
         };
-        let over_ground = |leaf: usize| (self.tip(leaf) - self.rest[ankle]) * Vec3::new(1.0, 0.0, 1.0);
+        let over_ground =
+            |leaf: usize| (self.tip(leaf) - self.rest[ankle]) * Vec3::new(1.0, 0.0, 1.0);
         // A heel may be the lowest point; the toes are what is farthest from the ankle.
         let leaves = self
             .leaves
             .iter()
             .copied()
             .filter(|&leaf| leaf == ankle || is_below(self.skeleton, leaf, ankle));
-        let farthest = leaves.max_by(|&a, &b| over_ground(a).length().total_cmp(&over_ground(b).length()));
+        let farthest =
+            leaves.max_by(|&a, &b| over_ground(a).length().total_cmp(&over_ground(b).length()));
         let toe = farthest.and_then(|leaf| self.path(ankle, leaf).first().copied());
         Leg {
             thigh: Some(thigh),
@@ -183,16 +196,25 @@ impl<'a> Shape<'a> {
         Some(chest)
     }
 
-    fn back_and_head(&self, leaves: &[usize], hips: usize, chest: Option<usize>, roles: &mut Roles) {
-        let arms: Vec<usize> = Side::BOTH.into_iter().filter_map(|side| roles.get(Role::upper_arm(side))).collect();
-        let in_arm = |leaf: usize| arms.iter().any(|&arm| leaf == arm || is_below(self.skeleton, leaf, arm));
+    fn back_and_head(
+        &self,
+        leaves: &[usize],
+        hips: usize,
+        chest: Option<usize>,
+        roles: &mut Roles,
+    ) {
+        let arms: Vec<usize> =
+            Side::BOTH.into_iter().filter_map(|side| roles.get(Role::upper_arm(side))).collect();
+        let in_arm =
+            |leaf: usize| arms.iter().any(|&arm| leaf == arm || is_below(self.skeleton, leaf, arm));
         let highest = (leaves.iter().copied())
             .filter(|&leaf| !in_arm(leaf))
             .max_by(|&a, &b| self.tip(a).y.total_cmp(&self.tip(b).y));
         let Some(highest) = highest.filter(|&leaf| self.tip(leaf).y > self.rest[hips].y) else {
             return;
         };
-        // A leaf without a bone of its own marks where the head ends, and one of several leaves is an eye or an ear.
+        // A leaf without a bone of its own marks where the head ends, and one of several leaves is
+        // an eye or an ear.
         let marks_the_end = self.skeleton.joints()[highest]
             .end_site
             .is_none_or(|end| end.length() < 1e-4 * self.height);

@@ -5,7 +5,9 @@ use glam::Vec3;
 fn names(skeleton: &Skeleton, roles: &Roles) -> Vec<String> {
     Role::ALL
         .iter()
-        .map(|&role| roles.get(role).map_or(String::new(), |joint| skeleton.joints()[joint].name.clone()))
+        .map(|&role| {
+            roles.get(role).map_or(String::new(), |joint| skeleton.joints()[joint].name.clone())
+        })
         .collect()
 }
 
@@ -33,10 +35,10 @@ fn names_count_whatever_the_order_of_joints() {
 #[test]
 fn case_does_not_count() {
     for (rig, skeleton, wanted) in fixtures::all() {
-        let lower = skeleton.joints().iter().map(|joint| Joint {
-            name: joint.name.to_lowercase(),
-            ..joint.clone()
-        });
+        let lower = skeleton
+            .joints()
+            .iter()
+            .map(|joint| Joint { name: joint.name.to_lowercase(), ..joint.clone() });
         let lower = Skeleton::new(lower.collect()).unwrap();
         let wanted = wanted.map(str::to_lowercase);
         assert_eq!(names(&lower, &names::detect(&lower)), wanted, "{rig}");
@@ -47,11 +49,13 @@ fn case_does_not_count() {
 fn the_shape_tells_what_names_do_not() {
     for (rig, skeleton, mut wanted) in fixtures::all() {
         if rig == "biped" {
-            // Without names, the joint on which the legs hang is the hips, and the next one above it the spine.
+            // Without names, the joint on which the legs hang is the hips, and the next one above
+            // it the spine.
             (wanted[0], wanted[1]) = ("Bip01 Spine", "Bip01 Spine1");
         }
         for seed in 0..4 {
-            let (shuffled, _) = fixtures::shuffled(&fixtures::uneven(&skeleton, 1.3, 0.03, 0.05, seed), seed);
+            let (shuffled, _) =
+                fixtures::shuffled(&fixtures::uneven(&skeleton, 1.3, 0.03, 0.05, seed), seed);
             let roles = Roles::detect(&fixtures::nameless(&shuffled));
             assert_eq!(names(&shuffled, &roles), wanted, "{rig}, seed {seed}");
             assert!(Role::ALL.iter().all(|&role| roles.found(role) == Some(Found::ByShape)));
@@ -79,10 +83,7 @@ fn shape_fills_the_gaps_between_names() {
     let skeleton = fixtures::mixamo();
     let joints = skeleton.joints().iter().map(|joint| {
         let strange = joint.name.ends_with("RightLeg") || joint.name.ends_with("Head");
-        Joint {
-            name: if strange { "xyz".into() } else { joint.name.clone() },
-            ..joint.clone()
-        }
+        Joint { name: if strange { "xyz".into() } else { joint.name.clone() }, ..joint.clone() }
     });
     let roles = Roles::detect(&Skeleton::new(joints.collect()).unwrap());
     let all_named = Roles::detect(&skeleton);
@@ -109,11 +110,11 @@ fn strange_trees_have_few_roles_and_no_panic() {
     assert_eq!(Roles::detect(&Skeleton::new(vec![joint(None, Vec3::ZERO)]).unwrap()).count(), 0);
     let snake: Vec<Joint> = (0..3000).map(|i: usize| joint(i.checked_sub(1), Vec3::Z)).collect();
     assert_eq!(Roles::detect(&Skeleton::new(snake).unwrap()).count(), 0);
-    let star: Vec<Joint> = (0..100).map(|i: usize| joint((i > 0).then_some(0), Vec3::ZERO)).collect();
+    let star: Vec<Joint> =
+        (0..100).map(|i: usize| joint((i > 0).then_some(0), Vec3::ZERO)).collect();
     assert_eq!(Roles::detect(&Skeleton::new(star).unwrap()).count(), 0);
-    let not_numbers: Vec<Joint> = (0..20)
-        .map(|i: usize| joint((i > 0).then_some(i / 2), Vec3::splat(f32::NAN)))
-        .collect();
+    let not_numbers: Vec<Joint> =
+        (0..20).map(|i: usize| joint((i > 0).then_some(i / 2), Vec3::splat(f32::NAN))).collect();
     let roles = Roles::detect(&Skeleton::new(not_numbers).unwrap());
     assert!(Role::ALL.into_iter().all(|role| roles.get(role).is_none_or(|joint| joint < 20)));
 }
@@ -153,7 +154,8 @@ fn body_measures_come_from_the_legs() {
     let wanted = Vec3::new(0.0, 0.41, 0.01).length() + Vec3::new(0.0, 0.41, 0.03).length();
     assert!((leg - wanted).abs() < 1e-5);
     assert!((roles.body_height(&skeleton) - leg / 0.491).abs() < 1e-5);
-    // Without roles the longest way along bones: of all pairs of joints and ends, the lengths up to where their ways to the root meet.
+    // Without roles the longest way along bones: of all pairs of joints and ends, the lengths up to
+    // where their ways to the root meet.
     let mut ways: Vec<Vec<(usize, f32)>> = Vec::new();
     for (index, joint) in skeleton.joints().iter().enumerate() {
         let mut way = vec![(index, 0.0)];
@@ -176,9 +178,7 @@ fn body_measures_come_from_the_legs() {
             .find_map(|&(joint, far)| Some(far + b.iter().find(|(other, _)| *other == joint)?.1));
         meeting.unwrap_or(0.0)
     };
-    let longest = ways
-        .iter()
-        .flat_map(|a| ways.iter().map(move |b| between(a, b)))
-        .fold(0.0, f32::max);
+    let longest =
+        ways.iter().flat_map(|a| ways.iter().map(move |b| between(a, b))).fold(0.0, f32::max);
     assert!((Roles::default().body_height(&skeleton) - longest).abs() < 1e-4);
 }

@@ -1,12 +1,14 @@
 use crate::skeleton::Side;
 
-/// Words of which joint names are composed. Only runs that consist of these words entirely are split (`leftupleg`, `lowerback`).
+/// Words of which joint names are composed. Only runs that consist of these words entirely are
+/// split (`leftupleg`, `lowerback`).
 const WORDS: &[&str] = &[
-    "ab", "abdomen", "ankle", "arm", "back", "ball", "base", "calf", "chest", "clavicle", "collar", "effector", "elbow", "end", "f",
-    "femur", "finger", "fingers", "foot", "fore", "forearm", "hand", "head", "heel", "hip", "hips", "humerus", "index", "joint", "knee",
-    "left", "leg", "low", "lower", "middle", "neck", "nub", "pelvis", "pinky", "radius", "right", "ring", "roll", "root", "shank", "shin",
-    "shldr", "shoulder", "site", "spine", "thigh", "thorax", "thumb", "tibia", "tip", "toe", "toes", "top", "torso", "twist", "u", "up",
-    "upper", "waist", "wrist",
+    "ab", "abdomen", "ankle", "arm", "back", "ball", "base", "calf", "chest", "clavicle", "collar",
+    "effector", "elbow", "end", "f", "femur", "finger", "fingers", "foot", "fore", "forearm",
+    "hand", "head", "heel", "hip", "hips", "humerus", "index", "joint", "knee", "left", "leg",
+    "low", "lower", "middle", "neck", "nub", "pelvis", "pinky", "radius", "right", "ring", "roll",
+    "root", "shank", "shin", "shldr", "shoulder", "site", "spine", "thigh", "thorax", "thumb",
+    "tibia", "tip", "toe", "toes", "top", "torso", "twist", "u", "up", "upper", "waist", "wrist",
 ];
 
 /// Words that say nothing about what a joint is for.
@@ -38,9 +40,8 @@ const NOISE: &[&str] = &[
 ];
 
 /// Words of joints that move nothing of the body itself.
-const HELPERS: &[&str] = &[
-    "effector", "end", "ik", "nub", "pole", "roll", "site", "target", "tip", "top", "twist",
-];
+const HELPERS: &[&str] =
+    &["effector", "end", "ik", "nub", "pole", "roll", "site", "target", "tip", "top", "twist"];
 
 /// A joint's name, read.
 #[derive(Debug, PartialEq, Eq)]
@@ -49,7 +50,8 @@ pub(crate) struct Tokens {
     pub(crate) side: Option<Side>,
     /// The words without side, numbers and noise, joined: `upleg`.
     pub(crate) core: String,
-    /// The same of the part behind the last separator, where the name has several: `head` of `torso_head`.
+    /// The same of the part behind the last separator, where the name has several: `head` of
+    /// `torso_head`.
     pub(crate) last: String,
     /// The numbers in the name, as written.
     pub(crate) numbers: Vec<String>,
@@ -59,7 +61,11 @@ pub(crate) struct Tokens {
 
 /// Whether two names differ in nothing but the side: `LeftHandIndex1` and `RightHandIndex1`.
 pub(crate) fn are_counterparts(a: &Tokens, b: &Tokens) -> bool {
-    a.side.is_some() && a.side.map(Side::other) == b.side && a.core == b.core && a.numbers == b.numbers && a.helper == b.helper
+    a.side.is_some()
+        && a.side.map(Side::other) == b.side
+        && a.core == b.core
+        && a.numbers == b.numbers
+        && a.helper == b.helper
 }
 
 /// Reads a name: case, separators and camel humps split it into words.
@@ -92,13 +98,7 @@ pub(crate) fn read(name: &str) -> Tokens {
         }
     }
     let side = sides.first().copied().filter(|first| sides.iter().all(|s| s == first));
-    Tokens {
-        side,
-        core,
-        last,
-        numbers,
-        helper,
-    }
+    Tokens { side, core, last, numbers, helper }
 }
 
 /// Splits `LeftUpLeg1` into `left`, `up`, `leg`, `1`, and `LHipJoint` into `l`, `hip`, `joint`.
@@ -108,7 +108,9 @@ fn humps(part: &str) -> Vec<String> {
     for (i, &c) in chars.iter().enumerate() {
         let starts = i.checked_sub(1).and_then(|p| chars.get(p)).is_none_or(|&before| {
             c.is_ascii_digit() != before.is_ascii_digit()
-                || (c.is_uppercase() && (before.is_lowercase() || chars.get(i + 1).is_some_and(|after| after.is_lowercase())))
+                || (c.is_uppercase()
+                    && (before.is_lowercase()
+                        || chars.get(i + 1).is_some_and(|after| after.is_lowercase())))
         });
         if starts {
             runs.push(String::new());
@@ -120,7 +122,8 @@ fn humps(part: &str) -> Vec<String> {
     runs
 }
 
-/// Splits a lower-case run into known words, after a leading `l` or `r` if need be; a run that does not consist of known words stays whole.
+/// Splits a lower-case run into known words, after a leading `l` or `r` if need be; a run that does
+/// not consist of known words stays whole.
 fn words(run: &str) -> Vec<String> {
     if let Some(split) = known_words(run) {
         return split;
@@ -134,7 +137,8 @@ fn words(run: &str) -> Vec<String> {
     vec![run.to_owned()]
 }
 
-/// The split into the fewest known words. Names are short, so the table is, too; very long ones are not taken apart.
+/// The split into the fewest known words. Names are short, so the table is, too; very long ones are
+/// not taken apart.
 fn known_words(run: &str) -> Option<Vec<String>> {
     if run.is_empty() || run.len() > 64 || !run.is_ascii() {
         return None;

@@ -4,7 +4,8 @@ use super::{Anchor, Shape};
 use crate::skeleton::Skeleton;
 use glam::Vec3;
 
-/// Girth grows with the length of everything that hangs on a bone, to this power (1/2 would keep the cross-section areas of a forking tree).
+/// Girth grows with the length of everything that hangs on a bone, to this power (1/2 would keep
+/// the cross-section areas of a forking tree).
 const GIRTH_POWER: f32 = 0.6;
 /// Radius of a bone that carries the whole skeleton, per metre of its total length.
 const GIRTH: f32 = 0.04;
@@ -30,19 +31,13 @@ pub(super) fn shapes(skeleton: &Skeleton, rest: &[Vec3]) -> Vec<Shape> {
     let mut shapes = Vec::with_capacity(joints.len());
     if !(total.is_finite() && total > 0.0) {
         // A single point, or joints at one place: a ball of 5 cm says that something is there.
-        let root = Anchor {
-            joint: 0,
-            point: Vec3::ZERO,
-        };
+        let root = Anchor { joint: 0, point: Vec3::ZERO };
         shapes.push(Shape::round(root, 0.05, root, 0.05));
         return shapes;
     }
     let shortest = total * 1e-3;
     for (index, joint) in joints.iter().enumerate() {
-        let here = Anchor {
-            joint: index,
-            point: Vec3::ZERO,
-        };
+        let here = Anchor { joint: index, point: Vec3::ZERO };
         if let Some(parent) = joint.parent {
             let length = joint.offset.length();
             if length > shortest {
@@ -50,10 +45,7 @@ pub(super) fn shapes(skeleton: &Skeleton, rest: &[Vec3]) -> Vec<Shape> {
                 let thick = radius(below[index] + length, total).min(limit);
                 let thin = radius(below[index] + 0.25 * length, total).min(limit);
                 shapes.push(Shape::round(
-                    Anchor {
-                        joint: parent,
-                        point: Vec3::ZERO,
-                    },
+                    Anchor { joint: parent, point: Vec3::ZERO },
                     thick,
                     here,
                     thin,
@@ -75,11 +67,9 @@ pub(super) fn shapes(skeleton: &Skeleton, rest: &[Vec3]) -> Vec<Shape> {
         }
     }
     // A trunk: the root carries everything, also where its bones are short.
-    let root = Anchor {
-        joint: 0,
-        point: Vec3::ZERO,
-    };
-    let nearest = skeleton.children(0).map(|child| rest[child].length()).fold(f32::INFINITY, f32::min);
+    let root = Anchor { joint: 0, point: Vec3::ZERO };
+    let nearest =
+        skeleton.children(0).map(|child| rest[child].length()).fold(f32::INFINITY, f32::min);
     if nearest.is_finite() {
         let thick = radius(total * 0.6, total).min(nearest.max(shortest) * 1.5);
         shapes.push(Shape::round(root, thick, root, thick));

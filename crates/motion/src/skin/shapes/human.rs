@@ -1,13 +1,15 @@
 //! The mannequin: girths and landmarks of an adult, scaled to the skeleton.
 //!
-//! Lengths along the body are the skeleton's. Girths and the place of landmarks off the bones (heel, chin, calf) are those of an adult of
-//! 1.75 m, rounded from the tables in Winter, "Biomechanics and Motor Control of Human Movement", and scaled with the body height.
+//! Lengths along the body are the skeleton's. Girths and the place of landmarks off the bones
+//! (heel, chin, calf) are those of an adult of 1.75 m, rounded from the tables in Winter,
+//! "Biomechanics and Motor Control of Human Movement", and scaled with the body height.
 
 use super::{Anchor, Shape};
 use crate::skeleton::{Role, Roles, Side, Skeleton};
 use glam::Vec3;
 
-/// The body axes at rest, where all joint frames agree: left and up span the trunk, forward is out of the chest.
+/// The body axes at rest, where all joint frames agree: left and up span the trunk, forward is out
+/// of the chest.
 struct Axes {
     left: Vec3,
     up: Vec3,
@@ -52,11 +54,7 @@ pub(super) fn shapes(skeleton: &Skeleton, rest: &[Vec3], roles: &Roles) -> Optio
     if !(scale.is_finite() && scale > 0.0) {
         return None;
     }
-    let axes = Axes {
-        left,
-        up,
-        forward: left.cross(up),
-    };
+    let axes = Axes { left, up, forward: left.cross(up) };
     let mut human = Human {
         skeleton,
         rest,
@@ -83,17 +81,11 @@ impl Human<'_> {
 
     /// A point that lies at `rest` when the skeleton rests and moves with `joint`.
     fn anchor(&self, joint: usize, rest: Vec3) -> Anchor {
-        Anchor {
-            joint,
-            point: rest - self.rest[joint],
-        }
+        Anchor { joint, point: rest - self.rest[joint] }
     }
 
     fn on(&self, joint: usize, offset: Vec3) -> Anchor {
-        Anchor {
-            joint,
-            point: offset * self.scale,
-        }
+        Anchor { joint, point: offset * self.scale }
     }
 
     /// Adds a shape whose radii are those of the adult.
@@ -133,7 +125,8 @@ impl Human<'_> {
         let s = self.scale;
         let (hips, chest) = (self.joint(Role::Hips)?, self.chest()?);
         let (hip_left, hip_right) = (self.joint(Role::LeftThigh)?, self.joint(Role::RightThigh)?);
-        let (arm_left, arm_right) = (self.joint(Role::LeftUpperArm)?, self.joint(Role::RightUpperArm)?);
+        let (arm_left, arm_right) =
+            (self.joint(Role::LeftUpperArm)?, self.joint(Role::RightUpperArm)?);
         let hip_middle = (self.rest[hip_left] + self.rest[hip_right]) * 0.5;
         let shoulder_middle = (self.rest[arm_left] + self.rest[arm_right]) * 0.5;
         let half_hips = self.rest[hip_left].distance(self.rest[hip_right]) * 0.5 / s;
@@ -159,11 +152,9 @@ impl Human<'_> {
                 .find(|&j| (this.rest[j] - hip_middle).dot(up) <= level + 1e-4 * height);
             this.anchor(below.unwrap_or(hips), point)
         };
-        let low = Anchor {
-            joint: hips,
-            point: hip_middle + up * (0.082 * s) - self.rest[hips],
-        };
-        let (belly, lower_ribs, upper_ribs) = (landmark(self, 0.40, 0.0), landmark(self, 0.60, 0.005), landmark(self, 0.80, 0.0));
+        let low = Anchor { joint: hips, point: hip_middle + up * (0.082 * s) - self.rest[hips] };
+        let (belly, lower_ribs, upper_ribs) =
+            (landmark(self, 0.40, 0.0), landmark(self, 0.60, 0.005), landmark(self, 0.80, 0.0));
         self.add(low, pelvis, belly, waist);
         self.flatten_last(forward, 0.70);
         self.add(belly, waist, lower_ribs, ribs * 0.90);
@@ -200,34 +191,32 @@ impl Human<'_> {
         let breast = |this: &Self, arm: usize| {
             this.anchor(
                 chest,
-                this.rest[arm].lerp(shoulder_middle, 0.56) - up * (0.078 * s) + forward * (0.018 * s),
+                this.rest[arm].lerp(shoulder_middle, 0.56) - up * (0.078 * s)
+                    + forward * (0.018 * s),
             )
         };
         let (breast_left, breast_right) = (breast(self, arm_left), breast(self, arm_right));
         self.add(breast_left, 0.077, breast_right, 0.077);
         for (side, arm) in [(1.0, arm_left), (-1.0, arm_right)] {
-            let girdle = self.anchor(chest, shoulder_middle + left * (side * 0.05 * s) - up * (0.022 * s));
-            self.add(
-                girdle,
-                0.066,
-                Anchor {
-                    joint: arm,
-                    point: Vec3::ZERO,
-                },
-                0.056,
-            );
+            let girdle =
+                self.anchor(chest, shoulder_middle + left * (side * 0.05 * s) - up * (0.022 * s));
+            self.add(girdle, 0.066, Anchor { joint: arm, point: Vec3::ZERO }, 0.056);
             // The hollow of the armpit, filled.
             let flank = self.anchor(
                 chest,
-                shoulder_middle + left * (side * 0.075 * s) - up * (0.13 * s) - forward * (0.012 * s),
+                shoulder_middle + left * (side * 0.075 * s)
+                    - up * (0.13 * s)
+                    - forward * (0.012 * s),
             );
-            let armpit = self.anchor(chest, self.rest[arm].lerp(shoulder_middle, 0.16) - up * (0.028 * s));
+            let armpit =
+                self.anchor(chest, self.rest[arm].lerp(shoulder_middle, 0.16) - up * (0.028 * s));
             self.add(flank, 0.060, armpit, 0.046);
             // The muscle of the chest, and the broad one of the back that narrows to the waist.
             let at = |this: &Self, share: f32, down: f32, ahead: f32| {
                 this.anchor(
                     chest,
-                    this.rest[arm].lerp(shoulder_middle, share) - up * (down * s) + forward * (ahead * s),
+                    this.rest[arm].lerp(shoulder_middle, share) - up * (down * s)
+                        + forward * (ahead * s),
                 )
             };
             let (breast, inner) = (at(self, 0.30, 0.060, 0.030), at(self, 0.66, 0.094, 0.044));
@@ -244,16 +233,23 @@ impl Human<'_> {
         let head = self.joint(Role::Head)?;
         let chest = self.chest()?;
         let neck = self.ancestors(head).skip(1).take_while(|&j| j != chest).last().unwrap_or(chest);
-        let shoulders = (self.rest[self.joint(Role::LeftUpperArm)?] + self.rest[self.joint(Role::RightUpperArm)?]) * 0.5;
+        let shoulders = (self.rest[self.joint(Role::LeftUpperArm)?]
+            + self.rest[self.joint(Role::RightUpperArm)?])
+            * 0.5;
         let throat = if neck == head { chest } else { neck };
-        let base = self.anchor(throat, shoulders.lerp(self.rest[head], 0.10) - forward * (0.004 * self.scale));
+        let base = self
+            .anchor(throat, shoulders.lerp(self.rest[head], 0.10) - forward * (0.004 * self.scale));
         // Where the crown is: the file's own, or that of a joint at the base of the skull.
-        let told = self.skeleton.joints()[head].end_site.map_or(0.0, |end| end.dot(up) / self.scale);
+        let told =
+            self.skeleton.joints()[head].end_site.map_or(0.0, |end| end.dot(up) / self.scale);
         let crown = if (0.12..0.26).contains(&told) { told } else { 0.19 };
         self.add(base, 0.055, self.on(head, up * (crown - 0.13) - forward * 0.004), 0.049);
         for side in Side::BOTH {
             // From the side of the neck down to the shoulder.
-            let nape = self.anchor(throat, shoulders.lerp(self.rest[head], 0.40) - forward * (0.012 * self.scale));
+            let nape = self.anchor(
+                throat,
+                shoulders.lerp(self.rest[head], 0.40) - forward * (0.012 * self.scale),
+            );
             let shoulder = Anchor {
                 joint: self.joint(Role::upper_arm(side))?,
                 point: -up * (0.004 * self.scale),
@@ -300,7 +296,9 @@ impl Human<'_> {
             self.joint(Role::forearm(side))?,
             self.joint(Role::hand(side))?,
         );
-        let middle = |this: &Self, a: usize, b: usize, t: f32| this.anchor(a, this.rest[a].lerp(this.rest[b], t));
+        let middle = |this: &Self, a: usize, b: usize, t: f32| {
+            this.anchor(a, this.rest[a].lerp(this.rest[b], t))
+        };
         let zero = |joint| Anchor { joint, point: Vec3::ZERO };
         let biceps = middle(self, shoulder, elbow, 0.42);
         self.add(zero(shoulder), 0.058, biceps, 0.048);
@@ -309,7 +307,8 @@ impl Human<'_> {
         self.add(zero(elbow), 0.038, bulge, 0.042);
         self.add(bulge, 0.042, zero(wrist), 0.026);
 
-        // The palm faces down when the arm is stretched out to the side, inwards when it hangs; `palm` points out of the back of the hand.
+        // The palm faces down when the arm is stretched out to the side, inwards when it hangs;
+        // `palm` points out of the back of the hand.
         let along = (self.rest[wrist] - self.rest[elbow]).normalize_or(self.axes.left);
         let sign = if side == Side::Left { 1.0 } else { -1.0 };
         let palm = (self.axes.forward.cross(along) * sign).normalize_or(self.axes.up);
@@ -335,17 +334,15 @@ impl Human<'_> {
             self.covered[joint] = true;
             if has_fingers && let Some(parent) = self.skeleton.parent(joint) {
                 let before = self.shapes.len();
-                let (from, radius) = if parent == wrist {
-                    (zero(wrist), 0.014)
-                } else {
-                    (zero(parent), 0.0098)
-                };
+                let (from, radius) =
+                    if parent == wrist { (zero(wrist), 0.014) } else { (zero(parent), 0.0098) };
                 self.add(from, radius, zero(joint), 0.0092);
                 if let Some(end) = self.skeleton.joints()[joint].end_site {
                     self.add(zero(joint), 0.0092, Anchor { joint, point: end }, 0.007);
                 }
                 // A finger is a shell of its own; what lies between wrist and finger is the palm.
-                let finger = self.ancestors(joint).take_while(|&j| j != wrist).last().unwrap_or(joint);
+                let finger =
+                    self.ancestors(joint).take_while(|&j| j != wrist).last().unwrap_or(joint);
                 for shape in self.shapes.iter_mut().skip(before + usize::from(parent == wrist)) {
                     shape.shell = finger;
                 }
@@ -370,17 +367,23 @@ impl Human<'_> {
         );
         let zero = |joint| Anchor { joint, point: Vec3::ZERO };
         let down = (self.rest[ankle] - self.rest[hip]).normalize_or(-self.axes.up);
-        // Out of the knee, in the frames of the leg. In some files the legs of the resting skeleton point up.
+        // Out of the knee, in the frames of the leg. In some files the legs of the resting skeleton
+        // point up.
         let ahead = down.cross(self.axes.left).normalize_or(self.axes.forward);
-        let thigh = self.anchor(hip, self.rest[hip].lerp(self.rest[knee], 0.36) + ahead * (0.010 * s));
+        let thigh =
+            self.anchor(hip, self.rest[hip].lerp(self.rest[knee], 0.36) + ahead * (0.010 * s));
         self.add(zero(hip), 0.086, thigh, 0.079);
         self.add(thigh, 0.079, self.on(knee, ahead * 0.004), 0.054);
-        let calf = self.anchor(knee, self.rest[knee].lerp(self.rest[ankle], 0.30) - ahead * (0.014 * s));
+        let calf =
+            self.anchor(knee, self.rest[knee].lerp(self.rest[ankle], 0.30) - ahead * (0.014 * s));
         self.add(self.on(knee, ahead * 0.004), 0.054, calf, 0.055);
         self.add(calf, 0.055, zero(ankle), 0.035);
         // The muscle of the calf, and the knee cap.
         let on_shin = |this: &Self, share: f32, forwards: f32| {
-            this.anchor(knee, this.rest[knee].lerp(this.rest[ankle], share) + ahead * (forwards * s))
+            this.anchor(
+                knee,
+                this.rest[knee].lerp(this.rest[ankle], share) + ahead * (forwards * s),
+            )
         };
         let (upper, lower) = (on_shin(self, 0.14, -0.024), on_shin(self, 0.42, -0.022));
         self.add_soft(upper, 0.040, lower, 0.036);
@@ -397,7 +400,8 @@ impl Human<'_> {
                 .unwrap_or((ahead * 0.13 + down * 0.06) * s),
         };
         let along = bone.normalize_or(ahead);
-        // The sole is level where the resting leg stands on it, and else lies as under an adult's foot: 27° off the bone over it.
+        // The sole is level where the resting leg stands on it, and else lies as under an adult's
+        // foot: 27° off the bone over it.
         let rise = along.cross(self.axes.left).normalize_or(-down);
         let slope = along.dot(down);
         let (sin, cos) = if (0.05..0.9).contains(&slope) {
@@ -444,13 +448,17 @@ impl Human<'_> {
         Some(())
     }
 
-    /// Bones that no part of a human speaks for: tails, bags, swords. What lies within the head stays within.
+    /// Bones that no part of a human speaks for: tails, bags, swords. What lies within the head
+    /// stays within.
     fn whatever_else(&mut self) {
         let head = self.joint(Role::Head);
         for joint in 1..self.rest.len() {
-            let Some(parent) = self.skeleton.parent(joint) else { continue };
+            let Some(parent) = self.skeleton.parent(joint) else {
+                continue;
+            };
             let length = self.skeleton.joints()[joint].offset.length() / self.scale;
-            let in_head = head.is_some_and(|head| self.ancestors(joint).any(|a| a == head)) && length < 0.25;
+            let in_head =
+                head.is_some_and(|head| self.ancestors(joint).any(|a| a == head)) && length < 0.25;
             if self.covered[joint] || in_head || length < 0.03 || self.between_roles(joint) {
                 continue;
             }
@@ -463,7 +471,8 @@ impl Human<'_> {
         }
     }
 
-    /// Whether a joint with a role lies below: then it is part of a chain that the mannequin has already.
+    /// Whether a joint with a role lies below: then it is part of a chain that the mannequin has
+    /// already.
     fn between_roles(&self, joint: usize) -> bool {
         Role::ALL
             .into_iter()

@@ -1,6 +1,8 @@
-//! What a skeleton looks like: tapered limbs from nothing but its bones, and a mannequin's where the roles of a human are known.
+//! What a skeleton looks like: tapered limbs from nothing but its bones, and a mannequin's where
+//! the roles of a human are known.
 //!
-//! One table for both bodies: the limbs that are drawn as they are (`scene`), and the smooth mesh that is made around them.
+//! One table for both bodies: the limbs that are drawn as they are (`scene`), and the smooth mesh
+//! that is made around them.
 
 mod bones;
 mod human;
@@ -28,54 +30,48 @@ pub struct Shape {
     pub radius_a: f32,
     /// Radius of the second ball, metres.
     pub radius_b: f32,
-    /// Unit axis along which the shape is flattened, in the frame of the joint of `a`; zero where the shape is round.
+    /// Unit axis along which the shape is flattened, in the frame of the joint of `a`; zero where
+    /// the shape is round.
     pub flat: Vec3,
     /// Factor on the shape's size along `flat`: 1 is round.
     pub flatness: f32,
-    /// Shapes of different shells never flow into each other, however near they are: fingers. 0 is the body's.
+    /// Shapes of different shells never flow into each other, however near they are: fingers. 0 is
+    /// the body's.
     pub shell: usize,
-    /// Whether the shape is only for surfaces that flow into each other: by itself it would be a lump.
+    /// Whether the shape is only for surfaces that flow into each other: by itself it would be a
+    /// lump.
     pub soft: bool,
 }
 
 impl Shape {
     fn round(a: Anchor, radius_a: f32, b: Anchor, radius_b: f32) -> Self {
-        Self {
-            a,
-            b,
-            radius_a,
-            radius_b,
-            flat: Vec3::ZERO,
-            flatness: 1.0,
-            shell: 0,
-            soft: false,
-        }
+        Self { a, b, radius_a, radius_b, flat: Vec3::ZERO, flatness: 1.0, shell: 0, soft: false }
     }
 
     fn flattened(self, flat: Vec3, flatness: f32) -> Self {
         Self { flat, flatness, ..self }
     }
 
-    /// Converts a shape that was made on `stance` with axes of the world into the axes that the joints have there.
+    /// Converts a shape that was made on `stance` with axes of the world into the axes that the
+    /// joints have there.
     #[must_use]
     pub fn in_axes_of(self, stance: &WorldPose) -> Self {
-        let own = |joint: usize| stance.rotations.get(joint).copied().unwrap_or_default().conjugate();
-        let moved = |anchor: Anchor| Anchor {
-            point: own(anchor.joint) * anchor.point,
-            ..anchor
-        };
-        Self {
-            a: moved(self.a),
-            b: moved(self.b),
-            flat: own(self.a.joint) * self.flat,
-            ..self
-        }
+        let own =
+            |joint: usize| stance.rotations.get(joint).copied().unwrap_or_default().conjugate();
+        let moved = |anchor: Anchor| Anchor { point: own(anchor.joint) * anchor.point, ..anchor };
+        Self { a: moved(self.a), b: moved(self.b), flat: own(self.a.joint) * self.flat, ..self }
     }
 
-    /// Returns the shape in a pose, or `None` if the pose lacks its joints or holds numbers that are not finite.
+    /// Returns the shape in a pose, or `None` if the pose lacks its joints or holds numbers that
+    /// are not finite.
     #[must_use]
     pub fn placed(&self, pose: &WorldPose) -> Option<PlacedShape> {
-        let at = |anchor: Anchor| Some(*pose.positions.get(anchor.joint)? + *pose.rotations.get(anchor.joint)? * anchor.point);
+        let at = |anchor: Anchor| {
+            Some(
+                *pose.positions.get(anchor.joint)?
+                    + *pose.rotations.get(anchor.joint)? * anchor.point,
+            )
+        };
         let (a, b) = (at(self.a)?, at(self.b)?);
         let flat = *pose.rotations.get(self.a.joint)? * self.flat;
         (a.is_finite() && b.is_finite()).then_some(PlacedShape {
@@ -91,7 +87,8 @@ impl Shape {
     /// Returns a measure of how much of its surroundings the shape can hide, m².
     #[must_use]
     pub fn weight(&self, rest: &[Vec3]) -> f32 {
-        let at = |anchor: Anchor| rest.get(anchor.joint).map_or(anchor.point, |&p| p + anchor.point);
+        let at =
+            |anchor: Anchor| rest.get(anchor.joint).map_or(anchor.point, |&p| p + anchor.point);
         let radius = self.radius_a.max(self.radius_b);
         radius * (radius + at(self.a).distance(at(self.b)))
     }
@@ -114,13 +111,19 @@ pub struct PlacedShape {
     pub flatness: f32,
 }
 
-/// Returns the shapes of a skeleton whose joints rest at `rest` (metres, the root at the origin): a mannequin's where the roles are those of a human,
-/// else one per bone. None of them has a number that is not finite.
+/// Returns the shapes of a skeleton whose joints rest at `rest` (metres, the root at the origin): a
+/// mannequin's where the roles are those of a human, else one per bone. None of them has a number
+/// that is not finite.
 #[must_use]
 pub fn limb_shapes(skeleton: &Skeleton, rest: &[Vec3], roles: Option<&Roles>) -> Vec<Shape> {
     let mut shapes = roles
         .and_then(|roles| human::shapes(skeleton, rest, roles))
         .unwrap_or_else(|| bones::shapes(skeleton, rest));
-    shapes.retain(|s| s.radius_a.is_finite() && s.radius_b.is_finite() && s.a.point.is_finite() && s.b.point.is_finite());
+    shapes.retain(|s| {
+        s.radius_a.is_finite()
+            && s.radius_b.is_finite()
+            && s.a.point.is_finite()
+            && s.b.point.is_finite()
+    });
     shapes
 }

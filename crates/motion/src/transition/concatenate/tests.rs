@@ -12,13 +12,11 @@ const KINDS: [Inertialization; 4] = [
     Inertialization::Offset(Decay::Spring { half_life_secs: 0.1 }),
     Inertialization::Offset(Decay::Cubic { blend_secs: 0.4 }),
     Inertialization::Offset(Decay::Quintic { blend_secs: 0.4 }),
-    Inertialization::DeadBlend {
-        blend_secs: 0.4,
-        extrapolation_half_life_secs: 0.1,
-    },
+    Inertialization::DeadBlend { blend_secs: 0.4, extrapolation_half_life_secs: 0.1 },
 ];
 
-const PLACES: [(bool, RootBlend); 3] = [(true, RootBlend::Velocity), (true, RootBlend::World), (false, RootBlend::Velocity)];
+const PLACES: [(bool, RootBlend); 3] =
+    [(true, RootBlend::Velocity), (true, RootBlend::World), (false, RootBlend::Velocity)];
 
 fn source_of(clip: Clip) -> Source {
     let roles = Roles::detect(clip.skeleton());
@@ -30,11 +28,7 @@ fn source(walk: Walk) -> Source {
 }
 
 fn two() -> (Source, Source) {
-    let a = source(Walk {
-        frames: 120,
-        turning: 0.4,
-        ..Walk::default()
-    });
+    let a = source(Walk { frames: 120, turning: 0.4, ..Walk::default() });
     let b = source(Walk {
         frames: 260,
         speed: 2.2,
@@ -48,18 +42,21 @@ fn two() -> (Source, Source) {
     (a, b)
 }
 
-fn made(a: &Source, leave: usize, b: &Source, enter: usize, how: Inertialization, (align, root): (bool, RootBlend)) -> Concatenation {
+fn made(
+    a: &Source,
+    leave: usize,
+    b: &Source,
+    enter: usize,
+    how: Inertialization,
+    (align, root): (bool, RootBlend),
+) -> Concatenation {
     let method = Method::Inertialize(how);
     concatenate(
         a,
         leave,
         b,
         enter,
-        &TransitionOptions {
-            align,
-            root,
-            ..TransitionOptions::new(method)
-        },
+        &TransitionOptions { align, root, ..TransitionOptions::new(method) },
     )
     .unwrap()
 }
@@ -78,7 +75,8 @@ proptest! {
     #[test]
     fn no_difference_leaves_b_as_it_was(at in 0usize..119, turning in -1.0f32..1.0) {
         let a = source(Walk { frames: 120, turning, heading: 3.0, start: (3.0, -2.0), ..Walk::default() });
-        // A dead pose is not the motion that it came from: dead blending alone changes a clip that is joined to itself.
+        // A dead pose is not the motion that it came from: dead blending alone changes a clip that
+        // is joined to itself.
         for how in &KINDS[..3] {
             for place in PLACES {
                 let out = made(&a, at, &a, at, *how, place);
@@ -137,14 +135,17 @@ fn the_motion_goes_on_as_a_was_going() {
     for how in KINDS {
         for place in PLACES {
             let out = made(&a, 70, &b, 31, how, place);
-            let turn = |clip: &Clip, joint: usize| quat::log(clip.rotations(70)[joint] * clip.rotations(69)[joint].conjugate()) * 60.0;
+            let turn = |clip: &Clip, joint: usize| {
+                quat::log(clip.rotations(70)[joint] * clip.rotations(69)[joint].conjugate()) * 60.0
+            };
             for joint in 0..a.clip().skeleton().len() {
                 let off = turn(&out.clip, joint) - turn(a.clip(), joint);
                 // Unaligned, the root has two and a half radians to turn and starts to at once.
                 let bound = if place.0 || joint > 0 { 0.9 } else { 4.5 };
                 assert!(off.length() < bound, "{how:?} {place:?} {joint}: {off}");
             }
-            let step = |clip: &Clip| (clip.root_translations()[70] - clip.root_translations()[69]) * 60.0;
+            let step =
+                |clip: &Clip| (clip.root_translations()[70] - clip.root_translations()[69]) * 60.0;
             let off = step(&out.clip) - step(a.clip());
             // Unaligned, B lies metres away; and a quintic that would overshoot hurries.
             assert!(!place.0 || off.length() < 0.6, "{how:?} {place:?} {off}");
@@ -155,24 +156,21 @@ fn the_motion_goes_on_as_a_was_going() {
     }
 }
 
-/// The finer the frames, the smaller the difference of the first step's angular velocity to A's: the velocity is continuous, also for large offsets.
+/// The finer the frames, the smaller the difference of the first step's angular velocity to A's:
+/// the velocity is continuous, also for large offsets.
 #[test]
 fn velocity_is_continuous_in_the_limit_of_fine_frames() {
     let jump = |fps: f64, how| {
         let n = fps as usize;
         let walk = |phase: f32, swing: f32, speed: f32| {
-            source(Walk {
-                frames: 2 * n,
-                fps,
-                phase,
-                swing,
-                speed,
-                ..Walk::default()
-            })
+            source(Walk { frames: 2 * n, fps, phase, swing, speed, ..Walk::default() })
         };
         let (a, b) = (walk(0.0, 1.3, 1.0), walk(0.4, 1.3, 2.0));
         let out = made(&a, n, &b, n / 2, how, PLACES[0]);
-        let turn = |clip: &Clip, joint: usize| quat::log(clip.rotations(n)[joint] * clip.rotations(n - 1)[joint].conjugate()) * fps as f32;
+        let turn = |clip: &Clip, joint: usize| {
+            quat::log(clip.rotations(n)[joint] * clip.rotations(n - 1)[joint].conjugate())
+                * fps as f32
+        };
         (0..13)
             .map(|joint| (turn(&out.clip, joint) - turn(a.clip(), joint)).length())
             .fold(0.0, f32::max)
@@ -183,23 +181,20 @@ fn velocity_is_continuous_in_the_limit_of_fine_frames() {
     }
 }
 
-/// A clip that is cut in two and joined again: its ends are taken to go on as they were going, so nothing but the change of a step in a frame is bridged.
+/// A clip that is cut in two and joined again: its ends are taken to go on as they were going, so
+/// nothing but the change of a step in a frame is bridged.
 #[test]
 fn the_two_halves_of_a_clip_go_together_again() {
-    let whole = Walk {
-        frames: 200,
-        fps: 120.0,
-        turning: 0.5,
-        ..Walk::default()
-    }
-    .clip();
+    let whole = Walk { frames: 200, fps: 120.0, turning: 0.5, ..Walk::default() }.clip();
     for at in [70, 93, 120] {
-        let (a, b) = (source_of(whole.crop(0..at).unwrap()), source_of(whole.crop(at..200).unwrap()));
+        let (a, b) =
+            (source_of(whole.crop(0..at).unwrap()), source_of(whole.crop(at..200).unwrap()));
         for how in &KINDS[..3] {
             let out = made(&a, at, &b, 0, *how, PLACES[0]);
             let (distance, _) = difference(&out.clip, &whole);
             // An arm, which swings as a sine does; knees stop dead.
-            let arm = |f: usize| quat::angle_between(out.clip.rotations(f)[3], whole.rotations(f)[3]);
+            let arm =
+                |f: usize| quat::angle_between(out.clip.rotations(f)[3], whole.rotations(f)[3]);
             let angle = (0..200).map(arm).fold(0.0, f32::max);
             assert!(distance < 0.05 && angle < 0.02, "{how:?} {at} {distance} {angle}");
         }
@@ -215,20 +210,14 @@ fn no_time_is_a_cut() {
             70,
             &b,
             10,
-            &TransitionOptions {
-                root,
-                ..TransitionOptions::new(Method::Cut)
-            },
+            &TransitionOptions { root, ..TransitionOptions::new(Method::Cut) },
         )
         .unwrap();
         for how in [
             Inertialization::Offset(Decay::Spring { half_life_secs: 0.0 }),
             Inertialization::Offset(Decay::Cubic { blend_secs: 0.0 }),
             Inertialization::Offset(Decay::Quintic { blend_secs: 0.0 }),
-            Inertialization::DeadBlend {
-                blend_secs: 0.0,
-                extrapolation_half_life_secs: 0.0,
-            },
+            Inertialization::DeadBlend { blend_secs: 0.0, extrapolation_half_life_secs: 0.0 },
         ] {
             let out = made(&a, 70, &b, 10, how, (true, root));
             let (distance, angle) = difference(&out.clip, &cut.clip);
@@ -243,26 +232,19 @@ fn all_methods_come_through_one_door() {
     let (a, b) = two();
     let window = 20;
     let law = WeightLaw::Linear;
-    let through = concatenate(&a, 70, &b, 10, &TransitionOptions::new(Method::Dissolve { window, law })).unwrap();
-    let direct = dissolve(
-        &a,
-        70,
-        &b,
-        10,
-        &DissolveOptions {
-            window,
-            law,
-            ..DissolveOptions::default()
-        },
-    )
-    .unwrap();
+    let through =
+        concatenate(&a, 70, &b, 10, &TransitionOptions::new(Method::Dissolve { window, law }))
+            .unwrap();
+    let direct =
+        dissolve(&a, 70, &b, 10, &DissolveOptions { window, law, ..DissolveOptions::default() })
+            .unwrap();
     assert_eq!(through, direct);
     let long = made(&a, 70, &b, 10, KINDS[0], PLACES[0]);
     assert_eq!(long.clip.frames(), through.clip.frames());
 }
 
-/// Half the frame rate: the seam is felt half a frame later at most. Frames at the same times differ by less than 4 cm and 6°, in a transition
-/// between two gaits that differ by 20 cm and 60°.
+/// Half the frame rate: the seam is felt half a frame later at most. Frames at the same times
+/// differ by less than 4 cm and 6°, in a transition between two gaits that differ by 20 cm and 60°.
 #[test]
 fn half_the_frame_rate_is_nearly_the_same_transition() {
     let at = |fps: f64| {
@@ -278,13 +260,7 @@ fn half_the_frame_rate_is_nearly_the_same_transition() {
                 ..Walk::default()
             })
         };
-        (
-            walk(0.0, 0.4, 1.2, 0.0),
-            walk(0.35, 0.8, 2.6, 0.5),
-            60 * scale + 1,
-            30 * scale + 1,
-            scale,
-        )
+        (walk(0.0, 0.4, 1.2, 0.0), walk(0.35, 0.8, 2.6, 0.5), 60 * scale + 1, 30 * scale + 1, scale)
     };
     for how in KINDS {
         let run = |fps: f64| {
@@ -327,23 +303,13 @@ fn joints_that_move_against_their_parent_are_carried_over_too() {
 #[test]
 fn speed_over_the_ground_rises_without_overshoot() {
     let glide = |speed: f32| {
-        source(Walk {
-            frames: 200,
-            speed,
-            cadence: 0.0,
-            swing: 0.0,
-            ..Walk::default()
-        })
+        source(Walk { frames: 200, speed, cadence: 0.0, swing: 0.0, ..Walk::default() })
     };
     let (a, b) = (glide(1.0), glide(3.0));
     for how in KINDS {
         let out = made(&a, 50, &b, 20, how, PLACES[0]);
-        let speeds: Vec<f32> = out
-            .clip
-            .root_translations()
-            .windows(2)
-            .map(|p| p[0].distance(p[1]) * 60.0)
-            .collect();
+        let speeds: Vec<f32> =
+            out.clip.root_translations().windows(2).map(|p| p[0].distance(p[1]) * 60.0).collect();
         let rises = speeds.windows(2).all(|s| s[1] > s[0] - 1e-3);
         // A dead pose slows down first.
         assert!(rises || matches!(how, Inertialization::DeadBlend { .. }), "{how:?} {speeds:?}");
@@ -359,10 +325,7 @@ fn what_cannot_be_joined_is_refused() {
         for how in [
             Inertialization::Offset(Decay::Spring { half_life_secs: secs }),
             Inertialization::Offset(Decay::Quintic { blend_secs: secs }),
-            Inertialization::DeadBlend {
-                blend_secs: 0.3,
-                extrapolation_half_life_secs: secs,
-            },
+            Inertialization::DeadBlend { blend_secs: 0.3, extrapolation_half_life_secs: secs },
         ] {
             let options = TransitionOptions::new(Method::Inertialize(how));
             assert!(
@@ -375,39 +338,37 @@ fn what_cannot_be_joined_is_refused() {
     assert!(concatenate(&a, 120, &b, 259, &options).is_ok());
     assert!(matches!(concatenate(&a, 121, &b, 0, &options), Err(BlendError::Window { .. })));
     assert!(matches!(concatenate(&a, 0, &b, 260, &options), Err(BlendError::Window { .. })));
-    let one = source(Walk {
-        frames: 1,
-        ..Walk::default()
-    });
+    let one = source(Walk { frames: 1, ..Walk::default() });
     assert_eq!(concatenate(&one, 1, &one, 0, &options).unwrap().clip.frames(), 2);
 }
 
-/// B walks straight on for half a second and then turns left: what is steady over its first stride is half a turn to the left already.
+/// B walks straight on for half a second and then turns left: what is steady over its first stride
+/// is half a turn to the left already.
 #[test]
 fn a_turn_to_come_is_not_made_the_other_way_round_first() {
-    let straight = Walk {
-        frames: 200,
-        cadence: 0.0,
-        swing: 0.0,
-        ..Walk::default()
-    }
-    .clip();
+    let straight = Walk { frames: 200, cadence: 0.0, swing: 0.0, ..Walk::default() }.clip();
     let yaw = |frame: usize| 0.04 * frame.saturating_sub(35) as f32;
     let turned = |clip: &Clip, yaw: &dyn Fn(usize) -> f32| {
         let joints = clip.skeleton().len();
-        let mut rotations: Vec<Quat> = (0..clip.frames()).flat_map(|frame| clip.rotations(frame).to_vec()).collect();
+        let mut rotations: Vec<Quat> =
+            (0..clip.frames()).flat_map(|frame| clip.rotations(frame).to_vec()).collect();
         for (frame, root) in rotations.iter_mut().step_by(joints).enumerate() {
             *root = Quat::from_rotation_y(yaw(frame)) * *root;
         }
         let roots = clip.root_translations().to_vec();
-        source_of(Clip::new("turning", Arc::clone(clip.skeleton()), clip.fps(), rotations, roots).unwrap())
+        source_of(
+            Clip::new("turning", Arc::clone(clip.skeleton()), clip.fps(), rotations, roots)
+                .unwrap(),
+        )
     };
     let (a, b) = (source_of(straight.clone()), turned(&straight, &yaw));
     // And the other way: A has turned, and goes straight where it is left.
-    let (before, after) = (turned(&straight, &|frame| yaw(frame.min(90))), source_of(straight.clone()));
+    let (before, after) =
+        (turned(&straight, &|frame| yaw(frame.min(90))), source_of(straight.clone()));
     for how in KINDS {
         let out = made(&a, 100, &b, 5, how, PLACES[0]);
-        let least = out.frames[100..130].iter().map(|frame| frame.yaw).fold(f64::INFINITY, f64::min);
+        let least =
+            out.frames[100..130].iter().map(|frame| frame.yaw).fold(f64::INFINITY, f64::min);
         assert!(least > -0.5_f64.to_radians(), "{how:?} {}", least.to_degrees());
         let out = made(&before, 94, &after, 20, how, PLACES[0]);
         let turned = wrap_angle(out.frames[180].yaw - out.frames[93].yaw);

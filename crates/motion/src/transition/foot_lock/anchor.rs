@@ -8,22 +8,26 @@ use crate::skeleton::{Roles, Side, WorldPose};
 use glam::{Quat, Vec3};
 use std::ops::Range;
 
-/// Stances with less than this between them are one, seconds and metres: the foot is not lifted and set down again in so short a time, or so near.
+/// Stances with less than this between them are one, seconds and metres: the foot is not lifted and
+/// set down again in so short a time, or so near.
 const SHORTEST_SWING_SECS: f64 = 0.14;
 const SHORTEST_SWING_M: f32 = 0.05;
 /// Below this speed a foot is as good as still when its place is chosen, metres per second.
 const STILL_MPS: f32 = 0.05;
-/// A foot that is lifted out of the ground is lifted smoothly over this time to either side, seconds.
+/// A foot that is lifted out of the ground is lifted smoothly over this time to either side,
+/// seconds.
 const LIFT_SECS: f64 = 0.06;
 
-/// A foot swings at the full above this speed, metres per second, and not at all below [`STEPS_MPS`].
+/// A foot swings at the full above this speed, metres per second, and not at all below
+/// [`STEPS_MPS`].
 const SWINGS_MPS: f32 = 1.2;
 const STEPS_MPS: f32 = 0.5;
 
 /// What takes longer is no swing from one stance to the next, seconds.
 const LONGEST_SWING_SECS: f64 = 1.5;
 
-/// How far a foot is turned against its leg to keep its heading, radians: 30°. From half of it on it turns with the body more and more.
+/// How far a foot is turned against its leg to keep its heading, radians: 30°. From half of it on
+/// it turns with the body more and more.
 const MOST_TURN_RADIANS: f32 = 0.52;
 
 /// The way of one foot through the clip.
@@ -58,12 +62,21 @@ impl Foot {
         self.way.get(frame * count..(frame + 1) * count).unwrap_or(&[])
     }
 
-    /// By how much the foot is turned about the vertical in every frame, as rotation vectors, so that it keeps its heading in these stances although the body was
-    /// turned by so many radians. The mean of a stance stays.
-    pub(super) fn turns(&self, stances: &[Range<usize>], body_yaws: &[f64], fps: f64, options: &FootLockOptions) -> Vec<Vec3> {
+    /// By how much the foot is turned about the vertical in every frame, as rotation vectors, so
+    /// that it keeps its heading in these stances although the body was turned by so many radians.
+    /// The mean of a stance stays.
+    pub(super) fn turns(
+        &self,
+        stances: &[Range<usize>],
+        body_yaws: &[f64],
+        fps: f64,
+        options: &FootLockOptions,
+    ) -> Vec<Vec3> {
         let mut turns = vec![Vec3::ZERO; self.ankles.len()];
         for stance in stances {
-            let Some(&first) = body_yaws.get(stance.start) else { continue };
+            let Some(&first) = body_yaws.get(stance.start) else {
+                continue;
+            };
             let mut yaw = first;
             let yaws: Vec<f64> = (body_yaws.iter().skip(stance.start).take(stance.len()))
                 .map(|&next| {
@@ -74,7 +87,8 @@ impl Foot {
             let mean = yaws.iter().sum::<f64>() / yaws.len() as f64;
             for (turn, yaw) in turns[stance.clone()].iter_mut().zip(yaws) {
                 let back = (mean - yaw) as f32;
-                turn.y = curve::soft_limit(back.abs(), 0.5 * MOST_TURN_RADIANS, MOST_TURN_RADIANS).copysign(back);
+                turn.y = curve::soft_limit(back.abs(), 0.5 * MOST_TURN_RADIANS, MOST_TURN_RADIANS)
+                    .copysign(back);
             }
         }
         fade_around(stances, options.blend_secs, fps, &mut turns);
@@ -96,8 +110,15 @@ impl Foot {
         }
     }
 
-    /// What is added to the foot's place in every frame, metres; the stances are [`parted`](Self::parted).
-    pub(super) fn shifts(&self, stances: &[Range<usize>], fps: f64, scale: f32, options: &FootLockOptions) -> Vec<Vec3> {
+    /// What is added to the foot's place in every frame, metres; the stances are
+    /// [`parted`](Self::parted).
+    pub(super) fn shifts(
+        &self,
+        stances: &[Range<usize>],
+        fps: f64,
+        scale: f32,
+        options: &FootLockOptions,
+    ) -> Vec<Vec3> {
         let mut shifts = vec![Vec3::ZERO; self.ankles.len()];
         for stance in stances {
             self.hold(stance, fps, scale, options, &mut shifts);
@@ -109,15 +130,27 @@ impl Foot {
         shifts
     }
 
-    /// Lifts the foot, where it swings from one stance to the next, over the height that each of its points has in these; before the first stance and
-    /// behind the last one over the height that it has there.
-    fn clear(&self, stances: &[Range<usize>], fps: f64, scale: f32, clearance_m: f32, shifts: &mut [Vec3]) {
+    /// Lifts the foot, where it swings from one stance to the next, over the height that each of
+    /// its points has in these; before the first stance and behind the last one over the height
+    /// that it has there.
+    fn clear(
+        &self,
+        stances: &[Range<usize>],
+        fps: f64,
+        scale: f32,
+        clearance_m: f32,
+        shifts: &mut [Vec3],
+    ) {
         let longest = (LONGEST_SWING_SECS * fps) as usize;
         let reach = ((LIFT_SECS * fps).round() as usize).max(1);
         for next in 0..=stances.len() {
-            let (before, behind) = (next.checked_sub(1).and_then(|before| stances.get(before)), stances.get(next));
-            let swing = before.map_or(0, |before| before.end)..behind.map_or(shifts.len(), |behind| behind.start);
-            let Some(levels) = before.or(behind).zip(behind.or(before)).filter(|_| swing.len() <= longest) else {
+            let (before, behind) =
+                (next.checked_sub(1).and_then(|before| stances.get(before)), stances.get(next));
+            let swing = before.map_or(0, |before| before.end)
+                ..behind.map_or(shifts.len(), |behind| behind.start);
+            let Some(levels) =
+                before.or(behind).zip(behind.or(before)).filter(|_| swing.len() <= longest)
+            else {
                 continue;
             };
             let levels = [levels.0, levels.1].map(|stance| self.levels(stance, shifts));
@@ -149,14 +182,21 @@ impl Foot {
     /// The height that each point has as a rule in a stance.
     fn levels(&self, stance: &Range<usize>, shifts: &[Vec3]) -> Vec<f32> {
         let level = |point: usize| {
-            let heights: Vec<f32> = stance.clone().map(|frame| self.at(frame)[point].y + shifts[frame].y).collect();
+            let heights: Vec<f32> =
+                stance.clone().map(|frame| self.at(frame)[point].y + shifts[frame].y).collect();
             stats::percentile(&heights, 0.5).unwrap_or(f32::NEG_INFINITY)
         };
         (0..self.points.len()).map(level).collect()
     }
 
-    /// Stances with next to nothing between them as one. Where the foot goes far in so short a time it needs longer: both stances give up frames.
-    pub(super) fn parted(&self, stances: &[Range<usize>], fps: f64, scale: f32) -> Vec<Range<usize>> {
+    /// Stances with next to nothing between them as one. Where the foot goes far in so short a time
+    /// it needs longer: both stances give up frames.
+    pub(super) fn parted(
+        &self,
+        stances: &[Range<usize>],
+        fps: f64,
+        scale: f32,
+    ) -> Vec<Range<usize>> {
         let shortest = (SHORTEST_SWING_SECS * fps).round() as usize;
         let mut parted: Vec<Range<usize>> = Vec::with_capacity(stances.len());
         for stance in stances {
@@ -188,7 +228,14 @@ impl Foot {
     }
 
     /// The shifts of one stance.
-    fn hold(&self, stance: &Range<usize>, fps: f64, scale: f32, options: &FootLockOptions, shifts: &mut [Vec3]) {
+    fn hold(
+        &self,
+        stance: &Range<usize>,
+        fps: f64,
+        scale: f32,
+        options: &FootLockOptions,
+        shifts: &mut [Vec3],
+    ) {
         let still = STILL_MPS * scale / fps as f32;
         let (mut drift, mut sum, mut weights) = (Vec3::ZERO, Vec3::ZERO, 0.0);
         let mut before = Vec3::ZERO;
@@ -196,8 +243,10 @@ impl Foot {
             let step = if frame > stance.start { self.step_into(frame) } else { Vec3::ZERO };
             drift += step;
             shifts[frame] = -drift;
-            // A frame is as still as the steps on both sides of it; the first has no step before it.
-            let weight = (still * still + before.length_squared().max(step.length_squared())).recip();
+            // A frame is as still as the steps on both sides of it; the first has no step before
+            // it.
+            let weight =
+                (still * still + before.length_squared().max(step.length_squared())).recip();
             if frame > stance.start || stance.len() == 1 {
                 sum += drift * weight;
                 weights += weight;
@@ -216,7 +265,9 @@ impl Foot {
             };
             shifts[frame] = shift * limited;
         }
-        let Some(ground) = options.ground_m else { return };
+        let Some(ground) = options.ground_m else {
+            return;
+        };
         let depth = |frame: usize| {
             let lowest = self.at(frame).iter().map(|point| point.y).fold(f32::INFINITY, f32::min);
             (ground - lowest).max(0.0)
@@ -238,9 +289,11 @@ impl Foot {
 fn fade_around(stances: &[Range<usize>], blend_secs: f64, fps: f64, values: &mut [Vec3]) {
     for (index, stance) in stances.iter().enumerate() {
         let next = stances.get(index + 1).map(|next| next.start);
-        let before = index.checked_sub(1).and_then(|before| stances.get(before)).map(|before| before.end);
+        let before =
+            index.checked_sub(1).and_then(|before| stances.get(before)).map(|before| before.end);
         let last = stance.end - 1;
-        // Backwards in time before the stance, forwards behind it. The steps next to the stance tell the velocity.
+        // Backwards in time before the stance, forwards behind it. The steps next to the stance
+        // tell the velocity.
         let inside = |frame: usize| values[frame.clamp(stance.start, last)];
         let into = (inside(stance.start), inside(stance.start) - inside(stance.start + 1));
         let out = (inside(last), inside(last) - inside(last.saturating_sub(1)));
@@ -255,7 +308,12 @@ fn fade_around(stances: &[Range<usize>], blend_secs: f64, fps: f64, values: &mut
 }
 
 /// Adds what dies away from a value and its step into the frames behind it.
-fn fade<'a>((value, step): (Vec3, Vec3), blend_secs: f64, fps: f64, frames: impl Iterator<Item = &'a mut Vec3>) {
+fn fade<'a>(
+    (value, step): (Vec3, Vec3),
+    blend_secs: f64,
+    fps: f64,
+    frames: impl Iterator<Item = &'a mut Vec3>,
+) {
     let decay = Decay::Cubic { blend_secs };
     for (index, frame) in frames.enumerate() {
         let secs = (index + 1) as f64 / fps;

@@ -1,6 +1,7 @@
 //! Smooth curves along and above rough ones.
 
-/// A mean over `reach` values to either side with the weights of a raised cosine; at the ends over those that there are.
+/// A mean over `reach` values to either side with the weights of a raised cosine; at the ends over
+/// those that there are.
 pub(super) fn smoothed(values: &[f32], reach: usize) -> Vec<f32> {
     let weight = |off: isize| 1.0 + (std::f32::consts::PI * off as f32 / (reach + 1) as f32).cos();
     let weights: Vec<f32> = (-(reach as isize)..=reach as isize).map(weight).collect();

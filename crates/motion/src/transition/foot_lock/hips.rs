@@ -6,7 +6,8 @@ use glam::Vec3;
 
 /// The hips follow what is needed, smoothed over this time to either side, seconds.
 const SMOOTH_SECS: f64 = 0.08;
-/// A knee bent by less than this sine of its flexion counts as bent by so much: at full stretch it would weigh without end.
+/// A knee bent by less than this sine of its flexion counts as bent by so much: at full stretch it
+/// would weigh without end.
 const LEAST_SINE: f32 = 0.1;
 /// The hips cost as much as a knee that is bent by this sine of its flexion.
 const HIP_SINE: f32 = 0.7;
@@ -14,22 +15,28 @@ const HIP_SINE: f32 = 0.7;
 /// The change of the hips' height in every frame, metres.
 pub(super) fn heights(posed: &[Vec<Posed>], shifts: &[Vec<Vec3>], fps: f64) -> Vec<f32> {
     let frames = shifts.iter().map(Vec::len).min().unwrap_or(0);
-    let legs = |frame: usize| posed.iter().zip(shifts).map(move |(posed, shifts)| (&posed[frame], shifts[frame]));
+    let legs = |frame: usize| {
+        posed.iter().zip(shifts).map(move |(posed, shifts)| (&posed[frame], shifts[frame]))
+    };
     let wanted: Vec<f32> = (0..frames).map(|frame| easiest(legs(frame))).collect();
     let reach = ((SMOOTH_SECS * fps).round() as usize).max(1);
     let mut heights = smoothed(&wanted, reach);
     let beyond: Vec<f32> = (0..frames).map(|frame| too_high(legs(frame), heights[frame])).collect();
     if beyond.iter().any(|&beyond| beyond > 0.0) {
-        // The largest of the neighbours, smoothed over the same neighbours, is nowhere less than what is needed.
-        for (height, lower) in heights.iter_mut().zip(smoothed(&largest_around(&beyond, reach), reach)) {
+        // The largest of the neighbours, smoothed over the same neighbours, is nowhere less than
+        // what is needed.
+        for (height, lower) in
+            heights.iter_mut().zip(smoothed(&largest_around(&beyond, reach), reach))
+        {
             *height -= lower;
         }
     }
     heights
 }
 
-/// Where both knees change least. A leg's length changes by `Δ + h cos θ` when its ankle is moved and the hips are raised by `h`, and its knee by
-/// `d / (a b sin φ)` times that; the sum of the squares of these, and of what the hips cost, is smallest here.
+/// Where both knees change least. A leg's length changes by `Δ + h cos θ` when its ankle is moved
+/// and the hips are raised by `h`, and its knee by `d / (a b sin φ)` times that; the sum of the
+/// squares of these, and of what the hips cost, is smallest here.
 fn easiest<'a>(legs: impl Iterator<Item = (&'a Posed, Vec3)>) -> f32 {
     let (mut above, mut below) = (0.0, 0.0);
     for (leg, shift) in legs {
@@ -38,7 +45,8 @@ fn easiest<'a>(legs: impl Iterator<Item = (&'a Posed, Vec3)>) -> f32 {
         let (now, then) = (line.length(), asked.length().max(1e-6));
         let sides = (leg.thigh.length() * leg.shin.length()).max(1e-9);
         let turn_per_metre = |sine: f32| (now / (sides * sine)).powi(2);
-        let (weight, cosine) = (turn_per_metre(leg.bend().length().max(LEAST_SINE)), -asked.y / then);
+        let (weight, cosine) =
+            (turn_per_metre(leg.bend().length().max(LEAST_SINE)), -asked.y / then);
         above += weight * cosine * (now - then);
         below += weight * cosine * cosine + turn_per_metre(HIP_SINE);
     }

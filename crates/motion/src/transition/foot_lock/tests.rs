@@ -10,12 +10,7 @@ use std::sync::Arc;
 
 /// A walk whose feet slide: its root is too fast for its steps.
 fn sliding(speed: f32) -> (Clip, Roles) {
-    let walk = Walk {
-        frames: 240,
-        speed,
-        cadence: 0.9,
-        ..Walk::default()
-    };
+    let walk = Walk { frames: 240, speed, cadence: 0.9, ..Walk::default() };
     let clip = walk.clip();
     let roles = Roles::detect(clip.skeleton());
     (clip, roles)
@@ -29,9 +24,7 @@ fn backwards(clip: &Clip, roles: &Roles) -> Contacts {
             .map(|frame| clip.world_pose(frame))
             .map(|w| w.positions[foot].z - w.positions[0].z)
             .collect();
-        (0..clip.frames())
-            .map(|frame| frame > 0 && ahead[frame] < ahead[frame - 1])
-            .collect()
+        (0..clip.frames()).map(|frame| frame > 0 && ahead[frame] < ahead[frame - 1]).collect()
     };
     Contacts::from_flags(Side::BOTH.map(planted))
 }
@@ -54,7 +47,8 @@ fn worst_step(clip: &Clip, roles: &Roles, contacts: &Contacts) -> f32 {
     worst
 }
 
-/// The same motion on a body with a twist joint in the middle of every thigh and shin, which is turned by a little.
+/// The same motion on a body with a twist joint in the middle of every thigh and shin, which is
+/// turned by a little.
 fn with_helpers(clip: &Clip, roles: &Roles) -> (Clip, Roles) {
     let old = clip.skeleton();
     let (mut joints, mut places): (Vec<Joint>, Vec<usize>) = (vec![], vec![]);
@@ -62,10 +56,10 @@ fn with_helpers(clip: &Clip, roles: &Roles) -> (Clip, Roles) {
         let mut joint = joint.clone();
         let parent = joint.parent.map(|parent| places[parent]);
         joint.parent = parent;
-        if Side::BOTH
-            .iter()
-            .any(|&side| [Role::shin(side), Role::foot(side)].contains(&roles.role_of(index).unwrap_or(Role::Head)))
-        {
+        if Side::BOTH.iter().any(|&side| {
+            [Role::shin(side), Role::foot(side)]
+                .contains(&roles.role_of(index).unwrap_or(Role::Head))
+        }) {
             let half = joint.offset * 0.5;
             joints.push(Joint {
                 name: format!("{} twist", joint.name),
@@ -105,23 +99,27 @@ fn planted_feet_stand_and_stay_as_flat_as_they_were() {
         let (clip, roles) = sliding(speed);
         for (clip, roles) in [with_helpers(&clip, &roles), (clip, roles)] {
             let contacts = backwards(&clip, &roles);
-            let far = FootLockOptions {
-                max_shift_m: 1.0,
-                ..FootLockOptions::default()
-            };
+            let far = FootLockOptions { max_shift_m: 1.0, ..FootLockOptions::default() };
             let locked = foot_lock(&clip, &roles, &contacts, &far).unwrap();
-            let (before, after) = (worst_step(&clip, &roles, &contacts), worst_step(&locked, &roles, &contacts));
+            let (before, after) =
+                (worst_step(&clip, &roles, &contacts), worst_step(&locked, &roles, &contacts));
             assert!(before > 5e-3 && after < 2e-4, "{speed}: {before} {after}");
             for frame in 0..clip.frames() {
                 let (was, is) = (clip.world_pose(frame), locked.world_pose(frame));
                 for side in Side::BOTH {
                     let foot = roles.get(Role::foot(side)).unwrap();
-                    assert!(quat::angle_between(was.rotations[foot], is.rotations[foot]) < 2e-3, "{frame}");
+                    assert!(
+                        quat::angle_between(was.rotations[foot], is.rotations[foot]) < 2e-3,
+                        "{frame}"
+                    );
                 }
                 // Nothing but the legs and the height of the body changes.
                 let head = roles.get(Role::Head).unwrap();
                 let moved = is.positions[head] - was.positions[head];
-                assert!(moved.x.abs() + moved.z.abs() < 1e-5 && moved.y.abs() < 0.15, "{frame} {moved}");
+                assert!(
+                    moved.x.abs() + moved.z.abs() < 1e-5 && moved.y.abs() < 0.15,
+                    "{frame} {moved}"
+                );
             }
         }
     }
@@ -133,8 +131,10 @@ fn toe_ways(clip: &Clip, roles: &Roles, contacts: &Contacts) -> f32 {
     for side in Side::BOTH {
         let toe = roles.get(Role::toe(side)).unwrap();
         for stance in contacts.intervals(side) {
-            let places: Vec<Vec3> = stance.map(|frame| clip.world_pose(frame).positions[toe]).collect();
-            farthest = places.iter().map(|place| place.distance(places[0])).fold(farthest, f32::max);
+            let places: Vec<Vec3> =
+                stance.map(|frame| clip.world_pose(frame).positions[toe]).collect();
+            farthest =
+                places.iter().map(|place| place.distance(places[0])).fold(farthest, f32::max);
         }
     }
     farthest
@@ -152,31 +152,43 @@ fn standing_feet_keep_their_heading_when_the_body_is_turned() {
             .map(|frame| wrap_angle(3.1 + most * (frame as f64 / frames as f64 * 6.0).sin()))
             .collect();
         let turns: Vec<Planar> = yaws.iter().map(|&yaw| Planar::new(yaw, 0.0, 0.0)).collect();
-        let mut rotations: Vec<Quat> = (0..frames).flat_map(|frame| standing.rotations(frame)).copied().collect();
+        let mut rotations: Vec<Quat> =
+            (0..frames).flat_map(|frame| standing.rotations(frame)).copied().collect();
         for (root, turn) in rotations.iter_mut().step_by(joints).zip(&turns) {
             *root = turn.rotation() * *root;
         }
-        let roots = turns.iter().zip(standing.root_translations()).map(|(turn, &root)| turn.apply(root));
-        let clip = Clip::new("turned", standing.skeleton().clone(), standing.fps(), rotations, roots.collect());
+        let roots =
+            turns.iter().zip(standing.root_translations()).map(|(turn, &root)| turn.apply(root));
+        let clip = Clip::new(
+            "turned",
+            standing.skeleton().clone(),
+            standing.fps(),
+            rotations,
+            roots.collect(),
+        );
         (Arc::new(clip.unwrap()), yaws)
     };
     let options = FootLockOptions::default();
-    let locking = |clip: &Arc<Clip>| FootLocking::new(Arc::clone(clip), &roles, &contacts, &options).unwrap();
+    let locking =
+        |clip: &Arc<Clip>| FootLocking::new(Arc::clone(clip), &roles, &contacts, &options).unwrap();
 
     let (clip, yaws) = turned_by(0.15);
     let before = toe_ways(&locking(&clip).finish().unwrap(), &roles, &contacts);
-    let after = toe_ways(&locking(&clip).with_body_yaws(&yaws).finish().unwrap(), &roles, &contacts);
+    let after =
+        toe_ways(&locking(&clip).with_body_yaws(&yaws).finish().unwrap(), &roles, &contacts);
     assert!(before > 0.01 && after < 2e-3, "{before} {after} m");
 
     // An ankle is not wrung: beyond 30° the foot goes with the body.
     let (clip, yaws) = turned_by(1.5);
-    let (with_it, held) = (
-        locking(&clip).finish().unwrap(),
-        locking(&clip).with_body_yaws(&yaws).finish().unwrap(),
-    );
+    let (with_it, held) =
+        (locking(&clip).finish().unwrap(), locking(&clip).with_body_yaws(&yaws).finish().unwrap());
     let foot = roles.get(Role::foot(Side::Left)).unwrap();
-    let wrung =
-        (0..frames).map(|frame| quat::angle_between(with_it.world_pose(frame).rotations[foot], held.world_pose(frame).rotations[foot]));
+    let wrung = (0..frames).map(|frame| {
+        quat::angle_between(
+            with_it.world_pose(frame).rotations[foot],
+            held.world_pose(frame).rotations[foot],
+        )
+    });
     let most = wrung.fold(0.0, f32::max);
     assert!(most > 0.45 && most < 0.53, "{most}");
 }
@@ -213,20 +225,16 @@ fn feet_that_swing_clear_the_ground() {
     let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
     let toe = roles.get(Role::LeftToe).unwrap();
     let path = |clip: &Clip| {
-        (0..clip.frames())
-            .map(|frame| clip.world_pose(frame).positions[toe])
-            .collect::<Vec<_>>()
+        (0..clip.frames()).map(|frame| clip.world_pose(frame).positions[toe]).collect::<Vec<_>>()
     };
     let locked = |clearance_m| {
-        let options = FootLockOptions {
-            clearance_m,
-            ..FootLockOptions::default()
-        };
+        let options = FootLockOptions { clearance_m, ..FootLockOptions::default() };
         path(&foot_lock(&clip, &roles, &contacts, &options).unwrap())
     };
     let (as_it_is, high) = (locked(None), locked(Some(0.12)));
     let stances = contacts.intervals(Side::Left);
-    let standing: Vec<f32> = stances.iter().cloned().flatten().map(|frame| as_it_is[frame].y).collect();
+    let standing: Vec<f32> =
+        stances.iter().cloned().flatten().map(|frame| as_it_is[frame].y).collect();
     let level = crate::math::stats::percentile(&standing, 0.5).unwrap();
     let mut lowest = [f32::INFINITY; 2];
     for pair in stances.windows(2) {
@@ -248,14 +256,20 @@ fn feet_that_swing_clear_the_ground() {
 fn a_stance_near_the_end_of_a_clip_ends_as_any_other() {
     let (clip, roles) = sliding(1.6);
     let contacts = backwards(&clip, &roles);
-    let stance = contacts.intervals(Side::Left).into_iter().find(|stance| stance.start > 60).unwrap();
+    let stance =
+        contacts.intervals(Side::Left).into_iter().find(|stance| stance.start > 60).unwrap();
     let end = stance.end + 3;
     let short = clip.crop(0..end).unwrap();
-    let flags = Side::BOTH.map(|side| (0..end).map(|frame| contacts.planted(side, frame)).collect());
-    let locked = foot_lock(&short, &roles, &Contacts::from_flags(flags), &FootLockOptions::default()).unwrap();
+    let flags =
+        Side::BOTH.map(|side| (0..end).map(|frame| contacts.planted(side, frame)).collect());
+    let locked =
+        foot_lock(&short, &roles, &Contacts::from_flags(flags), &FootLockOptions::default())
+            .unwrap();
     let foot = roles.get(Role::LeftFoot).unwrap();
-    let moved =
-        |frame: usize| (locked.world_pose(frame).positions[foot] - short.world_pose(frame).positions[foot]) * Vec3::new(1.0, 0.0, 1.0);
+    let moved = |frame: usize| {
+        (locked.world_pose(frame).positions[foot] - short.world_pose(frame).positions[foot])
+            * Vec3::new(1.0, 0.0, 1.0)
+    };
     let (last, gone) = (moved(stance.end - 1), moved(end - 1));
     assert!(last.length() > 0.03 && gone.length() > 0.6 * last.length(), "{last} {gone}");
 }
@@ -273,16 +287,14 @@ fn feet_come_out_of_the_ground() {
     };
     let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
     let all = || {
-        Side::BOTH
-            .into_iter()
-            .flat_map(|side| contacts.intervals(side).into_iter().flatten().map(move |frame| (frame, side)))
+        Side::BOTH.into_iter().flat_map(|side| {
+            contacts.intervals(side).into_iter().flatten().map(move |frame| (frame, side))
+        })
     };
-    let ground = all().map(|(frame, side)| lowest(&clip, frame, side)).fold(f32::INFINITY, f32::min) + 0.02;
+    let ground =
+        all().map(|(frame, side)| lowest(&clip, frame, side)).fold(f32::INFINITY, f32::min) + 0.02;
     let lock = |ground_m| {
-        let options = FootLockOptions {
-            ground_m,
-            ..FootLockOptions::default()
-        };
+        let options = FootLockOptions { ground_m, ..FootLockOptions::default() };
         foot_lock(&clip, &roles, &contacts, &options).unwrap()
     };
     let (lifted, left) = (lock(Some(ground)), lock(None));
@@ -326,7 +338,8 @@ proptest! {
     }
 }
 
-/// Captured knees are bent the wrong way by some degrees when a leg is straight; a shorter leg bends them the right way all the same.
+/// Captured knees are bent the wrong way by some degrees when a leg is straight; a shorter leg
+/// bends them the right way all the same.
 #[test]
 fn knees_never_flip() {
     let mut before: Option<f32> = None;
@@ -361,7 +374,8 @@ fn stretched_knee_does_not_snap() {
         let [a, b] = leg.turned(leg.line().normalize_or_zero() * shift_m, Vec3::X);
         (a * leg.thigh).angle_between(b * leg.shin).to_degrees()
     };
-    // 24 cm/s at 120 frames a second: 2 mm a frame. The closed form is 2.5° where the stretch ends; nearer to a straight leg it is more.
+    // 24 cm/s at 120 frames a second: 2 mm a frame. The closed form is 2.5° where the stretch ends;
+    // nearer to a straight leg it is more.
     let flexions: Vec<f32> = (0..30).map(|frame| flexion_deg(0.002 * frame as f32)).collect();
     let steps = flexions.windows(2).map(|pair| (pair[1] - pair[0]).abs());
     let most = steps.fold(0.0, f32::max);
@@ -373,7 +387,9 @@ fn stretched_knee_does_not_snap() {
 fn what_cannot_be_locked_is_said() {
     let (clip, roles) = sliding(1.3);
     let contacts = backwards(&clip, &roles);
-    let lock = |roles: &Roles, contacts: &Contacts, options: &FootLockOptions| foot_lock(&clip, roles, contacts, options);
+    let lock = |roles: &Roles, contacts: &Contacts, options: &FootLockOptions| {
+        foot_lock(&clip, roles, contacts, options)
+    };
     let options = FootLockOptions::default();
     assert_eq!(lock(&Roles::default(), &contacts, &options), Err(FootLockError::NoLegs));
     assert!(matches!(
@@ -391,11 +407,7 @@ fn what_cannot_be_locked_is_said() {
     one.set(Role::RightShin, roles.get(Role::Head));
     assert_eq!(lock(&one, &contacts, &options), Err(FootLockError::NoLegs));
     // No blending at all is a jump, not an error; nor are no frames.
-    let hard = FootLockOptions {
-        blend_secs: 0.0,
-        max_shift_m: 0.0,
-        ..options
-    };
+    let hard = FootLockOptions { blend_secs: 0.0, max_shift_m: 0.0, ..options };
     assert!(lock(&roles, &contacts, &hard).is_ok());
     let empty = clip.crop(0..0).unwrap();
     assert_eq!(foot_lock(&empty, &roles, &Contacts::default(), &options), Ok(empty));

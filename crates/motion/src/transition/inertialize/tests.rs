@@ -5,10 +5,7 @@ const KINDS: [Inertialization; 4] = [
     Inertialization::Offset(Decay::Spring { half_life_secs: 0.15 }),
     Inertialization::Offset(Decay::Cubic { blend_secs: 0.5 }),
     Inertialization::Offset(Decay::Quintic { blend_secs: 0.5 }),
-    Inertialization::DeadBlend {
-        blend_secs: 0.5,
-        extrapolation_half_life_secs: 0.15,
-    },
+    Inertialization::DeadBlend { blend_secs: 0.5, extrapolation_half_life_secs: 0.15 },
 ];
 
 /// A joint and a root that turn and move steadily: known at every time.
@@ -38,12 +35,8 @@ fn vector(size: f32) -> impl Strategy<Value = Vec3> {
 }
 
 fn steady() -> impl Strategy<Value = Steady> {
-    (vector(1.5), vector(2.0), vector(1.0), vector(2.0)).prop_map(|(start, spin, place, velocity)| Steady {
-        start,
-        spin,
-        place,
-        velocity,
-    })
+    (vector(1.5), vector(2.0), vector(1.0), vector(2.0))
+        .prop_map(|(start, spin, place, velocity)| Steady { start, spin, place, velocity })
 }
 
 fn with_inertia(inertia: &mut Inertializer, mut pose: MovingPose) -> MovingPose {
@@ -52,7 +45,8 @@ fn with_inertia(inertia: &mut Inertializer, mut pose: MovingPose) -> MovingPose 
 }
 
 fn off(a: &MovingPose, b: &MovingPose) -> f32 {
-    quat::angle_between(a.rotations[0], b.rotations[0]) + a.translations[0].distance(b.translations[0])
+    quat::angle_between(a.rotations[0], b.rotations[0])
+        + a.translations[0].distance(b.translations[0])
 }
 
 /// The velocities from pose `a` to pose `b`, `dt` later.
@@ -77,7 +71,8 @@ proptest! {
         }
     }
 
-    /// However far apart the rotations are, and also when the next jump comes while the last one is still dying away.
+    /// However far apart the rotations are, and also when the next jump comes while the last one is
+    /// still dying away.
     #[test]
     fn velocities_stay_continuous_over_every_jump(clips in [steady(), steady(), steady()], between in 0.01f32..0.4) {
         for how in KINDS {
@@ -99,7 +94,8 @@ proptest! {
                 inertia.advance(f64::from(dt));
                 track.push(with_inertia(&mut inertia, clips[2].at(secs)));
             }
-            // Accelerations are finite on both sides: y² times the offset and 2y times the velocity; the quintic's may be high, when it must not overshoot.
+            // Accelerations are finite on both sides: y² times the offset and 2y times the
+            // velocity; the quintic's may be high, when it must not overshoot.
             if matches!(how, Inertialization::Offset(Decay::Quintic { .. })) {
                 continue;
             }
@@ -172,11 +168,7 @@ proptest! {
 
 #[test]
 fn steps_over_the_ground_lead_from_the_old_speed_to_the_new() {
-    let pose = |travel: Vec3| MovingPose {
-        travel,
-        steady_travel: travel,
-        ..MovingPose::default()
-    };
+    let pose = |travel: Vec3| MovingPose { travel, steady_travel: travel, ..MovingPose::default() };
     let (old, new, dt) = (Vec3::new(0.2, -1.0, 1.4), Vec3::new(0.0, 0.5, 3.5), 1.0 / 60.0);
     let step = Planar::new(0.5 * dt, 0.0, 3.5 * dt);
     for how in KINDS {
@@ -193,7 +185,8 @@ fn steps_over_the_ground_lead_from_the_old_speed_to_the_new() {
     }
 }
 
-/// A sway that goes on in neither motion leaves the character where it would have been; a difference of speeds does not.
+/// A sway that goes on in neither motion leaves the character where it would have been; a
+/// difference of speeds does not.
 #[test]
 fn sway_swings_out_and_speed_is_made_good() {
     let dt = 1e-3;
@@ -208,16 +201,10 @@ fn sway_swings_out_and_speed_is_made_good() {
             }
             here
         };
-        let swaying = way(MovingPose {
-            travel: Vec3::new(0.3, 1.0, 0.0),
-            ..MovingPose::default()
-        });
+        let swaying = way(MovingPose { travel: Vec3::new(0.3, 1.0, 0.0), ..MovingPose::default() });
         assert!(swaying.shift.length() < 5e-3 && swaying.yaw.abs() < 1e-3, "{how:?} {swaying:?}");
-        let walking = way(MovingPose {
-            travel: Vec3::Z,
-            steady_travel: Vec3::Z,
-            ..MovingPose::default()
-        });
+        let walking =
+            way(MovingPose { travel: Vec3::Z, steady_travel: Vec3::Z, ..MovingPose::default() });
         let area = (0..3000).map(|i| how.left((f64::from(i) + 0.5) * dt) * dt).sum::<f64>();
         assert!((walking.shift.y - area).abs() < 1e-4, "{how:?} {walking:?} {area}");
     }
@@ -241,7 +228,8 @@ struct GoldenTurn {
 
 #[test]
 fn agrees_with_scipy() {
-    let golden: Golden = serde_json::from_str(include_str!("../../../tests/oracles/transition.json")).unwrap();
+    let golden: Golden =
+        serde_json::from_str(include_str!("../../../tests/oracles/transition.json")).unwrap();
     for turn in &golden.turns {
         let of = |[start, spin]: [Vec3; 2]| Steady {
             start,
@@ -250,9 +238,8 @@ fn agrees_with_scipy() {
             velocity: Vec3::ZERO,
         };
         let (old, new) = (of(turn.old), of(turn.new));
-        let spring = Inertialization::Offset(Decay::Spring {
-            half_life_secs: turn.spring_half_life,
-        });
+        let spring =
+            Inertialization::Offset(Decay::Spring { half_life_secs: turn.spring_half_life });
         let dead = Inertialization::DeadBlend {
             blend_secs: turn.dead_blend[0],
             extrapolation_half_life_secs: turn.dead_blend[1],
@@ -283,7 +270,8 @@ fn a_large_offset_of_a_slow_joint_takes_its_time_and_others_do_not() {
     let (old, new) = (turned(1.2), turned(0.0));
     let (usual, dt) = ([1.0, 100.0], 1.0 / 240.0);
     for kind in KINDS {
-        // The fastest that each joint turns, radians per second, and what is left after a second and at last.
+        // The fastest that each joint turns, radians per second, and what is left after a second
+        // and at last.
         let played = |usual: &[f32]| {
             let mut inertia = Inertializer::new(kind);
             inertia.trigger_within(&old, &new, usual);
@@ -295,7 +283,8 @@ fn a_large_offset_of_a_slow_joint_takes_its_time_and_others_do_not() {
                 inertia.apply(&mut rotations, &mut []);
                 let now = [0, 1].map(|joint: usize| quat::log(rotations[joint]).x);
                 for joint in 0..2 {
-                    fastest[joint] = fastest[joint].max((before[joint] - now[joint]).abs() / dt as f32);
+                    fastest[joint] =
+                        fastest[joint].max((before[joint] - now[joint]).abs() / dt as f32);
                 }
                 before = now;
                 if tick % 240 == 0 {

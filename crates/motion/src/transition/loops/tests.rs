@@ -20,28 +20,22 @@ fn source_of(clip: Clip) -> Source {
 
 /// 67 frames are one stride, and a little.
 fn walk(frames: usize, turning: f32) -> Source {
-    source_of(
-        Walk {
-            frames,
-            turning,
-            heading: 1.0,
-            start: (3.0, -4.0),
-            ..Walk::default()
-        }
-        .clip(),
-    )
+    source_of(Walk { frames, turning, heading: 1.0, start: (3.0, -4.0), ..Walk::default() }.clip())
 }
 
 fn closed(source: &Source, cycle: Range<usize>, method: LoopMethod, ratio: f64) -> Loop {
     close_loop(source, cycle, &LoopOptions { method, ratio }).unwrap()
 }
 
-/// The seam as a viewer meets it: joint angles between the last frame of a cycle and the first of the next, less those of the clip's own step.
+/// The seam as a viewer meets it: joint angles between the last frame of a cycle and the first of
+/// the next, less those of the clip's own step.
 fn seam_of_frames(source: &Source, cycle: Range<usize>, made: &Loop) -> f32 {
     let twice = made.repeat(2).unwrap();
     let n = made.clip.frames();
     let own = source.clip();
-    let turn = |clip: &Clip, f: usize, joint: usize| quat::log(clip.rotations(f)[joint] * clip.rotations(f - 1)[joint].conjugate());
+    let turn = |clip: &Clip, f: usize, joint: usize| {
+        quat::log(clip.rotations(f)[joint] * clip.rotations(f - 1)[joint].conjugate())
+    };
     (1..own.skeleton().len())
         .map(|joint| (turn(&twice, n, joint) - turn(own, cycle.end, joint)).length())
         .fold(0.0, f32::max)
@@ -76,8 +70,9 @@ proptest! {
             place = made.cycle.after(&place);
             let frame = k * length;
             prop_assert_eq!(&played.rotations(frame)[1..], &played.rotations(0)[1..]);
-            // In double precision the k-th cycle lies at `cycle^k`. What is stored is that, rounded once: to half of what lies between neighbouring numbers
-            // of single precision, 8 µm at 160 m. Nothing adds up.
+            // In double precision the k-th cycle lies at `cycle^k`. What is stored is that, rounded
+            // once: to half of what lies between neighbouring numbers of single precision, 8 µm at
+            // 160 m. Nothing adds up.
             let at = place.apply_ground(DVec2::new(root.x.into(), root.z.into()));
             for (stored, exact) in axes(played.root_translations()[frame]).into_iter().zip([at.x, f64::from(root.y), at.y]) {
                 let rounding = 0.5 * f64::from(f32::EPSILON) * exact.abs();
@@ -121,7 +116,8 @@ fn what_a_viewer_meets_at_the_seam() {
         let frames = source.clip().frames();
         let own = cycle.end.min(frames - 1);
         assert_eq!(own, cycle.end);
-        let raw = source.clip().rotations(cycle.start).iter().zip(source.clip().rotations(cycle.end));
+        let raw =
+            source.clip().rotations(cycle.start).iter().zip(source.clip().rotations(cycle.end));
         let gap = raw.skip(1).map(|(a, b)| quat::angle_between(*a, *b)).fold(0.0, f32::max);
         assert!(gap > 0.2);
         let exact = closed(&source, cycle.clone(), METHODS[0], 0.5);
@@ -150,15 +146,7 @@ fn the_classic_loop_s_seam_is_told() {
 #[test]
 fn a_cycle_that_closes_by_itself_stays_as_it_is() {
     // Exactly one stride in 64 frames.
-    let source = source_of(
-        Walk {
-            frames: 65,
-            fps: 64.0,
-            cadence: 1.0,
-            ..Walk::default()
-        }
-        .clip(),
-    );
+    let source = source_of(Walk { frames: 65, fps: 64.0, cadence: 1.0, ..Walk::default() }.clip());
     for method in METHODS {
         let made = closed(&source, 0..64, method, 0.5);
         let own = source.clip().crop(0..64).unwrap();
@@ -181,17 +169,15 @@ fn the_way_goes_on_in_its_own_curve() {
         let roots = played.root_translations();
         roots.windows(2).map(|p| f64::from((p[1] - p[0]).length()) * 60.0).collect()
     };
-    assert!(
-        steps.windows(2).all(|s| (s[1] - s[0]).abs() < 0.08),
-        "no jump of speed at the seams"
-    );
+    assert!(steps.windows(2).all(|s| (s[1] - s[0]).abs() < 0.08), "no jump of speed at the seams");
 }
 
 #[test]
 fn tracks_close_too_and_ends_are_kept_by_the_ratio() {
     let (clip, n) = ((**walk(100, 0.0).clip()).clone(), 100);
     let values = (0..n).map(|f| Vec3::new(0.2, 0.22 + 0.002 * f as f32, 0.0)).collect();
-    let source = source_of(clip.with_translations(vec![JointTranslations { joint: 3, values }]).unwrap());
+    let source =
+        source_of(clip.with_translations(vec![JointTranslations { joint: 3, values }]).unwrap());
     let start_kept = closed(&source, 10..70, LoopMethod::Exact { half_life_secs: 0.05 }, 0.0);
     assert!((start_kept.clip.translations()[0].values[0].y - 0.24).abs() < 1e-4);
     let end_kept = closed(&source, 10..70, LoopMethod::Exact { half_life_secs: 0.05 }, 1.0);

@@ -7,10 +7,7 @@ use std::sync::Arc;
 
 const METHODS: [Method; 6] = [
     Method::Cut,
-    Method::Dissolve {
-        window: 24,
-        law: WeightLaw::Smooth,
-    },
+    Method::Dissolve { window: 24, law: WeightLaw::Smooth },
     Method::Inertialize(Inertialization::Offset(Decay::Spring { half_life_secs: 0.2 })),
     Method::Inertialize(Inertialization::Offset(Decay::Cubic { blend_secs: 0.4 })),
     Method::Inertialize(Inertialization::Offset(Decay::Quintic { blend_secs: 0.4 })),
@@ -19,7 +16,8 @@ const METHODS: [Method; 6] = [
         extrapolation_half_life_secs: 0.1,
     }),
 ];
-const PLACES: [(bool, RootBlend); 3] = [(true, RootBlend::Velocity), (true, RootBlend::World), (false, RootBlend::Velocity)];
+const PLACES: [(bool, RootBlend); 3] =
+    [(true, RootBlend::Velocity), (true, RootBlend::World), (false, RootBlend::Velocity)];
 const LEAVE: usize = 120;
 const ENTER: usize = 31;
 
@@ -31,26 +29,24 @@ struct Pair {
 }
 
 fn walk_and_run() -> Pair {
-    let [walk, run] = [Action::Walk, Action::Run].map(|action| Arc::new(synthesize(&Params::new(action)).unwrap().clip));
+    let [walk, run] = [Action::Walk, Action::Run]
+        .map(|action| Arc::new(synthesize(&Params::new(action)).unwrap().clip));
     let roles = Roles::detect(walk.skeleton());
     let profile = |clip: &Arc<Clip>| {
         let contacts = Contacts::detect(clip, &roles, &ContactOptions::default());
         Profile::new(Arc::new(Source::new(Arc::clone(clip), &roles)), &roles, contacts)
     };
-    Pair {
-        a: profile(&walk),
-        b: profile(&run),
-        roles,
-    }
+    Pair { a: profile(&walk), b: profile(&run), roles }
 }
 
 impl Pair {
-    fn made(&self, method: Method, (align, root): (bool, RootBlend), mistake: Option<Mistake>) -> Concatenation {
-        let options = TransitionOptions {
-            align,
-            root,
-            ..TransitionOptions::new(method)
-        };
+    fn made(
+        &self,
+        method: Method,
+        (align, root): (bool, RootBlend),
+        mistake: Option<Mistake>,
+    ) -> Concatenation {
+        let options = TransitionOptions { align, root, ..TransitionOptions::new(method) };
         let (a, b) = (self.a.source(), self.b.source());
         let made = match mistake {
             Some(mistake) => concatenate_mistaken(a, LEAVE, b, ENTER, &options, mistake),
@@ -75,7 +71,10 @@ impl Pair {
 }
 
 /// Every method that a mistake concerns, with what is measured without it and with it.
-fn with_and_without(pair: &Pair, mistake: Mistake) -> impl Iterator<Item = (Method, TransitionMetrics, TransitionMetrics)> + '_ {
+fn with_and_without(
+    pair: &Pair,
+    mistake: Mistake,
+) -> impl Iterator<Item = (Method, TransitionMetrics, TransitionMetrics)> + '_ {
     let concerned = METHODS.into_iter().filter(move |method| mistake.concerns(method));
     concerned.map(move |method| {
         let of = |mistake| pair.measured(&pair.made(method, PLACES[0], mistake));
@@ -91,7 +90,10 @@ fn wrong_rotations_whirl_or_jump() {
         assert!(wrong.seam_dps.unwrap() > 4.0 * right.seam_dps.unwrap(), "{method:?} {wrong:?}");
     }
     for (method, right, wrong) in with_and_without(&pair, Mistake::EulerLerp) {
-        assert!(wrong.seam_dps.unwrap() > 1_000.0 + right.seam_dps.unwrap(), "{method:?} {wrong:?}");
+        assert!(
+            wrong.seam_dps.unwrap() > 1_000.0 + right.seam_dps.unwrap(),
+            "{method:?} {wrong:?}"
+        );
     }
     for (method, right, wrong) in with_and_without(&pair, Mistake::DegreesForRadians) {
         assert!(wrong.seam_deg.unwrap() > 90.0 + right.seam_deg.unwrap(), "{method:?} {wrong:?}");
@@ -125,12 +127,10 @@ fn wrong_places_turn_fly_and_slide() {
     for (method, right, wrong) in with_and_without(&pair, Mistake::NoAlignment) {
         assert!(wrong.skate_cm.unwrap() > right.skate_cm.unwrap() + 10.0, "{method:?} {wrong:?}");
     }
-    let long = Method::Dissolve {
-        window: 60,
-        law: WeightLaw::Smooth,
-    };
+    let long = Method::Dissolve { window: 60, law: WeightLaw::Smooth };
     for method in [long, METHODS[2], METHODS[3], METHODS[4]] {
-        let [right, wrong] = [None, Some(Mistake::WorldRoot)].map(|mistake| pair.measured(&pair.made(method, PLACES[0], mistake)));
+        let [right, wrong] = [None, Some(Mistake::WorldRoot)]
+            .map(|mistake| pair.measured(&pair.made(method, PLACES[0], mistake)));
         assert!(
             wrong.skate_cm.unwrap() > right.skate_cm.unwrap() + 5.0,
             "{method:?} {right:?} {wrong:?}"
@@ -143,16 +143,28 @@ fn wrong_velocities_stop_what_was_moving() {
     let pair = walk_and_run();
     for (method, right, wrong) in with_and_without(&pair, Mistake::VelocityDividedTwice) {
         if matches!(method, Method::Dissolve { .. }) {
-            assert!(wrong.skate_cm.unwrap() > right.skate_cm.unwrap() + 40.0, "{method:?} {wrong:?}");
+            assert!(
+                wrong.skate_cm.unwrap() > right.skate_cm.unwrap() + 40.0,
+                "{method:?} {wrong:?}"
+            );
         } else {
-            assert!(wrong.seam_dps.unwrap() > 1.4 * right.seam_dps.unwrap(), "{method:?} {wrong:?}");
+            assert!(
+                wrong.seam_dps.unwrap() > 1.4 * right.seam_dps.unwrap(),
+                "{method:?} {wrong:?}"
+            );
         }
     }
     // A dissolve that nearly stands still goes on rigidly behind its window.
-    let [right, wrong] = [None, Some(Mistake::VelocityDividedTwice)].map(|mistake| pair.made(METHODS[1], PLACES[0], mistake));
+    let [right, wrong] = [None, Some(Mistake::VelocityDividedTwice)]
+        .map(|mistake| pair.made(METHODS[1], PLACES[0], mistake));
     let (end, last) = (right.transition.end, right.frames.len() - 1);
-    let way = |made: &Concatenation, from: usize, to: usize| made.frames[from].inverse().after(&made.frames[to]).shift;
-    assert!(way(&wrong, LEAVE - 1, end - 1).length() < 0.01 && way(&right, LEAVE - 1, end - 1).length() > 0.4);
+    let way = |made: &Concatenation, from: usize, to: usize| {
+        made.frames[from].inverse().after(&made.frames[to]).shift
+    };
+    assert!(
+        way(&wrong, LEAVE - 1, end - 1).length() < 0.01
+            && way(&right, LEAVE - 1, end - 1).length() > 0.4
+    );
     assert!(way(&wrong, end, last).distance(way(&right, end, last)) < 1e-3);
     let b_stands = wrong.world_from_b.after(&pair.b.source().frames()[ENTER + last - LEAVE]);
     assert!(b_stands.shift.distance(wrong.frames[last].shift) < 1e-3);
@@ -161,18 +173,20 @@ fn wrong_velocities_stop_what_was_moving() {
 #[test]
 fn what_a_mistake_does_not_concern_is_right() {
     let pair = walk_and_run();
-    let at_once = Method::Dissolve {
-        window: 1,
-        law: WeightLaw::Smooth,
-    };
+    let at_once = Method::Dissolve { window: 1, law: WeightLaw::Smooth };
     for mistake in Mistake::ALL {
         for method in [Method::Cut, at_once] {
-            let [right, wrong] = [None, Some(mistake)].map(|mistake| pair.made(method, PLACES[0], mistake));
+            let [right, wrong] =
+                [None, Some(mistake)].map(|mistake| pair.made(method, PLACES[0], mistake));
             assert_eq!(right == wrong, !mistake.concerns(&method), "{mistake:?} {method:?}");
         }
         // What comes before the transition is A, whatever is wrong.
         let made = pair.made(METHODS[2], PLACES[0], Some(mistake));
-        assert_eq!(made.clip.pose(LEAVE - 1), pair.a.source().clip().pose(LEAVE - 1), "{mistake:?}");
+        assert_eq!(
+            made.clip.pose(LEAVE - 1),
+            pair.a.source().clip().pose(LEAVE - 1),
+            "{mistake:?}"
+        );
         assert_eq!(made.frames.len(), made.clip.frames());
         // And what cannot be joined is refused as ever.
         let options = TransitionOptions::new(METHODS[2]);
@@ -188,14 +202,11 @@ fn right_differences_give_the_right_transition() {
         for place in PLACES {
             let right = pair.made(method, place, None);
             let (align, root) = place;
-            let options = TransitionOptions {
-                align,
-                root,
-                ..TransitionOptions::new(method)
-            };
-            let again = Mixing::new(pair.a.source(), LEAVE, pair.b.source(), ENTER, &options, Mix::Right)
-                .mixed(right.clone())
-                .unwrap();
+            let options = TransitionOptions { align, root, ..TransitionOptions::new(method) };
+            let again =
+                Mixing::new(pair.a.source(), LEAVE, pair.b.source(), ENTER, &options, Mix::Right)
+                    .mixed(right.clone())
+                    .unwrap();
             let apart = rotations_of(&right.clip)
                 .iter()
                 .zip(rotations_of(&again.clip))

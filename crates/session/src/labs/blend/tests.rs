@@ -20,9 +20,16 @@ fn place(session: &Session) -> ([usize; 2], Transition) {
 }
 
 /// The distance of two windows by the alignment's own closed form, centimetres.
-fn apart_cm(a: &Clip, b: &Clip, [leave, enter]: [usize; 2], window: usize, body_height: f64) -> f64 {
+fn apart_cm(
+    a: &Clip,
+    b: &Clip,
+    [leave, enter]: [usize; 2],
+    window: usize,
+    body_height: f64,
+) -> f64 {
     let points = |clip: &Clip, frame: usize| clip.world_positions(frame..frame + window);
-    let found = align(&points(a, leave), &points(b, enter), &limb_weights(a.skeleton()), 0.0).unwrap();
+    let found =
+        align(&points(a, leave), &points(b, enter), &limb_weights(a.skeleton()), 0.0).unwrap();
     rms_cm(found.distance, found.weight, body_height)
 }
 
@@ -54,9 +61,11 @@ fn frame_set_by_hand_near_an_end_is_the_one_that_is_matched_and_measured() {
             (f64::from(transition.distance_cm) - apart(found)).abs() < 0.01,
             "{link}: {transition:?}"
         );
-        // The other frame is the best for this one. The search refines near the coarse grid's minima.
+        // The other frame is the best for this one. The search refines near the coarse grid's
+        // minima.
         if let (Some(frame), None) = (frame_a, frame_b) {
-            let best = (0..frames_b / 2).map(|enter| apart([frame, enter])).fold(f64::INFINITY, f64::min);
+            let best =
+                (0..frames_b / 2).map(|enter| apart([frame, enter])).fold(f64::INFINITY, f64::min);
             assert!(apart(found) <= best + 0.2, "{link}: {} against {best}", apart(found));
         }
     }

@@ -2,7 +2,10 @@ use super::Cast;
 use super::wanted::GraphKey;
 use petgraph::graph::NodeIndex;
 use petgraph::visit::Dfs;
-use segue_motion::graph::{Candidates, CountedTo, DistanceOverview, FrameDistances, GraphError, GraphOptions, MotionGraph, Place};
+use segue_motion::graph::{
+    Candidates, CountedTo, DistanceOverview, FrameDistances, GraphError, GraphOptions, MotionGraph,
+    Place,
+};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -26,23 +29,19 @@ pub enum Distances {
 impl Field {
     /// To be counted.
     pub(super) fn held(distances: FrameDistances) -> Self {
-        Self {
-            distances: Distances::Held(distances),
-            histogram: vec![0; DistanceOverview::BINS],
-        }
+        Self { distances: Distances::Held(distances), histogram: vec![0; DistanceOverview::BINS] }
     }
 
     pub(super) fn from_afar(overview: DistanceOverview) -> Self {
-        Self {
-            distances: Distances::FromAfar(Box::new(overview)),
-            histogram: Vec::new(),
-        }
+        Self { distances: Distances::FromAfar(Box::new(overview)), histogram: Vec::new() }
     }
 
     /// Counts about so many cells more; `true` behind the last one.
     pub(super) fn count(&mut self, at: &mut CountedTo, cells: usize) -> bool {
         match &self.distances {
-            Distances::Held(distances) => distances.count(at, cells, DistanceOverview::BIN_CM, &mut self.histogram),
+            Distances::Held(distances) => {
+                distances.count(at, cells, DistanceOverview::BIN_CM, &mut self.histogram)
+            }
             Distances::FromAfar(_) => true,
         }
     }
@@ -70,7 +69,8 @@ impl Field {
         }
     }
 
-    /// The distance of the windows that start at two frames, centimetres; `None` where a window crosses the end of its clip.
+    /// The distance of the windows that start at two frames, centimetres; `None` where a window
+    /// crosses the end of its clip.
     #[must_use]
     pub fn cm(&self, a: Place, b: Place) -> Option<f64> {
         match &self.distances {
@@ -135,7 +135,11 @@ pub(super) enum Building {
 
 impl Building {
     /// The next slice: what is left, or the graph.
-    pub(super) fn advance(self, cast: &Arc<Cast>, key: GraphKey) -> Result<ControlFlow<Built, Self>, GraphError> {
+    pub(super) fn advance(
+        self,
+        cast: &Arc<Cast>,
+        key: GraphKey,
+    ) -> Result<ControlFlow<Built, Self>, GraphError> {
         Ok(match self {
             Self::Found(candidates) => {
                 let lacks_some = !candidates.are_all_within(key.options.edge_threshold_cm);
@@ -155,12 +159,14 @@ impl Building {
 }
 
 impl Built {
-    fn new(cast: &Arc<Cast>, whole: Arc<MotionGraph>, components: &[Vec<NodeIndex>], key: GraphKey) -> Result<Self, GraphError> {
-        let graph = if key.pruned {
-            Arc::new(whole.pruned_to(components)?)
-        } else {
-            Arc::clone(&whole)
-        };
+    fn new(
+        cast: &Arc<Cast>,
+        whole: Arc<MotionGraph>,
+        components: &[Vec<NodeIndex>],
+        key: GraphKey,
+    ) -> Result<Self, GraphError> {
+        let graph =
+            if key.pruned { Arc::new(whole.pruned_to(components)?) } else { Arc::clone(&whole) };
         let mut component = vec![0; whole.graph().node_count()];
         let (mut rings, mut ring_components) = (Vec::new(), Vec::new());
         let all = cast.set().frames().max(1) as f64;
@@ -177,7 +183,10 @@ impl Built {
             if nodes.iter().any(inside) {
                 ring_components.push(index);
                 let stretches = nodes.iter().filter_map(|&node| whole.graph().node_weight(node));
-                rings.push(stretches.map(|stretch| stretch.end - stretch.start).sum::<usize>() as f64 / all);
+                rings.push(
+                    stretches.map(|stretch| stretch.end - stretch.start).sum::<usize>() as f64
+                        / all,
+                );
             }
         }
         let mut is_walked = vec![false; cast.set().clips().len()];
@@ -259,7 +268,8 @@ impl Built {
         self.is_walked.get(clip).copied().unwrap_or(false)
     }
 
-    /// The clips that ways lead to from a place, that one's included; of a graph that is pruned, all that are walked in.
+    /// The clips that ways lead to from a place, that one's included; of a graph that is pruned,
+    /// all that are walked in.
     #[must_use]
     pub fn clips_from(&self, place: Place) -> Vec<bool> {
         let start = self.graph.node_at(place);
@@ -270,7 +280,9 @@ impl Built {
         let mut reached = vec![false; self.is_walked.len()];
         let mut search = Dfs::new(graph, start);
         while let Some(node) = search.next(graph) {
-            if let Some(slot) = graph.node_weight(node).and_then(|stretch| reached.get_mut(stretch.clip)) {
+            if let Some(slot) =
+                graph.node_weight(node).and_then(|stretch| reached.get_mut(stretch.clip))
+            {
                 *slot = true;
             }
         }
@@ -280,9 +292,6 @@ impl Built {
     /// The index of a transition in the whole graph.
     #[must_use]
     pub fn jump_of(&self, leave: Place, enter: Place) -> Option<usize> {
-        self.whole
-            .jumps()
-            .iter()
-            .position(|jump| jump.leave == leave && jump.enter == enter)
+        self.whole.jumps().iter().position(|jump| jump.leave == leave && jump.enter == enter)
     }
 }

@@ -28,17 +28,12 @@ impl Cast {
         let first = motions.first().ok_or("A motion graph needs a clip: add at least one.")?;
         let height = f64::from(first.roles.body_height(first.clip.skeleton()));
         let sources = motions.iter().map(|motion| Arc::new(source_of(motion))).collect();
-        let set = Arc::new(FrameSet::new(sources, height).map_err(|error| super::wanted::sentence(&error))?);
+        let set = Arc::new(
+            FrameSet::new(sources, height).map_err(|error| super::wanted::sentence(&error))?,
+        );
         let contacts = motions.iter().map(|motion| motion.contacts.clone()).collect();
         let profile = WalkProfile::begun(Arc::clone(&set), &first.roles, contacts);
-        Ok(Self {
-            names,
-            motions,
-            retargeted,
-            set,
-            profile,
-            jolts: JoltSearch::default(),
-        })
+        Ok(Self { names, motions, retargeted, set, profile, jolts: JoltSearch::default() })
     }
 
     /// A slice of that; `true` when nothing is left.

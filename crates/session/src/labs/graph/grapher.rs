@@ -8,7 +8,10 @@ use crate::compare::MAX_PANES;
 use crate::labs::pair::fitted;
 use crate::motion::Motion;
 use crate::params::Params;
-use segue_motion::graph::{AllPairs, CandidateSearch, CandidateStream, Candidates, CountedTo, GraphError, GraphOptions, PausedAllSweep};
+use segue_motion::graph::{
+    AllPairs, CandidateSearch, CandidateStream, Candidates, CountedTo, GraphError, GraphOptions,
+    PausedAllSweep,
+};
 use segue_motion::registration::Progress;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -24,8 +27,8 @@ const MOST_CELLS: usize = 40_000_000;
 /// Places to go over that are kept for other thresholds: 50 MB.
 const MOST_FOUND: usize = 800_000;
 
-/// Makes graphs and walks slice by slice, and keeps what a change leaves as it is: products of frames for a new window, places to go over for a new threshold, the
-/// graph for another walk.
+/// Makes graphs and walks slice by slice, and keeps what a change leaves as it is: products of
+/// frames for a new window, places to go over for a new threshold, the graph for another walk.
 #[derive(Debug, Default)]
 pub(crate) struct Grapher {
     /// What is asked for: the clips' names and motions.
@@ -62,8 +65,9 @@ pub(crate) struct Grapher {
     stepped: bool,
 }
 
-/// The options by which places to go over are looked for: so far beyond the threshold that is asked for that it can be dragged up a good deal, too, and
-/// nobody looks again. Those that lie beyond are left aside when a graph is made, and there are as many as are held at most.
+/// The options by which places to go over are looked for: so far beyond the threshold that is asked
+/// for that it can be dragged up a good deal, too, and nobody looks again. Those that lie beyond
+/// are left aside when a graph is made, and there are as many as are held at most.
 fn reaching(options: &GraphOptions) -> GraphOptions {
     let most = GraphOptions::MOST_THRESHOLD_CM.max(options.edge_threshold_cm);
     GraphOptions {
@@ -90,13 +94,19 @@ enum Search {
 }
 
 impl Grapher {
-    /// Walks that are asked for from now on go like the one of these parameters, where their graphs allow it.
+    /// Walks that are asked for from now on go like the one of these parameters, where their graphs
+    /// allow it.
     pub(crate) fn guide_by(&mut self, params: Option<&Params>) {
         self.guide = params.cloned();
     }
 
-    /// A walk as far as it is made; `None` when that takes longer than a frame: [`work`](Self::work), then ask again.
-    pub(crate) fn inputs(&mut self, clips: Vec<(String, Arc<Motion>)>, params: &Params) -> Result<Option<GraphInputs>, String> {
+    /// A walk as far as it is made; `None` when that takes longer than a frame:
+    /// [`work`](Self::work), then ask again.
+    pub(crate) fn inputs(
+        &mut self,
+        clips: Vec<(String, Arc<Motion>)>,
+        params: &Params,
+    ) -> Result<Option<GraphInputs>, String> {
         self.meet(clips);
         let wanted = Wanted::guided(params, self.guide.as_ref(), self.clips.len())?;
         let known = self.makers.iter().find(|(known, _)| *known == wanted);
@@ -147,7 +157,9 @@ impl Grapher {
             maker.took(secs);
         }
         self.stepped = false;
-        let Some(key) = self.worked_for.take() else { return };
+        let Some(key) = self.worked_for.take() else {
+            return;
+        };
         match self.took.iter_mut().find(|(known, _)| *known == key) {
             Some((_, sum)) => *sum += secs,
             None => self.took.push((key, secs)),
@@ -166,7 +178,8 @@ impl Grapher {
         self.stopped
     }
 
-    /// Tells where the playhead stands, seconds: walks are made longer before it comes to their end.
+    /// Tells where the playhead stands, seconds: walks are made longer before it comes to their
+    /// end.
     pub(crate) fn play_at(&mut self, now_secs: f64) {
         self.now_secs = now_secs;
     }
@@ -202,7 +215,9 @@ impl Grapher {
             _ if is_found => return Some(0.85),
             Some((known, search)) if serves(known, &wanted.graph.options) => match search {
                 Search::Held(search) => share(search.progress()),
-                Search::Streamed(stream) => return Some(0.1 * fitted + 0.75 * share(stream.progress())),
+                Search::Streamed(stream) => {
+                    return Some(0.1 * fitted + 0.75 * share(stream.progress()));
+                }
             },
             // There the distances are seen when one looks for places to go over, and not before.
             _ if self.is_streamed() => return Some(0.1 * fitted),
@@ -222,7 +237,8 @@ impl Grapher {
             Some(Err(_)) => false,
             None => true,
         };
-        let begins = |wanted: &&Wanted| !matches!(maker(wanted), Some(Ok(maker)) if maker.walk().is_some());
+        let begins =
+            |wanted: &&Wanted| !matches!(maker(wanted), Some(Ok(maker)) if maker.walk().is_some());
         // What is seen for the first time goes before what gets longer.
         let first = self.wanted.iter().filter(short).find(begins);
         first.or_else(|| self.wanted.iter().find(short))
@@ -230,20 +246,18 @@ impl Grapher {
 
     /// Other clips: nothing of what was made holds any more.
     fn meet(&mut self, clips: Vec<(String, Arc<Motion>)>) {
-        let same = clips.len() == self.clips.len() && clips.iter().zip(&self.clips).all(|(a, b)| a.0 == b.0 && Arc::ptr_eq(&a.1, &b.1));
+        let same = clips.len() == self.clips.len()
+            && clips.iter().zip(&self.clips).all(|(a, b)| a.0 == b.0 && Arc::ptr_eq(&a.1, &b.1));
         if !same {
-            *self = Self {
-                clips,
-                guide: self.guide.take(),
-                ..Self::default()
-            };
+            *self = Self { clips, guide: self.guide.take(), ..Self::default() };
         }
     }
 
     /// Does a slice of what is needed next.
     fn step(&mut self, wanted: &Wanted) -> Result<(), String> {
         if let Some(guide) = &wanted.guide {
-            // Without it a walk would go by chance. One that cannot be made has told so: then there is nothing to go like.
+            // Without it a walk would go by chance. One that cannot be made has told so: then there
+            // is nothing to go like.
             let is_to_be_made = match self.maker(guide) {
                 Some(Ok(maker)) => maker.is_short(self.now_secs),
                 Some(Err(_)) => false,
@@ -270,7 +284,9 @@ impl Grapher {
             }
             return Ok(());
         }
-        let Some(cast) = self.ready_cast()? else { return Ok(()) };
+        let Some(cast) = self.ready_cast()? else {
+            return Ok(());
+        };
         wanted.graph.options.check(cast.set()).map_err(|error| sentence(&error))?;
         if let Some(built) = self.known(wanted.graph) {
             let built = Arc::clone(built.as_ref().map_err(String::clone)?);
@@ -306,7 +322,9 @@ impl Grapher {
         if let Some(cast) = &self.cast {
             return cast.clone().map(Some);
         }
-        if let (Some((name, next)), Some((_, first))) = (self.clips.get(self.fitted.len()), self.clips.first()) {
+        if let (Some((name, next)), Some((_, first))) =
+            (self.clips.get(self.fitted.len()), self.clips.first())
+        {
             match fitted(first, next) {
                 Ok(ready) => self.fitted.push(ready),
                 Err(problem) => self.cast = Some(Err(format!("{name}: {problem}"))),
@@ -331,13 +349,19 @@ impl Grapher {
     }
 
     /// A slice of the way to the places where one may go over; these where they are found.
-    fn search_slice(&mut self, cast: &Arc<Cast>, key: GraphKey) -> Result<Option<Arc<Candidates>>, GraphError> {
+    fn search_slice(
+        &mut self,
+        cast: &Arc<Cast>,
+        key: GraphKey,
+    ) -> Result<Option<Arc<Candidates>>, GraphError> {
         if let Some(found) = self.places(&key.options) {
             return Ok(Some(Arc::clone(found)));
         }
         if self.is_streamed() {
             let (options, mut stream) = match self.search.take() {
-                Some((known, Search::Streamed(stream))) if serves(&known, &key.options) => (known, stream),
+                Some((known, Search::Streamed(stream))) if serves(&known, &key.options) => {
+                    (known, stream)
+                }
                 _ => {
                     let options = reaching(&key.options);
                     (options, Box::new(CandidateStream::new(cast.set(), &options)?))
@@ -369,7 +393,9 @@ impl Grapher {
             .filter(|field| field.window() == window)
             .find_map(|field| field.all());
         let Some(distances) = known else {
-            if let Some((mut field, mut at)) = self.counting.take().filter(|(field, _)| field.window() == window) {
+            if let Some((mut field, mut at)) =
+                self.counting.take().filter(|(field, _)| field.window() == window)
+            {
                 if field.count(&mut at, CELLS) {
                     self.keep_field(Arc::new(field));
                 } else {
@@ -409,7 +435,8 @@ impl Grapher {
         self.cast().is_some_and(|cast| cast.set().frames() > MOST_FRAMES)
     }
 
-    /// The places to go over that are known and serve a graph, if the distances that are shown with it are there, too.
+    /// The places to go over that are known and serve a graph, if the distances that are shown with
+    /// it are there, too.
     fn places(&self, options: &GraphOptions) -> Option<&Arc<Candidates>> {
         let is_shown = self.fields.iter().any(|field| field.window() == options.blend_window);
         let mut known = self.found.iter().filter(|(known, _)| is_shown && serves(known, options));
@@ -421,8 +448,12 @@ impl Grapher {
         // One that reaches farther serves for all that this one did.
         self.found.retain(|(known, _)| !serves(&options, known));
         self.found.push((options, Arc::clone(&found)));
-        let count = |found: &[(GraphOptions, Arc<Candidates>)]| found.iter().map(|(_, found)| found.found().len()).sum::<usize>();
-        while self.found.len() > 1 && (self.found.len() > MAX_PANES || count(&self.found) > MOST_FOUND) {
+        let count = |found: &[(GraphOptions, Arc<Candidates>)]| {
+            found.iter().map(|(_, found)| found.found().len()).sum::<usize>()
+        };
+        while self.found.len() > 1
+            && (self.found.len() > MAX_PANES || count(&self.found) > MOST_FOUND)
+        {
             self.found.remove(0);
         }
         found
@@ -431,7 +462,8 @@ impl Grapher {
     fn keep_field(&mut self, field: Arc<Field>) {
         self.fields.push(field);
         while self.fields.len() > MAX_PANES
-            || (self.fields.len() > 1 && self.fields.iter().map(|field| field.cells()).sum::<usize>() > MOST_CELLS)
+            || (self.fields.len() > 1
+                && self.fields.iter().map(|field| field.cells()).sum::<usize>() > MOST_CELLS)
         {
             self.fields.remove(0);
         }

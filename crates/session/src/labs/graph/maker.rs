@@ -7,7 +7,8 @@ use crate::motion::Motion;
 use petgraph::graph::NodeIndex;
 use segue_motion::clip::{Clip, Contacts};
 use segue_motion::graph::{
-    Assembling, Choices, Followed, GraphError, GroundPath, PathSearch, Place, RunLength, Stay, Stitcher, WalkMeter, WalkMetrics, WalkPiece,
+    Assembling, Choices, Followed, GraphError, GroundPath, PathSearch, Place, RunLength, Stay,
+    Stitcher, WalkMeter, WalkMetrics, WalkPiece,
 };
 use segue_motion::metrics::{Metric, MotionTrace, SlideMeter, TraceMeter};
 use segue_motion::skeleton::Side;
@@ -20,12 +21,14 @@ const AHEAD_SECS: f64 = 20.0;
 const LONGEST_SECS: f64 = 1_800.0;
 /// Before and behind a single transition so much of both clips plays, seconds.
 const AROUND_JUMP_SECS: f64 = 1.2;
-/// Nodes that a search for a ground path looks at in all. It bounds what a link shows, on every machine the same.
+/// Nodes that a search for a ground path looks at in all. It bounds what a link shows, on every
+/// machine the same.
 const PATH_BUDGET: usize = 60_000;
 /// Nodes in one slice, about two milliseconds.
 const PATH_NODES: usize = 2_000;
-/// How long one waits for a search, seconds of work: then the best so far is walked, while the search goes on to its end, and so again and again. How long that takes
-/// changes nothing of the walk in the end.
+/// How long one waits for a search, seconds of work: then the best so far is walked, while the
+/// search goes on to its end, and so again and again. How long that takes changes nothing of the
+/// walk in the end.
 const PATH_WAIT_SECS: f64 = 1.0;
 /// Frames that one slice puts together to be shown, about three milliseconds.
 const PUBLISHED_FRAMES: usize = 10_000;
@@ -34,14 +37,16 @@ const RUN_EDGES: usize = 200_000;
 
 /// Frames that one slice holds the feet of, about four milliseconds.
 const LOCKED_FRAMES: usize = 2_000;
-/// Frames that one slice measures the feet of, held and free, or the whole body, about four milliseconds.
+/// Frames that one slice measures the feet of, held and free, or the whole body, about four
+/// milliseconds.
 const MEASURED_FRAMES: usize = 1_000;
 /// Frames that one slice measures the artefacts of, about two milliseconds.
 const METERED_FRAMES: usize = 500;
 
-/// A walk on its way to be shown. With held feet all of it is locked anew: a stance and what it moves around it are a matter of a second, and a walk ends
-/// far ahead of the playhead. What has played stays but for the plane in which a leg usually bends, which is a mean over the whole walk and counts where a leg is
-/// nearly straight.
+/// A walk on its way to be shown. With held feet all of it is locked anew: a stance and what it
+/// moves around it are a matter of a second, and a walk ends far ahead of the playhead. What has
+/// played stays but for the plane in which a leg usually bends, which is a mean over the whole walk
+/// and counts where a leg is nearly straight.
 #[derive(Debug)]
 enum Publishing {
     Assembling(Box<Assembling>),
@@ -49,7 +54,8 @@ enum Publishing {
     Measuring(Box<Measuring>),
 }
 
-/// What the joints and the feet of a walk do, and how far feet would slide if they were not held: of each motion so far.
+/// What the joints and the feet of a walk do, and how far feet would slide if they were not held:
+/// of each motion so far.
 #[derive(Debug)]
 struct Measuring {
     shown: Motion,
@@ -83,7 +89,8 @@ impl Measuring {
     /// A slice. `false` when nothing is left to do.
     fn advance(&mut self, frames: usize) -> bool {
         let Motion { clip, contacts, .. } = &self.shown;
-        let of_free = |(free, meter): &mut (Arc<Clip>, SlideMeter)| meter.advance(free, contacts, frames);
+        let of_free =
+            |(free, meter): &mut (Arc<Clip>, SlideMeter)| meter.advance(free, contacts, frames);
         if self.slide.advance(clip, contacts, frames) | self.free.as_mut().is_some_and(of_free) {
             return true;
         }
@@ -135,19 +142,35 @@ pub(super) struct Maker {
 }
 
 impl Maker {
-    /// One that first looks for a way along the path that is wanted, where there is one. `others` may know of the same graph what this one needs.
-    pub(super) fn new<'a>(built: &Arc<Built>, wanted: &Wanted, mut others: impl Iterator<Item = &'a Self>) -> Result<Self, String> {
-        let knows = |other: &&Self| other.run_is_known && Arc::ptr_eq(&other.built, built) && other.wanted.weights == wanted.weights;
+    /// One that first looks for a way along the path that is wanted, where there is one. `others`
+    /// may know of the same graph what this one needs.
+    pub(super) fn new<'a>(
+        built: &Arc<Built>,
+        wanted: &Wanted,
+        mut others: impl Iterator<Item = &'a Self>,
+    ) -> Result<Self, String> {
+        let knows = |other: &&Self| {
+            other.run_is_known
+                && Arc::ptr_eq(&other.built, built)
+                && other.wanted.weights == wanted.weights
+        };
         let mut maker = if let Some(known) = others.find(knows) {
             Self::like(known, wanted)?
         } else {
-            let choices = Choices::new(built.graph(), &wanted.weights).map_err(|error| sentence(&error))?;
+            let choices =
+                Choices::new(built.graph(), &wanted.weights).map_err(|error| sentence(&error))?;
             let run = RunLength::new(built.graph(), &choices);
             Self::idle(built, wanted, Arc::new(choices), run)?
         };
         if !wanted.path.is_empty() && wanted.jump.is_none() {
             let path = GroundPath::new(&wanted.path).map_err(|error| sentence(&error))?;
-            let search = PathSearch::new(built.graph(), NodeIndex::new(0), &path, PATH_BUDGET, &wanted.stitch);
+            let search = PathSearch::new(
+                built.graph(),
+                NodeIndex::new(0),
+                &path,
+                PATH_BUDGET,
+                &wanted.stitch,
+            );
             maker.search = Some((search, path));
         }
         Ok(maker)
@@ -162,12 +185,18 @@ impl Maker {
 
     /// One in the same graph with the same weights: how long it runs is known.
     fn like(other: &Self, wanted: &Wanted) -> Result<Self, String> {
-        let mut maker = Self::idle(&other.built, wanted, Arc::clone(&other.choices), other.run.clone())?;
+        let mut maker =
+            Self::idle(&other.built, wanted, Arc::clone(&other.choices), other.run.clone())?;
         maker.run_is_known = true;
         Ok(maker)
     }
 
-    fn idle(built: &Arc<Built>, wanted: &Wanted, choices: Arc<Choices>, run: RunLength) -> Result<Self, String> {
+    fn idle(
+        built: &Arc<Built>,
+        wanted: &Wanted,
+        choices: Arc<Choices>,
+        run: RunLength,
+    ) -> Result<Self, String> {
         Ok(Self {
             plan: Plan::new(built.graph(), &choices, wanted).map_err(|error| sentence(&error))?,
             run,
@@ -223,7 +252,8 @@ impl Maker {
         0.4 * searched + 0.6 * (self.frames as f64 / self.goal.max(1) as f64).min(1.0)
     }
 
-    /// One slice. `true` when there is a new walk to give out. `guide` is the walk that this one goes like.
+    /// One slice. `true` when there is a new walk to give out. `guide` is the walk that this one
+    /// goes like.
     pub(super) fn step(&mut self, now_secs: f64, guide: Option<&mut Plan>) -> Result<bool, String> {
         let told = |error: GraphError| sentence(&error);
         if let Some([leave, enter]) = self.wanted.jump {
@@ -274,7 +304,8 @@ impl Maker {
         Err(Publishing::Measuring(Box::new(Measuring::new(shown, free))))
     }
 
-    /// A slice of what is between the pieces and a walk that is shown: the motion, or what is left to do.
+    /// A slice of what is between the pieces and a walk that is shown: the motion, or what is left
+    /// to do.
     fn published(&mut self, publishing: Publishing) -> Result<Result<Motion, Publishing>, String> {
         match publishing {
             Publishing::Assembling(mut assembling) => {
@@ -285,8 +316,16 @@ impl Maker {
                 let Some(lock) = self.wanted.foot_lock else {
                     return Ok(self.unseen(motion, None));
                 };
-                match locking(Arc::clone(&motion.clip), &motion.roles, &motion.contacts, motion.ground_m, lock)? {
-                    Some(locking) => Ok(Err(Publishing::Locking(Box::new(locking), Box::new(motion)))),
+                match locking(
+                    Arc::clone(&motion.clip),
+                    &motion.roles,
+                    &motion.contacts,
+                    motion.ground_m,
+                    lock,
+                )? {
+                    Some(locking) => {
+                        Ok(Err(Publishing::Locking(Box::new(locking), Box::new(motion))))
+                    }
                     None => Ok(self.unseen(motion.clone(), Some(motion.clip))),
                 }
             }
@@ -309,7 +348,8 @@ impl Maker {
         }
     }
 
-    /// Frames: what is measured at first, then as far as the playhead asks for, and a good part more.
+    /// Frames: what is measured at first, then as far as the playhead asks for, and a good part
+    /// more.
     fn next_goal(&self, now_secs: f64) -> usize {
         let mut secs = self.wanted.measured_secs;
         if let Some(walk) = &self.walk {
@@ -334,7 +374,9 @@ impl Maker {
             self.preview = Some(preview);
             return Ok(false);
         }
-        let Some((search, path)) = &mut self.search else { return Ok(false) };
+        let Some((search, path)) = &mut self.search else {
+            return Ok(false);
+        };
         let is_over = search.advance(self.built.graph(), path, PATH_NODES);
         if is_over || self.searched_secs >= PATH_WAIT_SECS {
             let found = search.so_far(self.built.graph(), path);
@@ -390,7 +432,8 @@ impl Maker {
         Ok(())
     }
 
-    /// Measures a slice of what is made, as much as is asked for. `false` when nothing is left to do.
+    /// Measures a slice of what is made, as much as is asked for. `false` when nothing is left to
+    /// do.
     fn meter(&mut self) -> bool {
         let Some(piece) = self.pieces.get(self.metered).filter(|_| self.metrics.is_none()) else {
             return false;
@@ -409,7 +452,9 @@ impl Maker {
             let place = piece.shown_at(frame);
             let motion = self.built.cast.motions().get(place.clip);
             for side in Side::BOTH {
-                let stands = motion.is_some_and(|motion| motion.contacts.planted(side, place.frame.min(motion.clip.frames() - 1)));
+                let stands = motion.is_some_and(|motion| {
+                    motion.contacts.planted(side, place.frame.min(motion.clip.frames() - 1))
+                });
                 self.planted[side.index()].push(stands);
             }
         }
@@ -433,7 +478,11 @@ impl Maker {
         let roles = motions.first().map(|motion| motion.roles.clone());
         Ok(Motion {
             // The lowest: no foot is lifted off the ground that its own clip has.
-            ground_m: motions.iter().map(|motion| motion.ground_m).min_by(f32::total_cmp).unwrap_or(0.0),
+            ground_m: motions
+                .iter()
+                .map(|motion| motion.ground_m)
+                .min_by(f32::total_cmp)
+                .unwrap_or(0.0),
             feet: motions.first().map(|motion| motion.feet).unwrap_or_default(),
             contacts: Contacts::from_flags(planted),
             roles: roles.unwrap_or_default(),
@@ -501,7 +550,8 @@ impl Maker {
             self.take(piece);
         }
         while self.meter() {}
-        let assembling = Assembling::new(&self.pieces, self.frames).ok_or_else(|| sentence(&GraphError::NoClips))?;
+        let assembling = Assembling::new(&self.pieces, self.frames)
+            .ok_or_else(|| sentence(&GraphError::NoClips))?;
         let mut publishing = Publishing::Assembling(Box::new(assembling));
         // A few seconds of motion.
         let motion = loop {

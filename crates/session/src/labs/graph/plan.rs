@@ -9,8 +9,9 @@ const GUIDE_SECS: f64 = 0.3;
 /// Stays of that walk among which it is looked for.
 const GUIDE_STAYS: usize = 12;
 
-/// The stays of a walk, as far as anybody asked for them: found without a frame being made. A walk that goes like another one asks that one's plan for as much as it
-/// needs, so that it does not depend on how much of the other has been shown.
+/// The stays of a walk, as far as anybody asked for them: found without a frame being made. A walk
+/// that goes like another one asks that one's plan for as much as it needs, so that it does not
+/// depend on how much of the other has been shown.
 #[derive(Clone, Debug)]
 pub(super) struct Plan {
     graph: Arc<MotionGraph>,
@@ -28,7 +29,11 @@ pub(super) struct Plan {
 }
 
 impl Plan {
-    pub(super) fn new(graph: &Arc<MotionGraph>, choices: &Arc<Choices>, wanted: &Wanted) -> Result<Self, GraphError> {
+    pub(super) fn new(
+        graph: &Arc<MotionGraph>,
+        choices: &Arc<Choices>,
+        wanted: &Wanted,
+    ) -> Result<Self, GraphError> {
         let walker = Walker::new(Arc::clone(graph), Arc::clone(choices), wanted.seed);
         Ok(Self {
             graph: Arc::clone(graph),
@@ -47,7 +52,8 @@ impl Plan {
         self.walker.take(edges);
     }
 
-    /// A stay by its number; `None` behind the last one, where a walk comes to an end. `guide` is the walk that this one goes like, if any; it is the same in every call.
+    /// A stay by its number; `None` behind the last one, where a walk comes to an end. `guide` is
+    /// the walk that this one goes like, if any; it is the same in every call.
     pub(super) fn stay(&mut self, number: usize, mut guide: Option<&mut Self>) -> Option<Stay> {
         while self.stays.len() <= number {
             if let Some(guide) = guide.as_deref_mut() {
@@ -96,8 +102,8 @@ impl Plan {
         Some([jump.leave, jump.enter])
     }
 
-    /// Takes the way that is most like the next transition of another walk; by chance where there is none, and like it again as soon as both are in the
-    /// same clip.
+    /// Takes the way that is most like the next transition of another walk; by chance where there
+    /// is none, and like it again as soon as both are in the same clip.
     fn go_like(&mut self, guide: &mut Self) {
         // To a clip that it was sent to: that is where it goes.
         if self.walker.has_way() {
@@ -109,9 +115,13 @@ impl Plan {
         };
         let window = guide.graph.options().blend_window;
         let middle = |place: Place, window: usize| place.frame + window / 2;
-        let mut ahead = (self.guided + 1..=self.guided + GUIDE_STAYS).filter_map(|number| Some((number, guide.seam(number)?)));
-        let next = ahead.find(|(_, [leave, _])| leave.clip == here.clip && middle(*leave, window) > here.start);
-        let Some((number, [leave, enter])) = next else { return };
+        let mut ahead = (self.guided + 1..=self.guided + GUIDE_STAYS)
+            .filter_map(|number| Some((number, guide.seam(number)?)));
+        let next = ahead
+            .find(|(_, [leave, _])| leave.clip == here.clip && middle(*leave, window) > here.start);
+        let Some((number, [leave, enter])) = next else {
+            return;
+        };
         let near = (GUIDE_SECS * graph.set().fps()).round() as usize;
         let mut on = Vec::new();
         let mut best: Option<(usize, Vec<EdgeIndex>)> = None;
@@ -123,7 +133,9 @@ impl Plan {
                     onward = Some((edge.id(), edge.target()));
                     continue;
                 };
-                let apart = |a: Place, b: Place| (a.clip == b.clip).then(|| middle(a, jump.window).abs_diff(middle(b, window)));
+                let apart = |a: Place, b: Place| {
+                    (a.clip == b.clip).then(|| middle(a, jump.window).abs_diff(middle(b, window)))
+                };
                 let off = apart(jump.leave, leave).zip(apart(jump.enter, enter));
                 let Some((left, entered)) = off.filter(|off| off.0 <= near && off.1 <= near) else {
                     continue;

@@ -53,17 +53,20 @@ pub struct Walk {
     pub built: Arc<Built>,
     /// The probabilities by which it went.
     pub choices: Arc<Choices>,
-    /// Seconds from one transition to the next in a long walk; `None` where a walk comes to an end, or never leaves its clip.
+    /// Seconds from one transition to the next in a long walk; `None` where a walk comes to an end,
+    /// or never leaves its clip.
     pub run_secs: Option<f64>,
     /// The motion so far.
     pub motion: Arc<Motion>,
     /// What it is made of.
     pub passed: Arc<Vec<Passed>>,
-    /// Visits of clips that no way leads to from where the walk is at that time: when, seconds, and the clip.
+    /// Visits of clips that no way leads to from where the walk is at that time: when, seconds, and
+    /// the clip.
     pub missed: Vec<(f64, usize)>,
     /// Its artefacts.
     pub metrics: Vec<Metric>,
-    /// What its joints, its hips and its feet do: of what was shown first, and `None` before that is measured.
+    /// What its joints, its hips and its feet do: of what was shown first, and `None` before that
+    /// is measured.
     pub trace: Option<Arc<MotionTrace>>,
     /// It has come to a dead end.
     pub ends: bool,
@@ -71,7 +74,8 @@ pub struct Walk {
     pub is_jump: bool,
     /// It goes like the walk of another pane, where it can.
     pub is_guided: bool,
-    /// The line that it follows, and how well: root of the mean square, and how far it came, metres.
+    /// The line that it follows, and how well: root of the mean square, and how far it came,
+    /// metres.
     pub followed: Option<Trace>,
 }
 
@@ -122,14 +126,8 @@ impl Walk {
         let seam = passed.seam.filter(|seam| into < seam.frames);
         Some(At {
             stay,
-            place: Place {
-                clip: passed.stay.clip,
-                frame: passed.stay.from + into,
-            },
-            left: seam.map(|seam| Place {
-                frame: seam.leave.frame + into,
-                ..seam.leave
-            }),
+            place: Place { clip: passed.stay.clip, frame: passed.stay.from + into },
+            left: seam.map(|seam| Place { frame: seam.leave.frame + into, ..seam.leave }),
             share: seam.map_or(1.0, |seam| into as f64 / seam.frames.max(1) as f64),
         })
     }
@@ -141,7 +139,8 @@ impl Walk {
         Some(graph.jumps().get(passed.stay.jump?)?.distance_cm)
     }
 
-    /// The clips that play in the transition about a time, the one that is left first. They fade in before it and out behind it.
+    /// The clips that play in the transition about a time, the one that is left first. They fade in
+    /// before it and out behind it.
     #[must_use]
     pub fn ghosts_at(&self, secs: f64, fade_secs: f64) -> [Option<WalkGhost<'_>>; 2] {
         let fps = self.motion.clip.fps();
@@ -154,27 +153,26 @@ impl Walk {
         let frame = self.frame_at(secs + fade_secs);
         let last = self.passed.partition_point(|passed| passed.start <= frame);
         let few = self.passed.get(last.saturating_sub(3)..last).unwrap_or_default();
-        let Some((passed, seam)) = few.iter().rev().find(near).and_then(|passed| Some((passed, passed.seam?))) else {
+        let Some((passed, seam)) =
+            few.iter().rev().find(near).and_then(|passed| Some((passed, passed.seam?)))
+        else {
             return [None, None];
         };
         let (start, length) = (passed.start as f64 / fps, seam.frames.max(1) as f64 / fps);
         let inside = ((secs - start) / length).clamp(0.0, 1.0);
         let before = 1.0 - ((start - secs) / fade_secs).clamp(0.0, 1.0);
         let behind = 1.0 - ((secs - start - length) / fade_secs).clamp(0.0, 1.0);
-        // Where the walk meets its clips exactly: at the beginning the one that is left, at the end the one that is entered.
+        // Where the walk meets its clips exactly: at the beginning the one that is left, at the end
+        // the one that is entered.
         let end = (passed.start + seam.frames).min(self.motion.clip.frames().saturating_sub(1));
         let laid = |place: Place, met: usize, walk_frame: usize, clear: f64| {
             let motion = self.built.cast().motions().get(place.clip)?;
             let stands = motion.ground_frames.get(met)?;
-            let world_from_clip = self.motion.ground_frames.get(walk_frame)?.after(&stands.inverse());
+            let world_from_clip =
+                self.motion.ground_frames.get(walk_frame)?.after(&stands.inverse());
             let secs = place.frame as f64 / fps + secs - start;
             let there = (0.0..=motion.clip.duration_secs()).contains(&secs) && clear > 0.02;
-            there.then_some(WalkGhost {
-                motion,
-                secs,
-                world_from_clip,
-                clear,
-            })
+            there.then_some(WalkGhost { motion, secs, world_from_clip, clear })
         };
         [
             laid(seam.leave, seam.leave.frame, passed.start, (2.0 * inside).min(1.0) * behind),

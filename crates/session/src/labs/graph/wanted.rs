@@ -6,7 +6,8 @@ use crate::outside::short;
 use crate::params::{Key, Params, Value};
 use glam::DVec2;
 use segue_motion::graph::{
-    Construction, Continuity, DistanceLaw, GraphError, GraphOptions, Place, StitchOptions, WalkMistake, WeightOptions,
+    Construction, Continuity, DistanceLaw, GraphError, GraphOptions, Place, StitchOptions,
+    WalkMistake, WeightOptions,
 };
 use segue_motion::math::Decay;
 use segue_motion::transition::{Inertialization, Method, Mistake};
@@ -64,13 +65,12 @@ impl Wanted {
             return Err("Two mistakes at once cannot be told apart: choose the transform of the whole clip, or atan2.".to_owned());
         }
         let method = match params.choice::<choices::WalkMethod>() {
-            choices::WalkMethod::Inertialize => Method::Inertialize(Inertialization::Offset(Decay::Spring {
-                half_life_secs: params.number(Key::HalfLife),
-            })),
-            choices::WalkMethod::Dissolve => Method::Dissolve {
-                window,
-                law: weight_law(params),
-            },
+            choices::WalkMethod::Inertialize => {
+                Method::Inertialize(Inertialization::Offset(Decay::Spring {
+                    half_life_secs: params.number(Key::HalfLife),
+                }))
+            }
+            choices::WalkMethod::Dissolve => Method::Dissolve { window, law: weight_law(params) },
         };
         let visits = read_visits(params.text(Key::GoTo))?;
         if let Some((_, clip)) = visits.iter().find(|(_, clip)| *clip >= clips) {
@@ -97,13 +97,15 @@ impl Wanted {
             },
             weights: WeightOptions {
                 continuity: match params.choice::<choices::GoingOn>() {
-                    choices::GoingOn::Constant => Continuity::Weight(params.number(Key::ContinuityWeight)),
+                    choices::GoingOn::Constant => {
+                        Continuity::Weight(params.number(Key::ContinuityWeight))
+                    }
                     choices::GoingOn::Share => Continuity::Share(params.number(Key::Continuity)),
                 },
                 law: match params.choice::<choices::EdgeWeight>() {
-                    choices::EdgeWeight::Exponential => DistanceLaw::Exponential {
-                        sigma_cm: params.number(Key::EdgeSigma),
-                    },
+                    choices::EdgeWeight::Exponential => {
+                        DistanceLaw::Exponential { sigma_cm: params.number(Key::EdgeSigma) }
+                    }
                     choices::EdgeWeight::Uniform => DistanceLaw::Uniform,
                     choices::EdgeWeight::Proportional => DistanceLaw::Proportional,
                     choices::EdgeWeight::Inverse => DistanceLaw::Inverse,
@@ -126,21 +128,26 @@ impl Wanted {
         })
     }
 
-    /// Likewise, like the walk of other parameters if only its transitions take longer or shorter. Where one may go over is another matter: a graph of
-    /// shorter segments, or up to a higher threshold, has all places of the other one, and to go like that walk would show none of its own. One that
-    /// follows a line has its own way to go.
-    pub(super) fn guided(params: &Params, guide: Option<&Params>, clips: usize) -> Result<Self, String> {
+    /// Likewise, like the walk of other parameters if only its transitions take longer or shorter.
+    /// Where one may go over is another matter: a graph of shorter segments, or up to a higher
+    /// threshold, has all places of the other one, and to go like that walk would show none of its
+    /// own. One that follows a line has its own way to go.
+    pub(super) fn guided(
+        params: &Params,
+        guide: Option<&Params>,
+        clips: usize,
+    ) -> Result<Self, String> {
         let wanted = Self::of(params, clips)?;
         let guide = guide.and_then(|guide| Self::of(guide, clips).ok());
         let but_for_window = |graph: GraphKey| GraphKey {
-            options: GraphOptions {
-                blend_window: 1,
-                ..graph.options
-            },
+            options: GraphOptions { blend_window: 1, ..graph.options },
             ..graph
         };
         let guide = guide
-            .filter(|guide| guide.graph != wanted.graph && but_for_window(guide.graph) == but_for_window(wanted.graph))
+            .filter(|guide| {
+                guide.graph != wanted.graph
+                    && but_for_window(guide.graph) == but_for_window(wanted.graph)
+            })
             .filter(|_| wanted.jump.is_none() && wanted.path.is_empty())
             .map(Box::new);
         Ok(Self { guide, ..wanted })
@@ -172,7 +179,9 @@ pub(crate) fn clips_of(text: &str) -> Result<Vec<String>, String> {
     }
     match ids.len() {
         0 => Err("A motion graph needs a clip: add at least one.".to_owned()),
-        count if count > MOST_CLIPS => Err(format!("These are {count} clips: take {MOST_CLIPS} at most.")),
+        count if count > MOST_CLIPS => {
+            Err(format!("These are {count} clips: take {MOST_CLIPS} at most."))
+        }
         _ => Ok(ids),
     }
 }
@@ -185,7 +194,8 @@ pub fn check_graph_clips(text: &str) -> Result<(), String> {
     clips_of(text).map(drop)
 }
 
-/// What is to be set for other clips. What tells clips by their place in the list means nothing any more.
+/// What is to be set for other clips. What tells clips by their place in the list means nothing any
+/// more.
 #[must_use]
 pub fn graph_of(ids: &[String]) -> Vec<(Key, Value)> {
     let none = || Value::Text(String::new());
@@ -194,7 +204,8 @@ pub fn graph_of(ids: &[String]) -> Vec<(Key, Value)> {
 
 /// Pairs of two numbers with a colon between them and commas between the pairs.
 fn read_pairs(text: &str, what: &str, like: &str) -> Result<Vec<(f64, f64)>, String> {
-    let refuse = |part: &str| format!("{what}: found `{}`, expected pairs as in {like}.", short(part));
+    let refuse =
+        |part: &str| format!("{what}: found `{}`, expected pairs as in {like}.", short(part));
     let number = |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.abs() < 1e5);
     let pairs: Vec<(f64, f64)> = (text.split(','))
         .filter(|part| !part.trim().is_empty())
@@ -204,7 +215,10 @@ fn read_pairs(text: &str, what: &str, like: &str) -> Result<Vec<(f64, f64)>, Str
         })
         .collect::<Result<_, _>>()?;
     if pairs.len() > MOST_POINTS {
-        return Err(format!("{what}: found {} pairs, expected {MOST_POINTS} at most.", pairs.len()));
+        return Err(format!(
+            "{what}: found {} pairs, expected {MOST_POINTS} at most.",
+            pairs.len()
+        ));
     }
     Ok(pairs)
 }
@@ -212,10 +226,8 @@ fn read_pairs(text: &str, what: &str, like: &str) -> Result<Vec<(f64, f64)>, Str
 /// When to set off for which clip.
 pub(crate) fn read_visits(text: &str) -> Result<Vec<(f64, usize)>, String> {
     let pairs = read_pairs(text, "Go to", "12.5:3,40:0")?;
-    let mut visits: Vec<(f64, usize)> = pairs
-        .into_iter()
-        .map(|(secs, clip)| (secs.max(0.0), clip.max(0.0) as usize))
-        .collect();
+    let mut visits: Vec<(f64, usize)> =
+        pairs.into_iter().map(|(secs, clip)| (secs.max(0.0), clip.max(0.0) as usize)).collect();
     visits.sort_by(|a, b| a.0.total_cmp(&b.0));
     Ok(visits)
 }
@@ -248,14 +260,12 @@ fn read_jump(text: &str) -> Result<Option<[Place; 2]>, String> {
     }
     let place = |text: &str| {
         let (clip, frame) = text.split_once(':')?;
-        Some(Place {
-            clip: clip.trim().parse().ok()?,
-            frame: frame.trim().parse().ok()?,
-        })
+        Some(Place { clip: clip.trim().parse().ok()?, frame: frame.trim().parse().ok()? })
     };
     let ends = text.split_once('-').and_then(|(leave, enter)| Some([place(leave)?, place(enter)?]));
-    ends.map(Some)
-        .ok_or_else(|| format!("Transition: found `{}`, expected clips and frames as in 0:52-3:14.", short(text)))
+    ends.map(Some).ok_or_else(|| {
+        format!("Transition: found `{}`, expected clips and frames as in 0:52-3:14.", short(text))
+    })
 }
 
 /// A transition as the parameter has it.

@@ -24,17 +24,21 @@ pub(crate) struct Crowd {
 
 impl Crowd {
     /// So many stand about a place, each looking its own way.
-    pub(crate) fn new(database: &Arc<Database>, options: ControllerOptions, about: &Planar, count: usize) -> Result<Self, String> {
+    pub(crate) fn new(
+        database: &Arc<Database>,
+        options: ControllerOptions,
+        about: &Planar,
+        count: usize,
+    ) -> Result<Self, String> {
         let options = ControllerOptions { candidates: 1, ..options };
         let walker = |index: usize| {
             // A sunflower: as even as it is far from rows.
-            let (turn, reach) = (2.399_963 * (index + 1) as f64, APART_M * libm::sqrt((index + 1) as f64));
+            let (turn, reach) =
+                (2.399_963 * (index + 1) as f64, APART_M * libm::sqrt((index + 1) as f64));
             let shift = about.shift + DVec2::new(libm::sin(turn), libm::cos(turn)) * reach;
-            let start = Planar {
-                yaw: chance(index as u64, 0) * TAU,
-                shift,
-            };
-            Controller::new(Arc::clone(database), options, &start).map_err(|error| error.to_string())
+            let start = Planar { yaw: chance(index as u64, 0) * TAU, shift };
+            Controller::new(Arc::clone(database), options, &start)
+                .map_err(|error| error.to_string())
         };
         Ok(Self {
             database: Arc::clone(database),
@@ -90,11 +94,11 @@ impl Crowd {
     }
 }
 
-/// A number from 0 to 1 that is the same for everybody (Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014).
+/// A number from 0 to 1 that is the same for everybody (Steele, Lea and Flood, "Fast splittable
+/// pseudorandom number generators", 2014).
 fn chance(who: u64, when: u64) -> f64 {
-    let mut z = (who.wrapping_mul(0x1_0000) ^ when)
-        .wrapping_add(1)
-        .wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    let mut z =
+        (who.wrapping_mul(0x1_0000) ^ when).wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64

@@ -9,8 +9,9 @@ use crate::labs::Outcome;
 use crate::motion::Motion;
 use crate::params::{Key, Params};
 use segue_motion::matching::{
-    Control, Controller, ControllerOptions, Database, DatabaseBuilder, DatabaseOptions, FeatureOptions, MatchClip, MatchError,
-    Normalisation, Recording, TagFilter, made_clip, made_params,
+    Control, Controller, ControllerOptions, Database, DatabaseBuilder, DatabaseOptions,
+    FeatureOptions, MatchClip, MatchError, Normalisation, Recording, TagFilter, made_clip,
+    made_params,
 };
 use segue_motion::math::Planar;
 use std::sync::Arc;
@@ -50,7 +51,8 @@ impl Source {
 
     /// Whether only the features differ.
     fn has_clips_of(&self, other: &Self) -> bool {
-        (self.options.mirrored, self.options.cycles) == (other.options.mirrored, other.options.cycles)
+        (self.options.mirrored, self.options.cycles)
+            == (other.options.mirrored, other.options.cycles)
             && self.clips.len() == other.clips.len()
             && self.clips.iter().zip(&other.clips).all(|(a, b)| Arc::ptr_eq(a, b))
     }
@@ -139,12 +141,20 @@ impl Driver {
         Ok(None)
     }
 
-    /// A database with tags by hand; `ids` are the clips that it was built from, none for the synthesiser's set.
-    pub(crate) fn tagged(&mut self, database: Arc<Database>, ids: Vec<String>, tags: Vec<HandTag>) -> Arc<Database> {
+    /// A database with tags by hand; `ids` are the clips that it was built from, none for the
+    /// synthesiser's set.
+    pub(crate) fn tagged(
+        &mut self,
+        database: Arc<Database>,
+        ids: Vec<String>,
+        tags: Vec<HandTag>,
+    ) -> Arc<Database> {
         if tags.is_empty() {
             return database;
         }
-        let is_it = |known: &&Tagged| Arc::ptr_eq(&known.base, &database) && known.ids == ids && known.tags == tags;
+        let is_it = |known: &&Tagged| {
+            Arc::ptr_eq(&known.base, &database) && known.ids == ids && known.tags == tags
+        };
         if let Some(known) = self.tagged.iter().find(is_it) {
             return Arc::clone(&known.made);
         }
@@ -152,12 +162,7 @@ impl Driver {
         if self.tagged.len() >= MAX_PANES {
             drop(self.tagged.remove(0));
         }
-        self.tagged.push(Tagged {
-            base: database,
-            ids,
-            tags,
-            made: Arc::clone(&made),
-        });
+        self.tagged.push(Tagged { base: database, ids, tags, made: Arc::clone(&made) });
         made
     }
 
@@ -169,12 +174,7 @@ impl Driver {
         recording: Recording,
         filter: TagFilter,
     ) -> Result<Option<ReplayInputs>, String> {
-        let script = Script {
-            database,
-            options,
-            recording,
-            filter,
-        };
+        let script = Script { database, options, recording, filter };
         if let Some((_, known)) = self.replays.iter().find(|(known, _)| *known == script) {
             return known.clone().map(|outcome| Some(ReplayInputs(outcome)));
         }
@@ -201,8 +201,13 @@ impl Driver {
             if let Some((_, Ok(database))) = alike {
                 Box::new(DatabaseBuilder::retimed(database, &source.options.features)?)
             } else if !source.clips.is_empty() {
-                let clip = |motion: &Arc<Motion>| MatchClip::new(Arc::clone(&motion.clip), motion.roles.clone());
-                Box::new(DatabaseBuilder::new(source.clips.iter().map(clip).collect(), &source.options)?)
+                let clip = |motion: &Arc<Motion>| {
+                    MatchClip::new(Arc::clone(&motion.clip), motion.roles.clone())
+                };
+                Box::new(DatabaseBuilder::new(
+                    source.clips.iter().map(clip).collect(),
+                    &source.options,
+                )?)
             } else if let Some(params) = made_params().get(self.made.len()) {
                 let roles = self.made.first().map(|first| first.roles.clone());
                 self.made.push(made_clip(params, roles)?);
@@ -223,7 +228,8 @@ impl Driver {
         let mut playing = if let Some((_, playing)) = under_way {
             playing
         } else {
-            let controller = Controller::new(Arc::clone(&script.database), script.options, &Planar::IDENTITY);
+            let controller =
+                Controller::new(Arc::clone(&script.database), script.options, &Planar::IDENTITY);
             Box::new(Playing {
                 tracer: Tracer::new(controller.map_err(|error| sentence(&error))?, usize::MAX),
                 controls: script
@@ -298,29 +304,24 @@ impl Sliced for Driver {
                 _ => 0.0,
             };
             let all = made_params().len().max(1) as f64;
-            let made = if source.clips.is_empty() {
-                self.made.len() as f64 / all
-            } else {
-                1.0
-            };
+            let made = if source.clips.is_empty() { self.made.len() as f64 / all } else { 1.0 };
             return Some((JobKind::BuildingDatabase, 0.4 * made + 0.6 * built));
         }
         let script = self.next_script()?;
         let done = match &self.playing {
-            Some((of, playing)) if of == script => playing.next as f64 / playing.controls.len().max(1) as f64,
+            Some((of, playing)) if of == script => {
+                playing.next as f64 / playing.controls.len().max(1) as f64
+            }
             _ => 0.0,
         };
         Some((JobKind::Driving, done))
     }
 }
 
-/// Input under the filter that is set; what was recorded under another one keeps it where none is set.
+/// Input under the filter that is set; what was recorded under another one keeps it where none is
+/// set.
 fn filtered(control: Control, filter: TagFilter) -> Control {
-    if filter == TagFilter::default() {
-        control
-    } else {
-        control.with_filter(filter)
-    }
+    if filter == TagFilter::default() { control } else { control.with_filter(filter) }
 }
 
 /// An error as a sentence.

@@ -27,28 +27,32 @@ pub(crate) struct Live {
 
 impl Live {
     /// Stands at the origin.
-    pub(crate) fn new(database: &Arc<Database>, options: ControllerOptions) -> Result<Self, String> {
-        let controller = Controller::new(Arc::clone(database), options, &Planar::IDENTITY).map_err(|error| error.to_string())?;
+    pub(crate) fn new(
+        database: &Arc<Database>,
+        options: ControllerOptions,
+    ) -> Result<Self, String> {
+        let controller = Controller::new(Arc::clone(database), options, &Planar::IDENTITY)
+            .map_err(|error| error.to_string())?;
         let mut tracer = Tracer::new(controller, KEPT);
         tracer.note(false);
-        Ok(Self {
-            tracer,
-            jumps: VecDeque::new(),
-            metrics: Vec::new(),
-            found: None,
-        })
+        Ok(Self { tracer, jumps: VecDeque::new(), metrics: Vec::new(), found: None })
     }
 
     /// Whether it plays the clips of that database.
     pub(crate) fn plays(&self, database: &Database) -> bool {
         let mine = self.tracer.controller.database().motions();
         // Tags may differ.
-        mine.len() == database.motions().len() && mine.iter().zip(database.motions()).all(|(a, b)| Arc::ptr_eq(a.clip(), b.clip()))
+        mine.len() == database.motions().len()
+            && mine.iter().zip(database.motions()).all(|(a, b)| Arc::ptr_eq(a.clip(), b.clip()))
     }
 
     /// Goes on with other options, and in a database of the same clips.
     /// Says whether that is something else.
-    pub(crate) fn change(&mut self, database: &Arc<Database>, options: ControllerOptions) -> Result<bool, String> {
+    pub(crate) fn change(
+        &mut self,
+        database: &Arc<Database>,
+        options: ControllerOptions,
+    ) -> Result<bool, String> {
         let controller = &mut self.tracer.controller;
         let moves = !Arc::ptr_eq(controller.database(), database);
         if moves {
@@ -84,7 +88,8 @@ impl Live {
         self.tracer.frames().saturating_sub(1) as f64 / RATE as f64
     }
 
-    /// What was done last, with numbers: those that every lab has as soon as what it is made of is measured.
+    /// What was done last, with numbers: those that every lab has as soon as what it is made of is
+    /// measured.
     pub(crate) fn outcome(&mut self, gauge: &mut Gauge) -> Result<Outcome, String> {
         let mut outcome = self.tracer.outcome(true)?;
         let ticks = self.tracer.controller.ticks();
@@ -95,7 +100,8 @@ impl Live {
             self.metrics.retain(|metric| metric.id != "match_turn");
             let over_secs = ticks.min(COUNTED) as f64 / RATE as f64;
             for metric in self.metrics.iter_mut().filter(|metric| metric.id == "match_seams") {
-                metric.value = (over_secs > 1.0).then(|| self.jumps.len() as f64 * 60.0 / over_secs);
+                metric.value =
+                    (over_secs > 1.0).then(|| self.jumps.len() as f64 * 60.0 / over_secs);
             }
         }
         outcome.metrics.clone_from(&self.metrics);

@@ -6,7 +6,8 @@ use crate::labs::read_ids;
 use crate::outside::short;
 use crate::params::{Key, Params};
 use segue_motion::matching::{
-    ControllerOptions, Database, Following, FootPlanting, Hysteresis, Recording, Scenario, SearchMethod, Steering, Weights,
+    ControllerOptions, Database, Following, FootPlanting, Hysteresis, Recording, Scenario,
+    SearchMethod, Steering, Weights,
 };
 use segue_motion::math::Decay;
 use segue_motion::transition::Inertialization;
@@ -32,9 +33,7 @@ pub(crate) fn options_of(params: &Params) -> ControllerOptions {
         },
         hysteresis: match params.choice::<choices::Hysteresis>() {
             choices::Hysteresis::None => Hysteresis::None,
-            choices::Hysteresis::Time => Hysteresis::MinimumTime {
-                secs: number(Key::MinimumTime),
-            },
+            choices::Hysteresis::Time => Hysteresis::MinimumTime { secs: number(Key::MinimumTime) },
             choices::Hysteresis::Votes => Hysteresis::ThreeVotes,
             choices::Hysteresis::ClipVotes => Hysteresis::ThreeVotesForAnotherClip,
             choices::Hysteresis::Bias => Hysteresis::ContinuingBias {
@@ -49,9 +48,9 @@ pub(crate) fn options_of(params: &Params) -> ControllerOptions {
                 blend_secs: number(Key::BlendTime),
                 extrapolation_half_life_secs: number(Key::ExtrapolationHalfLife),
             },
-            choices::JumpMethod::Inertialize => Inertialization::Offset(Decay::Spring {
-                half_life_secs: number(Key::JumpHalfLife),
-            }),
+            choices::JumpMethod::Inertialize => {
+                Inertialization::Offset(Decay::Spring { half_life_secs: number(Key::JumpHalfLife) })
+            }
         },
         steering: Steering {
             velocity_half_life_secs: number(Key::VelocityHalfLife),
@@ -69,7 +68,10 @@ pub(crate) fn options_of(params: &Params) -> ControllerOptions {
 }
 
 /// The same with the clip of a database that is preferred while the input is still.
-pub(crate) fn options_in(database: &Database, params: &Params) -> Result<ControllerOptions, String> {
+pub(crate) fn options_in(
+    database: &Database,
+    params: &Params,
+) -> Result<ControllerOptions, String> {
     let options = options_of(params);
     let name = params.text(Key::PreferClip);
     if name.is_empty() {
@@ -83,10 +85,7 @@ pub(crate) fn options_in(database: &Database, params: &Params) -> Result<Control
             short(name)
         )
     })?;
-    Ok(ControllerOptions {
-        prefer_source: Some(source),
-        ..options
-    })
+    Ok(ControllerOptions { prefer_source: Some(source), ..options })
 }
 
 /// The input that is played; `None` where the user drives.
@@ -98,7 +97,8 @@ pub(crate) fn recording_of(params: &Params) -> Result<Option<Recording>, String>
     if text.is_empty() {
         return Ok(None);
     }
-    let recording = Recording::from_text(text).map_err(|error| format!("The recorded input cannot be played: {error}."))?;
+    let recording = Recording::from_text(text)
+        .map_err(|error| format!("The recorded input cannot be played: {error}."))?;
     if recording.ticks() == 0 {
         return Err("The recorded input holds nothing: drive anew.".to_owned());
     }

@@ -1,4 +1,5 @@
-//! Tags that are set by hand, beside those that speed and turn rate suggest: `walk:0.2-1.5:exclude,run:0-1:-turn,walk:2-3:proud`.
+//! Tags that are set by hand, beside those that speed and turn rate suggest:
+//! `walk:0.2-1.5:exclude,run:0-1:-turn,walk:2-3:proud`.
 
 use crate::labs::kept::{read_ids, write_ids};
 use crate::outside::short;
@@ -37,7 +38,10 @@ pub(crate) fn read_tags(text: &str) -> Result<Vec<HandTag>, String> {
     };
     let parts = read_ids(text).ok_or_else(|| refuse(text))?;
     if parts.len() > MOST_TAGS {
-        return Err(format!("Tags: {} are more than can be kept: use at most {MOST_TAGS}.", parts.len()));
+        return Err(format!(
+            "Tags: {} are more than can be kept: use at most {MOST_TAGS}.",
+            parts.len()
+        ));
     }
     parts.iter().map(|part| read_tag(part).ok_or_else(|| refuse(part))).collect()
 }
@@ -46,9 +50,11 @@ fn read_tag(part: &str) -> Option<HandTag> {
     let (rest, word) = part.rsplit_once(':')?;
     let (clip, secs) = rest.rsplit_once(':')?;
     let (from, to) = secs.split_once('-')?;
-    let number = |text: &str| text.trim().parse().ok().filter(|secs: &f64| secs.is_finite() && *secs >= 0.0);
+    let number =
+        |text: &str| text.trim().parse().ok().filter(|secs: &f64| secs.is_finite() && *secs >= 0.0);
     let secs = [number(from)?, number(to)?];
-    let (word, takes_away) = word.trim().strip_prefix('-').map_or((word.trim(), false), |word| (word, true));
+    let (word, takes_away) =
+        word.trim().strip_prefix('-').map_or((word.trim(), false), |word| (word, true));
     let is_word = !word.is_empty() && word.chars().count() <= LONGEST_WORD;
     (is_word && !clip.is_empty() && secs[0] < secs[1]).then(|| HandTag {
         clip: clip.to_owned(),
@@ -110,37 +116,36 @@ pub(crate) fn filter_of(params: &Params) -> Result<TagFilter, String> {
         })?;
         Ok::<_, String>(TagSet::of(&[tag]))
     };
-    Ok(TagFilter {
-        ask: set(Key::AskTag)?,
-        forbid: set(Key::ForbidTag)?,
-    })
+    Ok(TagFilter { ask: set(Key::AskTag)?, forbid: set(Key::ForbidTag)? })
 }
 
-/// What a motion's clip is called in parameters: its id among those that the database was built from, its own name in the synthesiser's set.
+/// What a motion's clip is called in parameters: its id among those that the database was built
+/// from, its own name in the synthesiser's set.
 pub(crate) fn clip_name<'a>(motion: &'a Motion, ids: &'a [String]) -> &'a str {
     ids.get(motion.source()).map_or(motion.clip().name(), String::as_str)
 }
 
-/// A database with tags by hand; `ids` are the clips that it was built from, none for the synthesiser's set. Clips that are not in it are passed over.
+/// A database with tags by hand; `ids` are the clips that it was built from, none for the
+/// synthesiser's set. Clips that are not in it are passed over.
 pub(super) fn tagged(database: &Database, ids: &[String], tags: &[HandTag]) -> Database {
     let own = own_words(tags);
     let mut result = database.clone();
-    let originals: Vec<_> = database
-        .motions()
-        .iter()
-        .filter(|motion| !motion.is_mirrored())
-        .map(Arc::clone)
-        .collect();
+    let originals: Vec<_> =
+        database.motions().iter().filter(|motion| !motion.is_mirrored()).map(Arc::clone).collect();
     for motion in originals {
         let name = clip_name(&motion, ids);
         let mut ranges = motion.tags().to_vec();
         let of_this = tags.iter().filter(|tag| tag.clip == name);
         let mut changed = false;
         for hand in of_this {
-            let Some(tag) = tag_of(&hand.word, &own) else { continue };
-            let [from, to] = hand.secs.map(|secs| ((secs * RATE as f64).round() as usize).min(motion.frames()));
+            let Some(tag) = tag_of(&hand.word, &own) else {
+                continue;
+            };
+            let [from, to] =
+                hand.secs.map(|secs| ((secs * RATE as f64).round() as usize).min(motion.frames()));
             if hand.takes_away {
-                ranges = ranges.into_iter().flat_map(|range| without(range, tag, from, to)).collect();
+                ranges =
+                    ranges.into_iter().flat_map(|range| without(range, tag, from, to)).collect();
             } else {
                 ranges.push(TagRange { tag, frames: from..to });
             }
@@ -172,12 +177,7 @@ mod tests {
     use super::*;
 
     fn hand(clip: &str, secs: [f64; 2], word: &str, takes_away: bool) -> HandTag {
-        HandTag {
-            clip: clip.into(),
-            secs,
-            word: word.into(),
-            takes_away,
-        }
+        HandTag { clip: clip.into(), secs, word: word.into(), takes_away }
     }
 
     #[test]
@@ -206,10 +206,7 @@ mod tests {
 
     #[test]
     fn a_tag_is_taken_away_from_the_middle() {
-        let range = TagRange {
-            tag: Tag::Walk,
-            frames: 10..50,
-        };
+        let range = TagRange { tag: Tag::Walk, frames: 10..50 };
         let left: Vec<_> = without(range.clone(), Tag::Walk, 20, 30)
             .into_iter()
             .map(|range| range.frames)

@@ -3,7 +3,9 @@
 use crate::labs::Outcome;
 use crate::motion::{FeetReading, Motion};
 use segue_motion::clip::{Clip, Contacts};
-use segue_motion::matching::{Control, Controller, Database, Drive, Jump, Place, RATE, SearchRecord, Simulation, Steering};
+use segue_motion::matching::{
+    Control, Controller, Database, Drive, Jump, Place, RATE, SearchRecord, Simulation, Steering,
+};
 use segue_motion::math::Planar;
 use segue_motion::metrics::Metric;
 use segue_motion::skeleton::Pose;
@@ -54,7 +56,8 @@ impl Driven {
         self.database.features().layout().horizon() as f64 / RATE as f64
     }
 
-    /// Where the simulation object will be, as asked for at that moment, `steps` and one places from now to the horizon.
+    /// Where the simulation object will be, as asked for at that moment, `steps` and one places
+    /// from now to the horizon.
     #[must_use]
     pub fn asked_way(&self, moment: &DriveMoment, steps: usize) -> Vec<Planar> {
         let horizon = self.horizon_secs();
@@ -73,7 +76,10 @@ impl Driven {
         let horizon = self.database.features().layout().horizon();
         let world_from_clip = moment.root.after(&motion.root(moment.place.frame).inverse());
         (0..=steps)
-            .map(|step| world_from_clip.after(&motion.root(moment.place.frame + horizon * step / steps.max(1))))
+            .map(|step| {
+                world_from_clip
+                    .after(&motion.root(moment.place.frame + horizon * step / steps.max(1)))
+            })
             .collect()
     }
 
@@ -146,7 +152,12 @@ impl Tracer {
     /// The motion with all that is known of it but its numbers.
     pub(super) fn outcome(&self, is_live: bool) -> Result<Outcome, String> {
         let database = self.controller.database();
-        let clip = Clip::from_poses("drive", Arc::clone(database.skeleton()), RATE as f64, self.poses.iter().cloned());
+        let clip = Clip::from_poses(
+            "drive",
+            Arc::clone(database.skeleton()),
+            RATE as f64,
+            self.poses.iter().cloned(),
+        );
         let motion = Motion {
             clip: Arc::new(clip.map_err(|error| error.to_string())?),
             roles: database.roles().clone(),
@@ -170,7 +181,9 @@ impl Tracer {
     }
 
     fn contacts(&self) -> Contacts {
-        Contacts::from_flags([0, 1].map(|side| self.planted.iter().map(|feet: &[bool; 2]| feet[side]).collect()))
+        Contacts::from_flags(
+            [0, 1].map(|side| self.planted.iter().map(|feet: &[bool; 2]| feet[side]).collect()),
+        )
     }
 
     /// The numbers of what is kept.
@@ -178,19 +191,15 @@ impl Tracer {
         let database = self.controller.database();
         let (mut jumps, mut searches, mut visited, mut last) = (Vec::new(), 0, 0, None);
         for (frame, moment) in self.moments.iter().enumerate() {
-            let Some(search) = moment.search.as_ref().filter(|search| last != Some(search.tick)) else {
+            let Some(search) = moment.search.as_ref().filter(|search| last != Some(search.tick))
+            else {
                 continue;
             };
             last = Some(search.tick);
             searches += 1;
             visited += search.visited;
             if let (true, Some(to)) = (moment.jumped, search.winner) {
-                jumps.push(Jump {
-                    frame,
-                    reason: search.reason,
-                    from: search.current,
-                    to,
-                });
+                jumps.push(Jump { frame, reason: search.reason, from: search.current, to });
             }
         }
         let drive = Drive {

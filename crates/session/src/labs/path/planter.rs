@@ -1,4 +1,5 @@
-//! Planting the feet of a motion on a path takes longer than a hand waits: it is done in slices when the hand rests.
+//! Planting the feet of a motion on a path takes longer than a hand waits: it is done in slices
+//! when the hand rests.
 
 use super::{PathInputs, free_motion};
 use crate::compare::MAX_PANES;
@@ -69,7 +70,9 @@ impl Planter {
         let wanted = |of: &PathInputs| self.wanted.iter().any(|wanted| wanted.makes_the_same(of));
         let under_way = self.under_way.take().filter(|(of, _)| wanted(of));
         let next = match (under_way, self.wanted.first()) {
-            (Some((of, stage)), _) => step(&of, stage).map(|stage| (of.clone(), stage)).map_err(|made| (of, made)),
+            (Some((of, stage)), _) => {
+                step(&of, stage).map(|stage| (of.clone(), stage)).map_err(|made| (of, made))
+            }
             (None, Some(of)) => begin(of)
                 .map(|stage| (of.clone(), stage))
                 .map_err(|problem| (of.clone(), Err(problem))),

@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 /// How far apart the frames of two clips are, with the clips.
 ///
-/// A *pair* is a frame of A and a frame of B, both counted at A's rate; a cell of the matrix stands for the middle frames of its windows.
+/// A *pair* is a frame of A and a frame of B, both counted at A's rate; a cell of the matrix stands
+/// for the middle frames of its windows.
 #[derive(Clone, Debug)]
 pub struct DistanceMap {
     matrix: DistanceMatrix,
@@ -55,14 +56,17 @@ impl DistanceMap {
         (self.matrix.window().max(1) - 1) / 2
     }
 
-    /// The cell that is nearest to a pair; `None` for one that is in no clip, or where no window fits.
+    /// The cell that is nearest to a pair; `None` for one that is in no clip, or where no window
+    /// fits.
     #[must_use]
     pub fn cell_of(&self, frames: [f64; 2]) -> Option<(usize, usize)> {
         let sizes = [self.matrix.rows(), self.matrix.columns()];
         let cell = |clip: usize| {
             let (frame, frames) = (frames[clip], self.motions[clip].clip.frames() as f64);
             let inside = frame >= -0.5 && frame <= frames - 0.5;
-            let cell = ((frame - self.middle() as f64) / self.matrix.stride() as f64).round().max(0.0) as usize;
+            let cell = ((frame - self.middle() as f64) / self.matrix.stride() as f64)
+                .round()
+                .max(0.0) as usize;
             inside.then(|| sizes[clip].checked_sub(1).map(|last| cell.min(last))).flatten()
         };
         cell(0).zip(cell(1))
@@ -76,7 +80,8 @@ impl DistanceMap {
         [a as f64 + half, b as f64 + half]
     }
 
-    /// How far apart a pair is: root mean square per joint over the windows, centimetres on a body of 1.75 m.
+    /// How far apart a pair is: root mean square per joint over the windows, centimetres on a body
+    /// of 1.75 m.
     #[must_use]
     pub fn cm_at(&self, frames: [f64; 2]) -> Option<f64> {
         let (row, column) = self.cell_of(frames)?;
@@ -89,7 +94,8 @@ impl DistanceMap {
         let (row, column) = self.cell_of(frames)?;
         let (i, j) = self.matrix.frames(row, column);
         let window = self.matrix.window();
-        let [a, b] = [(0, i), (1, j)].map(|(clip, from)| self.motions[clip].clip.world_positions(from..from + window));
+        let [a, b] = [(0, i), (1, j)]
+            .map(|(clip, from)| self.motions[clip].clip.world_positions(from..from + window));
         Some(align(&a, &b, &self.weights, 0.0).ok()?.transform)
     }
 }

@@ -12,7 +12,8 @@ pub(crate) fn read_pins(text: &str) -> Result<Vec<(usize, usize)>, String> {
     read(text, "Pins", "a frame of A and one of B, as in 12-30,50-71", usize::MAX)
 }
 
-/// Reads a weight over the course of a blend: per cent of the blend and per cent of B, `0-0,50-100`.
+/// Reads a weight over the course of a blend: per cent of the blend and per cent of B,
+/// `0-0,50-100`.
 pub(crate) fn read_weights(text: &str) -> Result<Vec<(usize, usize)>, String> {
     read(text, "Weight over time", "per cent of the blend and of B, as in 0-0,50-100", 100)
 }
@@ -49,11 +50,18 @@ pub(crate) fn read_also(text: &str) -> Result<Vec<(String, f64)>, String> {
 /// Writes clips and their weights, rounded to hundredths, as the parameter `warp_also` has them.
 #[must_use]
 pub fn write_also(clips: &[(String, f64)]) -> String {
-    let written = |(id, weight): &(String, f64)| format!("{}:{}", format_number(*weight, 0.01), write_ids(std::slice::from_ref(id)));
+    let written = |(id, weight): &(String, f64)| {
+        format!("{}:{}", format_number(*weight, 0.01), write_ids(std::slice::from_ref(id)))
+    };
     clips.iter().map(written).collect::<Vec<_>>().join(",")
 }
 
-fn read(text: &str, name: &str, expected: &str, most: usize) -> Result<Vec<(usize, usize)>, String> {
+fn read(
+    text: &str,
+    name: &str,
+    expected: &str,
+    most: usize,
+) -> Result<Vec<(usize, usize)>, String> {
     let read = |pair: &str| {
         let (a, b) = pair.split_once('-')?;
         let number = |word: &str| word.trim().parse().ok().filter(|number: &usize| *number <= most);
@@ -61,7 +69,10 @@ fn read(text: &str, name: &str, expected: &str, most: usize) -> Result<Vec<(usiz
     };
     let words = text.split(',').map(str::trim).filter(|word| !word.is_empty());
     let pairs: Vec<(usize, usize)> = words
-        .map(|pair| read(pair).ok_or_else(|| format!("{name}: found `{}`, expected {expected}.", short(pair))))
+        .map(|pair| {
+            read(pair)
+                .ok_or_else(|| format!("{name}: found `{}`, expected {expected}.", short(pair)))
+        })
         .collect::<Result<_, _>>()?;
     if pairs.len() > MOST_PAIRS {
         return Err(format!(
@@ -72,7 +83,8 @@ fn read(text: &str, name: &str, expected: &str, most: usize) -> Result<Vec<(usiz
     Ok(pairs)
 }
 
-/// Writes pairs as the parameters `pins` and `warp_curve` hold them, as in `12-30,50-71`: in the order of the first, each once.
+/// Writes pairs as the parameters `pins` and `warp_curve` hold them, as in `12-30,50-71`: in the
+/// order of the first, each once.
 #[must_use]
 pub fn write_pairs(pairs: &[(usize, usize)]) -> String {
     let mut pairs = pairs.to_vec();
@@ -95,7 +107,8 @@ mod tests {
             assert!(read_pins(bad).unwrap_err().contains(&format!("`{bad}`")));
         }
         assert!(read_pins(&"1-1,".repeat(65)).is_err());
-        let also = vec![("blend(a:walk,b:run)".to_owned(), 0.25), ("a, b: c~0a1b2c3d".to_owned(), 1.0)];
+        let also =
+            vec![("blend(a:walk,b:run)".to_owned(), 0.25), ("a, b: c~0a1b2c3d".to_owned(), 1.0)];
         assert_eq!(read_also(&write_also(&also)), Ok(also));
         assert_eq!(read_also(""), Ok(vec![]));
         for bad in ["run", "2:run", "x:run", "0.5:", "NaN:run", "0.1:run("] {

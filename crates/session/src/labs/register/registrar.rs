@@ -7,11 +7,13 @@ use crate::labs::pair::{Pair, Pairs};
 use crate::motion::Motion;
 use crate::params::{Key, Params};
 use segue_motion::registration::{
-    PairTerms, PathEnd, PathError, PathOptions, PathSearch, PausedSweep, Registration, RegistrationOptions, RegistrationPath, limb_weights,
+    PairTerms, PathEnd, PathError, PathOptions, PathSearch, PausedSweep, Registration,
+    RegistrationOptions, RegistrationPath, limb_weights,
 };
 use std::sync::Arc;
 
-/// Up to so many pairs of frames everything is done at once: a few seconds of motion need no second slice.
+/// Up to so many pairs of frames everything is done at once: a few seconds of motion need no second
+/// slice.
 const AT_ONCE: usize = 100_000;
 /// Pairs in one slice of work: about a millisecond for 31 joints.
 const PER_SLICE: usize = 60_000;
@@ -43,8 +45,9 @@ pub(crate) struct Registrars {
 }
 
 impl Registrars {
-    /// Brings everything to the point where the result is a pure function; `also` are the further clips with their weights. `None` when that takes longer than
-    /// a frame: [`work`](Self::work), then ask again.
+    /// Brings everything to the point where the result is a pure function; `also` are the further
+    /// clips with their weights. `None` when that takes longer than a frame: [`work`](Self::work),
+    /// then ask again.
     pub(crate) fn inputs(
         &mut self,
         pair: &Arc<Pair>,
@@ -62,11 +65,7 @@ impl Registrars {
             // Pins are pairs of A and B.
             let wanted = wanted_of(&pair, params, Vec::new())?;
             let found = registrar.found(&pair, wanted)?;
-            more.push(found.map(|found| Also {
-                pair,
-                found,
-                weight: *weight,
-            }));
+            more.push(found.map(|found| Also { pair, found, weight: *weight }));
         }
         let Some((found, also)) = found.zip(more.into_iter().collect::<Option<Vec<_>>>()) else {
             return Ok(None);
@@ -111,12 +110,14 @@ impl Sliced for Registrars {
     fn progress(&self) -> Option<(JobKind, f64)> {
         let under_way: Vec<f32> = self.all().filter_map(Registrar::progress).collect();
         let ended = self.also.len() + 1 - under_way.len();
-        let progress = (under_way.iter().sum::<f32>() + ended as f32) / (self.also.len() + 1) as f32;
+        let progress =
+            (under_way.iter().sum::<f32>() + ended as f32) / (self.also.len() + 1) as f32;
         (!under_way.is_empty()).then(|| (JobKind::Registering, f64::from(progress)))
     }
 }
 
-/// Registers clips slice by slice, and keeps what a change leaves as it is: products of frames for a new window, distances for a new path.
+/// Registers clips slice by slice, and keeps what a change leaves as it is: products of frames for
+/// a new window, distances for a new path.
 #[derive(Debug, Default)]
 struct Registrar {
     pair: Option<Arc<Pair>>,
@@ -139,7 +140,8 @@ impl Registrar {
         self.is_ready = false;
     }
 
-    /// What is known of the two. `None` when that takes longer than a frame: [`work`](Self::work), then ask again.
+    /// What is known of the two. `None` when that takes longer than a frame: [`work`](Self::work),
+    /// then ask again.
     fn found(&mut self, pair: &Arc<Pair>, wanted: Wanted) -> Result<Option<Arc<Found>>, String> {
         self.meet(pair)?;
         let at_once = pair.a.clip.frames().saturating_mul(pair.incoming.clip.frames()) <= AT_ONCE;
@@ -183,7 +185,9 @@ impl Registrar {
     /// How much is done of what is worked on, 0 to 1; `None` when there is nothing.
     fn progress(&self) -> Option<f32> {
         let wanted = self.next()?;
-        let share = |progress: segue_motion::registration::Progress| progress.done as f32 / progress.total.max(1) as f32;
+        let share = |progress: segue_motion::registration::Progress| {
+            progress.done as f32 / progress.total.max(1) as f32
+        };
         let terms = self.terms.as_ref().map_or(0.0, |terms| share(terms.progress()));
         let swept = match &self.sweep {
             _ if self.maps.iter().any(|map| map.matrix().window() == wanted.window) => 1.0,
@@ -197,10 +201,7 @@ impl Registrar {
         if self.pair.as_ref().is_some_and(|known| Arc::ptr_eq(known, pair)) {
             return Ok(());
         }
-        *self = Self {
-            wanted: std::mem::take(&mut self.wanted),
-            ..Self::default()
-        };
+        *self = Self { wanted: std::mem::take(&mut self.wanted), ..Self::default() };
         let (a, b) = (&pair.a.clip, &pair.incoming.clip);
         let pairs = a.frames() as f64 * b.frames() as f64;
         let stride = (pairs / MOST_PAIRS).sqrt().ceil().max(1.0) as usize;
@@ -301,25 +302,23 @@ fn wanted_of(pair: &Pair, params: &Params, pins: Vec<(usize, usize)>) -> Result<
 /// What is asked of a path, with its pins as cells in place of frames.
 fn in_cells(path: &PathOptions, map: &DistanceMap) -> PathOptions {
     let cell = |pin: &(usize, usize)| map.cell_of([pin.0 as f64, pin.1 as f64]).unwrap_or(*pin);
-    PathOptions {
-        pins: path.pins.iter().map(cell).collect(),
-        ..path.clone()
-    }
+    PathOptions { pins: path.pins.iter().map(cell).collect(), ..path.clone() }
 }
 
 /// The curves along a path through the distances.
-fn curves(terms: &PairTerms, map: &Arc<DistanceMap>, path: RegistrationPath, smoothing: usize) -> Result<Found, PathError> {
+fn curves(
+    terms: &PairTerms,
+    map: &Arc<DistanceMap>,
+    path: RegistrationPath,
+    smoothing: usize,
+) -> Result<Found, PathError> {
     let matrix = map.matrix();
     let registration = Registration::along(terms, matrix, path, smoothing)?;
     let (row, column) = registration.path().cells.first().copied().unwrap_or_default();
     let steps = (matrix.rows() - row).min(matrix.columns() - column);
     let cells: Vec<(usize, usize)> = (0..steps).map(|k| (row + k, column + k)).collect();
     let sum: f64 = cells.iter().filter_map(|cell| matrix.get(cell.0, cell.1)).map(f64::from).sum();
-    let diagonal = RegistrationPath {
-        pins: Vec::new(),
-        mean_m: sum / steps.max(1) as f64,
-        cells,
-    };
+    let diagonal = RegistrationPath { pins: Vec::new(), mean_m: sum / steps.max(1) as f64, cells };
     let lockstep = Registration::along(terms, matrix, diagonal, smoothing)?;
     Ok(Found {
         map: Arc::clone(map),
@@ -332,22 +331,13 @@ fn curves(terms: &PairTerms, map: &Arc<DistanceMap>, path: RegistrationPath, smo
 fn in_frames(error: PathError, middle: usize) -> String {
     let moved = |frames: (usize, usize)| (frames.0 + middle, frames.1 + middle);
     let error = match error {
-        PathError::Pins { first, second } => PathError::Pins {
-            first: moved(first),
-            second: moved(second),
-        },
+        PathError::Pins { first, second } => {
+            PathError::Pins { first: moved(first), second: moved(second) }
+        }
         PathError::PinAtEnd { pin, end } => PathError::PinAtEnd { pin: moved(pin), end },
-        PathError::NoPath {
-            from,
-            to,
-            slope_limit,
-            needed,
-        } => PathError::NoPath {
-            from: from.map(moved),
-            to: to.map(moved),
-            slope_limit,
-            needed,
-        },
+        PathError::NoPath { from, to, slope_limit, needed } => {
+            PathError::NoPath { from: from.map(moved), to: to.map(moved), slope_limit, needed }
+        }
         other => other,
     };
     sentence(&error)
