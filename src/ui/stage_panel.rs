@@ -127,7 +127,7 @@ fn hint(session: &Session) -> Option<&'static str> {
 /// run.
 pub(crate) fn is_welcome(session: &Session) -> bool {
     let shown = |key, id| session.params().text(key) == id;
-    shown(Key::Lab, "blend")
+    session.params().lab() == LabId::Blend
         && shown(Key::A, "walk")
         && shown(Key::B, "run")
         && session.compare().is_some_and(|c| c.key == Key::BlendWindow)

@@ -3,6 +3,7 @@
 
 use super::*;
 use crate::ui::theme::Theme;
+use eframe::egui::accesskit::Toggled;
 use eframe::egui::{self, Key as Keyboard, Rect, Role, Shape, Vec2, vec2};
 use egui_kittest::{
     Harness,
@@ -738,6 +739,51 @@ fn choices_side_by_side_have_a_row_each() {
     press("One pane", &mut harness);
     assert_eq!(compare(&harness), "");
     assert_eq!(harness.state().session.params().choice::<choices::WeightLaw>().word(), "smooth");
+}
+
+/// Every row with a choice shows the value in force: as the text of its menu, or as the chosen one
+/// of its words.
+#[test]
+fn choices_show_the_value_in_force() {
+    let shows = |link: &str, label: &str, words: &[(&str, bool)]| {
+        let mut harness = harness(DESK, DARK, page(&format!("{link}&play=off")));
+        harness.run_steps(2);
+        if let Some(row) = harness.query_by_role_and_label(Role::ComboBox, label) {
+            assert_eq!(row.accesskit_node().value().as_deref(), Some(words[0].0), "{label}");
+            return;
+        }
+        for &(word, chosen) in words {
+            let word = harness.get_by_label(word);
+            assert_eq!(word.accesskit_node().toggled() == Some(Toggled::True), chosen, "{label}");
+        }
+    };
+    shows("lab=match&scenario=left", "Input", &[("90° to the left", true)]);
+    shows("lab=transition&method=cubic", "Method", &[("cubic", true)]);
+    shows("lab=layers&layer_mode=additive", "Layer", &[("additive", true), ("partial", false)]);
+}
+
+#[test]
+fn hysteresis_shows_the_rows_of_its_choice() {
+    for (link, bias, time) in [
+        ("hysteresis=bias", true, false),
+        ("hysteresis=time", false, true),
+        ("compare=hysteresis:bias,time", true, true),
+    ] {
+        let mut harness = harness(
+            vec2(1440.0, 2400.0),
+            DARK,
+            page(&format!("lab=match&scenario=straight&{link}&play=off")),
+        );
+        harness.run_steps(2);
+        let has = |key: Key| harness.query_by_label(key.param().label).is_some();
+        assert_eq!((has(Key::BiasShare), has(Key::MinimumTime)), (bias, time), "{link}");
+    }
+}
+
+#[test]
+fn the_first_visit_says_what_to_watch() {
+    assert!(stage_panel::is_welcome(&Session::new()));
+    assert!(!stage_panel::is_welcome(&page("lab=transition").session));
 }
 
 #[test]

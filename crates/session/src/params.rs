@@ -728,8 +728,22 @@ impl Params {
     /// types: [`Params::choice`].
     #[must_use]
     pub fn text(&self, key: Key) -> &str {
+        debug_assert!(
+            matches!(key.param().kind, Kind::Clip | Kind::Text | Kind::Compare),
+            "{key:?} is no text"
+        );
         match self.get(key) {
             Value::Text(text) => text,
+            _ => "",
+        }
+    }
+
+    /// Returns the word in the link of a choice whose type the caller does not know; the empty word
+    /// for a parameter of another kind.
+    #[must_use]
+    pub fn word(&self, key: Key) -> &'static str {
+        match self.get(key) {
+            Value::Choice(word) => word,
             _ => "",
         }
     }

@@ -49,10 +49,7 @@ pub(crate) fn param_row_ui(
             if let Some(compare) = session.compare().filter(|compare| compare.key == key) {
                 return compared_choices_ui(&compare, &options, out, ui);
             }
-            let chosen = choices
-                .iter()
-                .find(|choice| choice.key == session.params().text(key))
-                .map_or("", |choice| choice.key);
+            let chosen = session.params().word(key);
             let picked = if choices.len() <= 4 {
                 if kit::segmented_label_ui(param.label, ui) {
                     out.commands.push(Command::Reset(key));

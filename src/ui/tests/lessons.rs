@@ -2,7 +2,6 @@
 
 use super::*;
 use crate::ui::Tongue;
-use eframe::egui::accesskit::Toggled;
 use segue_session::Lesson;
 use segue_session::lesson::Source;
 

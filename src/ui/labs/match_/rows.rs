@@ -14,7 +14,7 @@ use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{RichText, Ui, vec2};
 use segue_motion::matching::RATE;
 use segue_session::choices;
-use segue_session::{Command, Key, Session, Value, sentence, write_ids};
+use segue_session::{Command, Key, Selected, Session, Value, sentence, write_ids};
 
 /// All rows of the lab.
 pub(crate) fn drive_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
@@ -116,22 +116,22 @@ fn input_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     }
 }
 
-/// Whether one of several panes, or the only one, has this word.
-fn any(key: Key, word: &str, session: &Session) -> bool {
-    match session.compare().filter(|compare| compare.key == key) {
-        Some(compare) => compare.values.iter().any(|value| key.param().format(value) == word),
-        None => session.params().text(key) == word,
+/// Returns whether the only pane, or one of several, has this choice.
+fn any_pane_has<C: Selected>(choice: C, session: &Session) -> bool {
+    match session.compare().filter(|compare| compare.key == C::KEY) {
+        Some(compare) => compare.values.iter().any(|value| value.choice() == Some(choice)),
+        None => session.params().choice::<C>() == choice,
     }
 }
 
 fn hysteresis_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     row(Key::Hysteresis, session, out, ui);
     kit::note_ui(text::hysteresis(session.params().choice()), palette_of(ui).muted, ui);
-    if any(Key::Hysteresis, "bias", session) {
+    if any_pane_has(choices::Hysteresis::Bias, session) {
         row(Key::BiasShare, session, out, ui);
         row(Key::BiasConstant, session, out, ui);
     }
-    if any(Key::Hysteresis, "time", session) {
+    if any_pane_has(choices::Hysteresis::Time, session) {
         row(Key::MinimumTime, session, out, ui);
     }
     row(Key::PreferCurrent, session, out, ui);
@@ -179,10 +179,10 @@ pub(crate) fn compare_hysteresis(session: &Session, out: &mut Out) {
 
 fn going_over_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     row(Key::JumpMethod, session, out, ui);
-    if any(Key::JumpMethod, "inertialize", session) {
+    if any_pane_has(choices::JumpMethod::Inertialize, session) {
         row(Key::JumpHalfLife, session, out, ui);
     }
-    if any(Key::JumpMethod, "dead", session) {
+    if any_pane_has(choices::JumpMethod::Dead, session) {
         row(Key::BlendTime, session, out, ui);
         row(Key::ExtrapolationHalfLife, session, out, ui);
     }
