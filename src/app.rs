@@ -25,6 +25,7 @@ use keeper::Keeper;
 use picture::Picture;
 #[cfg(target_arch = "wasm32")]
 use segue_session::Storing;
+use segue_session::export::file_name;
 use segue_session::{Command, CommandError, Key, Lesson, Level, Session, Value, link};
 use speech::{Speech, Spoken};
 use std::cell::{Cell, RefCell};
@@ -487,7 +488,7 @@ impl Segue {
             Action::SavePicture => {
                 if let Some(stage) = self.picture.place() {
                     platform::save_picture(
-                        &api::file_name(&self.stage_name(), "png"),
+                        &file_name(&self.stage_name(), "png"),
                         stage,
                         &self.inbox,
                     );

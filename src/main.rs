@@ -8,6 +8,8 @@ mod app;
 mod platform;
 mod render;
 mod ui;
+#[cfg(target_arch = "wasm32")]
+mod web_api;
 
 /// Opens the window. The command line names files to load, or a link's query: `segue walk.bvh
 /// "lab=view"`.
@@ -33,7 +35,7 @@ fn main() -> eframe::Result {
     )
 }
 
-/// The page's modules start the app, through the `SegueHandle` of [`platform`]; here is only what
+/// The page's modules start the app, through the `SegueHandle` of [`web_api`]; here is only what
 /// comes before.
 #[cfg(target_arch = "wasm32")]
 fn main() {

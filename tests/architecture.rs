@@ -26,14 +26,14 @@ const MOTION: [(&str, &str); 13] = [
 const BELOW: &str = "math skeleton clip synth registration transition gait blend metrics";
 
 /// The folders of the app, and the worker that reads files, which uses none of them; what they may
-/// name of the app and of the workspace's crates. The platform holds the handle by which the page
-/// drives the app, so these two name each other.
-const APP: [(&str, &str); 7] = [
+/// name of the app and of the workspace's crates.
+const APP: [(&str, &str); 8] = [
     ("scene", "segue_motion segue_session"),
     ("render", "scene segue_motion"),
     ("ui", "scene segue_motion segue_formats segue_session"),
-    ("platform", "app scene segue_motion segue_formats segue_session"),
+    ("platform", "scene segue_motion segue_formats segue_session"),
     ("app", "scene render ui platform segue_motion segue_formats segue_session"),
+    ("web_api", "app platform segue_session"),
     ("main", "app platform render ui"),
     ("bin", "segue_session"),
 ];

@@ -20,7 +20,7 @@ const NOT_SHOWN: [&str; 14] = [
     "src/main.rs",
     "src/platform/vault.rs",
     "src/platform/native/reader.rs",
-    "src/platform/web/handle.rs",
+    "src/web_api.rs",
     "src/render/pipelines.rs",
     "src/render/renderer.rs",
     "src/render/targets.rs",

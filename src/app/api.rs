@@ -12,7 +12,7 @@ use segue_motion::math::Planar;
 use segue_motion::metrics::{Better, Metric};
 use segue_motion::skeleton::Side;
 use segue_session::export::{
-    ExportBody, ExportFormat, ExportOptions, export, plotted_of_clip, plotted_of_result,
+    ExportBody, ExportFormat, ExportOptions, export, file_name, plotted_of_clip, plotted_of_result,
 };
 use segue_session::outside;
 use segue_session::reading::Content;
@@ -481,16 +481,6 @@ impl Segue {
     }
 }
 
-/// A file's name that every system takes.
-pub(crate) fn file_name(stem: &str, ending: &str) -> String {
-    let plain = |c: char| {
-        if c.is_alphanumeric() || matches!(c, '-' | '_' | '.' | ' ' | '~') { c } else { '_' }
-    };
-    let stem: String = stem.chars().map(plain).take(100).collect();
-    let stem = stem.trim().trim_start_matches('.');
-    format!("{}.{ending}", if stem.is_empty() { "motion" } else { stem })
-}
-
 /// The pane that `result` or `result:1` means, from 0; `None` for the id of a clip.
 fn pane_number(which: &str) -> Option<usize> {
     match which.strip_prefix("result")? {
@@ -710,12 +700,6 @@ mod tests {
         ));
         let frames = segue.motion("result:1").unwrap().clip.frames();
         assert_eq!(table.lines().count(), frames + 1);
-    }
-
-    #[test]
-    fn files_have_plain_names() {
-        assert_eq!(file_name("01_01~3fa9 to ../run", "bvh"), "01_01~3fa9 to .._run.bvh");
-        assert_eq!(file_name("  ", "bvh"), "motion.bvh");
     }
 
     #[test]

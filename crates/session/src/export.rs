@@ -190,6 +190,18 @@ fn in_time_of(result: &Motion, source: &Source, values: &[f32]) -> Vec<f32> {
         .collect()
 }
 
+/// Returns a name for a file that every system takes: letters, digits, spaces and `-_.~`, others
+/// replaced by `_`, at most 100 of them before the ending. Without any it is `motion`.
+#[must_use]
+pub fn file_name(stem: &str, ending: &str) -> String {
+    let plain = |c: char| {
+        if c.is_alphanumeric() || matches!(c, '-' | '_' | '.' | ' ' | '~') { c } else { '_' }
+    };
+    let stem: String = stem.chars().map(plain).take(100).collect();
+    let stem = stem.trim().trim_start_matches('.');
+    format!("{}.{ending}", if stem.is_empty() { "motion" } else { stem })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -284,5 +296,11 @@ mod tests {
         assert_eq!(plotted_of_clip(&outcome.motion, session.params())[0].0, "left foot.height_m");
         session.apply(Command::Set(vec![(Key::Joint, Value::Text("tail".into()))])).unwrap();
         assert_eq!(plotted_of_clip(&outcome.motion, session.params()), []);
+    }
+
+    #[test]
+    fn file_name_of_any_text_is_plain() {
+        assert_eq!(file_name("01_01~3fa9 to ../run", "bvh"), "01_01~3fa9 to .._run.bvh");
+        assert_eq!(file_name("  ", "bvh"), "motion.bvh");
     }
 }

@@ -4,10 +4,10 @@ use super::files::hand_over;
 use super::page::{canvas, listen, now_ms, window};
 use super::snapshot::{area_of, inline_picture, snapshot};
 use super::words_of;
-use crate::app::api::file_name;
 use crate::platform::{Inbox, Incoming};
 use eframe::egui::Rect;
 use js_sys::{Array, Error, Promise, Reflect};
+use segue_session::export::file_name;
 use std::cell::OnceCell;
 use wasm_bindgen::{JsCast as _, JsValue};
 use wasm_bindgen_futures::{JsFuture, spawn_local};
@@ -145,7 +145,7 @@ impl Film {
     }
 
     /// Ends it; all of it in one piece.
-    pub(super) async fn end(self) -> Result<Blob, JsValue> {
+    pub(crate) async fn end(self) -> Result<Blob, JsValue> {
         // It has ended by itself where the canvas is gone.
         if self.recorder.state() != RecordingState::Inactive {
             self.recorder.stop()?;

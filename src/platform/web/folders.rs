@@ -13,7 +13,7 @@ use web_sys::{DragEvent, File, FileSystemDirectoryEntry, FileSystemEntry, FileSy
 
 /// From now on, a drop with a folder in it is read here as a whole, folders and files. Any other is
 /// left to eframe.
-pub(super) fn watch_folders(inbox: &Inbox) {
+pub(crate) fn watch_folders(inbox: &Inbox) {
     let inbox = inbox.clone();
     listen_first(window(), "drop", move |event| {
         let entries = entries_of(event.unchecked_ref());

@@ -60,7 +60,7 @@ pub(crate) fn tell_language(tag: &str) {
 }
 
 /// The graphics that the page's address asks for.
-pub(super) fn wanted_backend() -> Option<String> {
+pub(crate) fn wanted_backend() -> Option<String> {
     backend_of(&search())
 }
 
@@ -121,7 +121,7 @@ pub(crate) fn watch_navigation(inbox: &Inbox) {
 
 /// Calls back when the page may be about to go: in the background a browser may end it without a
 /// word.
-pub(super) fn watch_hiding(on_hide: impl Fn() + Clone + 'static) {
+pub(crate) fn watch_hiding(on_hide: impl Fn() + Clone + 'static) {
     let hidden = on_hide.clone();
     listen(document(), "visibilitychange", move |_| {
         if is_hidden() {
@@ -132,7 +132,7 @@ pub(super) fn watch_hiding(on_hide: impl Fn() + Clone + 'static) {
 }
 
 /// Has the browser ask whether to leave the page, while there is something to lose.
-pub(super) fn ask_before_leaving_while(is_unsafe: impl Fn() -> bool + 'static) {
+pub(crate) fn ask_before_leaving_while(is_unsafe: impl Fn() -> bool + 'static) {
     listen(window(), "beforeunload", move |event| {
         if is_unsafe() {
             event.prevent_default();
@@ -160,7 +160,7 @@ pub(super) fn is_hidden() -> bool {
 }
 
 /// Listens for as long as the page lives.
-pub(super) fn listen(
+pub(crate) fn listen(
     target: Option<impl AsRef<EventTarget>>,
     event: &str,
     listener: impl FnMut(web_sys::Event) + 'static,
@@ -196,7 +196,7 @@ fn listen_in(
 }
 
 /// Waits.
-pub(super) async fn sleep(millis: i32) {
+pub(crate) async fn sleep(millis: i32) {
     resolved(|resolve| {
         window().is_some_and(|window| {
             window.set_timeout_with_callback_and_timeout_and_arguments_0(resolve, millis).is_ok()
@@ -207,7 +207,7 @@ pub(super) async fn sleep(millis: i32) {
 
 /// Waits until the browser has had its turn: input and frames that are due come first. Unlike
 /// [`sleep`], which takes 4 ms at the least once it was called a few times in a row.
-pub(super) async fn turn() {
+pub(crate) async fn turn() {
     resolved(|resolve| TURNS.with(|turns| turns.as_ref().is_some_and(|turns| turns.wait(resolve))))
         .await;
 }
@@ -271,7 +271,7 @@ pub(crate) fn between_frames(mut work: impl FnMut() -> bool + 'static) {
 
 /// Waits for the next frame of the page: what runs then runs after the app's own drawing, before
 /// the picture is shown.
-pub(super) async fn next_frame() {
+pub(crate) async fn next_frame() {
     resolved(|resolve| {
         window().is_some_and(|window| window.request_animation_frame(resolve).is_ok())
     })

@@ -68,7 +68,7 @@ thread_local! {
 }
 
 /// The page tells how workers are made.
-pub(super) fn workers_are_made_by(make: Function) {
+pub(crate) fn workers_are_made_by(make: Function) {
     NEW_WORKER.with(|slot| slot.replace(Some(make)));
 }
 
@@ -79,7 +79,7 @@ const KEPT_UP_TO: u64 = 16 << 20;
 const PAGE_BYTES: u64 = 65536;
 
 /// How large the page's memory is by now, bytes.
-pub(super) fn page_bytes() -> u64 {
+pub(crate) fn page_bytes() -> u64 {
     core::arch::wasm32::memory_size(0) as u64 * PAGE_BYTES
 }
 

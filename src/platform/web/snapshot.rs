@@ -9,10 +9,10 @@ use wasm_bindgen_futures::JsFuture;
 use web_sys::{Blob, CanvasRenderingContext2d, HtmlCanvasElement};
 
 /// A rectangle of the canvas in its own pixels: left, top, width, height.
-pub(super) type Area = [f64; 4];
+pub(crate) type Area = [f64; 4];
 
 /// A rectangle of the page, points, as an area of the canvas.
-pub(super) fn area_of(rect: Rect, pixels_per_point: f32) -> Area {
+pub(crate) fn area_of(rect: Rect, pixels_per_point: f32) -> Area {
     [rect.left(), rect.top(), rect.width(), rect.height()]
         .map(|points| f64::from(points * pixels_per_point).round())
 }
@@ -26,7 +26,7 @@ const TEXT_PICTURE_WIDTH: f64 = 960.0;
 const TEXT_PICTURE_QUALITY: f64 = 0.85;
 
 /// A part of the canvas as a PNG. For the rest see [`take`].
-pub(super) async fn snapshot(
+pub(crate) async fn snapshot(
     canvas: &HtmlCanvasElement,
     frames: impl Fn() -> u64,
     wake: impl Fn(),
@@ -36,7 +36,7 @@ pub(super) async fn snapshot(
 }
 
 /// A part of the canvas as an address that is the picture itself (`data:image/jpeg;base64,…`).
-pub(super) async fn inline_picture(
+pub(crate) async fn inline_picture(
     canvas: &HtmlCanvasElement,
     frames: impl Fn() -> u64,
     wake: impl Fn(),

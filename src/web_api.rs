@@ -1,14 +1,12 @@
-//! What the page's modules drive the app by. `web/js/boot.js` and `web/js/api.js` say what they
-//! expect of it.
+//! The object by which the page's JavaScript drives the app. `web/js/boot.js` and `web/js/api.js`
+//! say what they expect of it.
 
-use super::folders::watch_folders;
-use super::page::{
-    ask_before_leaving_while, listen, next_frame, now_ms, sleep, turn, wanted_backend, watch_hiding,
-};
-use super::reader::{LargeFile, page_bytes, workers_are_made_by};
-use super::snapshot::{Area, area_of, inline_picture, snapshot};
 use crate::app::{Event, Segue, Shared, View, api};
-use crate::platform::{FileBytes, Inbox};
+use crate::platform::{
+    Area, FileBytes, Inbox, LargeFile, area_of, ask_before_leaving_while, inline_picture, listen,
+    next_frame, now_ms, page_bytes, sleep, snapshot, turn, wanted_backend, watch_folders,
+    watch_hiding, words_of, workers_are_made_by,
+};
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use eframe::wgpu::Backends;
 use eframe::{WebOptions, WebRunner};
@@ -374,10 +372,7 @@ impl SegueHandle {
         };
         // An adapter that then gives no device: WebGL 2 may still do. A canvas keeps the kind of
         // context it once had, so it needs a new one.
-        log::warn!(
-            "the graphics could not be set up, trying WebGL 2 alone: {}",
-            super::words_of(&reason)
-        );
+        log::warn!("the graphics could not be set up, trying WebGL 2 alone: {}", words_of(&reason));
         let fresh: HtmlCanvasElement =
             canvas.clone_node()?.dyn_into().map_err(|_| reason.clone())?;
         canvas.replace_with_with_node_1(&fresh)?;
@@ -388,11 +383,7 @@ impl SegueHandle {
             tell(&listener, vec![Event::Lost { message: "the WebGL context was lost".to_owned() }]);
         });
         let both_reasons = |second: JsValue| {
-            error(format!(
-                "WebGPU: {}. WebGL 2: {}",
-                super::words_of(&reason),
-                super::words_of(&second)
-            ))
+            error(format!("WebGPU: {}. WebGL 2: {}", words_of(&reason), words_of(&second)))
         };
         self.run_on(fresh, Backends::GL).await.map_err(both_reasons)
     }
@@ -486,7 +477,7 @@ fn tell(listener: &Rc<RefCell<Option<Function>>>, events: Vec<Event>) {
                 listener.call2(&JsValue::NULL, &JsValue::from(event.name()), &detail)
             });
             if let Err(error) = told {
-                log::error!("a listener failed: {}", super::words_of(&error));
+                log::error!("a listener failed: {}", words_of(&error));
             }
         }
     });
