@@ -223,7 +223,7 @@ impl Segue {
         crate::render::install(state);
         let (inbox, generation) = (self.inbox.clone(), self.window.generation);
         state.device.set_device_lost_callback(move |_, reason| {
-            inbox.push(Incoming::DeviceLost { generation, reason })
+            inbox.push(Incoming::DeviceLost { generation, reason });
         });
         // Without this, wgpu panics at the first complaint of a driver, and a panic is the end of
         // everything.
@@ -379,7 +379,7 @@ impl Segue {
         let before = self.session.revision();
         let mut frame = picture::Place::default();
         let mut reserve = |stage: egui::Rect, panes: &[(usize, egui::Rect)], ui: &mut egui::Ui| {
-            frame.reserve(stage, panes, ui)
+            frame.reserve(stage, panes, ui);
         };
         self.panels.cameras = self.picture.cameras(self.session.panes().len());
         self.panels.language =
@@ -476,7 +476,7 @@ impl Segue {
                 }
             }
             Action::SaveText { name, mime, text } => {
-                platform::download(name, mime, text.as_bytes(), &self.inbox)
+                platform::download(name, mime, text.as_bytes(), &self.inbox);
             }
             Action::Save { which, how } => match self.export_as(which, how) {
                 Ok(file) => platform::download(&file.name, file.mime, &file.bytes, &self.inbox),

@@ -11,8 +11,8 @@ mod ui;
 #[cfg(target_arch = "wasm32")]
 mod web_api;
 
-/// Opens the window. The command line names files to load, or a link's query: `segue walk.bvh
-/// "lab=view"`.
+/// Opens the window. The command line names files to load, or a link's query:
+/// `segue walk.bvh "lab=view"`.
 #[cfg(not(target_arch = "wasm32"))]
 fn main() -> eframe::Result {
     use eframe::egui::ViewportBuilder;

@@ -339,7 +339,7 @@ fn violations(path: &Path, text: &str) -> Vec<String> {
     let mut found = Vec::new();
     let line = |at: usize| code[..at].matches('\n').count() + 1;
     let mut tell = |at: usize, what: String| {
-        found.push((at, format!("{}:{}: {what}", path.display(), line(at))))
+        found.push((at, format!("{}:{}: {what}", path.display(), line(at))));
     };
     let in_app = path.starts_with("src");
     let rows: &[(&str, &str)] = match path.starts_with("crates/motion") {

@@ -167,7 +167,7 @@ fn differences(subject: &Subject) -> Vec<String> {
                         1000.0 * apart
                     )),
                     Err(said) => {
-                        wrong.push(format!("{}, {name}{placing}: {lab}: {said}", subject.name))
+                        wrong.push(format!("{}, {name}{placing}: {lab}: {said}", subject.name));
                     }
                 }
             }

@@ -1,7 +1,7 @@
 //! How long a search of motion matching takes, at the median and at the 99th percentile: 27
 //! dimensions; 5,000, 50,000 and 500,000 frames; queries from a recorded drive and from noise; by
-//! four methods. `cargo xtask match-speed` runs it and prints a table in Markdown; `node
-//! tests/browser/search.mjs` does the same in Chromium, where the page keeps the time.
+//! four methods. `cargo xtask match-speed` runs it and prints a table in Markdown;
+//! `node tests/browser/search.mjs` does the same in Chromium, where the page keeps the time.
 
 #[path = "../crates/motion/benches/common/search.rs"]
 mod search;

@@ -79,7 +79,7 @@ impl Segue {
             }
             Incoming::StoredElsewhere(entries) => self.keeper.hear_of(&self.session, entries),
             Incoming::Joined(stored) => {
-                self.keeper.join(&mut self.session, &mut self.vault, &stored)
+                self.keeper.join(&mut self.session, &mut self.vault, &stored);
             }
             Incoming::Navigated(query) => {
                 if self.address.is_news(&query) {
@@ -116,7 +116,7 @@ impl Segue {
             match &news {
                 ReadNews::Done(Ok(report)) => match report.files.as_slice() {
                     [file] if file.result.is_ok() && report.is_one_file() => {
-                        self.vault.name(&key, &file.sha256)
+                        self.vault.name(&key, &file.sha256);
                     }
                     _ => self.vault.drop_file(&key),
                 },

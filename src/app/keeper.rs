@@ -216,7 +216,7 @@ impl Keeper {
         let link = (!self.link.is_empty()).then_some(self.link.as_str());
         match stored {
             Some(stored) => {
-                session.restore(&stored.saved, |key| vault.restore(&stored.files, key), link)
+                session.restore(&stored.saved, |key| vault.restore(&stored.files, key), link);
             }
             // Without a link there is nothing to bring about: a new session shows what a first
             // visitor sees.

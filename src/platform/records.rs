@@ -96,7 +96,7 @@ impl Records {
                     .map(|Row { at_ms, entry }| since.push((at_ms, Since::Came(Box::new(entry)))))
             } else if is_left(key) {
                 serde_json::from_str(text).map(|Left { at_ms, known, saved }| {
-                    since.push((at_ms, Since::Left(known, saved)))
+                    since.push((at_ms, Since::Left(known, saved)));
                 })
             } else {
                 Ok(())

@@ -138,10 +138,10 @@ impl Director {
                 match (self.pair.zip(session.distance_map()), self.jump.zip(session.graph_built()))
                 {
                     (Some((frames, map)), _) => {
-                        self.draw_pair(&shown, frames, map, params, colors, pane)
+                        self.draw_pair(&shown, frames, map, params, colors, pane);
                     }
                     (None, Some((ends, built))) => {
-                        self.draw_jump(&shown, ends, built, colors, pane)
+                        self.draw_jump(&shown, ends, built, colors, pane);
                     }
                     (None, None) => self.draw(&shown, params, &look, colors, pane),
                 }
@@ -248,7 +248,7 @@ impl Director {
         match (seen, outcome.layer.as_ref().filter(|_| params.is_on(Key::MaskColors))) {
             (choices::Look::Bones, _) => {}
             (choices::Look::Both, _) => {
-                pane.add_glass(&body, world, with_alpha(look.clay, GLASS_ALPHA))
+                pane.add_glass(&body, world, with_alpha(look.clay, GLASS_ALPHA));
             }
             (_, Some(layer)) => pane.add_colored_body(&body, world, |joint| {
                 share_color(layer.shares.get(joint).copied().unwrap_or(0.0), look, colors)

@@ -46,13 +46,13 @@ fn of(lab: LabId) -> LabUi {
         LabId::View => (
             view::view_ui,
             Compares::Own(|session, out| {
-                compare_clips(session.params().text(Key::A), session.params().text(Key::B), out)
+                compare_clips(session.params().text(Key::A), session.params().text(Key::B), out);
             }),
         ),
         LabId::Make => (
             make::make_ui,
             Compares::Own(|session, out| {
-                out.commands.push(Command::Compare(make::made_number(session)))
+                out.commands.push(Command::Compare(make::made_number(session)));
             }),
         ),
         LabId::Blend => (blend::blend_ui, Compares::Key(Key::BlendWindow)),

@@ -94,7 +94,7 @@ pub(crate) fn show(
         match layout {
             Layout::Phone => phone_ui(session, state, curves, &mut out, paint, ui),
             Layout::Desk | Layout::Tablet => {
-                desk_ui(session, layout, state, curves, &mut out, paint, ui)
+                desk_ui(session, layout, state, curves, &mut out, paint, ui);
             }
         }
     }

@@ -150,7 +150,7 @@ pub(crate) fn place_found(transition: &Transition, automatic: [bool; 2]) -> Stri
     };
     match automatic {
         _ if search.is_widened => {
-            said.push("A clip is too short for its half to be searched: all of it was.".to_owned())
+            said.push("A clip is too short for its half to be searched: all of it was.".to_owned());
         }
         [true, true] => said.push("Searched: A's second half and B's first half.".to_owned()),
         [true, false] => said.push("Searched: A's second half.".to_owned()),

@@ -176,14 +176,14 @@ fn timeline_event(event: TimelineEvent, session: &Session, outcome: &Outcome, ou
         // At the ends they mark nothing.
         TimelineEvent::SetIn(secs) if at_end(0.0, secs) => out.set(Key::In, Value::Auto),
         TimelineEvent::SetOut(secs) if at_end(session.duration_secs(), secs) => {
-            out.set(Key::Out, Value::Auto)
+            out.set(Key::Out, Value::Auto);
         }
         TimelineEvent::Seek(secs) => out.commands.push(Command::Seek(secs)),
         TimelineEvent::ScrubStarted => out.set(Key::Play, Value::Switch(false)),
         TimelineEvent::SetIn(secs) => out.set(Key::In, Value::Number(secs)),
         TimelineEvent::SetOut(secs) => out.set(Key::Out, Value::Number(secs)),
         TimelineEvent::SetTransitionStart(secs) if outcome.registered.is_some() => {
-            out.set(Key::WarpFrom, Value::Number(secs.max(0.0)))
+            out.set(Key::WarpFrom, Value::Number(secs.max(0.0)));
         }
         TimelineEvent::SetTransitionEnd(secs) if outcome.registered.is_some() => {
             // The end is a time of A, whose clock is bent until then.

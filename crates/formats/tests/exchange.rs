@@ -167,7 +167,7 @@ fn files_for_other_readers() {
         let options = WriteOptions { up: Some(UpAxis::Y), ..options };
         let inputs = CsvInputs { clip: &expected, contacts: None, columns: &[] };
         let save = |ending: &str, bytes: &[u8]| {
-            fs::write(folder.join(format!("{name}.{ending}")), bytes).unwrap()
+            fs::write(folder.join(format!("{name}.{ending}")), bytes).unwrap();
         };
         save("bvh", write(&clip, &options).as_bytes());
         save("glb", &write_glb(&clip, &GlbOptions { fps: options.fps, smooth: true }).unwrap());
@@ -177,7 +177,7 @@ fn files_for_other_readers() {
     let (clip, mesh) = character();
     let inputs = CsvInputs { clip: &clip, contacts: None, columns: &[] };
     let save = |ending: &str, bytes: &[u8]| {
-        fs::write(folder.join(format!("character.{ending}")), bytes).unwrap()
+        fs::write(folder.join(format!("character.{ending}")), bytes).unwrap();
     };
     save("bvh", write(&clip, &WriteOptions::default()).as_bytes());
     save("glb", &write_character_glb(&clip, &mesh, &GlbOptions::default()).unwrap());

@@ -1,8 +1,8 @@
 //! What a search costs: 27 dimensions; 5,000, 50,000 and 500,000 frames; queries from a recorded
 //! drive through that database and from noise. The boxes against a plain scan, against boxes over
 //! 16 and 64 frames in order of time with early exit (the usual way, Holden 2020), and against the
-//! k-d tree of `kiddo`. What building costs; and what a crowd costs. Percentiles: `cargo xtask
-//! match-speed`.
+//! k-d tree of `kiddo`. What building costs; and what a crowd costs. Percentiles:
+//! `cargo xtask match-speed`.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use segue_motion::matching::{

@@ -94,7 +94,7 @@ fn all_pairs(c: &mut Criterion) {
     let mut group = c.benchmark_group("all pairs of 6,000 frames");
     group.sample_size(10);
     group.bench_function("pair terms", |bench| {
-        bench.iter(|| terms(&clip, black_box(&clip), &weights))
+        bench.iter(|| terms(&clip, black_box(&clip), &weights));
     });
     let terms = terms(&clip, &clip, &weights);
     group.bench_function("a new window", |bench| {

@@ -42,7 +42,8 @@ pub fn read(query: &str) -> Link {
             },
             None if LOADER_KEYS.contains(&name.as_ref()) => {}
             None => {
-                link.problems.push(format!("`{}` is not a parameter of this version", short(&name)))
+                link.problems
+                    .push(format!("`{}` is not a parameter of this version", short(&name)));
             }
         }
     }

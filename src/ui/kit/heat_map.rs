@@ -300,7 +300,7 @@ fn events(map: &HeatMap<'_>, axes: &Axes, response: &Response, ui: &Ui) -> Vec<H
     if let Some(pos) = clicked {
         match near(pos) {
             Some(pin) if response.double_clicked() => {
-                events.extend([HeatMapEvent::Unpin(pin), HeatMapEvent::Settled])
+                events.extend([HeatMapEvent::Unpin(pin), HeatMapEvent::Settled]);
             }
             Some(pin) => events.push(HeatMapEvent::Seek(pin)),
             None => events.push(HeatMapEvent::Seek(axes.secs(pos))),

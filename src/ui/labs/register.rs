@@ -99,7 +99,7 @@ fn weight_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         for event in kit::weight_curve_ui(&row, ui) {
             match event {
                 WeightCurveEvent::Keys(keys) => {
-                    out.set(Key::WarpCurve, Value::Text(write_pairs(&keys)))
+                    out.set(Key::WarpCurve, Value::Text(write_pairs(&keys)));
                 }
                 WeightCurveEvent::Settled => out.commands.push(Command::Settle),
             }
@@ -120,7 +120,7 @@ fn weight_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
 fn also_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let also = session.also_blended();
     let set = |also: &[(String, f64)], out: &mut Out| {
-        out.set(Key::WarpAlso, Value::Text(write_also(also)))
+        out.set(Key::WarpAlso, Value::Text(write_also(also)));
     };
     for (index, (id, weight)) in also.iter().enumerate() {
         let label = text::blended_clip(index);

@@ -105,7 +105,7 @@ mod tests {
     fn a_link_without_a_language_leaves_the_readers() {
         let mut session = Session::new();
         let open = |session: &mut Session, link: &str| {
-            session.apply(Command::OpenLink(link.to_owned())).unwrap()
+            session.apply(Command::OpenLink(link.to_owned())).unwrap();
         };
         open(&mut session, "lang=zh-Hant");
         open(&mut session, "lab=make");

@@ -63,7 +63,7 @@ pub(crate) fn param_row_ui(
             }
         }
         Kind::Text if matches!(key, Key::Joint | Key::FollowJoint) => {
-            joint_ui(key, session, out, ui)
+            joint_ui(key, session, out, ui);
         }
         Kind::Text if key == Key::Character => character_ui(key, session, out, ui),
         Kind::Clip | Kind::Text | Kind::Compare => {}

@@ -5,8 +5,8 @@
 //! which each turns, and which degrees of freedom it has; an AMC file has one line per bone and
 //! frame with a value for each of them. With C = Rz·Ry·Rx of a bone's `axis` (about fixed axes, in
 //! the order it says) and M the product of its turns (about fixed axes, in the order of `dof`), a
-//! bone is turned by parent · C · M · C⁻¹ and ends at its start + that · (direction × length). `tx
-//! ty tz` move its start along its own axes, `l` makes it longer. The root's `position` and
+//! bone is turned by parent · C · M · C⁻¹ and ends at its start + that · (direction × length).
+//! `tx ty tz` move its start along its own axes, `l` makes it longer. The root's `position` and
 //! `orientation` are the frame of reference of the whole motion. Commas and parentheses are white
 //! space, `#` begins a comment, limits are not applied.
 //!

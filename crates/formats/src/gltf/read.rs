@@ -131,7 +131,7 @@ impl Motion {
             };
             match path {
                 Property::Scale if curve.differs_from(moved.scale.as_vec3().extend(0.0)) => {
-                    tally.add(WarningKind::ScaleAnimation, None)
+                    tally.add(WarningKind::ScaleAnimation, None);
                 }
                 Property::Rotation => drop(turns.insert(node, curve)),
                 Property::Translation => drop(places.insert(node, curve)),

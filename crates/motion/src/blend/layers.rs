@@ -64,8 +64,9 @@ pub enum Reference {
 pub enum LayerMode {
     /// The layer takes the base's place, joint by joint: slerp by mask × weight.
     Override,
-    /// What the layer does beyond a reference pose is added: `base · exp(w log(reference⁻¹ ·
-    /// over))`, in every joint's own frame, so that a bent arm waves as a straight one does.
+    /// What the layer does beyond a reference pose is added:
+    /// `base · exp(w log(reference⁻¹ · over))`, in every joint's own frame, so that a bent arm
+    /// waves as a straight one does.
     Additive(Reference),
 }
 

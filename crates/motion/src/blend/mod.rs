@@ -4,8 +4,8 @@
 //! # The idea
 //!
 //! A dissolve leaves clip A at frame `i`, enters clip B at frame `j` and overlaps `k` frames. Its
-//! result is `A[..i]`, then `k` frames in which `A[i..i + k)` fades into `B[j..j + k)`, then `B[j +
-//! k..]`. In frame p of the window:
+//! result is `A[..i]`, then `k` frames in which `A[i..i + k)` fades into `B[j..j + k)`, then
+//! `B[j + k..]`. In frame p of the window:
 //!
 //! ```text
 //! α = 2t³ - 3t² + 1,  t = (p + 1)/k           weight of A: 1 before the window, 0 at its end

@@ -2,9 +2,9 @@ use crate::clip::Clip;
 use crate::math::Planar;
 use crate::registration::{Alignment, RegistrationError, align};
 
-/// Lays clip `b` on clip `a` over a window (section A of the point clouds): `A[frame_a..frame_a +
-/// window)` and `B[frame_b..frame_b + window)`, at least one frame. The alignment's transform is
-/// `a_world_from_b_world`.
+/// Lays clip `b` on clip `a` over a window (section A of the point clouds):
+/// `A[frame_a..frame_a + window)` and `B[frame_b..frame_b + window)`, at least one frame. The
+/// alignment's transform is `a_world_from_b_world`.
 ///
 /// `weights` has one weight per joint ([`crate::registration::limb_weights`]); `fallback_yaw` is
 /// the turn where every turn fits (the difference of the facings is a good one).

@@ -481,7 +481,7 @@ fn what_is_found_for_a_threshold_serves_all_lower_ones() {
             let low = options(construction, 12, threshold);
             match (MotionGraph::new(&set, &found, &low), built(&set, &low)) {
                 (Ok(one), Ok(other)) => {
-                    assert_eq!((one.jumps(), nodes(&one)), (other.jumps(), nodes(&other)))
+                    assert_eq!((one.jumps(), nodes(&one)), (other.jumps(), nodes(&other)));
                 }
                 (one, other) => assert_eq!(one.err(), other.err()),
             }

@@ -84,7 +84,9 @@ impl Scenario {
             Self::WalkStraight => hold(12.0, WALK_MPS, 0.0),
             Self::TurnLeft => [0.0, FRAC_PI_2].into_iter().for_each(|yaw| hold(4.0, WALK_MPS, yaw)),
             Self::TurnRight => {
-                [0.0, -FRAC_PI_2].into_iter().for_each(|yaw| hold(4.0, WALK_MPS, yaw))
+                for yaw in [0.0, -FRAC_PI_2] {
+                    hold(4.0, WALK_MPS, yaw);
+                }
             }
             Self::Spin => [0.0, PI, 0.0].into_iter().for_each(|yaw| hold(4.0, WALK_MPS, yaw)),
             Self::StartStop => {
@@ -95,7 +97,9 @@ impl Scenario {
                 hold(2.0, 0.0, 0.0);
             }
             Self::WalkToRun => {
-                [WALK_MPS, RUN_MPS, WALK_MPS].into_iter().for_each(|speed| hold(4.0, speed, 0.0))
+                for speed in [WALK_MPS, RUN_MPS, WALK_MPS] {
+                    hold(4.0, speed, 0.0);
+                }
             }
             Self::FigureEight => {
                 // A tenth of a second at a time: a whole turn to the left in 9 s, then one to the

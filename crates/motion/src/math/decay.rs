@@ -49,13 +49,13 @@ pub enum Decay {
     /// The quintic of Bollo, "Inertialization: High-Performance Animation Transitions in Gears of
     /// War" (GDC 2018): it ends without velocity and acceleration, and does not overshoot.
     ///
-    /// An offset that closes fast would fly past 0. So, with Bollo, the blend time is at most `5
-    /// |x| / closing speed`, and a first acceleration `max(0, 8 · closing speed / T - 20 |x| / T²)`
-    /// pushes against it; at the limit the curve is `(1 - t/T)⁵`. Bollo works on the offset's
-    /// length and drops the velocity across it and away from 0. Here the whole vector is kept, so
-    /// that the velocity stays continuous: the limits are those of the part along the offset, and
-    /// they hold for the way along it. An offset near 0 with a high closing speed ends nearly at
-    /// once, as Bollo's does.
+    /// An offset that closes fast would fly past 0. So, with Bollo, the blend time is at most
+    /// `5 |x| / closing speed`, and a first acceleration
+    /// `max(0, 8 · closing speed / T - 20 |x| / T²)` pushes against it; at the limit the curve is
+    /// `(1 - t/T)⁵`. Bollo works on the offset's length and drops the velocity across it and away
+    /// from 0. Here the whole vector is kept, so that the velocity stays continuous: the limits are
+    /// those of the part along the offset, and they hold for the way along it. An offset near 0
+    /// with a high closing speed ends nearly at once, as Bollo's does.
     Quintic {
         /// Seconds until nothing is left, at most.
         blend_secs: f64,

@@ -16,9 +16,9 @@ pub fn rate(half_life_secs: f64) -> f64 {
     2.0 * LN_2 / half_life_secs.max(1e-9)
 }
 
-/// What a critically damped spring leaves of an offset and its velocity after `secs`: `x(t) =
-/// e^(-yt) (x + (v + xy) t)` and its derivative. Exact for any step; two short steps are one long
-/// one.
+/// What a critically damped spring leaves of an offset and its velocity after `secs`:
+/// `x(t) = e^(-yt) (x + (v + xy) t)` and its derivative. Exact for any step; two short steps are
+/// one long one.
 #[must_use]
 pub fn response(half_life_secs: f64, secs: f64) -> Response {
     let y = rate(half_life_secs);
@@ -65,8 +65,8 @@ pub fn towards_rotation(
 }
 
 /// The share of a velocity that is left after `secs`, and the seconds of that velocity which have
-/// added up meanwhile, when the velocity decays with this half-life: `e^(-yt)` and `(1 - e^(-yt)) /
-/// y` with `y = ln 2 / h`. With it a pose runs on (Holden, "Dead Blending", 2023).
+/// added up meanwhile, when the velocity decays with this half-life: `e^(-yt)` and
+/// `(1 - e^(-yt)) / y` with `y = ln 2 / h`. With it a pose runs on (Holden, "Dead Blending", 2023).
 #[must_use]
 pub fn run_on(half_life_secs: f64, secs: f64) -> (f64, f64) {
     let y = 0.5 * rate(half_life_secs);

@@ -65,9 +65,9 @@ pub struct TransitionMetrics {
     /// usual.
     pub jump_cm: Option<f64>,
     /// Yaw of the blend, degrees. With `r`, `a`, `b` the yaw turned in a step by the result and by
-    /// the sources: the largest sum, over any run of consecutive steps of the transition, of `r -
-    /// max(0, a, b)` or of `min(0, a, b) - r`. That is the turn beyond what either source turns
-    /// meanwhile.
+    /// the sources: the largest sum, over any run of consecutive steps of the transition, of
+    /// `r - max(0, a, b)` or of `min(0, a, b) - r`. That is the turn beyond what either source
+    /// turns meanwhile.
     pub spin_deg: Option<f64>,
     /// Slide at the seam, centimetres. A foot is planted while its source says so: A before B has
     /// the greater part, B from then on. In every step between planted frames, the step over the

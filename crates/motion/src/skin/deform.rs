@@ -134,9 +134,9 @@ fn dual_part(rotation: Quat, translation: Vec3) -> Quat {
     Quat::from_xyzw(translation.x, translation.y, translation.z, 0.0) * rotation * 0.5
 }
 
-/// The translation of a dual quaternion with a real part of unit length: the vector part of `2 dual
-/// real*`. What of the dual part is not at right angles to the real one ends up in the scalar part,
-/// and is dropped.
+/// The translation of a dual quaternion with a real part of unit length: the vector part of
+/// `2 dual real*`. What of the dual part is not at right angles to the real one ends up in the
+/// scalar part, and is dropped.
 fn translation(real: Quat, dual: Quat) -> Vec3 {
     (dual * real.conjugate() * 2.0).xyz()
 }

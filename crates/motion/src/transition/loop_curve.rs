@@ -9,8 +9,8 @@ pub enum LoopMethod {
         half_life_secs: f64,
     },
     /// Springs from both ends, fed with the difference itself (Holden, "Creating Looping Animations
-    /// from Motion Capture", 2022). What has not died away at the other end stays as a seam: `(1 +
-    /// yT) e^(-yT)` of the difference, 14 % for a half-life of 0.2 s in a cycle of 0.5 s.
+    /// from Motion Capture", 2022). What has not died away at the other end stays as a seam:
+    /// `(1 + yT) e^(-yT)` of the difference, 14 % for a half-life of 0.2 s in a cycle of 0.5 s.
     Classic {
         /// Half-life, seconds.
         half_life_secs: f64,
@@ -35,12 +35,12 @@ const MOST_CYCLES: f64 = 10.0;
 /// and of their velocities' difference `V`.
 ///
 /// With the ratio `r`, `r D` is added at the head and `(1 - r) D` taken off at the tail, so that
-/// `offset(0) - offset(T) = D`, and likewise for velocities. The springs' offset is `decay(r X, r
-/// W; t) - decay((1 - r) X, -(1 - r) W; T - t)`. Each spring still has something left at the other
-/// end; X and W are the solution of
+/// `offset(0) - offset(T) = D`, and likewise for velocities. The springs' offset is
+/// `decay(r X, r W; t) - decay((1 - r) X, -(1 - r) W; T - t)`. Each spring still has something left
+/// at the other end; X and W are the solution of
 ///
-/// `(1 - k) X + (1 - 2r) T e W = D` and `(2r - 1) y² T e X + (1 - (1 - yT) e) W = V`, with `e =
-/// e^(-yT)` and `k = (1 + yT) e`.
+/// `(1 - k) X + (1 - 2r) T e W = D` and `(2r - 1) y² T e X + (1 - (1 - yT) e) W = V`, with
+/// `e = e^(-yT)` and `k = (1 + yT) e`.
 #[derive(Clone, Copy, Debug)]
 pub struct LoopCurve {
     method: LoopMethod,

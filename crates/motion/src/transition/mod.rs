@@ -25,9 +25,9 @@
 //! offset(t) = decay(r X, r W; t) - decay((1 - r) X, -(1 - r) W; T - t)
 //! ```
 //!
-//! With X = D and W = V, as is usual, each spring has something left at the other end, `(1 + yT)
-//! e^(-yT)` of it; [`LoopCurve`] solves for the X and W that close exactly. [`find_cycle`] finds
-//! ends that differ little. [`foot_lock`] plants feet that slide meanwhile.
+//! With X = D and W = V, as is usual, each spring has something left at the other end,
+//! `(1 + yT) e^(-yT)` of it; [`LoopCurve`] solves for the X and W that close exactly.
+//! [`find_cycle`] finds ends that differ little. [`foot_lock`] plants feet that slide meanwhile.
 //! [`concatenate_mistaken`] makes the classic mistakes, one at a time.
 //!
 //! # Example

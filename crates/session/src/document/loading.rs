@@ -430,7 +430,7 @@ impl Session {
                 [id] if is_odd && self.is_half(id) => self.notices.miss(id, text),
                 // A skeleton that was waited for: it has its motion.
                 [id] if self.library.get(id).is_none() => {
-                    self.say(Level::Info, in_the_library(&names))
+                    self.say(Level::Info, in_the_library(&names));
                 }
                 _ if !mends.is_empty() => self.offer_mends(text, mends),
                 _ => self.say(if is_odd { Level::Warning } else { Level::Info }, text),

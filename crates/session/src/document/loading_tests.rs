@@ -231,7 +231,7 @@ fn what_was_read_stays_read_when_a_step_is_taken_back() {
     before.restore(&session.saved(), stored(&session), None);
     // Something is changed while they are read, or before they come.
     let change = |session: &mut Session| {
-        session.apply(Command::Set(vec![(Key::BlendWindow, Value::Number(9.0))])).unwrap()
+        session.apply(Command::Set(vec![(Key::BlendWindow, Value::Number(9.0))])).unwrap();
     };
     change(&mut before);
     change(&mut late);

@@ -256,7 +256,7 @@ const LONG: &str = "walk(make_seconds:12)";
 fn the_feet_of_a_long_walk_are_planted_when_the_hand_rests() {
     let mut session = Session::new();
     let open = |session: &mut Session, query: &str| {
-        session.apply(Command::OpenLink(query.to_owned())).unwrap()
+        session.apply(Command::OpenLink(query.to_owned())).unwrap();
     };
     open(&mut session, &format!("lab=path&a={LONG}&foot_lock=on"));
     assert!(path(&session).awaits_feet);

@@ -203,7 +203,7 @@ fn nothing_stands_for_a_result_that_cannot_be_made() {
     // All of them are told at once.
     let stale = refusals().into_iter().filter(|(link, bad, part)| {
         let checked = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
-            stands_for_nothing(link, bad, part)
+            stands_for_nothing(link, bad, part);
         }));
         checked.is_err()
     });

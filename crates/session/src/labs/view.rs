@@ -268,7 +268,7 @@ impl Viewer {
         let UnderWay { motion, lock, is_wanted, stage } = self.under_way.remove(index);
         match next(&motion, stage) {
             Step::On(stage) => {
-                self.under_way.insert(index, UnderWay { motion, lock, is_wanted, stage: *stage })
+                self.under_way.insert(index, UnderWay { motion, lock, is_wanted, stage: *stage });
             }
             Step::Done(made) => {
                 let made = *made;

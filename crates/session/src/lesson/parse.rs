@@ -110,7 +110,7 @@ impl Reader {
                 }
             }
             (_, Some(Marker { depth, number })) => {
-                self.push(Block::Item { depth: depth.min(DEEPEST), number, spans })
+                self.push(Block::Item { depth: depth.min(DEEPEST), number, spans });
             }
             (_, None) => self.push(Block::Paragraph(spans)),
         }

@@ -59,7 +59,7 @@ impl Prose {
                 if is_long
                     || (last.strong, last.emphasis, last.code, last.target.as_ref()) == look =>
             {
-                last.text.push_str(&text)
+                last.text.push_str(&text);
             }
             _ => self.spans.push(Span {
                 text,

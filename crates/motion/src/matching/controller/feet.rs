@@ -251,7 +251,7 @@ impl Feet {
                 _ if foot.stands => foot.rate = Vec3::ZERO,
                 _ => {
                     (foot.shift, foot.rate) = spring::response(options.half_life_secs, dt_secs)
-                        .of_vec3(foot.shift, foot.rate)
+                        .of_vec3(foot.shift, foot.rate);
                 }
             }
             let speed = step.map_or(0.0, |step| (step + foot.shift - before).length())
@@ -428,7 +428,7 @@ mod tests {
     fn a_foot_that_is_moved_over_the_ground_is_lifted() {
         let database = database(&[Action::Idle]);
         let push = |frame: usize, pose: &mut Pose| {
-            pose.root_translation += Vec3::X * 0.005 * frame.saturating_sub(10) as f32
+            pose.root_translation += Vec3::X * 0.005 * frame.saturating_sub(10) as f32;
         };
         let path = |own: OwnFoot| {
             let poses = played(&database, &[], 0..40, |_| own, push);
@@ -486,7 +486,7 @@ mod tests {
         let database = database(&[Action::Run]);
         let motion = database.motion(0).unwrap();
         let push = |frame: usize, pose: &mut Pose| {
-            pose.root_translation -= Vec3::Z * (2.0 * TICK_SECS as f32) * frame as f32
+            pose.root_translation -= Vec3::Z * (2.0 * TICK_SECS as f32) * frame as f32;
         };
         let own = |frame: usize| motion.feet(frame)[0].turned(&motion.root(frame));
         let poses = played(&database, &[], 0..motion.frames(), own, push);
@@ -522,7 +522,7 @@ mod tests {
         let stands = OwnFoot { planted: true, ..OwnFoot::default() };
         // Pushed by 0.5 m, which is farther than a foot is held.
         let push = |frame: usize, pose: &mut Pose| {
-            pose.root_translation += Vec3::X * (0.01 * frame.clamp(10, 60) as f32)
+            pose.root_translation += Vec3::X * (0.01 * frame.clamp(10, 60) as f32);
         };
         let poses = played(&database, &[], 0..140, |_| stands, push);
         let feet: Vec<Vec3> = poses.iter().map(|pose| left_foot(&database, pose)).collect();

@@ -134,7 +134,7 @@ impl<'a> Shape<'a> {
                 Some((_, last))
                     if self.rest[*last].distance(self.rest[joint]) < 1e-4 * self.height =>
                 {
-                    *last = joint
+                    *last = joint;
                 }
                 _ => places.push((joint, joint)),
             }
