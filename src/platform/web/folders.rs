@@ -59,7 +59,7 @@ async fn read_entry(entry: FileSystemEntry, inbox: &Inbox) {
     };
     match files {
         Ok(files) if files.is_empty() => {
-            inbox.push(Incoming::Failed { reason: no_motion_in(&name) })
+            inbox.push(Incoming::Failed { reason: no_motion_in(&name) });
         }
         Ok(files) => read(files, inbox.clone()).await,
         Err(error) => inbox.push(Incoming::Failed {
@@ -115,7 +115,7 @@ async fn children_of(folder: &FileSystemDirectoryEntry) -> Result<Vec<FileSystem
 async fn file_of(entry: FileSystemEntry) -> Result<File, JsValue> {
     let entry: FileSystemFileEntry = entry.unchecked_into();
     let file = Promise::new(&mut |resolve, reject| {
-        entry.file_with_callback_and_callback(&resolve, &reject)
+        entry.file_with_callback_and_callback(&resolve, &reject);
     });
     Ok(JsFuture::from(file).await?.unchecked_into())
 }
