@@ -116,8 +116,17 @@ pub(crate) struct Segue {
     speech: Speech,
     /// The film that is being made of the page.
     film: Option<platform::Film>,
+    /// Whether the link at the start said that the page is embedded: then nothing is stored, and
+    /// the page around this one may drive it.
+    embedded: bool,
     /// Whether it was told that the page around this one can use it.
     has_told_of_host: bool,
+}
+
+/// Returns whether a link says that the page is embedded. Said once is enough, whatever a second
+/// value says.
+fn is_embedded(link: &str) -> bool {
+    link::read(link).values.contains(&(Key::Embed, Value::Switch(true)))
 }
 
 /// What listeners know already.
@@ -166,13 +175,17 @@ impl Segue {
     /// A page inside of another page stores nothing: it would show, and overwrite, what the reader
     /// works on elsewhere.
     pub(crate) fn start(inbox: Inbox) -> Shared {
-        let link = platform::location_query();
-        let embedded = link::read(&link).values.contains(&(Key::Embed, Value::Switch(true)));
         platform::watch_navigation(&inbox);
-        let storage = (!embedded).then(|| Storage::open(&inbox));
-        let mut segue = Self::new(inbox, storage, link);
-        segue.panels.host_reads = embedded && platform::is_framed();
+        let mut segue = Self::start_on(inbox, platform::location_query(), Storage::open);
+        segue.panels.host_reads = segue.embedded && platform::is_framed();
         Rc::new(RefCell::new(segue))
+    }
+
+    /// As [`Self::start`], with a link and a storage to open.
+    fn start_on(inbox: Inbox, link: String, open: impl FnOnce(&Inbox) -> Storage) -> Self {
+        let embedded = is_embedded(&link);
+        let storage = (!embedded).then(|| open(&inbox));
+        Self { embedded, ..Self::new(inbox, storage, link) }
     }
 
     fn new(inbox: Inbox, storage: Option<Storage>, link: String) -> Self {
@@ -199,6 +212,7 @@ impl Segue {
             curves: CurveCache::default(),
             picture: Picture::default(),
             film: None,
+            embedded: false,
             has_told_of_host: false,
             copied: ui::LINK_COPIED,
             has_begun: false,

@@ -135,6 +135,13 @@ impl SegueHandle {
         self.listener.replace(Some(listener));
     }
 
+    /// Whether the link says that the page is embedded: the frame then answers the page around it,
+    /// and stores nothing.
+    #[wasm_bindgen(js_name = isEmbedded)]
+    pub fn is_embedded(&self) -> bool {
+        self.segue.try_borrow().is_ok_and(|segue| segue.is_embedded())
+    }
+
     /// Whether the app has panicked: then nothing else is left to ask than [`Self::panic_summary`].
     #[wasm_bindgen(js_name = hasPanicked)]
     pub fn has_panicked(&self) -> bool {

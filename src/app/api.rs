@@ -475,6 +475,12 @@ impl Segue {
         self.frames.count()
     }
 
+    /// Returns whether the link at the start said that the page is embedded: only then may the page
+    /// around this one drive it, and nothing is stored.
+    pub(crate) fn is_embedded(&self) -> bool {
+        self.embedded
+    }
+
     /// Where the stage is on the page, in points; none before it was drawn.
     pub(crate) fn stage_place(&self) -> Option<eframe::egui::Rect> {
         self.picture.place()
@@ -492,7 +498,7 @@ fn pane_number(which: &str) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::platform::Inbox;
+    use crate::platform::{Inbox, Storage};
     use serde_json::json;
 
     fn open(link: &str) -> Segue {
@@ -717,6 +723,43 @@ mod tests {
         let segue = open("lab=view&play=off");
         for secs in [f64::NAN, f64::INFINITY] {
             assert!(segue.pose("walk", secs).unwrap_err().contains("expected seconds"));
+        }
+    }
+
+    /// However a link spells it, the page that answers the one around it is the page that stores
+    /// nothing.
+    #[test]
+    fn embedded_page_in_any_spelling_has_no_storage() {
+        for (link, embedded) in [
+            ("embed=1", true),
+            ("embed=on", true),
+            ("embed=yes", true),
+            ("embed=true", true),
+            ("?embed=1", true),
+            ("??embed=1", true),
+            ("embed=%31", true),
+            ("%65mbed=1", true),
+            ("lab=view&embed=1", true),
+            ("embed=1&embed=0", true),
+            ("embed=0&embed=1", true),
+            ("embed=1&embed=nonsense", true),
+            ("embed=On", false),
+            ("embed=ON", false),
+            ("embed=1%20", false),
+            ("embed=+1", false),
+            ("embed=", false),
+            ("embed", false),
+            ("??embed", false),
+            ("Embed=1", false),
+            ("embed=0", false),
+            ("embed%3D1", false),
+            ("", false),
+        ] {
+            let segue = Segue::start_on(Inbox::default(), link.to_owned(), |_| {
+                assert!(!embedded, "{link}: the storage is opened");
+                Storage::default()
+            });
+            assert_eq!(segue.is_embedded(), embedded, "{link}");
         }
     }
 

@@ -1,7 +1,7 @@
 // In a frame of another page, and after the graphics context is gone.
 
 import assert from "node:assert/strict";
-import { onBothBackends } from "./harness.mjs";
+import { onBackend, onBothBackends } from "./harness.mjs";
 import { apart, count, isClay, stageOf, striding, until } from "./help.mjs";
 
 const SMALL = { viewport: [960, 640] };
@@ -71,6 +71,33 @@ onBothBackends("the link of an embedded state is one that answers", async ({ ope
     setTimeout(resolve, 12_000, `nothing came of ${search}`);
   }), search);
   assert.equal(told, "ready");
+});
+
+// Fails when the app and the page's modules read a link differently: a frame that answers must have no storage.
+onBackend("webgl2", "a frame that answers stores nothing, however its link is spelled", async ({ open }) => {
+  const { page } = await open("", {
+    ...SMALL,
+    wait: false,
+    prepare: (page) => page.route(({ pathname, search }) => pathname === "/" && search === "", (route) => route.fulfill({ contentType: "text/html", body: "<!doctype html><title>A course</title>" })),
+  });
+  const ask = (query) => page.evaluate(async (query) => {
+    const frame = document.createElement("iframe");
+    frame.src = `/?lab=view&play=off&${query}`;
+    let answered = false;
+    const listen = ({ data, source }) => { answered ||= source === frame.contentWindow && data?.segue === 1; };
+    window.addEventListener("message", listen);
+    document.body.append(frame);
+    await new Promise((resolve) => { frame.onload = resolve; });
+    const api = await frame.contentWindow.segueReady;
+    frame.contentWindow.postMessage({ segue: 1, id: 7, call: "version" }, "*");
+    await api.set({ play: true }); // whatever would answer has had its turn by then
+    await new Promise((resolve) => setTimeout(resolve, 200));
+    window.removeEventListener("message", listen);
+    frame.remove();
+    return { answered, stores: (await indexedDB.databases()).length > 0 };
+  }, query);
+  for (const query of ["embed=1", "embed=0&embed=1", "%65mbed=%31"]) assert.deepEqual(await ask(query), { answered: true, stores: false }, query);
+  for (const query of ["embed=On", "embed=1%20", "embed", "?embed=1"]) assert.equal((await ask(query)).answered, false, query);
 });
 
 /** Keeps hold of the WebGPU devices that are made, for the only way to lose one. */

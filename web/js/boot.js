@@ -4,6 +4,7 @@
 //   static start(canvas, newReader) -> Promise<SegueHandle>   the app runs on this canvas; newReader makes a worker for files
 //   firstFrame() -> Promise                        its first frame is on screen
 //   restart(canvas) -> Promise                     the graphics context was lost: go on, on this fresh canvas
+//   isEmbedded()                                  whether the link says so: the frame then answers the page around it, and stores nothing
 //   hasPanicked(), panicSummary()                  callable at any time, also in the middle of another call
 //   setListener((event, detail) => …)              "change", "error", "progress" for the public API, and "lost" when
 //                                                  the app itself learns that its graphics device is gone
@@ -65,7 +66,7 @@ async function start(jsUrl, wasmUrl) {
   loaded();
   const api = makeApi(life.handle, { stopped: () => life.stopped, onLost: () => life.rebuild() });
   window.segue = api;
-  answerParent(api);
+  answerParent(api, life.handle.isEmbedded());
   keepForLater();
   return api;
 }

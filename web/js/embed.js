@@ -10,31 +10,37 @@
 
 const EVENTS = ["change", "error", "progress"];
 
-// The words that the app reads as "on".
-const ON = ["on", "1", "true", "yes"];
-const embedded = window.parent !== window && ON.includes(new URLSearchParams(window.location.search).get("embed"));
+const isFramed = window.parent !== window;
+// Whether the link says so, as the app reads it: by the same reading it opens no storage. One that answers must have none.
+let isEmbedded = false;
 const embedders = (document.querySelector('meta[name="embedders"]')?.content ?? "*").split(/\s+/).filter(Boolean);
 const mayDrive = (origin) => embedders.includes("*") || embedders.includes(origin);
-if (embedded) window.addEventListener("message", receive);
+if (isFramed) window.addEventListener("message", receive);
 
-function receive({ source, origin, data }) {
+async function receive({ source, origin, data }) {
   if (source !== window.parent || !mayDrive(origin) || data?.segue !== 1 || typeof data.call !== "string") return;
   const { id, call, args = [] } = data;
   const answer = (message) => source.postMessage({ segue: 1, id, ...message }, origin === "null" ? "*" : origin);
-  window.segueReady
-    .then(async (api) => {
-      if (call === "on" || !Object.hasOwn(api, call)) throw new Error(`There is no call "${call}"`);
-      if (!Array.isArray(args)) throw new TypeError(`${call}: args: expected a list`);
-      const member = api[call];
-      return typeof member === "function" ? await member(...args) : member;
-    })
-    .then((result) => answer({ result }))
-    .catch((error) => answer({ error: error.message ?? String(error) }));
+  try {
+    const api = await window.segueReady;
+    if (!isEmbedded) return;
+    if (call === "on" || !Object.hasOwn(api, call)) throw new Error(`There is no call "${call}"`);
+    if (!Array.isArray(args)) throw new TypeError(`${call}: args: expected a list`);
+    const member = api[call];
+    answer({ result: typeof member === "function" ? await member(...args) : member });
+  } catch (error) {
+    answer({ error: error.message ?? String(error) });
+  }
 }
 
-/** Starts to tell the framing window of events. */
-export function answerParent(api) {
-  if (!embedded) return;
+/**
+ * Starts to answer the framing window, and to tell it of events.
+ * @param api the public object
+ * @param embedded whether the app's link says that it is embedded
+ */
+export function answerParent(api, embedded) {
+  isEmbedded = isFramed && embedded;
+  if (!isEmbedded) return;
   // A message with the wrong origin does not arrive.
   const tell = (event, detail) => embedders.forEach((origin) => window.parent.postMessage({ segue: 1, event, detail }, origin));
   for (const event of EVENTS) api.on(event, (detail) => tell(event, detail));
