@@ -160,7 +160,7 @@ fn too_large(name: &str, bytes: u64, most: u64) -> Option<String> {
 const MOTION_ENDINGS: [&str; 7] = ["bvh", "asf", "amc", "glb", "gltf", "zip", "gz"];
 
 /// More files of one folder are not read, as of an archive.
-const MOST_FILES_OF_FOLDER: usize = segue_formats::archive::MOST_FILES;
+const MOST_FILES_OF_FOLDER: usize = segue_formats::archive::MAX_FILES;
 
 /// Whether a file in a folder is read. Hidden ones are not: what a Mac adds to a folder ends like
 /// the files it adds it for.

@@ -16,7 +16,7 @@ use std::io;
 const MOTION: [&str; 6] = ["bvh", "asf", "amc", "glb", "gltf", "bin"];
 
 /// See [`ArchiveLimits::default`].
-pub const MOST_FILES: usize = 2000;
+pub const MAX_FILES: usize = 2000;
 
 /// Archives inside archives are opened to this depth.
 const DEPTH: usize = 1;
@@ -35,7 +35,7 @@ impl Default for ArchiveLimits {
     /// As much as a single file may have, in as many files as a list has that a person looks
     /// through.
     fn default() -> Self {
-        Self { max_bytes: ImportOptions::default().max_bytes, max_files: MOST_FILES }
+        Self { max_bytes: ImportOptions::default().max_bytes, max_files: MAX_FILES }
     }
 }
 

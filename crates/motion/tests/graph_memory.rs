@@ -16,7 +16,7 @@ static ALLOCATOR: PeakAlloc = PeakAlloc;
 const JOINTS: usize = 31;
 const CLIPS: usize = 6;
 const FRAMES: usize = 5_000;
-const MOST_BYTES: usize = 300_000_000;
+const MAX_BYTES: usize = 300_000_000;
 
 /// Steps of the search that are done: all where the build is optimised. Otherwise the parts that
 /// the clips are cut into, which are held to the end, and some of the 7,600 tiles. What a tile
@@ -91,5 +91,5 @@ fn thirty_thousand_frames_are_searched_in_300_mb() {
     );
     // The points alone, so that the allocator is seen to count.
     assert!(searched > set.frames() * JOINTS * 12);
-    assert!(peak + if all_is_done { 0 } else { most_found_bytes() } < MOST_BYTES, "{peak}");
+    assert!(peak + if all_is_done { 0 } else { most_found_bytes() } < MAX_BYTES, "{peak}");
 }

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 /// Rows of the list of faults.
-const MOST_FAULTS: usize = 60;
+const MAX_FAULTS: usize = 60;
 
 /// The tables.
 #[must_use]
@@ -178,7 +178,7 @@ fn write_faults(out: &mut String, trials: &[Trial]) {
         return;
     }
     line!(out, "| what | takes | where | link |\n|---|---|---|---|");
-    for (trial, faults) in faulty.iter().take(MOST_FAULTS) {
+    for (trial, faults) in faulty.iter().take(MAX_FAULTS) {
         let mut place = String::new();
         if let Some(numbers) = numbers(trial) {
             if let Some((frame, joint, times)) = &numbers.first_flash {
@@ -197,8 +197,8 @@ fn write_faults(out: &mut String, trials: &[Trial]) {
             cell(&trial.link)
         );
     }
-    if faulty.len() > MOST_FAULTS {
-        line!(out, "| and {} more | | | |", faulty.len() - MOST_FAULTS);
+    if faulty.len() > MAX_FAULTS {
+        line!(out, "| and {} more | | | |", faulty.len() - MAX_FAULTS);
     }
 }
 

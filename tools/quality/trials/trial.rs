@@ -19,12 +19,12 @@ const CLOSE_CM: f32 = 12.0;
 const SAME_SKATING: f64 = 1.05;
 /// A difference below this is no skating, cm/s: clips that stand have next to none, and a
 /// millimetre a second is not seen.
-const LEAST_SKATING_CMPS: f64 = 0.1;
+const MIN_SKATING_CMPS: f64 = 0.1;
 /// Trials that take longer are given up, seconds.
-const MOST_SECS: f64 = 120.0;
+const MAX_SECS: f64 = 120.0;
 /// An edited path bulges out by this share of its length, and by no more than so many metres.
 const BULGE: f64 = 0.05;
-const MOST_BULGE_M: f64 = 1.0;
+const MAX_BULGE_M: f64 = 1.0;
 /// Takes in a set.
 const SET: usize = 4;
 
@@ -170,7 +170,7 @@ impl Trial {
                     note(numbers.new_root_jumps > 0, "root jump");
                     let worse =
                         numbers.skating.zip(numbers.source_skating).is_some_and(|(own, source)| {
-                            own > (SAME_SKATING * source).max(source + LEAST_SKATING_CMPS)
+                            own > (SAME_SKATING * source).max(source + MIN_SKATING_CMPS)
                         });
                     note(self.locked && worse, "skating");
                 }
@@ -433,7 +433,7 @@ impl<'a> Bench<'a> {
         let points = spline.points();
         let chord = *points.last()? - *points.first()?;
         let aside = chord.perp().try_normalize().unwrap_or(glam::DVec2::X)
-            * (BULGE * road.length_m()).min(MOST_BULGE_M);
+            * (BULGE * road.length_m()).min(MAX_BULGE_M);
         let last = (points.len() - 1) as f64;
         let moved = points.iter().enumerate().map(|(index, point)| {
             let share = index as f64 / last;
@@ -462,7 +462,7 @@ fn shown(session: &mut Session, link: &str) -> Result<Arc<Outcome>, Came> {
     opened.map_err(|error| Came::Refused(error.to_string()))?;
     let start = Instant::now();
     while session.work() {
-        if start.elapsed().as_secs_f64() > MOST_SECS {
+        if start.elapsed().as_secs_f64() > MAX_SECS {
             return Err(Came::Silent);
         }
     }

@@ -45,7 +45,7 @@ const fn point(kept: u64, divisor: f64) -> Point {
 const NO_POINT: usize = 8;
 
 /// So many digits, and a power of ten up to 1e22, are exact as doubles.
-const MOST_DIGITS: usize = 15;
+const MAX_DIGITS: usize = 15;
 
 /// Larger magnitudes are overflows, not measures: they would not survive being scaled in `f32`.
 pub(super) const LARGEST: f64 = 1e30;
@@ -112,7 +112,7 @@ fn short_number(text: &[u8], start: usize, end: usize) -> Option<Parts> {
     if let 1..=8 = count {
         return Some((f64::from(eight_digits(last_digits(digits, count))?), divisor, at));
     }
-    if !(9..=MOST_DIGITS).contains(&count) {
+    if !(9..=MAX_DIGITS).contains(&count) {
         return None;
     }
     let end = end.wrapping_sub(8 + has_point);

@@ -13,7 +13,7 @@ const SAME_KEY_SECS: f64 = 1e-4;
 const ON_FRAME: f64 = 0.02;
 /// How many frames may lie between the two keys that are nearest to each other: for keys at 0, 2
 /// and 5 frames.
-const MOST_BETWEEN: u32 = 4;
+const MAX_BETWEEN: u32 = 4;
 
 /// When an animation plays, and how often it is read.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,7 +48,7 @@ pub(super) fn rate(mut keys: Vec<f64>, given: Option<f64>) -> Rate {
         // Where every frame has a key, their number says it best.
         let even = (keys.len() - 1) as f64 / span;
         let candidates = std::iter::once(even)
-            .chain((1..=MOST_BETWEEN).map(|between| f64::from(between) / nearest));
+            .chain((1..=MAX_BETWEEN).map(|between| f64::from(between) / nearest));
         candidates
             .flat_map(|fps| [fps.round(), fps])
             .map(|fps| if fps < LOWEST_FPS { fps * (DEFAULT_FPS / fps).round() } else { fps })

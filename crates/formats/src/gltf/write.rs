@@ -15,7 +15,7 @@ pub(super) const MADE_BODY: &str = "Body";
 /// What the mesh of a character is called.
 const CHARACTER: &str = "Character";
 /// What an index of 16 bits can tell apart.
-const MOST_JOINTS: usize = 1 << 16;
+const MAX_JOINTS: usize = 1 << 16;
 /// The colour of a body that has none, linear.
 const CLAY: [f32; 4] = [0.7, 0.7, 0.7, 1.0];
 
@@ -57,7 +57,7 @@ pub enum GlbError {
 pub fn write_glb(clip: &Clip, options: &GlbOptions) -> Result<Vec<u8>, GlbError> {
     // The body is made around the joints that carry it, not around what the file has above them.
     let skeleton = clip.skeleton();
-    if skeleton.len() > MOST_JOINTS {
+    if skeleton.len() > MAX_JOINTS {
         return Err(GlbError::TooManyJoints(skeleton.len()));
     }
     let mesh = if options.smooth {
@@ -94,7 +94,7 @@ fn write_with(
     let body = Arc::clone(clip.skeleton());
     let clip: Cow<'_, Clip> = clip.unfolded().map_or(clip, Cow::Owned);
     let skeleton: &Skeleton = clip.skeleton();
-    if skeleton.len() > MOST_JOINTS {
+    if skeleton.len() > MAX_JOINTS {
         return Err(GlbError::TooManyJoints(skeleton.len()));
     }
     let mut file = File::default();

@@ -6,7 +6,7 @@ use crate::skeleton::{Pose, Roles, WorldPose, world_pose_into};
 use glam::{Quat, Vec3};
 
 /// How far a layer's start may lie from the base's, seconds.
-const MOST_START_SECS: f64 = 3_600.0;
+const MAX_START_SECS: f64 = 3_600.0;
 
 /// Why a layer cannot be laid over a clip.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -192,7 +192,7 @@ fn check(base: &Clip, over: &Clip, options: &LayerOptions) -> Result<(), LayerEr
         if fits { Ok(()) } else { Err(error) }
     };
     number("weight", f64::from(options.weight), 0.0..=1.0)?;
-    number("start (s)", options.start_secs, -MOST_START_SECS..=MOST_START_SECS)?;
+    number("start (s)", options.start_secs, -MAX_START_SECS..=MAX_START_SECS)?;
     let frame = match options.mode {
         LayerMode::Additive(Reference::Frame(frame)) => frame,
         _ => 0,

@@ -111,7 +111,7 @@ use crate::clip::ClipError;
 use crate::registration::RegistrationError;
 
 /// The longest time that a transition may be asked to take, seconds.
-pub(crate) const MOST_SECS: f64 = 60.0;
+pub(crate) const MAX_SECS: f64 = 60.0;
 
 /// Why two clips cannot be blended.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -158,7 +158,7 @@ pub enum BlendError {
         reference: String,
     },
     /// A time that is none.
-    #[error("a {what} of {secs} s cannot be used: give a number of seconds from 0 to {MOST_SECS}")]
+    #[error("a {what} of {secs} s cannot be used: give a number of seconds from 0 to {MAX_SECS}")]
     Time {
         /// Which time.
         what: &'static str,

@@ -5,7 +5,7 @@ use glam::{Quat, Vec3};
 
 /// Across axes whose share over the ground is below this are those of a character lying on its
 /// side: no facing.
-const LEAST_ACROSS: f32 = 0.2;
+const MIN_ACROSS: f32 = 0.2;
 
 /// The pairs of joints whose axes say where the body faces.
 const ACROSS: [fn(Side) -> Role; 2] = [Role::thigh, Role::upper_arm];
@@ -39,7 +39,7 @@ fn axis_facing(world: &WorldPose, roles: &Roles) -> Option<Vec3> {
 
 fn over_the_ground(forward: Vec3) -> Option<Vec3> {
     let forward = Vec3::new(forward.x, 0.0, forward.z);
-    if forward.length() < LEAST_ACROSS { None } else { forward.try_normalize() }
+    if forward.length() < MIN_ACROSS { None } else { forward.try_normalize() }
 }
 
 /// Returns where the character stands on the ground and what it faces, frame by frame:
@@ -93,14 +93,14 @@ fn turned_since_the_first(turns: &[Quat]) -> Vec<Option<f64>> {
         return Vec::new();
     };
     let forward = first * Vec3::Z;
-    let start = if Vec3::new(forward.x, 0.0, forward.z).length() < LEAST_ACROSS {
+    let start = if Vec3::new(forward.x, 0.0, forward.z).length() < MIN_ACROSS {
         0.0
     } else {
         f64::from(forward.x).atan2(f64::from(forward.z))
     };
     let yaw = |turn: &Quat| {
         let since = *turn * first.conjugate();
-        let upright = since.y.hypot(since.w) > LEAST_ACROSS;
+        let upright = since.y.hypot(since.w) > MIN_ACROSS;
         upright.then(|| wrap_angle(start + 2.0 * f64::from(since.y).atan2(f64::from(since.w))))
     };
     turns.iter().map(yaw).collect()

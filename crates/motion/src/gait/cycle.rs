@@ -18,7 +18,7 @@ pub struct GaitCycle {
 }
 
 /// Ends that are farther apart belong to no cycle, centimetres on the reference body.
-const MOST_APART_CM: f64 = 12.0;
+const MAX_APART_CM: f64 = 12.0;
 /// Cycles are no shorter and no longer, seconds.
 const CYCLE_SECS: Range<f64> = 0.3..3.0;
 
@@ -100,7 +100,7 @@ impl GaitCycle {
         let height = f64::from(roles.body_height(clip.skeleton()));
         let inside = find_cycle(source, contacts, height, &search)
             .ok()
-            .filter(|cut| cut.rms_cm < MOST_APART_CM);
+            .filter(|cut| cut.rms_cm < MAX_APART_CM);
         let mut closed: Vec<(f64, usize, Loop)> = Vec::new();
         if let Some(whole) = &whole {
             closed.push((whole.apart_cm, 0, whole.close(&LoopOptions::default())?));

@@ -61,11 +61,11 @@ const BEYOND: f64 = 0.25;
 const NEARLY: f64 = 0.02;
 /// Nothing is made slower, or with a shorter stride, than this share of the lesser of the two
 /// gaits.
-const LEAST_SHARE: f64 = 0.1;
+const MIN_SHARE: f64 = 0.1;
 /// The least difference of speeds, metres per second.
-const LEAST_DIFFERENCE_MPS: f64 = 0.1;
+const MIN_DIFFERENCE_MPS: f64 = 0.1;
 /// The longest clip, seconds.
-const MOST_SECS: f64 = 600.0;
+const MAX_SECS: f64 = 600.0;
 
 /// Two gaits prepared to be blended to any speed; poses cost microseconds.
 #[derive(Clone, Debug, PartialEq)]
@@ -112,8 +112,8 @@ impl SpeedBlend {
             return Err(GaitError::Skeletons { a, b });
         }
         let (a_mps, b_mps) = (a.speed_mps(), b.speed_mps());
-        let differ = (a_mps - b_mps).abs() >= LEAST_DIFFERENCE_MPS
-            && a_mps.min(b_mps) >= LEAST_DIFFERENCE_MPS;
+        let differ =
+            (a_mps - b_mps).abs() >= MIN_DIFFERENCE_MPS && a_mps.min(b_mps) >= MIN_DIFFERENCE_MPS;
         if !differ {
             return Err(GaitError::Speeds { a_mps, b_mps });
         }
@@ -146,7 +146,7 @@ impl SpeedBlend {
         // Far beyond the slower gait there may be no speed, or no stride, left.
         let (speeds, strides) = ([a_mps, b_mps], [a_mps * a.secs(), b_mps * b.secs()]);
         for [from, to] in [speeds, strides] {
-            let least = LEAST_SHARE * from.min(to);
+            let least = MIN_SHARE * from.min(to);
             let limit = (least - from) / (to - from);
             if to > from {
                 blend.weights[0] = blend.weights[0].max(limit);
@@ -308,7 +308,7 @@ impl SpeedBlend {
     /// [`GaitError::Option`] when they would take longer than 600 s.
     pub fn cycles_at(&self, speed_mps: f64, cycles: usize) -> Result<GaitClip, GaitError> {
         let facts = self.facts(speed_mps);
-        checked("number of cycles", cycles as f64, MOST_SECS / facts.cycle_secs)?;
+        checked("number of cycles", cycles as f64, MAX_SECS / facts.cycle_secs)?;
         let steps = (facts.cycle_secs * self.gaits[0].clip.fps()).round().max(2.0);
         let phases = (0..=steps as usize * cycles).map(|step| (facts.weight, step as f64 / steps));
         self.made(facts, phases)
@@ -346,7 +346,7 @@ impl SpeedBlend {
     }
 
     fn steps_in(&self, secs: f64) -> Result<usize, GaitError> {
-        checked("duration (s)", secs, MOST_SECS)?;
+        checked("duration (s)", secs, MAX_SECS)?;
         Ok((secs * self.gaits[0].clip.fps()).round() as usize)
     }
 

@@ -53,7 +53,7 @@ impl Default for GraphOptions {
 impl GraphOptions {
     /// Windows that are farther apart than this, centimetres, are not alike in any sense: nobody is
     /// told to raise a threshold beyond it.
-    pub const MOST_THRESHOLD_CM: f64 = 60.0;
+    pub const MAX_THRESHOLD_CM: f64 = 60.0;
 
     /// Frames of the shortest jump. From a frame to the next is none.
     pub(super) fn min_jump(&self, set: &FrameSet) -> usize {
@@ -233,7 +233,7 @@ impl MotionGraph {
             .collect();
         if chosen.is_empty() {
             return Err(match candidates.nearest_cm {
-                Some(nearest_cm) if above(nearest_cm) > GraphOptions::MOST_THRESHOLD_CM => {
+                Some(nearest_cm) if above(nearest_cm) > GraphOptions::MAX_THRESHOLD_CM => {
                     GraphError::TooFar { window: options.blend_window, nearest_cm }
                 }
                 Some(nearest_cm) => {

@@ -4,14 +4,14 @@ use crate::registration::Progress;
 use std::sync::Arc;
 
 /// More are not held: of these many the closest are kept.
-const MOST_CANDIDATES: usize = 400_000;
+const MAX_CANDIDATES: usize = 400_000;
 
 /// To align what was found takes as long as to look at so many cells.
 const CELLS_PER_FOUND: usize = 100;
 
 /// A frame in which a joint's turning changes so many times as much as in all but one in a hundred
 /// frames is not left or entered.
-const MOST_JOLT: f32 = 4.0;
+const MAX_JOLT: f32 = 4.0;
 
 /// A place where one may go from one stretch of motion into another.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -326,7 +326,7 @@ impl Picker {
             alignment: alignment.inverse(),
             ..candidate
         }));
-        if self.found.len() > 2 * MOST_CANDIDATES {
+        if self.found.len() > 2 * MAX_CANDIDATES {
             self.thin_out();
         }
         Ok(())
@@ -353,15 +353,15 @@ impl Picker {
     fn is_calm(&self, place: Place) -> bool {
         let around = place.frame.saturating_sub(1)..=place.frame;
         let jolts = self.set.jolts(place.clip).get(around);
-        jolts.is_some_and(|jolts| jolts.iter().all(|&jolt| jolt <= MOST_JOLT))
+        jolts.is_some_and(|jolts| jolts.iter().all(|&jolt| jolt <= MAX_JOLT))
     }
 
     fn thin_out(&mut self) {
-        if self.found.len() > MOST_CANDIDATES {
+        if self.found.len() > MAX_CANDIDATES {
             // Which they are is enough, they are sorted in the end.
-            self.found.select_nth_unstable_by(MOST_CANDIDATES, closest_first);
-            self.left_out += self.found.len() - MOST_CANDIDATES;
-            self.found.truncate(MOST_CANDIDATES);
+            self.found.select_nth_unstable_by(MAX_CANDIDATES, closest_first);
+            self.left_out += self.found.len() - MAX_CANDIDATES;
+            self.found.truncate(MAX_CANDIDATES);
         }
     }
 

@@ -1,6 +1,6 @@
 use super::{FrameSet, GraphError, Place};
 use crate::registration::{
-    Alignment, DistanceMatrix, MOST_PAIRS, PairTerms, PausedSelfSweep, PausedSweep, PointClouds,
+    Alignment, DistanceMatrix, MAX_PAIRS, PairTerms, PausedSelfSweep, PausedSweep, PointClouds,
     PointCloudsBegun, Progress, RegistrationError, SelfSweep, SelfTerms, Sweep, SymmetricDistances,
 };
 use std::sync::Arc;
@@ -69,9 +69,9 @@ impl AllPairs {
     pub fn new(set: Arc<FrameSet>) -> Result<Self, GraphError> {
         let frames = set.frames();
         let pairs = frames.saturating_mul(frames.saturating_add(1)) / 2;
-        if pairs > MOST_PAIRS {
-            let stride = (pairs as f64 / MOST_PAIRS as f64).sqrt().ceil() as usize;
-            return Err(RegistrationError::TooManyPairs { pairs, most: MOST_PAIRS, stride }.into());
+        if pairs > MAX_PAIRS {
+            let stride = (pairs as f64 / MAX_PAIRS as f64).sqrt().ceil() as usize;
+            return Err(RegistrationError::TooManyPairs { pairs, most: MAX_PAIRS, stride }.into());
         }
         Ok(Self {
             level_m: level_m(&set)?,

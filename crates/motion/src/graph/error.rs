@@ -123,7 +123,7 @@ pub enum GraphError {
     /// The transitions lead to an end, each of them.
     #[error(
         "every way through the graph of {transitions} transitions comes to an end: {}more clips may lead back",
-        if *threshold_cm < GraphOptions::MOST_THRESHOLD_CM {
+        if *threshold_cm < GraphOptions::MAX_THRESHOLD_CM {
             format!("a threshold above {threshold_cm} cm, or ")
         } else {
             String::new()

@@ -19,7 +19,7 @@ const STILL_RADIANS: f32 = 2e-3;
 /// Below this a root is still, metres.
 const STILL_M: f32 = 5e-4;
 /// Below this difference of velocities, metres per second, there is no change of speed to wait for.
-const LEAST_CHANGE_MPS: f64 = 0.1;
+const MIN_CHANGE_MPS: f64 = 0.1;
 
 /// What is usual in the clips of a set, measured once.
 #[derive(Clone, Debug)]
@@ -556,7 +556,7 @@ fn spin(steps: &[[Planar; 3]], longest: usize) -> f64 {
 fn lag(steps: &[[Planar; 3]], fps: f64) -> Option<f64> {
     let apart: f64 = steps.iter().map(|[_, a, b]| a.shift.distance_squared(b.shift)).sum();
     let apart = (apart / steps.len().max(1) as f64).sqrt();
-    if apart * fps < LEAST_CHANGE_MPS {
+    if apart * fps < MIN_CHANGE_MPS {
         return None;
     }
     let off = |[r, _, b]: &[Planar; 3]| DVec2::distance(r.shift, b.shift) > 0.1 * apart;

@@ -6,7 +6,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// The most cells of an overview to a side: 8 MB.
-const MOST_CELLS: usize = 2_000;
+const MAX_CELLS: usize = 2_000;
 
 /// All distances of a set from afar: of every square of [`block`](Self::block) × `block` windows
 /// the smallest, and how many pairs are how far apart. What is left of the matrix of all distances
@@ -34,7 +34,7 @@ impl DistanceOverview {
     /// Nothing is known yet.
     pub(super) fn new(parts: Arc<Parts>) -> Self {
         let frames = parts.set().frames();
-        let block = frames.div_ceil(MOST_CELLS).next_power_of_two();
+        let block = frames.div_ceil(MAX_CELLS).next_power_of_two();
         let side = frames.div_ceil(block);
         Self {
             parts,

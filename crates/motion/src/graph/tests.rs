@@ -308,7 +308,7 @@ fn remedies(error: &GraphError, options: &GraphOptions) -> Vec<(&'static str, Gr
         GraphError::NoTransition { nearest_cm, .. } => {
             let raised = error::above(nearest_cm);
             assert!(
-                raised <= GraphOptions::MOST_THRESHOLD_CM
+                raised <= GraphOptions::MAX_THRESHOLD_CM
                     && error.to_string().contains(&format!("to {raised:.1} cm"))
             );
             vec![("raise the threshold", threshold(raised))]

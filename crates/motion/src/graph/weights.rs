@@ -30,7 +30,7 @@ pub enum Continuity {
 
 impl Continuity {
     /// The largest weight that can be given.
-    pub const MOST_WEIGHT: f64 = 1e6;
+    pub const MAX_WEIGHT: f64 = 1e6;
 }
 
 /// How probable each way out of a stretch is.
@@ -51,9 +51,9 @@ impl Default for WeightOptions {
 /// Shares of a node's ways out add up to this.
 const WHOLE: u64 = 1 << 32;
 /// The smallest distance that is divided by, centimetres.
-const LEAST_CM: f64 = 0.01;
+const MIN_CM: f64 = 0.01;
 /// More steps do not change where a walk is found in the long run.
-const MOST_STEPS: usize = 2_000;
+const MAX_STEPS: usize = 2_000;
 
 /// The ways out of every node with their probabilities, as whole numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -83,7 +83,7 @@ impl Choices {
         match options.continuity {
             Continuity::Share(share) => setting("a continuity", share, 0.0, 1.0)?,
             Continuity::Weight(weight) => {
-                setting("a weight of going on", weight, 1e-6, Continuity::MOST_WEIGHT)?;
+                setting("a weight of going on", weight, 1e-6, Continuity::MAX_WEIGHT)?
             }
         }
         if let DistanceLaw::Exponential { sigma_cm } = options.law {
@@ -143,7 +143,7 @@ impl Choices {
     #[must_use]
     pub fn expected_run_secs(&self, graph: &MotionGraph) -> Option<f64> {
         let mut run = RunLength::new(graph, self);
-        while !run.advance(MOST_STEPS) {}
+        while !run.advance(MAX_STEPS) {}
         run.secs(graph, self)
     }
 }
@@ -189,7 +189,7 @@ impl RunLength {
     /// Does up to `steps` more steps, O(edges) each; `true` when no more are needed.
     pub fn advance(&mut self, steps: usize) -> bool {
         for _ in 0..steps {
-            if self.steps >= MOST_STEPS {
+            if self.steps >= MAX_STEPS {
                 break;
             }
             self.steps += 1;
@@ -206,10 +206,10 @@ impl RunLength {
             }
             std::mem::swap(&mut self.now, &mut self.next);
             if change < 1e-12 {
-                self.steps = MOST_STEPS;
+                self.steps = MAX_STEPS;
             }
         }
-        self.steps >= MOST_STEPS
+        self.steps >= MAX_STEPS
     }
 
     /// Seconds from one transition to the next; `None` where there are none in the long run.
@@ -263,10 +263,10 @@ fn share_out(
     let distances = || edges.iter().filter_map(|&(_, distance)| distance);
     let nearest = distances().fold(f64::INFINITY, f64::min);
     let weight = |distance: f64| match options.law {
-        DistanceLaw::Inverse => distance.max(LEAST_CM).recip(),
+        DistanceLaw::Inverse => distance.max(MIN_CM).recip(),
         DistanceLaw::Exponential { sigma_cm } => libm::exp((nearest - distance) / sigma_cm),
         DistanceLaw::Uniform => 1.0,
-        DistanceLaw::Proportional => distance.max(LEAST_CM),
+        DistanceLaw::Proportional => distance.max(MIN_CM),
     };
     let sum: f64 = distances().map(weight).sum();
     let goes_on = edges.iter().any(|&(_, distance)| distance.is_none());

@@ -15,7 +15,7 @@ use crate::transition::play_around;
 use std::sync::Arc;
 
 /// The most frames of a database: features of 27 dimensions take half a gigabyte then.
-const MOST_FRAMES: usize = 2_000_000;
+const MAX_FRAMES: usize = 2_000_000;
 /// Frames whose features are gathered in one step.
 const GATHERED: usize = 3_000;
 /// Frames that are sorted into boxes in one step.
@@ -136,8 +136,8 @@ impl DatabaseBuilder {
         let copies = if options.mirrored { 2.0 } else { 1.0 };
         let frames: f64 =
             clips.iter().map(|clip| clip.clip.duration_secs() * RATE as f64 * copies).sum();
-        if frames > MOST_FRAMES as f64 {
-            return Err(MatchError::TooManyFrames { frames: frames as usize, most: MOST_FRAMES });
+        if frames > MAX_FRAMES as f64 {
+            return Err(MatchError::TooManyFrames { frames: frames as usize, most: MAX_FRAMES });
         }
         let longest_secs = clips.iter().map(|clip| clip.clip.duration_secs()).fold(0.0, f64::max);
         Ok(Self {

@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 const SPEED_STEP: f64 = 0.05;
 const TURN_STEPS: f64 = 256.0;
 /// The fastest that can be asked for in x or z, metres per second.
-const MOST_MPS: f64 = 12.0;
+const MAX_MPS: f64 = 12.0;
 
 /// What the player asks for at one moment, in the world: already relative to the camera, already at
 /// the gait's speed.
@@ -29,7 +29,7 @@ impl Control {
     #[must_use]
     pub fn new(velocity_mps: DVec2, facing_yaw: Option<f64>) -> Self {
         // A cast from NaN gives 0.
-        let step = |speed: f64| (speed.clamp(-MOST_MPS, MOST_MPS) / SPEED_STEP).round() as i16;
+        let step = |speed: f64| (speed.clamp(-MAX_MPS, MAX_MPS) / SPEED_STEP).round() as i16;
         Self {
             velocity: [step(velocity_mps.x), step(velocity_mps.y)],
             facing: facing_yaw
@@ -106,13 +106,13 @@ pub enum RecordingError {
         found: String,
     },
     /// Longer than any recording.
-    #[error("the recorded input is longer than {} minutes", Recording::MOST_TICKS / 3_600)]
+    #[error("the recorded input is longer than {} minutes", Recording::MAX_TICKS / 3_600)]
     TooLong,
 }
 
 impl Recording {
     /// The longest recording, ticks of 1/60 s: half an hour.
-    pub const MOST_TICKS: u32 = 108_000;
+    pub const MAX_TICKS: u32 = 108_000;
 
     /// Nothing yet.
     #[must_use]
@@ -126,9 +126,9 @@ impl Recording {
     }
 
     /// The same input for some ticks. `false`, and nothing is added, when that is longer than
-    /// [`Self::MOST_TICKS`].
+    /// [`Self::MAX_TICKS`].
     pub fn hold(&mut self, control: Control, ticks: u32) -> bool {
-        if ticks > Self::MOST_TICKS - self.ticks {
+        if ticks > Self::MAX_TICKS - self.ticks {
             return false;
         }
         self.ticks += ticks;
@@ -217,7 +217,7 @@ fn stretch(text: &str) -> Option<(Control, u32)> {
     let mut parts = text.split('.');
     let mut number = || i64::from_str_radix(parts.next()?, 36).ok();
     let ticks = u32::try_from(number()?).ok()?;
-    let most = (MOST_MPS / SPEED_STEP) as i64;
+    let most = (MAX_MPS / SPEED_STEP) as i64;
     let mut velocity = || number().filter(|step| step.abs() <= most).map(|step| step as i16);
     let mut control = Control { velocity: [velocity()?, velocity()?], ..Control::default() };
     for part in parts {
@@ -275,7 +275,7 @@ mod tests {
         #[test]
         fn any_text_is_read_or_refused(text in "[-0-9a-z._]{0,40}") {
             if let Ok(recording) = Recording::from_text(&text) {
-                prop_assert!(recording.ticks() <= Recording::MOST_TICKS as usize);
+                prop_assert!(recording.ticks() <= Recording::MAX_TICKS as usize);
             }
         }
     }
@@ -293,7 +293,7 @@ mod tests {
             .with_filter(TagFilter { ask: TagSet::of(&[Tag::Walk]), forbid: TagSet::NONE });
         let mut recording = Recording::new();
         assert!(recording.push(walk) && recording.to_text() == "1.0.0.a1");
-        assert!(!recording.hold(walk, Recording::MOST_TICKS));
+        assert!(!recording.hold(walk, Recording::MAX_TICKS));
         for wrong in ["x", "1.0", "1.0.99999", "1.0.0.q3", "-1.0.0", "1.0.0.f", "1.0.0.é"] {
             assert!(
                 matches!(Recording::from_text(wrong), Err(RecordingError::Part { part: 1, .. })),

@@ -7,11 +7,11 @@ pub const RATE: usize = 60;
 /// Features of the body: two feet's positions and velocities, and the hips' velocity.
 pub(super) const BODY: usize = 15;
 /// The most trajectory times.
-pub(super) const MOST_TIMES: usize = 6;
+pub(super) const MAX_TIMES: usize = 6;
 /// The most dimensions: four for each time, and the body.
-pub(super) const MOST_DIMS: usize = 4 * MOST_TIMES + BODY;
+pub(super) const MAX_DIMS: usize = 4 * MAX_TIMES + BODY;
 /// The farthest look ahead, seconds.
-const MOST_SECS: f64 = 3.0;
+const MAX_SECS: f64 = 3.0;
 
 /// A part of the features that is normalised as one, and has one weight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
@@ -104,13 +104,13 @@ impl Layout {
     /// [`MatchError::Times`] when there are none or more than six, or they do not rise from at
     /// least one frame to 3 s.
     pub fn new(options: &FeatureOptions) -> Result<Self, MatchError> {
-        let wrong = MatchError::Times { most_secs: MOST_SECS, most: MOST_TIMES };
-        if !(1..=MOST_TIMES).contains(&options.trajectory_secs.len()) {
+        let wrong = MatchError::Times { most_secs: MAX_SECS, most: MAX_TIMES };
+        if !(1..=MAX_TIMES).contains(&options.trajectory_secs.len()) {
             return Err(wrong);
         }
         let mut ahead = Vec::with_capacity(options.trajectory_secs.len());
         for &secs in &options.trajectory_secs {
-            if !(0.0..=MOST_SECS).contains(&secs) {
+            if !(0.0..=MAX_SECS).contains(&secs) {
                 return Err(wrong);
             }
             let frames = (secs * RATE as f64).round() as usize;
@@ -210,7 +210,7 @@ const GRID: f32 = 4096.0;
 
 /// No block varies by less: metres, metres per second, or the sine of an angle. A capture trembles
 /// by about that much.
-const LEAST_SCALE: f32 = 0.02;
+const MIN_SCALE: f32 = 0.02;
 
 /// Normalised features of frames, row by row, and how they were normalised.
 ///
@@ -266,7 +266,7 @@ impl Features {
                 still if still <= 1e-6 || !still.is_finite() => 1.0,
                 // Clips that all go straight on: a tremble of the heading is not to be all that
                 // counts.
-                scale => scale.max(LEAST_SCALE),
+                scale => scale.max(MIN_SCALE),
             }
         };
         let scales = match normalisation {

@@ -7,7 +7,7 @@ const RARE: f32 = 0.999;
 /// Steps that are looked at for that: enough for the percentile, and bounded for long clips.
 const SAMPLES: usize = 4_000;
 /// No joint counts as slower than this, radians per second: 60° per second.
-const LEAST_JOINT_RADPS: f32 = std::f32::consts::FRAC_PI_3;
+const MIN_JOINT_RADPS: f32 = std::f32::consts::FRAC_PI_3;
 
 /// How fast the motions of a database go: what a transition or a pull towards the wish should not
 /// exceed by much, since nothing in the clips does.
@@ -33,7 +33,7 @@ impl Pace {
                 quat::angle_between(from, to) * RATE as f32
             });
             let turns: Vec<f32> = turns.collect();
-            stats::percentile(&turns, RARE).unwrap_or(0.0).max(LEAST_JOINT_RADPS)
+            stats::percentile(&turns, RARE).unwrap_or(0.0).max(MIN_JOINT_RADPS)
         };
         let steps = || roots.windows(2).map(|pair| (pair[0], pair[1]));
         Self {
@@ -52,7 +52,7 @@ impl Pace {
         let mut all = Self::default();
         for pace in paces {
             all.joints_radps
-                .resize(all.joints_radps.len().max(pace.joints_radps.len()), LEAST_JOINT_RADPS);
+                .resize(all.joints_radps.len().max(pace.joints_radps.len()), MIN_JOINT_RADPS);
             for (most, own) in all.joints_radps.iter_mut().zip(&pace.joints_radps) {
                 *most = most.max(*own);
             }
@@ -87,6 +87,6 @@ mod tests {
             (0..both.joints_radps.len())
                 .all(|joint| both.joints_radps[joint] >= walk.joints_radps[joint])
         );
-        assert!(both.joints_radps.iter().all(|speed| *speed >= LEAST_JOINT_RADPS));
+        assert!(both.joints_radps.iter().all(|speed| *speed >= MIN_JOINT_RADPS));
     }
 }

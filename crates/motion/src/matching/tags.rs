@@ -23,7 +23,7 @@ pub enum Tag {
 
 impl Tag {
     /// The most words of one's own.
-    pub const MOST_OWN: u8 = 27;
+    pub const MAX_OWN: u8 = 27;
 
     /// The tags that are not the user's own.
     pub const FIXED: [Self; 5] = [Self::Walk, Self::Run, Self::Idle, Self::Turn, Self::Exclude];
@@ -48,7 +48,7 @@ impl Tag {
             Self::Idle => 4,
             Self::Turn => 8,
             Self::Exclude => 16,
-            Self::Own(word) if word < Self::MOST_OWN => 32 << word,
+            Self::Own(word) if word < Self::MAX_OWN => 32 << word,
             Self::Own(_) => 0,
         }
     }

@@ -18,18 +18,18 @@ const RARE: f32 = 0.999;
 /// So many times the rare speed is an artefact.
 const BEYOND: f32 = 2.0;
 /// A turn of a joint below this in one frame is no flash, degrees.
-const LEAST_FLASH_DEG: f32 = 2.0;
+const MIN_FLASH_DEG: f32 = 2.0;
 /// Flashes with no more frames than this between them are one.
 const ONE_FLASH_FRAMES: usize = 3;
 /// A spin is looked for in windows of this length, seconds.
 const SPIN_SECS: f64 = 0.2;
 /// A turn below this in such a window is no spin, degrees.
-const LEAST_SPIN_DEG: f32 = 30.0;
+const MIN_SPIN_DEG: f32 = 30.0;
 /// A foot is low within this height of the 5th percentile of its heights, metres.
 const LOW_M: f32 = 0.04;
 /// A low foot stands that is so for this long, seconds, at a median speed below [`STANDING_MPS`].
-const LEAST_STANCE_SECS: f64 = 0.1;
-/// See [`LEAST_STANCE_SECS`], metres per second.
+const MIN_STANCE_SECS: f64 = 0.1;
+/// See [`MIN_STANCE_SECS`], metres per second.
 const STANDING_MPS: f32 = 0.6;
 /// Skating counts below this height above the 2nd percentile of the foot's heights, metres.
 const SKATING_M: f32 = 0.025;
@@ -102,7 +102,7 @@ impl MotionTrace {
         let (rare_mps, most_mps) = (most(|source| source.rare_mps), most(|source| source.most_mps));
         let beyond =
             |limit: f32| self.root_mps.iter().filter(|speed| **speed > limit + 1e-6).count();
-        let turned = LEAST_SPIN_DEG.max(BEYOND * most(|source| source.most_turned_deg));
+        let turned = MIN_SPIN_DEG.max(BEYOND * most(|source| source.most_turned_deg));
         let spins = runs(self.turned_deg.iter().map(|deg| *deg > turned));
         Artefacts {
             spins: spins.len(),
@@ -139,7 +139,7 @@ impl MotionTrace {
             let most = SAME_SPEED * of(|joint| joint.speed.most, joint);
             for (frame, &turn) in trace.turns_deg.iter().enumerate() {
                 let speed = turn * dps;
-                if speed > limit + 1e-6 && turn > LEAST_FLASH_DEG {
+                if speed > limit + 1e-6 && turn > MIN_FLASH_DEG {
                     frames.push(frame);
                     if speed > most {
                         let times = f64::from(2.0 * speed / limit.max(1e-6));
@@ -329,7 +329,7 @@ impl<'a> Foot<'a> {
         let low = runs(self.above(0.05).map(|height| height < LOW_M));
         let stands = |run: &Range<usize>| {
             let median = stats::percentile(&self.speeds[run.clone()], 0.5);
-            run.len() as f64 / self.fps >= LEAST_STANCE_SECS
+            run.len() as f64 / self.fps >= MIN_STANCE_SECS
                 && median.is_some_and(|speed| speed < STANDING_MPS)
         };
         let moved_cm = |run: Range<usize>| {

@@ -12,7 +12,7 @@ const MARGIN_SECS: f64 = 0.5;
 /// Below this, degrees, no joint is named for a turn at the seam: nobody sees it.
 const VISIBLE_DEG: f64 = 0.1;
 /// Below this difference of velocities, metres per second, there is no change of speed to wait for.
-const LEAST_CHANGE_MPS: f64 = 0.1;
+const MIN_CHANGE_MPS: f64 = 0.1;
 
 /// A transition to be measured: frame f of the result shows frame f of clip A before it, and frame
 /// `enter + (f - transition.start)` of clip B after it. Inside both are mixed.
@@ -371,7 +371,7 @@ fn lag(subject: &Subject<'_>, steps: &RangeInclusive<usize>, around: &Around) ->
         }
     }
     let between = (squares / count.max(1) as f64).sqrt();
-    if count == 0 || between < LEAST_CHANGE_MPS {
+    if count == 0 || between < MIN_CHANGE_MPS {
         return None;
     }
     let reached = distances

@@ -75,7 +75,7 @@ pub struct Carried {
 /// time runs more and more as it did, metres per second.
 const STEADY_MPS: f64 = 0.3;
 /// Time runs at most so many times slower or faster.
-const MOST_STRETCH: f64 = 10.0;
+const MAX_STRETCH: f64 = 10.0;
 /// A frame this near to a frame of the original is that frame.
 const WHOLE: f64 = 1e-6;
 
@@ -178,7 +178,7 @@ fn at_speed(path: &FittedPath, edited: &Road) -> Vec<f64> {
     for (old, new) in path.places().windows(2).zip(along.windows(2)) {
         let step = old[1].along_m - old[0].along_m;
         let stretch =
-            ((new[1] - new[0]) / step.max(1e-12)).max(MOST_STRETCH.recip()).min(MOST_STRETCH);
+            ((new[1] - new[0]) / step.max(1e-12)).max(MAX_STRETCH.recip()).min(MAX_STRETCH);
         let steady = f64::from(curve::smoothstep((step * fps / STEADY_MPS) as f32));
         time += 1.0 + (stretch - 1.0) * steady;
         times.push(time);

@@ -1,4 +1,4 @@
-use super::spline::{MOST_POINTS, uniform_knots};
+use super::spline::{MAX_POINTS, uniform_knots};
 use super::{GroundSpline, PathEditError, SplineEnds};
 use base64::Engine as _;
 use base64::engine::general_purpose::URL_SAFE_NO_PAD;
@@ -59,7 +59,7 @@ impl GroundSpline {
     /// [`GroundSpline::with_knots`].
     pub fn from_code(code: &str) -> Result<Self, PathEditError> {
         // Two numbers of at most ten bytes to a point are far less.
-        let bytes = (code.len() <= MOST_POINTS * 40)
+        let bytes = (code.len() <= MAX_POINTS * 40)
             .then(|| URL_SAFE_NO_PAD.decode(code).ok())
             .flatten()
             .ok_or(PathEditError::Code)?;

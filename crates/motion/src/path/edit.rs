@@ -77,15 +77,15 @@ pub enum PathEdit {
 }
 
 /// The largest factor of [`PathEdit::Scale`], and the inverse of the smallest.
-const MOST_SCALE: f64 = 100.0;
+const MAX_SCALE: f64 = 100.0;
 /// The widest grid, metres.
-const MOST_GRID_M: f64 = 100.0;
+const MAX_GRID_M: f64 = 100.0;
 /// Places at which a path is measured for each control point before it is bent.
 const SAMPLES: usize = 32;
 /// Ends that are nearer to each other than this share of the length are joined without a turn.
 const NEARLY_CLOSED: f64 = 0.25;
 /// A closed path has an end, a neighbour to either side of it, and two points away from it.
-const LEAST_CLOSED: usize = 6;
+const MIN_CLOSED: usize = 6;
 
 impl GroundSpline {
     /// The path after an edit.
@@ -110,7 +110,7 @@ impl GroundSpline {
                 self.smoothed(share)
             }
             PathEdit::Snap { grid_m } => {
-                check("grid (m)", grid_m, 1e-3, MOST_GRID_M)?;
+                check("grid (m)", grid_m, 1e-3, MAX_GRID_M)?;
                 let mut points: Vec<DVec2> =
                     self.points().iter().map(|p| (p / grid_m).round() * grid_m).collect();
                 let last = points.len() - 1;
@@ -136,7 +136,7 @@ impl GroundSpline {
                 all(&|p| pivot + turned(p - pivot, radians))
             }
             PathEdit::Scale { factor } => {
-                check("scale", factor, MOST_SCALE.recip(), MOST_SCALE)?;
+                check("scale", factor, MAX_SCALE.recip(), MAX_SCALE)?;
                 let pivot = self.pivot(pins)?;
                 all(&|p| pivot + (p - pivot) * factor)
             }
@@ -216,7 +216,7 @@ impl GroundSpline {
         if index >= count {
             return Err(PathEditError::NoSuchPoint { index, points: count });
         }
-        let least = if self.is_closed() { LEAST_CLOSED } else { super::LEAST_POINTS };
+        let least = if self.is_closed() { MIN_CLOSED } else { super::MIN_POINTS };
         if index == 0 || index == count - 1 || count <= least {
             return Err(PathEditError::NotRemoved { index, least });
         }
@@ -260,7 +260,7 @@ impl GroundSpline {
     /// The direction from the start to the end; that of the start where they are one.
     fn overall_yaw(&self) -> f64 {
         let way = self.points()[self.points().len() - 1] - self.points()[0];
-        if way.length() > super::road::LEAST_LENGTH_M {
+        if way.length() > super::road::MIN_LENGTH_M {
             way.x.atan2(way.y)
         } else {
             self.heading(0.0)
@@ -281,8 +281,8 @@ impl GroundSpline {
             (false, true) => all(&|p| p + (end - to)),
             (true, true) => {
                 let (way, own) = (end - start, to - from);
-                if way.length() < super::road::LEAST_LENGTH_M
-                    || own.length() < super::road::LEAST_LENGTH_M
+                if way.length() < super::road::MIN_LENGTH_M
+                    || own.length() < super::road::MIN_LENGTH_M
                 {
                     return all(&|p| p + (start - from));
                 }
@@ -333,11 +333,11 @@ impl GroundSpline {
             return Ok(self.clone());
         }
         let (count, last) = (self.points().len(), self.points().len() - 1);
-        if count < LEAST_CLOSED {
-            return Err(PathEditError::TooFewToClose { points: count, least: LEAST_CLOSED });
+        if count < MIN_CLOSED {
+            return Err(PathEditError::TooFewToClose { points: count, least: MIN_CLOSED });
         }
         let gap = self.points()[0] - self.points()[last];
-        if pins.start && pins.end && gap.length() > super::road::LEAST_LENGTH_M {
+        if pins.start && pins.end && gap.length() > super::road::MIN_LENGTH_M {
             return Err(PathEditError::Pinned);
         }
         let road = Road::new(self.clone())?;

@@ -24,13 +24,13 @@ impl Default for FitOptions {
 }
 
 /// The strongest smoothing: the path is a straight line by then.
-pub const MOST_SMOOTHING: f64 = 1e6;
+pub const MAX_SMOOTHING: f64 = 1e6;
 /// Smoothing where the points do not say where every control point is.
 const FILL: f64 = 1e-8;
 /// A pivot below this share of the largest one is none.
-const LEAST_PIVOT: f64 = 1e-7;
+const MIN_PIVOT: f64 = 1e-7;
 /// A drawn curve is at least this long, metres.
-const LEAST_DRAWN_M: f64 = 0.1;
+const MIN_DRAWN_M: f64 = 0.1;
 
 impl FitOptions {
     /// Checks the numbers.
@@ -39,14 +39,14 @@ impl FitOptions {
     /// [`PathEditError`] for a count or a smoothing out of range.
     pub fn validate(&self) -> Result<(), PathEditError> {
         check_count(self.control_points)?;
-        if (0.0..=MOST_SMOOTHING).contains(&self.smoothing) {
+        if (0.0..=MAX_SMOOTHING).contains(&self.smoothing) {
             Ok(())
         } else {
             Err(PathEditError::Option {
                 what: "smoothing",
                 value: self.smoothing,
                 least: 0.0,
-                most: MOST_SMOOTHING,
+                most: MAX_SMOOTHING,
             })
         }
     }
@@ -148,7 +148,7 @@ pub fn drawn_path(points: &[DVec2], options: &FitOptions) -> Result<GroundSpline
         let index = points.iter().position(|point| !point.is_finite()).unwrap_or(0);
         return Err(PathEditError::Point { index });
     }
-    if length_m < LEAST_DRAWN_M {
+    if length_m < MIN_DRAWN_M {
         return Err(PathEditError::NoLength { length_m });
     }
     fit_spline(points, &parameters, options)
@@ -234,7 +234,7 @@ impl Band {
         for i in (0..self.rows.len()).rev() {
             let row = self.rows[i];
             // NaN compares as no pivot.
-            let pivot = row[0].abs() > largest * LEAST_PIVOT;
+            let pivot = row[0].abs() > largest * MIN_PIVOT;
             if !pivot {
                 return None;
             }

@@ -86,11 +86,11 @@ mod turning;
 
 pub use carry::{Carried, CarryOptions, Offset, Orientation, Timing, carry};
 pub use edit::{PathEdit, Pins};
-pub use fit::{FitOptions, MOST_SMOOTHING, drawn_path, fit_spline};
+pub use fit::{FitOptions, MAX_SMOOTHING, drawn_path, fit_spline};
 pub use fitted::{FitError, FittedPath};
 pub use motion::{EditedMotion, MotionOptions, PathEditor, Slide};
 pub use road::{Road, Waypoint};
-pub use spline::{FARTHEST_M, GroundSpline, Jet, LEAST_POINTS, MOST_POINTS, SplineEnds};
+pub use spline::{FARTHEST_M, GroundSpline, Jet, MAX_POINTS, MIN_POINTS, SplineEnds};
 pub use turning::{HardTurn, hard_turns, turn_rates};
 
 /// Why a path cannot be fitted, edited or walked.
@@ -115,9 +115,7 @@ pub enum PathEditError {
         length_m: f64,
     },
     /// Too few or too many control points.
-    #[error(
-        "a path of {points} control points cannot be used: take {LEAST_POINTS} to {MOST_POINTS}"
-    )]
+    #[error("a path of {points} control points cannot be used: take {MIN_POINTS} to {MAX_POINTS}")]
     ControlPoints {
         /// The number asked for.
         points: usize,

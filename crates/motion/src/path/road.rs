@@ -18,7 +18,7 @@ const NODES: [(f64, f64); 5] = [
     (0.906_179_845_938_664, 0.236_926_885_056_189_1),
 ];
 /// A path is at least this long, metres.
-pub(super) const LEAST_LENGTH_M: f64 = 1e-3;
+pub(super) const MIN_LENGTH_M: f64 = 1e-3;
 /// Parameters are found to this length, metres.
 const TOLERANCE_M: f64 = 1e-11;
 /// Lengths that are the same but for rounding, metres.
@@ -71,7 +71,7 @@ impl Road {
                 });
             }
         }
-        if total < LEAST_LENGTH_M {
+        if total < MIN_LENGTH_M {
             return Err(PathEditError::NoLength { length_m: total });
         }
         Ok(Self { spline, parameters, lengths, speeds })

@@ -4,18 +4,18 @@ use glam::DVec2;
 /// The degree of every path.
 const DEGREE: usize = 3;
 /// The fewest control points that a cubic has.
-pub const LEAST_POINTS: usize = DEGREE + 1;
+pub const MIN_POINTS: usize = DEGREE + 1;
 /// The most control points of a path: far more than a hand can hold apart, and few enough for a
 /// link.
-pub const MOST_POINTS: usize = 256;
+pub const MAX_POINTS: usize = 256;
 /// The farthest that a control point may lie from the origin, metres.
 pub const FARTHEST_M: f64 = 10_000.0;
 /// Two knots are at least this far apart, in the parameter.
-const LEAST_SPAN: f64 = 1e-4;
+const MIN_SPAN: f64 = 1e-4;
 /// A new knot keeps farther away, so that the rounding of a link does not bring it too close.
-const LEAST_INSERT: f64 = 1e-3;
+const MIN_INSERT: f64 = 1e-3;
 /// A shorter derivative has no direction of its own, metres per unit of the parameter.
-const LEAST_SPEED: f64 = 1e-6;
+const MIN_SPEED: f64 = 1e-6;
 
 /// Where a path lies beside its first and its last control point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -132,7 +132,7 @@ impl GroundSpline {
     /// The path of these control points with uniform knots.
     ///
     /// # Errors
-    /// [`PathEditError`] for fewer than [`LEAST_POINTS`], more than [`MOST_POINTS`], or a point
+    /// [`PathEditError`] for fewer than [`MIN_POINTS`], more than [`MAX_POINTS`], or a point
     /// that is farther away than [`FARTHEST_M`] or no number.
     pub fn uniform(points: Vec<DVec2>) -> Result<Self, PathEditError> {
         let knots = uniform_knots(points.len());
@@ -152,7 +152,7 @@ impl GroundSpline {
         let knots = all_knots(inner_knots, SplineEnds::Clamped);
         let apart = knots[DEGREE..knots.len() - DEGREE]
             .windows(2)
-            .all(|pair| pair[1] - pair[0] >= LEAST_SPAN);
+            .all(|pair| pair[1] - pair[0] >= MIN_SPAN);
         if knots.len() != points.len() + DEGREE + 1 || !apart {
             return Err(PathEditError::Knots);
         }
@@ -296,7 +296,7 @@ impl GroundSpline {
     }
 
     pub(super) fn heading_of(&self, parameter: f64, jet: &Jet) -> f64 {
-        let moves = |first: DVec2| first.length_squared() > LEAST_SPEED * LEAST_SPEED;
+        let moves = |first: DVec2| first.length_squared() > MIN_SPEED * MIN_SPEED;
         let mut first = jet.first;
         for step in [1e-4, -1e-4, 1e-2, -1e-2] {
             if moves(first) {
@@ -311,7 +311,7 @@ impl GroundSpline {
     pub(super) fn refined(&self, parameter: f64) -> Result<Self, PathEditError> {
         check_count(self.points.len() + 1)?;
         let (span, u) = self.span(parameter);
-        let near = u - self.knots[span] < LEAST_INSERT || self.knots[span + 1] - u < LEAST_INSERT;
+        let near = u - self.knots[span] < MIN_INSERT || self.knots[span + 1] - u < MIN_INSERT;
         // NaN compares as not near.
         if near || !parameter.is_finite() {
             return Err(PathEditError::Knots);
@@ -366,7 +366,7 @@ fn is_place(point: DVec2) -> bool {
 }
 
 pub(super) fn check_count(points: usize) -> Result<(), PathEditError> {
-    if (LEAST_POINTS..=MOST_POINTS).contains(&points) {
+    if (MIN_POINTS..=MAX_POINTS).contains(&points) {
         Ok(())
     } else {
         Err(PathEditError::ControlPoints { points })

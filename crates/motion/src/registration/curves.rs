@@ -153,7 +153,7 @@ impl Smoothed {
 
 /// How slow one clip may become against the mean of both: a twentieth, where the fixed points allow
 /// it.
-const LEAST_RATE: f64 = 0.05;
+const MIN_RATE: f64 = 0.05;
 
 /// The strictly increasing curve fitted to a path of frames (i, j), through the `fixed` ones of its
 /// points.
@@ -191,7 +191,7 @@ fn timewarp(path: &[(f64, f64)], fixed: &[(f64, f64)], smoothing: f64) -> Option
             })
             .collect();
         let line = (leads[count] - leads[0]) / (high - low);
-        let steepest = 2.0 - 2.0 * LEAST_RATE.min((2.0 - line.abs()) / 4.0);
+        let steepest = 2.0 - 2.0 * MIN_RATE.min((2.0 - line.abs()) / 4.0);
         let straighten = leads.windows(2).map(|pair| (pair[1] - pair[0]) / step).map(|slope| {
             let over = slope.abs() - steepest;
             if over > 0.0 { over / (slope.abs() - slope.signum() * line) } else { 0.0 }

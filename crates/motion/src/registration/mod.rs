@@ -119,7 +119,7 @@ pub use points::{REFERENCE_HEIGHT_M, limb_weights, rms_cm, uniform_weights};
 pub use pose::{PoseMatch, PoseSearch, PoseWeights};
 pub use self_terms::{PausedSelfSweep, SelfSweep, SelfTerms, SymmetricDistances};
 pub use sweep::{PausedSweep, Sweep};
-pub(crate) use terms::MOST_PAIRS;
+pub(crate) use terms::MAX_PAIRS;
 pub use terms::{PairTerms, Progress, distances_directly};
 pub use transition::{Region, SearchOptions, Transition, TransitionSearch, best_transition};
 

@@ -26,7 +26,7 @@ impl Progress {
 }
 
 /// The most pairs that are held: 768 MiB of terms.
-pub(crate) const MOST_PAIRS: usize = 1 << 26;
+pub(crate) const MAX_PAIRS: usize = 1 << 26;
 
 /// What strength of a turn is rounding alone, as a share of the clouds' spread, where products are
 /// `f32`.
@@ -140,7 +140,7 @@ impl PairTerms {
                 .saturating_mul(target_frames.len().div_ceil(stride))
         };
         check_pairs(pairs(stride), || {
-            (pairs(1) as f64 / MOST_PAIRS as f64).sqrt().ceil() as usize + 1
+            (pairs(1) as f64 / MAX_PAIRS as f64).sqrt().ceil() as usize + 1
         })?;
         let shares = Shares::new(weights, frame_weight);
         let level = shares.mean_height(source, source_frames.start);
@@ -399,8 +399,8 @@ impl PairTerms {
 
 /// Refuses more pairs than are held; `stride` is one that would do.
 fn check_pairs(pairs: usize, stride: impl FnOnce() -> usize) -> Result<(), RegistrationError> {
-    if pairs > MOST_PAIRS {
-        return Err(RegistrationError::TooManyPairs { pairs, most: MOST_PAIRS, stride: stride() });
+    if pairs > MAX_PAIRS {
+        return Err(RegistrationError::TooManyPairs { pairs, most: MAX_PAIRS, stride: stride() });
     }
     Ok(())
 }

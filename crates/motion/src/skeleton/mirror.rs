@@ -6,7 +6,7 @@ use glam::{Quat, Vec3};
 /// An axis of the rest pose this near to the skeleton's left-right axis is meant to be it: cos 15°.
 const NEARLY_AN_AXIS: f32 = 0.966;
 /// Joints nearer to each other are at one place, metres.
-const LEAST_BONE_M: f32 = 1e-6;
+const MIN_BONE_M: f32 = 1e-6;
 /// Corrections below this are none, radians.
 const SAME_RADIANS: f32 = 1e-4;
 /// What lies nearer to the line of a bone than this share of its length says nothing about turns
@@ -18,7 +18,7 @@ const SHAPE_TOLERANCE: f32 = 0.35;
 
 /// Joints with more children than this (no body has them) are compared by role and name only:
 /// comparing shapes takes their number squared.
-const MOST_SIBLINGS: usize = 256;
+const MAX_SIBLINGS: usize = 256;
 
 /// A skeleton in which no joint of the left has a counterpart on the right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -117,7 +117,7 @@ impl Mirror {
                 _ if other == joint => Some(sum(&bones)),
                 _ => longest,
             };
-            let bone = bone.filter(|(bone, _)| bone.length() > LEAST_BONE_M);
+            let bone = bone.filter(|(bone, _)| bone.length() > MIN_BONE_M);
             let near = usual.and_then(|usual| mirror.usual_correction(joint, other, usual));
             mirror.corrections[joint] = match (bone, quat::best_fit(&bones)) {
                 // The second of a pair is made from the first, so that both undo each other to the
@@ -384,7 +384,7 @@ impl<'a> Pairing<'a> {
         }
         let siblings = self.skeleton.parent(a).map_or(0, |parent| self.children[parent].len());
         let fits =
-            siblings <= MOST_SIBLINGS && cost <= SHAPE_TOLERANCE * self.centres[a].length() + 1e-4;
+            siblings <= MAX_SIBLINGS && cost <= SHAPE_TOLERANCE * self.centres[a].length() + 1e-4;
         // What lies off the middle without a partner is its own counterpart: a rucksack's strap, a
         // tail.
         if fits { Some((2, cost)) } else { (in_the_middle && a == b).then_some((3, cost)) }
@@ -401,7 +401,7 @@ impl<'a> Pairing<'a> {
                 [] => {
                     return self.skeleton.joints()[at]
                         .end_site
-                        .filter(|end| end.length() > LEAST_BONE_M);
+                        .filter(|end| end.length() > MIN_BONE_M);
                 }
                 [only] => *only,
                 several => {
@@ -410,7 +410,7 @@ impl<'a> Pairing<'a> {
                 }
             };
             let offset = self.skeleton.joints()[next].offset;
-            if offset.length() > LEAST_BONE_M {
+            if offset.length() > MIN_BONE_M {
                 return Some(offset);
             }
             at = next;

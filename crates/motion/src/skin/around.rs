@@ -16,11 +16,11 @@ const CELL_SHARE: f32 = 0.5;
 /// And at most this large, as a share of the body's height: 1.9 cm on an adult.
 const LARGEST_CELL: f32 = 0.0108;
 /// Vertices of the whole mesh, about; cells become larger where it would be more.
-const MOST_VERTICES: f32 = 14_000.0;
+const MAX_VERTICES: f32 = 14_000.0;
 /// Skeletons of more shapes get one surface for each.
-const MOST_BLENDED: usize = 400;
+const MAX_BLENDED: usize = 400;
 /// Of even more, only the largest are shown.
-const MOST_SHAPES: usize = 4000;
+const MAX_SHAPES: usize = 4000;
 /// A joint and its ancestor this many steps above are near enough in the tree to flow into each
 /// other.
 const NEAR_STEPS: usize = 2;
@@ -93,11 +93,11 @@ impl Sculptor {
             done: Sculpture::default(),
             pose: bind::bind_pose(standing, roles, &stance),
         };
-        let is_blended = shapes.len() <= MOST_BLENDED;
+        let is_blended = shapes.len() <= MAX_BLENDED;
         if !is_blended {
             shapes.retain(|shape| !shape.soft);
             shapes.sort_by(|x, y| y.weight(&rest).total_cmp(&x.weight(&rest)));
-            shapes.truncate(MOST_SHAPES);
+            shapes.truncate(MAX_SHAPES);
         }
         let shapes: Vec<Shape> =
             shapes.into_iter().map(|shape| shape.in_axes_of(&stance)).collect();
@@ -127,7 +127,7 @@ impl Sculptor {
         // A surface passes through about 1.5 cells for each square of a cell's size.
         let vertices: f32 =
             cones.iter().zip(&sizes).map(|(cone, size)| 0.8 * cone.area() / (size * size)).sum();
-        let coarser = (vertices / MOST_VERTICES).max(1.0).sqrt();
+        let coarser = (vertices / MAX_VERTICES).max(1.0).sqrt();
         let mut shells: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (index, (shape, _)) in placed.iter().enumerate() {
             shells.entry(shape.shell).or_default().push(index);

@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// Frames of a clip that are looked at for where its ground is.
 const SAMPLES: usize = 48;
 /// So many parts of limbs make a figure that others' clips move.
-const LEAST_LIMBS: usize = 2;
+const MIN_LIMBS: usize = 2;
 /// Vertices of the sole that are looked at.
 const SOLE_VERTICES: usize = 32;
 /// The lowest point of a clip's feet lies within this share of the leg's length of the ground where
@@ -39,7 +39,7 @@ impl Character {
     /// shin.
     #[must_use]
     pub fn has_limbs(&self) -> bool {
-        self.limbs().count() >= LEAST_LIMBS
+        self.limbs().count() >= MIN_LIMBS
     }
 
     /// Whether the poses of a skeleton move it to more than a place: its own, one with parts of
@@ -52,7 +52,7 @@ impl Character {
         }
         let map = JointMap::between(&self.skeleton, &self.roles, skeleton, roles);
         let limbs = self.limbs().filter(|joint| map.source_of(*joint).is_some()).count();
-        limbs >= LEAST_LIMBS || 2 * map.count() >= self.skeleton.len().max(2)
+        limbs >= MIN_LIMBS || 2 * map.count() >= self.skeleton.len().max(2)
     }
 
     fn limbs(&self) -> impl Iterator<Item = usize> + '_ {

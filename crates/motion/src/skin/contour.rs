@@ -13,7 +13,7 @@ use std::hash::{BuildHasherDefault, Hasher};
 use std::sync::Arc;
 
 /// Levels of the tree, at most: coordinates in the finest cells fit into 16 bits.
-const MOST_LEVELS: u32 = 12;
+const MAX_LEVELS: u32 = 12;
 
 /// Vertices on the zero of a field, and the faces between them.
 #[derive(Clone, Debug, Default)]
@@ -51,7 +51,7 @@ impl Contouring {
         let all: Arc<[u16]> =
             (0..field.cones.len()).filter_map(|index| u16::try_from(index).ok()).collect();
         let can_be_meshed = !all.is_empty() && extent.is_finite() && finest > 0.0;
-        let levels = (extent / finest).log2().ceil().clamp(1.0, MOST_LEVELS as f32) as u32;
+        let levels = (extent / finest).log2().ceil().clamp(1.0, MAX_LEVELS as f32) as u32;
         let cell = finest.max(extent / (1u32 << levels) as f32);
         Self {
             tree: Octree {

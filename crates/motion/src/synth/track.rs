@@ -47,28 +47,24 @@ where
     d * (6.0 / (span_secs * span_secs)) - (from.rate * 4.0 + to.rate * 2.0) * span_secs.recip()
 }
 
-const MOST_KNOTS: usize = 10;
+const MAX_KNOTS: usize = 10;
 
 /// A cubic spline through up to ten knots with given slopes at both ends: twice continuously
 /// differentiable inside.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Spline {
     count: usize,
-    at: [f64; MOST_KNOTS],
-    value: [f64; MOST_KNOTS],
-    slope: [f64; MOST_KNOTS],
+    at: [f64; MAX_KNOTS],
+    value: [f64; MAX_KNOTS],
+    slope: [f64; MAX_KNOTS],
 }
 
 impl Spline {
     /// `knots` are (time, value) in rising order of time; more than ten are cut off.
     pub(super) fn clamped(knots: &[(f64, f64)], start_slope: f64, end_slope: f64) -> Self {
-        let count = knots.len().min(MOST_KNOTS);
-        let mut spline = Self {
-            count,
-            at: [0.0; MOST_KNOTS],
-            value: [0.0; MOST_KNOTS],
-            slope: [0.0; MOST_KNOTS],
-        };
+        let count = knots.len().min(MAX_KNOTS);
+        let mut spline =
+            Self { count, at: [0.0; MAX_KNOTS], value: [0.0; MAX_KNOTS], slope: [0.0; MAX_KNOTS] };
         for (i, &(at, value)) in knots.iter().take(count).enumerate() {
             spline.at[i] = at;
             spline.value[i] = value;
@@ -79,7 +75,7 @@ impl Spline {
         // Slopes from continuity of the second derivative: a tridiagonal system, solved forwards
         // and back (Thomas).
         let last = count - 1;
-        let mut upper = [0.0; MOST_KNOTS];
+        let mut upper = [0.0; MAX_KNOTS];
         spline.slope[0] = start_slope;
         for i in 1..last {
             let (h0, h1) = (spline.at[i] - spline.at[i - 1], spline.at[i + 1] - spline.at[i]);

@@ -1,4 +1,4 @@
-use crate::blend::MOST_SECS;
+use crate::blend::MAX_SECS;
 use crate::clip::{Clip, ClipError, Contacts};
 use crate::math::{curve, quat};
 use crate::registration::REFERENCE_HEIGHT_M;
@@ -75,7 +75,7 @@ pub enum FootLockError {
 /// full stretch the knee would snap. A leg of bones `a` and `b` that becomes longer by `d` turns
 /// its knee by `d l / (a b sin φ)`: 1.2° a millimetre here on a leg of 0.85 m, and the hips are
 /// lowered by 5 mm more than for a straight leg.
-const LEAST_FLEXION_RADIANS: f32 = 0.22;
+const MIN_FLEXION_RADIANS: f32 = 0.22;
 /// Below this sine of the flexion the knee's own plane is uncertain, and the leg's usual plane
 /// takes over.
 const PLANE_SINE: f32 = 0.2;
@@ -228,7 +228,7 @@ impl State {
             let fits = (0.0..=most).contains(&value);
             if fits { Ok(()) } else { Err(FootLockError::Option { what, value, most }) }
         };
-        check("blend time (s)", options.blend_secs, MOST_SECS)?;
+        check("blend time (s)", options.blend_secs, MAX_SECS)?;
         check("largest shift (m)", f64::from(options.max_shift_m), 10.0)?;
         check("clearance (m)", f64::from(options.clearance_m.unwrap_or(0.0)), 1.0)?;
         let sides = Side::BOTH.into_iter();
@@ -446,7 +446,7 @@ impl Posed {
     /// How long this leg may become.
     fn reach(&self) -> f32 {
         let (a, b) = (self.thigh.length(), self.shin.length());
-        let reach = (a * a + b * b + 2.0 * a * b * LEAST_FLEXION_RADIANS.cos()).sqrt();
+        let reach = (a * a + b * b + 2.0 * a * b * MIN_FLEXION_RADIANS.cos()).sqrt();
         reach.max(self.line().length())
     }
 

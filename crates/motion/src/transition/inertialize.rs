@@ -1,6 +1,6 @@
 use super::MovingPose;
 use super::moving::{further, travel};
-use crate::blend::{BlendError, MOST_SECS};
+use crate::blend::{BlendError, MAX_SECS};
 use crate::math::{Decay, Planar, quat, spring};
 use glam::{Quat, Vec3};
 
@@ -36,7 +36,7 @@ impl Inertialization {
                 [("blend time", blend_secs), ("half-life", extrapolation_half_life_secs)]
             }
         };
-        match times.into_iter().find(|(_, secs)| !(0.0..=MOST_SECS).contains(secs)) {
+        match times.into_iter().find(|(_, secs)| !(0.0..=MAX_SECS).contains(secs)) {
             Some((what, secs)) => Err(BlendError::Time { what, secs }),
             None => Ok(()),
         }
@@ -109,7 +109,7 @@ impl Inertialization {
 /// away.
 const ADDED_SPEED: f32 = 0.75;
 /// An offset takes no more than so many times as long as others.
-const MOST_STRETCH: f32 = 6.0;
+const MAX_STRETCH: f32 = 6.0;
 
 /// The fade's weight of the old motion, and how fast it changes, per second:
 /// [`crate::blend::WeightLaw::Smooth`], which is the cubic's answer to an offset without velocity.
@@ -198,7 +198,7 @@ impl Inertializer {
             let usual = usual_radps.get(joint).copied().unwrap_or(f32::INFINITY);
             let times = offset.length() * fastest / (ADDED_SPEED * usual);
             // What takes no time at all is a cut, and stays one.
-            if times.is_finite() { times.clamp(1.0, MOST_STRETCH) } else { 1.0 }
+            if times.is_finite() { times.clamp(1.0, MAX_STRETCH) } else { 1.0 }
         };
         let mut playing = old.clone();
         self.carry(&mut playing);

@@ -29,7 +29,7 @@ pub enum LoopMethod {
 
 /// The half-life of a spring in a cycle is at most this many of its durations: beyond, the
 /// equations for the exact loop lose their digits, and the curve is the same straight pull.
-const MOST_CYCLES: f64 = 10.0;
+const MAX_CYCLES: f64 = 10.0;
 
 /// The offset that closes a cycle, as shares of the difference `D` of its ends (last less first)
 /// and of their velocities' difference `V`.
@@ -57,7 +57,7 @@ impl LoopCurve {
     pub fn new(method: LoopMethod, ratio: f64, duration_secs: f64) -> Self {
         let ratio = if ratio > 0.0 { ratio.min(1.0) } else { 0.0 };
         let duration_secs = duration_secs.max(1e-9);
-        let held = |half_life_secs: f64| half_life_secs.min(MOST_CYCLES * duration_secs);
+        let held = |half_life_secs: f64| half_life_secs.min(MAX_CYCLES * duration_secs);
         let as_it_is = Response { xx: 1.0, xv: 0.0, vx: 0.0, vv: 1.0 };
         let (method, fed) = match method {
             LoopMethod::Exact { half_life_secs } => {

@@ -1,6 +1,6 @@
 use super::moving::{View, further, travel};
 use super::{LoopCurve, LoopMethod, MovingPose};
-use crate::blend::{Assembly, MOST_SECS, Source, moving_joints};
+use crate::blend::{Assembly, MAX_SECS, Source, moving_joints};
 use crate::clip::{Clip, ClipError};
 use crate::math::{Planar, Response, quat};
 use glam::{Quat, Vec3};
@@ -47,7 +47,7 @@ pub enum LoopError {
         secs: f64,
     },
     /// A time that is none.
-    #[error("a half-life of {0} s cannot be used: give a number of seconds from 0 to {MOST_SECS}")]
+    #[error("a half-life of {0} s cannot be used: give a number of seconds from 0 to {MAX_SECS}")]
     HalfLife(f64),
     /// The clip cannot be compared with itself.
     #[error(transparent)]
@@ -160,7 +160,7 @@ pub fn close_loop(
     if let LoopMethod::Exact { half_life_secs }
     | LoopMethod::Classic { half_life_secs }
     | LoopMethod::Crossed { half_life_secs } = options.method
-        && !(0.0..=MOST_SECS).contains(&half_life_secs)
+        && !(0.0..=MAX_SECS).contains(&half_life_secs)
     {
         return Err(LoopError::HalfLife(half_life_secs));
     }

@@ -34,18 +34,18 @@ pub struct WholeCycle {
 }
 
 /// A clip is most of a cycle when at most this share of the cycle is missing.
-const MOST_MISSING: f64 = 0.25;
+const MAX_MISSING: f64 = 0.25;
 /// A cycle goes through its ends at this share of its mean speed in the joints at least: what comes
 /// to rest there is a deed that is done once.
-const LEAST_SPEED: f64 = 0.3;
+const MIN_SPEED: f64 = 0.3;
 /// The velocities of the ends are measured over this time, seconds.
 const MEASURED_SECS: f64 = 1.0 / 30.0;
 /// Where frames are made, the change of velocity takes at least this share of the clip: over fewer
 /// frames it would be a jerk.
-const LEAST_CHANGE: f64 = 0.15;
+const MIN_CHANGE: f64 = 0.15;
 /// The ends of a cycle are at most this far apart, as a share of the farthest that any of its poses
 /// is away from the first.
-const MOST_APART: f64 = 0.5;
+const MAX_APART: f64 = 0.5;
 /// The speeds over the ground at both ends differ by at most this share of the mean speed, and this
 /// much, metres per second.
 const SPEED_SHARE: f64 = 0.5;
@@ -89,7 +89,7 @@ impl WholeCycle {
         };
         let along = sum(&|d, v| d.dot(v));
         let square = sum(&|_, v| v.length_squared());
-        let most = MOST_MISSING / (1.0 - MOST_MISSING) * last as f64;
+        let most = MAX_MISSING / (1.0 - MAX_MISSING) * last as f64;
         let steady = if square > 0.0 { (along / square).max(0.0) } else { 0.0 };
         // The period is not known before; a few rounds settle it.
         let sine = |missing: f64| {
@@ -111,12 +111,12 @@ impl WholeCycle {
             way += between(&earlier, &here);
             earlier = here;
         }
-        let least = LEAST_SPEED * way / last as f64 * reach as f64;
+        let least = MIN_SPEED * way / last as f64 * reach as f64;
         if between(&first, &second) < least || between(&before, &end) < least {
             return None;
         }
         let share = if farthest > 0.0 { apart / farthest } else { 1.0 };
-        if share.is_nan() || share > MOST_APART {
+        if share.is_nan() || share > MAX_APART {
             return None;
         }
         Some(Self {
@@ -160,7 +160,7 @@ fn with_frames_behind(source: &Source, made: usize) -> Option<Source> {
     let view = View { source, moving: &moving, fixed: None };
     let poses = [0, 1, last - 1, last].map(|frame| view.pose(frame));
     let [first, second, before, end] = &poses;
-    let over = (made as f64).max(LEAST_CHANGE * last as f64) as f32;
+    let over = (made as f64).max(MIN_CHANGE * last as f64) as f32;
     // From the velocity at the end to that at the beginning, evenly over `over` frames; all per
     // frame.
     let run_on = |from: Vec3, to: Vec3, frame: f32| {

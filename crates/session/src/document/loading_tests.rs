@@ -6,7 +6,7 @@ use super::*;
 use crate::Notice;
 use crate::reading::Content;
 use segue_formats::ImportOptions;
-use segue_formats::archive::MOST_FILES;
+use segue_formats::archive::MAX_FILES;
 use std::io::Write as _;
 
 pub(super) const ASF: &str = "\
@@ -656,7 +656,7 @@ fn files_of_an_archive_that_cannot_be_read_are_counted_before_they_are_told() {
 
 #[test]
 fn limit_of_an_archive_is_told_though_nothing_in_it_can_be_read() {
-    let names: Vec<String> = (0..MOST_FILES + 50).map(|n| format!("{n:05}.bvh")).collect();
+    let names: Vec<String> = (0..MAX_FILES + 50).map(|n| format!("{n:05}.bvh")).collect();
     let files: Vec<(&str, &str)> = names.iter().map(|name| (name.as_str(), "")).collect();
     let mut session = Session::new();
     session.load("many.zip", Arc::from(zip(&files))).unwrap();

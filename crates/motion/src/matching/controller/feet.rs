@@ -62,7 +62,7 @@ const LIFTED_MPS: f32 = 0.5;
 const SLIP_MPS: f32 = 0.05;
 /// The hips are lowered by no more than this, metres for a body of 1.75 m, where a leg cannot reach
 /// the place where its foot stands.
-const MOST_LOWERED_M: f32 = 0.08;
+const MAX_LOWERED_M: f32 = 0.08;
 /// Half-life of that, seconds.
 const LOWER_HALF_LIFE_SECS: f64 = 0.03;
 
@@ -279,7 +279,7 @@ impl Feet {
             (self.lower, self.lower_rate) = (0.0, 0.0);
             return stand;
         }
-        let target = too_high.min(MOST_LOWERED_M * self.scale);
+        let target = too_high.min(MAX_LOWERED_M * self.scale);
         (self.lower, self.lower_rate) =
             towards_number(self.lower, self.lower_rate, target, LOWER_HALF_LIFE_SECS, dt_secs);
         pose.root_translation.y -= self.lower;

@@ -29,10 +29,10 @@ const TICK_SECS: f64 = 1.0 / RATE as f64;
 const PULL_SHARE: f64 = 1.1;
 /// Clips that go nowhere, or straight on alone, count as this fast, metres and radians per second:
 /// 0.5 m/s and 80° per second.
-const LEAST_PULL_MPS: f64 = 0.5;
-const LEAST_TWIST_RADPS: f64 = 1.4;
+const MIN_PULL_MPS: f64 = 0.5;
+const MIN_TWIST_RADPS: f64 = 1.4;
 /// After a pause of the page nobody wants to wait for all that was missed, ticks.
-const MOST_TICKS_AT_ONCE: usize = 30;
+const MAX_TICKS_AT_ONCE: usize = 30;
 
 /// A character that is driven by a database.
 ///
@@ -250,7 +250,7 @@ impl Controller {
         }
         let mut ticks = (self.left_secs / TICK_SECS) as usize;
         self.left_secs -= ticks as f64 * TICK_SECS;
-        ticks = ticks.min(MOST_TICKS_AT_ONCE);
+        ticks = ticks.min(MAX_TICKS_AT_ONCE);
         for _ in 0..ticks {
             self.tick(control);
         }
@@ -312,9 +312,9 @@ impl Controller {
         let pace = self.database.pace();
         let room = |fastest: f64, own: f64| (fastest * TICK_SECS - own).max(0.0);
         let most_pull =
-            room(PULL_SHARE * pace.travel_mps.max(LEAST_PULL_MPS), travelled.shift.length());
+            room(PULL_SHARE * pace.travel_mps.max(MIN_PULL_MPS), travelled.shift.length());
         let most_twist =
-            room(PULL_SHARE * pace.turn_radps.max(LEAST_TWIST_RADPS), travelled.yaw.abs());
+            room(PULL_SHARE * pace.turn_radps.max(MIN_TWIST_RADPS), travelled.yaw.abs());
         let pulled = (off - left).clamp_length_max(most_pull);
         let twisted = (turn - left_turn).clamp(-most_twist, most_twist);
         self.root =

@@ -1,6 +1,6 @@
 //! When to search, what for, and whether to go there.
 
-use super::super::features::{MOST_DIMS, RATE};
+use super::super::features::{MAX_DIMS, RATE};
 use super::super::motion::{Motion, write_trajectory};
 use super::super::search::{Found, Hit, Question, TreeIndex, scan};
 use super::super::{Place, TagFilter};
@@ -47,7 +47,7 @@ impl Controller {
     pub(super) fn query(&self) -> Vec<f32> {
         let features = self.database.features();
         let layout = features.layout();
-        let mut row = [0.0; MOST_DIMS];
+        let mut row = [0.0; MAX_DIMS];
         let row = &mut row[..layout.dims()];
         if let Some(motion) = self.database.motion(self.place.motion) {
             motion.write_row(layout, self.place.frame, row);

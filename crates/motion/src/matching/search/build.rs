@@ -1,7 +1,7 @@
 use super::BoxIndex;
 use super::boxes::{LANES, LEAF, Level};
 use crate::matching::Features;
-use crate::matching::features::MOST_DIMS;
+use crate::matching::features::MAX_DIMS;
 use crate::registration::Progress;
 
 /// Builds a [`BoxIndex`] in slices.
@@ -129,7 +129,7 @@ fn widest(features: &Features, ids: &[u32], factors: &[f32]) -> usize {
     let dims = features.layout().dims();
     let stride = ids.len().div_ceil(SAMPLE).max(1);
     let rows = ids.iter().step_by(stride).filter_map(|&id| features.row(id as usize));
-    let (mut sums, mut squares, mut count) = ([0.0f32; MOST_DIMS], [0.0f32; MOST_DIMS], 0.0);
+    let (mut sums, mut squares, mut count) = ([0.0f32; MAX_DIMS], [0.0f32; MAX_DIMS], 0.0);
     for row in rows {
         count += 1.0;
         for ((sum, square), &value) in sums.iter_mut().zip(&mut squares).zip(row) {

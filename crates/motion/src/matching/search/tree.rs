@@ -1,6 +1,6 @@
 use super::{Candidates, Found, Hit, Question};
 use crate::matching::TagFilter;
-use crate::matching::features::MOST_DIMS;
+use crate::matching::features::MAX_DIMS;
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 
 /// Dimensions of the default set.
@@ -25,10 +25,10 @@ pub struct TreeIndex {
 enum Tree {
     Usual(Box<ImmutableKdTree<f32, USUAL_DIMS>>),
     /// Rows of other lengths are filled up with zeros.
-    Any(Box<ImmutableKdTree<f32, MOST_DIMS>>),
+    Any(Box<ImmutableKdTree<f32, MAX_DIMS>>),
 }
 
-/// Rounding in `f32` over at most [`MOST_DIMS`] terms, as a share.
+/// Rounding in `f32` over at most [`MAX_DIMS`] terms, as a share.
 const HAIR: f32 = 2e-5;
 
 impl TreeIndex {

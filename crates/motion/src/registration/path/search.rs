@@ -11,7 +11,7 @@ const WORTH_A_CORRIDOR: usize = 256;
 /// either side of the path found there.
 const CORRIDOR: (usize, usize) = (8, 12);
 /// Rounds of Dinkelbach's iteration: a handful; the limit is for NaN.
-const MOST_ROUNDS: usize = 32;
+const MAX_ROUNDS: usize = 32;
 
 /// The search of [`optimal_path`](super::optimal_path), a few rows at a time. Every call is given
 /// the matrix that it was begun with.
@@ -269,7 +269,7 @@ impl Rounds {
             }));
         }
         self.mean = Some(mean);
-        if self.count < MOST_ROUNDS { Ok(None) } else { Err(PathError::NotFinite) }
+        if self.count < MAX_ROUNDS { Ok(None) } else { Err(PathError::NotFinite) }
     }
 }
 

@@ -6,9 +6,9 @@ use glam::Vec3;
 /// clavicles often do, feet and hands do not.
 const LONG: f32 = 0.55;
 /// The hips lie above the feet by at least this share of the skeleton's height.
-const LEAST_LEG: f32 = 0.25;
+const MIN_LEG: f32 = 0.25;
 /// The hands reach to either side by at least this share of the skeleton's height.
-const LEAST_REACH: f32 = 0.05;
+const MIN_REACH: f32 = 0.05;
 
 /// Finds roles by the tree and the rest positions alone: the two lowest chains are legs, the two
 /// that reach farthest sideways above them are arms, what rises highest between is the head. +Y
@@ -117,7 +117,7 @@ impl<'a> Shape<'a> {
         by_height.iter().skip(1).find_map(|&second| {
             let meeting = self.meeting(first, second);
             let lower = self.tip(first).y.max(self.tip(second).y);
-            (self.rest[meeting].y - lower > LEAST_LEG * self.height)
+            (self.rest[meeting].y - lower > MIN_LEG * self.height)
                 .then_some((meeting, [first, second]))
         })
     }
@@ -183,7 +183,7 @@ impl<'a> Shape<'a> {
         let reach = |leaf: usize| self.tip(leaf).dot(left) - middle;
         let by_reach = |a: &&usize, b: &&usize| reach(**a).total_cmp(&reach(**b));
         let (&right, &left) = (leaves.iter().min_by(by_reach)?, leaves.iter().max_by(by_reach)?);
-        if reach(left) < LEAST_REACH * self.height || reach(right) > -LEAST_REACH * self.height {
+        if reach(left) < MIN_REACH * self.height || reach(right) > -MIN_REACH * self.height {
             return None;
         }
         let chest = self.meeting(left, right);

@@ -28,7 +28,7 @@ const LONGEST_SWING_SECS: f64 = 1.5;
 
 /// How far a foot is turned against its leg to keep its heading, radians: 30°. From half of it on
 /// it turns with the body more and more.
-const MOST_TURN_RADIANS: f32 = 0.52;
+const MAX_TURN_RADIANS: f32 = 0.52;
 
 /// The way of one foot through the clip.
 #[derive(Debug)]
@@ -87,7 +87,7 @@ impl Foot {
             let mean = yaws.iter().sum::<f64>() / yaws.len() as f64;
             for (turn, yaw) in turns[stance.clone()].iter_mut().zip(yaws) {
                 let back = (mean - yaw) as f32;
-                turn.y = curve::soft_limit(back.abs(), 0.5 * MOST_TURN_RADIANS, MOST_TURN_RADIANS)
+                turn.y = curve::soft_limit(back.abs(), 0.5 * MAX_TURN_RADIANS, MAX_TURN_RADIANS)
                     .copysign(back);
             }
         }

@@ -8,7 +8,7 @@ use glam::Vec3;
 const SMOOTH_SECS: f64 = 0.08;
 /// A knee bent by less than this sine of its flexion counts as bent by so much: at full stretch it
 /// would weigh without end.
-const LEAST_SINE: f32 = 0.1;
+const MIN_SINE: f32 = 0.1;
 /// The hips cost as much as a knee that is bent by this sine of its flexion.
 const HIP_SINE: f32 = 0.7;
 
@@ -45,8 +45,7 @@ fn easiest<'a>(legs: impl Iterator<Item = (&'a Posed, Vec3)>) -> f32 {
         let (now, then) = (line.length(), asked.length().max(1e-6));
         let sides = (leg.thigh.length() * leg.shin.length()).max(1e-9);
         let turn_per_metre = |sine: f32| (now / (sides * sine)).powi(2);
-        let (weight, cosine) =
-            (turn_per_metre(leg.bend().length().max(LEAST_SINE)), -asked.y / then);
+        let (weight, cosine) = (turn_per_metre(leg.bend().length().max(MIN_SINE)), -asked.y / then);
         above += weight * cosine * (now - then);
         below += weight * cosine * cosine + turn_per_metre(HIP_SINE);
     }

@@ -69,7 +69,7 @@ pub(crate) struct Grapher {
 /// for that it can be dragged up a good deal, too, and nobody looks again. Those that lie beyond
 /// are left aside when a graph is made, and there are as many as are held at most.
 fn reaching(options: &GraphOptions) -> GraphOptions {
-    let most = GraphOptions::MOST_THRESHOLD_CM.max(options.edge_threshold_cm);
+    let most = GraphOptions::MAX_THRESHOLD_CM.max(options.edge_threshold_cm);
     GraphOptions {
         edge_threshold_cm: (1.5 * options.edge_threshold_cm + 4.0).min(most),
         ..*options

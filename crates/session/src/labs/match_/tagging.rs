@@ -95,7 +95,7 @@ fn tag_of(word: &str, own: &[&str]) -> Option<Tag> {
     let fixed = Tag::FIXED.into_iter().find(|tag| tag.name() == word);
     fixed.or_else(|| {
         let number = u8::try_from(own.iter().position(|other| *other == word)?).ok()?;
-        (number < Tag::MOST_OWN).then_some(Tag::Own(number))
+        (number < Tag::MAX_OWN).then_some(Tag::Own(number))
     })
 }
 
