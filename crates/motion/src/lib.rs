@@ -1,17 +1,17 @@
-//! Character motion as plain data: clips, the skeletons that they move, and the algorithms that
-//! make new clips from them.
+//! Character motion as plain data: clips, their skeletons, and algorithms that make new clips from
+//! them.
 //!
-//! The library is pure and deterministic. It uses no screen, file system, clock or thread: data
-//! goes in, data comes out, randomness comes from a seed, and time is a parameter. The crate
-//! `segue-formats` reads and writes motion files; the app Segue is built on both.
+//! The library is pure and deterministic. It uses no screen, file system, clock or thread:
+//! randomness comes from a seed, and time is a parameter. The crate `segue-formats` reads and
+//! writes motion files; the app Segue is built on both.
 //!
-//! These pages are also a small textbook. Each module is a chapter: the idea, the formula, an
+//! This documentation is also a small textbook. Each module is a chapter: the idea, the formula, an
 //! example that runs, the accuracy and the cost, the limits, and the sources.
 //!
 //! # A first example
 //!
-//! The example blends a walk into a run and measures the result. [`synth`] makes both clips, so
-//! that no file is needed.
+//! The example blends a walk into a run and measures the result. [`synth`] makes both clips, so no
+//! file is needed.
 //!
 //! ```
 //! use segue_motion::blend::{Concatenation, DissolveOptions, Source, dissolve};
@@ -63,30 +63,31 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! # The chapters, in reading order
+//! # Modules, in reading order
 //!
-//! What a motion is:
+//! Representation of motion:
 //!
 //! 1. [`math`]: rotations as vectors, rigid transforms of the ground, springs, curves.
-//! 2. [`skeleton`]: a tree of joints, where it puts them, what each is for; other bodies and mirror
-//!    images.
-//! 3. [`clip`]: poses over time; sampling, velocities, facing, feet on the ground.
-//! 4. [`synth`]: motions made from parameters, with the truth about them.
+//! 2. [`skeleton`]: joint trees, forward and two-bone inverse kinematics, joint roles, retargeting
+//!    and mirroring.
+//! 3. [`clip`]: poses over time: sampling, velocities, facing, foot contacts.
+//! 4. [`synth`]: motions made from parameters, with ground truth.
 //!
-//! How two become one:
+//! Combining clips:
 //!
-//! 5. [`registration`]: distances of windows, the best place to go over, timewarps.
-//! 6. [`blend`]: the dissolve, registered blends, layers.
-//! 7. [`transition`]: inertialization, dead blending, loops, planted feet.
-//! 8. [`gait`]: a walk and a run become every speed between.
-//! 9. [`metrics`]: what goes wrong, as numbers with a unit.
+//! 5. [`registration`]: distances between windows, the best transition between two clips, time
+//!    warps.
+//! 6. [`blend`]: dissolves, registered blends, layers.
+//! 7. [`transition`]: inertialization, dead blending, loops, foot locking.
+//! 8. [`gait`]: every speed between a walk and a run.
+//! 9. [`metrics`]: artefacts, as numbers with a unit.
 //!
-//! What is built on that:
+//! Applications:
 //!
 //! 10. [`graph`]: motion graphs, and walks through them.
-//! 11. [`path`]: the road is dragged, the character follows.
-//! 12. [`matching`]: a character that is steered.
-//! 13. [`skin`]: a smooth body around any skeleton, and two ways in which it follows.
+//! 11. [`path`]: motion along an edited path.
+//! 12. [`matching`]: motion matching for a steered character.
+//! 13. [`skin`]: a smooth mesh around any skeleton; linear blend and dual quaternion skinning.
 //!
 //! `tests/architecture.rs` in the workspace checks the dependencies between these modules:
 //!
@@ -99,24 +100,23 @@
 //!
 //! # Conventions
 //!
-//! - *Units.* Metres, seconds, radians; a name says so where a bare number could be anything else
-//!   (`dt_secs`, `rms_cm`, `spin_deg`). Every rate is per second at the clip's own frame rate.
+//! - *Units.* Metres, seconds, radians. A name has a suffix where a bare number could be something
+//!   else (`dt_secs`, `rms_cm`, `spin_deg`). Rates are per second, at the clip's own frame rate.
 //! - *Axes.* Right-handed, Y up. The ground is the plane `y = 0`. A character whose yaw is 0 faces
-//!   +Z and has its left at +X; positive yaw turns it left (about +Y). A point of the ground is (x,
+//!   +Z and has its left at +X; positive yaw turns it left (about +Y). A point on the ground is (x,
 //!   z).
-//! - *Rotations.* Quaternions are unit; `q` and `-q` are the same rotation, so everything that
-//!   interpolates first brings both into one hemisphere.
+//! - *Rotations.* Quaternions are unit; `q` and `-q` are the same rotation, so every interpolation
+//!   first brings both into one hemisphere.
 //! - *Transforms* are named destination-from-source: `world_from_joint * point_in_joint`.
-//!   `a_world_from_b_world` lays clip B on clip A.
-//! - *Skeletons* list parents first: one pass from the front poses a body. At rest every rotation
-//!   is the identity.
+//!   `a_world_from_b_world` aligns clip B with clip A.
+//! - *Skeletons* list parents first, so one pass from the front poses a body. In the rest pose
+//!   every rotation is the identity.
 //! - *Windows.* A transition leaves clip A at frame `i`, enters clip B at frame `j` and overlaps
 //!   `k` frames: `A[i..i + k)` lies over `B[j..j + k)`, in search, blend and picture alike.
-//! - *Numbers* of clips are stored in `f32`; sums that run long, and frames on the ground, are
-//!   `f64`.
-//! - *Long work* comes in slices: an `advance` that does a part of it, so that the caller decides
-//!   when to stop for a frame of the screen.
-//! - *Errors* are values that say what was found and what would do. Nothing in a file or a link can
+//! - *Numbers* of clips are stored in `f32`; long sums and ground frames are `f64`.
+//! - *Long work* comes in slices: each call of `advance` does a part of it, so that the caller can
+//!   return to its event loop in between.
+//! - *Errors* are values that say what was found and what to do. Nothing in a file or a link can
 //!   make the library panic.
 
 pub mod blend;

@@ -1,5 +1,5 @@
-//! From one clip to another, and one over another: weights, placing one motion on another, the
-//! dissolve, registered blends, and layers.
+//! Blending: weights, aligning one motion with another, the dissolve, registered blends, and
+//! layers.
 //!
 //! # The idea
 //!
@@ -13,14 +13,15 @@
 //! frame = frame before · (α a + (1 - α) b)    a, b: the characters' own steps
 //! ```
 //!
-//! Poses are blended as each character sees its own body, and the way over the ground is made of
-//! blended *steps*: forward, sideways, turn. Picture two people who walk side by side in step while
-//! the camera goes over from one to the other; it does not matter where either walked before.
-//! Blended in the world ([`RootBlend::World`]) the character is pulled from one way to the other.
+//! Poses are blended in the character's own frame, and the trajectory over the ground is integrated
+//! from blended *steps*: forward, sideways, turn. It therefore does not matter where either
+//! character walked before. Picture two people who walk side by side in step while the camera pans
+//! from one to the other. Blended in the world ([`RootBlend::World`]), the character is pulled from
+//! one trajectory to the other.
 //!
-//! [`registered_blend`] plays both clips along a timewarp, so that like meets like for as long as
-//! the clips last. A [`layer`] puts a part of one body over another, or adds what a motion does
-//! beyond a reference pose:
+//! [`registered_blend`] plays both clips along a time warp, so that corresponding frames meet for
+//! as long as the clips last. A [`layer`] puts a part of one body over another, or adds the
+//! difference of a motion to a reference pose:
 //!
 //! ```text
 //! in place   slerp(base, over, w)                        w = mask · weight
@@ -41,7 +42,7 @@
 //! let roles = Roles::detect(walk.skeleton());
 //! let weights = limb_weights(walk.skeleton());
 //!
-//! // Where do half a second of walking and of running look most alike?
+//! // Find where half a second of walking and of running look most alike.
 //! let height = f64::from(roles.body_height(walk.skeleton()));
 //! let found = best_transition(&walk, &run, &weights, height, &SearchOptions::new(30))?;
 //!
@@ -50,12 +51,12 @@
 //! let out = dissolve(&a, found.leave, &b, found.enter, &options)?;
 //! assert_eq!(out.clip.pose(found.leave - 1), walk.pose(found.leave - 1));
 //! assert_eq!(out.transition, found.leave..found.leave + 30);
-//! // Behind the window B plays as it is, somewhere else on the ground.
+//! // After the window B plays unchanged, elsewhere on the ground.
 //! let (there, own) = (out.clip.world_pose(out.transition.end), run.world_pose(found.enter + 30));
 //! let mut pairs = there.positions.iter().zip(&own.positions);
 //! assert!(pairs.all(|(p, q)| p.distance(out.world_from_b.apply(*q)) < 1e-5));
 //!
-//! // The arms of the run over the legs of the walk: knees are the walk's, bit for bit.
+//! // The arms of the run over the legs of the walk: the knees are the walk's, bit for bit.
 //! let upper_body = LayerOptions { parts: vec![BodyPart::UpperBody], ..LayerOptions::default() };
 //! let mixed = layer(&walk, &roles, &run, &upper_body)?;
 //! let knee = roles.get(Role::LeftShin).ok_or("no knee")?;
@@ -67,16 +68,16 @@
 //!
 //! # Accuracy and cost
 //!
-//! A clip dissolved into itself is itself to 1e-5 m; where B lay before changes the result by less
-//! than 0.2 mm. Between two straight walks no turn appears that neither has, and but for the sway
-//! of a stride speeds stay between both. Dissolves and layers agree with `SciPy`. O(frames ×
-//! joints).
+//! A clip dissolved into itself is equal to 1e-5 m; the position of B in its own world changes the
+//! result by less than 0.2 mm. Between two straight walks no turn appears that neither has, and
+//! except for the sway of a stride speeds stay between those of both. Dissolves and layers agree
+//! with `SciPy`. O(frames × joints).
 //!
 //! # What it does not do
 //!
 //! It does not plant feet: a foot that stands in A and swings in B slides, and
-//! [`crate::transition::foot_lock`] repairs that. Two poses that are far apart have a mean that
-//! neither clip has; search a better place first. Nothing is retargeted or resampled on the way:
+//! [`crate::transition::foot_lock`] repairs that. Two very different poses have a mean that occurs
+//! in neither clip: search for a better transition first. Nothing is retargeted or resampled:
 //! [`BlendError`] asks for it.
 //!
 //! # Sources
@@ -110,13 +111,13 @@ pub use weight_curve::WeightCurve;
 use crate::clip::ClipError;
 use crate::registration::RegistrationError;
 
-/// The longest time that a transition may be asked to take, seconds.
+/// The greatest duration that may be asked for in a transition, seconds.
 pub(crate) const MAX_SECS: f64 = 60.0;
 
-/// Why two clips cannot be blended.
+/// Error blending two clips.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BlendError {
-    /// The clips move different bodies.
+    /// The clips have different skeletons.
     #[error("`{a}` and `{b}` move different skeletons: retarget one onto the other first")]
     Skeletons {
         /// Name of the outgoing clip.
@@ -134,7 +135,7 @@ pub enum BlendError {
         /// Frame rate of the incoming clip.
         b_fps: f64,
     },
-    /// The window does not fit behind the frame where it starts.
+    /// The window does not fit between its first frame and the end of the clip.
     #[error(
         "{window} frames from frame {at} do not fit into the {which} clip of {frames} frames: lower the window to {} or start it earlier",
         frames.saturating_sub(*at)
@@ -149,7 +150,7 @@ pub enum BlendError {
         /// Frames of the window.
         window: usize,
     },
-    /// Nothing is registered that could be blended.
+    /// The clips have no registered part in common.
     #[error(
         "`{reference}` and the clips blended with it have no registered part in common: register them over the same frames, or free fewer ends"
     )]
@@ -157,7 +158,7 @@ pub enum BlendError {
         /// Name of the clip that the others are registered to.
         reference: String,
     },
-    /// A time that is none.
+    /// A duration out of range.
     #[error("a {what} of {secs} s cannot be used: give a number of seconds from 0 to {MAX_SECS}")]
     Time {
         /// Which time.
@@ -165,10 +166,10 @@ pub enum BlendError {
         /// The number given.
         secs: f64,
     },
-    /// The windows cannot be laid on each other.
+    /// The windows cannot be aligned.
     #[error(transparent)]
     Registration(#[from] RegistrationError),
-    /// The result is no clip.
+    /// The result is not a valid clip.
     #[error(transparent)]
     Clip(#[from] ClipError),
 }

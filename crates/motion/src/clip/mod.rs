@@ -1,30 +1,32 @@
-//! Clips: poses over time, and what can be asked of one clip alone. How fast does it go, which way
-//! does it face, when does a foot stand?
+//! Clips: poses over time, and everything that is derived from a single clip: sampling, speed,
+//! facing, foot contacts.
 //!
 //! # The idea
 //!
 //! A [`Clip`] is a table: a row for every frame, a column for every joint, a local rotation in each
-//! cell, and beside it the root's way through the world. Everything else is derived from the table:
+//! cell, and beside it the root's trajectory in the world. Everything else is derived from the
+//! table:
 //!
 //! ```text
 //! pose(t)       between frames ⌊t·fps⌋ and the next: positions lerp, rotations slerp
 //! velocity(f)   (x[f + 1] - x[f - 1]) / 2dt        angular: log(q[f + 1] · q[f - 1]⁻¹) / 2dt
 //! facing        across × up, across = from right to left over hips and shoulders
-//! speed         length of the root's way over the ground / duration
+//! speed         length of the root's trajectory over the ground / duration
 //! ```
 //!
-//! Facing comes from where joints are and never from an Euler angle, which jumps where the body
-//! does not. Place and facing together are the character's frame ([`character_frames`]): poses are
-//! blended and matched as seen from there.
+//! Facing is computed from joint positions, never from an Euler angle, which can jump where the
+//! body does not. Position and facing together are the character's ground frame
+//! ([`character_frames`]), in which poses are blended and matched.
 //!
-//! The first joint carries the body: it is the one where legs and trunk meet. Files may have more
-//! above it, a root that stands still or goes along the ground; on import that is folded into it
-//! ([`Clip::folded`]), and comes back when the clip is written ([`Clip::unfolded`]). A lever
-//! between root and hips would otherwise be mixed by its angles, and swing the body.
+//! The first joint is the carrier of the body: the joint at which legs and trunk meet. Files may
+//! have joints above it, such as a root that stands still or moves over the ground. On import these
+//! are folded into the carrier ([`Clip::folded`]); they are restored when the clip is written
+//! ([`Clip::unfolded`]). A lever between root and hips would otherwise be blended by its angles,
+//! and swing the body.
 //!
-//! [`Contacts`] say when a foot is on the ground: it is low *and* slow. Each limit is double, one
-//! to come down and a looser one to leave, as a thermostat has two temperatures: about a single
-//! limit a trembling foot would flicker.
+//! [`Contacts`] say when a foot is on the ground: it is low *and* slow. Each limit has hysteresis,
+//! one value to enter contact and a looser one to leave it: about a single limit a trembling foot
+//! would flicker.
 //!
 //! # Example
 //!
@@ -36,11 +38,11 @@
 //! let made = synthesize(&Params { speed_mps: 1.2, ..Params::new(Action::Walk) })?;
 //! let roles = Roles::detect(made.clip.skeleton());
 //!
-//! // The measured way holds the sway of the hips, which makes it a little longer.
+//! // The measured trajectory holds the sway of the hips, which makes it a little longer.
 //! let speed = ground_speed(&character_frames(&made.clip, &roles), made.clip.fps());
 //! assert!(speed > 1.2 && speed < 1.21);
 //!
-//! // What is detected against what was made: less than one frame in twenty differs.
+//! // Detected contacts against the truth: less than one frame in twenty differs.
 //! let contacts = Contacts::detect(&made.clip, &roles, &ContactOptions::default());
 //! for side in Side::BOTH {
 //!     let made_so = |frame: usize| made.truth.contacts[frame][side.index()].any();
@@ -56,16 +58,16 @@
 //!
 //! # Accuracy and cost
 //!
-//! A clip resampled to a multiple of its rate and back is itself to 1e-5 m; mirrored twice,
-//! likewise. Contacts do not change with the height of the capture's floor or the size of the
-//! character, and with the frame rate by at most 2.5 of the coarser frames. Everything is one pass
-//! over frames × joints, but for the sorting of heights in contacts.
+//! A clip resampled to a multiple of its rate and back is equal to 1e-5 m, and so is one that is
+//! mirrored twice. Contacts do not depend on the height of the captured floor or the size of the
+//! character; with the frame rate they change by at most 2.5 of the coarser frames. Everything is
+//! one pass over frames × joints, except for the sorting of heights in contacts.
 //!
 //! # What it does not do
 //!
 //! One frame rate, no key frames, no compression. The ground is a plane: stairs and slopes have no
 //! contacts. A body that lies on its side has no facing: over such frames its heading turns evenly
-//! from the last known to the next.
+//! from the last known one to the next.
 //!
 //! # Sources
 //!

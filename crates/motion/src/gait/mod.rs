@@ -1,12 +1,12 @@
-//! Gaits by speed: a walk and a run become every speed between, and a little beyond.
+//! Blending of two gait cycles by speed: every speed between a walk and a run, and a little beyond.
 //!
 //! # The idea
 //!
 //! One cycle of each gait, from one strike of the left foot to the next, is found by the contacts
-//! of the feet and closed ([`GaitCycle`]); a clip that is one cycle, or most of one, is closed by
-//! its own ends. Both are laid on one phase, so that strikes meet strikes and lifts meet lifts, and
-//! blended pose by pose ([`SpeedBlend`]). Faster means two things at once, longer strides and more
-//! of them:
+//! of the feet and closed ([`GaitCycle`]); a clip that is one cycle, or most of one, is closed at
+//! its own ends. Both are aligned in phase, so that strikes meet strikes and lifts meet lifts, and
+//! blended pose by pose ([`SpeedBlend`]). Going faster means two things at once, longer strides and
+//! more of them:
 //!
 //! ```text
 //! w = (v - v₁)/(v₂ - v₁)                    weight of the second gait
@@ -15,10 +15,10 @@
 //! ```
 //!
 //! In a walk a foot lifts after the other one has struck, in a run before. No single phase fits
-//! both legs, so each leg follows a clock of its own events ([`PhaseAlignment::Feet`]). Picture two
-//! wheels with spokes of uneven spacing, bent until the spokes lie on each other. The way over the
-//! ground is made of the cycles' own steps in the character's frame. [`SpeedPlayer`] lets the speed
-//! be dragged while it plays: the phase goes on whatever the speed does.
+//! both legs, so each leg has a phase of its own, from its own events ([`PhaseAlignment::Feet`]).
+//! Picture two wheels with spokes of uneven spacing, bent until the spokes coincide. The trajectory
+//! over the ground is made of the cycles' own steps in the character's frame. [`SpeedPlayer`] lets
+//! the speed change during playback: the phase continues whatever the speed does.
 //!
 //! # Example
 //!
@@ -41,7 +41,7 @@
 //! let blend = SpeedBlend::new(&cycles[0], &cycles[1], &roles, &SpeedOptions::default())?;
 //! let jog = blend.cycle_at(2.5)?;
 //! assert!(jog.facts.weight > 0.4 && jog.facts.weight < 0.6 && !jog.facts.extrapolated);
-//! // What was asked for is made; its strides and its cadence lie between those of the gaits.
+//! // The speed is the one asked for; strides and cadence lie between those of the gaits.
 //! let measured = ground_speed(&character_frames(&jog.clip, &roles), jog.clip.fps());
 //! assert!((measured - 2.5).abs() < 0.02 * 2.5);
 //! let [walk, run] = blend.speeds_mps().map(|speed| blend.facts(speed));
@@ -52,20 +52,20 @@
 //!
 //! # Accuracy and cost
 //!
-//! From walk to run the measured speed is the one asked for to 2 %. At its own speed each gait
-//! comes out as it is, to 1e-5 radians. A hundred cycles do not drift. Weights go from -0.25 to
-//! 1.25; beyond the two gaits the result is marked as a guess. A pose is O(joints).
+//! From walk to run the measured speed is the one asked for to 2 %. At its own speed each gait is
+//! reproduced to 1e-5 radians. A hundred cycles do not drift. Weights go from -0.25 to 1.25;
+//! outside of 0 to 1 the result is marked as extrapolated. A pose is O(joints).
 //!
 //! # What it does not do
 //!
-//! Feet stand as well as a blend of two stances stands; [`foot_lock`](crate::transition::foot_lock)
-//! with the contacts that come along cleans up the rest. Gaits need both feet in turn: whoever hops
-//! on one leg, or crawls, has no cycle here.
+//! A blend of two stances may slide; [`foot_lock`](crate::transition::foot_lock) with the contacts
+//! that come with the result cleans that up. Gaits need both feet in turn: hopping on one leg and
+//! crawling have no cycle here.
 //!
 //! # Sources
 //!
-//! Blending two cycles by speed is a classic exercise of animation courses. How each leg gets a
-//! clock of its own is told at [`PhaseAlignment`].
+//! Blending two cycles by speed is a classic exercise of animation courses. [`PhaseAlignment`]
+//! documents the phase of each leg.
 
 mod cycle;
 mod phase;
@@ -83,16 +83,16 @@ pub use strikes::strike_phases;
 use crate::clip::ClipError;
 use crate::transition::LoopError;
 
-/// Why gaits cannot be blended by speed.
+/// Error blending gaits by speed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum GaitError {
-    /// The joints of a foot are not known.
+    /// The joints of a foot are unknown.
     #[error("`{name}` has no joints that are known as its feet: choose these joints by hand")]
     NoFeet {
         /// Name of the clip.
         name: String,
     },
-    /// No whole cycle, and no ends that meet.
+    /// The clip has no whole cycle, and its ends do not meet.
     #[error(
         "`{name}` does not contain a gait cycle (left strike, right strike, left strike), and its {secs:.2} s do not close into one: use a longer walk or run, or one cycle whose end leads into its beginning"
     )]
@@ -102,7 +102,7 @@ pub enum GaitError {
         /// Its duration, seconds.
         secs: f64,
     },
-    /// The clips move different bodies.
+    /// The clips have different skeletons.
     #[error("`{a}` and `{b}` move different skeletons: retarget one onto the other first")]
     Skeletons {
         /// Name of the first clip.
@@ -110,7 +110,7 @@ pub enum GaitError {
         /// Name of the second clip.
         b: String,
     },
-    /// Nothing lies between the gaits.
+    /// The speeds of the gaits are too close to each other, or one is 0.
     #[error(
         "the cycles of A and B move at {a_mps:.2} and {b_mps:.2} m/s: choose two clips that move, at speeds that differ by at least 0.1 m/s"
     )]
@@ -120,10 +120,10 @@ pub enum GaitError {
         /// Speed of the second gait.
         b_mps: f64,
     },
-    /// A number that is none.
+    /// A number out of range.
     #[error("a {what} of {value} cannot be used: give a number from 0 to {most}")]
     Option {
-        /// Which number.
+        /// Name of the number.
         what: &'static str,
         /// The number given.
         value: f64,
@@ -133,7 +133,7 @@ pub enum GaitError {
     /// The cycle cannot be closed.
     #[error(transparent)]
     Loop(#[from] LoopError),
-    /// The result is no clip.
+    /// The result is not a valid clip.
     #[error(transparent)]
     Clip(#[from] ClipError),
 }

@@ -1,12 +1,12 @@
 //! Motion graphs: clips of one skeleton, cut into stretches, with transitions wherever two windows
-//! look alike. A walk through the graph is a motion without end.
+//! are alike. A walk through the graph is an endless motion.
 //!
 //! # The idea
 //!
-//! Lay all clips end to end and compare every window with every other. Where the distance
-//! ([`crate::registration`]) is small, one may go over. Picture a railway map: stretches of clips
-//! are the tracks ([`Stretch`]), transitions the switches ([`Jump`]), and whoever comes to a switch
-//! throws a die.
+//! All clips are laid end to end, and every window is compared with every other. Where the distance
+//! ([`crate::registration`]) is small, a transition is possible. Picture a railway map: stretches
+//! of clips are the tracks ([`Stretch`]), transitions the switches ([`Jump`]), and a die is thrown
+//! at each switch.
 //!
 //! ```text
 //! p(the clip goes on) = c                       c: continuity; or w₀ / (w₀ + Σ w)
@@ -14,20 +14,20 @@
 //! mean run            = 1 / (1 - c) stretches   before the next jump
 //! ```
 //!
-//! Dead ends are cut away: inside the largest strongly connected part ([`MotionGraph::pruned`])
-//! every stretch can be reached from every other, for ever.
+//! Dead ends are cut away: inside the largest strongly connected component
+//! ([`MotionGraph::pruned`]) every stretch can be reached from every other, without end.
 //!
-//! A [`FrameSet`] is what the graph is made of. [`AllPairs`] compares all its windows,
-//! [`Candidates`] are the places where one may go over into another, a [`MotionGraph`] is made of
-//! them, [`Choices`] say how probable each way out of a stretch is, a [`Walker`] goes through the
-//! graph by a seed, and a [`Stitcher`] makes motion of where it goes. Each step is quick beside the
-//! one before it, and can be done again alone: a new blend window needs new running sums, a new
-//! threshold new candidates, another weight law other choices. [`follow`] searches a walk along a
-//! line on the ground.
+//! The construction has these steps. A [`FrameSet`] holds the clips. [`AllPairs`] compares all
+//! windows, [`Candidates`] are the possible transitions, a [`MotionGraph`] is built from them,
+//! [`Choices`] hold the probability of each way out of a stretch, a [`Walker`] walks through the
+//! graph by a seed, and a [`Stitcher`] makes the walk's motion. Each step is quick compared with
+//! the one before it, and can be repeated alone: a new blend window needs new running sums, a new
+//! threshold new candidates, another weight law other choices. [`follow`] searches for a walk along
+//! a path on the ground.
 //!
-//! A transition leaves clip A at frame `leave` and enters clip B at frame `enter`;
-//! `A[leave..leave + window)` and `B[enter..enter + window)` overlap. Distances are
-//! root-mean-square distances per point, centimetres on the reference body.
+//! A transition leaves clip A at frame `leave` and enters clip B at frame `enter`; `A[leave..leave
+//! + window)` and `B[enter..enter + window)` overlap. Distances are root-mean-square distances per
+//! point, in centimetres on the reference body.
 //!
 //! # Example
 //!
@@ -70,30 +70,30 @@
 //!
 //! # Accuracy and cost
 //!
-//! Graph and walk are those of a `NumPy` program, stay by stay; walks run as long between jumps as
-//! [`Choices::expected_run_secs`] says, to 5 %. N frames are N²/2 pairs, compared once: O(N²J) time
-//! and 12 bytes a pair. [`CandidateStream`] does without the memory for long clips, and leaves a
-//! picture of their distances from afar.
+//! Graph and walk equal those of a `NumPy` program, stay by stay; the length of walks between jumps
+//! is the one that [`Choices::expected_run_secs`] returns, to 5 %. N frames are N²/2 pairs,
+//! compared once: O(N²J) time and 12 bytes a pair. [`CandidateStream`] avoids this memory for long
+//! clips, and leaves a coarse picture of their distances.
 //!
-//! *The same walk everywhere.* From clips that are equal to the last digit, every machine goes the
-//! same way: what is chosen depends on sums, products, quotients and square roots in one order,
-//! which are the same everywhere, and on an arc tangent, an exponential and a power of [`libm`],
-//! which is made of these. Distances are rounded to 0.001 cm before they are ordered or held
-//! against the threshold, probabilities are whole numbers, and chance is a generator (PCG) of whole
-//! numbers. The trigonometry of the platform, whose last digit is its own, places bodies along a
-//! walk and decides nothing.
+//! *The same walk everywhere.* From clips that are equal to the last digit, every machine takes the
+//! same walk: choices depend on sums, products, quotients and square roots in one order, which are
+//! the same everywhere, and on an arc tangent, an exponential and a power of [`libm`], which is
+//! made of these. Distances are rounded to 0.001 cm before they are ordered or compared with the
+//! threshold, probabilities are integers, and the random generator (PCG) is one of integers. The
+//! trigonometry of the platform, whose last digit varies, places bodies along a walk and decides
+//! nothing.
 //!
-//! *As far as the clips are equal.* Clips that are made, or read from angles, went through that
-//! trigonometry, and may differ by a last digit between two machines. Rounding hides nearly all of
-//! that; where two neighbours of a minimum are as good as equal, or a distance lies in the middle
-//! between two roundings, a transition may come to lie a frame beside. The walk of the built-in
-//! clips is held against one that was written down (`tests/golden/walk.json` of segue-session),
-//! natively and in the browser.
+//! *As far as the clips are equal.* Clips that are synthesised, or read from angles, went through
+//! that trigonometry, and may differ by a last digit between two machines. Rounding hides nearly
+//! all of that; where two neighbours of a minimum are nearly equal, or a distance lies in the
+//! middle between two roundings, a transition may be off by a frame. The walk of the built-in clips
+//! is compared with a recorded one (`tests/golden/walk.json` of segue-session), natively and in the
+//! browser.
 //!
 //! # What it does not do
 //!
-//! It makes no motion that is not in the clips: what lacks a transition below the threshold is not
-//! reached, and [`GraphError`] says what would do. It does not know what a clip means: an idle
+//! It makes no motion that is not in the clips: a clip without a transition below the threshold is
+//! not reached, and [`GraphError`] says what to change. It does not know what a clip means: an idle
 //! stretch is as good a place to stay as any. It reacts at the next switch, not at once; for that
 //! see [`crate::matching`].
 //!

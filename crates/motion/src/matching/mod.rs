@@ -1,33 +1,35 @@
-//! Motion matching: at every moment the frame of all clips that fits best to where the character is
-//! and where the player wants it to go.
+//! Motion matching: at every moment, play the frame of the database that best fits the character's
+//! pose and the player's input.
 //!
 //! # The idea
 //!
-//! Ten times a second the [`Controller`] asks a [`Database`]: which frame has its feet where mine
-//! are, moving as mine move, and leads where the player steers? It goes on from there; the
-//! difference dies away ([`crate::transition::Inertializer`]). In between, the clip plays. Picture
-//! a DJ who always has the record at hand that is in time with the one on the deck, and goes where
-//! the dancers want.
+//! Ten times a second the [`Controller`] queries a [`Database`] for the frame whose feet and hips
+//! are placed and move most like the character's, and whose trajectory leads where the player
+//! steers. It continues from there; the difference decays ([`crate::transition::Inertializer`]). In
+//! between, the clip plays. Picture a DJ who always finds the record that is in time with the one
+//! on the deck, and leads where the dancers want.
 //!
 //! ```text
 //! cost(frame) = Σ_d (w_d (q_d - x_d))²      x = (feature - mean) / scale of its block
 //! ```
 //!
-//! - *Features* ([`Layout`]): 27 numbers per frame in the character's own frame: where it will be
-//!   and what it will face in 1/3, 2/3 and 1 s, where its feet are, how feet and hips move.
-//!   Normalised block by block; [`Weights`] come with the question, so that they are live.
-//! - *Searches* ([`search`]): a plain scan, boxes that look at few frames, a k-d tree. All find the
-//!   same frame.
-//! - *Steering* ([`Simulation`]): critically damped springs from what the player asks for to a
-//!   smooth way. The wish is one part of the question, the body as it is the other.
+//! - *Features* ([`Layout`]): 27 numbers per frame in the character's own frame: its position and
+//!   facing in 1/3, 2/3 and 1 s, the positions of its feet, the velocities of feet and hips. They
+//!   are normalised block by block; [`Weights`] come with the query, so that they can change during
+//!   playback.
+//! - *Searches* ([`search`]): a plain scan, bounding boxes that visit few frames, a k-d tree. All
+//!   find the same frame.
+//! - *Steering* ([`Simulation`]): critically damped springs from the player's input to a smooth
+//!   trajectory. The desired trajectory is one part of the query, the current state of the body the
+//!   other.
 //! - *Input* ([`Control`], [`Recording`]): rounded as it is recorded, replayed exactly.
 //!
-//! A clip that is a cycle, such as one stride of a walk, goes round: it is searched to its last
-//! frame, its trajectories lead into the next round, and it plays on until another frame fits
+//! A clip that is a cycle, such as one stride of a walk, repeats: it is searched to its last frame,
+//! its trajectories continue into the next repetition, and it plays on until another frame fits
 //! better.
 //!
-//! The character's frame is the *simulation root*: the hips over the ground, without the sway of
-//! the stride ([`simulation_roots`]).
+//! The character's frame is the *simulation root*: the hips projected to the ground, without the
+//! sway of the stride ([`simulation_roots`]).
 //!
 //! # Example
 //!
@@ -56,7 +58,7 @@
 //! }
 //! assert!((character.root().shift.y - 3.7).abs() < 0.3 && character.jumps() < 12);
 //!
-//! // The boxes find what the scan finds, and look at fewer frames.
+//! // The boxes find the same frame as the scan, and visit fewer frames.
 //! let weights = Weights::default().spread(database.features().layout());
 //! let row = database.features().row(700).ok_or("no such frame")?;
 //! let query: Vec<f32> = row.iter().map(|x| x + 0.02).collect();
@@ -69,17 +71,17 @@
 //!
 //! # Accuracy and cost
 //!
-//! The three searches agree, frame and cost, on 10,000 random questions. Features, roots and
-//! steering are those of an oracle in `NumPy` and `SciPy`. A recording replays bit for bit, at any
-//! rate of the screen. In the recorded scenarios the character stays within 10 cm of where it
-//! should be in the mean, and turns are made within 1.2 s. A scan is O(frames × dimensions), a tick
-//! without a search O(joints).
+//! The three searches agree, frame and cost, on 10,000 random queries. Features, roots and steering
+//! agree with an oracle in `NumPy` and `SciPy`. A recording replays bit for bit, at any refresh
+//! rate of the screen. In the recorded scenarios the character stays within 10 cm of its target in
+//! the mean, and turns are made within 1.2 s. A scan is O(frames × dimensions), a tick without a
+//! search O(joints).
 //!
 //! # What it does not do
 //!
 //! It knows one ground plane, no obstacles, and no other characters. It looks one second ahead and
-//! plans nothing: what is not in the clips is not done. Retargeted clips keep their feet only as
-//! well as [`crate::clip::retarget`] does.
+//! plans nothing: motion that is not in the clips does not appear. Retargeted clips keep their feet
+//! planted only as well as [`crate::clip::retarget`] does.
 //!
 //! # Sources
 //!

@@ -1,30 +1,29 @@
-//! The little mathematics that every other module shares: rotations as vectors, rigid transforms of
-//! the ground, springs, and curves. Vectors and quaternions themselves are those of the crate
-//! `glam`.
+//! Mathematics shared by all other modules: rotations as vectors, rigid transforms of the ground,
+//! springs, and curves. Vectors and quaternions themselves are those of the crate `glam`.
 //!
 //! # The idea
 //!
 //! *Rotations* do not add, but small ones nearly do. The logarithm turns a quaternion into a
-//! rotation vector (axis × angle), with which one can reckon; the exponential turns it back
-//! ([`quat`]). `q` and `-q` are one rotation: always take the one that is nearer.
+//! rotation vector (axis × angle), which can be added and scaled; the exponential turns it back
+//! ([`quat`]). `q` and `-q` are one rotation: always take the nearer one.
 //!
 //! ```text
 //! v = log(q), |v| ≤ π        q = exp(v)
 //! ω = log(q₂ · q₁⁻¹) / dt    angular velocity in the world
 //! ```
 //!
-//! *A character on the ground* has a place and a facing: a [`Planar`] transform, three numbers. A
-//! walk is a chain of them, each step in the frame of the one before: `here.after(&step)`.
+//! *A character on the ground* has a position and a facing: a [`Planar`] transform, three numbers.
+//! A walk is a chain of them, each step in the frame of the one before: `here.after(&step)`.
 //!
-//! *A spring* that is critically damped pulls an offset to zero as fast as it goes without swinging
-//! ([`spring`]). Picture a door closer: it takes over whatever speed the door has, and does not
-//! swing to and fro. There is a closed form, so a step may be of any length:
+//! *A critically damped spring* pulls an offset to zero as fast as possible without overshoot
+//! ([`spring`]). Picture a door closer: it takes over whatever speed the door has, and the door
+//! does not swing to and fro. The solution is in closed form, so a step may be of any length:
 //!
 //! ```text
 //! x(t) = e^(-yt) (x + (v + xy) t),   y = 2 ln 2 / half-life
 //! ```
 //!
-//! [`Decay`] puts two curves with an end beside it, a cubic and a quintic. All three are linear in
+//! [`Decay`] adds two curves of finite duration, a cubic and a quintic. All three are linear in
 //! offset and velocity: four numbers ([`Response`]) serve a whole body.
 //!
 //! # Example
@@ -39,7 +38,7 @@
 //! for q in [turn, -turn] {
 //!     assert!((quat::angular_velocity(Quat::IDENTITY, q, 0.1) - Vec3::Y * 5.0).length() < 1e-5);
 //! }
-//! // A step ahead and a quarter turn to the left, four times: back where it began.
+//! // A step ahead and a quarter turn to the left, four times, ends where it began.
 //! let step = Planar::new(FRAC_PI_2, 0.0, 1.0);
 //! let here = (0..4).fold(Planar::IDENTITY, |here, _| here.after(&step));
 //! assert!(here.shift.length() < 1e-12);
@@ -47,7 +46,7 @@
 //! let (left, _) = spring::response(0.2, 0.2).of(1.0, 0.0);
 //! assert!((left - 0.597).abs() < 1e-3);
 //! assert!((spring::secs_until(0.2, 0.5) - 0.2 * 1.211).abs() < 1e-4);
-//! // Twelve short steps are one long one.
+//! // Twelve short steps equal one long step.
 //! let step = |(x, v), _| spring::towards(x, v, 0.0, 0.2, 0.2 / 12.0);
 //! assert!(((0..12).fold((1.0, 0.0), step).0 - left).abs() < 1e-12);
 //! ```
@@ -55,15 +54,15 @@
 //! # Accuracy and cost
 //!
 //! Decays agree with `SciPy` to 1e-10. `log` undoes `exp` to 2e-5 radians up to nearly half a turn,
-//! and rotations of a millionth of a radian keep their digits: logarithms do not go through `acos`,
-//! which loses half of them near the identity. Everything but curves through points and percentiles
+//! and rotations of a millionth of a radian keep their digits: logarithms do not use `acos`, which
+//! loses half the digits near the identity. Everything except curves through points and percentiles
 //! is O(1).
 //!
 //! # What it does not do
 //!
-//! No scales, no rigid transforms of space, no general linear algebra. Only for small rotation
-//! vectors are their rate and the angular velocity the same: [`quat::rate_to_angular_velocity`] is
-//! the bridge.
+//! No scales, no rigid transforms of space, no general linear algebra. The rate of a rotation
+//! vector equals the angular velocity only for small vectors; [`quat::rate_to_angular_velocity`]
+//! converts the one to the other.
 //!
 //! # Sources
 //!

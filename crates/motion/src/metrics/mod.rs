@@ -1,20 +1,21 @@
-//! Artefacts as numbers with a unit: what a viewer would point at, measured.
+//! Artefacts as numbers with a unit: the faults that a viewer would notice, measured.
 //!
 //! # The idea
 //!
-//! A number helps where it is 0 for good motion and grows with what is seen. A jump of 5° is much
-//! for a spine and little for a runner's knee, so a joint is measured *beyond* the most that it
-//! does in the clips that the motion was made of.
+//! A useful number is 0 for good motion and grows with the visible fault. A jump of 5° is much for
+//! a spine and little for a runner's knee, so a joint is measured *beyond* the greatest value that
+//! it has in the source clips.
 //!
-//! Some numbers are told of every motion, whatever made it: [`ResultMetrics`], beside what a
-//! [`MotionTrace`] knows of the clips.
+//! Some numbers apply to every motion, however it was made: [`ResultMetrics`], measured against a
+//! [`MotionTrace`] of the source clips.
 //!
-//! | | unit | what is told |
+//! | | unit | definition |
 //! |---|---|---|
 //! | pose jump | ° | the largest turn of a joint in one step, beyond the clips' |
-//! | velocity jump | °/s | likewise the largest change of its angular velocity in 1/30 s |
+//! | velocity jump | °/s | the largest change of a joint's angular velocity in 1/30 s, beyond the
+//! clips' |
 //! | spin | ° | the most yaw of the hips in 0.2 s, beyond the clips' |
-//! | skating | cm/s | how fast low feet move, in the mean |
+//! | skating | cm/s | the mean speed of low feet over the ground |
 //!
 //! ```text
 //! pose jump     = max over joints of  max over steps |ω| / fps - max over the clips' steps |ω| / fps
@@ -22,34 +23,34 @@
 //! spin          = max over frames |yaw(t + 0.2 s) - yaw(t)| - the same of the clips
 //! ```
 //!
-//! `ω(s, t)` is the mean angular velocity from s to t. A velocity jump does not hang on the frame
-//! rate: where a blend has an acceleration it is that times T, where the velocity jumps it is the
-//! jump.
+//! `ω(s, t)` is the mean angular velocity from s to t. A velocity jump does not depend on the frame
+//! rate: where a blend has an acceleration it is that times T, where the velocity is discontinuous
+//! it is the discontinuity.
 //!
-//! Others belong to a place or a kind of motion: [`foot_slide_cm`], [`ClipMetrics`],
+//! Others apply to a place or a kind of motion: [`foot_slide_cm`], [`ClipMetrics`],
 //! [`TransitionMetrics`].
 //!
-//! | | unit | what is told |
+//! | | unit | definition |
 //! |---|---|---|
-//! | foot slide | cm | how far a planted foot gets from where it stood in the worst stance |
+//! | foot slide | cm | the farthest that a planted foot moves in the worst stance |
 //! | place jump | cm | the character's step over the ground, beyond the usual |
-//! | penetration | cm | how deep the deepest point is below the ground |
-//! | lag | s | until the velocity is the new clip's, to 10 % |
+//! | penetration | cm | the depth of the deepest point below the ground |
+//! | lag | s | the time until the velocity is the new clip's, to 10 % |
 //!
 //! ```text
 //! slide = max over a stance of  |Σ step of the foot's stillest point|
 //! ```
 //!
-//! Around one transition more is known, the frames of both clips that play: what its fields measure
-//! is beyond what the clips do in these very frames. A [`Profile`] is what is measured of a clip
-//! for that.
+//! For a single transition the frames of both clips that play are known: the fields of
+//! [`TransitionMetrics`] are measured beyond what the clips do in these very frames. A [`Profile`]
+//! holds the measurements of one clip for that.
 //!
-//! A foot that rolls from heel to toe moves, but it has a point that stands: that one is followed.
-//! [`foot_slide_cm`] does so for a whole clip.
+//! A foot that rolls from heel to toe moves, but one of its points stands still: that point is
+//! followed. [`foot_slide_cm`] does so for a whole clip.
 //!
 //! # Example
 //!
-//! The same transition, right and with the most famous mistake in it: `atan` in place of `atan2`.
+//! The same transition, correct and with a well-known mistake: `atan` in place of `atan2`.
 //!
 //! ```
 //! use segue_motion::blend::{Concatenation, Source};
@@ -93,18 +94,18 @@
 //! # Accuracy and cost
 //!
 //! A joint that is turned by 30° in one frame measures 30° to 0.001°, and a foot that is made to
-//! slide by 5 cm slides 5 cm. A clip that goes on as itself has no artefact. A transition costs
+//! slide by 5 cm slides 5 cm. A clip that continues as itself has no artefact. A transition costs
 //! O(its frames × joints) and half a second to either side, a profile O(frames × joints) once.
 //!
 //! # What it does not do
 //!
 //! No number says whether a motion is beautiful, or in character. Limbs that pass through each
-//! other are not seen. What is usual in a trembling capture hides a trembling seam. Feet are
-//! planted where the *sources* say so: a wrong contact is measured as a slide.
+//! other are not detected. The usual motion of a trembling capture hides a trembling seam. Feet
+//! count as planted where the *sources* have contacts: a wrong contact is measured as a slide.
 //!
 //! # Sources
 //!
-//! The definitions are Segue's own; each is written out at its field in [`TransitionMetrics`].
+//! The definitions are Segue's own; each stands at its field in [`TransitionMetrics`].
 
 mod artefacts;
 mod deviation;
@@ -123,37 +124,37 @@ pub use slide::{SlideMeter, foot_slide_cm, foot_slides_cm};
 pub use transition::{Subject, TransitionMetrics};
 pub use whole::{ClipMeter, ClipMetrics};
 
-/// Which way a number should go.
+/// The direction in which a metric improves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Better {
     /// Smaller is better; 0 is perfect.
     Lower,
     /// Larger is better.
     Higher,
-    /// Neither: it describes.
+    /// Neither: the number only describes.
     Neutral,
 }
 
-/// One number for a person.
+/// One measured number, with its label, unit and help text.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Metric {
     /// The key in links, exports and comparisons; never changes.
     pub id: &'static str,
-    /// What it is called.
+    /// The name on screen.
     pub label: &'static str,
     /// The number; `None` where there is nothing to measure (no feet, no foot on the ground, no
     /// change of speed).
     pub value: Option<f64>,
-    /// The unit, as written behind the number.
+    /// The unit, as written after the number.
     pub unit: &'static str,
-    /// Which way it should go.
+    /// The direction in which it improves.
     pub better: Better,
-    /// One or two sentences: what it means and how it is measured.
+    /// One or two sentences: its meaning and how it is measured.
     pub help: &'static str,
 }
 
 impl Metric {
-    /// A number that should be small; 0 is perfect.
+    /// Returns a metric that should be small; 0 is perfect.
     #[must_use]
     pub fn lower(
         id: &'static str,
@@ -165,7 +166,7 @@ impl Metric {
         Self { better: Better::Lower, ..Self::fact(id, label, value, unit, help) }
     }
 
-    /// A number that only describes.
+    /// Returns a metric that only describes.
     #[must_use]
     pub fn fact(
         id: &'static str,

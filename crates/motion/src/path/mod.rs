@@ -1,10 +1,10 @@
-//! Path editing: drag the road, the character follows.
+//! Path editing: motion that follows an edited path over the ground.
 //!
 //! # The idea
 //!
-//! Take a walk apart into where it goes and what the body does on the way. The way of the
-//! character's root over the ground is fitted by a cubic B-spline C(u) with N control points; what
-//! the fit leaves over, sway of the hips and the angle between body and path, is kept in the path's
+//! A walk is separated into its path and the motion of the body along it. The trajectory of the
+//! character's root over the ground is fitted by a cubic B-spline C(u) with N control points; the
+//! residual of the fit, sway of the hips and the angle between body and path, is kept in the path's
 //! moving frame: +Z along the path, +X to its left.
 //!
 //! ```text
@@ -14,11 +14,11 @@
 //!         v_k: the place on the new path, by Timing
 //! ```
 //!
-//! Picture a tram with a dancer in it: bend the rails, and the dance goes along. When the path
-//! changes, every frame is moved with the frame of the path that it rides in ([`carry`]), and the
-//! feet are planted again ([`PathEditor`]). What happens to time where a path becomes longer,
-//! [`Timing`] says: metres stay, speed stays, or duration stays. Turns that are sharper than the
-//! motion knows are told ([`hard_turns`]: curvature × speed).
+//! Picture a dancer in a tram: bend the rails, and the dance goes along. When the path changes,
+//! every frame is moved with the frame of the path that it belongs to ([`carry`]), and the feet are
+//! planted again ([`PathEditor`]). [`Timing`] says what happens to time where a path becomes
+//! longer: stride length, speed or duration is kept. [`hard_turns`] reports turns that are sharper
+//! than those of the original motion (curvature × speed).
 //!
 //! # Example
 //!
@@ -42,7 +42,7 @@
 //! let mut pairs = same.root_translations().iter().zip(walk.root_translations());
 //! assert!(pairs.all(|(p, q)| p.distance(*q) < 1e-4));
 //!
-//! // The fourth control point half a metre to the left: the walk takes a bow.
+//! // The fourth control point half a metre to the left: the walk makes a curve.
 //! let spline = path.road().spline();
 //! let to = spline.points()[3] + DVec2::new(0.5, 0.0);
 //! let bow = spline.edited(&PathEdit::Move { index: 3, to }, Pins::default())?;
@@ -54,16 +54,16 @@
 //!
 //! # Accuracy and cost
 //!
-//! A path that is not edited gives its motion back to 1e-4 m and 1e-4 radians, and one that is
-//! moved rigidly moves it rigidly. Control points are those of `SciPy`'s least squares to 1e-9 m.
-//! Joints of one frame keep their distances whatever is done to the path, until feet are planted. A
-//! fit is O(frames + control points), a carried motion O(frames × joints).
+//! An unedited path reproduces its motion to 1e-4 m and 1e-4 radians, and a path that is moved
+//! rigidly moves it rigidly. Control points agree with `SciPy`'s least squares to 1e-9 m. Joints of
+//! one frame keep their distances whatever is done to the path, until feet are planted. A fit is
+//! O(frames + control points), a carried motion O(frames × joints).
 //!
 //! # What it does not do
 //!
-//! It bends motions, and neither invents steps nor takes them away: a path of twice the length is
-//! walked halfway, or with strides twice as long, as [`Timing`] says. A motion that stays in place
-//! has no path. Balance is not looked after: whoever is sent around a hairpin does not lean.
+//! It bends motions, and neither adds nor removes steps: a path of twice the length is walked
+//! halfway, or with strides twice as long, as [`Timing`] says. A motion in place has no path.
+//! Balance is not maintained: a character on a hairpin does not lean.
 //!
 //! # Sources
 //!
@@ -93,22 +93,22 @@ pub use road::{Road, Waypoint};
 pub use spline::{FARTHEST_M, GroundSpline, Jet, MAX_POINTS, MIN_POINTS, SplineEnds};
 pub use turning::{HardTurn, hard_turns, turn_rates};
 
-/// Why a path cannot be fitted, edited or walked.
+/// Error fitting, editing or following a path.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PathEditError {
-    /// No motion to take a path from.
+    /// The clip is too short to have a path.
     #[error("{frames} frames are no way over the ground: take a clip of two or more")]
     Frames {
-        /// Frames that there are.
+        /// Number of frames.
         frames: usize,
     },
-    /// The character does not go anywhere.
+    /// The character does not travel.
     #[error("this motion stays within {:.0} cm, so that there is no path to edit: choose one that travels", extent_m * 100.0)]
     Stands {
-        /// The diagonal of the box around the root's way, metres.
+        /// The diagonal of the bounding box of the root's trajectory, metres.
         extent_m: f64,
     },
-    /// A path that is a point.
+    /// The path is shorter than the least length.
     #[error("a path of {:.1} cm has no direction: draw its control points apart", length_m * 100.0)]
     NoLength {
         /// Its length, metres.
@@ -120,53 +120,53 @@ pub enum PathEditError {
         /// The number asked for.
         points: usize,
     },
-    /// A point that is no place.
+    /// A point that is not finite, or too far from the origin.
     #[error("point {index} is not within {FARTHEST_M} m of the origin")]
     Point {
-        /// Which.
+        /// Index of the point.
         index: usize,
     },
-    /// Knots that do not fit.
+    /// Knots that do not rise, or not as many as needed.
     #[error(
         "knots have to rise between 0 and 1, four fewer than control points and not too close to each other: take another place"
     )]
     Knots,
-    /// Parameters that are none.
+    /// Parameters that are out of range, equal or descending.
     #[error(
         "each point needs a parameter from 0 to 1, at least two of them different, and none below the one before"
     )]
     Parameters,
-    /// A control point that is not there.
+    /// An index beyond the last control point.
     #[error("there is no control point {index} among {points}")]
     NoSuchPoint {
-        /// Which.
+        /// The index.
         index: usize,
-        /// Points that there are.
+        /// Number of control points.
         points: usize,
     },
-    /// A control point that has to stay.
+    /// A control point that must not be removed.
     #[error("control point {index} cannot be removed: ends stay, and so do the last {least}")]
     NotRemoved {
-        /// Which.
+        /// Index of the point.
         index: usize,
-        /// The fewest points of this path.
+        /// The least number of points of this path.
         least: usize,
     },
-    /// An end that has to stay where it is.
+    /// An end that is pinned.
     #[error("an end of the path is pinned: free it first")]
     Pinned,
-    /// Too few control points for a loop.
+    /// Too few control points for a closed path.
     #[error("{points} control points do not make a loop: add points until there are {least}")]
     TooFewToClose {
-        /// Points that there are.
+        /// Number of control points.
         points: usize,
-        /// Points that a loop needs.
+        /// The least number of points of a closed path.
         least: usize,
     },
     /// A number out of range.
     #[error("a {what} of {value} cannot be used: give a number from {least} to {most}")]
     Option {
-        /// Which number.
+        /// Name of the number.
         what: &'static str,
         /// The number given.
         value: f64,
@@ -175,13 +175,13 @@ pub enum PathEditError {
         /// The largest number.
         most: f64,
     },
-    /// A word that is no path.
+    /// A text that is not an encoded path.
     #[error("this is not a path from a link: copy the whole link")]
     Code,
     /// Feet cannot be planted.
     #[error(transparent)]
     FootLock(#[from] FootLockError),
-    /// The result is no clip.
+    /// The result is not a valid clip.
     #[error(transparent)]
     Clip(#[from] ClipError),
 }

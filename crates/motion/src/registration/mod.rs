@@ -1,14 +1,14 @@
-//! Laying one motion on another: point clouds, their best rigid alignment on the ground, distances
-//! between windows of two clips, the best place to go from one clip to the other, and the timewarp
-//! between them.
+//! Registration of motions: point clouds, their best rigid alignment on the ground, distances
+//! between windows of two clips, the best transition between two clips, and the time warp between
+//! them.
 //!
 //! # The idea
 //!
-//! When are two moments of motion alike? Not when their joint angles are: a degree in the hip moves
-//! the foot, a degree in the finger nothing. Take the joints' *positions* over a window of frames
-//! as a cloud of points, slide and turn the second cloud over the ground until it lies best on the
-//! first, and measure what is left. There is a closed form; with weights w, W = Σw and bars for
-//! weighted sums:
+//! Joint angles are a poor measure of likeness: a degree in the hip moves the foot, a degree in the
+//! finger moves nothing. Instead, the joints' *positions* over a window of frames are taken as a
+//! cloud of points, the second cloud is shifted and turned over the ground until it fits the first
+//! best, and the remaining distance is measured. There is a closed form; with weights w, W = Σw and
+//! bars for weighted sums:
 //!
 //! ```text
 //! A = Σw(x z' - x' z) - (x̄ z̄' - x̄' z̄)/W       θ = atan2(A, B)
@@ -16,14 +16,14 @@
 //! ```
 //!
 //! S and S' are the centred spreads of both clouds over the ground. `atan(A / B)` in place of
-//! `atan2` lands half a turn off for half of all clouds: the cause of sudden spins.
+//! `atan2` is half a turn off for half of all clouds: the cause of sudden spins.
 //!
-//! The distances of all pairs of windows are a picture, a row for each frame of A and a column for
-//! each of B. Two walks give dark diagonal valleys, one for every stride; their floors are the
-//! places to go over ([`TransitionSearch`]). Each term of D is a sum along a diagonal, so the
-//! products of single frames are made once, and another window is a running sum ([`PairTerms`]). A
-//! path along a valley ([`optimal_path`]) tells which frame of A is like which of B: smoothed, it
-//! is the timewarp of a [`Registration`], with the alignment along it.
+//! The distances of all pairs of windows form a picture, a row for each frame of A and a column for
+//! each of B. Two walks give dark diagonal valleys, one for every stride; the minima along them are
+//! the best transitions ([`TransitionSearch`]). Each term of D is a sum along a diagonal, so the
+//! products of single frames are computed once, and another window length is a running sum
+//! ([`PairTerms`]). A path along a valley ([`optimal_path`]) assigns frames of A to frames of B:
+//! smoothed, it is the time warp of a [`Registration`], with the alignment along it.
 //!
 //! # Windows and units
 //!
@@ -32,7 +32,7 @@
 //! forward from `i`, `A[i..i + k)`; the target window runs forward from `j`, `B[j..j + k)`. A
 //! window never crosses the end of its clip. Distances are root-mean-square distances per point,
 //! scaled to a body of [`REFERENCE_HEIGHT_M`] and given in centimetres ([`rms_cm`]), so that a
-//! threshold found with one character carries over to a taller one.
+//! threshold found with one character holds for a taller one.
 //!
 //! # Example
 //!
@@ -46,13 +46,13 @@
 //! let (a, b) = (&slow.clip, &fast.clip);
 //! let weights = limb_weights(a.skeleton());
 //!
-//! // Moved over the ground a motion is still the same, and alignment finds the way back.
+//! // Moved over the ground a motion stays the same, and alignment finds the transform back.
 //! let moved = Planar::new(2.5, 3.0, -2.0);
 //! let there = a.transformed(&moved);
 //! let found = align(&a.world_positions(0..10), &there.world_positions(0..10), &weights, 0.0)?;
 //! assert!(found.rms_m() < 1e-5 && found.transform.after(&moved).shift.length() < 1e-5);
 //!
-//! // A slow walk and a fast one: a cycle of the one is registered to a cycle of the other.
+//! // Register a cycle of a slow walk with a cycle of a fast one.
 //! let mut terms = PairTerms::new(a, 0..a.frames(), b, 0..b.frames(), &weights, 1)?;
 //! terms.finish();
 //! let matrix = terms.distances(5, &(0..a.frames()), &(0..b.frames()))?;
@@ -65,24 +65,24 @@
 //!
 //! # Accuracy and cost
 //!
-//! Alignments agree with `SciPy`'s least squares to 1e-9 of the distance, and with a search through
-//! 20,000 turns. The fast distances differ from the definition ([`distances_directly`]) by less
-//! than 3e-7 m² in the mean square. Paths are the cheapest of *all* paths, tried one by one on
-//! small matrices. The search over a coarse grid comes within 5 % or 0.2 cm of the best pair of all
-//! frames. Cost for N frames, J joints, windows of K: O(N²J) once and O(N²) per window, in place of
-//! O(N²JK).
+//! Alignments agree with `SciPy`'s least squares to 1e-9 of the distance, and with a search over
+//! 20,000 angles. The fast distances differ from the definition ([`distances_directly`]) by less
+//! than 3e-7 m² in the mean square. Paths are the cheapest of *all* paths, verified by enumeration
+//! on small matrices. The search over a coarse grid comes within 5 % or 0.2 cm of the best pair of
+//! all frames. Cost for N frames, J joints, windows of K: O(N²J) once and O(N²) per window, in
+//! place of O(N²JK).
 //!
 //! # What it does not do
 //!
-//! It compares where joints are, neither forces nor meanings. Turns are about the vertical alone: a
-//! climb is not laid on a walk. Heights are compared, but never shifted. Clips must have one
-//! skeleton and one frame rate.
+//! It compares joint positions, neither forces nor meaning. Rotations are about the vertical alone:
+//! a climb cannot be aligned with a walk. Heights are compared, but never shifted. Clips must have
+//! the same skeleton and frame rate.
 //!
 //! # Sources
 //!
 //! Kovar, Gleicher, Pighin, "Motion Graphs", 2002, section 3.1 (clouds, alignment, distance).
-//! Kovar, Gleicher, "Flexible Automatic Motion Blending with Registration Curves", 2003 (path,
-//! timewarp, alignment curve). Sakoe, Chiba 1978 (the path's weights).
+//! Kovar, Gleicher, "Flexible Automatic Motion Blending with Registration Curves", 2003 (path, time
+//! warp, alignment curve). Sakoe, Chiba 1978 (weights of the path's steps).
 
 mod align;
 mod cloud;
@@ -123,7 +123,7 @@ pub(crate) use terms::MAX_PAIRS;
 pub use terms::{PairTerms, Progress, distances_directly};
 pub use transition::{Region, SearchOptions, Transition, TransitionSearch, best_transition};
 
-/// Why two motions cannot be laid on each other.
+/// Error aligning or comparing two motions.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RegistrationError {
     /// The clouds do not have the same points.
@@ -136,14 +136,14 @@ pub enum RegistrationError {
         /// Points of the target cloud.
         target_points: usize,
     },
-    /// The weights do not fit the points, or weigh nothing.
+    /// The number of weights differs from the number of points, or all are 0.
     #[error(
         "{found} weights for {expected} joints: give one weight per joint, none negative, and at least one above 0"
     )]
     Weights {
         /// Weights given.
         found: usize,
-        /// Joints (or points) to be weighed.
+        /// Joints (or points) to be weighted.
         expected: usize,
     },
     /// A position is not a number.
@@ -187,19 +187,19 @@ pub enum RegistrationError {
         /// "outgoing" or "incoming".
         which: &'static str,
     },
-    /// More pairs than can be held.
+    /// More pairs of frames than can be held in memory.
     #[error(
         "{pairs} pairs of frames are more than can be compared at once ({most}): crop the clips, or compare every {stride} frames"
     )]
     TooManyPairs {
         /// Pairs of frames asked for.
         pairs: usize,
-        /// The most that are held.
+        /// The limit.
         most: usize,
-        /// A stride that would do.
+        /// A stride that would fit.
         stride: usize,
     },
-    /// The sums have not been computed yet.
+    /// The pair sums have not been computed yet.
     #[error("{done} of {total} rows are compared: advance the search to the end first")]
     Unfinished {
         /// Rows done.

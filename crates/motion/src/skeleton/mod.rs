@@ -1,30 +1,30 @@
-//! Skeletons: trees of joints, where a pose puts them, what each joint is for, and how a pose comes
-//! onto another body or into a mirror.
+//! Skeletons: trees of joints, forward and two-bone inverse kinematics, the role of each joint,
+//! retargeting and mirroring of poses.
 //!
 //! # The idea
 //!
-//! A joint is a pivot that hangs on its parent by an offset. A [`Pose`] turns every joint against
-//! its parent; forward kinematics ([`world_pose`]) adds that up from the root outwards. Since
-//! parents stand before their children, one pass does it:
+//! A joint is a pivot at a fixed offset from its parent. A [`Pose`] rotates every joint relative to
+//! its parent; forward kinematics ([`world_pose`]) accumulates that from the root outwards. Since
+//! parents stand before their children, one pass suffices:
 //!
 //! ```text
 //! rotation(j) = rotation(parent) · local(j)                       world_from_joint
 //! position(j) = position(parent) + rotation(parent) · offset(j)
 //! ```
 //!
-//! So a turn of the hip carries the whole leg along, and no bone changes its length.
+//! A turn of the hip therefore carries the whole leg along, and no bone changes its length.
 //!
-//! Files name joints as they like. [`Roles`] say which joint is the left knee, by its name, else by
-//! the shape at rest, else by hand; from there on nobody asks for names. With roles known on both
-//! sides a pose moves to another body ([`Retargeting`]): a joint takes the *world* rotation of the
-//! joint that drives it, corrected by how the two bones differ at rest.
+//! Files name joints as they like. [`Roles`] say which joint is the left knee: by its name,
+//! otherwise by the shape of the skeleton at rest, otherwise by hand. No other code looks at names.
+//! With the roles of both skeletons a pose can be retargeted ([`Retargeting`]): a joint takes the
+//! *world* rotation of its source joint, corrected by how the two bones differ at rest.
 //!
 //! ```text
 //! world_target = world_source · C      C takes the target's bone at rest to the source's
 //! ```
 //!
-//! [`Mirror`] swaps the sides in the same way, and [`two_bones`] bends a leg so that its ankle lies
-//! at a given place.
+//! [`Mirror`] swaps the sides in the same way, and [`two_bones`] bends a leg so that its ankle
+//! reaches a given point (two-bone inverse kinematics).
 //!
 //! # Example
 //!
@@ -49,7 +49,7 @@
 //! assert!(after.positions[ankle].z > before.positions[ankle].z + 0.4);
 //! assert!(after.point(knee, body.joints()[ankle].offset).distance(after.positions[ankle]) < 1e-6);
 //!
-//! // A child kicks as far in proportion, and in a mirror the right foot kicks.
+//! // A child's body kicks in proportion; mirrored, the right foot kicks.
 //! let child = humanoid(1.2)?;
 //! let child_roles = Roles::detect(&child);
 //! let smaller = Retargeting::new(&body, &roles, &child, &child_roles).ok_or("nothing in common")?;
@@ -64,20 +64,20 @@
 //! # Accuracy and cost
 //!
 //! Kinematics agree with 4 × 4 matrices to 2e-6 of a point's distance. Between any two of eleven
-//! kinds of rig, limbs point where the source's do, within the 2° below which rest poses count as
-//! the same; mirroring twice gives the pose back to 1e-5. Kinematics and retargeting are O(joints)
-//! for a pose.
+//! kinds of rig, limbs point in the directions of the source's, within the 2° below which rest
+//! poses count as equal; mirroring twice gives the pose back to 1e-5. Kinematics and retargeting
+//! are O(joints) for a pose.
 //!
 //! # What it does not do
 //!
-//! No limits of joints, no scaled bones, no muscles. Inverse kinematics are those of two bones.
-//! Feet are not planted after retargeting ([`crate::transition::foot_lock`] does that), and hands
-//! do not reach for what they held.
+//! No joint limits, no scaled bones, no muscles. Inverse kinematics are limited to two bones. Feet
+//! are not planted after retargeting ([`crate::transition::foot_lock`] does that), and hands do not
+//! reach for the object that they held.
 //!
 //! # Sources
 //!
-//! Retargeting and mirror images are described where they are made ([`Retargeting`], [`Mirror`]).
-//! Roles follow the names of the rigs that [`Roles::detect`] lists.
+//! Retargeting and mirroring cite theirs at [`Retargeting`] and [`Mirror`]. Roles follow the names
+//! of the rigs that [`Roles::detect`] lists.
 
 mod ancestry;
 mod carrier;

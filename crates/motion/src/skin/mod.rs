@@ -1,16 +1,15 @@
-//! The skinned body: one smooth mesh that follows a skeleton.
+//! Skinning: one smooth mesh that follows a skeleton.
 //!
-//! A [`SkinnedMesh`] lies in its *bind pose*; every vertex says which joints move it and by how
-//! much. For a pose of the skeleton, [`SkinnedMesh::joint_transforms`] gives one rigid transform
-//! per joint (`world_from_bind`), and the vertices are mixed from those of their joints: either by
-//! the weighted mean of the moved points ([`linear_blend`]), which loses volume where a limb
-//! twists, or by the weighted mean of the motions themselves ([`dual_quaternion`]), which keeps it.
-//! Both are written here plainly, one vertex after the other; the renderer does the same on the
-//! GPU.
+//! A [`SkinnedMesh`] lies in its *bind pose*; every vertex has the joints that move it and their
+//! weights. For a pose of the skeleton, [`SkinnedMesh::joint_transforms`] gives one rigid transform
+//! per joint (`world_from_bind`). Vertices are blended from those of their joints: either by the
+//! weighted mean of the moved points ([`linear_blend`]), which loses volume where a limb twists, or
+//! by the weighted mean of the motions themselves ([`dual_quaternion`]), which keeps it. Both are
+//! written here plainly, one vertex after the other; the renderer does the same on the GPU.
 //!
 //! [`SkinnedMesh::around_clip`] makes a mesh for any skeleton, a mannequin where the roles of a
-//! human are known; a [`Sculptor`] makes it piece by piece, and the [`Sculpture`] that comes of it
-//! takes any girth in a moment. A mesh that came with a file is a [`SkinnedMesh`], too.
+//! human are known. A [`Sculptor`] makes it in slices, and the resulting [`Sculpture`] takes any
+//! girth at once. A mesh that was read from a file is a [`SkinnedMesh`], too.
 //!
 //! A motion with weights `w` that sum to 1 takes a point `p` of the bind pose to
 //!
@@ -38,9 +37,9 @@
 //! assert!(apart > 0.0 && apart < 0.03, "{apart}");
 //! ```
 //!
-//! A body takes about 0.1 s to be made, in pieces of a millisecond, and a millisecond to be posed
-//! here, in one thread; on the GPU that is free. Hands have no separate fingers where the skeleton
-//! has none, and nothing collides.
+//! Making a body takes about 0.1 s, in slices of a millisecond; posing it takes a millisecond here,
+//! in one thread, and next to nothing on the GPU. Hands have no separate fingers where the skeleton
+//! has none, and there are no collisions.
 //!
 //! Sources: Kavan, Collins, Žára, O'Sullivan, "Skinning with Dual Quaternions", 2007; Ju, Losasso,
 //! Schaefer, Warren, "Dual Contouring of Hermite Data", 2002.
@@ -64,39 +63,37 @@ use crate::clip::{Clip, reference_pose};
 use crate::skeleton::{Roles, Skeleton, WorldPose};
 use glam::{Quat, Vec3};
 
-/// A mesh bound to a skeleton, in its bind pose. All lists of vertices are of one length.
+/// A mesh bound to a skeleton, in its bind pose. All per-vertex lists have the same length.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SkinnedMesh {
-    /// Metres, in the world of the bind pose, Y up.
+    /// Positions in the world of the bind pose, metres, Y up.
     pub positions: Vec<Vec3>,
-    /// Unit vectors out of the surface.
+    /// Unit normals, outward.
     pub normals: Vec<Vec3>,
-    /// The joints of the skeleton that move each vertex. Unused ones have weight 0 and are joints
-    /// nevertheless.
+    /// The joints of the skeleton that move each vertex. Unused entries have weight 0 and still are
+    /// valid joints.
     pub joints: Vec<[u16; 4]>,
-    /// How much each of them does: the greatest first, none negative, their sum 1.
+    /// The weight of each of these joints: descending, non-negative, their sum 1.
     pub weights: Vec<[f32; 4]>,
     /// Three vertices each, counter-clockwise from outside.
     pub triangles: Vec<[u32; 3]>,
     /// Base colour of each vertex, red, green, blue and alpha in 0–1 as written in a palette
-    /// (sRGB-encoded, alpha straight). Empty where the mesh has no colours of its own.
+    /// (sRGB-encoded, straight alpha). Empty where the mesh has no colours of its own.
     pub colors: Vec<[f32; 4]>,
-    /// `joint_from_bind` of every joint of the skeleton: where the bind pose lies in the joint's
-    /// frame.
+    /// `joint_from_bind` of every joint of the skeleton: the bind pose in the joint's frame.
     pub bind: Vec<RigidTransform>,
 }
 
 impl SkinnedMesh {
-    /// Makes a body for a skeleton at once, of which nothing is known but its rest pose: see
-    /// [`Sculptor::new`] and, for the girth, [`Sculpture::with_girth`]. The same input gives the
-    /// same mesh.
+    /// Makes a body for a skeleton from its rest pose alone: see [`Sculptor::new`] and, for the
+    /// girth, [`Sculpture::with_girth`]. The same input gives the same mesh.
     #[must_use]
     pub fn around(skeleton: &Skeleton, roles: &Roles, girth: f32) -> Self {
         Self::sculpted(Sculptor::new(skeleton, roles, &skeleton.rest_pose()), girth)
     }
 
-    /// Makes a body for the skeleton of a clip at once. Where its rest pose means nothing, the clip
-    /// shows how it stands ([`reference_pose`]).
+    /// Makes a body for the skeleton of a clip. Where its rest pose is implausible, the reference
+    /// pose of the clip is used instead ([`reference_pose`]).
     #[must_use]
     pub fn around_clip(clip: &Clip, roles: &Roles, girth: f32) -> Self {
         Self::sculpted(Sculptor::new(clip.skeleton(), roles, &reference_pose(clip, roles)), girth)
@@ -110,9 +107,9 @@ impl SkinnedMesh {
         }
     }
 
-    /// `world_from_bind` of every joint for a pose of the skeleton: what moves a vertex of the bind
-    /// pose that follows this joint alone. Joints that the pose does not have stay where the bind
-    /// pose is.
+    /// Returns `world_from_bind` of every joint for a pose of the skeleton: the transform of a
+    /// vertex that follows this joint alone. Joints that the pose does not have stay in the bind
+    /// pose.
     pub fn world_from_bind(&self, world: &WorldPose) -> impl Iterator<Item = RigidTransform> {
         self.bind.iter().enumerate().map(|(joint, joint_from_bind)| {
             match (world.positions.get(joint), world.rotations.get(joint)) {
@@ -124,7 +121,7 @@ impl SkinnedMesh {
         })
     }
 
-    /// The same in a list that is overwritten.
+    /// Writes [`Self::world_from_bind`] into a list, which is overwritten.
     pub fn joint_transforms(&self, world: &WorldPose, out: &mut Vec<RigidTransform>) {
         out.clear();
         out.extend(self.world_from_bind(world));
@@ -140,7 +137,7 @@ impl SkinnedMesh {
         }
     }
 
-    /// Moves the mesh to another list of joints: joint `i` becomes `joint_of[i]`, or the root where
+    /// Maps the mesh to another list of joints: joint `i` becomes `joint_of[i]`, or the root where
     /// that list is too short; `bind` holds `joint_from_bind` of the new joints.
     pub fn rebind(&mut self, joint_of: &[usize], bind: Vec<RigidTransform>) {
         for joint in self.joints.as_flattened_mut() {
@@ -149,8 +146,8 @@ impl SkinnedMesh {
         self.bind = bind;
     }
 
-    /// Turns the mesh and its joints' axes about the origin. At rest the joints have no rotation,
-    /// as before.
+    /// Turns the mesh and its joints' axes about the origin. The joints' rotations at rest remain
+    /// the identity.
     pub fn turn(&mut self, turn: Quat) {
         for position in &mut self.positions {
             *position = turn * *position;

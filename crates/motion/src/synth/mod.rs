@@ -1,9 +1,9 @@
-//! Walking, running, standing, turning and jumping, made from parameters. The library's examples
-//! and tests stand on it, because everything about a made clip is known.
+//! Synthesis of walks, runs, turns, jumps and standing from parameters. The library's examples and
+//! tests are built on it, because everything about a synthesised clip is known.
 //!
 //! # The idea
 //!
-//! A motion is planned from the feet up. [`Params`] give a way over the ground and, through the
+//! A motion is planned from the feet up. [`Params`] give a path over the ground and, through the
 //! published relations of speed, cadence and stance, the moments at which each foot is set down and
 //! lifted. Planted feet roll over heel and ball without sliding; between plants they swing. The
 //! hips follow as an inverted pendulum follows its point of support `p`:
@@ -12,14 +12,14 @@
 //! ẍ = ω² (x - p),   ω² = g / h       x(t) = ∫ ω/2 · e^(-ω|s|) p(t + s) ds
 //! ```
 //!
-//! Picture a broomstick on a hand: to go left, the hand first goes right. The only motion that does
-//! not fall looks ahead as far as back, so that sway, the shift of weight before a first step and
-//! the lean into a curve come out of the footholds. In running and jumping the hips obey gravity in
-//! flight. Legs are two bones between hip and ankle; trunk, arms and head move against them. Bodies
-//! of other size walk alike at equal Froude number `v² / gl`.
+//! Picture a broomstick on a hand: to go left, the hand first goes right. The only bounded motion
+//! looks ahead as far as back, so that sway, the shift of weight before a first step and the lean
+//! into a curve follow from the footholds. In running and jumping the hips obey gravity in flight.
+//! Legs are two bones between hip and ankle; trunk, arms and head move against them. Bodies of
+//! different size walk alike at equal Froude number `v² / gl`.
 //!
-//! Everything that was decided on the way is kept in [`Truth`]: made clips are the yardstick that
-//! detectors of contacts, phase and speed are tested with.
+//! Everything that was decided on the way is kept in [`Truth`]: synthesised clips are the reference
+//! by which detectors of contacts, phase and speed are tested.
 //!
 //! # Example
 //!
@@ -30,7 +30,7 @@
 //! let made = synthesize(&circle)?;
 //! assert!((made.truth.stride_m - 1.2 * made.truth.cycle_secs).abs() < 1e-5);
 //!
-//! // While the truth says that the toes stand, they stand, though the body walks on.
+//! // While the truth has the toes on the ground, they stand still, though the body walks on.
 //! let toe = made.clip.skeleton().find("LeftToe").ok_or("no toe")?;
 //! let at = |frame: usize| made.clip.world_pose(frame).positions[toe];
 //! let stands = |frame: usize| made.truth.contacts[frame][0].toe;
@@ -43,19 +43,19 @@
 //!
 //! Over all actions planted feet slip by less than 1 mm and sink by less than 2 mm; the mean speed
 //! of walks and runs is the one asked for to 0.5 %; in flight a body falls with 9.81 m/s² within
-//! 0.15. Walks and runs are whole cycles that end in their first pose to 2e-3 radians. Time grows
-//! with frames; the same parameters give the same clip.
+//! 0.15. Walks and runs are whole cycles that end in their first pose to 2e-3 radians. The cost is
+//! linear in frames; the same parameters give the same clip.
 //!
 //! # What it does not do
 //!
-//! It knows no muscles and no mass but the pendulum's, no ground but the plane, no fatigue, and no
-//! hands that do anything.
+//! It models no muscles, no mass except the pendulum's, no ground except the plane, no fatigue, and
+//! no use of the hands.
 //!
 //! # Sources
 //!
 //! Cadence and stance: Grieve and Gear 1966, Murray 1967, Inman, Ralston and Todd 1981 (walking);
-//! Cavanagh and Kram 1989, Weyand et al. 2000 (running). Other sizes: Alexander and Jayes 1983. The
-//! pendulum that looks ahead: Kajita et al. 2003. Proportions: Drillis and Contini 1966, in Winter,
+//! Cavanagh and Kram 1989, Weyand et al. 2000 (running). Other sizes: Alexander and Jayes 1983.
+//! Preview of the pendulum: Kajita et al. 2003. Proportions: Drillis and Contini 1966, in Winter,
 //! "Biomechanics and Motor Control of Human Movement".
 
 mod arms;

@@ -1,11 +1,11 @@
 //! Transitions that start at once, and clips that close into a cycle: inertialization, dead
-//! blending, loops, and the cut and the dissolve beside them.
+//! blending, loops, foot locking, and the cut and the dissolve in the same form.
 //!
 //! # The idea
 //!
 //! A dissolve plays two clips at once and looks like neither for its whole window. Inertialization
-//! plays only the new clip, from the first frame on, and lets the *difference* to what was playing,
-//! in pose and in velocity, die away. Picture a passenger in a bus that brakes: the bus is the new
+//! plays only the new clip, from the first frame on, and lets the *difference* to the old one, in
+//! pose and in velocity, decay. Picture a passenger in a bus that brakes: the bus is the new
 //! motion, and the lean of the passenger is the offset.
 //!
 //! ```text
@@ -14,21 +14,21 @@
 //! ```
 //!
 //! [`concatenate`] is one entry point for all methods, with one meaning of "leave" and "enter", so
-//! that they can be compared; [`Inertializer`] does it frame by frame for whoever jumps while
-//! playing. Dead blending lets the old *pose* run on with dying velocity, and fades from that to
-//! the new clip: safer for poses that are far apart.
+//! that they can be compared; [`Inertializer`] does the same frame by frame during playback. Dead
+//! blending extrapolates the old *pose* with decaying velocity, and fades from that to the new
+//! clip: safer for poses that are far apart.
 //!
 //! [`close_loop`] makes a cycle: the difference between its ends, D in pose and V in velocity, is
-//! bent away from both sides, a share r at the head and the rest at the tail.
+//! removed on both sides, a share r at the head and the rest at the tail.
 //!
 //! ```text
 //! offset(t) = decay(r X, r W; t) - decay((1 - r) X, -(1 - r) W; T - t)
 //! ```
 //!
-//! With X = D and W = V, as is usual, each spring has something left at the other end,
-//! `(1 + yT) e^(-yT)` of it; [`LoopCurve`] solves for the X and W that close exactly.
-//! [`find_cycle`] finds ends that differ little. [`foot_lock`] plants feet that slide meanwhile.
-//! [`concatenate_mistaken`] makes the classic mistakes, one at a time.
+//! With X = D and W = V, as is usual, each spring has `(1 + yT) e^(-yT)` of its offset left at the
+//! other end; [`LoopCurve`] solves for the X and W that close exactly. [`find_cycle`] searches for
+//! ends that differ little. [`foot_lock`] plants feet that slide. [`concatenate_mistaken`] makes
+//! the classic mistakes, one at a time.
 //!
 //! # Example
 //!
@@ -59,11 +59,11 @@
 //! assert_eq!(smooth.pose(99), a.clip().pose(99));
 //! assert_eq!(smooth.frames(), 100 + b.clip().frames() - 20);
 //!
-//! // A cycle of 55 frames where the ends are 84° apart, and nothing of it is left.
+//! // A cycle of 55 frames whose ends are 84° apart; after closing nothing of that is left.
 //! let cycle = close_loop(&b, 5..60, &LoopOptions::default())?;
 //! assert!(cycle.before.turn_deg > 80.0 && cycle.seam.turn_deg < 1e-3);
 //! assert_eq!(cycle.repeat(100)?.frames(), 5_500);
-//! // In a cycle of half a second the usual way closes 86 % of the difference.
+//! // In a cycle of half a second the classic method closes 86 % of the difference.
 //! let share = |method| {
 //!     let curve = LoopCurve::new(method, 0.5, 0.5);
 //!     curve.at(0.0).xx - curve.at(0.5).xx
@@ -76,17 +76,17 @@
 //! # Accuracy and cost
 //!
 //! Decaying rotations agree with `SciPy` to 2e-5 radians; velocities stay continuous over every
-//! jump, also over one that comes while the last is still dying away (the quintic may brake hard:
-//! it must not overshoot). Exact and cubic loops close to 0.001°, 0.1 °/s and 0.001 cm, and a
-//! hundred cycles do not drift. The foot lock takes nine tenths of the slide from made walks and
-//! runs that go over into each other. Making is O(frames × joints), searching more.
+//! jump, even if the offset of the last one has not decayed yet (the quintic may brake hard: it
+//! must not overshoot). Exact and cubic loops close to 0.001°, 0.1 °/s and 0.001 cm, and a hundred
+//! cycles do not drift. The foot lock removes nine tenths of the slide from transitions between
+//! synthesised walks and runs. Making a transition is O(frames × joints), searching for one more.
 //!
 //! # What it does not do
 //!
-//! An offset knows nothing of the body: between poses that are very different a limb may pass
-//! through another. Inertialization plans nothing, so that feet slide while the difference in speed
-//! dies away. The foot lock knows one flat ground, and stretches no leg beyond its reach: what is
-//! farther slides.
+//! An offset knows nothing of the body: between very different poses a limb may pass through
+//! another. Inertialization plans nothing, so feet slide while the difference in speed decays. The
+//! foot lock knows one flat ground, and stretches no leg beyond its reach: a foot beyond that
+//! slides.
 //!
 //! # Sources
 //!
