@@ -69,6 +69,6 @@ fn half_life_ruler_ui(half_life_secs: f64, fps: f64, ui: &mut Ui) {
         let secs = spring::secs_until(half_life_secs, share);
         kit::value_row_ui(label, &format!("{secs:.2}"), "s", ui);
     }
-    let alike = spring::alike_window_secs(half_life_secs) * fps;
+    let alike = spring::equivalent_window_secs(half_life_secs) * fps;
     kit::value_row_ui(text::ALIKE_WINDOW, &format!("{alike:.0}"), "frames", ui);
 }

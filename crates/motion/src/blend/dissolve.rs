@@ -1,7 +1,7 @@
 use super::assembly::{Assembly, moving_joints, translation_of};
 use super::{BlendError, Concatenation, WeightLaw, align_facing, align_onto};
 use crate::clip::{Clip, character_frames};
-use crate::math::{Planar, nearest_turn, quat, wrap_angle};
+use crate::math::{Planar, quat, unwrap_near, wrap_angle};
 use crate::registration::limb_weights;
 use crate::skeleton::{Roles, Skeleton};
 use glam::{DVec2, Quat, Vec3};
@@ -324,7 +324,7 @@ impl Blend<'_> {
         let turn = |p: usize, near: f64| {
             let yaw = world_from_b.yaw + self.b.frames[self.enter + p].yaw
                 - self.a.frames[self.leave + p].yaw;
-            nearest_turn(yaw, near)
+            unwrap_near(yaw, near)
         };
         let mut turns = vec![0.0; self.window];
         for (p, before) in from_the_middle(self.window) {

@@ -24,7 +24,7 @@ pub(crate) fn turn_change(clip: &Clip, frame: usize, joint: usize) -> Option<f32
 /// The rotation vector from one rotation to another. As [`quat::log`], but by an arc tangent that
 /// is the same to the last digit on every machine: what a motion graph goes by.
 fn turn(from: Quat, to: Quat) -> Vec3 {
-    let q = quat::shorter_way(to * from.conjugate());
+    let q = quat::with_positive_scalar(to * from.conjugate());
     let v = Vec3::new(q.x, q.y, q.z);
     let sine = v.length();
     if sine < 1e-9 {

@@ -2,22 +2,22 @@
 
 use glam::Vec3;
 
-/// 3t² - 2t³: from 0 to 1 with no slope at either end (C¹). `t` is clamped.
+/// Returns 3t² - 2t³: from 0 to 1 with no slope at either end (C¹). `t` is clamped.
 #[must_use]
 pub fn smoothstep(t: f32) -> f32 {
     let t = t.clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }
 
-/// 6t⁵ - 15t⁴ + 10t³: from 0 to 1 with neither slope nor curvature at either end (C²; Perlin 2002).
-/// `t` is clamped.
+/// Returns 6t⁵ - 15t⁴ + 10t³: from 0 to 1 with neither slope nor curvature at either end (C²;
+/// Perlin 2002). `t` is clamped.
 #[must_use]
 pub fn smootherstep(t: f32) -> f32 {
     let t = t.clamp(0.0, 1.0);
     t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
 }
 
-/// The identity up to `from`, then bent so that it never passes `to`; its slope has no step.
+/// Returns `value` up to `from`, and above it a smooth curve (C¹) that never exceeds `to`.
 #[must_use]
 pub fn soft_limit(value: f32, from: f32, to: f32) -> f32 {
     if value <= from || to <= from {
@@ -27,14 +27,15 @@ pub fn soft_limit(value: f32, from: f32, to: f32) -> f32 {
     from + room * (1.0 - (-(value - from) / room).exp())
 }
 
-/// Catmull-Rom: the cubic through `p1` (t = 0) and `p2` (t = 1) with slopes from the neighbours
-/// `p0` and `p3`, uniform knots.
+/// Evaluates a Catmull-Rom spline: the cubic through `p1` (t = 0) and `p2` (t = 1) with slopes from
+/// the neighbours `p0` and `p3`, uniform knots.
 #[must_use]
 pub fn catmull_rom(p0: Vec3, p1: Vec3, p2: Vec3, p3: Vec3, t: f32) -> Vec3 {
     hermite(p1, (p2 - p0) * 0.5, p2, (p3 - p1) * 0.5, t)
 }
 
-/// The cubic Hermite curve from `p0` with slope `m0` (per unit of `t`) to `p1` with slope `m1`.
+/// Evaluates the cubic Hermite curve from `p0` with slope `m0` (per unit of `t`) to `p1` with slope
+/// `m1`.
 #[must_use]
 pub fn hermite(p0: Vec3, m0: Vec3, p1: Vec3, m1: Vec3, t: f32) -> Vec3 {
     let (t2, t3) = (t * t, t * t * t);
@@ -49,7 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_soft_limit_is_smooth_and_bounded() {
+    fn soft_limit_is_smooth_and_bounded() {
         assert_eq!(soft_limit(0.8, 0.9, 1.0), 0.8);
         assert!((soft_limit(0.9 + 1e-3, 0.9, 1.0) - 0.901).abs() < 1e-4);
         assert!(soft_limit(5.0, 0.9, 1.0) <= 1.0);

@@ -1,75 +1,76 @@
+//! Decay of an offset that starts with a velocity: spring, cubic and quintic.
+
 use super::spring;
 use glam::Vec3;
 
-/// What is left of an offset `x` and its velocity `v` after some time, both linear in what they
-/// were at first.
+/// The linear map from an offset `x` and its velocity `v` to what is left of both after some time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Response {
-    /// The share of the offset in the offset.
+    /// Offset from offset.
     pub xx: f64,
-    /// The share of the velocity in the offset, seconds.
+    /// Offset from velocity, seconds.
     pub xv: f64,
-    /// The share of the offset in the velocity, per second.
+    /// Velocity from offset, per second.
     pub vx: f64,
-    /// The share of the velocity in the velocity.
+    /// Velocity from velocity.
     pub vv: f64,
 }
 
 impl Response {
-    /// Nothing is left.
-    pub const NOTHING: Self = Self { xx: 0.0, xv: 0.0, vx: 0.0, vv: 0.0 };
+    /// The response after which neither offset nor velocity is left.
+    pub const ZERO: Self = Self { xx: 0.0, xv: 0.0, vx: 0.0, vv: 0.0 };
 
-    /// The offset and its velocity.
+    /// Applies the response to an offset and its velocity, and returns both.
     #[must_use]
     pub fn of(&self, x: f64, v: f64) -> (f64, f64) {
         (self.xx * x + self.xv * v, self.vx * x + self.vv * v)
     }
 
-    /// The offset and its velocity.
+    /// Applies the response to each component of an offset and its velocity, and returns both.
     #[must_use]
     pub fn of_vec3(&self, x: Vec3, v: Vec3) -> (Vec3, Vec3) {
         (x * self.xx as f32 + v * self.xv as f32, x * self.vx as f32 + v * self.vv as f32)
     }
 }
 
-/// How an offset dies away that starts with a velocity of its own: the heart of inertialization.
+/// A decay curve for an offset that starts with a velocity of its own, as inertialization needs it.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Decay {
-    /// A critically damped spring ([`spring::response`]). Never quite at rest, and never in a
-    /// hurry.
+    /// A critically damped spring ([`spring::response`]), which never reaches 0 exactly.
     Spring {
         /// Half-life, seconds.
         half_life_secs: f64,
     },
-    /// The cubic that leaves with the offset's velocity and ends at rest: Hermite, C¹ at both ends.
+    /// The cubic that starts with the offset's velocity and ends at rest: Hermite, C¹ at both ends.
     Cubic {
-        /// Seconds until nothing is left.
+        /// Duration, seconds.
         blend_secs: f64,
     },
     /// The quintic of Bollo, "Inertialization: High-Performance Animation Transitions in Gears of
     /// War" (GDC 2018): it ends without velocity and acceleration, and does not overshoot.
     ///
-    /// An offset that closes fast would fly past 0. So, with Bollo, the blend time is at most
-    /// `5 |x| / closing speed`, and a first acceleration
-    /// `max(0, 8 · closing speed / T - 20 |x| / T²)` pushes against it; at the limit the curve is
-    /// `(1 - t/T)⁵`. Bollo works on the offset's length and drops the velocity across it and away
-    /// from 0. Here the whole vector is kept, so that the velocity stays continuous: the limits are
-    /// those of the part along the offset, and they hold for the way along it. An offset near 0
-    /// with a high closing speed ends nearly at once, as Bollo's does.
+    /// An offset that closes fast would overshoot 0. As in Bollo, the blend time is therefore at
+    /// most `5 |x| / closing speed`, and an initial acceleration `max(0, 8 · closing speed / T - 20
+    /// |x| / T²)` opposes it; at the limit the curve is `(1 - t/T)⁵`. Bollo works on the length of
+    /// the offset, and drops the velocity across it and away from 0. Here the whole vector is kept,
+    /// so that the velocity stays continuous; the limits are those of the component along the
+    /// offset, and only that component never overshoots. An offset near 0 with a high closing speed
+    /// ends nearly at once, as Bollo's does.
     Quintic {
-        /// Seconds until nothing is left, at most.
+        /// Greatest duration, seconds.
         blend_secs: f64,
     },
 }
 
 impl Decay {
-    /// What is left of the offset `x` with velocity `v` after `secs`: the offset and its velocity.
+    /// Returns what is left of the offset `x` with velocity `v` after `secs`: the offset and its
+    /// velocity.
     #[must_use]
     pub fn of_vec3(self, x: Vec3, v: Vec3, secs: f64) -> (Vec3, Vec3) {
         let closing = match self {
             Self::Quintic { .. } => {
                 let square = f64::from(x.length_squared());
-                // Also false for NaN.
+                // The comparison is also false for NaN.
                 if square > 0.0 { -f64::from(x.dot(v)) / square } else { 0.0 }
             }
             _ => 0.0,
@@ -77,13 +78,13 @@ impl Decay {
         self.response(closing, secs).of_vec3(x, v)
     }
 
-    /// The response after `secs` for an offset that closes at the rate `closing`: `-v·x / |x|²`,
-    /// per second. Only the quintic asks for it.
+    /// Returns the response after `secs` for an offset that closes at the rate `closing`: `-v·x /
+    /// |x|²`, per second. Only the quintic uses `closing`.
     #[must_use]
     pub fn response(self, closing: f64, secs: f64) -> Response {
         match self {
             Self::Spring { half_life_secs } => spring::response(half_life_secs, secs),
-            Self::Cubic { blend_secs } => in_support(blend_secs, secs, |s, period| Response {
+            Self::Cubic { blend_secs } => evaluate_within(blend_secs, secs, |s, period| Response {
                 xx: (1.0 - s) * (1.0 - s) * (1.0 + 2.0 * s),
                 xv: period * s * (1.0 - s) * (1.0 - s),
                 vx: 6.0 * s * (s - 1.0) / period,
@@ -92,8 +93,8 @@ impl Decay {
             Self::Quintic { blend_secs } => {
                 let limited =
                     if closing > 0.0 { blend_secs.min(5.0 / closing) } else { blend_secs };
-                in_support(limited, secs, |s, period| {
-                    // |x|/T² is the unit of acceleration here.
+                evaluate_within(limited, secs, |s, period| {
+                    // Accelerations are in units of |x|/T².
                     let push = (8.0 * closing * period - 20.0).max(0.0);
                     let rest = 1.0 - s;
                     Response {
@@ -108,7 +109,7 @@ impl Decay {
         }
     }
 
-    /// Seconds until an offset without velocity has only `share` (above 0, below 1) left.
+    /// Returns the seconds until `share` (above 0, below 1) of an offset without velocity is left.
     #[must_use]
     pub fn secs_until(self, share: f64) -> f64 {
         match self {
@@ -129,12 +130,12 @@ impl Decay {
     }
 }
 
-/// A curve over `s` from 0 to 1 in `period` seconds; nothing is left behind it. No period at all is
-/// over at once, but not before it began.
-fn in_support(period: f64, secs: f64, curve: impl Fn(f64, f64) -> Response) -> Response {
+/// Evaluates a curve over `s` from 0 to 1 in `period` seconds; zero after its end. With a period of
+/// 0 the curve ends at once, but not before `secs` is 0.
+fn evaluate_within(period: f64, secs: f64, curve: impl Fn(f64, f64) -> Response) -> Response {
     let period = period.max(1e-9);
     let s = secs.max(0.0) / period;
-    if s < 1.0 { curve(s, period) } else { Response::NOTHING }
+    if s < 1.0 { curve(s, period) } else { Response::ZERO }
 }
 
 #[cfg(test)]
@@ -150,7 +151,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn starts_as_it_was_and_moves_as_its_velocity_says(
+        fn decay_starts_with_the_given_offset_and_velocity(
             x in -1.0f64..1.0, v in -9.0f64..9.0, t in 0.0f64..0.5
         ) {
             for decay in ALL {
@@ -167,7 +168,7 @@ mod tests {
         }
 
         #[test]
-        fn the_quintic_never_crosses_zero(x in 0.01f64..1.0, v in -50.0f64..0.0, t in 0.0f64..0.5) {
+        fn quintic_never_crosses_zero(x in 0.01f64..1.0, v in -50.0f64..0.0, t in 0.0f64..0.5) {
             let quintic = Decay::Quintic { blend_secs: 0.4 };
             let (left, _) = quintic.response(-v / x, t).of(x, v);
             prop_assert!(left >= -1e-12 * x && left <= x * (1.0 + 1e-12), "{left}");
@@ -175,15 +176,15 @@ mod tests {
     }
 
     #[test]
-    fn compact_curves_end_at_rest() {
+    fn cubic_and_quintic_end_at_rest() {
         for decay in &ALL[1..] {
-            assert_eq!(decay.response(0.0, 0.4), Response::NOTHING);
+            assert_eq!(decay.response(0.0, 0.4), Response::ZERO);
             let (x, v) = decay.response(0.0, 0.4 - 1e-7).of(1.0, 5.0);
             assert!(x.abs() < 1e-9 && v.abs() < 1e-4, "{decay:?} {x} {v}");
-            assert_eq!(decay.response(0.0, f64::INFINITY), Response::NOTHING);
+            assert_eq!(decay.response(0.0, f64::INFINITY), Response::ZERO);
         }
         for decay in [Decay::Cubic { blend_secs: 0.0 }, Decay::Quintic { blend_secs: -1.0 }] {
-            assert_eq!(decay.response(0.0, 1e-6), Response::NOTHING);
+            assert_eq!(decay.response(0.0, 1e-6), Response::ZERO);
         }
         for decay in ALL {
             assert!((decay.response(0.0, decay.secs_until(0.3)).xx - 0.3).abs() < 1e-9);
@@ -191,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cubic_overshoots_where_the_quintic_does_not() {
+    fn cubic_overshoots_where_quintic_does_not() {
         let (x, v) = (Vec3::new(0.1, 0.0, 0.0), Vec3::new(-4.0, 0.5, 0.0));
         let lowest = |decay: Decay| {
             (0..100).map(|i| decay.of_vec3(x, v, f64::from(i) * 0.004).0.x).fold(f32::MAX, f32::min)
@@ -221,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn agrees_with_scipy() {
+    fn decays_agree_with_scipy() {
         let golden: Golden =
             serde_json::from_str(include_str!("../../tests/oracles/transition.json")).unwrap();
         let near = |found: (f64, f64), wanted: (f64, f64)| {
@@ -242,7 +243,7 @@ mod tests {
             }
         }
         for (&t, &wanted) in golden.times.iter().zip(&golden.running) {
-            assert!(near(spring::run_on(golden.running_half_life, t), wanted));
+            assert!(near(spring::velocity_decay(golden.running_half_life, t), wanted));
         }
         assert_eq!(golden.decays.len(), 6);
     }

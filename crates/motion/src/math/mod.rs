@@ -81,5 +81,5 @@ pub mod stats;
 
 pub use decay::{Decay, Response};
 pub use monotone::MonotoneCurve;
-pub(crate) use planar::nearest_turn;
+pub(crate) use planar::unwrap_near;
 pub use planar::{Planar, wrap_angle};

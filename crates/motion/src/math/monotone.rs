@@ -1,4 +1,6 @@
-/// A strictly increasing, continuously differentiable curve through points: piecewise cubic
+//! Monotone interpolation: strictly increasing cubic curves through points, and their inverses.
+
+/// A strictly increasing, continuously differentiable curve through points. It is piecewise cubic
 /// (Fritsch, Carlson 1980), with the slopes of Fritsch and Butland (1984): the weighted harmonic
 /// mean of the neighbouring chords, which never overshoots.
 #[derive(Clone, Debug, PartialEq)]
@@ -9,9 +11,9 @@ pub struct MonotoneCurve {
 }
 
 impl MonotoneCurve {
-    /// The curve through `points` (x, y). `None` when there are none, a number is not finite, or x
-    /// is not strictly increasing or y decreases. Where y stays so does the curve: it then has no
-    /// unique inverse there.
+    /// Returns the curve through `points` (x, y). `None` when there are no points, a number is not
+    /// finite, x is not strictly increasing or y decreases. Where y is constant, so is the curve,
+    /// and it has no unique inverse there.
     #[must_use]
     pub fn through(points: &[(f64, f64)]) -> Option<Self> {
         let rises = points.windows(2).all(|pair| pair[0].0 < pair[1].0 && pair[0].1 <= pair[1].1);
@@ -26,25 +28,25 @@ impl MonotoneCurve {
         Some(Self { x, y, slopes })
     }
 
-    /// Where it begins: (x, y).
+    /// Returns the first point: (x, y).
     #[must_use]
     pub fn first(&self) -> (f64, f64) {
         (self.x[0], self.y[0])
     }
 
-    /// Where it ends: (x, y).
+    /// Returns the last point: (x, y).
     #[must_use]
     pub fn last(&self) -> (f64, f64) {
         let last = self.x.len() - 1;
         (self.x[last], self.y[last])
     }
 
-    /// The points that it goes through: (x, y).
+    /// Returns the points that define the curve: (x, y).
     pub fn points(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         self.x.iter().copied().zip(self.y.iter().copied())
     }
 
-    /// y at `x`; beyond the ends it goes on at slope 1.
+    /// Returns y at `x`, extrapolated with slope 1 beyond the ends.
     #[must_use]
     pub fn at(&self, x: f64) -> f64 {
         let ((from, low), (to, high)) = (self.first(), self.last());
@@ -57,7 +59,7 @@ impl MonotoneCurve {
         self.piece(self.index(&self.x, x)).0(x)
     }
 
-    /// dy/dx at `x`; 1 beyond the ends.
+    /// Returns dy/dx at `x`; 1 beyond the ends.
     #[must_use]
     pub fn slope(&self, x: f64) -> f64 {
         if !(x >= self.first().0 && x <= self.last().0) || self.x.len() < 2 {
@@ -66,7 +68,8 @@ impl MonotoneCurve {
         self.piece(self.index(&self.x, x)).1(x)
     }
 
-    /// x where the curve reaches `y`, to the last digits; beyond the ends at slope 1.
+    /// Returns the x at which the curve reaches `y`, to rounding, extrapolated with slope 1 beyond
+    /// the ends.
     #[must_use]
     pub fn inverse(&self, y: f64) -> f64 {
         let ((from, low), (to, high)) = (self.first(), self.last());
@@ -79,7 +82,7 @@ impl MonotoneCurve {
         let piece = self.index(&self.y, y);
         let (at, _) = self.piece(piece);
         let (mut left, mut right) = (self.x[piece], self.x[piece + 1]);
-        // Halving: a piece may be nearly flat at its ends, where Newton's method leaps.
+        // Bisection: a piece may be nearly flat at its ends, where Newton's method diverges.
         for _ in 0..60 {
             let middle = 0.5 * (left + right);
             if at(middle) < y { left = middle } else { right = middle }
@@ -87,12 +90,13 @@ impl MonotoneCurve {
         0.5 * (left + right)
     }
 
-    /// The piece that holds `value` of the given coordinate, which lies between the ends.
+    /// Returns the index of the piece that holds `value` of the given coordinate, which lies
+    /// between the ends.
     fn index(&self, of: &[f64], value: f64) -> usize {
         of.partition_point(|&knot| knot <= value).clamp(1, self.x.len() - 1) - 1
     }
 
-    /// Value and slope over one piece.
+    /// Returns functions for value and slope over one piece.
     fn piece(&self, k: usize) -> (impl Fn(f64) -> f64, impl Fn(f64) -> f64) {
         let (x, step) = (self.x[k], self.x[k + 1] - self.x[k]);
         let (y, chord) = (self.y[k], (self.y[k + 1] - self.y[k]) / step);
@@ -131,7 +135,7 @@ fn slopes(x: &[f64], y: &[f64]) -> Vec<f64> {
         let (w1, w2) = (2.0 * steps[k] + steps[k - 1], steps[k] + 2.0 * steps[k - 1]);
         (w1 + w2) / (w1 / before + w2 / after)
     });
-    // The parabola through the last three points, as far as it rises.
+    // The slope at the end of the parabola through the last three points, at least 0.
     let end = |chord: f64, next: f64, step: f64, next_step: f64| {
         (((2.0 * step + next_step) * chord - step * next) / (step + next_step)).max(0.0)
     };
@@ -147,7 +151,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn it_rises_through_its_points_and_can_be_read_backwards(steps in prop::collection::vec((0.1f64..3.0, 0.01f64..3.0), 0..12)) {
+        fn curve_through_points_increases_and_inverts(steps in prop::collection::vec((0.1f64..3.0, 0.01f64..3.0), 0..12)) {
             let mut points = vec![(-1.0, 2.0)];
             for (dx, dy) in steps {
                 let &(x, y) = points.last().unwrap();
@@ -173,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_rise_is_no_curve() {
+    fn curve_through_descending_points_is_none() {
         assert_eq!(MonotoneCurve::through(&[]), None);
         assert_eq!(MonotoneCurve::through(&[(0.0, 0.0), (0.0, 1.0)]), None);
         assert_eq!(MonotoneCurve::through(&[(0.0, 0.0), (1.0, -1.0)]), None);

@@ -1,31 +1,34 @@
+//! Rigid transforms of the ground plane, and angles modulo a whole turn.
+
 use glam::{DVec2, Quat, Vec3};
 use std::f64::consts::{PI, TAU};
 
-/// A rigid transform of the ground plane: a turn about +Y, then a shift in x and z. Heights stay.
+/// A rigid transform of the ground plane: a rotation about +Y, then a shift in x and z. Heights
+/// stay.
 ///
 /// `x = x' cos θ + z' sin θ + x₀`, `z = -x' sin θ + z' cos θ + z₀` (Kovar, Gleicher, Pighin 2002,
-/// section 3.1). In `f64`, because walks chain thousands of them. As a *frame* (where a character
-/// stands and what it faces) it reads `world_from_character`.
+/// section 3.1). Stored in `f64`, because walks chain thousands of them. As the ground frame of a
+/// character (its position and facing) it reads `world_from_character`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Planar {
-    /// The turn about +Y, radians. 0 faces +Z.
+    /// The rotation about +Y, radians. 0 faces +Z.
     pub yaw: f64,
     /// The shift, metres: (x, z).
     pub shift: DVec2,
 }
 
 impl Planar {
-    /// Leaves everything where it is.
+    /// The identity.
     pub const IDENTITY: Self = Self { yaw: 0.0, shift: DVec2::ZERO };
 
-    /// A turn of `yaw` radians about +Y followed by a shift of `(x, z)` metres.
+    /// Returns a rotation of `yaw` radians about +Y followed by a shift of `(x, z)` metres.
     #[must_use]
     pub const fn new(yaw: f64, x: f64, z: f64) -> Self {
         Self { yaw, shift: DVec2::new(x, z) }
     }
 
-    /// The frame of a character that stands at `position` (its height is ignored) and faces the
-    /// ground projection of `facing`.
+    /// Returns the ground frame of a character that stands at `position` (its height is ignored)
+    /// and faces the ground projection of `facing`.
     #[must_use]
     pub fn standing_at(position: Vec3, facing: Vec3) -> Self {
         Self::new(
@@ -35,19 +38,19 @@ impl Planar {
         )
     }
 
-    /// The turn as a quaternion.
+    /// Returns the rotation as a quaternion.
     #[must_use]
     pub fn rotation(&self) -> Quat {
         Quat::from_rotation_y(self.yaw as f32)
     }
 
-    /// The direction that +Z is turned to.
+    /// Returns the direction to which +Z is turned.
     #[must_use]
     pub fn forward(&self) -> Vec3 {
         Vec3::new(self.yaw.sin() as f32, 0.0, self.yaw.cos() as f32)
     }
 
-    /// The shift as a point on the ground.
+    /// Returns the shift as a point on the ground.
     #[must_use]
     pub fn origin(&self) -> Vec3 {
         Vec3::new(self.shift.x as f32, 0.0, self.shift.y as f32)
@@ -58,34 +61,34 @@ impl Planar {
         DVec2::new(v.x * cos + v.y * sin, -v.x * sin + v.y * cos)
     }
 
-    /// The image of a point. Its height stays.
+    /// Transforms a point. Its height stays.
     #[must_use]
     pub fn apply(&self, point: Vec3) -> Vec3 {
         let p = self.turned(DVec2::new(f64::from(point.x), f64::from(point.z))) + self.shift;
         Vec3::new(p.x as f32, point.y, p.y as f32)
     }
 
-    /// The image of a point of the ground, (x, z) in metres.
+    /// Transforms a point of the ground, (x, z) in metres.
     #[must_use]
     pub fn apply_ground(&self, point: DVec2) -> DVec2 {
         self.turned(point) + self.shift
     }
 
-    /// The image of a direction or velocity: turned, not shifted.
+    /// Transforms a direction or velocity: rotated, not shifted.
     #[must_use]
     pub fn apply_vector(&self, v: Vec3) -> Vec3 {
         let p = self.turned(DVec2::new(f64::from(v.x), f64::from(v.z)));
         Vec3::new(p.x as f32, v.y, p.y as f32)
     }
 
-    /// `self` after `first`: `a.after(b).apply(p) == a.apply(b.apply(p))`. The yaw is wrapped into
-    /// `[-π, π)`.
+    /// Returns `self` after `first`: `a.after(b).apply(p) == a.apply(b.apply(p))`. The yaw is
+    /// wrapped into `[-π, π)`.
     #[must_use]
     pub fn after(&self, first: &Self) -> Self {
         Self { yaw: wrap_angle(self.yaw + first.yaw), shift: self.turned(first.shift) + self.shift }
     }
 
-    /// The transform that undoes this one.
+    /// Returns the inverse transform.
     #[must_use]
     pub fn inverse(&self) -> Self {
         let back = Self { yaw: -self.yaw, shift: DVec2::ZERO };
@@ -93,16 +96,16 @@ impl Planar {
     }
 }
 
-/// `angle` (radians) brought into `[-π, π)`.
+/// Wraps `angle` (radians) into `[-π, π)`.
 #[must_use]
 pub fn wrap_angle(angle: f64) -> f64 {
     (angle + PI).rem_euclid(TAU) - PI
 }
 
-/// `angle` (radians) plus as many whole turns as bring it nearest to `reference`: angles that
-/// follow each other are unwrapped by it.
+/// Returns `angle` (radians) plus as many whole turns as bring it nearest to `reference`, to unwrap
+/// a sequence of angles.
 #[must_use]
-pub(crate) fn nearest_turn(angle: f64, reference: f64) -> f64 {
+pub(crate) fn unwrap_near(angle: f64, reference: f64) -> f64 {
     reference + wrap_angle(angle - reference)
 }
 
@@ -117,20 +120,20 @@ mod tests {
 
     proptest! {
         #[test]
-        fn inverse_undoes(a in planar(), x in -5.0f32..5.0, y in -1.0f32..3.0, z in -5.0f32..5.0) {
+        fn planar_after_its_inverse_is_identity(a in planar(), x in -5.0f32..5.0, y in -1.0f32..3.0, z in -5.0f32..5.0) {
             let p = Vec3::new(x, y, z);
             prop_assert!((a.inverse().apply(a.apply(p)) - p).length() < 1e-5);
             prop_assert!((a.after(&a.inverse()).apply(p) - p).length() < 1e-5);
         }
 
         #[test]
-        fn composition_applies_the_right_one_first(a in planar(), b in planar()) {
+        fn planar_after_applies_the_argument_first(a in planar(), b in planar()) {
             let p = Vec3::new(1.0, 2.0, -3.0);
             prop_assert!((a.after(&b).apply(p) - a.apply(b.apply(p))).length() < 1e-4);
         }
 
         #[test]
-        fn agrees_with_the_quaternion(a in planar()) {
+        fn planar_agrees_with_its_quaternion(a in planar()) {
             let v = Vec3::new(0.3, 0.5, -0.8);
             prop_assert!((a.rotation() * v - a.apply_vector(v)).length() < 1e-5);
             prop_assert!((a.rotation() * Vec3::Z - a.forward()).length() < 1e-5);

@@ -1,13 +1,15 @@
 //! Order statistics and means.
 
-/// The value below which the share `p` (0 to 1) of `values` lies, with linear interpolation between
-/// neighbours (the "linear" definition that `NumPy` uses). `None` for no values; NaN sorts last.
+/// Returns the value below which the share `p` (0 to 1) of `values` lies, with linear interpolation
+/// between neighbours (the "linear" definition that `NumPy` uses). `None` for an empty list; NaN
+/// sorts last.
 #[must_use]
 pub fn percentile(values: &[f32], p: f32) -> Option<f32> {
     let mut values = values.to_vec();
     let last = values.len().checked_sub(1)?;
     let at = p.clamp(0.0, 1.0) * last as f32;
-    // Only these two need their places; all others are behind them or before them.
+    // Only these two values need sorting: `select_nth` puts greater ones after them and smaller
+    // ones before.
     let (_, &mut below, rest) =
         values.select_nth_unstable_by((at.floor() as usize).min(last), f32::total_cmp);
     let above = rest.iter().copied().min_by(f32::total_cmp).unwrap_or(below);
@@ -19,7 +21,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn percentiles_interpolate() {
+    fn percentile_interpolates_linearly() {
         assert_eq!(percentile(&[], 0.5), None);
         assert_eq!(percentile(&[4.0], 0.99), Some(4.0));
         assert_eq!(percentile(&[3.0, 1.0, 2.0], 0.5), Some(2.0));

@@ -1,5 +1,5 @@
 use super::{DistanceMatrix, PairTerms, PathError, PathOptions, RegistrationPath, optimal_path};
-use crate::math::{MonotoneCurve, Planar, nearest_turn};
+use crate::math::{MonotoneCurve, Planar, unwrap_near};
 use glam::DVec2;
 
 /// What registration curves are made with.
@@ -234,7 +234,7 @@ impl AlignmentCurve {
             let (source, target) = matrix.frames(row, column);
             let found = terms.alignment(source, target, matrix.window(), yaw)?;
             // The nearest of all equal turns: unwrapped.
-            yaw = nearest_turn(found.transform.yaw, yaw);
+            yaw = unwrap_near(found.transform.yaw, yaw);
             let centre = terms.target_centre(target, matrix.window());
             mean.push(0.5 * (i + j));
             yaws.push(yaw);

@@ -4,7 +4,7 @@ use crate::blend::{
     AlignBy, Assembly, BlendError, Concatenation, DissolveOptions, RootBlend, Source, WeightLaw,
     check, dissolve, laid_on, moving_joints,
 };
-use crate::math::{Planar, nearest_turn, quat, wrap_angle};
+use crate::math::{Planar, quat, unwrap_near, wrap_angle};
 use glam::Vec3;
 
 /// How to go from one clip to another.
@@ -240,12 +240,12 @@ impl Place {
         let vector = |frame: &Planar, yaw: f64| {
             Vec3::new(frame.shift.x as f32, yaw as f32, frame.shift.y as f32)
         };
-        Self { of_a: vector(a, nearest_turn(a.yaw, b.yaw)), of_b: vector(b, b.yaw), yaw: b.yaw }
+        Self { of_a: vector(a, unwrap_near(a.yaw, b.yaw)), of_b: vector(b, b.yaw), yaw: b.yaw }
     }
 
     /// The next frame of B as a vector.
     fn follow(&mut self, b: &Planar) -> Vec3 {
-        self.yaw = nearest_turn(b.yaw, self.yaw);
+        self.yaw = unwrap_near(b.yaw, self.yaw);
         Vec3::new(b.shift.x as f32, self.yaw as f32, b.shift.y as f32)
     }
 

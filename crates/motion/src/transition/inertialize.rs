@@ -208,7 +208,7 @@ impl Inertializer {
             .zip(into)
             .enumerate()
             .map(|(joint, ((&from, &angular_velocity), (&to, &new_velocity)))| {
-                let difference = quat::shorter_way(from * to.conjugate());
+                let difference = quat::with_positive_scalar(from * to.conjugate());
                 let offset = quat::log(difference);
                 Turn {
                     stretch: stretch(joint, offset),
@@ -339,7 +339,8 @@ impl Now {
             Inertialization::Offset(decay) => Self::Linear(decay.response(0.0, secs)),
             Inertialization::DeadBlend { blend_secs, extrapolation_half_life_secs } => {
                 let (weight, falling) = fade(blend_secs, secs);
-                let (speed_left, run_on_secs) = spring::run_on(extrapolation_half_life_secs, secs);
+                let (speed_left, run_on_secs) =
+                    spring::velocity_decay(extrapolation_half_life_secs, secs);
                 Self::Dead {
                     weight: weight as f32,
                     falling: falling as f32,

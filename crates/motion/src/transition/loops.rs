@@ -270,7 +270,7 @@ impl Ends {
     ) -> (Closing, (Quat, Vec3), (Quat, Vec3)) {
         let mut closing = Closing { solved: [(Vec3::ZERO, Vec3::ZERO); SOLUTIONS], count: 0 };
         for slot in &mut closing.solved {
-            let difference = quat::shorter_way(end.0 * start.0.conjugate());
+            let difference = quat::with_positive_scalar(end.0 * start.0.conjugate());
             let d = quat::log(difference);
             let v = quat::vector_rate(d, end.1 - difference * start.1);
             let open = d.length() > CLOSED[0] || (self.closes[1] && v.length() > CLOSED[1]);

@@ -277,7 +277,7 @@ impl<'a> Mixing<'a> {
                 Decay::of_vec3(decay, self.mix.difference(joint, from, to), rate, secs).0
             }
             Inertialization::DeadBlend { extrapolation_half_life_secs, .. } => {
-                let (_, run_on_secs) = spring::run_on(extrapolation_half_life_secs, secs);
+                let (_, run_on_secs) = spring::velocity_decay(extrapolation_half_life_secs, secs);
                 let running = quat::exp(velocity * run_on_secs as f32) * from;
                 self.mix.difference(joint, running, b) * how.left(secs) as f32
             }

@@ -163,7 +163,7 @@ fn with_frames_behind(source: &Source, made: usize) -> Option<Source> {
     let over = (made as f64).max(MIN_CHANGE * last as f64) as f32;
     // From the velocity at the end to that at the beginning, evenly over `over` frames; all per
     // frame.
-    let run_on = |from: Vec3, to: Vec3, frame: f32| {
+    let velocity_decay = |from: Vec3, to: Vec3, frame: f32| {
         from * frame + (to - from) * (0.5 * frame * frame / over)
     };
     let turn = |from: Quat, to: Quat| quat::log(to * from.conjugate());
@@ -185,14 +185,14 @@ fn with_frames_behind(source: &Source, made: usize) -> Option<Source> {
         here = here.after(&further(&crate::math::Planar::IDENTITY, step, fps.recip()));
         let mut rotations: Vec<Quat> = (end.0.iter().zip(&turns))
             .map(|(&rotation, &(from, to))| {
-                quat::renormalize(quat::exp(run_on(from, to, at)) * rotation)
+                quat::renormalize(quat::exp(velocity_decay(from, to, at)) * rotation)
             })
             .collect();
         if let Some(root) = rotations.first_mut() {
             *root = quat::renormalize(here.rotation() * *root);
         }
         let translations: Vec<Vec3> = (end.1.iter().zip(&shifts))
-            .map(|(&translation, &(from, to))| translation + run_on(from, to, at))
+            .map(|(&translation, &(from, to))| translation + velocity_decay(from, to, at))
             .collect();
         let root = here.apply(translations[0]);
         made_clip.push(root, &rotations, &translations[1..]);

@@ -302,7 +302,7 @@ impl Controller {
             wrap_angle(self.simulation.yaw - self.root.yaw),
         );
         // The exact share of plain exponential decay.
-        let share = 1.0 - spring::run_on(following.half_life_secs, TICK_SECS).0;
+        let share = 1.0 - spring::velocity_decay(following.half_life_secs, TICK_SECS).0;
         let most = |own: f64| own * following.most_share;
         let drawn = (off * share).clamp_length_max(most(travelled.shift.length()));
         let most_turn = most(travelled.yaw.abs());
