@@ -1,13 +1,14 @@
+//! Constant-time ancestor tests.
+
 use super::Skeleton;
 
-/// Which joint lies below which, answered in constant time: joints are numbered in depth-first
-/// order, so that what lies below a joint is a range. Files may hold thousands of joints in one
-/// chain.
+/// Ancestor tests in constant time: joints are numbered in depth-first order, so that the joints
+/// below a joint form a range. Files may hold thousands of joints in one chain.
 #[derive(Clone, Debug)]
 pub(crate) struct Ancestry {
-    /// Place of each joint in depth-first order.
-    places: Vec<usize>,
-    /// Joints in each subtree, its top included.
+    /// Index of each joint in depth-first order.
+    order: Vec<usize>,
+    /// Number of joints in each subtree, its top included.
     sizes: Vec<usize>,
 }
 
@@ -20,22 +21,22 @@ impl Ancestry {
                 sizes[parent] += sizes[joint];
             }
         }
-        let mut places = vec![0; joints.len()];
-        // The next free place below each joint.
+        let mut order = vec![0; joints.len()];
+        // The next free depth-first index below each joint.
         let mut free = vec![1; joints.len()];
         for (joint, parent) in joints.iter().map(|j| j.parent).enumerate() {
             if let Some(parent) = parent {
-                places[joint] = free[parent];
+                order[joint] = free[parent];
                 free[parent] += sizes[joint];
-                free[joint] = places[joint] + 1;
+                free[joint] = order[joint] + 1;
             }
         }
-        Self { places, sizes }
+        Self { order, sizes }
     }
 
-    /// Whether `joint` lies below `above` in the tree, and is not that joint itself.
+    /// Returns whether `joint` lies below `above` in the tree, and is not that joint itself.
     pub(crate) fn is_below(&self, joint: usize, above: usize) -> bool {
-        let (joint, above, size) = (self.places[joint], self.places[above], self.sizes[above]);
+        let (joint, above, size) = (self.order[joint], self.order[above], self.sizes[above]);
         above < joint && joint < above + size
     }
 }
@@ -46,7 +47,7 @@ mod tests {
     use crate::skeleton::fixtures;
 
     #[test]
-    fn agrees_with_walking_up_the_tree() {
+    fn is_below_agrees_with_walking_up_the_tree() {
         for (rig, skeleton, _) in fixtures::all() {
             for seed in 0..4 {
                 let (skeleton, _) = fixtures::shuffled(&skeleton, seed);

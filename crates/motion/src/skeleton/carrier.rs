@@ -1,18 +1,19 @@
-//! Which joint carries the body, and what a file has above it.
+//! The joint that carries the body, and the joints that a file has above it.
 
 use super::{Joint, Role, Roles, Side, Skeleton};
 use glam::{Quat, Vec3};
 
-/// A child that holds at least this share of all bones below a joint holds the body.
-const HOLDS_THE_BODY: f32 = 0.9;
+/// A child holds the body when at least this share of the length of all bones below its parent is
+/// below it.
+const BODY_SHARE: f32 = 0.9;
 
-/// Returns the joint where legs and trunk meet: it carries the body through the world.
+/// Returns the joint at which legs and trunk meet: it carries the body through the world.
 ///
-/// With both hip joints known that is their lowest common ancestor together with spine, arms and
+/// With both hip joints known, that is their lowest common ancestor together with spine, arms and
 /// head, as far as the rig has these. Without legs it is the first joint from the root at which the
 /// body branches: as long as one child holds nine tenths of the length of all bones below a joint,
-/// and branches itself, the joint only holds that child. Depends on names and bone lengths alone,
-/// so that it is the same for all clips of a rig.
+/// and branches itself, the search goes on at that child. The result depends on names and bone
+/// lengths alone, so that it is the same for all clips of a rig.
 #[must_use]
 pub fn carrier(skeleton: &Skeleton, roles: &Roles) -> usize {
     let joint = |role| roles.get_within(role, skeleton.len());
@@ -23,8 +24,8 @@ pub fn carrier(skeleton: &Skeleton, roles: &Roles) -> usize {
     }
     let arms = Side::BOTH.map(Role::upper_arm);
     let trunk = [Role::Spine, Role::Head].into_iter().chain(arms).filter_map(joint);
-    // Hips that were named count where the legs hang on them alone: thighs may start at a joint of
-    // their own below.
+    // Named hips count only if both legs hang from them: thighs may start at a separate joint
+    // below.
     let meet = |a, b| lowest_common_ancestor(skeleton, a, b);
     let below_hips =
         joint(Role::Hips).filter(|&hips| thighs.iter().all(|&thigh| meet(hips, thigh) == hips));
@@ -47,7 +48,7 @@ fn lowest_common_ancestor(skeleton: &Skeleton, mut a: usize, mut b: usize) -> us
 
 fn first_branching(skeleton: &Skeleton) -> usize {
     let joints = skeleton.joints();
-    // Lengths of all bones below each joint, and whether the tree branches there or below.
+    // The length of all bones below each joint, and whether the tree branches there or below.
     let mut below = vec![0.0_f32; joints.len()];
     let mut children = vec![0_usize; joints.len()];
     let mut branches = vec![false; joints.len()];
@@ -61,97 +62,95 @@ fn first_branching(skeleton: &Skeleton) -> usize {
         }
     }
     let mut carrier = 0;
-    // Where a body hangs on the root the bone between them belongs to neither.
+    // The bone between the root and a body that hangs from it belongs to neither.
     while let Some(child) = skeleton.children(carrier).find(|&child| {
         let own = joints[child].offset.length();
-        branches[child]
-            && below[child] > 0.0
-            && below[child] >= HOLDS_THE_BODY * (below[carrier] - own)
+        branches[child] && below[child] > 0.0 && below[child] >= BODY_SHARE * (below[carrier] - own)
     }) {
         carrier = child;
     }
     carrier
 }
 
-/// The joints that a file has above the carrier, and how they go along with it: what an exporter
+/// The joints that a file has above the carrier, and how they move with it: all that an exporter
 /// needs to write them again.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Above {
-    /// From the file's root to the parent of the carrier; each hangs on the one before.
+    /// From the file's root to the parent of the carrier; each is the parent of the next.
     pub(crate) chain: Vec<AboveJoint>,
     /// Rest translation of the carrier from its parent, in the parent's frame, metres.
     pub(crate) carrier_offset: Vec3,
-    /// Joints of the file that hang on the chain beside the carrier. Inside they hang on the
+    /// Other joints of the file that hang from the chain. In the skeleton they hang from the
     /// carrier.
     pub(crate) beside: Vec<Beside>,
-    /// For each joint of the skeleton its index in the file.
+    /// For each joint of the skeleton, its index in the file.
     pub(crate) file_index: Vec<usize>,
-    /// How the chain goes along.
+    /// How the chain moves.
     pub(crate) follows: Follows,
 }
 
 /// A joint above the carrier.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct AboveJoint {
-    /// The joint as the file has it; its `parent` is the file's.
+    /// The joint as in the file; its `parent` is an index of the file.
     pub(crate) joint: Joint,
     /// Its index in the file.
     pub(crate) file_index: usize,
-    /// Its pose against its parent where it does not move (`parent_from_joint`).
+    /// Its local rotation where it does not move (`parent_from_joint`).
     pub(crate) rotation: Quat,
-    /// Likewise its translation, metres.
+    /// Its local translation where it does not move, metres.
     pub(crate) translation: Vec3,
 }
 
-/// A joint that hangs on a joint above the carrier.
+/// A joint that hangs from a joint above the carrier.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Beside {
     /// Its index in the skeleton.
     pub(crate) joint: usize,
-    /// On which joint of the chain it hangs in the file.
+    /// The joint of the chain from which it hangs in the file.
     pub(crate) hangs_on: usize,
-    /// Its rest translation from that, metres.
+    /// Its rest translation from that joint, metres.
     pub(crate) offset: Vec3,
 }
 
-/// How the joints above a carrier go along with it.
+/// How the joints above a carrier move with it.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(crate) enum Follows {
     /// They stand still.
     Still,
-    /// One of them stays level and goes along the ground below the character, as game engines have
-    /// it.
+    /// One of them stays level and moves over the ground below the character, as in game engines.
     OnGround {
-        /// Its place in the chain.
+        /// Its index in the chain.
         joint: usize,
         /// Its height, metres.
         height: f32,
         /// Its world rotation where its yaw is 0.
         rotation: Quat,
-        /// Its place seen from the character's smoothed frame, (x, z) metres.
+        /// Its position in the character's smoothed ground frame, (x, z) metres.
         shift: [f64; 2],
-        /// Its yaw against the character's, radians; `None` where it goes along and does not turn.
+        /// Its yaw relative to the character's, radians; `None` where it keeps its own.
         yaw: Option<f64>,
     },
-    /// One of them moves with the carrier, rigidly.
+    /// One of them moves rigidly with the carrier.
     WithCarrier {
-        /// Its place in the chain.
+        /// Its index in the chain.
         joint: usize,
-        /// Its pose in the carrier's frame.
+        /// Its rotation in the carrier's frame.
         rotation: Quat,
-        /// Likewise its translation, metres.
+        /// Its translation in the carrier's frame, metres.
         translation: Vec3,
     },
 }
 
 impl Above {
-    /// The joints of the file, with their names, from its root down to the carrier's parent.
+    /// Returns the joints of the file, with their names, from its root down to the carrier's
+    /// parent.
     pub fn joints(&self) -> impl Iterator<Item = &Joint> {
         self.chain.iter().map(|above| &above.joint)
     }
 
-    /// For each joint of the file the joint of the skeleton that took its place; those above the
-    /// carrier are the carrier.
+    /// Returns for each joint of the file the joint of the skeleton that represents it; joints
+    /// above the carrier are represented by the carrier.
     #[must_use]
     pub fn from_file(&self) -> Vec<usize> {
         let mut taken = vec![0; self.chain.len() + self.file_index.len()];
@@ -163,13 +162,14 @@ impl Above {
         taken
     }
 
-    /// For each joint of the skeleton its index in the file.
+    /// Returns for each joint of the skeleton its index in the file.
     #[must_use]
     pub fn file_index(&self) -> &[usize] {
         &self.file_index
     }
 
-    /// Whether it belongs to a skeleton of this many joints. What came from outside may not.
+    /// Returns whether the indices are valid for a skeleton of this many joints. Data from outside
+    /// may not be.
     #[must_use]
     pub fn fits(&self, joints: usize) -> bool {
         let all = joints + self.chain.len();
@@ -239,11 +239,12 @@ mod tests {
             (Some(4), "tip b", at(-1.0, -1.0)),
         ]);
         assert_eq!(carrier(&spider, &Roles::default()), 2);
-        // A chain never branches: its own root carries it, however long.
+        // A chain never branches: its root carries it, however long it is.
         let chain =
             tree(&[(None, "a", Vec3::ZERO), (Some(0), "b", Vec3::Y), (Some(1), "c", Vec3::Y)]);
         assert_eq!(carrier(&chain, &Roles::default()), 0);
-        // A body that hangs on its chest is carried by it, whatever the names of what hangs below.
+        // A body that hangs from its chest is carried by it, whatever the names of the joints
+        // below.
         let chest = tree(&[
             (None, "chest", Vec3::ZERO),
             (Some(0), "head", at(0.0, 0.6)),

@@ -1,24 +1,25 @@
+//! Corrections between the rest poses of two skeletons, for retargeting.
+
 use super::ancestry::Ancestry;
 use super::joint_map::{JointMap, Landmarks};
 use super::{Role, Roles, Side, Skeleton};
 use crate::math::quat;
 use glam::{Mat3, Quat, Vec3};
 
-/// Rest directions that differ by less are the same by intention, radians (2°): local rotations are
-/// then copied as they are.
+/// Rest directions that differ by less are considered equal, radians (2°): local rotations are then
+/// copied unchanged.
 const SAME_DIRECTION_RADIANS: f32 = 0.035;
-/// In the back, neck and head the same holds up to 15°: there rigs place their joints differently
-/// in one and the same body.
+/// The limit for back, neck and head, radians (15°): rigs place these joints differently in one and
+/// the same body.
 const SAME_BACK_RADIANS: f32 = 0.26;
-/// Collar bones start anywhere between breast bone and spine, so their directions differ by more in
-/// one body: up to 45°.
+/// The limit for collar bones, radians (45°): they start anywhere between breast bone and spine.
 const SAME_COLLAR_RADIANS: f32 = 0.79;
-/// Ankles lie higher or lower above one and the same sole: up to 35° the foot counts as flat in
-/// both rigs, and only its heading is corrected.
+/// The limit for feet, radians (35°): ankles lie higher or lower above one and the same sole. Below
+/// it the foot counts as flat in both rigs, and only its heading is corrected.
 const SAME_FOOT_RADIANS: f32 = 0.61;
 
-/// For every driven joint of the target the rotation that takes its bone at rest to that of the
-/// joint which drives it; the identity for others.
+/// Returns for every driven joint of the target the rotation from its bone at rest to that of its
+/// driving joint; the identity for other joints.
 pub(super) fn corrections(
     source: &Skeleton,
     source_body: &BodyAxes,
@@ -46,8 +47,8 @@ pub(super) fn corrections(
         };
         corrections[joint] = match bones.at(joint, from) {
             Bone::Trunk => whole_body,
-            // A hand without fingers is straight where the other one is: it bends against its
-            // forearm as in the source.
+            // A hand without fingers counts as straight: it bends against its forearm as in the
+            // source.
             Bone::None => inherited,
             Bone::Direction { target, source } => {
                 let target = whole_body * target;
@@ -73,7 +74,7 @@ pub(super) fn corrections(
     corrections
 }
 
-/// The bones of two skeletons that correspond.
+/// The corresponding bones of two skeletons.
 struct Bones<'a> {
     source: &'a Skeleton,
     target: &'a Skeleton,
@@ -82,8 +83,8 @@ struct Bones<'a> {
     target_rest: Vec<Vec3>,
     source_tree: Ancestry,
     target_tree: Ancestry,
-    /// How well each joint of the target shows where the bones above it lead: 0 the chest, 1 joints
-    /// with roles (toes come before a heel), 2 all others.
+    /// Preference of each joint of the target as the end of the bone above it: 0 the chest, 1
+    /// joints with roles (toes come before a heel), 2 all others.
     ranks: Vec<u8>,
     hips: Option<usize>,
 }
@@ -114,8 +115,8 @@ impl<'a> Bones<'a> {
         }
     }
 
-    /// The bones that start at a joint of the target and at the one that drives it, both to joints
-    /// (or ends) that correspond.
+    /// Returns the bones that start at a joint of the target and at its driving joint, both to
+    /// corresponding joints (or end sites).
     fn at(&self, joint: usize, from: usize) -> Bone {
         if self.hips == Some(joint) || self.ranks[joint] == 0 || (joint == 0 && self.ranks[0] == 2)
         {
@@ -151,18 +152,18 @@ impl<'a> Bones<'a> {
     }
 }
 
-/// What is known about how a joint's frame lies at rest.
+/// What is known about the direction of a joint's bone at rest.
 enum Bone {
-    /// Bones that correspond, not of unit length.
+    /// Corresponding bones, not of unit length.
     Direction { target: Vec3, source: Vec3 },
-    /// Hips or chest: they lie as the body does.
+    /// Hips or chest: they have the axes of the body.
     Trunk,
-    /// Nothing.
+    /// Nothing is known.
     None,
 }
 
-/// The turn from the direction `from` to `to`. Where they are opposite there are many; this one is
-/// about `left`, as legs and spines bend.
+/// Returns the rotation from the direction `from` to `to`. Where they are opposite it is about
+/// `left`, as legs and spines bend.
 fn turn_about(from: Vec3, to: Vec3, left: Vec3) -> Quat {
     let turn = quat::between_directions(from, to);
     let opposite = quat::log(turn).length() > std::f32::consts::PI - SAME_DIRECTION_RADIANS;
@@ -173,24 +174,25 @@ fn turn_about(from: Vec3, to: Vec3, left: Vec3) -> Quat {
     turn
 }
 
-/// The turn about `up` from the heading of `from` to that of `to`; none below 2°.
+/// Returns the rotation about `up` from the heading of `from` to that of `to`; the identity below
+/// 2°.
 fn heading_turn(from: Vec3, to: Vec3, up: Vec3) -> Quat {
     let level = |v: Vec3| v - up * up.dot(v);
     let turn = quat::between_directions(level(from), level(to));
     if quat::log(turn).length() < SAME_DIRECTION_RADIANS { Quat::IDENTITY } else { turn }
 }
 
-/// How a body lies at rest.
+/// The axes of a body at rest.
 pub(super) struct BodyAxes {
     /// From right to left, unit length.
     pub(super) left: Vec3,
-    /// Takes +X to the left and +Y along the back upwards.
+    /// Rotates +X to the left and +Y up along the back.
     pub(super) rotation: Quat,
 }
 
 impl BodyAxes {
-    /// Axes from hips or shoulders and the back; those of the world where roles are missing. An
-    /// axis within 15° of a world axis is that axis.
+    /// Returns axes from hips or shoulders and the back; those of the world where roles are
+    /// missing. An axis within 15° of a world axis is set to that axis.
     pub(super) fn at_rest(skeleton: &Skeleton, roles: &Roles) -> Self {
         let rest = skeleton.rest_positions();
         let at = |role| roles.get(role).and_then(|joint| rest.get(joint).copied());
@@ -215,7 +217,7 @@ impl BodyAxes {
     }
 }
 
-/// A unit vector, exactly along an axis of the world where it is within 15° of one.
+/// Returns a unit vector, snapped to an axis of the world within 15°.
 fn snapped(v: Option<Vec3>) -> Option<Vec3> {
     let v = v?.try_normalize()?;
     Some(
@@ -227,8 +229,8 @@ fn snapped(v: Option<Vec3>) -> Option<Vec3> {
     )
 }
 
-/// The joints from the hips up to the head, both included; none where either is unknown or they are
-/// not above each other.
+/// Returns the joints from the hips up to the head, both included; empty where either is unknown or
+/// the head is not below the hips.
 pub(super) fn back(skeleton: &Skeleton, roles: &Roles) -> Vec<usize> {
     let joint = |role| roles.get_within(role, skeleton.len());
     let (Some(hips), Some(head)) = (joint(Role::Hips), joint(Role::Head)) else {

@@ -1,8 +1,10 @@
+//! The map from the joints of one skeleton to those of another, for retargeting.
+
 use super::ancestry::Ancestry;
 use super::{Role, Roles, Side, Skeleton};
 use std::collections::HashMap;
 
-/// Which joint of a source skeleton drives which joint of a target: by name and by role, never by
+/// The joints of a source skeleton that drive the joints of a target: by name and by role, never by
 /// index.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct JointMap {
@@ -10,13 +12,13 @@ pub struct JointMap {
 }
 
 impl JointMap {
-    /// Maps joint by joint.
+    /// Maps joints by role, then by landmark, then by name.
     ///
-    /// Joints that have a role go to the joint of that role, because one name means different
-    /// joints in different rigs (`LeftShoulder` is a collar bone here and an upper arm there). Then
-    /// the joints where both arms meet go to each other, and the collar bones. All others go to the
-    /// joint of the same name (name spaces such as `mixamorig:` apart), if it lies below the joint
-    /// that drives their parent.
+    /// Joints with a role are mapped to the joint of that role, because one name means different
+    /// joints in different rigs (`LeftShoulder` is a collar bone in one and an upper arm in
+    /// another). Then the joints at which both arms meet are mapped to each other, and the collar
+    /// bones. Every other joint is mapped to the joint of the same name (ignoring name spaces such
+    /// as `mixamorig:`), if that lies below the joint that drives its parent.
     #[must_use]
     pub fn between(
         target: &Skeleton,
@@ -35,7 +37,8 @@ impl JointMap {
         }
         let (to, from) = (Landmarks::of(target, target_roles), Landmarks::of(source, source_roles));
         for (to, from) in to.pairs(&from) {
-            // The chest may be the spine's only joint, and what the arms hang on matters more.
+            // The chest may be the spine's only joint, and being the parent of the arms matters
+            // more.
             if sources[to].is_none() || target_roles.role_of(to) == Some(Role::Spine) {
                 sources[to] = Some(from);
             }
@@ -44,21 +47,21 @@ impl JointMap {
         Self { sources }
     }
 
-    /// The source's joint that drives a joint of the target.
+    /// Returns the source's joint that drives a joint of the target.
     #[must_use]
     pub fn source_of(&self, target_joint: usize) -> Option<usize> {
         self.sources.get(target_joint).copied().flatten()
     }
 
-    /// The number of joints of the target that are driven.
+    /// Returns the number of driven joints of the target.
     #[must_use]
     pub fn count(&self) -> usize {
         self.sources.iter().flatten().count()
     }
 }
 
-/// Maps every joint that is not yet mapped to the first joint of its name that has no role, drives
-/// no other joint, and lies below what drives the nearest driven joint above.
+/// Maps every unmapped joint to the first joint of its name that has no role, drives no other
+/// joint, and lies below the joint that drives the nearest driven joint above.
 fn map_by_name(
     target: &Skeleton,
     source: &Skeleton,
@@ -68,14 +71,14 @@ fn map_by_name(
     let mut by_name: HashMap<&str, Vec<usize>> = HashMap::new();
     let mut taken = vec![false; source.len()];
     for (from, joint) in source.joints().iter().enumerate() {
-        by_name.entry(own_name(&joint.name)).or_default().push(from);
+        by_name.entry(without_name_space(&joint.name)).or_default().push(from);
         taken[from] = source_roles.role_of(from).is_some();
     }
     for &from in sources.iter().flatten() {
         taken[from] = true;
     }
     let ancestry = Ancestry::of(source);
-    // What drives the nearest driven joint at or above each joint; parents come first.
+    // The driver of the nearest driven joint at or above each joint; parents come first.
     let mut nearest: Vec<Option<usize>> = Vec::with_capacity(target.len());
     for (joint, ours) in target.joints().iter().enumerate() {
         let above = ours.parent.and_then(|parent| nearest[parent]);
@@ -84,7 +87,7 @@ fn map_by_name(
                 !taken[from] && above.is_none_or(|above| ancestry.is_below(from, above))
             };
             let found = by_name
-                .get(own_name(&ours.name))
+                .get(without_name_space(&ours.name))
                 .and_then(|named| named.iter().copied().find(|&from| fits(from)));
             if let Some(from) = found {
                 taken[from] = true;
@@ -95,12 +98,12 @@ fn map_by_name(
     }
 }
 
-/// The name without the name space that a program put before it.
-fn own_name(name: &str) -> &str {
+/// Returns the name without its name space.
+fn without_name_space(name: &str) -> &str {
     name.rsplit(':').next().unwrap_or(name)
 }
 
-/// Joints that follow from roles: where the arms meet, and the collar bones.
+/// Joints that follow from roles: the joint at which the arms meet, and the collar bones.
 pub(super) struct Landmarks {
     pub(super) chest: Option<usize>,
     pub(super) collars: [Option<usize>; 2],
@@ -143,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn every_role_goes_to_its_role_in_every_pair_of_rigs() {
+    fn joint_map_between_rigs_maps_every_role_to_itself() {
         let rigs = fixtures::all();
         for (from_rig, source, from_names) in &rigs {
             for (to_rig, target, to_names) in &rigs {
@@ -165,22 +168,22 @@ mod tests {
     }
 
     #[test]
-    fn one_name_for_two_joints_does_not_mislead() {
+    fn joint_map_with_ambiguous_names_follows_roles() {
         let (cmu, games) = (fixtures::cmu_bvh(), fixtures::games105());
         assert_eq!(drives(&games, &cmu, "lShoulder").as_deref(), Some("LeftArm"));
         assert_eq!(drives(&games, &cmu, "lTorso_Clavicle").as_deref(), Some("LeftShoulder"));
         assert_eq!(drives(&games, &cmu, "lowerback_torso").as_deref(), Some("Spine1"));
-        // "Spine1" is the chest of one and the middle of the back of the other.
+        // `Spine1` is the chest of one rig and the middle of the back of the other.
         let lafan = fixtures::lafan();
         assert_eq!(drives(&lafan, &cmu, "Spine2").as_deref(), Some("Spine1"));
         assert_eq!(drives(&lafan, &cmu, "Spine1"), None);
     }
 
     #[test]
-    fn fingers_go_by_name_and_only_where_they_are() {
+    fn joint_map_of_fingers_is_by_name() {
         let (cmu, mixamo) = (fixtures::cmu_bvh(), fixtures::mixamo());
         assert_eq!(drives(&cmu, &cmu, "LeftThumb").as_deref(), Some("LeftThumb"));
-        // The name space of a program is no part of the name.
+        // Name spaces are ignored.
         assert_eq!(
             drives(&mixamo, &cmu, "mixamorig:LeftHandIndex1").as_deref(),
             Some("LeftHandIndex1")
@@ -193,9 +196,9 @@ mod tests {
         );
     }
 
-    /// Joints that share one name are told apart by what they hang on.
+    /// Joints that share one name are told apart by their parents.
     #[test]
-    fn joints_of_one_name_go_where_their_parents_go() {
+    fn joint_map_of_equal_names_follows_parents() {
         let mut joints = fixtures::lafan().joints().to_vec();
         for (side, hand) in ["LeftHand", "RightHand"].into_iter().enumerate() {
             let parent = joints.iter().position(|j| j.name == hand);

@@ -1,8 +1,10 @@
+//! Forward kinematics, and local poses from world poses.
+
 use super::{Pose, Skeleton};
 use crate::math::{Planar, quat};
 use glam::{Quat, Vec3};
 
-/// Every joint in the world.
+/// The world transforms of all joints.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WorldPose {
     /// World positions, metres.
@@ -12,13 +14,13 @@ pub struct WorldPose {
 }
 
 impl WorldPose {
-    /// The world position of a point in the joint's frame.
+    /// Returns the world position of a point in the joint's frame.
     #[must_use]
     pub fn point(&self, joint: usize, point_in_joint: Vec3) -> Vec3 {
         self.positions[joint] + self.rotations[joint] * point_in_joint
     }
 
-    /// Moves the whole pose over the ground.
+    /// Transforms the whole pose over the ground.
     pub fn apply(&mut self, world_from_here: &Planar) {
         let turn = world_from_here.rotation();
         for position in &mut self.positions {
@@ -30,7 +32,7 @@ impl WorldPose {
     }
 }
 
-/// Forward kinematics of one pose.
+/// Computes forward kinematics of a pose.
 #[must_use]
 pub fn world_pose(skeleton: &Skeleton, pose: &Pose) -> WorldPose {
     let mut world = WorldPose::default();
@@ -44,9 +46,9 @@ pub fn world_pose(skeleton: &Skeleton, pose: &Pose) -> WorldPose {
     world
 }
 
-/// Forward kinematics into a buffer that is used again, from borrowed parts of a pose.
+/// Computes forward kinematics into a reusable buffer, from borrowed parts of a pose.
 ///
-/// `rotations` holds one local rotation per joint; joints beyond its end rest. `translations`
+/// `rotations` holds one local rotation per joint; missing ones are the identity. `translations`
 /// replace rest offsets, sorted by joint.
 pub fn world_pose_into(
     skeleton: &Skeleton,
@@ -58,9 +60,9 @@ pub fn world_pose_into(
     place(skeleton, root_translation, rotations, translations, 0..skeleton.len(), world);
 }
 
-/// As [`world_pose_into`], of `joints` alone: in rising order and with all their ancestors, as
-/// [`Skeleton::with_ancestors`] gives them. The entries of other joints mean nothing. Indices that
-/// are no joints are passed over.
+/// Computes forward kinematics of `joints` alone, as [`world_pose_into`] does for all: in rising
+/// order and with all their ancestors, as [`Skeleton::with_ancestors`] returns them. The entries of
+/// other joints are undefined. Indices out of range are ignored.
 pub fn world_pose_of(
     skeleton: &Skeleton,
     root_translation: Vec3,
@@ -72,11 +74,12 @@ pub fn world_pose_of(
     place(skeleton, root_translation, rotations, translations, joints.iter().copied(), world);
 }
 
-/// The way back from [`world_pose`]: the local rotations, and the translations of joints that are
-/// not where their offset puts them (by more than 0.1 mm). Joints that the pose does not have rest.
+/// Computes local rotations from a world pose, and translations for joints that are farther than
+/// 0.1 mm from the position that their offset gives: the inverse of [`world_pose`]. Joints that the
+/// pose does not have stay at rest.
 #[must_use]
 pub fn local_pose(skeleton: &Skeleton, world: &WorldPose) -> Pose {
-    const SAME_PLACE_M: f32 = 1e-4;
+    const TOLERANCE_M: f32 = 1e-4;
     let mut pose = Pose {
         root_translation: world.positions.first().copied().unwrap_or_default(),
         ..Pose::default()
@@ -94,7 +97,7 @@ pub fn local_pose(skeleton: &Skeleton, world: &WorldPose) -> Pose {
         let parent_from_world = world.rotations[parent].conjugate();
         pose.rotations.push(quat::renormalize(parent_from_world * rotation));
         let translation = parent_from_world * (position - world.positions[parent]);
-        if translation.distance(joint.offset) > SAME_PLACE_M {
+        if translation.distance(joint.offset) > TOLERANCE_M {
             pose.translations.push((index, translation));
         }
     }
@@ -142,7 +145,7 @@ mod tests {
     use crate::skeleton::fixtures;
 
     #[test]
-    fn a_pose_comes_back_from_the_world() {
+    fn local_pose_of_world_pose_is_the_pose() {
         let skeleton = fixtures::cmu_bvh();
         let mut next = fixtures::noise(3);
         let mut random = |scale: f32| Vec3::new(next(), next(), next()) * scale;
@@ -159,7 +162,7 @@ mod tests {
             assert!(again.positions[joint].distance(world.positions[joint]) < 1e-5);
             assert!(quat::angle_between(again.rotations[joint], world.rotations[joint]) < 1e-3);
         }
-        // A pose of fewer joints rests where it ends.
+        // Joints beyond the end of a shorter pose stay at rest.
         let short = WorldPose {
             positions: world.positions[..5].to_vec(),
             rotations: world.rotations[..5].to_vec(),

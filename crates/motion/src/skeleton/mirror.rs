@@ -1,46 +1,51 @@
+//! Mirroring of poses: counterparts of joints, and rotations between their frames.
+
 use super::roles::{Tokens, are_counterparts, read};
 use super::{Pose, Role, Roles, Side, Skeleton};
 use crate::math::quat;
 use glam::{Quat, Vec3};
 
-/// An axis of the rest pose this near to the skeleton's left-right axis is meant to be it: cos 15°.
-const NEARLY_AN_AXIS: f32 = 0.966;
-/// Joints nearer to each other are at one place, metres.
+/// An axis of the rest pose this near to the skeleton's left-right axis is taken as that axis: cos
+/// 15°.
+const AXIS_COSINE: f32 = 0.966;
+/// Joints nearer to each other are at one position, metres.
 const MIN_BONE_M: f32 = 1e-6;
-/// Corrections below this are none, radians.
-const SAME_RADIANS: f32 = 1e-4;
-/// What lies nearer to the line of a bone than this share of its length says nothing about turns
+/// Smaller corrections are dropped, radians.
+const MIN_CORRECTION_RADIANS: f32 = 1e-4;
+/// Points nearer to the line of a bone than this share of its length do not determine a rotation
 /// about it.
-const BESIDE_BONE: f32 = 0.05;
-/// Two subtrees are counterparts by shape when one's mirror image misses the other by at most this
-/// share of its distance.
+const MIN_DISTANCE_FROM_BONE: f32 = 0.05;
+/// Two subtrees are counterparts by shape when the mirror image of one misses the other by at most
+/// this share of its distance.
 const SHAPE_TOLERANCE: f32 = 0.35;
 
-/// Joints with more children than this (no body has them) are compared by role and name only:
-/// comparing shapes takes their number squared.
+/// Joints with more children than this (more than any body has) are compared by role and name only:
+/// comparing shapes is quadratic.
 const MAX_SIBLINGS: usize = 256;
 
-/// A skeleton in which no joint of the left has a counterpart on the right.
+/// Error of a skeleton in which no left joint has a counterpart on the right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "no joint on the left has a counterpart on the right: say by hand which joints are the left and right thigh or upper arm"
 )]
 pub struct NoSides;
 
-/// How a skeleton looks in a mirror: which joint stands for which, and how their frames differ.
+/// The mirror image of a skeleton: the counterpart of each joint, and the rotation between their
+/// frames.
 ///
 /// With S the reflection `x → -x` of the world and M that of the rest pose in its own plane of
 /// symmetry, a joint `j` with the counterpart `p` gets the world rotation `S · R(p) · M · C(j)`,
-/// where `C(j)` takes the bones that start at `j` to the mirror images of those that start at `p`,
-/// each in its own joint's frame: the one bone of a limb exactly, several (hips, chest, hand) as
-/// nearly as a rotation can. With a symmetric rest pose C is the identity. With any other the
-/// bones' directions are those of the mirror image all the same, and only their lengths are the
-/// skeleton's own: nothing depends on how the file lays the joints' axes. Mirroring twice gives the
-/// original back, because `C(p) = M · C(j)⁻¹ · M`.
+/// where `C(j)` rotates the bones that start at `j` to the mirror images of those that start at
+/// `p`, each in its own joint's frame: exactly for the single bone of a limb, as nearly as possible
+/// for several (hips, chest, hand). With a symmetric rest pose C is the identity. With any other
+/// the bones still have the directions of the mirror image, and only their lengths are the
+/// skeleton's own: the axes of the joints do not matter. Mirroring twice gives the original back,
+/// because `C(p) = M · C(j)⁻¹ · M`.
 ///
-/// One bone leaves the turn about itself open. A symmetric rest pose tells it, too; one that shows
-/// no creature does not, and a spine could come out of it turned half round. There the motion tells
-/// ([`Mirror::of_motion`]): on the whole the left does what the right does.
+/// A single bone leaves the rotation about itself open. A symmetric rest pose determines it, too;
+/// an implausible rest pose does not, and a spine could come out rotated by half a turn. In that
+/// case the motion determines it ([`Mirror::of_motion`]): on average the left does the same as the
+/// right.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mirror {
     /// Unit normal of the rest pose's plane of symmetry.
@@ -54,26 +59,26 @@ pub struct Mirror {
 }
 
 impl Mirror {
-    /// Pairs the joints of a skeleton: those that have roles (or lead to one) by role, others by
-    /// name, then by where they are at rest.
+    /// Pairs the joints of a skeleton: those with roles (or above a joint with a role) by role,
+    /// others by name, then by position at rest.
     ///
     /// # Errors
-    /// [`NoSides`] when roles and names give no pair at all.
+    /// [`NoSides`] when roles and names give no pair.
     pub fn of(skeleton: &Skeleton, roles: &Roles) -> Result<Self, NoSides> {
-        Self::turned_by(skeleton, roles, None)
+        Self::with_usual_rotations(skeleton, roles, None)
     }
 
-    /// As [`of`](Self::of), for a skeleton whose rest pose shows no creature: `usual` is the mean
-    /// rotation of each joint against its parent in a motion. What the bones leave open is chosen
-    /// so that the mirror image has these means, too, as nearly as it can.
+    /// Pairs the joints as [`of`](Self::of) does, for a skeleton with an implausible rest pose.
+    /// `usual` is the mean local rotation of each joint in a motion. Rotations that the bones leave
+    /// open are chosen so that the mirror image has these means, too, as nearly as possible.
     ///
     /// # Errors
-    /// As [`of`](Self::of).
+    /// The same as for [`of`](Self::of).
     pub fn of_motion(skeleton: &Skeleton, roles: &Roles, usual: &[Quat]) -> Result<Self, NoSides> {
-        Self::turned_by(skeleton, roles, Some(usual))
+        Self::with_usual_rotations(skeleton, roles, Some(usual))
     }
 
-    fn turned_by(
+    fn with_usual_rotations(
         skeleton: &Skeleton,
         roles: &Roles,
         usual: Option<&[Quat]>,
@@ -101,10 +106,10 @@ impl Mirror {
                 continue;
             };
             let bones = mirror.bones_below(joint);
-            // All of several bones may lie on one line, and then leave the turn about it open. The
-            // longest stands for them; in the middle of the body their sum does, for a bone of one
-            // side would be turned to that of the other, and the mirror image of the mirror image
-            // would be another pose.
+            // Several bones may all lie on one line, and then leave the rotation about it open. The
+            // longest represents them; in the middle of the body their sum does, for a bone of one
+            // side would be rotated to that of the other, and mirroring twice would not give the
+            // pose back.
             let sum = |bones: &[(Vec3, Vec3)]| {
                 bones
                     .iter()
@@ -120,7 +125,7 @@ impl Mirror {
             let bone = bone.filter(|(bone, _)| bone.length() > MIN_BONE_M);
             let near = usual.and_then(|usual| mirror.usual_correction(joint, other, usual));
             mirror.corrections[joint] = match (bone, quat::best_fit(&bones)) {
-                // The second of a pair is made from the first, so that both undo each other to the
+                // The second of a pair is computed from the first, so that they are inverse to the
                 // last bit.
                 _ if other < joint => {
                     mirror.reflected_rotation(mirror.corrections[other].conjugate())
@@ -130,21 +135,23 @@ impl Mirror {
                     turned_about_bone(bone, others, &bones, near.unwrap_or(Quat::IDENTITY))
                 }
                 _ if near.is_some() => near.unwrap_or(Quat::IDENTITY),
-                // What has no bones follows its parent, except in the middle: there it is the
-                // mirror image of itself.
+                // Joints without bones follow their parent, except in the middle, where a joint is
+                // the mirror image of itself.
                 _ if other != joint => mirror.parents[joint]
                     .map_or(Quat::IDENTITY, |parent| mirror.corrections[parent]),
                 _ => Quat::IDENTITY,
             };
-            if quat::angle_between(mirror.corrections[joint], Quat::IDENTITY) < SAME_RADIANS {
+            if quat::angle_between(mirror.corrections[joint], Quat::IDENTITY)
+                < MIN_CORRECTION_RADIANS
+            {
                 mirror.corrections[joint] = Quat::IDENTITY;
             }
         }
         Ok(mirror)
     }
 
-    /// The correction with which the mirror image of what the counterpart usually does is what the
-    /// joint itself usually does.
+    /// Returns the correction for which the mirror image of the counterpart's usual rotation is the
+    /// joint's own usual rotation.
     fn usual_correction(&self, joint: usize, other: usize, usual: &[Quat]) -> Option<Quat> {
         let parent = self.parents[joint]?;
         let image =
@@ -152,8 +159,8 @@ impl Mirror {
         Some(quat::renormalize(image.conjugate() * *usual.get(joint)?))
     }
 
-    /// The bones that start at a joint, each with the mirror image of the one that starts at its
-    /// counterpart and ends at theirs.
+    /// Returns the bones that start at a joint, each with the mirror image of the one that starts
+    /// at its counterpart and ends at the counterpart of its end.
     fn bones_below(&self, joint: usize) -> Vec<(Vec3, Vec3)> {
         let below =
             (joint + 1..self.parents.len()).filter(|&child| self.parents[child] == Some(joint));
@@ -165,15 +172,15 @@ impl Mirror {
         below.filter_map(pair).collect()
     }
 
-    /// The joint that moves in a mirror as this one does: itself in the middle of the body; `None`
-    /// for a joint without counterpart.
+    /// Returns the counterpart of a joint: itself in the middle of the body; `None` for a joint
+    /// without counterpart.
     #[must_use]
     pub fn counterpart(&self, joint: usize) -> Option<usize> {
         self.counterparts.get(joint).copied().flatten()
     }
 
-    /// The mirror image of a pose in the plane x = 0 of the world. Joints without counterpart keep
-    /// what they do.
+    /// Mirrors a pose in the plane x = 0 of the world. Joints without counterpart keep their own
+    /// rotation.
     #[must_use]
     pub fn pose(&self, pose: &Pose) -> Pose {
         let local = |joint: usize| pose.rotations.get(joint).copied().unwrap_or(Quat::IDENTITY);
@@ -213,7 +220,8 @@ impl Mirror {
         }
     }
 
-    /// The mirror image of a translation of `joint` against its parent, and whose it is then.
+    /// Mirrors the local translation of `joint`; returns the joint that it applies to, and the
+    /// translation.
     fn translation(&self, joint: usize, value: Vec3) -> (usize, Vec3) {
         let (Some(other), Some(Some(parent))) = (self.counterpart(joint), self.parents.get(joint))
         else {
@@ -224,26 +232,25 @@ impl Mirror {
         if other == joint {
             return (joint, self.corrections[*parent].conjugate() * self.reflected(value));
         }
-        // What differs from rest is mirrored, so that a bone at its rest length keeps its own
+        // Only the difference to rest is mirrored, so that a bone at its rest length keeps its own
         // length.
         (other, self.offsets[other] + into_parent * self.reflected(value - self.offsets[joint]))
     }
 
-    /// M · v.
+    /// Returns M · v.
     fn reflected(&self, v: Vec3) -> Vec3 {
         v - 2.0 * self.normal * self.normal.dot(v)
     }
 
-    /// M · q · M.
+    /// Returns M · q · M.
     fn reflected_rotation(&self, q: Quat) -> Quat {
         let v = -self.reflected(Vec3::new(q.x, q.y, q.z));
         Quat::from_xyzw(v.x, v.y, v.z, q.w)
     }
 }
 
-/// The rotation that takes a bone to another, turned about that so that what else starts at the
-/// joint comes as near as it can to where it belongs; where nothing else does, the one that is
-/// nearest to `near`.
+/// Returns the rotation from one bone to another that also brings the other bones of the joint as
+/// near as possible to their targets; without other bones, the one nearest to `near`.
 fn turned_about_bone(from: Vec3, to: Vec3, bones: &[(Vec3, Vec3)], near: Quat) -> Quat {
     let turn = quat::renormalize(quat::between_directions(near * from, to) * near);
     let Some(axis) = to.try_normalize() else {
@@ -257,13 +264,13 @@ fn turned_about_bone(from: Vec3, to: Vec3, bones: &[(Vec3, Vec3)], near: Quat) -
         cos += bone.dot(wanted);
         size = size.max(bone.length().min(wanted.length()));
     }
-    if size < BESIDE_BONE * from.length() {
+    if size < MIN_DISTANCE_FROM_BONE * from.length() {
         return turn;
     }
     quat::renormalize(Quat::from_axis_angle(axis, sin.atan2(cos)) * turn)
 }
 
-/// From the right to the left of the rest pose, unit length: by roles, else by names.
+/// Returns the unit vector from right to left of the rest pose: by roles, otherwise by names.
 fn left_right_axis(skeleton: &Skeleton, roles: &Roles, rest: &[Vec3]) -> Option<Vec3> {
     let at = |role| roles.get(role).and_then(|joint| rest.get(joint).copied());
     let by_role = Role::ALL.into_iter().filter(|role| role.side() == Some(Side::Left));
@@ -277,7 +284,7 @@ fn left_right_axis(skeleton: &Skeleton, roles: &Roles, rest: &[Vec3]) -> Option<
             differences.extend(second.map(|b| rest[a] - rest[b]));
         }
     }
-    // Which of a pair is the left one does not matter for a plane, but they must not cancel out.
+    // The sign of a difference does not matter for a plane, but differences must not cancel out.
     let longest = differences.iter().copied().max_by(|a, b| a.length().total_cmp(&b.length()))?;
     let axis = differences
         .iter()
@@ -286,19 +293,19 @@ fn left_right_axis(skeleton: &Skeleton, roles: &Roles, rest: &[Vec3]) -> Option<
         .try_normalize()
         .unwrap_or(Vec3::X);
     let snapped =
-        [Vec3::X, Vec3::Y, Vec3::Z].into_iter().find(|unit| axis.dot(*unit).abs() > NEARLY_AN_AXIS);
+        [Vec3::X, Vec3::Y, Vec3::Z].into_iter().find(|unit| axis.dot(*unit).abs() > AXIS_COSINE);
     Some(snapped.unwrap_or(axis))
 }
 
-/// What is needed to find the counterparts.
+/// The data for finding counterparts.
 struct Pairing<'a> {
     skeleton: &'a Skeleton,
     names: Vec<Tokens>,
     children: Vec<Vec<usize>>,
     /// For every joint, the roles of itself and all joints below, as bits.
     roles_below: Vec<u32>,
-    /// For every joint, the mean of itself, the joints and the end sites below, relative to its
-    /// parent.
+    /// For every joint, the mean position of itself, the joints and the end sites below, relative
+    /// to its parent.
     centres: Vec<Vec3>,
     normal: Vec3,
 }
@@ -334,14 +341,14 @@ impl<'a> Pairing<'a> {
         Self { skeleton, names, children, roles_below, centres, normal }
     }
 
-    /// The counterpart of every joint, from the root down: children of counterparts are compared
-    /// with each other.
+    /// Returns the counterpart of every joint, from the root down: children of counterparts are
+    /// compared with each other.
     fn counterparts(&self) -> Vec<Option<usize>> {
         let mut counterparts: Vec<Option<usize>> = vec![None; self.skeleton.len()];
         counterparts[0] = Some(0);
         for joint in 0..self.skeleton.len() {
-            // Parents come before children, so a joint's own counterpart is known when its
-            // children's turn comes.
+            // Parents come before children, so the counterpart of a joint is known before its
+            // children are compared.
             let Some(other) = counterparts[joint].filter(|&other| joint <= other) else {
                 continue;
             };
@@ -364,14 +371,14 @@ impl<'a> Pairing<'a> {
         counterparts
     }
 
-    /// How good a pair two joints make: rank (roles, names, shape), then the distance by which the
-    /// mirror image misses. `None` for no pair.
+    /// Returns the quality of a pair of joints: rank (roles, names, shape), then the distance by
+    /// which the mirror image misses. `None` for no pair.
     fn likeness(&self, a: usize, b: usize, in_the_middle: bool) -> Option<(u8, f32)> {
         let reflected = self.centres[a] - 2.0 * self.normal * self.normal.dot(self.centres[a]);
         let cost = reflected.distance(self.centres[b]);
         let (below_a, below_b) = (self.roles_below[a], self.roles_below[b]);
         if below_a != 0 || below_b != 0 {
-            // Roles decide where there are any, though one side may lack some of them.
+            // Roles decide where there are any, though some may be missing on one side.
             let mirrored = mirrored_roles(below_a);
             return if mirrored & below_b != 0 {
                 Some((0, cost))
@@ -385,14 +392,14 @@ impl<'a> Pairing<'a> {
         let siblings = self.skeleton.parent(a).map_or(0, |parent| self.children[parent].len());
         let fits =
             siblings <= MAX_SIBLINGS && cost <= SHAPE_TOLERANCE * self.centres[a].length() + 1e-4;
-        // What lies off the middle without a partner is its own counterpart: a rucksack's strap, a
-        // tail.
+        // A joint off the middle without a partner, such as a tail or the strap of a bag, is its
+        // own counterpart.
         if fits { Some((2, cost)) } else { (in_the_middle && a == b).then_some((3, cost)) }
     }
 
-    /// The direction of the bone that starts at a joint, not of unit length: to the only child, or
-    /// the only one that leads to a role; for a leaf to its end site. Joints at the same place
-    /// count as one.
+    /// Returns the direction of the bone that starts at a joint, not of unit length: to the only
+    /// child, or the only one with a role below; for a leaf to its end site. Joints at the same
+    /// position count as one.
     fn bone(&self, joint: usize) -> Option<Vec3> {
         let mut at = joint;
         loop {
@@ -442,9 +449,9 @@ mod tests {
             .collect()
     }
 
-    /// With names or without: fingers, eyes, collar bones and twist joints have their counterparts.
+    /// Fingers, eyes, collar bones and twist joints have their counterparts, with names or without.
     #[test]
-    fn every_joint_of_every_rig_has_its_counterpart() {
+    fn counterparts_of_every_rig_are_complete() {
         for (rig, skeleton, _) in fixtures::all() {
             for seed in 0..3 {
                 let (skeleton, _) =
@@ -468,7 +475,7 @@ mod tests {
     }
 
     #[test]
-    fn a_joint_on_one_side_only_keeps_what_it_does() {
+    fn mirrored_joint_without_counterpart_keeps_its_rotation() {
         let mut joints = fixtures::lafan().joints().to_vec();
         let hand = joints.iter().position(|joint| joint.name == "RightHand");
         joints.push(Joint {
@@ -487,7 +494,7 @@ mod tests {
     }
 
     #[test]
-    fn corrections_undo_each_other() {
+    fn corrections_of_a_pair_are_inverse() {
         let skeleton = fixtures::uneven(&fixtures::mixamo(), 1.0, 0.3, 0.2, 6);
         let mirror = Mirror::of(&skeleton, &fixtures::roles(&skeleton)).unwrap();
         for joint in 0..skeleton.len() {

@@ -1,3 +1,5 @@
+//! Retargeting of poses from one skeleton to another.
+
 use super::corrections::{BodyAxes, back, corrections};
 use super::joint_map::JointMap;
 use super::{Pose, Role, Roles, Skeleton, WorldPose, world_pose};
@@ -5,20 +7,20 @@ use crate::math::quat;
 use glam::{Quat, Vec3};
 use std::sync::Arc;
 
-/// Offsets that differ by less are the same, metres.
+/// Smaller differences of offsets are ignored, metres.
 const SAME_OFFSET_M: f32 = 1e-5;
 
-/// How poses of one skeleton become poses of another.
+/// The retargeting of poses from one skeleton to another.
 ///
-/// A driven joint gets the world rotation of the joint that drives it, times the rotation that
-/// takes the target's bone at rest to the source's bone at rest: `world_target = world_source · C`.
-/// Where rest directions agree within 2°, C is that of the body as a whole, most often the
-/// identity, and what local rotations the files have survives. Joints of the back that nothing
-/// drives share the bend between the driven ones around them; other joints that nothing drives keep
-/// their rest rotation. A skeleton whose rest pose shows no creature is taken as one that rests in
-/// a stance ([`Retargeting::standing`]): bones that correspond by chance would twist the body. The
-/// hips' way through the world is scaled by the ratio of the legs' lengths, so that steps keep
-/// their proportion and feet do not slide.
+/// A driven joint gets the world rotation of its driving joint, times the rotation from the
+/// target's bone at rest to the source's bone at rest: `world_target = world_source · C`. Where
+/// rest directions agree within 2°, C is that of the body as a whole, most often the identity, and
+/// the local rotations of the files are kept. Undriven joints of the back share the bend between
+/// the driven ones around them; other undriven joints keep their rest rotation. A skeleton with an
+/// implausible rest pose is replaced by one that rests in a stance ([`Retargeting::standing`]):
+/// bones in accidental directions would twist the body. The hips' trajectory through the world is
+/// scaled by the ratio of the legs' lengths, so that steps keep their proportion and feet do not
+/// slide.
 #[derive(Clone, Debug)]
 pub struct Retargeting {
     source: Arc<Skeleton>,
@@ -26,22 +28,22 @@ pub struct Retargeting {
     map: JointMap,
     corrections: Vec<Quat>,
     whole_body: Quat,
-    /// For joints of the back that nothing drives: (driven above, driven below, share of the way
-    /// from one to the other).
+    /// For undriven joints of the back: (driven above, driven below, share of the distance from the
+    /// first to the second).
     shares: Vec<Option<(usize, usize, f32)>>,
     /// Hips of the source and of the target.
     hips: (usize, usize),
     scale: f32,
     same_rig: bool,
-    /// The world rotations of the joints in the stances that stand in for rest poses; none where
-    /// the rest pose itself counts.
+    /// The world rotations of the joints in the stance that replaces the rest pose; `None` where
+    /// the rest pose is used.
     source_stance: Option<Vec<Quat>>,
     target_stance: Option<Vec<Quat>>,
 }
 
 impl Retargeting {
-    /// Prepares the way from `source` to `target`; `None` when no joint of the source drives any
-    /// joint of the target.
+    /// Prepares retargeting from `source` to `target`; `None` when no joint of the source drives
+    /// any joint of the target.
     #[must_use]
     pub fn new(
         source: &Arc<Skeleton>,
@@ -52,8 +54,9 @@ impl Retargeting {
         Self::standing(source, source_roles, None, target, target_roles, None)
     }
 
-    /// As [`new`](Self::new), with stances ([`canonical_stance`](super::canonical_stance)) in place
-    /// of rest poses that show no creature: of the source, and of the target.
+    /// Prepares retargeting as [`new`](Self::new) does, with stances
+    /// ([`canonical_stance`](super::canonical_stance)) in place of implausible rest poses of the
+    /// source, and of the target.
     #[must_use]
     pub fn standing(
         source: &Arc<Skeleton>,
@@ -104,48 +107,48 @@ impl Retargeting {
         })
     }
 
-    /// The joint map.
+    /// Returns the joint map.
     #[must_use]
     pub fn map(&self) -> &JointMap {
         &self.map
     }
 
-    /// Whether anything of the source moves a joint of the target: a joint that drives it, or the
-    /// bend that it shares with its neighbours.
+    /// Returns whether the source moves a joint of the target: by a driving joint, or by the bend
+    /// that it shares with its neighbours.
     #[must_use]
     pub fn moves(&self, target_joint: usize) -> bool {
         self.map.source_of(target_joint).is_some()
             || self.shares.get(target_joint).is_some_and(Option::is_some)
     }
 
-    /// By how much lengths of the source are multiplied on the target.
+    /// Returns the factor from lengths of the source to lengths of the target.
     #[must_use]
     pub fn scale(&self) -> f32 {
         self.scale
     }
 
-    /// Whether the skeletons differ in nothing but the order of their joints, and in joints that
+    /// Returns whether the skeletons differ only in the order of their joints, and in joints that
     /// one of them lacks at its ends.
     #[must_use]
     pub fn is_same_rig(&self) -> bool {
         self.same_rig
     }
 
-    /// The rotation that takes the target's bone at rest, or in its stance, to that of the source
-    /// which drives it; the identity for joints that nothing drives.
+    /// Returns the rotation from the target's bone at rest, or in its stance, to that of its
+    /// driving joint; the identity for undriven joints.
     #[must_use]
     pub fn correction(&self, target_joint: usize) -> Quat {
         self.corrections.get(target_joint).copied().unwrap_or(Quat::IDENTITY)
     }
 
-    /// A pose of the source as a pose of the target.
+    /// Retargets a pose of the source to the target.
     #[must_use]
     pub fn pose(&self, pose: &Pose) -> Pose {
         if self.same_rig {
             return self.copied(pose);
         }
         let against_stance =
-            self.source_stance.as_ref().map(|stance| turned_in(&self.source, stance, pose));
+            self.source_stance.as_ref().map(|stance| into_stance(&self.source, stance, pose));
         let pose = against_stance.as_ref().unwrap_or(pose);
         let world = world_pose(&self.source, pose);
         let mut worlds: Vec<Quat> = Vec::with_capacity(self.target.len());
@@ -153,7 +156,7 @@ impl Retargeting {
         for (joint, parent) in self.target.joints().iter().map(|j| j.parent).enumerate() {
             let above = parent.map_or(Quat::IDENTITY, |parent| worlds[parent]);
             let turned = self.world_rotation(joint, &world);
-            // The root has no rest rotation of its own where the whole body lies another way.
+            // Where the axes of the whole body differ, the root has their rotation at rest.
             let rest = if parent.is_none() { self.whole_body } else { Quat::IDENTITY };
             let computed =
                 || turned.map_or(rest, |turned| quat::renormalize(above.conjugate() * turned));
@@ -166,12 +169,12 @@ impl Retargeting {
         let made =
             Pose { root_translation: world.positions[self.hips.0] * self.scale - hips, ..standing };
         match &self.target_stance {
-            Some(stance) => turned_back(&self.target, stance, made),
+            Some(stance) => out_of_stance(&self.target, stance, made),
             None => made,
         }
     }
 
-    /// The world rotation of a joint that is driven or shares the bend of its neighbours.
+    /// Returns the world rotation of a joint that is driven or shares the bend of its neighbours.
     fn world_rotation(&self, joint: usize, source: &WorldPose) -> Option<Quat> {
         if let Some(from) = self.map.source_of(joint) {
             return Some(source.rotations[from] * self.corrections[joint]);
@@ -181,7 +184,7 @@ impl Retargeting {
         Some(quat::slerp(source.rotations[above], source.rotations[below], share) * self.whole_body)
     }
 
-    /// The source's own local rotation, where neither joint nor parent needs a correction.
+    /// Returns the source's own local rotation, where neither joint nor parent needs a correction.
     fn local_copy(&self, joint: usize, parent: Option<usize>, pose: &Pose) -> Option<Quat> {
         let from = self.map.source_of(joint)?;
         let plain = |joint: usize| self.corrections[joint] == Quat::IDENTITY;
@@ -196,7 +199,7 @@ impl Retargeting {
         if same_parent && plain(joint) { pose.rotations.get(from).copied() } else { None }
     }
 
-    /// The pose of the same rig with its joints in another order.
+    /// Retargets a pose to the same rig with its joints in another order.
     fn copied(&self, pose: &Pose) -> Pose {
         let rotation = |joint| {
             self.map
@@ -218,9 +221,9 @@ impl Retargeting {
     }
 }
 
-/// A pose as one of the skeleton that rests in a stance ([`Skeleton::resting_in`]): every joint at
-/// the same place in the world.
-fn turned_in(skeleton: &Skeleton, stance: &[Quat], pose: &Pose) -> Pose {
+/// Converts a pose to the skeleton that rests in a stance ([`Skeleton::resting_in`]), with every
+/// joint at the same position in the world.
+fn into_stance(skeleton: &Skeleton, stance: &[Quat], pose: &Pose) -> Pose {
     let of = |joint: Option<usize>| {
         joint.and_then(|joint| stance.get(joint)).copied().unwrap_or(Quat::IDENTITY)
     };
@@ -235,8 +238,8 @@ fn turned_in(skeleton: &Skeleton, stance: &[Quat], pose: &Pose) -> Pose {
     }
 }
 
-/// The way back from [`turned_in`], for a pose without translations.
-fn turned_back(skeleton: &Skeleton, stance: &[Quat], pose: Pose) -> Pose {
+/// Converts a pose without translations back: the inverse of [`into_stance`].
+fn out_of_stance(skeleton: &Skeleton, stance: &[Quat], pose: Pose) -> Pose {
     let of = |joint: Option<usize>| {
         joint.and_then(|joint| stance.get(joint)).copied().unwrap_or(Quat::IDENTITY)
     };
@@ -246,13 +249,13 @@ fn turned_back(skeleton: &Skeleton, stance: &[Quat], pose: Pose) -> Pose {
     Pose { rotations: pose.rotations.iter().enumerate().map(local).collect(), ..pose }
 }
 
-/// Whether the map keeps parents and offsets.
+/// Returns whether the map keeps parents and offsets.
 fn is_same_rig(source: &Skeleton, target: &Skeleton, map: &JointMap) -> bool {
     if map.source_of(0) != Some(0) {
         return false;
     }
     target.joints().iter().enumerate().skip(1).all(|(joint, ours)| match map.source_of(joint) {
-        // What nothing drives may hang at the ends only.
+        // Undriven joints are allowed only at the ends.
         None => !target.children(joint).any(|child| map.source_of(child).is_some()),
         Some(from) => {
             let theirs = &source.joints()[from];
@@ -262,7 +265,7 @@ fn is_same_rig(source: &Skeleton, target: &Skeleton, map: &JointMap) -> bool {
     })
 }
 
-/// The ratio of the legs' lengths, else that of the bodies' heights.
+/// Returns the ratio of the legs' lengths, otherwise that of the bodies' heights.
 fn scale(source: &Skeleton, source_roles: &Roles, target: &Skeleton, target_roles: &Roles) -> f32 {
     let ratio = match (target_roles.leg_length(target), source_roles.leg_length(source)) {
         (Some(ours), Some(theirs)) => ours / theirs,
@@ -271,8 +274,8 @@ fn scale(source: &Skeleton, source_roles: &Roles, target: &Skeleton, target_role
     if ratio.is_finite() && ratio > 0.0 { ratio } else { 1.0 }
 }
 
-/// For the joints between hips and head that nothing drives: between which driven joints they lie,
-/// and how far along.
+/// Returns, for the undriven joints between hips and head, the driven joints between which they
+/// lie, and how far along.
 fn back_shares(
     target: &Skeleton,
     roles: &Roles,

@@ -1,3 +1,5 @@
+//! Sides of the body, and the roles that joints have in it.
+
 /// One side of the body, as the character itself calls it: a character that faces +Z has its left
 /// at +X.
 #[derive(
@@ -13,7 +15,7 @@ impl Side {
     /// Left, then right.
     pub const BOTH: [Self; 2] = [Self::Left, Self::Right];
 
-    /// The other side.
+    /// Returns the other side.
     #[must_use]
     pub const fn other(self) -> Self {
         match self {
@@ -22,7 +24,7 @@ impl Side {
         }
     }
 
-    /// 0 for left, 1 for right: the place in an array of two.
+    /// Returns 0 for left, 1 for right: the index into an array of two.
     #[must_use]
     pub const fn index(self) -> usize {
         self as usize
@@ -36,7 +38,7 @@ impl Side {
     }
 }
 
-/// What a joint is for, in any rig.
+/// The function of a joint, in any rig.
 ///
 /// A joint is named for the bone that *starts* at it: `LeftThigh` is the joint whose rotation
 /// swings the left thigh (the hip joint), `LeftShin` is the knee, `LeftFoot` the ankle, `LeftToe`
@@ -91,13 +93,13 @@ impl Role {
         Self::RightHand,
     ];
 
-    /// The place in [`Role::ALL`].
+    /// Returns the index in [`Role::ALL`].
     #[must_use]
     pub const fn index(self) -> usize {
         self as usize
     }
 
-    /// What a person calls it.
+    /// Returns the name on screen.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -121,7 +123,7 @@ impl Role {
         }
     }
 
-    /// The side of the body; `None` in the middle.
+    /// Returns the side of the body; `None` in the middle.
     #[must_use]
     pub const fn side(self) -> Option<Side> {
         match self {
@@ -137,7 +139,7 @@ impl Role {
         }
     }
 
-    /// The role that a mirror shows in this one's place.
+    /// Returns the counterpart of this role on the other side; roles in the middle are their own.
     #[must_use]
     pub const fn mirrored(self) -> Self {
         match self {
@@ -159,55 +161,55 @@ impl Role {
         }
     }
 
-    /// The hip joint, which swings the thigh.
+    /// Returns the hip joint, which swings the thigh.
     #[must_use]
     pub const fn thigh(side: Side) -> Self {
         side.pick(Self::LeftThigh, Self::RightThigh)
     }
 
-    /// The knee, which swings the shin.
+    /// Returns the knee, which swings the shin.
     #[must_use]
     pub const fn shin(side: Side) -> Self {
         side.pick(Self::LeftShin, Self::RightShin)
     }
 
-    /// The ankle.
+    /// Returns the ankle.
     #[must_use]
     pub const fn foot(side: Side) -> Self {
         side.pick(Self::LeftFoot, Self::RightFoot)
     }
 
-    /// The ball of the foot.
+    /// Returns the ball of the foot.
     #[must_use]
     pub const fn toe(side: Side) -> Self {
         side.pick(Self::LeftToe, Self::RightToe)
     }
 
-    /// The shoulder joint, which swings the upper arm.
+    /// Returns the shoulder joint, which swings the upper arm.
     #[must_use]
     pub const fn upper_arm(side: Side) -> Self {
         side.pick(Self::LeftUpperArm, Self::RightUpperArm)
     }
 
-    /// The elbow, which swings the forearm.
+    /// Returns the elbow, which swings the forearm.
     #[must_use]
     pub const fn forearm(side: Side) -> Self {
         side.pick(Self::LeftForearm, Self::RightForearm)
     }
 
-    /// The wrist.
+    /// Returns the wrist.
     #[must_use]
     pub const fn hand(side: Side) -> Self {
         side.pick(Self::LeftHand, Self::RightHand)
     }
 
-    /// Thigh, shin, foot and toe of one side, from the hips outwards.
+    /// Returns thigh, shin, foot and toe of one side, from the hips outwards.
     #[must_use]
     pub const fn leg(side: Side) -> [Self; 4] {
         [Self::thigh(side), Self::shin(side), Self::foot(side), Self::toe(side)]
     }
 
-    /// Upper arm, forearm and hand of one side, from the chest outwards.
+    /// Returns upper arm, forearm and hand of one side, from the chest outwards.
     #[must_use]
     pub const fn arm(side: Side) -> [Self; 3] {
         [Self::upper_arm(side), Self::forearm(side), Self::hand(side)]
@@ -219,7 +221,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_list_is_complete_and_mirrors_itself() {
+    fn role_list_is_complete_and_its_mirror_is_itself() {
         for (index, role) in Role::ALL.into_iter().enumerate() {
             assert_eq!(role.index(), index);
             assert_eq!(role.mirrored().mirrored(), role);

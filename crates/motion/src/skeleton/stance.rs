@@ -1,5 +1,5 @@
-//! The pose in which a body is made around a skeleton: upright, legs apart from each other and arms
-//! from the trunk, whatever pose the file calls rest.
+//! The canonical stance, in which a body is made around a skeleton: upright, legs apart from each
+//! other and arms from the trunk, whatever the file's rest pose is.
 
 use super::joint_map::Landmarks;
 use super::{Joint, Role, Roles, Side, Skeleton, WorldPose};
@@ -7,24 +7,25 @@ use crate::math::quat;
 use glam::{Mat3, Quat, Vec3};
 use std::f32::consts::PI;
 
-/// Arms are lowered by so much from level, radians (40°): between where they are most often and
-/// where they can go, so that shoulders bend least.
+/// Angle of the arms below level, radians (40°): between their usual position and their limits, so
+/// that shoulders bend least.
 const ARMS_DOWN: f32 = 0.70;
-/// The bone from the ankle to the ball of the foot falls by so much where the sole is level,
+/// Angle of the bone from the ankle to the ball of the foot below level where the sole is level,
 /// radians (27°).
 const FOOT_DOWN: f32 = 0.47;
-/// Bones that point up the back or out of the head by nature lean by up to this from the vertical,
-/// radians (25°).
+/// Greatest natural angle of the bones up the back and of the head from the vertical, radians
+/// (25°).
 const LEAN: f32 = 0.44;
-/// Limbs of a rest pose that are farther than this from where they are in the stance are brought
-/// there, radians (57°): arms may be level or hang.
-const FAR: f32 = 1.0;
-/// A body whose own axes are nearer to those of the world than this stands as it is, radians (15°).
+/// Limbs of a rest pose are moved to the stance when they are farther from it than this, radians
+/// (57°): arms may be level or hang.
+const MAX_LIMB_DEVIATION: f32 = 1.0;
+/// A body whose own axes are nearer to those of the world than this keeps its orientation, radians
+/// (15°).
 const UPRIGHT: f32 = 0.26;
 
 impl Skeleton {
-    /// Returns the skeleton that rests in `stance`: at rest its joints are where the stance has
-    /// them, and their axes are those of the world.
+    /// Returns the skeleton whose rest pose is `stance`: at rest its joints have the positions of
+    /// the stance, and the axes of the world.
     #[must_use]
     pub fn resting_in(&self, stance: &WorldPose) -> Self {
         let at = |joint: usize| stance.positions.get(joint).copied().unwrap_or_default();
@@ -37,17 +38,17 @@ impl Skeleton {
         Self::new(joints.collect()).unwrap_or_else(|_| self.clone())
     }
 
-    /// Returns the pose of the skeleton at rest, the root at the origin.
+    /// Returns the rest pose of the skeleton, with the root at the origin.
     #[must_use]
     pub fn rest_pose(&self) -> WorldPose {
         WorldPose { positions: self.rest_positions(), rotations: vec![Quat::IDENTITY; self.len()] }
     }
 }
 
-/// Returns whether the rest pose shows a body as it stands: on two legs below its trunk, its head
-/// above and its feet ahead, or on four legs. `None` where the roles do not tell.
+/// Returns whether the rest pose is that of a standing body: on two legs below its trunk, its head
+/// above and its feet ahead, or on four legs. `None` where roles are missing.
 ///
-/// Files may call anything rest: all bones along one axis, or every joint turned by a constant.
+/// Files may have any rest pose: all bones along one axis, or every joint rotated by a constant.
 #[must_use]
 pub fn rest_is_plausible(skeleton: &Skeleton, roles: &Roles) -> Option<bool> {
     let rest = skeleton.rest_positions();
@@ -57,7 +58,7 @@ pub fn rest_is_plausible(skeleton: &Skeleton, roles: &Roles) -> Option<bool> {
 
 /// Returns how upright a pose is, from -1 (upside down) to 1 (standing straight): the mean over
 /// trunk and legs of the cosine of their angle to the vertical, a bent leg counting for less.
-/// `None` where the roles do not tell.
+/// `None` where roles are missing.
 #[must_use]
 pub fn uprightness(pose: &WorldPose, roles: &Roles) -> Option<f32> {
     let body = Landmark::of(&pose.positions, roles)?;
@@ -66,36 +67,36 @@ pub fn uprightness(pose: &WorldPose, roles: &Roles) -> Option<f32> {
     Some((body.up.y + legs) / 3.0)
 }
 
-/// Returns the stance of a skeleton: the body stands upright and faces +Z, the root at the origin.
+/// Returns the canonical stance of a skeleton: upright, facing +Z, the root at the origin.
 ///
-/// `reference` is any pose that shows how the bones lie to each other, and above all how they are
-/// twisted: the rest pose where that is plausible, else a frame in which the body is upright. The
-/// whole body is turned upright. Where the reference is a rest pose that stands on its legs, that
-/// is all; else the trunk becomes vertical, legs point down, feet ahead, arms to the sides and 40°
-/// down. Each bone comes there by the shortest rotation, which leaves its twist alone; joints
-/// without a role go with their parents. Where the roles do not tell what is what, the reference is
-/// the stance.
+/// `reference` is any pose that shows the bones' relative directions, and above all their twist:
+/// the rest pose where that is plausible, otherwise a frame in which the body is upright. The whole
+/// body is rotated upright. If the reference is a rest pose that stands on its legs, that is all;
+/// otherwise the trunk becomes vertical, legs point down, feet ahead, arms to the sides and 40°
+/// down. Each bone is moved by the shortest rotation, which keeps its twist; joints without a role
+/// follow their parents. Where roles are missing, the reference is the stance.
 #[must_use]
 pub fn canonical_stance(skeleton: &Skeleton, roles: &Roles, reference: &WorldPose) -> WorldPose {
     let mut stance = Stance::new(skeleton, reference);
     let body = Landmark::of(&reference.positions, roles).filter(|body| !body.stands_on_four());
     let Some(body) = body else {
-        return stance.made();
+        return stance.world_pose();
     };
     if quat::log(body.world_from_body.conjugate()).length() > UPRIGHT {
         stance.turn(0, body.world_from_body.conjugate());
     }
-    // A rest pose that stands was made to be one; of a frame all that swings by chance is to go.
+    // A rest pose that stands is intended; in a frame of a clip all accidental deviation is
+    // removed.
     let is_rest = reference
         .rotations
         .iter()
         .all(|rotation| quat::angle_between(*rotation, reference.rotations[0]) < 1e-3);
     match is_rest {
         true if body.stands_on_two() => {}
-        true => stance.straighten(roles, FAR),
+        true => stance.straighten(roles, MAX_LIMB_DEVIATION),
         false => stance.straighten(roles, 0.0),
     }
-    stance.made()
+    stance.world_pose()
 }
 
 /// A limb of two bones.
@@ -110,20 +111,21 @@ impl Limb {
         self.start.distance(self.middle) + self.middle.distance(self.end)
     }
 
-    /// From its start to its end, as a share of its length: shorter than 1 where it is bent.
+    /// Returns the vector from start to end as a share of the limb's length: shorter than 1 where
+    /// it is bent.
     fn way(&self) -> Vec3 {
         (self.end - self.start) / self.length().max(1e-6)
     }
 }
 
-/// What is known of a body in a pose.
+/// The directions of a body in a pose.
 struct Landmark {
     legs: [Limb; 2],
     arms: Option<[Limb; 2]>,
-    /// From the ankles to the balls of the feet, as far as there are any.
+    /// From the ankles to the balls of the feet, where known.
     feet: [Option<Vec3>; 2],
     head: Option<Vec3>,
-    /// From right to left, and up the back.
+    /// From right to left, and up along the back.
     left: Vec3,
     up: Vec3,
     world_from_body: Quat,
@@ -151,7 +153,7 @@ impl Landmark {
         let hips = legs[0].start - legs[1].start;
         let across =
             hips + arms.as_ref().map_or(Vec3::ZERO, |[left, right]| left.start - right.start);
-        // Where the one is turned half round against the other nothing is left.
+        // Where the shoulders are turned half round against the hips, the sum is 0.
         let left = [across, hips]
             .into_iter()
             .find_map(|across| across.reject_from_normalized(up).try_normalize())?;
@@ -171,8 +173,8 @@ impl Landmark {
         })
     }
 
-    /// Whether legs point down from the trunk, feet ahead, shoulders lie as hips do, and arms point
-    /// to their own sides or down.
+    /// Returns whether legs point down from the trunk, feet point ahead, shoulders are parallel to
+    /// hips, and arms point to their own sides or down.
     fn stands_on_two(&self) -> bool {
         let Self { left, up, .. } = *self;
         let forward = left.cross(up);
@@ -198,7 +200,7 @@ impl Landmark {
         legs && hips && feet && arms
     }
 
-    /// Whether arms and legs point the same way, and across the trunk.
+    /// Returns whether arms and legs point the same way, and across the trunk.
     fn stands_on_four(&self) -> bool {
         let Some(arms) = &self.arms else { return false };
         let ways = || self.legs.iter().chain(arms).map(|limb| limb.way().normalize_or_zero());
@@ -207,11 +209,11 @@ impl Landmark {
     }
 }
 
-/// A stance in the making: a reference, and how each joint is turned against it.
+/// A stance under construction: a reference, and the rotation of each joint against it.
 struct Stance<'a> {
     skeleton: &'a Skeleton,
     reference: &'a WorldPose,
-    /// The turn of each joint against its parent's, in the world, on top of the reference.
+    /// The rotation of each joint relative to its parent's, in the world, on top of the reference.
     turns: Vec<Quat>,
 }
 
@@ -220,17 +222,17 @@ impl<'a> Stance<'a> {
         Self { skeleton, reference, turns: vec![Quat::IDENTITY; skeleton.len()] }
     }
 
-    /// Turns a joint and all that hangs on it, about axes of the world.
+    /// Rotates a joint and everything below it, about axes of the world.
     fn turn(&mut self, joint: usize, turn: Quat) {
         if let Some(own) = self.turns.get_mut(joint) {
             *own = quat::renormalize(turn * *own);
         }
     }
 
-    /// The joints as they are turned now.
-    fn made(&self) -> WorldPose {
+    /// Returns the joints as they are rotated now.
+    fn world_pose(&self) -> WorldPose {
         let mut made = WorldPose::default();
-        // The turn of every joint in the world; parents come first.
+        // The rotation of every joint in the world; parents come first.
         let mut whole: Vec<Quat> = Vec::with_capacity(self.skeleton.len());
         let rotation =
             |joint: usize| self.reference.rotations.get(joint).copied().unwrap_or_default();
@@ -251,9 +253,8 @@ impl<'a> Stance<'a> {
         made
     }
 
-    /// Turns `joint` so that the way from `from` to `to`, as they are now, comes to point in
-    /// `direction`; nothing where they are at one place. Of the turns by half a circle it is one
-    /// about `half`.
+    /// Rotates `joint` so that the vector `way` of the current pose points in `direction`; does
+    /// nothing where that vector is 0. For opposite directions the axis is `half`.
     fn swing(
         &mut self,
         joint: usize,
@@ -263,7 +264,7 @@ impl<'a> Stance<'a> {
         least: f32,
     ) {
         let Some(from) =
-            way(&self.made()).filter(|way| way.length() > 1e-4).map(Vec3::normalize_or_zero)
+            way(&self.world_pose()).filter(|way| way.length() > 1e-4).map(Vec3::normalize_or_zero)
         else {
             return;
         };
@@ -280,9 +281,8 @@ impl<'a> Stance<'a> {
         self.turn(joint, turn);
     }
 
-    /// Brings trunk, head and limbs of a body that is upright as a whole to where they are in the
-    /// stance, from the hips outwards; what is nearer to that than `least`, radians, stays as it
-    /// is.
+    /// Moves trunk, head and limbs of an upright body to the stance, from the hips outwards; parts
+    /// that are nearer to it than `least`, radians, stay.
     fn straighten(&mut self, roles: &Roles, least: f32) {
         let joints = self.skeleton.len();
         let joint = |role| roles.get_within(role, joints);
@@ -349,7 +349,8 @@ impl<'a> Stance<'a> {
         }
     }
 
-    /// The way from a joint to the middle of what hangs on it, else to its own end.
+    /// Returns a function for the vector from a joint to the middle of its children, or to its end
+    /// site.
     fn end_of(&self, joint: usize) -> impl Fn(&WorldPose) -> Option<Vec3> + use<> {
         let children: Vec<usize> = self.skeleton.children(joint).collect();
         let end = self.skeleton.joints().get(joint).and_then(|joint| joint.end_site);
@@ -369,7 +370,7 @@ mod tests {
     use super::*;
     use crate::skeleton::{Pose, fixtures, world_pose};
 
-    /// How a body looks, whatever its joints' axes: every joint's place.
+    /// Checks the positions of a body's joints, whatever their axes are.
     fn assert_stands(name: &str, skeleton: &Skeleton, roles: &Roles, stance: &WorldPose) {
         let body = Landmark::of(&stance.positions, roles).unwrap();
         assert!(body.stands_on_two(), "{name}");
@@ -395,7 +396,7 @@ mod tests {
     }
 
     #[test]
-    fn a_plausible_rest_pose_is_the_stance() {
+    fn stance_of_plausible_rest_pose_is_the_rest_pose() {
         let mut plausible = 0;
         for (name, skeleton, _) in fixtures::all() {
             let roles = fixtures::roles(&skeleton);
@@ -404,14 +405,14 @@ mod tests {
             assert_stands(name, &skeleton, &roles, &stance);
             if rest_is_plausible(&skeleton, &roles) == Some(true) {
                 plausible += 1;
-                // Turned as a whole, if at all.
+                // The body is rotated as a whole, if at all.
                 for rotation in &stance.rotations {
                     assert!(quat::angle_between(*rotation, stance.rotations[0]) < 1e-4, "{name}");
                 }
             }
         }
         assert!(plausible >= 5, "{plausible}");
-        // Bones along one axis, and joints turned by constants.
+        // Bones along one axis, and joints rotated by constants.
         let skeleton = fixtures::lafan();
         let roles = fixtures::roles(&skeleton);
         let along = skeleton.joints().iter().map(|joint| Joint {
@@ -429,7 +430,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stance_does_not_depend_on_how_a_file_writes_joint_axes() {
+    fn stance_does_not_depend_on_joint_axes() {
         for (name, skeleton) in [("CMU", fixtures::cmu_bvh()), ("games105", fixtures::games105())] {
             let roles = fixtures::roles(&skeleton);
             let expected = canonical_stance(&skeleton, &roles, &skeleton.rest_pose());
@@ -440,8 +441,7 @@ mod tests {
             let reference = world_pose(&turned, &pose);
             let stance = canonical_stance(&turned, &roles, &reference);
             assert_stands(name, &turned, &roles, &stance);
-            // Axes come out as they would have lain in the rest pose, within what feet and a bent
-            // spine leave open.
+            // The axes are those of the rest pose, within what feet and a bent spine leave open.
             let resting = turned.resting_in(&stance);
             assert_stands(name, &resting, &roles, &resting.rest_pose());
             for role in [Role::LeftThigh, Role::RightShin, Role::LeftUpperArm, Role::RightForearm] {
@@ -449,8 +449,8 @@ mod tests {
                 let child = skeleton.children(joint).next().unwrap();
                 let bone =
                     |positions: &[Vec3]| (positions[child] - positions[joint]).normalize_or_zero();
-                // From the stance of the plain skeleton to this one's: a swing of the bone, and no
-                // twist about it.
+                // From the stance of the plain skeleton to this one there is a swing of the bone,
+                // and no twist about it.
                 let swing =
                     quat::between_directions(bone(&expected.positions), bone(&stance.positions));
                 let plain = stance.rotations[joint]
@@ -463,7 +463,7 @@ mod tests {
     }
 
     #[test]
-    fn four_legs_and_unknown_creatures_stay_as_they_are() {
+    fn stance_of_quadruped_is_its_rest_pose() {
         let point = |name: &str, parent, offset| Joint {
             name: name.into(),
             parent,

@@ -1,7 +1,9 @@
+//! Skeletons: trees of joints in topological order.
+
 use super::Above;
 use glam::Vec3;
 
-/// One number per frame that a file gives for a joint.
+/// A number per frame that a file has for a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[expect(missing_docs, reason = "the names are the BVH keywords")]
 pub enum Channel {
@@ -22,16 +24,16 @@ pub struct Joint {
     pub parent: Option<usize>,
     /// Rest translation from the parent, in the parent's frame, metres.
     pub offset: Vec3,
-    /// Where the bone ends, in the joint's frame, metres: the tip of a toe, a finger or the head.
+    /// The end of the bone in the joint's frame, metres: the tip of a toe, a finger or the head.
     pub end_site: Option<Vec3>,
     /// The channels that the source file has for this joint, in its order. Empty where it has none.
     pub channels: Vec<Channel>,
 }
 
-/// Why a list of joints is no skeleton.
+/// Error in a list of joints.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SkeletonError {
-    /// There is no joint at all.
+    /// The list is empty.
     #[error("a skeleton needs at least one joint")]
     Empty,
     /// Joint 0 has a parent, or another joint has none.
@@ -54,12 +56,12 @@ pub enum SkeletonError {
     },
 }
 
-/// A tree of joints in topological order: parents first, the root at index 0. At rest every joint's
-/// rotation is the identity.
+/// A tree of joints in topological order: parents first, the root at index 0. In the rest pose
+/// every joint's rotation is the identity.
 ///
-/// Two skeletons are equal when their bodies are: where the root rests is not of the body, for
-/// every frame says where it is, and neither is what a file had above it ([`Above`]). Files of one
-/// rig differ in both.
+/// Two skeletons are equal when their bodies are. The rest offset of the root does not count,
+/// because every frame has a root translation, and neither do the joints that a file has above it
+/// ([`Above`]). Both differ between files of one rig.
 #[derive(Clone, Debug)]
 pub struct Skeleton {
     joints: Vec<Joint>,
@@ -78,7 +80,8 @@ impl PartialEq for Skeleton {
 }
 
 impl Skeleton {
-    /// Checks that `joints` is a tree with its root first and every parent before its children.
+    /// Returns the skeleton of `joints`, which must be a tree with its root first and every parent
+    /// before its children.
     ///
     /// # Errors
     /// [`SkeletonError`] names the joint that breaks the rule.
@@ -105,47 +108,48 @@ impl Skeleton {
         Ok(Self { joints, above: None })
     }
 
-    /// The same skeleton with what its file has above the root. Left out where it does not belong
-    /// to a skeleton of this many joints.
+    /// Returns the skeleton with the joints that its file has above the root. They are left out
+    /// where they do not fit a skeleton of this many joints.
     #[must_use]
     pub fn with_above(mut self, above: Option<Above>) -> Self {
         self.above = above.filter(|above| above.fits(self.joints.len())).map(Box::new);
         self
     }
 
-    /// What its file has above the root; `None` where the file's root is the skeleton's.
+    /// Returns the joints that its file has above the root; `None` where the file's root is the
+    /// skeleton's.
     #[must_use]
     pub fn above(&self) -> Option<&Above> {
         self.above.as_deref()
     }
 
-    /// All joints, parents first.
+    /// Returns all joints, parents first.
     #[must_use]
     pub fn joints(&self) -> &[Joint] {
         &self.joints
     }
 
-    /// The number of joints; at least 1.
+    /// Returns the number of joints; at least 1.
     #[must_use]
     #[expect(clippy::len_without_is_empty, reason = "a skeleton is never empty")]
     pub fn len(&self) -> usize {
         self.joints.len()
     }
 
-    /// The index of the parent of `joint`.
+    /// Returns the index of the parent of `joint`.
     #[must_use]
     pub fn parent(&self, joint: usize) -> Option<usize> {
         self.joints.get(joint).and_then(|j| j.parent)
     }
 
-    /// These joints, all their ancestors and the root, in rising order: what kinematics of them
-    /// needs. What is no joint is left out.
+    /// Returns these joints, all their ancestors and the root, in rising order: the joints that
+    /// their kinematics need. Indices out of range are left out.
     #[must_use]
     pub fn with_ancestors(&self, joints: impl IntoIterator<Item = usize>) -> Vec<usize> {
         let mut needed = vec![false; self.len()];
         for joint in joints.into_iter().chain([0]) {
             let mut next = Some(joint).filter(|&joint| joint < self.len());
-            // A joint that is needed already brought its ancestors.
+            // The ancestors of a joint that is included are included already.
             while let Some(joint) = next.filter(|&joint| !needed[joint]) {
                 needed[joint] = true;
                 next = self.parent(joint);
@@ -154,13 +158,13 @@ impl Skeleton {
         (0..self.len()).filter(|&joint| needed[joint]).collect()
     }
 
-    /// The children of `joint`, in order.
+    /// Returns the children of `joint`, in order.
     pub fn children(&self, joint: usize) -> impl Iterator<Item = usize> + '_ {
         (joint + 1..self.joints.len())
             .filter(move |&child| self.joints[child].parent == Some(joint))
     }
 
-    /// The first joint of that name.
+    /// Returns the first joint of that name.
     #[must_use]
     pub fn find(&self, name: &str) -> Option<usize> {
         self.joints.iter().position(|j| j.name == name)
@@ -177,8 +181,7 @@ impl Skeleton {
         Self { joints: joints.collect(), above: None }
     }
 
-    /// The joints' positions at rest with the root's offset left out: the root stands at the
-    /// origin. Metres.
+    /// Returns the joints' positions in the rest pose with the root at the origin, metres.
     #[must_use]
     pub fn rest_positions(&self) -> Vec<Vec3> {
         let mut positions: Vec<Vec3> = Vec::with_capacity(self.joints.len());
@@ -199,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn skeletons_are_equal_wherever_their_roots_rest() {
+    fn skeletons_with_other_root_offsets_are_equal() {
         let with = |root: Vec3, child: Vec3| {
             let joints = [(None, root), (Some(0), child)]
                 .map(|(parent, offset)| Joint { offset, ..joint(parent) });
@@ -210,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn only_trees_with_the_root_first_are_skeletons() {
+    fn skeleton_of_invalid_tree_is_refused() {
         assert_eq!(Skeleton::new(vec![]), Err(SkeletonError::Empty));
         assert!(matches!(
             Skeleton::new(vec![joint(Some(0))]),

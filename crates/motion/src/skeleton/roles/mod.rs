@@ -1,5 +1,4 @@
-//! Which joint is the hips, which the left foot: found by name, else by shape, and corrected by
-//! hand.
+//! The roles of a skeleton's joints: found by name, otherwise by shape, and corrected by hand.
 
 mod names;
 mod shape;
@@ -15,7 +14,7 @@ pub(crate) use tokens::{Tokens, are_counterparts, read};
 /// How the joint of a role was found; the most trustworthy first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Found {
-    /// A person said so.
+    /// Chosen by the user.
     ByHand,
     /// By the joint's name.
     ByName,
@@ -31,9 +30,9 @@ struct Assigned {
 
 /// At most one joint per [`Role`].
 ///
-/// Stored (serde) as a map from role to joint index. The indices belong to one skeleton; when roles
-/// come from elsewhere, every user of them treats an index that the skeleton does not have as a
-/// missing role.
+/// It is stored (serde) as a map from role to joint index. The indices belong to one skeleton.
+/// Since roles may come from outside, every user of them treats an index that the skeleton does not
+/// have as a missing role.
 ///
 /// ```
 /// use segue_motion::skeleton::{Joint, Role, Roles, Skeleton};
@@ -71,14 +70,14 @@ impl From<Roles> for BTreeMap<Role, Assigned> {
 }
 
 impl Roles {
-    /// Finds the roles of a skeleton by its joints' names, and those that no name tells by its
+    /// Finds the roles of a skeleton by the names of its joints, and the remaining ones by its
     /// shape at rest.
     ///
-    /// Names: whole words are compared, without regard to case, after the side (`left`, `L_`, `.L`,
-    /// `lFemur`, …), name spaces (`mixamorig:`) and numbers are taken off; CMU (ASF and BVH),
-    /// Mixamo, `LaFAN1`, Bandai-Namco, Biped, SMPL, `OptiTrack`, Rokoko, Xsens and Unreal rigs are
-    /// covered. Shape: needs Y up and arms that are not folded over the legs; left and right follow
-    /// from the toes, which point forward.
+    /// Names: whole words are compared, without regard to case, after side (`left`, `L_`, `.L`,
+    /// `lFemur`, …), name space (`mixamorig:`) and numbers are removed; CMU (ASF and BVH), Mixamo,
+    /// `LaFAN1`, Bandai-Namco, Biped, SMPL, `OptiTrack`, Rokoko, Xsens and Unreal rigs are covered.
+    /// Shape: needs Y up and arms that are not folded over the legs; left and right follow from the
+    /// toes, which point forward.
     #[must_use]
     pub fn detect(skeleton: &Skeleton) -> Self {
         let mut roles = names::detect(skeleton);
@@ -88,13 +87,13 @@ impl Roles {
         roles
     }
 
-    /// Finds the roles that joints' names tell, whatever the rest pose. See [`Self::detect`].
+    /// Finds roles by the names of joints alone, whatever the rest pose. See [`Self::detect`].
     #[must_use]
     pub fn by_name(skeleton: &Skeleton) -> Self {
         names::detect(skeleton)
     }
 
-    /// Takes over what is missing, where it does not contradict what is there.
+    /// Adds the missing roles of `other` that do not contradict the present ones.
     fn fill(&mut self, skeleton: &Skeleton, other: &Self) {
         for role in Role::ALL {
             let Some(candidate) = other.assigned[role.index()] else {
@@ -109,7 +108,8 @@ impl Roles {
         }
     }
 
-    /// Whether `joint` lies on the right side of the limb's other joints in the tree.
+    /// Returns whether `joint` is above or below the limb's other joints in the tree as `role`
+    /// requires.
     fn fits(&self, skeleton: &Skeleton, role: Role, joint: usize) -> bool {
         let Some(side) = role.side() else { return true };
         let (leg, arm) = (Role::leg(side), Role::arm(side));
@@ -122,26 +122,26 @@ impl Roles {
         })
     }
 
-    /// The joint of a role.
+    /// Returns the joint of a role.
     #[must_use]
     pub fn get(&self, role: Role) -> Option<usize> {
         self.assigned[role.index()].map(|a| a.joint)
     }
 
-    /// The joint of a role, where a skeleton of `joints` joints has it.
+    /// Returns the joint of a role, if a skeleton of `joints` joints has it.
     #[must_use]
     pub fn get_within(&self, role: Role, joints: usize) -> Option<usize> {
         self.get(role).filter(|&joint| joint < joints)
     }
 
-    /// How the joint of a role was found; `None` for a role without a joint.
+    /// Returns how the joint of a role was found; `None` for a role without a joint.
     #[must_use]
     pub fn found(&self, role: Role) -> Option<Found> {
         self.assigned[role.index()].map(|a| a.found)
     }
 
-    /// Says by hand which joint has a role, or that none has it. A joint that had another role
-    /// loses that one.
+    /// Sets by hand the joint of a role, or that it has none. A joint that had another role loses
+    /// that one.
     pub fn set(&mut self, role: Role, joint: Option<usize>) {
         if let Some(previous) = joint.and_then(|joint| self.role_of(joint)) {
             self.assigned[previous.index()] = None;
@@ -153,24 +153,24 @@ impl Roles {
         self.assigned[role.index()] = joint.map(|joint| Assigned { joint, found });
     }
 
-    /// The role of a joint.
+    /// Returns the role of a joint.
     #[must_use]
     pub fn role_of(&self, joint: usize) -> Option<Role> {
         Role::ALL.into_iter().find(|&role| self.get(role) == Some(joint))
     }
 
-    /// The number of roles that have a joint, at most [`Role::COUNT`].
+    /// Returns the number of roles that have a joint, at most [`Role::COUNT`].
     #[must_use]
     pub fn count(&self) -> usize {
         self.assigned.iter().flatten().count()
     }
 
-    /// The roles that have no joint.
+    /// Returns the roles that have no joint.
     pub fn missing(&self) -> impl Iterator<Item = Role> + '_ {
         Role::ALL.into_iter().filter(|&role| self.get(role).is_none())
     }
 
-    /// One sentence for a person: which joint has the role, and why.
+    /// Returns a sentence for the user: which joint has the role, and why.
     #[must_use]
     pub fn explain(&self, role: Role, skeleton: &Skeleton) -> String {
         let Some(Assigned { joint, found }) = self.assigned[role.index()] else {
@@ -190,20 +190,20 @@ impl Roles {
         }
     }
 
-    /// The points of a foot that may stand on the ground: ankle, ball and tip, as far as the
+    /// Returns the points of a foot that can touch the ground: ankle, ball and tip, as far as the
     /// skeleton has them, each as a joint and a point in its frame (metres).
     #[must_use]
     pub fn foot_points(&self, skeleton: &Skeleton, side: Side) -> Vec<(usize, Vec3)> {
         let joint = |role| self.get_within(role, skeleton.len());
         let (foot, toe) = (joint(Role::foot(side)), joint(Role::toe(side)));
-        // A foot without toes may have its tip at its own end.
+        // The tip of a foot without toes is its own end site.
         let tip = toe.or(foot).and_then(|last| Some((last, skeleton.joints()[last].end_site?)));
         foot.into_iter().chain(toe).map(|j| (j, Vec3::ZERO)).chain(tip).collect()
     }
 
     /// Returns the length of a leg from hip joint over knee to ankle, metres: the mean of both
-    /// sides. `None` without a whole leg. Adds up the bones between, so that it does not depend on
-    /// the rest pose.
+    /// sides. `None` without a complete leg. It is the sum of bone lengths, so that it does not
+    /// depend on the rest pose.
     #[must_use]
     pub fn leg_length(&self, skeleton: &Skeleton) -> Option<f32> {
         let joint = |role| self.get_within(role, skeleton.len());
@@ -220,21 +220,20 @@ impl Roles {
     }
 
     /// Returns the character's height standing upright, metres: thigh and shin are 0.491 of it
-    /// (Winter, "Biomechanics and Motor Control of Human Movement", table 4.1). Without legs the
-    /// longest way through the skeleton along its bones, and without any length 1. Only bone
-    /// lengths count, which no rest pose changes.
+    /// (Winter, "Biomechanics and Motor Control of Human Movement", table 4.1). Without legs it is
+    /// the longest path along bones, and without any length 1. Only bone lengths count, which no
+    /// rest pose changes.
     #[must_use]
     pub fn body_height(&self, skeleton: &Skeleton) -> f32 {
         if let Some(leg) = self.leg_length(skeleton) {
             return leg / 0.491;
         }
-        let longest = longest_way(skeleton);
+        let longest = longest_path(skeleton);
         if longest > 0.0 { longest } else { 1.0 }
     }
 }
 
-/// The lengths of the bones from a joint down to one below it, added up; `None` where it is not
-/// below.
+/// Returns the sum of bone lengths from a joint down to one below it; `None` where it is not below.
 fn length_between(skeleton: &Skeleton, above: usize, below: usize) -> Option<f32> {
     let mut length = 0.0;
     let mut joint = below;
@@ -245,11 +244,11 @@ fn length_between(skeleton: &Skeleton, above: usize, below: usize) -> Option<f32
     Some(length)
 }
 
-/// The longest way from one end of the tree to another along its bones.
-fn longest_way(skeleton: &Skeleton) -> f32 {
+/// Returns the length of the longest path along bones between two ends of the tree.
+fn longest_path(skeleton: &Skeleton) -> f32 {
     let mut deepest = vec![0.0_f32; skeleton.len()];
     let mut longest = 0.0_f32;
-    // Children come behind their parents: seen from the back, what is below a joint is known.
+    // Children come after their parents: in reverse order, the paths below a joint are known.
     for (index, joint) in skeleton.joints().iter().enumerate().rev() {
         if let Some(end) = joint.end_site {
             longest = longest.max(deepest[index] + end.length());
@@ -264,7 +263,7 @@ fn longest_way(skeleton: &Skeleton) -> f32 {
     longest
 }
 
-/// Whether `joint` lies below `above` in the tree, and is not that joint itself.
+/// Returns whether `joint` lies below `above` in the tree, and is not that joint itself.
 pub(crate) fn is_below(skeleton: &Skeleton, joint: usize, above: usize) -> bool {
     std::iter::successors(skeleton.parent(joint), |&j| skeleton.parent(j)).any(|j| j == above)
 }

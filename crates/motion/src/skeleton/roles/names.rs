@@ -1,8 +1,10 @@
+//! Roles by the names of joints.
+
 use super::tokens::{self, Tokens};
 use super::{Found, Roles, is_below};
 use crate::skeleton::{Role, Side, Skeleton};
 
-/// For each part of the body the words for it, in groups: a word of an earlier group wins over
+/// The words for a part of the body, in groups: a word of an earlier group takes precedence over
 /// those of later ones.
 type Vocabulary = &'static [&'static [&'static str]];
 
@@ -27,12 +29,12 @@ const SPINE: Vocabulary = &[&[
 ]];
 const HEAD: Vocabulary = &[&["head", "skull"]];
 // A lone "LeftHip" is the thigh, but beside "LeftUpLeg" it is the bone that leads there (CMU);
-// "LeftLeg" is the shin, unless it is followed by a "LeftKnee".
+// "LeftLeg" is the shin, unless a "LeftKnee" follows it.
 const THIGH: Vocabulary = &[&["thigh", "upleg", "upperleg", "uleg", "femur"], &["hip"], &["leg"]];
 const SHIN: Vocabulary =
     &[&["shin", "calf", "lowerleg", "lowleg", "tibia", "shank", "knee"], &["leg"]];
-// SMPL: "L_Ankle" has a child "L_Foot", and that is the ball of the foot. Likewise "L_Wrist" and
-// "L_Hand", and CMU's ASF "lwrist" and "lhand".
+// In SMPL, "L_Ankle" has a child "L_Foot", which is the ball of the foot. The same holds for
+// "L_Wrist" and "L_Hand", and for "lwrist" and "lhand" in CMU's ASF.
 const FOOT: Vocabulary = &[&["ankle"], &["foot"]];
 const TOE: Vocabulary = &[&["toe", "toes", "ball"], &["foot"]];
 // "LeftShoulder" is the upper arm only where no "LeftArm" follows it.
@@ -72,8 +74,8 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The joint of that side, below `above`, with the best word; of several the one nearest the
-    /// root.
+    /// Returns the joint of that side, below `above`, with the best word; of several the one
+    /// nearest the root.
     fn best(&self, words: Vocabulary, side: Option<Side>, above: Option<usize>) -> Option<usize> {
         let rank = |joint: usize, tokens: &Tokens| {
             if tokens.helper
@@ -83,8 +85,7 @@ impl Search<'_> {
                 return None;
             }
             let group = |core: &str| words.iter().position(|group| group.contains(&core));
-            // "torso_head" is read as the joint where the head starts, if no joint is called "head"
-            // outright.
+            // "torso_head" is taken as the base of the head, if no joint is called "head" itself.
             group(&tokens.core).or_else(|| group(&tokens.last).map(|g| g + words.len()))
         };
         let ranked =
@@ -94,7 +95,8 @@ impl Search<'_> {
         ranked.min().map(|(_, _, joint)| joint)
     }
 
-    /// Xsens calls the lowest joint of the back by its vertebra: `L5`.
+    /// Returns the lowest joint of the back in Xsens files, which is named after its vertebra:
+    /// `L5`.
     fn lumbar(&self, hips: Option<usize>) -> Option<usize> {
         self.names.iter().enumerate().find_map(|(joint, t)| {
             let is = t.core.is_empty()
@@ -105,7 +107,7 @@ impl Search<'_> {
     }
 }
 
-/// The number of joints above each joint.
+/// Returns the number of joints above each joint.
 fn depths(skeleton: &Skeleton) -> Vec<usize> {
     let mut depths: Vec<usize> = Vec::with_capacity(skeleton.len());
     for joint in skeleton.joints() {

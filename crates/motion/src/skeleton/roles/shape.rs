@@ -1,9 +1,11 @@
+//! Roles by the shape of a skeleton at rest.
+
 use super::{Found, Roles, is_below};
 use crate::skeleton::{Role, Side, Skeleton};
 use glam::Vec3;
 
-/// A bone belongs to the limb proper when it has at least this share of the limb's longest bone;
-/// clavicles often do, feet and hands do not.
+/// A bone belongs to the two main bones of a limb when it has at least this share of the limb's
+/// longest bone; clavicles often do, feet and hands do not.
 const LONG: f32 = 0.55;
 /// The hips lie above the feet by at least this share of the skeleton's height.
 const MIN_LEG: f32 = 0.25;
@@ -11,7 +13,7 @@ const MIN_LEG: f32 = 0.25;
 const MIN_REACH: f32 = 0.05;
 
 /// Finds roles by the tree and the rest positions alone: the two lowest chains are legs, the two
-/// that reach farthest sideways above them are arms, what rises highest between is the head. +Y
+/// that reach farthest sideways above them are arms, and the highest one between is the head. +Y
 /// must be up at rest.
 pub(super) fn detect(skeleton: &Skeleton) -> Roles {
     let mut roles = Roles::default();
@@ -57,7 +59,7 @@ struct Leg {
     shin: Option<usize>,
     foot: Option<usize>,
     toe: Option<usize>,
-    /// From the ankle to the tip of the toes over the ground, metres.
+    /// Horizontal vector from the ankle to the tip of the toes, metres.
     forward: Option<Vec3>,
 }
 
@@ -83,12 +85,12 @@ impl<'a> Shape<'a> {
         shape
     }
 
-    /// The end of the bone of a leaf, or the joint itself.
+    /// Returns the end site of a leaf, or its own position.
     fn tip(&self, joint: usize) -> Vec3 {
         self.rest[joint] + self.skeleton.joints()[joint].end_site.unwrap_or(Vec3::ZERO)
     }
 
-    /// The joints from below `top` down to `bottom`.
+    /// Returns the joints from below `top` down to `bottom`.
     fn path(&self, top: usize, bottom: usize) -> Vec<usize> {
         let mut path: Vec<usize> =
             std::iter::successors(Some(bottom), |&j| self.skeleton.parent(j))
@@ -98,7 +100,7 @@ impl<'a> Shape<'a> {
         path
     }
 
-    /// The lowest joint that is above both, or is one of them.
+    /// Returns the lowest joint that is above both, or is one of them.
     fn meeting(&self, a: usize, b: usize) -> usize {
         let (mut a, mut b) = (a, b);
         // Parents have smaller indices, so the larger of the two is never above the other one.
@@ -109,7 +111,7 @@ impl<'a> Shape<'a> {
         a
     }
 
-    /// The joint where the legs meet, and a leaf of either leg.
+    /// Returns the joint at which the legs meet, and a leaf of either leg.
     fn legs(&self) -> Option<(usize, [usize; 2])> {
         let mut by_height = self.leaves.clone();
         by_height.sort_by(|&a, &b| self.tip(a).y.total_cmp(&self.tip(b).y));
@@ -122,12 +124,12 @@ impl<'a> Shape<'a> {
         })
     }
 
-    /// The last two long bones of a limb on its way from `top` to the leaf `tip`: (upper, lower,
-    /// the joint at the lower one's end).
+    /// Returns the last two long bones of a limb on the path from `top` to the leaf `tip`: (upper,
+    /// lower, the joint at the lower one's end).
     fn limb(&self, top: usize, tip: usize) -> Option<(usize, usize, Option<usize>)> {
-        // Joints at one place (bones without length) count as one. The last of them turns the bone
-        // that starts there, and the first one carries all that hangs on the end of the bone
-        // before.
+        // Joints at one position (bones without length) count as one. The last of them rotates the
+        // bone that starts there, and the first one is the parent of everything at the end of the
+        // bone before.
         let mut places: Vec<(usize, usize)> = Vec::new();
         for joint in self.path(top, tip) {
             match places.last_mut() {
@@ -159,7 +161,7 @@ impl<'a> Shape<'a> {
         };
         let over_ground =
             |leaf: usize| (self.tip(leaf) - self.rest[ankle]) * Vec3::new(1.0, 0.0, 1.0);
-        // A heel may be the lowest point; the toes are what is farthest from the ankle.
+        // A heel may be the lowest point; the toes are the point farthest from the ankle.
         let leaves = self
             .leaves
             .iter()
@@ -213,7 +215,7 @@ impl<'a> Shape<'a> {
         let Some(highest) = highest.filter(|&leaf| self.tip(leaf).y > self.rest[hips].y) else {
             return;
         };
-        // A leaf without a bone of its own marks where the head ends, and one of several leaves is
+        // A leaf without a bone of its own marks the end of the head, and one of several leaves is
         // an eye or an ear.
         let marks_the_end = self.skeleton.joints()[highest]
             .end_site

@@ -1,3 +1,5 @@
+//! Tests of role detection.
+
 use super::*;
 use crate::skeleton::{Joint, fixtures};
 use glam::Vec3;
@@ -12,7 +14,7 @@ fn names(skeleton: &Skeleton, roles: &Roles) -> Vec<String> {
 }
 
 #[test]
-fn common_rigs_are_known_by_name() {
+fn detect_on_common_rigs_finds_roles_by_name() {
     for (rig, skeleton, wanted) in fixtures::all() {
         let roles = Roles::detect(&skeleton);
         assert_eq!(names(&skeleton, &roles), wanted, "{rig}");
@@ -23,7 +25,7 @@ fn common_rigs_are_known_by_name() {
 }
 
 #[test]
-fn names_count_whatever_the_order_of_joints() {
+fn detect_does_not_depend_on_the_order_of_joints() {
     for (rig, skeleton, wanted) in fixtures::all() {
         for seed in 0..8 {
             let (shuffled, _) = fixtures::shuffled(&skeleton, seed);
@@ -33,7 +35,7 @@ fn names_count_whatever_the_order_of_joints() {
 }
 
 #[test]
-fn case_does_not_count() {
+fn detect_ignores_case() {
     for (rig, skeleton, wanted) in fixtures::all() {
         let lower = skeleton
             .joints()
@@ -46,10 +48,10 @@ fn case_does_not_count() {
 }
 
 #[test]
-fn the_shape_tells_what_names_do_not() {
+fn detect_without_names_finds_roles_by_shape() {
     for (rig, skeleton, mut wanted) in fixtures::all() {
         if rig == "biped" {
-            // Without names, the joint on which the legs hang is the hips, and the next one above
+            // Without names, the joint from which the legs hang is the hips, and the next one above
             // it the spine.
             (wanted[0], wanted[1]) = ("Bip01 Spine", "Bip01 Spine1");
         }
@@ -64,7 +66,7 @@ fn the_shape_tells_what_names_do_not() {
 }
 
 #[test]
-fn left_and_right_follow_from_the_toes() {
+fn detect_by_shape_takes_sides_from_the_toes() {
     let half_turn = glam::Quat::from_rotation_y(std::f32::consts::PI);
     for (rig, skeleton, wanted) in fixtures::all().into_iter().filter(|(rig, ..)| *rig != "biped") {
         let turned = skeleton.joints().iter().enumerate().map(|(i, joint)| Joint {
@@ -79,7 +81,7 @@ fn left_and_right_follow_from_the_toes() {
 }
 
 #[test]
-fn shape_fills_the_gaps_between_names() {
+fn detect_fills_missing_names_by_shape() {
     let skeleton = fixtures::mixamo();
     let joints = skeleton.joints().iter().map(|joint| {
         let strange = joint.name.ends_with("RightLeg") || joint.name.ends_with("Head");
@@ -99,7 +101,7 @@ fn shape_fills_the_gaps_between_names() {
 }
 
 #[test]
-fn strange_trees_have_few_roles_and_no_panic() {
+fn detect_on_unusual_trees_does_not_panic() {
     let joint = |parent, offset| Joint {
         name: "Joint".into(),
         parent,
@@ -120,7 +122,7 @@ fn strange_trees_have_few_roles_and_no_panic() {
 }
 
 #[test]
-fn a_correction_by_hand_takes_the_joint_from_its_old_role() {
+fn set_removes_the_joint_from_its_old_role() {
     let skeleton = fixtures::lafan();
     let mut roles = fixtures::roles(&skeleton);
     let (foot, toe) = (roles.get(Role::LeftFoot), roles.get(Role::LeftToe));
@@ -139,7 +141,7 @@ fn a_correction_by_hand_takes_the_joint_from_its_old_role() {
 }
 
 #[test]
-fn roles_are_stored_by_name() {
+fn roles_serialize_by_name() {
     let roles = fixtures::roles(&fixtures::cmu_asf());
     let stored = serde_json::to_string(&roles).unwrap();
     assert!(stored.contains(r#""LeftThigh":{"joint":"#), "{stored}");
@@ -147,15 +149,15 @@ fn roles_are_stored_by_name() {
 }
 
 #[test]
-fn body_measures_come_from_the_legs() {
+fn body_height_follows_from_the_legs() {
     let skeleton = fixtures::lafan();
     let roles = fixtures::roles(&skeleton);
     let leg = roles.leg_length(&skeleton).unwrap();
     let wanted = Vec3::new(0.0, 0.41, 0.01).length() + Vec3::new(0.0, 0.41, 0.03).length();
     assert!((leg - wanted).abs() < 1e-5);
     assert!((roles.body_height(&skeleton) - leg / 0.491).abs() < 1e-5);
-    // Without roles the longest way along bones: of all pairs of joints and ends, the lengths up to
-    // where their ways to the root meet.
+    // Expected without roles: the longest path along bones, over all pairs of joints and end sites,
+    // by the lengths up to where their paths to the root meet.
     let mut ways: Vec<Vec<(usize, f32)>> = Vec::new();
     for (index, joint) in skeleton.joints().iter().enumerate() {
         let mut way = vec![(index, 0.0)];

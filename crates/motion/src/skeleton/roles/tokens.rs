@@ -1,7 +1,9 @@
+//! The words of joint names.
+
 use crate::skeleton::Side;
 
-/// Words of which joint names are composed. Only runs that consist of these words entirely are
-/// split (`leftupleg`, `lowerback`).
+/// Words that make up joint names. Only runs that consist of these words entirely are split
+/// (`leftupleg`, `lowerback`).
 const WORDS: &[&str] = &[
     "ab", "abdomen", "ankle", "arm", "back", "ball", "base", "calf", "chest", "clavicle", "collar",
     "effector", "elbow", "end", "f", "femur", "finger", "fingers", "foot", "fore", "forearm",
@@ -11,7 +13,7 @@ const WORDS: &[&str] = &[
     "tibia", "tip", "toe", "toes", "top", "torso", "twist", "u", "up", "upper", "waist", "wrist",
 ];
 
-/// Words that say nothing about what a joint is for.
+/// Words that say nothing about the function of a joint.
 const NOISE: &[&str] = &[
     "avg",
     "b",
@@ -39,27 +41,27 @@ const NOISE: &[&str] = &[
     "skel",
 ];
 
-/// Words of joints that move nothing of the body itself.
+/// Words of joints that move no part of the body.
 const HELPERS: &[&str] =
     &["effector", "end", "ik", "nub", "pole", "roll", "site", "target", "tip", "top", "twist"];
 
-/// A joint's name, read.
+/// The parts of a joint's name.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Tokens {
-    /// The side that the name says, if it says one side only.
+    /// The side in the name, if it contains one side only.
     pub(crate) side: Option<Side>,
     /// The words without side, numbers and noise, joined: `upleg`.
     pub(crate) core: String,
-    /// The same of the part behind the last separator, where the name has several: `head` of
+    /// The same for the part after the last separator, where the name has several: `head` of
     /// `torso_head`.
     pub(crate) last: String,
     /// The numbers in the name, as written.
     pub(crate) numbers: Vec<String>,
-    /// The name is that of an end site, a twist joint, an IK target.
+    /// Whether the name is that of an end site, a twist joint or an IK target.
     pub(crate) helper: bool,
 }
 
-/// Whether two names differ in nothing but the side: `LeftHandIndex1` and `RightHandIndex1`.
+/// Returns whether two names differ only in the side: `LeftHandIndex1` and `RightHandIndex1`.
 pub(crate) fn are_counterparts(a: &Tokens, b: &Tokens) -> bool {
     a.side.is_some()
         && a.side.map(Side::other) == b.side
@@ -68,16 +70,16 @@ pub(crate) fn are_counterparts(a: &Tokens, b: &Tokens) -> bool {
         && a.helper == b.helper
 }
 
-/// Reads a name: case, separators and camel humps split it into words.
+/// Splits a name into words by separators and changes of case.
 pub(crate) fn read(name: &str) -> Tokens {
-    // What stands before a colon is the name space of the file's author.
+    // The part before a colon is a name space.
     let name = name.rsplit(':').next().unwrap_or(name);
     let mut sides = Vec::new();
     let (mut core, mut last) = (String::new(), String::new());
     let (mut numbers, mut helper) = (Vec::new(), false);
     for part in name.split(|c: char| !c.is_alphanumeric()).filter(|part| !part.is_empty()) {
         let mut of_part = String::new();
-        for run in humps(part) {
+        for run in split_by_case(part) {
             if run.starts_with(|c: char| c.is_ascii_digit()) {
                 numbers.push(run);
                 continue;
@@ -102,7 +104,7 @@ pub(crate) fn read(name: &str) -> Tokens {
 }
 
 /// Splits `LeftUpLeg1` into `left`, `up`, `leg`, `1`, and `LHipJoint` into `l`, `hip`, `joint`.
-fn humps(part: &str) -> Vec<String> {
+fn split_by_case(part: &str) -> Vec<String> {
     let chars: Vec<char> = part.chars().collect();
     let mut runs: Vec<String> = Vec::new();
     for (i, &c) in chars.iter().enumerate() {
@@ -122,8 +124,8 @@ fn humps(part: &str) -> Vec<String> {
     runs
 }
 
-/// Splits a lower-case run into known words, after a leading `l` or `r` if need be; a run that does
-/// not consist of known words stays whole.
+/// Splits a lower-case run into known words, after a leading `l` or `r` if necessary; a run that
+/// does not consist of known words stays whole.
 fn words(run: &str) -> Vec<String> {
     if let Some(split) = known_words(run) {
         return split;
@@ -137,8 +139,8 @@ fn words(run: &str) -> Vec<String> {
     vec![run.to_owned()]
 }
 
-/// The split into the fewest known words. Names are short, so the table is, too; very long ones are
-/// not taken apart.
+/// Returns the split into the fewest known words. The table has the length of the name, so very
+/// long names are not split.
 fn known_words(run: &str) -> Option<Vec<String>> {
     if run.is_empty() || run.len() > 64 || !run.is_ascii() {
         return None;
@@ -171,7 +173,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_fall_into_words() {
+    fn names_of_joints_split_into_words() {
         for (name, side, core) in [
             ("LeftUpLeg", Some(Side::Left), "upleg"),
             ("leftupleg", Some(Side::Left), "upleg"),
@@ -198,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn ends_are_helpers_and_numbers_are_kept() {
+    fn names_of_end_sites_are_helpers_and_keep_numbers() {
         assert!(read("LeftToeBase_End").helper);
         assert!(read("Bip01 HeadNub").helper);
         assert!(read("LeftForeArmTwist").helper);
