@@ -23,7 +23,7 @@
 //! world_target = world_source · C      C takes the target's bone at rest to the source's
 //! ```
 //!
-//! [`Mirror`] swaps the sides in the same way, and [`two_bones`] bends a leg so that its ankle
+//! [`Mirror`] swaps the sides in the same way, and [`two_bone_ik`] bends a leg so that its ankle
 //! reaches a given point (two-bone inverse kinematics).
 //!
 //! # Example
@@ -99,7 +99,7 @@ mod role;
 mod roles;
 mod stance;
 mod tree;
-mod two_bones;
+mod two_bone_ik;
 
 pub use carrier::{Above, carrier};
 pub(crate) use carrier::{AboveJoint, Beside, Follows};
@@ -112,4 +112,4 @@ pub use role::{Role, Side};
 pub use roles::{Found, Roles};
 pub use stance::{canonical_stance, rest_is_plausible, uprightness};
 pub use tree::{Channel, Joint, Skeleton, SkeletonError};
-pub use two_bones::{TwoBones, two_bones};
+pub use two_bone_ik::{TwoBoneIk, two_bone_ik};

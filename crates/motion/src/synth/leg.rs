@@ -1,6 +1,6 @@
 //! Two bones from the hip to a given ankle.
 
-use crate::skeleton::two_bones;
+use crate::skeleton::two_bone_ik;
 use glam::{Mat3, Quat, Vec3};
 
 /// World rotations of thigh and shank that bring the ankle to its place, the knee bent about
@@ -10,7 +10,7 @@ use glam::{Mat3, Quat, Vec3};
 /// target out of reach is pointed at with the leg straight. Only a leg stretched out sideways would
 /// have no plane to bend in; a thigh may be lifted to any height.
 pub(super) fn leg(hip: Vec3, ankle: Vec3, thigh: f32, shank: f32, hinge: Vec3) -> (Quat, Quat) {
-    let bones = two_bones(ankle - hip, thigh, shank, hinge);
+    let bones = two_bone_ik(ankle - hip, thigh, shank, hinge);
     let rotation =
         |bone: Vec3| Quat::from_mat3(&Mat3::from_cols(bones.hinge, -bone, bone.cross(bones.hinge)));
     (rotation(bones.upper), rotation(bones.lower))

@@ -2,7 +2,7 @@ use crate::blend::MAX_SECS;
 use crate::clip::{Clip, ClipError, Contacts};
 use crate::math::{curve, quat};
 use crate::registration::REFERENCE_HEIGHT_M;
-use crate::skeleton::{Role, Roles, Side, Skeleton, WorldPose, two_bones};
+use crate::skeleton::{Role, Roles, Side, Skeleton, WorldPose, two_bone_ik};
 use glam::{Mat3, Quat, Vec3};
 use std::ops::Range;
 use std::sync::Arc;
@@ -97,7 +97,7 @@ const PLANE_SINE: f32 = 0.2;
 /// either.
 ///
 /// *How the leg follows.* Thigh and shin are turned about the knee's own axis to bring the ankle to
-/// its place, then the leg is swung the shortest way ([`two_bones`]); joints between hip, knee and
+/// its place, then the leg is swung the shortest way ([`two_bone_ik`]); joints between hip, knee and
 /// ankle keep their local rotations. Only the *difference* to how the leg was is applied, so that
 /// the knee keeps its plane, also when it is nearly straight.
 ///
@@ -463,13 +463,13 @@ impl Posed {
         let own = curve::smoothstep(bend.dot(usual) / PLANE_SINE);
         let line = self.line();
         let axis = bend * own + usual * PLANE_SINE * (1.0 - own);
-        let from = two_bones(line, a, b, axis);
+        let from = two_bone_ik(line, a, b, axis);
         let wanted = (line + shift).clamp_length_max(self.reach());
         let mut asked = wanted;
         let mut turns = [Quat::IDENTITY; 2];
         for _ in 0..3 {
             let swing = quat::between_directions(line, asked);
-            let to = two_bones(asked, a, b, swing * from.hinge);
+            let to = two_bone_ik(asked, a, b, swing * from.hinge);
             turns = [(from.upper, to.upper), (from.lower, to.lower)].map(|(bone, turned)| {
                 quat::renormalize(basis(turned, to.hinge) * basis(bone, from.hinge).conjugate())
             });
