@@ -130,10 +130,12 @@ fn file_order(skeleton: &Skeleton) -> Vec<usize> {
 fn written_joints(back: &Clip, clip: &Clip, folded: &Clip) -> Vec<usize> {
     let order = file_order(clip.skeleton());
     let joints = 0..back.skeleton().len();
-    let in_file =
-        |found: usize| back.skeleton().above().map_or(found, |above| above.file_index()[found]);
-    let in_folded =
-        |joint: usize| folded.skeleton().above().map_or(joint, |above| above.from_file()[joint]);
+    let in_file = |found: usize| {
+        back.skeleton().folded_chain().map_or(found, |above| above.file_index()[found])
+    };
+    let in_folded = |joint: usize| {
+        folded.skeleton().folded_chain().map_or(joint, |above| above.from_file()[joint])
+    };
     joints.map(|found| in_folded(order[in_file(found)])).collect()
 }
 

@@ -238,7 +238,7 @@ impl Context<'_> {
     fn folded(mut mesh: SkinnedMesh, rest: &RawMotion) -> SkinnedMesh {
         let measure = measure(rest, Some(1.0), Some(UpAxis::Y));
         if let Ok(clip) = rest.clone().into_clip(String::new(), 1.0, &measure)
-            && let Some(above) = clip.skeleton().above()
+            && let Some(above) = clip.skeleton().folded_chain()
         {
             let bind = above
                 .file_index()

@@ -10,7 +10,7 @@ use proptest::prelude::*;
 use segue_motion::clip::fixtures::wander;
 use segue_motion::clip::{Clip, JointTranslations};
 use segue_motion::math::quat;
-use segue_motion::skeleton::{Above, fixtures};
+use segue_motion::skeleton::{FoldedChain, fixtures};
 use serde_json::{Value, json};
 use std::sync::Arc;
 
@@ -590,7 +590,7 @@ proptest! {
         }
         let skeletons = imported.clips.iter().map(|found| found.clip.skeleton());
         let kept = skeletons.clone().flat_map(|skeleton| skeleton.joints());
-        let folded = skeletons.filter_map(|skeleton| skeleton.above()).flat_map(Above::joints);
+        let folded = skeletons.filter_map(|skeleton| skeleton.folded_chain()).flat_map(FoldedChain::joints);
         let names: Vec<&str> = kept.chain(folded).map(|joint| joint.name.as_str()).collect();
         prop_assert!(joints.iter().all(|joint| names.contains(&format!("n{joint}").as_str())), "{names:?}");
     }

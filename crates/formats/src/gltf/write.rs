@@ -101,7 +101,7 @@ fn write_with(
     let mut nodes = nodes(skeleton);
     let body_node = nodes.len();
     nodes.push(json!({ "name": name, "mesh": 0, "skin": 0 }));
-    if let Some(above) = body.above() {
+    if let Some(above) = body.folded_chain() {
         let mut bind: Vec<RigidTransform> = (standing_rest(skeleton).iter())
             .map(|&position| RigidTransform { rotation: Quat::IDENTITY, translation: -position })
             .collect();

@@ -116,8 +116,8 @@ proptest! {
         let pose = clip.world_pose(0);
         for (index, (rotation, start, end)) in world.iter().enumerate() {
             let Some(joint) = clip.skeleton().find(&name(index)) else {
-                // Above the bone that carries the body: folded into that.
-                let above = clip.skeleton().above().unwrap();
+                // FoldedChain the bone that carries the body: folded into that.
+                let above = clip.skeleton().folded_chain().unwrap();
                 prop_assert!(above.joints().any(|joint| joint.name == name(index)));
                 continue;
             };

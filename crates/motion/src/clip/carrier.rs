@@ -3,7 +3,8 @@
 use super::{Clip, ClipError, JointTranslations, character_frames};
 use crate::math::{Planar, quat, wrap_angle};
 use crate::skeleton::{
-    Above, AboveJoint, Beside, Follows, Joint, Pose, Roles, Skeleton, WorldPose, carrier,
+    ChainChild, ChainJoint, ChainMotion, FoldedChain, Joint, Pose, Roles, Skeleton, WorldPose,
+    carrier,
 };
 use glam::{DVec2, Quat, Vec3};
 use std::sync::Arc;
@@ -35,18 +36,18 @@ impl Clip {
     pub fn folded(self) -> Result<Self, ClipError> {
         let skeleton = self.skeleton();
         let root = carrier(skeleton, &Roles::detect(skeleton));
-        if root == 0 || skeleton.above().is_some() {
+        if root == 0 || skeleton.folded_chain().is_some() {
             return Ok(self);
         }
         Fold::new(&self, root).clip()
     }
 
-    /// The motion as its file has it, with the joints above the carrier ([`Above`]): one that stood
+    /// The motion as its file has it, with the joints above the carrier ([`FoldedChain`]): one that stood
     /// still stands still, one that went along the ground goes along the ground below this motion,
     /// one that moved with the body does so. `None` where the file has none.
     #[must_use]
     pub fn unfolded(&self) -> Option<Self> {
-        let above = self.skeleton().above()?;
+        let above = self.skeleton().folded_chain()?;
         Unfold::new(self, above)?.clip().ok()
     }
 }
@@ -59,7 +60,7 @@ struct Fold<'a> {
     /// For each joint of the result its index in the clip; the carrier first.
     file_index: Vec<usize>,
     /// Joints of the result that hang beside the carrier.
-    beside: Vec<Beside>,
+    beside: Vec<ChainChild>,
     /// In every frame the chain, the carrier and what hangs beside it, in the world.
     chain_poses: Vec<Vec<(Vec3, Quat)>>,
     carrier_poses: Vec<(Vec3, Quat)>,
@@ -78,9 +79,9 @@ impl<'a> Fold<'a> {
             let parent = skeleton.parent(file_index[joint])?;
             chain.iter().position(|&above| above == parent)
         };
-        let beside: Vec<Beside> = (1..file_index.len())
+        let beside: Vec<ChainChild> = (1..file_index.len())
             .filter_map(|joint| {
-                Some(Beside {
+                Some(ChainChild {
                     joint,
                     hangs_on: hangs_on(joint)?,
                     offset: skeleton.joints()[file_index[joint]].offset,
@@ -146,7 +147,7 @@ impl<'a> Fold<'a> {
             }
         }
         tracks.sort_by_key(|track| track.joint);
-        let skeleton = Arc::new(self.skeleton()?.with_above(Some(self.above(file))));
+        let skeleton = Arc::new(self.skeleton()?.with_folded_chain(Some(self.above(file))));
         let roots = self.carrier_poses.iter().map(|(position, _)| *position).collect();
         Ok(Clip::new(clip.name(), skeleton, clip.fps(), rotations, roots)?
             .with_translations(tracks)?
@@ -177,16 +178,16 @@ impl<'a> Fold<'a> {
         Skeleton::new(joints).map_err(|_| ClipError::Translations(carrier))
     }
 
-    fn above(&self, file: &[Joint]) -> Above {
+    fn above(&self, file: &[Joint]) -> FoldedChain {
         let follows = self.follows();
         let chain = self.chain.iter().enumerate().map(|(place, &index)| {
             let (translation, rotation) = match self.chain_poses.first() {
                 Some(poses) => local(place.checked_sub(1).map(|above| poses[above]), poses[place]),
                 None => (file[index].offset, Quat::IDENTITY),
             };
-            AboveJoint { joint: file[index].clone(), file_index: index, rotation, translation }
+            ChainJoint { joint: file[index].clone(), file_index: index, rotation, translation }
         });
-        Above {
+        FoldedChain {
             chain: chain.collect(),
             carrier_offset: file[self.file_index[0]].offset,
             beside: self.beside.clone(),
@@ -196,9 +197,9 @@ impl<'a> Fold<'a> {
     }
 
     /// How the chain goes along: by the first joint of it that moves.
-    fn follows(&self) -> Follows {
+    fn follows(&self) -> ChainMotion {
         let Some(first) = self.chain_poses.first() else {
-            return Follows::Still;
+            return ChainMotion::Still;
         };
         let still = |a: &(Vec3, Quat), b: &(Vec3, Quat)| {
             a.0.distance(b.0) < STILL_M && quat::angle_between(a.1, b.1) < STILL_RADIANS
@@ -207,18 +208,18 @@ impl<'a> Fold<'a> {
             self.chain_poses.iter().any(|poses| !still(&poses[*place], &first[*place]))
         };
         let Some(joint) = (0..self.chain.len()).find(moves) else {
-            return Follows::Still;
+            return ChainMotion::Still;
         };
         let way: Vec<(Vec3, Quat)> = self.chain_poses.iter().map(|poses| poses[joint]).collect();
         self.on_ground(joint, &way).unwrap_or_else(|| {
             let (at, turned) = self.carrier_poses[0];
             let (translation, rotation) = local(Some((at, turned)), way[0]);
-            Follows::WithCarrier { joint, rotation, translation }
+            ChainMotion::WithCarrier { joint, rotation, translation }
         })
     }
 
     /// How a joint of the chain goes along the ground; `None` where it rises, sinks or leans.
-    fn on_ground(&self, joint: usize, way: &[(Vec3, Quat)]) -> Option<Follows> {
+    fn on_ground(&self, joint: usize, way: &[(Vec3, Quat)]) -> Option<ChainMotion> {
         let &(start, upright) = way.first()?;
         let mut turns = Vec::with_capacity(way.len());
         for (position, rotation) in way {
@@ -250,7 +251,7 @@ impl<'a> Fold<'a> {
             let off = DVec2::new(f64::from(position.x), f64::from(position.z));
             shift += here.inverse().apply_ground(off) / count;
         }
-        Some(Follows::OnGround {
+        Some(ChainMotion::OnGround {
             joint,
             height: start.y,
             rotation: upright,
@@ -303,14 +304,14 @@ fn smoothed(frames: &[Planar], fps: f64) -> Vec<Planar> {
 /// A clip on its way back to the form of its file.
 struct Unfold<'a> {
     clip: &'a Clip,
-    above: &'a Above,
+    above: &'a FoldedChain,
     skeleton: Arc<Skeleton>,
     /// For each joint of the result the joint of the clip; `None` for joints above the carrier.
     from: Vec<Option<usize>>,
 }
 
 impl<'a> Unfold<'a> {
-    fn new(clip: &'a Clip, above: &'a Above) -> Option<Self> {
+    fn new(clip: &'a Clip, above: &'a FoldedChain) -> Option<Self> {
         let all = above.chain.len() + above.file_index.len();
         let mut joints: Vec<Option<Joint>> = vec![None; all];
         let mut from = vec![None; all];
@@ -337,7 +338,7 @@ impl<'a> Unfold<'a> {
 
     fn clip(&self) -> Result<Clip, ClipError> {
         let clip = self.clip;
-        let needs_frames = matches!(self.above.follows, Follows::OnGround { .. });
+        let needs_frames = matches!(self.above.follows, ChainMotion::OnGround { .. });
         let frames = if needs_frames {
             smoothed(&character_frames(clip, &Roles::detect(clip.skeleton())), clip.fps())
         } else {
@@ -352,13 +353,13 @@ impl<'a> Unfold<'a> {
     /// Where the chain is in a frame, in the world.
     fn chain(&self, carrier: (Vec3, Quat), here: Option<&Planar>) -> Vec<(Vec3, Quat)> {
         let moved = match (self.above.follows, here) {
-            (Follows::OnGround { joint, height, rotation, shift, yaw }, Some(here)) => {
+            (ChainMotion::OnGround { joint, height, rotation, shift, yaw }, Some(here)) => {
                 let ground = here.apply_ground(DVec2::from_array(shift));
                 let turn = yaw.map_or(0.0, |yaw| here.yaw + yaw) as f32;
                 let at = Vec3::new(ground.x as f32, height, ground.y as f32);
                 Some((joint, (at, quat::renormalize(Quat::from_rotation_y(turn) * rotation))))
             }
-            (Follows::WithCarrier { joint, rotation, translation }, _) => {
+            (ChainMotion::WithCarrier { joint, rotation, translation }, _) => {
                 Some((joint, placed(Some(carrier), (translation, rotation))))
             }
             _ => None,

@@ -1,6 +1,6 @@
 use super::{Clip, ClipError};
 use crate::math::quat;
-use crate::skeleton::{Mirror, NoSides, Roles, rest_is_plausible};
+use crate::skeleton::{Mirror, NoCounterparts, Roles, rest_is_plausible};
 
 /// Frames from which it is taken what a joint usually does, at most.
 const SAMPLES: usize = 240;
@@ -10,7 +10,7 @@ const SAMPLES: usize = 240;
 pub enum MirrorError {
     /// Left and right are not known.
     #[error(transparent)]
-    NoSides(#[from] NoSides),
+    NoCounterparts(#[from] NoCounterparts),
     /// The result is no clip.
     #[error(transparent)]
     Clip(#[from] ClipError),
@@ -23,7 +23,7 @@ pub enum MirrorError {
 /// within 3e-5. See [`Mirror`] for the way.
 ///
 /// # Errors
-/// [`MirrorError::NoSides`] when neither roles nor names tell left from right.
+/// [`MirrorError::NoCounterparts`] when neither roles nor names tell left from right.
 pub fn mirror(clip: &Clip, roles: &Roles) -> Result<Clip, MirrorError> {
     let mirror = mirror_of(clip, roles)?;
     let poses = (0..clip.frames()).map(|frame| mirror.pose(&clip.pose(frame)));
@@ -33,7 +33,7 @@ pub fn mirror(clip: &Clip, roles: &Roles) -> Result<Clip, MirrorError> {
 
 /// How a clip's skeleton looks in a mirror: by its rest pose where that shows a creature, else by
 /// the motion.
-fn mirror_of(clip: &Clip, roles: &Roles) -> Result<Mirror, NoSides> {
+fn mirror_of(clip: &Clip, roles: &Roles) -> Result<Mirror, NoCounterparts> {
     let skeleton = clip.skeleton();
     if rest_is_plausible(skeleton, roles) != Some(false) {
         return Mirror::of(skeleton, roles);
@@ -232,7 +232,10 @@ mod tests {
     #[test]
     fn without_sides_there_is_no_mirror_image() {
         let clip = wander(&fixtures::nameless(&fixtures::lafan()), 2, 0);
-        assert_eq!(mirror(&clip, &Roles::default()), Err(MirrorError::NoSides(NoSides)));
+        assert_eq!(
+            mirror(&clip, &Roles::default()),
+            Err(MirrorError::NoCounterparts(NoCounterparts))
+        );
         let named = wander(&fixtures::lafan(), 2, 0);
         assert!(
             largest_error(&named, &mirror(&named, &Roles::default()).unwrap(), &Roles::default())

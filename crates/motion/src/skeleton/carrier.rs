@@ -75,23 +75,23 @@ fn first_branching(skeleton: &Skeleton) -> usize {
 /// The joints that a file has above the carrier, and how they move with it: all that an exporter
 /// needs to write them again.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Above {
+pub struct FoldedChain {
     /// From the file's root to the parent of the carrier; each is the parent of the next.
-    pub(crate) chain: Vec<AboveJoint>,
+    pub(crate) chain: Vec<ChainJoint>,
     /// Rest translation of the carrier from its parent, in the parent's frame, metres.
     pub(crate) carrier_offset: Vec3,
     /// Other joints of the file that hang from the chain. In the skeleton they hang from the
     /// carrier.
-    pub(crate) beside: Vec<Beside>,
+    pub(crate) beside: Vec<ChainChild>,
     /// For each joint of the skeleton, its index in the file.
     pub(crate) file_index: Vec<usize>,
     /// How the chain moves.
-    pub(crate) follows: Follows,
+    pub(crate) follows: ChainMotion,
 }
 
 /// A joint above the carrier.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub(crate) struct AboveJoint {
+pub(crate) struct ChainJoint {
     /// The joint as in the file; its `parent` is an index of the file.
     pub(crate) joint: Joint,
     /// Its index in the file.
@@ -104,7 +104,7 @@ pub(crate) struct AboveJoint {
 
 /// A joint that hangs from a joint above the carrier.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub(crate) struct Beside {
+pub(crate) struct ChainChild {
     /// Its index in the skeleton.
     pub(crate) joint: usize,
     /// The joint of the chain from which it hangs in the file.
@@ -115,7 +115,7 @@ pub(crate) struct Beside {
 
 /// How the joints above a carrier move with it.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub(crate) enum Follows {
+pub(crate) enum ChainMotion {
     /// They stand still.
     Still,
     /// One of them stays level and moves over the ground below the character, as in game engines.
@@ -142,7 +142,7 @@ pub(crate) enum Follows {
     },
 }
 
-impl Above {
+impl FoldedChain {
     /// Returns the joints of the file, with their names, from its root down to the carrier's
     /// parent.
     pub fn joints(&self) -> impl Iterator<Item = &Joint> {
@@ -180,8 +180,8 @@ impl Above {
             .filter(|&place| seen.get_mut(place).is_some_and(|seen| !std::mem::replace(seen, true)))
             .count();
         let moved = match self.follows {
-            Follows::Still => 0,
-            Follows::OnGround { joint, .. } | Follows::WithCarrier { joint, .. } => joint,
+            ChainMotion::Still => 0,
+            ChainMotion::OnGround { joint, .. } | ChainMotion::WithCarrier { joint, .. } => joint,
         };
         self.file_index.len() == joints
             && each_once == all

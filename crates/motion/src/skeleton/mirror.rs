@@ -28,7 +28,7 @@ const MAX_SIBLINGS: usize = 256;
 #[error(
     "no joint on the left has a counterpart on the right: say by hand which joints are the left and right thigh or upper arm"
 )]
-pub struct NoSides;
+pub struct NoCounterparts;
 
 /// The mirror image of a skeleton: the counterpart of each joint, and the rotation between their
 /// frames.
@@ -63,8 +63,8 @@ impl Mirror {
     /// others by name, then by position at rest.
     ///
     /// # Errors
-    /// [`NoSides`] when roles and names give no pair.
-    pub fn of(skeleton: &Skeleton, roles: &Roles) -> Result<Self, NoSides> {
+    /// [`NoCounterparts`] when roles and names give no pair.
+    pub fn of(skeleton: &Skeleton, roles: &Roles) -> Result<Self, NoCounterparts> {
         Self::with_usual_rotations(skeleton, roles, None)
     }
 
@@ -74,7 +74,11 @@ impl Mirror {
     ///
     /// # Errors
     /// The same as for [`of`](Self::of).
-    pub fn of_motion(skeleton: &Skeleton, roles: &Roles, usual: &[Quat]) -> Result<Self, NoSides> {
+    pub fn of_motion(
+        skeleton: &Skeleton,
+        roles: &Roles,
+        usual: &[Quat],
+    ) -> Result<Self, NoCounterparts> {
         Self::with_usual_rotations(skeleton, roles, Some(usual))
     }
 
@@ -82,9 +86,9 @@ impl Mirror {
         skeleton: &Skeleton,
         roles: &Roles,
         usual: Option<&[Quat]>,
-    ) -> Result<Self, NoSides> {
+    ) -> Result<Self, NoCounterparts> {
         let rest = skeleton.rest_positions();
-        let normal = left_right_axis(skeleton, roles, &rest).ok_or(NoSides)?;
+        let normal = left_right_axis(skeleton, roles, &rest).ok_or(NoCounterparts)?;
         let pairing = Pairing::new(skeleton, roles, &rest, normal);
         let counterparts = pairing.counterparts();
         if !counterparts
@@ -92,7 +96,7 @@ impl Mirror {
             .enumerate()
             .any(|(joint, other)| other.is_some_and(|other| other != joint))
         {
-            return Err(NoSides);
+            return Err(NoCounterparts);
         }
         let mut mirror = Self {
             normal,

@@ -101,11 +101,11 @@ mod stance;
 mod tree;
 mod two_bone_ik;
 
-pub use carrier::{Above, carrier};
-pub(crate) use carrier::{AboveJoint, Beside, Follows};
+pub(crate) use carrier::{ChainChild, ChainJoint, ChainMotion};
+pub use carrier::{FoldedChain, carrier};
 pub use joint_map::JointMap;
 pub use kinematics::{WorldPose, local_pose, world_pose, world_pose_into, world_pose_of};
-pub use mirror::{Mirror, NoSides};
+pub use mirror::{Mirror, NoCounterparts};
 pub use pose::Pose;
 pub use retarget::Retargeting;
 pub use role::{Role, Side};

@@ -1,6 +1,6 @@
 //! Skeletons: trees of joints in topological order.
 
-use super::Above;
+use super::FoldedChain;
 use glam::Vec3;
 
 /// A number per frame that a file has for a joint.
@@ -61,11 +61,11 @@ pub enum SkeletonError {
 ///
 /// Two skeletons are equal when their bodies are. The rest offset of the root does not count,
 /// because every frame has a root translation, and neither do the joints that a file has above it
-/// ([`Above`]). Both differ between files of one rig.
+/// ([`FoldedChain`]). Both differ between files of one rig.
 #[derive(Clone, Debug)]
 pub struct Skeleton {
     joints: Vec<Joint>,
-    above: Option<Box<Above>>,
+    above: Option<Box<FoldedChain>>,
 }
 
 impl PartialEq for Skeleton {
@@ -111,7 +111,7 @@ impl Skeleton {
     /// Returns the skeleton with the joints that its file has above the root. They are left out
     /// where they do not fit a skeleton of this many joints.
     #[must_use]
-    pub fn with_above(mut self, above: Option<Above>) -> Self {
+    pub fn with_folded_chain(mut self, above: Option<FoldedChain>) -> Self {
         self.above = above.filter(|above| above.fits(self.joints.len())).map(Box::new);
         self
     }
@@ -119,7 +119,7 @@ impl Skeleton {
     /// Returns the joints that its file has above the root; `None` where the file's root is the
     /// skeleton's.
     #[must_use]
-    pub fn above(&self) -> Option<&Above> {
+    pub fn folded_chain(&self) -> Option<&FoldedChain> {
         self.above.as_deref()
     }
 

@@ -8,7 +8,7 @@ use glam::{DVec2, Quat, Vec3};
 use segue_formats::{FileKind, ImportError};
 use segue_motion::clip::{Clip, ClipError, Contacts, JointTranslations, Provenance};
 use segue_motion::math::Planar;
-use segue_motion::skeleton::{Above, Joint, Roles, Side, Skeleton, SkeletonError};
+use segue_motion::skeleton::{FoldedChain, Joint, Roles, Side, Skeleton, SkeletonError};
 use segue_motion::skin::{RigidTransform, SkinnedMesh};
 use serde::{Deserialize, Serialize};
 use std::collections::TryReserveError;
@@ -79,7 +79,7 @@ struct ClipHead {
     name: String,
     joints: Vec<Joint>,
     #[serde(default)]
-    above: Option<Above>,
+    above: Option<FoldedChain>,
     fps: f64,
     frames: usize,
     provenance: Provenance,
@@ -293,7 +293,7 @@ impl ClipHead {
         Self {
             name: motion.clip.name().to_owned(),
             joints: motion.clip.skeleton().joints().to_vec(),
-            above: motion.clip.skeleton().above().cloned(),
+            above: motion.clip.skeleton().folded_chain().cloned(),
             fps: motion.clip.fps(),
             frames: motion.clip.frames(),
             provenance: motion.clip.provenance(),
@@ -423,7 +423,7 @@ impl Arrays {
 
     fn into_clip(self, head: ClipHead, meshes: &[Arc<SkinnedMesh>]) -> Result<ReadClip, WireError> {
         let mesh = head.mesh.and_then(|mesh| meshes.get(mesh)).cloned();
-        let skeleton = Arc::new(Skeleton::new(head.joints)?.with_above(head.above));
+        let skeleton = Arc::new(Skeleton::new(head.joints)?.with_folded_chain(head.above));
         let mut translations = self.translations.into_iter();
         let root = translations.next().unwrap_or_default();
         let tracks = head.moving.into_iter().zip(translations);
