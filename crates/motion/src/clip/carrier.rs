@@ -1,4 +1,4 @@
-//! The canonical form of a motion: the first joint carries the body.
+//! The canonical form of a motion, in which the first joint is the carrier of the body.
 
 use super::{Clip, ClipError, JointTranslations, character_frames};
 use crate::math::{Planar, quat, wrap_angle};
@@ -9,30 +9,30 @@ use crate::skeleton::{
 use glam::{DVec2, Quat, Vec3};
 use std::sync::Arc;
 
-/// Joints that move by less than this over a clip stand still: metres, and radians (0.3°). Files
+/// Joints that move by less than this over a clip count as still: metres, and radians (0.3°). Files
 /// are written with a few digits.
 const STILL_M: f32 = 2e-3;
 const STILL_RADIANS: f32 = 5e-3;
-/// What goes along the ground goes by the mean of this time to either side, seconds: no sway of the
-/// hips.
+/// Half the averaging time of a joint that moves over the ground, seconds: it removes the sway of
+/// the hips.
 const SMOOTH_SECS: f64 = 0.25;
-/// Translations nearer than this to the rest offset need no track, metres.
+/// Translations nearer than this to the rest offset are not stored, metres.
 const SAME_PLACE_M: f32 = 1e-6;
 
 impl Clip {
-    /// The same motion with the joint at the root that carries the body ([`carrier`]): everything
-    /// that the file has above it, still or moving, is folded into it.
+    /// Returns the same motion with the carrier ([`carrier`]) at the root: all joints that the file
+    /// has above it, still or moving, are folded into it.
     ///
-    /// Some files hold a `ROOT` still and move the hips below it, game engines put one on the
-    /// ground below the character. Seen from such a root the body hangs on a lever: to mix the
-    /// lever's angles swings the body. Folded, `root_translations` and the first joint's rotations
-    /// are those of the carrier in the world, whatever is above it, and all algorithms may rely on
-    /// that. World positions of the joints that stay are the same. Joints that hang beside the
-    /// carrier on a joint above it hang on the carrier. [`Self::unfolded`] is the way back.
+    /// Some files hold a `ROOT` still and move the hips below it; game engines put a root on the
+    /// ground below the character. Relative to such a root the body hangs on a lever: blending the
+    /// lever's angles swings the body. After folding, `root_translations` and the first joint's
+    /// rotations are those of the carrier in the world, and all algorithms may rely on that. The
+    /// world positions of the remaining joints do not change. Other joints that hang from the
+    /// joints above become children of the carrier. [`Self::unfolded`] is the inverse.
     ///
     /// # Errors
-    /// [`ClipError`] does not occur for a clip that is valid; the error of the parts that are put
-    /// together again is passed on.
+    /// [`ClipError`] does not occur for a valid clip; it is passed on from the reassembly of the
+    /// parts.
     pub fn folded(self) -> Result<Self, ClipError> {
         let skeleton = self.skeleton();
         let root = carrier(skeleton, &Roles::detect(skeleton));
@@ -42,9 +42,9 @@ impl Clip {
         Fold::new(&self, root).clip()
     }
 
-    /// The motion as its file has it, with the joints above the carrier ([`FoldedChain`]): one that stood
-    /// still stands still, one that went along the ground goes along the ground below this motion,
-    /// one that moved with the body does so. `None` where the file has none.
+    /// Returns the motion as in its file, with the joints above the carrier ([`FoldedChain`]): each
+    /// of them stands still, moves over the ground below this motion, or moves with the body, as in
+    /// the original file. `None` where the file has none.
     #[must_use]
     pub fn unfolded(&self) -> Option<Self> {
         let above = self.skeleton().folded_chain()?;
@@ -52,16 +52,16 @@ impl Clip {
     }
 }
 
-/// A clip on its way to the canonical form.
+/// The conversion of a clip to the canonical form.
 struct Fold<'a> {
     clip: &'a Clip,
     /// The joints above the carrier, the file's root first.
     chain: Vec<usize>,
-    /// For each joint of the result its index in the clip; the carrier first.
+    /// For each joint of the result, its index in the clip; the carrier first.
     file_index: Vec<usize>,
-    /// Joints of the result that hang beside the carrier.
+    /// Joints of the result that the file has as children of the chain.
     beside: Vec<ChainChild>,
-    /// In every frame the chain, the carrier and what hangs beside it, in the world.
+    /// The world poses of the chain, the carrier and the children of the chain, per frame.
     chain_poses: Vec<Vec<(Vec3, Quat)>>,
     carrier_poses: Vec<(Vec3, Quat)>,
     beside_poses: Vec<Vec<(Vec3, Quat)>>,
@@ -156,7 +156,7 @@ impl<'a> Fold<'a> {
 
     fn skeleton(&self) -> Result<Skeleton, ClipError> {
         let skeleton = self.clip.skeleton();
-        // At rest the root stands at its offset.
+        // In the rest pose the root stands at its offset.
         let root = skeleton.joints()[0].offset;
         let rest = skeleton.rest_positions();
         let carrier = self.file_index[0];
@@ -173,7 +173,7 @@ impl<'a> Fold<'a> {
         for beside in &self.beside {
             joints[beside.joint].offset = rest[self.file_index[beside.joint]] - rest[carrier];
         }
-        // Parents still stand before their children: the carrier is first, and the rest is in the
+        // Parents still stand before their children: the carrier is first, and the others keep the
         // order of the file.
         Skeleton::new(joints).map_err(|_| ClipError::Translations(carrier))
     }
@@ -196,7 +196,7 @@ impl<'a> Fold<'a> {
         }
     }
 
-    /// How the chain goes along: by the first joint of it that moves.
+    /// Returns how the chain moves: the motion of its first joint that is not still.
     fn follows(&self) -> ChainMotion {
         let Some(first) = self.chain_poses.first() else {
             return ChainMotion::Still;
@@ -210,19 +210,21 @@ impl<'a> Fold<'a> {
         let Some(joint) = (0..self.chain.len()).find(moves) else {
             return ChainMotion::Still;
         };
-        let way: Vec<(Vec3, Quat)> = self.chain_poses.iter().map(|poses| poses[joint]).collect();
-        self.on_ground(joint, &way).unwrap_or_else(|| {
+        let poses_of_joint: Vec<(Vec3, Quat)> =
+            self.chain_poses.iter().map(|poses| poses[joint]).collect();
+        self.on_ground(joint, &poses_of_joint).unwrap_or_else(|| {
             let (at, turned) = self.carrier_poses[0];
-            let (translation, rotation) = local(Some((at, turned)), way[0]);
+            let (translation, rotation) = local(Some((at, turned)), poses_of_joint[0]);
             ChainMotion::WithCarrier { joint, rotation, translation }
         })
     }
 
-    /// How a joint of the chain goes along the ground; `None` where it rises, sinks or leans.
-    fn on_ground(&self, joint: usize, way: &[(Vec3, Quat)]) -> Option<ChainMotion> {
-        let &(start, upright) = way.first()?;
-        let mut turns = Vec::with_capacity(way.len());
-        for (position, rotation) in way {
+    /// Returns the motion of a joint of the chain over the ground; `None` where it rises, sinks or
+    /// leans.
+    fn on_ground(&self, joint: usize, poses_of_joint: &[(Vec3, Quat)]) -> Option<ChainMotion> {
+        let &(start, upright) = poses_of_joint.first()?;
+        let mut turns = Vec::with_capacity(poses_of_joint.len());
+        for (position, rotation) in poses_of_joint {
             let turned = *rotation * upright.conjugate();
             let yaw = 2.0 * f64::from(turned.y).atan2(f64::from(turned.w));
             let lean = quat::angle_between(turned, Quat::from_rotation_y(yaw as f32));
@@ -242,9 +244,9 @@ impl<'a> Fold<'a> {
         );
         let frames = smoothed(&placed, self.clip.fps());
         let does_turn = turns.iter().any(|turn| turn.abs() > f64::from(STILL_RADIANS));
-        let count = way.len() as f64;
+        let count = poses_of_joint.len() as f64;
         let (mut sin, mut cos, mut shift) = (0.0, 0.0, DVec2::ZERO);
-        for ((position, _), (turn, here)) in way.iter().zip(turns.iter().zip(&frames)) {
+        for ((position, _), (turn, here)) in poses_of_joint.iter().zip(turns.iter().zip(&frames)) {
             let yaw = turn - here.yaw;
             sin += yaw.sin();
             cos += yaw.cos();
@@ -261,7 +263,7 @@ impl<'a> Fold<'a> {
     }
 }
 
-/// A pose of a joint seen from its parent's, both in the world.
+/// Returns the pose of a joint relative to its parent's, from both in the world.
 fn local(parent: Option<(Vec3, Quat)>, (position, rotation): (Vec3, Quat)) -> (Vec3, Quat) {
     match parent {
         None => (position, rotation),
@@ -272,7 +274,7 @@ fn local(parent: Option<(Vec3, Quat)>, (position, rotation): (Vec3, Quat)) -> (V
     }
 }
 
-/// The reverse of [`local`].
+/// Returns the world pose of a joint from its local pose: the inverse of [`local`].
 fn placed(parent: Option<(Vec3, Quat)>, (translation, rotation): (Vec3, Quat)) -> (Vec3, Quat) {
     match parent {
         None => (translation, rotation),
@@ -280,11 +282,11 @@ fn placed(parent: Option<(Vec3, Quat)>, (translation, rotation): (Vec3, Quat)) -
     }
 }
 
-/// Frames of a character without the sway of its steps: means over [`SMOOTH_SECS`] to either side,
-/// narrower towards the ends.
+/// Returns the ground frames of a character without the sway of its steps: means over
+/// [`SMOOTH_SECS`] to either side, narrower towards the ends.
 fn smoothed(frames: &[Planar], fps: f64) -> Vec<Planar> {
     let reach = (SMOOTH_SECS * fps).round() as usize;
-    // Yaws that do not wrap, and sums of everything before each frame.
+    // Unwrapped yaws, and prefix sums.
     let mut sums = vec![(0.0, DVec2::ZERO)];
     let mut yaw = frames.first().map_or(0.0, |first| first.yaw);
     for frame in frames {
@@ -301,12 +303,12 @@ fn smoothed(frames: &[Planar], fps: f64) -> Vec<Planar> {
     (0..frames.len()).map(mean).collect()
 }
 
-/// A clip on its way back to the form of its file.
+/// The conversion of a clip back to the form of its file.
 struct Unfold<'a> {
     clip: &'a Clip,
     above: &'a FoldedChain,
     skeleton: Arc<Skeleton>,
-    /// For each joint of the result the joint of the clip; `None` for joints above the carrier.
+    /// For each joint of the result, the joint of the clip; `None` for joints above the carrier.
     from: Vec<Option<usize>>,
 }
 
@@ -350,7 +352,7 @@ impl<'a> Unfold<'a> {
             .with_provenance(clip.provenance()))
     }
 
-    /// Where the chain is in a frame, in the world.
+    /// Returns the world poses of the chain in a frame.
     fn chain(&self, carrier: (Vec3, Quat), here: Option<&Planar>) -> Vec<(Vec3, Quat)> {
         let moved = match (self.above.follows, here) {
             (ChainMotion::OnGround { joint, height, rotation, shift, yaw }, Some(here)) => {
@@ -425,7 +427,7 @@ impl<'a> Unfold<'a> {
     }
 }
 
-/// Leaves out the translations of joints that stay at their offset in every pose.
+/// Removes the translations of joints that stay at their offset in every pose.
 fn without_still_tracks(mut poses: Vec<Pose>, skeleton: &Skeleton) -> Vec<Pose> {
     let mut moves = vec![false; skeleton.len()];
     for pose in &poses {

@@ -1,23 +1,26 @@
+//! Foot contacts: the frames in which each foot is planted.
+
 use super::Clip;
 use crate::math::stats;
 use crate::skeleton::{Role, Roles, Side, WorldPose};
 use glam::Vec3;
 use std::ops::Range;
 
-/// When a foot counts as planted. Lengths and speeds are those of a character 1.75 m tall and are
+/// Thresholds for planted feet. Lengths and speeds are those of a character 1.75 m tall and are
 /// scaled to the clip's character.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ContactOptions {
-    /// A point of the foot comes to the ground at or below this height above its own lowest level,
+    /// A point of the foot enters contact at or below this height above its own lowest level,
     /// metres.
     pub enter_height_m: f32,
-    /// It leaves the ground above this height, metres. At least `enter_height_m`.
+    /// It leaves contact above this height, metres. At least `enter_height_m`.
     pub leave_height_m: f32,
-    /// It comes to the ground at or below this speed, metres per second.
+    /// It enters contact at or below this speed, metres per second.
     pub enter_speed_mps: f32,
-    /// It leaves the ground above this speed, metres per second. At least `enter_speed_mps`.
+    /// It leaves contact above this speed, metres per second. At least `enter_speed_mps`.
     pub leave_speed_mps: f32,
-    /// Contacts, and gaps between contacts, that are shorter than this are noise, seconds.
+    /// Contacts, and gaps between contacts, that are shorter than this are removed as noise,
+    /// seconds.
     pub min_secs: f32,
 }
 
@@ -33,28 +36,28 @@ impl Default for ContactOptions {
     }
 }
 
-/// The height that the options' lengths and speeds are given for, metres.
+/// The height of the character to which the options' lengths and speeds apply, metres.
 pub(super) const REFERENCE_HEIGHT_M: f32 = 1.75;
-/// The ground is where the lowest twentieth of a point's heights ends: below lie only the noise and
-/// the dents of a soft floor.
+/// The level of the ground is this percentile of a point's heights: lower values are noise and
+/// dents of a soft floor.
 pub(super) const GROUND_PERCENTILE: f32 = 0.05;
-/// A floor that leans in the capture lifts one foot's level over that of both feet by up to this
-/// much, metres. A foot that stays higher is held up.
+/// A leaning floor raises the level of one foot over that of both feet by up to this much, metres.
+/// A foot that stays higher is held up.
 const LEANING_FLOOR_M: f32 = 0.05;
-/// Speed limits hold for bodies up to this speed, metres per second, and grow with it above: in a
-/// sprint a foot that stands rolls and trembles faster.
+/// Speed limits apply unchanged to bodies up to this speed, metres per second, and grow with the
+/// speed above it: in a sprint a planted foot rolls and trembles faster.
 const STEADY_SPEED_MPS: f32 = 2.0;
-/// The body's speed is measured over this time to either side, seconds: about one step.
+/// The body's speed is averaged over this time to either side, seconds: about one step.
 const BODY_SPEED_SECS: f64 = 0.25;
 
-/// When which foot stands on the ground.
+/// The frames in which each foot is planted.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Contacts {
     planted: [Vec<bool>; 2],
 }
 
 impl Contacts {
-    /// Finds the contacts of a clip's feet with the ground, by height and speed of ankles, toe
+    /// Detects the contacts of a clip's feet with the ground, by height and speed of ankles, toe
     /// joints and toe tips, with hysteresis.
     ///
     /// A foot is planted while at least one of its points is. Each point is measured against its
@@ -63,21 +66,22 @@ impl Contacts {
     /// the limits on speed grow in proportion to the body's own speed.
     #[must_use]
     pub fn detect(clip: &Clip, roles: &Roles, options: &ContactOptions) -> Self {
-        let ways = Ways::of(clip, roles);
+        let tracks = FootTracks::of(clip, roles);
         let scale = roles.body_height(clip.skeleton()) / REFERENCE_HEIGHT_M;
-        let haste = ways.haste(clip.fps(), scale);
+        let speed_ratio = tracks.speed_ratio(clip.fps(), scale);
         let min_frames = (f64::from(options.min_secs) * clip.fps()).round().max(0.0) as usize;
         let mut planted = [vec![false; clip.frames()], vec![false; clip.frames()]];
-        for kind in &ways.feet {
-            let heights = |way: &[Vec3]| way.iter().map(|p| p.y).collect::<Vec<f32>>();
-            let both: Vec<f32> = kind.iter().flat_map(|(_, way)| heights(way)).collect();
+        for kind in &tracks.feet {
+            let heights = |track: &[Vec3]| track.iter().map(|p| p.y).collect::<Vec<f32>>();
+            let both: Vec<f32> = kind.iter().flat_map(|(_, track)| heights(track)).collect();
             let Some(common) = stats::percentile(&both, GROUND_PERCENTILE) else {
                 continue;
             };
-            for (side, way) in kind {
-                let own = stats::percentile(&heights(way), GROUND_PERCENTILE).unwrap_or(common);
+            for (side, track) in kind {
+                let own = stats::percentile(&heights(track), GROUND_PERCENTILE).unwrap_or(common);
                 let level = if own - common > LEANING_FLOOR_M * scale { common } else { own };
-                let point = Point { way, level, scale, haste: &haste, fps: clip.fps() };
+                let point =
+                    Point { track, level, scale, speed_ratio: &speed_ratio, fps: clip.fps() };
                 point.plant(options, &mut planted[side.index()]);
             }
         }
@@ -88,16 +92,16 @@ impl Contacts {
         Self { planted }
     }
 
-    /// Contacts that are known already: for the left and the right foot whether it is planted, one
-    /// flag per frame.
+    /// Returns contacts from flags: whether the left and the right foot is planted, one flag per
+    /// frame.
     #[must_use]
     pub fn from_flags(planted: [Vec<bool>; 2]) -> Self {
         Self { planted }
     }
 
-    /// The contacts of a result that plays `outgoing`, goes over at frame `leave` to `incoming`,
-    /// which is entered at its frame `enter`, and has the greater part of `incoming` from its frame
-    /// `handover` on: before it the contacts are those of the outgoing clip.
+    /// Returns the contacts of a result that leaves `outgoing` at its frame `leave` and enters
+    /// `incoming` at its frame `enter`. Before frame `handover` of the result they are those of the
+    /// outgoing clip, from then on those of the incoming clip.
     #[must_use]
     pub fn joined(
         outgoing: &Self,
@@ -121,24 +125,24 @@ impl Contacts {
         Self { planted }
     }
 
-    /// The number of frames.
+    /// Returns the number of frames.
     #[must_use]
     pub fn frames(&self) -> usize {
         self.planted[0].len()
     }
 
-    /// Whether the foot of `side` is on the ground in `frame`; never beyond the clip.
+    /// Returns whether the foot of `side` is planted in `frame`; `false` beyond the clip.
     #[must_use]
     pub fn planted(&self, side: Side, frame: usize) -> bool {
         self.planted[side.index()].get(frame).copied().unwrap_or(false)
     }
 
-    /// Where the foot of `side` is between one touchdown and the next in `frame`: 0 at a touchdown,
-    /// towards 1 before the next. Before the first and behind the last touchdown the rhythm of the
-    /// nearest stride goes on. `None` for a foot with fewer than two touchdowns.
+    /// Returns the phase of the foot of `side` in `frame`: 0 at a touchdown, rising to 1 at the
+    /// next. Before the first and after the last touchdown the nearest stride is repeated. `None`
+    /// for a foot with fewer than two touchdowns.
     #[must_use]
     pub fn phase(&self, side: Side, frame: usize) -> Option<f32> {
-        // A foot that stands when the clip begins came down at some time before.
+        // A foot that is planted when the clip begins touched down before.
         let touchdowns: Vec<usize> = self
             .intervals(side)
             .into_iter()
@@ -153,7 +157,7 @@ impl Contacts {
         Some(phase.rem_euclid(1.0))
     }
 
-    /// The frames during which the foot of `side` is on the ground, as ranges in order of time.
+    /// Returns the frames during which the foot of `side` is planted, as ranges in order of time.
     #[must_use]
     pub fn intervals(&self, side: Side) -> Vec<Range<usize>> {
         runs(&self.planted[side.index()])
@@ -163,13 +167,13 @@ impl Contacts {
     }
 }
 
-/// The step over the ground of the point that moves least: a foot that rolls without sliding has
-/// one that stands nearly still.
+/// Returns the step over the ground of the point that moves least: a foot that rolls without
+/// sliding has one that stands nearly still.
 pub(crate) fn stillest_step(before: &[Vec3], after: &[Vec3]) -> Option<Vec3> {
     stillest_point(before, after).map(|(_, step)| step)
 }
 
-/// The number of that point, and its step.
+/// Returns the index of the point that moves least over the ground, and its step.
 pub(crate) fn stillest_point(before: &[Vec3], after: &[Vec3]) -> Option<(usize, Vec3)> {
     let steps = before
         .iter()
@@ -178,15 +182,15 @@ pub(crate) fn stillest_point(before: &[Vec3], after: &[Vec3]) -> Option<(usize, 
     steps.enumerate().min_by(|a, b| a.1.length_squared().total_cmp(&b.1.length_squared()))
 }
 
-/// World positions, frame by frame.
-pub(super) struct Ways {
+/// World positions of the points of the feet and of the hips, frame by frame.
+pub(super) struct FootTracks {
     /// Of ankles, toe joints and toe tips, for each side that has them.
     pub(super) feet: [Vec<(Side, Vec<Vec3>)>; 3],
     /// Of the hips.
     body: Vec<Vec3>,
 }
 
-impl Ways {
+impl FootTracks {
     pub(super) fn of(clip: &Clip, roles: &Roles) -> Self {
         let skeleton = clip.skeleton();
         let joint = |role| roles.get_within(role, skeleton.len());
@@ -195,7 +199,7 @@ impl Ways {
             let (foot, toe) = (joint(Role::foot(side)), joint(Role::toe(side)));
             wanted.extend(foot.map(|j| (0, side, j, Vec3::ZERO)));
             wanted.extend(toe.map(|j| (1, side, j, Vec3::ZERO)));
-            // A foot without toes may have its tip at its own end.
+            // The tip of a foot without toes is its own end site.
             let last = toe.or(foot);
             wanted.extend(last.and_then(|j| Some((2, side, j, skeleton.joints()[j].end_site?))));
         }
@@ -208,52 +212,52 @@ impl Ways {
         for frame in 0..clip.frames() {
             clip.world_pose_of(frame, &needed, &mut world);
             body.push(world.positions[hips]);
-            for (&(_, _, joint, point), way) in wanted.iter().zip(&mut points) {
-                way.push(world.point(joint, point));
+            for (&(_, _, joint, point), track) in wanted.iter().zip(&mut points) {
+                track.push(world.point(joint, point));
             }
         }
         let mut feet: [Vec<(Side, Vec<Vec3>)>; 3] = Default::default();
-        for ((kind, side, _, _), way) in wanted.into_iter().zip(points) {
-            feet[kind].push((side, way));
+        for ((kind, side, _, _), track) in wanted.into_iter().zip(points) {
+            feet[kind].push((side, track));
         }
         Self { feet, body }
     }
 
-    /// For every frame by how much the body is faster than steady, at least 1.
-    fn haste(&self, fps: f64, scale: f32) -> Vec<f32> {
+    /// Returns for every frame the ratio of the body's speed to the steady speed, at least 1.
+    fn speed_ratio(&self, fps: f64, scale: f32) -> Vec<f32> {
         let reach = ((BODY_SPEED_SECS * fps).round() as usize).max(1);
         let last = self.body.len().saturating_sub(1);
-        let haste = |frame: usize| {
+        let speed_ratio = |frame: usize| {
             let (before, after) = (frame.saturating_sub(reach), (frame + reach).min(last));
-            let way = (self.body[after] - self.body[before]) * Vec3::new(1.0, 0.0, 1.0);
+            let step = (self.body[after] - self.body[before]) * Vec3::new(1.0, 0.0, 1.0);
             let secs = (after - before).max(1) as f32 / fps as f32;
-            (way.length() / secs / scale / STEADY_SPEED_MPS).max(1.0)
+            (step.length() / secs / scale / STEADY_SPEED_MPS).max(1.0)
         };
-        (0..self.body.len()).map(haste).collect()
+        (0..self.body.len()).map(speed_ratio).collect()
     }
 }
 
-/// A point of a foot on its way.
+/// A point of a foot over time.
 struct Point<'a> {
-    way: &'a [Vec3],
+    track: &'a [Vec3],
     /// The height of the ground under it, metres.
     level: f32,
-    /// The character's height against that of the options.
+    /// The ratio of the character's height to that of the options.
     scale: f32,
-    haste: &'a [f32],
+    speed_ratio: &'a [f32],
     fps: f64,
 }
 
 impl Point<'_> {
     /// Marks the frames in which the point is on the ground.
-    // Not inlined: browsers optimise a function from one call to its next, and a foot has several
+    // Not inlined: browsers optimise a function between two of its calls, and a foot has several
     // points.
     #[inline(never)]
     fn plant(&self, options: &ContactOptions, planted: &mut [bool]) {
         let mut down = false;
         for (frame, planted) in planted.iter_mut().enumerate() {
-            let height = (self.way[frame].y - self.level) / self.scale;
-            let speed = speed(self.way, frame, self.fps) / self.scale / self.haste[frame];
+            let height = (self.track[frame].y - self.level) / self.scale;
+            let speed = speed(self.track, frame, self.fps) / self.scale / self.speed_ratio[frame];
             down = if down {
                 height <= options.leave_height_m && speed <= options.leave_speed_mps
             } else {
@@ -264,16 +268,16 @@ impl Point<'_> {
     }
 }
 
-/// Speed by central differences, metres per second.
-fn speed(way: &[Vec3], frame: usize, fps: f64) -> f32 {
-    let (before, after) = (frame.saturating_sub(1), (frame + 1).min(way.len() - 1));
+/// Returns the speed by central differences, metres per second.
+fn speed(track: &[Vec3], frame: usize, fps: f64) -> f32 {
+    let (before, after) = (frame.saturating_sub(1), (frame + 1).min(track.len() - 1));
     if before == after {
         return 0.0;
     }
-    way[before].distance(way[after]) * fps as f32 / (after - before) as f32
+    track[before].distance(track[after]) * fps as f32 / (after - before) as f32
 }
 
-/// The maximal runs of equal flags, in order.
+/// Returns the maximal runs of equal flags, in order.
 fn runs(flags: &[bool]) -> impl Iterator<Item = (bool, Range<usize>)> + '_ {
     let mut start = 0;
     flags.chunk_by(|a, b| a == b).map(move |run| {
@@ -283,7 +287,7 @@ fn runs(flags: &[bool]) -> impl Iterator<Item = (bool, Range<usize>)> + '_ {
     })
 }
 
-/// Turns over runs of `value` that are shorter than `min_frames` and touch neither end of the clip.
+/// Inverts runs of `value` that are shorter than `min_frames` and touch neither end of the clip.
 fn drop_short_runs(flags: &mut [bool], value: bool, min_frames: usize) {
     let last = flags.len();
     let short: Vec<Range<usize>> = runs(flags)

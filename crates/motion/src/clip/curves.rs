@@ -1,27 +1,27 @@
-//! One number per frame of one joint, to be plotted.
+//! Curves of one joint over time, for plots.
 
 use super::Clip;
 use crate::math::quat;
 use crate::skeleton::WorldPose;
 use glam::{Quat, Vec3};
 
-/// What of a joint is plotted.
+/// The quantity that is plotted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CurveKind {
     /// Speed of its position in the world, metres per second.
     Speed,
     /// Height above `y = 0`, metres.
     Height,
-    /// How far it is turned against its parent from the rest pose, degrees: 0 to 180.
+    /// Angle of its local rotation from the rest pose, degrees: 0 to 180.
     Angle,
     /// Speed of its rotation in the world, degrees per second.
     AngularSpeed,
 }
 
-/// One value per frame. Rates are central differences at the clip's own frame rate, one-sided at
-/// the ends.
+/// Returns one value per frame. Rates are central differences at the clip's own frame rate,
+/// one-sided at the ends.
 ///
-/// Empty when the clip has no such joint; rates are 0 in a clip of one frame.
+/// The curve is empty when the clip has no such joint; rates are 0 in a clip of one frame.
 #[must_use]
 pub fn joint_curve(clip: &Clip, joint: usize, kind: CurveKind) -> Vec<f32> {
     if joint >= clip.skeleton().len() {
@@ -47,8 +47,8 @@ pub fn joint_curve(clip: &Clip, joint: usize, kind: CurveKind) -> Vec<f32> {
         .collect()
 }
 
-/// Where one joint is in the world, and how it is turned, in every frame: kinematics of its own
-/// chain alone, because plots follow a slider.
+/// Returns the world position and rotation of one joint in every frame. Computes kinematics of its
+/// own chain alone, because plots are updated while a slider moves.
 fn joint_track(clip: &Clip, joint: usize) -> Vec<(Vec3, Quat)> {
     let chain = clip.skeleton().with_ancestors([joint]);
     let mut world = WorldPose::default();
@@ -67,7 +67,7 @@ mod tests {
     use crate::synth::{Action, Params, synthesize};
 
     #[test]
-    fn the_chain_alone_gives_what_the_whole_body_gives() {
+    fn joint_track_agrees_with_full_kinematics() {
         let clip = synthesize(&Params::new(Action::Run)).unwrap().clip;
         let values =
             (0..clip.frames()).map(|frame| Vec3::new(0.1, 0.2, 0.001 * frame as f32)).collect();
@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn rates_are_per_second_and_a_joint_that_is_not_there_has_no_curve() {
+    fn joint_curve_of_missing_joint_is_empty_and_rates_are_per_second() {
         let clip = synthesize(&Params::new(Action::Walk)).unwrap().clip;
         let heights = joint_curve(&clip, 0, CurveKind::Height);
         let speeds = joint_curve(&clip, 0, CurveKind::Speed);

@@ -5,13 +5,13 @@ use crate::skeleton::{Joint, Skeleton, fixtures::noise};
 use glam::{Quat, Vec3};
 use std::sync::Arc;
 
-/// A smooth motion of every joint that looks random, with angles of up to half a radian, 30 frames
-/// per second.
+/// Returns a smooth pseudo-random motion of every joint, with angles of up to half a radian, 30
+/// frames per second.
 pub fn wander(skeleton: &Arc<Skeleton>, frames: usize, seed: u64) -> Clip {
     wander_by(skeleton, frames, seed, 0.5)
 }
 
-/// The same with angles of up to about `radians`.
+/// Returns a smooth pseudo-random motion of every joint, with angles of up to about `radians`.
 pub fn wander_by(skeleton: &Arc<Skeleton>, frames: usize, seed: u64, radians: f32) -> Clip {
     let mut next = noise(seed);
     let joints = skeleton.len();
@@ -30,14 +30,14 @@ pub fn wander_by(skeleton: &Arc<Skeleton>, frames: usize, seed: u64, radians: f3
     Clip::new("wander", Arc::clone(skeleton), 30.0, rotations, roots).unwrap()
 }
 
-/// The largest distance between the same joint of two clips of one skeleton, metres.
+/// Returns the largest distance between the same joint of two clips of one skeleton, metres.
 pub fn largest_distance(a: &Clip, b: &Clip) -> f32 {
     let (a, b) = (a.world_positions(0..a.frames()), b.world_positions(0..b.frames()));
     assert_eq!(a.len(), b.len());
     a.iter().zip(&b).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max)
 }
 
-/// A root and joints that hang from it, as many points as are wanted.
+/// Returns a skeleton of a root and joints that hang from it, `count` in all.
 pub fn points_skeleton(count: usize) -> Arc<Skeleton> {
     let joint = |index: usize| Joint {
         name: format!("p{index}"),
@@ -49,7 +49,7 @@ pub fn points_skeleton(count: usize) -> Arc<Skeleton> {
     Arc::new(Skeleton::new((0..count).map(joint).collect()).unwrap())
 }
 
-/// Points that fly: per frame, where each point of a [`points_skeleton`] is.
+/// Returns a clip of a [`points_skeleton`] from the position of each point in each frame.
 pub fn points_clip(skeleton: &Arc<Skeleton>, fps: f64, frames: &[Vec<[f32; 3]>]) -> Clip {
     let at = |frame: &Vec<[f32; 3]>, joint: usize| Vec3::from_array(frame[joint]);
     let roots = frames.iter().map(|frame| at(frame, 0)).collect();

@@ -1,27 +1,27 @@
-//! The height of the ground under a clip, told from its feet.
+//! The height of the ground under a clip, estimated from its feet.
 
-use super::contacts::{GROUND_PERCENTILE, REFERENCE_HEIGHT_M, Ways};
+use super::contacts::{FootTracks, GROUND_PERCENTILE, REFERENCE_HEIGHT_M};
 use super::{Clip, Contacts};
 use crate::math::stats;
 use crate::skeleton::{Roles, Side};
 use glam::Vec3;
 
-/// How high ankle, toe joint and toe tip usually lie above the sole of a character 1.75 m tall,
-/// metres.
+/// Usual heights of ankle, toe joint and toe tip above the sole of a character 1.75 m tall, metres.
 const ABOVE_SOLE_M: [f32; 3] = [0.09, 0.03, 0.02];
-/// The ground is y = 0, as files promise, unless the feet contradict it by more than this, metres
+/// The ground is y = 0, as usual in files, unless the feet contradict it by more than this, metres
 /// for a character 1.75 m tall.
 const TOLERANCE_M: f32 = 0.03;
 
-/// Returns the height of the ground under a clip, metres, as its planted feet tell it.
+/// Returns the height of the ground under a clip, metres, estimated from its planted feet.
 ///
-/// It is 0 unless planted feet contradict that: the 5th percentile of their lowest points lies more
-/// than 3 cm below 0 (then it is the ground), or the soles, by the usual heights of ankle, toe
-/// joint and toe tip above them, float more than 3 cm above 0 (then the soles' 5th percentile is).
-/// These lengths are those of a character 1.75 m tall. 0 for a clip in which no foot is planted.
+/// It is 0 unless planted feet contradict that: if the 5th percentile of their lowest points lies
+/// more than 3 cm below 0, it is the ground; if the soles, by the usual heights of ankle, toe joint
+/// and toe tip above them, float more than 3 cm above 0, the 5th percentile of the soles' heights
+/// is. These lengths are those of a character 1.75 m tall. 0 for a clip in which no foot is
+/// planted.
 #[must_use]
 pub fn estimate_ground(clip: &Clip, roles: &Roles, contacts: &Contacts) -> f32 {
-    let ways = Ways::of(clip, roles);
+    let ways = FootTracks::of(clip, roles);
     let scale = roles.body_height(clip.skeleton()) / REFERENCE_HEIGHT_M;
     let (mut lowest, mut soles) = (Vec::new(), Vec::new());
     for side in Side::BOTH {
@@ -47,24 +47,24 @@ pub fn estimate_ground(clip: &Clip, roles: &Roles, contacts: &Contacts) -> f32 {
     }
 }
 
-/// Returns by how much `moved`, a clip that was moved to another body `scale` times as large, has
-/// to be raised so that its feet stand as high as those of `source` in proportion. Compared are the
-/// kinds of foot points (ankles, toe joints, toe tips) that both bodies have: an ankle stands
-/// higher than a toe. `None` where they have none in common.
+/// Returns the amount by which `moved`, a clip that was retargeted to a body `scale` times as
+/// large, has to be raised so that its feet are as high as those of `source` in proportion. Only
+/// kinds of foot points (ankles, toe joints, toe tips) that both bodies have are compared: an ankle
+/// stands higher than a toe. `None` where they have none in common.
 pub(super) fn rise_between(
     source: (&Clip, &Roles),
     moved: (&Clip, &Roles),
     scale: f32,
 ) -> Option<f32> {
-    let [source, moved] = [source, moved].map(|(clip, roles)| Ways::of(clip, roles));
-    let has = |ways: &Ways, kind: usize| !ways.feet[kind].is_empty();
+    let [source, moved] = [source, moved].map(|(clip, roles)| FootTracks::of(clip, roles));
+    let has = |ways: &FootTracks, kind: usize| !ways.feet[kind].is_empty();
     let shared = [0, 1, 2].map(|kind| has(&source, kind) && has(&moved, kind));
     Some(level_of(&source, shared)? * scale - level_of(&moved, shared)?)
 }
 
-/// The 5th percentile of the heights of the lowest points of these kinds; `None` where there are
-/// none.
-fn level_of(ways: &Ways, kinds: [bool; 3]) -> Option<f32> {
+/// Returns the 5th percentile of the heights of the lowest points of these kinds; `None` where
+/// there are none.
+fn level_of(ways: &FootTracks, kinds: [bool; 3]) -> Option<f32> {
     let points =
         || ways.feet.iter().zip(kinds).filter(|(_, wanted)| *wanted).flat_map(|(kind, _)| kind);
     let lowest = |frame: usize| {
@@ -79,5 +79,5 @@ fn level_of(ways: &Ways, kinds: [bool; 3]) -> Option<f32> {
 /// points. 0 for a clip without feet.
 #[cfg(test)]
 pub(super) fn foot_level(clip: &Clip, roles: &Roles) -> f32 {
-    level_of(&Ways::of(clip, roles), [true; 3]).unwrap_or(0.0)
+    level_of(&FootTracks::of(clip, roles), [true; 3]).unwrap_or(0.0)
 }

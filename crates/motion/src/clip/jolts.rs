@@ -1,17 +1,19 @@
+//! Jolts: sudden changes of a joint's angular velocity.
+
 use super::Clip;
 use crate::math::{quat, stats};
 use glam::{Quat, Vec3};
 
-/// A joint whose turning changes by less than this from one step to the next is still, radians:
-/// what single precision makes of a joint at rest.
+/// A joint whose rotation per frame changes by less than this is still, radians: the rounding of
+/// single precision at rest.
 const STILL_RADIANS: f32 = 1e-4;
-/// Frames that are looked at for what is usual: enough for a 99th percentile, and bounded for long
-/// clips.
+/// The number of frames from which the usual jolt is computed: enough for a 99th percentile, and
+/// bounded for long clips.
 const SAMPLES: usize = 1_000;
 
-/// How much a joint's turn changes from the step into `frame` to the step out of it: the length of
-/// the difference of the two rotation vectors, radians. `None` in the first and the last frame, and
-/// where there is no such frame or joint.
+/// Returns the change of a joint's rotation from the step into `frame` to the step out of it: the
+/// length of the difference of the two rotation vectors, radians. `None` in the first and the last
+/// frame, and where there is no such frame or joint.
 pub(crate) fn turn_change(clip: &Clip, frame: usize, joint: usize) -> Option<f32> {
     let at = |frame: usize| {
         (frame < clip.frames()).then(|| clip.rotations(frame).get(joint).copied()).flatten()
@@ -21,8 +23,9 @@ pub(crate) fn turn_change(clip: &Clip, frame: usize, joint: usize) -> Option<f32
     Some((turn(here, after) - turn(before, here)).length())
 }
 
-/// The rotation vector from one rotation to another. As [`quat::log`], but by an arc tangent that
-/// is the same to the last digit on every machine: what a motion graph goes by.
+/// Returns the rotation vector from one rotation to another. It equals that of [`quat::log`], with
+/// an arc tangent that is the same to the last digit on every machine, because motion graphs depend
+/// on it.
 fn turn(from: Quat, to: Quat) -> Vec3 {
     let q = quat::with_positive_scalar(to * from.conjugate());
     let v = Vec3::new(q.x, q.y, q.z);
@@ -33,30 +36,31 @@ fn turn(from: Quat, to: Quat) -> Vec3 {
     v * (2.0 * libm::atan2f(sine, q.w) / sine)
 }
 
-/// For every frame how much the joints jolt in it: the largest [`turn_change`] of a joint over what
-/// is usual for that joint, which is the 99th percentile of the clip. Above 1 stands what one frame
-/// in a hundred does: a heel strikes, or the capture trembles. 0 in the first and the last frame.
+/// Returns for every frame the largest ratio over all joints of the [`turn_change`] to its usual
+/// value for that joint, the 99th percentile of the clip. A value above 1 occurs in one frame in a
+/// hundred: a heel strike, or a tremble of the capture. 0 in the first and the last frame.
 pub(crate) fn jolts(clip: &Clip) -> Vec<f32> {
-    let mut jolting = Jolting::new(clip);
+    let mut jolting = JoltScan::new(clip);
     while !jolting.advance(clip, usize::MAX) {}
     jolting.jolts
 }
 
-/// [`jolts`] in slices. Between them it does not hold the clip: every call is given the same one.
+/// The computation of [`jolts`] in slices. It does not hold the clip: every call must be given the
+/// same one.
 #[derive(Clone, Debug)]
-pub(crate) struct Jolting {
+pub(crate) struct JoltScan {
     jolts: Vec<f32>,
-    /// The joint that comes next.
+    /// The next joint.
     joint: usize,
 }
 
-impl Jolting {
+impl JoltScan {
     pub(crate) fn new(clip: &Clip) -> Self {
         Self { jolts: vec![0.0; clip.frames()], joint: 0 }
     }
 
-    /// Looks at up to so many more joints, at least one; `true` when nothing is left to do. 30,000
-    /// frames of a joint take about 3 ms.
+    /// Processes up to `joints` more joints, at least one; returns `true` when nothing is left to
+    /// do. 30,000 frames of a joint take about 3 ms.
     pub(crate) fn advance(&mut self, clip: &Clip, joints: usize) -> bool {
         let all = clip.skeleton().len();
         let stride = clip.frames().div_ceil(SAMPLES).max(1);
@@ -86,7 +90,7 @@ mod tests {
     use std::sync::Arc;
 
     #[test]
-    fn a_jerk_of_one_joint_in_one_frame_stands_out() {
+    fn jolts_of_a_jerk_in_one_frame_stand_out() {
         let skeleton = fixtures::lafan();
         let (frames, joints) = (300, skeleton.len());
         let mut rotations: Vec<Quat> = (0..frames)
@@ -97,7 +101,7 @@ mod tests {
         rotations[150 * joints + 3] *= Quat::from_rotation_x(0.05);
         let clip = Clip::new("jerk", Arc::clone(&skeleton), 60.0, rotations, vec![Vec3::Y; frames])
             .unwrap();
-        // There and back again: twice the jerk, but for the little that the joint turns anyway.
+        // The reverse change is twice as large, except for the little that the joint turns anyway.
         assert!((turn_change(&clip, 150, 3).unwrap() - 0.1).abs() < 0.005);
         assert!(turn_change(&clip, 150, 2).unwrap() < 0.005);
         for (frame, joint) in [(0, 3), (frames - 1, 3), (frames, 3), (usize::MAX, 3), (5, joints)] {
@@ -116,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn turns_are_those_of_the_logarithm() {
+    fn turn_agrees_with_the_logarithm() {
         for angle in [0.0_f32, 1e-5, 0.01, 1.0, 3.0] {
             let (from, axis) = (Quat::from_rotation_y(0.7), Vec3::new(0.6, 0.0, 0.8));
             let to = Quat::from_axis_angle(axis, angle) * from;
@@ -127,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn a_still_clip_has_no_jolts() {
+    fn jolts_of_a_still_clip_are_zero() {
         let skeleton = fixtures::lafan();
         for frames in [1, 2, 5] {
             let rotations = vec![Quat::IDENTITY; frames * skeleton.len()];

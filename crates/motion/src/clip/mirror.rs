@@ -1,26 +1,28 @@
+//! Mirroring of clips.
+
 use super::{Clip, ClipError};
 use crate::math::quat;
 use crate::skeleton::{Mirror, NoCounterparts, Roles, rest_is_plausible};
 
-/// Frames from which it is taken what a joint usually does, at most.
+/// The greatest number of frames from which a joint's usual rotation is computed.
 const SAMPLES: usize = 240;
 
-/// Why a clip has no mirror image.
+/// Error mirroring a clip.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MirrorError {
-    /// Left and right are not known.
+    /// Left and right are unknown.
     #[error(transparent)]
     NoCounterparts(#[from] NoCounterparts),
-    /// The result is no clip.
+    /// The result is not a valid clip.
     #[error(transparent)]
     Clip(#[from] ClipError),
 }
 
-/// The clip in a mirror that stands on the plane x = 0 of the world: a left turn becomes a right
-/// turn, what the left hand did does the right.
+/// Mirrors a clip in the plane x = 0 of the world: a left turn becomes a right turn, and the right
+/// hand makes the motion of the left.
 ///
-/// The skeleton stays, with its own bone lengths on either side. Twice is the original again, to
-/// within 3e-5. See [`Mirror`] for the way.
+/// The skeleton stays the same, with its own bone lengths on either side. Mirroring twice gives the
+/// original back to within 3e-5. [`Mirror`] describes the method.
 ///
 /// # Errors
 /// [`MirrorError::NoCounterparts`] when neither roles nor names tell left from right.
@@ -31,7 +33,7 @@ pub fn mirror(clip: &Clip, roles: &Roles) -> Result<Clip, MirrorError> {
     Ok(mirrored.with_provenance(clip.provenance()))
 }
 
-/// How a clip's skeleton looks in a mirror: by its rest pose where that shows a creature, else by
+/// Returns the mirror of a clip's skeleton: by its rest pose where that is plausible, otherwise by
 /// the motion.
 fn mirror_of(clip: &Clip, roles: &Roles) -> Result<Mirror, NoCounterparts> {
     let skeleton = clip.skeleton();
@@ -61,7 +63,8 @@ mod tests {
         p * Vec3::new(-1.0, 1.0, 1.0)
     }
 
-    /// The largest distance between what a mirror shows of `clip` and what its mirror image does.
+    /// Returns the largest distance between the reflected positions of `clip` and those of its
+    /// mirror image.
     fn largest_error(clip: &Clip, mirrored: &Clip, roles: &Roles) -> f32 {
         let pairs = Mirror::of(clip.skeleton(), roles).unwrap();
         let mut worst = 0.0f32;
@@ -77,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn every_joint_of_a_symmetric_rig_is_where_the_mirror_shows_it() {
+    fn mirror_of_a_symmetric_rig_reflects_every_joint() {
         for (rig, skeleton, _) in fixtures::all() {
             let (roles, clip) = (fixtures::roles(&skeleton), wander(&skeleton, 9, 5));
             let error = largest_error(&clip, &mirror(&clip, &roles).unwrap(), &roles);
@@ -85,9 +88,9 @@ mod tests {
         }
     }
 
-    /// The axes of joints may lie as they like: only where the joints are counts.
+    /// The axes of joints do not matter, only their positions.
     #[test]
-    fn mirror_image_does_not_depend_on_the_axes_of_joints() {
+    fn mirror_does_not_depend_on_joint_axes() {
         for (rig, skeleton, _) in fixtures::all() {
             let (roles, clip) = (fixtures::roles(&skeleton), wander(&skeleton, 4, 9));
             let axes: Vec<Quat> = (0..skeleton.len())
@@ -123,10 +126,10 @@ mod tests {
         }
     }
 
-    /// Rest poses that show no creature tell nothing of turns about bones, and a spine must not
-    /// come out turned half round.
+    /// An implausible rest pose does not determine rotations about bones; a spine must not come out
+    /// rotated by half a turn.
     #[test]
-    fn joints_turned_by_constants_do_in_the_mirror_what_they_usually_do() {
+    fn mirror_with_implausible_rest_pose_keeps_usual_rotations() {
         let clip = synthesize(&Params::new(Action::Walk)).unwrap().clip;
         let roles = Roles::detect(clip.skeleton());
         for seed in 0..4 {
@@ -149,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn a_left_turn_becomes_a_right_turn() {
+    fn mirror_of_a_left_turn_is_a_right_turn() {
         let skeleton = fixtures::lafan();
         let roles = fixtures::roles(&skeleton);
         let clip =
@@ -165,7 +168,7 @@ mod tests {
     /// The plane of symmetry at rest need not be x = 0: in some rigs every bone lies along +X at
     /// rest.
     #[test]
-    fn the_rest_pose_may_lie_in_any_direction() {
+    fn mirror_with_another_plane_of_symmetry_reflects_every_joint() {
         let upright = fixtures::mixamo();
         let lie =
             Quat::from_axis_angle(Vec3::ONE.normalize_or(Vec3::X), std::f32::consts::TAU / 3.0);
@@ -186,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn bones_of_uneven_rigs_point_where_the_mirror_shows_them() {
+    fn mirror_of_an_uneven_rig_reflects_bone_directions() {
         let skeleton = fixtures::uneven(&fixtures::cmu_bvh(), 1.0, 0.1, 0.1, 4);
         let roles = fixtures::roles(&skeleton);
         let clip = wander(&skeleton, 6, 8);
@@ -212,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn moved_joints_are_mirrored_too() {
+    fn mirror_of_joint_translations_reflects_them() {
         let skeleton = fixtures::bandai();
         let roles = fixtures::roles(&skeleton);
         let (hips, hand) = (roles.get(Role::Hips).unwrap(), roles.get(Role::LeftHand).unwrap());
@@ -230,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn without_sides_there_is_no_mirror_image() {
+    fn mirror_without_sides_is_refused() {
         let clip = wander(&fixtures::nameless(&fixtures::lafan()), 2, 0);
         assert_eq!(
             mirror(&clip, &Roles::default()),
@@ -245,14 +248,14 @@ mod tests {
 
     /// The collars and the neck of this rig start at one joint and lie nearly on one line.
     #[test]
-    fn mirror_of_bones_on_one_line_undoes_itself() {
+    fn mirror_of_bones_on_one_line_is_an_involution() {
         for (seed, radians) in [(9, 0.026_989_816), (385, 0.017_760_007), (532, 0.033_390_578)] {
             let (_, skeleton, _) = fixtures::all().swap_remove(1);
-            assert_undoes_itself(&fixtures::uneven(&skeleton, 1.0, radians, 0.2, seed), seed);
+            assert_involution(&fixtures::uneven(&skeleton, 1.0, radians, 0.2, seed), seed);
         }
     }
 
-    fn assert_undoes_itself(skeleton: &Arc<Skeleton>, seed: u64) {
+    fn assert_involution(skeleton: &Arc<Skeleton>, seed: u64) {
         let (skeleton, _) = fixtures::shuffled(skeleton, seed);
         let (roles, clip) = (fixtures::roles(&skeleton), wander(&skeleton, 4, seed));
         let twice = mirror(&mirror(&clip, &roles).unwrap(), &roles).unwrap();
@@ -268,9 +271,9 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(24))]
         #[test]
-        fn twice_is_the_original(rig in 0usize..11, seed in 0u64..1000, radians in 0.0f32..0.3) {
+        fn mirror_twice_is_the_original(rig in 0usize..11, seed in 0u64..1000, radians in 0.0f32..0.3) {
             let (_, skeleton, _) = fixtures::all().swap_remove(rig);
-            assert_undoes_itself(&fixtures::uneven(&skeleton, 1.0, radians, 0.2, seed), seed);
+            assert_involution(&fixtures::uneven(&skeleton, 1.0, radians, 0.2, seed), seed);
         }
     }
 }

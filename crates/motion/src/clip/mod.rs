@@ -101,7 +101,7 @@ pub use contacts::{ContactOptions, Contacts};
 pub(crate) use contacts::{stillest_point, stillest_step};
 pub use curves::{CurveKind, joint_curve};
 pub use ground::estimate_ground;
-pub(crate) use jolts::{Jolting, jolts, turn_change};
+pub(crate) use jolts::{JoltScan, jolts, turn_change};
 pub use mirror::{MirrorError, mirror};
 pub use reference::{reference_pose, stance_for_rest};
 pub use resample::resample;

@@ -1,14 +1,16 @@
+//! Clips from lists of poses.
+
 use super::{Clip, ClipError, JointTranslations};
 use crate::skeleton::{Pose, Skeleton};
 use std::sync::Arc;
 
 impl Clip {
-    /// A clip from whole poses, one per frame. The joints that have translations are those of the
-    /// first pose.
+    /// Returns a clip from whole poses, one per frame. The joints with translations are those of
+    /// the first pose.
     ///
     /// # Errors
-    /// [`ClipError`] when the frame rate is not a positive number, a pose has not one rotation per
-    /// joint, or poses differ in which joints have translations.
+    /// [`ClipError`] when the frame rate is not a positive number, a pose does not have one
+    /// rotation per joint, or poses have translations for different joints.
     pub fn from_poses(
         name: impl Into<String>,
         skeleton: Arc<Skeleton>,
@@ -56,7 +58,7 @@ mod tests {
     use glam::Vec3;
 
     #[test]
-    fn a_clip_comes_back_from_its_poses() {
+    fn from_poses_of_a_clip_is_the_clip() {
         let clip = wander(&fixtures::cmu_bvh(), 7, 3);
         let values = (0..7).map(|i| Vec3::X * i as f32).collect();
         let clip = clip.with_translations(vec![JointTranslations { joint: 4, values }]).unwrap();
@@ -68,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn poses_that_do_not_fit_each_other_are_refused() {
+    fn from_poses_of_different_shape_is_refused() {
         let clip = wander(&fixtures::cmu_bvh(), 2, 3);
         let make = |a: Pose, b: Pose| Clip::from_poses("x", clip.skeleton().clone(), 30.0, [a, b]);
         let (plain, mut short, mut moved) = (clip.pose(0), clip.pose(1), clip.pose(1));

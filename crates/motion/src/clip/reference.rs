@@ -1,3 +1,5 @@
+//! Reference poses: how a clip's body stands, whatever its rest pose is.
+
 use super::Clip;
 use crate::math::quat;
 use crate::skeleton::{
@@ -5,21 +7,21 @@ use crate::skeleton::{
 };
 use glam::{Quat, Vec3};
 
-/// Frames of a clip that are looked at, at most.
+/// The greatest number of frames of a clip that are examined.
 const SAMPLES: usize = 120;
-/// A frame may be less upright than the most upright one by this and count as upright, too.
-const AS_UPRIGHT: f32 = 0.06;
-/// A rest pose from which a clip's joints are turned by more than this in the mean is no pose of a
-/// creature, radians (40°).
-const STRANGE: f32 = 0.7;
+/// Frames that are less upright than the most upright one by up to this count as upright, too.
+const UPRIGHT_TOLERANCE: f32 = 0.06;
+/// A rest pose from which a clip's joints are rotated by more than this in the mean is implausible,
+/// radians (40°).
+const MAX_MEAN_ANGLE: f32 = 0.7;
 
-/// Returns a pose that shows how a clip's bones lie to each other when the body stands, for
-/// [`crate::skeleton::canonical_stance`]: the rest pose where that is plausible, else the frame in
-/// which the body is most upright; of frames that are about as upright, that in which head, hands
-/// and feet are turned the least against how they are in the mean.
+/// Returns a pose that shows the bones' directions when the body stands, for
+/// [`crate::skeleton::canonical_stance`]: the rest pose where that is plausible, otherwise the
+/// frame in which the body is most upright. Of frames that are about as upright, the one in which
+/// head, hands and feet are closest to their mean rotations is taken.
 ///
-/// Where the roles do not tell, it is the rest pose, unless the clip's joints are turned far from
-/// it: then the frame in which they are farthest apart.
+/// Where roles are missing, it is the rest pose, unless the clip's joints are rotated far from it:
+/// then the frame in which they are farthest apart.
 #[must_use]
 pub fn reference_pose(clip: &Clip, roles: &Roles) -> WorldPose {
     let skeleton = clip.skeleton();
@@ -29,7 +31,7 @@ pub fn reference_pose(clip: &Clip, roles: &Roles) -> WorldPose {
     match rest_is_plausible(skeleton, roles) {
         Some(true) => rest,
         Some(false) => most_upright(&frames().collect::<Vec<_>>(), skeleton, roles).unwrap_or(rest),
-        None if strangeness(clip, step) <= STRANGE => rest,
+        None if mean_angle_from_rest(clip, step) <= MAX_MEAN_ANGLE => rest,
         None => {
             let spreads: Vec<f32> = frames().map(|pose| spread(&pose)).collect();
             let widest = spreads.iter().enumerate().max_by(|x, y| x.1.total_cmp(y.1));
@@ -38,18 +40,17 @@ pub fn reference_pose(clip: &Clip, roles: &Roles) -> WorldPose {
     }
 }
 
-/// Returns the stance that stands in for the rest pose of a clip's skeleton: its
-/// [`canonical_stance`] where the rest pose shows no creature. `None` where it shows one, and where
-/// the roles do not tell.
+/// Returns the stance that replaces the rest pose of a clip's skeleton: its [`canonical_stance`]
+/// where the rest pose is implausible. `None` where it is plausible, and where roles are missing.
 #[must_use]
 pub fn stance_for_rest(clip: &Clip, roles: &Roles) -> Option<WorldPose> {
     let is_strange = rest_is_plausible(clip.skeleton(), roles) == Some(false);
     is_strange.then(|| canonical_stance(clip.skeleton(), roles, &reference_pose(clip, roles)))
 }
 
-/// How far the joints below the root are turned from rest, radians: the mean over joints and every
-/// so many frames.
-fn strangeness(clip: &Clip, step: usize) -> f32 {
+/// Returns the mean angle of the joints below the root from rest, radians, over every `step`-th
+/// frame.
+fn mean_angle_from_rest(clip: &Clip, step: usize) -> f32 {
     let frames = (0..clip.frames()).step_by(step);
     let turns = frames.flat_map(|frame| clip.rotations(frame).iter().skip(1));
     let (sum, count) = turns.fold((0.0f32, 0usize), |(sum, count), turn| {
@@ -63,7 +64,7 @@ fn most_upright(poses: &[WorldPose], skeleton: &Skeleton, roles: &Roles) -> Opti
         poses.iter().map(|pose| uprightness(pose, roles).unwrap_or(-1.0)).collect();
     let best = upright.iter().copied().reduce(f32::max)?;
     let ends = (Side::BOTH.into_iter()).flat_map(|side| [Role::hand(side), Role::foot(side)]);
-    // A head is turned against the hips, hands and feet against their limbs.
+    // Head rotations are relative to the hips, those of hands and feet relative to their limbs.
     let hips = roles.get_within(Role::Hips, skeleton.len());
     let head = roles.get_within(Role::Head, skeleton.len()).zip(hips);
     let pairs = ends.filter_map(|role| {
@@ -81,12 +82,12 @@ fn most_upright(poses: &[WorldPose], skeleton: &Skeleton, roles: &Roles) -> Opti
             *apart += quat::angle_between(turn, mean);
         }
     }
-    let candidates = (0..poses.len()).filter(|&sample| upright[sample] >= best - AS_UPRIGHT);
+    let candidates = (0..poses.len()).filter(|&sample| upright[sample] >= best - UPRIGHT_TOLERANCE);
     let sample = candidates.min_by(|&x, &y| apart[x].total_cmp(&apart[y]))?;
     poses.get(sample).cloned()
 }
 
-/// The mean distance of the joints from their middle, metres.
+/// Returns the mean distance of the joints from their centre, metres.
 fn spread(pose: &WorldPose) -> f32 {
     let count = pose.positions.len().max(1) as f32;
     let middle = pose.positions.iter().sum::<Vec3>() / count;
@@ -100,7 +101,7 @@ mod tests {
     use std::sync::Arc;
 
     #[test]
-    fn the_most_upright_frame_shows_how_a_body_stands_whose_rest_pose_means_nothing() {
+    fn reference_pose_with_implausible_rest_is_the_most_upright_frame() {
         let skeleton = fixtures::games105();
         let roles = fixtures::roles(&skeleton);
         let hips = roles.get(Role::Hips).unwrap();
@@ -126,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn an_unknown_creature_is_seen_spread_out() {
+    fn reference_pose_without_roles_is_the_most_spread_frame() {
         let joints = |offsets: [Vec3; 4]| {
             let joint = |(index, offset): (usize, Vec3)| crate::skeleton::Joint {
                 name: format!("{index}"),

@@ -1,14 +1,16 @@
+//! Resampling of clips to another frame rate.
+
 use super::{Clip, ClipError, Interpolation};
 
-/// The highest frame rate that a clip is resampled to, frames per second; guards the memory against
-/// a slip of the keyboard.
+/// The highest frame rate of a resampled clip, frames per second; it protects the memory against
+/// typing errors.
 const MAX_FPS: f64 = 1000.0;
 
-/// The clip at another frame rate, read from itself by `interpolation`.
+/// Resamples a clip to another frame rate by `interpolation`.
 ///
-/// The first and the last frame stay what they are. Where the duration is no whole number of new
+/// The first and the last frame stay the same. Where the duration is not a whole number of new
 /// frames it is rounded to the nearest one: the clip then plays by up to half a frame longer or
-/// shorter. At its own frame rate the clip comes back unchanged.
+/// shorter. At its own frame rate the clip is returned unchanged.
 ///
 /// ```
 /// use glam::{Quat, Vec3};
@@ -39,8 +41,7 @@ pub fn resample(clip: &Clip, fps: f64, interpolation: Interpolation) -> Result<C
     let steps =
         if duration_secs > 0.0 { ((duration_secs * fps).round() as usize).max(1) } else { 0 };
     let times = (0..steps).map(|step| duration_secs * step as f64 / steps as f64);
-    // The last frame is taken as it is: its time times the rate need not be a whole number in
-    // floating point.
+    // The last frame is copied: its time times the rate need not be an integer in floating point.
     let last = clip.frames().checked_sub(1).map(|last| clip.pose(last));
     let poses = times.filter_map(|time_secs| clip.sample(time_secs, interpolation)).chain(last);
     Ok(Clip::from_poses(clip.name(), clip.skeleton().clone(), fps, poses)?
@@ -62,7 +63,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_same_rate_changes_nothing(frames in 0usize..9, seed in 0u64..100) {
+        fn resample_at_the_same_rate_is_the_clip(frames in 0usize..9, seed in 0u64..100) {
             let clip = wander(&fixtures::lafan(), frames, seed);
             for how in ALL {
                 prop_assert_eq!(resample(&clip, clip.fps(), how), Ok(clip.clone()));
@@ -70,22 +71,23 @@ mod tests {
         }
 
         #[test]
-        fn both_ends_stay(frames in 1usize..40, fps in 5.0f64..240.0, seed in 0u64..100) {
+        fn resample_keeps_both_ends(frames in 1usize..40, fps in 5.0f64..240.0, seed in 0u64..100) {
             let clip = wander(&fixtures::lafan(), frames, seed);
             for how in ALL {
                 let other = resample(&clip, fps, how).unwrap();
                 prop_assert_eq!(other.fps(), fps);
                 prop_assert_eq!(other.pose(0), clip.pose(0));
                 prop_assert_eq!(other.pose(other.frames() - 1), clip.pose(clip.frames() - 1));
-                // By half a frame at most, but a clip with a duration keeps one.
+                // The duration changes by half a frame at most, but a clip with a duration keeps
+                // one.
                 let change = (other.duration_secs() - clip.duration_secs()).abs();
                 prop_assert!(change <= 0.5 / fps + 1e-9 || other.frames() == 2);
             }
         }
 
-        /// A multiple of the rate keeps every frame, and coming back gives the clip again.
+        /// A multiple of the rate keeps every frame, and resampling back gives the clip again.
         #[test]
-        fn there_and_back(frames in 1usize..20, times in 2u32..5, seed in 0u64..100) {
+        fn resample_to_a_multiple_and_back_is_the_clip(frames in 1usize..20, times in 2u32..5, seed in 0u64..100) {
             let clip = wander(&fixtures::lafan(), frames, seed);
             for how in ALL {
                 let finer = resample(&clip, clip.fps() * f64::from(times), how).unwrap();
@@ -96,10 +98,10 @@ mod tests {
         }
     }
 
-    /// What moves evenly moves evenly at every rate, and cubic interpolation follows a turn at
-    /// constant speed.
+    /// Even motion stays even at every rate, and cubic interpolation follows a turn at constant
+    /// speed.
     #[test]
-    fn even_motion_stays_even() {
+    fn resample_of_even_motion_is_even() {
         let skeleton = fixtures::bandai();
         let (joints, frames) = (skeleton.len(), 13);
         let turn = |i: usize| Quat::from_rotation_y(0.2 * i as f32);
@@ -131,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn rates_that_are_none_are_refused_before_memory_is_taken() {
+    fn resample_at_an_invalid_rate_is_refused() {
         let clip = wander(&fixtures::lafan(), 5, 0);
         for fps in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e300, 1000.1] {
             assert!(

@@ -1,10 +1,12 @@
+//! Retargeting of clips to another skeleton.
+
 use super::ground::rise_between;
 use super::{Clip, ClipError, stance_for_rest};
 use crate::skeleton::{Pose, Retargeting, Roles, Skeleton, WorldPose};
 use glam::Vec3;
 use std::sync::Arc;
 
-/// Why a clip cannot be moved to another skeleton.
+/// Error retargeting a clip.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum RetargetError {
     /// No joint of one skeleton corresponds to a joint of the other.
@@ -12,17 +14,18 @@ pub enum RetargetError {
         "the two skeletons have no joint in common, neither by name nor by role: say by hand which joints are the hips and the legs"
     )]
     NothingInCommon,
-    /// The result is no clip.
+    /// The result is not a valid clip.
     #[error(transparent)]
     Clip(#[from] ClipError),
 }
 
-/// The clip on another skeleton: see [`Retargeting`] for how joints are matched and turned.
+/// Retargets a clip to another skeleton; [`Retargeting`] describes how joints are mapped and
+/// rotated.
 ///
-/// The result stands as high above the ground as the source does, in proportion to its legs, by
-/// those points of the feet that both bodies have. On the same skeleton the clip comes back
-/// unchanged; on the same rig with its joints in another order every shared joint stays where it
-/// was.
+/// The feet of the result are as high above the ground as the source's, in proportion to the legs,
+/// by the points of the feet that both bodies have. On the same skeleton the clip is returned
+/// unchanged; on the same rig with its joints in another order every shared joint keeps its
+/// position.
 ///
 /// # Errors
 /// [`RetargetError::NothingInCommon`] when no joint of `target` corresponds to one of the clip's.
@@ -35,11 +38,11 @@ pub fn retarget(
     retarget_to(clip, source_roles, target, target_roles, || None)
 }
 
-/// As [`retarget`], onto the skeleton of another clip: where that rests in a way that shows no
-/// creature, the clip shows how it stands ([`stance_for_rest`]).
+/// Retargets a clip, as [`retarget`] does, to the skeleton of another clip. If that skeleton has an
+/// implausible rest pose, its stance is taken from the clip ([`stance_for_rest`]).
 ///
 /// # Errors
-/// As [`retarget`].
+/// The same as for [`retarget`].
 pub fn retarget_onto(
     clip: &Clip,
     source_roles: &Roles,

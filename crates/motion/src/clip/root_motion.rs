@@ -1,37 +1,39 @@
+//! Root motion: facing, ground frames and speed of the character.
+
 use super::Clip;
 use crate::math::{Planar, wrap_angle};
 use crate::skeleton::{Role, Roles, Side, WorldPose};
 use glam::{Quat, Vec3};
 
-/// Across axes whose share over the ground is below this are those of a character lying on its
-/// side: no facing.
-const MIN_ACROSS: f32 = 0.2;
+/// A lateral axis whose horizontal share is below this belongs to a character lying on its side,
+/// which has no facing.
+const MIN_HORIZONTAL_SHARE: f32 = 0.2;
 
-/// The pairs of joints whose axes say where the body faces.
-const ACROSS: [fn(Side) -> Role; 2] = [Role::thigh, Role::upper_arm];
+/// The pairs of joints whose lateral axes determine the facing.
+const LATERAL_PAIRS: [fn(Side) -> Role; 2] = [Role::thigh, Role::upper_arm];
 
-/// Where the body faces, as a unit vector over the ground; `None` where it faces up, down or
+/// Returns the facing of a body as a unit vector over the ground; `None` where it faces up, down or
 /// nowhere (a character lying on its side).
 ///
-/// The mean of the axes across hips and shoulders (right to left), turned a quarter about up. Never
-/// an Euler angle: those jump where the body does not. A rig without legs and arms faces along its
-/// root's +Z.
+/// It is the mean of the axes across hips and shoulders (right to left), rotated by a quarter turn
+/// about up. It never uses an Euler angle, which can jump where the body does not. A rig without
+/// legs and arms faces along its root's +Z.
 #[must_use]
 pub fn facing(world: &WorldPose, roles: &Roles) -> Option<Vec3> {
     let at = |role| roles.get(role).and_then(|joint| world.positions.get(joint));
     let has = |role: fn(Side) -> Role| Side::BOTH.into_iter().all(|side| at(role(side)).is_some());
-    if ACROSS.into_iter().any(has) {
+    if LATERAL_PAIRS.into_iter().any(has) {
         return axis_facing(world, roles);
     }
     over_the_ground(*world.rotations.first()? * Vec3::Z)
 }
 
-/// Likewise by hips and shoulders alone; `None` without either.
+/// Returns the facing by hips and shoulders alone; `None` without either.
 fn axis_facing(world: &WorldPose, roles: &Roles) -> Option<Vec3> {
     let at = |role| roles.get(role).and_then(|joint| world.positions.get(joint).copied());
     let across =
         |role: fn(Side) -> Role| (at(role(Side::Left))? - at(role(Side::Right))?).try_normalize();
-    let [hips, shoulders] = ACROSS.map(across);
+    let [hips, shoulders] = LATERAL_PAIRS.map(across);
     // Left × up = forward.
     let across = (hips.unwrap_or_default() + shoulders.unwrap_or_default()).try_normalize()?;
     over_the_ground(across.cross(Vec3::Y))
@@ -39,30 +41,29 @@ fn axis_facing(world: &WorldPose, roles: &Roles) -> Option<Vec3> {
 
 fn over_the_ground(forward: Vec3) -> Option<Vec3> {
     let forward = Vec3::new(forward.x, 0.0, forward.z);
-    if forward.length() < MIN_ACROSS { None } else { forward.try_normalize() }
+    if forward.length() < MIN_HORIZONTAL_SHARE { None } else { forward.try_normalize() }
 }
 
-/// Returns where the character stands on the ground and what it faces, frame by frame:
-/// `world_from_character`.
+/// Returns the ground frames of the character, one per frame: `world_from_character`.
 ///
-/// The shift is the first joint, which carries the body ([`Clip::folded`]), projected to the
+/// The shift is the position of the first joint, the carrier ([`Clip::folded`]), projected to the
 /// ground; the yaw is that of [`facing`]. Over frames without facing the yaw turns evenly, the
 /// shorter way, from the last known one to the next, so that it is continuous; before the first and
-/// behind the last it stays. Without any facing, as for creatures without hips and shoulders, the
-/// yaw is the turn of the first joint about +Y since the first frame, and faces along its +Z there:
-/// that is 0 for a joint that points up or down.
+/// after the last known one it is constant. Without any facing, as for creatures without hips and
+/// shoulders, the yaw is the rotation of the first joint about +Y since the first frame, starting
+/// at the direction of its +Z there: that is 0 for a joint that points up or down.
 #[must_use]
 pub fn character_frames(clip: &Clip, roles: &Roles) -> Vec<Planar> {
     frames_of(clip, roles, 0)
 }
 
-/// [`character_frames`] of a body that another joint than the first carries.
+/// Returns the [`character_frames`] of a body whose carrier is not the first joint.
 pub(super) fn frames_of(clip: &Clip, roles: &Roles, carrier: usize) -> Vec<Planar> {
     let mut world = WorldPose::default();
     let mut frames = Vec::with_capacity(clip.frames());
     let mut known: Vec<Option<f64>> = Vec::with_capacity(clip.frames());
     let mut turns: Vec<Quat> = Vec::with_capacity(clip.frames());
-    let across: Vec<usize> = ACROSS
+    let across: Vec<usize> = LATERAL_PAIRS
         .into_iter()
         .flat_map(|role| Side::BOTH.map(role))
         .filter_map(|role| roles.get_within(role, clip.skeleton().len()))
@@ -85,29 +86,29 @@ pub(super) fn frames_of(clip: &Clip, roles: &Roles, carrier: usize) -> Vec<Plana
     frames
 }
 
-/// The yaw of a joint, frame by frame: how far it has turned about +Y since the first frame, on top
-/// of where its +Z points there. Relative rotations do not depend on how the file lays the joint's
-/// axes. `None` where it is upside down.
+/// Returns the yaw of a joint in every frame: its rotation about +Y since the first frame, plus the
+/// yaw of its +Z there. Relative rotations do not depend on the axes of the joint. `None` where the
+/// joint is upside down.
 fn turned_since_the_first(turns: &[Quat]) -> Vec<Option<f64>> {
     let Some(&first) = turns.first() else {
         return Vec::new();
     };
     let forward = first * Vec3::Z;
-    let start = if Vec3::new(forward.x, 0.0, forward.z).length() < MIN_ACROSS {
+    let start = if Vec3::new(forward.x, 0.0, forward.z).length() < MIN_HORIZONTAL_SHARE {
         0.0
     } else {
         f64::from(forward.x).atan2(f64::from(forward.z))
     };
     let yaw = |turn: &Quat| {
         let since = *turn * first.conjugate();
-        let upright = since.y.hypot(since.w) > MIN_ACROSS;
+        let upright = since.y.hypot(since.w) > MIN_HORIZONTAL_SHARE;
         upright.then(|| wrap_angle(start + 2.0 * f64::from(since.y).atan2(f64::from(since.w))))
     };
     turns.iter().map(yaw).collect()
 }
 
-/// Fills gaps between known angles evenly, the shorter way; before the first and behind the last
-/// known one with that.
+/// Fills gaps between known angles evenly, the shorter way; before the first and after the last
+/// known one with that one.
 fn without_gaps(values: &[Option<f64>]) -> Vec<Option<f64>> {
     let mut filled = values.to_vec();
     let known: Vec<(usize, f64)> =
@@ -126,10 +127,10 @@ fn without_gaps(values: &[Option<f64>]) -> Vec<Option<f64>> {
     filled
 }
 
-/// The measured speed over the ground, metres per second: the length of the path of the frames'
+/// Returns the speed over the ground, metres per second: the length of the path of the frames'
 /// origins over its duration.
 ///
-/// 0 for fewer than two frames or a frame rate that is not positive; never negative. The path
+/// It is 0 for fewer than two frames or a frame rate that is not positive; never negative. The path
 /// contains the body's sway.
 ///
 /// ```
@@ -160,7 +161,7 @@ mod tests {
     use std::sync::Arc;
 
     #[test]
-    fn the_body_tells_where_it_faces_whatever_the_root_says() {
+    fn facing_follows_the_body_whatever_the_root_is() {
         for (rig, skeleton, _) in fixtures::all() {
             let roles = fixtures::roles(&skeleton);
             let world = wander_by(&skeleton, 1, 0, 0.0).world_pose(0);
@@ -168,18 +169,18 @@ mod tests {
         }
         let skeleton = fixtures::lafan();
         let rest = wander_by(&skeleton, 1, 0, 0.0);
-        // A rig whose root joint is turned by the file: the body still faces +X when its left is at
-        // -Z.
+        // A rig whose root joint is rotated by the file: the body still faces +X when its left is
+        // at -Z.
         let turned = rest.transformed(&Planar::new(FRAC_PI_2, 0.0, 0.0)).world_pose(0);
         assert!((facing(&turned, &fixtures::roles(&skeleton)).unwrap() - Vec3::X).length() < 1e-6);
-        // Without roles the root's own +Z.
+        // Without roles it faces along the root's own +Z.
         assert!((facing(&turned, &Roles::default()).unwrap() - Vec3::X).length() < 1e-6);
         assert_eq!(facing(&WorldPose::default(), &Roles::default()), None);
     }
 
-    /// A roll over the side: in the middle the axis across the body points up.
+    /// In the middle of a roll over the side the axis across the body points up.
     #[test]
-    fn lying_on_the_side_keeps_the_facing_of_the_neighbour() {
+    fn character_frames_of_a_roll_keep_the_neighbouring_facing() {
         let skeleton = fixtures::lafan();
         let roles = fixtures::roles(&skeleton);
         let yaw = Quat::from_rotation_y(0.5);
@@ -195,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn gaps_turn_evenly_the_shorter_way() {
+    fn without_gaps_interpolates_the_shorter_way() {
         let (a, b) = (Some(1.0), Some(2.0));
         assert_eq!(without_gaps(&[]), []);
         assert_eq!(without_gaps(&[None, None]), [None, None]);
@@ -207,10 +208,10 @@ mod tests {
         assert!((across_the_back.abs() - PI).abs() < 1e-12, "{across_the_back}");
     }
 
-    /// A creature without hips and shoulders, whose root's axes lie as the file likes, turns as it
-    /// turns.
+    /// A creature without hips and shoulders follows the rotation of its root, whatever the root's
+    /// axes are.
     #[test]
-    fn a_creature_without_limbs_turns_with_its_first_joint() {
+    fn character_frames_without_limbs_turn_with_the_root() {
         let skeleton = fixtures::lafan();
         for axes in [
             Quat::IDENTITY,
@@ -234,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn speed_is_path_over_duration_and_never_negative() {
+    fn ground_speed_is_path_length_over_duration() {
         let quarter: Vec<Planar> = (0..=90)
             .map(|i| f64::from(i) / 90.0 * FRAC_PI_2)
             .map(|a| Planar::new(0.0, 2.0 * a.cos(), 2.0 * a.sin()))
@@ -249,9 +250,9 @@ mod tests {
     }
 
     proptest! {
-        /// Turning and moving the clip turns and moves its frames.
+        /// Transforming the clip transforms its ground frames.
         #[test]
-        fn frames_move_with_the_clip(seed in 0u64..500, yaw in -3.0f64..3.0, x in -5.0f64..5.0, z in -5.0f64..5.0) {
+        fn character_frames_transform_with_the_clip(seed in 0u64..500, yaw in -3.0f64..3.0, x in -5.0f64..5.0, z in -5.0f64..5.0) {
             let skeleton = fixtures::cmu_bvh();
             let roles = fixtures::roles(&skeleton);
             let clip = wander_by(&skeleton, 4, seed, 0.3);

@@ -1,3 +1,5 @@
+//! The clip: rotations and translations, frame by frame.
+
 use crate::math::Planar;
 use crate::skeleton::{Pose, Skeleton, WorldPose, world_pose_into, world_pose_of};
 use glam::{Quat, Vec3};
@@ -12,12 +14,12 @@ pub enum UpAxis {
     /// +Y is up, as inside Segue.
     #[default]
     Y,
-    /// +Z is up; turned by -90° about X on import.
+    /// +Z is up; rotated by -90° about X on import.
     Z,
 }
 
-/// How the file that a clip came from measures: what an exporter needs to write it back the same
-/// way.
+/// Units and axes of the file that a clip was read from, which an exporter needs to write it back
+/// in the same way.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Provenance {
     /// Metres per unit of length in the file.
@@ -27,14 +29,14 @@ pub struct Provenance {
 }
 
 impl Default for Provenance {
-    /// Centimetres and Y up, what most BVH files use.
+    /// Centimetres and Y up, as in most BVH files.
     fn default() -> Self {
         Self { metres_per_unit: 0.01, up: UpAxis::Y }
     }
 }
 
-/// Translations of one joint that moves against its parent: one per frame, metres, in the parent's
-/// frame.
+/// Translations of one joint that moves relative to its parent: one per frame, metres, in the
+/// parent's frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointTranslations {
     /// The joint's index; not 0, the root has its own.
@@ -43,40 +45,40 @@ pub struct JointTranslations {
     pub values: Vec<Vec3>,
 }
 
-/// Why numbers make no clip.
+/// Error building a [`Clip`].
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ClipError {
-    /// The frame rate is no rate.
+    /// The frame rate is not finite and positive.
     #[error("a frame rate of {0} frames per second cannot be played: give a number above 0")]
     FrameRate(f64),
-    /// Arrays of different length.
+    /// An array has the wrong length.
     #[error("{what}: found {found} values, expected {expected}")]
     Length {
-        /// Which array.
+        /// Name of the array.
         what: &'static str,
         /// Its length.
         found: usize,
-        /// The length that frames × joints call for.
+        /// Its required length, from frames × joints.
         expected: usize,
     },
-    /// A frame that the clip does not have.
+    /// A range of frames that the clip does not have.
     #[error("frames {start} to {end} are not inside this clip of {frames} frames")]
     OutOfRange {
         /// First frame asked for.
         start: usize,
         /// One past the last frame asked for.
         end: usize,
-        /// Frames that there are.
+        /// Number of frames of the clip.
         frames: usize,
     },
-    /// Translations for a joint that the skeleton does not have, for the root, or not in the order
-    /// of joints.
+    /// Translations of a joint that the skeleton does not have, of the root, or not in the order of
+    /// joints.
     #[error("translations of joint {0} do not fit this skeleton")]
     Translations(usize),
 }
 
-/// A motion: `frames × joints` local rotations at a fixed frame rate, and the root's way through
-/// the world.
+/// A motion: `frames × joints` local rotations at a constant frame rate, and the root's trajectory
+/// in the world.
 ///
 /// Rotations are unit quaternions (`parent_from_joint`), frame-major and contiguous. Lengths are
 /// metres, Y is up.
@@ -92,12 +94,11 @@ pub struct Clip {
 }
 
 impl Clip {
-    /// A clip from its parts: `rotations` is frame-major, frames × joints long; `root_translations`
-    /// has one value per frame.
+    /// Returns a clip of `rotations`, frame-major, frames × joints long, and `root_translations`,
+    /// one per frame.
     ///
     /// # Errors
-    /// [`ClipError`] when the frame rate is not a positive number or the lengths do not fit each
-    /// other.
+    /// [`ClipError`] when the frame rate is not a positive number or the lengths do not match.
     pub fn new(
         name: impl Into<String>,
         skeleton: Arc<Skeleton>,
@@ -123,11 +124,11 @@ impl Clip {
         })
     }
 
-    /// The same clip with translations of joints other than the root, sorted by joint.
+    /// Returns the clip with translations of joints other than the root, sorted by joint.
     ///
     /// # Errors
-    /// [`ClipError`] when a joint does not exist, is the root or is out of order, or a length is
-    /// not the number of frames.
+    /// [`ClipError`] when a joint does not exist, is the root or is out of order, or a length
+    /// differs from the number of frames.
     pub fn with_translations(
         mut self,
         translations: Vec<JointTranslations>,
@@ -150,69 +151,69 @@ impl Clip {
         Ok(self)
     }
 
-    /// The same clip with a note of how its file measures.
+    /// Returns the clip with the units and axes of its file.
     #[must_use]
     pub fn with_provenance(mut self, provenance: Provenance) -> Self {
         self.provenance = provenance;
         self
     }
 
-    /// The same clip under another name.
+    /// Returns the clip under another name.
     #[must_use]
     pub fn with_name(mut self, name: impl Into<String>) -> Self {
         self.name = name.into();
         self
     }
 
-    /// What a person calls it.
+    /// Returns the name on screen.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// The skeleton, shared between clips of one rig.
+    /// Returns the skeleton, shared between clips of one rig.
     #[must_use]
     pub fn skeleton(&self) -> &Arc<Skeleton> {
         &self.skeleton
     }
 
-    /// Frames per second.
+    /// Returns the frame rate, frames per second.
     #[must_use]
     pub fn fps(&self) -> f64 {
         self.fps
     }
 
-    /// Seconds from one frame to the next.
+    /// Returns the time between frames, seconds.
     #[must_use]
     pub fn dt_secs(&self) -> f32 {
         self.fps.recip() as f32
     }
 
-    /// The number of frames; may be 0 (a skeleton alone).
+    /// Returns the number of frames; may be 0 (a skeleton alone).
     #[must_use]
     pub fn frames(&self) -> usize {
         self.root_translations.len()
     }
 
-    /// Seconds from the first frame to the last: `(frames - 1) / fps`.
+    /// Returns the time from the first frame to the last, seconds: `(frames - 1) / fps`.
     #[must_use]
     pub fn duration_secs(&self) -> f64 {
         self.frames().saturating_sub(1) as f64 / self.fps
     }
 
-    /// The time of a frame, seconds.
+    /// Returns the time of a frame, seconds.
     #[must_use]
     pub fn time_of(&self, frame: usize) -> f64 {
         frame as f64 / self.fps
     }
 
-    /// How the source file measures.
+    /// Returns the units and axes of the source file.
     #[must_use]
     pub fn provenance(&self) -> Provenance {
         self.provenance
     }
 
-    /// Local rotations of all joints in `frame`.
+    /// Returns the local rotations of all joints in `frame`.
     ///
     /// # Panics
     /// When there is no such frame.
@@ -222,19 +223,19 @@ impl Clip {
         &self.rotations[frame * joints..(frame + 1) * joints]
     }
 
-    /// World translation of the root joint, one per frame, metres.
+    /// Returns the world translations of the root joint, one per frame, metres.
     #[must_use]
     pub fn root_translations(&self) -> &[Vec3] {
         &self.root_translations
     }
 
-    /// Translations of the joints that move against their parent, sorted by joint.
+    /// Returns the translations of the joints that move relative to their parent, sorted by joint.
     #[must_use]
     pub fn translations(&self) -> &[JointTranslations] {
         &self.translations
     }
 
-    /// One frame as a pose.
+    /// Returns one frame as a pose.
     ///
     /// # Panics
     /// When there is no such frame.
@@ -251,7 +252,7 @@ impl Clip {
         }
     }
 
-    /// Forward kinematics of one frame into a buffer that is used again.
+    /// Computes forward kinematics of one frame into a reusable buffer.
     ///
     /// # Panics
     /// When there is no such frame.
@@ -266,7 +267,7 @@ impl Clip {
         );
     }
 
-    /// Forward kinematics of some joints of one frame; see [`world_pose_of`].
+    /// Computes forward kinematics of some joints of one frame; see [`world_pose_of`].
     ///
     /// # Panics
     /// When there is no such frame.
@@ -276,7 +277,7 @@ impl Clip {
         world_pose_of(&self.skeleton, root, self.rotations(frame), moved, joints, world);
     }
 
-    /// Forward kinematics of one frame.
+    /// Computes forward kinematics of one frame.
     ///
     /// # Panics
     /// When there is no such frame.
@@ -287,8 +288,8 @@ impl Clip {
         world
     }
 
-    /// World positions of all joints over a range of frames: frame-major, `range.len() × joints`
-    /// long, metres. The range is clamped to the clip.
+    /// Returns the world positions of all joints over a range of frames: frame-major, `range.len()
+    /// × joints` long, metres. The range is clamped to the clip.
     #[must_use]
     pub fn world_positions(&self, range: Range<usize>) -> Vec<Vec3> {
         let end = range.end.min(self.frames());
@@ -302,7 +303,7 @@ impl Clip {
         positions
     }
 
-    /// The frames of `range` as a clip of their own.
+    /// Returns the frames of `range` as a clip.
     ///
     /// # Errors
     /// [`ClipError::OutOfRange`] when the range is not inside the clip.
@@ -331,9 +332,8 @@ impl Clip {
         })
     }
 
-    /// The whole clip turned and moved over the ground, rigidly: the distance between any two
-    /// joints of any two frames stays, and so do heights. (`transform` of section B; the turn is
-    /// applied to *every* frame about +Y.)
+    /// Returns the clip moved rigidly over the ground: distances between joints of any two frames
+    /// stay, and so do heights.
     #[must_use]
     pub fn transformed(&self, world_from_clip: &Planar) -> Self {
         let mut moved = self.clone();
@@ -347,8 +347,8 @@ impl Clip {
         moved
     }
 
-    /// Returns the clip with each frame turned and moved over the ground by a transform of its own;
-    /// a frame without one stays where it is.
+    /// Returns the clip with each frame moved over the ground by a transform of its own; a frame
+    /// without one stays in place.
     #[must_use]
     pub fn transformed_by_frame(&self, world_from_clip: &[Planar]) -> Self {
         let mut moved = self.clone();

@@ -1,8 +1,10 @@
+//! Linear and angular velocities of joints.
+
 use super::Clip;
 use crate::math::quat;
 use glam::Vec3;
 
-/// How fast every joint moves in one frame, in the world.
+/// World velocities of all joints in one frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Velocities {
     /// Linear velocities, metres per second.
@@ -11,8 +13,8 @@ pub struct Velocities {
     pub angular: Vec<Vec3>,
 }
 
-/// The velocities of all joints in `frame`, by central differences at the clip's own frame rate;
-/// one-sided in the first and last frame, 0 in a clip of one frame.
+/// Returns the velocities of all joints in `frame`, by central differences at the clip's own frame
+/// rate; one-sided in the first and last frame, 0 in a clip of one frame.
 ///
 /// # Panics
 /// When there is no such frame.
@@ -50,9 +52,9 @@ mod tests {
     use glam::Quat;
     use std::sync::Arc;
 
-    /// A body that circles around the origin at a constant rate, facing along its way.
+    /// A body circles around the origin at a constant rate, facing along its path.
     #[test]
-    fn a_circle_has_the_speed_of_its_radius() {
+    fn velocities_on_a_circle_are_tangential() {
         let skeleton = fixtures::lafan();
         let (rate, fps) = (1.5f32, 120.0);
         let turn = |frame: usize| Quat::from_rotation_y(rate * frame as f32 / fps);
@@ -67,8 +69,8 @@ mod tests {
             Clip::new("circle", Arc::clone(&skeleton), f64::from(fps), rotations, roots).unwrap();
         for frame in 0..clip.frames() {
             let (found, world) = (velocities(&clip, frame), clip.world_pose(frame));
-            // Central differences of a circle: exact but for the sine of the step, and one-sided
-            // ones lag by half a step.
+            // Central differences of a circle are exact except for the sine of the step, and
+            // one-sided ones lag by half a step.
             let tolerance = if (1..8).contains(&frame) { 1e-3 } else { 0.03 };
             for joint in 0..skeleton.len() {
                 let wanted = (Vec3::Y * rate).cross(world.positions[joint]);
@@ -79,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn one_frame_stands_still() {
+    fn velocities_of_one_frame_are_zero() {
         let found = velocities(&wander(&fixtures::lafan(), 1, 3), 0);
         assert!(found.linear.iter().chain(&found.angular).all(|v| *v == Vec3::ZERO));
         assert_eq!(found.linear.len(), fixtures::lafan().len());

@@ -1,6 +1,6 @@
 use super::GraphError;
 use crate::blend::{Source, check};
-use crate::clip::{Jolting, jolts};
+use crate::clip::{JoltScan, jolts};
 use crate::registration::{DistanceMatrix, limb_weights};
 use std::sync::{Arc, OnceLock};
 
@@ -154,7 +154,7 @@ impl FrameSet {
 pub struct JoltSearch {
     /// The clip that comes next.
     clip: usize,
-    begun: Option<Jolting>,
+    begun: Option<JoltScan>,
 }
 
 impl JoltSearch {
@@ -167,7 +167,7 @@ impl JoltSearch {
         };
         let clip = source.clip();
         let joints = (joint_frames / clip.frames().max(1)).max(1);
-        let mut begun = self.begun.take().unwrap_or_else(|| Jolting::new(clip));
+        let mut begun = self.begun.take().unwrap_or_else(|| JoltScan::new(clip));
         if begun.advance(clip, joints) {
             // Who was asked meanwhile has found the same.
             found.get_or_init(|| begun.finish());

@@ -1,12 +1,14 @@
+//! Tests of folding and unfolding the joints above the carrier.
+
 use super::*;
 use crate::clip::fixtures::wander;
 use crate::clip::{Provenance, UpAxis};
 use crate::skeleton::{Role, fixtures};
 use proptest::prelude::*;
 
-/// A walk of a body, with joints above its hips: a root and, below it, one more, which are where
-/// `above` says in every frame.
-fn hung(clip: &Clip, above: impl Fn(usize) -> (Vec3, Quat)) -> Clip {
+/// Returns a walk of a body with two joints above its hips, a root and one more below it, which
+/// have the poses `above` in every frame.
+fn with_joints_above(clip: &Clip, above: impl Fn(usize) -> (Vec3, Quat)) -> Clip {
     let joint = |name: &str, parent, offset| Joint {
         name: name.into(),
         parent,
@@ -14,7 +16,7 @@ fn hung(clip: &Clip, above: impl Fn(usize) -> (Vec3, Quat)) -> Clip {
         end_site: None,
         channels: vec![],
     };
-    // A marker that hangs beside the body, on the root.
+    // A marker beside the body, attached to the root.
     let mut joints = vec![
         joint("Reference", None, Vec3::ZERO),
         joint("Marker", Some(0), Vec3::new(1.0, 2.0, 0.5)),
@@ -50,7 +52,7 @@ fn largest(a: &[Vec3], b: &[Vec3]) -> f32 {
     a.iter().zip(b).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max)
 }
 
-/// World positions of the joints of a body, the marker left out.
+/// Returns the world positions of the joints of a body, without the marker.
 fn body_of(clip: &Clip, joints: &[&str]) -> Vec<Vec3> {
     let places: Vec<usize> =
         joints.iter().map(|name| clip.skeleton().find(name).unwrap()).collect();
@@ -64,13 +66,13 @@ fn names(clip: &Clip) -> Vec<&str> {
     clip.skeleton().joints().iter().map(|joint| joint.name.as_str()).collect()
 }
 
-fn check_way_back(file: &Clip, body: &Clip) {
+fn check_unfolded(file: &Clip, body: &Clip) {
     let folded = file.clone().folded().unwrap();
     assert_eq!(folded.skeleton().parent(0), None);
     assert_eq!(folded.skeleton().joints()[0].name, body.skeleton().joints()[0].name);
     assert!(largest(&body_of(&folded, &names(body)), &body_of(body, &names(body))) < 1e-5);
     assert!(largest(&body_of(&folded, &["Marker"]), &body_of(file, &["Marker"])) < 1e-4);
-    // What is folded is not folded again.
+    // Folding a folded clip changes nothing.
     assert_eq!(folded.clone().folded().as_ref(), Ok(&folded));
     let back = folded.unfolded().unwrap();
     assert_eq!(back.skeleton(), file.skeleton());
@@ -83,15 +85,15 @@ fn check_way_back(file: &Clip, body: &Clip) {
 }
 
 #[test]
-fn root_that_stands_still_is_folded_and_comes_back() {
+fn folded_still_root_unfolds_still() {
     let body = wander(&fixtures::lafan(), 40, 5);
     for turned in [
         Quat::IDENTITY,
         Quat::from_rotation_y(2.9),
         Quat::from_euler(glam::EulerRot::XYZ, -1.5, 0.3, 2.0),
     ] {
-        let file = hung(&body, |_| (Vec3::new(3.0, 0.2, -4.0), turned));
-        check_way_back(&file, &body);
+        let file = with_joints_above(&body, |_| (Vec3::new(3.0, 0.2, -4.0), turned));
+        check_unfolded(&file, &body);
         let back = file.clone().folded().unwrap().unfolded().unwrap();
         for (there, here) in file.root_translations().iter().zip(back.root_translations()) {
             assert!(there.distance(*here) < 1e-5);
@@ -100,17 +102,18 @@ fn root_that_stands_still_is_folded_and_comes_back() {
 }
 
 #[test]
-fn root_on_the_ground_goes_along_the_ground() {
+fn folded_ground_root_unfolds_on_the_ground() {
     let body = wander(&fixtures::lafan(), 120, 3);
     let frames = character_frames(&body, &Roles::detect(body.skeleton()));
     let below: Vec<Planar> = smoothed(&frames, body.fps());
-    let file =
-        hung(&body, |frame| (below[frame].origin() + Vec3::Y * 0.01, below[frame].rotation()));
-    check_way_back(&file, &body);
+    let file = with_joints_above(&body, |frame| {
+        (below[frame].origin() + Vec3::Y * 0.01, below[frame].rotation())
+    });
+    check_unfolded(&file, &body);
     let folded = file.clone().folded().unwrap();
     let back = folded.unfolded().unwrap();
     assert!(largest(file.root_translations(), back.root_translations()) < 1e-3);
-    // Elsewhere in the world it goes elsewhere, and stays level.
+    // Elsewhere in the world the root follows, and stays level.
     let elsewhere = Planar::new(1.0, 20.0, -3.0);
     let moved = folded.transformed(&elsewhere).unfolded().unwrap();
     for (there, here) in file.root_translations().iter().zip(moved.root_translations()) {
@@ -119,34 +122,35 @@ fn root_on_the_ground_goes_along_the_ground() {
 }
 
 #[test]
-fn root_that_moves_with_the_body_does_so_again() {
+fn folded_rigid_root_unfolds_with_the_carrier() {
     let body = wander(&fixtures::lafan(), 30, 8);
-    let file = hung(&body, |frame| {
+    let file = with_joints_above(&body, |frame| {
         let (at, turned) = (body.root_translations()[frame], body.rotations(frame)[0]);
         (at + turned * Vec3::new(0.0, 0.1, 0.02), turned * Quat::from_rotation_z(0.4))
     });
-    check_way_back(&file, &body);
+    check_unfolded(&file, &body);
     let back = file.clone().folded().unwrap().unfolded().unwrap();
     assert!(largest(file.root_translations(), back.root_translations()) < 1e-4);
 }
 
 #[test]
-fn clip_without_frames_is_folded() {
+fn folded_clip_without_frames_keeps_its_rest_pose() {
     let body = wander(&fixtures::lafan(), 1, 8);
-    let file = hung(&body, |_| (Vec3::ZERO, Quat::IDENTITY)).crop(0..0).unwrap();
+    let file = with_joints_above(&body, |_| (Vec3::ZERO, Quat::IDENTITY)).crop(0..0).unwrap();
     let folded = file.clone().folded().unwrap();
     assert_eq!((folded.frames(), folded.skeleton().len()), (0, file.skeleton().len() - 1));
     assert_eq!(folded.unfolded().unwrap().skeleton(), file.skeleton());
-    // The rest pose stands where it stood.
+    // The rest pose keeps its position.
     let hips = file.skeleton().find(&body.skeleton().joints()[0].name).unwrap();
     assert_eq!(folded.skeleton().joints()[0].offset, file.skeleton().rest_positions()[hips]);
 }
 
 #[test]
-fn rigs_of_one_body_are_equal_whatever_their_files_have_above_it() {
+fn skeletons_with_other_folded_chains_are_equal() {
     let body = wander(&fixtures::lafan(), 5, 8);
-    let still = hung(&body, |_| (Vec3::ZERO, Quat::IDENTITY)).folded().unwrap();
-    let turned = hung(&body, |_| (Vec3::X, Quat::from_rotation_y(3.0))).folded().unwrap();
+    let still = with_joints_above(&body, |_| (Vec3::ZERO, Quat::IDENTITY)).folded().unwrap();
+    let turned =
+        with_joints_above(&body, |_| (Vec3::X, Quat::from_rotation_y(3.0))).folded().unwrap();
     assert_eq!(still.skeleton(), turned.skeleton());
     assert_ne!(still.skeleton().folded_chain(), turned.skeleton().folded_chain());
     let roles = Roles::detect(still.skeleton());
@@ -155,14 +159,14 @@ fn rigs_of_one_body_are_equal_whatever_their_files_have_above_it() {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
-    /// However the joints above it move, the body is where it was.
+    /// The body stays in place, however the joints above it move.
     #[test]
-    fn body_stays_where_it_is(seed in 0u64..1000, speed in 0.0f32..4.0, lean in -1.0f32..1.0) {
+    fn folded_clip_keeps_world_positions(seed in 0u64..1000, speed in 0.0f32..4.0, lean in -1.0f32..1.0) {
         let body = wander(&fixtures::cmu_bvh(), 12, seed);
-        let file = hung(&body, |frame| {
+        let file = with_joints_above(&body, |frame| {
             let t = frame as f32 * 0.1;
             (Vec3::new(speed * t, lean * t, 0.3), Quat::from_rotation_y(speed * t) * Quat::from_rotation_x(lean * t))
         });
-        check_way_back(&file, &body);
+        check_unfolded(&file, &body);
     }
 }

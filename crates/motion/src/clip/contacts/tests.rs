@@ -1,3 +1,5 @@
+//! Tests of contact detection and of the ground height.
+
 use super::*;
 use crate::clip::estimate_ground;
 use crate::clip::fixtures::wander_by;
@@ -9,11 +11,11 @@ use std::f32::consts::{PI, TAU};
 use std::sync::Arc;
 
 const FPS: f64 = 60.0;
-/// Seconds from one touch-down of a foot to its next one, and how long it stands.
+/// The time between two touchdowns of a foot, and the duration of its stance, seconds.
 const STEP_SECS: f32 = 1.0;
 const STANCE_SECS: f32 = 0.6;
 
-/// Where a foot is, seconds after it touched down for the first time: it stands, then swings 1.3 m
+/// Returns the position of a foot at a time since its first touchdown: it stands, then swings 1.3 m
 /// forward and 12 cm up.
 fn step(since_secs: f32) -> Vec3 {
     let (steps, phase) = ((since_secs / STEP_SECS).floor(), since_secs.rem_euclid(STEP_SECS));
@@ -21,8 +23,8 @@ fn step(since_secs: f32) -> Vec3 {
     Vec3::new(0.0, 0.12 * (PI * swing).sin(), 1.3 * (steps + swing - (TAU * swing).sin() / TAU))
 }
 
-/// A clip of known steps: the feet are moved by translations, the left one touches down at 0 s, the
-/// right one half a step later.
+/// Returns a clip of known steps: the feet are moved by translations, the left one touches down at
+/// 0 s, the right one half a step later.
 fn steps(frames: usize, scale: f32, way: impl Fn(Side, f32) -> Vec3) -> (Clip, Roles) {
     let skeleton = fixtures::uneven(&fixtures::lafan(), scale, 0.0, 0.0, 0);
     let roles = fixtures::roles(&skeleton);
@@ -53,19 +55,20 @@ fn walk(side: Side, time_secs: f32) -> Vec3 {
     step(time_secs + if side == Side::Left { 0.0 } else { 0.5 * STEP_SECS })
 }
 
-fn found(clip: &Clip, roles: &Roles) -> Contacts {
+fn detect(clip: &Clip, roles: &Roles) -> Contacts {
     Contacts::detect(clip, roles, &ContactOptions::default())
 }
 
-/// Frames `at` and `wanted` are as near as a speed threshold can tell: two frames of 1/60 s.
+/// Returns whether frames `at` and `wanted` agree to two frames of 1/60 s, the accuracy of a speed
+/// threshold.
 fn near(at: usize, wanted: f32) -> bool {
     (at as f32 - wanted).abs() <= 2.0
 }
 
 #[test]
-fn a_walk_has_the_contacts_that_it_was_made_with() {
+fn contacts_of_a_made_walk_are_those_of_its_plan() {
     let (clip, roles) = steps(200, 1.0, walk);
-    let contacts = found(&clip, &roles);
+    let contacts = detect(&clip, &roles);
     assert_eq!(contacts.frames(), 200);
     let left = contacts.intervals(Side::Left);
     assert_eq!(left.len(), 4, "{left:?}");
@@ -75,7 +78,7 @@ fn a_walk_has_the_contacts_that_it_was_made_with() {
     }
     let right = contacts.intervals(Side::Right);
     assert_eq!(right.len(), 4, "{right:?}");
-    // The right foot begins in the last 0.1 s of its stance.
+    // The clip begins in the last 0.1 s of the right foot's stance.
     assert!(right[0].start == 0 && near(right[0].end, 7.0), "{right:?}");
     assert!(near(right[1].start, 30.0) && near(right[1].end, 67.0), "{right:?}");
     for frame in 0..250 {
@@ -88,13 +91,12 @@ fn a_walk_has_the_contacts_that_it_was_made_with() {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
-    /// Neither the height of the capture's floor nor the character's size changes what touches the
-    /// ground.
+    /// Neither the height of the captured floor nor the character's size changes the contacts.
     #[test]
-    fn floor_and_size_do_not_count(floor in -0.2f32..0.2, scale in 0.3f32..3.0) {
+    fn contacts_do_not_depend_on_floor_and_size(floor in -0.2f32..0.2, scale in 0.3f32..3.0) {
         let (clip, roles) = steps(150, 1.0, walk);
         let (other, other_roles) = steps(150, scale, |side, t| walk(side, t) + Vec3::Y * floor);
-        prop_assert_eq!(found(&clip, &roles), found(&other, &other_roles));
+        prop_assert_eq!(detect(&clip, &roles), detect(&other, &other_roles));
         let risen = foot_level(&other, &other_roles) / scale - foot_level(&clip, &roles);
         prop_assert!((risen - floor).abs() < 1e-4);
     }
@@ -102,11 +104,11 @@ proptest! {
     /// At other frame rates contacts begin and end at the same time, to within two of the coarser
     /// frames.
     #[test]
-    fn the_frame_rate_does_not_count(fps in 24.0f64..240.0) {
+    fn contacts_do_not_depend_on_the_frame_rate(fps in 24.0f64..240.0) {
         let (clip, roles) = steps(150, 1.0, walk);
         let other = resample(&clip, fps, Interpolation::Linear).unwrap();
         let coarse_secs = 2.5 / fps.min(FPS);
-        let (a, b) = (found(&clip, &roles), found(&other, &roles));
+        let (a, b) = (detect(&clip, &roles), detect(&other, &roles));
         for side in Side::BOTH {
             prop_assert_eq!(a.intervals(side).len(), b.intervals(side).len());
             for (x, y) in a.intervals(side).iter().zip(b.intervals(side)) {
@@ -117,10 +119,10 @@ proptest! {
     }
 }
 
-/// A standing foot that trembles between the thresholds is one contact with hysteresis and many
+/// A planted foot that trembles between the thresholds is one contact with hysteresis and many
 /// without.
 #[test]
-fn hysteresis_keeps_a_trembling_foot_planted() {
+fn contacts_of_a_trembling_foot_with_hysteresis_are_one() {
     // The left foot stands, rises slowly to 4 cm and trembles there by 5 mm at 2.5 Hz: speeds stay
     // below 0.2 m/s.
     let tremble = |side: Side, t: f32| match side {
@@ -145,7 +147,7 @@ fn hysteresis_keeps_a_trembling_foot_planted() {
 }
 
 #[test]
-fn short_runs_between_long_ones_are_noise() {
+fn drop_short_runs_between_long_ones_removes_them() {
     let flags = |text: &str| text.chars().map(|c| c == '#').collect::<Vec<bool>>();
     let cleaned = |text: &str, value: bool| {
         let mut flags = flags(text);
@@ -154,43 +156,43 @@ fn short_runs_between_long_ones_are_noise() {
     };
     assert_eq!(cleaned("##.####..###...##", false), flags("############...##"));
     assert_eq!(cleaned("#...#....##...###...##", true), flags("#.............###...##"));
-    // What touches an end of the clip may go on beyond it.
+    // Runs at an end of the clip may continue beyond it.
     assert_eq!(cleaned("#....", true), flags("#...."));
     assert_eq!(cleaned("", true), flags(""));
 }
 
 #[test]
-fn standing_still_is_one_contact() {
+fn contacts_of_a_standing_body_are_one() {
     let (clip, roles) = steps(30, 1.0, |_, _| Vec3::ZERO);
-    let contacts = found(&clip, &roles);
+    let contacts = detect(&clip, &roles);
     for side in Side::BOTH {
         assert_eq!(contacts.intervals(side), std::slice::from_ref(&(0..30)));
     }
-    // The lowest points of this rig are the ends of its toes.
+    // The lowest points of this rig are the tips of its toes.
     assert!((foot_level(&clip, &roles) - 0.015).abs() < 1e-5);
 }
 
 #[test]
-fn clips_without_feet_or_frames_have_no_contacts() {
+fn contacts_without_feet_or_frames_are_empty() {
     let (clip, roles) = steps(3, 1.0, walk);
-    let without = found(&clip, &Roles::default());
+    let without = detect(&clip, &Roles::default());
     assert_eq!((without.frames(), without.intervals(Side::Left).len()), (3, 0));
     assert_eq!(foot_level(&clip, &Roles::default()), 0.0);
     let empty = clip.crop(0..0).unwrap();
-    assert_eq!(found(&empty, &roles), Contacts { planted: [vec![], vec![]] });
+    assert_eq!(detect(&empty, &roles), Contacts { planted: [vec![], vec![]] });
     assert_eq!(foot_level(&empty, &roles), 0.0);
     let one = clip.crop(0..1).unwrap();
-    assert!(found(&one, &roles).planted(Side::Left, 0));
-    // Roles of another skeleton point beyond this one.
+    assert!(detect(&one, &roles).planted(Side::Left, 0));
+    // Roles of another skeleton have indices beyond this one.
     let mut strange = Roles::default();
     strange.set(Role::LeftFoot, Some(9999));
-    assert!(found(&clip, &strange).intervals(Side::Left).is_empty());
+    assert!(detect(&clip, &strange).intervals(Side::Left).is_empty());
 }
 
-/// In a sprint a standing foot moves at 1 m/s and the floor leans by 4 cm from one foot to the
+/// In a sprint a planted foot moves at 1 m/s and the floor leans by 4 cm from one foot to the
 /// other.
 #[test]
-fn a_sprint_over_a_leaning_floor_has_contacts() {
+fn contacts_of_a_sprint_on_a_leaning_floor_are_found() {
     let sprint = |side: Side, t: f32| {
         let lean = if side == Side::Left { 0.04 } else { 0.0 };
         let creep = Vec3::Z * 0.9 * t.rem_euclid(STEP_SECS / 4.0);
@@ -200,7 +202,7 @@ fn a_sprint_over_a_leaning_floor_has_contacts() {
     };
     let (still, roles) = steps(120, 1.0, sprint);
     let roots = (0..120).map(|frame| Vec3::new(0.0, 0.95, 5.2 * frame as f32 / FPS as f32));
-    // The feet are moved against the body, so the body's own way is taken off theirs.
+    // The feet are moved relative to the body, so the body's own motion is subtracted from theirs.
     let poses = (0..120).zip(roots).map(|(frame, root)| {
         let mut pose = still.pose(frame);
         pose.translations.iter_mut().for_each(|(_, at)| at.z -= root.z);
@@ -209,16 +211,16 @@ fn a_sprint_over_a_leaning_floor_has_contacts() {
     });
     let clip = Clip::from_poses("sprint", Arc::clone(still.skeleton()), FPS, poses).unwrap();
     for side in Side::BOTH {
-        let sprinting = found(&clip, &roles).intervals(side);
+        let sprinting = detect(&clip, &roles).intervals(side);
         assert!((7..=9).contains(&sprinting.len()), "{side:?}: {sprinting:?}");
         assert!(sprinting.iter().all(|stance| stance.len() <= 11), "{side:?}: {sprinting:?}");
     }
-    // A body that goes nowhere is held to the limits as they are given.
-    assert_eq!(found(&still, &roles).intervals(Side::Right).len(), 0);
+    // For a body that stays in place the limits are not scaled.
+    assert_eq!(detect(&still, &roles).intervals(Side::Right).len(), 0);
 }
 
 #[test]
-fn phases_run_from_touchdown_to_touchdown() {
+fn phase_runs_from_touchdown_to_touchdown() {
     let stances = |list: &[std::ops::Range<usize>]| {
         let mut flags = vec![false; 100];
         for stance in list {
@@ -230,15 +232,15 @@ fn phases_run_from_touchdown_to_touchdown() {
         Contacts { planted: [stances(&[0..5, 20..30, 40..50, 80..90]), stances(&[0..40, 60..70])] };
     let phase = |frame| contacts.phase(Side::Left, frame).unwrap();
     assert_eq!([phase(20), phase(25), phase(40), phase(60)], [0.0, 0.25, 0.0, 0.5]);
-    // The rhythm goes on beyond the first and the last touchdown.
+    // The nearest stride is repeated before the first and after the last touchdown.
     assert_eq!([phase(15), phase(0), phase(90)], [0.75, 0.0, 0.25]);
     assert_eq!(contacts.phase(Side::Right, 30), None);
     assert_eq!(Contacts::default().phase(Side::Left, 0), None);
 }
 
-/// The ground is where files promise it, unless planted feet contradict that.
+/// The ground is y = 0 unless planted feet contradict that.
 #[test]
-fn ground_of_a_walk_is_zero_unless_its_feet_are_elsewhere() {
+fn ground_of_a_walk_is_zero_unless_feet_contradict() {
     for (floor, scale) in [
         (0.0, 1.0),
         (0.02, 1.0),
@@ -250,14 +252,14 @@ fn ground_of_a_walk_is_zero_unless_its_feet_are_elsewhere() {
         (-1.0, 0.5),
     ] {
         let (clip, roles) = steps(200, scale, |side, t| walk(side, t) + Vec3::Y * (floor / scale));
-        let ground = estimate_ground(&clip, &roles, &found(&clip, &roles));
+        let ground = estimate_ground(&clip, &roles, &detect(&clip, &roles));
         let expected = if floor.abs() < 0.03 * scale { 0.0 } else { floor };
-        // The toes of this rig end 1.5 cm above its soles.
+        // The tips of this rig's toes are 1.5 cm above its soles.
         assert!((ground - expected).abs() <= 0.02 * scale, "{floor} m, size {scale}: {ground} m");
         assert!(expected != 0.0 || ground == 0.0, "{floor} m, size {scale}: {ground} m");
     }
     let (clip, roles) = steps(20, 1.0, walk);
     let never = Contacts::from_flags([vec![false; 20], vec![false; 20]]);
     assert_eq!(estimate_ground(&clip, &roles, &never), 0.0);
-    assert_eq!(estimate_ground(&clip, &Roles::default(), &found(&clip, &roles)), 0.0);
+    assert_eq!(estimate_ground(&clip, &Roles::default(), &detect(&clip, &roles)), 0.0);
 }

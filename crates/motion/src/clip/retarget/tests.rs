@@ -1,3 +1,5 @@
+//! Tests of retargeting between rigs.
+
 use super::*;
 use crate::clip::JointTranslations;
 use crate::clip::fixtures::{largest_distance, wander, wander_by};
@@ -12,7 +14,7 @@ fn bone(world: &WorldPose, roles: &Roles, [from, to]: [Role; 2]) -> Vec3 {
     (at(to) - at(from)).normalize_or_zero()
 }
 
-/// The bones of the limbs down to ankles and wrists.
+/// Returns the bones of the limbs down to ankles and wrists.
 fn bones() -> Vec<[Role; 2]> {
     let limbs = |side| {
         let leg = Role::leg(side);
@@ -22,7 +24,7 @@ fn bones() -> Vec<[Role; 2]> {
     Side::BOTH.into_iter().flat_map(limbs).collect()
 }
 
-/// The largest angle between a limb's bone in two clips of rigs with roles, radians.
+/// Returns the largest angle between a limb's bone in two clips of rigs with roles, radians.
 fn largest_bone_angle(a: &Clip, a_roles: &Roles, b: &Clip, b_roles: &Roles) -> f32 {
     let mut worst = 0.0f32;
     for frame in 0..a.frames() {
@@ -36,7 +38,7 @@ fn largest_bone_angle(a: &Clip, a_roles: &Roles, b: &Clip, b_roles: &Roles) -> f
 }
 
 #[test]
-fn the_same_skeleton_gives_the_same_clip() {
+fn retarget_to_the_same_skeleton_is_the_clip() {
     for (rig, skeleton, _) in fixtures::all() {
         let (roles, clip) = (fixtures::roles(&skeleton), wander(&skeleton, 4, 7));
         assert_eq!(retarget(&clip, &roles, &skeleton, &roles), Ok(clip.clone()), "{rig}");
@@ -48,7 +50,7 @@ fn the_same_skeleton_gives_the_same_clip() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
     #[test]
-    fn another_order_of_joints_keeps_every_joint_where_it_is(rig in 0usize..11, seed in 0u64..1000) {
+    fn retarget_to_another_joint_order_keeps_positions(rig in 0usize..11, seed in 0u64..1000) {
         let (_, source, _) = fixtures::all().swap_remove(rig);
         let (target, order) = fixtures::shuffled(&source, seed);
         let clip = wander(&source, 3, seed);
@@ -65,9 +67,9 @@ proptest! {
         prop_assert!(largest_distance(&clip, &back) < 1e-5);
     }
 
-    /// Whatever the proportions and the rest pose, the limbs point where the source's do.
+    /// Whatever the proportions and the rest pose, the limbs have the directions of the source's.
     #[test]
-    fn limbs_keep_their_directions_between_any_two_rigs(from in 0usize..11, to in 0usize..11, seed in 0u64..1000, radians in 0.0f32..0.6) {
+    fn retarget_between_rigs_keeps_limb_directions(from in 0usize..11, to in 0usize..11, seed in 0u64..1000, radians in 0.0f32..0.6) {
         let (_, source, _) = fixtures::all().swap_remove(from);
         let (_, target, _) = fixtures::all().swap_remove(to);
         let source = fixtures::uneven(&source, 1.0, radians, 0.1, seed);
@@ -75,13 +77,13 @@ proptest! {
         let (source_roles, target_roles) = (fixtures::roles(&source), fixtures::roles(&target));
         let clip = wander(&source, 3, seed);
         let there = retarget(&clip, &source_roles, &target, &target_roles).unwrap();
-        // Rest poses within 2° count as the same.
+        // Rest poses within 2° count as equal.
         prop_assert!(largest_bone_angle(&clip, &source_roles, &there, &target_roles) < 0.036);
     }
 }
 
 #[test]
-fn missing_fingers_change_nothing_else() {
+fn retarget_without_fingers_changes_nothing_else() {
     let full = fixtures::mixamo();
     let kept: Vec<usize> = (0..full.len())
         .filter(|&j| {
@@ -111,7 +113,7 @@ fn missing_fingers_change_nothing_else() {
 }
 
 #[test]
-fn another_size_keeps_rotations_and_scales_the_way() {
+fn retarget_to_another_size_keeps_rotations_and_scales_translations() {
     let small = fixtures::lafan();
     let large = fixtures::uneven(&small, 2.0, 0.0, 0.0, 0);
     let (small_roles, large_roles) = (fixtures::roles(&small), fixtures::roles(&large));
@@ -129,7 +131,7 @@ fn another_size_keeps_rotations_and_scales_the_way() {
 /// From arms stretched out at rest to arms hanging at rest, and to a rest pose that lies on its
 /// side: the motion looks the same.
 #[test]
-fn another_rest_pose_shows_the_same_motion() {
+fn retarget_to_another_rest_pose_keeps_positions() {
     let source = fixtures::mixamo();
     let roles = fixtures::roles(&source);
     let clip = wander(&source, 6, 11);
@@ -152,7 +154,7 @@ fn another_rest_pose_shows_the_same_motion() {
             }
         });
         let target = Arc::new(Skeleton::new(joints.collect()).unwrap());
-        // The names give the roles; by shape a body that lies down has none.
+        // Roles come from the names; by shape a body that lies down has none.
         let there = retarget(&clip, &roles, &target, &roles).unwrap();
         for frame in 0..clip.frames() {
             let (a, b) = (clip.world_pose(frame), there.world_pose(frame));
@@ -174,7 +176,7 @@ fn another_rest_pose_shows_the_same_motion() {
 /// Legs that point up along the back at rest, as in rigs whose bones all lie along one axis: knees
 /// still bend backwards.
 #[test]
-fn legs_folded_up_at_rest_bend_the_right_way() {
+fn retarget_from_legs_folded_at_rest_bends_knees_backwards() {
     let source = fixtures::lafan();
     let roles = fixtures::roles(&source);
     let up = |joint: &Joint| {
@@ -191,7 +193,7 @@ fn legs_folded_up_at_rest_bend_the_right_way() {
     let clip = wander_by(&source, 6, 4, 0.4);
     let there = retarget(&clip, &roles, &target, &roles).unwrap();
     assert!(largest_bone_angle(&clip, &roles, &there, &roles) < 0.036);
-    // About the axis of the knee the two shins turn alike: each thigh's left stays left.
+    // The two shins turn alike about the axis of the knee: each thigh's left stays left.
     for frame in 0..clip.frames() {
         for side in Side::BOTH {
             for role in [Role::thigh(side), Role::shin(side), Role::foot(side)] {
@@ -207,7 +209,7 @@ fn legs_folded_up_at_rest_bend_the_right_way() {
 }
 
 #[test]
-fn feet_stand_as_high_as_before() {
+fn retarget_keeps_the_height_of_feet() {
     let (source, target) =
         (fixtures::cmu_bvh(), fixtures::uneven(&fixtures::games105(), 0.8, 0.2, 0.1, 2));
     let (source_roles, target_roles) = (fixtures::roles(&source), fixtures::roles(&target));
@@ -215,7 +217,7 @@ fn feet_stand_as_high_as_before() {
     let there = retarget(&clip, &source_roles, &target, &target_roles).unwrap();
     let scale =
         target_roles.leg_length(&target).unwrap() / source_roles.leg_length(&source).unwrap();
-    // Of the points that both feet have: one of these rigs has no toe tips.
+    // By the points that both feet have: one of these rigs has no toe tips.
     let level = |clip: &Clip, roles: &Roles| {
         let joints = [Role::LeftFoot, Role::RightFoot, Role::LeftToe, Role::RightToe]
             .map(|role| roles.get(role).unwrap());
@@ -229,7 +231,7 @@ fn feet_stand_as_high_as_before() {
     };
     let (before, after) = (level(&clip, &source_roles), level(&there, &target_roles));
     assert!((before * scale - after).abs() < 1e-5, "{before} {after}");
-    // Over the ground the hips go the scaled way.
+    // The hips' trajectory over the ground is scaled.
     let hips = |clip: &Clip, roles: &Roles, frame| {
         clip.world_pose(frame).positions[roles.get(Role::Hips).unwrap()]
     };
@@ -238,10 +240,10 @@ fn feet_stand_as_high_as_before() {
     assert!((ours - theirs).length() < 1e-4);
 }
 
-/// A body without toes and one with toe tips: an ankle stands higher than a tip, and is no measure
-/// for it.
+/// A body without toes and one with toe tips: an ankle stands higher than a tip, and must not be
+/// compared with it.
 #[test]
-fn feet_of_rigs_with_and_without_toes_neither_sink_nor_float() {
+fn retarget_between_feet_with_and_without_toes_keeps_their_height() {
     let with_toes = fixtures::lafan();
     let small = fixtures::uneven(&with_toes, 0.8, 0.0, 0.0, 0);
     let kept: Vec<usize> =
@@ -275,7 +277,7 @@ fn feet_of_rigs_with_and_without_toes_neither_sink_nor_float() {
 }
 
 #[test]
-fn the_back_shares_its_bend() {
+fn retarget_to_more_spine_joints_shares_the_bend() {
     let (source, target) = (fixtures::games105(), fixtures::mixamo());
     let (source_roles, target_roles) = (fixtures::roles(&source), fixtures::roles(&target));
     let joints = source.len();
@@ -293,7 +295,7 @@ fn the_back_shares_its_bend() {
 }
 
 #[test]
-fn hips_that_move_below_a_still_root_carry_the_way() {
+fn retarget_of_hips_below_a_still_root_keeps_their_trajectory() {
     let (source, target) = (fixtures::bandai(), fixtures::lafan());
     let (source_roles, target_roles) = (fixtures::roles(&source), fixtures::roles(&target));
     let rotations = wander(&source, 4, 1);
@@ -326,7 +328,7 @@ fn hips_that_move_below_a_still_root_carry_the_way() {
 }
 
 #[test]
-fn nothing_in_common_is_refused() {
+fn retarget_without_common_joints_is_refused() {
     let clip = wander(&fixtures::lafan(), 2, 1);
     let target = fixtures::nameless(&fixtures::lafan());
     assert_eq!(
@@ -338,7 +340,7 @@ fn nothing_in_common_is_refused() {
 /// The ankles of one rig lie higher above the sole, and its feet point outwards at rest: soles stay
 /// flat, headings stay.
 #[test]
-fn soles_stay_flat_and_feet_keep_their_heading() {
+fn retarget_keeps_soles_flat_and_their_heading() {
     let source = fixtures::lafan();
     let roles = fixtures::roles(&source);
     let outwards =
@@ -367,7 +369,7 @@ fn soles_stay_flat_and_feet_keep_their_heading() {
             for joint in [roles.get(Role::foot(side)).unwrap(), roles.get(Role::toe(side)).unwrap()]
             {
                 let (ours, theirs) = (b.rotations[joint], a.rotations[joint]);
-                // What is up on a sole stays up, what is forward on it stays forward.
+                // The up axis of a sole stays up, and its forward axis stays forward.
                 assert!((ours * Vec3::Y).distance(theirs * Vec3::Y) < 1e-5);
                 let forward = outwards(&source.joints()[joint].name) * Vec3::Z;
                 assert!((ours * forward).distance(theirs * Vec3::Z) < 0.03, "{side:?}");
@@ -376,9 +378,9 @@ fn soles_stay_flat_and_feet_keep_their_heading() {
     }
 }
 
-/// Thousands of joints, in a chain or all on one, take neither long nor all memory.
+/// Thousands of joints, in a chain or all on one parent, take neither long nor all memory.
 #[test]
-fn strange_trees_come_through() {
+fn retarget_of_unusual_trees_succeeds() {
     type ParentOf = fn(usize) -> Option<usize>;
     let shapes: [ParentOf; 2] = [|i| i.checked_sub(1), |i| (i > 0).then_some(0)];
     for parent in shapes {
@@ -409,10 +411,10 @@ fn strange_trees_come_through() {
     }
 }
 
-/// A rest pose that shows no creature tells nothing of how bones are twisted: a collar bone came
-/// out turned half round.
+/// An implausible rest pose says nothing about the twist of bones: a collar bone came out rotated
+/// by half a turn.
 #[test]
-fn joints_turned_by_constants_come_over_as_the_plain_ones_do() {
+fn retarget_with_implausible_rest_pose_equals_the_plain_one() {
     let clip = synthesize(&Params::new(Action::Walk)).unwrap().clip;
     let roles = Roles::detect(clip.skeleton());
     let target = fixtures::mixamo();
