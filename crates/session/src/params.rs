@@ -15,27 +15,21 @@ use std::fmt;
 
 /// What a parameter belongs to: the lab whose panel shows it, or the part of the page that does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[expect(missing_docs, reason = "the names say it")]
 pub enum Group {
+    /// The page as a whole: what is open, and in which colours and language.
     Page,
+    /// Time and playing.
     Transport,
+    /// The camera.
     Camera,
+    /// The stage and who stands on it.
     Stage,
-    View,
-    Make,
-    Blend,
-    Transition,
-    Speed,
-    Loop,
-    Layers,
-    Register,
-    Path,
-    Graph,
-    Match,
+    /// A lab.
+    Lab(LabId),
 }
 
 impl Group {
-    /// The name in the API and in `docs/parameters.md`.
+    /// Returns the name in the API and in `docs/parameters.md`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -43,24 +37,14 @@ impl Group {
             Self::Transport => "transport",
             Self::Camera => "camera",
             Self::Stage => "stage",
-            Self::View => "view",
-            Self::Make => "make",
-            Self::Blend => "blend",
-            Self::Transition => "transition",
-            Self::Speed => "speed",
-            Self::Loop => "loop",
-            Self::Layers => "layers",
-            Self::Register => "register",
-            Self::Path => "path",
-            Self::Graph => "graph",
-            Self::Match => "match",
+            Self::Lab(lab) => lab.word(),
         }
     }
 
-    /// Whether these are the parameters of a lab, which change its result.
+    /// Returns whether these are the parameters of a lab, which change its result.
     #[must_use]
     pub const fn is_of_lab(self) -> bool {
-        !matches!(self, Self::Page | Self::Transport | Self::Camera | Self::Stage)
+        matches!(self, Self::Lab(_))
     }
 }
 
@@ -185,7 +169,7 @@ enum Start {
 }
 
 macro_rules! parameters {
-    ($($key:ident $name:literal $label:literal $group:ident $kind:expr, $default:expr, $unit:literal, $help:literal;)*) => {
+    ($($key:ident $name:literal $label:literal $group:ident$(($lab:ident))? $kind:expr, $default:expr, $unit:literal, $help:literal;)*) => {
         /// The name of a parameter inside the program; its row is [`Key::param`].
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         #[expect(missing_docs, reason = "the help sentence of the row says it")]
@@ -193,7 +177,7 @@ macro_rules! parameters {
 
         /// Every parameter, in the order in which links and panels show them.
         pub static PARAMS: &[Param] = &[$(Param {
-            key: Key::$key, name: $name, label: $label, kind: $kind, unit: $unit, group: Group::$group, help: $help, default: $default,
+            key: Key::$key, name: $name, label: $label, kind: $kind, unit: $unit, group: Group::$group$((LabId::$lab))?, help: $help, default: $default,
         }),*];
     };
 }
@@ -213,153 +197,153 @@ parameters! {
     A "a" "A" Page Kind::Clip, Start::Text("walk"), "", "The clip that plays first.";
     B "b" "B" Page Kind::Clip, Start::Text("run"), "", "The clip that follows.";
 
-    BlendWindow "blend_window" "Blend window" Blend number(1.0, 240.0, 1.0), Start::Number(30.0), "frames", "How long A fades into B. Long drags, short bursts.";
-    LeaveA "leave_a" "Leave A at" Blend auto(0.0, 600.0, 0.001), Start::Auto, "s", "Where the blend window begins in A. Left to Segue: the best match in A's second half.";
-    EnterB "enter_b" "Enter B at" Blend auto(0.0, 600.0, 0.001), Start::Auto, "s", "Where the blend window begins in B. Left to Segue: the best match in B's first half.";
-    WeightLaw "weight_law" "Weight law" Blend Kind::Choice(WeightLaw::CHOICES), Start::Choice(WeightLaw::Smooth.word()), "", "How the weight moves from A to B inside the window.";
-    Align "align" "Align to A" Blend Kind::Switch, Start::Switch(true), "", "Turns and moves B over the ground so that it continues A.";
-    AlignBy "align_by" "Align by" Blend Kind::Choice(AlignBy::CHOICES), Start::Choice(AlignBy::Window.word()), "", "What is laid on what: all joints over the blend window, as well as they fit, or the place and facing of the first posture alone.";
-    RootBlend "root_blend" "Blend root by velocity" Blend Kind::Switch, Start::Switch(true), "", "Blends how the character moves instead of where it is: its speed does not dent, and feet slide less. Off, B stays where the alignment puts it.";
+    BlendWindow "blend_window" "Blend window" Lab(Blend) number(1.0, 240.0, 1.0), Start::Number(30.0), "frames", "How long A fades into B. Long drags, short bursts.";
+    LeaveA "leave_a" "Leave A at" Lab(Blend) auto(0.0, 600.0, 0.001), Start::Auto, "s", "Where the blend window begins in A. Left to Segue: the best match in A's second half.";
+    EnterB "enter_b" "Enter B at" Lab(Blend) auto(0.0, 600.0, 0.001), Start::Auto, "s", "Where the blend window begins in B. Left to Segue: the best match in B's first half.";
+    WeightLaw "weight_law" "Weight law" Lab(Blend) Kind::Choice(WeightLaw::CHOICES), Start::Choice(WeightLaw::Smooth.word()), "", "How the weight moves from A to B inside the window.";
+    Align "align" "Align to A" Lab(Blend) Kind::Switch, Start::Switch(true), "", "Turns and moves B over the ground so that it continues A.";
+    AlignBy "align_by" "Align by" Lab(Blend) Kind::Choice(AlignBy::CHOICES), Start::Choice(AlignBy::Window.word()), "", "What is laid on what: all joints over the blend window, as well as they fit, or the place and facing of the first posture alone.";
+    RootBlend "root_blend" "Blend root by velocity" Lab(Blend) Kind::Switch, Start::Switch(true), "", "Blends how the character moves instead of where it is: its speed does not dent, and feet slide less. Off, B stays where the alignment puts it.";
 
-    FootLock "foot_lock" "Foot lock" Blend Kind::Switch, Start::Switch(false), "", "Holds planted feet where they stand, and bends the legs to it.";
-    LockBlend "lock_blend" "Lock blend" Blend number(0.02, 1.0, 0.01), Start::Number(0.2), "s", "How long a foot takes to reach the place where it is held, and to leave it again. Longer: softer, and more of the swing changes. Shorter: the swing stays as it was, and the foot moves suddenly.";
-    LockReach "lock_reach" "Lock reach" Blend number(1.0, 100.0, 1.0), Start::Number(30.0), "cm", "How far a foot may be moved to be held, for a body of 1.75 m. Farther: feet that slide a long way are held too, and legs bend more. Nearer: legs stay closer to how they were, and feet slide.";
-    LockClearance "lock_clearance" "Swing clearance" Blend number(0.0, 10.0, 0.5), Start::Number(2.5), "cm", "How high above where it stands a foot is kept while it swings, for a body of 1.75 m. Higher: low swings are lifted more. 0 leaves swings as they are.";
-    Ground "ground" "Ground" Blend auto(-100.0, 100.0, 0.5), Start::Auto, "cm", "The height of the ground for foot lock and penetration. Left to Segue: planted feet tell it, and it is 0 unless they stand or dip more than 3 cm elsewhere.";
-    ContactHeight "contact_height" "Contact height" Blend number(1.0, 15.0, 0.5), Start::Number(4.0), "cm", "A foot is planted below this height above its own lowest level, for a body of 1.75 m. Higher: longer stances.";
-    ContactSpeed "contact_speed" "Contact speed" Blend number(0.1, 2.0, 0.05), Start::Number(0.4), "m/s", "A foot is planted while it is slower than this. Faster: longer stances, and feet that slide are held too.";
+    FootLock "foot_lock" "Foot lock" Lab(Blend) Kind::Switch, Start::Switch(false), "", "Holds planted feet where they stand, and bends the legs to it.";
+    LockBlend "lock_blend" "Lock blend" Lab(Blend) number(0.02, 1.0, 0.01), Start::Number(0.2), "s", "How long a foot takes to reach the place where it is held, and to leave it again. Longer: softer, and more of the swing changes. Shorter: the swing stays as it was, and the foot moves suddenly.";
+    LockReach "lock_reach" "Lock reach" Lab(Blend) number(1.0, 100.0, 1.0), Start::Number(30.0), "cm", "How far a foot may be moved to be held, for a body of 1.75 m. Farther: feet that slide a long way are held too, and legs bend more. Nearer: legs stay closer to how they were, and feet slide.";
+    LockClearance "lock_clearance" "Swing clearance" Lab(Blend) number(0.0, 10.0, 0.5), Start::Number(2.5), "cm", "How high above where it stands a foot is kept while it swings, for a body of 1.75 m. Higher: low swings are lifted more. 0 leaves swings as they are.";
+    Ground "ground" "Ground" Lab(Blend) auto(-100.0, 100.0, 0.5), Start::Auto, "cm", "The height of the ground for foot lock and penetration. Left to Segue: planted feet tell it, and it is 0 unless they stand or dip more than 3 cm elsewhere.";
+    ContactHeight "contact_height" "Contact height" Lab(Blend) number(1.0, 15.0, 0.5), Start::Number(4.0), "cm", "A foot is planted below this height above its own lowest level, for a body of 1.75 m. Higher: longer stances.";
+    ContactSpeed "contact_speed" "Contact speed" Lab(Blend) number(0.1, 2.0, 0.05), Start::Number(0.4), "m/s", "A foot is planted while it is slower than this. Faster: longer stances, and feet that slide are held too.";
 
-    Method "method" "Method" Transition Kind::Choice(TransitionMethod::CHOICES), Start::Choice(TransitionMethod::Inertialize.word()), "", "How A goes over into B.";
-    HalfLife "half_life" "Half-life" Transition logarithmic(0.02, 1.5, 0.01), Start::Number(0.2), "s", "How slowly the difference from A decays: half of it is left after 1.2 half-lives.";
-    BlendTime "blend_time" "Blend time" Transition logarithmic(0.05, 2.0, 0.01), Start::Number(0.4), "s", "When nothing of A is left, for cubic, quintic and dead blend. A quintic ends sooner where the difference is small and closes fast: it would overshoot otherwise.";
-    ExtrapolationHalfLife "extrapolation_half_life" "Extrapolation half-life" Transition logarithmic(0.02, 1.0, 0.01), Start::Number(0.1), "s", "How long A runs on by itself in a dead blend: half of its velocity is left after this time.";
-    MixFrameA "mix_frame_a" "Leave A at" Transition auto(0.0, 1_000_000.0, 1.0), Start::Auto, "frame", "The frame of A at which B takes over. Left to Segue: the best match in A's second half.";
-    MixFrameB "mix_frame_b" "Enter B at" Transition auto(0.0, 1_000_000.0, 1.0), Start::Auto, "frame", "The frame of B that plays then. Left to Segue: the best match in B's first half.";
-    MatchBy "match_by" "Match by" Transition Kind::Choice(MatchBy::CHOICES), Start::Choice(MatchBy::Pose.word()), "", "What the best match compares: two poses, or windows of the whole body.";
-    MatchPosition "match_position" "Weight of positions" Transition number(0.0, 1.0, 0.05), Start::Number(0.6), "", "How much it counts where the joints are.";
-    MatchRotation "match_rotation" "Weight of rotations" Transition number(0.0, 1.0, 0.05), Start::Number(0.4), "", "How much it counts how the joints are turned.";
-    MatchVelocity "match_velocity" "Weight of velocities" Transition number(0.0, 1.0, 0.05), Start::Number(0.0), "", "How much it counts how fast the joints move.";
+    Method "method" "Method" Lab(Transition) Kind::Choice(TransitionMethod::CHOICES), Start::Choice(TransitionMethod::Inertialize.word()), "", "How A goes over into B.";
+    HalfLife "half_life" "Half-life" Lab(Transition) logarithmic(0.02, 1.5, 0.01), Start::Number(0.2), "s", "How slowly the difference from A decays: half of it is left after 1.2 half-lives.";
+    BlendTime "blend_time" "Blend time" Lab(Transition) logarithmic(0.05, 2.0, 0.01), Start::Number(0.4), "s", "When nothing of A is left, for cubic, quintic and dead blend. A quintic ends sooner where the difference is small and closes fast: it would overshoot otherwise.";
+    ExtrapolationHalfLife "extrapolation_half_life" "Extrapolation half-life" Lab(Transition) logarithmic(0.02, 1.0, 0.01), Start::Number(0.1), "s", "How long A runs on by itself in a dead blend: half of its velocity is left after this time.";
+    MixFrameA "mix_frame_a" "Leave A at" Lab(Transition) auto(0.0, 1_000_000.0, 1.0), Start::Auto, "frame", "The frame of A at which B takes over. Left to Segue: the best match in A's second half.";
+    MixFrameB "mix_frame_b" "Enter B at" Lab(Transition) auto(0.0, 1_000_000.0, 1.0), Start::Auto, "frame", "The frame of B that plays then. Left to Segue: the best match in B's first half.";
+    MatchBy "match_by" "Match by" Lab(Transition) Kind::Choice(MatchBy::CHOICES), Start::Choice(MatchBy::Pose.word()), "", "What the best match compares: two poses, or windows of the whole body.";
+    MatchPosition "match_position" "Weight of positions" Lab(Transition) number(0.0, 1.0, 0.05), Start::Number(0.6), "", "How much it counts where the joints are.";
+    MatchRotation "match_rotation" "Weight of rotations" Lab(Transition) number(0.0, 1.0, 0.05), Start::Number(0.4), "", "How much it counts how the joints are turned.";
+    MatchVelocity "match_velocity" "Weight of velocities" Lab(Transition) number(0.0, 1.0, 0.05), Start::Number(0.0), "", "How much it counts how fast the joints move.";
 
-    Speed "speed" "Speed" Speed auto(0.2, 10.0, 0.05), Start::Auto, "m/s", "How fast it goes. Left to Segue: half way between both clips.";
-    PhaseAlign "phase_align" "Align phases" Speed Kind::Switch, Start::Switch(true), "", "Lays strikes of the feet on strikes. Without it each clip begins where it begins, and legs cross.";
+    Speed "speed" "Speed" Lab(Speed) auto(0.2, 10.0, 0.05), Start::Auto, "m/s", "How fast it goes. Left to Segue: half way between both clips.";
+    PhaseAlign "phase_align" "Align phases" Lab(Speed) Kind::Switch, Start::Switch(true), "", "Lays strikes of the feet on strikes. Without it each clip begins where it begins, and legs cross.";
 
-    LoopFrom "loop_from" "Cycle from" Loop auto(0.0, 600.0, 0.001), Start::Auto, "s", "Where the cycle begins in A.";
-    LoopTo "loop_to" "Cycle to" Loop auto(0.0, 600.0, 0.001), Start::Auto, "s", "Where in A the cycle is over: the pose that becomes the first one again.";
-    LoopMethod "loop_method" "Method" Loop Kind::Choice(LoopMethod::CHOICES), Start::Choice(LoopMethod::Exact.word()), "", "How the difference between the ends is spread over the cycle.";
-    LoopRatio "loop_ratio" "Ratio" Loop number(0.0, 1.0, 0.05), Start::Number(0.5), "", "How much of the difference the beginning takes; the end takes the rest.";
-    Mistake "mistake" "Break it" Transition Kind::Choice(Mistake::CHOICES), Start::Choice(Mistake::None.word()), "", "One classic mistake, made on purpose: see what it looks like, and what the numbers say.";
+    LoopFrom "loop_from" "Cycle from" Lab(Loop) auto(0.0, 600.0, 0.001), Start::Auto, "s", "Where the cycle begins in A.";
+    LoopTo "loop_to" "Cycle to" Lab(Loop) auto(0.0, 600.0, 0.001), Start::Auto, "s", "Where in A the cycle is over: the pose that becomes the first one again.";
+    LoopMethod "loop_method" "Method" Lab(Loop) Kind::Choice(LoopMethod::CHOICES), Start::Choice(LoopMethod::Exact.word()), "", "How the difference between the ends is spread over the cycle.";
+    LoopRatio "loop_ratio" "Ratio" Lab(Loop) number(0.0, 1.0, 0.05), Start::Number(0.5), "", "How much of the difference the beginning takes; the end takes the rest.";
+    Mistake "mistake" "Break it" Lab(Transition) Kind::Choice(Mistake::CHOICES), Start::Choice(Mistake::None.word()), "", "One classic mistake, made on purpose: see what it looks like, and what the numbers say.";
 
-    LayerMode "layer_mode" "Layer" Layers Kind::Choice(LayerMode::CHOICES), Start::Choice(LayerMode::Partial.word()), "", "Partial: B takes A's place inside the mask. Additive: what B does beyond its reference is added to A.";
-    Mask "mask" "Mask" Layers Kind::Choice(Mask::CHOICES), Start::Choice(Mask::Upper.word()), "", "The part of the body that B moves.";
-    LayerWeight "layer_weight" "Weight" Layers number(0.0, 1.0, 0.01), Start::Number(1.0), "", "How much of B there is inside the mask.";
-    Feather "feather" "Feather" Layers number(0.0, 6.0, 1.0), Start::Number(2.0), "joints", "Over how many joints the mask fades in, up the spine or along the limb: 0 is a hard edge.";
-    LayerReference "layer_reference" "Reference" Layers Kind::Choice(LayerReference::CHOICES), Start::Choice(LayerReference::Mean.word()), "", "The pose of B that counts as nothing: what goes beyond it is added to A.";
-    LayerFit "layer_fit" "B's time" Layers Kind::Choice(LayerFit::CHOICES), Start::Choice(LayerFit::Step.word()), "", "In step: a cycle of B strikes with A's feet. Loop: B starts again at its end. Hold: it stays in its last frame.";
-    LayerStart "layer_start" "B begins at" Layers number(-10.0, 10.0, 0.01), Start::Number(0.0), "s", "B's time at A's first frame; in step, how far B runs ahead.";
-    KeepOrientation "keep_orientation" "Keep B's posture" Layers Kind::Switch, Start::Switch(true), "", "B's trunk leans and turns as in B, however A's hips tilt: for partial layers.";
-    MaskColors "mask_colors" "Colour by share" Layers Kind::Switch, Start::Switch(true), "", "Every limb in the colours of A and B, by its share of each.";
+    LayerMode "layer_mode" "Layer" Lab(Layers) Kind::Choice(LayerMode::CHOICES), Start::Choice(LayerMode::Partial.word()), "", "Partial: B takes A's place inside the mask. Additive: what B does beyond its reference is added to A.";
+    Mask "mask" "Mask" Lab(Layers) Kind::Choice(Mask::CHOICES), Start::Choice(Mask::Upper.word()), "", "The part of the body that B moves.";
+    LayerWeight "layer_weight" "Weight" Lab(Layers) number(0.0, 1.0, 0.01), Start::Number(1.0), "", "How much of B there is inside the mask.";
+    Feather "feather" "Feather" Lab(Layers) number(0.0, 6.0, 1.0), Start::Number(2.0), "joints", "Over how many joints the mask fades in, up the spine or along the limb: 0 is a hard edge.";
+    LayerReference "layer_reference" "Reference" Lab(Layers) Kind::Choice(LayerReference::CHOICES), Start::Choice(LayerReference::Mean.word()), "", "The pose of B that counts as nothing: what goes beyond it is added to A.";
+    LayerFit "layer_fit" "B's time" Lab(Layers) Kind::Choice(LayerFit::CHOICES), Start::Choice(LayerFit::Step.word()), "", "In step: a cycle of B strikes with A's feet. Loop: B starts again at its end. Hold: it stays in its last frame.";
+    LayerStart "layer_start" "B begins at" Lab(Layers) number(-10.0, 10.0, 0.01), Start::Number(0.0), "s", "B's time at A's first frame; in step, how far B runs ahead.";
+    KeepOrientation "keep_orientation" "Keep B's posture" Lab(Layers) Kind::Switch, Start::Switch(true), "", "B's trunk leans and turns as in B, however A's hips tilt: for partial layers.";
+    MaskColors "mask_colors" "Colour by share" Lab(Layers) Kind::Switch, Start::Switch(true), "", "Every limb in the colours of A and B, by its share of each.";
 
-    RootMotion "root_motion" "Way over the ground" View Kind::Choice(RootMotion::CHOICES), Start::Choice(RootMotion::World.word()), "", "Recorded: as it is in the clip. In place: where the body stands and faces is taken out of every frame. Residual: a smooth path and its direction are taken out, and the sway about it stays.";
-    PlaceX "place_x" "Starts at x" View auto(-100.0, 100.0, 0.01), Start::Auto, "m", "Where the first frame stands, along x; the whole clip is moved along. Left to Segue: where it was recorded.";
-    PlaceZ "place_z" "Starts at z" View auto(-100.0, 100.0, 0.01), Start::Auto, "m", "Where the first frame stands, along z.";
-    PlaceHeading "place_heading" "Starts facing" View auto(-180.0, 180.0, 0.5), Start::Auto, "°", "What the first frame faces, 0 along z and 90 along x; the whole clip is turned along.";
+    RootMotion "root_motion" "Way over the ground" Lab(View) Kind::Choice(RootMotion::CHOICES), Start::Choice(RootMotion::World.word()), "", "Recorded: as it is in the clip. In place: where the body stands and faces is taken out of every frame. Residual: a smooth path and its direction are taken out, and the sway about it stays.";
+    PlaceX "place_x" "Starts at x" Lab(View) auto(-100.0, 100.0, 0.01), Start::Auto, "m", "Where the first frame stands, along x; the whole clip is moved along. Left to Segue: where it was recorded.";
+    PlaceZ "place_z" "Starts at z" Lab(View) auto(-100.0, 100.0, 0.01), Start::Auto, "m", "Where the first frame stands, along z.";
+    PlaceHeading "place_heading" "Starts facing" Lab(View) auto(-180.0, 180.0, 0.5), Start::Auto, "°", "What the first frame faces, 0 along z and 90 along x; the whole clip is turned along.";
 
-    WarpWith "warp_with" "Timewarp" Register Kind::Choice(WarpWith::CHOICES), Start::Choice(WarpWith::Registered.word()), "", "Registered: B's time is bent so that like meets like. Plain: both clips run at their own speed, as in a dissolve.";
-    WarpMode "warp_mode" "Make" Register Kind::Choice(WarpMode::CHOICES), Start::Choice(WarpMode::Blend.word()), "", "Blend: both clips at once, with a weight. Join: A goes over into B.";
-    WarpWeight "warp_weight" "Weight of B" Register number(0.0, 1.0, 0.01), Start::Number(0.5), "", "0 is A, 1 is B; between them a motion that is in neither clip.";
-    WarpAlso "warp_also" "More clips" Register Kind::Text, Start::Text(""), "", "Further clips in a blend, registered to A like B, each with its weight, as in 0.3:run,0.2:fast_walk. A has what the others leave.";
-    WarpCurve "warp_curve" "Weight over time" Register Kind::Text, Start::Text(""), "", "The weight of B over the blend: per cent of the blend and per cent of B, as in 0-0,50-100,100-0. Empty: the same weight all the time.";
-    WarpFrom "warp_from" "Leave A at" Register auto(0.0, 600.0, 0.01), Start::Auto, "s", "Where in A a join begins to go over into B.";
-    WarpTo "warp_to" "All B at" Register auto(0.0, 600.0, 0.01), Start::Auto, "s", "Where in A, on its own clock, a join is all B.";
-    RegistrationWindow "registration_window" "Window" Register number(1.0, 121.0, 1.0), Start::Number(5.0), "frames", "How many frames about each pair are compared. One frame compares poses; more also tell how they move.";
-    SlopeLimit "slope_limit" "Slope limit" Register number(1.0, 16.0, 1.0), Start::Number(2.0), "steps", "How many steps in a row one clip may go on while the other stands still.";
-    Ends "ends" "Ends" Register Kind::Choice(Ends::CHOICES), Start::Choice(Ends::Free.word()), "", "Corner: first meets first, last meets last. Free: a clip may begin or end inside the other.";
-    EndSlack "end_slack" "Left out at most" Register number(0.0, 50.0, 1.0), Start::Number(40.0), "%", "How much of one clip may be left out at each free end.";
-    WarpSmoothing "warp_smoothing" "Smoothing" Register auto(0.0, 60.0, 1.0), Start::Auto, "frames", "Over how many frames to either side the timewarp and the alignment are smoothed. Left to Segue: a tenth of a second.";
-    Pins "pins" "Pins" Register Kind::Text, Start::Text(""), "", "Pairs of frames of A and B, at A's rate, that must meet, as in 12-30,50-71.";
+    WarpWith "warp_with" "Timewarp" Lab(Register) Kind::Choice(WarpWith::CHOICES), Start::Choice(WarpWith::Registered.word()), "", "Registered: B's time is bent so that like meets like. Plain: both clips run at their own speed, as in a dissolve.";
+    WarpMode "warp_mode" "Make" Lab(Register) Kind::Choice(WarpMode::CHOICES), Start::Choice(WarpMode::Blend.word()), "", "Blend: both clips at once, with a weight. Join: A goes over into B.";
+    WarpWeight "warp_weight" "Weight of B" Lab(Register) number(0.0, 1.0, 0.01), Start::Number(0.5), "", "0 is A, 1 is B; between them a motion that is in neither clip.";
+    WarpAlso "warp_also" "More clips" Lab(Register) Kind::Text, Start::Text(""), "", "Further clips in a blend, registered to A like B, each with its weight, as in 0.3:run,0.2:fast_walk. A has what the others leave.";
+    WarpCurve "warp_curve" "Weight over time" Lab(Register) Kind::Text, Start::Text(""), "", "The weight of B over the blend: per cent of the blend and per cent of B, as in 0-0,50-100,100-0. Empty: the same weight all the time.";
+    WarpFrom "warp_from" "Leave A at" Lab(Register) auto(0.0, 600.0, 0.01), Start::Auto, "s", "Where in A a join begins to go over into B.";
+    WarpTo "warp_to" "All B at" Lab(Register) auto(0.0, 600.0, 0.01), Start::Auto, "s", "Where in A, on its own clock, a join is all B.";
+    RegistrationWindow "registration_window" "Window" Lab(Register) number(1.0, 121.0, 1.0), Start::Number(5.0), "frames", "How many frames about each pair are compared. One frame compares poses; more also tell how they move.";
+    SlopeLimit "slope_limit" "Slope limit" Lab(Register) number(1.0, 16.0, 1.0), Start::Number(2.0), "steps", "How many steps in a row one clip may go on while the other stands still.";
+    Ends "ends" "Ends" Lab(Register) Kind::Choice(Ends::CHOICES), Start::Choice(Ends::Free.word()), "", "Corner: first meets first, last meets last. Free: a clip may begin or end inside the other.";
+    EndSlack "end_slack" "Left out at most" Lab(Register) number(0.0, 50.0, 1.0), Start::Number(40.0), "%", "How much of one clip may be left out at each free end.";
+    WarpSmoothing "warp_smoothing" "Smoothing" Lab(Register) auto(0.0, 60.0, 1.0), Start::Auto, "frames", "Over how many frames to either side the timewarp and the alignment are smoothed. Left to Segue: a tenth of a second.";
+    Pins "pins" "Pins" Lab(Register) Kind::Text, Start::Text(""), "", "Pairs of frames of A and B, at A's rate, that must meet, as in 12-30,50-71.";
 
-    ControlPoints "control_points" "Control points" Path number(4.0, 64.0, 1.0), Start::Number(8.0), "points", "How finely the path follows the way of the hips. Four cannot follow a turn, many follow every sway.";
-    PathSmoothing "path_smoothing" "Smoothing" Path number(0.0, 5.0, 0.01), Start::Number(0.0), "", "How much a bend counts against the distance from the hips: 0 is least squares alone.";
-    PathKeep "keep" "Keep" Path Kind::Choice(PathKeep::CHOICES), Start::Choice(PathKeep::Speed.word()), "", "What stays when the path becomes longer or shorter.";
-    PathFacing "path_facing" "Body faces" Path Kind::Choice(PathFacing::CHOICES), Start::Choice(PathFacing::Path.word()), "", "Whether the body turns where the path turns, or faces as it did before.";
-    PathOffset "path_offset" "Sway of the hips" Path Kind::Choice(PathOffset::CHOICES), Start::Choice(PathOffset::Path.word()), "", "Whether the way from the path to the hips turns with the path, or stays as it was in the world: then sway to the side becomes a surge where the path has turned.";
-    PathSpline "path_spline" "Spline" Path Kind::Choice(PathSpline::CHOICES), Start::Choice(PathSpline::Clamped.word()), "", "Clamped: the path begins in the first control point and ends in the last. Uniform: the same path from other control points, beside which it begins and ends.";
-    Path "path" "Path" Path Kind::Text, Start::Text(""), "", "The edited path: its control points to 1 cm in a short word. Empty: the path as it was fitted.";
-    PathGrid "path_grid" "Snap to grid" Path number(0.0, 2.0, 0.05), Start::Number(0.0), "m", "Width of the grid that moved points snap to; 0 is none.";
-    PinStart "pin_start" "Pin the start" Path Kind::Switch, Start::Switch(false), "", "Whatever is done to the path, its start stays where it is.";
-    PinEnd "pin_end" "Pin the end" Path Kind::Switch, Start::Switch(false), "", "Whatever is done to the path, its end stays where it is.";
-    Others "others" "Others" Path Kind::Text, Start::Text(""), "", "Clips that play along on the stage, each in a colour of its own: ids, separated by commas.";
-    Clips "clips" "Clips" Graph Kind::Text, Start::Text("walk,walk_left,walk_right,slow_walk,fast_walk,start,stop,idle"), "", "The clips of the graph, as in walk,run,idle. Those that move another skeleton than the first are moved onto it.";
-    Construction "construction" "Construction" Graph Kind::Choice(Construction::CHOICES), Start::Choice(Construction::Minima.word()), "", "Segments: all clips are cut into equal parts. Local minima: one goes over where two windows are more alike than all around.";
-    SegmentSize "segment_size" "Segment size" Graph number(1.0, 600.0, 1.0), Start::Number(60.0), "frames", "How long each part of a clip is. It must be longer than the blend window.";
-    EdgeThreshold "edge_threshold" "Edge threshold" Graph number(0.1, 60.0, 0.1), Start::Number(8.0), "cm", "One goes over only between windows that are closer than this: root mean square per joint on a body of 1.75 m.";
-    MinJump "min_jump" "Shortest jump" Graph number(0.0, 5.0, 0.05), Start::Number(0.5), "s", "Inside of a clip one does not go to what is less than this away.";
-    MostWaysOut "most_ways_out" "Ways out at most" Graph logarithmic(1.0, 10_000.0, 1.0), Start::Number(64.0), "", "How many transitions may leave one segment: the closest stay. More of them take longer to build and to choose from.";
-    EdgeWeight "edge_weight" "Edge weight" Graph Kind::Choice(EdgeWeight::CHOICES), Start::Choice(EdgeWeight::Inverse.word()), "", "How the distance of a transition makes it more or less probable.";
-    EdgeSigma "edge_sigma" "Width σ" Graph logarithmic(0.1, 20.0, 0.1), Start::Number(2.0), "cm", "A transition that is this much farther than the closest one is 2.7 times less probable.";
-    Continuity "continuity" "Keep going" Graph number(0.0, 1.0, 0.01), Start::Number(0.95), "", "The chance to stay in the clip wherever one could leave it.";
-    GoingOn "going_on" "Going on has" Graph Kind::Choice(GoingOn::CHOICES), Start::Choice(GoingOn::Share.word()), "", "Share: the same chance to stay everywhere. Constant weight: one weight beside those of the transitions, so that the chance to stay falls with every further way out.";
-    ContinuityWeight "continuity_weight" "Weight of going on" Graph logarithmic(0.1, 10_000.0, 0.1), Start::Number(1_000.0), "", "What the next segment of the same clip weighs beside the transitions: the higher, the longer a clip is left unbroken.";
-    VisitedDiscount "visited_discount" "Worth after a visit" Graph number(0.0, 1.0, 0.01), Start::Number(1.0), "", "How much of its chance a place keeps each time it was seen: below 1 the walk looks for what is new.";
-    Prune "prune" "Largest component only" Graph Kind::Switch, Start::Switch(true), "", "Leaves out all from where there is no way back: no walk comes to an end.";
-    WalkMethod "walk_method" "Transitions" Graph Kind::Choice(WalkMethod::CHOICES), Start::Choice(WalkMethod::Dissolve.word()), "", "Dissolve: both clips are mixed over the blend window. Inertialize: the difference dies away.";
-    Transform "transform" "Transform" Graph Kind::Choice(Transform::CHOICES), Start::Choice(Transform::Whole.word()), "", "What is laid onto the walk: the whole clip, or its first frame alone, which is a classic mistake. The rest then has its recorded direction, or its recorded place as well.";
-    Atan "atan" "Angle of the transform" Graph Kind::Choice(Atan::CHOICES), Start::Choice(Atan::Atan2.word()), "", "Taken by atan2, or by a mistake: atan cannot tell a direction from its opposite, degrees are no radians, and the root's Y axis points up and not ahead.";
-    WalkSeconds "walk_seconds" "Measured walk" Graph number(10.0, 600.0, 10.0), Start::Number(60.0), "s", "How much of the walk the numbers are about. It goes on while it plays, for half an hour.";
-    GoTo "go_to" "Go to" Graph Kind::Text, Start::Text(""), "", "When to set off for which clip, by its place in the list, as in 12.5:3,40:0.";
-    WalkPath "walk_path" "Ground path" Graph Kind::Text, Start::Text(""), "", "A line over the ground that the walk follows: x and z in metres, as in 0:0,1.5:4.";
-    Jump "jump" "Transition" Graph Kind::Text, Start::Text(""), "", "One transition in place of the walk: which clip is left and entered at which frame, as in 0:52-3:14.";
+    ControlPoints "control_points" "Control points" Lab(Path) number(4.0, 64.0, 1.0), Start::Number(8.0), "points", "How finely the path follows the way of the hips. Four cannot follow a turn, many follow every sway.";
+    PathSmoothing "path_smoothing" "Smoothing" Lab(Path) number(0.0, 5.0, 0.01), Start::Number(0.0), "", "How much a bend counts against the distance from the hips: 0 is least squares alone.";
+    PathKeep "keep" "Keep" Lab(Path) Kind::Choice(PathKeep::CHOICES), Start::Choice(PathKeep::Speed.word()), "", "What stays when the path becomes longer or shorter.";
+    PathFacing "path_facing" "Body faces" Lab(Path) Kind::Choice(PathFacing::CHOICES), Start::Choice(PathFacing::Path.word()), "", "Whether the body turns where the path turns, or faces as it did before.";
+    PathOffset "path_offset" "Sway of the hips" Lab(Path) Kind::Choice(PathOffset::CHOICES), Start::Choice(PathOffset::Path.word()), "", "Whether the way from the path to the hips turns with the path, or stays as it was in the world: then sway to the side becomes a surge where the path has turned.";
+    PathSpline "path_spline" "Spline" Lab(Path) Kind::Choice(PathSpline::CHOICES), Start::Choice(PathSpline::Clamped.word()), "", "Clamped: the path begins in the first control point and ends in the last. Uniform: the same path from other control points, beside which it begins and ends.";
+    Path "path" "Path" Lab(Path) Kind::Text, Start::Text(""), "", "The edited path: its control points to 1 cm in a short word. Empty: the path as it was fitted.";
+    PathGrid "path_grid" "Snap to grid" Lab(Path) number(0.0, 2.0, 0.05), Start::Number(0.0), "m", "Width of the grid that moved points snap to; 0 is none.";
+    PinStart "pin_start" "Pin the start" Lab(Path) Kind::Switch, Start::Switch(false), "", "Whatever is done to the path, its start stays where it is.";
+    PinEnd "pin_end" "Pin the end" Lab(Path) Kind::Switch, Start::Switch(false), "", "Whatever is done to the path, its end stays where it is.";
+    Others "others" "Others" Lab(Path) Kind::Text, Start::Text(""), "", "Clips that play along on the stage, each in a colour of its own: ids, separated by commas.";
+    Clips "clips" "Clips" Lab(Graph) Kind::Text, Start::Text("walk,walk_left,walk_right,slow_walk,fast_walk,start,stop,idle"), "", "The clips of the graph, as in walk,run,idle. Those that move another skeleton than the first are moved onto it.";
+    Construction "construction" "Construction" Lab(Graph) Kind::Choice(Construction::CHOICES), Start::Choice(Construction::Minima.word()), "", "Segments: all clips are cut into equal parts. Local minima: one goes over where two windows are more alike than all around.";
+    SegmentSize "segment_size" "Segment size" Lab(Graph) number(1.0, 600.0, 1.0), Start::Number(60.0), "frames", "How long each part of a clip is. It must be longer than the blend window.";
+    EdgeThreshold "edge_threshold" "Edge threshold" Lab(Graph) number(0.1, 60.0, 0.1), Start::Number(8.0), "cm", "One goes over only between windows that are closer than this: root mean square per joint on a body of 1.75 m.";
+    MinJump "min_jump" "Shortest jump" Lab(Graph) number(0.0, 5.0, 0.05), Start::Number(0.5), "s", "Inside of a clip one does not go to what is less than this away.";
+    MostWaysOut "most_ways_out" "Ways out at most" Lab(Graph) logarithmic(1.0, 10_000.0, 1.0), Start::Number(64.0), "", "How many transitions may leave one segment: the closest stay. More of them take longer to build and to choose from.";
+    EdgeWeight "edge_weight" "Edge weight" Lab(Graph) Kind::Choice(EdgeWeight::CHOICES), Start::Choice(EdgeWeight::Inverse.word()), "", "How the distance of a transition makes it more or less probable.";
+    EdgeSigma "edge_sigma" "Width σ" Lab(Graph) logarithmic(0.1, 20.0, 0.1), Start::Number(2.0), "cm", "A transition that is this much farther than the closest one is 2.7 times less probable.";
+    Continuity "continuity" "Keep going" Lab(Graph) number(0.0, 1.0, 0.01), Start::Number(0.95), "", "The chance to stay in the clip wherever one could leave it.";
+    GoingOn "going_on" "Going on has" Lab(Graph) Kind::Choice(GoingOn::CHOICES), Start::Choice(GoingOn::Share.word()), "", "Share: the same chance to stay everywhere. Constant weight: one weight beside those of the transitions, so that the chance to stay falls with every further way out.";
+    ContinuityWeight "continuity_weight" "Weight of going on" Lab(Graph) logarithmic(0.1, 10_000.0, 0.1), Start::Number(1_000.0), "", "What the next segment of the same clip weighs beside the transitions: the higher, the longer a clip is left unbroken.";
+    VisitedDiscount "visited_discount" "Worth after a visit" Lab(Graph) number(0.0, 1.0, 0.01), Start::Number(1.0), "", "How much of its chance a place keeps each time it was seen: below 1 the walk looks for what is new.";
+    Prune "prune" "Largest component only" Lab(Graph) Kind::Switch, Start::Switch(true), "", "Leaves out all from where there is no way back: no walk comes to an end.";
+    WalkMethod "walk_method" "Transitions" Lab(Graph) Kind::Choice(WalkMethod::CHOICES), Start::Choice(WalkMethod::Dissolve.word()), "", "Dissolve: both clips are mixed over the blend window. Inertialize: the difference dies away.";
+    Transform "transform" "Transform" Lab(Graph) Kind::Choice(Transform::CHOICES), Start::Choice(Transform::Whole.word()), "", "What is laid onto the walk: the whole clip, or its first frame alone, which is a classic mistake. The rest then has its recorded direction, or its recorded place as well.";
+    Atan "atan" "Angle of the transform" Lab(Graph) Kind::Choice(Atan::CHOICES), Start::Choice(Atan::Atan2.word()), "", "Taken by atan2, or by a mistake: atan cannot tell a direction from its opposite, degrees are no radians, and the root's Y axis points up and not ahead.";
+    WalkSeconds "walk_seconds" "Measured walk" Lab(Graph) number(10.0, 600.0, 10.0), Start::Number(60.0), "s", "How much of the walk the numbers are about. It goes on while it plays, for half an hour.";
+    GoTo "go_to" "Go to" Lab(Graph) Kind::Text, Start::Text(""), "", "When to set off for which clip, by its place in the list, as in 12.5:3,40:0.";
+    WalkPath "walk_path" "Ground path" Lab(Graph) Kind::Text, Start::Text(""), "", "A line over the ground that the walk follows: x and z in metres, as in 0:0,1.5:4.";
+    Jump "jump" "Transition" Lab(Graph) Kind::Text, Start::Text(""), "", "One transition in place of the walk: which clip is left and entered at which frame, as in 0:52-3:14.";
 
-    Scenario "scenario" "Input" Match Kind::Choice(Scenario::CHOICES), Start::Choice(Scenario::Own.word()), "", "Who drives: you, or input that was written down, the same for everybody.";
-    Drive "drive" "Recorded input" Match Kind::Text, Start::Text(""), "", "Input that is played again, exactly: stretches of ticks and velocities. Empty: drive yourself.";
-    MatchClips "match_clips" "Clips" Match Kind::Text, Start::Text(""), "", "The clips to choose frames from: ids, separated by commas. Empty: the synthesiser's set of walks, runs, turns, starts, stops and spins.";
-    Mirrored "mirrored" "Mirrored copies" Match Kind::Switch, Start::Switch(true), "", "Every clip a second time, left and right exchanged.";
-    MatchCycles "match_cycles" "Cycles go round" Match Kind::Switch, Start::Switch(true), "", "A clip that is a cycle plays round and round and is searched to its last frame. Off: it ends, and what is near its end is never chosen.";
-    WalkSpeed "walk_speed" "Walking speed" Match number(0.3, 2.2, 0.05), Start::Number(1.4), "m/s", "How fast the character is asked to walk.";
-    RunSpeed "run_speed" "Running speed" Match number(1.5, 6.0, 0.05), Start::Number(3.2), "m/s", "How fast it is asked to go with Shift.";
-    Strafe "strafe" "Strafe" Match Kind::Switch, Start::Switch(false), "", "It faces where the camera looks, whichever way it goes.";
-    WeightPath "weight_path" "Path ahead" Match number(0.0, 4.0, 0.05), Start::Number(1.0), "×", "How much it counts where the next second leads.";
-    WeightFacing "weight_facing" "Facing ahead" Match number(0.0, 4.0, 0.05), Start::Number(1.25), "×", "How much it counts what the body will face.";
-    WeightFeet "weight_feet" "Feet, where" Match number(0.0, 4.0, 0.05), Start::Number(0.75), "×", "How much it counts where the feet are.";
-    WeightFootSpeed "weight_foot_speed" "Feet, how fast" Match number(0.0, 4.0, 0.05), Start::Number(1.0), "×", "How much it counts how the feet move.";
-    WeightHipSpeed "weight_hip_speed" "Hips, how fast" Match number(0.0, 4.0, 0.05), Start::Number(1.0), "×", "How much it counts how the hips move.";
-    AheadNear "ahead_near" "Look ahead, near" Match number(0.05, 1.0, 0.01), Start::Number(0.33), "s", "The first time at which path and facing are compared.";
-    AheadMiddle "ahead_middle" "Look ahead, middle" Match number(0.1, 2.0, 0.01), Start::Number(0.67), "s", "The second.";
-    AheadFar "ahead_far" "Look ahead, far" Match number(0.2, 3.0, 0.01), Start::Number(1.0), "s", "The last. Frames nearer to their clip's end than this are never chosen, unless the clip is a cycle.";
-    Normalisation "normalisation" "Normalise" Match Kind::Choice(Normalisation::CHOICES), Start::Choice(Normalisation::Block.word()), "", "By block: positions, directions and velocities keep their proportions among themselves. By dimension: each number varies by as much, also where it hardly moves.";
-    SearchInterval "search_interval" "Search every" Match logarithmic(0.02, 2.0, 0.01), Start::Number(0.1), "s", "How often the best frame is looked for. A clip's end and another input do not wait.";
-    SearchBy "search_by" "Search by" Match Kind::Choice(SearchBy::CHOICES), Start::Choice(SearchBy::Boxes.word()), "", "Three searches that find the same frame: how many frames they look at differs.";
-    Hysteresis "hysteresis" "Hysteresis" Match Kind::Choice(Hysteresis::CHOICES), Start::Choice(Hysteresis::Bias.word()), "", "What keeps it from jumping for next to nothing.";
-    BiasShare "bias_share" "Bias, share" Match number(0.0, 0.9, 0.01), Start::Number(0.15), "", "A better frame must be cheaper by this share of the present cost.";
-    BiasConstant "bias_constant" "Bias, constant" Match number(0.0, 5.0, 0.05), Start::Number(0.2), "cost", "And by this.";
-    MinimumTime "minimum_time" "Time between jumps" Match number(0.0, 2.0, 0.05), Start::Number(0.3), "s", "No jump sooner than this after another.";
-    PreferCurrent "prefer_current" "Prefer this clip" Match number(0.0, 1.0, 0.05), Start::Number(0.2), "", "While the input is still, a frame of another clip must be cheaper by this share.";
-    PreferClip "prefer_clip" "Clip preferred" Match Kind::Text, Start::Text(""), "", "Which clip is preferred by that share while the input is still. Empty: the one that plays.";
-    JumpMethod "jump_method" "Transition" Match Kind::Choice(JumpMethod::CHOICES), Start::Choice(JumpMethod::Inertialize.word()), "", "How a jump is hidden.";
-    JumpHalfLife "jump_half_life" "Half-life" Match logarithmic(0.02, 1.0, 0.01), Start::Number(0.1), "s", "How lazily the difference of a jump dies away. Longer ones are softer, and let feet slide.";
-    VelocityHalfLife "velocity_half_life" "Velocity half-life" Match number(0.05, 1.0, 0.01), Start::Number(0.28), "s", "How lazily the way follows the stick.";
-    FacingHalfLife "facing_half_life" "Facing half-life" Match number(0.05, 1.0, 0.01), Start::Number(0.3), "s", "How lazily the facing follows.";
-    Adjust "adjust" "Adjust to the way" Match Kind::Switch, Start::Switch(true), "", "Draws the character to where it was asked to be, and holds it near.";
-    AdjustHalfLife "adjust_half_life" "Adjustment half-life" Match number(0.02, 1.0, 0.01), Start::Number(0.1), "s", "How fast it is drawn there.";
-    AdjustShare "adjust_share" "Adjustment at most" Match number(0.0, 2.0, 0.05), Start::Number(0.5), "of speed", "It is drawn by no more than this share of its own speed, so that feet slide little.";
-    ClampDistance "clamp_distance" "Never farther than" Match number(0.0, 2.0, 0.01), Start::Number(0.35), "m", "The farthest that the character may be from where it should.";
-    ClampTurn "clamp_turn" "Never turned more than" Match number(0.0, 180.0, 1.0), Start::Number(57.0), "°", "The farthest that it may be turned away.";
-    PlantFeet "plant_feet" "Foot lock" Match Kind::Switch, Start::Switch(true), "", "Holds planted feet where they stand while it plays.";
-    AskTag "ask_tag" "Only frames of" Match Kind::Text, Start::Text("any"), "", "Frames must have this tag: walk, run, idle, turn, or a word of your own.";
-    ForbidTag "forbid_tag" "No frames of" Match Kind::Text, Start::Text("nothing"), "", "Frames must not have this tag.";
-    Tags "tags" "Tags" Match Kind::Text, Start::Text(""), "", "Tags by hand: clip, seconds and word, as in walk:0.2-1.5:exclude. A word behind a minus sign is taken away there.";
-    ShownCandidates "shown_candidates" "Candidates shown" Match number(1.0, 8.0, 1.0), Start::Number(5.0), "frames", "How many of the best frames each search tells of.";
-    Crowd "crowd" "Characters" Match number(1.0, 100.0, 1.0), Start::Number(1.0), "", "Others walk about you, each with a controller of its own, all with the same clips.";
+    Scenario "scenario" "Input" Lab(Match) Kind::Choice(Scenario::CHOICES), Start::Choice(Scenario::Own.word()), "", "Who drives: you, or input that was written down, the same for everybody.";
+    Drive "drive" "Recorded input" Lab(Match) Kind::Text, Start::Text(""), "", "Input that is played again, exactly: stretches of ticks and velocities. Empty: drive yourself.";
+    MatchClips "match_clips" "Clips" Lab(Match) Kind::Text, Start::Text(""), "", "The clips to choose frames from: ids, separated by commas. Empty: the synthesiser's set of walks, runs, turns, starts, stops and spins.";
+    Mirrored "mirrored" "Mirrored copies" Lab(Match) Kind::Switch, Start::Switch(true), "", "Every clip a second time, left and right exchanged.";
+    MatchCycles "match_cycles" "Cycles go round" Lab(Match) Kind::Switch, Start::Switch(true), "", "A clip that is a cycle plays round and round and is searched to its last frame. Off: it ends, and what is near its end is never chosen.";
+    WalkSpeed "walk_speed" "Walking speed" Lab(Match) number(0.3, 2.2, 0.05), Start::Number(1.4), "m/s", "How fast the character is asked to walk.";
+    RunSpeed "run_speed" "Running speed" Lab(Match) number(1.5, 6.0, 0.05), Start::Number(3.2), "m/s", "How fast it is asked to go with Shift.";
+    Strafe "strafe" "Strafe" Lab(Match) Kind::Switch, Start::Switch(false), "", "It faces where the camera looks, whichever way it goes.";
+    WeightPath "weight_path" "Path ahead" Lab(Match) number(0.0, 4.0, 0.05), Start::Number(1.0), "×", "How much it counts where the next second leads.";
+    WeightFacing "weight_facing" "Facing ahead" Lab(Match) number(0.0, 4.0, 0.05), Start::Number(1.25), "×", "How much it counts what the body will face.";
+    WeightFeet "weight_feet" "Feet, where" Lab(Match) number(0.0, 4.0, 0.05), Start::Number(0.75), "×", "How much it counts where the feet are.";
+    WeightFootSpeed "weight_foot_speed" "Feet, how fast" Lab(Match) number(0.0, 4.0, 0.05), Start::Number(1.0), "×", "How much it counts how the feet move.";
+    WeightHipSpeed "weight_hip_speed" "Hips, how fast" Lab(Match) number(0.0, 4.0, 0.05), Start::Number(1.0), "×", "How much it counts how the hips move.";
+    AheadNear "ahead_near" "Look ahead, near" Lab(Match) number(0.05, 1.0, 0.01), Start::Number(0.33), "s", "The first time at which path and facing are compared.";
+    AheadMiddle "ahead_middle" "Look ahead, middle" Lab(Match) number(0.1, 2.0, 0.01), Start::Number(0.67), "s", "The second.";
+    AheadFar "ahead_far" "Look ahead, far" Lab(Match) number(0.2, 3.0, 0.01), Start::Number(1.0), "s", "The last. Frames nearer to their clip's end than this are never chosen, unless the clip is a cycle.";
+    Normalisation "normalisation" "Normalise" Lab(Match) Kind::Choice(Normalisation::CHOICES), Start::Choice(Normalisation::Block.word()), "", "By block: positions, directions and velocities keep their proportions among themselves. By dimension: each number varies by as much, also where it hardly moves.";
+    SearchInterval "search_interval" "Search every" Lab(Match) logarithmic(0.02, 2.0, 0.01), Start::Number(0.1), "s", "How often the best frame is looked for. A clip's end and another input do not wait.";
+    SearchBy "search_by" "Search by" Lab(Match) Kind::Choice(SearchBy::CHOICES), Start::Choice(SearchBy::Boxes.word()), "", "Three searches that find the same frame: how many frames they look at differs.";
+    Hysteresis "hysteresis" "Hysteresis" Lab(Match) Kind::Choice(Hysteresis::CHOICES), Start::Choice(Hysteresis::Bias.word()), "", "What keeps it from jumping for next to nothing.";
+    BiasShare "bias_share" "Bias, share" Lab(Match) number(0.0, 0.9, 0.01), Start::Number(0.15), "", "A better frame must be cheaper by this share of the present cost.";
+    BiasConstant "bias_constant" "Bias, constant" Lab(Match) number(0.0, 5.0, 0.05), Start::Number(0.2), "cost", "And by this.";
+    MinimumTime "minimum_time" "Time between jumps" Lab(Match) number(0.0, 2.0, 0.05), Start::Number(0.3), "s", "No jump sooner than this after another.";
+    PreferCurrent "prefer_current" "Prefer this clip" Lab(Match) number(0.0, 1.0, 0.05), Start::Number(0.2), "", "While the input is still, a frame of another clip must be cheaper by this share.";
+    PreferClip "prefer_clip" "Clip preferred" Lab(Match) Kind::Text, Start::Text(""), "", "Which clip is preferred by that share while the input is still. Empty: the one that plays.";
+    JumpMethod "jump_method" "Transition" Lab(Match) Kind::Choice(JumpMethod::CHOICES), Start::Choice(JumpMethod::Inertialize.word()), "", "How a jump is hidden.";
+    JumpHalfLife "jump_half_life" "Half-life" Lab(Match) logarithmic(0.02, 1.0, 0.01), Start::Number(0.1), "s", "How lazily the difference of a jump dies away. Longer ones are softer, and let feet slide.";
+    VelocityHalfLife "velocity_half_life" "Velocity half-life" Lab(Match) number(0.05, 1.0, 0.01), Start::Number(0.28), "s", "How lazily the way follows the stick.";
+    FacingHalfLife "facing_half_life" "Facing half-life" Lab(Match) number(0.05, 1.0, 0.01), Start::Number(0.3), "s", "How lazily the facing follows.";
+    Adjust "adjust" "Adjust to the way" Lab(Match) Kind::Switch, Start::Switch(true), "", "Draws the character to where it was asked to be, and holds it near.";
+    AdjustHalfLife "adjust_half_life" "Adjustment half-life" Lab(Match) number(0.02, 1.0, 0.01), Start::Number(0.1), "s", "How fast it is drawn there.";
+    AdjustShare "adjust_share" "Adjustment at most" Lab(Match) number(0.0, 2.0, 0.05), Start::Number(0.5), "of speed", "It is drawn by no more than this share of its own speed, so that feet slide little.";
+    ClampDistance "clamp_distance" "Never farther than" Lab(Match) number(0.0, 2.0, 0.01), Start::Number(0.35), "m", "The farthest that the character may be from where it should.";
+    ClampTurn "clamp_turn" "Never turned more than" Lab(Match) number(0.0, 180.0, 1.0), Start::Number(57.0), "°", "The farthest that it may be turned away.";
+    PlantFeet "plant_feet" "Foot lock" Lab(Match) Kind::Switch, Start::Switch(true), "", "Holds planted feet where they stand while it plays.";
+    AskTag "ask_tag" "Only frames of" Lab(Match) Kind::Text, Start::Text("any"), "", "Frames must have this tag: walk, run, idle, turn, or a word of your own.";
+    ForbidTag "forbid_tag" "No frames of" Lab(Match) Kind::Text, Start::Text("nothing"), "", "Frames must not have this tag.";
+    Tags "tags" "Tags" Lab(Match) Kind::Text, Start::Text(""), "", "Tags by hand: clip, seconds and word, as in walk:0.2-1.5:exclude. A word behind a minus sign is taken away there.";
+    ShownCandidates "shown_candidates" "Candidates shown" Lab(Match) number(1.0, 8.0, 1.0), Start::Number(5.0), "frames", "How many of the best frames each search tells of.";
+    Crowd "crowd" "Characters" Lab(Match) number(1.0, 100.0, 1.0), Start::Number(1.0), "", "Others walk about you, each with a controller of its own, all with the same clips.";
 
-    Gait "gait" "Motion" Make Kind::Choice(MadeAction::CHOICES), Start::Choice(MadeAction::Walk.word()), "", "What the character does.";
-    GaitSpeed "gait_speed" "Speed" Make auto(0.4, 6.5, 0.05), Start::Auto, "m/s", "How fast it walks or runs: a walk takes 0.4 to 2.2, a run 1.8 to 6.5.";
-    TurnRate "turn_rate" "Turn rate" Make number(-120.0, 120.0, 1.0), Start::Number(0.0), "°/s", "How fast the path turns; positive is left.";
-    BodyHeight "body_height" "Body height" Make number(1.0, 2.2, 0.01), Start::Number(1.75), "m", "Longer legs take longer and slower strides.";
-    ArmSwing "arm_swing" "Arm swing" Make number(0.0, 2.0, 0.05), Start::Number(1.0), "×", "How far the arms swing; 1 is natural.";
-    Bounce "bounce" "Bounce" Make number(0.0, 2.0, 0.05), Start::Number(1.0), "×", "How far the hips rise and fall; 1 is natural.";
-    Lean "lean" "Lean" Make number(0.0, 2.0, 0.05), Start::Number(1.0), "×", "How far the trunk leans forward and into turns; 1 is natural.";
-    MakeSeconds "make_seconds" "Length" Make number(1.0, 30.0, 0.1), Start::Number(4.0), "s", "How long the clip is.";
-    Seed "seed" "Seed" Make number(0.0, 999.0, 1.0), Start::Number(7.0), "", "Another seed, another natural variation; the same seed, the same clip.";
+    Gait "gait" "Motion" Lab(Make) Kind::Choice(MadeAction::CHOICES), Start::Choice(MadeAction::Walk.word()), "", "What the character does.";
+    GaitSpeed "gait_speed" "Speed" Lab(Make) auto(0.4, 6.5, 0.05), Start::Auto, "m/s", "How fast it walks or runs: a walk takes 0.4 to 2.2, a run 1.8 to 6.5.";
+    TurnRate "turn_rate" "Turn rate" Lab(Make) number(-120.0, 120.0, 1.0), Start::Number(0.0), "°/s", "How fast the path turns; positive is left.";
+    BodyHeight "body_height" "Body height" Lab(Make) number(1.0, 2.2, 0.01), Start::Number(1.75), "m", "Longer legs take longer and slower strides.";
+    ArmSwing "arm_swing" "Arm swing" Lab(Make) number(0.0, 2.0, 0.05), Start::Number(1.0), "×", "How far the arms swing; 1 is natural.";
+    Bounce "bounce" "Bounce" Lab(Make) number(0.0, 2.0, 0.05), Start::Number(1.0), "×", "How far the hips rise and fall; 1 is natural.";
+    Lean "lean" "Lean" Lab(Make) number(0.0, 2.0, 0.05), Start::Number(1.0), "×", "How far the trunk leans forward and into turns; 1 is natural.";
+    MakeSeconds "make_seconds" "Length" Lab(Make) number(1.0, 30.0, 0.1), Start::Number(4.0), "s", "How long the clip is.";
+    Seed "seed" "Seed" Lab(Make) number(0.0, 999.0, 1.0), Start::Number(7.0), "", "Another seed, another natural variation; the same seed, the same clip.";
 
     Stage "stage" "Stage" Stage Kind::Choice(Backdrop::CHOICES), Start::Choice(Backdrop::Auto.word()), "", "Dark, light, or paper: black lines on white, for print and bright rooms. Auto goes with the theme.";
     Look "look" "Character" Stage Kind::Choice(Look::CHOICES), Start::Choice(Look::Body.word()), "", "A body in one skin, a mannequin of limbs, bones, or bones inside of the body.";

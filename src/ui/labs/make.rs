@@ -6,10 +6,10 @@ use crate::ui::rows::{Detail, compare_ui, foot_rows_ui, lab_label, param_row_ui,
 use crate::ui::state::UiState;
 use crate::ui::theme::space;
 use eframe::egui::Ui;
-use segue_session::{Group, Key, PARAMS, Session};
+use segue_session::{Group, Key, LabId, PARAMS, Session};
 pub(super) fn make_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(&lab_label(session), ui);
-    for param in PARAMS.iter().filter(|param| param.group == Group::Make) {
+    for param in PARAMS.iter().filter(|param| param.group == Group::Lab(LabId::Make)) {
         // What the chosen motion does not have is not offered.
         if session.made_motion_has(param.key) {
             param_row_ui(param.key, &Detail::default(), session, out, ui);

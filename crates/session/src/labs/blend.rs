@@ -5,7 +5,7 @@ use super::pair::Pair;
 use super::{MatchSearch, Measured, Outcome, Slot, Source, Transition};
 use crate::compare::MAX_PANES;
 use crate::motion::Motion;
-use crate::params::{Group, Key, Params};
+use crate::params::{Key, Params};
 use crate::{LabId, choices};
 use segue_motion::blend::{AlignBy, RootBlend, WeightLaw};
 use segue_motion::clip::{Clip, Contacts};
@@ -24,8 +24,8 @@ use std::sync::Arc;
 pub(super) struct BlendLab;
 
 impl Lab for BlendLab {
-    fn groups(&self) -> &'static [Group] {
-        &[Group::Blend]
+    fn parameters_of(&self) -> &'static [LabId] {
+        &[LabId::Blend]
     }
 
     fn result_name(&self, _params: &Params, a: &str, b: &str) -> String {
@@ -49,8 +49,8 @@ impl Lab for BlendLab {
 pub(super) struct TransitionLab;
 
 impl Lab for TransitionLab {
-    fn groups(&self) -> &'static [Group] {
-        &[Group::Blend, Group::Transition]
+    fn parameters_of(&self) -> &'static [LabId] {
+        &[LabId::Blend, LabId::Transition]
     }
 
     fn result_name(&self, params: &Params, a: &str, b: &str) -> String {

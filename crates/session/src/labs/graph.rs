@@ -2,7 +2,8 @@
 //! plays.
 
 use super::lab::Lab;
-use crate::params::{Group, Key, Params, Value};
+use crate::LabId;
+use crate::params::{Key, Params, Value};
 mod built;
 mod cast;
 mod grapher;
@@ -25,8 +26,8 @@ use std::sync::Arc;
 pub(super) struct GraphLab;
 
 impl Lab for GraphLab {
-    fn groups(&self) -> &'static [Group] {
-        &[Group::Graph]
+    fn parameters_of(&self) -> &'static [LabId] {
+        &[LabId::Graph]
     }
 
     fn shared_keys(&self) -> &'static [Key] {

@@ -9,10 +9,10 @@ use crate::params::{Group, Key, Params, Value};
 
 /// The facts of a lab. Each lab's own file holds them; [`of`] lists all labs.
 pub(crate) trait Lab: Sync {
-    /// The groups of parameters that the result depends on.
-    fn groups(&self) -> &'static [Group];
+    /// The labs whose parameters the result depends on.
+    fn parameters_of(&self) -> &'static [LabId];
 
-    /// Parameters of other groups that the result depends on.
+    /// Parameters of other labs that the result depends on.
     fn shared_keys(&self) -> &'static [Key] {
         &[]
     }
@@ -67,7 +67,7 @@ pub(crate) trait Lab: Sync {
 
     /// Whether the result depends on a parameter.
     fn depends_on(&self, key: Key) -> bool {
-        self.groups().contains(&key.param().group)
+        matches!(key.param().group, Group::Lab(lab) if self.parameters_of().contains(&lab))
             || self.shared_keys().contains(&key)
             || (self.has_feet() && is_of_feet(key))
     }

@@ -2,10 +2,11 @@ use super::feet::{Lock, slide, slide_before, with_feet};
 use super::lab::Lab;
 use super::pair::{Pair, source_of};
 use super::{Measured, Outcome, Slot, Source};
+use crate::LabId;
 use crate::choices;
 use crate::compare::MAX_PANES;
 use crate::motion::Motion;
-use crate::params::{Group, Key, Params};
+use crate::params::{Key, Params};
 use segue_motion::blend::{
     BodyPart, LayerMode, LayerOptions, LayerTime, Reference, layer_timed, mask,
 };
@@ -20,8 +21,8 @@ use std::sync::Arc;
 pub(super) struct LayersLab;
 
 impl Lab for LayersLab {
-    fn groups(&self) -> &'static [Group] {
-        &[Group::Layers]
+    fn parameters_of(&self) -> &'static [LabId] {
+        &[LabId::Layers]
     }
 
     fn result_name(&self, _params: &Params, a: &str, b: &str) -> String {

@@ -5,9 +5,10 @@ use super::lab::Lab;
 use super::pair::source_of;
 use super::rounds::{Rounds, repeated, rounds};
 use super::{Cycle, CycleMade, Measured, Outcome, Slot, Source};
+use crate::LabId;
 use crate::choices;
 use crate::motion::Motion;
-use crate::params::{Group, Key, Params};
+use crate::params::{Key, Params};
 use segue_motion::blend;
 use segue_motion::math::Planar;
 use segue_motion::metrics::Metric;
@@ -20,8 +21,8 @@ use std::sync::Arc;
 pub(super) struct LoopLab;
 
 impl Lab for LoopLab {
-    fn groups(&self) -> &'static [Group] {
-        &[Group::Loop]
+    fn parameters_of(&self) -> &'static [LabId] {
+        &[LabId::Loop]
     }
 
     fn shared_keys(&self) -> &'static [Key] {

@@ -4,7 +4,7 @@ use super::lab::Lab;
 use super::{Outcome, Slot};
 use crate::motion::{FeetReading, Motion};
 use crate::outside::short;
-use crate::params::{Group, Key, Kind, Params, Value};
+use crate::params::{Key, Kind, Params, Value};
 use crate::{LabId, choices};
 use segue_motion::metrics::foot_slide_cm;
 use segue_motion::synth::{self, Action};
@@ -14,8 +14,8 @@ use std::sync::Arc;
 pub(super) struct MakeLab;
 
 impl Lab for MakeLab {
-    fn groups(&self) -> &'static [Group] {
-        &[Group::Make]
+    fn parameters_of(&self) -> &'static [LabId] {
+        &[LabId::Make]
     }
 
     fn slots(&self) -> &'static [Slot] {

@@ -3,8 +3,9 @@
 use super::Slot;
 use super::kept::{read_ids, write_ids};
 use super::lab::Lab;
+use crate::LabId;
 use crate::choices;
-use crate::params::{Group, Key, Params, Value};
+use crate::params::{Key, Params, Value};
 mod crowd;
 mod driver;
 mod live;
@@ -26,8 +27,8 @@ pub use trace::{DriveMoment, Driven};
 pub(super) struct MatchLab;
 
 impl Lab for MatchLab {
-    fn groups(&self) -> &'static [Group] {
-        &[Group::Match]
+    fn parameters_of(&self) -> &'static [LabId] {
+        &[LabId::Match]
     }
 
     fn shared_keys(&self) -> &'static [Key] {

@@ -6,10 +6,11 @@ use super::lab::Lab;
 use super::lab_set::{JobKind, Sliced};
 use super::pair::source_of;
 use super::{Outcome, Slot, Source};
+use crate::LabId;
 use crate::choices;
 use crate::compare::MAX_PANES;
 use crate::motion::Motion;
-use crate::params::{Group, Key, Params};
+use crate::params::{Key, Params};
 use planter::{Planted, Planter};
 use segue_motion::clip::{Clip, Contacts};
 use segue_motion::math::Planar;
@@ -27,8 +28,8 @@ mod planter;
 pub(super) struct PathLab;
 
 impl Lab for PathLab {
-    fn groups(&self) -> &'static [Group] {
-        &[Group::Path]
+    fn parameters_of(&self) -> &'static [LabId] {
+        &[LabId::Path]
     }
 
     fn slots(&self) -> &'static [Slot] {

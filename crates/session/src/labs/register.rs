@@ -1,7 +1,8 @@
 //! The Register lab: two clips laid on each other in time, blended or joined along it.
 
 use super::lab::Lab;
-use crate::params::{Group, Key, Params};
+use crate::LabId;
+use crate::params::{Key, Params};
 mod map;
 mod pairs;
 mod registrar;
@@ -34,8 +35,8 @@ use std::sync::Arc;
 pub(super) struct RegisterLab;
 
 impl Lab for RegisterLab {
-    fn groups(&self) -> &'static [Group] {
-        &[Group::Register]
+    fn parameters_of(&self) -> &'static [LabId] {
+        &[LabId::Register]
     }
 
     fn shared_keys(&self) -> &'static [Key] {

@@ -5,7 +5,8 @@ use super::lab::Lab;
 use super::pair::Pair;
 use super::rounds::{Rounds, rounds};
 use super::{Cycle, CycleMade, Measured, Outcome};
-use crate::params::{Group, Key, Kind, Params};
+use crate::LabId;
+use crate::params::{Key, Kind, Params};
 use segue_motion::clip::ground_speed;
 use segue_motion::gait::{GaitCycle, PhaseAlignment, SpeedBlend, SpeedOptions};
 use segue_motion::metrics::Metric;
@@ -16,8 +17,8 @@ use std::sync::Arc;
 pub(super) struct SpeedLab;
 
 impl Lab for SpeedLab {
-    fn groups(&self) -> &'static [Group] {
-        &[Group::Speed]
+    fn parameters_of(&self) -> &'static [LabId] {
+        &[LabId::Speed]
     }
 
     fn result_name(&self, params: &Params, a: &str, b: &str) -> String {

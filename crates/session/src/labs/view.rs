@@ -6,11 +6,12 @@ use super::lab::Lab;
 use super::lab_set::{JobKind, Sliced};
 use super::pair::source_of;
 use super::{Measured, Outcome, Slot};
+use crate::LabId;
 use crate::choices;
 use crate::compare::MAX_PANES;
 use crate::motion::Motion;
 use crate::notice::sentence;
-use crate::params::{Group, Key, Params};
+use crate::params::{Key, Params};
 use segue_motion::math::Planar;
 use segue_motion::metrics::{ClipMeter, Metric, SlideMeter};
 use segue_motion::path::{FitOptions, FittedPath};
@@ -21,8 +22,8 @@ use std::sync::Arc;
 pub(super) struct ViewLab;
 
 impl Lab for ViewLab {
-    fn groups(&self) -> &'static [Group] {
-        &[Group::View]
+    fn parameters_of(&self) -> &'static [LabId] {
+        &[LabId::View]
     }
 
     fn slots(&self) -> &'static [Slot] {
