@@ -110,7 +110,7 @@ fn a_long_walk_through_captured_motion_neither_spins_nor_flashes() {
     session.apply(Command::OpenLink(link)).expect("the link is good");
     while session.work() {}
     let outcome = session.main_outcome().expect("there is a walk");
-    let walk = outcome.walk.as_ref().expect("it is a walk");
+    let walk = outcome.walk().expect("it is a walk");
     assert!(walk.passed.len() > 60, "{} stays", walk.passed.len());
     for id in ["spins", "flashes"] {
         let metric = outcome.metrics.iter().find(|metric| metric.id == id).expect("it is measured");

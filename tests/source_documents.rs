@@ -47,7 +47,7 @@ fn motion(session: &Session, pane: usize) -> &Motion {
 }
 
 fn walk(session: &Session, pane: usize) -> &Walk {
-    outcome(session, pane).walk.as_ref().expect("a walk")
+    outcome(session, pane).walk().expect("a walk")
 }
 
 fn graph(session: &Session, pane: usize) -> &MotionGraph {
@@ -329,7 +329,7 @@ fn the_motion_without_its_path_stays_in_place_and_faces_one_way() {
 #[test]
 fn four_control_points_make_a_path_whose_residual_is_carried_along() {
     let session = opened("lab=path&a=walk_left&control_points=4");
-    let own = outcome(&session, 0).path.as_ref().expect("a path");
+    let own = outcome(&session, 0).path().expect("a path");
     assert_eq!(own.road.spline().points().len(), 4);
     let error = number(&session, 0, "fit_rms_cm");
     let finer = number(&opened("lab=path&a=walk_left&control_points=16"), 0, "fit_rms_cm");
@@ -357,7 +357,7 @@ fn a_timewarp_compares_five_frames_and_rises_by_at_most_two_in_a_row() {
         ),
         (5.0, 2.0, 0.5)
     );
-    let registered = outcome(&session, 0).registered.as_ref().expect("a registration");
+    let registered = outcome(&session, 0).registered().expect("a registration");
     let path: Vec<(usize, usize)> = registered.registration.path().cells.clone();
     let (mut across, mut along) = (0, 0);
     for step in path.windows(2) {
@@ -378,7 +378,7 @@ fn a_join_goes_over_by_time_in_a_straight_line_where_it_shall() {
         let made = outcome(&session, 0).clone();
         let transition = made.transition.expect("a transition");
         let from = (transition.start_secs * made.motion.clip.fps()).round() as usize;
-        let beats = &made.registered.as_ref().expect("a registration").beats;
+        let beats = &made.registered().expect("a registration").beats;
         // Where on A's clock each frame of the transition is, and B's weight there.
         beats[from..from + transition.window_frames]
             .iter()
@@ -440,7 +440,7 @@ fn an_offset_that_stays_in_the_world_is_no_longer_to_the_left_of_the_path() {
     let mut most: f64 = 0.0;
     for (pane, is_local) in [(0, true), (1, false)] {
         let made = outcome(&session, pane);
-        let path = made.path.as_ref().expect("a path");
+        let path = made.path().expect("a path");
         assert!(path.is_edited);
         let old = path.fitted.places().iter().zip(&path.fitted.motion().ground_frames);
         for ((old, stood), (place, stands)) in

@@ -245,7 +245,7 @@ impl Director {
         let twisted = twisted(motion, world, params.number(Key::Twist));
         let world = twisted.as_ref().unwrap_or(world);
         let seen = params.choice::<choices::Look>();
-        match (seen, outcome.layer.as_ref().filter(|_| params.is_on(Key::MaskColors))) {
+        match (seen, outcome.layer().filter(|_| params.is_on(Key::MaskColors))) {
             (choices::Look::Bones, _) => {}
             (choices::Look::Both, _) => {
                 pane.add_glass(&body, world, with_alpha(look.clay, GLASS_ALPHA));
@@ -278,12 +278,12 @@ impl Director {
                 );
             }
         }
-        if let Some(path) = &outcome.path {
+        if let Some(path) = outcome.path() {
             add_path(path, &self.marks, look, colors, pane);
         } else if params.is_on(Key::Trail) {
             add_ground_path(outcome, place, now, colors, pane);
         }
-        if let Some(driven) = &outcome.driven {
+        if let Some(driven) = outcome.driven() {
             if params.is_on(Key::Trail) {
                 add_drive(driven, now, colors, pane);
             }
@@ -493,11 +493,11 @@ impl Director {
     /// weight falls, B vanishes as its weight rises.
     fn draw_sources(&mut self, shown: &Shown<'_>, colors: &Colors, pane: &mut Pane) {
         let (outcome, now) = (shown.outcome, shown.now);
-        if let Some(walk) = outcome.walk.as_ref().filter(|walk| !walk.is_jump) {
+        if let Some(walk) = outcome.walk().filter(|walk| !walk.is_jump) {
             self.draw_walk_ghosts(shown, walk, colors, pane);
             return;
         }
-        if outcome.registered.is_some() {
+        if outcome.registered().is_some() {
             let away = outcome.transition.map_or(0.0, |transition| {
                 (transition.start_secs - now).max(now - transition.end_secs).max(0.0)
                     / GHOST_FADE_SECS
@@ -753,7 +753,7 @@ pub fn camera_of(params: &Params, shown_size: f32) -> Camera {
 /// an edited path it is where that began before: the ground must not move when the path does.
 #[must_use]
 pub fn resting_point(outcome: &Outcome, place: &Planar) -> Vec3 {
-    let motion = outcome.path.as_ref().map_or(&outcome.motion, |path| path.fitted.motion());
+    let motion = outcome.path().map_or(&outcome.motion, |path| path.fitted.motion());
     resting_place(motion, place).with_y(middle_height(&outcome.motion))
 }
 
@@ -793,7 +793,7 @@ fn add_ground_path(outcome: &Outcome, at: &Planar, now: f64, colors: &Colors, pa
     let frames = &outcome.motion.ground_frames;
     let fps = outcome.motion.clip.fps();
     // Of a long walk what lies about the present.
-    let near = match &outcome.walk {
+    let near = match outcome.walk() {
         Some(walk) if !walk.is_jump && walk.followed.is_none() => {
             let frame = |secs: f64| ((secs.max(0.0) * fps) as usize).min(frames.len());
             frame(now - WALK_PATH_SECS)..frame(now + WALK_PATH_SECS)
@@ -805,7 +805,7 @@ fn add_ground_path(outcome: &Outcome, at: &Planar, now: f64, colors: &Colors, pa
         let secs = frame as f64 / fps;
         let mut color = color_at(outcome, secs, colors);
         // What is to come is fainter than what was walked.
-        color[3] *= if outcome.walk.is_some() && secs > now { 0.45 } else { 1.0 };
+        color[3] *= if outcome.walk().is_some() && secs > now { 0.45 } else { 1.0 };
         Some((at.apply(frames.get(frame)?.origin()).with_y(0.004), color))
     });
     pane.add_path(points, 2.0, Layer::Ground);

@@ -234,7 +234,7 @@ fn slim_time_ui(
     let scale = theme_of(ui).scale();
     let is_walked = session.graph_walk().is_some_and(|walk| !walk.is_jump);
     let has_strip =
-        is_walked || session.main_outcome().is_some_and(|outcome| outcome.driven.is_some());
+        is_walked || session.main_outcome().is_some_and(|outcome| outcome.driven().is_some());
     let panel =
         if has_strip { panel.exact_size(144.0 * scale) } else { panel.default_size(136.0 * scale) };
     panel.frame(panel_frame(ui, margin, space::S)).show(ui, |ui| {

@@ -161,7 +161,7 @@ fn verdicts(panes: &[Pane]) -> Verdicts {
     let is_registered = panes
         .iter()
         .filter_map(|pane| pane.outcome.as_ref())
-        .any(|outcome| outcome.registered.is_some());
+        .any(|outcome| outcome.registered().is_some());
     let looked_at = if is_registered {
         ["skating_cmps", "velocity_jump_dps", "pose_jump_deg"]
     } else {
@@ -432,7 +432,7 @@ fn pane_words(pane: &Pane, session: &Session) -> Words {
             secondary: Key::WarpWith.param().spoken(params.get(Key::WarpWith)),
         },
         LabId::Graph => {
-            let walk = pane.outcome.as_ref().and_then(|outcome| outcome.walk.as_ref());
+            let walk = pane.outcome.as_ref().and_then(|outcome| outcome.walk());
             let at = walk.and_then(|walk| Some((walk, walk.at(session.now_secs())?)));
             let name = |(walk, clip): (&Walk, usize)| {
                 walk.built.cast().names().get(clip).cloned().unwrap_or_default()

@@ -555,7 +555,7 @@ fn the_layers_lab_says_how_time_goes_and_where_the_layer_is() {
         ("layers-phone-dark", PHONE, DARK, "lab=layers&play=off"),
     ] {
         let page = page(link);
-        let sentence = text::fit(outcome(&page).layer.as_ref().expect("a layer"));
+        let sentence = text::fit(outcome(&page).layer().expect("a layer"));
         let additive = link.contains("additive");
         assert_eq!(sentence.starts_with("No steps"), additive, "{sentence}");
         let mut harness = harness(size, theme, page);

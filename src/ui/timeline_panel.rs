@@ -57,7 +57,7 @@ pub(crate) fn timeline_panel_ui(
     let Some(outcome) = session.main_outcome() else {
         return kit::note_ui(text::EMPTY_PANE, palette_of(ui).muted, ui);
     };
-    if let Some(driven) = &outcome.driven {
+    if let Some(driven) = outcome.driven() {
         return drive_panel_ui(session, outcome, driven, layout, state, out, ui);
     }
     let clip = &outcome.motion.clip;
@@ -107,7 +107,7 @@ pub(crate) fn timeline_panel_ui(
             .find(made_from.text(key))
             .map_or_else(String::new, |entry| entry.name.clone())
     });
-    let names = match &outcome.walk {
+    let names = match outcome.walk() {
         Some(walk) => [0, 1].map(|part: usize| {
             let clip = walk.passed.get(part).map(|passed| passed.stay.clip);
             clip.and_then(|clip| walk.built.cast().names().get(clip).cloned()).unwrap_or_default()
@@ -116,7 +116,7 @@ pub(crate) fn timeline_panel_ui(
     };
     let made = made_from.lab() == LabId::Make;
     let round = round_name(outcome, &names);
-    let tracks = if outcome.registered.is_some() {
+    let tracks = if outcome.registered().is_some() {
         // The feet of both say more than their bars.
         Vec::new()
     } else if made {
@@ -144,7 +144,7 @@ pub(crate) fn timeline_panel_ui(
         tracks: &tracks,
         stripes: &stripes,
         transition: outcome.transition.map(|transition| transition.start_secs..transition.end_secs),
-        transition_editable: session.panes().len() == 1 && outcome.walk.is_none(),
+        transition_editable: session.panes().len() == 1 && outcome.walk().is_none(),
         // Left to Segue they stand at the ends, to be taken hold of.
         in_point: Some(params.optional(Key::In).unwrap_or(0.0)),
         out_point: Some(params.optional(Key::Out).unwrap_or(session.duration_secs())),
@@ -182,13 +182,13 @@ fn timeline_event(event: TimelineEvent, session: &Session, outcome: &Outcome, ou
         TimelineEvent::ScrubStarted => out.set(Key::Play, Value::Switch(false)),
         TimelineEvent::SetIn(secs) => out.set(Key::In, Value::Number(secs)),
         TimelineEvent::SetOut(secs) => out.set(Key::Out, Value::Number(secs)),
-        TimelineEvent::SetTransitionStart(secs) if outcome.registered.is_some() => {
-            out.set(Key::WarpFrom, Value::Number(secs.max(0.0)));
+        TimelineEvent::SetTransitionStart(secs) if outcome.registered().is_some() => {
+            out.set(Key::WarpFrom, Value::Number(secs.max(0.0)))
         }
-        TimelineEvent::SetTransitionEnd(secs) if outcome.registered.is_some() => {
+        TimelineEvent::SetTransitionEnd(secs) if outcome.registered().is_some() => {
             // The end is a time of A, whose clock is bent until then.
             if let Some(beat) =
-                outcome.registered.as_ref().and_then(|registered| registered.beat_at(secs))
+                outcome.registered().and_then(|registered| registered.beat_at(secs))
             {
                 out.set(Key::WarpTo, Value::Number((beat.frames[0] / fps).max(0.0)));
             }
@@ -251,7 +251,7 @@ fn seams(outcome: &Outcome, color: Color32) -> Vec<Moment<'static>> {
 /// Where the path turns harder than the motion can.
 fn hard_turns(outcome: &Outcome, color: Color32) -> impl Iterator<Item = Moment<'static>> {
     let fps = outcome.motion.clip.fps();
-    let turns = outcome.path.iter().flat_map(|path| &path.hard_turns);
+    let turns = outcome.path().into_iter().flat_map(|path| &path.hard_turns);
     turns.map(move |turn| Moment { time: turn.worst as f64 / fps, color, name: text::HARD_MOMENT })
 }
 
@@ -278,7 +278,7 @@ fn stripes<'a>(session: &Session, names: &'a [[String; 3]]) -> Vec<Stripe<'a>> {
     let of = [(Part::A, Some(Slot::A)), (Part::B, Some(Slot::B)), (Part::Result, None)];
     let panes = session.panes().iter().zip(names);
     let registered = panes
-        .filter_map(|(pane, names)| Some((pane.outcome.as_ref()?.registered.as_ref()?, names)));
+        .filter_map(|(pane, names)| Some((pane.outcome.as_ref()?.registered()?, names)));
     registered
         .flat_map(|(registered, names)| {
             of.into_iter().zip(names).map(|((part, slot), label)| Stripe {
@@ -307,7 +307,7 @@ fn tracks<'a>(outcome: &Outcome, names: &'a [String; 2]) -> Vec<Track<'a>> {
     let duration = outcome.duration_secs();
     let Some(transition) = outcome.transition else {
         let a = whole_track(Part::A, &names[0], outcome);
-        if outcome.layer.is_none() {
+        if outcome.layer().is_none() {
             return vec![a];
         }
         let b = whole_track(Part::B, &names[1], outcome);

@@ -201,16 +201,8 @@ pub struct Outcome {
     pub cycle: Option<Cycle>,
     /// How B came onto the skeleton of A; `None` where both have the same one.
     pub retargeted: Option<Arc<Retargeted>>,
-    /// What of it is a layer; `None` where there is none.
-    pub layer: Option<LayerFacts>,
-    /// Which frames of A and B it is made of; `None` where they were not registered.
-    pub registered: Option<Arc<Registered>>,
-    /// The path that it goes on; `None` where it was not edited.
-    pub path: Option<Arc<OnPath>>,
-    /// The walk that it is; `None` where it is none.
-    pub walk: Option<Arc<Walk>>,
-    /// How it was driven; `None` where it was not.
-    pub driven: Option<Arc<Driven>>,
+    /// What only its lab can say of it.
+    pub facts: LabFacts,
     /// The artefacts, as numbers: those that every lab has, and its own behind them.
     pub metrics: Vec<Metric>,
     /// The clips that it is made of, on its skeleton: only what exceeds them is an artefact. None
@@ -220,6 +212,36 @@ pub struct Outcome {
     pub(super) measured: Measured,
     /// Those numbers are known.
     pub(super) is_measured: bool,
+}
+
+/// What one lab alone knows of its results.
+#[derive(Clone, Debug)]
+pub enum LabFacts {
+    /// Nothing beside what every result has.
+    None,
+    /// What of a layered motion is a layer.
+    Layer(Arc<LayerFacts>),
+    /// Which frames of registered clips a motion is made of.
+    Registered(Arc<Registered>),
+    /// The path that a motion goes on.
+    Path(Arc<OnPath>),
+    /// The walk through a graph that a motion is.
+    Walk(Arc<Walk>),
+    /// How a motion was driven.
+    Driven(Arc<Driven>),
+}
+
+macro_rules! fact {
+    ($(#[$doc:meta])* $name:ident, $variant:ident, $fact:ty) => {
+        $(#[$doc])*
+        #[must_use]
+        pub fn $name(&self) -> Option<&Arc<$fact>> {
+            match &self.facts {
+                LabFacts::$variant(fact) => Some(fact),
+                _ => None,
+            }
+        }
+    };
 }
 
 /// What the artefact numbers of a result are measured of.
@@ -243,16 +265,33 @@ impl Outcome {
             transition: None,
             cycle: None,
             retargeted: None,
-            layer: None,
-            registered: None,
-            path: None,
-            walk: None,
-            driven: None,
+            facts: LabFacts::None,
             metrics: Vec::new(),
             beside: Vec::new(),
             measured: Measured::Motion,
             is_measured: false,
         }
+    }
+
+    fact! {
+        /// Returns what of it is a layer; `None` where there is none.
+        layer, Layer, LayerFacts
+    }
+    fact! {
+        /// Returns which frames of A and B it is made of; `None` where they were not registered.
+        registered, Registered, Registered
+    }
+    fact! {
+        /// Returns the path that it goes on; `None` where it was not edited.
+        path, Path, OnPath
+    }
+    fact! {
+        /// Returns the walk that it is; `None` where it is none.
+        walk, Walk, Walk
+    }
+    fact! {
+        /// Returns how it was driven; `None` where it was not.
+        driven, Driven, Driven
     }
 
     /// Whether there is a place for the numbers that every lab has, and not yet their values.
@@ -274,7 +313,7 @@ impl Outcome {
 
     /// Its feet are to be planted, and are not yet.
     pub(super) fn awaits_feet(&self) -> bool {
-        self.path.as_ref().is_some_and(|path| path.awaits_feet)
+        self.path().is_some_and(|path| path.awaits_feet)
     }
 
     /// Seconds from the first frame to the last.
@@ -288,7 +327,7 @@ impl Outcome {
     /// sources are not registered: they simply play on.
     #[must_use]
     pub fn source_at(&self, source: &Source, secs: f64) -> Option<(f64, Planar)> {
-        let beat = self.registered.as_ref()?.beat_at(secs)?;
+        let beat = self.registered()?.beat_at(secs)?;
         let at = beat.frames[usize::from(source.slot == Slot::B)] / self.motion.clip.fps();
         let inside = at >= 0.0 && at <= source.motion.clip.duration_secs();
         inside.then(|| {

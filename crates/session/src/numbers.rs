@@ -53,7 +53,7 @@ impl NumberTable {
             values: panes.iter().map(|pane| of_pane(pane, metric.id)).collect(),
         };
         let mut rows: Vec<NumberRow> = metrics.iter().map(row).collect();
-        let walk = |pane: &Pane| pane.result().ok()?.outcome.walk.clone();
+        let walk = |pane: &Pane| pane.result().ok()?.outcome.walk().cloned();
         if panes.iter().any(|pane| walk(pane).is_some()) {
             let built =
                 panes.iter().map(|pane| session.graph_build_secs(&walk(pane)?.built)).collect();

@@ -113,7 +113,7 @@ fn a_path_lies_on_the_stage_with_its_points_and_those_who_play_along() {
             while session.work() {}
             if name != "path-fitted" {
                 let outcome = Arc::clone(session.main_outcome().unwrap());
-                let spline = outcome.path.as_ref().unwrap().road.spline();
+                let spline = outcome.path().unwrap().road.spline();
                 let to = spline.points()[4] + glam::DVec2::new(-1.4, -1.9);
                 let edited =
                     spline.edited(&PathEdit::Move { index: 4, to }, Pins::default()).unwrap();
@@ -121,7 +121,7 @@ fn a_path_lies_on_the_stage_with_its_points_and_those_who_play_along() {
                     .apply(Command::Set(vec![(Key::Path, Value::Text(edited.to_code()))]))
                     .unwrap();
                 assert!(
-                    !session.main_outcome().unwrap().path.as_ref().unwrap().hard_turns.is_empty()
+                    !session.main_outcome().unwrap().path().unwrap().hard_turns.is_empty()
                 );
             }
             let viewport = Viewport { x: 0, y: 0, width: size[0], height: size[1] };
@@ -157,7 +157,7 @@ fn a_driven_character_has_its_ways_on_the_ground_a_ghost_and_a_crowd() {
                 session.tick(1.0 / 60.0);
             }
             let outcome = Arc::clone(session.main_outcome().unwrap());
-            let driven = outcome.driven.as_ref().unwrap();
+            let driven = outcome.driven().unwrap();
             let moment = driven.at(session.now_secs()).unwrap();
             let mut director = Director::default();
             director

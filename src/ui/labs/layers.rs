@@ -31,7 +31,7 @@ pub(super) fn layers_ui(session: &Session, state: &mut UiState, out: &mut Out, u
         ui.add_space(space::XS);
     }
     param_row_ui(Key::LayerFit, &plain, session, out, ui);
-    if let Some(layer) = session.main_outcome().and_then(|outcome| outcome.layer.as_ref()) {
+    if let Some(layer) = session.main_outcome().and_then(|outcome| outcome.layer()) {
         let words = RichText::new(tr(&text::fit(layer), ui)).font(theme_of(ui).font(Type::Small));
         ui.label(words.color(palette_of(ui).muted));
     }

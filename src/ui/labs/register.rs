@@ -210,7 +210,7 @@ fn map_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let field = [0, 1].map(|clip| [first[clip] - half, last[clip] + half]);
     let feet = [0, 1].map(|clip: usize| feet_of(map, clip));
     let registered: Vec<&Registered> = (session.panes().iter())
-        .filter_map(|pane| pane.outcome.as_ref()?.registered.as_deref())
+        .filter_map(|pane| pane.outcome.as_ref()?.registered().map(|fact| &**fact))
         .filter(|registered| same_clips(&registered.map, map))
         .collect();
     let lines = lines(&registered, palette);

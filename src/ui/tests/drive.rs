@@ -10,7 +10,7 @@ const SMALL: &str =
     "lab=match&mirrored=off&match_clips=idle,walk,walk_left,walk_right,walk(make_seconds:6)";
 
 fn driven(harness: &Harness<'_, Page>) -> Arc<Driven> {
-    outcome(harness.state()).driven.clone().expect("a drive")
+    outcome(harness.state()).driven().cloned().expect("a drive")
 }
 
 /// Frames of the screen, in which time passes.

@@ -7,7 +7,7 @@ use segue_session::OnPath;
 use segue_session::choices;
 
 fn path(harness: &Harness<'_, Page>) -> Arc<OnPath> {
-    outcome(harness.state()).path.clone().expect("a path")
+    outcome(harness.state()).path().cloned().expect("a path")
 }
 
 fn points(harness: &Harness<'_, Page>) -> Vec<DVec2> {

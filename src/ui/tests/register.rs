@@ -70,7 +70,7 @@ fn a_weight_over_time_is_drawn_by_hand() {
     harness.run();
     let (share, weight) = keys(&harness)[1];
     assert!(share.abs_diff(30) <= 2 && weight.abs_diff(20) <= 2, "{share} {weight}");
-    let beats = &outcome(harness.state()).registered.as_ref().unwrap().beats;
+    let beats = &outcome(harness.state()).registered().unwrap().beats;
     assert!((beats[beats.len() * 3 / 10].weights[1] - 0.2).abs() < 0.06);
     picture("register-weights-dark", &mut harness);
     press(text::ONE_WEIGHT, &mut harness);
@@ -103,10 +103,10 @@ fn the_map_is_pointed_at_pressed_and_pinned() {
     };
     click(&mut harness, at(0.5, 0.5));
     let now = harness.state().session.now_secs();
-    let beat = outcome(harness.state()).registered.as_ref().unwrap().beat_at(now).unwrap();
+    let beat = outcome(harness.state()).registered().unwrap().beat_at(now).unwrap();
     let off = |secs: f64| {
         let frames =
-            outcome(harness.state()).registered.as_ref().unwrap().beat_at(secs).unwrap().frames;
+            outcome(harness.state()).registered().unwrap().beat_at(secs).unwrap().frames;
         (frames[0] - a).hypot(frames[1] - b)
     };
     assert!(
@@ -126,7 +126,7 @@ fn the_map_is_pointed_at_pressed_and_pinned() {
     drag(&mut harness, at(0.4, 0.4), at(0.5, 0.45));
     let [(pin_a, pin_b)] = pins(&harness)[..] else { panic!("{:?}", pins(&harness)) };
     let warped =
-        outcome(harness.state()).registered.as_ref().unwrap().registration.warp().at(pin_a as f64);
+        outcome(harness.state()).registered().unwrap().registration.warp().at(pin_a as f64);
     assert!((warped - pin_b as f64).abs() < 0.01, "{warped} {pin_b}");
     picture("register-pinned-dark", &mut harness);
     // It is moved, and dragged out; each is one step.

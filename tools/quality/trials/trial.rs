@@ -348,7 +348,7 @@ impl<'a> Bench<'a> {
                 // A path that turns faster than the motion can says so, and nothing is asked of the
                 // motion on it.
                 let is_hard = |outcome: &Arc<Outcome>| {
-                    outcome.path.as_ref().is_some_and(|path| !path.hard_turns.is_empty())
+                    outcome.path().is_some_and(|path| !path.hard_turns.is_empty())
                 };
                 // What is laid on top of a motion adds its own speed to it, by design.
                 let adds = way.lab == "layers" && way.method == "additive";

@@ -279,7 +279,7 @@ impl Session {
 
 /// Whether a pane shows what was driven in that database.
 fn is_shown(pane: &Pane, database: &Arc<Database>) -> bool {
-    let driven = pane.outcome.as_ref().and_then(|outcome| outcome.driven.as_ref());
+    let driven = pane.outcome.as_ref().and_then(|outcome| outcome.driven());
     driven.is_some_and(|driven| driven.is_live && Arc::ptr_eq(&driven.database, database))
 }
 

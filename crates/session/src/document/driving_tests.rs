@@ -21,7 +21,7 @@ const SMALL: &str =
 
 fn driven(session: &Session) -> &Driven {
     assert_eq!(session.panes()[0].problem, None);
-    session.main_outcome().unwrap().driven.as_ref().unwrap()
+    session.main_outcome().unwrap().driven().unwrap()
 }
 
 fn ask(session: &mut Session, x: f64, z: f64) {
@@ -158,7 +158,7 @@ fn a_character_comes_to_a_pane_whose_neighbour_waits() {
     ask(&mut session, 0.0, 1.4);
     session.tick(0.2);
     let moments = |pane: usize| {
-        session.panes()[pane].outcome.as_ref().unwrap().driven.as_ref().unwrap().moments.len()
+        session.panes()[pane].outcome.as_ref().unwrap().driven().unwrap().moments.len()
     };
     assert_eq!(moments(0), moments(1), "both begin together");
 }
@@ -173,7 +173,7 @@ fn sliders_change_the_character_on_its_way_and_panes_have_one_input() {
     let database = Arc::clone(&driven(&session).database);
     let roots = |session: &Session| -> Vec<_> {
         let last = |pane: &Pane| {
-            pane.outcome.as_ref().unwrap().driven.as_ref().unwrap().moments.last().unwrap().root
+            pane.outcome.as_ref().unwrap().driven().unwrap().moments.last().unwrap().root
         };
         session.panes().iter().map(last).collect()
     };

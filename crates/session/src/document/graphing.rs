@@ -43,7 +43,7 @@ impl Session {
     /// The walk of the first pane.
     #[must_use]
     pub fn graph_walk(&self) -> Option<&Arc<Walk>> {
-        self.main_outcome()?.walk.as_ref().filter(|_| self.is_graph_lab())
+        self.main_outcome()?.walk().filter(|_| self.is_graph_lab())
     }
 
     /// How long it took to make a graph, seconds, as far as [`Session::work_took`] was told.

@@ -28,7 +28,7 @@ fn walk(session: &Session) -> &Arc<Walk> {
 fn walk_of(session: &Session, pane: usize) -> &Arc<Walk> {
     let pane = &session.panes()[pane];
     assert_eq!(pane.problem, None);
-    pane.outcome.as_ref().unwrap().walk.as_ref().unwrap()
+    pane.outcome.as_ref().unwrap().walk().unwrap()
 }
 
 fn number(session: &Session, pane: usize, id: &str) -> f64 {

@@ -491,8 +491,8 @@ impl Session {
             Key::GaitSpeed => {
                 Some(f64::from(synth::Params::new(synth_action(&self.params)).speed_mps))
             }
-            Key::WarpFrom => Some(outcome.registered.as_ref()?.part_secs[0]),
-            Key::WarpTo => Some(outcome.registered.as_ref()?.part_secs[1]),
+            Key::WarpFrom => Some(outcome.registered()?.part_secs[0]),
+            Key::WarpTo => Some(outcome.registered()?.part_secs[1]),
             Key::WarpSmoothing => Some((0.1 * outcome.motion.clip.fps()).round()),
             Key::Ground => Some(f64::from(outcome.motion.ground_m) * 100.0),
             Key::PlaceX => Some(to_step(outcome.motion.standing_at(0.0).shift.x, 0.01)),
@@ -521,7 +521,7 @@ impl Session {
             return None;
         }
         let pane = self.panes.first()?;
-        let shown = pane.outcome.as_ref().and_then(|outcome| outcome.registered.as_ref());
+        let shown = pane.outcome.as_ref().and_then(|outcome| outcome.registered());
         let shown = shown.map(|registered| &registered.map);
         shown.or_else(|| self.labs.registrars.last_map())
     }
@@ -748,7 +748,7 @@ impl Session {
         let made = self.pane(pane)?.recipe()?;
         let (params, outcome) =
             (self.with_recording(made.params.clone()), Arc::clone(made.outcome));
-        if outcome.walk.as_ref().is_some_and(|walk| walk.is_guided) {
+        if outcome.walk().is_some_and(|walk| walk.is_guided) {
             return Err(CommandError::NotPossible(
                 "this walk goes like the one in the first pane: open it alone to keep it",
             ));

@@ -13,7 +13,7 @@ fn open(link: &str) -> Session {
 
 fn path(session: &Session) -> &OnPath {
     assert_eq!(session.panes()[0].problem, None);
-    session.main_outcome().unwrap().path.as_deref().unwrap()
+    session.main_outcome().unwrap().path().map(|fact| &**fact).unwrap()
 }
 
 fn metric(session: &Session, id: &str) -> f64 {
@@ -142,7 +142,7 @@ fn more_control_points_fit_better_side_by_side() {
     let errors: Vec<f64> = session
         .panes()
         .iter()
-        .map(|pane| pane.outcome.as_ref().unwrap().path.as_ref().unwrap().fitted.error().rms_cm)
+        .map(|pane| pane.outcome.as_ref().unwrap().path().unwrap().fitted.error().rms_cm)
         .collect();
     assert!(errors[0] > errors[1] && errors[1] > errors[2], "{errors:?}");
 }

@@ -20,7 +20,7 @@ fn number_of(outcome: &Outcome, id: &str) -> f64 {
 }
 
 fn registered(session: &Session) -> &Registered {
-    session.main_outcome().unwrap().registered.as_ref().unwrap()
+    session.main_outcome().unwrap().registered().unwrap()
 }
 
 /// The largest distance of any joint, metres, between a frame of one clip and one of another that
@@ -102,7 +102,7 @@ fn a_join_is_a_then_b_with_less_sliding_than_a_dissolve() {
     assert!(skate(0) < 0.5 * skate(1), "{} {}", skate(0), skate(1));
     for outcome in &outcomes {
         let (registered, transition) =
-            (outcome.registered.as_ref().unwrap(), outcome.transition.unwrap());
+            (outcome.registered().unwrap(), outcome.transition.unwrap());
         assert_eq!(registered.beats.len(), outcome.motion.clip.frames());
         assert_eq!(outcome.motion.ground_frames.len(), outcome.motion.clip.frames());
         let at = |secs: f64| registered.beat_at(secs).unwrap();

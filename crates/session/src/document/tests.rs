@@ -795,7 +795,7 @@ fn right_and_wrong_stand_side_by_side() {
 fn the_layers_lab_opens_with_a_run_on_walking_legs() {
     let session = opened("lab=layers");
     let outcome = session.main_outcome().unwrap();
-    let layer = outcome.layer.as_ref().unwrap();
+    let layer = outcome.layer().unwrap();
     assert_eq!((layer.fit, layer.has_no_steps), (crate::LayerFit::InStep, false));
     assert!(layer.shares[0] == 0.0 && layer.shares.contains(&1.0));
     let walk = session.slot(Slot::A).unwrap().motion.clone().unwrap();
@@ -843,7 +843,7 @@ fn layers_are_live_and_say_how_their_time_goes() {
         ("lab=layers&a=idle(make_seconds:2)&b=walk", LayerFit::Once, true),
     ] {
         let session = opened(link);
-        let layer = session.main_outcome().unwrap().layer.clone().unwrap();
+        let layer = session.main_outcome().unwrap().layer().cloned().unwrap();
         assert_eq!((layer.fit, layer.has_no_steps), (fit, has_no_steps), "{link}");
         assert!(number_of(session.main_outcome().unwrap(), "velocity_jump_dps") < 400.0, "{link}");
     }

@@ -2,7 +2,7 @@ use super::feet::{Lock, slide, slide_before, with_feet};
 use super::lab::Lab;
 use super::lab_set::{JobKind, Sliced};
 use super::pair::Pair;
-use super::{MatchSearch, Measured, Outcome, Slot, Source, Transition};
+use super::{MatchSearch, Outcome, Slot, Source, Transition};
 use crate::compare::MAX_PANES;
 use crate::motion::Motion;
 use crate::params::{Key, Params};
@@ -511,20 +511,12 @@ impl BlendInputs {
             ),
         ];
         Ok(Outcome {
-            motion: Arc::new(motion),
             sources,
             transition: Some(transition),
-            cycle: None,
             retargeted: pair.retargeted.clone(),
-            layer: None,
-            registered: None,
-            path: None,
-            walk: None,
-            driven: None,
             metrics,
             beside: pair.clips(),
-            measured: Measured::Motion,
-            is_measured: false,
+            ..Outcome::plain(Arc::new(motion))
         })
     }
 }

@@ -19,7 +19,7 @@ pub use walk::{At, Passed, Trace, Walk, WalkGhost};
 pub use wanted::{check_graph_clips, graph_of, write_jump, write_path, write_visits};
 pub(crate) use wanted::{clips_of, read_path, read_visits};
 
-use super::{Measured, Outcome, Slot, Source, Transition};
+use super::{LabFacts, Measured, Outcome, Slot, Source, Transition};
 use std::sync::Arc;
 
 /// The Graph lab: a walk through a motion graph.
@@ -103,7 +103,7 @@ impl GraphInputs {
         Outcome {
             sources,
             transition,
-            walk: Some(Arc::clone(walk)),
+            facts: LabFacts::Walk(Arc::clone(walk)),
             metrics: walk.metrics.clone(),
             beside: walk
                 .built

@@ -1,7 +1,7 @@
 use super::feet::{Lock, slide, slide_before, with_feet};
 use super::lab::Lab;
 use super::pair::{Pair, source_of};
-use super::{Measured, Outcome, Slot, Source};
+use super::{LabFacts, Outcome, Slot, Source};
 use crate::LabId;
 use crate::choices;
 use crate::compare::MAX_PANES;
@@ -318,20 +318,16 @@ impl LayerInputs {
         };
         let source = |slot, motion| Source::new(slot, motion, 0.0, Planar::IDENTITY);
         Ok(Outcome {
-            motion: Arc::new(motion),
             sources: vec![source(Slot::A, a), source(Slot::B, &timed.shown)],
-            transition: None,
-            cycle: None,
             retargeted: pair.retargeted.clone(),
-            layer: Some(LayerFacts { shares, fit: timed.fit, has_no_steps: timed.has_no_steps }),
-            registered: None,
-            path: None,
-            walk: None,
-            driven: None,
+            facts: LabFacts::Layer(Arc::new(LayerFacts {
+                shares,
+                fit: timed.fit,
+                has_no_steps: timed.has_no_steps,
+            })),
             metrics,
             beside: vec![Arc::clone(&a.clip), Arc::clone(&timed.shown.clip)],
-            measured: Measured::Motion,
-            is_measured: false,
+            ..Outcome::plain(Arc::new(motion))
         })
     }
 }

@@ -4,7 +4,7 @@ use super::feet::Lock;
 use super::lab::Lab;
 use super::pair::source_of;
 use super::rounds::{Rounds, repeated, rounds};
-use super::{Cycle, CycleMade, Measured, Outcome, Slot, Source};
+use super::{Cycle, CycleMade, Outcome, Slot, Source};
 use crate::LabId;
 use crate::choices;
 use crate::motion::Motion;
@@ -216,9 +216,7 @@ impl LoopInputs {
             ),
         ]);
         Ok(Outcome {
-            motion: Arc::new(played),
             sources: vec![Source::new(Slot::A, motion, -secs(cut.cycle.start), Planar::IDENTITY)],
-            transition: None,
             cycle: Some(Cycle {
                 secs: secs(frames),
                 made: CycleMade::Cut {
@@ -227,16 +225,9 @@ impl LoopInputs {
                     distance_cm: cut.rms_cm,
                 },
             }),
-            retargeted: None,
-            layer: None,
-            registered: None,
-            path: None,
-            walk: None,
-            driven: None,
             metrics,
             beside: vec![Arc::clone(&motion.clip)],
-            measured: Measured::Motion,
-            is_measured: false,
+            ..Outcome::plain(Arc::new(played))
         })
     }
 }

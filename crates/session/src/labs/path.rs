@@ -5,7 +5,7 @@ use super::kept::read_ids;
 use super::lab::Lab;
 use super::lab_set::{JobKind, Sliced};
 use super::pair::source_of;
-use super::{Outcome, Slot, Source};
+use super::{LabFacts, Outcome, Slot, Source};
 use crate::LabId;
 use crate::choices;
 use crate::compare::MAX_PANES;
@@ -396,7 +396,7 @@ impl PathInputs {
         };
         Ok(Outcome {
             sources: vec![Source::new(Slot::A, &fitted.motion, 0.0, Planar::IDENTITY)],
-            path: Some(Arc::new(OnPath {
+            facts: LabFacts::Path(Arc::new(OnPath {
                 fitted: Arc::clone(fitted),
                 road,
                 is_edited: !self.code.is_empty(),

@@ -15,7 +15,7 @@ pub(crate) use registrar::Registrars;
 use super::blend::weight_law;
 use super::feet::{Lock, slide, slide_before, with_feet};
 use super::pair::Pair;
-use super::{Measured, Outcome, Slot, Source, Transition};
+use super::{LabFacts, Outcome, Slot, Source, Transition};
 use crate::choices;
 use crate::motion::Motion;
 use registrar::Found;
@@ -441,36 +441,31 @@ impl RegisterInputs {
             Source::new(Slot::A, &pair.a, 0.0, Planar::IDENTITY),
             Source::new(Slot::B, &pair.incoming, secs(mixed.end) - left, world_from_b),
         ];
+        let steps = Contacts::detect(&clip, &roles, &pair.a.feet.contacts);
+        let motion = Arc::new(Motion {
+            clip,
+            roles,
+            contacts,
+            ground_frames: frames,
+            seams,
+            ground_m: self.ground_m(),
+            feet: pair.a.feet,
+        });
         Ok(Outcome {
-            registered: Some(Arc::new(Registered {
+            facts: LabFacts::Registered(Arc::new(Registered {
                 map: Arc::clone(&self.found.map),
                 registration: Arc::clone(&self.found.registration),
                 is_plain: self.is_plain,
                 beats,
-                steps: Contacts::detect(&clip, &roles, &pair.a.feet.contacts),
+                steps,
                 part_secs: part.map(|frame| frame / fps),
             })),
-            walk: None,
-            motion: Arc::new(Motion {
-                clip,
-                roles,
-                contacts,
-                ground_frames: frames,
-                seams,
-                ground_m: self.ground_m(),
-                feet: pair.a.feet,
-            }),
             sources,
             transition,
-            cycle: None,
             retargeted: pair.retargeted.clone(),
-            layer: None,
-            path: None,
-            driven: None,
             metrics,
             beside: self.beside(),
-            measured: Measured::Motion,
-            is_measured: false,
+            ..Outcome::plain(motion)
         })
     }
 

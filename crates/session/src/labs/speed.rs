@@ -4,7 +4,7 @@ use super::feet::Lock;
 use super::lab::Lab;
 use super::pair::Pair;
 use super::rounds::{Rounds, rounds};
-use super::{Cycle, CycleMade, Measured, Outcome};
+use super::{Cycle, CycleMade, Outcome};
 use crate::LabId;
 use crate::params::{Key, Kind, Params};
 use segue_motion::clip::ground_speed;
@@ -181,9 +181,6 @@ impl SpeedInputs {
         ];
         metrics.append(&mut slides);
         Ok(Outcome {
-            motion: Arc::new(motion),
-            sources: Vec::new(),
-            transition: None,
             cycle: Some(Cycle {
                 secs: cycle_frames as f64 / fps,
                 made: CycleMade::Gait {
@@ -198,15 +195,9 @@ impl SpeedInputs {
                 },
             }),
             retargeted: pair.retargeted.clone(),
-            layer: None,
-            registered: None,
-            path: None,
-            walk: None,
-            driven: None,
             metrics,
             beside: pair.clips(),
-            measured: Measured::Motion,
-            is_measured: false,
+            ..Outcome::plain(Arc::new(motion))
         })
     }
 }

@@ -24,6 +24,6 @@ pub(crate) fn is_open(session: &Session) -> bool {
 
 /// What the first pane shows now, where it was driven.
 fn shown(session: &Session) -> Option<(&Arc<Driven>, &DriveMoment)> {
-    let driven = session.main_outcome()?.driven.as_ref()?;
+    let driven = session.main_outcome()?.driven()?;
     Some((driven, driven.at(session.now_secs())?))
 }

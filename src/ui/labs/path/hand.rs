@@ -159,7 +159,7 @@ fn pins(session: &Session) -> Pins {
 /// The path of a pane, if there is one to be edited: not while its lab has nothing to show.
 pub(crate) fn path_of<'a>(session: &Session, pane: &'a Pane) -> Option<&'a OnPath> {
     let is_open = session.params().lab() == LabId::Path && pane.problem.is_none();
-    pane.outcome.as_ref()?.path.as_deref().filter(|_| is_open)
+    pane.outcome.as_ref()?.path().map(|fact| &**fact).filter(|_| is_open)
 }
 
 /// A place on the grid, if there is one.

@@ -227,7 +227,7 @@ pub(crate) fn frame_once(session: &Session, state: &mut UiState, out: &mut Out) 
     match (is_open, &state.path.framed) {
         (true, None) if !untouched() => state.path.framed = Some(Vec::new()),
         (true, None) => {
-            if session.main_outcome().is_some_and(|outcome| outcome.path.is_some())
+            if session.main_outcome().is_some_and(|outcome| outcome.path().is_some())
                 && let Some(values) =
                     crate::ui::stage_panel::framing(session, state, Some(PITCH_DEG))
             {

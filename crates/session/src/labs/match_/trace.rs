@@ -1,6 +1,6 @@
 //! What a character did, tick by tick: its motion, and why it went where it went.
 
-use crate::labs::Outcome;
+use crate::labs::{LabFacts, Outcome};
 use crate::motion::{FeetReading, Motion};
 use segue_motion::clip::{Clip, Contacts};
 use segue_motion::matching::{
@@ -174,7 +174,7 @@ impl Tracer {
             is_live,
         };
         Ok(Outcome {
-            driven: Some(Arc::new(driven)),
+            facts: LabFacts::Driven(Arc::new(driven)),
             beside: database.motions().iter().map(|motion| Arc::clone(motion.clip())).collect(),
             ..Outcome::plain(Arc::new(motion))
         })
