@@ -80,6 +80,37 @@ fn arrows_go_one_way() {
     assert!(slips.is_empty(), "\n{}", slips.join("\n"));
 }
 
+/// Where labs have names: their own files, the list of choices, the table of parameters whose rows
+/// belong to them.
+const NAMES_LABS: [&str; 6] = [
+    "crates/session/src/labs.rs",
+    "crates/session/src/labs/",
+    "crates/session/src/choices.rs",
+    "crates/session/src/params.rs",
+    "src/ui/labs.rs",
+    "src/ui/labs/",
+];
+
+#[test]
+fn no_other_file_names_a_lab() {
+    let sources: Vec<_> = ["src", "crates"].into_iter().flat_map(sources).collect();
+    let tests = test_modules(&sources);
+    let mut slips = Vec::new();
+    let mut known = 0;
+    for (path, text) in
+        sources.iter().filter(|(path, _)| is_production(path) && !is_test_file(path, &tests))
+    {
+        let found = named_labs(path, text);
+        if NAMES_LABS.iter().any(|own| path.to_string_lossy().starts_with(own)) {
+            known += found.len();
+        } else {
+            slips.extend(found);
+        }
+    }
+    assert!(known > 20, "only {known} names found where labs are");
+    assert!(slips.is_empty(), "\n{}", slips.join("\n"));
+}
+
 #[test]
 fn nothing_is_left_unfinished() {
     let sources: Vec<_> = [
@@ -154,6 +185,9 @@ fn a_violation_is_seen() {
             [format!("src/a.rs:2: `{mark}`")]
         );
     }
+
+    let named = "fn f(lab: LabId) -> bool {\n    lab == LabId::View || LabId::ALL.is_empty()\n}\n";
+    assert_eq!(named_labs(Path::new("src/app.rs"), named), ["src/app.rs:2: names a lab"]);
 
     let parent = (
         PathBuf::from("crates/motion/src/skeleton/mod.rs"),
@@ -383,6 +417,27 @@ fn violations(path: &Path, text: &str) -> Vec<String> {
     }
     found.sort();
     found.into_iter().map(|(_, slip)| slip).collect()
+}
+
+/// Returns where a source names a lab, a sentence each.
+fn named_labs(path: &Path, text: &str) -> Vec<String> {
+    let code = code(text);
+    let found = places(&code, "LabId").filter(|at| {
+        let rest = code[at + "LabId".len()..].strip_prefix("::");
+        rest.is_some_and(|rest| rest.starts_with(|c: char| c.is_uppercase() || c == '{'))
+    });
+    // `LabId::ALL` and other constants name no lab.
+    let is_lab = |at: &usize| {
+        let rest = &code[at + "LabId::".len()..];
+        rest.chars().nth(1).is_none_or(|c| !c.is_uppercase())
+    };
+    found
+        .filter(is_lab)
+        .map(|at| {
+            let line = code[..at].matches('\n').count() + 1;
+            format!("{}:{line}: names a lab", path.display())
+        })
+        .collect()
 }
 
 fn unwraps(path: &Path, text: &str) -> Vec<String> {

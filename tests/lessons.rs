@@ -403,7 +403,8 @@ fn graphs_have_as_many_transitions_as_the_lessons_say() {
     ];
     for (lesson, query, pane, jumps, percent) in cases {
         let session = tried(lesson, query);
-        let walk = session.panes()[pane].outcome.as_ref().and_then(|outcome| outcome.walk().cloned());
+        let walk =
+            session.panes()[pane].outcome.as_ref().and_then(|outcome| outcome.walk().cloned());
         let built = walk.expect("a walk").built.clone();
         if !jumps.is_empty() {
             assert_eq!(built.whole().jumps().len().to_string(), jumps, "{lesson}: {query}");

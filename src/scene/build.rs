@@ -10,7 +10,6 @@ use segue_motion::graph::Place;
 use segue_motion::matching;
 use segue_motion::math::Planar;
 use segue_motion::skeleton::{Role, Side, WorldPose, world_pose, world_pose_into};
-use segue_session::LabId;
 use segue_session::choices;
 use segue_session::{
     self, Built, DistanceMap, Key, Motion, Outcome, Params, Session, Slot, Walk, joint_of,
@@ -813,13 +812,9 @@ fn add_ground_path(outcome: &Outcome, at: &Planar, now: f64, colors: &Colors, pa
 
 /// The line that a walk follows.
 fn add_walk_path(session: &Session, colors: &Colors, pane: &mut Pane) {
-    if session.params().lab() == LabId::Graph {
-        let points = session
-            .graph_path()
-            .into_iter()
-            .map(|point| Vec3::new(point.x as f32, 0.006, point.y as f32));
-        pane.add_dashed_path(points, colors.b, 0.12, 2.5, Layer::Ground);
-    }
+    let points = session.graph_path().into_iter();
+    let points = points.map(|point| Vec3::new(point.x as f32, 0.006, point.y as f32));
+    pane.add_dashed_path(points, colors.b, 0.12, 2.5, Layer::Ground);
 }
 
 fn add_joint_trail(shown: &Shown<'_>, body: &Body, joint: usize, color: Color, pane: &mut Pane) {

@@ -1,35 +1,43 @@
-//! What each lab has on the page: its panel, and what its comparison begins with.
+//! What each lab has on the page: its panel, the titles of its panes, what its comparison begins
+//! with.
 
-mod blend;
+pub(crate) mod blend;
 mod break_it;
 pub(crate) mod graph;
 mod layers;
 mod loop_;
-mod make;
+pub(crate) mod make;
 pub(crate) mod match_;
 pub(crate) mod path;
 mod register;
 mod speed;
-mod transition;
-mod view;
+pub(crate) mod transition;
+pub(crate) mod view;
 
 use super::kit;
 use super::out::Out;
-use super::rows::{Detail, compare_choice_ui, compare_clips, param_row_ui, slot_row_ui};
+use super::rows::{Detail, compare_choice_ui, param_row_ui, slot_row_ui};
 use super::state::UiState;
 use super::text;
 use super::theme::space;
 use eframe::egui::Ui;
+use glam::DVec2;
 use graph::seed_detail;
 use segue_session::LabId;
-use segue_session::{Command, Group, Key, PARAMS, Session, Slot, Value};
+use segue_session::{Command, Group, Key, PARAMS, Pane, Params, Session, Slot, Value};
 
-/// A lab's part of the page.
+/// A lab's part of the page; each lab's own file has it, as `LAB`.
 struct LabUi {
     /// The rows of its panel.
     panel_ui: fn(&Session, &mut UiState, &mut Out, &mut Ui),
     /// What its comparison begins with.
     compares: Compares,
+    /// What stands above a pane.
+    title: fn(&Shown<'_>) -> Title,
+    /// What to look at on the stage, in one line.
+    hint: fn(&Session) -> Option<&'static str>,
+    /// Takes a line that was drawn over the ground; `None` where none can be drawn.
+    take_line: Option<fn(&[DVec2], &Session, &mut UiState, &mut Out)>,
 }
 
 /// What a comparison begins with.
@@ -40,32 +48,76 @@ enum Compares {
     Own(fn(&Session, &mut Out)),
 }
 
+/// What a pane shows.
+pub(crate) struct Shown<'a> {
+    pub(crate) pane: &'a Pane,
+    /// The parameters of what is on the stage; without anything there, of what is asked for.
+    pub(crate) params: &'a Params,
+    pub(crate) session: &'a Session,
+}
+
+impl Shown<'_> {
+    /// Returns the name of the clip in A or B.
+    fn name(&self, key: Key) -> String {
+        self.name_of(self.params.text(key)).unwrap_or_default()
+    }
+
+    /// Returns the name of a clip of the library; `None` for one that is not there.
+    fn name_of(&self, id: &str) -> Option<String> {
+        self.session.library().find(id).map(|entry| entry.name.clone())
+    }
+
+    /// Returns the word on screen of a parameter's value.
+    fn spoken(&self, key: Key) -> String {
+        key.param().spoken(self.params.get(key))
+    }
+}
+
+/// What stands above a pane.
+#[derive(Default)]
+pub(crate) struct Title {
+    pub(crate) strong: String,
+    pub(crate) text: String,
+    pub(crate) secondary: String,
+}
+
 /// Returns the part of the page that a lab has.
-fn of(lab: LabId) -> LabUi {
-    let (panel_ui, compares): (fn(&Session, &mut UiState, &mut Out, &mut Ui), _) = match lab {
-        LabId::View => (
-            view::view_ui,
-            Compares::Own(|session, out| {
-                compare_clips(session.params().text(Key::A), session.params().text(Key::B), out);
-            }),
-        ),
-        LabId::Make => (
-            make::make_ui,
-            Compares::Own(|session, out| {
-                out.commands.push(Command::Compare(make::made_number(session)));
-            }),
-        ),
-        LabId::Blend => (blend::blend_ui, Compares::Key(Key::BlendWindow)),
-        LabId::Transition => (transition::transition_ui, Compares::Key(Key::HalfLife)),
-        LabId::Speed => (speed::speed_ui, Compares::Own(speed::compare_speeds)),
-        LabId::Loop => (loop_::loop_ui, Compares::Own(loop_::compare_loops)),
-        LabId::Layers => (layers::layers_ui, Compares::Key(Key::LayerWeight)),
-        LabId::Register => (register::register_ui, Compares::Own(register::compare_warps)),
-        LabId::Path => (path::path_ui, Compares::Own(path::compare_points)),
-        LabId::Graph => (graph::graph_ui, Compares::Own(|_, out| graph::compare_windows(out))),
-        LabId::Match => (match_::drive_ui, Compares::Own(match_::compare_hysteresis)),
-    };
-    LabUi { panel_ui, compares }
+fn of(lab: LabId) -> &'static LabUi {
+    match lab {
+        LabId::View => &view::LAB,
+        LabId::Make => &make::LAB,
+        LabId::Blend => &blend::LAB,
+        LabId::Transition => &transition::LAB,
+        LabId::Speed => &speed::LAB,
+        LabId::Loop => &loop_::LAB,
+        LabId::Layers => &layers::LAB,
+        LabId::Register => &register::LAB,
+        LabId::Path => &path::LAB,
+        LabId::Graph => &graph::LAB,
+        LabId::Match => &match_::LAB,
+    }
+}
+
+/// Returns what a pane says of itself, where it is compared with no other.
+pub(crate) fn title(shown: &Shown<'_>) -> Title {
+    (of(shown.params.lab()).title)(shown)
+}
+
+/// Returns what to look at, in one line.
+pub(crate) fn hint(session: &Session) -> Option<&'static str> {
+    (of(session.params().lab()).hint)(session)
+}
+
+/// Returns whether a line can be drawn over the ground.
+pub(crate) fn takes_lines(session: &Session) -> bool {
+    of(session.params().lab()).take_line.is_some()
+}
+
+/// Hands a line that was drawn over the ground to the lab that is open.
+pub(crate) fn take_line(points: &[DVec2], session: &Session, state: &mut UiState, out: &mut Out) {
+    if let Some(take_line) = of(session.params().lab()).take_line {
+        take_line(points, session, state, out);
+    }
 }
 
 /// Opens "full, half, third" of the lab's first number, or what else the lab has to compare, or

@@ -2,9 +2,9 @@
 
 use super::clip_panel::clip_panel_ui;
 use super::kit::{self, Button, ClipRow, Icon, MenuItem, Part};
+use super::labs::view::compare_clips;
 use super::language::tr;
 use super::out::{Action, Out};
-use super::rows::compare_clips;
 use super::state::{Typing, UiState};
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};

@@ -30,7 +30,6 @@ pub(crate) use timeline_panel::CurveCache;
 
 use eframe::egui::{self, Frame, Margin, Panel, ScrollArea, Stroke, Ui};
 use segue::scene::Look;
-use segue_session::LabId;
 use segue_session::choices;
 use segue_session::{Key, Session};
 use state::Layout;
@@ -85,7 +84,7 @@ pub(crate) fn show(
     let has_room = ui.available_width() >= MAP_ROOM * theme_of(ui).scale();
     state.has_map_panel =
         has_room && labs::graph::is_open(session) && !lessons_panel::is_open(session);
-    if !matches!(session.params().lab(), LabId::Graph | LabId::Path) {
+    if !labs::takes_lines(session) {
         state.drawing = None;
     }
     if session.params().is_on(Key::Embed) {
@@ -284,7 +283,7 @@ fn phone_ui(
                 }
             } else {
                 // On so small a stage it would lie on what it speaks of.
-                if stage_panel::is_welcome(session) {
+                if labs::blend::is_welcome(session) {
                     kit::note_ui(text::WELCOME_HINT, palette_of(ui).muted, ui);
                     ui.add_space(space::M);
                 }

@@ -16,9 +16,7 @@ use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{self, Ui};
 use segue_motion::transition::has_legs;
-use segue_session::{
-    Command, Compare, Key, LabId, NoResult, Session, Slot, Value, split_reference,
-};
+use segue_session::{Command, Key, NoResult, Session, Slot, split_reference};
 /// The foot lock, how feet are read where they are held, and why they are not.
 pub(crate) fn foot_rows_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
@@ -190,15 +188,4 @@ pub(crate) fn compare_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui
 /// The name of the lab that is open.
 pub(crate) fn lab_label(session: &Session) -> String {
     Key::Lab.param().spoken(session.params().get(Key::Lab))
-}
-
-/// Two clips as they are, side by side: a reference, and what somebody made after it.
-pub(crate) fn compare_clips(reference: &str, other: &str, out: &mut Out) {
-    let values = [reference, other].map(|id| Value::Text(id.to_owned())).to_vec();
-    let compare = Compare { key: Key::A, values }.to_string();
-    out.commands.push(Command::Set(vec![
-        (Key::Lab, LabId::View.into()),
-        (Key::Compare, Value::Text(compare)),
-    ]));
-    out.commands.push(Command::Settle);
 }

@@ -5,6 +5,7 @@ use super::labs::match_::stick_on_stage_ui;
 use super::labs::path::ground_line::{GroundLine, ground_line};
 use super::labs::path::hand::path_of;
 use super::labs::path::stage::{frame_once, handles_ui, said_ui};
+use super::labs::{self, Shown, Title};
 use super::language::tr;
 use super::out::{Action, Out};
 use super::state::{Filming, Layout, UiState};
@@ -13,9 +14,8 @@ use super::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{self, Align2, Frame, Rect, Response, Sense, Ui, UiBuilder, Vec2, pos2, vec2};
 use segue::scene::{camera_of, resting_point, shown_size};
 use segue_motion::metrics::Better;
-use segue_session::LabId;
 use segue_session::choices;
-use segue_session::{CycleMade, Key, Kind, Pane, Session, Value, Walk, write_path};
+use segue_session::{CycleMade, Key, Kind, Pane, Session, Value};
 
 /// Draws the 3D picture: the whole stage, and for each pane that is shown its index in the session
 /// and its place.
@@ -57,12 +57,7 @@ fn stage_ui(
     let takes_drag =
         !matches!(line, GroundLine::None) || state.path.held.is_some() || state.drive.is_held();
     if let GroundLine::Done(points) = line {
-        if session.params().lab() == LabId::Path {
-            state.path.take_drawn(&points, session, out);
-        } else if points.len() > 1 {
-            out.set_once(Key::WalkPath, Value::Text(write_path(&points)));
-            out.commands.push(segue_session::Command::Seek(0.0));
-        }
+        labs::take_line(&points, session, state, out);
     }
     camera_input(session, &response, takes_drag, out, ui);
     paint(stage, &shown, ui);
@@ -91,14 +86,14 @@ fn stage_ui(
     let roomy = numbers_top - stage.top() > 240.0 * theme_of(ui).scale();
     // Where there is nothing to do it to, no hint says what to do.
     let is_refused = session.panes().iter().any(|pane| pane.problem.is_some());
-    let says = session.params().lab() == LabId::Path
-        && (state.path.said.is_some() || state.drawing.is_some());
+    let says =
+        labs::path::is_open(session) && (state.path.said.is_some() || state.drawing.is_some());
     if says {
         said_ui(stage, numbers_top, state, ui);
     } else if let Some(note) = session.character_note().filter(|_| roomy) {
         kit::caption_ui(&note, stage.with_max_y(numbers_top - space::S), ui);
-    } else if let Some(hint) =
-        hint(session).filter(|_| state.hint && roomy && layout != Layout::Phone && !is_refused)
+    } else if let Some(hint) = labs::hint(session)
+        .filter(|_| state.hint && roomy && layout != Layout::Phone && !is_refused)
     {
         let mut free = stage.with_max_y(numbers_top - space::S);
         if session.is_driven() {
@@ -110,27 +105,6 @@ fn stage_ui(
             state.hint = false;
         }
     }
-}
-
-/// What to look at, in one line.
-fn hint(session: &Session) -> Option<&'static str> {
-    match session.params().lab() {
-        LabId::Register => Some(text::REGISTER_HINT),
-        LabId::Path => Some(text::PATH_HINT),
-        LabId::Graph => Some(text::GRAPH_HINT),
-        _ if is_welcome(session) => Some(text::WELCOME_HINT),
-        _ => session.is_driven().then_some(text::MATCH_HINT),
-    }
-}
-
-/// Whether the hint's sentence is about what is on the stage: the windows of the built-in walk and
-/// run.
-pub(crate) fn is_welcome(session: &Session) -> bool {
-    let shown = |key, id| session.params().text(key) == id;
-    session.params().lab() == LabId::Blend
-        && shown(Key::A, "walk")
-        && shown(Key::B, "run")
-        && session.compare().is_some_and(|c| c.key == Key::BlendWindow)
 }
 
 fn columns(stage: Rect, count: usize) -> impl Iterator<Item = Rect> {
@@ -340,25 +314,16 @@ fn written(metric: &segue_motion::metrics::Metric) -> String {
     format!("{}{degree}", digits.replace('-', "−"))
 }
 
-struct Words {
-    strong: String,
-    text: String,
-    secondary: String,
-}
-
 /// What a pane says of itself: the value in which it differs, or what it shows.
-fn pane_words(pane: &Pane, session: &Session) -> Words {
+fn pane_words(pane: &Pane, session: &Session) -> Title {
     let fps = pane.outcome.as_ref().map_or(60.0, |outcome| outcome.motion.clip.fps());
     // What is on the stage, if it is of earlier parameters; else what is asked for.
     let params = pane.made_from().unwrap_or(session.params());
     if let Some((key, value)) = pane.compared() {
         let param = key.param();
         if matches!(param.kind, Kind::Clip) {
-            return Words {
-                strong: session.variant_name(pane).unwrap_or_default(),
-                text: String::new(),
-                secondary: String::new(),
-            };
+            let strong = session.variant_name(pane).unwrap_or_default();
+            return Title { strong, ..Title::default() };
         }
         let secondary = match value {
             Value::Number(frames) if param.unit == "frames" => format!("{:.2} s", frames / fps),
@@ -366,103 +331,9 @@ fn pane_words(pane: &Pane, session: &Session) -> Words {
             Value::Number(_) if param.unit.is_empty() => param.label.to_owned(),
             _ => String::new(),
         };
-        return Words { strong: param.spoken(value), text: param.unit.to_owned(), secondary };
+        return Title { strong: param.spoken(value), text: param.unit.to_owned(), secondary };
     }
-    let name = |key| {
-        session
-            .library()
-            .find(params.text(key))
-            .map_or_else(String::new, |entry| entry.name.clone())
-    };
-    match params.lab() {
-        LabId::Blend => Words {
-            strong: name(Key::A),
-            text: format!("→ {}", name(Key::B)),
-            secondary: format!("{} frames", params.number(Key::BlendWindow)),
-        },
-        LabId::Transition => Words {
-            strong: name(Key::A),
-            text: format!("→ {}", name(Key::B)),
-            secondary: Key::Method.param().spoken(params.get(Key::Method)),
-        },
-        LabId::Speed => Words {
-            strong: name(Key::A),
-            text: format!("~ {}", name(Key::B)),
-            // The speed that was reached, as the numbers have it: a cycle of whole frames is not
-            // always as fast as was asked.
-            secondary: pane
-                .outcome
-                .as_ref()
-                .and_then(|outcome| {
-                    outcome.metrics.iter().find(|metric| metric.id == "speed_mps")?.value
-                })
-                .map_or_else(String::new, |speed| format!("{speed:.2} m/s")),
-        },
-        LabId::Loop => Words {
-            strong: name(Key::A),
-            text: String::new(),
-            secondary: Key::LoopMethod.param().spoken(params.get(Key::LoopMethod)),
-        },
-        LabId::Path => Words {
-            strong: name(Key::A),
-            text: String::new(),
-            secondary: path_of(session, pane).map_or_else(String::new, text::path_lengths),
-        },
-        LabId::Layers => Words {
-            strong: name(Key::A),
-            text: format!("+ {}", name(Key::B)),
-            secondary: Key::Mask.param().spoken(params.get(Key::Mask)),
-        },
-        LabId::Register => Words {
-            strong: name(Key::A),
-            text: if params.choice::<choices::WarpMode>() == choices::WarpMode::Join {
-                format!("→ {}", name(Key::B))
-            } else {
-                let also = session.also_blended();
-                let of = |id: &str| {
-                    session
-                        .library()
-                        .find(id)
-                        .map_or_else(|| id.to_owned(), |entry| entry.name.clone())
-                };
-                let others = also.iter().map(|(id, _)| of(id));
-                let others: Vec<String> = std::iter::once(name(Key::B)).chain(others).collect();
-                format!("+ {}", others.join(" + "))
-            },
-            secondary: Key::WarpWith.param().spoken(params.get(Key::WarpWith)),
-        },
-        LabId::Graph => {
-            let walk = pane.outcome.as_ref().and_then(|outcome| outcome.walk());
-            let at = walk.and_then(|walk| Some((walk, walk.at(session.now_secs())?)));
-            let name = |(walk, clip): (&Walk, usize)| {
-                walk.built.cast().names().get(clip).cloned().unwrap_or_default()
-            };
-            let next = at
-                .and_then(|(walk, at)| Some(name((walk, walk.passed.get(at.stay + 1)?.stay.clip))));
-            Words {
-                strong: at.map(|(walk, at)| name((walk, at.place.clip))).unwrap_or_default(),
-                text: next.map(|next| format!("→ {next}")).unwrap_or_default(),
-                secondary: format!("seed {}", params.number(Key::Seed)),
-            }
-        }
-        LabId::Match => Words {
-            strong: if session.is_driven() {
-                text::LIVE.to_owned()
-            } else {
-                Key::Scenario.param().spoken(params.get(Key::Scenario))
-            },
-            text: String::new(),
-            secondary: Key::Hysteresis.param().spoken(params.get(Key::Hysteresis)),
-        },
-        LabId::Make => Words {
-            strong: params.choice::<choices::MadeAction>().word().to_owned(),
-            text: String::new(),
-            secondary: String::new(),
-        },
-        LabId::View => {
-            Words { strong: name(Key::A), text: String::new(), secondary: String::new() }
-        }
-    }
+    labs::title(&Shown { pane, params, session })
 }
 
 /// On a phone one pane is shown; this goes on to the next.

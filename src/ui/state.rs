@@ -1,5 +1,6 @@
 //! What the interface remembers that is nobody else's business.
 
+use super::labs;
 use super::labs::match_::DriveHand;
 use super::labs::path::hand::PathHand;
 use super::language::Language;
@@ -7,7 +8,6 @@ use eframe::egui::Rect;
 use glam::DVec2;
 use segue::scene::{Camera, PathMarks};
 use segue_motion::graph::Place;
-use segue_session::LabId;
 use segue_session::export::ExportOptions;
 use segue_session::{Session, Storing};
 
@@ -162,7 +162,7 @@ impl Default for UiState {
 impl UiState {
     /// What is to be seen on the stage of the hand that works on it.
     pub(crate) fn path_marks(&self, session: &Session) -> PathMarks {
-        let is_open = session.params().lab() == LabId::Path;
+        let is_open = labs::path::is_open(session);
         let drawn = self.drawing.clone().unwrap_or_default();
         PathMarks {
             handles: is_open && drawn.is_empty(),

@@ -1,7 +1,9 @@
 //! The bottom panel: what happens in time.
 
 use super::kit::{self, Curves, Moment, Part, Series, Stripe, Timeline, TimelineEvent, Track};
+use super::labs::make::made_name;
 use super::labs::match_::drive_panel_ui;
+use super::labs::transition;
 use super::out::Out;
 use super::state::{Layout, UiState};
 use super::text;
@@ -10,7 +12,6 @@ use super::transport_row::{Playhead, transport_row_ui};
 use eframe::egui::{Color32, RectAlign, Ui};
 use segue_motion::clip::joint_curve;
 use segue_motion::skeleton::{Role, Side};
-use segue_session::LabId;
 use segue_session::choices;
 use segue_session::{
     Command, CycleMade, Key, Kind, Motion, Outcome, Pane, Registered, Session, Slot, Source, Value,
@@ -114,13 +115,13 @@ pub(crate) fn timeline_panel_ui(
         }),
         None => names,
     };
-    let made = made_from.lab() == LabId::Make;
+    let made = made_name(made_from);
     let round = round_name(outcome, &names);
     let tracks = if outcome.registered().is_some() {
         // The feet of both say more than their bars.
         Vec::new()
-    } else if made {
-        vec![whole_track(Part::Result, made_from.choice::<choices::MadeAction>().word(), outcome)]
+    } else if let Some(made) = &made {
+        vec![whole_track(Part::Result, made, outcome)]
     } else if outcome.cycle.is_some() {
         vec![whole_track(Part::Result, &round, outcome)]
     } else {
@@ -158,7 +159,7 @@ pub(crate) fn timeline_panel_ui(
 
 fn timeline_event(event: TimelineEvent, session: &Session, outcome: &Outcome, out: &mut Out) {
     let (params, fps) = (session.params(), outcome.motion.clip.fps());
-    let in_transition = params.lab() == LabId::Transition;
+    let in_transition = transition::is_open(session);
     let at_end = |end: f64, secs: f64| (secs - end).abs() < 0.5 / fps;
     // The flags do not pass each other.
     let (from, to) = (
@@ -187,8 +188,7 @@ fn timeline_event(event: TimelineEvent, session: &Session, outcome: &Outcome, ou
         }
         TimelineEvent::SetTransitionEnd(secs) if outcome.registered().is_some() => {
             // The end is a time of A, whose clock is bent until then.
-            if let Some(beat) =
-                outcome.registered().and_then(|registered| registered.beat_at(secs))
+            if let Some(beat) = outcome.registered().and_then(|registered| registered.beat_at(secs))
             {
                 out.set(Key::WarpTo, Value::Number((beat.frames[0] / fps).max(0.0)));
             }
@@ -277,8 +277,8 @@ fn feet_names(session: &Session, layout: Layout) -> Vec<[String; 3]> {
 fn stripes<'a>(session: &Session, names: &'a [[String; 3]]) -> Vec<Stripe<'a>> {
     let of = [(Part::A, Some(Slot::A)), (Part::B, Some(Slot::B)), (Part::Result, None)];
     let panes = session.panes().iter().zip(names);
-    let registered = panes
-        .filter_map(|(pane, names)| Some((pane.outcome.as_ref()?.registered()?, names)));
+    let registered =
+        panes.filter_map(|(pane, names)| Some((pane.outcome.as_ref()?.registered()?, names)));
     registered
         .flat_map(|(registered, names)| {
             of.into_iter().zip(names).map(|((part, slot), label)| Stripe {
@@ -376,7 +376,7 @@ impl CurveCache {
         let end = main.duration_secs();
         for source in &main.sources {
             let part = if source.slot == Slot::A { Part::A } else { Part::B };
-            if let Some(registered) = &main.registered {
+            if let Some(registered) = main.registered() {
                 self.lines.push(Curve {
                     of: CurveOf::Source(part),
                     points: registered_curve(source, registered, joint, quantity),

@@ -37,20 +37,22 @@ pub(super) use kept::{
     belongs_to, is_as_it_is, read_ids, recipe_id, recipe_ingredients, recipe_name, recipe_params,
 };
 pub use kept::{file_stem, write_ids};
+pub(super) use lab::Inputs;
 pub use lab_set::JobKind;
-pub(super) use lab_set::{Inputs, LabClips, LabSet, MoreClip};
+pub(super) use lab_set::{LabClips, LabSet, MoreClip};
 pub use layers::{LayerFacts, LayerFit};
 pub(super) use make::{has as made_motion_has, preset_motion, range_of, synth_action};
 #[cfg(test)]
 pub(super) use match_::options_of;
-pub(super) use match_::{Crowd, Live, filter_of, options_in, read_tags, recording_of};
+pub(super) use match_::{Crowd, Live, filter_of, options_in, read_tags};
 pub use match_::{DriveMoment, Driven, HandTag, own_words, write_tags};
+pub(super) use path::take_up;
 pub use path::{FittedMotion, OnPath, spline_ends};
 pub use register::{
     Beat, DistanceMap, MOST_ALSO, Registered, weight_curve, write_also, write_pairs,
 };
 pub(super) use register::{read_also, read_pins, read_weights};
-pub(super) use speed::middle_mps;
+pub(super) use speed::{SpeedInputs, middle_mps};
 
 /// The two places that a clip can take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

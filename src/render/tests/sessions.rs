@@ -120,9 +120,7 @@ fn a_path_lies_on_the_stage_with_its_points_and_those_who_play_along() {
                 session
                     .apply(Command::Set(vec![(Key::Path, Value::Text(edited.to_code()))]))
                     .unwrap();
-                assert!(
-                    !session.main_outcome().unwrap().path().unwrap().hard_turns.is_empty()
-                );
+                assert!(!session.main_outcome().unwrap().path().unwrap().hard_turns.is_empty());
             }
             let viewport = Viewport { x: 0, y: 0, width: size[0], height: size[1] };
             let mut director = Director::default();

@@ -1,15 +1,45 @@
 //! The Blend lab: the window, its place and its weight.
 
 use crate::ui::kit;
+use crate::ui::labs::{Compares, LabUi, Shown, Title};
 use crate::ui::out::Out;
 use crate::ui::rows::{
     Detail, compare_ui, foot_rows_ui, lab_label, pair_ui, param_row_ui, place_rows_ui,
     save_result_ui,
 };
 use crate::ui::state::UiState;
+use crate::ui::text;
 use crate::ui::theme::space;
 use eframe::egui::Ui;
-use segue_session::{Key, Session, Slot};
+use segue_session::{Key, LabId, Session, Slot};
+
+/// The lab's part of the page.
+pub(super) const LAB: LabUi = LabUi {
+    panel_ui: blend_ui,
+    compares: Compares::Key(Key::BlendWindow),
+    title,
+    hint: |session| is_welcome(session).then_some(text::WELCOME_HINT),
+    take_line: None,
+};
+
+fn title(shown: &Shown<'_>) -> Title {
+    Title {
+        strong: shown.name(Key::A),
+        text: format!("→ {}", shown.name(Key::B)),
+        secondary: format!("{} frames", shown.params.number(Key::BlendWindow)),
+    }
+}
+
+/// Whether the hint's sentence is about what is on the stage: the windows of the built-in walk and
+/// run.
+pub(crate) fn is_welcome(session: &Session) -> bool {
+    let shown = |key, id| session.params().text(key) == id;
+    session.params().lab() == LabId::Blend
+        && shown(Key::A, "walk")
+        && shown(Key::B, "run")
+        && session.compare().is_some_and(|compare| compare.key == Key::BlendWindow)
+}
+
 pub(super) fn blend_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(&lab_label(session), ui);
     let fps = pair_ui(session, out, ui);

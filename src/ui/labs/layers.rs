@@ -1,6 +1,7 @@
 //! The Layers lab: which part of the body is B's, how much of it, and when.
 
 use crate::ui::kit;
+use crate::ui::labs::{Compares, LabUi, Shown, Title};
 use crate::ui::language::tr;
 use crate::ui::out::Out;
 use crate::ui::rows::{Detail, param_row_ui};
@@ -11,6 +12,23 @@ use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{RichText, Ui};
 use segue_session::choices;
 use segue_session::{Key, Session};
+
+/// The lab's part of the page.
+pub(super) const LAB: LabUi = LabUi {
+    panel_ui: layers_ui,
+    compares: Compares::Key(Key::LayerWeight),
+    title,
+    hint: |_| None,
+    take_line: None,
+};
+
+fn title(shown: &Shown<'_>) -> Title {
+    Title {
+        strong: shown.name(Key::A),
+        text: format!("+ {}", shown.name(Key::B)),
+        secondary: shown.spoken(Key::Mask),
+    }
+}
 
 /// All rows of the lab.
 pub(super) fn layers_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {

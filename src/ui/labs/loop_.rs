@@ -1,6 +1,7 @@
 //! The Loop lab: a cycle and how its ends are brought together.
 
 use crate::ui::kit::{self, Button};
+use crate::ui::labs::{Compares, LabUi, Shown, Title};
 use crate::ui::out::Out;
 use crate::ui::rows::clip_sets_ui;
 use crate::ui::rows::{Detail, param_row_ui};
@@ -11,6 +12,23 @@ use crate::ui::theme::{palette_of, space};
 use eframe::egui::Ui;
 use segue_session::choices::LoopMethod;
 use segue_session::{Cycle, CycleMade, Key, Session, Slot, Value};
+
+/// The lab's part of the page.
+pub(super) const LAB: LabUi = LabUi {
+    panel_ui: loop_ui,
+    compares: Compares::Own(compare_loops),
+    title,
+    hint: |_| None,
+    take_line: None,
+};
+
+fn title(shown: &Shown<'_>) -> Title {
+    Title {
+        strong: shown.name(Key::A),
+        secondary: shown.spoken(Key::LoopMethod),
+        ..Title::default()
+    }
+}
 
 /// Ends that are farther apart than this hardly repeat each other, centimetres: as the default
 /// threshold of the motion graph.

@@ -1,12 +1,40 @@
 //! The Make lab: a motion from parameters.
 
 use crate::ui::kit;
+use crate::ui::labs::{Compares, LabUi, Shown, Title};
 use crate::ui::out::Out;
 use crate::ui::rows::{Detail, compare_ui, foot_rows_ui, lab_label, param_row_ui, save_result_ui};
 use crate::ui::state::UiState;
 use crate::ui::theme::space;
 use eframe::egui::Ui;
-use segue_session::{Group, Key, LabId, PARAMS, Session};
+use segue_session::choices::MadeAction;
+use segue_session::{Command, Group, Key, LabId, PARAMS, Params, Session};
+
+/// The lab's part of the page.
+pub(super) const LAB: LabUi = LabUi {
+    panel_ui: make_ui,
+    compares: Compares::Own(|session, out| {
+        out.commands.push(Command::Compare(made_number(session)))
+    }),
+    title,
+    hint: |_| None,
+    take_line: None,
+};
+
+fn title(shown: &Shown<'_>) -> Title {
+    Title { strong: action(shown.params), ..Title::default() }
+}
+
+fn action(params: &Params) -> String {
+    params.choice::<MadeAction>().word().to_owned()
+}
+
+/// Returns what a motion that was made from these parameters is called; `None` for a result of
+/// another lab.
+pub(crate) fn made_name(params: &Params) -> Option<String> {
+    (params.lab() == LabId::Make).then(|| action(params))
+}
+
 pub(super) fn make_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(&lab_label(session), ui);
     for param in PARAMS.iter().filter(|param| param.group == Group::Lab(LabId::Make)) {

@@ -7,6 +7,7 @@ pub(crate) mod stage;
 
 use crate::ui::kit::{self, Button, Icon};
 use crate::ui::labs::path::hand::path_of;
+use crate::ui::labs::{Compares, LabUi, Shown, Title};
 use crate::ui::language::tr;
 use crate::ui::out::Out;
 use crate::ui::rows::clip_sets_ui;
@@ -17,7 +18,29 @@ use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Rect, RichText, Ui, UiBuilder, pos2, vec2};
 use segue_motion::path::PathEdit;
-use segue_session::{Command, CompanyChange, Key, OnPath, Session, Slot, Value};
+use segue_session::{Command, CompanyChange, Key, LabId, OnPath, Session, Slot, Value};
+
+/// The lab's part of the page.
+pub(super) const LAB: LabUi = LabUi {
+    panel_ui: path_ui,
+    compares: Compares::Own(compare_points),
+    title,
+    hint: |_| Some(text::PATH_HINT),
+    take_line: Some(|points, session, state, out| state.path.take_drawn(points, session, out)),
+};
+
+fn title(shown: &Shown<'_>) -> Title {
+    Title {
+        strong: shown.name(Key::A),
+        secondary: path_of(shown.session, shown.pane).map_or_else(String::new, text::path_lengths),
+        ..Title::default()
+    }
+}
+
+/// Whether the lab is open.
+pub(crate) fn is_open(session: &Session) -> bool {
+    session.params().lab() == LabId::Path
+}
 
 /// A turn of the whole path, degrees.
 const TURN_DEG: f64 = 15.0;

@@ -4,6 +4,7 @@ use crate::ui::kit::{
     self, Button, Feet, HeatMap, HeatMapEvent, Icon, MapCurve, SliderRow, WeightCurveEvent,
     WeightCurveRow,
 };
+use crate::ui::labs::{Compares, LabUi, Shown, Title};
 use crate::ui::language::tr;
 use crate::ui::out::Out;
 use crate::ui::rows::clip_sets_ui;
@@ -23,6 +24,28 @@ use segue_session::{
     write_also, write_pairs,
 };
 use std::sync::Arc;
+
+/// The lab's part of the page.
+pub(super) const LAB: LabUi = LabUi {
+    panel_ui: register_ui,
+    compares: Compares::Own(compare_warps),
+    title,
+    hint: |_| Some(text::REGISTER_HINT),
+    take_line: None,
+};
+
+fn title(shown: &Shown<'_>) -> Title {
+    let b = shown.name(Key::B);
+    let text = if shown.params.choice::<choices::WarpMode>() == choices::WarpMode::Join {
+        format!("→ {b}")
+    } else {
+        let others = shown.session.also_blended().into_iter();
+        let others = others.map(|(id, _)| shown.name_of(&id).unwrap_or(id));
+        let names: Vec<String> = std::iter::once(b).chain(others).collect();
+        format!("+ {}", names.join(" + "))
+    };
+    Title { strong: shown.name(Key::A), text, secondary: shown.spoken(Key::WarpWith) }
+}
 
 /// How much of a clip there is that has just joined a blend.
 const FIRST_SHARE: f64 = 0.25;

@@ -1,6 +1,7 @@
 //! The Speed lab: two cycles at a speed.
 
 use crate::ui::kit::{self, Button, Mark, Part};
+use crate::ui::labs::{Compares, LabUi, Shown, Title};
 use crate::ui::out::Out;
 use crate::ui::rows::clip_sets_ui;
 use crate::ui::rows::{Detail, param_row_ui};
@@ -10,6 +11,27 @@ use crate::ui::text;
 use crate::ui::theme::{palette_of, space};
 use eframe::egui::Ui;
 use segue_session::{CycleMade, Key, Session, Value};
+
+/// The lab's part of the page.
+pub(super) const LAB: LabUi = LabUi {
+    panel_ui: speed_ui,
+    compares: Compares::Own(compare_speeds),
+    title,
+    hint: |_| None,
+    take_line: None,
+};
+
+fn title(shown: &Shown<'_>) -> Title {
+    // The speed that was reached, as the numbers have it: a cycle of whole frames is not always as
+    // fast as was asked.
+    let metrics = shown.pane.outcome.iter().flat_map(|outcome| &outcome.metrics);
+    let reached = metrics.filter(|metric| metric.id == "speed_mps").find_map(|metric| metric.value);
+    Title {
+        strong: shown.name(Key::A),
+        text: format!("~ {}", shown.name(Key::B)),
+        secondary: reached.map_or_else(String::new, |speed| format!("{speed:.2} m/s")),
+    }
+}
 
 /// The upper end of the slider before the clips are known, metres per second.
 const SLIDER_MPS: f64 = 6.0;

@@ -2,6 +2,7 @@
 
 use super::break_it::break_it_ui;
 use crate::ui::kit::{self, Button};
+use crate::ui::labs::{Compares, LabUi, Shown, Title};
 use crate::ui::out::Out;
 use crate::ui::rows::{
     Detail, compare_ui, foot_rows_ui, lab_label, pair_ui, param_row_ui, place_rows_ui,
@@ -13,7 +14,30 @@ use crate::ui::theme::space;
 use eframe::egui::Ui;
 use segue_motion::math::spring;
 use segue_session::choices::{self, TransitionMethod};
-use segue_session::{Key, Session, Value};
+use segue_session::{Key, LabId, Session, Value};
+
+/// The lab's part of the page.
+pub(super) const LAB: LabUi = LabUi {
+    panel_ui: transition_ui,
+    compares: Compares::Key(Key::HalfLife),
+    title,
+    hint: |_| None,
+    take_line: None,
+};
+
+fn title(shown: &Shown<'_>) -> Title {
+    Title {
+        strong: shown.name(Key::A),
+        text: format!("→ {}", shown.name(Key::B)),
+        secondary: shown.spoken(Key::Method),
+    }
+}
+
+/// Whether the lab is open.
+pub(crate) fn is_open(session: &Session) -> bool {
+    session.params().lab() == LabId::Transition
+}
+
 /// What the methods of the lab have to set, and what they share.
 pub(super) fn transition_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(&lab_label(session), ui);

@@ -3,6 +3,7 @@
 use crate::ui::clip_panel::clip_panel_ui;
 use crate::ui::kit::{self, Button};
 use crate::ui::labs::toggle_compare;
+use crate::ui::labs::{Compares, LabUi, Shown, Title};
 use crate::ui::out::Out;
 use crate::ui::rows::{
     Detail, clip_choice_ui, foot_rows_ui, keep_ui, lab_label, param_row_ui, slot_row_ui,
@@ -10,7 +11,34 @@ use crate::ui::rows::{
 use crate::ui::state::UiState;
 use crate::ui::text;
 use eframe::egui::Ui;
-use segue_session::{Key, Session, Slot, Value};
+use segue_session::{Command, Compare, Key, LabId, Session, Slot, Value};
+
+/// The lab's part of the page.
+pub(super) const LAB: LabUi = LabUi {
+    panel_ui: view_ui,
+    compares: Compares::Own(|session, out| {
+        compare_clips(session.params().text(Key::A), session.params().text(Key::B), out)
+    }),
+    title,
+    hint: |_| None,
+    take_line: None,
+};
+
+fn title(shown: &Shown<'_>) -> Title {
+    Title { strong: shown.name(Key::A), ..Title::default() }
+}
+
+/// Opens two clips as they are, side by side: a reference, and what somebody made after it.
+pub(crate) fn compare_clips(reference: &str, other: &str, out: &mut Out) {
+    let values = [reference, other].map(|id| Value::Text(id.to_owned())).to_vec();
+    let compare = Compare { key: Key::A, values }.to_string();
+    out.commands.push(Command::Set(vec![
+        (Key::Lab, LabId::View.into()),
+        (Key::Compare, Value::Text(compare)),
+    ]));
+    out.commands.push(Command::Settle);
+}
+
 pub(super) fn view_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(&lab_label(session), ui);
     compared_clips_ui(session, out, ui);

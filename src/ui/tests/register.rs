@@ -105,8 +105,7 @@ fn the_map_is_pointed_at_pressed_and_pinned() {
     let now = harness.state().session.now_secs();
     let beat = outcome(harness.state()).registered().unwrap().beat_at(now).unwrap();
     let off = |secs: f64| {
-        let frames =
-            outcome(harness.state()).registered().unwrap().beat_at(secs).unwrap().frames;
+        let frames = outcome(harness.state()).registered().unwrap().beat_at(secs).unwrap().frames;
         (frames[0] - a).hypot(frames[1] - b)
     };
     assert!(

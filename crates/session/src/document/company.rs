@@ -2,12 +2,12 @@
 //! paths of their own.
 
 use super::Session;
-use crate::LabId;
 use crate::command::{CommandError, CompanyChange};
-use crate::labs::{read_ids, recipe_id, recipe_ingredients, recipe_name, recipe_params, write_ids};
+use crate::labs::lab::{self, Beside};
+use crate::labs::{read_ids, recipe_id, recipe_name, take_up, write_ids};
 use crate::library::{Entry, Origin, split_reference};
 use crate::motion::Motion;
-use crate::params::{Key, Params, Value};
+use crate::params::{Key, Value};
 use std::sync::Arc;
 
 /// As many as a stage and an eye have room for.
@@ -46,7 +46,7 @@ impl Session {
     /// Finds or makes everybody in the list.
     pub(super) fn refresh_company(&mut self) {
         self.company.clear();
-        if self.params.lab() != LabId::Path {
+        if !lab::of(self.params.lab()).has(Beside::Company) {
             return;
         }
         for id in self.company_ids().into_iter().take(MOST) {
@@ -125,19 +125,4 @@ impl Session {
         }
         id
     }
-}
-
-/// Sets everything that a clip on a path is made from; any other clip goes on the path that is
-/// fitted to it.
-fn take_up(params: &mut Params, id: &str) -> Result<(), CommandError> {
-    let made = recipe_params(id).filter(|made| made.lab() == LabId::Path);
-    for key in recipe_ingredients(LabId::Path) {
-        let value = match (&made, key) {
-            (Some(made), _) => made.get(key).clone(),
-            (None, Key::A) => Value::Text(id.to_owned()),
-            (None, _) => key.param().default_value(),
-        };
-        params.set(key, value)?;
-    }
-    Ok(())
 }

@@ -3,12 +3,9 @@
 
 use super::Session;
 use super::panes::{Answer, Pane};
-use crate::LabId;
 use crate::choices;
 use crate::command::CommandError;
-use crate::labs::{
-    Crowd, Gauge, HandTag, Live, filter_of, options_in, read_ids, read_tags, recording_of,
-};
+use crate::labs::{Crowd, Gauge, HandTag, Live, filter_of, lab, options_in, read_ids, read_tags};
 use crate::params::{Key, Params, Value};
 use segue_motion::matching::{Control, ControllerOptions, Database, RATE, Recording};
 use segue_motion::metrics::Metric;
@@ -40,7 +37,7 @@ pub(super) struct Driving {
 
 /// Whether these parameters let the user drive.
 fn is_own(params: &Params) -> bool {
-    params.lab() == LabId::Match && matches!(recording_of(params), Ok(None))
+    lab::of(params.lab()).is_own_drive(params)
 }
 
 /// What a pane is driven by: its parameters, and its database; `None` while that is built.

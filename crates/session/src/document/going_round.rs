@@ -4,8 +4,7 @@
 use super::Session;
 use super::panes::Pane;
 use crate::choices;
-use crate::labs::Inputs;
-use crate::labs::{CycleMade, Outcome};
+use crate::labs::{CycleMade, Inputs, Outcome, SpeedInputs};
 use crate::params::{Key, Value};
 use segue_motion::gait::SpeedOptions;
 use segue_motion::math::{Planar, spring};
@@ -53,6 +52,11 @@ pub(super) fn durations(old: &Outcome, new: &Outcome) -> Option<[f64; 2]> {
     (kind(&old.made) == kind(&new.made) && old.secs > 0.0).then_some([old.secs, new.secs])
 }
 
+/// What a gait was made from; `None` for what is none.
+fn gait_of(inputs: &Option<Inputs>) -> Option<&SpeedInputs> {
+    inputs.as_ref()?.of_lab()
+}
+
 /// The speed of a gait; 0 for what is none.
 fn speed_of(outcome: &Outcome) -> f64 {
     match outcome.cycle.map(|cycle| cycle.made) {
@@ -88,7 +92,7 @@ impl Pane {
             spring::towards(glide.speed_mps, glide.acceleration, target, half_life_secs, dt_secs);
         let arrived = (speed - target).abs() < ARRIVED[0] && acceleration.abs() < ARRIVED[1];
         // A picture that stands shows what was asked for.
-        if let (true, false, Some(Inputs::Speed(inputs))) = (playing, arrived, &self.inputs)
+        if let (true, false, Some(inputs)) = (playing, arrived, gait_of(&self.inputs))
             && let Ok(outcome) = inputs.run_at(speed)
         {
             (glide.speed_mps, glide.acceleration, glide.outcome) =
@@ -159,8 +163,8 @@ impl Session {
             if moved || alike.is_none() {
                 continue;
             }
-            if let (true, Some(Inputs::Speed(old)), Some(Inputs::Speed(new))) =
-                (playing, &shown.inputs, &pane.inputs)
+            if let (true, Some(old), Some(new)) =
+                (playing, gait_of(&shown.inputs), gait_of(&pane.inputs))
                 && old.differs_in_speed_alone(new)
             {
                 pane.glide = Some(shown.glide.clone());

@@ -1,7 +1,7 @@
 //! What panels and pictures ask about the Graph lab.
 
 use super::Session;
-use crate::LabId;
+use crate::labs::lab::{self, Beside};
 use crate::labs::{Built, Cast, Field, Walk, clips_of, graph_of, read_path, read_visits};
 use crate::params::Key;
 use glam::DVec2;
@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 impl Session {
     fn is_graph_lab(&self) -> bool {
-        self.params.lab() == LabId::Graph
+        lab::of(self.params.lab()).has(Beside::Graph)
     }
 
     /// The ids of the clips that the graph is made of; none where the list cannot be read.
@@ -72,6 +72,9 @@ impl Session {
     /// The line that the walk follows, (x, z) in metres.
     #[must_use]
     pub fn graph_path(&self) -> Vec<DVec2> {
+        if !self.is_graph_lab() {
+            return Vec::new();
+        }
         read_path(self.params.text(Key::WalkPath)).unwrap_or_default()
     }
 

@@ -12,7 +12,8 @@ mod slots;
 mod storing;
 mod teaching;
 
-use crate::{LabId, Selected};
+use crate::Selected;
+use crate::labs::lab::{self, Beside};
 pub use company::Companion;
 pub use loading::Loaded;
 use loading::Reading;
@@ -510,14 +511,14 @@ impl Session {
     /// place.
     #[must_use]
     pub fn view_is_changed(&self) -> bool {
-        self.params.lab() == LabId::View && !is_as_it_is(&self.params)
+        lab::of(self.params.lab()).shows_clip() && !is_as_it_is(&self.params)
     }
 
     /// The distances that the Register lab looks at: those of the first pane, newer ones where it
     /// has no result for them.
     #[must_use]
     pub fn distance_map(&self) -> Option<&Arc<DistanceMap>> {
-        if self.params.lab() != LabId::Register {
+        if !lab::of(self.params.lab()).has(Beside::DistanceMap) {
             return None;
         }
         let pane = self.panes.first()?;
@@ -759,7 +760,7 @@ impl Session {
             motion.map_or(1.0, |motion| motion.clip.fps())
         });
         let known = CommandError::NotPossible("this clip is in the library already");
-        if params.lab() == LabId::View && is_as_it_is(&params) {
+        if lab::of(params.lab()).shows_clip() && is_as_it_is(&params) {
             return Err(known);
         }
         let id = recipe_id(&params, &outcome, fps).ok_or(CommandError::NotPossible(

@@ -3,7 +3,6 @@
 
 use super::Session;
 use super::going_round::{Glide, durations};
-use crate::LabId;
 use crate::compare::{Compare, MAX_PANES};
 use crate::labs::{Gauge, Inputs, JobKind, LabClips, MoreClip, Outcome, Slot, Source};
 use crate::labs::{belongs_to, lab, preset_motion, recipe_ingredients, recipe_name, recipe_params};
@@ -263,7 +262,7 @@ impl Session {
         let is_quick = |entry: &Entry| match entry.origin {
             Origin::Preset => true,
             Origin::Made => {
-                recipe_params(&entry.id).is_some_and(|params| params.lab() == LabId::Make)
+                recipe_params(&entry.id).is_some_and(|params| lab::of(params.lab()).is_synthetic())
             }
             _ => false,
         };
@@ -503,7 +502,7 @@ impl Session {
     /// What a pane's result depends on; `None` while that is still being computed.
     fn inputs(&mut self, params: &Params, match_window: usize) -> Result<Option<Inputs>, String> {
         let clips = self.lab_clips(params)?;
-        self.labs.inputs(clips, params, match_window)
+        lab::of(params.lab()).inputs(&mut self.labs, clips, params, match_window)
     }
 
     fn refresh_pane(&mut self, pane: &mut Pane, params: &Arc<Params>, match_window: usize) {

@@ -101,8 +101,7 @@ fn a_join_is_a_then_b_with_less_sliding_than_a_dissolve() {
     let skate = |pane: usize| number_of(&outcomes[pane], "foot_slide_cm");
     assert!(skate(0) < 0.5 * skate(1), "{} {}", skate(0), skate(1));
     for outcome in &outcomes {
-        let (registered, transition) =
-            (outcome.registered().unwrap(), outcome.transition.unwrap());
+        let (registered, transition) = (outcome.registered().unwrap(), outcome.transition.unwrap());
         assert_eq!(registered.beats.len(), outcome.motion.clip.frames());
         assert_eq!(outcome.motion.ground_frames.len(), outcome.motion.clip.frames());
         let at = |secs: f64| registered.beat_at(secs).unwrap();

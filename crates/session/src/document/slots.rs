@@ -2,7 +2,6 @@
 //! file, or built in and back from where it was taken out.
 
 use super::{Session, built_in_entries};
-use crate::LabId;
 use crate::command::CommandError;
 use crate::labs::{Slot, lab, recipe_name, recipe_params};
 use crate::library::{Entry, Origin, split_reference};
@@ -42,7 +41,7 @@ impl Session {
             return;
         }
         let is_looked_at = came == Came::ByHand
-            && self.params.lab() == LabId::View
+            && lab::of(self.params.lab()).shows_clip()
             && self.slot(Slot::A).is_some();
         let free = [Slot::A, Slot::B]
             .into_iter()
@@ -55,12 +54,11 @@ impl Session {
     /// Offers clips that came together the slots in turn: in View that of the one that is looked
     /// at; else those with clips that nobody brought.
     pub(super) fn offer_together<'a>(&mut self, ids: impl IntoIterator<Item = &'a str>) {
-        let slots = match self.params.lab() {
-            LabId::View => vec![Slot::A],
-            _ => [Slot::A, Slot::B]
-                .into_iter()
-                .filter(|slot| self.is_free(*slot, Came::ByHand))
-                .collect(),
+        let slots = if lab::of(self.params.lab()).shows_clip() {
+            vec![Slot::A]
+        } else {
+            let free = [Slot::A, Slot::B].into_iter();
+            free.filter(|slot| self.is_free(*slot, Came::ByHand)).collect()
         };
         for (slot, id) in slots.into_iter().zip(ids) {
             self.put_into(slot, id);

@@ -1,6 +1,6 @@
 use super::feet::{Lock, slide, slide_before, with_feet};
-use super::lab::Lab;
-use super::lab_set::{JobKind, Sliced};
+use super::lab::{Inputs, Lab, LabInputs};
+use super::lab_set::{JobKind, LabClips, LabSet, Sliced};
 use super::pair::Pair;
 use super::{MatchSearch, Outcome, Slot, Source, Transition};
 use crate::compare::MAX_PANES;
@@ -42,6 +42,17 @@ impl Lab for BlendLab {
         };
         outcome.transition.as_ref().map(found).unwrap_or_default()
     }
+
+    fn inputs(
+        &self,
+        labs: &mut LabSet,
+        clips: LabClips,
+        params: &Params,
+        match_window: usize,
+    ) -> Result<Option<Inputs>, String> {
+        let pair = labs.pairs.of_slots(&clips.slots)?;
+        Ok(Some(Inputs::new(labs.blender.inputs(&pair, params, match_window)?)))
+    }
 }
 
 /// The Transition lab: A goes over into B by one of several methods. One of them is a dissolve,
@@ -69,6 +80,16 @@ impl Lab for TransitionLab {
             ]
         };
         outcome.transition.as_ref().map(found).unwrap_or_default()
+    }
+
+    fn inputs(
+        &self,
+        labs: &mut LabSet,
+        clips: LabClips,
+        params: &Params,
+        match_window: usize,
+    ) -> Result<Option<Inputs>, String> {
+        BlendLab.inputs(labs, clips, params, match_window)
     }
 }
 
@@ -434,14 +455,8 @@ impl Sliced for Blender {
     }
 }
 
-impl BlendInputs {
-    /// Whether the best match is still being looked for.
-    pub(crate) fn awaits_place(&self) -> bool {
-        self.place.is_guess
-    }
-
-    /// The blend.
-    pub(crate) fn run(&self) -> Result<Outcome, String> {
+impl LabInputs for BlendInputs {
+    fn run(&self) -> Result<Outcome, String> {
         let Self { pair, place, options, mistake, foot_lock } = self;
         let [a, b] = &pair.profiles;
         let (from, to) = (a.source(), b.source());
@@ -518,6 +533,11 @@ impl BlendInputs {
             beside: pair.clips(),
             ..Outcome::plain(Arc::new(motion))
         })
+    }
+
+    /// Whether the best match is still being looked for.
+    fn is_draft(&self) -> bool {
+        self.place.is_guess
     }
 }
 

@@ -1,7 +1,8 @@
 //! The Graph lab: several clips as a motion graph, and a walk through it that goes on while it
 //! plays.
 
-use super::lab::Lab;
+use super::lab::{Beside, Inputs, Lab, LabInputs};
+use super::lab_set::{LabClips, LabSet};
 use crate::LabId;
 use crate::params::{Key, Params, Value};
 mod built;
@@ -38,10 +39,6 @@ impl Lab for GraphLab {
         &[]
     }
 
-    fn listed(&self, params: &Params) -> Vec<String> {
-        clips_of(params.text(Key::Clips)).unwrap_or_default()
-    }
-
     fn more_clips(&self, params: &Params) -> Result<Vec<String>, String> {
         clips_of(params.text(Key::Clips))
     }
@@ -57,6 +54,21 @@ impl Lab for GraphLab {
     fn file_stem(&self, _params: &Params) -> String {
         "walk".to_owned()
     }
+
+    fn has(&self, beside: Beside) -> bool {
+        beside == Beside::Graph
+    }
+
+    fn inputs(
+        &self,
+        labs: &mut LabSet,
+        clips: LabClips,
+        params: &Params,
+        _match_window: usize,
+    ) -> Result<Option<Inputs>, String> {
+        let clips = clips.more.into_iter().map(|clip| (clip.name, clip.motion)).collect();
+        Ok(labs.grapher.inputs(clips, params)?.map(Inputs::new))
+    }
 }
 
 /// What a walk's result depends on. Equal inputs, equal result.
@@ -69,14 +81,8 @@ impl PartialEq for GraphInputs {
     }
 }
 
-impl GraphInputs {
-    /// Whether it goes the best way that was found so far, while a better one is searched for.
-    pub(crate) fn awaits_path(&self) -> bool {
-        self.0.followed.as_ref().is_some_and(|trace| trace.is_searching)
-    }
-
-    /// The walk as a result. A single transition has its two clips as sources.
-    pub(crate) fn run(&self) -> Outcome {
+impl LabInputs for GraphInputs {
+    fn run(&self) -> Result<Outcome, String> {
         let walk = &self.0;
         let (mut sources, mut transition) = (Vec::new(), None);
         if let (true, [left, entered]) = (walk.is_jump, walk.passed.as_slice())
@@ -100,7 +106,7 @@ impl GraphInputs {
                 search: None,
             });
         }
-        Outcome {
+        Ok(Outcome {
             sources,
             transition,
             facts: LabFacts::Walk(Arc::clone(walk)),
@@ -114,6 +120,11 @@ impl GraphInputs {
                 .collect(),
             measured: walk.trace.clone().map_or(Measured::Motion, Measured::Trace),
             ..Outcome::plain(Arc::clone(&walk.motion))
-        }
+        })
+    }
+
+    /// Whether it goes the best way that was found so far, while a better one is searched for.
+    fn is_draft(&self) -> bool {
+        self.0.followed.as_ref().is_some_and(|trace| trace.is_searching)
     }
 }

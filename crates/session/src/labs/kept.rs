@@ -193,6 +193,7 @@ fn parts(list: &str) -> Option<Vec<&str>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::labs::lab::LabInputs;
     use proptest::prelude::*;
 
     fn named(a: &str, b: &str) -> Option<Params> {

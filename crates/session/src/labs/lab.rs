@@ -1,11 +1,14 @@
-//! What the document knows of a lab without running it: what its result depends on, and what that
-//! is called.
+//! What a lab answers: what its result depends on and is called, and what it is made from.
 
+use super::lab_set::{LabClips, LabSet};
 use super::{
     Outcome, Slot, blend, graph, layers, loop_, make, match_, path, register, speed, view,
 };
 use crate::LabId;
 use crate::params::{Group, Key, Params, Value};
+use std::any::Any;
+use std::fmt;
+use std::sync::Arc;
 
 /// The facts of a lab. Each lab's own file holds them; [`of`] lists all labs.
 pub(crate) trait Lab: Sync {
@@ -29,8 +32,8 @@ pub(crate) trait Lab: Sync {
 
     /// The ids of the clips that the lab's own list names; none where it has no list, and where
     /// that cannot be read.
-    fn listed(&self, _params: &Params) -> Vec<String> {
-        Vec::new()
+    fn listed(&self, params: &Params) -> Vec<String> {
+        self.more_clips(params).unwrap_or_default()
     }
 
     /// The ids of the clips that the result is made from besides those in its slots.
@@ -46,6 +49,19 @@ pub(crate) trait Lab: Sync {
     fn with_clips(&self, _ids: &[String]) -> Option<Vec<(Key, Value)>> {
         None
     }
+
+    /// Returns what the result depends on; `None` while that is still being computed.
+    /// `match_window` is the window of the automatic match, in frames.
+    ///
+    /// # Errors
+    /// Says why there can be no result, and what to do.
+    fn inputs(
+        &self,
+        labs: &mut LabSet,
+        clips: LabClips,
+        params: &Params,
+        match_window: usize,
+    ) -> Result<Option<Inputs>, String>;
 
     /// What the result is called; `a` and `b` are what the clips in its slots are called.
     fn result_name(&self, params: &Params, a: &str, b: &str) -> String;
@@ -65,11 +81,110 @@ pub(crate) trait Lab: Sync {
         None
     }
 
+    /// Whether the result is a clip as it is: what is opened meanwhile takes its place.
+    fn shows_clip(&self) -> bool {
+        false
+    }
+
+    /// Whether results are made in a moment, and from parameters alone.
+    fn is_synthetic(&self) -> bool {
+        false
+    }
+
+    /// Whether the user drives what is shown, with these parameters.
+    fn is_own_drive(&self, _params: &Params) -> bool {
+        false
+    }
+
+    /// Whether there is something beside the result.
+    fn has(&self, _beside: Beside) -> bool {
+        false
+    }
+
     /// Whether the result depends on a parameter.
     fn depends_on(&self, key: Key) -> bool {
         matches!(key.param().group, Group::Lab(lab) if self.parameters_of().contains(&lab))
             || self.shared_keys().contains(&key)
             || (self.has_feet() && is_of_feet(key))
+    }
+}
+
+/// What a lab may show beside its result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Beside {
+    /// Clips that play along.
+    Company,
+    /// The graph that a walk goes through.
+    Graph,
+    /// The distances between the frames of two clips.
+    DistanceMap,
+}
+
+/// What a lab's result depends on. Equal inputs give equal results: nothing is computed again.
+pub(crate) trait LabInputs: fmt::Debug + PartialEq + Send + Sync + 'static {
+    /// Makes the result.
+    ///
+    /// # Errors
+    /// Says why there can be no result, and what to do.
+    fn run(&self) -> Result<Outcome, String>;
+
+    /// Returns whether the result is shown while more of it is computed: it will be another motion
+    /// then, or have numbers.
+    fn is_draft(&self) -> bool {
+        false
+    }
+}
+
+/// The inputs of any lab.
+#[derive(Clone, Debug)]
+pub(crate) struct Inputs(Arc<dyn AnyInputs>);
+
+/// [`LabInputs`] of a lab that is not known here.
+trait AnyInputs: Any + fmt::Debug + Send + Sync {
+    fn run(&self) -> Result<Outcome, String>;
+    fn is_draft(&self) -> bool;
+    fn equals(&self, other: &dyn AnyInputs) -> bool;
+}
+
+impl<T: LabInputs> AnyInputs for T {
+    fn run(&self) -> Result<Outcome, String> {
+        LabInputs::run(self)
+    }
+
+    fn is_draft(&self) -> bool {
+        LabInputs::is_draft(self)
+    }
+
+    fn equals(&self, other: &dyn AnyInputs) -> bool {
+        (other as &dyn Any).downcast_ref::<T>().is_some_and(|other| self == other)
+    }
+}
+
+impl Inputs {
+    /// Takes the inputs of a lab.
+    pub(crate) fn new(inputs: impl LabInputs) -> Self {
+        Self(Arc::new(inputs))
+    }
+
+    /// Makes the result; errors as [`LabInputs::run`].
+    pub(crate) fn run(&self) -> Result<Outcome, String> {
+        self.0.run()
+    }
+
+    /// As [`LabInputs::is_draft`].
+    pub(crate) fn is_draft(&self) -> bool {
+        self.0.is_draft()
+    }
+
+    /// Returns the inputs as those of one lab; `None` where they are another's.
+    pub(crate) fn of_lab<T: LabInputs>(&self) -> Option<&T> {
+        (&*self.0 as &dyn Any).downcast_ref()
+    }
+}
+
+impl PartialEq for Inputs {
+    fn eq(&self, other: &Self) -> bool {
+        self.0.equals(&*other.0)
     }
 }
 

@@ -1,23 +1,16 @@
-//! All labs with what they remember: inputs for results, and the work that takes longer than a
-//! frame.
+//! What all labs remember, and the work that takes longer than a frame.
 
-use super::Outcome;
-use super::blend::{BlendInputs, Blender};
+use super::blend::Blender;
 use super::gauge::Gauge;
-use super::graph::{GraphInputs, Grapher};
-use super::layers::{LayerInputs, Layerer};
-use super::loop_::{CycleFinder, LoopInputs};
-use super::make::MakeInputs;
-use super::match_::{
-    Driver, HandTag, ReplayInputs, Source as MatchSource, filter_of, options_in, read_tags,
-    recording_of,
-};
+use super::graph::Grapher;
+use super::layers::Layerer;
+use super::loop_::CycleFinder;
+use super::match_::{Driver, HandTag, Source as MatchSource, filter_of, read_tags};
 use super::pair::Pairs;
-use super::path::{PathInputs, Paths};
-use super::register::{RegisterInputs, Registrars, read_also};
-use super::speed::{GaitFinder, SpeedInputs};
-use super::view::{ViewInputs, Viewer};
-use crate::LabId;
+use super::path::Paths;
+use super::register::Registrars;
+use super::speed::GaitFinder;
+use super::view::Viewer;
 use crate::motion::Motion;
 use crate::params::{Key, Params};
 use segue_motion::matching::Database;
@@ -93,28 +86,28 @@ pub(crate) struct MoreClip {
 }
 
 impl LabClips {
-    fn first(&self) -> Result<&Arc<Motion>, String> {
+    pub(super) fn first(&self) -> Result<&Arc<Motion>, String> {
         self.slots.first().ok_or_else(|| "There is no clip in A.".to_owned())
     }
 
-    fn motions(&self) -> Vec<Arc<Motion>> {
+    pub(super) fn motions(&self) -> Vec<Arc<Motion>> {
         self.more.iter().map(|clip| Arc::clone(&clip.motion)).collect()
     }
 }
 
-/// All labs. Each remembers what it has found, so that what did not change is not computed again.
+/// What labs remember of what they have found, so that what did not change is not computed again.
 #[derive(Debug, Default)]
 pub(crate) struct LabSet {
-    pairs: Pairs,
-    blender: Blender,
-    gaits: GaitFinder,
-    cycles: CycleFinder,
-    layerer: Layerer,
+    pub(super) pairs: Pairs,
+    pub(super) blender: Blender,
+    pub(super) gaits: GaitFinder,
+    pub(super) cycles: CycleFinder,
+    pub(super) layerer: Layerer,
     pub(crate) registrars: Registrars,
-    paths: Paths,
+    pub(super) paths: Paths,
     pub(crate) grapher: Grapher,
-    viewer: Viewer,
-    driver: Driver,
+    pub(super) viewer: Viewer,
+    pub(super) driver: Driver,
     pub(crate) gauge: Gauge,
 }
 
@@ -174,46 +167,6 @@ impl LabSet {
         found
     }
 
-    /// Returns what a result depends on; `None` while that is still being computed. `match_window`
-    /// is the window of the automatic match, in frames.
-    pub(crate) fn inputs(
-        &mut self,
-        clips: LabClips,
-        params: &Params,
-        match_window: usize,
-    ) -> Result<Option<Inputs>, String> {
-        let inputs = match params.lab() {
-            LabId::View => return Ok(self.viewer.inputs(clips.first()?, params).map(Inputs::View)),
-            LabId::Make => Inputs::Make(MakeInputs::of(params)),
-            LabId::Blend | LabId::Transition => Inputs::Blend(self.blender.inputs(
-                &self.pairs.of_slots(&clips.slots)?,
-                params,
-                match_window,
-            )?),
-            LabId::Speed => {
-                Inputs::Speed(self.gaits.inputs(&self.pairs.of_slots(&clips.slots)?, params)?)
-            }
-            LabId::Loop => Inputs::Loop(self.cycles.inputs(clips.first()?, params)?),
-            LabId::Layers => {
-                Inputs::Layers(self.layerer.inputs(&self.pairs.of_slots(&clips.slots)?, params)?)
-            }
-            LabId::Register => {
-                let pair = self.pairs.of_slots(&clips.slots)?;
-                let weights =
-                    read_also(params.text(Key::WarpAlso))?.into_iter().map(|(_, weight)| weight);
-                let also: Vec<_> = clips.motions().into_iter().zip(weights).collect();
-                return Ok(self.registrars.inputs(&pair, &also, params)?.map(Inputs::Register));
-            }
-            LabId::Path => Inputs::Path(self.paths.inputs(clips.first()?, params)?),
-            LabId::Graph => {
-                let clips = clips.more.into_iter().map(|clip| (clip.name, clip.motion)).collect();
-                return Ok(self.grapher.inputs(clips, params)?.map(Inputs::Graph));
-            }
-            LabId::Match => return Ok(self.replay(clips, params)?.map(Inputs::Match)),
-        };
-        Ok(Some(inputs))
-    }
-
     /// Returns the database of the Match lab; `None` while it is built.
     pub(crate) fn match_database(
         &mut self,
@@ -225,61 +178,5 @@ impl LabSet {
         let database = self.driver.database(&MatchSource::new(clips.motions(), params))?;
         let ids = clips.more.into_iter().map(|clip| clip.id).collect();
         Ok(database.map(|database| self.driver.tagged(database, ids, tags)))
-    }
-
-    fn replay(&mut self, clips: LabClips, params: &Params) -> Result<Option<ReplayInputs>, String> {
-        let Some(recording) = recording_of(params)? else {
-            return Err("Nothing was driven yet.".to_owned());
-        };
-        let Some(database) = self.match_database(clips, params)? else {
-            return Ok(None);
-        };
-        let options = options_in(&database, params)?;
-        self.driver.replay(database, options, recording, filter_of(params)?)
-    }
-}
-
-/// What a result depends on. Equal inputs give equal results: nothing is computed again.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Inputs {
-    View(ViewInputs),
-    Make(MakeInputs),
-    Blend(BlendInputs),
-    Speed(SpeedInputs),
-    Loop(LoopInputs),
-    Layers(LayerInputs),
-    Register(RegisterInputs),
-    Path(PathInputs),
-    Graph(GraphInputs),
-    Match(ReplayInputs),
-}
-
-impl Inputs {
-    /// Makes the result.
-    pub(crate) fn run(&self) -> Result<Outcome, String> {
-        match self {
-            Self::View(view) => view.run(),
-            Self::Make(made) => made.run(),
-            Self::Blend(blend) => blend.run(),
-            Self::Speed(speed) => speed.run(),
-            Self::Loop(cycle) => cycle.run(),
-            Self::Layers(layers) => layers.run(),
-            Self::Register(register) => register.run(),
-            Self::Path(path) => path.run(),
-            Self::Graph(graph) => Ok(graph.run()),
-            Self::Match(replay) => Ok(replay.run()),
-        }
-    }
-
-    /// Returns whether the result is shown while more of it is computed: it will be another motion
-    /// then, or have numbers.
-    pub(crate) fn is_draft(&self) -> bool {
-        match self {
-            Self::View(view) => view.awaits_numbers(),
-            Self::Blend(blend) => blend.awaits_place(),
-            Self::Path(path) => path.awaits_feet(),
-            Self::Graph(graph) => graph.awaits_path(),
-            _ => false,
-        }
     }
 }

@@ -1,5 +1,6 @@
 use super::feet::{Lock, slide, slide_before, with_feet};
-use super::lab::Lab;
+use super::lab::{Inputs, Lab, LabInputs};
+use super::lab_set::{LabClips, LabSet};
 use super::pair::{Pair, source_of};
 use super::{LabFacts, Outcome, Slot, Source};
 use crate::LabId;
@@ -31,6 +32,17 @@ impl Lab for LayersLab {
 
     fn file_stem(&self, params: &Params) -> String {
         format!("{} and {}", params.text(Key::A), params.text(Key::B))
+    }
+
+    fn inputs(
+        &self,
+        labs: &mut LabSet,
+        clips: LabClips,
+        params: &Params,
+        _match_window: usize,
+    ) -> Result<Option<Inputs>, String> {
+        let pair = labs.pairs.of_slots(&clips.slots)?;
+        Ok(Some(Inputs::new(labs.layerer.inputs(&pair, params)?)))
     }
 }
 
@@ -264,9 +276,8 @@ fn options_of(params: &Params) -> LayerOptions {
     }
 }
 
-impl LayerInputs {
-    /// The layer over the clip.
-    pub(crate) fn run(&self) -> Result<Outcome, String> {
+impl LabInputs for LayerInputs {
+    fn run(&self) -> Result<Outcome, String> {
         let (pair, timed) = (&self.pair, &self.timed);
         let (a, roles) = (&pair.a, pair.a.roles.clone());
         let options = LayerOptions { time: time_of(timed.fit), ..self.options.clone() };

@@ -1,7 +1,8 @@
 //! The Loop lab: a part of a clip becomes a cycle.
 
 use super::feet::Lock;
-use super::lab::Lab;
+use super::lab::{Inputs, Lab, LabInputs};
+use super::lab_set::{LabClips, LabSet};
 use super::pair::source_of;
 use super::rounds::{Rounds, repeated, rounds};
 use super::{Cycle, CycleMade, Outcome, Slot, Source};
@@ -52,6 +53,16 @@ impl Lab for LoopLab {
 
     fn captured_link(&self) -> Option<&'static str> {
         Some("a=cmu16_walk")
+    }
+
+    fn inputs(
+        &self,
+        labs: &mut LabSet,
+        clips: LabClips,
+        params: &Params,
+        _match_window: usize,
+    ) -> Result<Option<Inputs>, String> {
+        Ok(Some(Inputs::new(labs.cycles.inputs(clips.first()?, params)?)))
     }
 }
 
@@ -149,9 +160,8 @@ fn options(params: &Params) -> LoopOptions {
     LoopOptions { method, ratio }
 }
 
-impl LoopInputs {
-    /// The loop.
-    pub(crate) fn run(&self) -> Result<Outcome, String> {
+impl LabInputs for LoopInputs {
+    fn run(&self) -> Result<Outcome, String> {
         let Found { motion, source, cut, .. } = &*self.found;
         let looped = close_loop(source, cut.cycle.clone(), &self.options)
             .map_err(|error| error.to_string())?;

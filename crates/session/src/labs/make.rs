@@ -1,6 +1,7 @@
 use super::feet::{Lock, slide, slide_before, with_feet};
 use super::kept::{belongs_to, counts};
-use super::lab::Lab;
+use super::lab::{Inputs, Lab, LabInputs};
+use super::lab_set::{LabClips, LabSet};
 use super::{Outcome, Slot};
 use crate::motion::{FeetReading, Motion};
 use crate::outside::short;
@@ -28,6 +29,20 @@ impl Lab for MakeLab {
 
     fn file_stem(&self, params: &Params) -> String {
         params.choice::<choices::MadeAction>().word().to_owned()
+    }
+
+    fn is_synthetic(&self) -> bool {
+        true
+    }
+
+    fn inputs(
+        &self,
+        _labs: &mut LabSet,
+        _clips: LabClips,
+        params: &Params,
+        _match_window: usize,
+    ) -> Result<Option<Inputs>, String> {
+        Ok(Some(Inputs::new(MakeInputs::of(params))))
     }
 }
 
@@ -163,8 +178,10 @@ impl MakeInputs {
     pub(crate) fn of(params: &Params) -> Self {
         Self { params: Arc::new(params.clone()), id: made_id(params) }
     }
+}
 
-    pub(crate) fn run(&self) -> Result<Outcome, String> {
+impl LabInputs for MakeInputs {
+    fn run(&self) -> Result<Outcome, String> {
         make(&self.params)
     }
 }

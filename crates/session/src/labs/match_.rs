@@ -2,7 +2,8 @@
 
 use super::Slot;
 use super::kept::{read_ids, write_ids};
-use super::lab::Lab;
+use super::lab::{Inputs, Lab};
+use super::lab_set::{LabClips, LabSet};
 use crate::LabId;
 use crate::choices;
 use crate::params::{Key, Params, Value};
@@ -14,7 +15,7 @@ mod tagging;
 mod trace;
 
 pub(crate) use crowd::Crowd;
-pub(crate) use driver::{Driver, ReplayInputs, Source};
+pub(crate) use driver::{Driver, Source};
 pub(crate) use live::Live;
 #[cfg(test)]
 pub(crate) use settings::options_of;
@@ -43,10 +44,6 @@ impl Lab for MatchLab {
         &[]
     }
 
-    fn listed(&self, params: &Params) -> Vec<String> {
-        read_ids(params.text(Key::MatchClips)).unwrap_or_default()
-    }
-
     fn more_clips(&self, params: &Params) -> Result<Vec<String>, String> {
         read_ids(params.text(Key::MatchClips)).ok_or_else(|| {
             "The list of clips cannot be read: its brackets do not close.".to_owned()
@@ -66,5 +63,27 @@ impl Lab for MatchLab {
 
     fn file_stem(&self, _params: &Params) -> String {
         "drive".to_owned()
+    }
+
+    fn is_own_drive(&self, params: &Params) -> bool {
+        matches!(recording_of(params), Ok(None))
+    }
+
+    fn inputs(
+        &self,
+        labs: &mut LabSet,
+        clips: LabClips,
+        params: &Params,
+        _match_window: usize,
+    ) -> Result<Option<Inputs>, String> {
+        let Some(recording) = recording_of(params)? else {
+            return Err("Nothing was driven yet.".to_owned());
+        };
+        let Some(database) = labs.match_database(clips, params)? else {
+            return Ok(None);
+        };
+        let options = options_in(&database, params)?;
+        let replay = labs.driver.replay(database, options, recording, filter_of(params)?)?;
+        Ok(replay.map(Inputs::new))
     }
 }

@@ -1,16 +1,16 @@
 //! The Path lab: a motion on another path.
 
 use super::feet::{Lock, locking, slide, slide_before};
-use super::kept::read_ids;
-use super::lab::Lab;
-use super::lab_set::{JobKind, Sliced};
+use super::kept::{read_ids, recipe_ingredients, recipe_params};
+use super::lab::{Beside, Inputs, Lab, LabInputs};
+use super::lab_set::{JobKind, LabClips, LabSet, Sliced};
 use super::pair::source_of;
 use super::{LabFacts, Outcome, Slot, Source};
 use crate::LabId;
 use crate::choices;
 use crate::compare::MAX_PANES;
 use crate::motion::Motion;
-use crate::params::{Key, Params};
+use crate::params::{Key, Params, Value, ValueError};
 use planter::{Planted, Planter};
 use segue_motion::clip::{Clip, Contacts};
 use segue_motion::math::Planar;
@@ -50,6 +50,20 @@ impl Lab for PathLab {
 
     fn captured_link(&self) -> Option<&'static str> {
         Some("a=cmu16_walk")
+    }
+
+    fn has(&self, beside: Beside) -> bool {
+        beside == Beside::Company
+    }
+
+    fn inputs(
+        &self,
+        labs: &mut LabSet,
+        clips: LabClips,
+        params: &Params,
+        _match_window: usize,
+    ) -> Result<Option<Inputs>, String> {
+        Ok(Some(Inputs::new(labs.paths.inputs(clips.first()?, params)?)))
     }
 }
 
@@ -295,11 +309,6 @@ fn free_motion(inputs: &PathInputs) -> Result<(Arc<Road>, EditedMotion), String>
 }
 
 impl PathInputs {
-    /// Whether its feet are to be planted, and are not yet.
-    pub(crate) fn awaits_feet(&self) -> bool {
-        matches!(self.feet, Feet::Awaited)
-    }
-
     /// Begins to hold the planted feet of the motion on the path, which turned the whole body by so
     /// many radians in every frame. `None` where they are not to be held, or there are no legs.
     fn locking(
@@ -315,9 +324,10 @@ impl PathInputs {
         let locking = locking(Arc::clone(free), &motion.roles, contacts, motion.ground_m, lock)?;
         Ok(locking.map(|locking| locking.with_body_yaws(turns)))
     }
+}
 
-    /// The motion on the path.
-    pub(crate) fn run(&self) -> Result<Outcome, String> {
+impl LabInputs for PathInputs {
+    fn run(&self) -> Result<Outcome, String> {
         let (road, made) = free_motion(self)?;
         let fitted = &self.fitted;
         let free = Arc::new(made.clip);
@@ -409,4 +419,27 @@ impl PathInputs {
             ..Outcome::plain(Arc::new(motion))
         })
     }
+
+    /// Whether its feet are to be planted, and are not yet.
+    fn is_draft(&self) -> bool {
+        matches!(self.feet, Feet::Awaited)
+    }
+}
+
+/// Sets everything that a clip on a path is made from; any other clip goes on the path that is
+/// fitted to it.
+///
+/// # Errors
+/// [`ValueError`] of an id that says what no parameter can be.
+pub(crate) fn take_up(params: &mut Params, id: &str) -> Result<(), ValueError> {
+    let made = recipe_params(id).filter(|made| made.lab() == LabId::Path);
+    for key in recipe_ingredients(LabId::Path) {
+        let value = match (&made, key) {
+            (Some(made), _) => made.get(key).clone(),
+            (None, Key::A) => Value::Text(id.to_owned()),
+            (None, _) => key.param().default_value(),
+        };
+        params.set(key, value)?;
+    }
+    Ok(())
 }

@@ -1,6 +1,7 @@
 //! The Register lab: two clips laid on each other in time, blended or joined along it.
 
-use super::lab::Lab;
+use super::lab::{Beside, Inputs, Lab, LabInputs};
+use super::lab_set::{LabClips, LabSet};
 use crate::LabId;
 use crate::params::{Key, Params};
 mod map;
@@ -57,6 +58,23 @@ impl Lab for RegisterLab {
 
     fn captured_link(&self) -> Option<&'static str> {
         Some("a=cmu16_walk&b=cmu16_fast_walk")
+    }
+
+    fn has(&self, beside: Beside) -> bool {
+        beside == Beside::DistanceMap
+    }
+
+    fn inputs(
+        &self,
+        labs: &mut LabSet,
+        clips: LabClips,
+        params: &Params,
+        _match_window: usize,
+    ) -> Result<Option<Inputs>, String> {
+        let pair = labs.pairs.of_slots(&clips.slots)?;
+        let weights = read_also(params.text(Key::WarpAlso))?.into_iter().map(|(_, weight)| weight);
+        let also: Vec<_> = clips.motions().into_iter().zip(weights).collect();
+        Ok(labs.registrars.inputs(&pair, &also, params)?.map(Inputs::new))
     }
 }
 
@@ -393,8 +411,62 @@ impl RegisterInputs {
         })
     }
 
-    /// The blend or the join.
-    pub(crate) fn run(&self) -> Result<Outcome, String> {
+    /// All clips on the skeleton of A.
+    fn beside(&self) -> Vec<Arc<Clip>> {
+        let also = self.also.iter().map(|also| Arc::clone(&also.pair.incoming.clip));
+        self.pair.clips().into_iter().chain(also).collect()
+    }
+
+    /// The height of the ground under all clips, metres: the lowest.
+    fn ground_m(&self) -> f32 {
+        let also = self.also.iter().map(|also| also.pair.ground_m());
+        also.fold(self.pair.ground_m(), f32::min)
+    }
+
+    /// How far feet slide, how far apart the mixed frames are, and how deep the body sinks.
+    fn measured(
+        &self,
+        [clip, free]: [&Clip; 2],
+        contacts: &Contacts,
+        beats: &[Beat],
+        mixed: &Range<usize>,
+        distance_cm: Option<f64>,
+    ) -> Vec<Metric> {
+        let [a, b] = &self.pair.profiles;
+        let roles = &self.pair.a.roles;
+        let slid = |clip: &Clip| foot_slide_cm(clip, roles, contacts);
+        let mut metrics = vec![slide(slid(clip))];
+        if self.foot_lock.is_some() {
+            metrics.push(slide_before(slid(free)));
+        }
+        metrics.push(Metric::lower(
+            "apart_cm",
+            "Distance",
+            distance_cm,
+            "cm",
+            "How far apart the frames that are mixed are, in the mean: root mean square per joint, after the best alignment.",
+        ));
+        let handover = beats.iter().position(|beat| beat.weights[1] > 0.5).unwrap_or(usize::MAX);
+        let behind = beats.get(mixed.end).or(beats.last()).map_or(0.0, |beat| beat.frames[1]);
+        let found = TransitionMetrics::measure(&Subject {
+            result: clip,
+            start: mixed.start,
+            end: mixed.end,
+            handover,
+            enter: (behind.max(0.0).round() as usize).saturating_sub(mixed.len()),
+            a,
+            b,
+            roles,
+            ground_m: self.ground_m(),
+        });
+        // The others ask what a source does in the same frame, which a bent clock does not have.
+        metrics.extend(found.list().into_iter().filter(|metric| metric.id == "penetration_cm"));
+        metrics
+    }
+}
+
+impl LabInputs for RegisterInputs {
+    fn run(&self) -> Result<Outcome, String> {
         let pair = &self.pair;
         let fps = pair.a.clip.fps();
         let (draft, part, is_join) = match &self.made {
@@ -467,59 +539,6 @@ impl RegisterInputs {
             beside: self.beside(),
             ..Outcome::plain(motion)
         })
-    }
-
-    /// All clips on the skeleton of A.
-    fn beside(&self) -> Vec<Arc<Clip>> {
-        let also = self.also.iter().map(|also| Arc::clone(&also.pair.incoming.clip));
-        self.pair.clips().into_iter().chain(also).collect()
-    }
-
-    /// The height of the ground under all clips, metres: the lowest.
-    fn ground_m(&self) -> f32 {
-        let also = self.also.iter().map(|also| also.pair.ground_m());
-        also.fold(self.pair.ground_m(), f32::min)
-    }
-
-    /// How far feet slide, how far apart the mixed frames are, and how deep the body sinks.
-    fn measured(
-        &self,
-        [clip, free]: [&Clip; 2],
-        contacts: &Contacts,
-        beats: &[Beat],
-        mixed: &Range<usize>,
-        distance_cm: Option<f64>,
-    ) -> Vec<Metric> {
-        let [a, b] = &self.pair.profiles;
-        let roles = &self.pair.a.roles;
-        let slid = |clip: &Clip| foot_slide_cm(clip, roles, contacts);
-        let mut metrics = vec![slide(slid(clip))];
-        if self.foot_lock.is_some() {
-            metrics.push(slide_before(slid(free)));
-        }
-        metrics.push(Metric::lower(
-            "apart_cm",
-            "Distance",
-            distance_cm,
-            "cm",
-            "How far apart the frames that are mixed are, in the mean: root mean square per joint, after the best alignment.",
-        ));
-        let handover = beats.iter().position(|beat| beat.weights[1] > 0.5).unwrap_or(usize::MAX);
-        let behind = beats.get(mixed.end).or(beats.last()).map_or(0.0, |beat| beat.frames[1]);
-        let found = TransitionMetrics::measure(&Subject {
-            result: clip,
-            start: mixed.start,
-            end: mixed.end,
-            handover,
-            enter: (behind.max(0.0).round() as usize).saturating_sub(mixed.len()),
-            a,
-            b,
-            roles,
-            ground_m: self.ground_m(),
-        });
-        // The others ask what a source does in the same frame, which a bent clock does not have.
-        metrics.extend(found.list().into_iter().filter(|metric| metric.id == "penetration_cm"));
-        metrics
     }
 }
 

@@ -1,7 +1,8 @@
 //! The Speed lab: two gaits at a speed.
 
 use super::feet::Lock;
-use super::lab::Lab;
+use super::lab::{Inputs, Lab, LabInputs};
+use super::lab_set::{LabClips, LabSet};
 use super::pair::Pair;
 use super::rounds::{Rounds, rounds};
 use super::{Cycle, CycleMade, Outcome};
@@ -38,6 +39,17 @@ impl Lab for SpeedLab {
 
     fn captured_link(&self) -> Option<&'static str> {
         Some("a=cmu16_walk&b=cmu16_run")
+    }
+
+    fn inputs(
+        &self,
+        labs: &mut LabSet,
+        clips: LabClips,
+        params: &Params,
+        _match_window: usize,
+    ) -> Result<Option<Inputs>, String> {
+        let pair = labs.pairs.of_slots(&clips.slots)?;
+        Ok(Some(Inputs::new(labs.gaits.inputs(&pair, params)?)))
     }
 }
 
@@ -130,9 +142,10 @@ impl SpeedInputs {
         let asked_mps = speed_mps;
         Self { asked_mps, ..self.clone() }.run()
     }
+}
 
-    /// The gait.
-    pub(crate) fn run(&self) -> Result<Outcome, String> {
+impl LabInputs for SpeedInputs {
+    fn run(&self) -> Result<Outcome, String> {
         let (pair, [a, b]) = (&self.gaits.pair, &self.gaits.cycles);
         let options = SpeedOptions { alignment: self.alignment, ..SpeedOptions::default() };
         let roles = &pair.a.roles;

@@ -2,8 +2,8 @@
 //! ground, and what there is to say of it in numbers.
 
 use super::feet::{Lock, locking, slide, slide_before};
-use super::lab::Lab;
-use super::lab_set::{JobKind, Sliced};
+use super::lab::{Inputs, Lab, LabInputs};
+use super::lab_set::{JobKind, LabClips, LabSet, Sliced};
 use super::pair::source_of;
 use super::{Measured, Outcome, Slot};
 use crate::LabId;
@@ -47,6 +47,20 @@ impl Lab for ViewLab {
     fn file_stem(&self, params: &Params) -> String {
         params.text(Key::A).to_owned()
     }
+
+    fn shows_clip(&self) -> bool {
+        true
+    }
+
+    fn inputs(
+        &self,
+        labs: &mut LabSet,
+        clips: LabClips,
+        params: &Params,
+        _match_window: usize,
+    ) -> Result<Option<Inputs>, String> {
+        Ok(labs.viewer.inputs(clips.first()?, params).map(Inputs::new))
+    }
 }
 
 /// Clips of up to so many frames are done at once: about 8 ms for 31 joints.
@@ -73,15 +87,8 @@ impl PartialEq for ViewInputs {
     }
 }
 
-impl ViewInputs {
-    /// Whether nothing is known of it yet but the clip itself.
-    pub(crate) fn awaits_numbers(&self) -> bool {
-        self.viewed.is_none()
-    }
-
-    /// The clip, with what is known of it by now. Numbers are those of the clip on its own ground:
-    /// what goes on the spot slides with every step.
-    pub(crate) fn run(&self) -> Result<Outcome, String> {
+impl LabInputs for ViewInputs {
+    fn run(&self) -> Result<Outcome, String> {
         let shown = match &self.viewed {
             None => Outcome::plain(Arc::clone(&self.motion)),
             Some(viewed) => viewed.made.clone()?,
@@ -89,6 +96,11 @@ impl ViewInputs {
         let measured = Measured::Clip(Arc::clone(&shown.motion.clip));
         let motion = self.ground.moved(&shown.motion)?;
         Ok(Outcome { motion, measured, ..shown })
+    }
+
+    /// Whether nothing is known of it yet but the clip itself.
+    fn is_draft(&self) -> bool {
+        self.viewed.is_none()
     }
 }
 

@@ -10,11 +10,43 @@ pub(crate) use map::{is_open, map_panel_ui, map_share};
 pub(crate) use rows::{compare_windows, graph_ui, seed_detail};
 pub(crate) use strip::walk_panel_ui;
 
+use crate::ui::labs::{Compares, LabUi, Shown, Title};
 use crate::ui::out::Out;
 use crate::ui::state::UiState;
 use crate::ui::text;
+use glam::DVec2;
 use segue_motion::graph::Place;
-use segue_session::{Built, Command, Key, Session, Value, Walk, write_jump};
+use segue_session::{Built, Command, Key, Session, Value, Walk, write_jump, write_path};
+
+/// The lab's part of the page.
+pub(super) const LAB: LabUi = LabUi {
+    panel_ui: graph_ui,
+    compares: Compares::Own(|_, out| compare_windows(out)),
+    title,
+    hint: |_| Some(text::GRAPH_HINT),
+    take_line: Some(take_line),
+};
+
+fn title(shown: &Shown<'_>) -> Title {
+    let walk = shown.pane.outcome.as_ref().and_then(|outcome| outcome.walk());
+    let at = walk.and_then(|walk| Some((walk, walk.at(shown.session.now_secs())?)));
+    let name =
+        |walk: &Walk, clip: usize| walk.built.cast().names().get(clip).cloned().unwrap_or_default();
+    let next = at.and_then(|(walk, at)| Some(name(walk, walk.passed.get(at.stay + 1)?.stay.clip)));
+    Title {
+        strong: at.map(|(walk, at)| name(walk, at.place.clip)).unwrap_or_default(),
+        text: next.map(|next| format!("→ {next}")).unwrap_or_default(),
+        secondary: format!("seed {}", shown.params.number(Key::Seed)),
+    }
+}
+
+/// The walk follows what was drawn, from its beginning.
+fn take_line(points: &[DVec2], _: &Session, _: &mut UiState, out: &mut Out) {
+    if points.len() > 1 {
+        out.set_once(Key::WalkPath, Value::Text(write_path(points)));
+        out.commands.push(Command::Seek(0.0));
+    }
+}
 
 /// Whether the lab shows one transition in place of the walk.
 fn shows_jump(session: &Session) -> bool {

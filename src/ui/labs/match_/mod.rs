@@ -12,10 +12,30 @@ pub(crate) use hand::{steer, stick_on_stage_ui};
 pub(crate) use rows::{compare_hysteresis, drive_ui};
 pub(crate) use strip::drive_panel_ui;
 
+use crate::ui::labs::{Compares, LabUi, Shown, Title};
+use crate::ui::text;
 use segue_session::LabId;
-use segue_session::Session;
 use segue_session::{DriveMoment, Driven};
+use segue_session::{Key, Session};
 use std::sync::Arc;
+
+/// The lab's part of the page.
+pub(super) const LAB: LabUi = LabUi {
+    panel_ui: drive_ui,
+    compares: Compares::Own(compare_hysteresis),
+    title,
+    hint: |session| session.is_driven().then_some(text::MATCH_HINT),
+    take_line: None,
+};
+
+fn title(shown: &Shown<'_>) -> Title {
+    let is_live = shown.session.is_driven();
+    Title {
+        strong: if is_live { text::LIVE.to_owned() } else { shown.spoken(Key::Scenario) },
+        secondary: shown.spoken(Key::Hysteresis),
+        ..Title::default()
+    }
+}
 
 /// Whether the lab is open.
 pub(crate) fn is_open(session: &Session) -> bool {

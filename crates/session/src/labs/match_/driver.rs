@@ -6,6 +6,7 @@ use super::trace::Tracer;
 use crate::choices;
 use crate::compare::MAX_PANES;
 use crate::labs::Outcome;
+use crate::labs::lab::LabInputs;
 use crate::motion::Motion;
 use crate::params::{Key, Params};
 use segue_motion::matching::{
@@ -92,10 +93,9 @@ impl PartialEq for ReplayInputs {
     }
 }
 
-impl ReplayInputs {
-    /// The motion.
-    pub(crate) fn run(&self) -> Outcome {
-        Outcome::clone(&self.0)
+impl LabInputs for ReplayInputs {
+    fn run(&self) -> Result<Outcome, String> {
+        Ok(Outcome::clone(&self.0))
     }
 }
 
