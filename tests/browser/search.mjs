@@ -48,7 +48,7 @@ function build() {
   const told = run("cargo", ["build", "--release", "--locked", "--target", target, "--package", "segue-tools", "--bin", "match_speed", "--message-format", "json-render-diagnostics"]);
   const messages = told.trim().split("\n").map((line) => JSON.parse(line));
   const made = messages.filter((message) => message.target?.name === "match_speed").flatMap((message) => message.filenames ?? []);
-  run("wasm-bindgen", ["--target", "web", "--no-typescript", "--out-dir", folder, made.find((name) => name.endsWith(".wasm"))]);
+  run("cargo", ["run", "--quiet", "--locked", "--package", "segue-bindgen", made.find((name) => name.endsWith(".wasm")), folder]);
 }
 
 async function measure({ frames, FEW }) {

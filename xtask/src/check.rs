@@ -4,7 +4,7 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 
 use crate::shell::{self, Result, cargo, command, fail, root};
-use crate::{dist, server, tools};
+use crate::{compare, dist, server, tools};
 
 /// The parts, in an order that fails early and lets each reuse what the one before has built.
 const PARTS: [(&str, Part); 6] = [
@@ -100,6 +100,7 @@ fn app(report: &mut Report) {
 
 fn web(report: &mut Report) {
     report.step("web build", || dist::build(dist::Profile::Release));
+    report.step("the same page by Trunk", compare::with_trunk);
 }
 
 fn browser(report: &mut Report) {

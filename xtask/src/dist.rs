@@ -2,10 +2,11 @@
 
 use std::fs;
 use std::path::PathBuf;
-use std::time::Instant;
+use std::process::Command;
 
+use crate::progress::{self, Build};
 use crate::shell::{Result, cargo, command, fail, on_path, root, run, step, target};
-use crate::tools;
+use crate::{page, seal, tools};
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Profile {
@@ -19,54 +20,68 @@ pub fn folder() -> PathBuf {
 
 /// Builds the page into `dist/`, and installs first what that needs.
 pub fn build(profile: Profile) -> Result<()> {
-    if tools::web_is_missing()? {
-        println!(
-            "The first build installs tools and compiles everything: about 10 minutes on 2 cores. Later ones take seconds."
-        );
-        // The tools are many small crates and the app ends in one long link: side by side they fill
-        // both cores.
-        tools::ensure_wasm_target()?;
-        std::thread::scope(|scope| {
-            let ahead = scope.spawn(|| compile(profile));
-            let tools = tools::web();
-            // What the compiler has to say, Trunk's own call of it says again.
-            let _ = ahead.join();
-            tools.map(drop)
-        })?;
-    }
-    let tools = tools::web()?;
-    // Trunk builds offline (Trunk.toml), so that it brings no tools of its own; the packages must
-    // be here by then.
-    run(&mut cargo(&["fetch", "--quiet", "--locked", "--target=wasm32-unknown-unknown"]))?;
-    let (name, args): (_, &[&str]) = match profile {
-        Profile::Release => ("release", &["build", "--release"]),
-        Profile::Dev => ("dev", &["build"]),
+    tools::ensure_wasm_target()?;
+    let name = match profile {
+        Profile::Release => "release",
+        Profile::Dev => "dev",
     };
     step(
         format!(
-            "building the page in {name} mode (minutes when much has changed, seconds otherwise)"
+            "building the page in {name} mode (about 6 minutes on 2 cores the first time, seconds when little has changed)"
         ),
-        || run(tools.command("trunk", args).env_remove("NO_COLOR")),
-    )
+        || {
+            // The app ends in one long link on one core: the other builds the tool meanwhile.
+            progress::run(vec![
+                Build { name: "Segue for the web", cargo: app(profile) },
+                Build { name: "its JavaScript's writer", cargo: bindgen() },
+            ])
+        },
+    )?;
+    step("putting the page together (seconds)", || assemble(profile))
 }
 
-/// The compilation that Trunk will ask for, with the same words, so that Trunk finds it done.
-fn compile(profile: Profile) -> Result<()> {
+fn app(profile: Profile) -> Command {
     let mut build = cargo(&[
         "build",
-        "--quiet",
         "--locked",
         "--target=wasm32-unknown-unknown",
+        "--package=segue",
         "--bin=segue",
         "--bin=reader",
     ]);
     if profile == Profile::Release {
         build.arg("--release");
     }
-    let start = Instant::now();
-    run(&mut build)?;
-    println!("  {:.1} s: compiling Segue for the web, meanwhile", start.elapsed().as_secs_f64());
-    Ok(())
+    build
+}
+
+fn bindgen() -> Command {
+    cargo(&["build", "--locked", "--package=segue-bindgen"])
+}
+
+/// Writes `dist/` anew from what has been compiled.
+fn assemble(profile: Profile) -> Result<()> {
+    let compiled = target().join("wasm32-unknown-unknown").join(match profile {
+        Profile::Release => "release",
+        Profile::Dev => "debug",
+    });
+    let tool =
+        target().join("debug").join(format!("segue-bindgen{}", std::env::consts::EXE_SUFFIX));
+    // Made beside it, so that a build that fails leaves the page that was there.
+    let made = root().join("dist.part");
+    let _ = fs::remove_dir_all(&made);
+    page::make(
+        &root().join("web/index.html"),
+        &fs::read_to_string(root().join("Trunk.toml"))?,
+        &made,
+        &mut |bin, place| {
+            let module = compiled.join(format!("{bin}.wasm"));
+            run(Command::new(&tool).arg(module).arg(place))
+        },
+    )?;
+    seal::seal(&made, profile == Profile::Release)?;
+    let _ = fs::remove_dir_all(folder());
+    Ok(fs::rename(made, folder())?)
 }
 
 /// Writes `.br` and `.gz` beside every file in `dist/` that gets smaller by it.

@@ -1,8 +1,11 @@
 //! Segue's developer commands: `cargo xtask help` lists them.
 
 mod check;
+mod compare;
 mod dist;
 mod fuzz;
+mod page;
+mod progress;
 mod quality;
 mod seal;
 mod server;
@@ -15,7 +18,7 @@ use shell::{Result, fail};
 
 const HELP: &str = "\
 cargo xtask serve [--port N] [--dev] [--no-build]
-    Installs what is missing, builds Segue in release mode and serves it on 127.0.0.1 (port 8080 unless told; 0 picks a free one).
+    Builds Segue in release mode (and adds Rust's web target where it is missing) and serves it on 127.0.0.1 (port 8080 unless told; 0 picks a free one).
     --dev       build without optimising (for a rebuild on every save use `trunk serve`)
     --no-build  serve dist/ as it is
 
@@ -28,7 +31,7 @@ cargo xtask test [PART …]
     core        the tests of the libraries and their documentation examples, built without any UI
     oracles     exported files, read back by npm's three and PyPI's bvhio: the same motion?
     app         the tests of the app, pictures of the UI among them
-    web         the release build that `serve` makes
+    web         the release build that `serve` makes; where Trunk is installed, it must make the same page
     browser     that build in Chromium, on WebGL2 and on WebGPU
 
 cargo xtask fuzz [TARGET …] [--minutes N] [--seed S]

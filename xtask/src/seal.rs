@@ -1,7 +1,8 @@
 //! The last step of a build: what belongs together is named so that it can never be mixed, the page
 //! gets its policy, and the service worker learns what there is.
 //!
-//! Trunk calls it as a hook (Trunk.toml), so that every way to build makes the same folder.
+//! `cargo xtask serve` ends with it, and Trunk calls it as a hook (Trunk.toml), so that both make the
+//! same folder.
 
 use std::fs;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
@@ -36,7 +37,8 @@ pub fn run() -> Result<()> {
     seal(Path::new(&folder), is_release)
 }
 
-fn seal(folder: &Path, is_release: bool) -> Result<()> {
+/// Seals the folder of a page that is otherwise complete.
+pub fn seal(folder: &Path, is_release: bool) -> Result<()> {
     rename_scripts(folder)?;
     if !is_release {
         return Ok(fs::remove_file(folder.join(WORKER))?);
@@ -96,7 +98,7 @@ fn write_policy(folder: &Path) -> Result<()> {
 }
 
 /// All files, by their paths in the folder, in order.
-fn files_of(folder: &Path) -> Result<Vec<String>> {
+pub fn files_of(folder: &Path) -> Result<Vec<String>> {
     fn collect(folder: &Path, prefix: &str, files: &mut Vec<String>) -> Result<()> {
         let mut entries: Vec<PathBuf> = fs::read_dir(folder)?
             .map(|entry| entry.map(|entry| entry.path()))

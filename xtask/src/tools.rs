@@ -2,70 +2,24 @@
 
 use std::fs;
 use std::path::PathBuf;
-use std::process::Command;
 
-use crate::shell::{Result, cargo, command, fail, on_path, output, root, run, step, target};
+use crate::shell::{Result, command, fail, on_path, output, root, run, step, target};
 
-/// What Trunk this page was made with; it is asked for exactly, for its start scripts differ
-/// between versions.
+/// The Trunk that Trunk.toml was written for; others write other start scripts.
 const TRUNK: &str = "0.21.14";
 const WASM_TARGET: &str = "wasm32-unknown-unknown";
 
-/// The web build's tools, found in the versions that the project needs.
-pub struct WebTools {
-    /// A folder that goes before the others on the path, if it exists.
-    own: PathBuf,
-}
-
-impl WebTools {
-    /// The command of one of these tools, with all of them on its path.
-    pub fn command(&self, program: &str, args: &[&str]) -> Command {
-        let rest = std::env::var_os("PATH").unwrap_or_default();
-        let path = std::env::join_paths(
-            std::iter::once(self.own.clone()).chain(std::env::split_paths(&rest)),
-        );
-        let own = self.own.join(program);
-        let mut command = if own.is_file() { command(own, args) } else { command(program, args) };
-        if let Ok(path) = path {
-            command.env("PATH", path);
+/// Trunk and wasm-bindgen in the versions that make this page, or why the two are not here. Only
+/// `trunk serve` needs them.
+pub fn trunk() -> std::result::Result<(), String> {
+    for (program, version) in [("trunk", TRUNK.to_owned()), ("wasm-bindgen", wasm_bindgen()?)] {
+        match output(program, &["--version"]) {
+            Some(text) if text.split_whitespace().nth(1) == Some(&version) => {}
+            Some(text) => return Err(format!("{text} is installed, not {version}")),
+            None => return Err(format!("{program} {version} is not installed")),
         }
-        command
     }
-}
-
-/// A program that `cargo install` brings.
-struct Crate {
-    name: &'static str,
-    program: &'static str,
-    version: String,
-    /// Trunk needs the versions in its own lock file to build at all; wasm-bindgen-cli comes
-    /// without a lock file.
-    locked: bool,
-    /// Level 0 suffices for Trunk, which only starts others; wasm-bindgen itself works on
-    /// megabytes.
-    opt_level: &'static str,
-    minutes: u32,
-}
-
-impl Crate {
-    fn found(&self, program: impl AsRef<std::ffi::OsStr>) -> Option<bool> {
-        output(program, &["--version"])
-            .map(|text| text.split_whitespace().nth(1) == Some(&self.version))
-    }
-}
-
-/// Whether [`web`] would have to install something.
-pub fn web_is_missing() -> Result<bool> {
-    Ok(!missing_crates()?.is_empty() || !has_wasm_target())
-}
-
-/// Finds or installs what building for the web needs.
-pub fn web() -> Result<WebTools> {
-    ensure_wasm_target()?;
-    for missing in missing_crates()? {
-        install(&missing)?;
-    }
-    Ok(WebTools { own: own_folder().join("bin") })
+    Ok(())
 }
 
 /// Finds or installs Rust's standard library for the web.
@@ -151,85 +105,13 @@ fn has_wasm_target() -> bool {
         .is_some_and(|folder| PathBuf::from(folder).is_dir())
 }
 
-fn missing_crates() -> Result<Vec<Crate>> {
-    let wasm_bindgen = Crate {
-        name: "wasm-bindgen-cli",
-        program: "wasm-bindgen",
-        version: locked_version("wasm-bindgen")?,
-        locked: false,
-        opt_level: "1",
-        minutes: 4,
-    };
-    let trunk = Crate {
-        name: "trunk",
-        program: "trunk",
-        version: TRUNK.to_owned(),
-        locked: true,
-        opt_level: "0",
-        minutes: 4,
-    };
-    let is_missing = |wanted: &Crate| {
-        let own = own_folder().join("bin").join(wanted.program);
-        wanted.found(own) != Some(true) && wanted.found(wanted.program) != Some(true)
-    };
-    Ok([wasm_bindgen, trunk].into_iter().filter(is_missing).collect())
-}
-
-/// Where a tool goes when another version of it is installed already, which is left alone.
-fn own_folder() -> PathBuf {
-    root().join(".tools")
-}
-
-fn install(wanted: &Crate) -> Result<()> {
-    let Crate { name, program, version, minutes, .. } = wanted;
-    let has_other = wanted.found(program).is_some();
-    let place =
-        if has_other { "into .tools/, beside your other version" } else { "with `cargo install`" };
-    step(
-        format!("installing {name} {version} {place} (about {minutes} minutes on 2 cores)"),
-        || {
-            let own = own_folder();
-            let build = target().join("tools");
-            // Neither needs TLS, which their default features bring for downloads that the project
-            // does not let them make.
-            let package = format!("{name}@{version}");
-            let mut install = cargo(&[
-                "install",
-                "--quiet",
-                "--force",
-                "--debug",
-                "--no-default-features",
-                &package,
-            ]);
-            if wanted.locked {
-                install.arg("--locked");
-            }
-            if has_other {
-                install.arg("--root").arg(own);
-            }
-            install
-                .env("CARGO_TARGET_DIR", &build)
-                .env("CARGO_PROFILE_DEV_DEBUG", "0")
-                .env("CARGO_PROFILE_DEV_OPT_LEVEL", wanted.opt_level)
-                .env("CARGO_INCREMENTAL", "0");
-            run(&mut install)?;
-            // Half a gigabyte that nobody needs again. A failed install keeps it, and goes on where
-            // it stopped.
-            let _ = fs::remove_dir_all(build);
-            Ok(())
-        },
-    )
-}
-
-/// The version of a package in Cargo.lock.
-fn locked_version(package: &str) -> Result<String> {
-    let lock = fs::read_to_string(root().join("Cargo.lock"))?;
-    let entry = format!("name = \"{package}\"");
-    let mut lines = lock.lines().skip_while(|line| *line != entry);
-    let version =
-        lines.nth(1).and_then(|line| line.strip_prefix("version = \"")?.strip_suffix('"'));
+/// The version of wasm-bindgen in Cargo.lock.
+fn wasm_bindgen() -> std::result::Result<String, String> {
+    let lock = fs::read_to_string(root().join("Cargo.lock")).map_err(|error| error.to_string())?;
+    let entry = lock.split_once("name = \"wasm-bindgen\"\nversion = \"");
+    let version = entry.and_then(|(_, rest)| rest.split('"').next());
     version.map_or_else(
-        || fail(format!("Cargo.lock holds no {package}")),
+        || Err("Cargo.lock holds no wasm-bindgen".to_owned()),
         |version| Ok(version.to_owned()),
     )
 }

@@ -1,0 +1,210 @@
+//! The page's folder, made of web/index.html as Trunk makes it: what the page's `data-trunk` links
+//! name goes into the folder, and Trunk.toml says how the app is started. Both files are read here,
+//! so that `trunk serve` and `cargo xtask serve` make the same page.
+
+use std::fs;
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
+use std::path::{Path, PathBuf};
+
+use crate::shell::{Result, fail};
+
+/// Makes the folder of the page `html`, which has what it names beside it. `bindgen` writes the
+/// JavaScript and the WebAssembly of the binary that it is given into a folder.
+pub fn make(
+    html: &Path,
+    trunk: &str,
+    folder: &Path,
+    bindgen: &mut dyn FnMut(&str, &Path) -> Result<()>,
+) -> Result<()> {
+    fs::create_dir_all(folder)?;
+    let mut page = fs::read_to_string(html)?;
+    let beside = html.parent().unwrap_or(Path::new(""));
+    let base = setting(trunk, "public_url")?;
+    let mut preload = String::new();
+    while let Some(start) = page.find("<link data-trunk ") {
+        let Some(length) = page[start..].find('>') else {
+            return fail(format!("{}: a `<link data-trunk` has no end", html.display()));
+        };
+        let link = Link(&page[start..=start + length]);
+        let text = match link.attribute("rel")? {
+            "css" => {
+                let path = beside.join(link.attribute("href")?);
+                let bytes = fs::read(&path)?;
+                let name = path.file_stem().unwrap_or_default().to_string_lossy();
+                let name = format!("{name}-{}.css", hash_of(&[&bytes]));
+                fs::write(folder.join(&name), bytes)?;
+                let href = link.attribute("href")?;
+                link.0
+                    .replace("data-trunk rel=\"css\"", "rel=\"stylesheet\"")
+                    .replace(&format!("href=\"{href}\""), &format!("href=\"{base}{name}\""))
+                    .replace('>', "/>")
+            }
+            "copy-file" => {
+                let path = beside.join(link.attribute("href")?);
+                fs::copy(&path, folder.join(path.file_name().unwrap_or_default()))?;
+                String::new()
+            }
+            "copy-dir" => {
+                let path = beside.join(link.attribute("href")?).canonicalize()?;
+                copy_folder(&path, &folder.join(path.file_name().unwrap_or_default()))?;
+                String::new()
+            }
+            "rust" if link.0.contains("data-type=\"worker\"") => {
+                let place = folder.join(link.attribute("data-target-path")?);
+                fs::create_dir_all(&place)?;
+                bindgen(link.attribute("data-bin")?, &place)?;
+                String::new()
+            }
+            "rust" => {
+                let app = App::write(link.attribute("data-bin")?, folder, bindgen)?;
+                preload = app.fill(&setting(trunk, "pattern_preload")?, &base);
+                app.fill(&setting(trunk, "pattern_script")?, &base)
+            }
+            other => {
+                return fail(format!(
+                    "{}: only Trunk knows rel=\"{other}\"; teach xtask/src/page.rs",
+                    html.display()
+                ));
+            }
+        };
+        page.replace_range(start..=start + length, &text);
+    }
+    let Some((head, body)) = page.split_once("</head>") else {
+        return fail(format!("{} has no head", html.display()));
+    };
+    Ok(fs::write(folder.join("index.html"), format!("{head}{preload}</head>{body}"))?)
+}
+
+/// A `<link data-trunk …>`.
+struct Link<'a>(&'a str);
+
+impl<'a> Link<'a> {
+    fn attribute(&self, name: &str) -> Result<&'a str> {
+        let value = self
+            .0
+            .split_once(&format!(" {name}=\""))
+            .and_then(|(_, rest)| rest.split_once('"').map(|(value, _)| value));
+        value.map_or_else(|| fail(format!("`{}` has no {name}=\"…\"", self.0)), Ok)
+    }
+}
+
+/// The names of the app's two files, which change with what is in them.
+struct App {
+    js: String,
+    wasm: String,
+}
+
+impl App {
+    fn write(
+        bin: &str,
+        folder: &Path,
+        bindgen: &mut dyn FnMut(&str, &Path) -> Result<()>,
+    ) -> Result<Self> {
+        bindgen(bin, folder)?;
+        let made = [format!("{bin}.js"), format!("{bin}_bg.wasm")].map(|name| folder.join(name));
+        let hash = hash_of(&[&fs::read(&made[0])?, &fs::read(&made[1])?]);
+        let app = Self { js: format!("{bin}-{hash}.js"), wasm: format!("{bin}-{hash}_bg.wasm") };
+        fs::rename(&made[0], folder.join(&app.js))?;
+        fs::rename(&made[1], folder.join(&app.wasm))?;
+        Ok(app)
+    }
+
+    fn fill(&self, pattern: &str, base: &str) -> String {
+        pattern.replace("{base}", base).replace("{js}", &self.js).replace("{wasm}", &self.wasm)
+    }
+}
+
+/// A text of Trunk.toml, in quotes or, over several lines, in three apostrophes.
+fn setting(trunk: &str, key: &str) -> Result<String> {
+    let rest = trunk.split_once(&format!("\n{key} = ")).map_or("", |(_, rest)| rest);
+    let value = ["'''", "\""].into_iter().find_map(|quote| {
+        rest.strip_prefix(quote)?.split_once(quote).map(|(value, _)| value.to_owned())
+    });
+    value.map_or_else(|| fail(format!("Trunk.toml has no text `{key}`")), Ok)
+}
+
+fn copy_folder(from: &Path, to: &Path) -> Result<()> {
+    fs::create_dir_all(to)?;
+    for entry in fs::read_dir(from)? {
+        let path: PathBuf = entry?.path();
+        let copy = to.join(path.file_name().unwrap_or_default());
+        if path.is_dir() {
+            copy_folder(&path, &copy)?;
+        } else {
+            fs::copy(&path, copy)?;
+        }
+    }
+    Ok(())
+}
+
+fn hash_of(parts: &[&[u8]]) -> String {
+    let mut hasher = DefaultHasher::new();
+    parts.hash(&mut hasher);
+    format!("{:016x}", hasher.finish())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TRUNK: &str = "[build]\npublic_url = \"./\"\npattern_script = '''<script src=\"{base}{js}\"></script>'''\n\
+                         pattern_preload = '''<link href=\"{base}{wasm}\">\n'''\n";
+
+    /// Makes the page of these links out of a folder of its own; gives its HTML and its files.
+    fn made(name: &str, links: &str) -> Result<(String, Vec<String>)> {
+        let sources =
+            std::env::temp_dir().join(format!("segue-page-{}-{name}", std::process::id()));
+        drop(fs::remove_dir_all(&sources));
+        fs::create_dir_all(sources.join("web/js"))?;
+        fs::write(sources.join("web/page.css"), "body {}")?;
+        fs::write(sources.join("web/js/boot.js"), "boot")?;
+        let html = sources.join("web/index.html");
+        fs::write(&html, format!("<head>{links}</head><body></body>"))?;
+        let folder = sources.join("made");
+        let outcome = make(&html, TRUNK, &folder, &mut |bin, place| {
+            fs::write(place.join(format!("{bin}.js")), "js")?;
+            Ok(fs::write(place.join(format!("{bin}_bg.wasm")), "wasm")?)
+        });
+        let made = outcome.and_then(|()| {
+            let html = fs::read_to_string(folder.join("index.html"))?;
+            Ok((html, crate::seal::files_of(&folder)?))
+        });
+        fs::remove_dir_all(&sources)?;
+        made
+    }
+
+    #[test]
+    fn links_for_trunk_become_what_they_name() {
+        let (html, files) = made(
+            "all",
+            "<link data-trunk rel=\"css\" href=\"page.css\" data-integrity=\"none\">\
+             <link data-trunk rel=\"rust\" href=\"../Cargo.toml\" data-bin=\"app\">\
+             <link data-trunk rel=\"rust\" href=\"../Cargo.toml\" data-bin=\"reader\" data-type=\"worker\" data-target-path=\"js/read\">\
+             <link data-trunk rel=\"copy-dir\" href=\"js\">",
+        )
+        .unwrap();
+        let [script, app_js, app_wasm, reader_js, reader_wasm, css] = [
+            "js/boot.js",
+            "app-",
+            "_bg.wasm",
+            "js/read/reader.js",
+            "js/read/reader_bg.wasm",
+            "page-",
+        ]
+        .map(|part| files.iter().find(|file| file.contains(part)).unwrap());
+        assert_eq!(files.len(), 7, "with index.html: {files:?} {script} {reader_js} {reader_wasm}");
+        assert_eq!(
+            html,
+            format!(
+                "<head><link rel=\"stylesheet\" href=\"./{css}\" data-integrity=\"none\"/><script src=\"./{app_js}\"></script>\
+                 <link href=\"./{app_wasm}\">\n</head><body></body>"
+            )
+        );
+    }
+
+    #[test]
+    fn link_that_only_trunk_knows_is_refused() {
+        let error = made("sass", "<link data-trunk rel=\"sass\" href=\"page.scss\">").unwrap_err();
+        assert!(error.to_string().contains("rel=\"sass\""), "{error}");
+    }
+}
