@@ -462,8 +462,8 @@ fn an_offset_that_stays_in_the_world_is_no_longer_to_the_left_of_the_path() {
 fn the_path_of_an_unclamped_basis_begins_beside_its_first_control_point() {
     let link = "lab=path&a=walk_left&control_points=4&compare=path_spline:clamped,uniform";
     let session = opened(link);
-    let [clamped, uniform] = [0, 1]
-        .map(|pane| outcome(&session, pane).path.as_ref().expect("a path").road.spline().clone());
+    let [clamped, uniform] =
+        [0, 1].map(|pane| outcome(&session, pane).path().expect("a path").road.spline().clone());
     assert_eq!(uniform.ends(), SplineEnds::Uniform);
     assert_eq!(clamped.position(0.0), clamped.points()[0]);
     let p = uniform.points();

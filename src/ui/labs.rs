@@ -37,8 +37,11 @@ struct LabUi {
     /// What to look at on the stage, in one line.
     hint: fn(&Session) -> Option<&'static str>,
     /// Takes a line that was drawn over the ground; `None` where none can be drawn.
-    take_line: Option<fn(&[DVec2], &Session, &mut UiState, &mut Out)>,
+    take_line: Option<TakeLine>,
 }
+
+/// Takes a line over the ground, x and z in metres.
+type TakeLine = fn(&[DVec2], &Session, &mut UiState, &mut Out);
 
 /// What a comparison begins with.
 enum Compares {

@@ -782,8 +782,8 @@ fn hysteresis_shows_the_rows_of_its_choice() {
 
 #[test]
 fn the_first_visit_says_what_to_watch() {
-    assert!(stage_panel::is_welcome(&Session::new()));
-    assert!(!stage_panel::is_welcome(&page("lab=transition").session));
+    assert!(labs::blend::is_welcome(&Session::new()));
+    assert!(!labs::blend::is_welcome(&page("lab=transition").session));
 }
 
 #[test]

@@ -184,7 +184,7 @@ fn timeline_event(event: TimelineEvent, session: &Session, outcome: &Outcome, ou
         TimelineEvent::SetIn(secs) => out.set(Key::In, Value::Number(secs)),
         TimelineEvent::SetOut(secs) => out.set(Key::Out, Value::Number(secs)),
         TimelineEvent::SetTransitionStart(secs) if outcome.registered().is_some() => {
-            out.set(Key::WarpFrom, Value::Number(secs.max(0.0)))
+            out.set(Key::WarpFrom, Value::Number(secs.max(0.0)));
         }
         TimelineEvent::SetTransitionEnd(secs) if outcome.registered().is_some() => {
             // The end is a time of A, whose clock is bent until then.

@@ -14,7 +14,7 @@ use segue_session::{Command, Group, Key, LabId, PARAMS, Params, Session};
 pub(super) const LAB: LabUi = LabUi {
     panel_ui: make_ui,
     compares: Compares::Own(|session, out| {
-        out.commands.push(Command::Compare(made_number(session)))
+        out.commands.push(Command::Compare(made_number(session)));
     }),
     title,
     hint: |_| None,

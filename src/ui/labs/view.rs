@@ -17,7 +17,7 @@ use segue_session::{Command, Compare, Key, LabId, Session, Slot, Value};
 pub(super) const LAB: LabUi = LabUi {
     panel_ui: view_ui,
     compares: Compares::Own(|session, out| {
-        compare_clips(session.params().text(Key::A), session.params().text(Key::B), out)
+        compare_clips(session.params().text(Key::A), session.params().text(Key::B), out);
     }),
     title,
     hint: |_| None,

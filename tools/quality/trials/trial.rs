@@ -428,7 +428,7 @@ impl<'a> Bench<'a> {
             return None;
         }
         let fitted = self.open(|ids| format!("lab=path&a={}", encoded(&ids[0]))).made.ok()?;
-        let road = &fitted.path.as_ref()?.road;
+        let road = &fitted.path()?.road;
         let spline = road.spline();
         let points = spline.points();
         let chord = *points.last()? - *points.first()?;

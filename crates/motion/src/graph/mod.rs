@@ -25,9 +25,9 @@
 //! threshold new candidates, another weight law other choices. [`follow`] searches for a walk along
 //! a path on the ground.
 //!
-//! A transition leaves clip A at frame `leave` and enters clip B at frame `enter`; `A[leave..leave
-//! + window)` and `B[enter..enter + window)` overlap. Distances are root-mean-square distances per
-//! point, in centimetres on the reference body.
+//! A transition leaves clip A at frame `leave` and enters clip B at frame `enter`;
+//! `A[leave..leave + window)` and `B[enter..enter + window)` overlap. Distances are
+//! root-mean-square distances per point, in centimetres on the reference body.
 //!
 //! # Example
 //!

@@ -53,8 +53,8 @@ pub(super) fn durations(old: &Outcome, new: &Outcome) -> Option<[f64; 2]> {
 }
 
 /// What a gait was made from; `None` for what is none.
-fn gait_of(inputs: &Option<Inputs>) -> Option<&SpeedInputs> {
-    inputs.as_ref()?.of_lab()
+fn gait_of(inputs: Option<&Inputs>) -> Option<&SpeedInputs> {
+    inputs?.of_lab()
 }
 
 /// The speed of a gait; 0 for what is none.
@@ -92,7 +92,7 @@ impl Pane {
             spring::towards(glide.speed_mps, glide.acceleration, target, half_life_secs, dt_secs);
         let arrived = (speed - target).abs() < ARRIVED[0] && acceleration.abs() < ARRIVED[1];
         // A picture that stands shows what was asked for.
-        if let (true, false, Some(inputs)) = (playing, arrived, gait_of(&self.inputs))
+        if let (true, false, Some(inputs)) = (playing, arrived, gait_of(self.inputs.as_ref()))
             && let Ok(outcome) = inputs.run_at(speed)
         {
             (glide.speed_mps, glide.acceleration, glide.outcome) =
@@ -164,7 +164,7 @@ impl Session {
                 continue;
             }
             if let (true, Some(old), Some(new)) =
-                (playing, gait_of(&shown.inputs), gait_of(&pane.inputs))
+                (playing, gait_of(shown.inputs.as_ref()), gait_of(pane.inputs.as_ref()))
                 && old.differs_in_speed_alone(new)
             {
                 pane.glide = Some(shown.glide.clone());
