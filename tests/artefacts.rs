@@ -35,7 +35,7 @@ struct Numbers {
     flashes: usize,
     spins: usize,
     root_jumps: usize,
-    most_turned_deg: f64,
+    max_turn_deg: f64,
     stances: usize,
     stance_median_cm: Option<f64>,
     stance_p90_cm: Option<f64>,
@@ -115,9 +115,9 @@ fn takes_and_artefacts_measure_as_the_oracle_has_it() {
         assert_eq!(found.root_jumps, expected.root_jumps, "{index}");
         assert_eq!(own.stances_cm().len(), expected.stances, "{index}");
         assert!(
-            close(own.most_turned_deg(), expected.most_turned_deg),
+            close(own.max_turn_deg(), expected.max_turn_deg),
             "{index}: {}",
-            own.most_turned_deg()
+            own.max_turn_deg()
         );
         let skating = own.skating_cm_per_sec().unwrap();
         assert!(close(skating, expected.skating_cm_per_sec), "{index}: {skating}");

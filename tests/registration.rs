@@ -6,7 +6,7 @@ mod common;
 use common::captured;
 use glam::Vec3;
 use segue_motion::blend::{
-    DissolveOptions, Instant, Partner, Source, WeightCurve, WeightLaw, dissolve, registered_blend,
+    DissolveOptions, FrameMix, Partner, Source, WeightCurve, WeightLaw, dissolve, registered_blend,
     registered_join,
 };
 use segue_motion::clip::{Clip, ContactOptions, Contacts, Interpolation};
@@ -76,18 +76,17 @@ fn stillest(before: &[Vec3], now: &[Vec3]) -> Vec3 {
 /// How far feet slide that stand where more than half of the weight is, beyond what they slide in
 /// the heavier clip: the mean over all stances, centimetres. Frame `start` of `result` is made of
 /// the first instant.
-fn skate_cm(result: &Clip, start: usize, instants: &[Instant], takes: [&Take; 2]) -> f64 {
+fn skate_cm(result: &Clip, start: usize, mixes: &[FrameMix], takes: [&Take; 2]) -> f64 {
     let mut stances: Vec<f32> = vec![];
     for side in Side::BOTH {
         let (mut drift, mut farthest) = (Vec3::ZERO, None::<f32>);
-        let heavier = |instant: &Instant| usize::from(instant.weights[1] > instant.weights[0]);
-        let planted = |instant: &Instant| {
-            let stands = |of: &usize| {
-                takes[*of].contacts.planted(side, instant.frames[*of].round() as usize)
-            };
-            (0..2).filter(stands).map(|of| instant.weights[of]).sum::<f64>() > 0.5
+        let heavier = |mix: &FrameMix| usize::from(mix.weights[1] > mix.weights[0]);
+        let planted = |mix: &FrameMix| {
+            let stands =
+                |of: &usize| takes[*of].contacts.planted(side, mix.frames[*of].round() as usize);
+            (0..2).filter(stands).map(|of| mix.weights[of]).sum::<f64>() > 0.5
         };
-        for (k, pair) in instants.windows(2).enumerate() {
+        for (k, pair) in mixes.windows(2).enumerate() {
             if !(planted(&pair[0]) && planted(&pair[1])) {
                 stances.extend(farthest.take());
                 drift = Vec3::ZERO;
@@ -113,12 +112,12 @@ fn in_lockstep(
     enter: usize,
     frames: usize,
     weight: impl Fn(usize) -> f64,
-) -> Vec<Instant> {
-    let instant = |p: usize| Instant {
+) -> Vec<FrameMix> {
+    let mix = |p: usize| FrameMix {
         frames: vec![(leave + p) as f64, (enter + p) as f64],
         weights: vec![1.0 - weight(p), weight(p)],
     };
-    (0..frames).map(instant).collect()
+    (0..frames).map(mix).collect()
 }
 
 #[test]
@@ -155,7 +154,7 @@ fn registered_walks_of_cmu_16_skate_half_as_much_as_dissolved_ones() {
             let half = WeightCurve::constant(0.5);
             let partner = Partner { source: &b.source, registration: &registration, weight: &half };
             let blend = registered_blend(&a.source, &[partner]).expect("registered");
-            let halfway = skate_cm(&blend.clip, 0, &blend.instants, [a, b]);
+            let halfway = skate_cm(&blend.clip, 0, &blend.mixes, [a, b]);
             // Below 2 cm nobody sees a difference.
             assert!(
                 plain < 2.0 || registered <= 0.5 * plain,

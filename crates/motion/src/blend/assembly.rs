@@ -1,3 +1,5 @@
+//! Assembly of clips from frames of other clips.
+
 use crate::clip::{Clip, ClipError, JointTranslations, Provenance};
 use crate::math::{Planar, quat};
 use crate::skeleton::Skeleton;
@@ -5,8 +7,9 @@ use glam::{Quat, Vec3};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A clip that is put together from frames of others. A joint that moves against its parent in any
-/// of them does so in the result, and rests where its clip does not move it.
+/// A clip under construction from frames of other clips. A joint that moves relative to its parent
+/// in any of them has translations in the result, at its rest offset where its clip does not move
+/// it.
 #[derive(Debug)]
 pub(crate) struct Assembly {
     skeleton: Arc<Skeleton>,
@@ -18,12 +21,14 @@ pub(crate) struct Assembly {
 }
 
 impl Assembly {
-    /// An empty clip on the body and at the rate of `first`, with room for `frames`.
+    /// Returns an empty clip on the skeleton and at the rate of `first`, with capacity for
+    /// `frames`, for frames of two clips.
     pub(crate) fn new(first: &Clip, second: &Clip, frames: usize) -> Self {
         Self::of(first, [first, second], frames)
     }
 
-    /// Likewise for frames that are made of any number of clips.
+    /// Returns an empty clip on the skeleton and at the rate of `first`, with capacity for
+    /// `frames`, for frames of any number of clips.
     pub(crate) fn of<'a>(
         first: &Clip,
         clips: impl IntoIterator<Item = &'a Clip>,
@@ -42,7 +47,7 @@ impl Assembly {
         }
     }
 
-    /// Frames of a clip as they are.
+    /// Appends frames of a clip unchanged.
     pub(crate) fn play(&mut self, clip: &Clip, frames: Range<usize>) {
         for frame in frames.clone() {
             self.rotations.extend_from_slice(clip.rotations(frame));
@@ -51,7 +56,7 @@ impl Assembly {
         self.play_tracks(clip, frames);
     }
 
-    /// Frames of a clip, moved over the ground.
+    /// Appends frames of a clip, moved over the ground.
     pub(crate) fn play_moved(
         &mut self,
         clip: &Clip,
@@ -83,7 +88,7 @@ impl Assembly {
         }
     }
 
-    /// One frame. `translations` has one value for each of [`moving_joints`].
+    /// Appends one frame. `translations` has one value for each of [`moving_joints`].
     pub(crate) fn push(&mut self, root: Vec3, rotations: &[Quat], translations: &[Vec3]) {
         for (track, &value) in self.tracks.iter_mut().zip(translations) {
             track.values.push(value);
@@ -92,19 +97,21 @@ impl Assembly {
         self.roots.push(root);
     }
 
-    /// The clip.
+    /// Returns the clip.
     pub(crate) fn finish(self, name: String) -> Result<Clip, ClipError> {
         let clip = Clip::new(name, self.skeleton, self.fps, self.rotations, self.roots)?;
         Ok(clip.with_translations(self.tracks)?.with_provenance(self.provenance))
     }
 }
 
-/// The joints other than the root that move against their parent in either clip, in order.
+/// Returns the joints other than the root that move relative to their parent in either clip, in
+/// order.
 pub(crate) fn moving_joints(a: &Clip, b: &Clip) -> Vec<usize> {
     moving_joints_of([a, b])
 }
 
-/// Likewise for any number of clips.
+/// Returns the joints other than the root that move relative to their parent in any of the clips,
+/// in order.
 pub(crate) fn moving_joints_of<'a>(clips: impl IntoIterator<Item = &'a Clip>) -> Vec<usize> {
     let tracks = clips.into_iter().flat_map(Clip::translations);
     let mut joints: Vec<usize> = tracks.map(|track| track.joint).collect();
@@ -113,7 +120,7 @@ pub(crate) fn moving_joints_of<'a>(clips: impl IntoIterator<Item = &'a Clip>) ->
     joints
 }
 
-/// Where a joint is against its parent in a frame, metres: moved or at rest.
+/// Returns the local translation of a joint in a frame, metres: its track or its rest offset.
 pub(crate) fn translation_of(clip: &Clip, joint: usize, frame: usize) -> Vec3 {
     let track = clip.translations().iter().find(|track| track.joint == joint);
     track.map_or(clip.skeleton().joints()[joint].offset, |track| track.values[frame])

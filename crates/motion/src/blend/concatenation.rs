@@ -1,28 +1,30 @@
+//! The result of a transition, whatever its method.
+
 use crate::clip::Clip;
 use crate::math::Planar;
 use std::ops::Range;
 
-/// Clip A, then clip B: what comes out of every way to go from one to the other.
+/// Clip A, then clip B: the result of a transition by any method.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Concatenation {
-    /// A up to the transition, the transition, B from its end on; B's part lies in A's world.
+    /// A up to the transition, the transition, then B; B's part lies in A's world.
     pub clip: Clip,
     /// The transition's frames in the result; empty for a cut, whose first frame of B is
-    /// `transition.start`. At its end a dissolve is all B; what an inertialization has left there
-    /// is below 1 %.
+    /// `transition.start`. At its end a dissolve is all B; less than 1 % of an inertialization's
+    /// offset is left.
     pub transition: Range<usize>,
-    /// The frame of the result from which B has the greater part: half of the window, or where half
-    /// of the offset is left.
+    /// The first frame of the result in which B has the greater part: the middle of the window, or
+    /// the frame at which half of the offset is left.
     pub handover: usize,
-    /// Where B was laid on A: `result_world_from_b_world`. The identity when B is not laid on A.
+    /// The initial alignment of B with A: `result_world_from_b_world`. The identity without
+    /// alignment.
     pub aligned_b: Planar,
-    /// Where B lies in every frame of the transition. The same everywhere when roots are blended in
-    /// the world; with blended velocities B drifts from lying on A's place to
+    /// The transform of B in every frame of the transition. Constant when roots are blended in the
+    /// world; with blended velocities it drifts from [`aligned_b`](Self::aligned_b) to
     /// [`world_from_b`](Self::world_from_b).
     pub b_during: Vec<Planar>,
-    /// Where B lies in the end.
+    /// The transform of B after the transition.
     pub world_from_b: Planar,
-    /// Where the character stands and faces in every frame of the result, as it was blended
-    /// (`world_from_character`).
+    /// The ground frames of the character in the result, as blended (`world_from_character`).
     pub frames: Vec<Planar>,
 }

@@ -1,3 +1,5 @@
+//! The dissolve: a transition in which A fades out while B fades in.
+
 use super::assembly::{Assembly, moving_joints, translation_of};
 use super::{BlendError, Concatenation, WeightLaw, align_facing, align_onto};
 use crate::clip::{Clip, character_frames};
@@ -7,21 +9,21 @@ use crate::skeleton::{Roles, Skeleton};
 use glam::{DVec2, Quat, Vec3};
 use std::sync::Arc;
 
-/// How the way over the ground is blended.
+/// The blending of root motion.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
 )]
 pub enum RootBlend {
     /// Forward speed, sideways speed and yaw rate are blended in the character's own frame and
-    /// integrated from where A leaves.
+    /// integrated from the frame at which A is left.
     #[default]
     Velocity,
-    /// The two roots are interpolated in the world. The naive way, for comparison: where the ways
-    /// part, the speed dents.
+    /// The two roots are interpolated in the world. For comparison: where the trajectories differ,
+    /// the speed drops.
     World,
 }
 
-/// By what of the two clips B is laid on A.
+/// The features by which B is aligned with A.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
 )]
@@ -30,24 +32,24 @@ pub enum AlignBy {
     /// 3.1 ([`align_onto`]).
     #[default]
     Window,
-    /// Place and facing of the first posture alone ([`align_facing`]).
+    /// Position and facing in the first frame alone ([`align_facing`]).
     FirstPose,
 }
 
-/// What a dissolve is made with.
+/// Options of a dissolve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub struct DissolveOptions {
-    /// Frames that overlap. 0 and 1 are a cut.
+    /// Number of frames that overlap. 0 and 1 are a cut.
     pub window: usize,
-    /// How A's weight falls.
+    /// The curve of A's weight.
     pub law: WeightLaw,
-    /// Whether B is first laid on A. Without, B stays where its file put it, and the way over the
-    /// ground is blended in the world whatever `root` says: the character flies to B's place during
-    /// the window, or flashes there at a cut.
+    /// Whether B is first aligned with A. Without alignment, B stays at its own position, and roots
+    /// are blended in the world whatever `root` says: the character glides to B's position during
+    /// the window, or jumps there at a cut.
     pub align: bool,
-    /// By what it is laid there.
+    /// The features by which it is aligned.
     pub align_by: AlignBy,
-    /// How the way over the ground is blended.
+    /// The blending of root motion.
     pub root: RootBlend,
 }
 
@@ -63,7 +65,7 @@ impl Default for DissolveOptions {
     }
 }
 
-/// A clip with what is measured on it once, not once for every blend.
+/// A clip with measurements that every blend needs, made once.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Source {
     clip: Arc<Clip>,
@@ -72,21 +74,21 @@ pub struct Source {
 }
 
 impl Source {
-    /// Measures where the character stands and faces in every frame. O(frames × joints).
+    /// Measures the ground frames of a clip. O(frames × joints).
     #[must_use]
     pub fn new(clip: Arc<Clip>, roles: &Roles) -> Self {
         let frames = character_frames(&clip, roles);
         Self::with_frames(clip, frames)
     }
 
-    /// Likewise, where `frames` ([`character_frames`] of the clip) are known already.
+    /// Returns the source of a clip whose ground frames ([`character_frames`]) are known.
     #[must_use]
     pub fn with_frames(clip: Arc<Clip>, frames: Vec<Planar>) -> Self {
         let weights = limb_weights(clip.skeleton());
         Self { clip, frames, weights }
     }
 
-    /// The same motion elsewhere on the ground ([`Clip::transformed`]).
+    /// Returns the same motion elsewhere on the ground ([`Clip::transformed`]).
     #[must_use]
     pub fn moved(&self, world_from_clip: &Planar) -> Self {
         Self {
@@ -96,26 +98,26 @@ impl Source {
         }
     }
 
-    /// Another motion of the same body, where the character's frames are known.
+    /// Returns the source of another motion of the same skeleton, whose ground frames are known.
     #[must_use]
     pub(crate) fn with_motion(&self, clip: Clip, frames: Vec<Planar>) -> Self {
         Self { clip: Arc::new(clip), frames, weights: self.weights.clone() }
     }
 
-    /// The clip.
+    /// Returns the clip.
     #[must_use]
     pub fn clip(&self) -> &Arc<Clip> {
         &self.clip
     }
 
-    /// `world_from_character`, one per frame.
+    /// Returns the ground frames, `world_from_character`, one per frame.
     #[must_use]
     pub fn frames(&self) -> &[Planar] {
         &self.frames
     }
 
-    /// The step of the character into `frame`, in its own frame at the frame before; into frame 0
-    /// the step that follows it (no other is known).
+    /// Returns the step of the character into `frame`, in its own frame at the frame before; for
+    /// frame 0 the step that follows it.
     pub(crate) fn step_into(&self, frame: usize) -> Planar {
         let frame = frame.max(1);
         match (self.frames.get(frame - 1), self.frames.get(frame)) {
@@ -125,20 +127,20 @@ impl Source {
     }
 }
 
-/// Fades from clip A to clip B: frame `leave` of A and frame `enter` of B are the first of
-/// `options.window` overlapped frames.
+/// Dissolves from clip A to clip B: frame `leave` of A and frame `enter` of B are the first of
+/// `options.window` overlapping frames.
 ///
 /// The weight of A in frame p of a window of k is `law((p + 1) / k)`: the frame before the window
 /// is all A, its last frame is all B (Kovar, Gleicher, Pighin 2002, section 3.3). Local rotations
 /// slerp by the shorter way, translations and heights lerp. With [`RootBlend::Velocity`], poses are
 /// blended in the character's frame, and the character's steps (forward, sideways, yaw; each step
-/// at the weight of its middle) are blended and integrated from A's last frame; B then goes on
-/// rigidly from where that ends, without a jump. With [`RootBlend::World`] root positions and
-/// orientations are interpolated in the world after B was laid on A.
+/// at the weight of its middle) are blended and integrated from A's last frame; B then continues
+/// rigidly from there, without a jump. With [`RootBlend::World`] root positions and orientations
+/// are interpolated in the world after B was aligned with A.
 ///
 /// # Errors
-/// [`BlendError`] when the clips move different skeletons or run at different rates (retarget,
-/// resample first), or a window crosses the end of its clip.
+/// [`BlendError`] when the clips have different skeletons or frame rates (retarget or resample
+/// first), or a window crosses the end of its clip.
 pub fn dissolve(
     a: &Source,
     leave: usize,
@@ -148,10 +150,10 @@ pub fn dissolve(
 ) -> Result<Concatenation, BlendError> {
     let window = if options.window < 2 { 0 } else { options.window };
     check(a, leave, b, enter, window)?;
-    // A cut right behind A's last frame is aligned by that frame.
+    // A cut right after A's last frame is aligned by that frame.
     let meets = leave.min(a.clip.frames().saturating_sub(1));
     let aligned_b = if options.align {
-        laid_on(a, meets, b, enter, window, options.align_by)?
+        alignment_of(a, meets, b, enter, window, options.align_by)?
     } else {
         Planar::IDENTITY
     };
@@ -194,9 +196,9 @@ pub fn dissolve(
     })
 }
 
-/// Where B lies when its window lies best on A's, or its first posture on A's:
+/// Returns the transform that aligns B with A by the windows or by their first frames:
 /// `a_world_from_b_world`.
-pub(crate) fn laid_on(
+pub(crate) fn alignment_of(
     a: &Source,
     frame_a: usize,
     b: &Source,
@@ -211,7 +213,7 @@ pub(crate) fn laid_on(
     Ok(align_onto(&a.clip, frame_a, &b.clip, frame_b, window.max(1), &a.weights, facing)?.transform)
 }
 
-/// Whether the clips can follow each other with this overlap.
+/// Checks that B can follow A with this overlap.
 pub(crate) fn check(
     a: &Source,
     leave: usize,
@@ -220,7 +222,7 @@ pub(crate) fn check(
     window: usize,
 ) -> Result<(), BlendError> {
     check_bodies(a, b)?;
-    // B gives at least one frame, A may end right before a cut.
+    // B must have at least one frame; A may end right before a cut.
     for (which, clip, at, window) in
         [("outgoing", &a.clip, leave, window), ("incoming", &b.clip, enter, window.max(1))]
     {
@@ -232,7 +234,7 @@ pub(crate) fn check(
     Ok(())
 }
 
-/// Whether the clips move the same body at the same rate.
+/// Checks that the clips have the same skeleton and frame rate.
 pub(super) fn check_bodies(a: &Source, b: &Source) -> Result<(), BlendError> {
     let (a_fps, b_fps) = (a.clip.fps(), b.clip.fps());
     if !same_body(a.clip.skeleton(), b.clip.skeleton()) {
@@ -244,14 +246,13 @@ pub(super) fn check_bodies(a: &Source, b: &Source) -> Result<(), BlendError> {
     Ok(())
 }
 
-/// Whether the joints have the same names and parents, and offsets that agree to a tenth of a
-/// millimetre.
+/// Returns whether the joints have the same names and parents, and offsets that agree to a tenth of
+/// a millimetre.
 fn same_body(a: &Arc<Skeleton>, b: &Arc<Skeleton>) -> bool {
     Arc::ptr_eq(a, b)
         || (a.len() == b.len()
             && a.joints().iter().zip(b.joints()).enumerate().all(|(index, (a, b))| {
-                // The root's rest offset is never used: its translation is given in every
-                // frame.
+                // The root's rest offset is not used: its translation is given in every frame.
                 a.parent == b.parent
                     && a.name == b.name
                     && (index == 0 || a.offset.abs_diff_eq(b.offset, 1e-4))
@@ -267,22 +268,22 @@ struct Blend<'a> {
     law: WeightLaw,
 }
 
-/// How the poses of the window get their place.
+/// The placement of the window's poses.
 enum Placing<'a> {
-    /// Blended in the character's frame, then put where the character is.
+    /// Blended in the character's frame, then placed in these ground frames.
     Character(&'a [Planar]),
-    /// Blended in the world, with B moved by this, and turned from A by so much in each frame.
+    /// Blended in the world, with B transformed, and the yaw from A to B in each frame.
     World(Planar, &'a [f64]),
 }
 
 impl Blend<'_> {
-    /// A's weight in frame `p` of the window, or at a time between frames.
+    /// Returns A's weight in frame `p` of the window, or at a time between frames.
     fn weight(&self, p: f64) -> f64 {
         self.law.alpha((p + 1.0) / self.window as f64)
     }
 
-    /// Where the character is in the frame after A's last one, if it makes B's step: where a cut
-    /// goes on.
+    /// Returns the ground frame after A's last one when the character makes B's step: the first
+    /// frame after a cut.
     fn start(&self) -> Planar {
         match self.leave.checked_sub(1) {
             Some(last) => self.a.frames[last].after(&self.b.step_into(self.enter)),
@@ -290,7 +291,7 @@ impl Blend<'_> {
         }
     }
 
-    /// The character's frames in the window: steps blended in the character's frame, integrated
+    /// Returns the ground frames in the window: steps blended in the character's frame, integrated
     /// from A's last frame before it.
     fn integrated(&self) -> Vec<Planar> {
         let mut here = self.leave.checked_sub(1).map(|last| self.a.frames[last]);
@@ -316,10 +317,10 @@ impl Blend<'_> {
             .collect()
     }
 
-    /// How far B is turned from A in every frame of the window, radians: the shorter way in the
-    /// middle of the window, and the same way round in all others. Chosen anew in every frame, the
-    /// side would change whenever the two pass half a turn; taken from the first frame, B would be
-    /// turned the long way round where it weighs most.
+    /// Returns the yaw from A to B in every frame of the window, radians: the shorter way in the
+    /// middle of the window, and the same way round in all other frames. If it were chosen anew in
+    /// every frame, the side would change whenever the two pass half a turn; if it were taken from
+    /// the first frame, B could be turned the long way round where its weight is greatest.
     fn turns(&self, world_from_b: &Planar) -> Vec<f64> {
         let turn = |p: usize, near: f64| {
             let yaw = world_from_b.yaw + self.b.frames[self.enter + p].yaw
@@ -333,9 +334,9 @@ impl Blend<'_> {
         turns
     }
 
-    /// For every frame of the window and every joint whether A's rotation changes its sign, so that
-    /// each joint is turned by the shorter way in the middle of the window and the same way round
-    /// in all other frames.
+    /// Returns for every frame of the window and every joint whether the sign of A's rotation
+    /// changes, so that each joint turns by the shorter way in the middle of the window and the
+    /// same way round in all other frames.
     fn sides(&self, placing: &Placing<'_>) -> Vec<bool> {
         let joints = self.a.clip.skeleton().len();
         let mut flips = vec![false; self.window * joints];
@@ -359,18 +360,18 @@ impl Blend<'_> {
         flips
     }
 
-    /// The roots' rotations in frame `p`, B's and A's, each as seen from where it is put.
+    /// Returns the roots' rotations in frame `p`, B's and A's, each relative to its placement.
     fn root_rotations(&self, p: usize, placing: &Placing<'_>) -> (Quat, Quat) {
         let (fa, fb) = (self.leave + p, self.enter + p);
-        let (a_from, b_from) = self.seen_from(p, placing);
+        let (a_from, b_from) = self.blend_frames(p, placing);
         (
             b_from.rotation() * self.b.clip.rotations(fb)[0],
             a_from.rotation() * self.a.clip.rotations(fa)[0],
         )
     }
 
-    /// What takes A and B to where they are blended in frame `p`.
-    fn seen_from(&self, p: usize, placing: &Placing<'_>) -> (Planar, Planar) {
+    /// Returns the transforms of A and B to the frame in which they are blended in frame `p`.
+    fn blend_frames(&self, p: usize, placing: &Placing<'_>) -> (Planar, Planar) {
         match placing {
             Placing::Character(_) => {
                 (self.a.frames[self.leave + p].inverse(), self.b.frames[self.enter + p].inverse())
@@ -379,7 +380,7 @@ impl Blend<'_> {
         }
     }
 
-    /// The character's frames in the window, interpolated in the world.
+    /// Returns the ground frames in the window, interpolated in the world.
     fn between(&self, world_from_b: &Planar, turns: &[f64]) -> Vec<Planar> {
         let in_window = turns.iter().enumerate();
         in_window
@@ -391,18 +392,18 @@ impl Blend<'_> {
             .collect()
     }
 
-    /// Local pose and place of frame `p`: A's weight, then the root's translation and rotation.
+    /// Returns A's weight in frame `p`, and the translation and rotation of the blended root.
     /// `flip` changes the sign of A's rotation ([`Self::sides`]).
     fn root(&self, p: usize, placing: &Placing<'_>, flip: bool) -> (f32, Vec3, Quat) {
         let weight = self.weight(p as f64) as f32;
-        let (a_from, b_from) = self.seen_from(p, placing);
+        let (a_from, b_from) = self.blend_frames(p, placing);
         let a = a_from.apply(self.a.clip.root_translations()[self.leave + p]);
         let b = b_from.apply(self.b.clip.root_translations()[self.enter + p]);
         let translation = b.lerp(a, weight);
         let (b_rotation, a_rotation) = self.root_rotations(p, placing);
         let a_rotation = match placing {
             Placing::Character(_) => signed(a_rotation, flip),
-            // The body goes the same way round as the character's frames.
+            // The body turns the same way round as the ground frames.
             Placing::World(_, turns) => {
                 let turn = Quat::from_rotation_y(-turns[p] as f32);
                 quat::in_hemisphere_of(a_rotation, turn * b_rotation)
@@ -452,15 +453,15 @@ fn signed(q: Quat, flip: bool) -> Quat {
     if flip { -q } else { q }
 }
 
-/// The frames of a window from its middle to its end, then from there back to its beginning, each
-/// with the neighbour that came before it.
+/// Returns the frames of a window from its middle to its end, then from there back to its
+/// beginning, each with the neighbour that came before it.
 fn from_the_middle(window: usize) -> impl Iterator<Item = (usize, Option<usize>)> {
     let middle = window / 2;
     let later = (middle..window).map(move |p| (p, (p > middle).then(|| p - 1)));
     later.chain((0..middle.min(window)).rev().map(|p| (p, Some(p + 1))))
 }
 
-/// `weight` of `a`, the rest of `b`, which is turned from `a` by `turn`.
+/// Returns `weight` of `a` and the rest of `b`, whose yaw from `a` is `turn`.
 fn mixed(a: &Planar, b: &Planar, turn: f64, weight: f64) -> Planar {
     let shift: DVec2 = b.shift + (a.shift - b.shift) * weight;
     Planar { yaw: wrap_angle(a.yaw + turn * (1.0 - weight)), shift }

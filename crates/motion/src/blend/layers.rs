@@ -1,3 +1,5 @@
+//! Layers: a part of one body over another, in place or added.
+
 use super::assembly::{Assembly, moving_joints, translation_of};
 use super::{BodyPart, mask};
 use crate::clip::{Clip, ClipError, Interpolation, character_frames};
@@ -5,13 +7,13 @@ use crate::math::{Planar, quat, wrap_angle};
 use crate::skeleton::{Pose, Roles, WorldPose, world_pose_into};
 use glam::{Quat, Vec3};
 
-/// How far a layer's start may lie from the base's, seconds.
+/// The greatest time between the start of a layer and the start of the base, seconds.
 const MAX_START_SECS: f64 = 3_600.0;
 
-/// Why a layer cannot be laid over a clip.
+/// Error laying one clip over another.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LayerError {
-    /// The clips move different bodies.
+    /// The clips have different skeletons.
     #[error("`{base}` and `{over}` move different skeletons: retarget one onto the other first")]
     Skeletons {
         /// Name of the clip below.
@@ -19,20 +21,20 @@ pub enum LayerError {
         /// Name of the layer.
         over: String,
     },
-    /// A frame of the layer that does not exist.
+    /// A frame that the layer does not have.
     #[error(
         "the layer has {frames} frames, and no frame {frame}: choose another frame of reference or another clip"
     )]
     NoFrame {
         /// The frame asked for.
         frame: usize,
-        /// Frames that there are.
+        /// Number of frames of the layer.
         frames: usize,
     },
-    /// A number that is none.
+    /// A number out of range.
     #[error("a {what} of {value} cannot be used: give a number from {least} to {most}")]
     Number {
-        /// Which number.
+        /// Name of the number.
         what: &'static str,
         /// The number given.
         value: f64,
@@ -41,65 +43,65 @@ pub enum LayerError {
         /// The largest number.
         most: f64,
     },
-    /// The result is no clip.
+    /// The result is not a valid clip.
     #[error(transparent)]
     Clip(#[from] ClipError),
 }
 
-/// What a layer's motion is measured against.
+/// The reference pose of an additive layer.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Reference {
     /// The rest pose of the skeleton.
     Rest,
     /// A frame of the layer's own clip.
     Frame(usize),
-    /// The mean of the layer's own frames: of rotations the normalised sum of quaternions in one
-    /// hemisphere (for poses of one clip within a degree of the mean of Markley, Cheng, Crassidis,
-    /// Oshman 2007).
+    /// The mean of the layer's own frames. The mean of rotations is the normalised sum of
+    /// quaternions in one hemisphere (for poses of one clip within a degree of the mean of Markley,
+    /// Cheng, Crassidis, Oshman 2007).
     Mean,
 }
 
-/// What a layer does to the base.
+/// The effect of a layer on the base.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum LayerMode {
-    /// The layer takes the base's place, joint by joint: slerp by mask × weight.
+    /// The layer replaces the base, joint by joint: slerp by mask × weight.
     Override,
-    /// What the layer does beyond a reference pose is added:
-    /// `base · exp(w log(reference⁻¹ · over))`, in every joint's own frame, so that a bent arm
-    /// waves as a straight one does.
+    /// The difference of the layer to a reference pose is added: `base · exp(w log(reference⁻¹ ·
+    /// over))`, in every joint's own frame, so that a bent arm waves as a straight one does.
     Additive(Reference),
 }
 
-/// How long a layer lasts.
+/// The behaviour of a layer at its end.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
 )]
 pub enum LayerTime {
-    /// It begins again at its end: its last frame counts as its first.
+    /// It repeats: its last frame counts as its first.
     #[default]
     Loop,
     /// It stays in its last frame, and before its beginning in its first.
     Hold,
 }
 
-/// What a layer is made with.
+/// Options of a layer.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct LayerOptions {
-    /// The parts of the body that it moves.
+    /// The parts of the body that the layer affects.
     pub parts: Vec<BodyPart>,
-    /// Joints over which each part fades in ([`mask`]).
+    /// Number of joints over which each part fades in ([`mask`]).
     pub feather: usize,
-    /// How much of it, 0 to 1.
+    /// The weight of the layer, 0 to 1.
     pub weight: f32,
-    /// What it does to the base.
+    /// Its effect on the base.
     pub mode: LayerMode,
-    /// What it does at its end.
+    /// Its behaviour at its end.
     pub time: LayerTime,
-    /// The layer's time at the base's first frame, seconds; below 0 it begins later than the base.
+    /// The layer's time at the base's first frame, seconds; negative to begin later than the base.
     pub start_secs: f64,
-    /// Whether the joints at the border of the mask take the layer's orientation in the
-    /// *character's* frame instead of against their parents. The hips of a walk tilt and turn: an
-    /// upper body that only keeps its angles to other hips nods with them. Only in override.
+    /// Whether the joints at the border of the mask keep the layer's orientation in the
+    /// *character's* frame instead of that relative to their parents. The hips of a walk tilt and
+    /// turn: an upper body that only keeps its angles to other hips nods with them. Only for
+    /// [`LayerMode::Override`].
     pub keep_orientation: bool,
 }
 
@@ -117,18 +119,19 @@ impl Default for LayerOptions {
     }
 }
 
-/// Lays a part of one clip over another: the upper body of `over` on the legs of `base`.
+/// Lays a part of one clip over another, for example the upper body of `over` on the legs of
+/// `base`.
 ///
-/// The result has the base's frames and rate; the layer is read between its frames where its rate
-/// or start do not fit. Joints outside the mask, and the root with them, are the base's, bit for
-/// bit. Where the mask takes in the root: its lean and its height are those of the layer by weight,
-/// in the character's frame; over the ground, an override blends the steps of both characters by
-/// the root's weight and integrates them from the base's first frame, and an additive layer leaves
-/// the base's way. Joints that move against their parents are blended likewise.
+/// The result has the base's frames and rate; the layer is sampled between its frames where its
+/// rate or start differ. Joints outside the mask, and with them the root, are the base's, bit for
+/// bit. If the mask contains the root, its lean and its height are those of the layer by weight, in
+/// the character's frame. Over the ground, an override blends the steps of both characters by the
+/// root's weight and integrates them from the base's first frame, and an additive layer keeps the
+/// base's trajectory. Local translations of joints are blended in the same way.
 ///
 /// # Errors
-/// [`LayerError`] when the clips move different skeletons, the layer has no such frame, or a number
-/// is none.
+/// [`LayerError`] when the clips have different skeletons, the layer does not have a given frame,
+/// or a number is out of range.
 pub fn layer(
     base: &Clip,
     roles: &Roles,
@@ -139,12 +142,12 @@ pub fn layer(
     layer_timed(base, roles, over, options, &times)
 }
 
-/// [`layer`], where the layer need not run as evenly as the base: `times` has its own time for
-/// every frame of the base, seconds, to which the options' start is added; frames without one have
-/// the base's alone.
+/// Lays one clip over another as [`layer`] does, with a time map: `times` has the layer's time for
+/// every frame of the base, seconds, to which the options' start is added. Frames without a time
+/// are the base's alone.
 ///
 /// # Errors
-/// As [`layer`].
+/// The same as for [`layer`].
 pub fn layer_timed(
     base: &Clip,
     roles: &Roles,
@@ -158,7 +161,7 @@ pub fn layer_timed(
         return Ok(base.clone());
     }
     let turned = options.keep_orientation && options.mode == LayerMode::Override;
-    // Where characters stand matters only to their roots, and to orientations.
+    // Ground frames are needed only for the root, and for orientations.
     let stands = |clip: &Clip| {
         if mask[0] > 0.0 || turned {
             character_frames(clip, roles)
@@ -167,8 +170,8 @@ pub fn layer_timed(
         }
     };
     let layering = Layering {
-        base_stands: stands(base),
-        over_stands: stands(over),
+        base_frames: stands(base),
+        over_frames: stands(over),
         moving: moving_joints(base, over),
         base,
         over,
@@ -207,8 +210,8 @@ fn check(base: &Clip, over: &Clip, options: &LayerOptions) -> Result<(), LayerEr
 struct Layering<'a> {
     base: &'a Clip,
     over: &'a Clip,
-    base_stands: Vec<Planar>,
-    over_stands: Vec<Planar>,
+    base_frames: Vec<Planar>,
+    over_frames: Vec<Planar>,
     moving: Vec<usize>,
     mask: Vec<f32>,
     options: &'a LayerOptions,
@@ -220,7 +223,7 @@ impl Layering<'_> {
     fn clip(&self) -> Result<Clip, ClipError> {
         let mut made = Assembly::new(self.base, self.over, self.base.frames());
         let reference = self.reference();
-        let mut here = self.base_stands[0];
+        let mut here = self.base_frames[0];
         let (mut rotations, mut world) = (Vec::new(), WorldPose::default());
         let mut before = 0.0;
         for frame in 0..self.base.frames() {
@@ -258,7 +261,7 @@ impl Layering<'_> {
         self.mask[joint] * self.options.weight
     }
 
-    /// The layer's own time, seconds.
+    /// Returns the layer's own time, seconds.
     fn local(&self, secs: f64) -> f64 {
         let duration = self.over.duration_secs();
         match self.options.time {
@@ -267,40 +270,41 @@ impl Layering<'_> {
         }
     }
 
-    /// The layer's pose at a time, with its root in the character's frame.
+    /// Returns the layer's pose at a time, with its root in the character's frame.
     fn pose(&self, secs: f64) -> Option<Pose> {
         let secs = self.local(secs);
         let pose = self.over.sample(secs, Interpolation::Linear)?;
-        Some(in_character_frame(pose, &self.stands_at(secs)))
+        Some(in_character_frame(pose, &self.ground_frame_at(secs)))
     }
 
-    /// Where the layer's character stands at its own time.
-    fn stands_at(&self, secs: f64) -> Planar {
-        let last = self.over_stands.len().saturating_sub(1);
+    /// Returns the layer's ground frame at its own time.
+    fn ground_frame_at(&self, secs: f64) -> Planar {
+        let last = self.over_frames.len().saturating_sub(1);
         let at = (secs * self.over.fps()).clamp(0.0, last as f64);
         let frame = at.floor() as usize;
-        let (from, to) = (&self.over_stands[frame], &self.over_stands[(frame + 1).min(last)]);
+        let (from, to) = (&self.over_frames[frame], &self.over_frames[(frame + 1).min(last)]);
         Planar {
             yaw: wrap_angle(from.yaw + wrap_angle(to.yaw - from.yaw) * at.fract()),
             shift: from.shift.lerp(to.shift, at.fract()),
         }
     }
 
-    /// The step into a frame: the base's, and in an override the layer's, from one of its times to
-    /// the other, by the root's weight.
+    /// Returns the step into a frame: the base's, and in an override the layer's, between two of
+    /// its times, by the root's weight.
     fn step(&self, frame: usize, before: f64, secs: f64) -> Planar {
-        let base = self.base_stands[frame - 1].inverse().after(&self.base_stands[frame]);
+        let base = self.base_frames[frame - 1].inverse().after(&self.base_frames[frame]);
         let weight = f64::from(self.weight(0));
         if weight == 0.0 || self.options.mode != LayerMode::Override {
             return base;
         }
         let (from, to) = (self.local(before), self.local(secs));
-        let between =
-            |from: f64, to: f64| self.stands_at(from).inverse().after(&self.stands_at(to));
+        let between = |from: f64, to: f64| {
+            self.ground_frame_at(from).inverse().after(&self.ground_frame_at(to))
+        };
         let over = if to >= from {
             between(from, to)
         } else {
-            // Over its end: the rest of the layer, then its beginning.
+            // Across its end: the rest of the layer, then its beginning.
             between(from, self.over.duration_secs()).after(&between(0.0, to))
         };
         let yaw = wrap_angle(base.yaw) * (1.0 - weight) + wrap_angle(over.yaw) * weight;
@@ -310,7 +314,7 @@ impl Layering<'_> {
     fn reference(&self) -> Pose {
         match self.options.mode {
             LayerMode::Additive(Reference::Frame(frame)) => {
-                in_character_frame(self.over.pose(frame), &self.over_stands[frame])
+                in_character_frame(self.over.pose(frame), &self.over_frames[frame])
             }
             LayerMode::Additive(Reference::Mean) => self.mean_pose(),
             _ => Pose {
@@ -321,10 +325,10 @@ impl Layering<'_> {
         }
     }
 
-    /// The mean of the layer's poses, each seen from where the character stands.
+    /// Returns the mean of the layer's poses, each in its ground frame.
     fn mean_pose(&self) -> Pose {
         let poses = (0..self.over.frames())
-            .map(|frame| in_character_frame(self.over.pose(frame), &self.over_stands[frame]));
+            .map(|frame| in_character_frame(self.over.pose(frame), &self.over_frames[frame]));
         let share = (self.over.frames().max(1) as f32).recip();
         let sum = poses.reduce(|mut sum, pose| {
             sum.root_translation += pose.root_translation;
@@ -347,7 +351,7 @@ impl Layering<'_> {
         mean
     }
 
-    /// Rotations with the layer in the base's place.
+    /// Computes rotations with the layer in the base's place.
     fn replace(
         &self,
         frame: usize,
@@ -363,7 +367,7 @@ impl Layering<'_> {
             // Orientations of the layer in the character's frame.
             world_pose_into(self.over.skeleton(), Vec3::ZERO, &over.rotations, [], world);
         }
-        // Orientations of the result, as far as it is made.
+        // Orientations of the result so far.
         let mut made: Vec<Quat> = Vec::with_capacity(if self.turned { joints.len() } else { 0 });
         rotations.clear();
         for (joint, (&base, &over)) in base.iter().zip(&over.rotations).enumerate() {
@@ -377,8 +381,8 @@ impl Layering<'_> {
                 Some(_) => over,
             };
             let base = match parent {
-                // The base's lean, where the character stands and faces in the result.
-                None if weight > 0.0 => turn * self.base_stands[frame].inverse().rotation() * base,
+                // The base's lean, in the ground frame of the result.
+                None if weight > 0.0 => turn * self.base_frames[frame].inverse().rotation() * base,
                 _ => base,
             };
             let rotation = if weight == 0.0 {
@@ -395,7 +399,7 @@ impl Layering<'_> {
         }
     }
 
-    /// Rotations with the layer's difference to the reference on top.
+    /// Computes rotations with the layer's difference to the reference added.
     fn add(&self, frame: usize, over: &Pose, reference: &Pose, rotations: &mut Vec<Quat>) {
         rotations.clear();
         let poses = over.rotations.iter().zip(&reference.rotations);
@@ -407,13 +411,13 @@ impl Layering<'_> {
         ));
     }
 
-    /// The root's place in an override.
+    /// Returns the root's position in an override.
     fn root(&self, frame: usize, over: &Pose, here: &Planar) -> Vec3 {
         let (base, weight) = (self.base.root_translations()[frame], self.weight(0));
         if weight == 0.0 {
             return base;
         }
-        let base = self.base_stands[frame].inverse().apply(base);
+        let base = self.base_frames[frame].inverse().apply(base);
         here.apply(base.lerp(over.root_translation, weight))
     }
 
@@ -430,12 +434,12 @@ impl Layering<'_> {
     }
 }
 
-/// `base · exp(w log(reference⁻¹ · over))`.
+/// Returns `base · exp(w log(reference⁻¹ · over))`.
 fn added(base: Quat, over: Quat, reference: Quat, weight: f32) -> Quat {
     quat::renormalize(base * quat::exp(quat::log(reference.conjugate() * over) * weight))
 }
 
-/// A pose with its root seen from where the character stands.
+/// Returns a pose with its root relative to a ground frame.
 fn in_character_frame(mut pose: Pose, stands: &Planar) -> Pose {
     let here = stands.inverse();
     pose.root_translation = here.apply(pose.root_translation);

@@ -1,26 +1,28 @@
+//! Masks: weights of joints for parts of the body.
+
 use crate::skeleton::{Role, Roles, Side, Skeleton};
 
 /// A part of the body, in any rig.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 #[expect(missing_docs, reason = "the type's text and the names explain them")]
 pub enum BodyPart {
-    /// Everything.
+    /// The whole body.
     Whole,
-    /// The lowest joint of the spine that carries no leg, and all that hangs on it.
+    /// The lowest joint of the spine that carries no leg, and all joints below it in the tree.
     UpperBody,
-    /// The rest: the root, the hips and the legs.
+    /// All other joints: the root, the hips and the legs.
     LowerBody,
     /// From the collar bone outwards.
     LeftArm,
     RightArm,
     /// From the neck upwards.
     Head,
-    /// From the lowest joint of the spine to the one that carries the arms, without arms and head.
+    /// From the lowest joint of the spine to the chest, without arms and head.
     Spine,
 }
 
 impl BodyPart {
-    /// All parts, for a list to choose from.
+    /// All parts, for a list of choices.
     pub const ALL: [Self; 7] = [
         Self::Whole,
         Self::UpperBody,
@@ -32,13 +34,13 @@ impl BodyPart {
     ];
 }
 
-/// The weight of every joint of a skeleton, 0 to 1, for a set of parts; of parts that overlap the
-/// larger weight.
+/// Returns the weight of every joint of a skeleton, 0 to 1, for a set of parts; the larger weight
+/// where parts overlap.
 ///
-/// `feather` is a number of joints over which a part fades in along the tree from its first joint:
-/// with 3, the first four joints of the spine have weights 1/4, 2/4, 3/4 and 1. The lower body
-/// fades out over the same joints, so that it and the upper body are 1 together everywhere. The
-/// whole body has no border. A part whose joints the roles do not tell is empty.
+/// `feather` is the number of joints over which a part fades in along the tree from its first
+/// joint: with 3, the first four joints of the spine have weights 1/4, 2/4, 3/4 and 1. The lower
+/// body fades out over the same joints, so that the weights of lower and upper body sum to 1
+/// everywhere. The whole body has no border. A part without known roles is empty.
 #[must_use]
 pub fn mask(skeleton: &Skeleton, roles: &Roles, parts: &[BodyPart], feather: usize) -> Vec<f32> {
     let body = Body::new(skeleton, roles);
@@ -51,7 +53,7 @@ pub fn mask(skeleton: &Skeleton, roles: &Roles, parts: &[BodyPart], feather: usi
     weights
 }
 
-/// Where the parts begin.
+/// The joints at which the parts begin.
 struct Body<'a> {
     skeleton: &'a Skeleton,
     upper: Vec<usize>,
@@ -70,7 +72,7 @@ impl<'a> Body<'a> {
             joint.is_some_and(|joint| up(joint).any(|j| j == above))
         };
         let ends = [arms[0], arms[1], joint(Role::Head)];
-        // The lowest joint that two of the arms and the head hang on.
+        // The lowest joint above two of the arms and the head.
         let chest = (0..skeleton.len())
             .rev()
             .find(|&above| ends.iter().filter(|&&end| carries(above, end)).count() >= 2);
@@ -81,7 +83,8 @@ impl<'a> Body<'a> {
         let hips = joint(Role::Hips);
         let legs = Side::BOTH.map(|side| joint(Role::thigh(side)));
         let carries_leg = |above: usize| legs.iter().any(|&leg| carries(above, leg));
-        // In some rigs the legs hang on the lowest joint of the spine: that one is a second pelvis.
+        // In some rigs the legs hang from the lowest joint of the spine, which then counts as a
+        // second pelvis.
         let upper = match joint(Role::Spine).or(hips) {
             Some(lowest) if carries_leg(lowest) || Some(lowest) == hips => {
                 skeleton.children(lowest).filter(|&child| !carries_leg(child)).collect()
@@ -91,8 +94,8 @@ impl<'a> Body<'a> {
         Self { skeleton, upper, arms: arms.map(below_chest), head: below_chest(ends[2]), chest }
     }
 
-    /// Joints from the nearest of `tops` down to `joint`; `None` for one that hangs on none of
-    /// them.
+    /// Returns the number of joints from the nearest of `tops` down to `joint`; `None` if it is
+    /// below none of them.
     fn depth(&self, tops: &[usize], joint: usize) -> Option<usize> {
         std::iter::successors(Some(joint), |&joint| self.skeleton.parent(joint))
             .position(|joint| tops.contains(&joint))

@@ -98,12 +98,12 @@ mod weight_curve;
 pub(crate) use assembly::{Assembly, moving_joints, moving_joints_of, translation_of};
 pub use concatenation::Concatenation;
 pub use dissolve::{AlignBy, DissolveOptions, RootBlend, Source, dissolve};
-pub(crate) use dissolve::{check, laid_on};
+pub(crate) use dissolve::{alignment_of, check};
 pub use layers::{LayerError, LayerMode, LayerOptions, LayerTime, Reference, layer, layer_timed};
 pub use mask::{BodyPart, mask};
 pub use place::{align_facing, align_onto};
 pub use registered::{
-    Instant, Partner, RegisteredBlend, RegisteredJoin, registered_blend, registered_join,
+    FrameMix, Partner, RegisteredBlend, RegisteredJoin, registered_blend, registered_join,
 };
 pub use weight::WeightLaw;
 pub use weight_curve::WeightCurve;

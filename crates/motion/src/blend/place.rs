@@ -1,17 +1,19 @@
+//! Alignment of one clip with another over the ground.
+
 use crate::clip::Clip;
 use crate::math::Planar;
 use crate::registration::{Alignment, RegistrationError, align};
 
-/// Lays clip `b` on clip `a` over a window (section A of the point clouds):
-/// `A[frame_a..frame_a + window)` and `B[frame_b..frame_b + window)`, at least one frame. The
-/// alignment's transform is `a_world_from_b_world`.
+/// Aligns clip `b` with clip `a` over a window: `A[frame_a..frame_a + window)` and
+/// `B[frame_b..frame_b + window)`, at least one frame. The alignment's transform is
+/// `a_world_from_b_world`.
 ///
 /// `weights` has one weight per joint ([`crate::registration::limb_weights`]); `fallback_yaw` is
-/// the turn where every turn fits (the difference of the facings is a good one).
+/// the yaw where every yaw fits equally well (the difference of the facings is a good one).
 ///
 /// # Errors
-/// [`RegistrationError`] when a window crosses the end of its clip, the skeletons' sizes differ, or
-/// the weights do not fit.
+/// [`RegistrationError`] when a window crosses the end of its clip, or the skeletons or weights do
+/// not have the same number of joints.
 pub fn align_onto(
     a: &Clip,
     frame_a: usize,
@@ -40,9 +42,8 @@ pub fn align_onto(
     )
 }
 
-/// Lays character frame `b` on character frame `a`: same place on the ground, same facing (section
-/// B's `transform`). Looks at one frame only, where [`align_onto`] looks at the whole body over a
-/// window.
+/// Returns the transform of ground frame `b` to ground frame `a`: same position, same facing. It
+/// depends on one frame only, whereas [`align_onto`] uses the whole body over a window.
 #[must_use]
 pub fn align_facing(a: &Planar, b: &Planar) -> Planar {
     a.after(&b.inverse())
@@ -60,7 +61,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(32))]
         #[test]
-        fn a_moved_clip_keeps_all_joint_distances(yaw in -3.2f64..3.2, x in -20.0f64..20.0, z in -20.0f64..20.0, f in 0usize..60, g in 0usize..60) {
+        fn align_facing_keeps_joint_distances(yaw in -3.2f64..3.2, x in -20.0f64..20.0, z in -20.0f64..20.0, f in 0usize..60, g in 0usize..60) {
             let clip = Walk { frames: 60, turning: 0.8, ..Walk::default() }.clip();
             let moved = clip.transformed(&Planar::new(yaw, x, z));
             let (p, q) = (clip.world_positions(f..f + 1), clip.world_positions(g..g + 1));
@@ -74,7 +75,7 @@ mod tests {
         }
 
         #[test]
-        fn both_ways_find_a_moved_clip_again(yaw in -3.1f64..3.1, x in -9.0f64..9.0, z in -9.0f64..9.0) {
+        fn alignment_of_a_moved_clip_is_the_inverse_transform(yaw in -3.1f64..3.1, x in -9.0f64..9.0, z in -9.0f64..9.0) {
             let clip = Walk { frames: 40, turning: 0.8, ..Walk::default() }.clip();
             let there = Planar::new(yaw, x, z);
             let moved = clip.transformed(&there);
@@ -90,7 +91,7 @@ mod tests {
     }
 
     #[test]
-    fn windows_end_with_their_clip() {
+    fn align_onto_beyond_the_clip_is_refused() {
         let clip = Walk { frames: 10, ..Walk::default() }.clip();
         let weights = limb_weights(clip.skeleton());
         assert!(align_onto(&clip, 6, &clip, 0, 4, &weights, 0.0).is_ok());

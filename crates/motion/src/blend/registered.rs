@@ -1,3 +1,5 @@
+//! Blends of clips along their registration.
+
 use super::assembly::{Assembly, moving_joints_of, translation_of};
 use super::dissolve::check_bodies;
 use super::{BlendError, Concatenation, Source, WeightCurve, WeightLaw};
@@ -7,81 +9,81 @@ use crate::registration::Registration;
 use crate::skeleton::{Pose, Side};
 use glam::{DVec2, Quat, Vec3};
 
-/// A clip that is blended with a reference, which it is registered to as the target.
+/// A clip that is blended with a reference, to which it is registered as the target.
 #[derive(Clone, Copy, Debug)]
 pub struct Partner<'a> {
     /// The clip.
     pub source: &'a Source,
     /// Its registration to the reference.
     pub registration: &'a Registration,
-    /// Its weight over the course of the blend. What all partners leave of 1 is the reference's;
-    /// partners that are more than 1 together share it.
+    /// Its weight over the course of the blend. The reference has the rest up to 1; partners whose
+    /// weights sum to more than 1 are scaled down.
     pub weight: &'a WeightCurve,
 }
 
-/// What a frame of a registered blend is made of.
+/// The contributions of the clips to a frame of a registered blend.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Instant {
-    /// The frame that each clip shows, which may lie between two: the reference, then the partners
+pub struct FrameMix {
+    /// The frame of each clip, which may lie between two frames: the reference, then the partners
     /// in order.
     pub frames: Vec<f64>,
-    /// The weight of each clip; they add up to 1.
+    /// The weight of each clip; their sum is 1.
     pub weights: Vec<f64>,
 }
 
 /// Registered clips played as one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RegisteredBlend {
-    /// The blend, in the world of the reference; it begins where the registered part does.
+    /// The blend, in the world of the reference; it begins with the registered part.
     pub clip: Clip,
-    /// What each frame is made of.
-    pub instants: Vec<Instant>,
-    /// Where the character stands and faces (`world_from_character`).
+    /// The contributions to each frame.
+    pub mixes: Vec<FrameMix>,
+    /// The ground frames of the character (`world_from_character`).
     pub frames: Vec<Planar>,
 }
 
-/// One clip that goes over to another along their registration.
+/// A transition from one clip to another along their registration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RegisteredJoin {
-    /// The clips joined.
+    /// The resulting clip and transition.
     pub joined: Concatenation,
-    /// What each frame of the transition is made of: A, then B.
-    pub during: Vec<Instant>,
+    /// The contributions to each frame of the transition: A, then B.
+    pub during: Vec<FrameMix>,
 }
 
 /// Blends clips along their registrations (Kovar, Gleicher 2003, section 5).
 ///
-/// The clips show frames that are alike: while the reference shows its frame t, a partner shows
-/// `warp(t)`. From frame to frame the clips' clocks go on by one frame in their weighted mean, so
-/// that a clip that has all the weight plays at its own speed. Poses are blended as they lie on
-/// each other by the alignment curves; the way over the ground is made of the steps that the
-/// blended character takes while every clip is moved rigidly.
+/// The clips show corresponding frames: while the reference shows its frame t, a partner shows
+/// `warp(t)`. From frame to frame the weighted mean of the clips' clocks advances by one frame, so
+/// that a clip with all the weight plays at its own speed. Poses are blended after alignment by the
+/// alignment curves; the trajectory over the ground is integrated from the steps of the blended
+/// character while every clip is moved rigidly.
 ///
 /// # Errors
-/// [`BlendError`] when clips move different bodies or run at different rates, or the registered
-/// parts have less than two frames in common.
+/// [`BlendError`] when clips have different skeletons or frame rates, or the registered parts have
+/// less than two frames in common.
 pub fn registered_blend(
     reference: &Source,
     partners: &[Partner<'_>],
 ) -> Result<RegisteredBlend, BlendError> {
     let blend = Blend::new(reference, partners)?;
     let span = blend.span()?;
-    let instants = blend.schedule(span, None);
-    let (clip, frames) = blend.clip(&instants)?;
-    Ok(RegisteredBlend { clip, instants, frames })
+    let mixes = blend.schedule(span, None);
+    let (clip, frames) = blend.clip(&mixes)?;
+    Ok(RegisteredBlend { clip, mixes, frames })
 }
 
-/// From clip A to clip B, registered to it: A up to frame `leave`, then both along the registration
-/// while the weight goes over, then B. The transition takes the registered part of A from `leave`
-/// up to about frame `arrive`: to the whole frame of B that is nearest. Its first frame is all A,
+/// Joins clip A with clip B, which is registered to it: A up to frame `leave`, then both along the
+/// registration with falling weight of A, then B. The transition takes the registered part of A
+/// from `leave` to about frame `arrive`: to the nearest whole frame of B. Its first frame is all A,
 /// its last all B.
 ///
 /// The clocks are stretched by at most half a frame over the transition, so that it ends on a
 /// frame.
 ///
 /// # Errors
-/// [`BlendError`] as for [`registered_blend`]; [`BlendError::Apart`] too when fewer than two frames
-/// of either clip lie between `leave` and `arrive`.
+/// [`BlendError`] as for [`registered_blend`]; also [`BlendError::Apart`] when fewer than two
+/// frames of either clip lie between `leave` and `arrive`.
 pub fn registered_join(
     a: &Source,
     b: &Source,
@@ -90,7 +92,7 @@ pub fn registered_join(
     arrive: usize,
     law: WeightLaw,
 ) -> Result<RegisteredJoin, BlendError> {
-    // Keys would ease twice: the law is applied to a share of its own.
+    // Keys would ease twice: the law is applied to the share directly.
     let weight = WeightCurve::constant(0.0);
     let partner = [Partner { source: b, registration, weight: &weight }];
     let blend = Blend { law: Some(law), ..Blend::new(a, &partner)? };
@@ -104,7 +106,7 @@ pub fn registered_join(
         return Err(apart());
     }
     let mut during = blend.schedule((start, end), None);
-    // The whole number of frames that is nearest to what the clocks need.
+    // The whole number of frames nearest to the time of the clocks.
     let steps = during.len() - 1;
     let left = during.last().map_or(0.0, |last| blend.clock(&last.weights, last.frames[0], end));
     let needed = steps as f64 + left;
@@ -118,12 +120,12 @@ pub fn registered_join(
     made.play(a.clip(), 0..leave);
     made.play(&middle, 0..middle.frames());
     let b_during: Vec<Planar> = (during.iter().zip(&frames))
-        .map(|(instant, frame)| frame.after(&character_at(b, instant.frames[1]).inverse()))
+        .map(|(mix, frame)| frame.after(&character_at(b, mix.frames[1]).inverse()))
         .collect();
     let world_from_b = frames.last().ok_or_else(apart)?.after(&b.frames()[enter_end].inverse());
     made.play_moved(b.clip(), enter_end + 1..b.clip().frames(), &world_from_b);
     let clip = made.finish(format!("{} → {}", a.clip().name(), b.clip().name()))?;
-    let half = during.iter().position(|instant| instant.weights[1] >= 0.5).unwrap_or(during.len());
+    let half = during.iter().position(|mix| mix.weights[1] >= 0.5).unwrap_or(during.len());
     let mut all_frames = a.frames()[..leave].to_vec();
     all_frames.extend(frames);
     all_frames.extend(b.frames()[enter_end + 1..].iter().map(|frame| world_from_b.after(frame)));
@@ -142,16 +144,16 @@ pub fn registered_join(
 }
 
 impl RegisteredBlend {
-    /// When which foot is on the ground: where clips with more than half of the weight have it
-    /// there. `of` are the clips' contacts, the reference's first.
+    /// Returns the contacts of the result: a foot is planted where clips with more than half of the
+    /// weight have it planted. `of` are the clips' contacts, the reference's first.
     #[must_use]
     pub fn contacts(&self, of: &[&Contacts]) -> Contacts {
-        contacts_of(&self.instants, of)
+        contacts_of(&self.mixes, of)
     }
 }
 
 impl RegisteredJoin {
-    /// When which foot is on the ground in the whole result; `a` and `b` are the clips' contacts.
+    /// Returns the contacts of the whole result; `a` and `b` are the clips' contacts.
     #[must_use]
     pub fn contacts(&self, a: &Contacts, b: &Contacts) -> Contacts {
         let during = contacts_of(&self.during, &[a, b]);
@@ -166,10 +168,10 @@ impl RegisteredJoin {
     }
 }
 
-fn contacts_of(instants: &[Instant], of: &[&Contacts]) -> Contacts {
+fn contacts_of(mixes: &[FrameMix], of: &[&Contacts]) -> Contacts {
     let planted = |side: Side| {
-        instants.iter().map(move |instant| {
-            let parts = instant.weights.iter().zip(&instant.frames).zip(of);
+        mixes.iter().map(move |mix| {
+            let parts = mix.weights.iter().zip(&mix.frames).zip(of);
             let planted = parts
                 .filter(|((_, frame), contacts)| contacts.planted(side, frame.round() as usize));
             planted.map(|((weight, _), _)| weight).sum::<f64>() > 0.5
@@ -181,7 +183,7 @@ fn contacts_of(instants: &[Instant], of: &[&Contacts]) -> Contacts {
 struct Blend<'a> {
     reference: &'a Source,
     partners: &'a [Partner<'a>],
-    /// How the reference's weight falls, in place of the first partner's curve.
+    /// The law of the reference's weight, in place of the first partner's curve.
     law: Option<WeightLaw>,
 }
 
@@ -197,14 +199,14 @@ impl<'a> Blend<'a> {
         std::iter::once(self.reference).chain(self.partners.iter().map(|partner| partner.source))
     }
 
-    /// The frames of the reference at which all clips are registered.
+    /// Returns the frames of the reference at which all clips are registered.
     fn span(&self) -> Result<(f64, f64), BlendError> {
         let last = |source: &Source| source.clip().frames() as f64 - 1.0;
         let mut span = (0.0_f64, last(self.reference));
         for partner in self.partners {
             let warp = partner.registration.warp();
             let (first, end) = (warp.first(), warp.last());
-            // A registration of other, longer clips reaches beyond this one.
+            // A registration of other, longer clips may reach beyond this one.
             span.0 = span.0.max(first.0).max(warp.inverse(0.0));
             span.1 = span.1.min(end.0).min(warp.inverse(last(partner.source)));
         }
@@ -215,7 +217,7 @@ impl<'a> Blend<'a> {
         }
     }
 
-    /// The frames that all clips show while the reference shows `frame`.
+    /// Returns the frames of all clips while the reference shows `frame`.
     fn frames(&self, frame: f64) -> Vec<f64> {
         let others = self.partners.iter().map(|partner| partner.registration.warp().at(frame));
         std::iter::once(frame).chain(others).collect()
@@ -239,8 +241,8 @@ impl<'a> Blend<'a> {
         weights
     }
 
-    /// Frames that go by in the weighted mean of the clips' clocks while the reference goes from
-    /// one frame to another.
+    /// Returns the weighted mean of the clips' frames that pass while the reference goes from one
+    /// frame to another.
     fn clock(&self, weights: &[f64], from: f64, to: f64) -> f64 {
         let others = self.partners.iter().zip(&weights[1..]).filter(|(_, weight)| **weight > 0.0);
         let others = others.map(|(partner, weight)| {
@@ -250,10 +252,10 @@ impl<'a> Blend<'a> {
         weights[0] * (to - from) + others.sum::<f64>()
     }
 
-    /// The frame of the reference when the mean clock has gone on by `step` from `from`; `None`
-    /// behind the end.
+    /// Returns the frame of the reference when the mean clock has advanced by `step` from `from`;
+    /// `None` beyond the end.
     fn next(&self, weights: &[f64], from: f64, end: f64, step: f64) -> Option<f64> {
-        // What rounding has left of the last frame is a frame.
+        // A remainder within rounding of a whole frame counts as a frame.
         let left = self.clock(weights, from, end) - step;
         if left < 1e-6 {
             return (left > -1e-6).then_some(end);
@@ -283,47 +285,49 @@ impl<'a> Blend<'a> {
         Some(at)
     }
 
-    /// What every frame of the blend shows, from one frame of the reference to another: as many as
-    /// there are, or a number of steps of a given length, the last of which ends at the end.
-    fn schedule(&self, (start, end): (f64, f64), steps: Option<(usize, f64)>) -> Vec<Instant> {
-        let instant = |at: f64| Instant {
+    /// Returns the contributions to every frame of the blend, from one frame of the reference to
+    /// another: as many as there are, or a number of steps of a given length, the last of which
+    /// ends at the end.
+    fn schedule(&self, (start, end): (f64, f64), steps: Option<(usize, f64)>) -> Vec<FrameMix> {
+        let mix = |at: f64| FrameMix {
             frames: self.frames(at),
             weights: self.weights((at - start) / (end - start)),
         };
         let mut at = start;
-        let mut instants = vec![instant(at)];
+        let mut mixes = vec![mix(at)];
         let (count, step) = steps.unwrap_or((usize::MAX, 1.0));
-        while instants.len() <= count {
-            // The weights of the middle of the step, nearly.
+        while mixes.len() <= count {
+            // Approximately the weights in the middle of the step.
             let rate =
                 self.clock(&self.weights((at - start) / (end - start)), at, (at + 0.5).min(end))
                     / (end - at).min(0.5);
             let middle = (at + 0.5 * step / rate.max(0.05)).min(end);
             let weights = self.weights((middle - start) / (end - start));
             at = match self.next(&weights, at, end, step) {
-                Some(next) if instants.len() < count => next,
+                Some(next) if mixes.len() < count => next,
                 None if steps.is_none() => break,
                 _ => end,
             };
-            instants.push(instant(at));
+            mixes.push(mix(at));
             if at >= end && steps.is_none() {
                 break;
             }
         }
-        instants
+        mixes
     }
 
-    /// Where each clip's world lies in the reference's while that shows `frame`.
+    /// Returns the transform of each clip to the reference's world while that shows `frame`.
     fn alignments(&self, frame: f64) -> Vec<Planar> {
         let others = self.partners.iter().map(|partner| partner.registration.alignment_at(frame));
         std::iter::once(Planar::IDENTITY).chain(others).collect()
     }
 
-    /// The blended character in the reference's world, with each clip laid there by `alignments`.
-    fn character(&self, instant: &Instant, alignments: &[Planar]) -> Planar {
+    /// Returns the blended ground frame in the reference's world, with the clips transformed by
+    /// `alignments`.
+    fn character(&self, mix: &FrameMix, alignments: &[Planar]) -> Planar {
         let mut mean = Planar::IDENTITY;
         let mut sum = 0.0;
-        let parts = self.sources().zip(alignments).zip(instant.frames.iter().zip(&instant.weights));
+        let parts = self.sources().zip(alignments).zip(mix.frames.iter().zip(&mix.weights));
         for ((source, alignment), (&frame, &weight)) in
             parts.filter(|(_, (_, weight))| **weight > 0.0)
         {
@@ -334,37 +338,36 @@ impl<'a> Blend<'a> {
         mean
     }
 
-    /// Where the character stands and faces in every frame: the steps of the blend, one after the
-    /// other.
-    fn way(&self, instants: &[Instant]) -> Vec<(Planar, Planar, Vec<Planar>)> {
-        let mut way: Vec<(Planar, Planar, Vec<Planar>)> = Vec::with_capacity(instants.len());
-        for instant in instants {
-            let alignments = self.alignments(instant.frames[0]);
-            let in_reference = self.character(instant, &alignments);
-            let here = match way.last() {
+    /// Returns the ground frame of every frame, integrated from the steps of the blend.
+    fn ground_frames(&self, mixes: &[FrameMix]) -> Vec<(Planar, Planar, Vec<Planar>)> {
+        let mut ground_frames: Vec<(Planar, Planar, Vec<Planar>)> = Vec::with_capacity(mixes.len());
+        for mix in mixes {
+            let alignments = self.alignments(mix.frames[0]);
+            let in_reference = self.character(mix, &alignments);
+            let here = match ground_frames.last() {
                 None => in_reference,
-                // Every clip is moved rigidly in the step, as it lay before it.
+                // Every clip moves rigidly during the step, with its transform before it.
                 Some((here, before, alignments)) => {
-                    here.after(&before.inverse().after(&self.character(instant, alignments)))
+                    here.after(&before.inverse().after(&self.character(mix, alignments)))
                 }
             };
-            way.push((here, in_reference, alignments));
+            ground_frames.push((here, in_reference, alignments));
         }
-        way
+        ground_frames
     }
 
-    fn clip(&self, instants: &[Instant]) -> Result<(Clip, Vec<Planar>), BlendError> {
+    fn clip(&self, mixes: &[FrameMix]) -> Result<(Clip, Vec<Planar>), BlendError> {
         let clips: Vec<&Clip> = self.sources().map(|source| &**source.clip()).collect();
-        let mut made = Assembly::of(clips[0], clips.iter().copied(), instants.len());
+        let mut made = Assembly::of(clips[0], clips.iter().copied(), mixes.len());
         let moving = moving_joints_of(clips.iter().copied());
-        let way = self.way(instants);
+        let ground_frames = self.ground_frames(mixes);
         let mut sides = vec![quat::Hemispheres::default(); clips.len()];
-        for (instant, (here, in_reference, alignments)) in instants.iter().zip(&way) {
+        for (mix, (here, in_reference, alignments)) in mixes.iter().zip(&ground_frames) {
             let mut mean = Mean::default();
             for (index, clip) in clips.iter().enumerate() {
-                let weight = instant.weights[index];
+                let weight = mix.weights[index];
                 let pose = (weight > 0.0)
-                    .then(|| clip.sample(instant.frames[index] / clip.fps(), Interpolation::Linear))
+                    .then(|| clip.sample(mix.frames[index] / clip.fps(), Interpolation::Linear))
                     .flatten();
                 if let Some(pose) = pose {
                     mean.add(weight, clip, &pose, &alignments[index], &moving, &mut sides[index]);
@@ -378,7 +381,7 @@ impl<'a> Blend<'a> {
         }
         let names: Vec<&str> = clips.iter().map(|clip| clip.name()).collect();
         let clip = made.finish(names.join(" + "))?;
-        Ok((clip, way.into_iter().map(|(here, _, _)| here).collect()))
+        Ok((clip, ground_frames.into_iter().map(|(here, _, _)| here).collect()))
     }
 }
 
@@ -431,7 +434,7 @@ impl Mean {
     }
 }
 
-/// Where the character stands and faces at a frame that may lie between two.
+/// Returns the ground frame at a time that may lie between two frames.
 fn character_at(source: &Source, frame: f64) -> Planar {
     let frames = source.frames();
     let last = frames.len().saturating_sub(1);
@@ -443,7 +446,7 @@ fn character_at(source: &Source, frame: f64) -> Planar {
     }
 }
 
-/// `share` of the way from one frame to the other, turning the shorter way.
+/// Interpolates from one ground frame to another, turning the shorter way.
 fn between(from: &Planar, to: &Planar, share: f64) -> Planar {
     let shift: DVec2 = from.shift + (to.shift - from.shift) * share;
     Planar { yaw: wrap_angle(from.yaw + wrap_angle(to.yaw - from.yaw) * share), shift }

@@ -1,4 +1,6 @@
-/// How the outgoing clip's weight falls over a blend.
+//! Weight laws of blends.
+
+/// The curve of the outgoing clip's weight over a blend.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
 )]
@@ -7,7 +9,7 @@ pub enum WeightLaw {
     /// Gleicher, Pighin 2002, section 3.3).
     #[default]
     Smooth,
-    /// 1 - t: velocities jump at both ends.
+    /// 1 - t: velocities are discontinuous at both ends.
     Linear,
     /// 1 - (6t⁵ - 15t⁴ + 10t³): no slope and no curvature at either end (C²; Perlin 2002), steeper
     /// in the middle.
@@ -15,14 +17,14 @@ pub enum WeightLaw {
 }
 
 impl WeightLaw {
-    /// All laws, for a list to choose from.
+    /// All laws, for a list of choices.
     pub const ALL: [Self; 3] = [Self::Smooth, Self::Linear, Self::Smoother];
 
-    /// The weight of the *outgoing* clip at `t` from 0 (weight 1) to 1 (weight 0). `t` is clamped;
-    /// NaN counts as 0.
+    /// Returns the weight of the *outgoing* clip at `t` from 0 (weight 1) to 1 (weight 0). `t` is
+    /// clamped; NaN counts as 0.
     #[must_use]
     pub fn alpha(self, t: f64) -> f64 {
-        // Not `clamp`, which keeps NaN.
+        // `clamp` would keep NaN.
         let t = if t > 0.0 { t.min(1.0) } else { 0.0 };
         match self {
             Self::Smooth => t * t * (2.0 * t - 3.0) + 1.0,
@@ -39,7 +41,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn falls_from_1_to_0_and_is_symmetric(s in 0.0f64..1.0, t in 0.0f64..1.0) {
+        fn alpha_falls_from_1_to_0_and_is_symmetric(s in 0.0f64..1.0, t in 0.0f64..1.0) {
             for law in WeightLaw::ALL {
                 prop_assert_eq!(law.alpha(0.0), 1.0);
                 prop_assert!(law.alpha(1.0).abs() < 1e-12);
@@ -50,7 +52,7 @@ mod tests {
     }
 
     #[test]
-    fn ends_are_as_flat_as_they_say() {
+    fn alpha_is_flat_at_both_ends_as_documented() {
         let slope = |law: WeightLaw, t: f64| (law.alpha(t + 1e-5) - law.alpha(t - 1e-5)) / 2e-5;
         for t in [1e-5, 1.0 - 1e-5] {
             assert!(slope(WeightLaw::Smooth, t).abs() < 1e-4);

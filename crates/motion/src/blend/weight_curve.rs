@@ -1,7 +1,8 @@
+//! Weights with keys over the course of a blend.
+
 use super::WeightLaw;
 
-/// A weight over the course of a blend: from key to key without a jump, without passing beyond
-/// either.
+/// A weight over the course of a blend, interpolated smoothly between keys without overshoot.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct WeightCurve {
     /// (share of the blend, 0 to 1; weight, 0 to 1), in the order of shares.
@@ -9,15 +10,15 @@ pub struct WeightCurve {
 }
 
 impl WeightCurve {
-    /// The same weight all the time.
+    /// Returns a constant weight.
     #[must_use]
     pub fn constant(weight: f64) -> Self {
         Self::new([(0.0, weight)])
     }
 
-    /// Through keys (share of the blend, weight), in any order; both are clamped to 0 to 1. Of two
-    /// keys at one share the later one holds from there on. Without keys the weight is 0; keys that
-    /// are no numbers are left out.
+    /// Returns the curve through keys (share of the blend, weight), in any order; both are clamped
+    /// to 0 to 1. Of two keys at one share the later one holds from there on. Without keys the
+    /// weight is 0; keys that are not finite are ignored.
     #[must_use]
     pub fn new(keys: impl IntoIterator<Item = (f64, f64)>) -> Self {
         let mut keys: Vec<(f64, f64)> =
@@ -31,14 +32,14 @@ impl WeightCurve {
         }
     }
 
-    /// The keys.
+    /// Returns the keys.
     #[must_use]
     pub fn keys(&self) -> &[(f64, f64)] {
         &self.keys
     }
 
-    /// The weight at a share of the blend: eased from key to key (no slope at either), constant
-    /// outside.
+    /// Returns the weight at a share of the blend: eased from key to key (no slope at either),
+    /// constant outside.
     #[must_use]
     pub fn at(&self, share: f64) -> f64 {
         let next = self.keys.partition_point(|key| key.0 <= share);
@@ -58,7 +59,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn goes_through_its_keys_and_stays_between_them() {
+    fn weight_curve_passes_through_its_keys_without_overshoot() {
         let curve = WeightCurve::new([(0.8, 0.2), (0.25, 1.5), (f64::NAN, 0.5), (0.0, 0.0)]);
         assert_eq!(curve.keys(), [(0.0, 0.0), (0.25, 1.0), (0.8, 0.2)]);
         for &(at, weight) in curve.keys() {

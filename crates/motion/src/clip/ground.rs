@@ -21,17 +21,20 @@ const TOLERANCE_M: f32 = 0.03;
 /// planted.
 #[must_use]
 pub fn estimate_ground(clip: &Clip, roles: &Roles, contacts: &Contacts) -> f32 {
-    let ways = FootTracks::of(clip, roles);
+    let tracks = FootTracks::of(clip, roles);
     let scale = roles.body_height(clip.skeleton()) / REFERENCE_HEIGHT_M;
     let (mut lowest, mut soles) = (Vec::new(), Vec::new());
     for side in Side::BOTH {
-        let points: Vec<(&[Vec3], f32)> = (ways.feet.iter().zip(ABOVE_SOLE_M))
-            .flat_map(|(kind, above)| kind.iter().map(move |(of, way)| (*of, way, above * scale)))
+        let points: Vec<(&[Vec3], f32)> = (tracks.feet.iter().zip(ABOVE_SOLE_M))
+            .flat_map(|(kind, above)| {
+                kind.iter().map(move |(of, track)| (*of, track, above * scale))
+            })
             .filter(|(of, _, _)| *of == side)
-            .map(|(_, way, above)| (way.as_slice(), above))
+            .map(|(_, track, above)| (track.as_slice(), above))
             .collect();
         for frame in (0..clip.frames()).filter(|&frame| contacts.planted(side, frame)) {
-            let heights = || points.iter().map(|(way, above)| (way[frame].y, way[frame].y - above));
+            let heights =
+                || points.iter().map(|(track, above)| (track[frame].y, track[frame].y - above));
             lowest.extend(heights().map(|(point, _)| point).min_by(f32::total_cmp));
             soles.extend(heights().map(|(_, sole)| sole).min_by(f32::total_cmp));
         }
@@ -57,20 +60,20 @@ pub(super) fn rise_between(
     scale: f32,
 ) -> Option<f32> {
     let [source, moved] = [source, moved].map(|(clip, roles)| FootTracks::of(clip, roles));
-    let has = |ways: &FootTracks, kind: usize| !ways.feet[kind].is_empty();
+    let has = |tracks: &FootTracks, kind: usize| !tracks.feet[kind].is_empty();
     let shared = [0, 1, 2].map(|kind| has(&source, kind) && has(&moved, kind));
     Some(level_of(&source, shared)? * scale - level_of(&moved, shared)?)
 }
 
 /// Returns the 5th percentile of the heights of the lowest points of these kinds; `None` where
 /// there are none.
-fn level_of(ways: &FootTracks, kinds: [bool; 3]) -> Option<f32> {
+fn level_of(tracks: &FootTracks, kinds: [bool; 3]) -> Option<f32> {
     let points =
-        || ways.feet.iter().zip(kinds).filter(|(_, wanted)| *wanted).flat_map(|(kind, _)| kind);
+        || tracks.feet.iter().zip(kinds).filter(|(_, wanted)| *wanted).flat_map(|(kind, _)| kind);
     let lowest = |frame: usize| {
-        points().filter_map(|(_, way)| Some(way.get(frame)?.y)).min_by(f32::total_cmp)
+        points().filter_map(|(_, track)| Some(track.get(frame)?.y)).min_by(f32::total_cmp)
     };
-    let frames = points().map(|(_, way)| way.len()).max().unwrap_or(0);
+    let frames = points().map(|(_, track)| track.len()).max().unwrap_or(0);
     let heights: Vec<f32> = (0..frames).filter_map(lowest).collect();
     stats::percentile(&heights, GROUND_PERCENTILE)
 }

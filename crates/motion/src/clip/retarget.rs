@@ -66,7 +66,7 @@ fn retarget_to(
         return Ok(clip.clone());
     }
     let (stance, target_stance) = (stance_for_rest(clip, source_roles), target_stance());
-    let way = Retargeting::standing(
+    let retargeting = Retargeting::standing(
         source,
         source_roles,
         stance.as_ref(),
@@ -76,13 +76,14 @@ fn retarget_to(
     )
     .ok_or(RetargetError::NothingInCommon)?;
     let mut poses: Vec<Pose> =
-        (0..clip.frames()).map(|frame| way.pose(&clip.pose(frame))).collect();
+        (0..clip.frames()).map(|frame| retargeting.pose(&clip.pose(frame))).collect();
     let make =
         |poses: Vec<Pose>| Clip::from_poses(clip.name(), Arc::clone(target), clip.fps(), poses);
-    if !way.is_same_rig() {
+    if !retargeting.is_same_rig() {
         let standing = make(poses.clone())?;
-        let rise = rise_between((clip, source_roles), (&standing, target_roles), way.scale())
-            .unwrap_or(0.0);
+        let rise =
+            rise_between((clip, source_roles), (&standing, target_roles), retargeting.scale())
+                .unwrap_or(0.0);
         for pose in &mut poses {
             pose.root_translation += Vec3::Y * rise;
         }

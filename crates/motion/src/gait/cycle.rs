@@ -1,3 +1,5 @@
+//! Gait cycles: one stride of a walk or run, closed.
+
 use super::GaitError;
 use super::phase::Events;
 use crate::blend::Source;
@@ -10,42 +12,42 @@ use std::ops::Range;
 /// One cycle of a walk or run, from a strike of the left foot to its next one, closed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GaitCycle {
-    /// The cycle. The frame behind its last is its first again.
+    /// The closed cycle. The frame after its last one is its first.
     pub(super) looped: Loop,
     range: Range<usize>,
     events: Events,
     speed_mps: f64,
 }
 
-/// Ends that are farther apart belong to no cycle, centimetres on the reference body.
+/// The greatest distance between the ends of a cycle, centimetres on the reference body.
 const MAX_APART_CM: f64 = 12.0;
-/// Cycles are no shorter and no longer, seconds.
+/// Range of the duration of a cycle, seconds.
 const CYCLE_SECS: Range<f64> = 0.3..3.0;
 
 impl GaitCycle {
     /// Finds the most regular cycle of a clip, and closes it ([`close_loop`], half of the
     /// difference at each end).
     ///
-    /// A cycle goes from a strike of the left foot to the next one and has one strike of the right
-    /// foot. Of all cycles that one is taken which differs least from the median in duration,
-    /// speed, and the phases of strike and lift, and whose ends are most alike; a foot that stands
-    /// in the clip's first frame is taken to strike there only if nothing else is a cycle.
+    /// A cycle goes from a strike of the left foot to the next one and contains one strike of the
+    /// right foot. Of all cycles the one is taken that differs least from the median in duration,
+    /// speed, and the phases of strike and lift, and whose ends are most alike. A foot that is
+    /// planted in the clip's first frame counts as striking there only if there is no other cycle.
     /// `contacts` are those of the clip.
     ///
-    /// A clip that is one cycle, or most of one, rarely begins with a strike. Where none of these
-    /// cycles is in the clip, it is closed by its own ends ([`WholeCycle`]), or where its poses
-    /// repeat best ([`find_cycle`]); the contacts of the closed cycle, which go round, then tell
-    /// where it strikes.
+    /// A clip that is one cycle, or most of one, rarely begins with a strike. If it contains none
+    /// of the cycles above, it is closed at its own ends ([`WholeCycle`]), or where its poses
+    /// repeat best ([`find_cycle`]); the contacts of the closed, repeated cycle then give the
+    /// strikes.
     ///
     /// # Errors
-    /// [`GaitError::NoFeet`] and [`GaitError::NoCycle`] when there is none, [`GaitError::Loop`]
+    /// [`GaitError::NoFeet`] and [`GaitError::NoCycle`] when no cycle is found, [`GaitError::Loop`]
     /// when it cannot be closed.
     pub fn find(source: &Source, roles: &Roles, contacts: &Contacts) -> Result<Self, GaitError> {
         let mut candidates = candidates(source, contacts);
         if candidates.iter().any(|candidate| candidate.range.start > 0) {
             candidates.retain(|candidate| candidate.range.start > 0);
         } else {
-            // A foot that stands in the first frame may have come down long before.
+            // A foot that is planted in the first frame may have come down long before.
             match Self::closed_by_its_ends(source, roles, contacts) {
                 Err(_) if !candidates.is_empty() => {}
                 closed => return closed,
@@ -83,7 +85,7 @@ impl GaitCycle {
         }
     }
 
-    /// The cycle of a clip that does not hold one from strike to strike.
+    /// Returns the cycle of a clip that does not contain one from strike to strike.
     fn closed_by_its_ends(
         source: &Source,
         roles: &Roles,
@@ -94,7 +96,7 @@ impl GaitCycle {
         if Side::BOTH.iter().any(|&side| roles.foot_points(clip.skeleton(), side).is_empty()) {
             return Err(GaitError::NoFeet { name: name() });
         }
-        // The ends of both kinds, the nearer ones first.
+        // Both ways to choose the ends, the one with the smaller distance first.
         let whole = WholeCycle::of(source);
         let search = CycleSearch { min_secs: CYCLE_SECS.start, ..CycleSearch::new(clip.fps()) };
         let height = f64::from(roles.body_height(clip.skeleton()));
@@ -121,52 +123,52 @@ impl GaitCycle {
         Err(GaitError::NoCycle { name: name(), secs: clip.duration_secs() })
     }
 
-    /// The frames of the clip that were taken; `end` is the frame that stands for `start` again. It
-    /// lies behind the clip's last frame where the clip was closed by its own ends.
+    /// Returns the frames of the clip that were used; `end` is the frame that corresponds to
+    /// `start`. It lies beyond the clip's last frame where the clip was closed at its own ends.
     #[must_use]
     pub fn range(&self) -> Range<usize> {
         self.range.clone()
     }
 
-    /// When the feet meet and leave the ground.
+    /// Returns the phases at which the feet strike and lift.
     #[must_use]
     pub fn events(&self) -> Events {
         self.events
     }
 
-    /// The length of the way over the ground over its duration, metres per second
-    /// ([`ground_speed`]).
+    /// Returns the length of the trajectory over the ground divided by its duration, metres per
+    /// second ([`ground_speed`]).
     #[must_use]
     pub fn speed_mps(&self) -> f64 {
         self.speed_mps
     }
 
-    /// The duration of a cycle, seconds.
+    /// Returns the duration of a cycle, seconds.
     #[must_use]
     pub fn secs(&self) -> f64 {
         self.looped.clip.frames() as f64 / self.looped.clip.fps()
     }
 
-    /// The closed cycle.
+    /// Returns the closed cycle.
     #[must_use]
     pub fn looped(&self) -> &Loop {
         &self.looped
     }
 
-    /// Where in its cycle the clip's first frame lies.
+    /// Returns the phase of the clip's first frame.
     pub(super) fn first_phase(&self) -> f64 {
         -(self.range.start as f64) / self.range.len() as f64
     }
 }
 
-/// What goes on in a closed cycle: the frame in which the left foot strikes, and the events from
-/// there on. `None` unless each foot stands once.
+/// Returns the frame of a closed cycle in which the left foot strikes, and the events from there
+/// on. `None` unless each foot stands once.
 pub(crate) fn events_of(looped: &Loop, roles: &Roles) -> Option<(usize, Events)> {
     let frames = looped.clip.frames();
     if !CYCLE_SECS.contains(&(frames as f64 / looped.clip.fps())) {
         return None;
     }
-    // In the middle of three rounds nothing is cut off.
+    // In the middle one of three repetitions no stance is cut off.
     let contacts = Contacts::detect(&looped.repeat(3).ok()?, roles, &ContactOptions::default());
     let stance = |side: Side| {
         let mut within = contacts
@@ -210,7 +212,7 @@ fn candidates(source: &Source, contacts: &Contacts) -> Vec<Candidate> {
             right_strike: phase(only.start),
             right_lift: phase(only.end),
         };
-        // A stance that the clip's end cuts off tells no lift.
+        // A stance that is cut off by the clip's end has no lift.
         (events.right_lift < events.right_strike + 1.0 && only.end < last)
             .then_some(Candidate { range, events })
     };
@@ -218,7 +220,8 @@ fn candidates(source: &Source, contacts: &Contacts) -> Vec<Candidate> {
 }
 
 impl Candidate {
-    /// Duration and speed (logarithms), and the phases of the events: what is to be usual.
+    /// Returns duration and speed (logarithms), and the phases of the events: the measures of
+    /// regularity.
     fn measures(&self, source: &Source) -> [f32; 5] {
         let speed =
             ground_speed(&source.frames()[self.range.start..=self.range.end], source.clip().fps());
@@ -231,7 +234,7 @@ impl Candidate {
         ]
     }
 
-    /// The root mean square of the angles between the poses at both ends, radians.
+    /// Returns the root mean square of the angles between the poses at both ends, radians.
     fn gap(&self, source: &Source) -> f32 {
         let (clip, frames) = (source.clip(), source.frames());
         let ends = [self.range.start, self.range.end].map(|frame| {

@@ -1,36 +1,38 @@
+//! Phases of gait cycles, and their alignment.
+
 use crate::skeleton::Side;
 
-/// When the feet meet and leave the ground in a cycle that begins with the strike of the left foot;
-/// in cycles.
+/// The phases at which the feet strike and lift in a cycle that begins with the strike of the left
+/// foot, in cycles.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Events {
-    /// The left foot leaves the ground, above 0 and below 1.
+    /// The left foot lifts, above 0 and below 1.
     pub left_lift: f64,
-    /// The right foot meets the ground, above 0 and below 1.
+    /// The right foot strikes, above 0 and below 1.
     pub right_strike: f64,
-    /// The right foot leaves it, after its strike and less than a cycle later; above 1 where it
-    /// stands at the beginning of the cycle, as in a walk.
+    /// The right foot lifts, after its strike and less than a cycle later; above 1 if it is planted
+    /// at the beginning of the cycle, as in a walk.
     pub right_lift: f64,
 }
 
-/// How two gaits are laid on one phase.
+/// The alignment of two gaits in phase.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
 )]
 pub enum PhaseAlignment {
     /// Strikes meet strikes and lifts meet lifts. In a walk a foot lifts after the other one
-    /// struck, in a run before: no one phase holds for both legs. So each leg follows its own
-    /// strikes and lifts, and the rest of the body the strikes of both feet.
+    /// struck, in a run before, so no single phase fits both legs. Each leg follows its own strikes
+    /// and lifts, and the rest of the body the strikes of both feet.
     #[default]
     Feet,
-    /// The whole body follows the strikes of both feet; lifts fall where they fall.
+    /// The whole body follows the strikes of both feet; lifts are not aligned.
     Strikes,
-    /// Not at all: each cycle runs evenly, and begins where its clip does. For comparison: with
-    /// strikes against swings legs cross.
+    /// No alignment: each cycle runs evenly, and begins with its clip. For comparison: where
+    /// strikes meet swings, legs cross.
     None,
 }
 
-/// What a joint's phase follows.
+/// The phase that a joint follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Part {
     Body,
@@ -48,29 +50,31 @@ impl Part {
     }
 }
 
-/// No event comes nearer to another one than this, in cycles, however far is extrapolated.
-const LEAST: f64 = 0.05;
+/// The least distance between events, in cycles, even for extrapolated gaits.
+const MIN_EVENT_DISTANCE: f64 = 0.05;
 
 impl Events {
     /// The events of a blend, `share` of the way from `self` to `other`.
     ///
-    /// The share is that of the second gait in the *stride*, not its weight: a blended foot goes
-    /// back under the body by the weighted mean of both stances' ways, and the body goes on by the
-    /// weighted mean of both strides; the foot stands still if its stance takes the quotient of
-    /// these.
+    /// The share is that of the second gait in the *stride*, not its weight. A blended foot moves
+    /// back relative to the body by the weighted mean of both stances, and the body moves forward
+    /// by the weighted mean of both strides; the foot stands still if the duration of its stance is
+    /// the quotient of these.
     pub(super) fn between(&self, other: &Self, share: f64) -> Self {
         let mix = |a: f64, b: f64| a + (b - a) * share;
-        let right_strike = mix(self.right_strike, other.right_strike).clamp(LEAST, 1.0 - LEAST);
+        let right_strike = mix(self.right_strike, other.right_strike)
+            .clamp(MIN_EVENT_DISTANCE, 1.0 - MIN_EVENT_DISTANCE);
         let stance =
             mix(self.right_lift - self.right_strike, other.right_lift - other.right_strike);
         Self {
-            left_lift: mix(self.left_lift, other.left_lift).clamp(LEAST, 1.0 - LEAST),
+            left_lift: mix(self.left_lift, other.left_lift)
+                .clamp(MIN_EVENT_DISTANCE, 1.0 - MIN_EVENT_DISTANCE),
             right_strike,
-            right_lift: right_strike + stance.clamp(LEAST, 1.0 - LEAST),
+            right_lift: right_strike + stance.clamp(MIN_EVENT_DISTANCE, 1.0 - MIN_EVENT_DISTANCE),
         }
     }
 
-    /// Strike and lift of a foot.
+    /// Returns strike and lift of a foot.
     fn stance(&self, side: Side) -> [f64; 2] {
         match side {
             Side::Left => [0.0, self.left_lift],
@@ -78,14 +82,14 @@ impl Events {
         }
     }
 
-    /// Whether a foot is on the ground at a phase.
+    /// Returns whether a foot is planted at a phase.
     pub(super) fn planted(&self, side: Side, phase: f64) -> bool {
         let [strike, lift] = self.stance(side);
         (phase - strike).rem_euclid(1.0) < lift - strike
     }
 
-    /// The phase of a cycle with the events `self` that belongs to `phase` of a cycle with the
-    /// events `of`: linear between events, rising, and one more for every cycle.
+    /// Returns the phase of a cycle with the events `self` that corresponds to `phase` of a cycle
+    /// with the events `of`: linear between events, rising, and one more for every cycle.
     pub(super) fn warped(
         &self,
         of: &Self,

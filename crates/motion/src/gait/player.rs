@@ -1,12 +1,14 @@
+//! Playback of a gait at a variable speed.
+
 use super::{GaitFacts, SpeedBlend};
 use crate::math::{Planar, spring};
 use crate::skeleton::Pose;
 
-/// A gait that plays while its speed is dragged.
+/// A gait that plays while its speed changes.
 ///
-/// The phase goes on whatever the speed does, and the speed follows the one asked for as a
-/// critically damped spring, so that a walk becomes a run without a jump. Holds no clips: every
-/// call is given the blend, which may be exchanged for another between calls.
+/// The phase is continuous whatever the speed does, and the speed follows the requested one as a
+/// critically damped spring, so that a walk becomes a run without a jump. The player holds no
+/// clips: every call is given the blend, which may be replaced between calls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpeedPlayer {
     speed_mps: f64,
@@ -16,7 +18,7 @@ pub struct SpeedPlayer {
 }
 
 impl SpeedPlayer {
-    /// At the strike of the left foot, at the origin, facing +Z.
+    /// Returns a player at the strike of the left foot, at the origin, facing +Z.
     #[must_use]
     pub fn new(blend: &SpeedBlend, speed_mps: f64) -> Self {
         Self {
@@ -27,15 +29,15 @@ impl SpeedPlayer {
         }
     }
 
-    /// Goes on by `dt_secs` towards a speed and gives the pose there. A step that is no number, or
-    /// negative, is none.
+    /// Advances by `dt_secs` towards a speed and returns the pose. A step that is negative or not
+    /// finite counts as 0.
     pub fn advance(&mut self, blend: &SpeedBlend, dt_secs: f64, speed_mps: f64) -> Pose {
         self.go(blend, dt_secs, speed_mps);
         self.pose(blend)
     }
 
     pub(super) fn go(&mut self, blend: &SpeedBlend, dt_secs: f64, speed_mps: f64) {
-        // Also false for NaN.
+        // The comparison is also false for NaN.
         let dt_secs = if dt_secs > 0.0 { dt_secs.min(1.0) } else { 0.0 };
         let wanted = blend.facts(speed_mps).speed_mps;
         let half_life = blend.options().half_life_secs;
@@ -47,31 +49,32 @@ impl SpeedPlayer {
         self.here = self.here.after(&blend.step(facts.weight, before, self.phase));
     }
 
-    /// The pose now.
+    /// Returns the current pose.
     #[must_use]
     pub fn pose(&self, blend: &SpeedBlend) -> Pose {
         blend.pose(self.facts(blend).weight, self.phase, &self.here)
     }
 
-    /// What goes with the speed now.
+    /// Returns the facts of the current speed.
     #[must_use]
     pub fn facts(&self, blend: &SpeedBlend) -> GaitFacts {
         blend.facts(self.speed_mps)
     }
 
-    /// Cycles since the beginning; whole numbers are strikes of the left foot.
+    /// Returns the number of cycles since the beginning; whole numbers are strikes of the left
+    /// foot.
     #[must_use]
     pub fn phase(&self) -> f64 {
         self.phase
     }
 
-    /// Where the character stands and faces (`world_from_character`).
+    /// Returns the ground frame of the character (`world_from_character`).
     #[must_use]
     pub fn here(&self) -> &Planar {
         &self.here
     }
 
-    /// Which foot is on the ground: left, right.
+    /// Returns which feet are planted: left, right.
     #[must_use]
     pub fn planted(&self, blend: &SpeedBlend) -> [bool; 2] {
         blend.planted(self.facts(blend).weight, self.phase)

@@ -1,3 +1,5 @@
+//! Blending of two gaits to a given speed.
+
 use super::phase::{Events, Part, PhaseAlignment};
 use super::{GaitCycle, GaitError, SpeedPlayer};
 use crate::blend::{Assembly, moving_joints, translation_of};
@@ -7,12 +9,12 @@ use crate::skeleton::{Pose, Role, Roles, Side};
 use glam::{DVec3, Quat, Vec3};
 use std::ops::RangeInclusive;
 
-/// What a blend by speed is made with.
+/// Options of a blend by speed.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct SpeedOptions {
-    /// How the gaits are laid on one phase.
+    /// The alignment of the gaits in phase.
     pub alignment: PhaseAlignment,
-    /// How quickly a [`SpeedPlayer`] takes on another speed: the half-life of a critically damped
+    /// The time in which a [`SpeedPlayer`] changes its speed: the half-life of a critically damped
     /// spring, seconds. 0 is at once.
     pub half_life_secs: f64,
 }
@@ -23,23 +25,23 @@ impl Default for SpeedOptions {
     }
 }
 
-/// What goes with a speed.
+/// The properties of a gait at one speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GaitFacts {
-    /// The speed that is made, metres per second: the one asked for, or the nearest one that can be
-    /// made.
+    /// The speed of the result, metres per second: the requested one, or the nearest possible one.
     pub speed_mps: f64,
     /// The weight of the second gait, -0.25 to 1.25.
     pub weight: f64,
-    /// The way of one cycle (two steps), metres.
+    /// The length of one cycle (two steps), metres.
     pub stride_m: f64,
     /// Steps per minute.
     pub cadence_spm: f64,
-    /// The time of one cycle, seconds.
+    /// The duration of one cycle, seconds.
     pub cycle_secs: f64,
-    /// The speed lies beyond the two gaits: what is made is a guess.
+    /// Whether the speed lies beyond the two gaits.
     pub extrapolated: bool,
-    /// The speed asked for was too far beyond the two gaits, and a nearer one was taken.
+    /// Whether the requested speed was too far beyond the two gaits, so that the nearest possible
+    /// one was taken.
     pub limited: bool,
 }
 
@@ -48,26 +50,25 @@ pub struct GaitFacts {
 pub struct GaitClip {
     /// The motion; it begins at the origin, facing +Z.
     pub clip: Clip,
-    /// When which foot is on the ground, as it was blended.
+    /// The contacts of the feet, as blended.
     pub contacts: Contacts,
-    /// What goes with the (last) speed.
+    /// The properties at the (last) speed.
     pub facts: GaitFacts,
 }
 
-/// The weight may leave 0 to 1 by this.
-const BEYOND: f64 = 0.25;
-/// A weight that lies by this beyond the gaits is theirs: a walk of 1.4 m/s sways, and its way is a
-/// little longer.
-const NEARLY: f64 = 0.02;
-/// Nothing is made slower, or with a shorter stride, than this share of the lesser of the two
-/// gaits.
+/// The greatest amount by which a weight may leave the range 0 to 1.
+const MAX_EXTRAPOLATION: f64 = 0.25;
+/// Weights that lie beyond the gaits by up to this are not extrapolated: a walk of 1.4 m/s sways,
+/// and its trajectory is a little longer.
+const WEIGHT_TOLERANCE: f64 = 0.02;
+/// The least speed and stride, as a share of the lesser of the two gaits.
 const MIN_SHARE: f64 = 0.1;
 /// The least difference of speeds, metres per second.
 const MIN_DIFFERENCE_MPS: f64 = 0.1;
-/// The longest clip, seconds.
+/// The greatest duration of a clip, seconds.
 const MAX_SECS: f64 = 600.0;
 
-/// Two gaits prepared to be blended to any speed; poses cost microseconds.
+/// Two gaits prepared for blending to any speed; a pose takes microseconds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpeedBlend {
     gaits: [Sampled; 2],
@@ -78,7 +79,7 @@ pub struct SpeedBlend {
     name: String,
 }
 
-/// A cycle as poses in the character's frame, and its way.
+/// A cycle as poses in the character's frame, and its trajectory.
 #[derive(Clone, Debug, PartialEq)]
 struct Sampled {
     clip: Clip,
@@ -86,7 +87,7 @@ struct Sampled {
     translations: Vec<Vec3>,
     /// Sums of the steps in the character's own frame (sideways, yaw, forward) up to each frame,
     /// one more than there are frames.
-    way: Vec<DVec3>,
+    step_sums: Vec<DVec3>,
     events: Events,
     first_phase: f64,
     speed_mps: f64,
@@ -98,8 +99,8 @@ impl SpeedBlend {
     /// first.
     ///
     /// # Errors
-    /// [`GaitError`] when the gaits move different skeletons, their speeds are (nearly) the same,
-    /// one does not go anywhere, or the half-life is none.
+    /// [`GaitError`] when the gaits have different skeletons or (nearly) the same speed, one does
+    /// not travel, or the half-life is out of range.
     pub fn new(
         a: &GaitCycle,
         b: &GaitCycle,
@@ -121,7 +122,7 @@ impl SpeedBlend {
         let moving = moving_joints(first, second);
         let mut gaits = [a, b].map(|cycle| Sampled::new(cycle, &moving));
         let [a_sampled, b_sampled] = &mut gaits;
-        b_sampled.take_side_of(a_sampled);
+        b_sampled.match_signs_to(a_sampled);
         let skeleton = first.skeleton();
         let mut parts = vec![Part::Body; skeleton.len()];
         for side in Side::BOTH {
@@ -140,10 +141,10 @@ impl SpeedBlend {
             parts,
             moving,
             options: *options,
-            weights: [-BEYOND, 1.0 + BEYOND],
+            weights: [-MAX_EXTRAPOLATION, 1.0 + MAX_EXTRAPOLATION],
             name: format!("{} ~ {}", first.name(), second.name()),
         };
-        // Far beyond the slower gait there may be no speed, or no stride, left.
+        // Far beyond the slower gait, speed or stride would reach 0.
         let (speeds, strides) = ([a_mps, b_mps], [a_mps * a.secs(), b_mps * b.secs()]);
         for [from, to] in [speeds, strides] {
             let least = MIN_SHARE * from.min(to);
@@ -157,20 +158,20 @@ impl SpeedBlend {
         Ok(blend)
     }
 
-    /// The speeds of the two gaits, metres per second.
+    /// Returns the speeds of the two gaits, metres per second.
     #[must_use]
     pub fn speeds_mps(&self) -> [f64; 2] {
         [0, 1].map(|gait: usize| self.gaits[gait].speed_mps)
     }
 
-    /// The speeds that can be made, metres per second.
+    /// Returns the range of possible speeds, metres per second.
     #[must_use]
     pub fn range_mps(&self) -> RangeInclusive<f64> {
         let ends = self.weights.map(|weight| self.mixed(weight, |gait| gait.speed_mps));
         ends[0].min(ends[1])..=ends[0].max(ends[1])
     }
 
-    /// What the blend is made with.
+    /// Returns the options of the blend.
     #[must_use]
     pub fn options(&self) -> &SpeedOptions {
         &self.options
@@ -180,7 +181,7 @@ impl SpeedBlend {
         of(&self.gaits[0]) * (1.0 - weight) + of(&self.gaits[1]) * weight
     }
 
-    /// What goes with a speed. NaN counts as the speed of the first gait.
+    /// Returns the properties of the gait at a speed. NaN counts as the speed of the first gait.
     #[must_use]
     pub fn facts(&self, speed_mps: f64) -> GaitFacts {
         let [a, b] = self.speeds_mps();
@@ -196,35 +197,36 @@ impl SpeedBlend {
             stride_m: stride,
             cadence_spm: 120.0 / cycle_secs,
             cycle_secs,
-            extrapolated: !(-NEARLY..=1.0 + NEARLY).contains(&weight),
+            extrapolated: !(-WEIGHT_TOLERANCE..=1.0 + WEIGHT_TOLERANCE).contains(&weight),
             limited: (weight - asked).abs() > 1e-6,
         }
     }
 
-    /// When the feet meet and leave the ground at a weight.
+    /// Returns the events of the feet at a weight.
     fn events(&self, weight: f64) -> Events {
         let stride = |gait: &Sampled| gait.speed_mps * gait.secs;
         let share = weight * stride(&self.gaits[1]) / self.mixed(weight, stride);
         self.gaits[0].events.between(&self.gaits[1].events, share)
     }
 
-    /// Where each gait is, in cycles, when the blend is at `phase`.
+    /// Returns the phases of a gait, in cycles, when the blend is at `phase`.
     fn phases(&self, gait: &Sampled, events: &Events, phase: f64) -> [f64; 3] {
         let alignment = self.options.alignment;
         let begin = if alignment == PhaseAlignment::None { gait.first_phase } else { 0.0 };
         Part::ALL.map(|part| begin + gait.events.warped(events, phase, part, alignment))
     }
 
-    /// The step over the ground from one phase to another at a weight, in the character's frame at
+    /// Returns the step over the ground between two phases at a weight, in the character's frame at
     /// the first.
     pub(super) fn step(&self, weight: f64, from: f64, to: f64) -> Planar {
         let events = self.events(weight);
         let made = |gait: &Sampled| {
-            let at = |phase| gait.way_at(self.phases(gait, &events, phase)[Part::Body.index()]);
+            let at =
+                |phase| gait.step_sum_at(self.phases(gait, &events, phase)[Part::Body.index()]);
             at(to) - at(from)
         };
-        let way = made(&self.gaits[0]) * (1.0 - weight) + made(&self.gaits[1]) * weight;
-        Planar::new(wrap_angle(way.y), way.x, way.z)
+        let step_sums = made(&self.gaits[0]) * (1.0 - weight) + made(&self.gaits[1]) * weight;
+        Planar::new(wrap_angle(step_sums.y), step_sums.x, step_sums.z)
     }
 
     pub(super) fn planted(&self, weight: f64, phase: f64) -> [bool; 2] {
@@ -236,8 +238,8 @@ impl SpeedBlend {
         Side::BOTH.map(|side| events.planted(side, phase))
     }
 
-    /// The blended pose at a phase, in the character's frame: rotations, and translations of the
-    /// root and of the joints that move.
+    /// Computes the blended pose at a phase, in the character's frame: rotations, and translations
+    /// of the root and of the joints that move.
     fn pose_into(
         &self,
         weight: f64,
@@ -248,7 +250,7 @@ impl SpeedBlend {
         let events = self.events(weight);
         let places = [0, 1].map(|index: usize| {
             let gait = &self.gaits[index];
-            self.phases(gait, &events, phase).map(|phase| gait.place(phase))
+            self.phases(gait, &events, phase).map(|phase| gait.frame_position(phase))
         });
         let [a, b] = &self.gaits;
         let t = weight as f32;
@@ -271,7 +273,7 @@ impl SpeedBlend {
         }));
     }
 
-    /// The blended pose at a phase of a character that stands at `here`.
+    /// Returns the blended pose at a phase of a character in the ground frame `here`.
     pub(super) fn pose(&self, weight: f64, phase: f64, here: &Planar) -> Pose {
         let (mut rotations, mut translations) = (Vec::new(), Vec::new());
         self.pose_into(weight, phase, &mut rotations, &mut translations);
@@ -290,18 +292,18 @@ impl SpeedBlend {
         }
     }
 
-    /// One cycle, from a strike of the left foot to its next, at the nearest whole number of
-    /// frames: with `n` steps from frame to frame it has `n + 1` frames at the phases `i / n`, so
-    /// that the last is the first again, one stride on. The speed is off by up to half a frame of
-    /// its duration for that.
+    /// Returns one cycle, from a strike of the left foot to its next, at the nearest whole number
+    /// of frames: with `n` steps it has `n + 1` frames at the phases `i / n`, so that the last
+    /// equals the first, one stride on. Because of the rounding, the speed is off by up to half a
+    /// frame of the cycle's duration.
     ///
     /// # Errors
-    /// [`GaitError::Clip`] when the result is no clip.
+    /// [`GaitError::Clip`] when the result is not a valid clip.
     pub fn cycle_at(&self, speed_mps: f64) -> Result<GaitClip, GaitError> {
         self.cycles_at(speed_mps, 1)
     }
 
-    /// Several cycles as [`Self::cycle_at`] makes them, one behind the other: `n · cycles + 1`
+    /// Returns several consecutive cycles as [`Self::cycle_at`] makes them: `n · cycles + 1`
     /// frames.
     ///
     /// # Errors
@@ -314,7 +316,7 @@ impl SpeedBlend {
         self.made(facts, phases)
     }
 
-    /// Several cycles at one speed, `secs` long.
+    /// Returns consecutive cycles at one speed, `secs` long.
     ///
     /// # Errors
     /// [`GaitError::Option`] when `secs` is not between 0 and 600.
@@ -325,8 +327,8 @@ impl SpeedBlend {
         self.made(facts, (0..=steps).map(|step| (facts.weight, step as f64 * per_step)))
     }
 
-    /// A motion whose speed changes: `speed_mps` is asked for the speed at every time (seconds),
-    /// and the motion follows it as a [`SpeedPlayer`] does.
+    /// Returns a motion of variable speed: `speed_mps` returns the requested speed at a time
+    /// (seconds), and the motion follows it as a [`SpeedPlayer`] does.
     ///
     /// # Errors
     /// [`GaitError::Option`] when `secs` is not between 0 and 600.
@@ -350,7 +352,7 @@ impl SpeedBlend {
         Ok((secs * self.gaits[0].clip.fps()).round() as usize)
     }
 
-    /// Frames at these weights and (rising) phases.
+    /// Returns frames at these weights and (rising) phases.
     fn made(
         &self,
         facts: GaitFacts,
@@ -388,15 +390,15 @@ fn checked(what: &'static str, value: f64, most: f64) -> Result<(), GaitError> {
     if fits { Ok(()) } else { Err(GaitError::Option { what, value, most }) }
 }
 
-/// A frame of a cycle, the next, and how far between.
-type Place = (usize, usize, f32);
+/// A frame of a cycle, the next, and the share between them.
+type FramePosition = (usize, usize, f32);
 
 impl Sampled {
     fn new(cycle: &GaitCycle, moving: &[usize]) -> Self {
         let (clip, frames) = (&cycle.looped.clip, &cycle.looped.frames);
         let mut rotations = Vec::with_capacity(clip.frames() * clip.skeleton().len());
         let mut translations = Vec::with_capacity(clip.frames() * (moving.len() + 1));
-        let mut way = vec![DVec3::ZERO];
+        let mut step_sums = vec![DVec3::ZERO];
         for (frame, here) in frames.iter().enumerate() {
             let first = rotations.len();
             rotations.extend_from_slice(clip.rotations(frame));
@@ -408,14 +410,15 @@ impl Sampled {
             let next = frames.get(frame + 1).copied();
             let next = next.or_else(|| frames.first().map(|first| cycle.looped.cycle.after(first)));
             let step = next.map_or(Planar::IDENTITY, |next| here.inverse().after(&next));
-            let sum = way[frame] + DVec3::new(step.shift.x, wrap_angle(step.yaw), step.shift.y);
-            way.push(sum);
+            let sum =
+                step_sums[frame] + DVec3::new(step.shift.x, wrap_angle(step.yaw), step.shift.y);
+            step_sums.push(sum);
         }
         Self {
             clip: clip.clone(),
             rotations,
             translations,
-            way,
+            step_sums,
             events: cycle.events(),
             first_phase: cycle.first_phase(),
             speed_mps: cycle.speed_mps(),
@@ -423,7 +426,7 @@ impl Sampled {
         }
     }
 
-    /// Gives the rotations of a joint signs that do not change over the cycle.
+    /// Chooses the signs of a joint's rotations so that they do not change over the cycle.
     fn keep_signs(&mut self) {
         let joints = self.clip.skeleton().len();
         for at in joints..self.rotations.len() {
@@ -432,10 +435,10 @@ impl Sampled {
         }
     }
 
-    /// Lays the rotations of each joint on that side of the other cycle's from which the way
-    /// between the two is the shorter over most of the cycle: chosen for each pose alone, it would
+    /// Chooses the signs of each joint's rotations so that the way to the other cycle's is the
+    /// shorter one over most of the cycle. If they were chosen for each pose alone, they would
     /// change where the two are about half a turn apart.
-    fn take_side_of(&mut self, other: &mut Self) {
+    fn match_signs_to(&mut self, other: &mut Self) {
         const SAMPLES: usize = 32;
         self.keep_signs();
         other.keep_signs();
@@ -443,8 +446,8 @@ impl Sampled {
         for joint in 0..joints {
             let alike = (0..SAMPLES).map(|sample| {
                 let phase = sample as f64 / SAMPLES as f64;
-                self.rotation(joint, self.place(phase))
-                    .dot(other.rotation(joint, other.place(phase)))
+                self.rotation(joint, self.frame_position(phase))
+                    .dot(other.rotation(joint, other.frame_position(phase)))
             });
             if alike.sum::<f32>() < 0.0 {
                 for rotation in self.rotations.iter_mut().skip(joint).step_by(joints) {
@@ -454,8 +457,8 @@ impl Sampled {
         }
     }
 
-    /// Where a phase lies among the frames. A frame that is met but for rounding is met.
-    fn place(&self, phase: f64) -> Place {
+    /// Returns the frames around a phase. A phase within rounding of a frame is that frame.
+    fn frame_position(&self, phase: f64) -> FramePosition {
         let count = self.clip.frames();
         let at = phase.rem_euclid(1.0) * count as f64;
         let nearest = at.round();
@@ -464,7 +467,7 @@ impl Sampled {
         (frame, (frame + 1) % count.max(1), at.fract() as f32)
     }
 
-    fn rotation(&self, joint: usize, (frame, next, part): Place) -> Quat {
+    fn rotation(&self, joint: usize, (frame, next, part): FramePosition) -> Quat {
         let joints = self.clip.skeleton().len();
         let from = self.rotations[frame * joints + joint];
         if part == 0.0 {
@@ -474,17 +477,18 @@ impl Sampled {
         }
     }
 
-    fn translation(&self, slot: usize, slots: usize, (frame, next, part): Place) -> Vec3 {
+    fn translation(&self, slot: usize, slots: usize, (frame, next, part): FramePosition) -> Vec3 {
         self.translations[frame * slots + slot].lerp(self.translations[next * slots + slot], part)
     }
 
-    /// The sum of steps up to a phase, over as many cycles as it counts.
-    fn way_at(&self, phase: f64) -> DVec3 {
-        let (cycles, last) = (phase.floor(), self.way.len() - 1);
+    /// Returns the sum of steps up to a phase, over all its cycles.
+    fn step_sum_at(&self, phase: f64) -> DVec3 {
+        let (cycles, last) = (phase.floor(), self.step_sums.len() - 1);
         let at = (phase - cycles) * last as f64;
         let frame = (at.floor() as usize).min(last.saturating_sub(1));
-        let within = self.way[frame].lerp(self.way[(frame + 1).min(last)], at - frame as f64);
-        self.way[last] * cycles + within
+        let within =
+            self.step_sums[frame].lerp(self.step_sums[(frame + 1).min(last)], at - frame as f64);
+        self.step_sums[last] * cycles + within
     }
 }
 

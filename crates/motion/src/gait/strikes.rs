@@ -1,14 +1,16 @@
+//! Phases of clips by the strikes of the feet.
+
 use crate::clip::Contacts;
 use crate::skeleton::Side;
 
-/// The phase of every frame of a clip, in cycles, by the strikes of its feet: a whole number where
-/// the left foot meets the ground, `right_strike` (above 0 and below 1,
-/// [`super::Events::right_strike`]) more where the right one does, linear between. With it another
-/// gait keeps step.
+/// Returns the phase of every frame of a clip, in cycles, by the strikes of its feet: a whole
+/// number where the left foot strikes, `right_strike` (above 0 and below 1,
+/// [`super::Events::right_strike`]) more where the right one does, linear between. It keeps another
+/// gait in step with the clip.
 ///
-/// Before the first strike and behind the last one the phase runs on as next to them. Where a foot
-/// strikes twice in a row, the other one was missed and a whole cycle has passed. A foot that
-/// stands in the first frame has not struck there. `None` where there are fewer than two strikes.
+/// Before the first strike and after the last one the phase is extrapolated. Where a foot strikes
+/// twice in a row, the other one was missed and a whole cycle has passed. A foot that is planted in
+/// the first frame has not struck there. `None` where there are fewer than two strikes.
 #[must_use]
 pub fn strike_phases(contacts: &Contacts, right_strike: f64) -> Option<Vec<f64>> {
     let strikes_of = |side: Side| {
@@ -47,10 +49,10 @@ mod tests {
     }
 
     #[test]
-    fn strikes_are_where_the_phase_says() {
+    fn strike_phases_at_strikes_are_whole_or_right_strike() {
         let phases = strike_phases(&contacts(&[0, 20, 42], &[10, 31], 60), 0.4).unwrap();
         assert_eq!(phases.len(), 60);
-        // The foot that stands at the beginning is not counted: the first strike is the right
+        // The foot that is planted at the beginning is not counted: the first strike is the right
         // one's.
         for (frame, phase) in
             [(10, 0.4), (20, 1.0), (31, 1.4), (42, 2.0), (0, -0.2), (15, 0.7), (53, 2.6)]
@@ -61,11 +63,11 @@ mod tests {
     }
 
     #[test]
-    fn a_missed_strike_is_a_whole_cycle() {
+    fn strike_phases_at_a_missed_strike_advance_by_a_cycle() {
         let phases = strike_phases(&contacts(&[10, 30], &[], 40), 0.5).unwrap();
         assert!((phases[30] - phases[10] - 1.0).abs() < 1e-9);
         assert_eq!(strike_phases(&contacts(&[10], &[], 40), 0.5), None);
-        // Both feet at once are one strike.
+        // Simultaneous strikes of both feet count as one strike.
         assert_eq!(strike_phases(&contacts(&[10], &[10], 40), 0.5), None);
     }
 }

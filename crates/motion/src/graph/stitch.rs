@@ -1,5 +1,5 @@
 use super::{FrameSet, GraphError, Jump, MotionGraph, Place, Stay};
-use crate::blend::{AlignBy, Assembly, RootBlend, Source, WeightLaw, laid_on};
+use crate::blend::{AlignBy, Assembly, RootBlend, Source, WeightLaw, alignment_of};
 use crate::clip::Clip;
 use crate::math::{Decay, Planar, wrap_angle};
 use crate::transition::{
@@ -248,7 +248,7 @@ impl Stitcher {
                     Method::Dissolve { window, .. } => window,
                     _ => 0,
                 };
-                let here_from_there = laid_on(
+                let here_from_there = alignment_of(
                     a,
                     leave.min(a.clip().frames().saturating_sub(1)),
                     incoming,

@@ -1,3 +1,5 @@
+//! Artefacts of a motion compared with the clips that it was made from.
+
 use crate::clip::Clip;
 use crate::math::{stats, wrap_angle};
 use crate::skeleton::{Role, Roles, Side, WorldPose};
@@ -7,49 +9,49 @@ use std::ops::Range;
 mod joints;
 mod meter;
 
-pub(super) use joints::{JointTrace, Sizes};
+pub(super) use joints::{JointTrace, Statistics};
 pub use meter::TraceMeter;
 
-/// The height that lengths are brought to, metres: the median, over the frames, of the height of
+/// The height to which lengths are scaled, metres: the median, over the frames, of the height of
 /// all joints and end sites.
 const BODY_M: f32 = 1.7;
-/// What one step in a thousand exceeds is rare; what is above twice that is no part of the motion.
-const RARE: f32 = 0.999;
-/// So many times the rare speed is an artefact.
-const BEYOND: f32 = 2.0;
-/// A turn of a joint below this in one frame is no flash, degrees.
+/// The percentile that counts as rare.
+const RARE_PERCENTILE: f32 = 0.999;
+/// The ratio to the rare speed from which on a speed is an artefact.
+const ARTEFACT_RATIO: f32 = 2.0;
+/// The least turn of a joint in one frame that counts as a flash, degrees.
 const MIN_FLASH_DEG: f32 = 2.0;
-/// Flashes with no more frames than this between them are one.
-const ONE_FLASH_FRAMES: usize = 3;
-/// A spin is looked for in windows of this length, seconds.
+/// Flashes with no more frames than this between them count as one.
+const MAX_FLASH_GAP_FRAMES: usize = 3;
+/// Duration of the windows in which spins are detected, seconds.
 const SPIN_SECS: f64 = 0.2;
-/// A turn below this in such a window is no spin, degrees.
+/// The least turn in such a window that counts as a spin, degrees.
 const MIN_SPIN_DEG: f32 = 30.0;
 /// A foot is low within this height of the 5th percentile of its heights, metres.
 const LOW_M: f32 = 0.04;
-/// A low foot stands that is so for this long, seconds, at a median speed below [`STANDING_MPS`].
+/// The least duration of a stance, seconds: a low foot at a median speed below [`STANDING_MPS`].
 const MIN_STANCE_SECS: f64 = 0.1;
 /// See [`MIN_STANCE_SECS`], metres per second.
 const STANDING_MPS: f32 = 0.6;
-/// Skating counts below this height above the 2nd percentile of the foot's heights, metres.
+/// Skating is measured below this height above the 2nd percentile of the foot's heights, metres.
 const SKATING_M: f32 = 0.025;
-/// A speed counts as higher than another one where it is by more than this share: less is rounding.
-const SAME_SPEED: f32 = 1.01;
+/// A speed exceeds another one if it is higher by more than this factor: less is rounding.
+const SPEED_TOLERANCE: f32 = 1.01;
 
-/// What the definitions of [`Artefacts`] and [`ResultMetrics`](super::ResultMetrics) need of a
-/// motion, taken once: how fast its joints turn, its root moves and its heading changes, and what
-/// its feet do. Lengths are those of a body of 1.7 m.
+/// The measurements of a motion that [`Artefacts`] and [`ResultMetrics`](super::ResultMetrics)
+/// compare, made once: rotation of its joints, speed of its root, change of its heading, motion of
+/// its feet. Lengths are those of a body of 1.7 m.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotionTrace {
     pub(super) fps: f64,
     pub(super) joints: Vec<JointTrace>,
-    /// Per step: the root's speed, metres per second; its 99.9th percentile, and the largest.
+    /// Per step: the root's speed, metres per second; its 99.9th percentile, and its maximum.
     root_mps: Vec<f32>,
     rare_mps: f32,
-    most_mps: f32,
-    /// From every frame on: how far the hips turn within 0.2 s, degrees.
+    max_mps: f32,
+    /// From every frame on: the turn of the hips within 0.2 s, degrees.
     turned_deg: Vec<f32>,
-    most_turned_deg: f32,
+    max_turn_deg: f32,
     stances_cm: Vec<f64>,
     skating_cm_per_sec: Option<f64>,
 }
@@ -63,33 +65,33 @@ impl MotionTrace {
         meter.finish(clip)
     }
 
-    /// For every stance how far the foot moves over the ground, centimetres: the diagonal of the
-    /// box about the toe joint (the ankle without one) in the middle three fifths of a stance. A
-    /// stance is a run of frames of at least 0.1 s in which the toe is within 4 cm of the 5th
-    /// percentile of its heights, at a median speed below 0.6 m/s.
+    /// Returns for every stance the distance that the foot moves over the ground, centimetres: the
+    /// diagonal of the bounding box of the toe joint (the ankle without one) in the middle three
+    /// fifths of the stance. A stance is a run of frames of at least 0.1 s in which the toe is
+    /// within 4 cm of the 5th percentile of its heights, at a median speed below 0.6 m/s.
     #[must_use]
     pub fn stances_cm(&self) -> &[f64] {
         &self.stances_cm
     }
 
-    /// Skating, centimetres per second (Zhang et al. 2018, "Mode-Adaptive Neural Networks", section
-    /// 7): the mean over the frames and both feet of `|v| (2 - 2^(h / H))` for `h < H = 2.5 cm`, v
-    /// being the velocity of the toe over the ground and h its height above the 2nd percentile of
-    /// its heights. `None` without feet.
+    /// Returns skating, centimetres per second (Zhang et al. 2018, "Mode-Adaptive Neural Networks",
+    /// section 7): the mean over the frames and both feet of `|v| (2 - 2^(h / H))` for `h < H = 2.5
+    /// cm`, v being the velocity of the toe over the ground and h its height above the 2nd
+    /// percentile of its heights. `None` without feet.
     #[must_use]
     pub fn skating_cm_per_sec(&self) -> Option<f64> {
         self.skating_cm_per_sec
     }
 
-    /// The largest turn of the hips within 0.2 s, degrees.
+    /// Returns the largest turn of the hips within 0.2 s, degrees.
     #[must_use]
-    pub fn most_turned_deg(&self) -> f64 {
-        f64::from(self.most_turned_deg)
+    pub fn max_turn_deg(&self) -> f64 {
+        f64::from(self.max_turn_deg)
     }
 
-    /// What this motion does that none of its sources does. Sources of another number of joints say
-    /// nothing about joints; where no source has as many as the motion, its own speeds stand for
-    /// theirs. Without a source the motion is its own.
+    /// Returns the artefacts of this motion that none of its sources has. Sources with another
+    /// number of joints are ignored for joints; if no source has the same number, the motion's own
+    /// speeds are used. Without sources the motion is compared with itself.
     #[must_use]
     pub fn beside(&self, sources: &[&Self]) -> Artefacts {
         let own = [self];
@@ -99,34 +101,34 @@ impl MotionTrace {
         let most =
             |of: fn(&Self) -> f32| sources.iter().map(|source| of(source)).fold(0.0, f32::max);
         let (flashes, new_flashes) = self.flashes(like);
-        let (rare_mps, most_mps) = (most(|source| source.rare_mps), most(|source| source.most_mps));
+        let (rare_mps, max_mps) = (most(|source| source.rare_mps), most(|source| source.max_mps));
         let beyond =
             |limit: f32| self.root_mps.iter().filter(|speed| **speed > limit + 1e-6).count();
-        let turned = MIN_SPIN_DEG.max(BEYOND * most(|source| source.most_turned_deg));
+        let turned = MIN_SPIN_DEG.max(ARTEFACT_RATIO * most(|source| source.max_turn_deg));
         let spins = runs(self.turned_deg.iter().map(|deg| *deg > turned));
         Artefacts {
             spins: spins.len(),
             flashes: flashes.len(),
             new_flashes,
-            root_jumps: beyond(BEYOND * rare_mps),
-            new_root_jumps: beyond((BEYOND * rare_mps).max(SAME_SPEED * most_mps)),
+            root_jumps: beyond(ARTEFACT_RATIO * rare_mps),
+            new_root_jumps: beyond((ARTEFACT_RATIO * rare_mps).max(SPEED_TOLERANCE * max_mps)),
         }
     }
 
-    /// Those of some motions that have as many joints as this one.
+    /// Returns the motions that have as many joints as this one.
     pub(super) fn alike<'a>(&self, others: &[&'a Self]) -> Vec<&'a Self> {
         let is_alike = |other: &&Self| other.joints.len() == self.joints.len();
         others.iter().copied().filter(is_alike).collect()
     }
 
-    /// How far the hips turn within 0.2 s from every frame on, degrees; empty for hips that nothing
-    /// is known of.
+    /// Returns the turn of the hips within 0.2 s from every frame on, degrees; empty without hip
+    /// joints.
     pub(super) fn turned_deg(&self) -> &[f32] {
         &self.turned_deg
     }
 
-    /// The frames where flashes begin, and those that turn a joint faster than any source ever
-    /// does.
+    /// Returns the frames at which flashes begin, and the flashes that turn a joint faster than any
+    /// source ever does.
     fn flashes(&self, sources: &[&Self]) -> (Vec<usize>, Vec<Flash>) {
         let dps = self.fps as f32;
         let of = |value: fn(&JointTrace) -> f32, joint: usize| {
@@ -135,8 +137,8 @@ impl MotionTrace {
         };
         let (mut frames, mut new) = (Vec::new(), Vec::new());
         for (joint, trace) in self.joints.iter().enumerate() {
-            let limit = BEYOND * of(|joint| joint.rare_dps, joint);
-            let most = SAME_SPEED * of(|joint| joint.speed.most, joint);
+            let limit = ARTEFACT_RATIO * of(|joint| joint.rare_dps, joint);
+            let most = SPEED_TOLERANCE * of(|joint| joint.speed.most, joint);
             for (frame, &turn) in trace.turns_deg.iter().enumerate() {
                 let speed = turn * dps;
                 if speed > limit + 1e-6 && turn > MIN_FLASH_DEG {
@@ -151,49 +153,49 @@ impl MotionTrace {
         frames.sort_unstable();
         frames.dedup();
         new.sort_by_key(|flash| (flash.frame, flash.joint));
-        (apart(frames, |frame| *frame), apart(new, |flash| flash.frame))
+        (separate_events(frames, |frame| *frame), separate_events(new, |flash| flash.frame))
     }
 }
 
-/// Of events in order of time those before which nothing happens for more than [`ONE_FLASH_FRAMES`]
-/// frames.
-fn apart<T>(events: Vec<T>, frame: impl Fn(&T) -> usize) -> Vec<T> {
+/// Returns the events, in order of time, that are preceded by more than [`MAX_FLASH_GAP_FRAMES`] frames
+/// without one.
+fn separate_events<T>(events: Vec<T>, frame: impl Fn(&T) -> usize) -> Vec<T> {
     let mut last = None;
     let begins = |event: &T| {
         let now = frame(event);
         let before: Option<usize> = last.replace(now);
-        before.is_none_or(|before| now - before > ONE_FLASH_FRAMES)
+        before.is_none_or(|before| now - before > MAX_FLASH_GAP_FRAMES)
     };
     events.into_iter().filter(begins).collect()
 }
 
-/// What a motion does that the motions it was made from do not: what a viewer would point at.
+/// The visible faults of a motion that the motions from which it was made do not have.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Artefacts {
-    /// Times at which the hips begin to turn by more than 30° within 0.2 s, and by more than twice
-    /// what any source ever turns in such a time.
+    /// Number of times at which the hips begin to turn by more than 30° within 0.2 s, and by more
+    /// than twice the largest turn of any source in that time.
     pub spins: usize,
-    /// Times at which a joint's local rotation changes faster than twice the 99.9th percentile of
-    /// the sources for that joint, and by more than 2° in one frame. Frames with no more than three
-    /// between them are one time.
+    /// Number of times at which a joint's local rotation changes faster than twice the 99.9th
+    /// percentile of the sources for that joint, and by more than 2° in one frame. Times with no
+    /// more than three frames between them count as one.
     pub flashes: usize,
-    /// Those in which the joint is also faster than it ever is in a source: what plays over a
-    /// glitch of a source is not counted.
+    /// The flashes in which the joint is also faster than it ever is in a source: replayed glitches
+    /// of a source are not counted.
     pub new_flashes: Vec<Flash>,
-    /// Steps in which the root is faster than twice the 99.9th percentile of the sources.
+    /// Number of steps in which the root is faster than twice the 99.9th percentile of the sources.
     pub root_jumps: usize,
-    /// Those in which it is also faster than it ever is in a source.
+    /// Number of these in which it is also faster than it ever is in a source.
     pub new_root_jumps: usize,
 }
 
-/// A joint that turns faster than it should.
+/// A joint that turns too fast.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flash {
-    /// The frame before it.
+    /// The frame before the step.
     pub frame: usize,
     /// The joint.
     pub joint: usize,
-    /// Its speed, in 99.9th percentiles of the sources: more than 2.
+    /// Its speed, as a multiple of the 99.9th percentile of the sources: more than 2.
     pub times: f64,
 }
 
@@ -201,7 +203,7 @@ fn largest(values: &[f32]) -> f32 {
     values.iter().copied().fold(0.0, f32::max)
 }
 
-/// Runs of `true`, as ranges.
+/// Returns the runs of `true`, as ranges.
 fn runs(flags: impl Iterator<Item = bool>) -> Vec<Range<usize>> {
     let mut runs: Vec<Range<usize>> = Vec::new();
     for (frame, _) in flags.enumerate().filter(|(_, flag)| *flag) {
@@ -215,25 +217,25 @@ fn runs(flags: impl Iterator<Item = bool>) -> Vec<Range<usize>> {
 
 /// World positions of a motion.
 #[derive(Debug)]
-struct Places {
-    /// The feet that the skeleton has: their toe joints; the ankles without.
+struct BodyTracks {
+    /// The feet of the skeleton: their toe joints, or the ankles without.
     feet: Vec<usize>,
     /// The hip joints, left and right.
     hips: Option<(usize, usize)>,
-    /// Joints with an end behind them, and where that is.
+    /// Joints with an end site, and that site.
     ends: Vec<(usize, Vec3)>,
-    /// Per frame: from the lowest to the highest joint or end, metres.
+    /// Per frame: the distance from the lowest to the highest joint or end site, metres.
     heights: Vec<f32>,
     /// Per foot, frame by frame.
     toes: Vec<Vec<Vec3>>,
-    /// Where the line from the right hip joint to the left one points to, radians; empty without
+    /// The direction of the line from the right hip joint to the left one, radians; empty without
     /// these.
     headings: Vec<f64>,
 }
 
-impl Places {
-    /// No frame was looked at yet.
-    fn begun(clip: &Clip, roles: &Roles) -> Self {
+impl BodyTracks {
+    /// Returns empty tracks for a clip.
+    fn new(clip: &Clip, roles: &Roles) -> Self {
         let skeleton = clip.skeleton();
         let joint = |role| roles.get_within(role, skeleton.len());
         let feet: Vec<usize> = (Side::BOTH.into_iter())
@@ -251,7 +253,7 @@ impl Places {
         }
     }
 
-    /// Takes further frames.
+    /// Adds further frames.
     fn take(&mut self, clip: &Clip, frames: Range<usize>) {
         let mut world = WorldPose::default();
         for frame in frames {
@@ -272,13 +274,13 @@ impl Places {
         }
     }
 
-    /// What brings its lengths to a body of 1.7 m.
+    /// Returns the factor to a body of 1.7 m.
     fn scale(&self) -> f32 {
         let height = stats::percentile(&self.heights, 0.5).unwrap_or(0.0);
         if height > 0.0 { BODY_M / height } else { 1.0 }
     }
 
-    /// The toes on a body of 1.7 m.
+    /// Returns the toe tracks on a body of 1.7 m.
     fn scaled_toes(&self) -> Vec<Vec<Vec3>> {
         let scale = self.scale();
         let scaled = |path: &Vec<Vec3>| path.iter().map(|&point| point * scale).collect();
@@ -300,11 +302,11 @@ fn turned_deg(headings: &[f64], fps: f64) -> Vec<f32> {
     turns.map(|(from, to)| (to - from).abs().to_degrees() as f32).collect()
 }
 
-/// The toe of a foot on a body of 1.7 m.
+/// The track of a foot's toe on a body of 1.7 m.
 struct Foot<'a> {
     path: &'a [Vec3],
     heights: Vec<f32>,
-    /// Over the ground, into every frame, metres per second; 0 into the first.
+    /// Speed over the ground in the step into every frame, metres per second; 0 for the first.
     speeds: Vec<f32>,
     fps: f64,
 }

@@ -4,7 +4,7 @@ use crate::clip::Clip;
 use crate::math::quat;
 use crate::skeleton::Roles;
 
-/// The parts that are told apart: the names, the key, what is behind it, and the explanation.
+/// The parts that are distinguished: key, label, parts of the body, and help text.
 const PARTS: [(&str, &str, &[BodyPart], &str); 4] = [
     (
         "off_arms_deg",
@@ -32,10 +32,10 @@ const PARTS: [(&str, &str, &[BodyPart], &str); 4] = [
     ),
 ];
 
-/// How far a clip's joints are turned from those of another clip of the same skeleton, part by
-/// part: degrees, the mean over the joints of the part and over the frames that both have. Every
-/// joint is looked at against its parent, the root against the world. `None` for a part that the
-/// roles do not tell.
+/// Returns how far a clip's joints are turned from those of another clip of the same skeleton, for
+/// each part: degrees, the mean over the joints of the part and over the frames that both have.
+/// Joints are compared relative to their parents, the root in the world. `None` for a part without
+/// known roles.
 #[must_use]
 pub fn deviations(result: &Clip, base: &Clip, roles: &Roles) -> [Metric; 4] {
     let frames = result.frames().min(base.frames());
@@ -44,7 +44,7 @@ pub fn deviations(result: &Clip, base: &Clip, roles: &Roles) -> [Metric; 4] {
     for frame in 0..frames {
         let pairs = result.rotations(frame).iter().zip(base.rotations(frame));
         for (sum, (&here, &there)) in turned.iter_mut().zip(pairs) {
-            // What is A's bit for bit costs nothing.
+            // Frames that are equal bit for bit are skipped.
             if here != there {
                 *sum += f64::from(quat::angle_between(here, there));
             }
@@ -70,7 +70,7 @@ mod tests {
     use glam::Quat;
 
     #[test]
-    fn a_turned_arm_is_told_by_its_part_alone() {
+    fn deviations_of_a_turned_arm_are_those_of_the_arm() {
         let clip = synthesize(&Params::new(Action::Idle)).unwrap().clip;
         let roles = Roles::detect(clip.skeleton());
         let arm = roles.get(Role::LeftUpperArm).unwrap();

@@ -1,21 +1,22 @@
+//! The lowest point of a pose.
+
 use crate::skeleton::{Skeleton, WorldPose};
 use glam::Vec3;
 
-/// The points of a skeleton that can touch the ground: its joints, and the ends behind the last
-/// ones.
+/// The points of a skeleton that can touch the ground: its joints and end sites.
 #[derive(Clone, Debug)]
 pub(super) struct LowPoints {
     tips: Vec<(usize, Vec3)>,
 }
 
 impl LowPoints {
-    /// Those of a skeleton.
+    /// Returns the points of a skeleton.
     pub(super) fn of(skeleton: &Skeleton) -> Self {
         let joints = skeleton.joints().iter().enumerate();
         Self { tips: joints.filter_map(|(joint, j)| j.end_site.map(|end| (joint, end))).collect() }
     }
 
-    /// The height of the lowest one in a pose, metres; `None` without joints.
+    /// Returns the height of the lowest point in a pose, metres; `None` without joints.
     pub(super) fn lowest(&self, world: &WorldPose) -> Option<f32> {
         let joints = world.positions.iter().map(|p| p.y);
         let tips = self.tips.iter().map(|&(joint, end)| world.point(joint, end).y);

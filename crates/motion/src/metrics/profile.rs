@@ -1,3 +1,5 @@
+//! Profiles of source clips, against which transitions are measured.
+
 use crate::blend::Source;
 use crate::clip::{Clip, Contacts, stillest_step, turn_change};
 use crate::math::{quat, stats};
@@ -5,25 +7,25 @@ use crate::skeleton::{Roles, Side, WorldPose};
 use glam::{Quat, Vec3};
 use std::sync::Arc;
 
-/// Steps that are looked at for what is usual in a clip: enough for a 99th percentile, and bounded
-/// for long clips.
+/// The number of steps from which usual values are computed: enough for a 99th percentile, and
+/// bounded for long clips.
 const SAMPLES: usize = 1_000;
 
-/// What the metrics know of a source clip, measured once per clip: what is usual in it, and what
-/// its feet do.
+/// The measurements of a source clip that metrics need, made once: usual speeds, and the motion of
+/// its feet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Profile {
     pub(super) source: Arc<Source>,
     pub(super) contacts: Contacts,
-    /// Per side and frame: how far the stillest point of the foot moves over the ground in the step
-    /// into that frame, metres.
+    /// Per side and frame: the distance that the stillest point of the foot moves over the ground
+    /// in the step into that frame, metres.
     pub(super) slides: [Vec<f32>; 2],
-    /// Per joint, 99th percentile: the turn from one frame to the next, radians.
+    /// Per joint, the 99th percentile of the turn from one frame to the next, radians.
     pub(super) usual_turn: Vec<f32>,
-    /// Per joint, 99th percentile: the change of that turn (as a rotation vector) from one step to
-    /// the next, radians.
+    /// Per joint, the 99th percentile of the change of that turn (as a rotation vector) from one
+    /// step to the next, radians.
     pub(super) usual_change: Vec<f32>,
-    /// 99th percentile of the character's step over the ground, metres.
+    /// The 99th percentile of the character's step over the ground, metres.
     pub(super) usual_step: f32,
 }
 
@@ -44,21 +46,21 @@ impl Profile {
         Self { source, contacts, slides, usual_turn, usual_change, usual_step }
     }
 
-    /// The clip with its character frames.
+    /// Returns the clip with its ground frames.
     #[must_use]
     pub fn source(&self) -> &Arc<Source> {
         &self.source
     }
 
-    /// When which foot is on the ground.
+    /// Returns the contacts of the feet.
     #[must_use]
     pub fn contacts(&self) -> &Contacts {
         &self.contacts
     }
 }
 
-/// The rotation vector of the step from one local rotation to the next, radians, in the parent's
-/// frame.
+/// Returns the rotation vector of the step from one local rotation to the next, radians, in the
+/// parent's frame.
 pub(super) fn turn(from: Quat, to: Quat) -> Vec3 {
     quat::log(to * from.conjugate())
 }

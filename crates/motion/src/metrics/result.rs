@@ -1,36 +1,36 @@
-use super::artefacts::{JointTrace, Sizes};
+//! Metrics of any result, compared with the clips from which it was made.
+
+use super::artefacts::{JointTrace, Statistics};
 use super::{Metric, MotionTrace};
 use crate::math::stats;
 
-/// Of a clip by itself the turn of the hips that it stays below for this share of the time is its
-/// own.
-const USUAL_TURN: f32 = 0.75;
+/// The percentile of the turn of the hips that counts as usual for a clip without sources.
+const USUAL_TURN_PERCENTILE: f32 = 0.75;
 
-/// What a viewer would point at in a motion, whatever made it: measured on all of it, beside the
-/// clips that it was made of.
+/// The artefacts of a motion, however it was made, measured on all of it and compared with its
+/// source clips.
 ///
-/// Only what exceeds the clips counts: a joint is measured beyond the most that it does in any of
-/// them. A clip by itself, with nothing to be measured beside, is measured beyond what is usual in
-/// it: for a joint the 99th percentile over its frames, for the heading what it stays below for
-/// three quarters of the time.
+/// Only the excess over the clips counts: a joint is measured beyond its greatest value in any of
+/// them. A clip without sources is measured beyond its usual values: for a joint the 99th
+/// percentile over its frames, for the heading the 75th percentile.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ResultMetrics {
-    /// Pose jump, degrees: over all joints and steps, the largest turn of a joint against its
-    /// parent in one step, less what it turns in the clips in such a time.
+    /// Pose jump, degrees: over all joints and steps, the largest turn of a joint relative to its
+    /// parent in one step, minus its largest turn in the clips in the same time.
     pub pose_jump_deg: Option<f64>,
-    /// Where that is: at the frame before the step; `None` where nothing exceeds the clips.
+    /// The joint and the frame before the step; `None` where nothing exceeds the clips.
     pub pose_jump_at: Option<JointFrame>,
-    /// Velocity jump, degrees per second: over all joints and frames, how much the mean angular
-    /// velocity over the 1/30 s behind a frame differs (as a vector in the parent's frame) from
-    /// that over the 1/30 s before it, less what it does in the clips. The same at all frame rates
-    /// from 30 on.
+    /// Velocity jump, degrees per second: over all joints and frames, the largest difference (as a
+    /// vector in the parent's frame) between the mean angular velocities over the 1/30 s after a
+    /// frame and the 1/30 s before it, minus the largest difference in the clips. The same at all
+    /// frame rates from 30 on.
     pub velocity_jump_dps: Option<f64>,
-    /// Where that is; `None` where nothing exceeds the clips.
+    /// Its joint and frame; `None` where nothing exceeds the clips.
     pub velocity_jump_at: Option<JointFrame>,
-    /// Spin, degrees: how far the hips turn within 0.2 s at most, less what they turn in the clips
-    /// in such a time. `None` without hip joints.
+    /// Spin, degrees: the largest turn of the hips within 0.2 s, minus their largest turn in the
+    /// clips in that time. `None` without hip joints.
     pub spin_deg: Option<f64>,
-    /// The frame from which they do; `None` where they do not exceed the clips.
+    /// The frame at which it begins; `None` where nothing exceeds the clips.
     pub spin_at: Option<usize>,
     /// Skating, centimetres per second: [`MotionTrace::skating_cm_per_sec`].
     pub skating_cm_per_sec: Option<f64>,
@@ -46,15 +46,16 @@ pub struct JointFrame {
 }
 
 impl ResultMetrics {
-    /// Measures a result beside its clips; without any, as a clip by itself. Clips of another
-    /// number of joints say nothing about joints. O(joints), and O(frames) for a clip by itself.
+    /// Measures a result against its clips; without any, against its own usual values. Clips with
+    /// another number of joints are ignored for joints. O(joints), and O(frames) for a clip without
+    /// sources.
     #[must_use]
     pub fn measure(result: &MotionTrace, clips: &[&MotionTrace]) -> Self {
         let alike = result.alike(clips);
-        let worst = |sizes: fn(&JointTrace) -> Sizes| -> Option<(f32, JointFrame)> {
+        let worst = |sizes: fn(&JointTrace) -> Statistics| -> Option<(f32, JointFrame)> {
             let moving = result.joints.iter().enumerate().filter(|(_, trace)| trace.steps() > 0);
             let beyond = moving.map(|(joint, trace)| {
-                let Sizes { most, frame, usual } = sizes(trace);
+                let Statistics { most, frame, usual } = sizes(trace);
                 let in_clips = alike
                     .iter()
                     .filter_map(|clip| clip.joints.get(joint))
@@ -70,9 +71,10 @@ impl ResultMetrics {
         };
         let turned =
             (result.turned_deg().iter().copied().enumerate()).max_by(|a, b| a.1.total_cmp(&b.1));
-        let own_turn = clips.iter().map(|clip| clip.most_turned_deg()).reduce(f64::max);
-        let own_turn =
-            own_turn.or_else(|| stats::percentile(result.turned_deg(), USUAL_TURN).map(f64::from));
+        let own_turn = clips.iter().map(|clip| clip.max_turn_deg()).reduce(f64::max);
+        let own_turn = own_turn.or_else(|| {
+            stats::percentile(result.turned_deg(), USUAL_TURN_PERCENTILE).map(f64::from)
+        });
         let spin =
             turned.map(|(frame, deg)| ((f64::from(deg) - own_turn.unwrap_or(0.0)).max(0.0), frame));
         Self {
@@ -86,7 +88,8 @@ impl ResultMetrics {
         }
     }
 
-    /// All numbers with their names, units and explanations, in the order in which they are shown.
+    /// Returns all metrics with their labels, units and help texts, in the order in which they are
+    /// shown.
     #[must_use]
     pub fn list(&self) -> [Metric; 4] {
         [

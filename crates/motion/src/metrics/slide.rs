@@ -1,13 +1,15 @@
+//! Foot slide: the distance that planted feet move.
+
 use crate::clip::{Clip, Contacts, stillest_step};
 use crate::skeleton::{Roles, Side, WorldPose};
 use glam::Vec3;
 use std::ops::Range;
 
-/// How far a planted foot slides in the worst stance of a clip, centimetres.
+/// Returns the slide of a planted foot in the worst stance of a clip, centimetres.
 ///
-/// In every step between two planted frames, the step over the ground of the foot's stillest point
-/// (ankle, ball or tip) is added up as a vector; the value is the farthest that this sum gets in
-/// any stance. A foot that rolls without sliding has a point that stands. `None` without feet or
+/// For every step between two planted frames, the step over the ground of the foot's stillest point
+/// (ankle, ball or tip) is added as a vector; the value is the greatest length of this sum in any
+/// stance. A foot that rolls without sliding has a point that stands still. `None` without feet or
 /// stances. O(frames × joints).
 #[must_use]
 pub fn foot_slide_cm(clip: &Clip, roles: &Roles, contacts: &Contacts) -> Option<f64> {
@@ -16,9 +18,9 @@ pub fn foot_slide_cm(clip: &Clip, roles: &Roles, contacts: &Contacts) -> Option<
     meter.worst_cm()
 }
 
-/// How far a planted foot slides in each stance, centimetres, as [`foot_slide_cm`] has it: the
-/// stance's frames, and the slide; in the order in which stances end. A stance of a single frame is
-/// none.
+/// Returns the slide of a planted foot in each stance, centimetres, as defined by
+/// [`foot_slide_cm`]: the stance's frames, and the slide; in the order in which stances end.
+/// Stances of a single frame are left out.
 #[must_use]
 pub fn foot_slides_cm(clip: &Clip, roles: &Roles, contacts: &Contacts) -> Vec<(Range<usize>, f64)> {
     let mut meter = SlideMeter::new(clip, roles);
@@ -26,22 +28,22 @@ pub fn foot_slides_cm(clip: &Clip, roles: &Roles, contacts: &Contacts) -> Vec<(R
     meter.finish()
 }
 
-/// [`foot_slides_cm`] in slices, for clips that take longer than there is time for at once. Every
-/// call is given the same clip and contacts.
+/// The measurement of [`foot_slides_cm`] in slices, for long clips. Every call must be given the
+/// same clip and contacts.
 #[derive(Debug)]
 pub struct SlideMeter {
-    /// Per side: the foot's points, and where they were in the frame before.
+    /// Per side: the foot's points, and their positions in the previous frame.
     points: [Vec<(usize, Vec3)>; 2],
     before: [Vec<Vec3>; 2],
     slid: [Vec3; 2],
-    /// The stances that go on: first frame, and how far they have slid.
+    /// The current stances: first frame, and slide so far.
     stances: [Option<(usize, f32)>; 2],
     slides: Vec<(Range<usize>, f64)>,
     frame: usize,
 }
 
 impl SlideMeter {
-    /// Nothing is measured yet.
+    /// Returns a meter that has measured nothing yet.
     #[must_use]
     pub fn new(clip: &Clip, roles: &Roles) -> Self {
         Self {
@@ -54,8 +56,8 @@ impl SlideMeter {
         }
     }
 
-    /// Looks at so many more frames (at least one). `false` when it has seen all. A frame of 31
-    /// joints takes 1 µs.
+    /// Processes up to `frames` more frames (at least one). Returns `false` when all are done. A
+    /// frame of 31 joints takes 1 µs.
     pub fn advance(&mut self, clip: &Clip, contacts: &Contacts, frames: usize) -> bool {
         if self.frame >= clip.frames() {
             return false;
@@ -93,7 +95,7 @@ impl SlideMeter {
             .extend(ended.map(|(start, farthest)| (start..frame, f64::from(farthest) * 100.0)));
     }
 
-    /// The stances that were seen, and how far the foot slides in each, centimetres.
+    /// Returns the stances, and the slide of the foot in each, centimetres.
     #[must_use]
     pub fn finish(mut self) -> Vec<(Range<usize>, f64)> {
         for side in Side::BOTH {
@@ -102,7 +104,7 @@ impl SlideMeter {
         self.slides
     }
 
-    /// The slide of the worst stance, centimetres.
+    /// Returns the slide of the worst stance, centimetres.
     #[must_use]
     pub fn worst_cm(self) -> Option<f64> {
         self.finish().into_iter().map(|(_, slide)| slide).reduce(f64::max)
@@ -116,7 +118,7 @@ mod tests {
     use crate::synth::{Action, Params, synthesize};
 
     #[test]
-    fn a_made_walk_stands_and_one_that_is_pulled_along_slides() {
+    fn foot_slide_of_a_pulled_walk_is_the_pull() {
         let made = synthesize(&Params::new(Action::Walk)).unwrap();
         let clip = made.clip;
         let roles = Roles::detect(clip.skeleton());
@@ -125,7 +127,7 @@ mod tests {
         let contacts = Contacts::from_flags(flags);
         let still = foot_slide_cm(&clip, &roles, &contacts).unwrap();
         assert!(still < 3.0, "{still}");
-        // Pulled sideways by 10 cm/s, a foot slides by that times its longest stance.
+        // Pulled sideways at 10 cm/s, a foot slides by that times its longest stance.
         let (mut rotations, mut roots) = (Vec::new(), Vec::new());
         for frame in 0..clip.frames() {
             let pulled = Planar::new(0.0, 0.1 * clip.time_of(frame), 0.0);

@@ -1,3 +1,5 @@
+//! Metrics of one transition, measured at its seam.
+
 use super::Metric;
 use super::lowest::LowPoints;
 use super::profile::{Profile, turn};
@@ -7,11 +9,11 @@ use crate::skeleton::{Roles, Side, WorldPose};
 use glam::{DVec2, Vec3};
 use std::ops::{Range, RangeInclusive};
 
-/// Seconds on each side of a transition in which stances are followed.
+/// The time on each side of a transition in which stances are followed, seconds.
 const MARGIN_SECS: f64 = 0.5;
-/// Below this, degrees, no joint is named for a turn at the seam: nobody sees it.
-const VISIBLE_DEG: f64 = 0.1;
-/// Below this difference of velocities, metres per second, there is no change of speed to wait for.
+/// The least turn at the seam for which a joint is named, degrees: smaller ones are invisible.
+const MIN_NAMED_DEG: f64 = 0.1;
+/// The least difference of velocities for which lag is measured, metres per second.
 const MIN_CHANGE_MPS: f64 = 0.1;
 
 /// A transition to be measured: frame f of the result shows frame f of clip A before it, and frame
@@ -24,8 +26,8 @@ pub struct Subject<'a> {
     pub start: usize,
     /// One past the last mixed frame; the start for a cut.
     pub end: usize,
-    /// The frame from which B has the greater part ([`crate::blend::Concatenation::handover`]):
-    /// feet are planted as A says before it, as B says from it on.
+    /// The first frame in which B has the greater part ([`crate::blend::Concatenation::handover`]):
+    /// contacts are A's before it, and B's from then on.
     pub handover: usize,
     /// The frame of B that is shown, or mixed in, at `start`.
     pub enter: usize,
@@ -39,56 +41,54 @@ pub struct Subject<'a> {
     pub ground_m: f32,
 }
 
-/// What a viewer would point at in a transition, measured about its seam alone, beyond what the
-/// clips do in the very frames that play. What is told of every result is in
-/// [`ResultMetrics`](super::ResultMetrics).
+/// The artefacts of a transition, measured at its seam alone, beyond the values of the clips in the
+/// very frames that play. [`ResultMetrics`](super::ResultMetrics) are those of any result.
 ///
-/// "Usual" is the 99th percentile over the whole source clip or what the source does in the very
-/// frame that is shown, whichever is more; the larger of the two sources'. A clip that goes on as
-/// itself has no jump, then, however wild it is.
+/// "Usual" is the 99th percentile over the whole source clip or the value of the source in the very
+/// frame that is shown, whichever is greater; the larger of the two sources'. A clip that continues
+/// as itself therefore has no jump, however wild it is.
 ///
 /// "Steps" go from one frame to the next; those of the transition are all steps into its frames and
 /// the one out of it, so that both borders count.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TransitionMetrics {
     /// Turn at the seam, degrees. Over all joints and steps of the transition, the largest turn of
-    /// a joint against its parent in one step, less what is usual for that joint; 0 where no step
-    /// is unusual.
+    /// a joint relative to its parent in one step, minus the usual value for that joint; 0 where no
+    /// step is unusual.
     pub seam_deg: Option<f64>,
     /// The joint of [`seam_deg`](Self::seam_deg), where that is above 0.1°.
     pub seam_joint: Option<usize>,
-    /// Change of velocity at the seam, degrees per second. Likewise the largest change of a joint's
-    /// angular velocity (a vector in the parent's frame) from one step to the next, less what is
-    /// usual for that joint.
+    /// Change of velocity at the seam, degrees per second: over all joints and steps of the
+    /// transition, the largest change of a joint's angular velocity (a vector in the parent's
+    /// frame) from one step to the next, minus the usual value for that joint.
     pub seam_dps: Option<f64>,
-    /// Place jump, centimetres. The largest step of the character over the ground, less what is
-    /// usual.
+    /// Place jump, centimetres: the largest step of the character over the ground, minus the usual
+    /// one.
     pub jump_cm: Option<f64>,
-    /// Yaw of the blend, degrees. With `r`, `a`, `b` the yaw turned in a step by the result and by
-    /// the sources: the largest sum, over any run of consecutive steps of the transition, of
-    /// `r - max(0, a, b)` or of `min(0, a, b) - r`. That is the turn beyond what either source
-    /// turns meanwhile.
+    /// Yaw of the blend, degrees. With `r`, `a`, `b` the yaw of a step of the result and of the
+    /// sources: the largest sum, over any run of consecutive steps of the transition, of `r -
+    /// max(0, a, b)` or of `min(0, a, b) - r`. That is the turn beyond that of either source.
     pub spin_deg: Option<f64>,
-    /// Slide at the seam, centimetres. A foot is planted while its source says so: A before B has
-    /// the greater part, B from then on. In every step between planted frames, the step over the
-    /// ground of the foot's stillest point (ankle, ball or tip), less the length that the stillest
-    /// point moves in the source, is added up as a vector; the value is the farthest that this sum
-    /// gets in any stance which touches the transition. Stances are followed for half a second on
+    /// Slide at the seam, centimetres. A foot is planted while its source has it planted: A before
+    /// the handover, B from then on. For every step between planted frames, the step over the
+    /// ground of the foot's stillest point (ankle, ball or tip), minus the length that the stillest
+    /// point moves in the source, is added as a vector; the value is the greatest length of this
+    /// sum in any stance that touches the transition. Stances are followed for half a second on
     /// each side. `None` without feet or stances.
     pub skate_cm: Option<f64>,
-    /// Penetration, centimetres. How deep the deepest joint or end site is below the ground in the
+    /// Penetration, centimetres: the depth of the deepest joint or end site below the ground in the
     /// transition.
     pub penetration_cm: Option<f64>,
-    /// Lag, seconds from the transition's start until the last step whose velocity (forward and
-    /// sideways, in the character's frame) is further from the incoming clip's than 10 % of what
-    /// lies between the two clips: the root mean square, over the transition, of the difference of
-    /// their velocities. `None` where that is below 0.1 m/s.
+    /// Lag: seconds from the transition's start until the last step whose velocity (forward and
+    /// sideways, in the character's frame) differs from the incoming clip's by more than 10 % of
+    /// the difference between the two clips: the root mean square, over the transition, of the
+    /// difference of their velocities. `None` where that is below 0.1 m/s.
     pub lag_s: Option<f64>,
 }
 
 impl TransitionMetrics {
-    /// Measures a transition. Reads only its frames and half a second around it; frames that do not
-    /// exist are left out.
+    /// Measures a transition. Only its frames and half a second around it are read; frames that do
+    /// not exist are left out.
     #[must_use]
     pub fn measure(subject: &Subject<'_>) -> Self {
         let last = subject.result.frames().saturating_sub(1);
@@ -112,8 +112,8 @@ impl TransitionMetrics {
         }
     }
 
-    /// What there is to say of a transition beyond what is measured of every result
-    /// ([`ResultMetrics`](super::ResultMetrics)), in the order in which it is shown.
+    /// Returns the metrics of a transition beyond those of every result
+    /// ([`ResultMetrics`](super::ResultMetrics)), in the order in which they are shown.
     #[must_use]
     pub fn list(&self) -> [Metric; 3] {
         [
@@ -143,15 +143,15 @@ impl TransitionMetrics {
 }
 
 impl Subject<'_> {
-    /// The frame of B that belongs to `frame` of the result.
+    /// Returns the frame of B that corresponds to `frame` of the result.
     fn in_b(&self, frame: usize) -> Option<usize> {
         let frame = self.enter.saturating_add(frame).checked_sub(self.start)?;
         (frame < self.b.source.frames().len()).then_some(frame)
     }
 
-    /// The steps of A and B, in the characters' own frames, that belong to the step into `frame` of
-    /// the result. A clip A that has ended goes on with its last step: an inertialization may leave
-    /// it there.
+    /// Returns the steps of A and B, in the characters' own frames, that correspond to the step
+    /// into `frame` of the result. After its end clip A continues with its last step: an
+    /// inertialization may leave it there.
     fn source_steps(&self, frame: usize) -> [Option<Planar>; 2] {
         let last = self.a.source.frames().len().checked_sub(1);
         let a = last.map(|last| self.a.source.step_into(frame.min(last)));
@@ -163,8 +163,8 @@ impl Subject<'_> {
         get(self.a).max(get(self.b))
     }
 
-    /// Whether the source of `frame` has this foot on the ground, and how far it moves there in the
-    /// step into the frame.
+    /// Returns whether this foot is planted in the source of `frame`, and how far it moves there in
+    /// the step into the frame.
     fn foot_in_source(&self, side: Side, frame: usize) -> (bool, f32) {
         let (profile, frame) =
             if frame < self.handover { (self.a, Some(frame)) } else { (self.b, self.in_b(frame)) };
@@ -174,10 +174,10 @@ impl Subject<'_> {
     }
 }
 
-/// Forward kinematics of the frames around a transition, done once.
+/// Forward kinematics of the frames around a transition, computed once.
 struct Around {
     frames: Range<usize>,
-    /// Where the character stands and faces.
+    /// Ground frames of the character.
     character: Vec<Planar>,
     /// Per side, per frame: the foot's points.
     feet: [Vec<Vec<Vec3>>; 2],
@@ -221,7 +221,7 @@ impl Around {
         around
     }
 
-    /// The character's step into `frame`, in its own frame at the frame before.
+    /// Returns the character's step into `frame`, in its own frame at the frame before.
     fn step_into(&self, frame: usize) -> Option<Planar> {
         let at = frame.checked_sub(self.frames.start)?;
         Some(self.character.get(at.checked_sub(1)?)?.inverse().after(self.character.get(at)?))
@@ -232,7 +232,7 @@ impl Around {
     }
 }
 
-/// How far a joint turns in the step into `frame`, radians.
+/// Returns the turn of a joint in the step into `frame`, radians.
 fn joint_turn(clip: &Clip, frame: usize, joint: usize) -> Option<f32> {
     let before = frame.checked_sub(1)?;
     let at = |frame: usize| {
@@ -241,8 +241,8 @@ fn joint_turn(clip: &Clip, frame: usize, joint: usize) -> Option<f32> {
     Some(turn(at(before)?, at(frame)?).length())
 }
 
-/// The largest of a joint's values in `frames`, less what is usual for that joint or what its
-/// sources do in the same frames: the value, and the joint where it is above 0.
+/// Returns the largest value of any joint in `frames`, minus the usual value of that joint or that
+/// of its sources in the same frames, and the joint where the excess is above 0.
 fn unusual(
     subject: &Subject<'_>,
     frames: RangeInclusive<usize>,
@@ -260,7 +260,7 @@ fn unusual(
             let threshold = worst.unwrap_or(0.0);
             worst = Some(threshold);
             let excess = found - subject.usual(usual, joint);
-            // The sources' own frames are looked at only where it matters.
+            // The sources' own frames are evaluated only where they matter.
             if excess > threshold {
                 let in_a = value(subject.a.source.clip(), frame, joint);
                 let in_b = subject
@@ -280,7 +280,7 @@ fn unusual(
 fn seam(subject: &Subject<'_>, steps: &RangeInclusive<usize>) -> (Option<f64>, Option<usize>) {
     let (worst, joint) = unusual(subject, steps.clone(), joint_turn, |profile| &profile.usual_turn);
     let degrees = worst.map(|turn| f64::from(turn).to_degrees());
-    (degrees, joint.filter(|_| degrees > Some(VISIBLE_DEG)))
+    (degrees, joint.filter(|_| degrees > Some(MIN_NAMED_DEG)))
 }
 
 fn velocity_seam(subject: &Subject<'_>, steps: &RangeInclusive<usize>) -> Option<f64> {
@@ -334,7 +334,7 @@ fn skate(subject: &Subject<'_>, steps: &RangeInclusive<usize>, around: &Around) 
                 continue;
             }
             let stance = farthest.get_or_insert((0.0_f32, false));
-            // Only between two planted frames: the step onto the ground is no slide.
+            // Only between two planted frames: the step onto the ground is not a slide.
             let before_planted = at > 0 && subject.foot_in_source(side, frame - 1).0;
             if let Some(step) =
                 before_planted.then(|| stillest_step(&feet[at - 1], &feet[at])).flatten()
@@ -364,7 +364,8 @@ fn lag(subject: &Subject<'_>, steps: &RangeInclusive<usize>, around: &Around) ->
         };
         let off = |step: Planar| -> DVec2 { (step.shift - b.shift) * fps };
         distances.push((frame, off(result).length()));
-        // The step out of the transition is all B: it shows when B is reached, not how far it was.
+        // The step out of the transition is all B: it shows when B is reached, not how far away it
+        // was.
         if let Some(a) = a.filter(|_| frame < subject.end || subject.start == subject.end) {
             squares += off(a).length_squared();
             count += 1;

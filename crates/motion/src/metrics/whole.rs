@@ -1,24 +1,25 @@
+//! Metrics of a clip without sources.
+
 use super::lowest::LowPoints;
 use super::{Metric, SlideMeter};
 use crate::clip::{Clip, Contacts};
 use crate::math::{Planar, stats};
 use crate::skeleton::{Roles, WorldPose};
 
-/// What one frame in a hundred does is usual.
-const USUAL: f32 = 0.99;
+/// The percentile that counts as usual.
+const USUAL_PERCENTILE: f32 = 0.99;
 
-/// What there is to say of a whole clip of which nothing else is known, a capture or a motion that
-/// another program made, beyond what is measured of every result
-/// ([`ResultMetrics`](super::ResultMetrics)).
+/// Metrics of a whole clip whose sources are unknown, such as a capture or the export of another
+/// program, beyond those of every result ([`ResultMetrics`](super::ResultMetrics)).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ClipMetrics {
     /// Foot slide, centimetres: [`foot_slide_cm`](super::foot_slide_cm). `None` without feet or
     /// stances.
     pub foot_slide_cm: Option<f64>,
-    /// Place jump, centimetres: the largest step of the character over the ground, less the 99th
+    /// Place jump, centimetres: the largest step of the character over the ground, minus the 99th
     /// percentile of its steps.
     pub jump_cm: Option<f64>,
-    /// Penetration, centimetres: how deep the deepest joint or end site is below the ground.
+    /// Penetration, centimetres: the depth of the deepest joint or end site below the ground.
     pub penetration_cm: Option<f64>,
 }
 
@@ -39,8 +40,8 @@ impl ClipMetrics {
         meter.finish(ground_frames)
     }
 
-    /// The numbers but the slide of the feet, which has its name from where it stands, in the order
-    /// in which they are shown.
+    /// Returns the metrics, in the order in which they are shown, without the slide of the feet,
+    /// which is labelled where it is shown.
     #[must_use]
     pub fn list(&self) -> [Metric; 2] {
         [
@@ -62,8 +63,8 @@ impl ClipMetrics {
     }
 }
 
-/// [`ClipMetrics`] in slices, for clips that take longer than there is time for at once. Every call
-/// is given the same clip.
+/// The measurement of [`ClipMetrics`] in slices, for long clips. Every call must be given the same
+/// clip.
 #[derive(Debug)]
 pub struct ClipMeter {
     slide: SlideMeter,
@@ -74,7 +75,7 @@ pub struct ClipMeter {
 }
 
 impl ClipMeter {
-    /// Nothing is measured yet. `ground_m` is the height of the ground
+    /// Returns a meter that has measured nothing yet. `ground_m` is the height of the ground
     /// ([`estimate_ground`](crate::clip::estimate_ground)).
     #[must_use]
     pub fn new(clip: &Clip, roles: &Roles, ground_m: f32) -> Self {
@@ -87,7 +88,7 @@ impl ClipMeter {
         }
     }
 
-    /// Looks at so many more frames (at least one). `false` when it has seen all.
+    /// Processes up to `frames` more frames (at least one). Returns `false` when all are done.
     pub fn advance(&mut self, clip: &Clip, contacts: &Contacts, frames: usize) -> bool {
         if self.frame >= clip.frames() {
             return false;
@@ -107,21 +108,22 @@ impl ClipMeter {
         true
     }
 
-    /// How much is done, 0 to 1.
+    /// Returns the progress, 0 to 1.
     #[must_use]
     pub fn progress(&self, clip: &Clip) -> f32 {
         self.frame as f32 / clip.frames().max(1) as f32
     }
 
-    /// What was found. `ground_frames` are the clip's own.
+    /// Returns the metrics. `ground_frames` are the clip's own.
     #[must_use]
     pub fn finish(self, ground_frames: &[Planar]) -> ClipMetrics {
         let steps: Vec<f32> = (ground_frames.windows(2))
             .map(|pair| pair[0].shift.distance(pair[1].shift) as f32)
             .collect();
         let most = steps.iter().copied().max_by(f32::total_cmp);
-        let beyond =
-            most.zip(stats::percentile(&steps, USUAL)).map(|(most, usual)| (most - usual).max(0.0));
+        let beyond = most
+            .zip(stats::percentile(&steps, USUAL_PERCENTILE))
+            .map(|(most, usual)| (most - usual).max(0.0));
         ClipMetrics {
             foot_slide_cm: self.slide.worst_cm(),
             jump_cm: beyond.map(|metres| f64::from(metres) * 100.0),
@@ -151,7 +153,7 @@ mod tests {
         ClipMetrics::measure(clip, roles, &contacts, &character_frames(clip, roles), 0.0)
     }
 
-    /// The walk with each frame changed.
+    /// Returns the walk with each frame changed.
     fn changed(clip: &Clip, change: impl Fn(usize, &mut Vec3)) -> Clip {
         let (mut rotations, mut roots) = (Vec::new(), Vec::new());
         for frame in 0..clip.frames() {
@@ -165,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn a_made_walk_is_smooth() {
+    fn metrics_of_a_made_walk_are_small() {
         let (clip, roles) = walk();
         let metrics = measured(&clip, &roles);
         assert!(
@@ -175,7 +177,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_done_to_a_clip_is_measured() {
+    fn metrics_of_changed_frames_are_the_changes() {
         let (clip, roles) = walk();
         let half = clip.frames() / 2;
         let before = measured(&clip, &roles);
@@ -186,14 +188,14 @@ mod tests {
             }
         });
         let metrics = measured(&sunk, &roles);
-        // Across the way that it goes anyway, and beyond the usual step of 3 cm.
+        // At right angles to its own direction, and beyond the usual step of 3 cm.
         assert!((6.5..=10.0).contains(&metrics.jump_cm.unwrap()), "{metrics:?}");
         let deeper = metrics.penetration_cm.unwrap() - before.penetration_cm.unwrap();
         assert!((1.5..=3.01).contains(&deeper), "{metrics:?}");
     }
 
     #[test]
-    fn slices_find_the_same() {
+    fn clip_meter_in_slices_equals_the_metrics() {
         let (clip, roles) = walk();
         let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
         let frames = character_frames(&clip, &roles);
@@ -209,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn a_single_pose_has_nothing_to_jump() {
+    fn metrics_of_a_single_pose_have_no_jump() {
         let (clip, roles) = walk();
         let pose = clip.crop(0..1).unwrap();
         let metrics = measured(&pose, &roles);

@@ -2,7 +2,7 @@ use super::moving::View;
 use super::{Inertialization, Inertializer, MovingPose};
 use crate::blend::{
     AlignBy, Assembly, BlendError, Concatenation, DissolveOptions, RootBlend, Source, WeightLaw,
-    check, dissolve, laid_on, moving_joints,
+    alignment_of, check, dissolve, moving_joints,
 };
 use crate::math::{Planar, quat, unwrap_near, wrap_angle};
 use glam::Vec3;
@@ -105,7 +105,7 @@ pub(super) fn inertialize(
     check(a, leave, b, enter, 0)?;
     let (from, to) = (a.clip(), b.clip());
     let aligned_b = if options.align {
-        laid_on(a, leave.min(from.frames().saturating_sub(1)), b, enter, 0, options.align_by)?
+        alignment_of(a, leave.min(from.frames().saturating_sub(1)), b, enter, 0, options.align_by)?
     } else {
         Planar::IDENTITY
     };

@@ -9,7 +9,7 @@ use super::concatenate::inertialize;
 use super::moving::{MovingPose, View};
 use super::{Inertialization, Method, TransitionOptions, concatenate};
 use crate::blend::{
-    BlendError, Concatenation, RootBlend, Source, WeightLaw, align_facing, laid_on,
+    BlendError, Concatenation, RootBlend, Source, WeightLaw, align_facing, alignment_of,
 };
 use crate::clip::Clip;
 use crate::math::{Decay, Planar, quat, spring, wrap_angle};
@@ -334,7 +334,7 @@ fn laid_wrongly(
     let wrong = if mistake == Mistake::WrongFacingAxis {
         align_facing(&standing_by_y(a, meets), &standing_by_y(b, enter))
     } else {
-        let right = laid_on(a, meets, b, enter, window, options.align_by)?;
+        let right = alignment_of(a, meets, b, enter, window, options.align_by)?;
         let turn = if mistake == Mistake::AtanForAtan2 { by_atan } else { by_degrees };
         turned_wrongly(&right, middle(b.clip(), enter, window), turn)
     };

@@ -21,7 +21,7 @@ use crate::choices;
 use crate::motion::Motion;
 use registrar::Found;
 use segue_motion::blend::{
-    self, DissolveOptions, Instant, Partner, RegisteredBlend, WeightCurve, WeightLaw, dissolve,
+    self, DissolveOptions, FrameMix, Partner, RegisteredBlend, WeightCurve, WeightLaw, dissolve,
     registered_blend, registered_join,
 };
 use segue_motion::clip::{Clip, Contacts};
@@ -258,11 +258,11 @@ struct Draft {
     world_from_b: Planar,
 }
 
-fn beat(instant: &Instant) -> Beat {
+fn beat(mix: &FrameMix) -> Beat {
     let of = |values: &[f64], at: usize| values.get(at).copied().unwrap_or_default();
     Beat {
-        frames: [of(&instant.frames, 0), of(&instant.frames, 1)],
-        weights: [of(&instant.weights, 0), of(&instant.weights, 1)],
+        frames: [of(&mix.frames, 0), of(&mix.frames, 1)],
+        weights: [of(&mix.weights, 0), of(&mix.weights, 1)],
     }
 }
 
@@ -301,12 +301,12 @@ impl RegisterInputs {
         let also = self.also.iter().map(|also| &also.pair.incoming.contacts);
         let all: Vec<&Contacts> = self.contacts().into_iter().chain(also).collect();
         let contacts = made.contacts(&all);
-        let RegisteredBlend { clip, instants, frames } = made;
+        let RegisteredBlend { clip, mixes, frames } = made;
         Ok(Draft {
             mixed: 0..clip.frames(),
             clip,
             frames,
-            beats: instants.iter().map(beat).collect(),
+            beats: mixes.iter().map(beat).collect(),
             contacts,
             world_from_b: Planar::IDENTITY,
         })

@@ -1,3 +1,5 @@
+//! Tests of the dissolve.
+
 use super::*;
 use crate::clip::JointTranslations;
 use crate::registration::fixtures::{Walk, body};
@@ -11,7 +13,7 @@ fn source(walk: Walk) -> Source {
     Source::new(Arc::new(clip), &roles)
 }
 
-fn two() -> (Source, Source) {
+fn two_walks() -> (Source, Source) {
     let a = source(Walk { frames: 100, ..Walk::default() });
     let b = source(Walk {
         frames: 80,
@@ -41,7 +43,7 @@ fn laws() -> impl Strategy<Value = (WeightLaw, RootBlend)> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
     #[test]
-    fn a_clip_dissolved_into_itself_is_itself((law, root) in laws(), window in 0usize..60, at in 0usize..59, turning in -1.0f32..1.0) {
+    fn dissolve_of_a_clip_with_itself_is_the_clip((law, root) in laws(), window in 0usize..60, at in 0usize..59, turning in -1.0f32..1.0) {
         let a = source(Walk { frames: 120, turning, heading: 3.0, start: (3.0, -2.0), ..Walk::default() });
         let out = dissolve(&a, at, &a, at, &DissolveOptions { window, law, root, ..DissolveOptions::default() }).unwrap();
         let worst = worst_distance(&out.clip, a.clip());
@@ -51,8 +53,8 @@ proptest! {
     }
 
     #[test]
-    fn where_b_lies_at_first_does_not_matter(yaw in -3.0f64..3.0, x in -9.0f64..9.0, z in -9.0f64..9.0, (law, root) in laws()) {
-        let (a, b) = two();
+    fn dissolve_does_not_depend_on_the_position_of_b(yaw in -3.0f64..3.0, x in -9.0f64..9.0, z in -9.0f64..9.0, (law, root) in laws()) {
+        let (a, b) = two_walks();
         let roles = Roles::detect(b.clip().skeleton());
         let moved = Source::new(Arc::new(b.clip().transformed(&Planar::new(yaw, x, z))), &roles);
         let options = DissolveOptions { window: 20, law, root, ..DissolveOptions::default() };
@@ -62,8 +64,8 @@ proptest! {
     }
 
     #[test]
-    fn before_the_window_is_a_and_its_last_frame_and_all_after_is_b((law, root) in laws(), window in 0usize..40, align in any::<bool>()) {
-        let (a, b) = two();
+    fn dissolve_is_a_before_the_window_and_b_from_its_last_frame((law, root) in laws(), window in 0usize..40, align in any::<bool>()) {
+        let (a, b) = two_walks();
         let out = dissolve(&a, 55, &b, 7, &DissolveOptions { window, law, align, root, ..DissolveOptions::default() }).unwrap();
         let overlap = if window < 2 { 0 } else { window };
         prop_assert_eq!(out.transition.clone(), 55..55 + overlap);
@@ -112,7 +114,7 @@ struct Motion {
 }
 
 #[test]
-fn agrees_with_numpy() {
+fn dissolve_agrees_with_numpy() {
     let golden: Golden =
         serde_json::from_str(include_str!("../../../tests/golden/dissolve.json")).unwrap();
     let joint = |parent, offset| Joint {
@@ -164,13 +166,13 @@ fn agrees_with_numpy() {
 }
 
 #[test]
-fn blended_velocities_neither_turn_nor_stray_where_neither_source_does() {
-    // Two straight walks, far apart and 143° off each other.
-    let (a, b) = two();
+fn dissolve_of_straight_walks_by_velocity_is_straight() {
+    // Two straight walks, far apart, at an angle of 143°.
+    let (a, b) = two_walks();
     let out =
         dissolve(&a, 50, &b, 10, &DissolveOptions { window: 30, ..DissolveOptions::default() })
             .unwrap();
-    // The body sways about its heading by what the sources sway, and A's heading goes on.
+    // The body sways about its heading by as much as the sources, and A's heading continues.
     let sway = |s: &Source, heading: f64| {
         s.frames().iter().map(|f| wrap_angle(f.yaw - heading).abs()).fold(0.0, f64::max)
     };
@@ -178,8 +180,7 @@ fn blended_velocities_neither_turn_nor_stray_where_neither_source_does() {
     for frame in &out.frames {
         assert!(frame.yaw.abs() < most, "{} {most}", frame.yaw);
     }
-    // And the steps grow from 1.3 m/s to 2.2 m/s, without ever being outside (10 % more or less
-    // within a stride).
+    // Steps grow from 1.3 m/s to 2.2 m/s, within 10 % for the variation within a stride.
     for pair in out.frames.windows(2) {
         let speed = (pair[1].shift - pair[0].shift).length() * 60.0;
         assert!((1.1..2.5).contains(&speed), "{speed}");
@@ -187,8 +188,8 @@ fn blended_velocities_neither_turn_nor_stray_where_neither_source_does() {
 }
 
 #[test]
-fn without_alignment_the_character_flies_to_b() {
-    let (a, b) = two();
+fn dissolve_without_alignment_moves_to_b() {
+    let (a, b) = two_walks();
     for root in [RootBlend::Velocity, RootBlend::World] {
         let jump = |window: usize, align: bool| {
             let out = dissolve(
@@ -215,8 +216,8 @@ fn without_alignment_the_character_flies_to_b() {
 }
 
 #[test]
-fn windows_of_0_and_1_are_the_same_cut() {
-    let (a, b) = two();
+fn dissolve_with_windows_of_0_and_1_is_the_same_cut() {
+    let (a, b) = two_walks();
     for root in [RootBlend::Velocity, RootBlend::World] {
         let cut = |window| {
             dissolve(
@@ -230,7 +231,7 @@ fn windows_of_0_and_1_are_the_same_cut() {
         };
         assert_eq!(cut(0), cut(1));
         assert!(cut(0).transition.is_empty() && cut(0).b_during.is_empty());
-        // Right behind A's last frame, and before its first.
+        // Right after A's last frame, and before its first.
         for leave in [0, 100] {
             let out = dissolve(
                 &a,
@@ -251,8 +252,8 @@ fn windows_of_0_and_1_are_the_same_cut() {
 }
 
 #[test]
-fn a_cut_goes_on_with_the_step_of_b() {
-    let (a, b) = two();
+fn dissolve_as_a_cut_continues_with_the_step_of_b() {
+    let (a, b) = two_walks();
     let out =
         dissolve(&a, 50, &b, 10, &DissolveOptions { window: 0, ..DissolveOptions::default() })
             .unwrap();
@@ -264,7 +265,7 @@ fn a_cut_goes_on_with_the_step_of_b() {
 }
 
 #[test]
-fn joints_that_move_against_their_parent_are_blended_too() {
+fn dissolve_blends_joint_translations() {
     let clip = Walk { frames: 30, ..Walk::default() }.clip();
     let roles = Roles::detect(clip.skeleton());
     let tracked = |joint: usize, at: Vec3| {
@@ -289,8 +290,8 @@ fn joints_that_move_against_their_parent_are_blended_too() {
 }
 
 #[test]
-fn what_cannot_be_blended_is_refused() {
-    let (a, b) = two();
+fn dissolve_of_incompatible_clips_is_refused() {
+    let (a, b) = two_walks();
     let options = DissolveOptions { window: 30, ..DissolveOptions::default() };
     let refused = |leave, enter, options: &DissolveOptions| {
         dissolve(&a, leave, &b, enter, options).unwrap_err()
@@ -330,8 +331,8 @@ fn what_cannot_be_blended_is_refused() {
     assert!(dissolve(&empty, 0, &b, 0, &cut).is_err() && dissolve(&b, 0, &empty, 0, &cut).is_err());
 }
 
-/// A character that stands in place and sways about a heading, its left arm turned about its bone
-/// likewise.
+/// Returns a character that stands in place and sways about a heading, with its left arm turning
+/// about its bone in the same way.
 fn swaying(heading: f32, phase: f32, arm: f32) -> Source {
     let still = Walk { frames: 90, speed: 0.0, cadence: 0.0, swing: 0.0, ..Walk::default() };
     let clip = still.clip();
@@ -351,7 +352,7 @@ fn swaying(heading: f32, phase: f32, arm: f32) -> Source {
 }
 
 #[test]
-fn bodies_that_sway_back_to_back_are_dissolved_by_one_way_round() {
+fn dissolve_of_bodies_back_to_back_turns_one_way() {
     for (arm, align) in [(0.0, false), (PI, true), (PI, false)] {
         let (a, b) =
             (swaying(0.3, 0.0, 0.0), swaying(if align { 0.3 } else { 0.3 + PI }, 1.5, arm));
@@ -388,7 +389,7 @@ fn bodies_that_sway_back_to_back_are_dissolved_by_one_way_round() {
 }
 
 #[test]
-fn the_first_posture_alone_may_say_where_b_lies() {
+fn dissolve_aligned_by_first_pose_ignores_the_window() {
     let (a, b) = (source(Walk { turning: 0.6, ..Walk::default() }), source(Walk::default()));
     let options = DissolveOptions {
         window: 30,
@@ -403,7 +404,7 @@ fn the_first_posture_alone_may_say_where_b_lies() {
             && wrap_angle(stands.yaw - wanted.yaw).abs() < 1e-9
     );
     assert_eq!(out.world_from_b, out.aligned_b);
-    // The window as a whole turns on, and lies better elsewhere.
+    // The window as a whole turns, and fits better elsewhere.
     let by_window =
         dissolve(&a, 40, &b, 12, &DissolveOptions { align_by: AlignBy::Window, ..options })
             .unwrap();

@@ -1,3 +1,5 @@
+//! Tests of layers and masks.
+
 use super::*;
 use crate::clip::JointTranslations;
 use crate::clip::fixtures::{wander, wander_by};
@@ -11,7 +13,7 @@ fn options(parts: &[BodyPart]) -> LayerOptions {
 }
 
 #[test]
-fn agrees_with_scipy() {
+fn layer_agrees_with_scipy() {
     #[derive(serde::Deserialize)]
     struct Case {
         weight: f32,
@@ -66,7 +68,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn no_weight_is_the_base_and_all_of_it_the_layer(seed in 0u64..50, part in 0usize..7, feather in 0usize..4, additive in any::<bool>()) {
+    fn layer_with_weight_0_is_the_base_and_with_weight_1_the_layer(seed in 0u64..50, part in 0usize..7, feather in 0usize..4, additive in any::<bool>()) {
         for (_, skeleton, _) in fixtures::all() {
             let roles = fixtures::roles(&skeleton);
             let (base, over) = (wander_by(&skeleton, 12, seed, 0.3), wander_by(&skeleton, 12, seed + 1, 0.3));
@@ -97,7 +99,7 @@ proptest! {
 }
 
 #[test]
-fn a_layer_of_itself_changes_nothing() {
+fn layer_of_the_base_itself_changes_nothing() {
     let clip = synthesize(&Params::new(Action::Walk)).unwrap().clip;
     let roles = Roles::detect(clip.skeleton());
     for keep_orientation in [false, true] {
@@ -113,7 +115,7 @@ fn a_layer_of_itself_changes_nothing() {
 }
 
 #[test]
-fn a_whole_layer_goes_its_own_way_from_where_the_base_stands() {
+fn layer_of_the_whole_body_takes_its_own_steps() {
     let [walk, run] =
         [Action::Walk, Action::Run].map(|action| synthesize(&Params::new(action)).unwrap().clip);
     let roles = Roles::detect(walk.skeleton());
@@ -125,7 +127,7 @@ fn a_whole_layer_goes_its_own_way_from_where_the_base_stands() {
         let here = start.after(&wanted[0].inverse()).after(&wanted[frame]);
         assert!(got[frame].shift.distance(here.shift) < 1e-3, "{frame}");
     }
-    // The run is shorter, and goes on from its beginning without a jump.
+    // The run is shorter, and continues from its beginning without a jump.
     let steps: Vec<f64> =
         got.windows(2).map(|pair| pair[0].shift.distance(pair[1].shift)).collect();
     assert!(
@@ -135,7 +137,7 @@ fn a_whole_layer_goes_its_own_way_from_where_the_base_stands() {
 }
 
 #[test]
-fn an_upper_body_can_keep_its_orientation() {
+fn layer_keeping_orientation_does_not_nod() {
     let [walk, idle] =
         [Action::Walk, Action::Idle].map(|action| synthesize(&Params::new(action)).unwrap().clip);
     let roles = Roles::detect(walk.skeleton());
@@ -155,14 +157,14 @@ fn an_upper_body_can_keep_its_orientation() {
         });
         angles.fold(0.0, f32::max).to_degrees()
     };
-    // The facing of a body is the mean of hips and shoulders: half of the walk's turn of the hips
-    // is still between the two.
+    // The facing of a body is the mean of hips and shoulders, so half of the hips' turn in the walk
+    // remains.
     assert!(off(false, 0) > 5.0, "{}", off(false, 0));
     assert!(off(true, 0) < 3.5 && off(true, 2) < 3.5, "{} {}", off(true, 0), off(true, 2));
 }
 
 #[test]
-fn layers_begin_and_end_when_they_are_told() {
+fn layer_with_a_start_begins_and_ends_there() {
     let skeleton = fixtures::bandai();
     let roles = fixtures::roles(&skeleton);
     let (base, over) = (wander(&skeleton, 40, 1), wander(&skeleton, 11, 2));
@@ -184,12 +186,12 @@ fn layers_begin_and_end_when_they_are_told() {
 }
 
 #[test]
-fn a_layer_can_have_a_time_of_its_own() {
+fn layer_timed_samples_the_given_times() {
     let skeleton = fixtures::bandai();
     let roles = fixtures::roles(&skeleton);
     let (base, over) = (wander(&skeleton, 12, 1), wander(&skeleton, 11, 2));
     let told = LayerOptions { start_secs: over.time_of(1), ..options(&[BodyPart::Whole]) };
-    // Twice as fast, and around its end.
+    // Twice as fast, and across its end.
     let times: Vec<f64> = (0..8).map(|frame| over.time_of(2 * frame)).collect();
     let out = layer_timed(&base, &roles, &over, &told, &times).unwrap();
     let joint = roles.get(Role::RightHand).unwrap();
@@ -208,7 +210,7 @@ fn a_layer_can_have_a_time_of_its_own() {
 }
 
 #[test]
-fn against_its_mean_a_layer_that_stands_still_adds_nothing() {
+fn layer_added_to_its_mean_when_still_adds_nothing() {
     let skeleton = fixtures::lafan();
     let roles = fixtures::roles(&skeleton);
     let (base, still) = (wander(&skeleton, 9, 1), wander(&skeleton, 1, 2));
@@ -218,7 +220,7 @@ fn against_its_mean_a_layer_that_stands_still_adds_nothing() {
     };
     let out = layer(&base, &roles, &still, &against_mean).unwrap();
     assert!(crate::clip::fixtures::largest_distance(&out, &base) < 1e-5);
-    // A joint that swings evenly to both sides has its middle as the mean.
+    // The mean of a joint that swings evenly to both sides is the middle.
     let joint = roles.get(Role::RightUpperArm).unwrap();
     let swung = |angle: f32| {
         let mut pose = still.pose(0);
@@ -234,7 +236,7 @@ fn against_its_mean_a_layer_that_stands_still_adds_nothing() {
 }
 
 #[test]
-fn joints_that_move_are_blended_too() {
+fn layer_blends_joint_translations() {
     let skeleton = fixtures::lafan();
     let roles = fixtures::roles(&skeleton);
     let hand = roles.get(Role::LeftHand).unwrap();
@@ -254,7 +256,7 @@ fn joints_that_move_are_blended_too() {
 }
 
 #[test]
-fn masks_know_the_body() {
+fn mask_of_parts_covers_their_joints() {
     for (rig, skeleton, _) in fixtures::all() {
         let roles = fixtures::roles(&skeleton);
         for feather in [0, 1, 3] {
@@ -263,7 +265,7 @@ fn masks_know_the_body() {
             assert!(upper.iter().zip(&lower).all(|(u, l)| (u + l - 1.0).abs() < 1e-6), "{rig}");
             assert_eq!((upper[0], lower[0]), (0.0, 1.0), "{rig}");
             let at = |weights: &[f32], role| weights[roles.get(role).unwrap()];
-            // A spine that carries the legs is a part of the pelvis.
+            // A spine that carries the legs belongs to the pelvis.
             let spine = roles.get(Role::Spine).unwrap();
             let pelvis =
                 std::iter::successors(roles.get(Role::LeftThigh), |&joint| skeleton.parent(joint))
@@ -303,7 +305,7 @@ fn masks_know_the_body() {
 }
 
 #[test]
-fn what_cannot_be_layered_is_said() {
+fn layer_of_incompatible_clips_is_refused() {
     let skeleton = fixtures::lafan();
     let roles = fixtures::roles(&skeleton);
     let (base, over) = (wander(&skeleton, 5, 1), wander(&skeleton, 5, 2));

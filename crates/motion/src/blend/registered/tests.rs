@@ -1,3 +1,5 @@
+//! Tests of registered blends.
+
 use super::*;
 use crate::registration::fixtures::Walk;
 use crate::registration::{PairTerms, RegistrationOptions, limb_weights};
@@ -19,7 +21,7 @@ fn register(a: &Source, b: &Source) -> Registration {
     Registration::new(&terms, &matrix, &RegistrationOptions::new(a.fps())).unwrap()
 }
 
-/// Three walks that stride, speed and turn differently.
+/// Returns three walks of different stride, speed and curvature.
 fn walks() -> [Source; 3] {
     let brisk = Walk {
         frames: 240,
@@ -42,15 +44,15 @@ fn walks() -> [Source; 3] {
     [source(Walk { frames: 280, ..Walk::default() }), source(brisk), source(slow)]
 }
 
-/// The largest distance of any joint between a frame of one clip and a frame of another, which is
-/// moved.
+/// Returns the largest distance of any joint between a frame of one clip and a transformed frame of
+/// another.
 fn apart(result: &Clip, frame: usize, of: &Clip, in_of: usize, moved: &Planar) -> f32 {
     let (a, b) = (result.world_positions(frame..frame + 1), of.world_positions(in_of..in_of + 1));
     a.iter().zip(&b).map(|(a, b)| a.distance(moved.apply(*b))).fold(0.0, f32::max)
 }
 
 #[test]
-fn a_clip_that_has_all_the_weight_plays_as_it_is() {
+fn registered_blend_with_all_weight_on_one_clip_is_that_clip() {
     let [a, b, c] = walks();
     let (to_b, to_c) = (register(&a, &b), register(&a, &c));
     for alone in 0..3 {
@@ -67,9 +69,9 @@ fn a_clip_that_has_all_the_weight_plays_as_it_is() {
             if alone == 0 { Planar::IDENTITY } else { [&to_b, &to_c][alone - 1].alignment_at(0.0) };
         for frame in 0..out.clip.frames() {
             assert!(
-                (out.instants[frame].frames[alone] - frame as f64).abs() < 1e-5,
+                (out.mixes[frame].frames[alone] - frame as f64).abs() < 1e-5,
                 "{:?}",
-                out.instants[frame]
+                out.mixes[frame]
             );
             let off = apart(&out.clip, frame, of.clip(), frame, &lies);
             assert!(off < 1e-4, "clip {alone}, frame {frame}: {off} m");
@@ -78,7 +80,7 @@ fn a_clip_that_has_all_the_weight_plays_as_it_is() {
 }
 
 #[test]
-fn halfway_lasts_and_strides_between_both() {
+fn registered_blend_halfway_has_mean_duration_and_stride() {
     let [a, b, c] = walks();
     let (to_b, to_c) = (register(&a, &b), register(&a, &c));
     let half = WeightCurve::constant(0.5);
@@ -86,11 +88,11 @@ fn halfway_lasts_and_strides_between_both() {
         let partner = Partner { source, registration, weight: &half };
         registered_blend(&a, &[partner]).unwrap()
     };
-    // Clocks go on by their mean: 280 and 240 frames make 260, 280 and 330 make 305.
+    // The clocks advance by their mean: 280 and 240 frames make 260, 280 and 330 make 305.
     for (out, frames) in [(blend(&b, &to_b), 260), (blend(&c, &to_c), 305)] {
         assert!(out.clip.frames().abs_diff(frames) <= 1, "{}", out.clip.frames());
-        // The legs swing in step in all clips, so that the blend swings as far as they do in the
-        // mean.
+        // The legs swing in step in all clips, so that the amplitude of the blend is the mean of
+        // theirs.
         let swing = |clip: &Clip| {
             (0..clip.frames())
                 .map(|frame| quat::log(clip.rotations(frame)[7]).x)
@@ -107,7 +109,7 @@ fn halfway_lasts_and_strides_between_both() {
 }
 
 #[test]
-fn a_join_is_all_a_then_all_b() {
+fn registered_join_is_all_a_then_all_b() {
     let [a, b, _] = walks();
     let registration = register(&a, &b);
     let join = registered_join(&a, &b, &registration, 80, 200, WeightLaw::Smooth).unwrap();
@@ -128,7 +130,7 @@ fn a_join_is_all_a_then_all_b() {
     for (frame, in_b) in (transition.end - 1..out.frames()).zip(enter..) {
         assert!(apart(out, frame, b.clip(), in_b, &join.joined.world_from_b) < 1e-4, "{frame}");
     }
-    // Clocks run at their own speed, but for what the last frame asks for.
+    // Clocks run at their own speed, except for the rounding to a whole last frame.
     for pair in join.during.windows(2) {
         let step = |k: usize| pair[1].frames[k] - pair[0].frames[k];
         let mean = 0.5
@@ -151,7 +153,7 @@ fn a_join_is_all_a_then_all_b() {
 }
 
 #[test]
-fn what_is_not_registered_is_not_blended() {
+fn registered_blend_of_unregistered_clips_is_refused() {
     let [a, b, _] = walks();
     let registration = register(&a, &b);
     for (leave, arrive) in [(200, 200), (279, 400), (5000, 6000), (100, 50)] {

@@ -1,3 +1,5 @@
+//! Tests of gait cycles and of blending by speed.
+
 use super::*;
 use crate::blend::Source;
 use crate::clip::{ContactOptions, character_frames, ground_speed, resample, stillest_step};
@@ -7,14 +9,14 @@ use crate::transition::{FootLockOptions, foot_lock};
 use proptest::prelude::*;
 use std::sync::Arc;
 
-fn found(clip: Clip) -> Result<(GaitCycle, Roles), GaitError> {
+fn find_cycle(clip: Clip) -> Result<(GaitCycle, Roles), GaitError> {
     let roles = Roles::detect(clip.skeleton());
     let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
     Ok((GaitCycle::find(&Source::new(Arc::new(clip), &roles), &roles, &contacts)?, roles))
 }
 
 fn cycle(action: Action) -> (GaitCycle, Roles) {
-    found(synthesize(&Params::new(action)).unwrap().clip).unwrap()
+    find_cycle(synthesize(&Params::new(action)).unwrap().clip).unwrap()
 }
 
 fn blend(options: &SpeedOptions) -> (SpeedBlend, Roles) {
@@ -26,7 +28,7 @@ fn measured(clip: &Clip, roles: &Roles) -> f64 {
     f64::from(ground_speed(&character_frames(clip, roles), clip.fps()))
 }
 
-/// What planted feet slide altogether, centimetres.
+/// Returns the slide of planted feet in all, centimetres.
 fn skate(clip: &Clip, contacts: &Contacts, roles: &Roles) -> f32 {
     let mut sum = 0.0;
     for side in Side::BOTH {
@@ -45,7 +47,7 @@ fn skate(clip: &Clip, contacts: &Contacts, roles: &Roles) -> f32 {
 }
 
 #[test]
-fn agrees_with_numpy() {
+fn speed_blend_agrees_with_numpy() {
     #[derive(serde::Deserialize)]
     struct Gait {
         speed: f64,
@@ -91,15 +93,15 @@ fn agrees_with_numpy() {
         close(events.right_lift, wanted.events.right_lift);
         for (gait, phases) in blend.gaits.iter().zip([&wanted.walk, &wanted.run]) {
             for (index, &at) in golden.ats.iter().enumerate() {
-                let found = blend.phases(gait, &events, at);
-                (0..3).for_each(|part| close(found[part], phases[part][index]));
+                let find_cycle = blend.phases(gait, &events, at);
+                (0..3).for_each(|part| close(find_cycle[part], phases[part][index]));
             }
         }
     }
 }
 
 #[test]
-fn the_speed_asked_for_is_the_speed_made() {
+fn cycle_at_a_speed_has_that_speed() {
     let (blend, roles) = blend(&SpeedOptions::default());
     let [slow, fast] = blend.speeds_mps();
     assert!((slow - 1.4).abs() < 0.02 && (fast - 3.5).abs() < 0.02);
@@ -112,14 +114,14 @@ fn the_speed_asked_for_is_the_speed_made() {
             assert!(!made.facts.extrapolated && !made.facts.limited);
             assert!((made.facts.stride_m / made.facts.cycle_secs - speed).abs() < 1e-9);
         }
-        // A cycle ends in the pose that it began with, one stride on.
+        // A cycle ends in the pose with which it began, one stride on.
         let [first, last] = [0, one.clip.frames() - 1].map(|frame| one.clip.rotations(frame));
         assert!(
             first.iter().zip(last).skip(1).all(|(a, b)| quat::angle_between(*a, *b) < 1e-4),
             "{speed}"
         );
         assert_eq!(many.clip.frames(), 361);
-        // Further cycles repeat the first, and go on from where it ends.
+        // Further cycles repeat the first, and continue from its end.
         let (steps, thrice) = (one.clip.frames() - 1, blend.cycles_at(speed, 3).unwrap().clip);
         assert_eq!(thrice.frames(), 3 * steps + 1);
         for frame in [0, steps / 3, steps] {
@@ -134,7 +136,7 @@ fn the_speed_asked_for_is_the_speed_made() {
 }
 
 #[test]
-fn the_gaits_own_speeds_give_the_gaits() {
+fn cycle_at_the_speed_of_a_gait_is_that_gait() {
     for alignment in [PhaseAlignment::Feet, PhaseAlignment::Strikes, PhaseAlignment::None] {
         let options = SpeedOptions { alignment, ..SpeedOptions::default() };
         let (blend, _) = blend(&options);
@@ -169,7 +171,7 @@ fn the_gaits_own_speeds_give_the_gaits() {
 }
 
 #[test]
-fn aligned_feet_slide_less_and_a_lock_plants_them() {
+fn cycle_aligned_by_feet_slides_less() {
     let of = |alignment| {
         let (blend, roles) = blend(&SpeedOptions { alignment, ..SpeedOptions::default() });
         let made = blend.clip_of(2.3, 4.0).unwrap();
@@ -183,7 +185,7 @@ fn aligned_feet_slide_less_and_a_lock_plants_them() {
 }
 
 #[test]
-fn a_hundred_cycles_do_not_drift() {
+fn cycles_at_a_speed_do_not_drift() {
     let (blend, roles) = blend(&SpeedOptions::default());
     let speed = blend.speeds_mps()[0];
     let facts = blend.facts(speed);
@@ -202,7 +204,7 @@ fn a_hundred_cycles_do_not_drift() {
 }
 
 #[test]
-fn a_dragged_speed_changes_the_gait_without_a_jump() {
+fn clip_along_changing_speed_has_no_jump() {
     let (blend, roles) = blend(&SpeedOptions::default());
     let wanted = |secs: f64| {
         if secs < 2.0 {
@@ -251,7 +253,7 @@ fn a_dragged_speed_changes_the_gait_without_a_jump() {
         (player.here().shift.length() - frames[480].shift.length()).abs() < 0.05
             && player.phase() > 8.0
     );
-    // What is no step is none.
+    // Invalid steps count as 0.
     let before = player;
     for dt in [0.0, -1.0, f64::NAN] {
         player.advance(&blend, dt, f64::NAN);
@@ -259,36 +261,37 @@ fn a_dragged_speed_changes_the_gait_without_a_jump() {
     }
 }
 
-/// A stretch of a made gait that is as long as so much of its cycle.
+/// Returns a part of a made gait with the length of `share` of its cycle.
 fn part_of_a_cycle(action: Action, from: usize, share: f64) -> (Clip, GaitCycle) {
     let clip = synthesize(&Params::new(action)).unwrap().clip;
-    let (whole, _) = found(clip.clone()).unwrap();
+    let (whole, _) = find_cycle(clip.clone()).unwrap();
     let frames = (share * whole.looped().clip.frames() as f64).round() as usize;
     (clip.crop(from..from + frames).unwrap(), whole)
 }
 
 #[test]
-fn a_clip_that_is_one_cycle_or_most_of_one_is_closed_by_its_ends() {
+fn gait_cycle_of_a_single_cycle_is_closed_at_its_ends() {
     for action in [Action::Walk, Action::Run] {
         for share in [1.3, 1.02, 1.0, 0.93] {
             for from in (40..100).step_by(7) {
                 let (part, whole) = part_of_a_cycle(action, from, share);
                 let name = format!("{action:?} {share} from {from}");
-                let (cycle, roles) = found(part).unwrap_or_else(|error| panic!("{name}: {error}"));
+                let (cycle, roles) =
+                    find_cycle(part).unwrap_or_else(|error| panic!("{name}: {error}"));
                 let within = 0.02;
                 let off = cycle.speed_mps() / whole.speed_mps() - 1.0;
                 assert!(off.abs() < within, "{name}: {off}");
                 let secs = cycle.secs() / whole.secs() - 1.0;
                 assert!(secs.abs() < 2.0 * within, "{name}: {secs}");
-                let (found, wanted) = (cycle.events(), whole.events());
+                let (find_cycle, wanted) = (cycle.events(), whole.events());
                 let apart = [
-                    found.left_lift - wanted.left_lift,
-                    found.right_strike - wanted.right_strike,
-                    found.right_lift - wanted.right_lift,
+                    find_cycle.left_lift - wanted.left_lift,
+                    find_cycle.right_strike - wanted.right_strike,
+                    find_cycle.right_lift - wanted.right_lift,
                 ];
                 assert!(
                     apart.iter().all(|apart| apart.abs() < 0.1),
-                    "{name}: {found:?} {wanted:?}"
+                    "{name}: {find_cycle:?} {wanted:?}"
                 );
                 assert!(cycle.looped().seam.turn_deg < 1e-3, "{name}");
                 let own = measured(&cycle.looped().repeat(3).unwrap(), &roles);
@@ -299,10 +302,10 @@ fn a_clip_that_is_one_cycle_or_most_of_one_is_closed_by_its_ends() {
 }
 
 #[test]
-fn speeds_between_two_clips_of_one_cycle_are_made() {
+fn speed_blend_of_single_cycles_has_the_requested_speed() {
     for (share, from) in [(1.0, 40), (0.9, 55), (1.02, 71)] {
         let [(walk, roles), (run, _)] = [Action::Walk, Action::Run]
-            .map(|action| found(part_of_a_cycle(action, from, share).0).unwrap());
+            .map(|action| find_cycle(part_of_a_cycle(action, from, share).0).unwrap());
         let blend = SpeedBlend::new(&walk, &run, &roles, &SpeedOptions::default()).unwrap();
         for speed in [1.5, 2.0, 3.0] {
             let off = measured(&blend.clip_of(speed, 6.0).unwrap().clip, &roles) / speed - 1.0;
@@ -314,9 +317,9 @@ fn speeds_between_two_clips_of_one_cycle_are_made() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
 
-    /// Whatever is asked for, time runs forwards and there is a stride.
+    /// For every request, time runs forwards and the stride is positive.
     #[test]
-    fn every_speed_makes_a_motion(speed in prop_oneof![-5.0f64..20.0, Just(f64::NAN), Just(f64::INFINITY), Just(-1e300)]) {
+    fn cycle_at_any_speed_is_a_motion(speed in prop_oneof![-5.0f64..20.0, Just(f64::NAN), Just(f64::INFINITY), Just(-1e300)]) {
         let (blend, _) = blend(&SpeedOptions::default());
         let facts = blend.facts(speed);
         prop_assert!(blend.range_mps().contains(&(facts.speed_mps * (1.0 + 1e-12))) || blend.range_mps().contains(&(facts.speed_mps * (1.0 - 1e-12))));
@@ -326,9 +329,9 @@ proptest! {
         prop_assert!(made.clip.world_positions(0..made.clip.frames()).iter().all(|p| p.is_finite()));
     }
 
-    /// Phases rise, meet at events, and one cycle of the blend is one cycle of each gait.
+    /// Phases rise, coincide at events, and one cycle of the blend is one cycle of each gait.
     #[test]
-    fn phases_rise(speed in 0.9f64..4.0, at in -2.0f64..3.0, by in 0.001f64..0.5) {
+    fn phases_rise_and_meet_at_events(speed in 0.9f64..4.0, at in -2.0f64..3.0, by in 0.001f64..0.5) {
         let (blend, _) = blend(&SpeedOptions::default());
         let events = blend.events(blend.facts(speed).weight);
         for gait in &blend.gaits {
@@ -345,7 +348,7 @@ proptest! {
 }
 
 #[test]
-fn cycles_begin_where_the_left_foot_strikes() {
+fn gait_cycle_begins_with_the_left_strike() {
     for (action, duty) in [(Action::Walk, 0.60), (Action::Run, 0.34)] {
         let made = synthesize(&Params {
             seed: 3,
@@ -355,7 +358,7 @@ fn cycles_begin_where_the_left_foot_strikes() {
         })
         .unwrap();
         let truth = made.truth;
-        let (cycle, _) = found(made.clip).unwrap();
+        let (cycle, _) = find_cycle(made.clip).unwrap();
         let from_strike = |phase: f32| phase.min(1.0 - phase);
         assert!(from_strike(truth.phase[cycle.range().start]) < 0.06, "{action:?}");
         assert!((cycle.secs() - f64::from(truth.cycle_secs)).abs() < 0.03);
@@ -366,17 +369,17 @@ fn cycles_begin_where_the_left_foot_strikes() {
             "{events:?}"
         );
         assert!((events.right_strike - 0.5).abs() < 0.05);
-        // A curve is walked on.
+        // A walk on a curve.
         assert!((cycle.looped().cycle.yaw / cycle.secs() - 15.0_f64.to_radians()).abs() < 0.03);
     }
 }
 
 #[test]
-fn rates_may_differ_and_what_does_not_go_is_said() {
+fn speed_blend_accepts_other_rates_and_refuses_invalid_input() {
     let (walk, roles) = cycle(Action::Walk);
     let run = synthesize(&Params::new(Action::Run)).unwrap().clip;
     let (coarse, _) =
-        found(resample(&run, 30.0, crate::clip::Interpolation::Cubic).unwrap()).unwrap();
+        find_cycle(resample(&run, 30.0, crate::clip::Interpolation::Cubic).unwrap()).unwrap();
     let options = SpeedOptions::default();
     let mixed = SpeedBlend::new(&walk, &coarse, &roles, &options).unwrap();
     let made = mixed.clip_of(2.5, 5.0).unwrap();
@@ -386,7 +389,7 @@ fn rates_may_differ_and_what_does_not_go_is_said() {
         Err(GaitError::Speeds { .. })
     ));
     let small = Walk { frames: 400, speed: 1.0, cadence: 0.9, ..Walk::default() };
-    if let Ok((other, _)) = found(small.clip()) {
+    if let Ok((other, _)) = find_cycle(small.clip()) {
         assert!(matches!(
             SpeedBlend::new(&walk, &other, &roles, &options),
             Err(GaitError::Skeletons { .. })
@@ -405,6 +408,6 @@ fn rates_may_differ_and_what_does_not_go_is_said() {
         run.crop(0..0).unwrap(),
         run.crop(0..20).unwrap(),
     ] {
-        assert!(matches!(found(still), Err(GaitError::NoCycle { .. })));
+        assert!(matches!(find_cycle(still), Err(GaitError::NoCycle { .. })));
     }
 }

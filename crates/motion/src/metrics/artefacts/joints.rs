@@ -1,52 +1,54 @@
+//! Angular speeds of joints, and their changes.
+
 use crate::clip::Clip;
 use crate::math::stats;
 use crate::metrics::profile::turn;
 use glam::Vec3;
 
-/// Angular velocities are compared over this long, seconds: what an eye that sees thirty pictures a
-/// second takes for one moment.
-const MOMENT_SECS: f64 = 1.0 / 30.0;
-/// What one step in a hundred exceeds is no longer usual.
-const USUAL: f32 = 0.99;
+/// The time over which angular velocities are averaged and compared, seconds: one frame at thirty
+/// frames per second.
+const AVERAGING_SECS: f64 = 1.0 / 30.0;
+/// The percentile that counts as usual.
+const USUAL_PERCENTILE: f32 = 0.99;
 
-/// How a joint turns against its parent in a motion.
+/// The local rotation of a joint over a motion.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::metrics) struct JointTrace {
     /// Per step: the angle, degrees.
     pub(super) turns_deg: Vec<f32>,
     /// The 99.9th percentile of its angular speed, degrees per second.
     pub(super) rare_dps: f32,
-    /// Its angular speed, degrees per second: at a frame, in the step behind it.
-    pub(in crate::metrics) speed: Sizes,
-    /// How much its angular velocity changes, degrees per second: at a frame, between the means
-    /// over 1/30 s before it and behind it.
-    pub(in crate::metrics) change: Sizes,
+    /// Its angular speed at each frame, from the step after it, degrees per second.
+    pub(in crate::metrics) speed: Statistics,
+    /// The change of its angular velocity at each frame, between the means over 1/30 s before and
+    /// after it, degrees per second.
+    pub(in crate::metrics) change: Statistics,
 }
 
-/// The sizes of something that is there in every frame.
+/// Statistics of a quantity that every frame has.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(in crate::metrics) struct Sizes {
-    /// The largest, and its frame.
+pub(in crate::metrics) struct Statistics {
+    /// The maximum, and its frame.
     pub(in crate::metrics) most: f32,
     pub(in crate::metrics) frame: usize,
     /// The 99th percentile.
     pub(in crate::metrics) usual: f32,
 }
 
-impl Sizes {
-    /// Of the frames from `first` on.
+impl Statistics {
+    /// Computes the statistics of the frames from `first` on.
     fn of(sizes: &[f32], first: usize) -> Self {
         let most = (sizes.iter().enumerate()).max_by(|a, b| a.1.total_cmp(b.1));
         most.map_or_else(Self::default, |(at, &most)| Self {
             most,
             frame: first + at,
-            usual: stats::percentile(sizes, USUAL).unwrap_or(0.0),
+            usual: stats::percentile(sizes, USUAL_PERCENTILE).unwrap_or(0.0),
         })
     }
 }
 
 impl JointTrace {
-    /// From how many frames it goes on to the next.
+    /// Returns the number of steps between frames.
     pub(in crate::metrics) fn steps(&self) -> usize {
         self.turns_deg.len()
     }
@@ -62,25 +64,25 @@ impl JointTrace {
         let speeds: Vec<f32> = turns_deg.iter().map(|turn| turn * dps).collect();
         let (first, changes) = changes_dps(&steps, clip.fps());
         Self {
-            rare_dps: stats::percentile(&speeds, super::RARE).unwrap_or(0.0),
-            speed: Sizes::of(&speeds, 0),
-            change: Sizes::of(&changes, first),
+            rare_dps: stats::percentile(&speeds, super::RARE_PERCENTILE).unwrap_or(0.0),
+            speed: Statistics::of(&speeds, 0),
+            change: Statistics::of(&changes, first),
             turns_deg,
         }
     }
 }
 
-/// How much the mean angular velocity over [`MOMENT_SECS`] behind a frame differs from that before
-/// it: the first frame with both, and the size for it and the following ones. `steps` are rotation
-/// vectors, degrees.
+/// Returns the changes of the mean angular velocity between [`AVERAGING_SECS`] before and after a
+/// frame: the first frame that has both, and the size of the change for it and the following ones.
+/// `steps` are rotation vectors, degrees.
 ///
-/// Of a motion whose angular acceleration is `a` that is `a / 30 s`, and where its velocity jumps
-/// the size of the jump, both at any frame rate from 30 on. A pose that jumps by 1° counts 30°/s. A
-/// moment that is no whole number of frames takes its share of the last step. Below 30 frames per
-/// second a moment is one step.
+/// For a motion with angular acceleration `a` the change is `a / 30 s`, and for a discontinuity of
+/// the velocity the size of the discontinuity, both at any frame rate from 30 on. A pose that jumps
+/// by 1° counts 30°/s. If the averaging time is not a whole number of frames, it takes a share of
+/// the last step. Below 30 frames per second it is one step.
 fn changes_dps(steps: &[Vec3], fps: f64) -> (usize, Vec<f32>) {
-    let moment = (MOMENT_SECS * fps).max(1.0);
-    // Not one more for what rounding leaves over.
+    let moment = (AVERAGING_SECS * fps).max(1.0);
+    // The tolerance avoids a further step for a remainder of rounding.
     let whole = (moment + 1e-3).floor();
     let share = ((moment - whole) as f32).max(0.0);
     let (whole, reach) = (whole as usize, whole as usize + usize::from(share > 1e-3));

@@ -1,3 +1,5 @@
+//! Tests of motion traces.
+
 use super::*;
 use crate::math::Planar;
 use crate::skeleton::fixtures;
@@ -6,13 +8,13 @@ use glam::Quat;
 use std::sync::Arc;
 
 #[test]
-fn a_made_walk_stands_still_where_it_stands() {
+fn trace_of_a_made_walk_has_still_stances() {
     let clip = synthesize(&Params::new(Action::Walk)).unwrap().clip;
     let roles = Roles::detect(clip.skeleton());
     let walk = MotionTrace::new(&clip, &roles);
     assert_eq!(walk.beside(&[]), Artefacts::default());
     assert!(walk.stances_cm().len() >= 4);
-    // Wherever it lies, and however large it is.
+    // Position and size do not matter.
     let elsewhere = MotionTrace::new(&clip.transformed(&Planar::new(2.0, 30.0, -4.0)), &roles);
     let (own, other) =
         (walk.skating_cm_per_sec().unwrap(), elsewhere.skating_cm_per_sec().unwrap());
@@ -20,7 +22,7 @@ fn a_made_walk_stands_still_where_it_stands() {
 }
 
 #[test]
-fn what_has_no_feet_and_what_has_one_frame_is_measured_as_far_as_it_goes() {
+fn trace_without_feet_or_with_one_frame_is_partial() {
     let skeleton = fixtures::lafan();
     let pose = vec![Quat::IDENTITY; skeleton.len()];
     let clip = Clip::new("pose", Arc::clone(&skeleton), 30.0, pose, vec![Vec3::Y]).unwrap();

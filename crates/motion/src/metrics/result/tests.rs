@@ -1,3 +1,5 @@
+//! Tests of the metrics of results.
+
 use super::*;
 use crate::clip::Clip;
 use crate::skeleton::{Roles, fixtures};
@@ -8,8 +10,8 @@ use std::sync::Arc;
 
 const JOINT: usize = 3;
 
-/// Three seconds of a body that stands but for one joint, which is turned by so many degrees at a
-/// time.
+/// Returns the trace of three seconds of a body that stands still except for one joint, whose angle
+/// is a function of time.
 fn turned(fps: f64, degrees: impl Fn(f64) -> f64) -> MotionTrace {
     let skeleton = fixtures::lafan();
     let frames = (3.0 * fps) as usize + 1;
@@ -22,15 +24,15 @@ fn turned(fps: f64, degrees: impl Fn(f64) -> f64) -> MotionTrace {
     MotionTrace::new(&clip, &roles)
 }
 
-/// Beside a clip of another rate that stands still.
+/// Measures a result against a still clip of another rate.
 fn beside_standing(result: &MotionTrace) -> ResultMetrics {
     ResultMetrics::measure(result, &[&turned(24.0, |_| 0.0)])
 }
 
 #[test]
-fn velocity_jump_of_a_smooth_turn_is_that_of_its_acceleration_at_every_frame_rate() {
-    // By 60° in half a second along 3x² - 2x³: both velocities are met, the acceleration jumps to
-    // 1440°/s².
+fn velocity_jump_of_a_smooth_turn_does_not_depend_on_the_frame_rate() {
+    // A turn by 60° in half a second along 3x² - 2x³: velocities are continuous, the acceleration
+    // jumps to 1440°/s².
     let smooth = |secs: f64| {
         let x = ((secs - 1.0) / 0.5).clamp(0.0, 1.0);
         60.0 * x * x * (3.0 - 2.0 * x)
@@ -44,12 +46,12 @@ fn velocity_jump_of_a_smooth_turn_is_that_of_its_acceleration_at_every_frame_rat
 }
 
 #[test]
-fn jumps_have_their_size_at_every_frame_rate() {
+fn jumps_do_not_depend_on_the_frame_rate() {
     for fps in [30.0, 60.0, 120.0] {
-        // Sets off at 200°/s.
+        // A turn that starts with 200°/s.
         let kinked = beside_standing(&turned(fps, |secs| 200.0 * (secs - 1.0).max(0.0)));
         assert!((kinked.velocity_jump_dps.unwrap() - 200.0).abs() < 0.5, "{fps}: {kinked:?}");
-        // A pose that jumps by 30°, and one that is back after a frame.
+        // A pose that jumps by 30°, and one that returns after a frame.
         for back_secs in [9.0, 1.5 / fps] {
             let snapped = beside_standing(&turned(fps, |secs| {
                 let since = secs - 1.0 + 0.5 / fps;
@@ -65,7 +67,7 @@ fn jumps_have_their_size_at_every_frame_rate() {
 }
 
 #[test]
-fn what_a_clip_does_itself_is_no_artefact() {
+fn metrics_of_a_clip_against_itself_are_zero() {
     let glitch = |secs: f64| {
         if (1.0..1.02).contains(&secs) { 25.0 } else { 10.0 * (2.0 * secs).sin() }
     };
@@ -76,13 +78,13 @@ fn what_a_clip_does_itself_is_no_artefact() {
         (Some(0.0), Some(0.0), Some(0.0))
     );
     assert_eq!((itself.pose_jump_at, itself.velocity_jump_at, itself.spin_at), (None, None, None));
-    // By itself it is told: there is no clip that would do so.
+    // Without sources it is reported: there is no clip with such a jump.
     let alone = ResultMetrics::measure(&clip, &[]);
     assert!(alone.pose_jump_deg.unwrap() > 10.0, "{alone:?}");
 }
 
 #[test]
-fn a_spin_is_told_alone_and_beside_its_clip() {
+fn spin_is_measured_with_and_without_a_source() {
     let clip = synthesize(&Params::new(Action::Walk)).unwrap().clip;
     let roles = Roles::detect(clip.skeleton());
     let walk = MotionTrace::new(&clip, &roles);
@@ -118,7 +120,7 @@ fn a_spin_is_told_alone_and_beside_its_clip() {
 }
 
 #[test]
-fn what_has_no_feet_and_what_has_one_frame_is_measured_as_far_as_it_goes() {
+fn metrics_without_feet_or_with_one_frame_are_partial() {
     let skeleton = fixtures::lafan();
     let pose = vec![Quat::IDENTITY; skeleton.len()];
     let clip = Clip::new("pose", Arc::clone(&skeleton), 30.0, pose, vec![Vec3::Y]).unwrap();
@@ -129,7 +131,7 @@ fn what_has_no_feet_and_what_has_one_frame_is_measured_as_far_as_it_goes() {
 }
 
 #[test]
-fn slices_trace_the_same() {
+fn trace_meter_in_slices_equals_the_trace() {
     let clip = synthesize(&Params::new(Action::Run)).unwrap().clip;
     let roles = Roles::detect(clip.skeleton());
     let mut meter = crate::metrics::TraceMeter::new(&clip, &roles);

@@ -1,3 +1,5 @@
+//! Tests of the metrics of transitions.
+
 use super::*;
 use crate::blend::{Concatenation, DissolveOptions, RootBlend, Source, WeightLaw, dissolve};
 use crate::clip::{ContactOptions, Contacts};
@@ -8,12 +10,12 @@ use std::sync::Arc;
 
 const FPS: f64 = 60.0;
 
-/// Stands with both feet on the ground, 3 cm above y = 0 at the tips of the feet.
+/// Returns a clip with both feet on the ground, 3 cm above y = 0 at the tips of the feet.
 fn still(frames: usize) -> Clip {
     Walk { frames, fps: FPS, speed: 0.0, cadence: 0.0, swing: 0.0, ..Walk::default() }.clip()
 }
 
-/// Glides without moving a limb.
+/// Returns a clip that glides without moving a limb.
 fn gliding(speed: f32) -> Clip {
     Walk { frames: 120, fps: FPS, speed, cadence: 0.0, swing: 0.0, ..Walk::default() }.clip()
 }
@@ -69,7 +71,7 @@ fn blended(
     (out, metrics)
 }
 
-fn near(value: Option<f64>, expected: f64, tolerance: f64) {
+fn assert_near(value: Option<f64>, expected: f64, tolerance: f64) {
     let value = value.unwrap_or(f64::NAN);
     assert!((value - expected).abs() <= tolerance, "{value}, expected {expected}");
 }
@@ -79,7 +81,7 @@ fn ramp(frame: usize, range: Range<usize>) -> f32 {
 }
 
 #[test]
-fn a_still_clip_has_no_artefact() {
+fn metrics_of_a_still_clip_are_zero() {
     let a = profile(&still(90));
     let metrics = measure(&still(90), 30..50, 30, &a, &a);
     for (value, what) in [
@@ -96,7 +98,7 @@ fn a_still_clip_has_no_artefact() {
 }
 
 #[test]
-fn a_jump_of_30_degrees_is_30_degrees() {
+fn seam_of_a_jump_of_30_degrees_is_30_degrees() {
     let a = profile(&still(90));
     let result = edited(&still(90), |frame, pose, _| {
         if frame >= 30 {
@@ -104,22 +106,22 @@ fn a_jump_of_30_degrees_is_30_degrees() {
         }
     });
     let cut = measure(&result, 30..30, 30, &a, &a);
-    near(cut.seam_deg, 30.0, 1e-3);
-    near(cut.seam_dps, 30.0 * FPS, 0.05);
+    assert_near(cut.seam_deg, 30.0, 1e-3);
+    assert_near(cut.seam_dps, 30.0 * FPS, 0.05);
     assert_eq!(cut.seam_joint, Some(4));
-    near(cut.jump_cm, 0.0, 1e-9);
-    near(cut.spin_deg, 0.0, 1e-9);
-    // Wherever it lies in the window, borders included.
+    assert_near(cut.jump_cm, 0.0, 1e-9);
+    assert_near(cut.spin_deg, 0.0, 1e-9);
+    // Anywhere in the window, borders included.
     for start in [20, 25, 30] {
-        near(measure(&result, start..start + 10, start, &a, &a).seam_deg, 30.0, 1e-3);
+        assert_near(measure(&result, start..start + 10, start, &a, &a).seam_deg, 30.0, 1e-3);
     }
     assert_eq!(measure(&result, 50..60, 50, &a, &a).seam_deg, Some(0.0));
 }
 
 #[test]
-fn what_is_usual_in_the_clip_is_no_seam() {
-    // A joint that turns at a steady 300° per second: no jump. The same joint that stops dead: 300°
-    // per second.
+fn seam_of_usual_motion_is_zero() {
+    // A joint that turns at a steady 300° per second has no jump. The same joint that stops
+    // suddenly has one of 300° per second.
     let turning = |stop: usize| {
         edited(&still(200), |frame, pose, _| {
             pose[4] = Quat::from_rotation_x(5_f32.to_radians() * frame.min(stop) as f32);
@@ -127,15 +129,15 @@ fn what_is_usual_in_the_clip_is_no_seam() {
     };
     let a = profile(&turning(1000));
     let steady = measure(&turning(1000), 90..110, 90, &a, &a);
-    near(steady.seam_deg, 0.0, 1e-3);
-    near(steady.seam_dps, 0.0, 0.05);
+    assert_near(steady.seam_deg, 0.0, 1e-3);
+    assert_near(steady.seam_dps, 0.0, 0.05);
     let stopping = measure(&turning(100), 90..110, 90, &a, &profile(&still(200)));
-    near(stopping.seam_deg, 0.0, 1e-3);
-    near(stopping.seam_dps, 300.0, 0.1);
+    assert_near(stopping.seam_deg, 0.0, 1e-3);
+    assert_near(stopping.seam_dps, 300.0, 0.1);
 }
 
 #[test]
-fn a_spin_is_counted_beyond_what_the_sources_turn() {
+fn spin_is_measured_beyond_that_of_the_sources() {
     let spun = |clip: &Clip, degrees: f32| {
         edited(clip, |frame, pose, _| {
             pose[0] = Quat::from_rotation_y(degrees.to_radians() * ramp(frame, 30..60)) * pose[0];
@@ -143,7 +145,7 @@ fn a_spin_is_counted_beyond_what_the_sources_turn() {
     };
     let a = profile(&still(90));
     for degrees in [180.0, -180.0, 360.0, 25.0] {
-        near(
+        assert_near(
             measure(&spun(&still(90), degrees), 31..61, 31, &a, &a).spin_deg,
             f64::from(degrees).abs(),
             0.01,
@@ -155,7 +157,7 @@ fn a_spin_is_counted_beyond_what_the_sources_turn() {
             (ramp(frame, 30..45) - ramp(frame, 45..60)) * 90_f32.to_radians(),
         ) * pose[0];
     });
-    near(measure(&back, 31..61, 31, &a, &a).spin_deg, 90.0, 0.01);
+    assert_near(measure(&back, 31..61, 31, &a, &a).spin_deg, 90.0, 0.01);
     // A source that turns 60° per second allows as much, to its side.
     let turning = Walk {
         frames: 90,
@@ -168,24 +170,24 @@ fn a_spin_is_counted_beyond_what_the_sources_turn() {
     }
     .clip();
     let b = profile(&turning);
-    near(measure(&turning, 31..61, 31, &a, &b).spin_deg, 0.0, 0.01);
-    near(measure(&spun(&turning, 45.0), 31..60, 31, &a, &b).spin_deg, 45.0, 0.01);
-    near(measure(&spun(&turning, -45.0), 31..60, 31, &a, &b).spin_deg, 45.0 - 30.0, 0.01);
+    assert_near(measure(&turning, 31..61, 31, &a, &b).spin_deg, 0.0, 0.01);
+    assert_near(measure(&spun(&turning, 45.0), 31..60, 31, &a, &b).spin_deg, 45.0, 0.01);
+    assert_near(measure(&spun(&turning, -45.0), 31..60, 31, &a, &b).spin_deg, 45.0 - 30.0, 0.01);
 }
 
 #[test]
-fn a_planted_foot_that_slides_5_cm_slides_5_cm() {
+fn skate_of_a_foot_sliding_5_cm_is_5_cm() {
     let a = profile(&still(120));
     assert!(a.contacts().planted(Side::Left, 40) && a.contacts().planted(Side::Right, 40));
     let slid =
         |way: &dyn Fn(usize) -> f32| edited(&still(120), |frame, _, root| root.x += way(frame));
     let once = measure(&slid(&|f| 0.05 * ramp(f, 50..60)), 45..65, 45, &a, &a);
-    near(once.skate_cm, 5.0, 1e-3);
-    near(once.jump_cm, 0.5, 1e-3);
-    // Back again: the farthest it got.
+    assert_near(once.skate_cm, 5.0, 1e-3);
+    assert_near(once.jump_cm, 0.5, 1e-3);
+    // Back again: the value is the greatest distance.
     let back = measure(&slid(&|f| 0.05 * (ramp(f, 50..55) - ramp(f, 55..60))), 45..65, 45, &a, &a);
-    near(back.skate_cm, 5.0, 1e-3);
-    // Only one foot: the leg swings, the other stands.
+    assert_near(back.skate_cm, 5.0, 1e-3);
+    // For one foot only: the leg swings, the other stands.
     let leg = edited(&still(120), |frame, pose, _| {
         pose[7] = Quat::from_rotation_x(-0.2 * ramp(frame, 50..60));
     });
@@ -194,42 +196,42 @@ fn a_planted_foot_that_slides_5_cm_slides_5_cm() {
     // ground.
     let way = |point: Vec3| (point - Quat::from_rotation_x(-0.2) * point).z.abs();
     let least = way(Vec3::new(0.0, -0.85, 0.0)).min(way(Vec3::new(0.0, -0.91, 0.2)));
-    near(metrics.skate_cm, f64::from(least) * 100.0, 0.05);
+    assert_near(metrics.skate_cm, f64::from(least) * 100.0, 0.05);
 }
 
 #[test]
-fn a_foot_in_the_air_does_not_slide() {
+fn skate_of_a_foot_in_the_air_is_zero() {
     let glides = gliding(1.0);
     let a = profile(&glides);
     assert_eq!(measure(&glides, 45..65, 45, &a, &a).skate_cm, None);
-    // What slides in its own clip is not blamed on the transition.
+    // Slides of a foot in its own clip are not attributed to the transition.
     let slow = gliding(0.3);
     let b = profile(&slow);
     assert!(b.contacts().planted(Side::Left, 50));
-    near(measure(&slow, 45..65, 45, &b, &b).skate_cm, 0.0, 1e-3);
+    assert_near(measure(&slow, 45..65, 45, &b, &b).skate_cm, 0.0, 1e-3);
 }
 
 #[test]
-fn penetration_is_the_deepest_point_during_the_transition() {
+fn penetration_is_that_of_the_deepest_point_in_the_transition() {
     let a = profile(&still(90));
     let lowered = |at: usize| {
         edited(&still(90), move |frame, _, root| root.y -= if frame == at { 0.08 } else { 0.0 })
     };
-    near(measure(&lowered(40), 35..45, 35, &a, &a).penetration_cm, 5.0, 1e-3);
-    near(measure(&lowered(20), 35..45, 35, &a, &a).penetration_cm, 0.0, 1e-9);
+    assert_near(measure(&lowered(40), 35..45, 35, &a, &a).penetration_cm, 5.0, 1e-3);
+    assert_near(measure(&lowered(20), 35..45, 35, &a, &a).penetration_cm, 0.0, 1e-9);
 }
 
 #[test]
-fn lag_is_where_the_weights_say() {
+fn lag_of_a_dissolve_follows_its_weights() {
     let (a, b) = (profile(&gliding(1.0)), profile(&gliding(2.0)));
-    // The share 1 - w of the way is made: 0.9 at t = 0.9 for the line, at t = 0.8042 for 3t² - 2t³
-    // (NumPy's roots), and at t = 0.7534 for the quintic.
+    // The share 1 - w of the difference is closed: 0.9 at t = 0.9 for the line, at t = 0.8042 for
+    // 3t² - 2t³ (NumPy's roots), and at t = 0.7534 for the quintic.
     for (law, t) in
         [(WeightLaw::Linear, 0.9), (WeightLaw::Smooth, 0.804_200), (WeightLaw::Smoother, 0.753_364)]
     {
         let options = DissolveOptions { window: 60, law, ..DissolveOptions::default() };
         let (_, metrics) = blended(&a, 40, &b, 20, &options);
-        near(metrics.lag_s, t * 60.0 / FPS, 0.6 / FPS);
+        assert_near(metrics.lag_s, t * 60.0 / FPS, 0.6 / FPS);
     }
     let (_, cut) =
         blended(&a, 40, &b, 20, &DissolveOptions { window: 0, ..DissolveOptions::default() });
@@ -243,7 +245,7 @@ fn made(params: &Params) -> Profile {
 }
 
 #[test]
-fn a_walk_that_goes_on_as_itself_has_no_artefact() {
+fn metrics_of_a_continued_walk_are_zero() {
     let walk = made(&Params { turn_rate_dps: 20.0, ..Params::new(Action::Walk) });
     for root in [RootBlend::Velocity, RootBlend::World] {
         for window in [0, 12, 30] {
@@ -254,18 +256,18 @@ fn a_walk_that_goes_on_as_itself_has_no_artefact() {
                 60,
                 &DissolveOptions { window, root, ..DissolveOptions::default() },
             );
-            near(metrics.skate_cm, 0.0, 0.01);
-            near(metrics.jump_cm, 0.0, 0.01);
-            near(metrics.spin_deg, 0.0, 0.01);
-            near(metrics.penetration_cm, 0.0, 0.5);
-            near(metrics.seam_deg, 0.0, 0.01);
-            near(metrics.seam_dps, 0.0, 0.5);
+            assert_near(metrics.skate_cm, 0.0, 0.01);
+            assert_near(metrics.jump_cm, 0.0, 0.01);
+            assert_near(metrics.spin_deg, 0.0, 0.01);
+            assert_near(metrics.penetration_cm, 0.0, 0.5);
+            assert_near(metrics.seam_deg, 0.0, 0.01);
+            assert_near(metrics.seam_dps, 0.0, 0.5);
         }
     }
 }
 
 #[test]
-fn shorter_windows_have_bigger_seams() {
+fn seam_of_shorter_windows_is_greater() {
     let walk = made(&Params::new(Action::Walk));
     for (other, enter) in
         [(made(&Params::new(Action::Run)), 17), (made(&Params::new(Action::Idle)), 40)]
@@ -292,7 +294,7 @@ fn shorter_windows_have_bigger_seams() {
 }
 
 #[test]
-fn the_ways_to_blend_differ_where_they_should() {
+fn metrics_of_root_blends_differ_as_documented() {
     // A walk to the north and one to the south, 5 m apart.
     let north = made(&Params::new(Action::Walk));
     let clip = synthesize(&Params { speed_mps: 1.0, ..Params::new(Action::Walk) }).unwrap().clip;
@@ -323,7 +325,7 @@ fn the_ways_to_blend_differ_where_they_should() {
 }
 
 #[test]
-fn nothing_breaks_on_odd_subjects() {
+fn metrics_of_unusual_subjects_are_finite() {
     let clip = still(20);
     let (a, empty) = (profile(&clip), profile(&clip.crop(0..0).unwrap()));
     for result in
