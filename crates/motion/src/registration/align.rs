@@ -1,3 +1,5 @@
+//! The best rigid alignment of two point clouds over the ground.
+
 use super::RegistrationError;
 use super::points::checked_sum;
 use crate::math::Planar;
@@ -6,41 +8,40 @@ use glam::{DVec2, DVec3, Vec3};
 /// The best rigid ground-plane transform between two point clouds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Alignment {
-    /// `source_from_target`: lays the target cloud (p' of the paper) on the source cloud (p).
+    /// `source_from_target`: maps the target cloud (p' of the paper) onto the source cloud (p).
     pub transform: Planar,
-    /// The weighted sum of squared distances that is left, m²: the minimum over all transforms.
+    /// The weighted sum of squared distances after alignment, m²: the minimum over all transforms.
     pub distance: f64,
-    /// The weights' sum over all points. `(distance / weight).sqrt()` is the root-mean-square
+    /// The sum of weights over all points. `(distance / weight).sqrt()` is the root-mean-square
     /// distance per point, metres.
     pub weight: f64,
-    /// Every turn is equally good (all weight over one point of the ground, or a cloud as round as
-    /// a ring): the yaw is the caller's fallback.
+    /// Whether every yaw is equally good (all weight over one point of the ground, or a circular
+    /// cloud): the yaw is then the caller's fallback.
     pub turn_is_free: bool,
 }
 
 impl Alignment {
-    /// The root-mean-square distance per point, metres.
+    /// Returns the root-mean-square distance per point, metres.
     #[must_use]
     pub fn rms_m(&self) -> f64 {
         (self.distance / self.weight).sqrt()
     }
 }
 
-/// The rigid ground-plane transform that best lays the `target` points on the `source` points, in
-/// closed form (Kovar, Gleicher, Pighin 2002, section 3.1), and the squared distance that is left.
-/// Everything is summed in `f64`.
+/// Returns the rigid transform of the ground that best maps the `target` points onto the `source`
+/// points, in closed form (Kovar, Gleicher, Pighin 2002, section 3.1), and the remaining squared
+/// distance. All sums are in `f64`.
 ///
 /// Both clouds hold the same points in the same order: `frames × weights.len()` positions, metres,
 /// frame-major. `weights` has one weight per joint and is used again in every frame. Where every
-/// turn fits equally well, `fallback_yaw` is taken and [`Alignment::turn_is_free`] set: pass the
-/// yaw of a neighbouring window, or the difference of the facings.
+/// yaw fits equally well, `fallback_yaw` is used and [`Alignment::turn_is_free`] set: pass the yaw
+/// of a neighbouring window, or the difference of the facings.
 ///
-/// The turn comes from `atan2`: `atan` of the quotient is off by half a turn for half of all
-/// clouds.
+/// The yaw comes from `atan2`: `atan` of the quotient is off by half a turn for half of all clouds.
 ///
 /// # Errors
-/// [`RegistrationError`] when the clouds differ in size, the weights do not fit, or a position is
-/// not finite.
+/// [`RegistrationError`] when the clouds differ in size, the number of weights differs from that of
+/// the joints, or a position is not finite.
 pub fn align(
     source: &[Vec3],
     target: &[Vec3],
@@ -67,14 +68,15 @@ pub fn align(
     sums.alignment(fallback_yaw, ground(source_centre), ground(target_centre), 1e-9)
 }
 
-/// The mean of the points on the ground (its height is 0): sums about it keep their digits however
-/// far from the origin a clip walks.
+/// Returns the mean of the points on the ground (with height 0): sums relative to it keep their
+/// digits however far from the origin a clip is.
 fn ground_mean(points: &[Vec3]) -> DVec3 {
     let sum: DVec3 = points.iter().map(|p| DVec3::new(f64::from(p.x), 0.0, f64::from(p.z))).sum();
     sum / points.len().max(1) as f64
 }
 
-/// The sums of section A over pairs of points, `p` of the source and `q` of the target.
+/// The sums of Kovar, Gleicher, Pighin 2002, section 3.1, over pairs of points, `p` of the source
+/// and `q` of the target.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct PairMoments {
     /// W = Σw
@@ -107,8 +109,9 @@ impl PairMoments {
         self.height += w * (p.y - q.y) * (p.y - q.y);
     }
 
-    /// The minimiser and the minimum, for clouds that were summed about the given centres on the
-    /// ground. `rounding` is what share of the spread the sums may be off by.
+    /// Returns the best transform and its distance, for clouds whose sums are relative to the given
+    /// centres on the ground. `rounding` is the possible error of the sums as a share of the
+    /// spread.
     pub(super) fn alignment(
         &self,
         fallback_yaw: f64,
@@ -122,9 +125,9 @@ impl PairMoments {
         let spread = (self.source_square - p.length_squared() / w)
             + (self.target_square - q.length_squared() / w);
         let strength = a.hypot(b);
-        // What rounding alone makes of a perfectly round or point-like cloud.
+        // The strength that rounding alone gives a perfectly round or point-like cloud.
         let noise = rounding * spread + 1e-14 * (self.source_square + self.target_square);
-        // Negated, so that NaN counts as free and is then caught by the test below.
+        // Written as a negation, so that NaN counts as free and is caught by the test below.
         let turn_is_free = strength.partial_cmp(&noise) != Some(std::cmp::Ordering::Greater);
         let yaw = if turn_is_free { fallback_yaw } else { a.atan2(b) };
         let (sin, cos) = yaw.sin_cos();

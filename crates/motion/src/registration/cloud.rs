@@ -1,20 +1,22 @@
+//! Point clouds of frames, laid out for SIMD.
+
 use super::RegistrationError;
 use crate::clip::Clip;
 use crate::skeleton::WorldPose;
 use glam::{DVec2, Vec4};
 use std::ops::Range;
 
-/// Samples side by side in one SIMD register.
+/// Number of samples in one SIMD register.
 pub(super) const LANES: usize = 4;
 
 /// Four samples of one joint: x, z and height.
 pub(super) type Lanes = [Vec4; 3];
 
-/// Four samples of one joint, each spread over a whole register and weighted: what is multiplied
-/// with [`Lanes`].
+/// Four samples of one joint, each broadcast to a whole register and weighted: the left factor of
+/// the products with [`Lanes`].
 pub(super) type Spread = [[Vec4; 3]; LANES];
 
-/// The joints that weigh something, with their weights as shares of 1.
+/// The joints with a weight above 0, with their weights as shares of 1.
 #[derive(Clone, Debug)]
 pub(super) struct Shares(Vec<(usize, f32)>);
 
@@ -28,7 +30,7 @@ impl Shares {
         self.0.len()
     }
 
-    /// The weighted mean height of a clip's frame, metres.
+    /// Returns the weighted mean height of a clip's frame, metres.
     pub(super) fn mean_height(&self, clip: &Clip, frame: usize) -> f64 {
         let world = clip.world_pose(frame);
         let heights =
@@ -37,24 +39,25 @@ impl Shares {
     }
 }
 
-/// Every `stride`-th frame of a part of a clip as a cloud of points about the cloud's own centre of
-/// mass on the ground.
+/// Every `stride`-th frame of a part of a clip as a cloud of points relative to the cloud's own
+/// centre of mass on the ground.
 ///
-/// About their own centre the points are never farther off than a body is long, so that their
-/// products keep their digits in `f32`; the centres, which walk away, are kept in `f64`.
+/// Relative to their own centre the points are never farther away than the length of the body, so
+/// that their products keep their digits in `f32`; the centres, which may be far away, are stored
+/// in `f64`.
 #[derive(Clone, Debug)]
 pub(super) struct Cloud {
     pub(super) start: usize,
-    /// Frames of the clip that the part has, sampled or not.
+    /// Number of frames of the part, sampled or not.
     pub(super) span: usize,
     pub(super) samples: usize,
-    /// Where all centres are measured from, metres: (x, z) of the first.
+    /// The origin of all centres, metres: (x, z) of the first.
     pub(super) origin: DVec2,
     /// The weighted centres on the ground, one per sample.
     pub(super) x: Vec<f64>,
     pub(super) z: Vec<f64>,
-    /// Σw(x² + z²) + Σwy² of every sample, about its centre: rounded exactly as a pair's products
-    /// are, so that equal poses are 0 apart.
+    /// Σw(x² + z²) + Σwy² of every sample, relative to its centre: rounded exactly as the products
+    /// of a pair are, so that the distance of equal poses is 0.
     pub(super) square: Vec<f64>,
     /// Samples in groups of [`LANES`], each `shares.len()` long.
     points: Vec<Lanes>,
@@ -62,7 +65,8 @@ pub(super) struct Cloud {
 }
 
 impl Cloud {
-    /// `frames` lie inside the clip and are not empty. Heights are measured from `level`.
+    /// Builds the cloud of `frames`, which lie inside the clip and are not empty. Heights are
+    /// relative to `level`.
     pub(super) fn new(
         clip: &Clip,
         frames: Range<usize>,
@@ -70,13 +74,13 @@ impl Cloud {
         shares: &Shares,
         level: f64,
     ) -> Result<Self, RegistrationError> {
-        let mut cloud = Self::begun(frames, stride, shares);
+        let mut cloud = Self::reserved(frames, stride, shares);
         cloud.advance(clip, stride, shares, level, usize::MAX)?;
         Ok(cloud)
     }
 
-    /// Room for the points; none is known yet.
-    pub(super) fn begun(frames: Range<usize>, stride: usize, shares: &Shares) -> Self {
+    /// Returns a cloud with space reserved for its points, none of which is known yet.
+    pub(super) fn reserved(frames: Range<usize>, stride: usize, shares: &Shares) -> Self {
         let samples = frames.len().div_ceil(stride);
         Self {
             start: frames.start,
@@ -91,13 +95,13 @@ impl Cloud {
         }
     }
 
-    /// Samples whose points are known.
+    /// Returns the number of samples whose points are known.
     pub(super) fn done(&self) -> usize {
         self.square.len()
     }
 
-    /// The points of at least `samples` more samples of the clip that it was begun for, in whole
-    /// groups.
+    /// Computes the points of at least `samples` more samples of the clip for which it was begun,
+    /// in whole groups.
     pub(super) fn advance(
         &mut self,
         clip: &Clip,
@@ -116,7 +120,7 @@ impl Cloud {
                 if !world.positions.iter().all(|p| p.is_finite()) {
                     return Err(RegistrationError::NotFinite);
                 }
-                self.take(sample, &world, shares, level);
+                self.push_sample(sample, &world, shares, level);
             }
             spread.clear();
             self.spread(group, shares, &mut spread);
@@ -128,7 +132,7 @@ impl Cloud {
         Ok(())
     }
 
-    fn take(&mut self, sample: usize, world: &WorldPose, shares: &Shares, level: f64) {
+    fn push_sample(&mut self, sample: usize, world: &WorldPose, shares: &Shares, level: f64) {
         let at = |joint: usize| world.positions[joint].as_dvec3();
         let weighed = shares.0.iter().map(|&(joint, w)| at(joint) * f64::from(w));
         let (sum, weight) = (
@@ -151,7 +155,8 @@ impl Cloud {
         }
     }
 
-    /// Groups of [`LANES`] samples; the last is filled up with points at its centre.
+    /// Returns the number of groups of [`LANES`] samples; the last group is padded with points at
+    /// its centre.
     pub(super) fn groups(&self) -> usize {
         self.samples.div_ceil(LANES)
     }
@@ -160,7 +165,7 @@ impl Cloud {
         &self.points[group * self.joints..(group + 1) * self.joints]
     }
 
-    /// Adds a group to `out` in the form of the left factor.
+    /// Appends a group to `out` in the form of the left factor.
     pub(super) fn spread(&self, group: usize, shares: &Shares, out: &mut Vec<Spread>) {
         let spread = self.group(group).iter().zip(&shares.0);
         out.extend(spread.map(|(lanes, &(_, w))| {
@@ -168,13 +173,13 @@ impl Cloud {
         }));
     }
 
-    /// Where the centre of a sample lies.
+    /// Returns the centre of a sample.
     pub(super) fn centre(&self, sample: usize) -> DVec2 {
         DVec2::new(self.x[sample], self.z[sample])
     }
 
-    /// Samples whose window of `window` frames starts in `starts` (clip frames) and does not cross
-    /// the end of the part.
+    /// Returns the samples whose window of `window` frames starts in `starts` (clip frames) and
+    /// does not cross the end of the part.
     pub(super) fn starts(
         &self,
         starts: &Range<usize>,
@@ -188,11 +193,11 @@ impl Cloud {
     }
 }
 
-/// The products of 4 × 4 pairs of samples, summed over the joints: Σw(x x' + z z'), Σw(x z' - z x')
-/// and Σw y y', each by row.
+/// Returns the products of 4 × 4 pairs of samples, summed over the joints: Σw(x x' + z z'), Σw(x z'
+/// - z x') and Σw y y', each by row.
 ///
-/// Twelve sums stay in registers while the joints run through. The order of all operations is
-/// fixed, and none is fused: every machine, with whatever registers, gets the same bits.
+/// Twelve sums stay in registers during the loop over joints. The order of all operations is fixed,
+/// and none is fused, so that every machine gets the same bits.
 pub(super) fn tile(rows: &[Spread], columns: &[Lanes]) -> [[Vec4; LANES]; 3] {
     let mut dot = [Vec4::ZERO; LANES];
     let mut cross = [Vec4::ZERO; LANES];

@@ -1,3 +1,5 @@
+//! Point clouds that are built once and compared with many others.
+
 use super::RegistrationError;
 use super::cloud::{Cloud, Shares};
 use super::points::checked_sum;
@@ -6,8 +8,8 @@ use crate::clip::Clip;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Every `stride`-th frame of a part of a clip as a cloud of weighted points: made once, compared
-/// with many others.
+/// Every `stride`-th frame of a part of a clip as a cloud of weighted points, built once and
+/// compared with many others.
 #[derive(Clone, Debug)]
 pub struct PointClouds {
     pub(super) cloud: Arc<Cloud>,
@@ -18,13 +20,13 @@ pub struct PointClouds {
 }
 
 impl PointClouds {
-    /// The clouds of `frames` (clamped to the clip), every `stride`-th (at least 1), with one
-    /// weight per joint. Heights are summed from `level_m`: about the middle of the body, the same
-    /// for all that are compared ([`Self::level_m`]).
+    /// Builds the clouds of `frames` (clamped to the clip), every `stride`-th (at least 1), with
+    /// one weight per joint. Heights are relative to `level_m`: about the middle of the body, the
+    /// same for all clouds that are compared ([`Self::level_m`]).
     ///
     /// # Errors
-    /// [`RegistrationError`] when the part is empty, the weights do not fit, or a position is not
-    /// finite.
+    /// [`RegistrationError`] when the part is empty, the number of weights differs from that of the
+    /// joints, or a position is not finite.
     pub fn new(
         clip: &Clip,
         frames: Range<usize>,
@@ -35,10 +37,11 @@ impl PointClouds {
         PointCloudsBegun::new(clip, frames, weights, stride, level_m)?.finish(clip)
     }
 
-    /// The weighted mean height of a clip's first frame, metres; 0 for a clip without frames.
+    /// Returns the weighted mean height of a clip's first frame, metres; 0 for a clip without
+    /// frames.
     ///
     /// # Errors
-    /// [`RegistrationError::Weights`] when the weights do not fit.
+    /// [`RegistrationError::Weights`] when the number of weights differs from that of the joints.
     pub fn level_m(clip: &Clip, weights: &[f64]) -> Result<f64, RegistrationError> {
         let sum = checked_sum(weights, clip.skeleton().len())?;
         if clip.frames() == 0 {
@@ -47,15 +50,15 @@ impl PointClouds {
         Ok(Shares::new(weights, sum).mean_height(clip, 0))
     }
 
-    /// Samples in it.
+    /// Returns the number of samples.
     #[must_use]
     pub fn samples(&self) -> usize {
         self.cloud.samples
     }
 }
 
-/// [`PointClouds`] in slices. Between them it does not hold the clip: every call is given the same
-/// one.
+/// The construction of [`PointClouds`] in slices. It does not hold the clip: every call must be
+/// given the same one.
 #[derive(Clone, Debug)]
 pub struct PointCloudsBegun {
     cloud: Cloud,
@@ -66,10 +69,11 @@ pub struct PointCloudsBegun {
 }
 
 impl PointCloudsBegun {
-    /// As [`PointClouds::new`]; no points are known yet.
+    /// Begins the construction of clouds as in [`PointClouds::new`]; no points are known yet.
     ///
     /// # Errors
-    /// [`RegistrationError`] when the part is empty, or the weights do not fit.
+    /// [`RegistrationError`] when the part is empty, or the number of weights differs from that of
+    /// the joints.
     pub fn new(
         clip: &Clip,
         frames: Range<usize>,
@@ -84,7 +88,7 @@ impl PointCloudsBegun {
         }
         let (stride, shares) = (stride.max(1), Shares::new(weights, frame_weight));
         Ok(Self {
-            cloud: Cloud::begun(frames, stride, &shares),
+            cloud: Cloud::reserved(frames, stride, &shares),
             shares,
             frame_weight,
             stride,
@@ -92,13 +96,14 @@ impl PointCloudsBegun {
         })
     }
 
-    /// Samples whose points are known.
+    /// Returns the number of samples whose points are known.
     #[must_use]
     pub fn done(&self) -> usize {
         self.cloud.done()
     }
 
-    /// The points of at least `samples` more samples (they come in fours), and how many are known.
+    /// Computes the points of at least `samples` more samples (in groups of four), and returns the
+    /// progress.
     ///
     /// # Errors
     /// [`RegistrationError::NotFinite`].
@@ -107,7 +112,7 @@ impl PointCloudsBegun {
         Ok(Progress { done: self.cloud.done(), total: self.cloud.samples })
     }
 
-    /// The rest, and the clouds.
+    /// Computes the remaining points and returns the clouds.
     ///
     /// # Errors
     /// [`RegistrationError::NotFinite`].

@@ -1,32 +1,35 @@
+//! Registration curves: the time warp between two clips, and the alignment along it.
+
 use super::{DistanceMatrix, PairTerms, PathError, PathOptions, RegistrationPath, optimal_path};
 use crate::math::{MonotoneCurve, Planar, unwrap_near};
 use glam::DVec2;
 
-/// What registration curves are made with.
+/// Options of registration curves.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct RegistrationOptions {
-    /// What the path has to be like.
+    /// Constraints on the path.
     pub path: PathOptions,
-    /// Over how many frames to either side the curves are smoothed.
+    /// The number of frames to either side over which the curves are smoothed.
     pub smoothing: usize,
 }
 
 impl RegistrationOptions {
-    /// The default path, smoothed over a tenth of a second to either side at `fps`.
+    /// Returns the options with the default path, smoothed over a tenth of a second to either side
+    /// at `fps`.
     #[must_use]
     pub fn new(fps: f64) -> Self {
         Self { path: PathOptions::default(), smoothing: (0.1 * fps).round() as usize }
     }
 }
 
-/// Which frame of a clip (the *target*) is like which frame of another (the *source*), and how the
-/// target then lies on the source: the registration curve of Kovar and Gleicher (2003), its
-/// timewarp and its alignment curve.
+/// The correspondence of a clip (the *target*) to another (the *source*), and the alignment of the
+/// target with the source: the registration curve of Kovar and Gleicher (2003), with its time warp
+/// and alignment curve.
 ///
-/// Cells of a path are the first frames of two windows; what is alike is their middle. So a cell
-/// (i, j) of windows of K frames stands for the frames i + (K - 1)/2 and j + (K - 1)/2, and the
-/// curves reach from the first frames of the first windows to the last frames of the last ones, at
-/// equal speed in the two half windows at the ends.
+/// The cells of a path are the first frames of two windows, and their middles correspond. A cell
+/// (i, j) of windows of K frames therefore stands for the frames i + (K - 1)/2 and j + (K - 1)/2,
+/// and the curves reach from the first frames of the first windows to the last frames of the last
+/// ones, at equal speed in the two half windows at the ends.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Registration {
     path: RegistrationPath,
@@ -35,7 +38,7 @@ pub struct Registration {
 }
 
 impl Registration {
-    /// Path and curves through `matrix`, which was made from `terms`.
+    /// Finds the path and the curves through `matrix`, which was made from `terms`.
     ///
     /// # Errors
     /// [`PathError`] when no path is possible, or the terms are not those of the matrix.
@@ -47,10 +50,10 @@ impl Registration {
         Self::along(terms, matrix, optimal_path(matrix, &options.path)?, options.smoothing)
     }
 
-    /// The curves along a path that is known, smoothed over `smoothing` frames to either side.
+    /// Returns the curves along a known path, smoothed over `smoothing` frames to either side.
     ///
     /// # Errors
-    /// [`PathError`] when the path is empty or leaves what the terms compare.
+    /// [`PathError`] when the path is empty or leaves the range of the terms.
     pub fn along(
         terms: &PairTerms,
         matrix: &DistanceMatrix,
@@ -78,35 +81,35 @@ impl Registration {
         fixed.extend(path.pins.iter().map(middle));
         fixed.push(end);
         let smoothing = smoothing as f64;
-        let warp = timewarp(&polyline, &fixed, smoothing).ok_or(PathError::NotFinite)?;
+        let warp = time_warp(&polyline, &fixed, smoothing).ok_or(PathError::NotFinite)?;
         let alignment = AlignmentCurve::new(terms, matrix, &path, &cells, smoothing)?;
         Ok(Self { path, warp, alignment })
     }
 
-    /// The path through the matrix.
+    /// Returns the path through the matrix.
     #[must_use]
     pub fn path(&self) -> &RegistrationPath {
         &self.path
     }
 
-    /// Frames of the target over frames of the source, strictly increasing. Its ends are those of
-    /// what is registered.
+    /// Returns frames of the target over frames of the source, strictly increasing. Its ends are
+    /// those of the registered part.
     #[must_use]
     pub fn warp(&self) -> &MonotoneCurve {
         &self.warp
     }
 
-    /// How the target lies on the source where the source shows `source_frame` (may lie between
-    /// frames): `source_world_from_target_world`. Its yaw is unwrapped: it may pass half a turn,
-    /// and never jumps.
+    /// Returns the alignment of the target at `source_frame` (may lie between frames):
+    /// `source_world_from_target_world`. Its yaw is unwrapped: it may exceed half a turn, and never
+    /// jumps.
     #[must_use]
     pub fn alignment_at(&self, source_frame: f64) -> Planar {
         self.alignment.at(0.5 * (source_frame + self.warp.at(source_frame)))
     }
 }
 
-/// A polyline that is read as its mean over a stretch to either side: continuously differentiable,
-/// and never steeper than the polyline.
+/// A polyline that is smoothed by a moving average: continuously differentiable, and never steeper
+/// than the polyline.
 #[derive(Clone, Debug, PartialEq)]
 struct Smoothed {
     x: Vec<f64>,
@@ -116,7 +119,7 @@ struct Smoothed {
 }
 
 impl Smoothed {
-    /// `x` strictly increasing, not empty, as long as `y`.
+    /// Returns the smoothed polyline; `x` is strictly increasing, not empty, as long as `y`.
     fn new(x: Vec<f64>, y: Vec<f64>) -> Self {
         let mut sum = 0.0;
         let mut integral = vec![0.0];
@@ -127,7 +130,7 @@ impl Smoothed {
         Self { x, y, integral }
     }
 
-    /// The integral up to `at` and the value there; constant beyond the ends.
+    /// Returns the integral up to `at` and the value there; constant beyond the ends.
     fn read(&self, at: f64) -> (f64, f64) {
         let last = self.x.len() - 1;
         if at <= self.x[0] {
@@ -151,20 +154,20 @@ impl Smoothed {
     }
 }
 
-/// How slow one clip may become against the mean of both: a twentieth, where the fixed points allow
-/// it.
+/// The least speed of one clip relative to the mean of both: a twentieth, where the fixed points
+/// allow it.
 const MIN_RATE: f64 = 0.05;
 
-/// The strictly increasing curve fitted to a path of frames (i, j), through the `fixed` ones of its
-/// points.
+/// Returns the strictly increasing curve fitted to a path of frames (i, j), through the `fixed`
+/// ones of its points.
 ///
-/// Both clips are treated alike: the lead v = j - i over the mean u = (i + j)/2, which rises with
-/// every step. It is smoothed over `smoothing` frames to either side, less towards a fixed point,
-/// which stays; i = u - v/2 and j = u + v/2 both rise while |dv/du| < 2. Where a run of steps makes
-/// it steeper than a twentieth less than that, the stretch between its fixed points is drawn
-/// towards the straight line. Then a monotone cubic goes through the knots, two for every width of
-/// smoothing.
-fn timewarp(path: &[(f64, f64)], fixed: &[(f64, f64)], smoothing: f64) -> Option<MonotoneCurve> {
+/// Both clips are treated symmetrically: the lead v = j - i is a function of the mean u = (i +
+/// j)/2, which rises with every step. It is smoothed over `smoothing` frames to either side, less
+/// towards a fixed point, which stays; i = u - v/2 and j = u + v/2 both rise while |dv/du| < 2.
+/// Where a run of steps makes it steeper than a twentieth less than that, the part between its
+/// fixed points is drawn towards the straight line. Then a monotone cubic is put through knots, two
+/// for every width of smoothing.
+fn time_warp(path: &[(f64, f64)], fixed: &[(f64, f64)], smoothing: f64) -> Option<MonotoneCurve> {
     let (mean, lead) = path.iter().map(|&(i, j)| (0.5 * (i + j), j - i)).unzip();
     let lead = Smoothed::new(mean, lead);
     let mut knots: Vec<(f64, f64)> = Vec::new();
@@ -172,7 +175,7 @@ fn timewarp(path: &[(f64, f64)], fixed: &[(f64, f64)], smoothing: f64) -> Option
     knots.push(from);
     let end = *fixed.last()?;
     for &to in &fixed[1..] {
-        // A pin beside the start or end, which only side steps lead to, is left to the smoothing.
+        // A pin near the start or end that is reached by side steps alone is left to the smoothing.
         if to.0 <= from.0 || to.1 <= from.1 || (to != end && (to.0 >= end.0 || to.1 >= end.1)) {
             continue;
         }
@@ -207,11 +210,11 @@ fn timewarp(path: &[(f64, f64)], fixed: &[(f64, f64)], smoothing: f64) -> Option
     MonotoneCurve::through(&knots)
 }
 
-/// How the target lies on the source along a path.
+/// The alignment of the target with the source along a path.
 ///
-/// Kept as the turn and the centres of both windows, and put together when asked: each is smoothed
-/// where it is small and continuous. Smoothing x and z of the transform themselves would couple
-/// them to the turn by the distance from the origin.
+/// It is stored as the yaw and the centres of both windows, and combined on evaluation: each is
+/// smoothed where it is small and continuous. Smoothing x and z of the transform themselves would
+/// couple them to the yaw by the distance from the origin.
 #[derive(Clone, Debug, PartialEq)]
 struct AlignmentCurve {
     yaw: Smoothed,
@@ -233,7 +236,7 @@ impl AlignmentCurve {
         for (&(row, column), &(i, j)) in path.cells.iter().zip(cells) {
             let (source, target) = matrix.frames(row, column);
             let found = terms.alignment(source, target, matrix.window(), yaw)?;
-            // The nearest of all equal turns: unwrapped.
+            // The nearest of all equivalent yaws, so that the curve is unwrapped.
             yaw = unwrap_near(found.transform.yaw, yaw);
             let centre = terms.target_centre(target, matrix.window());
             mean.push(0.5 * (i + j));
@@ -259,7 +262,7 @@ impl AlignmentCurve {
     }
 }
 
-/// A point of the ground turned about the origin.
+/// Rotates a point of the ground about the origin.
 fn turned(yaw: f64, point: DVec2) -> DVec2 {
     let turn = Planar { yaw, shift: DVec2::ZERO };
     turn.apply_ground(point)

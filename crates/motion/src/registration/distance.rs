@@ -1,3 +1,5 @@
+//! Matrices of window distances.
+
 use super::REFERENCE_HEIGHT_M;
 
 /// Distances between windows of two clips: one row per source frame, one column per target frame,
@@ -14,44 +16,44 @@ pub struct DistanceMatrix {
 }
 
 impl DistanceMatrix {
-    /// Rows: source windows.
+    /// Returns the number of rows: source windows.
     #[must_use]
     pub fn rows(&self) -> usize {
         self.rows
     }
 
-    /// Columns: target windows.
+    /// Returns the number of columns: target windows.
     #[must_use]
     pub fn columns(&self) -> usize {
         self.columns
     }
 
-    /// Frames from one row or column to the next.
+    /// Returns the number of frames between rows or columns.
     #[must_use]
     pub fn stride(&self) -> usize {
         self.stride
     }
 
-    /// Frames of each window.
+    /// Returns the number of frames of each window.
     #[must_use]
     pub fn window(&self) -> usize {
         self.window
     }
 
-    /// The first frames of the windows of a cell: (source, target).
+    /// Returns the first frames of the windows of a cell: (source, target).
     #[must_use]
     pub fn frames(&self, row: usize, column: usize) -> (usize, usize) {
         (self.source_start + row * self.stride, self.target_start + column * self.stride)
     }
 
-    /// All root-mean-square distances per point, row-major, metres of the clips' own body (see
-    /// [`Self::cm_scale`]).
+    /// Returns all root-mean-square distances per point, row-major, metres of the clips' own body
+    /// (see [`Self::cm_scale`]).
     #[must_use]
     pub fn rms_m(&self) -> &[f32] {
         &self.rms_m
     }
 
-    /// One distance, metres; `None` outside the matrix.
+    /// Returns one distance, metres; `None` outside the matrix.
     #[must_use]
     pub fn get(&self, row: usize, column: usize) -> Option<f32> {
         if row < self.rows && column < self.columns {
@@ -61,15 +63,15 @@ impl DistanceMatrix {
         }
     }
 
-    /// The distances of one row, metres; empty outside the matrix.
+    /// Returns the distances of one row, metres; empty outside the matrix.
     #[must_use]
     pub fn row(&self, row: usize) -> &[f32] {
         let start = row.saturating_mul(self.columns);
         self.rms_m.get(start..start.saturating_add(self.columns)).unwrap_or_default()
     }
 
-    /// The mean of every block of `factor` × `factor` cells, less at the far borders: the same
-    /// picture with fewer cells.
+    /// Returns the means of all blocks of `factor` × `factor` cells, smaller at the far borders:
+    /// the same picture with fewer cells.
     #[must_use]
     pub fn pooled(&self, factor: usize) -> Self {
         let factor = factor.max(1);
@@ -89,21 +91,22 @@ impl DistanceMatrix {
         Self { stride: self.stride * factor, rows, columns, rms_m, ..*self }
     }
 
-    /// What turns [`rms_m`](Self::rms_m) into centimetres on the reference body.
+    /// Returns the factor from [`rms_m`](Self::rms_m) to centimetres on the reference body.
     #[must_use]
     pub fn cm_scale(body_height: f64) -> f64 {
         100.0 * REFERENCE_HEIGHT_M / body_height
     }
 
-    /// The cell of the smallest distance, the first of equals; `None` for an empty matrix.
+    /// Returns the cell of the smallest distance, the first of equal ones; `None` for an empty
+    /// matrix.
     #[must_use]
     pub fn minimum(&self) -> Option<(usize, usize)> {
         let (at, _) = self.rms_m.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1))?;
         Some((at / self.columns, at % self.columns))
     }
 
-    /// Cells no larger than their eight neighbours, smallest first. Of a plateau its first cell is
-    /// taken; the border counts.
+    /// Returns the cells that are no larger than their eight neighbours, smallest first. Of a
+    /// plateau its first cell is returned; cells on the border count.
     #[must_use]
     pub fn local_minima(&self) -> Vec<(usize, usize)> {
         let mut minima = Vec::new();
@@ -125,7 +128,7 @@ impl DistanceMatrix {
         for r in row.saturating_sub(1)..(row + 2).min(self.rows) {
             for c in column.saturating_sub(1)..(column + 2).min(self.columns) {
                 let there = self.rms_m[r * self.columns + c];
-                // Strictly smaller than what comes before it, so that a plateau is counted once.
+                // Strictly smaller than previous cells, so that a plateau is counted once.
                 if there < here || (there == here && (r, c) < (row, column)) {
                     return false;
                 }
@@ -140,7 +143,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn minima_are_sorted_and_a_plateau_counts_once() {
+    fn local_minima_are_sorted_and_unique_on_a_plateau() {
         let matrix = DistanceMatrix {
             stride: 1,
             window: 1,

@@ -1,12 +1,12 @@
-//! A small body that walks by sines: for tests of what does not care how well it walks.
+//! A small body that walks by sines, for tests that do not need a realistic walk.
 
 use crate::clip::Clip;
 use crate::skeleton::{Joint, Skeleton};
 use glam::{Quat, Vec3};
 use std::sync::Arc;
 
-/// Hips, spine, head, two arms of two bones, two legs of three: 13 joints, about 1.7 m, facing +Z
-/// at rest.
+/// Returns hips, spine, head, two arms of two bones and two legs of three: 13 joints, about 1.7 m,
+/// facing +Z at rest.
 pub fn body() -> Arc<Skeleton> {
     let joint = |name: &str, parent: Option<usize>, x: f32, y: f32, z: f32| Joint {
         name: name.into(),
@@ -42,26 +42,26 @@ pub fn body() -> Arc<Skeleton> {
     Arc::new(Skeleton::new(joints).unwrap())
 }
 
-/// How the body walks.
+/// Parameters of the walk.
 #[derive(Clone, Copy, Debug)]
 pub struct Walk {
-    /// How many frames the clip has.
+    /// Number of frames.
     pub frames: usize,
-    /// Frames per second.
+    /// Frame rate, frames per second.
     pub fps: f64,
-    /// Metres per second.
+    /// Speed, metres per second.
     pub speed: f32,
     /// Strides per second.
     pub cadence: f32,
-    /// Radians that a limb swings.
+    /// Amplitude of the limbs' swing, radians.
     pub swing: f32,
-    /// Where in the stride it starts, 0 to 1.
+    /// Phase of the stride at the start, 0 to 1.
     pub phase: f32,
     /// Facing at the start, radians.
     pub heading: f32,
-    /// Radians per second.
+    /// Yaw rate, radians per second.
     pub turning: f32,
-    /// Where it starts: x and z, metres.
+    /// Position at the start: x and z, metres.
     pub start: (f32, f32),
 }
 

@@ -1,42 +1,42 @@
+//! Paths through distance matrices, by dynamic programming.
+
 mod search;
-mod stretch;
+mod section;
 
 pub use search::PathSearch;
 
 use super::{DistanceMatrix, PathError};
 
-/// The largest slope limit: the choices of a cell fit into 16 bits.
+/// The greatest slope limit: the choices of a cell fit into 16 bits.
 pub const MAX_SLOPE_LIMIT: usize = 16;
 
-/// Where a path may begin or end.
+/// The cells at which a path may begin or end.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum PathEnd {
-    /// In the corner: with the first (last) windows of both clips.
+    /// The corner: the first (last) windows of both clips.
     #[default]
     Corner,
-    /// Anywhere on the border: with the first (last) window of one clip, and one of the first
-    /// (last) windows of the other.
+    /// Any cell on the border: the first (last) window of one clip, and one of the first (last)
+    /// windows of the other.
     Border {
-        /// The share of the other clip that may be left out, 0 to 1; above a half nothing may be
-        /// left.
+        /// The share of the other clip that may be left out, 0 to 1; at most half is ever left out.
         slack: f64,
     },
 }
 
-/// What a path has to be like.
+/// Constraints on a path.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct PathOptions {
-    /// How many steps in a row may go on in one clip while the other stands: 1 to
-    /// [`MAX_SLOPE_LIMIT`].
+    /// The number of steps in a row that one clip may advance alone: 1 to [`MAX_SLOPE_LIMIT`].
     pub slope_limit: usize,
-    /// Where it begins.
+    /// The cells at which it may begin.
     pub start: PathEnd,
-    /// Where it ends.
+    /// The cells at which it may end.
     pub end: PathEnd,
-    /// Cells (row, column) that it must pass, in any order.
+    /// Cells (row, column) that it must pass through, in any order.
     pub pins: Vec<(usize, usize)>,
-    /// What a step in one clip alone costs beside its cell, metres: settles plateaus, where both
-    /// clips stand still, for the diagonal.
+    /// The cost of a step in one clip alone in addition to its cell, metres: on plateaus, where
+    /// both clips stand still, it makes the path prefer the diagonal.
     pub side_step_m: f64,
 }
 
@@ -53,31 +53,32 @@ impl Default for PathOptions {
     }
 }
 
-/// A way through a distance matrix: which frame of one clip is like which frame of the other.
+/// A path through a distance matrix: the correspondence of the frames of two clips.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RegistrationPath {
-    /// Cells (row, column) from beginning to end; each step goes one row, one column, or both on.
+    /// Cells (row, column) from beginning to end; each step advances one row, one column, or both.
     pub cells: Vec<(usize, usize)>,
-    /// Those of the cells that were asked for: pins, in order.
+    /// The pins among the cells, in order.
     pub pins: Vec<(usize, usize)>,
-    /// The mean distance along the path, metres per point, each cell weighted by how many frames
-    /// its step goes on in both clips.
+    /// The mean distance along the path, metres per point, each cell weighted by the number of
+    /// frames that its step advances in both clips together.
     pub mean_m: f64,
 }
 
-/// The path with the least cost (Kovar, Gleicher 2003, section 4.2; Sakoe, Chiba 1978 for the
+/// Returns the path of least cost (Kovar, Gleicher 2003, section 4.2; Sakoe, Chiba 1978 for the
 /// weights).
 ///
-/// A step on in both clips costs its cell twice, a step on in one of them once, and
-/// [`PathOptions::side_step_m`] beside: between two given ends all paths then weigh the same, and
-/// none is favoured for its length. With a free end the least *mean* is sought, by Dinkelbach's
+/// A step in both clips costs twice its cell, a step in one of them once its cell plus
+/// [`PathOptions::side_step_m`]: between two given ends all paths then have the same total weight,
+/// and none is preferred for its length. With a free end the least *mean* is found, by Dinkelbach's
 /// iteration.
 ///
-/// Exact: how many steps have gone one way is part of the state, O(cells × slope limit) in time; 2
-/// bytes per cell. Of equal paths the one with diagonal steps towards its end is taken.
+/// The result is exact: the number of steps in a row that advance one clip is part of the state,
+/// O(cells × slope limit) in time; 2 bytes per cell. Of equal paths the one with diagonal steps
+/// towards its end is taken.
 ///
 /// # Errors
-/// [`PathError`] says what excludes every path.
+/// [`PathError`] with the reason why there is no path.
 pub fn optimal_path(
     matrix: &DistanceMatrix,
     options: &PathOptions,
@@ -85,14 +86,15 @@ pub fn optimal_path(
     PathSearch::new(matrix, options)?.finish(matrix)
 }
 
-/// [`optimal_path`] for long clips: the path is sought in a matrix with cells of `factor` ×
-/// `factor` first (their mean), then in a corridor of `radius` cells to either side of it.
+/// Returns an approximation of [`optimal_path`] for long clips: the path is found in a matrix of
+/// blocks of `factor` × `factor` cells first (their mean), then in a corridor of `radius` cells to
+/// either side of it.
 ///
-/// Not exact: what leaves the corridor is not seen. O(N² / factor² + N × radius) beside one reading
-/// of the matrix.
+/// It is not exact: paths outside the corridor are not considered. O(N² / factor² + N × radius)
+/// plus one reading of the matrix.
 ///
 /// # Errors
-/// [`PathError`], also where the corridor leaves no path: then take a larger radius.
+/// [`PathError`], also when there is no path in the corridor: then use a larger radius.
 pub fn path_in_corridor(
     matrix: &DistanceMatrix,
     options: &PathOptions,
@@ -102,7 +104,7 @@ pub fn path_in_corridor(
     PathSearch::in_corridor(matrix, options, factor, radius)?.finish(matrix)
 }
 
-/// The pins in order, each strictly behind the one before in both clips.
+/// Returns the pins in order, each strictly after the one before in both clips.
 fn checked_pins(
     matrix: &DistanceMatrix,
     options: &PathOptions,
@@ -148,20 +150,20 @@ fn no_path(
     let start = from.or((options.start == PathEnd::Corner).then_some((0, 0)));
     let needed = start.zip(to).map(|(from, to)| {
         let (i, j) = (to.0 - from.0, to.1 - from.1);
-        // With n steps of the shorter side there are n + 1 places for s steps of the longer one
-        // alone.
+        // The n steps of the shorter side leave n + 1 gaps for the s single steps of the longer
+        // one.
         (i.max(j) - i.min(j)).div_ceil(i.min(j) + 1)
     });
     PathError::NoPath {
         from: start.map(|cell| matrix.frames(cell.0, cell.1)),
         to: to.map(|cell| matrix.frames(cell.0, cell.1)),
         slope_limit: options.slope_limit,
-        // Where a run goes on across a pin, the sides alone do not tell.
+        // Where a run continues across a pin, the lengths of the sides are not sufficient.
         needed: needed.unwrap_or_default().max(options.slope_limit + 1),
     }
 }
 
-/// Whether leaving out `left` of `of` cells is no more than the share `slack`.
+/// Returns whether leaving out `left` of `of` cells is at most the share `slack`.
 fn within(left: usize, of: usize, slack: f64) -> bool {
     left == 0 || (left as f64) <= slack.clamp(0.0, 0.5) * of as f64
 }

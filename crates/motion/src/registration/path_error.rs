@@ -1,10 +1,12 @@
+//! Errors of the search for a path.
+
 use super::RegistrationError;
 use super::path::MAX_SLOPE_LIMIT;
 
-/// Why there is no path through a distance matrix. Places are frames: (first clip, second clip).
+/// Error finding a path through a distance matrix. Pairs of frames are (first clip, second clip).
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum PathError {
-    /// There is no window of one of the clips.
+    /// A clip is shorter than the window.
     #[error(
         "a clip is shorter than the window of {window} frames, so that there is nothing to register: lower the window or use a longer clip"
     )]
@@ -12,7 +14,7 @@ pub enum PathError {
         /// Frames of the window.
         window: usize,
     },
-    /// A limit that is none.
+    /// A slope limit out of range.
     #[error(
         "a slope limit of {slope_limit} cannot be used: give a number from 1 to {MAX_SLOPE_LIMIT}"
     )]
@@ -20,7 +22,7 @@ pub enum PathError {
         /// The limit given.
         slope_limit: usize,
     },
-    /// A pin beside the matrix.
+    /// A pin outside of the matrix.
     #[error(
         "the pin in row {row}, column {column} lies outside the matrix of {rows} rows and {columns} columns: move it inside or remove it"
     )]
@@ -34,8 +36,7 @@ pub enum PathError {
         /// Columns of the matrix.
         columns: usize,
     },
-    /// Two pins of which one lies before the other in one clip and behind it, or beside it, in the
-    /// other.
+    /// Two pins of which the later one in the first clip is not later in the second.
     #[error(
         "the pins at frames {} | {} and {} | {} exclude each other, for both clips only go forward: remove one, or move the later one on in both clips",
         first.0, first.1, second.0, second.1
@@ -46,7 +47,7 @@ pub enum PathError {
         /// Frames of the other.
         second: (usize, usize),
     },
-    /// A pin beside the corner where the path must begin or end.
+    /// A pin that excludes the corner at which the path must begin or end.
     #[error("the pin at frames {} | {} holds one clip back at the path's {end}: free the {end}, or move the pin inwards", pin.0, pin.1)]
     PinAtEnd {
         /// Frames of the pin.
@@ -54,25 +55,25 @@ pub enum PathError {
         /// "start" or "end".
         end: &'static str,
     },
-    /// One clip is so much longer, here, that the limit leaves no path.
+    /// One clip is so much longer than the other that the limit leaves no path.
     #[error(
         "no path with a slope limit of {slope_limit} goes from {} to {}: raise the slope limit to {needed} or more, free the ends, or move the pins",
         place(*from, "the start"), place(*to, "the end")
     )]
     NoPath {
-        /// Frames where the stretch begins; `None` for a free start.
+        /// Frames at which the part without a path begins; `None` for a free start.
         from: Option<(usize, usize)>,
-        /// Frames where it ends; `None` for a free end.
+        /// Frames at which it ends; `None` for a free end.
         to: Option<(usize, usize)>,
         /// The limit given.
         slope_limit: usize,
-        /// The smallest limit that may do.
+        /// The least limit that may suffice.
         needed: usize,
     },
     /// The clips cannot be compared along the path.
     #[error(transparent)]
     Registration(#[from] RegistrationError),
-    /// The distances are no numbers.
+    /// The distances are not finite.
     #[error("a distance is not a finite number: repair or crop the clips first")]
     NotFinite,
 }

@@ -1,15 +1,18 @@
+//! Weights of joints, and the unit of distances.
+
 use super::RegistrationError;
 use crate::skeleton::Skeleton;
 
-/// The body height that distances are scaled to, metres.
+/// The body height to which distances are scaled, metres.
 pub const REFERENCE_HEIGHT_M: f64 = 1.75;
 
-/// The root-mean-square distance per point, centimetres on a body of [`REFERENCE_HEIGHT_M`].
+/// Returns the root-mean-square distance per point, centimetres on a body of
+/// [`REFERENCE_HEIGHT_M`].
 ///
-/// `distance` is a weighted sum of squared distances (m²) over points that weigh `weight` in all
-/// (section A's D and W), measured on a body `body_height` metres tall
-/// ([`crate::skeleton::Roles::body_height`]): `100 · √(D / W) · 1.75 / height`. A height or weight
-/// that is not above 0 leaves nothing to scale by; the result is then NaN.
+/// `distance` is a weighted sum of squared distances (m²) over points with the total weight
+/// `weight` (D and W of the [module](super)'s formula), measured on a body `body_height` metres
+/// tall ([`crate::skeleton::Roles::body_height`]): `100 · √(D / W) · 1.75 / height`. NaN if height
+/// or weight is not above 0.
 #[must_use]
 pub fn rms_cm(distance: f64, weight: f64, body_height: f64) -> f64 {
     if !(weight > 0.0 && body_height > 0.0) {
@@ -18,17 +21,17 @@ pub fn rms_cm(distance: f64, weight: f64, body_height: f64) -> f64 {
     100.0 * (distance.max(0.0) / weight).sqrt() * REFERENCE_HEIGHT_M / body_height
 }
 
-/// The same weight for every joint; they add up to 1.
+/// Returns the same weight for every joint; their sum is 1.
 #[must_use]
 pub fn uniform_weights(skeleton: &Skeleton) -> Vec<f64> {
     vec![1.0 / skeleton.len() as f64; skeleton.len()]
 }
 
-/// Weights by limb length; they add up to 1.
+/// Returns weights by limb length; their sum is 1.
 ///
 /// Every joint gets half of each bone that meets in it, so that the weighted sum is the integral
-/// over the limbs by the trapezoid rule. Thirty finger joints then weigh what the hands' length
-/// weighs, not what thirty joints weigh. Uniform for a skeleton without lengths.
+/// over the limbs by the trapezoid rule. Thirty finger joints then have the weight of the hands'
+/// length, not that of thirty joints. Uniform for a skeleton without lengths.
 #[must_use]
 pub fn limb_weights(skeleton: &Skeleton) -> Vec<f64> {
     let mut weights = vec![0.0; skeleton.len()];
@@ -49,7 +52,7 @@ pub fn limb_weights(skeleton: &Skeleton) -> Vec<f64> {
     weights.into_iter().map(|weight| weight / total).collect()
 }
 
-/// The sum of the weights.
+/// Returns the sum of the weights.
 ///
 /// # Errors
 /// [`RegistrationError::Weights`] unless there are `expected` of them, none negative or not finite,
@@ -78,7 +81,7 @@ mod tests {
     }
 
     #[test]
-    fn long_limbs_weigh_more() {
+    fn limb_weights_are_proportional_to_bone_lengths() {
         let skeleton = Skeleton::new(vec![
             joint(None, Vec3::ZERO, None),
             joint(Some(0), Vec3::Y * 0.6, None),
@@ -94,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn a_skeleton_without_lengths_has_uniform_weights() {
+    fn limb_weights_without_lengths_are_uniform() {
         let skeleton =
             Skeleton::new(vec![joint(None, Vec3::ZERO, None), joint(Some(0), Vec3::ZERO, None)])
                 .unwrap();
@@ -102,8 +105,8 @@ mod tests {
     }
 
     #[test]
-    fn distances_are_in_centimetres_of_the_reference_body() {
-        // Every point 3 cm off on a body of 0.875 m is 6 cm off on one of 1.75 m.
+    fn rms_cm_is_scaled_to_the_reference_body() {
+        // Points 3 cm apart on a body of 0.875 m are 6 cm apart on one of 1.75 m.
         assert!((rms_cm(0.03 * 0.03 * 8.0, 8.0, 0.875) - 6.0).abs() < 1e-12);
         assert!(rms_cm(1.0, 0.0, 1.75).is_nan());
     }

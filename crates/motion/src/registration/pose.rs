@@ -1,3 +1,5 @@
+//! The search for the two frames that are most alike as single poses.
+
 use super::points::checked_sum;
 use super::{Progress, REFERENCE_HEIGHT_M, RegistrationError, SearchOptions};
 use crate::clip::{Clip, jolts};
@@ -7,14 +9,14 @@ use glam::{Quat, Vec3};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// What counts when two frames are compared, each 0 or more. Only their proportions matter.
+/// The weights of a comparison of two frames, each 0 or more. Only their ratios matter.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct PoseWeights {
-    /// Where the joints are in the character's frame, heights included.
+    /// Positions of the joints in the character's frame, heights included.
     pub position: f64,
-    /// How the joints are turned against their parents; the root in the character's frame.
+    /// Rotations of the joints relative to their parents; of the root in the character's frame.
     pub rotation: f64,
-    /// How fast the joints move, over the ground included, in the character's frame.
+    /// Velocities of the joints, over the ground included, in the character's frame.
     pub velocity: f64,
 }
 
@@ -31,64 +33,64 @@ impl PoseWeights {
     }
 }
 
-/// A pair of frames that look alike, and move alike if that was asked for.
+/// A pair of frames with similar poses, and similar velocities if these have a weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoseMatch {
     /// The frame at which the outgoing clip is left.
     pub leave: usize,
     /// The frame at which the incoming clip is entered.
     pub enter: usize,
-    /// The weighted cost that was smallest; 1 is that of an average pair of frames of the two
-    /// clips.
+    /// The weighted cost; 1 is that of an average pair of frames of the two clips.
     pub cost: f64,
     /// Root mean square over the joints of their distances, centimetres on the reference body.
     pub position_cm: f64,
-    /// Likewise of the angles between their rotations, degrees (chords: right up to about 60°,
-    /// smaller than the angle above).
+    /// Root mean square over the joints of the angles between their rotations, degrees (by chords:
+    /// accurate up to about 60°, smaller than the angle above).
     pub rotation_deg: f64,
-    /// Likewise of the differences of their velocities, metres per second on the reference body.
+    /// Root mean square over the joints of the differences of their velocities, metres per second
+    /// on the reference body.
     pub velocity_mps: f64,
-    /// A clip was too short for the region asked for, and all of it was searched.
+    /// Whether a clip was too short for the requested region, so that all of it was searched.
     pub grown: bool,
 }
 
-/// How many of the lowest minima of the coarse grid are looked at closely.
+/// The number of lowest minima of the coarse grid that are refined.
 const CANDIDATES: usize = 8;
-/// Frames of a clip that are compared at most before the close look.
+/// The greatest number of frames of a clip in the coarse comparison.
 const COARSE_FRAMES: usize = 1_000;
-/// A seam takes over what joints do in its two frames, trembling too. A jolt ([`jolts`]) up to this
-/// leaves room for what the transition itself adds.
+/// The greatest jolt ([`jolts`]) of a calm frame: a transition adds the motion of its two frames,
+/// including any trembling, to its own.
 const CALM_JOLT: f32 = 0.7;
-/// Calm frames may cost so much more than the lowest cost, 1 being that of an average pair, and
-/// twice as much at most: frames that are the same need no others.
+/// Calm frames may cost this much more than the lowest cost, 1 being that of an average pair, and
+/// at most twice the lowest cost: identical frames need no replacement.
 const CALM_COST: f64 = 0.03;
-/// They are looked for this far around each candidate, seconds.
+/// The range around each candidate in which calm frames are searched, seconds.
 const CALM_REACH_SECS: f64 = 0.05;
 
-/// The search for the two frames that are most alike as single poses: positions, rotations and
-/// velocities with weights.
+/// The search for the two frames that are most alike as single poses: by weighted positions,
+/// rotations and velocities.
 ///
-/// Beside [`super::TransitionSearch`], which looks at windows of the whole body's points and finds
-/// their alignment. This one looks at one frame of each clip in the character's own frame. The
-/// three terms are mean squares over joints (weighted, [`super::limb_weights`]); each is divided by
-/// its mean over all pairs of frames, so that weights compare shares and no unit wins by its size:
-/// `cost = Σ wₖ Dₖ / mean(Dₖ) / Σ wₖ`.
+/// [`super::TransitionSearch`] compares windows of the whole body's points and finds their
+/// alignment. This search compares one frame of each clip in the character's own frame. The three
+/// terms are mean squares over joints (weighted, [`super::limb_weights`]); each is divided by its
+/// mean over all pairs of frames, so that the weights do not depend on units: `cost = Σ wₖ Dₖ /
+/// mean(Dₖ) / Σ wₖ`.
 ///
-/// The terms are kept apart: new weights or regions cost a pass over the grid, not a new
+/// The terms are stored separately: new weights or regions cost a pass over the grid, not a new
 /// comparison. Pairs are compared every `max(⌈fps / 60⌉, ⌈frames / 1000⌉)` frames, in slices; the
 /// eight lowest minima are searched again at every frame, within one stride or 0.05 s.
 ///
-/// Of pairs that are nearly as good as the best, within 3 % of a mean pair's cost, the answer is
-/// the first that is calm: no joint jolts there as only few frames of its clip do, for a jolt at
-/// the seam would be carried over as a velocity, and swing the joint out. The answer's cost is
-/// within 5 % of a mean pair's cost of the smallest over all pairs (tested against them), and it is
-/// exact for the pair it names.
+/// Of pairs that are nearly as good as the best, within 3 % of a mean pair's cost, the result is
+/// the first that is calm: none of its joints has a jolt that is rare in its clip, since a jolt at
+/// the seam would be taken over as a velocity, and swing the joint out. The result's cost is within
+/// 5 % of a mean pair's cost of the smallest over all pairs (tested against them), and is exact for
+/// the pair returned.
 #[derive(Clone, Debug)]
 pub struct PoseSearch {
     outgoing: Poses,
     incoming: Poses,
     weights: Vec<f32>,
-    /// What turns metres into those of the reference body.
+    /// The factor from metres to those of the reference body.
     scale: f64,
     fps: f64,
     stride: usize,
@@ -99,14 +101,14 @@ pub struct PoseSearch {
     sums: [f64; 3],
 }
 
-/// What is compared of a clip, frame-major.
+/// The compared quantities of a clip, frame-major.
 #[derive(Clone, Debug)]
 struct Poses {
     frames: usize,
     positions: Vec<Vec3>,
     rotations: Vec<Quat>,
     velocities: Vec<Vec3>,
-    /// Per frame ([`jolts`]).
+    /// The jolt of each frame ([`jolts`]).
     jolts: Vec<f32>,
 }
 
@@ -159,8 +161,8 @@ impl PoseSearch {
     /// [`advance`](Self::advance).
     ///
     /// # Errors
-    /// [`RegistrationError`] when a clip is empty or holds numbers that are none, the skeletons or
-    /// frame rates differ, or the weights do not fit.
+    /// [`RegistrationError`] when a clip is empty or has values that are not finite, the skeletons
+    /// or frame rates differ, or the number of weights differs from that of the joints.
     pub fn new(
         outgoing: (&Arc<Clip>, &[Planar]),
         incoming: (&Arc<Clip>, &[Planar]),
@@ -207,7 +209,7 @@ impl PoseSearch {
     }
 
     /// Compares up to `rows` more frames of the outgoing clip with all of the incoming one, and
-    /// says how far it has come.
+    /// returns the progress.
     pub fn advance(&mut self, rows: usize) -> Progress {
         let total = self.outgoing.frames.div_ceil(self.stride);
         for row in self.done..self.done.saturating_add(rows).min(total) {
@@ -223,7 +225,7 @@ impl PoseSearch {
         Progress { done: self.done, total }
     }
 
-    /// The mean squares of one pair of frames.
+    /// Returns the mean squares of one pair of frames.
     fn compare(&self, i: usize, j: usize) -> [f32; 3] {
         let joints = self.weights.len();
         let of = |frame: usize| frame * joints..(frame + 1) * joints;
@@ -250,8 +252,8 @@ impl PoseSearch {
         terms
     }
 
-    /// The best pair for these weights and regions. The window of `options` is only what must fit
-    /// behind both frames.
+    /// Returns the best pair for these weights and regions. The window of `options` only limits the
+    /// frames: it must fit after both.
     ///
     /// # Errors
     /// [`RegistrationError::Unfinished`] before the comparison is complete,
@@ -284,7 +286,8 @@ impl PoseSearch {
                     .extend(around(j, &enter).map(|j| (cost(&factors, &self.compare(i, j)), i, j)));
             }
         }
-        // Among equals the earliest frames, whatever the order in which candidates were found.
+        // Of equal pairs the earliest frames come first, whatever the order in which candidates
+        // were found.
         pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
         let lowest = pairs.first().map_or(f64::INFINITY, |pair| pair.0);
         let alike = pairs.iter().take_while(|pair| pair.0 <= lowest + lowest.min(CALM_COST));
@@ -306,8 +309,8 @@ impl PoseSearch {
         })
     }
 
-    /// How much a joint jolts where the two clips meet: in the last frame before the outgoing one
-    /// is left, and in the first of the incoming one.
+    /// Returns the greatest jolt at the seam: in the last frame of the outgoing clip, and in the
+    /// first of the incoming one.
     fn jolt(&self, leave: usize, enter: usize) -> f32 {
         let of = |poses: &Poses, frame: Option<usize>| {
             frame.and_then(|frame| poses.jolts.get(frame)).copied().unwrap_or(0.0)
@@ -315,8 +318,8 @@ impl PoseSearch {
         of(&self.outgoing, leave.checked_sub(1)).max(of(&self.incoming, Some(enter)))
     }
 
-    /// What every term is multiplied with. A term that is 0 everywhere counts nothing; without any
-    /// weight positions count.
+    /// Returns the factor of every term. A term that is 0 everywhere has the factor 0; if all
+    /// weights are 0, positions count.
     fn factors(&self, weights: PoseWeights) -> [f64; 3] {
         let weights = weights.of();
         let sum: f64 = weights.iter().sum();
@@ -331,7 +334,7 @@ impl PoseSearch {
         factors
     }
 
-    /// The lowest local minima of the grid in the regions, as frames.
+    /// Returns the lowest local minima of the grid in the regions, as frames.
     fn candidates(
         &self,
         factors: &[f64; 3],
@@ -352,14 +355,14 @@ impl PoseSearch {
         for row in 0..rows.len() {
             for column in 0..width {
                 let here = costs[row * width + column];
-                // No need to look around where enough lower minima are known already.
+                // No minimum can be added when enough lower ones are known.
                 if minima.len() == CANDIDATES && minima.last().is_some_and(|last| here >= last.0) {
                     continue;
                 }
                 let around = (row.saturating_sub(1)..(row + 2).min(rows.len())).flat_map(|r| {
                     (column.saturating_sub(1)..(column + 2).min(width)).map(move |c| (r, c))
                 });
-                // Strictly smaller than what comes before it, so that a plateau counts once.
+                // Strictly smaller than previous cells, so that a plateau is counted once.
                 let lowest = around
                     .map(|(r, c)| (costs[r * width + c], (r, c)))
                     .all(|(there, at)| there > here || (there == here && at >= (row, column)));
@@ -405,7 +408,7 @@ mod tests {
     }
 
     #[test]
-    fn close_to_the_best_of_all_pairs() {
+    fn pose_search_is_close_to_the_best_of_all_pairs() {
         for (frames, fps) in [(240, 60.0), (300, 120.0), (400, 240.0), (1_500, 120.0)] {
             let a = clip(Walk { frames, fps, ..Walk::default() });
             let b = clip(Walk {
@@ -444,7 +447,7 @@ mod tests {
     }
 
     #[test]
-    fn the_same_frame_is_found_again_wherever_the_clip_lies() {
+    fn pose_search_in_a_moved_clip_finds_the_same_frame() {
         let whole = Walk { frames: 300, fps: 240.0, turning: 0.5, ..Walk::default() }.clip();
         let a = Arc::new(whole.crop(0..180).unwrap());
         let b = Arc::new(whole.crop(141..300).unwrap().transformed(&Planar::new(1.9, -3.0, 8.0)));
@@ -461,7 +464,7 @@ mod tests {
     }
 
     #[test]
-    fn frames_in_which_a_joint_jolts_are_passed_by() {
+    fn pose_search_avoids_frames_with_jolts() {
         let walk = Walk { frames: 300, fps: 120.0, ..Walk::default() };
         let (a, b) = (clip(walk), clip(Walk { cadence: 1.25, swing: 0.6, speed: 1.9, ..walk }));
         let (weights, options) = (PoseWeights::default(), SearchOptions::new(9));
@@ -483,13 +486,13 @@ mod tests {
         let jolt = |found: PoseMatch| search.jolt(found.leave, found.enter);
         assert!(jolt(smooth) > 3.0 && jolt(found) < 1.1, "{} {}", jolt(smooth), jolt(found));
         assert!(found.cost <= smooth.cost + CALM_COST, "{found:?} {smooth:?}");
-        // A frame that the user names stays.
+        // A frame that the user chose is kept.
         let named = options.leaving_at(smooth.leave, a.frames());
         assert_eq!(search.best(weights, &named).unwrap().leave, smooth.leave);
     }
 
     #[test]
-    fn numbers_are_in_their_units() {
+    fn pose_match_is_in_documented_units() {
         let still = Walk { frames: 30, speed: 0.0, cadence: 0.0, swing: 0.0, ..Walk::default() };
         let a = clip(still);
         let glide = clip(Walk { speed: 0.5, ..still });
@@ -518,13 +521,13 @@ mod tests {
         assert!((to(&raised).position_cm - 10.0).abs() < 1e-3, "{:?}", to(&raised));
         assert!((to(&glide).velocity_mps - 0.5).abs() < 1e-3);
         assert!((to(&bent).rotation_deg - 0.3_f64.to_degrees()).abs() < 0.02, "{:?}", to(&bent));
-        // Nothing differs anywhere: nothing to divide by.
+        // Without any difference there is nothing to divide by.
         assert_eq!(to(&a).cost, 0.0);
         assert!(to(&raised).cost > 0.0);
     }
 
     #[test]
-    fn regions_weights_and_slices() {
+    fn pose_search_respects_regions_weights_and_slices() {
         let (a, b) =
             (clip(Walk::default()), clip(Walk { phase: 0.4, frames: 50, ..Walk::default() }));
         let search = search(&a, &b);

@@ -1,11 +1,13 @@
+//! Pair terms of a clip with itself.
+
 use super::sweep::{PausedSweep, Sweep, packed_start};
 use super::{Alignment, PairTerms, PointClouds, Progress, RegistrationError};
 
-/// The terms of all pairs of frames of one clip with itself: [`PairTerms`] at half the time and
-/// half the memory, since the distance of two windows is the same both ways.
+/// The terms of all pairs of frames of one clip with itself: like [`PairTerms`] at half the time
+/// and half the memory, since the distance of two windows is symmetric.
 ///
-/// Pairs (i, j) with j ≥ i lie on and above the diagonal, and so does every pair that a window adds
-/// to them: (i + 1, j + 1) and on.
+/// Only pairs (i, j) with j ≥ i, on and above the diagonal, are stored; so are all pairs that a
+/// window adds to them: (i + 1, j + 1) and on.
 #[derive(Clone, Debug)]
 pub struct SelfTerms(PairTerms);
 
@@ -14,26 +16,25 @@ impl SelfTerms {
     /// bytes per pair (i, j) of samples.
     ///
     /// # Errors
-    /// [`RegistrationError::TooManyPairs`] when the pairs are more than memory should be taken for:
-    /// above 11,500 samples.
+    /// [`RegistrationError::TooManyPairs`] above 11,500 samples.
     pub fn new(clouds: &PointClouds) -> Result<Self, RegistrationError> {
         Ok(Self(PairTerms::of_itself(clouds)?))
     }
 
-    /// Compares at least `rows` more frames with those behind them (rows come in fours), and says
-    /// how far it has come. Rows get shorter and shorter.
+    /// Compares at least `rows` more frames with the following ones (in groups of four rows), and
+    /// returns the progress. Rows get shorter and shorter.
     pub fn advance(&mut self, rows: usize) -> Progress {
         self.0.advance(rows)
     }
 
-    /// How far it has come.
+    /// Returns the progress.
     #[must_use]
     pub fn progress(&self) -> Progress {
         self.0.progress()
     }
 
-    /// The distances between all windows of `window` frames, in slices; none where the window is
-    /// longer than what was compared.
+    /// Returns the computation of the distances between all windows of `window` frames, in slices;
+    /// there are none where the window is longer than the compared part.
     ///
     /// # Errors
     /// [`RegistrationError::Unfinished`] before all rows are compared.
@@ -43,12 +44,12 @@ impl SelfTerms {
         Ok(SelfSweep { sweep: self.0.sweep(window, &all, &all)?, rows })
     }
 
-    /// The alignment of the windows of `window` frames that start at the samples next to frame
-    /// `source` and frame `target`: `source_from_target`. O(window).
+    /// Returns the alignment of the windows of `window` frames that start at the samples next to
+    /// frame `source` and frame `target`: `source_from_target`. O(window).
     ///
     /// # Errors
-    /// [`RegistrationError`] before all rows are compared, or when a window crosses the end of what
-    /// was compared.
+    /// [`RegistrationError`] before all rows are compared, or when a window crosses the end of the
+    /// compared part.
     pub fn alignment(
         &self,
         source: usize,
@@ -64,14 +65,14 @@ impl SelfTerms {
     }
 }
 
-/// [`Sweep`] of a clip with itself.
+/// A [`Sweep`] of a clip with itself.
 #[derive(Clone, Debug)]
 pub struct SelfSweep<'a> {
     sweep: Sweep<'a>,
     rows: usize,
 }
 
-/// A [`SelfSweep`] that lets go of the terms until it goes on.
+/// A [`SelfSweep`] that does not borrow the terms until it is resumed.
 #[derive(Clone, Debug)]
 pub struct PausedSelfSweep {
     sweep: PausedSweep,
@@ -79,7 +80,7 @@ pub struct PausedSelfSweep {
 }
 
 impl PausedSelfSweep {
-    /// Goes on where it was left. `terms` are those that the sweep was made of.
+    /// Resumes the sweep. `terms` are those from which it was made.
     #[must_use]
     pub fn resume(self, terms: &SelfTerms) -> SelfSweep<'_> {
         SelfSweep { sweep: self.sweep.resume(&terms.0), rows: self.rows }
@@ -87,26 +88,26 @@ impl PausedSelfSweep {
 }
 
 impl SelfSweep<'_> {
-    /// Lets go of the terms, so that the rest can be done later.
+    /// Stops borrowing the terms, so that the rest can be computed later.
     #[must_use]
     pub fn pause(self) -> PausedSelfSweep {
         PausedSelfSweep { sweep: self.sweep.pause(), rows: self.rows }
     }
 
-    /// Does up to `rows` more rows, and says how far it has come.
+    /// Computes up to `rows` more rows, and returns the progress.
     pub fn advance(&mut self, rows: usize) -> Progress {
         self.sweep.advance(rows)
     }
 
-    /// The rest, and the distances.
+    /// Computes the remaining rows and returns the distances.
     #[must_use]
     pub fn finish(self) -> SymmetricDistances {
         SymmetricDistances { rows: self.rows, rms_m: self.sweep.finish_packed() }
     }
 }
 
-/// Distances between windows of a clip and windows of the same clip; those above the diagonal are
-/// held.
+/// Distances between windows of a clip and windows of the same clip; only those on and above the
+/// diagonal are stored.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SymmetricDistances {
     rows: usize,
@@ -114,20 +115,20 @@ pub struct SymmetricDistances {
 }
 
 impl SymmetricDistances {
-    /// Rows, and columns.
+    /// Returns the number of rows, which is that of columns.
     #[must_use]
     pub fn rows(&self) -> usize {
         self.rows
     }
 
-    /// One root-mean-square distance per point, metres, the same for (a, b) and (b, a); `None`
-    /// outside the matrix.
+    /// Returns one root-mean-square distance per point, metres, the same for (a, b) and (b, a);
+    /// `None` outside the matrix.
     #[must_use]
     pub fn get(&self, a: usize, b: usize) -> Option<f32> {
         self.row(a.min(b)).get(a.abs_diff(b)).copied()
     }
 
-    /// The distances of one row from its own column on, metres; empty outside the matrix.
+    /// Returns the distances of one row from its own column on, metres; empty outside the matrix.
     #[must_use]
     pub fn row(&self, row: usize) -> &[f32] {
         if row >= self.rows {
@@ -148,7 +149,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(24))]
         #[test]
-        fn half_of_the_matrix_is_the_whole_of_it(frames in 1usize..60, window in 1usize..25, turning in -1.0f32..1.0, slice in 1usize..20) {
+        fn self_terms_agree_with_pair_terms(frames in 1usize..60, window in 1usize..25, turning in -1.0f32..1.0, slice in 1usize..20) {
             let clip = Walk { frames, turning, ..Walk::default() }.clip();
             let weights = limb_weights(clip.skeleton());
             let level = PointClouds::level_m(&clip, &weights).unwrap();

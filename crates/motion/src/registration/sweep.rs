@@ -1,52 +1,55 @@
+//! Distances of windows as running sums along diagonals.
+
 use super::DistanceMatrix;
 use super::terms::{PairTerms, Progress, TermRow, centre_product};
 use glam::DVec2;
 use std::ops::Range;
 
-/// The distances of all windows of one length, summed along the diagonals row by row.
+/// The computation of the distances of all windows of one length, by running sums along the
+/// diagonals, row by row.
 ///
 /// Each row's sums are those of the row above, one column to the left, plus the pair that enters
-/// the window, less the pair that leaves it. The sums are `f64` over `f32` terms, so that what is
-/// taken away again leaves nothing behind: at most 1e-12 of the spread after 10,000 rows.
+/// the window, minus the pair that leaves it. The sums are `f64` over `f32` terms, so that the
+/// error after additions and subtractions is at most 1e-12 of the spread after 10,000 rows.
 #[derive(Clone, Debug)]
 pub struct Sweep<'a> {
     terms: &'a PairTerms,
     sums: Sums,
 }
 
-/// A [`Sweep`] that lets go of the terms until it goes on.
+/// A [`Sweep`] that does not borrow the terms until it is resumed.
 #[derive(Clone, Debug)]
 pub struct PausedSweep(Sums);
 
 impl PausedSweep {
-    /// Goes on where it was left. `terms` are those that the sweep was made of.
+    /// Resumes the sweep. `terms` are those from which it was made.
     #[must_use]
     pub fn resume(self, terms: &PairTerms) -> Sweep<'_> {
         Sweep { terms, sums: self.0 }
     }
 
-    /// How far it had come.
+    /// Returns the progress.
     #[must_use]
     pub fn progress(&self) -> Progress {
         self.0.progress()
     }
 
-    /// Frames of the windows.
+    /// Returns the number of frames of the windows.
     #[must_use]
     pub fn window(&self) -> usize {
         self.0.window
     }
 }
 
-/// What a sweep holds besides the terms.
+/// The data of a sweep besides the terms.
 #[derive(Clone, Debug)]
 struct Sums {
     window: usize,
     rows: Range<usize>,
     columns: Range<usize>,
     done: usize,
-    /// Sums of the row that was done last, one entry per diagonal: column c of row r at c + (rows -
-    /// 1 - r), so that nothing is moved.
+    /// Sums of the last computed row, one entry per diagonal: column c of row r at c + (rows - 1 -
+    /// r), so that no values are moved.
     dot: Vec<f64>,
     cross: Vec<f64>,
     height: Vec<f64>,
@@ -55,7 +58,8 @@ struct Sums {
     rms_m: Vec<f32>,
 }
 
-/// What each window's own frames give: the sum of the centres, and the spread about their mean.
+/// Contributions of each window's own frames: the sum of the centres, and the spread about their
+/// mean.
 #[derive(Clone, Debug, Default)]
 struct Moments {
     x: Vec<f64>,
@@ -64,7 +68,7 @@ struct Moments {
 }
 
 impl Moments {
-    /// Of all windows of `samples` that start in `starts`.
+    /// Computes the moments of all windows of `samples` that start in `starts`.
     fn new(cloud: &super::cloud::Cloud, starts: &Range<usize>, samples: usize) -> Self {
         let mut sums = Self::default();
         let (mut centre, mut square) = (DVec2::ZERO, 0.0);
@@ -118,7 +122,7 @@ impl<'a> Sweep<'a> {
         Self { terms, sums }
     }
 
-    /// Does up to `rows` more rows, and says how far it has come.
+    /// Computes up to `rows` more rows, and returns the progress.
     pub fn advance(&mut self, rows: usize) -> Progress {
         let sums = &mut self.sums;
         let end = sums.done.saturating_add(rows).min(sums.progress().total);
@@ -131,13 +135,13 @@ impl<'a> Sweep<'a> {
         sums.progress()
     }
 
-    /// Lets go of the terms, so that the rest can be done later.
+    /// Stops borrowing the terms, so that the rest can be computed later.
     #[must_use]
     pub fn pause(self) -> PausedSweep {
         PausedSweep(self.sums)
     }
 
-    /// The rest, and the matrix.
+    /// Computes the remaining rows and returns the matrix.
     #[must_use]
     pub fn finish(mut self) -> DistanceMatrix {
         self.advance(usize::MAX);
@@ -154,15 +158,15 @@ impl<'a> Sweep<'a> {
         }
     }
 
-    /// Likewise where a clip is compared with itself: rows are as long as it is from them to the
-    /// end, one behind the other.
+    /// Computes the remaining rows of a clip compared with itself, and returns them one after the
+    /// other: each has the cells from the diagonal to the end.
     pub(super) fn finish_packed(mut self) -> Vec<f32> {
         self.advance(usize::MAX);
         self.sums.rms_m
     }
 }
 
-/// The first column that is summed in a row.
+/// Returns the first column of a row that is summed.
 fn first_column(terms: &PairTerms, row: usize) -> usize {
     if terms.is_triangle() { row } else { 0 }
 }
@@ -175,8 +179,8 @@ impl Sums {
         }
     }
 
-    /// Brings the sums to `row` (counted from the first row that is swept). A function of its own:
-    /// a browser compiles well what is called often, from one call to the next.
+    /// Updates the sums to `row` (counted from the first row that is swept). A separate function,
+    /// because browsers optimise a function between two of its calls.
     #[inline(never)]
     fn enter_row(&mut self, terms: &PairTerms, row: usize, samples: usize) {
         let (first, shift) = (self.rows.start + row, self.rows.len() - 1 - row);
@@ -202,7 +206,8 @@ impl Sums {
         if !terms.is_triangle() {
             self.enter_first_column(terms, first, shift, samples);
         }
-        // Below the diagonal nothing is summed: there the first column has windows before it, too.
+        // Below the diagonal there are no sums, so that the first column has preceding windows,
+        // too.
         let from = first_column(terms, row).max(1);
         let n = columns - from;
         let (p, q) = (terms.source.centre(first + samples - 1), terms.source.centre(first - 1));
@@ -225,7 +230,7 @@ impl Sums {
         }
     }
 
-    /// The first column's windows have none before them.
+    /// Computes the sums of the first column, whose windows have no predecessors.
     fn enter_first_column(
         &mut self,
         terms: &PairTerms,
@@ -247,7 +252,7 @@ impl Sums {
         (self.dot[shift], self.cross[shift], self.height[shift]) = (dot, cross, height);
     }
 
-    /// The distances of `row` from its sums.
+    /// Computes the distances of `row` from its sums.
     #[inline(never)]
     fn distances(&mut self, terms: &PairTerms, row: usize, samples: usize) {
         let from = first_column(terms, row);
@@ -268,20 +273,20 @@ impl Sums {
             let a = cross[c] - (x * tz[c] - z * tx[c]);
             let b = dot[c] - (x * tx[c] + z * tz[c]);
             let left = spread + ts[c] - 2.0 * ((a * a + b * b).sqrt() + height[c]);
-            // Rounding leaves tiny negative numbers where windows are equal. Not by `max`, which
-            // takes pains over what is no number.
+            // Rounding makes the result slightly negative where windows are equal. `max` would be
+            // slower, because it handles NaN.
             let mean = (left * inverse) as f32;
             out[c] = if mean > 0.0 { mean } else { 0.0 }.sqrt();
         }
     }
 }
 
-/// Where row `row` begins in a packed triangle of `rows` rows.
+/// Returns the offset of row `row` in a packed triangle of `rows` rows.
 pub(super) fn packed_start(rows: usize, row: usize) -> usize {
     row * rows - row * row.saturating_sub(1) / 2
 }
 
-/// A stretch of a row of terms, with the centres of its columns.
+/// A part of a row of terms, with the centres of its columns.
 struct Entering<'a> {
     terms: TermRow<'a>,
     x: &'a [f64],

@@ -1,3 +1,5 @@
+//! Terms of pairs of frames, from which the distances of all windows follow.
+
 use super::align::{Alignment, PairMoments};
 use super::cloud::{Cloud, LANES, Shares, Spread, tile};
 use super::points::checked_sum;
@@ -8,7 +10,7 @@ use glam::DVec2;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// How far a computation in slices has come.
+/// The progress of a computation in slices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Progress {
     /// Rows done.
@@ -18,43 +20,44 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// Nothing is left to do.
+    /// Returns whether nothing is left to do.
     #[must_use]
     pub fn is_complete(&self) -> bool {
         self.done >= self.total
     }
 }
 
-/// The most pairs that are held: 768 MiB of terms.
+/// The greatest number of pairs in memory: 768 MiB of terms.
 pub(crate) const MAX_PAIRS: usize = 1 << 26;
 
-/// What strength of a turn is rounding alone, as a share of the clouds' spread, where products are
-/// `f32`.
+/// The strength of a rotation that is within rounding, as a share of the clouds' spread, for `f32`
+/// products.
 const ROUNDING: f64 = 1e-6;
 
-/// Groups of source samples that are multiplied with a group of target samples while that lies in
-/// the nearest cache.
+/// The number of groups of source samples that are multiplied with a group of target samples while
+/// that is in the first-level cache.
 const GROUPS_AT_ONCE: usize = 4;
 
 /// The terms of all pairs of frames of two clips, from which the distance of any two windows of any
 /// length follows.
 ///
-/// Every term of the window distance (section A) is a sum over the frame pairs on a diagonal of the
-/// frame-by-frame matrix. The terms of one pair are products of two point clouds, summed over the
-/// joints: for all pairs together a matrix product, O(N²J), made once. A window of any length is
-/// then a sum that runs along the diagonals: O(N²) for a new window length in place of O(N²JK)
-/// (Kovar, Gleicher, Pighin 2002, section 3.1). Frames are sampled every `stride`; a window of K
-/// frames uses the samples `i, i + stride, … < i + K`, which is exact at stride 1.
+/// Every term of the window distance (D in the [module](super)'s formula) is a sum over the frame
+/// pairs on a diagonal of the frame-by-frame matrix. The terms of one pair are products of two
+/// point clouds, summed over the joints; for all pairs together they are a matrix product, O(N²J),
+/// computed once. A window of any length is then a running sum along the diagonals: O(N²) for a new
+/// window length in place of O(N²JK) (Kovar, Gleicher, Pighin 2002, section 3.1). Frames are
+/// sampled every `stride`; a window of K frames uses the samples `i, i + stride, … < i + K`, which
+/// is exact at stride 1.
 ///
 /// # Accuracy
-/// The clouds are multiplied about their own centres in `f32`, all else is `f64`. The mean squared
-/// distance per point is off by less than 3e-7 m² for a body of human size: 0.5 mm where windows
-/// are all but equal, 6 µm at 2.5 cm. Equal poses are 0 apart. The bits are the same on every
-/// machine.
+/// The clouds are multiplied relative to their own centres in `f32`, everything else is `f64`. The
+/// error of the mean squared distance per point is less than 3e-7 m² for a body of human size: 0.5
+/// mm where windows are nearly equal, 6 µm at 2.5 cm. The distance of equal poses is 0. The bits
+/// are the same on every machine.
 ///
 /// # Slices
-/// The work comes in slices: [`advance`](Self::advance) until it is complete. A row of 1,500 pairs
-/// of 31 joints takes about 15 µs.
+/// The work is done in slices: call [`advance`](Self::advance) until it is complete. A row of 1,500
+/// pairs of 31 joints takes about 15 µs.
 #[derive(Clone, Debug)]
 pub struct PairTerms {
     stride: usize,
@@ -65,13 +68,13 @@ pub struct PairTerms {
     pub(super) target: Arc<Cloud>,
     /// Only pairs with |row - column| ≤ band are multiplied.
     band: usize,
-    /// A clip with itself: only pairs with column ≥ row are multiplied and held, to the whole
-    /// group.
+    /// Whether a clip is compared with itself: only pairs with column ≥ row are multiplied and
+    /// stored, in whole groups.
     triangle: bool,
     done: usize,
     /// Per row: the products of [`tile`], `width` of each.
     terms: Vec<f32>,
-    /// The target's samples, filled up to whole groups.
+    /// Number of the target's samples, padded to whole groups.
     width: usize,
     spread: Vec<Spread>,
 }
@@ -93,9 +96,8 @@ impl PairTerms {
     /// Memory: 12 bytes per pair of samples.
     ///
     /// # Errors
-    /// [`RegistrationError`] when a clip or range is empty, the skeletons' sizes differ, the
-    /// weights do not fit, a position is not finite, or the pairs are more than memory should be
-    /// taken for (67 million).
+    /// [`RegistrationError`] when a clip or range is empty, the skeletons or weights differ in
+    /// size, a position is not finite, or there are more than 67 million pairs.
     pub fn new(
         source: &Clip,
         source_frames: Range<usize>,
@@ -107,8 +109,8 @@ impl PairTerms {
         Self::banded(source, source_frames, target, target_frames, weights, stride, usize::MAX)
     }
 
-    /// Likewise, for pairs with |row - column| ≤ `band` only: what windows that start within `band`
-    /// samples of both ranges' starts need.
+    /// Prepares the comparison as [`new`](Self::new) does, for pairs with |row - column| ≤ `band`
+    /// only: sufficient for windows that start within `band` samples of both ranges' starts.
     pub(super) fn banded(
         source: &Clip,
         source_frames: Range<usize>,
@@ -155,7 +157,7 @@ impl PairTerms {
         Ok(Self::of(&clouds(source, source_frames)?, &clouds(target, target_frames)?, band, false))
     }
 
-    /// Nothing is compared yet. The pairs are few enough.
+    /// Returns terms of which none is computed yet. The number of pairs is checked by the caller.
     fn of(source: &PointClouds, target: &PointClouds, band: usize, triangle: bool) -> Self {
         let mut terms = Self {
             stride: source.stride,
@@ -170,17 +172,16 @@ impl PairTerms {
             target: Arc::clone(&target.cloud),
             spread: Vec::new(),
         };
-        // Filled row by row: to clear all of it at once takes longer than a frame may.
+        // Only reserved: to clear all of it at once would take longer than a frame of the screen.
         terms.terms = Vec::with_capacity(terms.row_start(terms.source.samples));
         terms
     }
 
-    /// The frames of two clips whose points are known. Both clouds are of one skeleton and were
-    /// made with the same weights, stride and level.
+    /// Prepares the comparison of two clips whose point clouds are known. Both clouds must have the
+    /// same skeleton, weights, stride and level.
     ///
     /// # Errors
-    /// [`RegistrationError::TooManyPairs`] when the pairs are more than memory should be taken for
-    /// (67 million).
+    /// [`RegistrationError::TooManyPairs`] when there are more than 67 million pairs.
     pub fn of_clouds(
         source: &PointClouds,
         target: &PointClouds,
@@ -190,15 +191,15 @@ impl PairTerms {
         Ok(Self::of(source, target, usize::MAX, false))
     }
 
-    /// A clip with itself: the pairs with column ≥ row alone.
+    /// Prepares the comparison of a clip with itself: the pairs with column ≥ row alone.
     pub(super) fn of_itself(of: &PointClouds) -> Result<Self, RegistrationError> {
         let samples = of.cloud.samples;
         check_pairs(samples.saturating_mul(samples + 1) / 2, || of.stride * 2)?;
         Ok(Self::of(of, of, usize::MAX, true))
     }
 
-    /// Compares at least `rows` more frames of the source with all frames of the target (rows come
-    /// in fours), and says how far it has come.
+    /// Compares at least `rows` more frames of the source with all frames of the target (in groups
+    /// of four rows), and returns the progress.
     pub fn advance(&mut self, rows: usize) -> Progress {
         let end = self.done.saturating_add(rows).min(self.source.samples).div_ceil(LANES);
         let mut group = self.done / LANES;
@@ -211,18 +212,18 @@ impl PairTerms {
         self.progress()
     }
 
-    /// All rows at once.
+    /// Compares all remaining rows.
     pub fn finish(&mut self) {
         self.advance(usize::MAX);
     }
 
-    /// How far it has come.
+    /// Returns the progress.
     #[must_use]
     pub fn progress(&self) -> Progress {
         Progress { done: self.done, total: self.source.samples }
     }
 
-    /// Frames from one sample to the next.
+    /// Returns the number of frames between samples.
     #[must_use]
     pub fn stride(&self) -> usize {
         self.stride
@@ -261,12 +262,12 @@ impl PairTerms {
         }
     }
 
-    /// The first column that is held of a row.
+    /// Returns the first stored column of a row.
     fn first_column(&self, row: usize) -> usize {
         if self.triangle { row / LANES * LANES } else { 0 }
     }
 
-    /// Where a row's terms begin.
+    /// Returns the offset of a row's terms.
     fn row_start(&self, row: usize) -> usize {
         let (groups, lane) = (row / LANES, row % LANES);
         // Every group of rows is one group of columns shorter than the one above.
@@ -303,9 +304,9 @@ impl PairTerms {
         if done < total { Err(RegistrationError::Unfinished { done, total }) } else { Ok(()) }
     }
 
-    /// The distances between all windows of `window` frames that start in `sources` and `targets`
-    /// (frames of the clips; clamped to what was compared), in slices. Windows that would cross an
-    /// end are left out: the matrix may be empty.
+    /// Returns the computation of the distances between all windows of `window` frames that start
+    /// in `sources` and `targets` (frames of the clips; clamped to the compared part), in slices.
+    /// Windows that would cross an end are left out: the matrix may be empty.
     ///
     /// # Errors
     /// [`RegistrationError::Unfinished`] before all rows are compared.
@@ -322,7 +323,7 @@ impl PairTerms {
         Ok(Sweep::new(self, window, rows, columns))
     }
 
-    /// [`Self::sweep`] in one call.
+    /// Computes [`Self::sweep`] in one call.
     ///
     /// # Errors
     /// [`RegistrationError::Unfinished`] before all rows are compared.
@@ -335,12 +336,12 @@ impl PairTerms {
         Ok(self.sweep(window, sources, targets)?.finish())
     }
 
-    /// The alignment of the windows of `window` frames that start at the samples next to frame
-    /// `source` and frame `target`. O(window).
+    /// Returns the alignment of the windows of `window` frames that start at the samples next to
+    /// frame `source` and frame `target`. O(window).
     ///
     /// # Errors
-    /// [`RegistrationError`] before all rows are compared, or when a window crosses the end of what
-    /// was compared.
+    /// [`RegistrationError`] before all rows are compared, or when a window crosses the end of the
+    /// compared part.
     pub fn alignment(
         &self,
         source: usize,
@@ -372,8 +373,8 @@ impl PairTerms {
             sums.weight += w;
             sums.source += w * p;
             sums.target += w * q;
-            // The squares hold the heights', which belong to the height term: their sum is what
-            // counts.
+            // The squares contain those of heights, which belong to the height term: only their sum
+            // matters.
             sums.source_square += w * (self.source.square[row + k] + p.length_squared());
             sums.target_square += w * (self.target.square[column + k] + q.length_squared());
             let at = column + k - terms.first;
@@ -386,8 +387,8 @@ impl PairTerms {
 }
 
 impl PairTerms {
-    /// The weighted centre on the ground of the target's window of `window` frames next to frame
-    /// `target`, metres, as far as it lies inside.
+    /// Returns the weighted centre on the ground of the target's window of `window` frames next to
+    /// frame `target`, metres, as far as it lies inside.
     pub(super) fn target_centre(&self, target: usize, window: usize) -> DVec2 {
         let first =
             (target.saturating_sub(self.target.start) / self.stride).min(self.target.samples - 1);
@@ -397,7 +398,7 @@ impl PairTerms {
     }
 }
 
-/// Refuses more pairs than are held; `stride` is one that would do.
+/// Refuses more than [`MAX_PAIRS`] pairs; `stride` returns one that would fit.
 fn check_pairs(pairs: usize, stride: impl FnOnce() -> usize) -> Result<(), RegistrationError> {
     if pairs > MAX_PAIRS {
         return Err(RegistrationError::TooManyPairs { pairs, most: MAX_PAIRS, stride: stride() });
@@ -405,9 +406,9 @@ fn check_pairs(pairs: usize, stride: impl FnOnce() -> usize) -> Result<(), Regis
     Ok(())
 }
 
-/// What [`PairTerms::distances`] gives, straight from the definition: every pair of windows, of
-/// those that start in `sources` and `targets`, laid on each other point by point, O(N²JK) in
-/// `f64`. The slow way that the fast one is tested and timed against.
+/// Computes [`PairTerms::distances`] by the definition: every pair of windows that start in
+/// `sources` and `targets` is aligned point by point, O(N²JK) in `f64`. The slow reference against
+/// which the fast method is tested and timed.
 ///
 /// # Errors
 /// [`RegistrationError`] when the clips cannot be compared.
@@ -451,7 +452,7 @@ pub fn distances_directly(
     })
 }
 
-/// The product of two centres as the pair's terms have it: dot, cross.
+/// Returns the product of two centres as in the pair's terms: dot, cross.
 pub(super) fn centre_product(p: DVec2, q: DVec2) -> (f64, f64) {
     (p.dot(q), p.perp_dot(q))
 }

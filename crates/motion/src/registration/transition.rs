@@ -1,15 +1,17 @@
+//! The search for the best transition between two clips.
+
 use super::{Alignment, PairTerms, Progress, RegistrationError, rms_cm};
 use crate::clip::Clip;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The part of a clip in which a window may start, as shares of its frames: 0 is the first, 1 the
-/// end.
+/// The part of a clip in which a window may start, as shares of its frames: 0 is the first frame, 1
+/// the end.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Region {
-    /// Where it starts, 0 to 1.
+    /// The start, 0 to 1.
     pub from: f64,
-    /// Where it ends, 0 to 1.
+    /// The end, 0 to 1.
     pub to: f64,
 }
 
@@ -21,54 +23,53 @@ impl Region {
     /// The second half.
     pub const SECOND_HALF: Self = Self { from: 0.5, to: 1.0 };
 
-    /// One frame alone, of a clip of `frames`.
+    /// Returns the region of a single frame of a clip of `frames`.
     fn frame(frame: usize, frames: usize) -> Self {
-        // Half a frame to both sides, so that rounding cannot move it to a neighbour.
+        // Half a frame to both sides, so that rounding does not move it to a neighbour.
         let share = |at: f64| at / frames.max(1) as f64;
         Self { from: share(frame as f64 - 0.5), to: share(frame as f64 + 0.5) }
     }
 
-    /// The frames at which a window of `window` frames may start, and whether the region had to
-    /// grow to the whole clip because no window that starts in it ends before the clip does. `None`
-    /// when the window is longer than the clip.
+    /// Returns the frames at which a window of `window` frames may start, and whether the region
+    /// had to grow to the whole clip because no window that starts in it ends before the clip does.
+    /// `None` when the window is longer than the clip.
     fn starts(self, frames: usize, window: usize) -> Option<(Range<usize>, bool)> {
         let end = (frames + 1).checked_sub(window.max(1)).filter(|&end| end > 0)?;
-        // `as usize` takes NaN and negative numbers to 0.
+        // `as usize` maps NaN and negative numbers to 0.
         let frame = |share: f64| (share.clamp(0.0, 1.0) * frames as f64).ceil() as usize;
         let region = frame(self.from)..frame(self.to).max(frame(self.from) + 1).min(end);
         Some(if region.is_empty() { (0..end, true) } else { (region, false) })
     }
 }
 
-/// Where to look for a transition.
+/// Options of the search for a transition.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct SearchOptions {
-    /// Frames of both windows; 0 counts as 1.
+    /// Number of frames of both windows; 0 counts as 1.
     pub window: usize,
-    /// Where the outgoing clip may be left.
+    /// The region in which the outgoing clip may be left.
     pub leave: Region,
-    /// Where the incoming clip may be entered.
+    /// The region in which the incoming clip may be entered.
     pub enter: Region,
 }
 
 impl SearchOptions {
-    /// Leave in the second half, enter in the first half.
+    /// Returns options that leave in the second half and enter in the first half.
     #[must_use]
     pub fn new(window: usize) -> Self {
         Self { window, leave: Region::SECOND_HALF, enter: Region::FIRST_HALF }
     }
 
-    /// Leaves an outgoing clip of `frames` at `frame` and nowhere else. The window becomes no
-    /// longer than what is left of the clip there, so that the frame asked for is the one that is
-    /// compared.
+    /// Returns options that leave an outgoing clip of `frames` at `frame`. The window is shortened
+    /// to the rest of the clip there, so that exactly this frame is compared.
     #[must_use]
     pub fn leaving_at(self, frame: usize, frames: usize) -> Self {
         let (leave, window) = self.fixed_at(frame, frames);
         Self { window, leave, ..self }
     }
 
-    /// Enters an incoming clip of `frames` at `frame` and nowhere else; the window is shortened as
-    /// in [`leaving_at`](Self::leaving_at).
+    /// Returns options that enter an incoming clip of `frames` at `frame`; the window is shortened
+    /// as in [`leaving_at`](Self::leaving_at).
     #[must_use]
     pub fn entering_at(self, frame: usize, frames: usize) -> Self {
         let (enter, window) = self.fixed_at(frame, frames);
@@ -80,8 +81,8 @@ impl SearchOptions {
         (Region::frame(frame, frames), self.window.min(frames - frame).max(1))
     }
 
-    /// The frames at which an outgoing clip of `frames` may be left, and whether its region had to
-    /// grow.
+    /// Returns the frames at which an outgoing clip of `frames` may be left, and whether its region
+    /// had to grow.
     pub(super) fn leave_starts(
         &self,
         frames: usize,
@@ -89,8 +90,8 @@ impl SearchOptions {
         self.starts(self.leave, "outgoing", frames)
     }
 
-    /// The frames at which an incoming clip of `frames` may be entered, and whether its region had
-    /// to grow.
+    /// Returns the frames at which an incoming clip of `frames` may be entered, and whether its
+    /// region had to grow.
     pub(super) fn enter_starts(
         &self,
         frames: usize,
@@ -110,33 +111,33 @@ impl SearchOptions {
     }
 }
 
-/// A place to go from one clip to another.
+/// A transition between two clips: the pair of windows, and their alignment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transition {
     /// The frame at which the outgoing clip is left: its window is `leave..leave + window`.
     pub leave: usize,
     /// The frame at which the incoming clip is entered: its window is `enter..enter + window`.
     pub enter: usize,
-    /// How the incoming window lies best on the outgoing one (`outgoing_from_incoming`), and what
-    /// distance is left.
+    /// The best alignment of the incoming window with the outgoing one (`outgoing_from_incoming`),
+    /// and the remaining distance.
     pub alignment: Alignment,
     /// The root-mean-square distance per point, centimetres on the reference body.
     pub rms_cm: f64,
-    /// A clip was too short for the region asked for, and all of it was searched.
+    /// Whether a clip was too short for the requested region, so that all of it was searched.
     pub grown: bool,
 }
 
-/// How many minima of the coarse matrix are looked at closely.
+/// The number of minima of the coarse matrix that are refined.
 const CANDIDATES: usize = 4;
 
 /// The search for the best transition between two clips, with everything cached that does not
 /// depend on the window.
 ///
-/// Coarse to fine. All pairs of windows are compared every `max(⌈fps / 30⌉, ⌈frames / 400⌉)`
-/// frames; the four lowest minima of that grid are searched again at the full frame rate, within
-/// one stride. The answer's root-mean-square distance is within 5 % or 0.2 cm of the smallest over
-/// *all* pairs of frames (tested against them); an answer that is refined is exact for the pair it
-/// names.
+/// The search goes from coarse to fine. All pairs of windows are compared every `max(⌈fps / 30⌉,
+/// ⌈frames / 400⌉)` frames; the four lowest minima of that grid are searched again at the full
+/// frame rate, within one stride. The root-mean-square distance of the result is within 5 % or 0.2
+/// cm of the smallest over *all* pairs of frames (tested against them), and is exact for the pair
+/// returned if it was refined.
 #[derive(Clone, Debug)]
 pub struct TransitionSearch {
     outgoing: Arc<Clip>,
@@ -147,13 +148,12 @@ pub struct TransitionSearch {
 }
 
 impl TransitionSearch {
-    /// Prepares a search; `weights` has one weight per joint ([`super::limb_weights`]),
-    /// `body_height` (metres, [`crate::skeleton::Roles::body_height`]) is what distances are scaled
-    /// by.
+    /// Prepares a search; `weights` has one weight per joint ([`super::limb_weights`]), and
+    /// distances are scaled by `body_height` (metres, [`crate::skeleton::Roles::body_height`]).
     ///
     /// # Errors
     /// [`RegistrationError`] when a clip is empty, the skeletons or frame rates differ, or the
-    /// weights do not fit.
+    /// number of weights differs from that of the joints.
     pub fn new(
         outgoing: Arc<Clip>,
         incoming: Arc<Clip>,
@@ -182,13 +182,13 @@ impl TransitionSearch {
         self.terms.advance(rows)
     }
 
-    /// The coarse terms, for a picture of all distances.
+    /// Returns the coarse terms, for a picture of all distances.
     #[must_use]
     pub fn terms(&self) -> &PairTerms {
         &self.terms
     }
 
-    /// The best transition for these options.
+    /// Returns the best transition for these options.
     ///
     /// # Errors
     /// [`RegistrationError::Unfinished`] before the comparison is complete,
@@ -226,8 +226,8 @@ impl TransitionSearch {
         })
     }
 
-    /// The best pair within `radius` frames of (i, j). In two passes where the radius is large: 17
-    /// × 17 pairs each.
+    /// Returns the best pair within `radius` frames of (i, j), in two passes of 17 × 17 pairs each
+    /// where the radius is large.
     fn refined(
         &self,
         i: usize,
@@ -264,7 +264,7 @@ impl TransitionSearch {
     }
 }
 
-/// The alignment of two windows at the full frame rate.
+/// Returns the alignment of two windows at the full frame rate.
 fn exact(
     a: &Clip,
     i: usize,
@@ -276,7 +276,7 @@ fn exact(
     super::align(&a.world_positions(i..i + window), &b.world_positions(j..j + window), weights, 0.0)
 }
 
-/// The best transition in one call; see [`TransitionSearch`].
+/// Returns the best transition in one call; see [`TransitionSearch`].
 ///
 /// # Errors
 /// [`RegistrationError`] when the clips cannot be compared or the window does not fit.

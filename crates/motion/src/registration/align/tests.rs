@@ -1,3 +1,5 @@
+//! Tests of the alignment of point clouds.
+
 use super::*;
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
@@ -34,7 +36,7 @@ fn cost(transform: &Planar, source: &[Vec3], target: &[Vec3], weights: &[f64]) -
         .sum()
 }
 
-/// The best of `steps` turns, each with the shift that fits it best: the difference of the weighted
+/// Returns the best of `steps` yaws, each with its best shift: the difference of the weighted
 /// means.
 fn by_grid_search(source: &[Vec3], target: &[Vec3], weights: &[f64], steps: usize) -> f64 {
     let weight = |index: usize| weights[index % weights.len()];
@@ -55,7 +57,7 @@ fn by_grid_search(source: &[Vec3], target: &[Vec3], weights: &[f64], steps: usiz
 }
 
 #[test]
-fn agrees_with_least_squares() {
+fn align_agrees_with_least_squares() {
     let golden: Golden =
         serde_json::from_str(include_str!("../../../tests/golden/align.json")).unwrap();
     assert_eq!(golden.cases.len(), 5);
@@ -68,7 +70,7 @@ fn agrees_with_least_squares() {
             case.distance
         );
         assert!(crate::math::wrap_angle(found.transform.yaw - case.yaw).abs() < 1e-6);
-        // 40 m from the origin, a turn that is uncertain by 1e-7 moves the shift.
+        // 40 m from the origin, an uncertainty of 1e-7 of the yaw moves the shift.
         assert!(
             (found.transform.shift - DVec2::new(case.x0, case.z0)).length() < 1e-4,
             "{:?} {} {}",
@@ -81,7 +83,7 @@ fn agrees_with_least_squares() {
 }
 
 #[test]
-fn equals_a_search_of_20_000_turns() {
+fn align_agrees_with_a_search_over_20_000_yaws() {
     let golden: Golden =
         serde_json::from_str(include_str!("../../../tests/golden/align.json")).unwrap();
     for case in golden.cases {
@@ -105,20 +107,20 @@ fn cloud() -> impl Strategy<Value = Vec<Vec3>> {
 
 proptest! {
     #[test]
-    fn the_distance_is_what_its_transform_leaves(source in cloud(), target in cloud(), w in prop::collection::vec(0.1f64..2.0, 4)) {
+    fn align_distance_is_that_of_its_transform(source in cloud(), target in cloud(), w in prop::collection::vec(0.1f64..2.0, 4)) {
         let found = align(&source, &target, &w, 0.0).unwrap();
         let left = cost(&found.transform, &source, &target, &w);
         prop_assert!((left - found.distance).abs() < 1e-9 * (1.0 + left), "{} {left}", found.distance);
     }
 
     #[test]
-    fn no_neighbour_is_better(source in cloud(), target in cloud(), yaw in -3.1f64..3.1, x in -1.0f64..1.0, z in -1.0f64..1.0) {
+    fn align_distance_is_a_local_minimum(source in cloud(), target in cloud(), yaw in -3.1f64..3.1, x in -1.0f64..1.0, z in -1.0f64..1.0) {
         let found = align(&source, &target, &[1.0], 0.0).unwrap();
         prop_assert!(found.distance <= cost(&Planar::new(yaw, x, z), &source, &target, &[1.0]) + 1e-9);
     }
 
     #[test]
-    fn a_moved_cloud_is_found_again(target in cloud(), yaw in -3.1f64..3.1, x in -9.0f64..9.0, z in -9.0f64..9.0) {
+    fn align_of_a_moved_cloud_is_the_inverse_transform(target in cloud(), yaw in -3.1f64..3.1, x in -9.0f64..9.0, z in -9.0f64..9.0) {
         let moved = Planar::new(yaw, x, z);
         let source: Vec<Vec3> = target.iter().map(|&p| moved.apply(p)).collect();
         let found = align(&source, &target, &[1.0], 0.0).unwrap();
@@ -129,8 +131,8 @@ proptest! {
 }
 
 #[test]
-fn half_a_turn_is_half_a_turn() {
-    // Where `atan` of the quotient would say 0: the target is the source turned by π.
+fn align_of_half_a_turn_is_half_a_turn() {
+    // `atan` of the quotient would give 0 here: the target is the source turned by π.
     let source = [Vec3::new(1.0, 0.0, 0.2), Vec3::new(-0.5, 1.0, 0.0), Vec3::new(0.1, 0.5, -0.9)];
     let target = source.map(|p| Vec3::new(-p.x, p.y, -p.z));
     let found = align(&source, &target, &[1.0], 0.0).unwrap();
@@ -139,8 +141,8 @@ fn half_a_turn_is_half_a_turn() {
 }
 
 #[test]
-fn where_every_turn_fits_the_fallback_is_taken() {
-    // One point over another point; a line that stands upright far away; a square on a point.
+fn align_with_a_free_yaw_takes_the_fallback() {
+    // One point over another point; a vertical line far away; a square on a point.
     let point = [Vec3::new(30.1, 1.0, -7.3)];
     let line = [Vec3::new(30.1, 1.0, -7.3), Vec3::new(30.1, 2.0, -7.3)];
     let square = [Vec3::X, Vec3::Z, -Vec3::X, -Vec3::Z];
@@ -158,7 +160,7 @@ fn where_every_turn_fits_the_fallback_is_taken() {
 }
 
 #[test]
-fn what_cannot_be_aligned_is_refused() {
+fn align_of_invalid_clouds_is_refused() {
     let two = [Vec3::ZERO, Vec3::X];
     assert_eq!(
         align(&two, &two[..1], &[1.0], 0.0),

@@ -1,3 +1,5 @@
+//! Tests of time warps and alignment curves.
+
 use super::*;
 use crate::clip::Clip;
 use crate::clip::fixtures::{points_clip, points_skeleton};
@@ -17,9 +19,9 @@ fn registered(a: &Clip, b: &Clip, window: usize, options: &RegistrationOptions) 
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
-    /// Whatever steps a path takes, with pins anywhere on it.
+    /// For any steps of a path, with pins anywhere on it.
     #[test]
-    fn the_timewarp_rises_strictly_through_its_fixed_points(
+    fn time_warp_increases_through_its_fixed_points(
         steps in prop::collection::vec(0u8..3, 1..80), pins in prop::collection::vec(0usize..80, 0..4), smoothing in 0.0f64..20.0
     ) {
         let mut path = vec![(0.0, 0.0)];
@@ -39,7 +41,7 @@ proptest! {
             }
         }
         fixed.push(path[last]);
-        let warp = timewarp(&path, &fixed, smoothing).unwrap();
+        let warp = time_warp(&path, &fixed, smoothing).unwrap();
         for &(i, j) in &fixed {
             prop_assert!((warp.at(i) - j).abs() < 1e-9);
         }
@@ -50,9 +52,9 @@ proptest! {
     }
 }
 
-/// A walk against itself at another speed of play: the warp is that speed.
+/// A walk registered to itself at another playback speed: the warp has that slope.
 #[test]
-fn a_clip_played_slower_is_found_at_its_speed() {
+fn warp_of_a_slower_clip_has_its_speed() {
     let (fast, slow) = (
         Walk { frames: 150, cadence: 0.9, ..Walk::default() }.clip(),
         Walk { frames: 200, cadence: 0.9 * 0.75, speed: 1.3 * 0.75, ..Walk::default() }.clip(),
@@ -72,10 +74,10 @@ fn a_clip_played_slower_is_found_at_its_speed() {
     assert!(found.path().mean_m < 0.01, "{}", found.path().mean_m);
 }
 
-/// One walks straight on, the other in circles: the turn between them grows over whole turns, and
-/// the transform lays one on the other all the way.
+/// One walks straight on, the other in circles: the yaw between them grows over whole turns, and
+/// the transform aligns one with the other everywhere.
 #[test]
-fn the_turn_is_unwrapped_and_the_clips_lie_on_each_other() {
+fn alignment_of_a_circling_clip_is_unwrapped() {
     let straight = Walk { frames: 500, ..Walk::default() }.clip();
     let circling =
         Walk { frames: 500, turning: 1.5, start: (300.0, -200.0), heading: 2.0, ..Walk::default() }
@@ -101,7 +103,7 @@ fn the_turn_is_unwrapped_and_the_clips_lie_on_each_other() {
 }
 
 #[test]
-fn pins_hold_the_warp() {
+fn warp_with_pins_passes_through_them() {
     let walk = Walk { frames: 160, ..Walk::default() }.clip();
     let mut options = RegistrationOptions::new(60.0);
     options.path.pins = vec![(60, 75)];
@@ -119,9 +121,10 @@ fn pins_hold_the_warp() {
     assert!(matches!(Registration::new(&terms, &matrix, &options), Err(PathError::Pins { .. })));
 }
 
-/// A clip against itself, moved: the warp is the identity and the alignment the way back.
+/// A clip registered to itself, moved: the warp is the identity and the alignment the inverse
+/// transform.
 #[test]
-fn a_moved_clip_lies_where_it_was() {
+fn alignment_of_a_moved_clip_is_the_inverse_transform() {
     let walk = Walk { frames: 120, turning: 0.8, ..Walk::default() }.clip();
     let there = Planar::new(2.5, 40.0, -7.0);
     let found = registered(&walk, &walk.transformed(&there), 9, &RegistrationOptions::new(60.0));

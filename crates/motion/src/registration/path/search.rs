@@ -1,26 +1,30 @@
-use super::stretch::{Ground, Stretch};
+//! The search for the best path, in slices.
+
+use super::section::{SearchSpace, Section};
 use super::{
     DistanceMatrix, MAX_SLOPE_LIMIT, PathEnd, PathError, PathOptions, RegistrationPath,
     checked_pins, no_path,
 };
 use std::ops::Range;
 
-/// From so many rows and columns on, a path in a corridor is found before the best one.
-const WORTH_A_CORRIDOR: usize = 256;
-/// Cells to a side that are one in the matrix that the corridor is sought in, and its cells to
-/// either side of the path found there.
+/// The least number of rows and columns for which a path in a corridor is found before the best
+/// one.
+const MIN_CORRIDOR_SIZE: usize = 256;
+/// Size of the blocks of the coarse matrix in which the corridor is found, in cells to a side, and
+/// its radius in cells to either side of the path found there.
 const CORRIDOR: (usize, usize) = (8, 12);
-/// Rounds of Dinkelbach's iteration: a handful; the limit is for NaN.
+/// The greatest number of rounds of Dinkelbach's iteration: a handful suffices; the limit is for
+/// NaN.
 const MAX_ROUNDS: usize = 32;
 
-/// The search of [`optimal_path`](super::optimal_path), a few rows at a time. Every call is given
-/// the matrix that it was begun with.
+/// The search of [`optimal_path`](super::optimal_path), a few rows at a time. Every call must be
+/// given the same matrix.
 #[derive(Clone, Debug)]
 pub struct PathSearch {
     options: PathOptions,
-    /// How the corridor is sought: cells that are one, and how wide it is.
+    /// Block size of the coarse matrix, and radius of the corridor, in cells.
     corridor: (usize, usize),
-    /// A path in the corridor is all that is wanted.
+    /// Whether a path in the corridor suffices.
     is_rough: bool,
     stage: Stage,
 }
@@ -28,7 +32,7 @@ pub struct PathSearch {
 #[derive(Clone, Debug)]
 enum Stage {
     Pooling,
-    /// In the matrix with fewer cells.
+    /// In the matrix of blocks.
     Coarse(DistanceMatrix, Rounds),
     Corridor(Rounds),
     Whole(Rounds),
@@ -38,24 +42,24 @@ impl PathSearch {
     /// Begins the search.
     ///
     /// # Errors
-    /// [`PathError`] says what excludes every path, as far as that can be told from the options.
+    /// [`PathError`] with the reason why there is no path, as far as that follows from the options.
     pub fn new(matrix: &DistanceMatrix, options: &PathOptions) -> Result<Self, PathError> {
         let is_free = options.start != PathEnd::Corner || options.end != PathEnd::Corner;
         let rounds = Rounds::new(matrix, options, None)?;
-        // Every round of Dinkelbach's iteration is a pass over the whole matrix. The mean of a path
-        // that is nearly the best saves most of them.
-        let has_lead = is_free && matrix.rows().min(matrix.columns()) >= WORTH_A_CORRIDOR;
+        // Every round of Dinkelbach's iteration is a pass over the whole matrix. The mean of a
+        // nearly optimal path saves most of them.
+        let has_estimate = is_free && matrix.rows().min(matrix.columns()) >= MIN_CORRIDOR_SIZE;
         Ok(Self {
             options: options.clone(),
             corridor: CORRIDOR,
             is_rough: false,
-            stage: if has_lead { Stage::Pooling } else { Stage::Whole(rounds) },
+            stage: if has_estimate { Stage::Pooling } else { Stage::Whole(rounds) },
         })
     }
 
-    /// The search without a lead: it takes longer, and finds the same.
+    /// Begins the search without an initial estimate: slower, with the same result.
     #[cfg(test)]
-    pub(super) fn without_lead(
+    pub(super) fn without_estimate(
         matrix: &DistanceMatrix,
         options: &PathOptions,
     ) -> Result<Self, PathError> {
@@ -80,10 +84,10 @@ impl PathSearch {
         })
     }
 
-    /// Looks at up to `rows` more rows of the matrix. The path, once it is found.
+    /// Processes up to `rows` more rows of the matrix. Returns the path once it is found.
     ///
     /// # Errors
-    /// [`PathError`] says what excludes every path.
+    /// [`PathError`] with the reason why there is no path.
     pub fn advance(
         &mut self,
         matrix: &DistanceMatrix,
@@ -110,14 +114,14 @@ impl PathSearch {
         };
         self.stage = match next {
             Err(error) if self.is_rough => return Err(error),
-            // Without a lead it only takes longer.
+            // Without an estimate it only takes longer.
             Err(_) => self.whole(matrix, None)?,
             Ok(stage) => stage,
         };
         Ok(None)
     }
 
-    /// Goes on to the end.
+    /// Completes the search.
     pub(super) fn finish(mut self, matrix: &DistanceMatrix) -> Result<RegistrationPath, PathError> {
         loop {
             if let Some(path) = self.advance(matrix, usize::MAX)? {
@@ -132,7 +136,7 @@ impl PathSearch {
         let mut pins: Vec<(usize, usize)> =
             self.options.pins.iter().map(|pin| (pin.0 / factor, pin.1 / factor)).collect();
         pins.sort_unstable();
-        // Pins that fall into one row or column of the coarse matrix cannot all be passed there.
+        // Pins in one row or column of the coarse matrix cannot all be passed there.
         pins.dedup_by(|next, before| next.0 <= before.0 || next.1 <= before.1);
         let (last_row, last_column) =
             (coarse.rows().saturating_sub(1), coarse.columns().saturating_sub(1));
@@ -145,7 +149,7 @@ impl PathSearch {
         Ok(Stage::Coarse(coarse, rounds))
     }
 
-    /// The corridor beside a path of the coarse matrix.
+    /// Returns the search in the corridor around a path of the coarse matrix.
     fn beside(
         &self,
         matrix: &DistanceMatrix,
@@ -169,14 +173,14 @@ impl PathSearch {
         Rounds::new(matrix, &self.options, Some(spans))
     }
 
-    /// The search through the whole matrix, from the mean of a path that there is.
+    /// Returns the search through the whole matrix, starting from the mean of a known path.
     fn whole(
         &self,
         matrix: &DistanceMatrix,
-        lead: Option<&RegistrationPath>,
+        estimate: Option<&RegistrationPath>,
     ) -> Result<Stage, PathError> {
         let mut rounds = Rounds::new(matrix, &self.options, None)?;
-        rounds.mean = lead.map(|path| {
+        rounds.mean = estimate.map(|path| {
             let (cost, weight) = weigh(matrix, &path.cells, self.options.side_step_m);
             cost / weight
         });
@@ -184,15 +188,15 @@ impl PathSearch {
     }
 }
 
-/// Dinkelbach's iteration: the best path at the mean of the best path so far, until it is no
-/// better.
+/// Dinkelbach's iteration: the best path at the mean of the best path so far, until it no longer
+/// improves.
 #[derive(Clone, Debug)]
 struct Rounds {
     options: PathOptions,
     spans: Option<Vec<Range<usize>>>,
     pins: Vec<(usize, usize)>,
-    /// Where one stretch ends and the next begins: pins, and the last corner where the path ends
-    /// there.
+    /// The cells at which one section ends and the next begins: pins, and the last corner where the
+    /// path ends there.
     anchors: Vec<(usize, usize)>,
     mean: Option<f64>,
     count: usize,
@@ -202,13 +206,13 @@ struct Rounds {
 /// One pass of dynamic programming, rectangle by rectangle from anchor to anchor.
 #[derive(Clone, Debug, Default)]
 struct Pass {
-    done: Vec<Stretch>,
-    /// Where the last stretch ended, and its states there.
+    done: Vec<Section>,
+    /// The end of the last section, and its states there.
     carried: Option<((usize, usize), Vec<f64>)>,
-    /// The stretch under way, and the anchor that it leads to; none for a free end.
-    under_way: Option<(Stretch, Option<(usize, usize)>)>,
-    /// Anchors that were taken up.
-    taken: usize,
+    /// The current section, and the anchor at its end; `None` for a free end.
+    current: Option<(Section, Option<(usize, usize)>)>,
+    /// Number of anchors used so far.
+    used: usize,
 }
 
 impl Rounds {
@@ -245,13 +249,13 @@ impl Rounds {
         matrix: &DistanceMatrix,
         rows: usize,
     ) -> Result<Option<RegistrationPath>, PathError> {
-        let ground = Ground {
+        let space = SearchSpace {
             matrix,
             options: &self.options,
             spans: self.spans.as_deref(),
             bias: self.mean.unwrap_or(0.0),
         };
-        let Some(found) = self.pass.advance(&ground, &self.anchors, rows)? else {
+        let Some(found) = self.pass.advance(&space, &self.anchors, rows)? else {
             return Ok(None);
         };
         self.pass = Pass::default();
@@ -274,72 +278,73 @@ impl Rounds {
 }
 
 impl Pass {
-    /// Goes on by so many rows of one stretch. The cells of the best path, once all of it is there.
+    /// Processes up to `rows` rows of one section. Returns the cells of the best path once it is
+    /// complete.
     fn advance(
         &mut self,
-        ground: &Ground<'_>,
+        space: &SearchSpace<'_>,
         anchors: &[(usize, usize)],
         rows: usize,
     ) -> Result<Option<Vec<(usize, usize)>>, PathError> {
-        let (matrix, options) = (ground.matrix, ground.options);
+        let (matrix, options) = (space.matrix, space.options);
         let corner = (matrix.rows() - 1, matrix.columns() - 1);
         let from = self.carried.as_ref().map(|(from, _)| *from);
-        let Some((mut stretch, to)) = self.under_way.take() else {
-            let to = anchors.get(self.taken).copied();
-            self.taken += 1;
+        let Some((mut section, to)) = self.current.take() else {
+            let to = anchors.get(self.used).copied();
+            self.used += 1;
             if to.is_none() && options.end == PathEnd::Corner {
-                return Ok(Some(self.trace(corner, None, ground)));
+                return Ok(Some(self.trace(corner, None, space)));
             }
             let states = self.carried.as_ref().map(|(_, states)| states.clone());
-            let stretch = Stretch::new(
+            let section = Section::new(
                 from.unwrap_or_default(),
                 to.unwrap_or(corner),
                 options.slope_limit,
                 states,
             );
-            self.under_way = Some((stretch, to));
+            self.current = Some((section, to));
             return Ok(None);
         };
-        if !stretch.advance(ground, rows) {
-            self.under_way = Some((stretch, to));
+        if !section.advance(space, rows) {
+            self.current = Some((section, to));
             return Ok(None);
         }
         if let Some(anchor) = to {
-            let states = stretch.states();
+            let states = section.states();
             if states.iter().all(|state| !state.is_finite()) {
                 return Err(no_path(matrix, options, from, to));
             }
-            self.done.push(stretch);
+            self.done.push(section);
             self.carried = Some((anchor, states));
             return Ok(None);
         }
         let slack = if let PathEnd::Border { slack } = options.end { slack } else { 0.0 };
-        let end = stretch.best_end(slack, (matrix.rows(), matrix.columns()));
+        let end = section.best_end(slack, (matrix.rows(), matrix.columns()));
         let end = end.ok_or_else(|| no_path(matrix, options, from, None))?;
-        Ok(Some(self.trace(end, Some(stretch), ground)))
+        Ok(Some(self.trace(end, Some(section), space)))
     }
 
-    /// Back from the end to the start.
+    /// Traces the path from its end back to its start.
     fn trace(
         &mut self,
         end: (usize, usize),
-        last: Option<Stretch>,
-        ground: &Ground<'_>,
+        last: Option<Section>,
+        space: &SearchSpace<'_>,
     ) -> Vec<(usize, usize)> {
         self.done.extend(last);
         let mut cells = Vec::new();
         let mut cell = end;
-        let mut state = self.done.last_mut().map_or(0, |stretch| stretch.any(end.0, end.1, ground));
-        for (index, stretch) in self.done.iter_mut().enumerate().rev() {
-            // A stretch's first cell is the last of the one before it.
-            (cell, state) = stretch.trace(cell, state, index > 0, ground, &mut cells);
+        let mut state = self.done.last_mut().map_or(0, |section| section.any(end.0, end.1, space));
+        for (index, section) in self.done.iter_mut().enumerate().rev() {
+            // A section's first cell is the last of the one before it.
+            (cell, state) = section.trace(cell, state, index > 0, space, &mut cells);
         }
         cells.reverse();
         cells
     }
 }
 
-/// The cost of a path and what it weighs.
+/// Returns the cost and the weight of a path.
 pub(super) fn weigh(
     matrix: &DistanceMatrix,
     cells: &[(usize, usize)],

@@ -1,3 +1,5 @@
+//! Tests of paths through distance matrices.
+
 use super::search::weigh;
 use super::*;
 use proptest::prelude::*;
@@ -15,7 +17,7 @@ fn matrix(rows: usize, columns: usize, value: impl Fn(usize, usize) -> f32) -> D
     }
 }
 
-/// Whether no more than `limit` steps in a row go one way alone.
+/// Returns whether at most `limit` steps in a row advance one clip alone.
 fn keeps_limit(cells: &[(usize, usize)], limit: usize) -> bool {
     let (mut run, mut way) = (0, (1, 1));
     cells.windows(2).all(|pair| {
@@ -26,8 +28,8 @@ fn keeps_limit(cells: &[(usize, usize)], limit: usize) -> bool {
     })
 }
 
-/// All ways from `cells` on, one by one.
-fn all_ways(
+/// Enumerates all continuations of `cells`.
+fn all_paths(
     matrix: &DistanceMatrix,
     options: &PathOptions,
     cells: &mut Vec<(usize, usize)>,
@@ -52,13 +54,13 @@ fn all_ways(
     for (down, right) in [(1, 1), (1, 0), (0, 1)] {
         if row + down < rows && column + right < columns {
             cells.push((row + down, column + right));
-            all_ways(matrix, options, cells, offer);
+            all_paths(matrix, options, cells, offer);
             cells.pop();
         }
     }
 }
 
-/// The smallest cost per weight of all paths that there are.
+/// Returns the least cost per weight of all paths.
 fn brute_force(matrix: &DistanceMatrix, options: &PathOptions) -> Option<f64> {
     let (rows, columns) = (matrix.rows(), matrix.columns());
     let mut starts = vec![(0, 0)];
@@ -70,7 +72,7 @@ fn brute_force(matrix: &DistanceMatrix, options: &PathOptions) -> Option<f64> {
     }
     let mut best: Option<f64> = None;
     for start in starts {
-        all_ways(matrix, options, &mut vec![start], &mut |cells| {
+        all_paths(matrix, options, &mut vec![start], &mut |cells| {
             let (cost, weight) = weigh(matrix, cells, options.side_step_m);
             best = Some(best.map_or(cost / weight, |best| best.min(cost / weight)));
         });
@@ -85,7 +87,7 @@ fn end() -> impl Strategy<Value = PathEnd> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
     #[test]
-    fn no_path_of_all_is_cheaper(
+    fn optimal_path_is_the_cheapest_of_all(
         rows in 1usize..6, columns in 1usize..6, values in prop::collection::vec(0u8..6, 25), slope_limit in 1usize..4,
         start in end(), end in end(), pins in prop::collection::vec((0usize..5, 0usize..5), 0..3)
     ) {
@@ -102,8 +104,8 @@ proptest! {
                 prop_assert!((cost / weight - best).abs() < 1e-9, "{} {best} {:?}", cost / weight, found.cells);
             }
             Err(PathError::NoPath { .. }) => prop_assert_eq!(best, None),
-            // Refused although steps along a border lead there: the clip that stands still
-            // meanwhile could not be warped.
+            // Refused although steps along a border lead there: the clip that stands still in these
+            // steps could not be warped.
             Err(PathError::Pins { .. } | PathError::PinAtEnd { .. }) => prop_assert!(options.pins.len() > usize::from(start != PathEnd::Corner && end != PathEnd::Corner)),
             Err(other) => prop_assert!(false, "{other}"),
         }
@@ -111,16 +113,16 @@ proptest! {
 }
 
 #[test]
-fn a_plateau_is_crossed_by_its_diagonal() {
+fn optimal_path_on_a_plateau_is_diagonal() {
     let flat = matrix(40, 40, |_, _| 0.02);
     let path = optimal_path(&flat, &PathOptions::default()).unwrap();
     assert_eq!(path.cells, (0..40).map(|i| (i, i)).collect::<Vec<_>>());
     assert!((path.mean_m - 0.02).abs() < 1e-8);
 }
 
-/// A valley of slope 2 is followed only as far as the limit lets it.
+/// A valley of slope 2 is followed only as far as the limit allows.
 #[test]
-fn the_run_belongs_to_the_state() {
+fn optimal_path_keeps_the_slope_limit() {
     let valley = |row: usize, column: usize| (2.0 * row as f32 - column as f32).abs();
     let steep = matrix(30, 59, valley);
     let path =
@@ -139,7 +141,7 @@ fn the_run_belongs_to_the_state() {
 }
 
 #[test]
-fn what_cannot_be_is_told() {
+fn optimal_path_that_is_impossible_is_refused() {
     let some = matrix(20, 30, |row, column| (row as f32 - column as f32).abs());
     let with = |pins: &[(usize, usize)]| {
         optimal_path(&some, &PathOptions { pins: pins.to_vec(), ..PathOptions::default() })
@@ -167,7 +169,7 @@ fn what_cannot_be_is_told() {
     }
 }
 
-/// Two walks that quicken and slow down differently: strides make parallel valleys.
+/// Two walks whose speeds vary differently: strides make parallel valleys.
 fn strides(rows: usize, columns: usize) -> DistanceMatrix {
     let phase = |t: f64, bend: f64| t * 20.0 + bend * (t * 7.0).sin();
     matrix(rows, columns, |row, column| {
@@ -178,7 +180,7 @@ fn strides(rows: usize, columns: usize) -> DistanceMatrix {
 }
 
 #[test]
-fn the_corridor_finds_what_the_whole_matrix_gives() {
+fn path_in_corridor_equals_the_optimal_path() {
     let matrix = strides(700, 560);
     for (start, end) in [
         (PathEnd::Corner, PathEnd::Corner),
@@ -195,7 +197,7 @@ fn the_corridor_finds_what_the_whole_matrix_gives() {
 }
 
 #[test]
-fn a_path_that_is_nearly_the_best_changes_nothing_but_the_time() {
+fn search_with_an_estimate_finds_the_same_path() {
     let field = matrix(300, 280, |row, column| {
         let (i, j) = (row as f32, column as f32);
         0.1 + 0.05 * ((0.11 * i - 0.13 * j).sin() + (0.02 * i).cos() * (0.031 * j).sin())
@@ -207,15 +209,15 @@ fn a_path_that_is_nearly_the_best_changes_nothing_but_the_time() {
             end: PathEnd::Border { slack },
             ..PathOptions::default()
         };
-        let plain = PathSearch::without_lead(&field, &options).unwrap().finish(&field).unwrap();
+        let plain = PathSearch::without_estimate(&field, &options).unwrap().finish(&field).unwrap();
         let quick = optimal_path(&field, &options).unwrap();
         assert!((plain.mean_m - quick.mean_m).abs() < 1e-9, "{} {}", plain.mean_m, quick.mean_m);
         assert_eq!(plain.cells, quick.cells);
     }
 }
 
-/// The smallest cost from corner to corner through a pin, by a table of all that a step may depend
-/// on: its way, how many such steps there were before it, and whether the pin was passed.
+/// Returns the least cost from corner to corner through a pin, by a table of all that a step may
+/// depend on: its direction, the number of such steps before it, and whether the pin was passed.
 fn cheapest_through(
     matrix: &DistanceMatrix,
     pin: (usize, usize),
@@ -266,9 +268,9 @@ fn cheapest_through(
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
-    /// Tall enough that the way back goes through many blocks of rows.
+    /// Enough rows that the trace goes through many blocks of rows.
     #[test]
-    fn the_way_back_is_the_cheapest_way(
+    fn optimal_path_traced_over_many_blocks_is_the_cheapest(
         rows in 70usize..140, columns in 70usize..140, seed in any::<u32>(), slope_limit in 1usize..6, pin in (0.1f64..0.9, 0.1f64..0.9)
     ) {
         let hash = |row: usize, column: usize| (row as u32).wrapping_mul(0x9E37_79B9) ^ (column as u32).wrapping_mul(0x85EB_CA6B) ^ seed;
@@ -287,10 +289,10 @@ proptest! {
     }
 }
 
-/// Rows beside the corridor have no cells: with a pin far from the last column they must not be
-/// looked for there.
+/// Rows outside of the corridor have no cells; with a pin far from the last column they must be
+/// skipped.
 #[test]
-fn a_pin_in_a_corridor_that_begins_late_is_passed() {
+fn path_in_corridor_far_from_the_end_passes_its_pin() {
     let (rows, columns) = (400, 400);
     for (late, pin) in [(60.0f32, (200, 140)), (-60.0, (140, 200))] {
         let valley =

@@ -1,3 +1,5 @@
+//! Tests of pair terms and sweeps against the definition.
+
 use super::*;
 use crate::registration::fixtures::Walk;
 use crate::registration::limb_weights;
@@ -26,7 +28,7 @@ fn terms(a: &Clip, b: &Clip, stride: usize) -> PairTerms {
     terms
 }
 
-/// The mean squared distance per point may be off by this much, m².
+/// The bound of the error of the mean squared distance per point, m².
 const BOUND: f64 = 3e-7;
 
 fn near(fast: f32, slow: f32) -> bool {
@@ -34,7 +36,7 @@ fn near(fast: f32, slow: f32) -> bool {
 }
 
 #[test]
-fn equals_the_definition_at_every_window() {
+fn distances_agree_with_the_definition() {
     let (a, b) = pair();
     for stride in [1, 3] {
         let terms = terms(&a, &b, stride);
@@ -68,10 +70,10 @@ fn equals_the_definition_at_every_window() {
     }
 }
 
-/// A mile from the origin, at walking pace for minutes: the centres are large, and what is left is
-/// not.
+/// 1.6 km from the origin, at walking pace for minutes: the centres are large, and the remaining
+/// distances are not.
 #[test]
-fn digits_survive_a_long_walk_far_away() {
+fn distances_far_from_the_origin_keep_their_digits() {
     let walk =
         Walk { frames: 400, fps: 10.0, start: (1600.0, -900.0), speed: 3.0, ..Walk::default() };
     let a = walk.clip();
@@ -86,7 +88,7 @@ fn digits_survive_a_long_walk_far_away() {
 }
 
 #[test]
-fn equals_aligning_the_point_clouds() {
+fn alignment_agrees_with_that_of_the_point_clouds() {
     let (a, b) = pair();
     let (terms, weights) = (terms(&a, &b, 1), limb_weights(a.skeleton()));
     let matrix = terms.distances(9, &(0..67), &(0..53)).unwrap();
@@ -104,7 +106,7 @@ fn equals_aligning_the_point_clouds() {
 }
 
 #[test]
-fn slices_add_up_to_the_whole() {
+fn sweep_in_slices_equals_the_whole() {
     let (a, b) = pair();
     let whole = terms(&a, &b, 2);
     let mut sliced = PairTerms::new(&a, 0..67, &b, 0..53, &limb_weights(a.skeleton()), 2).unwrap();
@@ -123,7 +125,7 @@ fn slices_add_up_to_the_whole() {
     );
     let mut sweep = whole.sweep(5, &(0..67), &(0..53)).unwrap();
     let rows = sweep.advance(7);
-    // It may let go of the terms in between.
+    // A sweep may stop borrowing the terms in between.
     let paused = sweep.pause();
     assert_eq!((paused.progress(), paused.window()), (rows, 5));
     let sweep = paused.resume(&whole);
@@ -132,7 +134,7 @@ fn slices_add_up_to_the_whole() {
 }
 
 #[test]
-fn a_band_gives_what_the_whole_gives() {
+fn banded_terms_agree_with_all_terms() {
     let (a, b) = pair();
     let weights = limb_weights(a.skeleton());
     let mut banded =
@@ -148,7 +150,7 @@ fn a_band_gives_what_the_whole_gives() {
 }
 
 #[test]
-fn a_clip_against_itself_is_zero_on_the_diagonal() {
+fn distances_of_a_clip_with_itself_are_zero_on_the_diagonal() {
     let a = Walk { start: (80.0, 3.0), ..Walk::default() }.clip();
     let matrix = terms(&a, &a, 1).distances(12, &(0..120), &(0..120)).unwrap();
     for i in 0..matrix.rows() {
@@ -157,7 +159,7 @@ fn a_clip_against_itself_is_zero_on_the_diagonal() {
 }
 
 #[test]
-fn windows_never_cross_an_end() {
+fn distances_of_windows_never_cross_an_end() {
     let (a, b) = pair();
     let terms = terms(&a, &b, 4);
     for window in [1, 4, 5, 52, 53, 54, 1000] {
@@ -178,7 +180,7 @@ fn windows_never_cross_an_end() {
 
 proptest! {
     #[test]
-    fn moving_a_clip_over_the_ground_changes_no_distance(yaw in -3.0f64..3.0, x in -50.0f64..50.0, z in -50.0f64..50.0) {
+    fn distances_do_not_depend_on_the_ground_position(yaw in -3.0f64..3.0, x in -50.0f64..50.0, z in -50.0f64..50.0) {
         let (a, b) = pair();
         let moved = b.transformed(&crate::math::Planar::new(yaw, x, z));
         let all = 0..67;
@@ -191,7 +193,7 @@ proptest! {
 }
 
 #[test]
-fn what_cannot_be_compared_is_refused() {
+fn pair_terms_of_incompatible_clips_are_refused() {
     let (a, b) = pair();
     let weights = limb_weights(a.skeleton());
     assert_eq!(

@@ -1,8 +1,10 @@
+//! Tests of the transition search.
+
 use super::*;
 use crate::registration::fixtures::Walk;
 use crate::registration::{limb_weights, uniform_weights};
 
-/// The smallest distance over all pairs of frames in the regions, at the full rate.
+/// Returns the smallest distance over all pairs of frames in the regions, at the full rate.
 fn brute_force(a: &Clip, b: &Clip, weights: &[f64], options: &SearchOptions) -> f64 {
     let (leave, _) = options.leave.starts(a.frames(), options.window).unwrap();
     let (enter, _) = options.enter.starts(b.frames(), options.window).unwrap();
@@ -14,7 +16,7 @@ fn brute_force(a: &Clip, b: &Clip, weights: &[f64], options: &SearchOptions) -> 
 }
 
 #[test]
-fn close_to_the_best_of_all_pairs() {
+fn best_transition_is_close_to_the_best_of_all_pairs() {
     for (frames, fps, window) in [
         (240, 60.0, 20),
         (240, 120.0, 5),
@@ -56,19 +58,19 @@ fn close_to_the_best_of_all_pairs() {
 }
 
 #[test]
-fn long_clips_are_searched_in_two_passes() {
+fn best_transition_of_long_clips_is_refined_in_two_passes() {
     let a = Arc::new(Walk { frames: 8_000, fps: 60.0, ..Walk::default() }.clip());
     let b = Arc::new(
         Walk { frames: 7_000, fps: 60.0, phase: 0.21, heading: 1.0, ..Walk::default() }.clip(),
     );
     let weights = uniform_weights(a.skeleton());
     let found = best_transition(&a, &b, &weights, 1.75, &SearchOptions::new(30)).unwrap();
-    // The same walk with another phase and heading: nothing is left but a fraction of a frame.
+    // The same walk with another phase and heading: only a fraction of a frame is left.
     assert!(found.rms_cm < 1.0, "{found:?}");
 }
 
 #[test]
-fn a_clip_that_continues_another_is_entered_where_it_does() {
+fn best_transition_into_a_continuation_is_its_frame() {
     let whole = Walk { frames: 300, fps: 60.0, turning: 0.5, ..Walk::default() }.clip();
     let a = Arc::new(whole.crop(0..180).unwrap());
     let moved = crate::math::Planar::new(1.9, -3.0, 8.0);
@@ -89,7 +91,7 @@ fn a_clip_that_continues_another_is_entered_where_it_does() {
 }
 
 #[test]
-fn short_clips_grow_the_region_or_say_why_not() {
+fn best_transition_of_short_clips_grows_the_region_or_is_refused() {
     let a = Arc::new(Walk { frames: 40, ..Walk::default() }.clip());
     let b = Arc::new(Walk { frames: 30, cadence: 1.1, ..Walk::default() }.clip());
     let weights = limb_weights(a.skeleton());
@@ -107,7 +109,7 @@ fn short_clips_grow_the_region_or_say_why_not() {
 }
 
 #[test]
-fn regions_are_any_numbers() {
+fn regions_of_any_numbers_are_clamped() {
     for (from, to) in
         [(f64::NAN, f64::NAN), (2.0, -1.0), (0.3, 0.3), (-1.0, f64::INFINITY), (0.999, 1.0)]
     {
@@ -120,7 +122,7 @@ fn regions_are_any_numbers() {
 }
 
 #[test]
-fn clips_that_do_not_fit_are_refused() {
+fn best_transition_of_incompatible_clips_is_refused() {
     let a = Arc::new(Walk::default().clip());
     let b = Arc::new(Walk { fps: 30.0, ..Walk::default() }.clip());
     let weights = limb_weights(a.skeleton());
@@ -136,7 +138,7 @@ fn clips_that_do_not_fit_are_refused() {
 }
 
 #[test]
-fn search_with_a_fixed_frame_near_the_end_compares_that_frame_with_a_shorter_window() {
+fn best_transition_at_a_fixed_frame_near_the_end_shortens_the_window() {
     let walk = |cadence| {
         let walk = Walk { frames: 60, cadence, ..Walk::default() };
         Arc::new(walk.clip())
@@ -157,6 +159,6 @@ fn search_with_a_fixed_frame_near_the_end_compares_that_frame_with_a_shorter_win
         let found = best_transition(&a, &b, &weights, 1.75, &both).unwrap();
         assert_eq!((found.leave, found.enter, found.grown), (leave, 55, false));
     }
-    // A frame behind the end counts as the last.
+    // A frame beyond the end counts as the last.
     assert_eq!(asked.leaving_at(90, 60), asked.leaving_at(59, 60));
 }

@@ -1,29 +1,33 @@
+//! One section of a path: dynamic programming in a rectangle of cells.
+
 use super::{DistanceMatrix, PathEnd, PathOptions, within};
 use std::ops::Range;
 
-/// Of so many rows the last is kept, and those behind it are filled again on the way back: to note
-/// in each cell where its states come from would take as long as to fill it.
+/// The last of so many rows is saved, and the others are filled again during the trace: to store
+/// the origin of the states in each cell would take as long as to fill it.
 const BLOCK: usize = 32;
-/// Columns that are filled together: what that takes stays in the processor's nearest memory.
+/// Number of columns that are filled together: their data fits into the processor's first-level
+/// cache.
 const TILE: usize = 192;
 
-/// The states of one row of cells: how cheaply each is reached by a diagonal step (0), by the k-th
-/// step in a row along rows (k = 1…s), or along columns (s + k). Column c is at c + 1 - first;
+/// The states of one row of cells: the least cost of reaching each by a diagonal step (0), by the
+/// k-th step in a row along rows (k = 1…s), or along columns (s + k). Column c is at c + 1 - first;
 /// entry 0 is the border.
 #[derive(Clone, Debug)]
 struct Row {
     states: Vec<Vec<f64>>,
-    /// The cheapest that is not along rows, not along columns, and of all.
+    /// The least costs of states that are not along rows, of states that are not along columns, and
+    /// of all.
     not_rows: Vec<f64>,
     not_columns: Vec<f64>,
     any: Vec<f64>,
-    /// Entries that are set.
+    /// The entries that are set.
     used: Range<usize>,
 }
 
 /// Some of the values of a row where it is set, one after the other.
 #[derive(Clone, Debug, Default)]
-struct Kept {
+struct SavedRow {
     used: Range<usize>,
     values: Vec<f64>,
 }
@@ -40,7 +44,7 @@ impl Row {
         }
     }
 
-    /// All but these entries is out of reach from now on; what is in them is to be set.
+    /// Makes all entries but these unreachable; these are to be set.
     fn open(&mut self, entries: Range<usize>) {
         if self.used != entries {
             let others = [&mut self.not_rows, &mut self.not_columns, &mut self.any];
@@ -51,8 +55,8 @@ impl Row {
         }
     }
 
-    /// What is not diagonal of some entries. `corner` holds the states of the first entry of all,
-    /// where they are given.
+    /// Fills the states of some entries that are not diagonal. `corner` holds the states of the
+    /// first entry of all, where they are given.
     fn fill(
         &mut self,
         s: usize,
@@ -103,36 +107,37 @@ impl Row {
         }
     }
 
-    /// What the next row needs: steps along rows go on from where they are, and everything else
-    /// from the cheapest.
-    fn keep(&self, slope_limit: usize) -> Kept {
-        self.kept(self.states[1..=slope_limit].iter().chain([&self.not_rows, &self.any]))
+    /// Returns the values that the next row needs: steps along rows continue from their own states,
+    /// and all other steps from the least cost.
+    fn saved_for_next_row(&self, slope_limit: usize) -> SavedRow {
+        self.saved(self.states[1..=slope_limit].iter().chain([&self.not_rows, &self.any]))
     }
 
-    /// Some of its values where it is set; of all states a [`Kept::choice`] can be made.
-    fn kept<'a>(&self, parts: impl Iterator<Item = &'a Vec<f64>>) -> Kept {
+    /// Returns some of the values where the row is set; with all states, [`SavedRow::choice`] can be
+    /// computed.
+    fn saved<'a>(&self, parts: impl Iterator<Item = &'a Vec<f64>>) -> SavedRow {
         let mut values = Vec::with_capacity((self.states.len() + 1) * self.used.len());
         for part in parts {
             values.extend_from_slice(&part[self.used.clone()]);
         }
-        Kept { values, used: self.used.clone() }
+        SavedRow { values, used: self.used.clone() }
     }
 
-    fn restore(&mut self, kept: &Kept, slope_limit: usize) {
-        self.open(kept.used.clone());
+    fn restore(&mut self, saved: &SavedRow, slope_limit: usize) {
+        self.open(saved.used.clone());
         let parts =
             self.states[1..=slope_limit].iter_mut().chain([&mut self.not_rows, &mut self.any]);
-        let mut from = kept.values.as_slice();
+        let mut from = saved.values.as_slice();
         for values in parts {
-            let (values_of_one, rest) = from.split_at(kept.used.len());
-            values[kept.used.clone()].copy_from_slice(values_of_one);
+            let (values_of_one, rest) = from.split_at(saved.used.len());
+            values[saved.used.clone()].copy_from_slice(values_of_one);
             from = rest;
         }
     }
 }
 
-/// The cheapest states of a cell: without those along columns, without those along rows, and of
-/// all.
+/// The states of least cost of a cell: without those along columns, without those along rows, and
+/// of all.
 #[derive(Clone, Copy, Debug)]
 struct Choice {
     not_columns: usize,
@@ -140,9 +145,9 @@ struct Choice {
     any: usize,
 }
 
-impl Kept {
-    /// Of a row with all its states, the cheapest of an entry. The diagonal wins a tie, and the
-    /// shorter run.
+impl SavedRow {
+    /// Returns the states of least cost of an entry, from a row with all its states. The diagonal
+    /// wins a tie, then the shorter run.
     fn choice(&self, entry: usize, slope_limit: usize) -> Choice {
         let cost = |state: usize| self.values[state * self.used.len() + entry - self.used.start];
         let run = |first: usize| {
@@ -161,22 +166,21 @@ impl Kept {
 
 /// The part of a path between two anchors: dynamic programming in their rectangle.
 #[derive(Clone, Debug)]
-pub(super) struct Stretch {
+pub(super) struct Section {
     shape: Shape,
     front: Front,
-    /// The cheapest of all states on the last column, for a free end.
+    /// The least cost of all states in the last column, for a free end.
     last_column: Vec<f64>,
-    /// Rows that are filled.
+    /// Number of rows that are filled.
     filled: usize,
     /// The last row of every block.
-    kept: Vec<Kept>,
-    /// All states of the rows that a path is walked back through; those of narrow rows from the
-    /// start.
-    known: Vec<Kept>,
+    saved: Vec<SavedRow>,
+    /// All states of the rows that are traced back; for narrow rows they are stored when filled.
+    known: Vec<SavedRow>,
 }
 
-/// A rectangle of cells, first and last; how many steps may go one way; and what the states of the
-/// first cell cost where a stretch before led there.
+/// A rectangle of cells, first and last; the slope limit; and the costs of the first cell's states,
+/// if a section before led there.
 #[derive(Clone, Debug)]
 struct Shape {
     first: (usize, usize),
@@ -186,46 +190,52 @@ struct Shape {
 }
 
 impl Shape {
-    /// So many columns to the left a path of so many rows can come from: the steps that may go
-    /// along columns, and a diagonal one, in each row.
+    /// Returns how many columns a path can advance in this many rows: the steps along columns, and
+    /// a diagonal one, in each row.
     fn reach(&self, rows: usize) -> usize {
         (self.slope_limit + 1) * (rows + 2)
     }
 }
 
-/// How far the states are known.
+/// The rows around the last one that is filled.
 #[derive(Clone, Debug)]
 struct Front {
     here: Row,
     before: Row,
-    /// What the cells of a row cost, for a step on in one clip.
+    /// The costs of a row's cells, for a step in one clip.
     costs: Vec<f64>,
 }
 
-/// What a path is sought in, and how.
+/// The matrix, options and constraints of a search.
 #[derive(Clone, Copy)]
-pub(super) struct Ground<'a> {
+pub(super) struct SearchSpace<'a> {
     pub(super) matrix: &'a DistanceMatrix,
     pub(super) options: &'a PathOptions,
-    /// The columns of each row that are looked at; all of them where there is none.
+    /// The columns of each row that are considered; all of them where it is `None`.
     pub(super) spans: Option<&'a [Range<usize>]>,
-    /// What is taken off every unit of weight.
+    /// The value that is subtracted per unit of weight.
     pub(super) bias: f64,
 }
 
 impl Front {
-    /// The next row, as far as its columns lie in `limit`. A function of its own: a browser
-    /// compiles well what is called often, from one call to the next.
+    /// Fills the next row, as far as its columns lie in `limit`. A separate function, because
+    /// browsers optimise a function between two of its calls.
     #[inline(never)]
-    fn fill_row(&mut self, row: usize, limit: &Range<usize>, shape: &Shape, ground: &Ground<'_>) {
-        let Ground { matrix, options, spans, bias } = *ground;
+    fn fill_row(
+        &mut self,
+        row: usize,
+        limit: &Range<usize>,
+        shape: &Shape,
+        space: &SearchSpace<'_>,
+    ) {
+        let SearchSpace { matrix, options, spans, bias } = *space;
         let (s, (first_row, first_column)) = (shape.slope_limit, shape.first);
         let Self { before, here, costs } = self;
         std::mem::swap(before, here);
         let span =
             spans.map_or(0..matrix.columns(), |spans| spans.get(row).cloned().unwrap_or_default());
         let end = shape.last.1 + 1;
-        // A row beside the corridor has no cells, wherever that is.
+        // A row outside of the corridor has no cells.
         let low = span.start.max(first_column).max(limit.start).min(end);
         let high = span.end.min(end).min(limit.end).max(low);
         // Entries of this row: column c at c + 1 - first_column.
@@ -248,7 +258,7 @@ impl Front {
                 *out = from + 2.0 * cost;
             }
             if shape.carried.is_none() {
-                // Cells on the border have no diagonal before them: there a path begins, or none.
+                // Cells on the border have no diagonal predecessor: a path may begin there, or not.
                 let begins = |row, column| match options.start {
                     PathEnd::Corner => (row, column) == (0, 0),
                     PathEnd::Border { slack } => {
@@ -270,9 +280,9 @@ impl Front {
     }
 }
 
-impl Stretch {
-    /// Of the rectangle of two cells. It begins with the states carried from the stretch before, or
-    /// at the path's start.
+impl Section {
+    /// Returns the section of the rectangle of two cells. It begins with the states carried from
+    /// the section before, or at the path's start.
     pub(super) fn new(
         first: (usize, usize),
         last: (usize, usize),
@@ -285,32 +295,32 @@ impl Stretch {
             front: Front { here: row(), before: row(), costs: Vec::new() },
             last_column: Vec::with_capacity(last.0 - first.0 + 1),
             filled: 0,
-            kept: Vec::new(),
-            known: vec![Kept::default(); last.0 - first.0 + 1],
+            saved: Vec::new(),
+            known: vec![SavedRow::default(); last.0 - first.0 + 1],
         }
     }
 
-    /// Fills `rows` more rows. `true` when the rectangle is full.
-    pub(super) fn advance(&mut self, ground: &Ground<'_>, rows: usize) -> bool {
+    /// Fills `rows` more rows. Returns `true` when the rectangle is full.
+    pub(super) fn advance(&mut self, space: &SearchSpace<'_>, rows: usize) -> bool {
         let (first, last) = (self.shape.first, self.shape.last);
         let height = last.0 + 1 - first.0;
         for _ in 0..rows.min(height - self.filled) {
-            self.front.fill_row(first.0 + self.filled, &(0..usize::MAX), &self.shape, ground);
+            self.front.fill_row(first.0 + self.filled, &(0..usize::MAX), &self.shape, space);
             let row = &self.front.here;
             self.last_column.push(row.any[self.width()]);
-            // What is no wider than what would be filled again is known at once.
+            // Rows that are no wider than the part that would be filled again are stored at once.
             if row.used.len() <= self.shape.reach(BLOCK) {
-                self.known[self.filled] = row.kept(row.states.iter());
+                self.known[self.filled] = row.saved(row.states.iter());
             }
             self.filled += 1;
             if self.filled.is_multiple_of(BLOCK) && self.filled < height {
-                self.kept.push(row.keep(self.shape.slope_limit));
+                self.saved.push(row.saved_for_next_row(self.shape.slope_limit));
             }
         }
         self.filled == height
     }
 
-    /// The states of the last cell that was filled.
+    /// Returns the states of the last cell that was filled.
     pub(super) fn states(&self) -> Vec<f64> {
         self.front.here.states.iter().map(|states| states[self.width()]).collect()
     }
@@ -319,41 +329,41 @@ impl Stretch {
         self.shape.last.1 - self.shape.first.1 + 1
     }
 
-    /// What is cheapest in a cell. Asked for from below upwards and from right to left, as a path
-    /// is walked back.
-    fn choice(&mut self, row: usize, column: usize, ground: &Ground<'_>) -> Choice {
+    /// Returns the states of least cost of a cell. Cells must be requested upwards and from right
+    /// to left, as a path is traced.
+    fn choice(&mut self, row: usize, column: usize, space: &SearchSpace<'_>) -> Choice {
         let at = row - self.shape.first.0;
         let entry = column + 1 - self.shape.first.1;
         if !self.known[at].used.contains(&entry) {
-            self.fill_again(at, column, ground);
+            self.fill_again(at, column, space);
         }
         self.known[at].choice(entry, self.shape.slope_limit)
     }
 
     /// Fills a block up to a row again, as far as a path through that cell can come from.
-    fn fill_again(&mut self, at: usize, column: usize, ground: &Ground<'_>) {
+    fn fill_again(&mut self, at: usize, column: usize, space: &SearchSpace<'_>) {
         let (shape, front) = (&self.shape, &mut self.front);
         let first = at / BLOCK * BLOCK;
         self.known.truncate(at + 1);
-        self.kept.truncate(first / BLOCK);
-        match self.kept.pop() {
-            Some(kept) => front.here.restore(&kept, shape.slope_limit),
+        self.saved.truncate(first / BLOCK);
+        match self.saved.pop() {
+            Some(saved) => front.here.restore(&saved, shape.slope_limit),
             None => front.here.open(0..0),
         }
         let limit = column.saturating_sub(shape.reach(at - first))..column + 1;
         for (row, known) in self.known.iter_mut().enumerate().skip(first) {
-            front.fill_row(shape.first.0 + row, &limit, shape, ground);
-            *known = front.here.kept(front.here.states.iter());
+            front.fill_row(shape.first.0 + row, &limit, shape, space);
+            *known = front.here.saved(front.here.states.iter());
         }
     }
 
-    /// The best state of a cell.
-    pub(super) fn any(&mut self, row: usize, column: usize, ground: &Ground<'_>) -> usize {
-        self.choice(row, column, ground).any
+    /// Returns the best state of a cell.
+    pub(super) fn any(&mut self, row: usize, column: usize, space: &SearchSpace<'_>) -> usize {
+        self.choice(row, column, space).any
     }
 
-    /// The cheapest cell on the last row and the last column, where at most `slack` of the other
-    /// clip is left out.
+    /// Returns the cell of least cost in the last row and the last column, where at most `slack` of
+    /// the other clip is left out.
     pub(super) fn best_end(
         &self,
         slack: f64,
@@ -377,15 +387,15 @@ impl Stretch {
         Some(best.1)
     }
 
-    /// Walks back from a cell to the stretch's first one, or to where the path begins. Adds the
-    /// cells, the first one only if it is not `shared` with the stretch before; returns the first
+    /// Traces back from a cell to the section's first one, or to the start of the path. Appends the
+    /// cells, the first one only if it is not `shared` with the section before; returns the first
     /// cell with its state.
     pub(super) fn trace(
         &mut self,
         mut cell: (usize, usize),
         mut state: usize,
         shared: bool,
-        ground: &Ground<'_>,
+        space: &SearchSpace<'_>,
         cells: &mut Vec<(usize, usize)>,
     ) -> ((usize, usize), usize) {
         let s = self.shape.slope_limit;
@@ -405,24 +415,23 @@ impl Stretch {
             cells.push(cell);
             (cell, state) = if state == 0 {
                 let before = (row - 1, column - 1);
-                (before, self.any(before.0, before.1, ground))
+                (before, self.any(before.0, before.1, space))
             } else if state <= s {
                 let before = (row - 1, column);
-                let first =
-                    |stretch: &mut Self| stretch.choice(before.0, before.1, ground).not_rows;
+                let first = |section: &mut Self| section.choice(before.0, before.1, space).not_rows;
                 (before, if state == 1 { first(self) } else { state - 1 })
             } else {
                 let before = (row, column - 1);
                 let first =
-                    |stretch: &mut Self| stretch.choice(before.0, before.1, ground).not_columns;
+                    |section: &mut Self| section.choice(before.0, before.1, space).not_columns;
                 (before, if state == s + 1 { first(self) } else { state - 1 })
             };
         }
     }
 }
 
-/// One step further in runs, and the cheapest so far. A function of its own, over slices that share
-/// nothing: then it takes two cells at a time, without a branch.
+/// Extends all runs by one step, and updates the least costs. A separate function over slices that
+/// do not alias, so that it is vectorised: two cells at a time, without a branch.
 #[inline(never)]
 fn step_on(out: &mut [f64], from: &[f64], costs: &[f64], best: &mut [f64]) {
     for (((out, from), cost), best) in out.iter_mut().zip(from).zip(costs).zip(best) {
