@@ -288,7 +288,7 @@ fn runs(flags: &[bool]) -> impl Iterator<Item = (bool, Range<usize>)> + '_ {
 }
 
 /// Inverts runs of `value` that are shorter than `min_frames` and touch neither end of the clip.
-fn drop_short_runs(flags: &mut [bool], value: bool, min_frames: usize) {
+pub(super) fn drop_short_runs(flags: &mut [bool], value: bool, min_frames: usize) {
     let last = flags.len();
     let short: Vec<Range<usize>> = runs(flags)
         .filter(|(v, range)| {

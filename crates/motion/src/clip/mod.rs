@@ -28,6 +28,9 @@
 //! one value to enter contact and a looser one to leave it: about a single limit a trembling foot
 //! would flicker.
 //!
+//! A clip that goes in place ([`take_in_place`]) has its way over the ground in its feet: what stands
+//! goes backward under the body, and [`way_from_feet`] adds that up.
+//!
 //! # Example
 //!
 //! ```
@@ -86,6 +89,7 @@ mod curves;
 #[cfg(any(test, feature = "fixtures"))]
 pub mod fixtures;
 mod ground;
+mod in_place;
 mod jolts;
 mod mirror;
 mod poses;
@@ -101,6 +105,7 @@ pub use contacts::{ContactOptions, Contacts};
 pub(crate) use contacts::{stillest_point, stillest_step};
 pub use curves::{CurveKind, joint_curve};
 pub use ground::estimate_ground;
+pub use in_place::{RootWay, RootWayError, take_in_place, way_from_feet};
 pub(crate) use jolts::{JoltScan, jolts, turn_change};
 pub use mirror::{MirrorError, mirror};
 pub use reference::{reference_pose, stance_for_rest};

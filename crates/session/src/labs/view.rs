@@ -12,6 +12,7 @@ use crate::compare::MAX_PANES;
 use crate::motion::Motion;
 use crate::notice::sentence;
 use crate::params::{Key, Params};
+use segue_motion::clip::take_in_place;
 use segue_motion::math::Planar;
 use segue_motion::metrics::{ClipMeter, Metric, SlideMeter};
 use segue_motion::path::{FitOptions, FittedPath};
@@ -146,7 +147,7 @@ impl Ground {
                 return Ok(Arc::clone(motion));
             }
             RootMotion::World => vec![Planar::IDENTITY; frames.len()],
-            RootMotion::InPlace => frames.iter().map(Planar::inverse).collect(),
+            RootMotion::InPlace => take_in_place(frames, true),
             RootMotion::Residual => {
                 let source = source_of(motion);
                 let path = FittedPath::new(Arc::new(source), &FitOptions::default())
