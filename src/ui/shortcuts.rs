@@ -10,7 +10,7 @@ use segue_session::choices;
 use segue_session::{Command, Key, Kind, Session, Value};
 
 /// The labs, from left to right: the row of digits and what stands behind them.
-pub(super) const LAB_KEYS: [Keyboard; 11] = [
+pub(super) const LAB_KEYS: [Keyboard; 12] = [
     Keyboard::Num1,
     Keyboard::Num2,
     Keyboard::Num3,
@@ -22,6 +22,7 @@ pub(super) const LAB_KEYS: [Keyboard; 11] = [
     Keyboard::Num9,
     Keyboard::Num0,
     Keyboard::Minus,
+    Keyboard::Equals,
 ];
 
 /// What the keyboard asks for, unless somebody is typing.
@@ -121,7 +122,8 @@ pub(crate) fn shortcuts(session: &Session, state: &mut UiState, out: &mut Out, c
     if let Kind::Choice(labs) = Key::Lab.param().kind {
         for (keyboard, lab) in LAB_KEYS.into_iter().zip(labs) {
             // A map that has the focus is made larger and smaller with these two.
-            let is_taken = focused && matches!(keyboard, Keyboard::Num0 | Keyboard::Minus);
+            let is_taken =
+                focused && matches!(keyboard, Keyboard::Num0 | Keyboard::Minus | Keyboard::Equals);
             if !is_taken && pressed(none, keyboard) {
                 out.set_once(Key::Lab, Value::Choice(lab.key));
             }
