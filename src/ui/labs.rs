@@ -4,6 +4,7 @@
 pub(crate) mod blend;
 mod break_it;
 pub(crate) mod graph;
+mod in_place;
 mod layers;
 mod loop_;
 pub(crate) mod make;
@@ -98,6 +99,7 @@ fn of(lab: LabId) -> &'static LabUi {
         LabId::Path => &path::LAB,
         LabId::Graph => &graph::LAB,
         LabId::Match => &match_::LAB,
+        LabId::InPlace => &in_place::LAB,
     }
 }
 

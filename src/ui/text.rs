@@ -345,8 +345,14 @@ pub(crate) const METRICS: &[(&str, &str)] = &[
     ("cycle_frames", "frames"),
     ("cycle_m", "way m"),
     ("cycle_turn_deg", "turn"),
+    ("root_way_m", "way m"),
+    ("root_way_mps", "m/s"),
+    ("root_way_turn_deg", "turn"),
 ];
 
+/// What the In place lab does.
+pub(crate) const IN_PLACE_ABOUT: &str =
+    "Takes the way over the ground out of a clip, or finds it again from the feet that stand.";
 /// What the Speed lab does.
 pub(crate) const SPEED_ABOUT: &str = "Blends two gaits, such as a walk and a run, to any speed between them. Drag the speed while it plays.";
 /// Opens the speeds of A and B and the one between.

@@ -83,6 +83,7 @@ choices! {
         Path "path" "Path",
         Graph "graph" "Graph",
         Match "match" "Match",
+        InPlace "in_place" "In place",
     }
 
     /// How the weight moves from A to B inside a blend window.
@@ -208,6 +209,12 @@ choices! {
         World "world" "recorded",
         InPlace "in_place" "in place",
         Residual "residual" "residual",
+    }
+
+    /// What becomes of a clip's way over the ground.
+    RootWay of RootWay {
+        TakeOut "take_out" "taken out",
+        PutBack "put_back" "put back",
     }
 
     /// The frame in which a character on a path keeps its heading.

@@ -12,6 +12,7 @@ mod blend;
 mod feet;
 mod gauge;
 mod graph;
+mod in_place;
 mod kept;
 pub(super) mod lab;
 pub(super) mod lab_set;

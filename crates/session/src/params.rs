@@ -5,7 +5,7 @@ use super::choices::{
     AlignBy, Atan, Backdrop, Camera, Construction, Curve, EdgeWeight, Ends, Follow, GoingOn,
     Hysteresis, JumpMethod, LabId, LayerFit, LayerMode, LayerReference, Look, LoopMethod,
     MadeAction, Mask, MatchBy, Mistake, Normalisation, PageLanguage, PageTheme, PathFacing,
-    PathKeep, PathOffset, PathSpline, RootMotion, Scenario, SearchBy, Selected, Skinning,
+    PathKeep, PathOffset, PathSpline, RootMotion, RootWay, Scenario, SearchBy, Selected, Skinning,
     Transform, TransitionMethod, WalkMethod, WarpMode, WarpWith, WeightLaw,
 };
 use super::compare::Compare;
@@ -334,6 +334,9 @@ parameters! {
     Tags "tags" "Tags" Lab(Match), Kind::Text, Start::Text(""), "", "Tags by hand: clip, seconds and word, as in walk:0.2-1.5:exclude. A word behind a minus sign is taken away there.";
     ShownCandidates "shown_candidates" "Candidates shown" Lab(Match), number(1.0, 8.0, 1.0), Start::Number(5.0), "frames", "How many of the best frames each search tells of.";
     Crowd "crowd" "Characters" Lab(Match), number(1.0, 100.0, 1.0), Start::Number(1.0), "", "Others walk about you, each with a controller of its own, all with the same clips.";
+
+    RootWay "root_way" "Way over the ground" Lab(InPlace), Kind::Choice(RootWay::CHOICES), Start::Choice(RootWay::TakeOut.word()), "", "Taken out: the body stays over the origin. Put back: found from the planted feet of a clip that goes in place.";
+    RootWayTurn "root_way_turn" "With the turn" Lab(InPlace), Kind::Switch, Start::Switch(true), "", "The turn of the body is taken out or put back, too. Off: it faces as it does in the clip.";
 
     Gait "gait" "Motion" Lab(Make), Kind::Choice(MadeAction::CHOICES), Start::Choice(MadeAction::Walk.word()), "", "What the character does.";
     GaitSpeed "gait_speed" "Speed" Lab(Make), auto(0.4, 6.5, 0.05), Start::Auto, "m/s", "How fast it walks or runs: a walk takes 0.4 to 2.2, a run 1.8 to 6.5.";

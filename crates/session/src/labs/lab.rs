@@ -2,7 +2,7 @@
 
 use super::lab_set::{LabClips, LabSet};
 use super::{
-    Outcome, Slot, blend, graph, layers, loop_, make, match_, path, register, speed, view,
+    Outcome, Slot, blend, graph, in_place, layers, loop_, make, match_, path, register, speed, view,
 };
 use crate::LabId;
 use crate::params::{Group, Key, Params, Value};
@@ -202,6 +202,7 @@ pub(crate) fn of(lab: LabId) -> &'static dyn Lab {
         LabId::Path => &path::PathLab,
         LabId::Graph => &graph::GraphLab,
         LabId::Match => &match_::MatchLab,
+        LabId::InPlace => &in_place::InPlaceLab,
     }
 }
 

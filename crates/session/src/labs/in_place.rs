@@ -1,0 +1,222 @@
+//! The In place lab: a clip's way over the ground is taken out, or put back from its planted feet.
+
+use super::feet::{Lock, slide, with_feet};
+use super::lab::{Inputs, Lab, LabInputs};
+use super::lab_set::{LabClips, LabSet};
+use super::{Measured, Outcome, Slot};
+use crate::LabId;
+use crate::choices::RootWay;
+use crate::motion::Motion;
+use crate::params::{Key, Params};
+use segue_motion::clip::{Clip, take_in_place, way_from_feet};
+use segue_motion::math::Planar;
+use segue_motion::metrics::{Metric, foot_slide_cm};
+use std::sync::Arc;
+
+/// The In place lab: one clip, without its way over the ground or with a new one.
+pub(super) struct InPlaceLab;
+
+impl Lab for InPlaceLab {
+    fn parameters_of(&self) -> &'static [LabId] {
+        &[LabId::InPlace]
+    }
+
+    fn slots(&self) -> &'static [Slot] {
+        &[Slot::A]
+    }
+
+    fn result_name(&self, params: &Params, a: &str, _b: &str) -> String {
+        match params.choice() {
+            RootWay::TakeOut => format!("{a}, in place"),
+            RootWay::PutBack => format!("{a}, way put back"),
+        }
+    }
+
+    fn file_stem(&self, params: &Params) -> String {
+        match params.choice() {
+            RootWay::TakeOut => format!("{} in place", params.text(Key::A)),
+            RootWay::PutBack => format!("{} with its way", params.text(Key::A)),
+        }
+    }
+
+    fn captured_link(&self) -> Option<&'static str> {
+        Some("a=cmu16_walk")
+    }
+
+    fn inputs(
+        &self,
+        _labs: &mut LabSet,
+        clips: LabClips,
+        params: &Params,
+        _match_window: usize,
+    ) -> Result<Option<Inputs>, String> {
+        Ok(Some(Inputs::new(InPlaceInputs {
+            motion: Arc::clone(clips.first()?),
+            way: params.choice(),
+            turns: params.is_on(Key::RootWayTurn),
+            foot_lock: Lock::of(params),
+        })))
+    }
+}
+
+/// What the result depends on. Equal inputs, equal result.
+#[derive(Clone, Debug)]
+struct InPlaceInputs {
+    motion: Arc<Motion>,
+    way: RootWay,
+    turns: bool,
+    foot_lock: Option<Lock>,
+}
+
+impl PartialEq for InPlaceInputs {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.motion, &other.motion)
+            && self.way == other.way
+            && self.turns == other.turns
+            && self.foot_lock == other.foot_lock
+    }
+}
+
+impl LabInputs for InPlaceInputs {
+    fn run(&self) -> Result<Outcome, String> {
+        let source = &self.motion;
+        let (moves, contacts) = match self.way {
+            RootWay::TakeOut => {
+                (take_in_place(&source.ground_frames, self.turns), source.contacts.clone())
+            }
+            RootWay::PutBack => {
+                let options = &source.feet.contacts;
+                let found = way_from_feet(&source.clip, &source.roles, options, self.turns)
+                    .map_err(|error| error.to_string())?;
+                (found.world_from_clip, found.contacts)
+            }
+        };
+        let ground_frames: Vec<Planar> =
+            moves.iter().zip(&source.ground_frames).map(|(at, frame)| at.after(frame)).collect();
+        let moved = |clip: &Clip| Arc::new(clip.transformed_by_frame(&moves));
+        let lock =
+            |clip| with_feet(clip, &source.roles, &contacts, source.ground_m, self.foot_lock);
+        // Feet stand where the body goes its way: in the source, or in the result.
+        let (going, standing, frames) = match self.way {
+            RootWay::TakeOut => {
+                let going = lock(&source.clip)?;
+                (Arc::clone(&going), moved(&going), &source.ground_frames)
+            }
+            RootWay::PutBack => {
+                (lock(&moved(&source.clip))?, Arc::clone(&source.clip), &ground_frames)
+            }
+        };
+        let clip = Arc::clone(if self.way == RootWay::TakeOut { &standing } else { &going });
+        let slid = |clip| foot_slide_cm(clip, &source.roles, &contacts);
+        let mut metrics = way_metrics(frames, source.clip.fps()).to_vec();
+        metrics.push(slide(slid(&going)));
+        metrics.push(Metric::fact(
+            "foot_slide_in_place_cm",
+            "Foot slide in place",
+            slid(&standing),
+            "cm",
+            "How far a planted foot goes in the worst stance without the way over the ground.",
+        ));
+        Ok(Outcome {
+            metrics,
+            beside: vec![Arc::clone(&source.clip)],
+            measured: Measured::Clip(going),
+            ..Outcome::plain(Arc::new(Motion {
+                clip,
+                contacts,
+                ground_frames,
+                ..Motion::clone(source)
+            }))
+        })
+    }
+}
+
+/// Returns the numbers of a way over the ground.
+fn way_metrics(frames: &[Planar], fps: f64) -> [Metric; 3] {
+    let steps = || frames.windows(2).map(|pair| pair[0].inverse().after(&pair[1]));
+    let way_m: f64 = steps().map(|step| step.shift.length()).sum();
+    let secs = frames.len().saturating_sub(1).max(1) as f64 / fps;
+    [
+        Metric::fact(
+            "root_way_m",
+            "Way",
+            way_m,
+            "m",
+            "The way of the hips over the ground that is taken out, or put back.",
+        ),
+        Metric::fact(
+            "root_way_mps",
+            "Speed on the way",
+            way_m / secs,
+            "m/s",
+            "That way by its time.",
+        ),
+        Metric::fact(
+            "root_way_turn_deg",
+            "Turn on the way",
+            steps().map(|step| step.yaw).sum::<f64>().to_degrees(),
+            "°",
+            "How far the body turns on that way, to the left.",
+        ),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Command, Session};
+
+    fn opened(link: &str) -> Session {
+        let mut session = Session::new();
+        session.apply(Command::OpenLink(link.into())).expect("a link");
+        while session.work() {}
+        session
+    }
+
+    fn number(session: &Session, id: &str) -> f64 {
+        let outcome = session.main_outcome().expect("a result");
+        let metric = outcome.metrics.iter().find(|metric| metric.id == id).expect("a number");
+        metric.value.expect("a value")
+    }
+
+    /// From the first place on the ground to the last, metres.
+    fn way_m(session: &Session) -> f64 {
+        let frames = &session.main_outcome().expect("a result").motion.ground_frames;
+        frames[0].shift.distance(frames[frames.len() - 1].shift)
+    }
+
+    #[test]
+    fn way_that_was_taken_out_is_put_back_from_the_feet() {
+        let walk = opened("lab=view&a=walk");
+        let mut session = opened("lab=in_place&a=walk");
+        assert!(way_m(&session) < 1e-3, "{} m", way_m(&session));
+        assert!((number(&session, "root_way_m") - way_m(&walk)).abs() < 0.2);
+        assert!(number(&session, "foot_slide_in_place_cm") > 40.0);
+        session.apply(Command::Keep(0)).expect("kept");
+
+        let back = opened("lab=in_place&a=in_place(a:walk)&root_way=put_back");
+        let (wanted, found) = (way_m(&walk), way_m(&back));
+        assert!((found - wanted).abs() < 0.02 * wanted, "{found} m of {wanted} m");
+        assert!(number(&back, "foot_slide_cm") < 2.0, "{}", number(&back, "foot_slide_cm"));
+        assert!(number(&back, "foot_slide_in_place_cm") > 40.0);
+    }
+
+    #[test]
+    fn turn_stays_where_it_is_not_taken_out() {
+        let yaws = |link: &str| {
+            let session = opened(link);
+            let frames = &session.main_outcome().expect("a result").motion.ground_frames;
+            [frames[0].yaw, frames[frames.len() - 1].yaw]
+        };
+        let walk = yaws("lab=view&a=walk_left");
+        let kept = yaws("lab=in_place&a=walk_left&root_way_turn=off");
+        let taken = yaws("lab=in_place&a=walk_left");
+        assert!((0..2).all(|end| (kept[end] - walk[end]).abs() < 1e-3), "{kept:?} {walk:?}");
+        assert!(taken.iter().all(|yaw| yaw.abs() < 1e-3), "{taken:?}");
+    }
+
+    #[test]
+    fn both_ways_stand_side_by_side() {
+        let session = opened("lab=in_place&a=walk&compare=root_way:take_out,put_back");
+        assert!(session.panes().len() == 2 && session.panes().iter().all(|p| p.problem.is_none()));
+    }
+}

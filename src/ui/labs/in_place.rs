@@ -1,0 +1,51 @@
+//! The In place lab: a clip, and what becomes of its way over the ground.
+
+use crate::ui::kit;
+use crate::ui::labs::{Compares, LabUi, Shown, Title};
+use crate::ui::out::Out;
+use crate::ui::rows::{
+    Detail, clip_sets_ui, foot_rows_ui, lab_label, param_row_ui, save_result_ui, slot_row_ui,
+};
+use crate::ui::state::UiState;
+use crate::ui::text;
+use crate::ui::theme::{palette_of, space};
+use eframe::egui::Ui;
+use segue_session::{Key, Session, Slot, Value};
+
+/// The lab's part of the page.
+pub(super) const LAB: LabUi = LabUi {
+    panel_ui: in_place_ui,
+    compares: Compares::Own(compare_ways),
+    title,
+    hint: |_| None,
+    take_line: None,
+};
+
+fn title(shown: &Shown<'_>) -> Title {
+    Title { strong: shown.name(Key::A), secondary: shown.spoken(Key::RootWay), ..Title::default() }
+}
+
+/// All rows of the lab.
+fn in_place_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    kit::section_header_ui(&lab_label(session), ui);
+    kit::note_ui(text::IN_PLACE_ABOUT, palette_of(ui).muted, ui);
+    clip_sets_ui(session, out, ui);
+    slot_row_ui(Slot::A, session, out, ui);
+    if let Some(problem) = session.panes().first().and_then(|pane| pane.problem.as_deref()) {
+        kit::note_ui(problem, palette_of(ui).warning, ui);
+    }
+    ui.add_space(space::S);
+    param_row_ui(Key::RootWay, &Detail::default(), session, out, ui);
+    param_row_ui(Key::RootWayTurn, &Detail::default(), session, out, ui);
+    ui.add_space(space::S);
+    foot_rows_ui(session, out, ui);
+    ui.add_space(space::S);
+    save_result_ui(session, state, out, ui);
+}
+
+/// Both ways side by side, or back to one pane.
+fn compare_ways(session: &Session, out: &mut Out) {
+    let on = session.compare().is_some_and(|compare| compare.key == Key::RootWay);
+    let query = if on { "" } else { "root_way:take_out,put_back" };
+    out.set_once(Key::Compare, Value::Text(query.to_owned()));
+}
