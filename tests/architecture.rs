@@ -42,10 +42,9 @@ const APP: [(&str, &str); 8] = [
 const CRATES: [&str; 3] = ["segue_motion", "segue_formats", "segue_session"];
 
 /// What the libraries never use: screens, the browser, files, clock and threads.
-const OUTSIDE: [&str; 13] = [
+const OUTSIDE: [&str; 12] = [
     "egui",
     "eframe",
-    "egui_plot",
     "wgpu",
     "web_sys",
     "js_sys",

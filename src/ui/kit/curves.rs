@@ -3,10 +3,7 @@
 use super::paint::{Run, line_of, put};
 use super::timeline::{TimeAxis, hovered_time, nice_step};
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
-use eframe::egui::{
-    Align2, Color32, Rect, Response, Sense, Stroke, StrokeKind, Ui, UiBuilder, Vec2b, pos2, vec2,
-};
-use egui_plot::{GridMark, Line, Plot, PlotPoint, PlotPoints};
+use eframe::egui::{Align2, Color32, Rect, Response, Stroke, StrokeKind, Ui, pos2, vec2};
 
 /// One curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,7 +70,7 @@ pub(super) fn curves_ui(
     axis: TimeAxis,
     plot: Rect,
     scale_labels: bool,
-    ui: &mut Ui,
+    ui: &Ui,
 ) {
     if plot.width() < 2.0 || plot.height() < 2.0 || axis.duration <= 0.0 {
         return;
@@ -85,62 +82,28 @@ pub(super) fn curves_ui(
     let marks = move || {
         (0..).map(move |i| (first + f64::from(i)) * step).take_while(move |&value| value <= high)
     };
-    let builder = UiBuilder::new().id_salt("curves").max_rect(plot);
-    ui.scope_builder(builder, |ui| {
-        let config = Plot::new("curves")
-            .width(plot.width())
-            .height(plot.height())
-            .min_size(vec2(1.0, 1.0))
-            .set_margin_fraction(vec2(0.0, 0.0))
-            .auto_bounds(Vec2b::FALSE)
-            .show_background(false)
-            .show_axes(false)
-            .show_grid([false, true])
-            .grid_color(palette.line)
-            .grid_fade(0.0)
-            .y_grid_spacer(move |_| {
-                marks().map(|value| GridMark { value, step_size: step }).collect()
-            })
-            .show_crosshair(false)
-            .allow_zoom(false)
-            .allow_drag(false)
-            .allow_scroll(false)
-            .allow_boxed_zoom(false)
-            .allow_double_click_reset(false)
-            .allow_axis_zoom_drag(false)
-            .label_formatter(|_| None)
-            // The timeline takes the pointer: one scrubs over the curves as over the bars.
-            .sense(Sense::empty());
-        config.show(ui, |plot_ui| {
-            plot_ui.set_plot_bounds_x(0.0..=axis.duration);
-            plot_ui.set_plot_bounds_y(low..=high);
-            for strong in [false, true] {
-                for series in curves.series.iter().filter(|series| series.strong == strong) {
-                    let width = theme.scale() * if strong { 2.2 } else { 1.4 };
-                    for run in series
-                        .points
-                        .split(|point| !(point[0].is_finite() && point[1].is_finite()))
-                        .filter(|run| run.len() > 1)
-                    {
-                        let points: Vec<PlotPoint> =
-                            run.iter().map(|&[x, y]| PlotPoint::new(x, y)).collect();
-                        let stroke = Stroke::new(width, series.color);
-                        plot_ui.line(
-                            Line::new(series.name, PlotPoints::Owned(points))
-                                .stroke(stroke)
-                                .allow_hover(false),
-                        );
-                    }
-                }
+    let y_of = |value: f64| plot.bottom() - ((value - low) / (high - low)) as f32 * plot.height();
+    let painter = ui.painter_at(plot);
+    for value in marks() {
+        let y = painter.round_to_pixel_center(y_of(value));
+        painter.hline(plot.x_range(), y, Stroke::new(theme.hairline(), palette.line));
+    }
+    for strong in [false, true] {
+        let stroke_width = theme.scale() * if strong { 2.2 } else { 1.4 };
+        for series in curves.series.iter().filter(|series| series.strong == strong) {
+            let runs = series.points.split(|point| !point.iter().all(|number| number.is_finite()));
+            for run in runs.filter(|run| run.len() > 1) {
+                let points = run.iter().map(|&[time, value]| pos2(axis.x_of(time), y_of(value)));
+                painter.line(points.collect(), Stroke::new(stroke_width, series.color));
             }
-        });
-    });
+        }
+    }
     if !scale_labels {
         return;
     }
     let decimals = usize::from(step < 1.0) + usize::from(step < 0.1) + usize::from(step < 0.01);
     for value in marks() {
-        let y = plot.bottom() - ((value - low) / (high - low)) as f32 * plot.height();
+        let y = y_of(value);
         let text = format!("{value:.decimals$}").replace('-', "−");
         let label = line_of(&[Run::new(&text, Type::Small, palette.muted)], f32::INFINITY, ui);
         put(ui.painter(), pos2(plot.left() - space::S, y), Align2::RIGHT_CENTER, label);
