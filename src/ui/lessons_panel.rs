@@ -5,7 +5,7 @@ mod prose;
 use super::kit::{self, Button, Icon, MenuItem};
 use super::language::tr;
 use super::out::{Action, Out};
-use super::state::{Layout, UiState};
+use super::state::UiState;
 use super::text;
 use super::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{Align, Frame, Layout as Flow, Margin, RichText, ScrollArea, Ui};
@@ -27,17 +27,6 @@ pub(super) fn toggle_lessons(session: &Session, out: &mut Out) {
 /// needs the room.
 pub(super) fn width(available: f32, scale: f32) -> f32 {
     (0.29 * available).clamp(330.0 * scale, 460.0 * scale).round()
-}
-
-/// The button in the bar.
-pub(super) fn lessons_button_ui(session: &Session, layout: Layout, out: &mut Out, ui: &mut Ui) {
-    let button = match layout {
-        Layout::Desk => Button::new(text::LESSONS).icon(Icon::Book),
-        Layout::Tablet | Layout::Phone => Button::icon_only(Icon::Book, text::LESSONS),
-    };
-    if kit::button_ui(button.hint(text::LESSONS_HELP).selected(is_open(session)), ui).clicked() {
-        toggle_lessons(session, out);
-    }
 }
 
 /// Where a lesson and the parameters share one place: which of them is there.

@@ -1,6 +1,7 @@
 //! What is seen and touched: the theme, the kit of widgets, and the panels built from them.
 
 mod clip_panel;
+mod commands;
 pub(crate) mod kit;
 mod labs;
 mod language;
@@ -9,7 +10,6 @@ mod library_panel;
 mod out;
 mod overlays;
 mod rows;
-mod shortcuts;
 mod stage_panel;
 mod state;
 #[cfg(all(test, feature = "ui-tests"))]
@@ -78,7 +78,7 @@ pub(crate) fn show(
     state.joints_open = false;
     state.hovered_pair = None;
     state.last_jump = state.hovered_jump.take();
-    shortcuts::shortcuts(session, state, &mut out, ui.ctx());
+    commands::take_keys(session, state, &mut out, ui);
     let layout = Layout::of(ui.available_width(), theme_of(ui).scale());
     state.layout = layout;
     let has_room = ui.available_width() >= MAP_ROOM * theme_of(ui).scale();

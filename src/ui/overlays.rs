@@ -1,6 +1,7 @@
 //! What lies over the whole page: notices, the list of shortcuts, the field for files that hang
 //! over the window.
 
+use super::commands;
 use super::kit::{self, Mood, Notice, NoticeEvent};
 use super::language::tr;
 use super::out::Out;
@@ -60,9 +61,9 @@ fn help_ui(state: &mut UiState, ui: &mut Ui) {
         .open(&mut open)
         .show(ui.ctx(), |ui| {
             Grid::new("shortcuts").num_columns(2).spacing([space::L, space::XS]).show(ui, |ui| {
-                for (keys, what) in text::SHORTCUTS {
+                for (keys, what) in commands::help() {
                     ui.label(
-                        RichText::new(tr(keys, ui))
+                        RichText::new(tr(&keys, ui))
                             .font(theme.font(Type::Strong))
                             .color(palette.text),
                     );

@@ -1,5 +1,6 @@
 //! The stage: its panes, what lies over them, and the hand on the camera.
 
+use super::commands::{UiCommand, command_icon_ui};
 use super::kit::{self, Button, Icon, Metric, Mood, PaneTitle, Rank};
 use super::labs::match_::stick_on_stage_ui;
 use super::labs::path::ground_line::{GroundLine, ground_line};
@@ -348,7 +349,13 @@ fn pane_switch_ui(count: usize, stage: Rect, state: &mut UiState, ui: &mut Ui) {
     });
 }
 
-fn camera_buttons_ui(session: &Session, stage: Rect, state: &UiState, out: &mut Out, ui: &mut Ui) {
+fn camera_buttons_ui(
+    session: &Session,
+    stage: Rect,
+    state: &mut UiState,
+    out: &mut Out,
+    ui: &mut Ui,
+) {
     let params = session.params();
     let side = (30.0 * theme_of(ui).scale()).round();
     let rect = Rect::from_min_size(
@@ -357,24 +364,10 @@ fn camera_buttons_ui(session: &Session, stage: Rect, state: &UiState, out: &mut 
     );
     ui.scope_builder(UiBuilder::new().max_rect(rect), |ui| {
         ui.spacing_mut().item_spacing.y = space::XS;
-        let follows = params.choice::<choices::Follow>() != choices::Follow::Off;
-        if kit::button_ui(
-            Button::icon_only(Icon::Follow, text::FOLLOW).quiet().selected(follows),
-            ui,
-        )
-        .clicked()
+        for command in
+            [UiCommand::ToggleFollow, UiCommand::ToggleTopView, UiCommand::FrameEverything]
         {
-            out.set_once(Key::Follow, Value::Choice(if follows { "off" } else { "result" }));
-        }
-        let top = params.choice::<choices::Camera>() == choices::Camera::Top;
-        if kit::button_ui(Button::icon_only(Icon::Top, text::TOP_VIEW).quiet().selected(top), ui)
-            .clicked()
-        {
-            out.set_once(Key::Camera, Value::Choice(if top { "orbit" } else { "top" }));
-        }
-        if kit::button_ui(Button::icon_only(Icon::FrameAll, text::FRAME_ALL).quiet(), ui).clicked()
-        {
-            frame_everything(session, state, out);
+            command_icon_ui(command, session, state, out, ui);
         }
     });
     if !params.is_on(Key::Embed) {

@@ -804,9 +804,9 @@ fn an_embedded_page_keeps_the_rows_that_its_link_names() {
 #[test]
 fn every_lab_has_a_key() {
     let Kind::Choice(labs) = Key::Lab.param().kind else { panic!() };
-    assert_eq!(labs.len(), shortcuts::LAB_KEYS.len());
+    assert_eq!(labs.len(), commands::LAB_KEYS.len());
     let mut harness = harness(DESK, DARK, page("lab=blend&play=off"));
-    for (lab, key) in labs.iter().zip(shortcuts::LAB_KEYS).rev() {
+    for (lab, key) in labs.iter().zip(commands::LAB_KEYS).rev() {
         harness.key_press(key);
         harness.step();
         assert_eq!(harness.state().session.params().lab().word(), lab.key);

@@ -273,33 +273,6 @@ pub(crate) fn resampled(from: f64, to: f64) -> String {
     )
 }
 
-/// The shortcuts, in the order of the list under `?`.
-pub(crate) const SHORTCUTS: &[(&str, &str)] = &[
-    ("Space", "play or pause"),
-    ("← →", "one frame back or on"),
-    ("Shift ← →", "ten frames"),
-    ("Home", "to the beginning"),
-    ("I  O", "set the in or out mark here; Shift takes it away"),
-    ("[ ]", "slower, faster"),
-    ("L", "loop"),
-    ("C", "compare full, half, third"),
-    ("N", "lessons; Esc closes them"),
-    ("1 … 9, 0, -", "the labs, from left to right"),
-    ("T", "from above"),
-    ("F", "frame everything"),
-    ("G", "camera follows or stands"),
-    ("B", "body, bones, both"),
-    ("W A S D, arrows", "drive the character of the Match lab; Shift runs, Q strafes"),
-    ("Ctrl Z", "undo"),
-    ("Ctrl Shift Z", "redo"),
-    ("Ctrl C", "copy the link, when nothing else is selected"),
-    ("?", "this list"),
-    ("drag", "turn the camera; with Shift or the right button, move it"),
-    ("W A S D", "the same, outside of the Match lab"),
-    ("wheel, pinch", "zoom"),
-    ("Page up, down", "zoom"),
-];
-
 /// The numbers under a pane, by id, with the short names that fit there: first those of every lab.
 /// A narrow pane has room for these and two more.
 pub(crate) const METRICS: &[(&str, &str)] = &[

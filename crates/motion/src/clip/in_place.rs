@@ -24,7 +24,9 @@ const ROUNDS: usize = 3;
 /// [`character_frames`]: super::character_frames
 #[must_use]
 pub fn take_in_place(character_frames: &[Planar], turns: bool) -> Vec<Planar> {
-    let taken = |frame: &Planar| if turns { frame.inverse() } else { Planar { yaw: 0.0, shift: -frame.shift } };
+    let taken = |frame: &Planar| {
+        if turns { frame.inverse() } else { Planar { yaw: 0.0, shift: -frame.shift } }
+    };
     character_frames.iter().map(taken).collect()
 }
 
