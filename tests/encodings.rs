@@ -59,7 +59,7 @@ fn captured() -> Vec<Subject> {
 /// The labs with their methods, as links; the last column is how far results may be apart, metres.
 /// Without mirrored copies: which twist about a bone is the mirror image of which is said by the
 /// rest pose alone, and where joints' axes are turned there is none.
-const LABS: [(&str, f32); 21] = [
+const LABS: [(&str, f32); 23] = [
     ("lab=view", 0.001),
     ("lab=blend", 0.001),
     ("lab=blend&root_blend=off&weight_law=linear", 0.001),
@@ -81,6 +81,8 @@ const LABS: [(&str, f32); 21] = [
     ("lab=graph&edge_threshold=15", 0.001),
     ("lab=match&scenario=left&mirrored=off", 0.001),
     ("lab=match&scenario=spin&mirrored=off", 0.001),
+    ("lab=in_place", 0.001),
+    ("lab=in_place&root_way=put_back", 0.005),
 ];
 
 /// The clips of a session that has two files loaded.

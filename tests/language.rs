@@ -54,10 +54,12 @@ const UNSEEN: [&str; 17] = [
 
 /// Literals that look like sentences and are none: keywords of files, names of files, and what is
 /// made of parts that have their own entries.
-const NO_SENTENCE: [&str; 29] = [
+const NO_SENTENCE: [&str; 31] = [
     "{} and {}",
     "{} and {} registered",
     "{} loop",
+    "{} in place",
+    "{} with its way",
     "(prefers-reduced-motion: reduce)",
     "try it",
     "{} units tall, {} {}: {} m; {}",

@@ -13,7 +13,7 @@ use std::collections::BTreeSet;
 use std::f32::consts::PI;
 
 /// A clean result of every lab.
-const LABS: [&str; 12] = [
+const LABS: [&str; 14] = [
     "lab=view",
     "lab=make",
     "lab=blend",
@@ -26,6 +26,8 @@ const LABS: [&str; 12] = [
     "lab=graph&clips=walk,walk_left,walk_right&walk_seconds=20",
     "lab=match&scenario=straight&mirrored=off&match_clips=idle,walk,walk_left,walk_right",
     "lab=match&mirrored=off&match_clips=idle,walk,walk_left,walk_right",
+    "lab=in_place",
+    "lab=in_place&root_way=put_back",
 ];
 
 fn opened(link: &str) -> Session {
