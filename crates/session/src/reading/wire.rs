@@ -4,6 +4,7 @@
 use super::{About, Companion, ReadClip, ReadClips, ReadFile, ReadReport};
 use crate::memory::motion_bytes;
 use crate::motion::{FeetReading, Motion};
+use bytemuck::{AnyBitPattern, NoUninit, pod_read_unaligned};
 use glam::{DVec2, Quat, Vec3};
 use segue_formats::{FileKind, ImportError};
 use segue_motion::clip::{Clip, ClipError, Contacts, JointTranslations, Provenance};
@@ -134,9 +135,7 @@ impl Parcel {
     pub fn pieces(&self, mut send: impl FnMut(&[u8])) {
         let mut piece = Piece { bytes: Vec::with_capacity(PIECE_BYTES), send: &mut send };
         for file in &self.report.files {
-            for part in file.unpacked.as_deref().unwrap_or_default().chunks(PIECE_BYTES) {
-                piece.put(part);
-            }
+            piece.put(file.unpacked.as_deref().unwrap_or_default());
             let clips = file.result.as_ref().map_or(&[][..], |read| &read.clips);
             for clip in clips {
                 put_motion(&mut piece, &clip.motion);
@@ -152,17 +151,17 @@ impl Parcel {
 fn put_motion(piece: &mut Piece<'_>, motion: &Motion) {
     let clip = &motion.clip;
     for frame in 0..clip.frames() {
-        piece.put_each(clip.rotations(frame), |q| q.to_array().map(f32::to_le_bytes));
+        piece.put(clip.rotations(frame));
     }
-    piece.put_each(clip.root_translations(), |v| v.to_array().map(f32::to_le_bytes));
+    piece.put(clip.root_translations());
     for track in clip.translations() {
-        piece.put_each(&track.values, |v| v.to_array().map(f32::to_le_bytes));
+        piece.put(&track.values);
     }
-    piece.put_each(&motion.ground_frames, |place| {
-        [place.yaw, place.shift.x, place.shift.y].map(f64::to_le_bytes)
-    });
+    for place in &motion.ground_frames {
+        piece.put(&[[place.yaw, place.shift.x, place.shift.y]]);
+    }
     for frame in 0..clip.frames() {
-        piece.put(&Side::BOTH.map(|side| u8::from(motion.contacts.planted(side, frame))));
+        piece.put(&[Side::BOTH.map(|side| u8::from(motion.contacts.planted(side, frame)))]);
     }
 }
 
@@ -178,21 +177,15 @@ fn meshes(clips: &[ReadClip]) -> Vec<&Arc<SkinnedMesh>> {
 }
 
 fn put_mesh(piece: &mut Piece<'_>, mesh: &SkinnedMesh) {
-    for v in mesh.positions.iter().chain(&mesh.normals) {
-        piece.put(v.to_array().map(f32::to_le_bytes).as_flattened());
-    }
-    for joints in &mesh.joints {
-        piece.put(joints.map(u16::to_le_bytes).as_flattened());
-    }
-    for numbers in mesh.weights.iter().chain(&mesh.colors) {
-        piece.put(numbers.map(f32::to_le_bytes).as_flattened());
-    }
-    for triangle in &mesh.triangles {
-        piece.put(triangle.map(u32::to_le_bytes).as_flattened());
-    }
+    piece.put(&mesh.positions);
+    piece.put(&mesh.normals);
+    piece.put(&mesh.joints);
+    piece.put(&mesh.weights);
+    piece.put(&mesh.colors);
+    piece.put(&mesh.triangles);
     for RigidTransform { rotation, translation } in &mesh.bind {
-        piece.put(rotation.to_array().map(f32::to_le_bytes).as_flattened());
-        piece.put(translation.to_array().map(f32::to_le_bytes).as_flattened());
+        let ([x, y, z, w], [dx, dy, dz]) = (rotation.to_array(), translation.to_array());
+        piece.put(&[[x, y, z, w, dx, dy, dz]]);
     }
 }
 
@@ -203,33 +196,15 @@ struct Piece<'a> {
 }
 
 impl Piece<'_> {
-    fn put(&mut self, value: &[u8]) {
-        if self.bytes.len() + value.len() > PIECE_BYTES {
-            self.flush();
-        }
-        self.bytes.extend_from_slice(value);
-    }
-
-    /// Puts the bytes of one value after the other: `N` numbers of `M` bytes each.
-    // Not inlined: browsers optimise a function from one call to its next.
-    #[inline(never)]
-    fn put_each<T, const N: usize, const M: usize>(
-        &mut self,
-        mut values: &[T],
-        bytes_of: impl Fn(&T) -> [[u8; M]; N],
-    ) {
+    /// Puts values in the byte order of this machine, on which the other side runs, too.
+    fn put<T: NoUninit>(&mut self, mut values: &[T]) {
         while !values.is_empty() {
-            if PIECE_BYTES - self.bytes.len() < N * M {
+            let room = (PIECE_BYTES - self.bytes.len()) / size_of::<T>();
+            if room == 0 {
                 self.flush();
             }
-            let start = self.bytes.len();
-            let (now, later) = values.split_at(values.len().min((PIECE_BYTES - start) / (N * M)));
-            self.bytes.resize(start + now.len() * N * M, 0);
-            let room =
-                self.bytes.get_mut(start..).unwrap_or_default().as_chunks_mut().0.as_chunks_mut().0;
-            for (room, value) in room.iter_mut().zip(now) {
-                *room = bytes_of(value);
-            }
+            let (now, later) = values.split_at(values.len().min(room));
+            self.bytes.extend_from_slice(bytemuck::cast_slice(now));
             values = later;
         }
     }
@@ -345,22 +320,16 @@ impl MeshHead {
 
     /// Takes what the mesh still needs from the front of `bytes`.
     fn take(&self, mesh: &mut SkinnedMesh, bytes: &mut &[u8]) {
-        let vector = |b: &[u8; 12]| Vec3::from_array(floats(b));
-        fill(&mut mesh.positions, self.vertices, bytes, vector);
-        fill(&mut mesh.normals, self.vertices, bytes, vector);
-        fill(&mut mesh.joints, self.vertices, bytes, |b: &[u8; 8]| {
-            std::array::from_fn(|at| u16::from_le_bytes([b[2 * at], b[2 * at + 1]]))
-        });
-        fill(&mut mesh.weights, self.vertices, bytes, |b: &[u8; 16]| floats(b));
-        fill(&mut mesh.colors, self.colors, bytes, |b: &[u8; 16]| floats(b));
-        fill(&mut mesh.triangles, self.triangles, bytes, |b: &[u8; 12]| {
-            std::array::from_fn(|at| u32::from_le_bytes(std::array::from_fn(|i| b[4 * at + i])))
-        });
-        fill(&mut mesh.bind, self.joints, bytes, |b: &[u8; 28]| {
-            let [x, y, z, w, translation @ ..] = floats::<28, 7>(b);
+        fill(&mut mesh.positions, self.vertices, bytes, |v| v);
+        fill(&mut mesh.normals, self.vertices, bytes, |v| v);
+        fill(&mut mesh.joints, self.vertices, bytes, |joints| joints);
+        fill(&mut mesh.weights, self.vertices, bytes, |weights| weights);
+        fill(&mut mesh.colors, self.colors, bytes, |color| color);
+        fill(&mut mesh.triangles, self.triangles, bytes, |corners| corners);
+        fill(&mut mesh.bind, self.joints, bytes, |[x, y, z, w, dx, dy, dz]: [f32; 7]| {
             RigidTransform {
                 rotation: Quat::from_xyzw(x, y, z, w),
-                translation: Vec3::from_array(translation),
+                translation: Vec3::new(dx, dy, dz),
             }
         });
     }
@@ -395,29 +364,20 @@ impl Arrays {
     /// Takes what it still needs from the front of `bytes`.
     fn take(&mut self, head: &ClipHead, bytes: &mut &[u8]) {
         let frames = head.frames;
-        fill(
-            &mut self.rotations,
-            frames.saturating_mul(head.joints.len()),
-            bytes,
-            |b: &[u8; 16]| {
-                let [x, y, z, w] = floats(b);
-                Quat::from_xyzw(x, y, z, w)
-            },
-        );
+        fill(&mut self.rotations, frames.saturating_mul(head.joints.len()), bytes, |q| q);
         for values in &mut self.translations {
-            fill(values, frames, bytes, |b: &[u8; 12]| Vec3::from_array(floats(b)));
+            fill(values, frames, bytes, |v| v);
         }
-        fill(&mut self.ground_frames, frames, bytes, |b: &[u8; 24]| {
-            let number = |at: usize| f64::from_le_bytes(std::array::from_fn(|i| b[8 * at + i]));
-            Planar { yaw: number(0), shift: DVec2::new(number(1), number(2)) }
+        fill(&mut self.ground_frames, frames, bytes, |[yaw, x, z]: [f64; 3]| Planar {
+            yaw,
+            shift: DVec2::new(x, z),
         });
-        let mut pairs: Vec<[bool; 2]> = Vec::new();
-        fill(&mut pairs, frames - self.contacts[0].len().min(frames), bytes, |b: &[u8; 2]| {
-            b.map(|flag| flag != 0)
-        });
+        let mut pairs: Vec<[u8; 2]> = Vec::new();
+        fill(&mut pairs, frames - self.contacts[0].len().min(frames), bytes, |pair| pair);
         for pair in pairs {
-            self.contacts[0].push(pair[0]);
-            self.contacts[1].push(pair[1]);
+            for (flags, flag) in self.contacts.iter_mut().zip(pair) {
+                flags.push(flag != 0);
+            }
         }
     }
 
@@ -445,22 +405,19 @@ impl Arrays {
     }
 }
 
-/// Moves values from the front of `bytes` to `values` until there are `wanted` or no more bytes.
-fn fill<T, const N: usize>(
+/// Moves values, made of what [`Piece::put`] wrote, from the front of `bytes` to `values` until
+/// there are `wanted` or no more bytes.
+fn fill<T, P: AnyBitPattern>(
     values: &mut Vec<T>,
     wanted: usize,
     bytes: &mut &[u8],
-    read: impl Fn(&[u8; N]) -> T,
+    value_of: impl Fn(P) -> T,
 ) {
     let missing = wanted.saturating_sub(values.len());
-    let (all, _) = bytes.as_chunks::<N>();
-    let coming = &all[..missing.min(all.len())];
-    values.extend(coming.iter().map(read));
-    *bytes = &bytes[coming.len() * N..];
-}
-
-fn floats<const N: usize, const M: usize>(bytes: &[u8; N]) -> [f32; M] {
-    std::array::from_fn(|at| f32::from_le_bytes(std::array::from_fn(|i| bytes[4 * at + i])))
+    let coming = missing.min(bytes.len() / size_of::<P>());
+    let (now, later) = bytes.split_at(coming * size_of::<P>());
+    values.extend(now.chunks_exact(size_of::<P>()).map(|b| value_of(pod_read_unaligned(b))));
+    *bytes = later;
 }
 
 /// Puts the pieces of a report together again.
@@ -562,7 +519,7 @@ impl Incoming {
     }
 
     fn take(&mut self, head: &FileHead, bytes: &mut &[u8]) {
-        fill(&mut self.unpacked, head.unpacked.unwrap_or(0), bytes, |&[byte]| byte);
+        fill(&mut self.unpacked, head.unpacked.unwrap_or(0), bytes, |byte| byte);
         for (head, clip) in head.clips().iter().zip(&mut self.clips) {
             clip.take(head, bytes);
         }
