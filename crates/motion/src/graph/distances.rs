@@ -1,7 +1,8 @@
 use super::{FrameSet, GraphError, Place};
 use crate::registration::{
     Alignment, DistanceMatrix, MAX_PAIRS, PairTerms, PausedSelfSweep, PausedSweep, PointClouds,
-    PointCloudsBegun, Progress, RegistrationError, SelfSweep, SelfTerms, Sweep, SymmetricDistances,
+    PointCloudsBuilder, Progress, RegistrationError, SelfSweep, SelfTerms, Sweep,
+    SymmetricDistances,
 };
 use std::sync::Arc;
 
@@ -19,7 +20,7 @@ pub struct AllPairs {
     set: Arc<FrameSet>,
     level_m: f64,
     /// The points of the next clip.
-    begun: Option<PointCloudsBegun>,
+    begun: Option<PointCloudsBuilder>,
     clouds: Vec<PointClouds>,
     /// (a, b) with a ≤ b, row by row, as far as they are begun.
     blocks: Vec<Block>,
@@ -117,9 +118,13 @@ impl AllPairs {
         let clip = source.clip();
         let mut begun = match self.begun.take() {
             Some(begun) => begun,
-            None => {
-                PointCloudsBegun::new(clip, 0..clip.frames(), self.set.weights(), 1, self.level_m)?
-            }
+            None => PointCloudsBuilder::new(
+                clip,
+                0..clip.frames(),
+                self.set.weights(),
+                1,
+                self.level_m,
+            )?,
         };
         if begun.advance(clip, frames)?.is_complete() {
             self.clouds.push(begun.finish(clip)?);
@@ -164,7 +169,7 @@ impl AllPairs {
     pub fn progress(&self) -> Progress {
         let frames = self.set.frames();
         let known: usize = self.clouds.iter().map(PointClouds::samples).sum();
-        let known = known + self.begun.as_ref().map_or(0, PointCloudsBegun::done);
+        let known = known + self.begun.as_ref().map_or(0, PointCloudsBuilder::done);
         let pairs = self.done + self.blocks.last().map_or(0, |block| block.pairs().0);
         Progress {
             done: PAIRS_PER_FRAME * known + pairs,

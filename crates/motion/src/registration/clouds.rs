@@ -34,7 +34,7 @@ impl PointClouds {
         stride: usize,
         level_m: f64,
     ) -> Result<Self, RegistrationError> {
-        PointCloudsBegun::new(clip, frames, weights, stride, level_m)?.finish(clip)
+        PointCloudsBuilder::new(clip, frames, weights, stride, level_m)?.finish(clip)
     }
 
     /// Returns the weighted mean height of a clip's first frame, metres; 0 for a clip without
@@ -60,7 +60,7 @@ impl PointClouds {
 /// The construction of [`PointClouds`] in slices. It does not hold the clip: every call must be
 /// given the same one.
 #[derive(Clone, Debug)]
-pub struct PointCloudsBegun {
+pub struct PointCloudsBuilder {
     cloud: Cloud,
     shares: Shares,
     frame_weight: f64,
@@ -68,7 +68,7 @@ pub struct PointCloudsBegun {
     level_m: f64,
 }
 
-impl PointCloudsBegun {
+impl PointCloudsBuilder {
     /// Begins the construction of clouds as in [`PointClouds::new`]; no points are known yet.
     ///
     /// # Errors

@@ -107,7 +107,7 @@ mod terms;
 mod transition;
 
 pub use align::{Alignment, align};
-pub use clouds::{PointClouds, PointCloudsBegun};
+pub use clouds::{PointClouds, PointCloudsBuilder};
 pub use curves::{Registration, RegistrationOptions};
 pub use distance::DistanceMatrix;
 pub use path::{
@@ -121,7 +121,7 @@ pub use self_terms::{PausedSelfSweep, SelfSweep, SelfTerms, SymmetricDistances};
 pub use sweep::{PausedSweep, Sweep};
 pub(crate) use terms::MAX_PAIRS;
 pub use terms::{PairTerms, Progress, distances_directly};
-pub use transition::{Region, SearchOptions, Transition, TransitionSearch, best_transition};
+pub use transition::{Region, SearchOptions, TransitionSearch, WindowMatch, best_transition};
 
 /// Error aligning or comparing two motions.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -113,7 +113,7 @@ impl SearchOptions {
 
 /// A transition between two clips: the pair of windows, and their alignment.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Transition {
+pub struct WindowMatch {
     /// The frame at which the outgoing clip is left: its window is `leave..leave + window`.
     pub leave: usize,
     /// The frame at which the incoming clip is entered: its window is `enter..enter + window`.
@@ -193,7 +193,7 @@ impl TransitionSearch {
     /// # Errors
     /// [`RegistrationError::Unfinished`] before the comparison is complete,
     /// [`RegistrationError::TooShort`] when the window does not fit.
-    pub fn best(&self, options: &SearchOptions) -> Result<Transition, RegistrationError> {
+    pub fn best(&self, options: &SearchOptions) -> Result<WindowMatch, RegistrationError> {
         let window = options.window.max(1);
         let (leave, leave_grew) = options.leave_starts(self.outgoing.frames())?;
         let (enter, enter_grew) = options.enter_starts(self.incoming.frames())?;
@@ -217,7 +217,7 @@ impl TransitionSearch {
             return Err(RegistrationError::Empty { which: "outgoing" });
         };
         let alignment = exact(&self.outgoing, i, &self.incoming, j, window, &self.weights)?;
-        Ok(Transition {
+        Ok(WindowMatch {
             leave: i,
             enter: j,
             alignment,
@@ -286,7 +286,7 @@ pub fn best_transition(
     weights: &[f64],
     body_height: f64,
     options: &SearchOptions,
-) -> Result<Transition, RegistrationError> {
+) -> Result<WindowMatch, RegistrationError> {
     let mut search =
         TransitionSearch::new(Arc::clone(outgoing), Arc::clone(incoming), weights, body_height)?;
     search.terms.finish();
