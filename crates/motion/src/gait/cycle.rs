@@ -105,7 +105,7 @@ impl GaitCycle {
             .filter(|cut| cut.rms_cm < MAX_APART_CM);
         let mut closed: Vec<(f64, usize, Loop)> = Vec::new();
         if let Some(whole) = &whole {
-            closed.push((whole.apart_cm, 0, whole.close(&LoopOptions::default())?));
+            closed.push((whole.gap_cm, 0, whole.close(&LoopOptions::default())?));
         }
         if let Some(cut) = inside {
             let looped = close_loop(source, cut.cycle.clone(), &LoopOptions::default())?;
@@ -117,7 +117,7 @@ impl GaitCycle {
                 continue;
             };
             let frames = looped.clip.frames();
-            let looped = looped.begun_at(strike).map_err(GaitError::Clip)?;
+            let looped = looped.starting_at(strike).map_err(GaitError::Clip)?;
             return Ok(Self::new(looped, start + strike..start + strike + frames, events));
         }
         Err(GaitError::NoCycle { name: name(), secs: clip.duration_secs() })

@@ -11,7 +11,7 @@ use crate::clip::{Clip, ContactOptions, Contacts, Interpolation, mirror, resampl
 use crate::math::Planar;
 use crate::registration::{Progress, REFERENCE_HEIGHT_M};
 use crate::skeleton::{Roles, Side, Skeleton};
-use crate::transition::play_around;
+use crate::transition::repeat_clip;
 use std::sync::Arc;
 
 /// The most frames of a database: features of 27 dimensions take half a gigabyte then.
@@ -70,7 +70,7 @@ impl Round {
             return Ok(detect(&self.clip));
         };
         let frames = self.clip.frames();
-        let three = detect(&play_around(&self.clip, cycle, 3)?);
+        let three = detect(&repeat_clip(&self.clip, cycle, 3)?);
         Ok(Contacts::from_flags(
             Side::BOTH
                 .map(|side| (frames..2 * frames).map(|frame| three.planted(side, frame)).collect()),

@@ -21,9 +21,9 @@ const STRIDE_MEETS: f64 = 0.35;
 /// but meet, and a single stride, with one stance of each foot, whose ends are near each other.
 pub(super) fn closed(clip: &Arc<Clip>, roles: &Roles) -> Option<Loop> {
     let source = Source::new(Arc::clone(clip), roles);
-    let whole = WholeCycle::of(&source).filter(|whole| whole.apart_share <= STRIDE_MEETS)?;
+    let whole = WholeCycle::of(&source).filter(|whole| whole.gap_share <= STRIDE_MEETS)?;
     let looped = whole.close(&LoopOptions::default()).ok()?;
-    let meets = whole.made <= 1 && whole.apart_share <= MEETS;
+    let meets = whole.added_frames <= 1 && whole.gap_share <= MEETS;
     (meets || events_of(&looped, roles).is_some()).then_some(looped)
 }
 

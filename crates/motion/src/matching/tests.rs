@@ -6,7 +6,7 @@ use crate::gait::GaitCycle;
 use crate::math::{Decay, Planar, wrap_angle};
 use crate::skeleton::{Joint, Roles, Skeleton};
 use crate::synth::{Action, Params, synthesize};
-use crate::transition::{Inertialization, play_around};
+use crate::transition::{Inertialization, repeat_clip};
 use glam::{DVec2, Quat, Vec3};
 use serde_json::Value;
 use std::collections::BTreeSet;
@@ -419,7 +419,7 @@ fn a_cycle_has_the_features_of_its_clip_played_again_and_again() {
             let step =
                 |frame: usize| motion.root(frame).inverse().after(&motion.root(frame + 1)).shift;
             assert!(step(frames - 1).distance(step(frames - 2)) < 0.1 * step(0).length(), "{name}");
-            let long = play_around(motion.clip(), &motion.cycle().unwrap(), 9).unwrap();
+            let long = repeat_clip(motion.clip(), &motion.cycle().unwrap(), 9).unwrap();
             let long = Database::new(
                 vec![MatchClip::new(Arc::new(long), stride.roles.clone())],
                 &rounds(false),

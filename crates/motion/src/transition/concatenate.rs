@@ -1,3 +1,5 @@
+//! Transitions between two clips by any method.
+
 use super::moving::View;
 use super::{Inertialization, Inertializer, MovingPose};
 use crate::blend::{
@@ -7,7 +9,7 @@ use crate::blend::{
 use crate::math::{Planar, quat, unwrap_near, wrap_angle};
 use glam::Vec3;
 
-/// How to go from one clip to another.
+/// The method of a transition.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Method {
     /// The next frame is B's.
@@ -16,29 +18,29 @@ pub enum Method {
     Dissolve {
         /// Frames that overlap; 0 and 1 are a cut.
         window: usize,
-        /// How A's weight falls.
+        /// The curve of A's weight.
         law: WeightLaw,
     },
-    /// B plays at once, and what A was doing differently dies away ([`Inertializer`]).
+    /// B plays at once, and the difference to A decays ([`Inertializer`]).
     Inertialize(Inertialization),
 }
 
-/// What a transition is made with.
+/// Options of a transition.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct TransitionOptions {
     /// The method.
     pub method: Method,
-    /// Whether B is first laid on A, on the ground and in facing. Without, B stays where its file
-    /// put it, and the way over the ground is made in the world whatever `root` says.
+    /// Whether B is first aligned with A, in ground position and facing. Without alignment, B stays
+    /// at its own position, and roots are joined in the world whatever `root` says.
     pub align: bool,
-    /// By what it is laid there.
+    /// The features by which it is aligned.
     pub align_by: AlignBy,
-    /// How the way over the ground is made.
+    /// The joining of root motion.
     pub root: RootBlend,
 }
 
 impl TransitionOptions {
-    /// Aligned, and with velocities in the character's own frame.
+    /// Returns the options with alignment, and with velocities joined in the character's own frame.
     #[must_use]
     pub fn new(method: Method) -> Self {
         Self { method, align: true, align_by: AlignBy::default(), root: RootBlend::Velocity }
@@ -46,31 +48,32 @@ impl TransitionOptions {
 }
 
 /// Plays clip A up to its frame `leave`, then clip B from its frame `enter`, with the transition
-/// that `options` ask for.
+/// given by `options`.
 ///
-/// All methods mean the same by their frames: `A[..leave]` plays unchanged, frame `leave` of the
-/// result is the first that B has a part in, and it stands for `A[leave]` and `B[enter]`; the
-/// result is as long as `A[..leave]` and `B[enter..]` together. A dissolve needs its window of
-/// frames behind both; the others need none of A and one of B.
+/// The frames have the same meaning for all methods: `A[..leave]` plays unchanged, frame `leave` of
+/// the result is the first to which B contributes, and it corresponds to `A[leave]` and `B[enter]`;
+/// the result is as long as `A[..leave]` and `B[enter..]` together. A dissolve needs its window of
+/// frames after both; the other methods need no frame of A and one of B.
 ///
-/// Inertialization starts from the frame before: the differences of pose and velocity are those of
-/// A at `leave - 1` and of B at `enter - 1`, each velocity being that of the step into the next
-/// frame ([`MovingPose`](super::MovingPose)), and frame `leave + p` of the result has what is left
-/// of them after `(p + 1) / fps` seconds. So the frame before the transition is all A, as in a
-/// dissolve, and a clip that is entered at the frame where it is left goes on as it was (but for
-/// dead blending, which damps it all the same). Before its first frame and behind its last one a
-/// clip is taken to move as in the step next to it.
+/// Inertialization starts from the frame before: the differences of pose and velocity are those
+/// between A at `leave - 1` and B at `enter - 1`, each velocity being that of the step into the
+/// next frame ([`MovingPose`](super::MovingPose)), and frame `leave + p` of the result has the rest
+/// of them after `(p + 1) / fps` seconds. The frame before the transition is therefore all A, as in
+/// a dissolve, and a clip that is entered at the frame where it is left continues unchanged (except
+/// for dead blending, which damps it all the same). Before its first frame and after its last one a
+/// clip is extrapolated by the adjacent step.
 ///
 /// Poses are joined in the character's frame: rotations, heights, and translations of joints. Over
 /// the ground, the velocities (forward, sideways, yaw) are joined and integrated from A's last
-/// frame ([`RootBlend::Velocity`]); B then goes on from where that leads, and nothing jumps. With
-/// [`RootBlend::World`] B is laid on A at the seam and the root's remaining offset in the world
-/// decays like any other; the root then does not leave B's own way, but its speed over the ground
-/// is neither clip's.
+/// frame ([`RootBlend::Velocity`]); B then continues from there, without a jump. With
+/// [`RootBlend::World`] B is aligned with A at the seam and the root's remaining offset in the
+/// world decays like any other; the root then keeps B's own trajectory, but its speed over the
+/// ground is neither clip's.
 ///
 /// # Errors
-/// [`BlendError`] when the clips move different skeletons or run at different rates (retarget,
-/// resample first), B has no such frame, a window crosses the end of its clip, or a time is none.
+/// [`BlendError`] when the clips have different skeletons or frame rates (retarget or resample
+/// first), B has no such frame, a window crosses the end of its clip, or a duration is out of
+/// range.
 pub fn concatenate(
     a: &Source,
     leave: usize,
@@ -90,8 +93,8 @@ pub fn concatenate(
     dissolve(a, leave, b, enter, &options)
 }
 
-/// `seen` gets the two poses between which the differences are taken, and the frame rate, before
-/// they are.
+/// Inertializes A into B. `seen` may change the two poses, given the frame rate, before their
+/// differences are taken.
 pub(super) fn inertialize(
     a: &Source,
     leave: usize,
@@ -119,11 +122,11 @@ pub(super) fn inertialize(
     let (old, new) = (view(a, Planar::IDENTITY), view(b, aligned_b));
     let (mut old_pose, a_stands) = old.before(leave);
     let (mut new_pose, b_stands) = new.before(enter);
-    // In the world the character's frame is one more offset that decays, behind the translations.
-    let mut place = Place::new(&a_stands, &aligned_b.after(&b_stands));
+    // In the world the ground frame is one more decaying offset, after the translations.
+    let mut unwrapped = UnwrappedFrames::new(&a_stands, &aligned_b.after(&b_stands));
     if !by_velocity {
-        old_pose.translations.push(place.of_a);
-        new_pose.translations.push(place.of_b);
+        old_pose.translations.push(unwrapped.of_a);
+        new_pose.translations.push(unwrapped.of_b);
         let velocity = |source: &Source, world: Planar, frame: usize, stands: &Planar| {
             let step = source.step_into(frame.min(source.frames().len().saturating_sub(1)));
             let next = stands.after(&step);
@@ -139,13 +142,13 @@ pub(super) fn inertialize(
         new_pose.velocities.push(velocity(b, aligned_b, enter, &b_stands));
     }
     let (fps, rest) = (to.fps(), to.frames() - enter);
-    // Rounding must not make a frame of a whole number's last digit, nor of no time at all.
+    // Rounding must not add a frame for the last digit of a whole number, nor for a duration of 0.
     let frames_in = |secs: f64| (secs * fps - 1e-5).ceil().max(0.0).min(rest as f64) as usize;
-    // One more, so that the last frame computed has nothing left.
-    let settling = frames_in(how.settled_secs() + fps.recip());
+    // One frame more, so that nothing is left in the last frame computed.
+    let settling = frames_in(how.settling_secs() + fps.recip());
     let carried = old_pose.steady_travel.y - new_pose.steady_travel.y;
     old_pose.steady_travel.y =
-        new_pose.steady_travel.y + turning_between(carried, (a, leave), (b, enter), how, settling);
+        new_pose.steady_travel.y + shared_turn(carried, (a, leave), (b, enter), how, settling);
     seen(&mut old_pose, fps);
     seen(&mut new_pose, fps);
     let mut inertia = Inertializer::new(how);
@@ -169,9 +172,9 @@ pub(super) fn inertialize(
             translations[0] = here.apply(translations[0]);
             rotations[0] = quat::renormalize(here.rotation() * rotations[0]);
         } else {
-            translations.push(place.follow(&aligned_b.after(&b.frames()[frame])));
+            translations.push(unwrapped.follow(&aligned_b.after(&b.frames()[frame])));
             inertia.apply(&mut rotations, &mut translations);
-            here = translations.pop().map_or(here, Place::frame);
+            here = translations.pop().map_or(here, UnwrappedFrames::frame);
         }
         frames.push(here);
         if p < window {
@@ -193,12 +196,12 @@ pub(super) fn inertialize(
     })
 }
 
-/// How much of a difference of steady yaw rates, `carried` (A's less B's, rad/s), is handed over:
-/// no more than lets the result turn, while the difference dies away, as far as the two clips do
-/// meanwhile with the weights that it leaves them. What is steady over a stride may lie ahead of B
-/// or behind A: carried whole, a turn that B is yet to make would first be made the other way
-/// round.
-fn turning_between(
+/// Returns the part of a difference of steady yaw rates, `carried` (A's minus B's, rad/s), that is
+/// handed over: at most as much as lets the result turn, while the difference decays, as far as the
+/// two clips do in that time with their weights. The steady turn of a stride may lie ahead of B or
+/// behind A: if it were carried in full, a turn that B is yet to make would first be made the other
+/// way round.
+fn shared_turn(
     carried: f32,
     (a, leave): (&Source, usize),
     (b, enter): (&Source, usize),
@@ -209,8 +212,8 @@ fn turning_between(
     let frames_of_a = a.frames().len();
     let (mut between, mut weights) = (0.0, 0.0);
     for p in 0..steps {
-        let weight = how.left((p as f64 + 0.5) / fps);
-        // Where A has ended, it goes on as it came.
+        let weight = how.remaining((p as f64 + 0.5) / fps);
+        // After its end A is extrapolated.
         let in_a = if leave + p < frames_of_a {
             leave + p
         } else {
@@ -227,15 +230,15 @@ fn turning_between(
     carried.clamp(between.min(0.0), between.max(0.0))
 }
 
-/// Character frames as vectors (x, yaw, z) without jumps of the yaw.
-struct Place {
+/// Ground frames as vectors (x, yaw, z) with unwrapped yaw.
+struct UnwrappedFrames {
     of_a: Vec3,
     of_b: Vec3,
     yaw: f64,
 }
 
-impl Place {
-    /// `a` and `b` are less than half a turn apart.
+impl UnwrappedFrames {
+    /// Begins with frames `a` and `b`, which are less than half a turn apart.
     fn new(a: &Planar, b: &Planar) -> Self {
         let vector = |frame: &Planar, yaw: f64| {
             Vec3::new(frame.shift.x as f32, yaw as f32, frame.shift.y as f32)
@@ -243,7 +246,7 @@ impl Place {
         Self { of_a: vector(a, unwrap_near(a.yaw, b.yaw)), of_b: vector(b, b.yaw), yaw: b.yaw }
     }
 
-    /// The next frame of B as a vector.
+    /// Returns the next frame of B as a vector.
     fn follow(&mut self, b: &Planar) -> Vec3 {
         self.yaw = unwrap_near(b.yaw, self.yaw);
         Vec3::new(b.shift.x as f32, self.yaw as f32, b.shift.y as f32)

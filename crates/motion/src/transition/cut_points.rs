@@ -1,3 +1,5 @@
+//! The search for the ends of a cycle in a clip.
+
 use super::LoopError;
 use crate::blend::Source;
 use crate::clip::{Clip, Contacts};
@@ -5,24 +7,24 @@ use crate::registration::{PairTerms, REFERENCE_HEIGHT_M, limb_weights};
 use crate::skeleton::Side;
 use std::ops::Range;
 
-/// Where to look for a cycle.
+/// Options of the search for a cycle.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct CycleSearch {
-    /// Frames that are compared from both ends on; fewer where the clip is too short for the
-    /// shortest cycle and that many, 0 counts as 1.
+    /// Number of frames that are compared from both ends on; fewer where the clip is too short for
+    /// the shortest cycle and a whole window; 0 counts as 1.
     pub window: usize,
     /// The shortest cycle, seconds.
     pub min_secs: f64,
     /// The longest cycle, seconds.
     pub max_secs: f64,
-    /// The frame that the cycle is to start with; `None` finds it.
+    /// The first frame of the cycle; `None` to search for it.
     pub start: Option<usize>,
-    /// The frame that is to stand for the first one again; `None` finds it.
+    /// The frame that corresponds to the first one; `None` to search for it.
     pub end: Option<usize>,
 }
 
 impl CycleSearch {
-    /// Cycles of 0.5 to 3 s, compared over a tenth of a second at `fps`.
+    /// Returns options for cycles of 0.5 to 3 s, compared over a tenth of a second at `fps`.
     #[must_use]
     pub fn new(fps: f64) -> Self {
         Self {
@@ -35,47 +37,48 @@ impl CycleSearch {
     }
 }
 
-/// The ends of a cycle, and how well they fit each other.
+/// The ends of a cycle, and how well they match.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CutPoints {
-    /// The frames that play; `cycle.end` is the frame that stands for `cycle.start` again. What
-    /// [`super::close_loop`] takes.
+    /// The frames that play; `cycle.end` is the frame that corresponds to `cycle.start`. The
+    /// argument of [`super::close_loop`].
     pub cycle: Range<usize>,
     /// Root mean square distance of the windows from both ends after the best alignment,
     /// centimetres on the reference body.
     pub rms_cm: f64,
-    /// By how much the feet's phases differ, in cycles, 0 to 0.5; `None` when no foot has two
+    /// The difference of the feet's phases, in cycles, 0 to 0.5; `None` when no foot has two
     /// touchdowns.
     pub phase_gap: Option<f32>,
 }
 
-/// What a whole cycle of difference between the feet's phases counts as, centimetres of distance.
+/// The distance to which a difference of one cycle between the feet's phases is equivalent,
+/// centimetres.
 const CM_PER_CYCLE: f64 = 20.0;
-/// The feet's phases choose between cycles whose distances differ by no more than this, as a share
-/// of the least and in centimetres.
-const ALIKE_SHARE: f64 = 0.05;
-const ALIKE_CM: f64 = 0.02;
-/// A foot that stands all through a cycle in which the body goes on by more than this has to slide,
+/// Cycles whose distances differ by at most this, as a share of the least and in centimetres, are
+/// chosen by the feet's phases.
+const EQUIVALENT_SHARE: f64 = 0.05;
+const EQUIVALENT_CM: f64 = 0.02;
+/// The least travel of the body over a cycle during which a foot that stands throughout must slide,
 /// centimetres on the reference body.
-const DRAGGED_CM: f64 = 5.0;
-/// How many minima of the coarse grid are looked at closely.
+const MIN_DRAG_CM: f64 = 5.0;
+/// The number of minima of the coarse grid that are refined.
 const CANDIDATES: usize = 16;
 
 /// Finds where a clip repeats itself: the pair of frames with the smallest distance between the
-/// windows that begin there, among all cycles of the durations asked for. Of distances that are all
-/// but equal the one is taken at which the feet's phases ([`Contacts::phase`]) agree best.
+/// windows that begin there, among all cycles of the requested durations. Of nearly equal distances
+/// the one is taken at which the feet's phases ([`Contacts::phase`]) agree best.
 ///
-/// Where a foot comes down somewhere in the clip, it does so in the cycle: a character that stands
-/// for a moment fits itself best, and is no gait. Nor does a foot stand all through a cycle that
-/// goes on, as in the last step of a run that stops: round after round it would be dragged along.
-/// Coarse to fine: every minimum of a grid of about 1/30 s is looked at frame by frame. A clip that
-/// is one whole cycle has no window behind its last frame: its first and last frame are compared
-/// alone, and taken if nothing fits better. `contacts` are those of the clip; `body_height` in
-/// metres.
+/// If a foot touches down anywhere in the clip, it must do so in the cycle: a character that stands
+/// for a moment matches itself best, and is not a gait. Nor may a foot stand throughout a cycle
+/// that travels, as in the last step of a run that stops: repeated, it would be dragged along. The
+/// search goes from coarse to fine: every minimum of a grid of about 1/30 s is refined frame by
+/// frame. A clip that is exactly one cycle has no window after its last frame: its first and last
+/// frame are compared alone, and taken if nothing matches better. `contacts` are those of the clip;
+/// `body_height` in metres.
 ///
 /// # Errors
-/// [`LoopError::TooShort`] when no cycle of the shortest duration fits, into the clip or to an end
-/// that is given; [`LoopError::Registration`] when positions are no numbers.
+/// [`LoopError::TooShort`] when no cycle of the shortest duration fits, into the clip or to a given
+/// end; [`LoopError::Registration`] when positions are not finite.
 pub fn find_cycle(
     source: &Source,
     contacts: &Contacts,
@@ -85,13 +88,13 @@ pub fn find_cycle(
     let clip = source.clip();
     let (fps, frames) = (clip.fps(), clip.frames());
     let too_short = LoopError::TooShort { min_secs: search.min_secs, secs: clip.duration_secs() };
-    // `as usize` takes NaN and negative numbers to 0.
+    // `as usize` maps NaN and negative numbers to 0.
     let shortest = ((search.min_secs * fps).ceil() as usize).max(2);
     let longest = ((search.max_secs * fps).floor() as usize).max(shortest);
     if shortest >= frames {
         return Err(too_short);
     }
-    let finder = Finder {
+    let finder = CycleFinder {
         clip,
         source,
         contacts,
@@ -122,8 +125,8 @@ pub fn find_cycle(
     Ok(best.cut(contacts))
 }
 
-/// The frames in which a foot comes down, in order. One that stands in the first frame came down at
-/// some time before.
+/// Returns the frames in which a foot touches down, in order. A foot that is planted in the first
+/// frame touched down before.
 fn touchdowns(contacts: &Contacts) -> Vec<usize> {
     let starts = |side| contacts.intervals(side).into_iter().map(|stance| stance.start);
     let mut all: Vec<usize> =
@@ -133,14 +136,14 @@ fn touchdowns(contacts: &Contacts) -> Vec<usize> {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Place {
+struct Candidate {
     start: usize,
     end: usize,
     rms_cm: f64,
     score: f64,
 }
 
-impl Place {
+impl Candidate {
     fn cut(&self, contacts: &Contacts) -> CutPoints {
         CutPoints {
             cycle: self.start..self.end,
@@ -150,25 +153,24 @@ impl Place {
     }
 }
 
-struct Finder<'a> {
+struct CycleFinder<'a> {
     clip: &'a Clip,
     source: &'a Source,
     contacts: &'a Contacts,
-    /// When a foot comes down, frames in order.
+    /// The frames in which a foot touches down, in order.
     touchdowns: Vec<usize>,
     weights: Vec<f64>,
-    /// What turns metres into centimetres on the reference body.
+    /// The factor from metres to centimetres on the reference body.
     cm: f64,
     window: usize,
-    /// Frames that a cycle may have.
+    /// Range of the number of frames of a cycle.
     lengths: Range<usize>,
 }
 
-impl Finder<'_> {
-    /// The best cycle with an end that is given. One row, or one column, of the grid is cheap:
-    /// every frame is compared. With both ends given there is nothing to find, and any length will
-    /// do.
-    fn pinned(&self, search: &CycleSearch, frames: usize) -> Result<Option<Place>, LoopError> {
+impl CycleFinder<'_> {
+    /// Returns the best cycle with a given end. One row, or one column, of the grid is cheap: every
+    /// frame is compared. With both ends given nothing is searched, and any length is accepted.
+    fn pinned(&self, search: &CycleSearch, frames: usize) -> Result<Option<Candidate>, LoopError> {
         let (shortest, longest) = (self.lengths.start, self.lengths.end);
         let (starts, ends) = match (search.start, search.end) {
             (Some(start), Some(end)) => {
@@ -189,9 +191,9 @@ impl Finder<'_> {
             return Ok(None);
         }
         let lengths = if both { 2..frames.saturating_add(1) } else { self.lengths.clone() };
-        // A window that does not fit behind the last frame is shortened to what fits.
+        // A window that does not fit after the last frame is shortened.
         let window = self.window.min(frames - ends.end + 1).max(1);
-        let finder = Finder {
+        let finder = CycleFinder {
             lengths,
             weights: self.weights.clone(),
             touchdowns: self.touchdowns.clone(),
@@ -200,38 +202,38 @@ impl Finder<'_> {
         Ok(finder.choose(&finder.pairs(&starts, &ends, 1, window, false)?))
     }
 
-    /// Whether a foot comes down in a cycle.
-    fn steps_in(&self, place: &Place) -> bool {
+    /// Returns whether a foot touches down in a cycle.
+    fn steps_in(&self, place: &Candidate) -> bool {
         let next = self.touchdowns.partition_point(|&at| at <= place.start);
         self.touchdowns.get(next).is_some_and(|&at| at <= place.end)
     }
 
-    /// Whether a foot stands all through a cycle that goes on.
-    fn drags_in(&self, place: &Place) -> bool {
+    /// Returns whether a foot stands throughout a cycle that travels.
+    fn drags_in(&self, place: &Candidate) -> bool {
         let stays =
             |side| (place.start..=place.end).all(|frame| self.contacts.planted(side, frame));
         let [from, to] = [place.start, place.end].map(|frame| self.source.frames()[frame].shift);
-        from.distance(to) * self.cm > DRAGGED_CM && Side::BOTH.into_iter().any(stays)
+        from.distance(to) * self.cm > MIN_DRAG_CM && Side::BOTH.into_iter().any(stays)
     }
 
-    /// What speaks against a cycle, the worst first: it has no step, or drags a foot.
-    fn flaws(&self, place: &Place) -> [bool; 2] {
+    /// Returns the flaws of a cycle, the worst first: it has no step, or drags a foot.
+    fn flaws(&self, place: &Candidate) -> [bool; 2] {
         [!self.steps_in(place), self.drags_in(place)]
     }
 
-    /// The best of these cycles: of those with the fewest flaws that are about as close as the
-    /// closest, the one with the least score.
-    fn choose(&self, places: &[Place]) -> Option<Place> {
+    /// Returns the best of these cycles: of those with the fewest flaws that are about as close as
+    /// the closest, the one with the least score.
+    fn choose(&self, places: &[Candidate]) -> Option<Candidate> {
         let fewest = places.iter().map(|place| self.flaws(place)).min()?;
         let admitted = || places.iter().filter(|place| self.flaws(place) == fewest);
         let least = admitted().map(|place| place.rms_cm).min_by(f64::total_cmp)?;
-        let alike =
-            admitted().filter(|place| place.rms_cm <= least * (1.0 + ALIKE_SHARE) + ALIKE_CM);
+        let alike = admitted()
+            .filter(|place| place.rms_cm <= least * (1.0 + EQUIVALENT_SHARE) + EQUIVALENT_CM);
         alike.min_by(|a, b| a.score.total_cmp(&b.score)).copied()
     }
 
-    /// The cycles that start in `starts` and end in `ends`; of a whole grid (`minima`) only its
-    /// lowest minima, and those of cycles with the fewest flaws.
+    /// Returns the cycles that start in `starts` and end in `ends`; of a whole grid (`minima`) only
+    /// its lowest minima, and those of cycles with the fewest flaws.
     fn pairs(
         &self,
         starts: &Range<usize>,
@@ -239,7 +241,7 @@ impl Finder<'_> {
         stride: usize,
         window: usize,
         minima: bool,
-    ) -> Result<Vec<Place>, LoopError> {
+    ) -> Result<Vec<Candidate>, LoopError> {
         let with_window =
             |starts: &Range<usize>| starts.start..starts.end.saturating_add(window - 1);
         let mut terms = PairTerms::new(
@@ -259,7 +261,7 @@ impl Finder<'_> {
         };
         let distance =
             |(row, column): (usize, usize)| grid.get(row, column).unwrap_or(f32::INFINITY);
-        // No farther than its eight neighbours, of which those that are no cycles do not count.
+        // No greater than its eight neighbours, as far as these are cycles.
         let is_minimum = |&(row, column): &(usize, usize)| {
             let here = distance((row, column));
             (row.saturating_sub(1)..(row + 2).min(grid.rows()))
@@ -273,13 +275,13 @@ impl Finder<'_> {
         let all =
             (0..grid.rows()).flat_map(|row| (0..grid.columns()).map(move |column| (row, column)));
         let cells = all.filter(allowed).filter(|cell| !minima || is_minimum(cell));
-        let mut places: Vec<Place> = cells
+        let mut places: Vec<Candidate> = cells
             .filter_map(|(row, column)| {
                 let (start, end) = grid.frames(row, column);
                 let rms_cm = f64::from(grid.get(row, column)?) * self.cm;
                 let gap = phase_gap(self.contacts, start, end).map_or(0.0, f64::from);
                 let score = rms_cm + CM_PER_CYCLE * gap;
-                Some(Place { start, end, rms_cm, score })
+                Some(Candidate { start, end, rms_cm, score })
             })
             .collect();
         if minima {
@@ -292,7 +294,7 @@ impl Finder<'_> {
     }
 }
 
-/// The mean difference of the feet's phases in two frames, 0 to 0.5.
+/// Returns the mean difference of the feet's phases in two frames, 0 to 0.5.
 fn phase_gap(contacts: &Contacts, a: usize, b: usize) -> Option<f32> {
     let gaps: Vec<f32> = Side::BOTH
         .into_iter()
@@ -314,7 +316,7 @@ mod tests {
     use crate::transition::{LoopOptions, close_loop};
     use std::sync::Arc;
 
-    fn found(clip: &Arc<Clip>, search: &CycleSearch) -> Result<CutPoints, LoopError> {
+    fn find(clip: &Arc<Clip>, search: &CycleSearch) -> Result<CutPoints, LoopError> {
         let roles = Roles::detect(clip.skeleton());
         let contacts = Contacts::detect(clip, &roles, &ContactOptions::default());
         let height = f64::from(roles.body_height(clip.skeleton()));
@@ -322,15 +324,16 @@ mod tests {
     }
 
     #[test]
-    fn a_walk_repeats_after_whole_strides() {
+    fn find_cycle_of_a_walk_is_whole_strides() {
         for (cadence, turning, fps) in [(0.9, 0.0, 60.0), (1.3, 0.4, 120.0), (1.1, -0.7, 30.0)] {
             let clip = Arc::new(
                 Walk { frames: (5.0 * fps) as usize, fps, cadence, turning, ..Walk::default() }
                     .clip(),
             );
-            let cut = found(&clip, &CycleSearch::new(fps)).unwrap();
+            let cut = find(&clip, &CycleSearch::new(fps)).unwrap();
             let strides = cut.cycle.len() as f64 / fps * f64::from(cadence);
-            // Never a half stride, whose poses are mirrored. Half a frame is what frames can miss.
+            // Never a half stride, whose poses are mirrored. Frames can miss a stride by half a
+            // frame.
             assert!(
                 (strides - strides.round()).abs() <= 0.6 / fps * f64::from(cadence) + 1e-6
                     && strides > 0.9,
@@ -341,11 +344,11 @@ mod tests {
     }
 
     #[test]
-    fn made_gaits_loop_by_themselves() {
+    fn find_cycle_of_made_gaits_is_their_cycle() {
         for action in [Action::Walk, Action::Run] {
             let made = synthesize(&Params::new(action)).unwrap();
             let clip = Arc::new(made.clip);
-            let cut = found(&clip, &CycleSearch::new(clip.fps())).unwrap();
+            let cut = find(&clip, &CycleSearch::new(clip.fps())).unwrap();
             let phase = |frame: usize| made.truth.phase[frame];
             let gap = (phase(cut.cycle.start) - phase(cut.cycle.end)).abs();
             assert!(gap.min(1.0 - gap) < 0.02, "{action:?} {cut:?} {gap}");
@@ -361,10 +364,9 @@ mod tests {
         }
     }
 
-    /// As in the last step of a run that stops, where one foot stands while the body is still going
-    /// on.
+    /// As in the last step of a run that stops, where one foot stands while the body still moves.
     #[test]
-    fn cycle_in_which_a_foot_is_dragged_is_not_taken() {
+    fn find_cycle_avoids_dragged_feet() {
         let clip = Arc::new(Walk { frames: 400, cadence: 1.0, ..Walk::default() }.clip());
         let roles = Roles::detect(clip.skeleton());
         let height = f64::from(roles.body_height(clip.skeleton()));
@@ -379,7 +381,7 @@ mod tests {
         };
         let cycle = finds(&contacts, &search);
         assert!(cycle.clone().any(|frame| !contacts.planted(Side::Right, frame)), "{cycle:?}");
-        // Where every cycle drags it, or the ends are given, it is a cycle all the same.
+        // Where every cycle drags a foot, or the ends are given, it is accepted all the same.
         let always = Contacts::from_flags([
             (0..400).map(|frame| frame % 60 < 36).collect(),
             vec![true; 400],
@@ -390,13 +392,13 @@ mod tests {
     }
 
     #[test]
-    fn a_clip_that_is_one_cycle_is_taken_whole() {
+    fn find_cycle_of_a_single_cycle_is_the_whole_clip() {
         let clip = Arc::new(Walk { frames: 61, cadence: 1.0, ..Walk::default() }.clip());
-        assert_eq!(found(&clip, &CycleSearch::new(60.0)).unwrap().cycle, 0..60);
+        assert_eq!(find(&clip, &CycleSearch::new(60.0)).unwrap().cycle, 0..60);
     }
 
     #[test]
-    fn durations_are_kept_and_what_does_not_fit_is_said() {
+    fn find_cycle_respects_durations_and_refuses_short_clips() {
         let clip = Arc::new(Walk { frames: 400, ..Walk::default() }.clip());
         let between = |min_secs, max_secs| CycleSearch {
             window: 6,
@@ -405,28 +407,28 @@ mod tests {
             ..CycleSearch::new(60.0)
         };
         for (min, max) in [(0.2, 0.4), (2.0, 2.5), (3.0, 0.0), (5.0, 6.0), (f64::NAN, 1.5)] {
-            let cut = found(&clip, &between(min, max)).unwrap();
+            let cut = find(&clip, &between(min, max)).unwrap();
             let secs = cut.cycle.len() as f64 / 60.0;
             assert!(
                 secs >= min.max(0.0) && secs <= max.max(min) + 1e-9 || min.is_nan(),
                 "{min} {max} {secs}"
             );
         }
-        assert!(matches!(found(&clip, &between(7.0, 9.0)), Err(LoopError::TooShort { .. })));
+        assert!(matches!(find(&clip, &between(7.0, 9.0)), Err(LoopError::TooShort { .. })));
         let one = Arc::new(clip.crop(0..1).unwrap());
-        assert!(found(&one, &between(0.0, 1.0)).is_err());
-        assert!(found(&Arc::new(clip.crop(0..0).unwrap()), &between(0.0, 1.0)).is_err());
+        assert!(find(&one, &between(0.0, 1.0)).is_err());
+        assert!(find(&Arc::new(clip.crop(0..0).unwrap()), &between(0.0, 1.0)).is_err());
         assert_eq!(
-            found(&Arc::new(clip.crop(0..3).unwrap()), &between(0.0, 1.0)).unwrap().cycle,
+            find(&Arc::new(clip.crop(0..3).unwrap()), &between(0.0, 1.0)).unwrap().cycle,
             0..2
         );
     }
 
     #[test]
-    fn ends_that_are_given_are_kept() {
+    fn find_cycle_keeps_given_ends() {
         let clip = Arc::new(Walk { frames: 400, cadence: 1.0, ..Walk::default() }.clip());
-        let with = |start, end| found(&clip, &CycleSearch { start, end, ..CycleSearch::new(60.0) });
-        // One stride is 60 frames; strides beside it are as good.
+        let with = |start, end| find(&clip, &CycleSearch { start, end, ..CycleSearch::new(60.0) });
+        // One stride is 60 frames; several strides are as good.
         let cut = with(Some(100), None).unwrap().cycle;
         assert!(cut.start == 100 && cut.len() % 60 == 0 && !cut.is_empty(), "{cut:?}");
         let cut = with(None, Some(399)).unwrap().cycle;

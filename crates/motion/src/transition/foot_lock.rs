@@ -1,3 +1,5 @@
+//! Foot lock: planted feet are held in place by two-bone inverse kinematics.
+
 use crate::blend::MAX_SECS;
 use crate::clip::{Clip, ClipError, Contacts};
 use crate::math::{curve, quat};
@@ -11,24 +13,24 @@ mod anchor;
 mod envelope;
 mod hips;
 
-/// How feet are planted. Lengths are those of a character 1.75 m tall and are scaled to the clip's
-/// character.
+/// Options of the foot lock. Lengths are those of a character 1.75 m tall and are scaled to the
+/// clip's character.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct FootLockOptions {
-    /// Seconds over which a foot leaves its own way before a stance, and comes back to it after
-    /// one; less where the next stance is nearer.
+    /// Time over which the correction of a foot fades in before a stance, and out after it,
+    /// seconds; less where the next stance is nearer.
     pub blend_secs: f64,
-    /// How far a foot may be moved over the ground, metres. The correction bends towards this limit
-    /// from its half on; what is beyond it slides as before. A foot that is said to stand while it
-    /// swings would tear the leg otherwise.
+    /// The farthest that a foot is moved over the ground, metres. From half of this limit on the
+    /// correction approaches it smoothly; the rest of the slide remains. Without a limit, a foot
+    /// with a wrong contact during its swing would tear the leg.
     pub max_shift_m: f32,
-    /// The height of the ground, metres: planted feet are lifted out of it. `None` leaves heights
-    /// as they are.
+    /// The height of the ground, metres: planted feet are lifted above it. `None` leaves heights
+    /// unchanged.
     pub ground_m: Option<f32>,
-    /// How high above where it stands a foot is that swings, metres: what is lower scrapes over the
-    /// ground, and is lifted. People clear it by 1 to 2 cm with their toes (Winter 1992, "The foot
-    /// trajectory in human gait"); a little more is not seen as sliding. `None` leaves swings as
-    /// they are.
+    /// The least height of a swinging foot above its height in the adjacent stances, metres: a
+    /// lower foot scrapes over the ground, and is raised. People clear it by 1 to 2 cm with their
+    /// toes (Winter 1992, "The foot trajectory in human gait"); a little more does not look like
+    /// sliding. `None` leaves swings unchanged.
     pub clearance_m: Option<f32>,
 }
 
@@ -38,15 +40,15 @@ impl Default for FootLockOptions {
     }
 }
 
-/// Why feet cannot be planted.
+/// Error of the foot lock.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum FootLockError {
-    /// No leg of thigh, shin and foot, one below the other.
+    /// The skeleton has no leg of thigh, shin and foot, one below the other.
     #[error(
         "this skeleton has no leg with thigh, shin and foot: choose these joints by hand to lock its feet"
     )]
     NoLegs,
-    /// The contacts are those of another clip.
+    /// The contacts have another number of frames than the clip.
     #[error(
         "the contacts are known for {contacts} frames, but the clip has {frames}: detect them on this clip"
     )]
@@ -56,62 +58,63 @@ pub enum FootLockError {
         /// Frames of the clip.
         frames: usize,
     },
-    /// A number that is none.
+    /// A number out of range.
     #[error("a {what} of {value} cannot be used: give a number from 0 to {most}")]
     Option {
-        /// Which option.
+        /// Name of the option.
         what: &'static str,
         /// The number given.
         value: f64,
         /// The largest number.
         most: f64,
     },
-    /// The result is no clip.
+    /// The result is not a valid clip.
     #[error(transparent)]
     Clip(#[from] ClipError),
 }
 
-/// A leg is not stretched beyond this flexion of the knee, unless the clip itself does so: near
-/// full stretch the knee would snap. A leg of bones `a` and `b` that becomes longer by `d` turns
-/// its knee by `d l / (a b sin φ)`: 1.2° a millimetre here on a leg of 0.85 m, and the hips are
-/// lowered by 5 mm more than for a straight leg.
+/// The least flexion of the knee to which a leg is stretched, unless the clip itself stretches it
+/// further: near full stretch the knee would snap. A leg of bones `a` and `b` and length `l` that
+/// becomes longer by `d` turns its knee by `d l / (a b sin φ)`: at this limit 1.2° per millimetre
+/// on a leg of 0.85 m, with the hips 5 mm lower than for a straight leg.
 const MIN_FLEXION_RADIANS: f32 = 0.22;
-/// Below this sine of the flexion the knee's own plane is uncertain, and the leg's usual plane
-/// takes over.
+/// Sine of the flexion below which the knee's own plane is uncertain, and the leg's usual plane is
+/// used.
 const PLANE_SINE: f32 = 0.2;
 
-/// Plants the feet: while `contacts` say that a foot is on the ground, it does not slide.
+/// Plants the feet: a foot does not slide while it is planted according to `contacts`.
 ///
-/// *What is held.* In every step between two planted frames the point of the foot (ball, tip, or
-/// ankle; the ankle alone where there are no toes) that moves least over the ground is the one that
-/// stands. The foot is moved so that it stands exactly; the foot's own turning stays, so it still
-/// rolls from heel to ball to tip, and stays as flat as in the clip. Over a stance this fixes the
-/// foot's place up to a constant, which is chosen so that the correction vanishes where the foot is
-/// stillest: a mean over the stance with weights of inverse squared speed. What is below the ground
-/// is lifted out of it. Before and behind a stance the correction dies away with its own velocity
-/// ([`Decay::Cubic`](crate::math::Decay)), so that a foot does not jerk off the ground.
+/// *Planted feet.* In every step between two planted frames the point of the foot (ball, tip, or
+/// ankle; the ankle alone where there are no toes) that moves least over the ground is taken as
+/// standing. The foot is moved so that this point stands exactly; its rotation stays, so that it
+/// still rolls from heel to ball to tip, and stays as flat as in the clip. This determines the
+/// foot's position over a stance up to a constant, which is chosen so that the correction vanishes
+/// where the foot is stillest: a mean over the stance with weights of inverse squared speed. Points
+/// below the ground are lifted above it. Before and after a stance the correction decays from its
+/// own velocity ([`Decay::Cubic`](crate::math::Decay)), so that the foot does not jerk off the
+/// ground.
 ///
-/// *What is lifted.* Where the foot swings from one stance to the next, each of its points is
-/// brought [`FootLockOptions::clearance_m`] above the height that it has in these, smoothly, while
-/// it goes faster than a slow step. Between two motions a foot may pass the ground lower than in
-/// either.
+/// *Swinging feet.* Where the foot swings from one stance to the next, each of its points is raised
+/// smoothly to [`FootLockOptions::clearance_m`] above the height that it has in these stances,
+/// while it moves faster than a slow step. Between two motions a foot may pass the ground lower
+/// than in either.
 ///
-/// *How the leg follows.* Thigh and shin are turned about the knee's own axis to bring the ankle to
-/// its place, then the leg is swung the shortest way ([`two_bone_ik`]); joints between hip, knee and
-/// ankle keep their local rotations. Only the *difference* to how the leg was is applied, so that
-/// the knee keeps its plane, also when it is nearly straight.
+/// *Legs.* Thigh and shin are rotated about the knee's own axis to bring the ankle to its target,
+/// then the leg is swung the shortest way ([`two_bone_ik`]); joints between hip, knee and ankle
+/// keep their local rotations. Only the *difference* to the solution for the unchanged ankle is
+/// applied, so that the knee keeps its plane, also when it is nearly straight.
 ///
-/// *How the hips help.* A nearly straight leg has to bend a lot to become a little shorter, and
-/// cannot become longer. The hips are raised or lowered to where both knees change least (least
+/// *Hips.* A nearly straight leg has to bend a lot to become a little shorter, and cannot become
+/// longer. The hips are raised or lowered to the height at which both knees change least (least
 /// squares of the change of flexion), smoothed, and lowered further where a leg would have to
-/// stretch past its reach; where even that does not help, the foot slides.
+/// stretch past its reach; where even that is not enough, the foot slides.
 ///
-/// Frames where nothing needs to be corrected stay exactly as they are. Cost: O(frames × joints),
-/// one pass of forward kinematics.
+/// Frames without a correction stay exactly the same. Cost: O(frames × joints), one pass of forward
+/// kinematics.
 ///
 /// # Errors
-/// [`FootLockError`] when there are no legs, the contacts do not fit the clip, or an option is out
-/// of range.
+/// [`FootLockError`] when there are no legs, the contacts have another number of frames, or an
+/// option is out of range.
 pub fn foot_lock(
     clip: &Clip,
     roles: &Roles,
@@ -123,14 +126,14 @@ pub fn foot_lock(
     state.finish(clip)
 }
 
-/// Whether a skeleton has a leg of thigh, shin and foot, one below the other: feet of others cannot
-/// be planted.
+/// Returns whether a skeleton has a leg of thigh, shin and foot, one below the other, which a foot
+/// lock needs.
 #[must_use]
 pub fn has_legs(skeleton: &Skeleton, roles: &Roles) -> bool {
     Side::BOTH.into_iter().any(|side| Leg::find(skeleton, roles, side).is_some())
 }
 
-/// [`foot_lock`] in slices, for clips that take longer than there is time for at once.
+/// The computation of [`foot_lock`] in slices, for long clips.
 #[derive(Debug)]
 pub struct FootLocking {
     clip: Arc<Clip>,
@@ -138,10 +141,10 @@ pub struct FootLocking {
 }
 
 impl FootLocking {
-    /// Nothing is done yet: call [`advance`](Self::advance).
+    /// Prepares the foot lock. Nothing is computed yet: call [`advance`](Self::advance).
     ///
     /// # Errors
-    /// As [`foot_lock`].
+    /// The same as for [`foot_lock`].
     pub fn new(
         clip: Arc<Clip>,
         roles: &Roles,
@@ -152,25 +155,24 @@ impl FootLocking {
         Ok(Self { clip, state })
     }
 
-    /// Says by how much the whole body was turned in every frame, as on a path that was bent,
-    /// radians; frames without a number were not. A foot that stands does not turn with it over the
-    /// ground: in its stances it is turned back, by up to 30°, about the vertical. Its own turning
-    /// stays.
+    /// Sets by how much the whole body was turned in every frame, as on a bent path, radians;
+    /// missing frames count as 0. A planted foot does not turn with the body: in its stances it is
+    /// turned back, by up to 30°, about the vertical. Its own rotation stays.
     ///
-    /// To be said before the first [`advance`](Self::advance).
+    /// Call this before the first [`advance`](Self::advance).
     #[must_use]
     pub fn with_body_yaws(mut self, yaws_radians: &[f64]) -> Self {
         self.state.body_yaws = yaws_radians.to_vec();
         self
     }
 
-    /// Goes on by so many frames (at least one). `false` when nothing is left to do. A frame of 31
-    /// joints takes 2 µs, in each of two passes.
+    /// Processes up to `frames` more frames (at least one). Returns `false` when nothing is left to
+    /// do. A frame of 31 joints takes 2 µs, in each of two passes.
     pub fn advance(&mut self, frames: usize) -> bool {
         self.state.advance(&self.clip, frames)
     }
 
-    /// How much is done, 0 to 1.
+    /// Returns the progress, 0 to 1.
     #[must_use]
     pub fn progress(&self) -> f32 {
         let frames = self.clip.frames().max(1) as f32;
@@ -178,17 +180,17 @@ impl FootLocking {
         (self.state.posed_frames() + turned) as f32 / (2.0 * frames)
     }
 
-    /// The clip with planted feet; what is not done yet is done now.
+    /// Computes the remaining frames and returns the clip with planted feet.
     ///
     /// # Errors
-    /// As [`foot_lock`].
+    /// The same as for [`foot_lock`].
     pub fn finish(mut self) -> Result<Clip, FootLockError> {
         while self.advance(self.clip.frames()) {}
         self.state.finish(&self.clip)
     }
 }
 
-/// What is known of a clip whose feet are being planted.
+/// The measurements of a clip whose feet are being planted.
 #[derive(Debug)]
 struct State {
     options: FootLockOptions,
@@ -196,24 +198,24 @@ struct State {
     stances: Vec<Vec<Range<usize>>>,
     legs: Vec<Leg>,
     feet: Vec<anchor::Foot>,
-    posed: Vec<Vec<Posed>>,
+    posed: Vec<Vec<LegPose>>,
     body_yaws: Vec<f64>,
-    /// Made when all frames are posed.
+    /// Computed when all frames are posed.
     plan: Option<Plan>,
 }
 
-/// How far everything is moved, and what came of it so far.
+/// The corrections, and the results so far.
 #[derive(Debug)]
 struct Plan {
     shifts: Vec<Vec<Vec3>>,
-    /// Turns of the feet, rotation vectors.
+    /// Rotations of the feet, as rotation vectors.
     turns: Vec<Vec<Vec3>>,
     heights: Vec<f32>,
     axes: Vec<Vec3>,
     rotations: Vec<Quat>,
-    /// Frames that are done.
+    /// Number of frames that are done.
     turned: usize,
-    /// All feet stand as they are.
+    /// Whether no foot needs a correction.
     is_idle: bool,
 }
 
@@ -259,7 +261,7 @@ impl State {
         self.posed.first().map_or(0, Vec::len)
     }
 
-    /// Goes on by so many frames. `false` when nothing is left to do.
+    /// Processes up to `frames` more frames. Returns `false` when nothing is left to do.
     fn advance(&mut self, clip: &Clip, frames: usize) -> bool {
         let (posed, last) = (self.posed_frames(), clip.frames());
         let end = |done: usize| done.saturating_add(frames.max(1)).min(last);
@@ -305,7 +307,7 @@ impl State {
 
     fn plan(&self, clip: &Clip) -> Plan {
         let corrections = self.stances.iter().zip(&self.feet).map(|(stances, foot)| {
-            let stances = foot.parted(stances, clip.fps(), self.scale);
+            let stances = foot.merged(stances, clip.fps(), self.scale);
             let turns = foot.turns(&stances, &self.body_yaws, clip.fps(), &self.options);
             let shifts =
                 |foot: &anchor::Foot| foot.shifts(&stances, clip.fps(), self.scale, &self.options);
@@ -352,9 +354,9 @@ pub(crate) struct Leg {
     parents: [usize; 3],
 }
 
-/// A leg of the clip in one frame, in the world.
+/// The world pose of a leg in one frame of the clip.
 #[derive(Clone, Copy, Debug)]
-struct Posed {
+struct LegPose {
     /// Hip to knee, and knee to ankle.
     thigh: Vec3,
     shin: Vec3,
@@ -363,7 +365,7 @@ struct Posed {
 }
 
 impl Leg {
-    /// `None` where thigh, shin and foot are not one below the other.
+    /// Returns the leg of a side; `None` where thigh, shin and foot are not one below the other.
     pub(crate) fn find(skeleton: &Skeleton, roles: &Roles, side: Side) -> Option<Self> {
         let [thigh, shin, foot, _] =
             Role::leg(side).map(|role| roles.get_within(role, skeleton.len()));
@@ -382,19 +384,19 @@ impl Leg {
             .then_some(Self { joints, parents: [a, b, c] })
     }
 
-    /// Thigh, shin and foot.
+    /// Returns thigh, shin and foot.
     pub(crate) fn joints(&self) -> [usize; 3] {
         self.joints
     }
 
-    /// The axis about which this knee bends over some poses, in the thigh's frame.
+    /// Returns the axis about which this knee bends over some poses, in the thigh's frame.
     pub(crate) fn usual_axis<'a>(&self, worlds: impl Iterator<Item = &'a WorldPose>) -> Vec3 {
         usual_axis(&worlds.map(|world| self.pose(world)).collect::<Vec<_>>())
     }
 
-    /// Moves the ankle by `shift` (metres, world) as [`foot_lock`] does, the hips staying where
-    /// they are: writes the local rotations of thigh, shin and foot. `world` is the pose before; it
-    /// may hold these joints and their ancestors alone.
+    /// Moves the ankle by `shift` (metres, world) as [`foot_lock`] does, with the hips fixed:
+    /// writes the local rotations of thigh, shin and foot. `world` is the pose before; it may hold
+    /// these joints and their ancestors alone.
     pub(crate) fn move_ankle(
         &self,
         world: &WorldPose,
@@ -407,14 +409,15 @@ impl Leg {
         self.write(&posed, [upper, lower, Quat::IDENTITY], local);
     }
 
-    /// By how much the hips are too high for this leg when its ankle is moved by `shift`, metres.
+    /// Returns by how much the hips are too high for this leg when its ankle is moved by `shift`,
+    /// metres.
     pub(crate) fn too_high(&self, world: &WorldPose, shift: Vec3) -> f32 {
         hips::too_high(std::iter::once((&self.pose(world), shift)), 0.0)
     }
 
-    fn pose(&self, world: &WorldPose) -> Posed {
+    fn pose(&self, world: &WorldPose) -> LegPose {
         let [hip, knee, ankle] = self.joints.map(|joint| world.positions[joint]);
-        Posed {
+        LegPose {
             thigh: knee - hip,
             shin: ankle - knee,
             rotations: self.joints.map(|joint| world.rotations[joint]),
@@ -422,8 +425,8 @@ impl Leg {
         }
     }
 
-    /// Local rotations after thigh, shin and foot were turned in the world, each by its own.
-    fn write(&self, posed: &Posed, [upper, lower, own]: [Quat; 3], local: &mut [Quat]) {
+    /// Writes local rotations after thigh, shin and foot were each rotated in the world.
+    fn write(&self, posed: &LegPose, [upper, lower, own]: [Quat; 3], local: &mut [Quat]) {
         let [thigh, shin, foot] = self.joints;
         let (rotations, parents) = (posed.rotations, posed.parents);
         local[thigh] = quat::renormalize(parents[0].conjugate() * upper * rotations[0]);
@@ -432,29 +435,30 @@ impl Leg {
     }
 }
 
-impl Posed {
+impl LegPose {
     fn line(&self) -> Vec3 {
         self.thigh + self.shin
     }
 
-    /// The area that the bones span, which points along the axis that the knee is bent about, over
-    /// both lengths: the sine of the flexion.
+    /// Returns the cross product of the bones over the product of their lengths: it points along
+    /// the axis about which the knee is bent, and its length is the sine of the flexion.
     fn bend(&self) -> Vec3 {
         self.thigh.cross(self.shin) / (self.thigh.length() * self.shin.length()).max(1e-9)
     }
 
-    /// How long this leg may become.
+    /// Returns the greatest length of this leg.
     fn reach(&self) -> f32 {
         let (a, b) = (self.thigh.length(), self.shin.length());
         let reach = (a * a + b * b + 2.0 * a * b * MIN_FLEXION_RADIANS.cos()).sqrt();
         reach.max(self.line().length())
     }
 
-    /// World turns of thigh and shin that move the ankle by `shift` against the hip.
+    /// Returns world rotations of thigh and shin that move the ankle by `shift` relative to the
+    /// hip.
     ///
     /// `usual_axis` is the axis of the knee in the thigh's frame. Where the leg is not bent in one
     /// plane about the axis used, or the knee is bent the wrong way, a difference of angles does
-    /// not quite reach; what is missing is asked for once more.
+    /// not quite reach; the remainder is then solved for once more.
     fn turned(&self, shift: Vec3, usual_axis: Vec3) -> [Quat; 2] {
         let (a, b) = (self.thigh.length(), self.shin.length());
         let bend = self.bend();
@@ -483,16 +487,16 @@ impl Posed {
     }
 }
 
-/// The rotation that takes X to `hinge` and Y to `bone`, unit vectors square to each other.
+/// Returns the rotation from X to `hinge` and from Y to `bone`, perpendicular unit vectors.
 fn basis(bone: Vec3, hinge: Vec3) -> Quat {
     Quat::from_mat3(&Mat3::from_cols(hinge, bone, hinge.cross(bone)))
 }
 
-/// The axis about which a knee bends over the whole clip, in the thigh's frame; bent frames count
-/// more.
-fn usual_axis(posed: &[Posed]) -> Vec3 {
+/// Returns the axis about which a knee bends over the whole clip, in the thigh's frame; bent frames
+/// count more.
+fn usual_axis(posed: &[LegPose]) -> Vec3 {
     let sum: Vec3 = posed.iter().map(|posed| posed.rotations[0].conjugate() * posed.bend()).sum();
-    // A clip of straight legs: across the body, which at rest faces +Z.
+    // In a clip of straight legs: the lateral axis of the body, which faces +Z at rest.
     sum.try_normalize().unwrap_or(Vec3::X)
 }
 

@@ -1,18 +1,20 @@
+//! Inertialization and dead blending, frame by frame.
+
 use super::MovingPose;
-use super::moving::{further, travel};
+use super::moving::{travel, with_travel};
 use crate::blend::{BlendError, MAX_SECS};
 use crate::math::{Decay, Planar, quat, spring};
 use glam::{Quat, Vec3};
 
-/// How the difference between the motion that was playing and the one that plays now dies away.
+/// The decay of the difference between the previous motion and the current one.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Inertialization {
     /// The offset decays into the new motion (Bollo 2018; springs: Holden 2021).
     Offset(Decay),
-    /// The old pose runs on with decaying velocity, and a smooth weight fades to the new motion
-    /// (Holden, "Dead Blending", 2023). Safer for very different poses; damps more.
+    /// The old pose is extrapolated with decaying velocity, and a smooth weight fades to the new
+    /// motion (Holden, "Dead Blending", 2023). Safer for very different poses; damps more.
     DeadBlend {
-        /// Seconds of the fade.
+        /// Duration of the fade, seconds.
         blend_secs: f64,
         /// Half-life of the old pose's velocity, seconds.
         extrapolation_half_life_secs: f64,
@@ -20,10 +22,10 @@ pub enum Inertialization {
 }
 
 impl Inertialization {
-    /// Whether its times are times.
+    /// Checks the durations.
     ///
     /// # Errors
-    /// [`BlendError::Time`] names the first that is not from 0 to 60 s.
+    /// [`BlendError::Time`] with the first one that is not from 0 to 60 s.
     pub fn validate(self) -> Result<(), BlendError> {
         let times = match self {
             Self::Offset(Decay::Spring { half_life_secs }) => {
@@ -42,16 +44,17 @@ impl Inertialization {
         }
     }
 
-    /// The share of an offset at rest that is left after `secs`.
+    /// Returns the share of an offset at rest that is left after `secs`.
     #[must_use]
-    pub fn left(self, secs: f64) -> f64 {
+    pub fn remaining(self, secs: f64) -> f64 {
         match self {
             Self::Offset(decay) => decay.response(0.0, secs).xx,
             Self::DeadBlend { blend_secs, .. } => fade(blend_secs, secs).0,
         }
     }
 
-    /// The same with all its times so many times as long; but for how long an old velocity runs on.
+    /// Returns the same decay with its durations multiplied by `times`, except for the half-life of
+    /// an extrapolated velocity.
     #[must_use]
     fn stretched(self, times: f64) -> Self {
         match self {
@@ -70,9 +73,9 @@ impl Inertialization {
         }
     }
 
-    /// How fast an offset of 1 at rest is at most while it dies away, per second: the extremum of
-    /// the curve's derivative.
-    fn fastest(self) -> f64 {
+    /// Returns the greatest speed at which an offset of 1 at rest decays, per second: the extremum
+    /// of the curve's derivative.
+    fn max_rate(self) -> f64 {
         match self {
             Self::Offset(Decay::Spring { half_life_secs }) => {
                 spring::rate(half_life_secs) / std::f64::consts::E
@@ -84,7 +87,7 @@ impl Inertialization {
         }
     }
 
-    /// Seconds until only `share` (above 0, below 1) is left.
+    /// Returns the seconds until only `share` (above 0, below 1) is left.
     #[must_use]
     pub fn secs_until(self, share: f64) -> f64 {
         match self {
@@ -93,10 +96,10 @@ impl Inertialization {
         }
     }
 
-    /// Seconds until nothing is left that could be seen or measured: the end of a compact curve; a
-    /// millionth for a spring.
+    /// Returns the seconds until nothing is left that could be seen or measured: the end of a curve
+    /// of finite duration; a millionth for a spring.
     #[must_use]
-    pub fn settled_secs(self) -> f64 {
+    pub fn settling_secs(self) -> f64 {
         match self {
             Self::Offset(decay @ Decay::Spring { .. }) => decay.secs_until(1e-6),
             Self::Offset(Decay::Cubic { blend_secs } | Decay::Quintic { blend_secs })
@@ -105,29 +108,32 @@ impl Inertialization {
     }
 }
 
-/// Of the speed that a joint usually does not exceed, what an offset may add to it while it dies
-/// away.
+/// The speed that a decaying offset may add, as a share of the speed that a joint usually does not
+/// exceed.
 const ADDED_SPEED: f32 = 0.75;
-/// An offset takes no more than so many times as long as others.
+/// The greatest factor by which the decay of a joint's offset is slowed down.
 const MAX_STRETCH: f32 = 6.0;
 
-/// The fade's weight of the old motion, and how fast it changes, per second:
-/// [`crate::blend::WeightLaw::Smooth`], which is the cubic's answer to an offset without velocity.
+/// Returns the fade's weight of the old motion, and its rate of change, per second:
+/// [`crate::blend::WeightLaw::Smooth`], which is the cubic's response to an offset without
+/// velocity.
 fn fade(blend_secs: f64, secs: f64) -> (f64, f64) {
     let response = Decay::Cubic { blend_secs }.response(0.0, secs);
     (response.xx, response.vx)
 }
 
-/// Carries the inertia of what was playing over into what plays now, frame by frame.
+/// The state of inertialization, which adds the decaying difference to the previous motion to the
+/// current one, frame by frame.
 ///
-/// [`trigger`](Self::trigger) at a jump; then, every frame, [`advance`](Self::advance) the time and
-/// [`apply`](Self::apply) it to the new pose. A jump while another is still dying away adds to it:
-/// offsets are composed, not replaced, so that the motion stays continuous.
+/// Call [`trigger`](Self::trigger) at a jump; then, every frame, [`advance`](Self::advance) the
+/// time and [`apply`](Self::apply) the offsets to the new pose. A jump while the offsets of another
+/// one are still decaying adds to them: offsets are composed, not replaced, so that the motion
+/// stays continuous.
 ///
 /// The offset of a rotation is the rotation vector of `q_old · q_new⁻¹` by the shorter way, applied
-/// on the left. Its rate is such that the joint leaves with the old angular velocity *exactly*:
-/// `J⁻¹ (ω_old - R ω_new)` with J the left Jacobian ([`quat::vector_rate`]) and R the offset. The
-/// usual `ω_old - ω_new` is that for small offsets only.
+/// on the left. Its rate is chosen so that the joint starts with the old angular velocity
+/// *exactly*: `J⁻¹ (ω_old - R ω_new)` with J the left Jacobian ([`quat::vector_rate`]) and R the
+/// offset. The usual `ω_old - ω_new` is accurate for small offsets only.
 #[derive(Clone, Debug)]
 pub struct Inertializer {
     how: Inertialization,
@@ -141,13 +147,13 @@ pub struct Inertializer {
 struct Turn {
     offset: Vec3,
     rate: Vec3,
-    /// The old rotation and its angular velocity: what runs on.
+    /// The old rotation and its angular velocity, for extrapolation.
     from: Quat,
     angular_velocity: Vec3,
     /// The difference that was applied last; the next one is taken in its hemisphere, so that it
     /// does not jump to the other way round.
     last: Quat,
-    /// So many times as long as others it takes to die away, from 1 on.
+    /// The factor by which its decay is slowed down, at least 1.
     stretch: f32,
 }
 
@@ -161,43 +167,45 @@ struct Shift {
 
 #[derive(Clone, Copy, Debug)]
 struct Travel {
-    /// The difference of steady velocities: it decays, and the way made meanwhile stays made.
+    /// The difference of steady velocities: it decays, and the distance covered meanwhile remains.
     steady: Vec3,
-    /// The rest of the difference: a sway, as an offset that starts at 0 and swings back to it.
+    /// The rest of the difference, a sway: the velocity of an offset that starts at 0 and returns
+    /// to it.
     sway: Vec3,
     from: Vec3,
 }
 
 impl Inertializer {
-    /// At rest: it changes nothing until it is triggered.
+    /// Returns an inertializer at rest: it changes nothing until it is triggered.
     #[must_use]
     pub fn new(how: Inertialization) -> Self {
         Self { how, elapsed_secs: 0.0, turns: Vec::new(), shifts: Vec::new(), travel: None }
     }
 
-    /// Seconds since the last jump.
+    /// Returns the seconds since the last jump.
     #[must_use]
     pub fn elapsed_secs(&self) -> f64 {
         self.elapsed_secs
     }
 
-    /// A jump from one motion to another: what the old one does at this moment and what the new one
-    /// does, both as they are without inertia. What is still left of an earlier jump is taken
-    /// along. Joints that one of the two does not have are left out.
+    /// Starts a transition between two motions at a jump: `old` and `new` are their poses and
+    /// velocities at this moment, both without inertialization. The rest of an earlier jump's
+    /// offsets is included. Joints that one of the two does not have are left out.
     pub fn trigger(&mut self, old: &MovingPose, new: &MovingPose) {
         self.trigger_within(old, new, &[]);
     }
 
-    /// As [`trigger`](Self::trigger), with what angular speed each joint usually does not exceed,
-    /// radians per second: a joint whose offset would die away faster than three quarters of that
-    /// takes as much longer, up to six times as long. So an arm that hangs in one motion and is
-    /// bent in the other comes up in its own time, while the legs are in step at once.
+    /// Starts a transition as [`trigger`](Self::trigger) does, with the angular speed that each
+    /// joint usually does not exceed, radians per second: the offset of a joint that would decay
+    /// faster than three quarters of that takes longer, up to six times as long. An arm that hangs
+    /// in one motion and is bent in the other therefore comes up slowly, while the legs are in step
+    /// at once.
     pub fn trigger_within(&mut self, old: &MovingPose, new: &MovingPose, usual_radps: &[f32]) {
-        let fastest = self.how.fastest() as f32;
+        let max_rate = self.how.max_rate() as f32;
         let stretch = |joint: usize, offset: Vec3| {
             let usual = usual_radps.get(joint).copied().unwrap_or(f32::INFINITY);
-            let times = offset.length() * fastest / (ADDED_SPEED * usual);
-            // What takes no time at all is a cut, and stays one.
+            let times = offset.length() * max_rate / (ADDED_SPEED * usual);
+            // A decay without duration is a cut, and stays one.
             if times.is_finite() { times.clamp(1.0, MAX_STRETCH) } else { 1.0 }
         };
         let mut playing = old.clone();
@@ -240,20 +248,20 @@ impl Inertializer {
         self.elapsed_secs = 0.0;
     }
 
-    /// Continues with another method from this moment on. What is left of every offset is kept with
-    /// its velocity, so that neither pose nor velocity jumps. `live` is what plays now, as it is
-    /// without inertia.
+    /// Continues with another method from this moment on. The rest of every offset is kept with its
+    /// velocity, so that neither pose nor velocity jumps. `live` is the current motion without
+    /// inertialization.
     pub fn change(&mut self, how: Inertialization, live: &MovingPose) {
         self.trigger(live, live);
         self.how = how;
     }
 
-    /// Time passes.
+    /// Advances the time.
     pub fn advance(&mut self, dt_secs: f64) {
         self.elapsed_secs += dt_secs.max(0.0);
     }
 
-    /// Puts what is left of the offsets on a pose: rotations and translations as in [`MovingPose`].
+    /// Applies the remaining offsets to a pose: rotations and translations as in [`MovingPose`].
     pub fn apply(&mut self, rotations: &mut [Quat], translations: &mut [Vec3]) {
         let (how, secs) = (self.how, self.elapsed_secs);
         let now = self.now();
@@ -266,29 +274,29 @@ impl Inertializer {
         }
     }
 
-    /// The step over the ground of a new motion that takes `dt_secs` and ends now, with what is
-    /// left of the old travel: steps as in [`crate::clip::character_frames`] from one frame to the
-    /// next, each in the character's frame at its start.
+    /// Returns the step over the ground of the new motion with the rest of the old travel added;
+    /// `step` takes `dt_secs` and ends now. Steps are those of [`crate::clip::character_frames`]
+    /// from one frame to the next, each in the character's frame at its start.
     ///
-    /// What decays is the difference of steady velocities, without a rate of its own: from a walk
-    /// into a run the speed rises and never overshoots. The rest, the sway of the moment, is
-    /// carried over as the velocity of an offset that comes back to 0: kept as a velocity, the
-    /// quarter of a stride's turning or swaying that was going on would lead the character off its
-    /// way. Both are taken at the middle of the step.
+    /// The difference of steady velocities decays, without a rate of its own: from a walk into a
+    /// run the speed rises and never overshoots. The rest, the sway of the moment, becomes the
+    /// velocity of an offset that returns to 0: kept as a velocity, the quarter of a stride's turn
+    /// or sway in progress would lead the character off its trajectory. Both are evaluated in the
+    /// middle of the step.
     #[must_use]
     pub fn step(&self, step: &Planar, dt_secs: f64) -> Planar {
         let Some(old) = self.travel.filter(|_| dt_secs > 0.0) else {
             return *step;
         };
         let middle = Now::new(self.how, self.elapsed_secs - 0.5 * dt_secs);
-        further(step, middle.travelled(&old, travel(step, dt_secs.recip())), dt_secs)
+        with_travel(step, middle.travelled(&old, travel(step, dt_secs.recip())), dt_secs)
     }
 
     fn now(&self) -> Now {
         Now::new(self.how, self.elapsed_secs)
     }
 
-    /// Puts what is left on a pose and on its velocities.
+    /// Applies the remaining offsets to a pose and its velocities.
     fn carry(&mut self, pose: &mut MovingPose) {
         let (how, secs) = (self.how, self.elapsed_secs);
         let now = self.now();
@@ -315,20 +323,20 @@ impl Inertializer {
     }
 }
 
-/// What is the same for all joints at one moment.
+/// The part of the decay that is the same for all joints at one moment.
 #[derive(Clone, Copy)]
 enum Now {
     /// A decay whose response does not depend on the offset.
     Linear(crate::math::Response),
-    /// One whose response does.
+    /// A decay whose response depends on the offset.
     Quintic(Decay, f64),
     Dead {
         weight: f32,
-        /// How the weight changes, per second.
+        /// The rate of the weight, per second.
         falling: f32,
-        /// The share of the old velocity that is left, and the seconds of it that have added up.
+        /// The share of the old velocity that is left, and its integral so far, seconds.
         speed_left: f32,
-        run_on_secs: f32,
+        extrapolated_secs: f32,
     },
 }
 
@@ -339,19 +347,19 @@ impl Now {
             Inertialization::Offset(decay) => Self::Linear(decay.response(0.0, secs)),
             Inertialization::DeadBlend { blend_secs, extrapolation_half_life_secs } => {
                 let (weight, falling) = fade(blend_secs, secs);
-                let (speed_left, run_on_secs) =
+                let (speed_left, extrapolated_secs) =
                     spring::velocity_decay(extrapolation_half_life_secs, secs);
                 Self::Dead {
                     weight: weight as f32,
                     falling: falling as f32,
                     speed_left: speed_left as f32,
-                    run_on_secs: run_on_secs as f32,
+                    extrapolated_secs: extrapolated_secs as f32,
                 }
             }
         }
     }
 
-    /// The same for a joint that takes its own time.
+    /// Returns the decay of a joint that is slowed down.
     fn of_turn(self, turn: &Turn, how: Inertialization, secs: f64) -> Self {
         if turn.stretch > 1.0 {
             Self::new(how.stretched(f64::from(turn.stretch)), secs)
@@ -368,11 +376,11 @@ impl Now {
         }
     }
 
-    /// The rotation vector that is on top of `live` now.
+    /// Returns the rotation vector that is applied to `live`.
     fn turned(self, turn: &mut Turn, live: Quat) -> Vec3 {
         match self {
-            Self::Dead { weight, run_on_secs, .. } => {
-                let old = quat::exp(turn.angular_velocity * run_on_secs) * turn.from;
+            Self::Dead { weight, extrapolated_secs, .. } => {
+                let old = quat::exp(turn.angular_velocity * extrapolated_secs) * turn.from;
                 turn.last = quat::in_hemisphere_of(old * live.conjugate(), turn.last);
                 quat::log_as_given(turn.last) * weight
             }
@@ -380,8 +388,8 @@ impl Now {
         }
     }
 
-    /// The rate of the vector that [`turned`](Self::turned) gave last, when `live` turns with
-    /// `live_velocity`.
+    /// Returns the rate of the vector that [`turned`](Self::turned) returned last, when `live`
+    /// turns with `live_velocity`.
     fn turning(self, turn: &Turn, live_velocity: Vec3) -> Vec3 {
         match self {
             Self::Dead { weight, falling, speed_left, .. } => {
@@ -398,8 +406,8 @@ impl Now {
 
     fn shifted(self, shift: &Shift, live: Vec3) -> Vec3 {
         match self {
-            Self::Dead { weight, run_on_secs, .. } => {
-                (shift.from + shift.velocity * run_on_secs - live) * weight
+            Self::Dead { weight, extrapolated_secs, .. } => {
+                (shift.from + shift.velocity * extrapolated_secs - live) * weight
             }
             _ => self.of(shift.offset, shift.rate).0,
         }
@@ -407,8 +415,8 @@ impl Now {
 
     fn shifting(self, shift: &Shift, live: Vec3, live_velocity: Vec3) -> Vec3 {
         match self {
-            Self::Dead { weight, falling, speed_left, run_on_secs } => {
-                let off = shift.from + shift.velocity * run_on_secs - live;
+            Self::Dead { weight, falling, speed_left, extrapolated_secs } => {
+                let off = shift.from + shift.velocity * extrapolated_secs - live;
                 off * falling + (shift.velocity * speed_left - live_velocity) * weight
             }
             _ => self.of(shift.offset, shift.rate).1,

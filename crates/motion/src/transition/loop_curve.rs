@@ -1,65 +1,69 @@
+//! Curves that close a cycle.
+
 use crate::math::{Response, spring};
 
-/// How the difference between the two ends of a cycle is spread over it.
+/// The distribution over a cycle of the difference between its two ends.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum LoopMethod {
-    /// Springs from both ends, fed with what makes the cycle close exactly in pose and velocity.
+    /// Springs from both ends, with initial values for which the cycle closes exactly in pose and
+    /// velocity.
     Exact {
         /// Half-life, seconds.
         half_life_secs: f64,
     },
-    /// Springs from both ends, fed with the difference itself (Holden, "Creating Looping Animations
-    /// from Motion Capture", 2022). What has not died away at the other end stays as a seam:
-    /// `(1 + yT) e^(-yT)` of the difference, 14 % for a half-life of 0.2 s in a cycle of 0.5 s.
+    /// Springs from both ends, with the difference itself as initial value (Holden, "Creating
+    /// Looping Animations from Motion Capture", 2022). The offset that remains at the other end is
+    /// a seam: `(1 + yT) e^(-yT)` of the difference, 14 % for a half-life of 0.2 s in a cycle of
+    /// 0.5 s.
     Classic {
         /// Half-life, seconds.
         half_life_secs: f64,
     },
-    /// As [`Self::Classic`], but the head takes `1 - r` of the velocities' difference beside `r` of
-    /// the poses': what results when the two shares are mixed up, and the same for `r = 0.5`.
+    /// Springs as for [`Self::Classic`], but the head takes `1 - r` of the velocities' difference
+    /// with `r` of the poses': the result of mixing up the two shares, and the same for `r = 0.5`.
     Crossed {
         /// Half-life, seconds.
         half_life_secs: f64,
     },
-    /// Evenly over the whole cycle: the pose closes, the velocity does not.
+    /// Linear over the whole cycle: the pose closes, the velocity does not.
     Linear,
     /// A Hermite cubic over the whole cycle: pose and velocity close.
     Cubic,
 }
 
-/// The half-life of a spring in a cycle is at most this many of its durations: beyond, the
-/// equations for the exact loop lose their digits, and the curve is the same straight pull.
+/// The greatest half-life of a spring, in durations of the cycle: beyond it, the equations for the
+/// exact loop lose their digits, and the curve is the same straight line.
 const MAX_CYCLES: f64 = 10.0;
 
-/// The offset that closes a cycle, as shares of the difference `D` of its ends (last less first)
+/// The offset that closes a cycle, as shares of the difference `D` of its ends (last minus first)
 /// and of their velocities' difference `V`.
 ///
-/// With the ratio `r`, `r D` is added at the head and `(1 - r) D` taken off at the tail, so that
-/// `offset(0) - offset(T) = D`, and likewise for velocities. The springs' offset is
-/// `decay(r X, r W; t) - decay((1 - r) X, -(1 - r) W; T - t)`. Each spring still has something left
-/// at the other end; X and W are the solution of
+/// With the ratio `r`, `r D` is added at the head and `(1 - r) D` subtracted at the tail, so that
+/// `offset(0) - offset(T) = D`, and likewise for velocities. The springs' offset is `decay(r X, r
+/// W; t) - decay((1 - r) X, -(1 - r) W; T - t)`. Each spring still has an offset at the other end;
+/// X and W are the solution of
 ///
-/// `(1 - k) X + (1 - 2r) T e W = D` and `(2r - 1) y² T e X + (1 - (1 - yT) e) W = V`, with
-/// `e = e^(-yT)` and `k = (1 + yT) e`.
+/// `(1 - k) X + (1 - 2r) T e W = D` and `(2r - 1) y² T e X + (1 - (1 - yT) e) W = V`, with `e =
+/// e^(-yT)` and `k = (1 + yT) e`.
 #[derive(Clone, Copy, Debug)]
 pub struct LoopCurve {
     method: LoopMethod,
     ratio: f64,
     duration_secs: f64,
     /// X and W from D and V.
-    fed: Response,
+    initial: Response,
 }
 
 impl LoopCurve {
-    /// The curve for a cycle of `duration_secs` (above 0). `ratio` is clamped to [0, 1]: 1 bends
-    /// only the start, 0 only the end. Half-lives are at most ten durations.
+    /// Returns the curve for a cycle of `duration_secs` (above 0). `ratio` is clamped to [0, 1]: 1
+    /// changes only the start, 0 only the end. Half-lives are limited to ten durations.
     #[must_use]
     pub fn new(method: LoopMethod, ratio: f64, duration_secs: f64) -> Self {
         let ratio = if ratio > 0.0 { ratio.min(1.0) } else { 0.0 };
         let duration_secs = duration_secs.max(1e-9);
         let held = |half_life_secs: f64| half_life_secs.min(MAX_CYCLES * duration_secs);
         let as_it_is = Response { xx: 1.0, xv: 0.0, vx: 0.0, vv: 1.0 };
-        let (method, fed) = match method {
+        let (method, initial) = match method {
             LoopMethod::Exact { half_life_secs } => {
                 let half_life_secs = held(half_life_secs);
                 let far = spring::response(half_life_secs, duration_secs);
@@ -68,13 +72,13 @@ impl LoopCurve {
                 // positive for every cycle with a duration.
                 let [a, b, c, d] = [1.0 - far.xx, skew * far.xv, skew * far.vx, 1.0 - far.vv];
                 let determinant = a * d - b * c;
-                let fed = Response {
+                let initial = Response {
                     xx: d / determinant,
                     xv: -b / determinant,
                     vx: -c / determinant,
                     vv: a / determinant,
                 };
-                (LoopMethod::Exact { half_life_secs }, fed)
+                (LoopMethod::Exact { half_life_secs }, initial)
             }
             LoopMethod::Classic { half_life_secs } => {
                 (LoopMethod::Classic { half_life_secs: held(half_life_secs) }, as_it_is)
@@ -84,10 +88,10 @@ impl LoopCurve {
             }
             other => (other, as_it_is),
         };
-        Self { method, ratio, duration_secs, fed }
+        Self { method, ratio, duration_secs, initial }
     }
 
-    /// The offset and its rate `secs` after the start of the cycle, as shares of D and V.
+    /// Returns the offset and its rate `secs` after the start of the cycle, as shares of D and V.
     #[must_use]
     pub fn at(&self, secs: f64) -> Response {
         let (r, q, period) = (self.ratio, 1.0 - self.ratio, self.duration_secs);
@@ -116,16 +120,16 @@ impl LoopCurve {
                 let [xx, xv] = [r * head.xx - q * tail.xx, of_velocity * head.xv + q * tail.xv];
                 let [vx, vv] = [r * head.vx + q * tail.vx, of_velocity * head.vv - q * tail.vv];
                 Response {
-                    xx: xx * self.fed.xx + xv * self.fed.vx,
-                    xv: xx * self.fed.xv + xv * self.fed.vv,
-                    vx: vx * self.fed.xx + vv * self.fed.vx,
-                    vv: vx * self.fed.xv + vv * self.fed.vv,
+                    xx: xx * self.initial.xx + xv * self.initial.vx,
+                    xv: xx * self.initial.xv + xv * self.initial.vv,
+                    vx: vx * self.initial.xx + vv * self.initial.vx,
+                    vv: vx * self.initial.xv + vv * self.initial.vv,
                 }
             }
         }
     }
 
-    /// Whether pose and velocity close by this method, the velocity too.
+    /// Returns whether pose and velocity close by this method.
     pub(super) fn closes(&self) -> [bool; 2] {
         match self.method {
             LoopMethod::Exact { .. } | LoopMethod::Cubic => [true, true],
@@ -147,7 +151,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn exact_loops_close_in_pose_and_velocity(
+        fn exact_loop_closes_in_pose_and_velocity(
             h in 0.01f64..3.0, r in 0.0f64..1.0, duration in 0.2f64..5.0, d in -1.0f64..1.0, v in -5.0f64..5.0
         ) {
             for method in [LoopMethod::Exact { half_life_secs: h }, LoopMethod::Cubic] {
@@ -160,7 +164,7 @@ mod tests {
         }
 
         #[test]
-        fn rates_are_derivatives(h in 0.05f64..1.0, r in 0.0f64..1.0, duration in 0.3f64..3.0, share in 0.01f64..0.99) {
+        fn loop_curve_rate_is_its_derivative(h in 0.05f64..1.0, r in 0.0f64..1.0, duration in 0.3f64..3.0, share in 0.01f64..0.99) {
             for method in [LoopMethod::Exact { half_life_secs: h }, LoopMethod::Classic { half_life_secs: h }, LoopMethod::Crossed { half_life_secs: h }, LoopMethod::Linear, LoopMethod::Cubic] {
                 let curve = LoopCurve::new(method, r, duration);
                 let (t, dt) = (share * duration, 1e-6);
@@ -172,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn the_classic_loop_leaves_what_it_is_known_to_leave() {
+    fn classic_loop_leaves_the_documented_seam() {
         let curve = LoopCurve::new(LoopMethod::Classic { half_life_secs: 0.2 }, 0.5, 0.5);
         let (left, _) = seam(&curve, 0.5, 1.0, 0.0);
         let z = spring::rate(0.2) * 0.5;
@@ -181,14 +185,14 @@ mod tests {
     }
 
     #[test]
-    fn crossed_shares_differ_in_the_head_s_velocity_alone() {
+    fn crossed_loop_differs_in_the_velocity_of_the_head_alone() {
         let half_life_secs = 0.15;
         let of = |method, ratio| LoopCurve::new(method, ratio, 1.0).at(0.0);
         let [crossed, both] =
             [LoopMethod::Crossed { half_life_secs }, LoopMethod::Classic { half_life_secs }];
         assert_eq!(of(crossed, 0.5), of(both, 0.5));
-        // At the head the spring is the offset and the velocity that it is given; what the tail has
-        // left there is the same.
+        // At the head the spring has its initial offset and velocity; the rest of the tail's offset
+        // there is the same.
         let (a, b) = (of(crossed, 0.8), of(both, 0.8));
         assert!(
             (a.vv - b.vv - (0.2 - 0.8)).abs() < 1e-12
@@ -198,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn the_ratio_says_which_end_bends() {
+    fn loop_curve_with_a_ratio_changes_that_end() {
         for method in
             [LoopMethod::Exact { half_life_secs: 0.05 }, LoopMethod::Cubic, LoopMethod::Linear]
         {
@@ -206,7 +210,7 @@ mod tests {
             assert!(LoopCurve::new(method, 1.0, 2.0).at(2.0).xx.abs() < 1e-9);
             assert!((LoopCurve::new(method, f64::NAN, 2.0).at(2.0).xx + 1.0).abs() < 1e-9);
         }
-        // However slow the spring, the numbers stay numbers and the loop closes.
+        // However slow the spring is, the numbers stay finite and the loop closes.
         let slow = LoopCurve::new(LoopMethod::Exact { half_life_secs: 1e9 }, 0.3, 0.1);
         let (x, v) = seam(&slow, 0.1, 1.0, 2.0);
         assert!(x.abs() < 1e-9 && v.abs() < 1e-9, "{x} {v}");
@@ -229,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn agrees_with_scipy() {
+    fn loop_curve_agrees_with_scipy() {
         let golden: Golden =
             serde_json::from_str(include_str!("../../tests/oracles/transition.json")).unwrap();
         for case in &golden.loops {

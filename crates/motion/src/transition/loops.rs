@@ -1,4 +1,6 @@
-use super::moving::{View, further, travel};
+//! Loops: clips that end as they began.
+
+use super::moving::{View, travel, with_travel};
 use super::{LoopCurve, LoopMethod, MovingPose};
 use crate::blend::{Assembly, MAX_SECS, Source, moving_joints};
 use crate::clip::{Clip, ClipError};
@@ -6,12 +8,12 @@ use crate::math::{Planar, Response, quat};
 use glam::{Quat, Vec3};
 use std::ops::Range;
 
-/// What a cycle is made with.
+/// Options for closing a cycle.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct LoopOptions {
-    /// How the difference is spread.
+    /// The distribution of the difference over the cycle.
     pub method: LoopMethod,
-    /// Its share that the start takes, 0 to 1; the end takes the rest.
+    /// The share of the difference at the start, 0 to 1; the end has the rest.
     pub ratio: f64,
 }
 
@@ -21,7 +23,7 @@ impl Default for LoopOptions {
     }
 }
 
-/// Why a clip does not become a cycle.
+/// Error closing a cycle.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LoopError {
     /// The frames are not in the clip, or too few.
@@ -31,33 +33,33 @@ pub enum LoopError {
     Range {
         /// The cycle's first frame.
         start: usize,
-        /// The frame that stands for the first one again.
+        /// The frame that corresponds to the first one.
         end: usize,
         /// Frames of the clip.
         frames: usize,
     },
-    /// The clip is shorter than the shortest cycle asked for.
+    /// The clip is shorter than the shortest requested cycle.
     #[error(
         "no cycle of {min_secs} s and more fits into {secs:.2} s: allow shorter cycles or use a longer clip"
     )]
     TooShort {
-        /// The shortest cycle asked for, seconds.
+        /// The shortest requested cycle, seconds.
         min_secs: f64,
         /// The clip's duration, seconds.
         secs: f64,
     },
-    /// A time that is none.
+    /// A half-life out of range.
     #[error("a half-life of {0} s cannot be used: give a number of seconds from 0 to {MAX_SECS}")]
     HalfLife(f64),
     /// The clip cannot be compared with itself.
     #[error(transparent)]
     Registration(#[from] crate::registration::RegistrationError),
-    /// The result is no clip.
+    /// The result is not a valid clip.
     #[error(transparent)]
     Clip(#[from] ClipError),
 }
 
-/// What is left between the end of a cycle and its next start.
+/// The difference between the end of a cycle and its next start.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct LoopSeam {
     /// The largest angle of a joint between the two poses, in the character's frame, degrees.
@@ -66,40 +68,40 @@ pub struct LoopSeam {
     pub turn_joint: usize,
     /// The largest difference of angular velocities, degrees per second.
     pub turn_dps: f64,
-    /// The largest difference of translations (the root's height, joints that move against their
-    /// parent), centimetres.
+    /// The largest difference of translations (of the root's height, and of joints that move
+    /// relative to their parent), centimetres.
     pub shift_cm: f64,
 }
 
-/// A clip that ends where it began: in pose, and moved over the ground by [`cycle`](Self::cycle).
+/// A clip that ends in the pose in which it began, moved over the ground by [`cycle`](Self::cycle).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loop {
-    /// One cycle. The frame behind its last is its first again, moved by `cycle`.
+    /// One cycle. The frame after its last one is its first, moved by `cycle`.
     pub clip: Clip,
-    /// How far one cycle goes: the k-th repetition lies at `cycle^k`.
+    /// The transform of one cycle: the k-th repetition is transformed by `cycle^k`.
     pub cycle: Planar,
-    /// Where the character stands and faces in every frame of the cycle (`world_from_character`).
+    /// The ground frames of the cycle (`world_from_character`).
     pub frames: Vec<Planar>,
-    /// What was to be bridged.
+    /// The seam before closing.
     pub before: LoopSeam,
-    /// What is left.
+    /// The remaining seam.
     pub seam: LoopSeam,
 }
 
 impl Loop {
-    /// Plays the cycle `times` times; see [`play_around`].
+    /// Repeats the cycle `times` times; see [`repeat_clip`].
     ///
     /// # Errors
-    /// [`ClipError`] when the result is no clip.
+    /// [`ClipError`] when the result is not a valid clip.
     pub fn repeat(&self, times: usize) -> Result<Clip, ClipError> {
-        play_around(&self.clip, &self.cycle, times)
+        repeat_clip(&self.clip, &self.cycle, times)
     }
 
-    /// The same cycle from another of its frames on, which is taken round after round.
+    /// Returns the same cycle starting at another of its frames; `frame` is taken modulo the cycle.
     ///
     /// # Errors
-    /// [`ClipError`] when the result is no clip.
-    pub fn begun_at(&self, frame: usize) -> Result<Self, ClipError> {
+    /// [`ClipError`] when the result is not a valid clip.
+    pub fn starting_at(&self, frame: usize) -> Result<Self, ClipError> {
         let frames = self.clip.frames();
         let first = frame % frames.max(1);
         let (earlier, later) = self.frames.split_at(first.min(self.frames.len()));
@@ -115,12 +117,12 @@ impl Loop {
     }
 }
 
-/// Plays a clip `times` times, at most 1,024, each time moved over the ground by `cycle` from where
-/// it lay. Where each repetition lies is accumulated in `f64`: poses do not drift.
+/// Repeats a clip `times` times, at most 1,024, each repetition moved over the ground by `cycle`
+/// from the one before. The transforms are accumulated in `f64`, so that poses do not drift.
 ///
 /// # Errors
-/// [`ClipError`] when the result is no clip.
-pub fn play_around(clip: &Clip, cycle: &Planar, times: usize) -> Result<Clip, ClipError> {
+/// [`ClipError`] when the result is not a valid clip.
+pub fn repeat_clip(clip: &Clip, cycle: &Planar, times: usize) -> Result<Clip, ClipError> {
     let times = times.min(1 << 10);
     let mut made = Assembly::new(clip, clip, clip.frames().saturating_mul(times));
     let mut world_from_clip = Planar::IDENTITY;
@@ -132,22 +134,22 @@ pub fn play_around(clip: &Clip, cycle: &Planar, times: usize) -> Result<Clip, Cl
 }
 
 /// Closes a part of a clip into a cycle: frames `cycle.start..cycle.end` play, and frame
-/// `cycle.end`, which the clip must have, is bent to be the first one again.
+/// `cycle.end`, which the clip must have, is made equal to the first one.
 ///
 /// Rotations, heights and translations of joints are closed in the character's own frame, with
 /// their velocities. Ground position and yaw do not belong to the difference: over the ground the
-/// *velocities* of both ends are brought together (sideways, forward, yaw rate), and the cycle
-/// walks on in its own curve. Offsets of rotations are rotation vectors applied on the left; since
-/// angular velocities do not add, what is left after the first solution is solved again, until it
-/// is below a millionth of a radian.
+/// *velocities* of both ends are matched (sideways, forward, yaw rate), and the cycle continues
+/// along its own curve. Offsets of rotations are rotation vectors applied on the left; since
+/// angular velocities do not add, the remainder of each solution is solved for again, until it is
+/// below a millionth of a radian.
 ///
-/// Velocities of the two ends are steps of the same kind: into the frames behind them if the clip
-/// goes on behind the end, from the frames before them if it begins before the start; where the
-/// cycle is the whole clip, one-sided differences of second order.
+/// The velocities of the two ends are steps of the same kind: into the frames after them if the
+/// clip continues after the end, from the frames before them if it begins before the start; where
+/// the cycle is the whole clip, one-sided differences of second order.
 ///
 /// # Errors
 /// [`LoopError`] when the cycle has fewer than two frames or is not inside the clip, or the
-/// half-life is none.
+/// half-life is out of range.
 pub fn close_loop(
     source: &Source,
     cycle: Range<usize>,
@@ -218,7 +220,7 @@ pub fn close_loop(
         made.push(root, &rotations, &translations[1..]);
         frames.push(here);
         let middle = curve.at((index as f64 + 0.5) * dt_secs).of_vec3(travels, Vec3::ZERO).0;
-        here = here.after(&further(&source.step_into(frame + 1), middle, dt_secs));
+        here = here.after(&with_travel(&source.step_into(frame + 1), middle, dt_secs));
     }
     let start = source.frames()[cycle.start];
     Ok(Loop {
@@ -230,18 +232,18 @@ pub fn close_loop(
     })
 }
 
-/// The offsets that close one joint: differences of rotation and velocity, one pair for every time
-/// that it was solved.
+/// The offsets that close one joint: differences of rotation and velocity, one pair for every
+/// solution.
 struct Closing {
-    solved: [(Vec3, Vec3); SOLUTIONS],
+    solved: [(Vec3, Vec3); MAX_SOLUTIONS],
     count: usize,
 }
 
-/// The first solution and what is left after it; each has about the square of the error of the one
+/// The greatest number of solutions; the error of each is about the square of the error of the one
 /// before.
-const SOLUTIONS: usize = 4;
-/// Below these, radians and radians per second, nothing is left to be solved that `f32` can hold.
-const CLOSED: [f32; 2] = [1e-6, 1e-4];
+const MAX_SOLUTIONS: usize = 4;
+/// Errors below these, radians and radians per second, are within the rounding of `f32`.
+const TOLERANCES: [f32; 2] = [1e-6, 1e-4];
 
 impl Closing {
     fn apply(&self, now: &Response, rotation: Quat) -> Quat {
@@ -261,19 +263,19 @@ struct Ends {
 }
 
 impl Ends {
-    /// Solves for one joint from its rotation and angular velocity at both ends; gives both ends as
-    /// they are then.
+    /// Solves for one joint from its rotation and angular velocity at both ends; returns the
+    /// offsets and both ends after closing.
     fn close(
         &self,
         mut start: (Quat, Vec3),
         mut end: (Quat, Vec3),
     ) -> (Closing, (Quat, Vec3), (Quat, Vec3)) {
-        let mut closing = Closing { solved: [(Vec3::ZERO, Vec3::ZERO); SOLUTIONS], count: 0 };
+        let mut closing = Closing { solved: [(Vec3::ZERO, Vec3::ZERO); MAX_SOLUTIONS], count: 0 };
         for slot in &mut closing.solved {
             let difference = quat::with_positive_scalar(end.0 * start.0.conjugate());
             let d = quat::log(difference);
             let v = quat::vector_rate(d, end.1 - difference * start.1);
-            let open = d.length() > CLOSED[0] || (self.closes[1] && v.length() > CLOSED[1]);
+            let open = d.length() > TOLERANCES[0] || (self.closes[1] && v.length() > TOLERANCES[1]);
             if !open || (closing.count > 0 && !self.closes[0]) {
                 break;
             }
@@ -286,7 +288,7 @@ impl Ends {
     }
 }
 
-/// A rotation and its angular velocity under an offset and its rate.
+/// Applies an offset and its rate to a rotation and its angular velocity.
 fn offset((rotation, velocity): (Quat, Vec3), (x, rate): (Vec3, Vec3)) -> (Quat, Vec3) {
     let turned = quat::exp(x);
     (
@@ -307,7 +309,7 @@ impl LoopSeam {
 }
 
 impl View<'_> {
-    /// The poses at both ends of a cycle with velocities of the same kind.
+    /// Returns the poses at both ends of a cycle with velocities of the same kind.
     fn ends(&self, cycle: &Range<usize>) -> [MovingPose; 2] {
         let frames = self.source.clip().frames();
         // Steps away from the frame, and their weights in a derivative per frame.
@@ -350,7 +352,7 @@ impl View<'_> {
             let step = self.source.frames()[frame].inverse().after(&self.source.frames()[other]);
             pose.travel += travel(&step, fps) * weight;
         }
-        // Both ends are at the same point of the stride: what differs is not sway.
+        // Both ends are at the same phase of the stride, so that no difference is sway.
         pose.steady_travel = pose.travel;
         pose
     }

@@ -1,9 +1,8 @@
-//! The classic mistakes of transitions, made on purpose: what each looks like is easier learned
-//! from the picture than from the formula.
+//! The classic mistakes of transitions, made on purpose, to show their effect.
 //!
-//! Nothing here is on the way of a right transition. A mistake of placing moves B before the right
-//! code runs, or turns one of its options; a mistake of interpolating makes the right transition
-//! and then puts its own rotations into the frames that were mixed.
+//! The code of correct transitions is not involved. A mistake of alignment moves B before the
+//! correct code runs, or changes one of its options; a mistake of interpolation makes the correct
+//! transition and then replaces the rotations of the mixed frames by its own.
 
 use super::concatenate::inertialize;
 use super::moving::{MovingPose, View};
@@ -17,39 +16,38 @@ use crate::registration::limb_weights;
 use glam::{DVec2, EulerRot, Quat, Vec3};
 use std::f64::consts::PI;
 
-/// A mistake that nearly everybody makes once.
+/// A common mistake.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub enum Mistake {
-    /// Quaternions are mixed with the signs that they come with. Half of B's joints (every second
-    /// one) come with the other sign: the same rotations, as files may hold them; without the check
-    /// for the nearer of `q` and `-q` they go the long way round.
+    /// Quaternions are mixed without choosing the nearer of `q` and `-q`, so that half of B's
+    /// joints turn the long way round. Every second joint of B is given the other sign, which is
+    /// the same rotation, as files may hold it.
     NoHemisphereCheck,
-    /// Three Euler angles (Z, Y, X) are mixed, or decay, each for itself.
+    /// Three Euler angles (Z, Y, X) are mixed, or decay, separately.
     EulerLerp,
-    /// The difference of two rotations is told in degrees and used as if it were in radians.
+    /// The difference of two rotations is computed in degrees and used as radians.
     DegreesForRadians,
-    /// The turn that lays B on A is `atan(A / B)`: half of all turns are off by half a turn. So
-    /// that it shows, B is taken to face the other way in its file where it does not do so already.
+    /// The yaw that aligns B with A is `atan(A / B)`: half of all yaws are off by half a turn. To
+    /// show the effect, B's file is treated as facing the other way where necessary.
     AtanForAtan2,
-    /// The turn that lays B on A is told in degrees and used as if it were in radians. B is taken
-    /// to face the other way in its file, as for [`Self::AtanForAtan2`].
+    /// The yaw that aligns B with A is computed in degrees and used as radians. B's file is treated
+    /// as facing the other way, as for [`Self::AtanForAtan2`].
     DegreesInTransform,
-    /// B is laid on A by the first posture, and what counts as its facing is the root's own Y axis,
-    /// `rotation · Y`. That axis points up, so that its shadow on the ground says which way the
-    /// hips tilt.
+    /// B is aligned with A by the first frame, with the root's own Y axis, `rotation · Y`, taken as
+    /// its facing. That axis points up, so that its projection on the ground is the direction in
+    /// which the hips tilt.
     WrongFacingAxis,
-    /// B stays where its file has it.
+    /// B stays at its own position.
     NoAlignment,
     /// Differences from frame to frame are divided by the frame rate where they must be multiplied
-    /// by it to be velocities. A dissolve has only the velocity over the ground to do that to, and
-    /// is made with it.
+    /// by it to be velocities. In a dissolve this concerns only the velocity over the ground.
     VelocityDividedTwice,
-    /// Where A and B are in the world is mixed instead of how they go.
+    /// The world positions of A and B are mixed instead of their velocities.
     WorldRoot,
 }
 
 impl Mistake {
-    /// All of them, for a list to choose from.
+    /// All mistakes, for a list of choices.
     pub const ALL: [Self; 9] = [
         Self::NoHemisphereCheck,
         Self::EulerLerp,
@@ -62,8 +60,8 @@ impl Mistake {
         Self::WorldRoot,
     ];
 
-    /// Whether a method gives the mistake an opportunity: a cut mixes nothing, and can only be laid
-    /// down wrongly.
+    /// Returns whether a mistake can be made with a method: a cut mixes nothing, and can only be
+    /// aligned wrongly.
     #[must_use]
     pub fn concerns(self, method: &Method) -> bool {
         let mixes = match method {
@@ -71,20 +69,20 @@ impl Mistake {
             Method::Dissolve { window, .. } => *window > 1,
             Method::Inertialize(_) => true,
         };
-        mixes || self.is_of_placing() || self == Self::NoAlignment
+        mixes || self.is_of_alignment() || self == Self::NoAlignment
     }
 
-    /// Whether B is laid on A by a wrong transform.
-    fn is_of_placing(self) -> bool {
+    /// Returns whether the mistake is a wrong alignment.
+    fn is_of_alignment(self) -> bool {
         matches!(self, Self::AtanForAtan2 | Self::DegreesInTransform | Self::WrongFacingAxis)
     }
 }
 
-/// [`concatenate`] with one mistake in it. A method that the mistake does not
-/// [concern](Mistake::concerns) comes out right.
+/// Makes a transition as [`concatenate`] does, with one mistake. A method that the mistake does not
+/// [concern](Mistake::concerns) gives the correct result.
 ///
 /// # Errors
-/// As [`concatenate`].
+/// The same as for [`concatenate`].
 pub fn concatenate_mistaken(
     a: &Source,
     leave: usize,
@@ -103,7 +101,7 @@ pub fn concatenate_mistaken(
         Mistake::EulerLerp => mixed(Mix::Euler),
         Mistake::DegreesForRadians => mixed(Mix::Degrees),
         Mistake::AtanForAtan2 | Mistake::DegreesInTransform | Mistake::WrongFacingAxis => {
-            laid_wrongly(a, leave, b, enter, options, mistake)
+            with_wrong_alignment(a, leave, b, enter, options, mistake)
         }
         Mistake::NoAlignment => right(&TransitionOptions { align: false, ..*options }),
         Mistake::VelocityDividedTwice => {
@@ -111,7 +109,7 @@ pub fn concatenate_mistaken(
                 return inertialize(a, leave, b, enter, how, options, divided_again);
             }
             let (align, root) = (true, RootBlend::Velocity);
-            standing_still(right(&TransitionOptions { align, root, ..*options })?)
+            with_divided_velocity(right(&TransitionOptions { align, root, ..*options })?)
         }
         Mistake::WorldRoot => {
             let (align, root) = (true, RootBlend::World);
@@ -120,19 +118,19 @@ pub fn concatenate_mistaken(
     }
 }
 
-/// How the difference of two rotations is told, and how it is put on one of them.
+/// The representation of the difference of two rotations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Mix {
     AsSigned,
     Euler,
     Degrees,
-    /// The right way, to hold this file's frames and weights against those of the right code.
+    /// The correct one, to verify this file's frames and weights against the correct code.
     #[cfg(test)]
     Right,
 }
 
 impl Mix {
-    /// What lies between a joint's rotation in B and its rotation in A.
+    /// Returns the difference between a joint's rotation in B and in A.
     fn difference(self, joint: usize, a: Quat, b: Quat) -> Vec3 {
         match self {
             Self::AsSigned => {
@@ -146,7 +144,7 @@ impl Mix {
         }
     }
 
-    /// How fast the difference changes, per second.
+    /// Returns the rate of the difference, per second.
     fn rate(
         self,
         joint: usize,
@@ -169,7 +167,7 @@ impl Mix {
         }
     }
 
-    /// A joint's rotation in B with a difference on it.
+    /// Returns a joint's rotation in B with a difference applied.
     fn on(self, difference: Vec3, b: Quat) -> Quat {
         if self == Self::Euler {
             let sum = angles(b) + difference;
@@ -179,7 +177,7 @@ impl Mix {
     }
 }
 
-/// The angles about Z, Y and X, in the order that most files have them, radians.
+/// Returns the angles about Z, Y and X, in the usual order of files, radians.
 fn angles(q: Quat) -> Vec3 {
     Vec3::from(q.to_euler(EulerRot::ZYX))
 }
@@ -192,7 +190,7 @@ struct Mixing<'a> {
     enter: usize,
     options: &'a TransitionOptions,
     mix: Mix,
-    /// Poses are mixed in the character's frame, not in the world.
+    /// Whether poses are mixed in the character's frame, not in the world.
     in_character: bool,
 }
 
@@ -220,7 +218,7 @@ impl<'a> Mixing<'a> {
         View { source, moving: &[], fixed: (!self.in_character).then_some(fixed) }
     }
 
-    /// The transition with its rotations mixed anew.
+    /// Returns the transition with its rotations mixed again.
     fn mixed(&self, right: Concatenation) -> Result<Concatenation, BlendError> {
         let (old, new) = (self.view(self.a, Planar::IDENTITY), self.view(self.b, right.aligned_b));
         let joints = right.clip.skeleton().len();
@@ -243,21 +241,23 @@ impl<'a> Mixing<'a> {
             for (joint, made) in made.iter_mut().enumerate() {
                 let here = if joint == 0 { here } else { Quat::IDENTITY };
                 let b = of_b[joint];
-                let left = match self.options.method {
+                let remaining = match self.options.method {
                     Method::Cut => Vec3::ZERO,
                     Method::Dissolve { window, law } => {
                         self.mix.difference(joint, of_a[joint], b) * weight(law, p, window)
                     }
-                    Method::Inertialize(how) => self.left(how, joint, b, &parting, &meeting, p),
+                    Method::Inertialize(how) => {
+                        self.remaining(how, joint, b, &parting, &meeting, p)
+                    }
                 };
-                *made = quat::renormalize(here * self.mix.on(left, b));
+                *made = quat::renormalize(here * self.mix.on(remaining, b));
             }
         }
         with_rotations(right, rotations)
     }
 
-    /// What an inertialization has left of the difference in its frame `p`.
-    fn left(
+    /// Returns the rest of the difference in frame `p` of an inertialization.
+    fn remaining(
         &self,
         how: Inertialization,
         joint: usize,
@@ -279,23 +279,23 @@ impl<'a> Mixing<'a> {
             Inertialization::DeadBlend { extrapolation_half_life_secs, .. } => {
                 let (_, run_on_secs) = spring::velocity_decay(extrapolation_half_life_secs, secs);
                 let running = quat::exp(velocity * run_on_secs as f32) * from;
-                self.mix.difference(joint, running, b) * how.left(secs) as f32
+                self.mix.difference(joint, running, b) * how.remaining(secs) as f32
             }
         }
     }
 
-    /// The frames in which something of A is left.
+    /// Returns the number of frames in which something of A is left.
     fn frames(&self, right: &Concatenation) -> usize {
         match self.options.method {
             Method::Inertialize(how) => {
-                (how.settled_secs() * self.b.clip().fps()).ceil() as usize + 1
+                (how.settling_secs() * self.b.clip().fps()).ceil() as usize + 1
             }
             _ => right.transition.len(),
         }
     }
 }
 
-/// A's weight in frame `p` of a dissolve.
+/// Returns A's weight in frame `p` of a dissolve.
 fn weight(law: WeightLaw, p: usize, window: usize) -> f32 {
     law.alpha((p + 1) as f64 / window as f64) as f32
 }
@@ -315,8 +315,8 @@ fn rebuilt(clip: &Clip, rotations: Vec<Quat>, roots: Vec<Vec3>) -> Result<Clip, 
     Ok(made.with_translations(clip.translations().to_vec())?.with_provenance(clip.provenance()))
 }
 
-/// Lays B on A by a wrong transform, and leaves it there.
-fn laid_wrongly(
+/// Aligns B with A by a wrong transform, and makes the transition without further alignment.
+fn with_wrong_alignment(
     a: &Source,
     leave: usize,
     b: &Source,
@@ -324,7 +324,7 @@ fn laid_wrongly(
     options: &TransitionOptions,
     mistake: Mistake,
 ) -> Result<Concatenation, BlendError> {
-    // Refuses what cannot be joined, before its frames are looked at.
+    // Refuses incompatible clips before their frames are read.
     concatenate(a, leave, b, enter, options)?;
     let window = match options.method {
         Method::Dissolve { window, .. } if window > 1 => window,
@@ -336,7 +336,7 @@ fn laid_wrongly(
     } else {
         let right = alignment_of(a, meets, b, enter, window, options.align_by)?;
         let turn = if mistake == Mistake::AtanForAtan2 { by_atan } else { by_degrees };
-        turned_wrongly(&right, middle(b.clip(), enter, window), turn)
+        with_wrong_yaw(&right, middle(b.clip(), enter, window), turn)
     };
     let made = concatenate(
         a,
@@ -354,26 +354,26 @@ fn laid_wrongly(
     })
 }
 
-/// What a program finds that writes `atan(A / B)`.
+/// Returns the yaw of a program that uses `atan(A / B)`.
 fn by_atan(yaw: f64) -> f64 {
     (yaw.sin() / yaw.cos()).atan()
 }
 
-/// What a program turns by that hands degrees to a function of radians.
+/// Returns the yaw of a program that passes degrees as radians.
 fn by_degrees(yaw: f64) -> f64 {
     wrap_angle(wrap_angle(yaw).to_degrees())
 }
 
-/// Where the character stands, facing along the shadow of its root's Y axis.
+/// Returns the ground frame of a character whose facing is the projection of its root's Y axis.
 fn standing_by_y(source: &Source, frame: usize) -> Planar {
     let axis = source.clip().rotations(frame).first().map_or(Vec3::Y, |root| *root * Vec3::Y);
     Planar { yaw: f64::from(axis.x).atan2(axis.z.into()), ..source.frames()[frame] }
 }
 
-/// The alignment of a program that gets the angle wrong: the right one, with the point cloud turned
-/// about its middle by another angle.
-fn turned_wrongly(right: &Planar, middle: DVec2, wrong: fn(f64) -> f64) -> Planar {
-    // As if B's file had it face the other way: the turn is one that hides no mistake.
+/// Returns the alignment of a program that gets the yaw wrong: the correct one, with the point
+/// cloud rotated about its middle by another angle.
+fn with_wrong_yaw(right: &Planar, middle: DVec2, wrong: fn(f64) -> f64) -> Planar {
+    // As if B's file had it face the other way: then no mistake is hidden.
     let facing = if right.yaw.cos() > 0.0 { PI } else { 0.0 };
     let mistaken = wrong(right.yaw - facing) + facing;
     let turned = |yaw: f64| Planar { yaw, shift: DVec2::ZERO };
@@ -382,7 +382,7 @@ fn turned_wrongly(right: &Planar, middle: DVec2, wrong: fn(f64) -> f64) -> Plana
     Planar { yaw: back.yaw, shift: back.shift + to.shift }
 }
 
-/// The middle of the point cloud that an alignment looks at, on the ground.
+/// Returns the middle of the point cloud of an alignment, on the ground.
 fn middle(clip: &Clip, frame: usize, window: usize) -> DVec2 {
     let weights = limb_weights(clip.skeleton());
     let points = clip.world_positions(frame..frame + window);
@@ -395,7 +395,8 @@ fn middle(clip: &Clip, frame: usize, window: usize) -> DVec2 {
     sum / total
 }
 
-/// Velocities as they are when the difference of two frames is divided by the frame rate.
+/// Divides velocities by the square of the frame rate, as if differences of frames were divided by
+/// the rate.
 fn divided_again(pose: &mut MovingPose, fps: f64) {
     let by = (fps * fps).recip() as f32;
     for velocity in pose.angular_velocities.iter_mut().chain(&mut pose.velocities) {
@@ -405,9 +406,9 @@ fn divided_again(pose: &mut MovingPose, fps: f64) {
     pose.steady_travel *= by;
 }
 
-/// A dissolve whose character goes over the ground with velocities that were divided by the frame
-/// rate where they had to be multiplied.
-fn standing_still(right: Concatenation) -> Result<Concatenation, BlendError> {
+/// Returns a dissolve whose character moves over the ground with velocities that were divided by
+/// the frame rate instead of multiplied.
+fn with_divided_velocity(right: Concatenation) -> Result<Concatenation, BlendError> {
     let by = (right.clip.fps() * right.clip.fps()).recip();
     let window = right.transition.clone();
     let (mut frames, mut moved) =

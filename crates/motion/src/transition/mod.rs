@@ -110,7 +110,7 @@ pub(crate) use foot_lock::Leg;
 pub use foot_lock::{FootLockError, FootLockOptions, FootLocking, foot_lock, has_legs};
 pub use inertialize::{Inertialization, Inertializer};
 pub use loop_curve::{LoopCurve, LoopMethod};
-pub use loops::{Loop, LoopError, LoopOptions, LoopSeam, close_loop, play_around};
+pub use loops::{Loop, LoopError, LoopOptions, LoopSeam, close_loop, repeat_clip};
 pub use mistake::{Mistake, concatenate_mistaken};
 pub use moving::MovingPose;
 pub use whole_cycle::WholeCycle;

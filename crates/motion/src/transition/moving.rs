@@ -1,38 +1,39 @@
+//! Poses with velocities, in the character's frame.
+
 use crate::blend::{Source, translation_of};
 use crate::math::{Planar, quat, wrap_angle};
 use glam::{Quat, Vec3};
 
-/// A pose in the character's own frame, and how it moves there.
+/// A pose with velocities in the character's own frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MovingPose {
     /// Local rotations of all joints; the root's is `character_from_root`.
     pub rotations: Vec<Quat>,
-    /// Angular velocities of these rotations, radians per second, in the frame that each rotation
-    /// turns into.
+    /// Angular velocities of these rotations, radians per second, in the frame to which each
+    /// rotation maps.
     pub angular_velocities: Vec<Vec3>,
     /// Translations, metres: the root's in the character's frame first, then those of other joints
-    /// that move against their parent.
+    /// that move relative to their parent.
     pub translations: Vec<Vec3>,
     /// Their velocities, metres per second.
     pub velocities: Vec<Vec3>,
-    /// How the character goes over the ground, in its own frame: (sideways m/s, yaw rate rad/s,
+    /// Velocity of the character over the ground, in its own frame: (sideways m/s, yaw rate rad/s,
     /// forward m/s).
     pub travel: Vec3,
-    /// The same without the sway of the stride: its mean over about a second. What a transition
-    /// hands over; sway only swings out. Equal to `travel` where nothing sways.
+    /// That velocity without the sway of the stride: its mean over about a second. A transition
+    /// hands it over, whereas sway returns to 0. Equal to `travel` without sway.
     pub steady_travel: Vec3,
 }
 
-/// A stride, seconds: over it the sway of walking and running averages out.
+/// Duration of a stride, seconds: the sway of walking and running averages out over it.
 const STRIDE_SECS: f64 = 1.0;
 
-/// One frame of a clip, as seen from where the character stands, or from a fixed place when `at`
-/// says so.
+/// A view of a clip's frames relative to the ground frame of the character, or to a fixed frame.
 pub(super) struct View<'a> {
     pub(super) source: &'a Source,
-    /// The joints other than the root that have translations of their own.
+    /// The joints other than the root that have translations.
     pub(super) moving: &'a [usize],
-    /// Poses are taken in this fixed frame of reference (`here_from_clip`), not in the character's.
+    /// The fixed frame of reference (`here_from_clip`) of poses; `None` for the character's.
     pub(super) fixed: Option<Planar>,
 }
 
@@ -41,7 +42,7 @@ impl View<'_> {
         self.fixed.unwrap_or_else(|| self.source.frames()[frame].inverse())
     }
 
-    /// Rotations and translations of a frame, into buffers that are used again.
+    /// Computes rotations and translations of a frame into reusable buffers.
     pub(super) fn pose_into(
         &self,
         frame: usize,
@@ -65,18 +66,18 @@ impl View<'_> {
         (rotations, translations)
     }
 
-    /// The pose right before `frame`, moving as the step into `frame` does, and where the character
-    /// stands in it.
+    /// Returns the pose right before `frame`, with the velocities of the step into `frame`, and its
+    /// ground frame.
     ///
-    /// Before its first frame a clip is taken to have moved as in its first step, and behind its
-    /// last one to go on as in its last; a clip of one frame stands still. One step at the clip's
-    /// own rate, forward in time from the pose: two clips that are seen at frames where they do the
-    /// same thing have no difference.
+    /// Before its first frame a clip is extrapolated by its first step, and after its last one by
+    /// its last step; a clip of one frame stands still. Velocities are those of one step at the
+    /// clip's own rate, forward in time from the pose, so that two clips with equal steps have no
+    /// difference.
     pub(super) fn before(&self, frame: usize) -> (MovingPose, Planar) {
         let clip = self.source.clip();
         let (fps, frames) = (clip.fps() as f32, self.source.frames());
         let last = clip.frames().saturating_sub(1);
-        // The step that stands for the one into `frame`.
+        // The step that represents the one into `frame`.
         let (from, to) = if last == 0 {
             (0, 0)
         } else {
@@ -95,7 +96,7 @@ impl View<'_> {
         let step = frames[from].inverse().after(&frames[to]);
         let mut standing = frames[from];
         if frame > last && frame > 0 {
-            // What is before the frame behind the last one is the last one.
+            // The frame before the one after the end is the last one.
             (rotations, translations, standing) = (next, next_translations, frames[to]);
         } else if frame == 0 {
             for (rotation, turn) in rotations.iter_mut().zip(&turns) {
@@ -117,8 +118,8 @@ impl View<'_> {
         (pose, standing)
     }
 
-    /// The mean travel over a stride around the step into `frame`; near an end of the clip, over
-    /// the first or the last stride of it: a part of a stride has a sway of its own.
+    /// Returns the mean travel over a stride around the step into `frame`; near an end of the clip,
+    /// over its first or last stride: a part of a stride has sway.
     fn steady_travel(&self, frame: usize) -> Vec3 {
         let (fps, last) = (self.source.clip().fps(), self.source.clip().frames().saturating_sub(1));
         let count = ((STRIDE_SECS * fps).round() as usize).clamp(1, last.max(1));
@@ -130,7 +131,7 @@ impl View<'_> {
     }
 }
 
-/// A step of the character in its own frame as velocities.
+/// Returns a step of the character in its own frame as velocities.
 pub(super) fn travel(step: &Planar, fps: f64) -> Vec3 {
     Vec3::new(
         (step.shift.x * fps) as f32,
@@ -139,8 +140,8 @@ pub(super) fn travel(step: &Planar, fps: f64) -> Vec3 {
     )
 }
 
-/// The step that adds `travel` for `secs` to another step.
-pub(super) fn further(step: &Planar, travel: Vec3, secs: f64) -> Planar {
+/// Returns a step with `travel` for `secs` added.
+pub(super) fn with_travel(step: &Planar, travel: Vec3, secs: f64) -> Planar {
     let off = travel.as_dvec3() * secs;
     Planar::new(step.yaw + off.y, step.shift.x + off.x, step.shift.y + off.z)
 }
@@ -163,12 +164,12 @@ mod tests {
     }
 
     #[test]
-    fn clips_go_on_beyond_their_ends_as_in_their_last_step() {
+    fn before_extrapolates_beyond_both_ends() {
         let source = source_of(&Walk { frames: 40, turning: 0.7, ..Walk::default() });
         let (clip, view) = (source.clip(), free(&source));
         let dt = clip.dt_secs();
         // The pose before a frame, one step on, is the frame; before the first frame with the step
-        // behind it, behind the last with the one before.
+        // after it, after the last with the one before.
         for (frame, arrives_at, step) in [
             (0, Some(0), 1),
             (1, Some(1), 1),
@@ -203,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn steady_travel_has_no_sway() {
+    fn steady_travel_is_without_sway() {
         let source = source_of(&Walk { frames: 400, cadence: 1.0, ..Walk::default() });
         let view = free(&source);
         for frame in [0, 7, 200, 395, 400] {

@@ -1,4 +1,6 @@
-use super::moving::{View, further, travel};
+//! Clips that are a single cycle, or most of one.
+
+use super::moving::{View, travel, with_travel};
 use super::{Loop, LoopError, LoopOptions, close_loop};
 use crate::blend::{Assembly, Source, moving_joints};
 use crate::math::quat;
@@ -7,55 +9,55 @@ use crate::skeleton::WorldPose;
 use glam::{Quat, Vec3};
 use std::ops::Range;
 
-/// A clip that is one cycle by itself, or most of one: its end leads into its beginning.
+/// A clip that is one cycle, or most of one: its end leads into its beginning.
 ///
-/// Captured cycles rarely hold the frame that stands for the first one again. The time that passes
-/// from the last frame to the first one is the one that fits the velocities of both ends best: with
-/// the difference of the poses `D` and the mean of the velocities `v`, both in the character's
-/// frame and over all joints, `(D · v)/|v|²` were steady motion; along a sine of the cycle's
+/// Captured cycles rarely contain the frame that corresponds to the first one. The time from the
+/// last frame to the first one is chosen to match the velocities of both ends best: with the
+/// difference of the poses `D` and the mean of the velocities `v`, both in the character's frame
+/// and over all joints, it would be `(D · v)/|v|²` for steady motion; along a sine of the cycle's
 /// period, whose chord is shorter than its tangents, it is `t = (T/π) atan(π/T · (D · v)/|v|²)`.
-/// The frames of that time are made: the clip runs on with its last velocity, which takes on the
-/// first frame's. What then remains between the ends is left to [`close_loop`].
+/// Frames for that time are added: the clip is extrapolated with its last velocity, which changes
+/// to the first frame's. The remaining difference between the ends is left to [`close_loop`].
 #[derive(Clone, Debug)]
 pub struct WholeCycle {
     source: Source,
-    /// The frames that play; the end stands for the first frame again. It lies behind the clip's
-    /// last frame where frames were made.
+    /// The frames that play; the end corresponds to the first frame. It lies after the clip's last
+    /// frame where frames were added.
     pub frames: Range<usize>,
-    /// Frames behind the clip's last one that had to be made, the one that stands for the first
-    /// frame again among them.
-    pub made: usize,
-    /// Root mean square distance between the joints of both ends that [`close_loop`] has to bridge,
-    /// centimetres.
-    pub apart_cm: f64,
-    /// The same as a share of the farthest that any frame of the clip is away from its first one.
+    /// Number of frames added after the clip's last one, including the one that corresponds to the
+    /// first frame.
+    pub added_frames: usize,
+    /// Root mean square distance between the joints of both ends, which [`close_loop`] has to
+    /// bridge, centimetres.
+    pub gap_cm: f64,
+    /// That distance as a share of the greatest distance of any frame of the clip to its first one.
     /// Small for a cycle; 1 where the clip leads away.
-    pub apart_share: f64,
+    pub gap_share: f64,
 }
 
-/// A clip is most of a cycle when at most this share of the cycle is missing.
+/// The greatest share of a cycle that may be missing.
 const MAX_MISSING: f64 = 0.25;
-/// A cycle goes through its ends at this share of its mean speed in the joints at least: what comes
-/// to rest there is a deed that is done once.
+/// The least speed of the joints at the ends of a cycle, as a share of their mean speed: a motion
+/// that comes to rest there happens only once.
 const MIN_SPEED: f64 = 0.3;
-/// The velocities of the ends are measured over this time, seconds.
-const MEASURED_SECS: f64 = 1.0 / 30.0;
-/// Where frames are made, the change of velocity takes at least this share of the clip: over fewer
-/// frames it would be a jerk.
-const MIN_CHANGE: f64 = 0.15;
-/// The ends of a cycle are at most this far apart, as a share of the farthest that any of its poses
-/// is away from the first.
-const MAX_APART: f64 = 0.5;
-/// The speeds over the ground at both ends differ by at most this share of the mean speed, and this
-/// much, metres per second.
+/// The time over which the velocities of the ends are measured, seconds.
+const VELOCITY_SECS: f64 = 1.0 / 30.0;
+/// The least share of the clip over which the velocity changes in added frames: over fewer frames
+/// it would be a jerk.
+const MIN_CHANGE_SHARE: f64 = 0.15;
+/// The greatest distance between the ends of a cycle, as a share of the greatest distance of any of
+/// its poses to the first.
+const MAX_GAP_SHARE: f64 = 0.5;
+/// The greatest difference of the speeds over the ground at both ends, as a share of the mean
+/// speed, and in metres per second.
 const SPEED_SHARE: f64 = 0.5;
 const SPEED_MPS: f64 = 0.2;
 
 impl WholeCycle {
-    /// Looks at a clip as a cycle. `None` for a clip that is not: of fewer than eight frames; with
-    /// ends that are more than half as far apart as any two of its poses; one that is much faster
-    /// at one end than at the other, as a start or a stop; or one that rests at an end, as a turn
-    /// on the spot.
+    /// Analyses a clip as a cycle. `None` for a clip that is not one: of fewer than eight frames;
+    /// with ends that are more than half as far apart as any two of its poses; one that is much
+    /// faster at one end than at the other, as a start or a stop; or one that rests at an end, as a
+    /// turn on the spot.
     #[must_use]
     pub fn of(source: &Source) -> Option<Self> {
         let clip = source.clip();
@@ -64,7 +66,7 @@ impl WholeCycle {
             return None;
         }
         let last = frames - 1;
-        let reach = ((MEASURED_SECS * fps).round() as usize).clamp(1, last / 4);
+        let reach = ((VELOCITY_SECS * fps).round() as usize).clamp(1, last / 4);
         if !keeps_its_speed(source, reach) {
             return None;
         }
@@ -91,15 +93,16 @@ impl WholeCycle {
         let square = sum(&|_, v| v.length_squared());
         let most = MAX_MISSING / (1.0 - MAX_MISSING) * last as f64;
         let steady = if square > 0.0 { (along / square).max(0.0) } else { 0.0 };
-        // The period is not known before; a few rounds settle it.
+        // The period is not known before; a few rounds of iteration suffice.
         let sine = |missing: f64| {
             let rate = std::f64::consts::PI / (last as f64 + missing);
             libm::atan(rate * steady) / rate
         };
-        let made = (0..8).fold(steady, |missing, _| sine(missing)).min(most).round() as usize;
+        let added_frames =
+            (0..8).fold(steady, |missing, _| sine(missing)).min(most).round() as usize;
         let total: f64 = weights.iter().sum();
         let rms = |square: f64| (square / total.max(f64::MIN_POSITIVE)).sqrt();
-        let apart = rms(sum(&|d, v| (d - v * made as f32).length_squared()));
+        let apart = rms(sum(&|d, v| (d - v * added_frames as f32).length_squared()));
         let between = |a: &[Vec3], b: &[Vec3]| {
             let squares = a.iter().zip(b).zip(&weights);
             rms(squares.map(|((a, b), &weight)| weight * f64::from(a.distance_squared(*b))).sum())
@@ -116,28 +119,33 @@ impl WholeCycle {
             return None;
         }
         let share = if farthest > 0.0 { apart / farthest } else { 1.0 };
-        if share.is_nan() || share > MAX_APART {
+        if share.is_nan() || share > MAX_GAP_SHARE {
             return None;
         }
         Some(Self {
-            source: if made > 0 { with_frames_behind(source, made)? } else { source.clone() },
-            frames: 0..last + made,
-            made,
-            apart_cm: 100.0 * apart,
-            apart_share: share,
+            source: if added_frames > 0 {
+                with_added_frames(source, added_frames)?
+            } else {
+                source.clone()
+            },
+            frames: 0..last + added_frames,
+            added_frames,
+            gap_cm: 100.0 * apart,
+            gap_share: share,
         })
     }
 
-    /// Closes it ([`close_loop`]).
+    /// Closes the cycle ([`close_loop`]).
     ///
     /// # Errors
-    /// As [`close_loop`].
+    /// The same as for [`close_loop`].
     pub fn close(&self, options: &LoopOptions) -> Result<Loop, LoopError> {
         close_loop(&self.source, self.frames.clone(), options)
     }
 }
 
-/// Whether the body is about as fast at the end as at the beginning, each over `reach` frames.
+/// Returns whether the body is about as fast at the end as at the beginning, each over `reach`
+/// frames.
 fn keeps_its_speed(source: &Source, reach: usize) -> bool {
     let stands = source.frames();
     let fps = source.clip().fps();
@@ -150,9 +158,9 @@ fn keeps_its_speed(source: &Source, reach: usize) -> bool {
     velocity(0, reach).distance(velocity(last - reach, last)) <= SPEED_SHARE * mean + SPEED_MPS
 }
 
-/// A clip that runs on behind its end until it moves as at its beginning: `made` frames, and one
-/// more to tell the velocity there. `None` when that is no clip.
-fn with_frames_behind(source: &Source, made: usize) -> Option<Source> {
+/// Extrapolates a clip after its end until it moves as at its beginning: `added_frames`, and one
+/// more to give the velocity there. `None` when the result is not a valid clip.
+fn with_added_frames(source: &Source, added_frames: usize) -> Option<Source> {
     let clip = source.clip();
     let (frames, fps) = (clip.frames(), clip.fps());
     let last = frames - 1;
@@ -160,10 +168,10 @@ fn with_frames_behind(source: &Source, made: usize) -> Option<Source> {
     let view = View { source, moving: &moving, fixed: None };
     let poses = [0, 1, last - 1, last].map(|frame| view.pose(frame));
     let [first, second, before, end] = &poses;
-    let over = (made as f64).max(MIN_CHANGE * last as f64) as f32;
+    let over = (added_frames as f64).max(MIN_CHANGE_SHARE * last as f64) as f32;
     // From the velocity at the end to that at the beginning, evenly over `over` frames; all per
     // frame.
-    let velocity_decay = |from: Vec3, to: Vec3, frame: f32| {
+    let extrapolated = |from: Vec3, to: Vec3, frame: f32| {
         from * frame + (to - from) * (0.5 * frame * frame / over)
     };
     let turn = |from: Quat, to: Quat| quat::log(to * from.conjugate());
@@ -175,24 +183,24 @@ fn with_frames_behind(source: &Source, made: usize) -> Option<Source> {
         .collect();
     let steps = [last, 1].map(|into| travel(&source.step_into(into), fps));
 
-    let mut made_clip = Assembly::new(clip, clip, frames + made + 1);
+    let mut made_clip = Assembly::new(clip, clip, frames + added_frames + 1);
     made_clip.play(clip, 0..frames);
     let mut stands = source.frames().to_vec();
     let mut here = *stands.last()?;
-    for frame in 1..=made + 1 {
+    for frame in 1..=added_frames + 1 {
         let at = frame as f32;
         let step = steps[0] + (steps[1] - steps[0]) * ((at - 0.5) / over);
-        here = here.after(&further(&crate::math::Planar::IDENTITY, step, fps.recip()));
+        here = here.after(&with_travel(&crate::math::Planar::IDENTITY, step, fps.recip()));
         let mut rotations: Vec<Quat> = (end.0.iter().zip(&turns))
             .map(|(&rotation, &(from, to))| {
-                quat::renormalize(quat::exp(velocity_decay(from, to, at)) * rotation)
+                quat::renormalize(quat::exp(extrapolated(from, to, at)) * rotation)
             })
             .collect();
         if let Some(root) = rotations.first_mut() {
             *root = quat::renormalize(here.rotation() * *root);
         }
         let translations: Vec<Vec3> = (end.1.iter().zip(&shifts))
-            .map(|(&translation, &(from, to))| translation + velocity_decay(from, to, at))
+            .map(|(&translation, &(from, to))| translation + extrapolated(from, to, at))
             .collect();
         let root = here.apply(translations[0]);
         made_clip.push(root, &rotations, &translations[1..]);
@@ -215,28 +223,23 @@ mod tests {
         Source::new(Arc::new(clip), &roles)
     }
 
-    /// A walk whose stride takes 60 frames, cut to so many of them.
+    /// Returns a walk whose stride takes 60 frames, cut to `frames`.
     fn walk(frames: usize, turning: f32) -> Source {
         source_of(&Walk { frames, cadence: 1.0, turning, phase: 0.15, ..Walk::default() })
     }
 
     #[test]
-    fn what_is_missing_of_a_cycle_is_found_and_made() {
+    fn whole_cycle_with_missing_frames_adds_them() {
         let whole = walk(200, 0.5);
         // With the first frame again, without it, and without a tenth and a fifth of the cycle.
         for (frames, within) in [(61, 0), (60, 0), (58, 1), (54, 1), (48, 3)] {
             let cycle = WholeCycle::of(&walk(frames, 0.5)).unwrap();
             assert!(cycle.frames.len().abs_diff(60) <= within, "{frames}: {:?}", cycle.frames);
-            assert_eq!(cycle.made, cycle.frames.end + 1 - frames);
-            assert!(
-                cycle.apart_share < 0.2,
-                "{frames}: {} cm, {}",
-                cycle.apart_cm,
-                cycle.apart_share
-            );
+            assert_eq!(cycle.added_frames, cycle.frames.end + 1 - frames);
+            assert!(cycle.gap_share < 0.2, "{frames}: {} cm, {}", cycle.gap_cm, cycle.gap_share);
             let looped = cycle.close(&LoopOptions::default()).unwrap();
             assert!(looped.seam.turn_deg < 1e-3 && looped.seam.turn_dps < 0.1, "{:?}", looped.seam);
-            // The cycle is where the walk is, after three rounds as well.
+            // The cycle follows the walk, after three rounds as well.
             let round = whole.frames()[0].inverse().after(&whole.frames()[60]);
             let found = looped.frames[0].inverse().after(&looped.cycle.after(&looped.frames[0]));
             let off = found.shift.distance(round.shift) / round.shift.length();
@@ -248,7 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn made_frames_are_those_of_the_walk() {
+    fn whole_cycle_adds_the_frames_of_the_walk() {
         let (whole, cut) = (walk(61, 0.0), walk(54, 0.0));
         let cycle = WholeCycle::of(&cut).unwrap();
         let positions = |source: &Source, frame: usize| source.clip().world_pose(frame).positions;
@@ -263,7 +266,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_done_once_is_no_cycle() {
+    fn whole_cycle_of_a_motion_that_rests_is_none() {
         use crate::synth::{Action, Params, synthesize};
         for action in [Action::Spin, Action::Start, Action::Stop, Action::Jump] {
             let clip = synthesize(&Params::new(action)).unwrap().clip;
@@ -273,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn what_leads_elsewhere_is_no_cycle() {
+    fn whole_cycle_of_a_motion_that_leads_away_is_none() {
         for frames in [2, 7, 20, 32, 95, 150] {
             assert!(WholeCycle::of(&walk(frames, 0.0)).is_none(), "{frames}");
         }

@@ -5,7 +5,7 @@ use crate::motion::{FeetReading, Motion};
 use segue_motion::clip::{Clip, ClipError, Contacts, character_frames};
 use segue_motion::metrics::{Metric, foot_slide_cm};
 use segue_motion::skeleton::{Roles, Side};
-use segue_motion::transition::play_around;
+use segue_motion::transition::repeat_clip;
 use std::sync::Arc;
 
 /// Cycles follow each other until they fill this, seconds.
@@ -50,7 +50,7 @@ pub(super) fn rounds(
     }
     let middle = held.crop(cycle_frames..2 * cycle_frames).map_err(sentence)?;
     let frames = count * cycle_frames + 1;
-    let clip = play_around(&middle.transformed(&cycle.inverse()), &cycle, count + 1)
+    let clip = repeat_clip(&middle.transformed(&cycle.inverse()), &cycle, count + 1)
         .and_then(|clip| clip.crop(0..frames))
         .map_err(sentence)?;
     Ok(Rounds {

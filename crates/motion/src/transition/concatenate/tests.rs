@@ -1,3 +1,5 @@
+//! Tests of transitions by all methods.
+
 use super::*;
 use crate::blend::Source;
 use crate::clip::{Clip, Interpolation, JointTranslations, resample};
@@ -15,7 +17,7 @@ const KINDS: [Inertialization; 4] = [
     Inertialization::DeadBlend { blend_secs: 0.4, extrapolation_half_life_secs: 0.1 },
 ];
 
-const PLACES: [(bool, RootBlend); 3] =
+const ROOT_OPTIONS: [(bool, RootBlend); 3] =
     [(true, RootBlend::Velocity), (true, RootBlend::World), (false, RootBlend::Velocity)];
 
 fn source_of(clip: Clip) -> Source {
@@ -27,7 +29,7 @@ fn source(walk: Walk) -> Source {
     source_of(walk.clip())
 }
 
-fn two() -> (Source, Source) {
+fn two_walks() -> (Source, Source) {
     let a = source(Walk { frames: 120, turning: 0.4, ..Walk::default() });
     let b = source(Walk {
         frames: 260,
@@ -61,7 +63,7 @@ fn made(
     .unwrap()
 }
 
-/// The largest distance between joints of two clips, and the largest angle.
+/// Returns the largest distance between joints of two clips, and the largest angle.
 fn difference(a: &Clip, b: &Clip) -> (f32, f32) {
     assert_eq!(a.frames(), b.frames());
     let (p, q) = (a.world_positions(0..a.frames()), b.world_positions(0..b.frames()));
@@ -73,12 +75,12 @@ fn difference(a: &Clip, b: &Clip) -> (f32, f32) {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
     #[test]
-    fn no_difference_leaves_b_as_it_was(at in 0usize..119, turning in -1.0f32..1.0) {
+    fn concatenate_without_difference_leaves_b_unchanged(at in 0usize..119, turning in -1.0f32..1.0) {
         let a = source(Walk { frames: 120, turning, heading: 3.0, start: (3.0, -2.0), ..Walk::default() });
-        // A dead pose is not the motion that it came from: dead blending alone changes a clip that
-        // is joined to itself.
+        // An extrapolated pose differs from the motion that it came from, so that dead blending
+        // alone changes a clip that is joined to itself.
         for how in &KINDS[..3] {
-            for place in PLACES {
+            for place in ROOT_OPTIONS {
                 let out = made(&a, at, &a, at, *how, place);
                 let (distance, angle) = difference(&out.clip, a.clip());
                 prop_assert!(distance < 2e-5 && angle < 2e-5, "{how:?} {place:?}: {distance} {angle}");
@@ -87,11 +89,11 @@ proptest! {
     }
 
     #[test]
-    fn where_b_lies_at_first_does_not_matter(yaw in -3.0f64..3.0, x in -9.0f64..9.0, z in -9.0f64..9.0) {
-        let (a, b) = two();
+    fn concatenate_does_not_depend_on_the_position_of_b(yaw in -3.0f64..3.0, x in -9.0f64..9.0, z in -9.0f64..9.0) {
+        let (a, b) = two_walks();
         let moved = source_of(b.clip().transformed(&Planar::new(yaw, x, z)));
         for how in KINDS {
-            for place in &PLACES[..2] {
+            for place in &ROOT_OPTIONS[..2] {
                 let (here, there) = (made(&a, 70, &b, 10, how, *place), made(&a, 70, &moved, 10, how, *place));
                 let (distance, _) = difference(&here.clip, &there.clip);
                 prop_assert!(distance < 1e-3, "{how:?} {distance}");
@@ -100,10 +102,10 @@ proptest! {
     }
 
     #[test]
-    fn before_it_is_a_and_in_the_end_it_is_b(leave in 0usize..=120, enter in 0usize..260) {
-        let (a, b) = two();
+    fn concatenate_is_a_before_the_transition_and_b_after_it(leave in 0usize..=120, enter in 0usize..260) {
+        let (a, b) = two_walks();
         for how in KINDS {
-            for place in PLACES {
+            for place in ROOT_OPTIONS {
                 let out = made(&a, leave, &b, enter, how, place);
                 prop_assert_eq!(out.clip.frames(), leave + 260 - enter);
                 prop_assert_eq!(out.frames.len(), out.clip.frames());
@@ -111,7 +113,7 @@ proptest! {
                 prop_assert!(out.transition.start == leave && out.transition.end <= out.clip.frames());
                 prop_assert!(out.transition.contains(&out.handover) || out.transition.is_empty());
                 prop_assert_eq!(&out.clip.crop(0..leave).unwrap().with_name(""), &a.clip().crop(0..leave).unwrap().with_name(""));
-                let settled = leave + (how.settled_secs() * 60.0).ceil() as usize;
+                let settled = leave + (how.settling_secs() * 60.0).ceil() as usize;
                 for f in (settled..out.clip.frames()).step_by(7) {
                     let mut expected = b.clip().world_pose(enter + f - leave);
                     expected.apply(&out.world_from_b);
@@ -128,45 +130,47 @@ proptest! {
     }
 }
 
-/// The step over the seam is the step that A would have made: in pose, and over the ground.
+/// The step over the seam is A's step: in pose, and over the ground.
 #[test]
-fn the_motion_goes_on_as_a_was_going() {
-    let (a, b) = two();
+fn concatenate_continues_the_step_of_a() {
+    let (a, b) = two_walks();
     for how in KINDS {
-        for place in PLACES {
+        for place in ROOT_OPTIONS {
             let out = made(&a, 70, &b, 31, how, place);
             let turn = |clip: &Clip, joint: usize| {
                 quat::log(clip.rotations(70)[joint] * clip.rotations(69)[joint].conjugate()) * 60.0
             };
             for joint in 0..a.clip().skeleton().len() {
                 let off = turn(&out.clip, joint) - turn(a.clip(), joint);
-                // Unaligned, the root has two and a half radians to turn and starts to at once.
+                // Without alignment the root has two and a half radians to turn, and starts at
+                // once.
                 let bound = if place.0 || joint > 0 { 0.9 } else { 4.5 };
                 assert!(off.length() < bound, "{how:?} {place:?} {joint}: {off}");
             }
             let step =
                 |clip: &Clip| (clip.root_translations()[70] - clip.root_translations()[69]) * 60.0;
             let off = step(&out.clip) - step(a.clip());
-            // Unaligned, B lies metres away; and a quintic that would overshoot hurries.
+            // Without alignment B is metres away, and a quintic that would overshoot accelerates
+            // hard.
             assert!(!place.0 || off.length() < 0.6, "{how:?} {place:?} {off}");
         }
-        // A cut does jump.
+        // A cut is discontinuous.
         let cut = concatenate(&a, 70, &b, 31, &TransitionOptions::new(Method::Cut)).unwrap();
         assert!((quat::angle_between(cut.clip.rotations(70)[3], cut.clip.rotations(69)[3])) > 0.2);
     }
 }
 
-/// The finer the frames, the smaller the difference of the first step's angular velocity to A's:
-/// the velocity is continuous, also for large offsets.
+/// The difference of the first step's angular velocity to A's decreases with the duration of a
+/// frame: the velocity is continuous, also for large offsets.
 #[test]
-fn velocity_is_continuous_in_the_limit_of_fine_frames() {
+fn concatenate_of_fine_frames_has_continuous_velocity() {
     let jump = |fps: f64, how| {
         let n = fps as usize;
         let walk = |phase: f32, swing: f32, speed: f32| {
             source(Walk { frames: 2 * n, fps, phase, swing, speed, ..Walk::default() })
         };
         let (a, b) = (walk(0.0, 1.3, 1.0), walk(0.4, 1.3, 2.0));
-        let out = made(&a, n, &b, n / 2, how, PLACES[0]);
+        let out = made(&a, n, &b, n / 2, how, ROOT_OPTIONS[0]);
         let turn = |clip: &Clip, joint: usize| {
             quat::log(clip.rotations(n)[joint] * clip.rotations(n - 1)[joint].conjugate())
                 * fps as f32
@@ -181,18 +185,18 @@ fn velocity_is_continuous_in_the_limit_of_fine_frames() {
     }
 }
 
-/// A clip that is cut in two and joined again: its ends are taken to go on as they were going, so
-/// nothing but the change of a step in a frame is bridged.
+/// A clip that is cut in two and joined again: its ends are extrapolated, so only the change of a
+/// step in one frame is bridged.
 #[test]
-fn the_two_halves_of_a_clip_go_together_again() {
+fn concatenate_of_two_halves_is_the_whole_clip() {
     let whole = Walk { frames: 200, fps: 120.0, turning: 0.5, ..Walk::default() }.clip();
     for at in [70, 93, 120] {
         let (a, b) =
             (source_of(whole.crop(0..at).unwrap()), source_of(whole.crop(at..200).unwrap()));
         for how in &KINDS[..3] {
-            let out = made(&a, at, &b, 0, *how, PLACES[0]);
+            let out = made(&a, at, &b, 0, *how, ROOT_OPTIONS[0]);
             let (distance, _) = difference(&out.clip, &whole);
-            // An arm, which swings as a sine does; knees stop dead.
+            // An arm swings as a sine; knees stop suddenly.
             let arm =
                 |f: usize| quat::angle_between(out.clip.rotations(f)[3], whole.rotations(f)[3]);
             let angle = (0..200).map(arm).fold(0.0, f32::max);
@@ -202,8 +206,8 @@ fn the_two_halves_of_a_clip_go_together_again() {
 }
 
 #[test]
-fn no_time_is_a_cut() {
-    let (a, b) = two();
+fn concatenate_with_duration_0_is_a_cut() {
+    let (a, b) = two_walks();
     for root in [RootBlend::Velocity, RootBlend::World] {
         let cut = concatenate(
             &a,
@@ -228,8 +232,8 @@ fn no_time_is_a_cut() {
 }
 
 #[test]
-fn all_methods_come_through_one_door() {
-    let (a, b) = two();
+fn concatenate_by_any_method_agrees_with_its_function() {
+    let (a, b) = two_walks();
     let window = 20;
     let law = WeightLaw::Linear;
     let through =
@@ -239,14 +243,14 @@ fn all_methods_come_through_one_door() {
         dissolve(&a, 70, &b, 10, &DissolveOptions { window, law, ..DissolveOptions::default() })
             .unwrap();
     assert_eq!(through, direct);
-    let long = made(&a, 70, &b, 10, KINDS[0], PLACES[0]);
+    let long = made(&a, 70, &b, 10, KINDS[0], ROOT_OPTIONS[0]);
     assert_eq!(long.clip.frames(), through.clip.frames());
 }
 
-/// Half the frame rate: the seam is felt half a frame later at most. Frames at the same times
-/// differ by less than 4 cm and 6°, in a transition between two gaits that differ by 20 cm and 60°.
+/// At half the frame rate the seam is half a frame later at most. Frames at the same times differ
+/// by less than 4 cm and 6°, in a transition between two gaits that differ by 20 cm and 60°.
 #[test]
-fn half_the_frame_rate_is_nearly_the_same_transition() {
+fn concatenate_at_half_the_frame_rate_is_nearly_the_same() {
     let at = |fps: f64| {
         let scale = (fps / 60.0) as usize;
         let walk = |phase: f32, swing: f32, speed: f32, turning: f32| {
@@ -265,7 +269,7 @@ fn half_the_frame_rate_is_nearly_the_same_transition() {
     for how in KINDS {
         let run = |fps: f64| {
             let (a, b, leave, enter, scale) = at(fps);
-            (made(&a, leave, &b, enter, how, PLACES[0]).clip, scale)
+            (made(&a, leave, &b, enter, how, ROOT_OPTIONS[0]).clip, scale)
         };
         let ((coarse, _), (fine, scale)) = (run(60.0), run(120.0));
         let coarse_again = resample(&fine, 60.0, Interpolation::Nearest).unwrap();
@@ -280,8 +284,8 @@ fn half_the_frame_rate_is_nearly_the_same_transition() {
 }
 
 #[test]
-fn joints_that_move_against_their_parent_are_carried_over_too() {
-    let (a, b) = two();
+fn concatenate_inertializes_joint_translations() {
+    let (a, b) = two_walks();
     let values = (0..120).map(|f| Vec3::new(0.2, 0.22 + 0.001 * f as f32, 0.0)).collect();
     let moving = source_of(
         (**a.clip())
@@ -290,28 +294,28 @@ fn joints_that_move_against_their_parent_are_carried_over_too() {
             .unwrap(),
     );
     for how in KINDS {
-        let out = made(&moving, 70, &b, 10, how, PLACES[0]);
+        let out = made(&moving, 70, &b, 10, how, ROOT_OPTIONS[0]);
         let track = &out.clip.translations()[0];
         assert_eq!((track.joint, track.values.len()), (3, out.clip.frames()));
         assert_eq!(track.values[69].y, 0.22 + 0.069);
-        // It goes on upwards for a moment, and then comes to rest where B has it.
+        // It continues upwards for a moment, and then comes to rest where B has it.
         assert!(track.values[70].y > 0.22 + 0.065, "{how:?} {}", track.values[70].y);
         assert!((track.values[240].y - 0.22).abs() < 1e-5);
     }
 }
 
 #[test]
-fn speed_over_the_ground_rises_without_overshoot() {
+fn concatenate_to_a_faster_gait_does_not_overshoot_its_speed() {
     let glide = |speed: f32| {
         source(Walk { frames: 200, speed, cadence: 0.0, swing: 0.0, ..Walk::default() })
     };
     let (a, b) = (glide(1.0), glide(3.0));
     for how in KINDS {
-        let out = made(&a, 50, &b, 20, how, PLACES[0]);
+        let out = made(&a, 50, &b, 20, how, ROOT_OPTIONS[0]);
         let speeds: Vec<f32> =
             out.clip.root_translations().windows(2).map(|p| p[0].distance(p[1]) * 60.0).collect();
         let rises = speeds.windows(2).all(|s| s[1] > s[0] - 1e-3);
-        // A dead pose slows down first.
+        // An extrapolated pose slows down first.
         assert!(rises || matches!(how, Inertialization::DeadBlend { .. }), "{how:?} {speeds:?}");
         assert!(speeds.iter().all(|s| (0.5..3.01).contains(s)), "{how:?} {speeds:?}");
         assert!((speeds[49] - 1.0).abs() < 0.1 && (speeds[180] - 3.0).abs() < 1e-3);
@@ -319,8 +323,8 @@ fn speed_over_the_ground_rises_without_overshoot() {
 }
 
 #[test]
-fn what_cannot_be_joined_is_refused() {
-    let (a, b) = two();
+fn concatenate_of_incompatible_clips_is_refused() {
+    let (a, b) = two_walks();
     for secs in [-0.1, 61.0, f64::NAN, f64::INFINITY] {
         for how in [
             Inertialization::Offset(Decay::Spring { half_life_secs: secs }),
@@ -342,10 +346,10 @@ fn what_cannot_be_joined_is_refused() {
     assert_eq!(concatenate(&one, 1, &one, 0, &options).unwrap().clip.frames(), 2);
 }
 
-/// B walks straight on for half a second and then turns left: what is steady over its first stride
-/// is half a turn to the left already.
+/// B walks straight on for half a second and then turns left: the mean over its first stride is
+/// half a turn to the left already.
 #[test]
-fn a_turn_to_come_is_not_made_the_other_way_round_first() {
+fn concatenate_before_a_turn_does_not_turn_the_other_way() {
     let straight = Walk { frames: 200, cadence: 0.0, swing: 0.0, ..Walk::default() }.clip();
     let yaw = |frame: usize| 0.04 * frame.saturating_sub(35) as f32;
     let turned = |clip: &Clip, yaw: &dyn Fn(usize) -> f32| {
@@ -362,21 +366,21 @@ fn a_turn_to_come_is_not_made_the_other_way_round_first() {
         )
     };
     let (a, b) = (source_of(straight.clone()), turned(&straight, &yaw));
-    // And the other way: A has turned, and goes straight where it is left.
+    // The reverse: A has turned, and walks straight where it is left.
     let (before, after) =
         (turned(&straight, &|frame| yaw(frame.min(90))), source_of(straight.clone()));
     for how in KINDS {
-        let out = made(&a, 100, &b, 5, how, PLACES[0]);
+        let out = made(&a, 100, &b, 5, how, ROOT_OPTIONS[0]);
         let least =
             out.frames[100..130].iter().map(|frame| frame.yaw).fold(f64::INFINITY, f64::min);
         assert!(least > -0.5_f64.to_radians(), "{how:?} {}", least.to_degrees());
-        let out = made(&before, 94, &after, 20, how, PLACES[0]);
+        let out = made(&before, 94, &after, 20, how, ROOT_OPTIONS[0]);
         let turned = wrap_angle(out.frames[180].yaw - out.frames[93].yaw);
         assert!(turned.abs() < 0.5_f64.to_radians(), "{how:?} {}", turned.to_degrees());
     }
-    // What both do is handed over: a steady turn goes over into none in its own time.
+    // A turn that both clips make is handed over: a steady turn decays in its own time.
     let (steady, out) = (turned(&straight, &|frame| 0.02 * frame as f32), source_of(straight));
-    let made = made(&steady, 100, &out, 20, KINDS[0], PLACES[0]);
+    let made = made(&steady, 100, &out, 20, KINDS[0], ROOT_OPTIONS[0]);
     let turned = wrap_angle(made.frames[180].yaw - made.frames[99].yaw);
     let wanted = 0.02 * 60.0 * 2.0 / crate::math::spring::rate(0.1) * 0.5;
     assert!(turned > wanted, "{turned} {wanted}");

@@ -1,4 +1,4 @@
-//! Where a planted foot belongs.
+//! The corrections of the positions and headings of feet, planted and swinging.
 
 use super::FootLockOptions;
 use super::envelope::{largest_around, smoothed};
@@ -8,29 +8,29 @@ use crate::skeleton::{Roles, Side, WorldPose};
 use glam::{Quat, Vec3};
 use std::ops::Range;
 
-/// Stances with less than this between them are one, seconds and metres: the foot is not lifted and
-/// set down again in so short a time, or so near.
-const SHORTEST_SWING_SECS: f64 = 0.14;
-const SHORTEST_SWING_M: f32 = 0.05;
-/// Below this speed a foot is as good as still when its place is chosen, metres per second.
+/// Stances with less than this between them are merged, seconds and metres: a foot is not lifted
+/// and set down again in so short a time, or so near.
+const MIN_SWING_SECS: f64 = 0.14;
+const MIN_SWING_M: f32 = 0.05;
+/// Speed below which a foot counts as still when its position is chosen, metres per second.
 const STILL_MPS: f32 = 0.05;
-/// A foot that is lifted out of the ground is lifted smoothly over this time to either side,
+/// Time to either side over which a foot that is lifted out of the ground is lifted smoothly,
 /// seconds.
 const LIFT_SECS: f64 = 0.06;
 
-/// A foot swings at the full above this speed, metres per second, and not at all below
-/// [`STEPS_MPS`].
-const SWINGS_MPS: f32 = 1.2;
-const STEPS_MPS: f32 = 0.5;
+/// A foot is swinging fully above this speed, metres per second, and not at all below
+/// [`SLOW_STEP_MPS`].
+const FULL_SWING_MPS: f32 = 1.2;
+const SLOW_STEP_MPS: f32 = 0.5;
 
-/// What takes longer is no swing from one stance to the next, seconds.
-const LONGEST_SWING_SECS: f64 = 1.5;
+/// The greatest duration of a swing from one stance to the next, seconds.
+const MAX_SWING_SECS: f64 = 1.5;
 
-/// How far a foot is turned against its leg to keep its heading, radians: 30°. From half of it on
-/// it turns with the body more and more.
+/// The greatest rotation of a foot against its leg to keep its heading, radians: 30°. From half of
+/// it on the foot turns with the body more and more.
 const MAX_TURN_RADIANS: f32 = 0.52;
 
-/// The way of one foot through the clip.
+/// The track of one foot through the clip.
 #[derive(Debug)]
 pub(super) struct Foot {
     ankle: usize,
@@ -38,7 +38,7 @@ pub(super) struct Foot {
     /// World positions of the ankle, frame by frame.
     ankles: Vec<Vec3>,
     /// World positions of the points, frame by frame.
-    way: Vec<Vec3>,
+    track: Vec<Vec3>,
 }
 
 impl Foot {
@@ -47,23 +47,23 @@ impl Foot {
         Self {
             ankle,
             ankles: Vec::with_capacity(clip.frames()),
-            way: Vec::with_capacity(points.len() * clip.frames()),
+            track: Vec::with_capacity(points.len() * clip.frames()),
             points,
         }
     }
 
     pub(super) fn push(&mut self, world: &WorldPose) {
         self.ankles.push(world.positions[self.ankle]);
-        self.way.extend(self.points.iter().map(|&(joint, point)| world.point(joint, point)));
+        self.track.extend(self.points.iter().map(|&(joint, point)| world.point(joint, point)));
     }
 
     fn at(&self, frame: usize) -> &[Vec3] {
         let count = self.points.len();
-        self.way.get(frame * count..(frame + 1) * count).unwrap_or(&[])
+        self.track.get(frame * count..(frame + 1) * count).unwrap_or(&[])
     }
 
-    /// By how much the foot is turned about the vertical in every frame, as rotation vectors, so
-    /// that it keeps its heading in these stances although the body was turned by so many radians.
+    /// Returns the rotation of the foot about the vertical in every frame, as rotation vectors,
+    /// that keeps its heading in these stances although the body was turned by `body_yaws` radians.
     /// The mean of a stance stays.
     pub(super) fn turns(
         &self,
@@ -95,9 +95,9 @@ impl Foot {
         turns
     }
 
-    /// This foot, turned about its ankle in every frame.
+    /// Returns this foot, rotated about its ankle in every frame.
     pub(super) fn turned(&self, turns: &[Vec3]) -> Self {
-        let ways = self.way.chunks(self.points.len().max(1)).zip(self.ankles.iter().zip(turns));
+        let ways = self.track.chunks(self.points.len().max(1)).zip(self.ankles.iter().zip(turns));
         let turned = ways.flat_map(|(points, (&ankle, &turn))| {
             let rotation = Quat::from_scaled_axis(turn);
             points.iter().map(move |&point| ankle + rotation * (point - ankle))
@@ -106,12 +106,12 @@ impl Foot {
             ankle: self.ankle,
             points: self.points.clone(),
             ankles: self.ankles.clone(),
-            way: turned.collect(),
+            track: turned.collect(),
         }
     }
 
-    /// What is added to the foot's place in every frame, metres; the stances are
-    /// [`parted`](Self::parted).
+    /// Returns the correction of the foot's position in every frame, metres; the stances are
+    /// [`merged`](Self::merged).
     pub(super) fn shifts(
         &self,
         stances: &[Range<usize>],
@@ -125,15 +125,15 @@ impl Foot {
         }
         fade_around(stances, options.blend_secs, fps, &mut shifts);
         if let Some(clearance_m) = options.clearance_m {
-            self.clear(stances, fps, scale, clearance_m, &mut shifts);
+            self.raise_swings(stances, fps, scale, clearance_m, &mut shifts);
         }
         shifts
     }
 
-    /// Lifts the foot, where it swings from one stance to the next, over the height that each of
-    /// its points has in these; before the first stance and behind the last one over the height
-    /// that it has there.
-    fn clear(
+    /// Raises the foot, where it swings from one stance to the next, above the height that each of
+    /// its points has in these; before the first stance and after the last one above the height in
+    /// that stance.
+    fn raise_swings(
         &self,
         stances: &[Range<usize>],
         fps: f64,
@@ -141,7 +141,7 @@ impl Foot {
         clearance_m: f32,
         shifts: &mut [Vec3],
     ) {
-        let longest = (LONGEST_SWING_SECS * fps) as usize;
+        let longest = (MAX_SWING_SECS * fps) as usize;
         let reach = ((LIFT_SECS * fps).round() as usize).max(1);
         for next in 0..=stances.len() {
             let (before, behind) =
@@ -156,7 +156,8 @@ impl Foot {
             let levels = [levels.0, levels.1].map(|stance| self.levels(stance, shifts));
             let missing = |frame: usize| {
                 let speed = self.step_into(frame).length() * fps as f32 / scale;
-                let swings = curve::smoothstep((speed - STEPS_MPS) / (SWINGS_MPS - STEPS_MPS));
+                let swings =
+                    curve::smoothstep((speed - SLOW_STEP_MPS) / (FULL_SWING_MPS - SLOW_STEP_MPS));
                 let part = (frame + 1 - swing.start) as f32 / (swing.len() + 1) as f32;
                 let missing = self.at(frame).iter().enumerate().map(|(point, place)| {
                     let [from, to] = [levels[0][point], levels[1][point]];
@@ -179,7 +180,7 @@ impl Foot {
         }
     }
 
-    /// The height that each point has as a rule in a stance.
+    /// Returns the usual height of each point in a stance.
     fn levels(&self, stance: &Range<usize>, shifts: &[Vec3]) -> Vec<f32> {
         let level = |point: usize| {
             let heights: Vec<f32> =
@@ -189,22 +190,22 @@ impl Foot {
         (0..self.points.len()).map(level).collect()
     }
 
-    /// Stances with next to nothing between them as one. Where the foot goes far in so short a time
-    /// it needs longer: both stances give up frames.
-    pub(super) fn parted(
+    /// Merges stances with a short time between them. Where the foot moves far in that time it
+    /// needs longer: both stances are shortened.
+    pub(super) fn merged(
         &self,
         stances: &[Range<usize>],
         fps: f64,
         scale: f32,
     ) -> Vec<Range<usize>> {
-        let shortest = (SHORTEST_SWING_SECS * fps).round() as usize;
-        let mut parted: Vec<Range<usize>> = Vec::with_capacity(stances.len());
+        let shortest = (MIN_SWING_SECS * fps).round() as usize;
+        let mut merged: Vec<Range<usize>> = Vec::with_capacity(stances.len());
         for stance in stances {
             let mut stance = stance.clone();
-            if let Some(last) = parted.last_mut()
+            if let Some(last) = merged.last_mut()
                 && stance.start < last.end + shortest
             {
-                if self.drift(last.end..stance.start + 1).length() < SHORTEST_SWING_M * scale {
+                if self.drift(last.end..stance.start + 1).length() < MIN_SWING_M * scale {
                     last.end = stance.end;
                     continue;
                 }
@@ -212,12 +213,12 @@ impl Foot {
                 last.end -= (missing / 2).min(last.len() / 2);
                 stance.start += missing.div_ceil(2).min(stance.len() / 2);
             }
-            parted.push(stance);
+            merged.push(stance);
         }
-        parted
+        merged
     }
 
-    /// What the stillest points slide in the steps into these frames.
+    /// Returns the sum of the steps of the stillest points into these frames.
     fn drift(&self, frames: Range<usize>) -> Vec3 {
         frames.map(|frame| self.step_into(frame)).sum()
     }
@@ -227,7 +228,7 @@ impl Foot {
         stillest_step(before, self.at(frame)).unwrap_or(Vec3::ZERO)
     }
 
-    /// The shifts of one stance.
+    /// Computes the corrections of one stance.
     fn hold(
         &self,
         stance: &Range<usize>,
@@ -285,19 +286,19 @@ impl Foot {
     }
 }
 
-/// Lets what is done in the stances die away with its own velocity before and behind them.
+/// Lets the corrections of the stances decay from their own velocity before and after them.
 fn fade_around(stances: &[Range<usize>], blend_secs: f64, fps: f64, values: &mut [Vec3]) {
     for (index, stance) in stances.iter().enumerate() {
         let next = stances.get(index + 1).map(|next| next.start);
         let before =
             index.checked_sub(1).and_then(|before| stances.get(before)).map(|before| before.end);
         let last = stance.end - 1;
-        // Backwards in time before the stance, forwards behind it. The steps next to the stance
-        // tell the velocity.
+        // Backwards in time before the stance, forwards after it. The steps next to the stance give
+        // the velocity.
         let inside = |frame: usize| values[frame.clamp(stance.start, last)];
         let into = (inside(stance.start), inside(stance.start) - inside(stance.start + 1));
         let out = (inside(last), inside(last) - inside(last.saturating_sub(1)));
-        // By the next stance all of it is gone; at an end of the clip it is cut off.
+        // It reaches 0 by the next stance; at an end of the clip it is cut off.
         let within = |frames: usize| blend_secs.min((frames + 1) as f64 / fps);
         let into_secs = before.map_or(blend_secs, |before| within(stance.start - before));
         fade(into, into_secs, fps, values[before.unwrap_or(0)..stance.start].iter_mut().rev());
@@ -307,7 +308,7 @@ fn fade_around(stances: &[Range<usize>], blend_secs: f64, fps: f64, values: &mut
     }
 }
 
-/// Adds what dies away from a value and its step into the frames behind it.
+/// Adds a value that decays from its own velocity `step` to the adjacent frames.
 fn fade<'a>(
     (value, step): (Vec3, Vec3),
     blend_secs: f64,

@@ -1,30 +1,30 @@
-//! How far the hips are raised or lowered for planted feet.
+//! The height of the hips for planted feet.
 
-use super::Posed;
+use super::LegPose;
 use super::envelope::{largest_around, smoothed};
 use glam::Vec3;
 
-/// The hips follow what is needed, smoothed over this time to either side, seconds.
+/// Time to either side over which the height of the hips is smoothed, seconds.
 const SMOOTH_SECS: f64 = 0.08;
-/// A knee bent by less than this sine of its flexion counts as bent by so much: at full stretch it
-/// would weigh without end.
+/// The least sine of a knee's flexion that is used as its weight: at full stretch the weight would
+/// be infinite.
 const MIN_SINE: f32 = 0.1;
-/// The hips cost as much as a knee that is bent by this sine of its flexion.
+/// The sine of the flexion of a knee that costs as much as the hips.
 const HIP_SINE: f32 = 0.7;
 
-/// The change of the hips' height in every frame, metres.
-pub(super) fn heights(posed: &[Vec<Posed>], shifts: &[Vec<Vec3>], fps: f64) -> Vec<f32> {
+/// Returns the change of the hips' height in every frame, metres.
+pub(super) fn heights(posed: &[Vec<LegPose>], shifts: &[Vec<Vec3>], fps: f64) -> Vec<f32> {
     let frames = shifts.iter().map(Vec::len).min().unwrap_or(0);
     let legs = |frame: usize| {
         posed.iter().zip(shifts).map(move |(posed, shifts)| (&posed[frame], shifts[frame]))
     };
-    let wanted: Vec<f32> = (0..frames).map(|frame| easiest(legs(frame))).collect();
+    let wanted: Vec<f32> = (0..frames).map(|frame| height_of_least_change(legs(frame))).collect();
     let reach = ((SMOOTH_SECS * fps).round() as usize).max(1);
     let mut heights = smoothed(&wanted, reach);
     let beyond: Vec<f32> = (0..frames).map(|frame| too_high(legs(frame), heights[frame])).collect();
     if beyond.iter().any(|&beyond| beyond > 0.0) {
-        // The largest of the neighbours, smoothed over the same neighbours, is nowhere less than
-        // what is needed.
+        // The maximum over the neighbours, smoothed over the same neighbours, is nowhere less than
+        // the value itself.
         for (height, lower) in
             heights.iter_mut().zip(smoothed(&largest_around(&beyond, reach), reach))
         {
@@ -34,10 +34,10 @@ pub(super) fn heights(posed: &[Vec<Posed>], shifts: &[Vec<Vec3>], fps: f64) -> V
     heights
 }
 
-/// Where both knees change least. A leg's length changes by `Δ + h cos θ` when its ankle is moved
-/// and the hips are raised by `h`, and its knee by `d / (a b sin φ)` times that; the sum of the
-/// squares of these, and of what the hips cost, is smallest here.
-fn easiest<'a>(legs: impl Iterator<Item = (&'a Posed, Vec3)>) -> f32 {
+/// Returns the height at which both knees change least. A leg's length changes by `Δ + h cos θ`
+/// when its ankle is moved and the hips are raised by `h`, and its knee by `d / (a b sin φ)` times
+/// that; the result minimizes the sum of the squares of these and of the cost of the hips.
+fn height_of_least_change<'a>(legs: impl Iterator<Item = (&'a LegPose, Vec3)>) -> f32 {
     let (mut above, mut below) = (0.0, 0.0);
     for (leg, shift) in legs {
         let line = leg.line();
@@ -52,14 +52,14 @@ fn easiest<'a>(legs: impl Iterator<Item = (&'a Posed, Vec3)>) -> f32 {
     if below > 0.0 { above / below } else { 0.0 }
 }
 
-/// By how much the hips would be too high for the legs to reach, metres.
-pub(super) fn too_high<'a>(legs: impl Iterator<Item = (&'a Posed, Vec3)>, height: f32) -> f32 {
-    let too_high = |(leg, shift): (&Posed, Vec3)| {
+/// Returns by how much the hips would be too high for the legs to reach, metres.
+pub(super) fn too_high<'a>(legs: impl Iterator<Item = (&'a LegPose, Vec3)>, height: f32) -> f32 {
+    let too_high = |(leg, shift): (&LegPose, Vec3)| {
         let asked = leg.line() + shift;
         let (reach, aside) = (leg.reach(), Vec3::new(asked.x, 0.0, asked.z).length());
-        // Beyond reach sideways no height helps: not lower than level with the ankle.
+        // Beyond the reach sideways no height helps: the hips are not lowered below the ankle.
         let highest = (reach * reach - aside * aside).max(0.0).sqrt();
-        // What single precision alone makes is nothing.
+        // Single-precision rounding counts as 0.
         (height - asked.y - highest - 1e-5).max(0.0)
     };
     legs.map(too_high).fold(0.0, f32::max)

@@ -1,3 +1,5 @@
+//! Tests of the foot lock.
+
 use super::*;
 use crate::clip::fixtures::wander_by;
 use crate::clip::{ContactOptions, stillest_step};
@@ -8,7 +10,7 @@ use crate::synth::{Action, Params, synthesize};
 use proptest::prelude::*;
 use std::sync::Arc;
 
-/// A walk whose feet slide: its root is too fast for its steps.
+/// Returns a walk whose feet slide: its root is too fast for its steps.
 fn sliding(speed: f32) -> (Clip, Roles) {
     let walk = Walk { frames: 240, speed, cadence: 0.9, ..Walk::default() };
     let clip = walk.clip();
@@ -16,8 +18,8 @@ fn sliding(speed: f32) -> (Clip, Roles) {
     (clip, roles)
 }
 
-/// A foot stands while it goes backwards under the hips.
-fn backwards(clip: &Clip, roles: &Roles) -> Contacts {
+/// Returns contacts of feet that move backwards relative to the hips.
+fn contacts_moving_backwards(clip: &Clip, roles: &Roles) -> Contacts {
     let planted = |side| {
         let foot = roles.get(Role::foot(side)).unwrap();
         let ahead: Vec<f32> = (0..clip.frames())
@@ -29,7 +31,7 @@ fn backwards(clip: &Clip, roles: &Roles) -> Contacts {
     Contacts::from_flags(Side::BOTH.map(planted))
 }
 
-/// How far the stillest point of a planted foot moves in a step, at most, metres.
+/// Returns the greatest step of a planted foot's stillest point, metres.
 fn worst_step(clip: &Clip, roles: &Roles, contacts: &Contacts) -> f32 {
     let mut worst = 0.0_f32;
     for side in Side::BOTH {
@@ -47,8 +49,8 @@ fn worst_step(clip: &Clip, roles: &Roles, contacts: &Contacts) -> f32 {
     worst
 }
 
-/// The same motion on a body with a twist joint in the middle of every thigh and shin, which is
-/// turned by a little.
+/// Returns the same motion on a body with a twist joint in the middle of every thigh and shin,
+/// which is rotated a little.
 fn with_helpers(clip: &Clip, roles: &Roles) -> (Clip, Roles) {
     let old = clip.skeleton();
     let (mut joints, mut places): (Vec<Joint>, Vec<usize>) = (vec![], vec![]);
@@ -94,11 +96,11 @@ fn with_helpers(clip: &Clip, roles: &Roles) -> (Clip, Roles) {
 }
 
 #[test]
-fn planted_feet_stand_and_stay_as_flat_as_they_were() {
+fn foot_lock_holds_planted_feet_and_keeps_their_rotation() {
     for speed in [0.9, 1.3, 1.6] {
         let (clip, roles) = sliding(speed);
         for (clip, roles) in [with_helpers(&clip, &roles), (clip, roles)] {
-            let contacts = backwards(&clip, &roles);
+            let contacts = contacts_moving_backwards(&clip, &roles);
             let far = FootLockOptions { max_shift_m: 1.0, ..FootLockOptions::default() };
             let locked = foot_lock(&clip, &roles, &contacts, &far).unwrap();
             let (before, after) =
@@ -113,7 +115,7 @@ fn planted_feet_stand_and_stay_as_flat_as_they_were() {
                         "{frame}"
                     );
                 }
-                // Nothing but the legs and the height of the body changes.
+                // Only the legs and the height of the body change.
                 let head = roles.get(Role::Head).unwrap();
                 let moved = is.positions[head] - was.positions[head];
                 assert!(
@@ -125,8 +127,8 @@ fn planted_feet_stand_and_stay_as_flat_as_they_were() {
     }
 }
 
-/// How far the toe joint of a foot goes while it stands, metres.
-fn toe_ways(clip: &Clip, roles: &Roles, contacts: &Contacts) -> f32 {
+/// Returns the path length of a foot's toe joint while it is planted, metres.
+fn toe_path_length(clip: &Clip, roles: &Roles, contacts: &Contacts) -> f32 {
     let mut farthest = 0.0_f32;
     for side in Side::BOTH {
         let toe = roles.get(Role::toe(side)).unwrap();
@@ -141,13 +143,13 @@ fn toe_ways(clip: &Clip, roles: &Roles, contacts: &Contacts) -> f32 {
 }
 
 #[test]
-fn standing_feet_keep_their_heading_when_the_body_is_turned() {
+fn foot_lock_with_body_yaws_keeps_the_heading_of_planted_feet() {
     let standing = synthesize(&Params::new(Action::Idle)).unwrap().clip;
     let roles = Roles::detect(standing.skeleton());
     let (frames, joints) = (standing.frames(), standing.skeleton().len());
     let contacts = Contacts::from_flags([vec![true; frames], vec![true; frames]]);
     let turned_by = |most: f64| -> (Arc<Clip>, Vec<f64>) {
-        // Numbers of a turn may leap by whole turns.
+        // Yaws may jump by whole turns.
         let yaws: Vec<f64> = (0..frames)
             .map(|frame| wrap_angle(3.1 + most * (frame as f64 / frames as f64 * 6.0).sin()))
             .collect();
@@ -173,12 +175,12 @@ fn standing_feet_keep_their_heading_when_the_body_is_turned() {
         |clip: &Arc<Clip>| FootLocking::new(Arc::clone(clip), &roles, &contacts, &options).unwrap();
 
     let (clip, yaws) = turned_by(0.15);
-    let before = toe_ways(&locking(&clip).finish().unwrap(), &roles, &contacts);
+    let before = toe_path_length(&locking(&clip).finish().unwrap(), &roles, &contacts);
     let after =
-        toe_ways(&locking(&clip).with_body_yaws(&yaws).finish().unwrap(), &roles, &contacts);
+        toe_path_length(&locking(&clip).with_body_yaws(&yaws).finish().unwrap(), &roles, &contacts);
     assert!(before > 0.01 && after < 2e-3, "{before} {after} m");
 
-    // An ankle is not wrung: beyond 30° the foot goes with the body.
+    // The rotation of an ankle is limited: beyond 30° the foot turns with the body.
     let (clip, yaws) = turned_by(1.5);
     let (with_it, held) =
         (locking(&clip).finish().unwrap(), locking(&clip).with_body_yaws(&yaws).finish().unwrap());
@@ -194,7 +196,7 @@ fn standing_feet_keep_their_heading_when_the_body_is_turned() {
 }
 
 #[test]
-fn without_contacts_nothing_changes() {
+fn foot_lock_without_contacts_changes_nothing() {
     for (rig, skeleton, _) in fixtures::all() {
         let clip = wander_by(&skeleton, 30, 3, 0.4);
         let roles = fixtures::roles(&skeleton);
@@ -204,13 +206,13 @@ fn without_contacts_nothing_changes() {
 }
 
 #[test]
-fn frames_far_from_a_correction_stay_as_they_are() {
+fn foot_lock_leaves_distant_frames_unchanged() {
     let (clip, roles) = sliding(1.5);
     let mut flags = vec![false; clip.frames()];
     flags[100..130].fill(true);
     let contacts = Contacts::from_flags([flags, vec![false; clip.frames()]]);
     let locked = foot_lock(&clip, &roles, &contacts, &FootLockOptions::default()).unwrap();
-    // Blending, and the smoothing of the hips around it.
+    // The margin covers blending, and the smoothing of the hips around it.
     let margin = (0.5 * clip.fps()) as usize;
     for frame in (0..100 - margin).chain(130 + margin..clip.frames()) {
         assert_eq!(locked.pose(frame), clip.pose(frame), "{frame}");
@@ -219,7 +221,7 @@ fn frames_far_from_a_correction_stay_as_they_are() {
 }
 
 #[test]
-fn feet_that_swing_clear_the_ground() {
+fn foot_lock_raises_swinging_feet() {
     let clip = synthesize(&Params::new(Action::Walk)).unwrap().clip;
     let roles = Roles::detect(clip.skeleton());
     let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
@@ -251,11 +253,11 @@ fn feet_that_swing_clear_the_ground() {
     assert!(lowest[0] < 0.09 && lowest[1] > 0.11, "{lowest:?}");
 }
 
-/// What a foot is moved by need not die away before a clip ends: the leg would snap.
+/// A correction need not decay before the end of a clip: the leg would snap.
 #[test]
-fn a_stance_near_the_end_of_a_clip_ends_as_any_other() {
+fn foot_lock_near_the_end_of_a_clip_does_not_snap() {
     let (clip, roles) = sliding(1.6);
-    let contacts = backwards(&clip, &roles);
+    let contacts = contacts_moving_backwards(&clip, &roles);
     let stance =
         contacts.intervals(Side::Left).into_iter().find(|stance| stance.start > 60).unwrap();
     let end = stance.end + 3;
@@ -275,7 +277,7 @@ fn a_stance_near_the_end_of_a_clip_ends_as_any_other() {
 }
 
 #[test]
-fn feet_come_out_of_the_ground() {
+fn foot_lock_lifts_feet_out_of_the_ground() {
     let (clip, roles) = sliding(1.2);
     let lowest = |clip: &Clip, frame: usize, side| {
         let world = clip.world_pose(frame);
@@ -308,11 +310,12 @@ fn feet_come_out_of_the_ground() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// One leg: it reaches what it can, stops before it is stretched, and does nothing for nothing.
+    /// A leg reaches its target, or stops before it is stretched; without a shift it stays the
+    /// same.
     #[test]
-    fn a_leg_reaches_or_stops(flexion in -0.1f32..1.8, tilt in -0.6f32..0.6, x in -0.4f32..0.4, y in -0.5f32..0.3, z in -0.4f32..0.4, turn in -3.0f32..3.0) {
+    fn move_ankle_reaches_its_target_or_stops(flexion in -0.1f32..1.8, tilt in -0.6f32..0.6, x in -0.4f32..0.4, y in -0.5f32..0.3, z in -0.4f32..0.4, turn in -3.0f32..3.0) {
         let world = Quat::from_rotation_y(turn) * Quat::from_rotation_x(tilt);
-        let leg = Posed {
+        let leg = LegPose {
             thigh: world * Vec3::NEG_Y * 0.43,
             shin: world * Quat::from_rotation_x(flexion) * Vec3::NEG_Y * 0.42,
             rotations: [world; 3],
@@ -323,7 +326,7 @@ proptest! {
         let shift = Vec3::new(x, y, z);
         let [a, b] = leg.turned(shift, Vec3::X);
         let (reached, asked) = (a * leg.thigh + b * leg.shin, leg.line() + shift);
-        // A knee that is bent the wrong way is turned over on the way.
+        // A knee that is bent the wrong way is bent to the right side in the process.
         let tolerance = if flexion < 0.05 { 2e-2 } else { 1e-4 };
         if asked.length() < leg.reach() {
             prop_assume!(asked.length() > 0.15);
@@ -338,14 +341,14 @@ proptest! {
     }
 }
 
-/// Captured knees are bent the wrong way by some degrees when a leg is straight; a shorter leg
-/// bends them the right way all the same.
+/// Captured knees of straight legs are bent the wrong way by some degrees; a shortened leg bends
+/// them the right way all the same.
 #[test]
-fn knees_never_flip() {
+fn foot_lock_never_flips_knees() {
     let mut before: Option<f32> = None;
     for step in 0..=40 {
         let flexion = 0.1 - 0.005 * step as f32;
-        let leg = Posed {
+        let leg = LegPose {
             thigh: Vec3::NEG_Y * 0.43,
             shin: Quat::from_rotation_x(flexion) * Vec3::NEG_Y * 0.42,
             rotations: [Quat::IDENTITY; 3],
@@ -361,10 +364,10 @@ fn knees_never_flip() {
     }
 }
 
-/// A leg that is drawn out evenly, as before the heel of a long step comes down.
+/// A leg that is stretched evenly, as before the heel of a long step comes down.
 #[test]
-fn stretched_knee_does_not_snap() {
-    let leg = Posed {
+fn foot_lock_of_a_stretched_leg_does_not_snap() {
+    let leg = LegPose {
         thigh: Vec3::NEG_Y * 0.43,
         shin: Quat::from_rotation_x(0.6) * Vec3::NEG_Y * 0.42,
         rotations: [Quat::IDENTITY; 3],
@@ -384,9 +387,9 @@ fn stretched_knee_does_not_snap() {
 }
 
 #[test]
-fn what_cannot_be_locked_is_said() {
+fn foot_lock_of_invalid_input_is_refused() {
     let (clip, roles) = sliding(1.3);
-    let contacts = backwards(&clip, &roles);
+    let contacts = contacts_moving_backwards(&clip, &roles);
     let lock = |roles: &Roles, contacts: &Contacts, options: &FootLockOptions| {
         foot_lock(&clip, roles, contacts, options)
     };
@@ -400,13 +403,13 @@ fn what_cannot_be_locked_is_said() {
         let wrong = FootLockOptions { blend_secs, ..options };
         assert!(matches!(lock(&roles, &contacts, &wrong), Err(FootLockError::Option { .. })));
     }
-    // Roles of another skeleton, or in the wrong order, are no leg; one leg is enough.
+    // Roles of another skeleton, or in the wrong order, are not a leg; one leg is enough.
     let mut one = roles.clone();
     one.set(Role::LeftShin, Some(9_999));
     assert!(lock(&one, &contacts, &options).is_ok());
     one.set(Role::RightShin, roles.get(Role::Head));
     assert_eq!(lock(&one, &contacts, &options), Err(FootLockError::NoLegs));
-    // No blending at all is a jump, not an error; nor are no frames.
+    // Without blending the result jumps, which is not an error; nor is a clip without frames.
     let hard = FootLockOptions { blend_secs: 0.0, max_shift_m: 0.0, ..options };
     assert!(lock(&roles, &contacts, &hard).is_ok());
     let empty = clip.crop(0..0).unwrap();

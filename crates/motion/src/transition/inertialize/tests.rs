@@ -1,3 +1,5 @@
+//! Tests of inertialization.
+
 use super::*;
 use proptest::prelude::*;
 
@@ -8,7 +10,7 @@ const KINDS: [Inertialization; 4] = [
     Inertialization::DeadBlend { blend_secs: 0.5, extrapolation_half_life_secs: 0.15 },
 ];
 
-/// A joint and a root that turn and move steadily: known at every time.
+/// A joint and a root that rotate and move steadily, with a closed form.
 #[derive(Clone, Copy, Debug)]
 struct Steady {
     start: Vec3,
@@ -49,7 +51,7 @@ fn off(a: &MovingPose, b: &MovingPose) -> f32 {
         + a.translations[0].distance(b.translations[0])
 }
 
-/// The velocities from pose `a` to pose `b`, `dt` later.
+/// Returns the velocities from pose `a` to pose `b`, `dt` later.
 fn rates(a: &MovingPose, b: &MovingPose, dt: f32) -> (Vec3, Vec3) {
     (
         quat::angular_velocity(a.rotations[0], b.rotations[0], dt),
@@ -60,7 +62,7 @@ fn rates(a: &MovingPose, b: &MovingPose, dt: f32) -> (Vec3, Vec3) {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
     #[test]
-    fn starts_as_the_old_and_becomes_the_new(old in steady(), new in steady()) {
+    fn inertializer_starts_with_the_old_pose_and_ends_with_the_new(old in steady(), new in steady()) {
         for how in KINDS {
             let mut inertia = Inertializer::new(how);
             prop_assert_eq!(&with_inertia(&mut inertia, new.at(0.3)), &new.at(0.3));
@@ -71,10 +73,10 @@ proptest! {
         }
     }
 
-    /// However far apart the rotations are, and also when the next jump comes while the last one is
-    /// still dying away.
+    /// However far apart the rotations are, and also when the next jump comes while the offsets of
+    /// the last one are still decaying.
     #[test]
-    fn velocities_stay_continuous_over_every_jump(clips in [steady(), steady(), steady()], between in 0.01f32..0.4) {
+    fn inertializer_over_several_jumps_has_continuous_velocities(clips in [steady(), steady(), steady()], between in 0.01f32..0.4) {
         for how in KINDS {
             let mut inertia = Inertializer::new(how);
             inertia.trigger(&clips[0].at(0.0), &clips[1].at(0.0));
@@ -106,9 +108,9 @@ proptest! {
         }
     }
 
-    /// A half-life that is dragged, or another method, in the middle of a transition.
+    /// The half-life or the method changes in the middle of a transition.
     #[test]
-    fn a_change_of_method_keeps_pose_and_velocity(old in steady(), new in steady(), at in 0.01f32..0.4) {
+    fn inertializer_change_keeps_pose_and_velocity(old in steady(), new in steady(), at in 0.01f32..0.4) {
         for (how, then) in KINDS.into_iter().flat_map(|how| KINDS.map(|then| (how, then))) {
             let mut inertia = Inertializer::new(how);
             inertia.trigger(&old.at(0.0), &new.at(0.0));
@@ -119,7 +121,7 @@ proptest! {
             let here = with_inertia(&mut inertia, new.at(at));
             inertia.change(then, &new.at(at));
             prop_assert!(off(&with_inertia(&mut inertia, new.at(at)), &here) < 1e-4, "{how:?} {then:?}");
-            // A quintic may begin with a high acceleration, so that it does not overshoot.
+            // A quintic may start with a high acceleration, so that it does not overshoot.
             if [how, then].iter().any(|how| matches!(how, Inertialization::Offset(Decay::Quintic { .. }))) {
                 continue;
             }
@@ -132,9 +134,9 @@ proptest! {
         }
     }
 
-    /// No extrapolated pose makes the result jump the other way round.
+    /// An extrapolated pose never makes the result jump the other way round.
     #[test]
-    fn dead_poses_do_not_flip(old in steady(), new in steady()) {
+    fn dead_blend_does_not_flip(old in steady(), new in steady()) {
         let mut inertia = Inertializer::new(KINDS[3]);
         inertia.trigger(&old.at(0.0), &new.at(0.0));
         let dt = 1.0 / 240.0;
@@ -148,7 +150,7 @@ proptest! {
     }
 
     #[test]
-    fn small_steps_end_where_one_step_does(old in steady(), new in steady()) {
+    fn inertializer_in_small_steps_equals_one_step(old in steady(), new in steady()) {
         for how in KINDS {
             let (mut fine, mut coarse) = (Inertializer::new(how), Inertializer::new(how));
             for inertia in [&mut fine, &mut coarse] {
@@ -167,7 +169,7 @@ proptest! {
 }
 
 #[test]
-fn steps_over_the_ground_lead_from_the_old_speed_to_the_new() {
+fn inertializer_step_leads_from_the_old_speed_to_the_new() {
     let pose = |travel: Vec3| MovingPose { travel, steady_travel: travel, ..MovingPose::default() };
     let (old, new, dt) = (Vec3::new(0.2, -1.0, 1.4), Vec3::new(0.0, 0.5, 3.5), 1.0 / 60.0);
     let step = Planar::new(0.5 * dt, 0.0, 3.5 * dt);
@@ -185,10 +187,10 @@ fn steps_over_the_ground_lead_from_the_old_speed_to_the_new() {
     }
 }
 
-/// A sway that goes on in neither motion leaves the character where it would have been; a
-/// difference of speeds does not.
+/// A sway that continues in neither motion leaves the trajectory unchanged; a difference of speeds
+/// does not.
 #[test]
-fn sway_swings_out_and_speed_is_made_good() {
+fn inertializer_step_returns_from_sway() {
     let dt = 1e-3;
     for how in &KINDS[..3] {
         let way = |old: MovingPose| {
@@ -205,7 +207,7 @@ fn sway_swings_out_and_speed_is_made_good() {
         assert!(swaying.shift.length() < 5e-3 && swaying.yaw.abs() < 1e-3, "{how:?} {swaying:?}");
         let walking =
             way(MovingPose { travel: Vec3::Z, steady_travel: Vec3::Z, ..MovingPose::default() });
-        let area = (0..3000).map(|i| how.left((f64::from(i) + 0.5) * dt) * dt).sum::<f64>();
+        let area = (0..3000).map(|i| how.remaining((f64::from(i) + 0.5) * dt) * dt).sum::<f64>();
         assert!((walking.shift.y - area).abs() < 1e-4, "{how:?} {walking:?} {area}");
     }
 }
@@ -227,7 +229,7 @@ struct GoldenTurn {
 }
 
 #[test]
-fn agrees_with_scipy() {
+fn inertializer_agrees_with_scipy() {
     let golden: Golden =
         serde_json::from_str(include_str!("../../../tests/oracles/transition.json")).unwrap();
     for turn in &golden.turns {
@@ -261,7 +263,7 @@ fn agrees_with_scipy() {
 }
 
 #[test]
-fn a_large_offset_of_a_slow_joint_takes_its_time_and_others_do_not() {
+fn trigger_within_slows_down_large_offsets_of_slow_joints() {
     let turned = |angle: f32| MovingPose {
         rotations: vec![Quat::from_rotation_x(angle); 2],
         angular_velocities: vec![Vec3::ZERO; 2],
@@ -270,8 +272,8 @@ fn a_large_offset_of_a_slow_joint_takes_its_time_and_others_do_not() {
     let (old, new) = (turned(1.2), turned(0.0));
     let (usual, dt) = ([1.0, 100.0], 1.0 / 240.0);
     for kind in KINDS {
-        // The fastest that each joint turns, radians per second, and what is left after a second
-        // and at last.
+        // The greatest angular speed of each joint, radians per second, and the rest after a second
+        // and at the end.
         let played = |usual: &[f32]| {
             let mut inertia = Inertializer::new(kind);
             inertia.trigger_within(&old, &new, usual);
@@ -299,7 +301,7 @@ fn a_large_offset_of_a_slow_joint_takes_its_time_and_others_do_not() {
         assert!(held[0] <= 0.76 && (held[1] - free[1]).abs() < 1e-3, "{kind:?}: {held:?}");
         assert!(left[0][0] > 0.3 && left[0][1] < 0.02, "{kind:?}: {left:?}");
         assert!(left[9][0].abs() < 1e-3, "{kind:?}: {left:?}");
-        // A jump in the middle of it goes on from where it is.
+        // A jump in the middle of it continues from the current pose.
         let mut inertia = Inertializer::new(kind);
         inertia.trigger_within(&old, &new, &usual);
         (0..60).for_each(|_| inertia.advance(dt));

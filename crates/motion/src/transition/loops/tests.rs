@@ -1,3 +1,5 @@
+//! Tests of closing cycles.
+
 use super::*;
 use crate::clip::JointTranslations;
 use crate::registration::fixtures::Walk;
@@ -18,7 +20,7 @@ fn source_of(clip: Clip) -> Source {
     Source::new(Arc::new(clip), &roles)
 }
 
-/// 67 frames are one stride, and a little.
+/// Returns a walk; a stride is 66.7 frames.
 fn walk(frames: usize, turning: f32) -> Source {
     source_of(Walk { frames, turning, heading: 1.0, start: (3.0, -4.0), ..Walk::default() }.clip())
 }
@@ -27,8 +29,8 @@ fn closed(source: &Source, cycle: Range<usize>, method: LoopMethod, ratio: f64) 
     close_loop(source, cycle, &LoopOptions { method, ratio }).unwrap()
 }
 
-/// The seam as a viewer meets it: joint angles between the last frame of a cycle and the first of
-/// the next, less those of the clip's own step.
+/// Returns the visible seam: joint angles between the last frame of a cycle and the first of the
+/// next, minus those of the clip's own step.
 fn seam_of_frames(source: &Source, cycle: Range<usize>, made: &Loop) -> f32 {
     let twice = made.repeat(2).unwrap();
     let n = made.clip.frames();
@@ -44,7 +46,7 @@ fn seam_of_frames(source: &Source, cycle: Range<usize>, made: &Loop) -> f32 {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
     #[test]
-    fn loops_close(start in 0usize..30, length in 20usize..100, turning in -1.0f32..1.0, ratio in 0.0f64..1.0) {
+    fn close_loop_closes_pose_and_velocity(start in 0usize..30, length in 20usize..100, turning in -1.0f32..1.0, ratio in 0.0f64..1.0) {
         let source = walk(160, turning);
         for method in &METHODS[..2] {
             let made = closed(&source, start..start + length, *method, ratio);
@@ -56,7 +58,7 @@ proptest! {
     }
 
     #[test]
-    fn a_hundred_cycles_do_not_drift(start in 0usize..30, length in 40usize..100, turning in -1.0f32..1.0) {
+    fn repeated_loop_does_not_drift(start in 0usize..30, length in 40usize..100, turning in -1.0f32..1.0) {
         let source = walk(160, turning);
         let roles = Roles::detect(source.clip().skeleton());
         let made = closed(&source, start..start + length, METHODS[0], 0.5);
@@ -70,9 +72,9 @@ proptest! {
             place = made.cycle.after(&place);
             let frame = k * length;
             prop_assert_eq!(&played.rotations(frame)[1..], &played.rotations(0)[1..]);
-            // In double precision the k-th cycle lies at `cycle^k`. What is stored is that, rounded
-            // once: to half of what lies between neighbouring numbers of single precision, 8 µm at
-            // 160 m. Nothing adds up.
+            // In double precision the k-th cycle is transformed by `cycle^k`. The stored value is
+            // that, rounded once: to half the distance between neighbouring numbers of single
+            // precision, 8 µm at 160 m. Errors do not accumulate.
             let at = place.apply_ground(DVec2::new(root.x.into(), root.z.into()));
             for (stored, exact) in axes(played.root_translations()[frame]).into_iter().zip([at.x, f64::from(root.y), at.y]) {
                 let rounding = 0.5 * f64::from(f32::EPSILON) * exact.abs();
@@ -87,7 +89,7 @@ proptest! {
 
 /// Rotations about all axes do not commute: one solution is not enough.
 #[test]
-fn large_differences_about_any_axis_close() {
+fn close_loop_with_large_differences_closes() {
     let skeleton = crate::skeleton::fixtures::cmu_bvh();
     let mut largest = 0.0_f64;
     for seed in 0..4 {
@@ -109,7 +111,7 @@ fn large_differences_about_any_axis_close() {
 }
 
 #[test]
-fn what_a_viewer_meets_at_the_seam() {
+fn close_loop_leaves_no_visible_seam() {
     let source = walk(160, 0.3);
     // 60 frames of 66.7: most of a tenth of a stride is missing.
     for cycle in [5..65, 0..60, 99..159] {
@@ -121,7 +123,7 @@ fn what_a_viewer_meets_at_the_seam() {
         let gap = raw.skip(1).map(|(a, b)| quat::angle_between(*a, *b)).fold(0.0, f32::max);
         assert!(gap > 0.2);
         let exact = closed(&source, cycle.clone(), METHODS[0], 0.5);
-        // The root's own step is the one difference that is left to the way over the ground.
+        // Only the root's own step over the ground remains.
         assert!(
             seam_of_frames(&source, cycle.clone(), &exact) < 0.05,
             "{}",
@@ -132,19 +134,19 @@ fn what_a_viewer_meets_at_the_seam() {
 }
 
 #[test]
-fn the_classic_loop_s_seam_is_told() {
+fn classic_loop_reports_its_seam() {
     let source = walk(160, 0.0);
     let classic = closed(&source, 5..35, METHODS[3], 0.5);
     let z = crate::math::spring::rate(0.2) * 0.5;
     let k = (1.0 + z) * (-z).exp();
-    // Velocities differ as well, so the share is that of the pose difference only in order.
+    // Velocities differ as well, so the share is only of the order of that of the pose difference.
     let share = classic.seam.turn_deg / classic.before.turn_deg;
     assert!(share > 0.5 * k && share < 2.5 * k, "{share} {k}");
     assert!(closed(&source, 5..35, METHODS[0], 0.5).seam.turn_deg < 1e-3);
 }
 
 #[test]
-fn a_cycle_that_closes_by_itself_stays_as_it_is() {
+fn close_loop_of_an_exact_cycle_changes_nothing() {
     // Exactly one stride in 64 frames.
     let source = source_of(Walk { frames: 65, fps: 64.0, cadence: 1.0, ..Walk::default() }.clip());
     for method in METHODS {
@@ -158,9 +160,9 @@ fn a_cycle_that_closes_by_itself_stays_as_it_is() {
     }
 }
 
-/// The loop of a clip that turns walks on in its own curve.
+/// The loop of a clip that turns continues along its own curve.
 #[test]
-fn the_way_goes_on_in_its_own_curve() {
+fn close_loop_of_a_turning_clip_continues_its_curve() {
     let source = walk(160, 0.6);
     let made = closed(&source, 10..77, METHODS[0], 0.5);
     assert!((made.cycle.yaw - 0.6 * 67.0 / 60.0).abs() < 0.05, "{:?}", made.cycle);
@@ -173,7 +175,7 @@ fn the_way_goes_on_in_its_own_curve() {
 }
 
 #[test]
-fn tracks_close_too_and_ends_are_kept_by_the_ratio() {
+fn close_loop_closes_translations_and_respects_the_ratio() {
     let (clip, n) = ((**walk(100, 0.0).clip()).clone(), 100);
     let values = (0..n).map(|f| Vec3::new(0.2, 0.22 + 0.002 * f as f32, 0.0)).collect();
     let source =
@@ -188,7 +190,7 @@ fn tracks_close_too_and_ends_are_kept_by_the_ratio() {
 }
 
 #[test]
-fn what_is_no_cycle_is_refused() {
+fn close_loop_of_an_invalid_range_is_refused() {
     let source = walk(60, 0.0);
     for cycle in [0..60, 10..11, 40..40, 59..70, 0..usize::MAX, usize::MAX..usize::MAX] {
         let error = close_loop(&source, cycle, &LoopOptions::default()).unwrap_err();

@@ -1,3 +1,5 @@
+//! Tests of the deliberate mistakes.
+
 use super::*;
 use crate::clip::{ContactOptions, Contacts};
 use crate::metrics::{Profile, Subject, TransitionMetrics};
@@ -16,12 +18,12 @@ const METHODS: [Method; 6] = [
         extrapolation_half_life_secs: 0.1,
     }),
 ];
-const PLACES: [(bool, RootBlend); 3] =
+const ROOT_OPTIONS: [(bool, RootBlend); 3] =
     [(true, RootBlend::Velocity), (true, RootBlend::World), (false, RootBlend::Velocity)];
 const LEAVE: usize = 120;
 const ENTER: usize = 31;
 
-/// The built-in walk and run with what is usual in them.
+/// The built-in walk and run with their profiles.
 struct Pair {
     roles: Roles,
     a: Profile,
@@ -70,20 +72,20 @@ impl Pair {
     }
 }
 
-/// Every method that a mistake concerns, with what is measured without it and with it.
+/// Returns every method that a mistake concerns, with the metrics without it and with it.
 fn with_and_without(
     pair: &Pair,
     mistake: Mistake,
 ) -> impl Iterator<Item = (Method, TransitionMetrics, TransitionMetrics)> + '_ {
     let concerned = METHODS.into_iter().filter(move |method| mistake.concerns(method));
     concerned.map(move |method| {
-        let of = |mistake| pair.measured(&pair.made(method, PLACES[0], mistake));
+        let of = |mistake| pair.measured(&pair.made(method, ROOT_OPTIONS[0], mistake));
         (method, of(None), of(Some(mistake)))
     })
 }
 
 #[test]
-fn wrong_rotations_whirl_or_jump() {
+fn mistaken_rotations_spin_or_jump() {
     let pair = walk_and_run();
     for (method, right, wrong) in with_and_without(&pair, Mistake::NoHemisphereCheck) {
         assert!(wrong.spin_deg.unwrap() > right.spin_deg.unwrap() + 90.0, "{method:?} {wrong:?}");
@@ -101,19 +103,19 @@ fn wrong_rotations_whirl_or_jump() {
 }
 
 #[test]
-fn wrong_places_turn_fly_and_slide() {
+fn mistaken_alignment_spins_jumps_or_slides() {
     let pair = walk_and_run();
     for (method, right, wrong) in with_and_without(&pair, Mistake::AtanForAtan2) {
         assert!(wrong.spin_deg.unwrap() > right.spin_deg.unwrap() + 140.0, "{method:?} {wrong:?}");
     }
     for (method, right, wrong) in with_and_without(&pair, Mistake::DegreesInTransform) {
-        // Half a turn is 180 radians then, which is 53° from where it should be.
+        // Half a turn is 180 radians then, which is 53° off.
         assert!(wrong.spin_deg.unwrap() > right.spin_deg.unwrap() + 30.0, "{method:?} {wrong:?}");
     }
     for method in METHODS {
-        let wrong = pair.made(method, PLACES[0], Some(Mistake::WrongFacingAxis));
+        let wrong = pair.made(method, ROOT_OPTIONS[0], Some(Mistake::WrongFacingAxis));
         let (a, b) = (pair.a.source(), pair.b.source());
-        // The first posture stands where A's does, with the shadow of its Y axis on that of A's.
+        // The first frame is aligned by the projections of the Y axes.
         let stands = wrong.aligned_b.after(&b.frames()[ENTER]);
         assert!(stands.shift.distance(a.frames()[LEAVE].shift) < 1e-6);
         let shadow = |root: Quat| {
@@ -130,7 +132,7 @@ fn wrong_places_turn_fly_and_slide() {
     let long = Method::Dissolve { window: 60, law: WeightLaw::Smooth };
     for method in [long, METHODS[2], METHODS[3], METHODS[4]] {
         let [right, wrong] = [None, Some(Mistake::WorldRoot)]
-            .map(|mistake| pair.measured(&pair.made(method, PLACES[0], mistake)));
+            .map(|mistake| pair.measured(&pair.made(method, ROOT_OPTIONS[0], mistake)));
         assert!(
             wrong.skate_cm.unwrap() > right.skate_cm.unwrap() + 5.0,
             "{method:?} {right:?} {wrong:?}"
@@ -139,7 +141,7 @@ fn wrong_places_turn_fly_and_slide() {
 }
 
 #[test]
-fn wrong_velocities_stop_what_was_moving() {
+fn mistaken_velocities_stop_the_motion() {
     let pair = walk_and_run();
     for (method, right, wrong) in with_and_without(&pair, Mistake::VelocityDividedTwice) {
         if matches!(method, Method::Dissolve { .. }) {
@@ -154,9 +156,9 @@ fn wrong_velocities_stop_what_was_moving() {
             );
         }
     }
-    // A dissolve that nearly stands still goes on rigidly behind its window.
+    // A dissolve that nearly stands still continues rigidly after its window.
     let [right, wrong] = [None, Some(Mistake::VelocityDividedTwice)]
-        .map(|mistake| pair.made(METHODS[1], PLACES[0], mistake));
+        .map(|mistake| pair.made(METHODS[1], ROOT_OPTIONS[0], mistake));
     let (end, last) = (right.transition.end, right.frames.len() - 1);
     let way = |made: &Concatenation, from: usize, to: usize| {
         made.frames[from].inverse().after(&made.frames[to]).shift
@@ -171,24 +173,24 @@ fn wrong_velocities_stop_what_was_moving() {
 }
 
 #[test]
-fn what_a_mistake_does_not_concern_is_right() {
+fn mistake_that_does_not_concern_a_method_changes_nothing() {
     let pair = walk_and_run();
     let at_once = Method::Dissolve { window: 1, law: WeightLaw::Smooth };
     for mistake in Mistake::ALL {
         for method in [Method::Cut, at_once] {
             let [right, wrong] =
-                [None, Some(mistake)].map(|mistake| pair.made(method, PLACES[0], mistake));
+                [None, Some(mistake)].map(|mistake| pair.made(method, ROOT_OPTIONS[0], mistake));
             assert_eq!(right == wrong, !mistake.concerns(&method), "{mistake:?} {method:?}");
         }
-        // What comes before the transition is A, whatever is wrong.
-        let made = pair.made(METHODS[2], PLACES[0], Some(mistake));
+        // Before the transition the result is A, whatever the mistake is.
+        let made = pair.made(METHODS[2], ROOT_OPTIONS[0], Some(mistake));
         assert_eq!(
             made.clip.pose(LEAVE - 1),
             pair.a.source().clip().pose(LEAVE - 1),
             "{mistake:?}"
         );
         assert_eq!(made.frames.len(), made.clip.frames());
-        // And what cannot be joined is refused as ever.
+        // Incompatible clips are refused as usual.
         let options = TransitionOptions::new(METHODS[2]);
         let (a, b) = (pair.a.source(), pair.b.source());
         assert!(concatenate_mistaken(a, LEAVE, b, 1 << 20, &options, mistake).is_err());
@@ -196,10 +198,10 @@ fn what_a_mistake_does_not_concern_is_right() {
 }
 
 #[test]
-fn right_differences_give_the_right_transition() {
+fn mixing_with_correct_differences_equals_concatenate() {
     let pair = walk_and_run();
     for method in METHODS {
-        for place in PLACES {
+        for place in ROOT_OPTIONS {
             let right = pair.made(method, place, None);
             let (align, root) = place;
             let options = TransitionOptions { align, root, ..TransitionOptions::new(method) };
