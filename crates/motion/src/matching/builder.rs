@@ -1,8 +1,10 @@
+//! Construction of databases in slices.
+
+use super::cycle;
 use super::database::{Database, DatabaseOptions, MatchClip, spread_all};
 use super::features::{Features, Layout, RATE};
 use super::motion::{FeatureJoints, Motion, mirrored_contacts};
 use super::pace::Pace;
-use super::round;
 use super::search::{BoxBuilder, BoxIndex};
 use super::tags::{TagRange, suggest_tags};
 use super::{MatchError, Weights};
@@ -14,20 +16,22 @@ use crate::skeleton::{Roles, Side, Skeleton};
 use crate::transition::repeat_clip;
 use std::sync::Arc;
 
-/// The most frames of a database: features of 27 dimensions take half a gigabyte then.
+/// The greatest number of frames of a database: features of 27 dimensions then take half a
+/// gigabyte.
 const MAX_FRAMES: usize = 2_000_000;
-/// Frames whose features are gathered in one step.
-const GATHERED: usize = 3_000;
-/// Frames that are sorted into boxes in one step.
-const SLICE: usize = 100_000;
+/// Number of frames whose features are gathered in one slice.
+const FRAMES_PER_GATHER: usize = 3_000;
+/// Number of frames that are sorted into boxes in one slice.
+const FRAMES_PER_SORT: usize = 100_000;
 
-/// Builds a [`Database`] in slices: [`advance`](Self::advance) until it is complete, then
-/// [`finish`](Self::finish).
+/// The construction of a [`Database`] in slices: call [`advance`](Self::advance) until it is
+/// complete, then [`finish`](Self::finish).
 ///
-/// Each clip is moved to the first clip's skeleton and to [`RATE`] frames per second, measured, and
-/// mirrored; one of these for one clip is a slice. Then features are normalised and frames sorted
-/// into boxes. A clip that is a cycle is closed and goes round ([`DatabaseOptions::cycles`]).
-/// Another one that is too short to look ahead in is left out and named in [`Database::skipped`].
+/// Each clip is retargeted to the first clip's skeleton, resampled to [`RATE`] frames per second,
+/// measured, and mirrored; one of these steps for one clip is a slice. Then features are normalised
+/// and frames sorted into boxes. A clip that is a cycle is closed and repeats
+/// ([`DatabaseOptions::cycles`]). Any other clip that is too short for its trajectory features is
+/// left out and named in [`Database::skipped`].
 #[derive(Clone, Debug)]
 pub struct DatabaseBuilder {
     clips: Vec<MatchClip>,
@@ -38,7 +42,7 @@ pub struct DatabaseBuilder {
     motions: Vec<Arc<Motion>>,
     skipped: Vec<MatchError>,
     longest_secs: f64,
-    /// The clip whose turn it is, and what has been done with it.
+    /// The next clip, and its stage.
     next: usize,
     stage: Stage,
 }
@@ -46,23 +50,23 @@ pub struct DatabaseBuilder {
 #[derive(Clone, Debug)]
 enum Stage {
     Prepare,
-    Measure(Round),
+    Measure(PreparedClip),
     Mirror,
-    MeasureMirrored(Round),
-    Gather(Gathering),
-    Normalise(Gathering),
+    MeasureMirrored(PreparedClip),
+    Gather(GatheredFeatures),
+    Normalise(GatheredFeatures),
     Sort(Sorting),
 }
 
-/// A clip at the database's rate; of a cycle one round, and where that leads.
+/// A clip at the database's rate; for a cycle one repetition, and its transform.
 #[derive(Clone, Debug)]
-struct Round {
+struct PreparedClip {
     clip: Arc<Clip>,
     cycle: Option<Planar>,
 }
 
-impl Round {
-    /// The contacts of the feet; in a cycle those of a round in the middle of others, where no
+impl PreparedClip {
+    /// Returns the contacts of the feet; for a cycle those of a repetition between others, where no
     /// stance is cut off.
     fn contacts(&self, roles: &Roles) -> Result<Contacts, MatchError> {
         let detect = |clip: &Clip| Contacts::detect(clip, roles, &ContactOptions::default());
@@ -80,18 +84,18 @@ impl Round {
 
 /// The features of all motions, one after the other.
 #[derive(Clone, Debug)]
-struct Gathering {
+struct GatheredFeatures {
     starts: Vec<usize>,
     valid: Vec<u32>,
     rows: Vec<f32>,
 }
 
-impl Gathering {
+impl GatheredFeatures {
     fn new() -> Self {
         Self { starts: vec![0], valid: Vec::new(), rows: Vec::new() }
     }
 
-    /// Motions that are through.
+    /// Returns the number of motions that are gathered.
     fn motions(&self) -> usize {
         self.starts.len() - 1
     }
@@ -117,13 +121,13 @@ struct Sorting {
     progress: Progress,
 }
 
-/// Of all progress, the share that is made clip by clip; out of 1000.
+/// The share of the progress that belongs to the preparation of clips, of 1000.
 const CLIPS_SHARE: usize = 700;
-/// And the share of gathering their features.
+/// The share of the progress that belongs to the gathering of features, of 1000.
 const GATHER_SHARE: usize = 100;
 
 impl DatabaseBuilder {
-    /// Checks what can be checked beforehand.
+    /// Begins the construction, and checks what can be checked beforehand.
     ///
     /// # Errors
     /// [`MatchError::NoClips`], [`MatchError::Times`], [`MatchError::TooManyFrames`],
@@ -154,8 +158,8 @@ impl DatabaseBuilder {
         })
     }
 
-    /// The clips of a database with other features: nothing is measured again but where
-    /// trajectories lead.
+    /// Begins the construction of a database of the same clips with other features: only
+    /// trajectories are measured again.
     ///
     /// # Errors
     /// [`MatchError::Times`].
@@ -175,11 +179,11 @@ impl DatabaseBuilder {
             skipped: database.skipped.clone(),
             longest_secs: longest,
             next: 0,
-            stage: Stage::Gather(Gathering::new()),
+            stage: Stage::Gather(GatheredFeatures::new()),
         })
     }
 
-    /// How far it has come, out of 1000.
+    /// Returns the progress, of 1000.
     #[must_use]
     pub fn progress(&self) -> Progress {
         let of_clip =
@@ -204,11 +208,11 @@ impl DatabaseBuilder {
         Progress { done, total: 1_000 }
     }
 
-    /// Does one slice.
+    /// Processes one slice.
     ///
     /// # Errors
-    /// [`MatchError`] when a clip cannot be moved to the first one's skeleton or mirrored, has no
-    /// feet there or holds what is no number, or no clip has a frame that can be searched.
+    /// [`MatchError`] when a clip cannot be retargeted to the first one's skeleton or mirrored, has
+    /// no feet there or values that are not finite, or no clip has a frame that can be searched.
     pub fn advance(&mut self) -> Result<Progress, MatchError> {
         match std::mem::replace(&mut self.stage, Stage::Prepare) {
             Stage::Prepare => match self.clips.get(self.next) {
@@ -225,7 +229,7 @@ impl DatabaseBuilder {
                         self.next += 1;
                     }
                 }
-                None => self.stage = Stage::Gather(Gathering::new()),
+                None => self.stage = Stage::Gather(GatheredFeatures::new()),
             },
             Stage::Measure(round) => {
                 let contacts = round.contacts(&self.roles)?;
@@ -241,9 +245,9 @@ impl DatabaseBuilder {
                         let clip = mirror(motion.clip(), &self.roles).map_err(|error| {
                             MatchError::Mirror { name: motion.clip().name().to_owned(), error }
                         })?;
-                        Stage::MeasureMirrored(Round {
+                        Stage::MeasureMirrored(PreparedClip {
                             clip: Arc::new(clip),
-                            cycle: motion.cycle().as_ref().map(round::mirrored),
+                            cycle: motion.cycle().as_ref().map(cycle::mirrored),
                         })
                     }
                     None => self.next_clip(),
@@ -266,7 +270,7 @@ impl DatabaseBuilder {
                 self.stage = self.next_clip();
             }
             Stage::Gather(mut gathering) => {
-                let until = gathering.rows.len() + GATHERED * self.layout.dims();
+                let until = gathering.rows.len() + FRAMES_PER_GATHER * self.layout.dims();
                 while gathering.rows.len() < until
                     && let Some(motion) = self.motions.get(gathering.motions())
                 {
@@ -280,17 +284,17 @@ impl DatabaseBuilder {
             }
             Stage::Normalise(gathering) => self.stage = Stage::Sort(self.normalised(gathering)?),
             Stage::Sort(mut sorting) => {
-                sorting.progress = sorting.boxes.advance(&sorting.features, SLICE);
+                sorting.progress = sorting.boxes.advance(&sorting.features, FRAMES_PER_SORT);
                 self.stage = Stage::Sort(sorting);
             }
         }
         Ok(self.progress())
     }
 
-    /// Does what is left.
+    /// Processes the remaining slices and returns the database.
     ///
     /// # Errors
-    /// As [`advance`](Self::advance).
+    /// The same as for [`advance`](Self::advance).
     pub fn finish(mut self) -> Result<Database, MatchError> {
         loop {
             match self.stage {
@@ -327,8 +331,8 @@ impl DatabaseBuilder {
         Stage::Prepare
     }
 
-    /// A clip on the first clip's skeleton and at the database's rate.
-    fn prepared(&self, from: &MatchClip) -> Result<Round, MatchError> {
+    /// Returns a clip on the first clip's skeleton and at the database's rate.
+    fn prepared(&self, from: &MatchClip) -> Result<PreparedClip, MatchError> {
         let mut clip = Arc::clone(&from.clip);
         if clip.skeleton() != &self.skeleton
             && let Some(model) = self.clips.first()
@@ -339,14 +343,14 @@ impl DatabaseBuilder {
         }
         if self.options.cycles
             && let Some((clip, cycle)) =
-                round::closed(&clip, &self.roles).as_ref().and_then(round::at_rate)
+                cycle::closed(&clip, &self.roles).as_ref().and_then(cycle::at_rate)
         {
-            return Ok(Round { clip: Arc::new(clip), cycle: Some(cycle) });
+            return Ok(PreparedClip { clip: Arc::new(clip), cycle: Some(cycle) });
         }
         if clip.fps() != RATE as f64 {
             clip = Arc::new(resample(&clip, RATE as f64, Interpolation::Cubic)?);
         }
-        Ok(Round { clip, cycle: None })
+        Ok(PreparedClip { clip, cycle: None })
     }
 
     fn tags_of(&self, motion: &Motion) -> Vec<TagRange> {
@@ -365,8 +369,8 @@ impl DatabaseBuilder {
         suggest_tags(motion.roots(), RATE as f64, scale)
     }
 
-    fn normalised(&self, gathering: Gathering) -> Result<Sorting, MatchError> {
-        let Gathering { starts, valid, rows } = gathering;
+    fn normalised(&self, gathering: GatheredFeatures) -> Result<Sorting, MatchError> {
+        let GatheredFeatures { starts, valid, rows } = gathering;
         let frames = starts.last().copied().unwrap_or(0);
         if valid.is_empty() {
             return Err(MatchError::NoValidFrame {

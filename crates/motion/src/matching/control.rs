@@ -1,31 +1,32 @@
+//! The player's input, and recordings of it.
+
 use super::tags::{TagFilter, TagSet};
 use glam::DVec2;
 use std::f64::consts::TAU;
 
-/// Steps of a velocity, metres per second, and of a facing, parts of a turn. A stick trembles by
-/// less.
+/// Rounding steps of a velocity, metres per second, and of a facing, parts of a turn; an idle stick
+/// varies by less.
 const SPEED_STEP: f64 = 0.05;
 const TURN_STEPS: f64 = 256.0;
-/// The fastest that can be asked for in x or z, metres per second.
+/// The greatest velocity in x or z, metres per second.
 const MAX_MPS: f64 = 12.0;
 
-/// What the player asks for at one moment, in the world: already relative to the camera, already at
-/// the gait's speed.
+/// The player's input at one moment, in the world: already relative to the camera, and at the
+/// gait's speed.
 ///
-/// Rounded to 5 cm/s and to 1/256 of a turn, so that what was recorded and written down is what was
-/// played.
+/// It is rounded to 5 cm/s and to 1/256 of a turn, so that a recording replays exactly.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Control {
     /// (x, z) in steps of 5 cm/s.
     velocity: [i16; 2],
-    /// In 1/256 of a turn; `None` faces where it goes.
+    /// In 1/256 of a turn; `None` to face the direction of travel.
     facing: Option<u8>,
     filter: TagFilter,
 }
 
 impl Control {
-    /// Asks for a velocity over the ground ((x, z), metres per second) and, to strafe, a yaw to
-    /// face (radians about +Y, 0 is +Z). What is no number is 0.
+    /// Returns the input for a velocity over the ground ((x, z), metres per second) and, for
+    /// strafing, a yaw to face (radians about +Y, 0 is +Z). Values that are not finite count as 0.
     #[must_use]
     pub fn new(velocity_mps: DVec2, facing_yaw: Option<f64>) -> Self {
         // A cast from NaN gives 0.
@@ -38,44 +39,44 @@ impl Control {
         }
     }
 
-    /// The same with tags that are asked for and forbidden.
+    /// Returns the input with required and forbidden tags.
     #[must_use]
     pub fn with_filter(mut self, filter: TagFilter) -> Self {
         self.filter = filter;
         self
     }
 
-    /// The velocity, (x, z) in metres per second.
+    /// Returns the velocity, (x, z) in metres per second.
     #[must_use]
     pub fn velocity(&self) -> DVec2 {
         DVec2::new(f64::from(self.velocity[0]), f64::from(self.velocity[1])) * SPEED_STEP
     }
 
-    /// Whether it asks to stand still.
+    /// Returns whether the input is to stand still.
     #[must_use]
     pub fn is_at_rest(&self) -> bool {
         self.velocity == [0, 0]
     }
 
-    /// The yaw to face, radians from 0 to 2π; `None` faces where it goes.
+    /// Returns the yaw to face, radians from 0 to 2π; `None` to face the direction of travel.
     #[must_use]
     pub fn facing(&self) -> Option<f64> {
         self.facing.map(|steps| f64::from(steps) / TURN_STEPS * TAU)
     }
 
-    /// Which frames may be found.
+    /// Returns the filter of frames.
     #[must_use]
     pub fn filter(&self) -> TagFilter {
         self.filter
     }
 }
 
-/// Input over time: what was asked for in every tick of a controller. Playing it again gives the
-/// same motion, bit for bit.
+/// Input over time: one [`Control`] for every tick of a controller. Replayed, it gives the same
+/// motion, bit for bit.
 ///
-/// As text it is made of letters that a link needs not escape: stretches joined by `_`, each
-/// `ticks.x.z`, then `.f` and the facing where there is one, `.a` and `.n` and the tags asked for
-/// and forbidden; numbers in base 36.
+/// Its text form uses only characters that a link need not escape: runs of equal input joined by
+/// `_`, each `ticks.x.z`, then `.f` and the facing if there is one, `.a` and `.n` and the required
+/// and forbidden tags; numbers in base 36.
 ///
 /// ```
 /// use segue_motion::matching::{Control, Recording};
@@ -90,14 +91,14 @@ impl Control {
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Recording {
-    stretches: Vec<(Control, u32)>,
+    runs: Vec<(Control, u32)>,
     ticks: u32,
 }
 
-/// Why a text is no recording.
+/// Error reading a recording.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RecordingError {
-    /// A stretch that cannot be read.
+    /// A run that cannot be read.
     #[error("part {part} of the recorded input, `{found}`, is not of the form ticks.x.z")]
     Part {
         /// Its number, from 1.
@@ -105,70 +106,68 @@ pub enum RecordingError {
         /// Its text, at most 40 letters.
         found: String,
     },
-    /// Longer than any recording.
+    /// The recording is longer than [`Recording::MAX_TICKS`].
     #[error("the recorded input is longer than {} minutes", Recording::MAX_TICKS / 3_600)]
     TooLong,
 }
 
 impl Recording {
-    /// The longest recording, ticks of 1/60 s: half an hour.
+    /// The greatest length of a recording, ticks of 1/60 s: half an hour.
     pub const MAX_TICKS: u32 = 108_000;
 
-    /// Nothing yet.
+    /// Returns an empty recording.
     #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// One more tick. `false` when the recording is full.
+    /// Appends one tick. Returns `false` when the recording is full.
     pub fn push(&mut self, control: Control) -> bool {
         self.hold(control, 1)
     }
 
-    /// The same input for some ticks. `false`, and nothing is added, when that is longer than
-    /// [`Self::MAX_TICKS`].
+    /// Appends the same input for some ticks. Returns `false`, and appends nothing, when the
+    /// recording would exceed [`Self::MAX_TICKS`].
     pub fn hold(&mut self, control: Control, ticks: u32) -> bool {
         if ticks > Self::MAX_TICKS - self.ticks {
             return false;
         }
         self.ticks += ticks;
-        match self.stretches.last_mut() {
+        match self.runs.last_mut() {
             _ if ticks == 0 => {}
             Some((last, count)) if *last == control => *count += ticks,
-            _ => self.stretches.push((control, ticks)),
+            _ => self.runs.push((control, ticks)),
         }
         true
     }
 
-    /// Ticks.
+    /// Returns the number of ticks.
     #[must_use]
     pub fn ticks(&self) -> usize {
         self.ticks as usize
     }
 
-    /// The input of every tick.
+    /// Returns the input of every tick.
     pub fn controls(&self) -> impl Iterator<Item = Control> + '_ {
-        self.stretches
-            .iter()
-            .flat_map(|&(control, ticks)| std::iter::repeat_n(control, ticks as usize))
+        self.runs.iter().flat_map(|&(control, ticks)| std::iter::repeat_n(control, ticks as usize))
     }
 
-    /// The input of one tick.
+    /// Returns the input of one tick.
     #[must_use]
     pub fn control(&self, tick: usize) -> Option<Control> {
         let mut end = 0;
-        let stretch = self.stretches.iter().find(|(_, ticks)| {
+        let run = self.runs.iter().find(|(_, ticks)| {
             end += *ticks as usize;
             tick < end
         });
-        stretch.map(|(control, _)| *control)
+        run.map(|(control, _)| *control)
     }
 
-    /// As text for a link.
+    /// Returns the text form, for links.
     #[must_use]
     pub fn to_text(&self) -> String {
         let mut text = String::new();
-        for (control, ticks) in &self.stretches {
+        for (control, ticks) in &self.runs {
             if !text.is_empty() {
                 text.push('_');
             }
@@ -194,14 +193,14 @@ impl Recording {
         text
     }
 
-    /// Reads what [`Self::to_text`] wrote.
+    /// Parses the text form of [`Self::to_text`].
     ///
     /// # Errors
     /// [`RecordingError`] when a part is not of that form, or the recording is too long.
     pub fn from_text(text: &str) -> Result<Self, RecordingError> {
         let mut recording = Self::new();
         for (index, part) in text.split('_').enumerate().filter(|_| !text.is_empty()) {
-            let (control, ticks) = stretch(part).ok_or_else(|| RecordingError::Part {
+            let (control, ticks) = parse_run(part).ok_or_else(|| RecordingError::Part {
                 part: index + 1,
                 found: part.chars().take(40).collect(),
             })?;
@@ -213,7 +212,7 @@ impl Recording {
     }
 }
 
-fn stretch(text: &str) -> Option<(Control, u32)> {
+fn parse_run(text: &str) -> Option<(Control, u32)> {
     let mut parts = text.split('.');
     let mut number = || i64::from_str_radix(parts.next()?, 36).ok();
     let ticks = u32::try_from(number()?).ok()?;
@@ -245,7 +244,7 @@ fn base_36(text: &mut String, value: i64) {
             break;
         }
     }
-    // Writing to a text does not fail.
+    // Writing to a string does not fail.
     text.extend(digits.iter().rev());
 }
 
@@ -257,7 +256,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_written_is_read(parts in prop::collection::vec((-240i16..=240, -240i16..=240, prop::option::of(0u8..), 0u32..99, 0u32..1 << 31), 0..9)) {
+        fn recording_to_text_and_back_is_equal(parts in prop::collection::vec((-240i16..=240, -240i16..=240, prop::option::of(0u8..), 0u32..99, 0u32..1 << 31), 0..9)) {
             let mut recording = Recording::new();
             for (x, z, facing, ticks, ask) in parts {
                 let control = Control { velocity: [x, z], facing, filter: TagFilter { ask: TagSet(ask & 31), forbid: TagSet(ask >> 5) } };
@@ -273,7 +272,7 @@ mod tests {
         }
 
         #[test]
-        fn any_text_is_read_or_refused(text in "[-0-9a-z._]{0,40}") {
+        fn recording_from_any_text_does_not_panic(text in "[-0-9a-z._]{0,40}") {
             if let Ok(recording) = Recording::from_text(&text) {
                 prop_assert!(recording.ticks() <= Recording::MAX_TICKS as usize);
             }
@@ -281,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_rounded_and_held_within_bounds() {
+    fn control_is_rounded_and_clamped() {
         let control = Control::new(DVec2::new(1.42, f64::NAN), Some(-0.01));
         assert!((control.velocity() - DVec2::new(1.4, 0.0)).length() < 1e-12);
         assert_eq!(control.facing(), Some(0.0));

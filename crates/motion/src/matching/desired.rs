@@ -1,13 +1,15 @@
+//! The simulation object, steered by springs.
+
 use super::control::Control;
 use crate::math::{Planar, spring, wrap_angle};
 use glam::DVec2;
 
-/// The simulation object: what the player steers, and what the character follows.
+/// The simulation object: the player steers it, and the character follows it.
 ///
-/// Its velocity is a critically damped spring towards the velocity that is asked for, with an
-/// acceleration of its own, so that the way is smooth to the third derivative; its yaw is one
-/// towards the facing that is asked for (Holden, "Code vs Data Driven Displacement", 2021). Both
-/// are solved exactly: where it will be is the same formula with a longer time.
+/// Its velocity is a critically damped spring towards the goal velocity, with an acceleration of
+/// its own, so that the path is smooth to the third derivative; its yaw is a spring towards the
+/// goal yaw (Holden, "Code vs Data Driven Displacement", 2021). Both are solved in closed form: a
+/// prediction is the same formula with a longer time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Simulation {
     /// (x, z), metres.
@@ -20,44 +22,44 @@ pub struct Simulation {
     pub yaw: f64,
     /// Radians per second.
     pub yaw_rate: f64,
-    /// The velocity that is asked for.
+    /// The desired velocity.
     pub goal_velocity: DVec2,
-    /// The yaw that is asked for.
+    /// The desired yaw.
     pub goal_yaw: f64,
 }
 
 /// Half-lives of the springs, seconds.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Steering {
-    /// Of the velocity.
+    /// Half-life of the velocity.
     pub velocity_half_life_secs: f64,
-    /// Of the facing.
+    /// Half-life of the facing.
     pub facing_half_life_secs: f64,
 }
 
-/// A slower velocity says nothing about where to face, metres per second.
-const GOES_MPS: f64 = 0.1;
+/// The least velocity that determines the facing, metres per second.
+const MIN_HEADING_MPS: f64 = 0.1;
 
 impl Simulation {
-    /// Stands.
+    /// Returns an object at rest.
     #[must_use]
     pub fn at_rest(at: &Planar) -> Self {
         Self { position: at.shift, yaw: at.yaw, goal_yaw: at.yaw, ..Self::default() }
     }
 
-    /// Takes over what is asked for. Who does not strafe faces where he goes, and when he stops,
-    /// where he went.
-    pub fn ask(&mut self, control: &Control) {
+    /// Sets the desired velocity and facing. Without strafing, the facing follows the direction of
+    /// travel and keeps its last value at rest.
+    pub fn set_goal(&mut self, control: &Control) {
         self.goal_velocity = control.velocity();
         let v = self.goal_velocity;
         if let Some(yaw) = control.facing() {
             self.goal_yaw = wrap_angle(yaw);
-        } else if v.length() > GOES_MPS {
+        } else if v.length() > MIN_HEADING_MPS {
             self.goal_yaw = libm::atan2(v.x, v.y);
         }
     }
 
-    /// Where it is after `secs` if what is asked for stays.
+    /// Returns the object after `secs` with constant input.
     #[must_use]
     pub fn after(&self, secs: f64, steering: &Steering) -> Self {
         let mut later = *self;
@@ -65,7 +67,7 @@ impl Simulation {
         let y = spring::rate(steering.velocity_half_life_secs);
         let response = spring::response(steering.velocity_half_life_secs, t);
         let off = self.velocity - self.goal_velocity;
-        // Integral of e^(-ys) (off + j s), with j = a + y off.
+        // The integral of e^(-ys) (off + j s), with j = a + y off.
         let j = self.acceleration + off * y;
         let e = libm::exp(-y * t);
         later.position += self.goal_velocity * t
@@ -81,7 +83,7 @@ impl Simulation {
         later
     }
 
-    /// Where it stands and what it faces.
+    /// Returns its ground frame.
     #[must_use]
     pub fn place(&self) -> Planar {
         Planar { yaw: self.yaw, shift: self.position }
@@ -96,7 +98,7 @@ mod tests {
         Steering { velocity_half_life_secs: 0.25, facing_half_life_secs: 0.2 };
 
     #[test]
-    fn many_short_steps_are_a_long_one_and_the_velocity_is_that_of_the_way() {
+    fn simulation_in_short_steps_equals_one_long_step() {
         let start = Simulation {
             velocity: DVec2::new(1.0, -0.5),
             acceleration: DVec2::new(-3.0, 2.0),
@@ -132,13 +134,13 @@ mod tests {
     }
 
     #[test]
-    fn faces_where_it_goes_unless_it_strafes() {
+    fn simulation_without_strafing_faces_its_travel() {
         let mut simulation = Simulation::at_rest(&Planar::new(0.5, 1.0, 2.0));
-        simulation.ask(&Control::default());
+        simulation.set_goal(&Control::default());
         assert_eq!(simulation.goal_yaw, 0.5);
-        simulation.ask(&Control::new(DVec2::new(2.0, 0.0), None));
+        simulation.set_goal(&Control::new(DVec2::new(2.0, 0.0), None));
         assert!((simulation.goal_yaw - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
-        simulation.ask(&Control::new(DVec2::new(2.0, 0.0), Some(0.0)));
+        simulation.set_goal(&Control::new(DVec2::new(2.0, 0.0), Some(0.0)));
         assert_eq!(simulation.goal_yaw, 0.0);
         let quick = Steering { velocity_half_life_secs: 0.0, facing_half_life_secs: 0.0 };
         let there = simulation.after(0.5, &quick);

@@ -1,3 +1,5 @@
+//! Recordings played through a controller, and their metrics.
+
 use super::control::Recording;
 use super::database::Database;
 use super::features::RATE;
@@ -7,59 +9,59 @@ use crate::math::{Planar, wrap_angle};
 use crate::metrics::{Better, Metric, foot_slides_cm};
 use std::sync::Arc;
 
-/// What a controller made of a recording: the motion, and what it was to be.
+/// The motion of a controller for a recording, and the desired motion.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drive {
     /// The motion at [`RATE`], feet planted; one frame per tick.
     pub clip: Clip,
-    /// When the feet stand, as the clips that were played have it.
+    /// The contacts of the feet, from the clips that were played.
     pub contacts: Contacts,
     /// The character's root of each frame.
     pub roots: Vec<Planar>,
-    /// The simulation object of each frame: where the character was to be.
+    /// The simulation object of each frame: the desired ground frame of the character.
     pub desired: Vec<Planar>,
-    /// The yaw that was asked for in each frame, radians.
+    /// The desired yaw in each frame, radians.
     pub goals: Vec<f64>,
     /// The jumps.
     pub jumps: Vec<Jump>,
-    /// Searches, and the frames that they looked at.
+    /// Number of searches.
     pub searches: usize,
-    /// Frames that the searches looked at.
+    /// Number of frames that the searches visited.
     pub visited: usize,
 }
 
-/// Where a controller went over from one place to another.
+/// A jump of a controller from one frame to another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Jump {
-    /// The first frame of the drive that is played from the new place.
+    /// The first frame of the drive that is played from the new frame.
     pub frame: usize,
-    /// Why it had searched.
+    /// The cause of the search.
     pub reason: Reason,
-    /// Where it was, and what going on there cost.
+    /// The frame before the jump, and the cost of continuing there.
     pub from: Candidate,
-    /// Where it went, and what that cost.
+    /// The frame after the jump, and its cost.
     pub to: Candidate,
 }
 
-/// A change of the facing that is asked for by more than this is a turn, radians.
+/// The least change of the desired facing that counts as a turn, radians.
 const TURN_RADIANS: f64 = 0.6;
-/// A turn is made when the body faces within this of what was asked for, and stays there, radians:
+/// A turn is complete when the body faces within this of the desired yaw, and stays there, radians:
 /// 20°. Walking sways it by up to 10°.
-const FACES_RADIANS: f64 = 0.35;
+const FACING_TOLERANCE_RADIANS: f64 = 0.35;
 
-/// Numbers that tell how good a [`Drive`] is.
+/// Quality measures of a [`Drive`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DriveMetrics {
     /// Mean distance of the character from the simulation object, centimetres.
     pub error_cm: f64,
-    /// The largest, centimetres.
+    /// The largest distance, centimetres.
     pub worst_error_cm: f64,
-    /// The longest time from asking for a turn until the body faces there (within 20°, and stays),
-    /// seconds. Infinite where it never does; `None` without turns.
+    /// The longest time from the input of a turn until the body faces there (within 20°, and
+    /// stays), seconds. Infinite if it never does; `None` without turns.
     pub turn_secs: Option<f64>,
     /// Mean slide of a stance, centimetres; `None` without stances.
     pub skate_cm: Option<f64>,
-    /// That of the worst stance, centimetres.
+    /// The slide of the worst stance, centimetres.
     pub worst_skate_cm: Option<f64>,
     /// Jumps per minute.
     pub seams_per_minute: f64,
@@ -67,7 +69,7 @@ pub struct DriveMetrics {
     pub shortest_secs: Option<f64>,
 }
 
-/// Drives a character through a recording from the origin.
+/// Controls a character by a recording, from the origin.
 ///
 /// # Errors
 /// [`MatchError`] when an option is out of range.
@@ -116,7 +118,7 @@ pub fn drive(
 }
 
 impl Drive {
-    /// Measures it.
+    /// Measures the drive.
     #[must_use]
     pub fn metrics(&self, database: &Database) -> DriveMetrics {
         let errors: Vec<f64> = (self.roots.iter().zip(&self.desired))
@@ -148,7 +150,7 @@ impl Drive {
         let turn = |(index, &from): (usize, &usize)| {
             let to = asked.get(index + 1).copied().unwrap_or(self.goals.len());
             let off = |frame: usize| {
-                wrap_angle(faces[frame].yaw - self.goals[frame]).abs() > FACES_RADIANS
+                wrap_angle(faces[frame].yaw - self.goals[frame]).abs() > FACING_TOLERANCE_RADIANS
             };
             match (from..to).rev().find(|&frame| off(frame)) {
                 None => 0.0,
@@ -161,7 +163,7 @@ impl Drive {
 }
 
 impl DriveMetrics {
-    /// The numbers for a person.
+    /// Returns the metrics with their labels and help texts.
     #[must_use]
     pub fn list(&self) -> Vec<Metric> {
         let metric = |id, label, value, unit, help| Metric {

@@ -1,14 +1,16 @@
+//! Errors of databases and controllers.
+
 use crate::clip::{ClipError, MirrorError, RetargetError};
 use crate::synth::SynthError;
 use crate::transition::FootLockError;
 
-/// Why there is no database, or no controller, and what would do.
+/// Error building a database or a controller.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MatchError {
-    /// No clips.
+    /// There are no clips.
     #[error("motion matching needs clips: choose at least one")]
     NoClips,
-    /// A clip has no frame whose future is known.
+    /// A clip has no frame whose trajectory is known.
     #[error(
         "`{name}` lasts {secs:.2} s, which is too short to look {horizon_secs:.2} s ahead: shorten the trajectory, or take a longer clip"
     )]
@@ -17,15 +19,15 @@ pub enum MatchError {
         name: String,
         /// Its duration, seconds.
         secs: f64,
-        /// How far the trajectory looks ahead, seconds.
+        /// The farthest trajectory time, seconds.
         horizon_secs: f64,
     },
-    /// Hips or feet are not known.
+    /// Hips or feet are unknown.
     #[error("the skeleton of `{name}` has no {missing}: choose this joint by hand")]
     NoFeet {
         /// The clip's name.
         name: String,
-        /// What a person calls the joint.
+        /// Name of the joint on screen.
         missing: &'static str,
     },
     /// All clips are too short.
@@ -37,53 +39,53 @@ pub enum MatchError {
         clips: usize,
         /// Duration of the longest, seconds.
         longest_secs: f64,
-        /// How far the trajectory looks ahead, seconds.
+        /// The farthest trajectory time, seconds.
         horizon_secs: f64,
     },
-    /// More frames than are held.
+    /// More frames than a database may hold.
     #[error(
         "{frames} frames are more than the {most} that a database holds: take fewer or shorter clips"
     )]
     TooManyFrames {
         /// Frames at the database's rate, mirrored copies included.
         frames: usize,
-        /// The most.
+        /// The limit.
         most: usize,
     },
-    /// The trajectory times are none.
+    /// The trajectory times are out of range.
     #[error(
         "trajectory times must rise from above 0 s to at most {most_secs} s, and be 1 to {most} in number"
     )]
     Times {
-        /// The latest time, seconds.
+        /// The greatest time, seconds.
         most_secs: f64,
-        /// The most times.
+        /// The greatest number of times.
         most: usize,
     },
-    /// A number outside its range.
+    /// A number out of range.
     #[error("{what} of {value} cannot be used: give a number from {least} to {most}")]
     Setting {
-        /// Which number.
+        /// Name of the number.
         what: &'static str,
         /// The number given.
         value: f64,
-        /// The least that can be used.
+        /// The least value.
         least: f64,
-        /// The most that can be used.
+        /// The greatest value.
         most: f64,
     },
-    /// A feature is no number: a position in the clip is not finite.
+    /// A feature is not finite, because a position in the clip is not.
     #[error("`{name}` holds a position that is no number")]
     NotFinite {
         /// The clip's name.
         name: String,
     },
-    /// A clip cannot be moved to the first clip's skeleton.
+    /// A clip cannot be retargeted to the first clip's skeleton.
     #[error("`{name}`: {error}")]
     Retarget {
         /// The clip's name.
         name: String,
-        /// Why.
+        /// The reason.
         error: RetargetError,
     },
     /// A clip has no mirror image.
@@ -91,13 +93,13 @@ pub enum MatchError {
     Mirror {
         /// The clip's name.
         name: String,
-        /// Why.
+        /// The reason.
         error: MirrorError,
     },
-    /// A clip cannot be resampled, or a result is no clip.
+    /// A clip cannot be resampled, or a result is not a valid clip.
     #[error(transparent)]
     Clip(#[from] ClipError),
-    /// A made motion cannot be made.
+    /// A motion cannot be synthesised.
     #[error(transparent)]
     Synth(#[from] SynthError),
     /// Feet cannot be planted.

@@ -1,30 +1,32 @@
+//! Features of frames, and their normalisation.
+
 use super::MatchError;
 use std::ops::Range;
 
-/// Frames per second of every database: clips are resampled to it, and controllers go on in steps
-/// of it.
+/// Frame rate of every database, frames per second: clips are resampled to it, and controllers
+/// advance by its frames.
 pub const RATE: usize = 60;
-/// Features of the body: two feet's positions and velocities, and the hips' velocity.
+/// Number of features of the body: two feet's positions and velocities, and the hips' velocity.
 pub(super) const BODY: usize = 15;
-/// The most trajectory times.
+/// The greatest number of trajectory times.
 pub(super) const MAX_TIMES: usize = 6;
-/// The most dimensions: four for each time, and the body.
+/// The greatest number of dimensions: four for each time, and the body.
 pub(super) const MAX_DIMS: usize = 4 * MAX_TIMES + BODY;
-/// The farthest look ahead, seconds.
+/// The farthest trajectory time, seconds.
 const MAX_SECS: f64 = 3.0;
 
-/// A part of the features that is normalised as one, and has one weight.
+/// A block of features that is normalised together, and has one weight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub enum Block {
-    /// Where the character will be, (sideways, forward) at each trajectory time, metres.
+    /// Positions of the character (sideways, forward) at each trajectory time, metres.
     TrajectoryPosition,
-    /// What it will face, as a unit vector (sideways, forward) at each trajectory time.
+    /// Facing of the character, as a unit vector (sideways, forward), at each trajectory time.
     TrajectoryDirection,
-    /// Where left and right foot are, metres.
+    /// Positions of left and right foot, metres.
     FootPosition,
-    /// How left and right foot move, metres per second.
+    /// Velocities of left and right foot, metres per second.
     FootVelocity,
-    /// How the hips move, metres per second.
+    /// Velocity of the hips, metres per second.
     HipVelocity,
 }
 
@@ -32,7 +34,7 @@ impl Block {
     /// The number of blocks.
     pub const COUNT: usize = 5;
 
-    /// All blocks, in the order in which they lie in a row of features.
+    /// All blocks, in the order of a row of features.
     pub const ALL: [Self; Self::COUNT] = [
         Self::TrajectoryPosition,
         Self::TrajectoryDirection,
@@ -41,7 +43,7 @@ impl Block {
         Self::HipVelocity,
     ];
 
-    /// What a person calls it.
+    /// Returns the name on screen.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -54,24 +56,24 @@ impl Block {
     }
 }
 
-/// Which numbers are brought to one scale together.
+/// The dimensions that share one scale.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
 )]
 pub enum Normalisation {
-    /// Each [`Block`]: where hardly anything varies sideways, that counts as little as it is.
+    /// Those of each [`Block`]: sideways positions that hardly vary have a small part in the cost.
     #[default]
     Block,
-    /// Each number by itself, so that all vary by as much: the plain standard score.
+    /// None: each dimension is scaled by itself, so that all vary by as much (the standard score).
     Dimension,
 }
 
-/// What is looked at in a frame.
+/// Options of the features.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct FeatureOptions {
-    /// How far ahead the trajectory is compared, seconds, rising. Three times give 27 dimensions.
+    /// The trajectory times, seconds ahead, rising. Three times give 27 dimensions.
     pub trajectory_secs: Vec<f64>,
-    /// Which numbers are brought to one scale together.
+    /// The dimensions that share one scale.
     pub normalisation: Normalisation,
 }
 
@@ -85,20 +87,20 @@ impl Default for FeatureOptions {
     }
 }
 
-/// Which number of a row of features means what.
+/// The layout of a row of features.
 ///
-/// All are in the character's frame: the simulation root ([`super::simulation_roots`]), +Z forward,
-/// +X to the left. For T trajectory times a row holds 2T numbers of positions (x, z), 2T of
-/// directions (x, z), and 15 of the body: left and right foot's position, left and right foot's
+/// All features are in the character's frame: the simulation root ([`super::simulation_roots`]), +Z
+/// forward, +X to the left. For T trajectory times a row holds 2T numbers of positions (x, z), 2T
+/// of directions (x, z), and 15 of the body: left and right foot's position, left and right foot's
 /// velocity, hip velocity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
-    /// Frames ahead at [`RATE`], rising.
+    /// The trajectory times in frames at [`RATE`], rising.
     ahead: Vec<usize>,
 }
 
 impl Layout {
-    /// The layout for these times, each rounded to a frame.
+    /// Returns the layout for these times, each rounded to a frame.
     ///
     /// # Errors
     /// [`MatchError::Times`] when there are none or more than six, or they do not rise from at
@@ -122,25 +124,25 @@ impl Layout {
         Ok(Self { ahead })
     }
 
-    /// The trajectory times in frames at [`RATE`].
+    /// Returns the trajectory times in frames at [`RATE`].
     #[must_use]
     pub fn ahead(&self) -> &[usize] {
         &self.ahead
     }
 
-    /// The farthest of them.
+    /// Returns the farthest trajectory time.
     #[must_use]
     pub fn horizon(&self) -> usize {
         self.ahead.last().copied().unwrap_or(0)
     }
 
-    /// Numbers in a row.
+    /// Returns the number of dimensions.
     #[must_use]
     pub fn dims(&self) -> usize {
         4 * self.ahead.len() + BODY
     }
 
-    /// Which numbers of a row belong to a block.
+    /// Returns the dimensions of a block.
     #[must_use]
     pub fn range(&self, block: Block) -> Range<usize> {
         let times = self.ahead.len();
@@ -153,14 +155,14 @@ impl Layout {
         }
     }
 
-    /// Where the body's numbers begin.
+    /// Returns the first dimension of the body.
     pub(super) fn body(&self) -> usize {
         4 * self.ahead.len()
     }
 }
 
-/// How much each block counts: the factor of its normalised differences, so that a block's share of
-/// the cost grows with the square.
+/// The weight of each block: the factor of its normalised differences, so that its part of the cost
+/// grows with the square.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Weights(pub [f32; Block::COUNT]);
 
@@ -171,16 +173,16 @@ impl Default for Weights {
 }
 
 impl Weights {
-    /// The weight of a block.
+    /// Returns the weight of a block.
     #[must_use]
     pub const fn of(&self, block: Block) -> f32 {
         self.0[block as usize]
     }
 
-    /// Whether every weight is a number from 0 to 100.
+    /// Checks that every weight is a number from 0 to 100.
     ///
     /// # Errors
-    /// [`MatchError::Setting`] for the first that is not.
+    /// [`MatchError::Setting`] with the first weight that is not.
     pub fn validate(&self) -> Result<(), MatchError> {
         match self.0.iter().find(|weight| !(0.0..=100.0).contains(*weight)) {
             None => Ok(()),
@@ -193,7 +195,7 @@ impl Weights {
         }
     }
 
-    /// One factor for each number of a row.
+    /// Returns one factor for each dimension.
     #[must_use]
     pub fn spread(&self, layout: &Layout) -> Vec<f32> {
         let mut spread = vec![0.0; layout.dims()];
@@ -204,33 +206,33 @@ impl Weights {
     }
 }
 
-/// Normalised features are rounded to this grid: what is chosen then hardly ever hangs on a last
-/// digit in which machines' trigonometry differs.
+/// Normalised features are rounded to this grid, so that choices hardly ever depend on the last
+/// digits, in which machines' trigonometry differs.
 const GRID: f32 = 4096.0;
 
-/// No block varies by less: metres, metres per second, or the sine of an angle. A capture trembles
-/// by about that much.
+/// The least scale of a block: metres, metres per second, or the sine of an angle. The noise of a
+/// capture is of about this size.
 const MIN_SCALE: f32 = 0.02;
 
-/// Normalised features of frames, row by row, and how they were normalised.
+/// Normalised features of frames, row by row, and their normalisation.
 ///
 /// `(value - mean of its dimension) / scale of its block`; a block's scale is the mean of its
 /// dimensions' standard deviations (Clavet, "Motion Matching and The Road to Next-Gen Animation",
 /// GDC 2016; Holden et al., "Learned Motion Matching", 2020, section 3). With
-/// [`Normalisation::Dimension`] each dimension has a scale of its own. What does not vary at all
-/// has the scale 1. Rounded to 1/4096.
+/// [`Normalisation::Dimension`] each dimension has a scale of its own. Constant dimensions have the
+/// scale 1. Rounded to 1/4096.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Features {
     layout: Layout,
     rows: Vec<f32>,
     means: Vec<f32>,
-    /// One for each number of a row.
+    /// One for each dimension.
     scales: Vec<f32>,
 }
 
 impl Features {
-    /// Normalises raw rows (row-major, [`Layout::dims`] numbers each; a last row that is not whole
-    /// is left out). Means and scales are those of the rows for which `counts` says so.
+    /// Normalises raw rows (row-major, [`Layout::dims`] numbers each; an incomplete last row is
+    /// left out). Means and scales are those of the rows for which `counts` returns `true`.
     #[must_use]
     pub fn normalise(
         layout: Layout,
@@ -264,8 +266,8 @@ impl Features {
                 squares[dims.clone()].iter().map(|square| (square / number).sqrt()).sum();
             match (deviations / dims.len() as f64) as f32 {
                 still if still <= 1e-6 || !still.is_finite() => 1.0,
-                // Clips that all go straight on: a tremble of the heading is not to be all that
-                // counts.
+                // In clips that all walk straight on, noise of the heading must not dominate the
+                // cost.
                 scale => scale.max(MIN_SCALE),
             }
         };
@@ -288,45 +290,45 @@ impl Features {
         features
     }
 
-    /// One raw row, normalised where it lies.
+    /// Normalises one raw row in place.
     pub fn normalise_row(&self, row: &mut [f32]) {
         for ((value, mean), scale) in row.iter_mut().zip(&self.means).zip(&self.scales) {
             *value = ((*value - mean) / scale * GRID).round() / GRID;
         }
     }
 
-    /// What the numbers mean.
+    /// Returns the layout of a row.
     #[must_use]
     pub fn layout(&self) -> &Layout {
         &self.layout
     }
 
-    /// The number of rows.
+    /// Returns the number of rows.
     #[must_use]
     pub fn len(&self) -> usize {
         self.rows.len() / self.layout.dims()
     }
 
-    /// Whether there are no rows.
+    /// Returns whether there are no rows.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.rows.is_empty()
     }
 
-    /// One row; `None` where there is none.
+    /// Returns one row; `None` where there is none.
     #[must_use]
     pub fn row(&self, row: usize) -> Option<&[f32]> {
         let dims = self.layout.dims();
         self.rows.get(row.checked_mul(dims)?..)?.get(..dims)
     }
 
-    /// A dimension's mean before normalisation.
+    /// Returns the mean of each dimension before normalisation.
     #[must_use]
     pub fn means(&self) -> &[f32] {
         &self.means
     }
 
-    /// The scale of each number of a row: what 1 is in its own unit.
+    /// Returns the scale of each dimension: the value of 1 in its own unit.
     #[must_use]
     pub fn scales(&self) -> &[f32] {
         &self.scales
@@ -338,7 +340,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_default_set_has_27_dimensions_and_every_number_one_block() {
+    fn default_layout_has_27_dimensions_in_disjoint_blocks() {
         let layout = Layout::new(&FeatureOptions::default()).unwrap();
         assert_eq!((layout.dims(), layout.ahead()), (27, &[20, 40, 60][..]));
         let mut next = 0;
@@ -362,7 +364,7 @@ mod tests {
     }
 
     #[test]
-    fn a_block_has_one_scale_and_one_that_stands_still_has_1() {
+    fn normalise_scales_by_block_and_constant_blocks_by_1() {
         let layout = Layout::new(&FeatureOptions {
             trajectory_secs: vec![0.5],
             ..FeatureOptions::default()

@@ -1,3 +1,5 @@
+//! Databases of synthesised motions.
+
 use super::features::RATE;
 use super::{MatchClip, MatchError};
 use crate::clip::Clip;
@@ -5,9 +7,9 @@ use crate::skeleton::Roles;
 use crate::synth::{Action, Params, synthesize};
 use std::sync::Arc;
 
-/// The motions of the synthesiser that are enough to steer a character by: standing, walks and runs
-/// at several speeds, straight and along curves to the left, starts, stops, and turns on the spot,
-/// some of them hasty. Curves to the right are their mirror images.
+/// Returns parameters of synthesised motions that are sufficient to steer a character: standing,
+/// walks and runs at several speeds, straight and along curves to the left, starts, stops, and
+/// turns on the spot, some of them hasty. Curves to the right are their mirror images.
 #[must_use]
 pub fn made_params() -> Vec<Params> {
     let of = |action, speed_mps: f32, turn_rate_dps: f32, duration_secs: f32| Params {
@@ -38,25 +40,25 @@ pub fn made_params() -> Vec<Params> {
     for spin_degrees in [45.0, 90.0, 135.0, 180.0] {
         all.push(Params { spin_degrees, duration_secs: 4.0, ..Params::new(Action::Spin) });
     }
-    // Hasty turns: made at two thirds of the rate that they are played at.
+    // Hasty turns are synthesised at two thirds of the playback rate.
     for spin_degrees in [60.0, 90.0, 135.0, 180.0] {
         all.push(Params {
             spin_degrees,
             duration_secs: 5.0,
-            fps: HASTE * RATE as f32,
+            fps: HASTY_RATE * RATE as f32,
             ..Params::new(Action::Spin)
         });
     }
     all
 }
 
-/// The share of the database's rate that hasty motions are made at.
-const HASTE: f32 = 2.0 / 3.0;
+/// The rate at which hasty motions are synthesised, as a share of the database's rate.
+const HASTY_RATE: f32 = 2.0 / 3.0;
 
-/// Makes the motions of [`made_params`] for a body of this height, metres.
+/// Synthesises the motions of [`made_params`] for a body of this height, metres.
 ///
 /// # Errors
-/// [`MatchError::Synth`] for a height that cannot be made.
+/// [`MatchError::Synth`] for a height out of range.
 pub fn made_clips(height_m: f32) -> Result<Vec<MatchClip>, MatchError> {
     let mut clips: Vec<MatchClip> = Vec::new();
     for params in made_params() {
@@ -66,18 +68,18 @@ pub fn made_clips(height_m: f32) -> Result<Vec<MatchClip>, MatchError> {
     Ok(clips)
 }
 
-/// Makes one of them; `roles` are those of another one, which has the same joints, so that they
-/// need not be found again.
+/// Synthesises one of them; `roles` are those of another one with the same joints, so that they
+/// need not be detected again.
 ///
 /// # Errors
-/// [`MatchError::Synth`] for what cannot be made.
+/// [`MatchError::Synth`] for parameters out of range.
 pub fn made_clip(params: &Params, roles: Option<Roles>) -> Result<MatchClip, MatchError> {
     let made = synthesize(params)?;
     let roles = roles.unwrap_or_else(|| Roles::detect(made.clip.skeleton()));
-    Ok(MatchClip::new(Arc::new(hastened(&made.clip)?.with_name(name_of(params))), roles))
+    Ok(MatchClip::new(Arc::new(at_database_rate(&made.clip)?.with_name(name_of(params))), roles))
 }
 
-/// What a person calls it: `walk 1.4 m/s, 30°/s`.
+/// Returns the name on screen: `walk 1.4 m/s, 30°/s`.
 fn name_of(params: &Params) -> String {
     let turn = if params.turn_rate_dps == 0.0 {
         String::new()
@@ -99,8 +101,8 @@ fn name_of(params: &Params) -> String {
     }
 }
 
-/// What was made at a lower rate than the database's is played at the database's: faster.
-fn hastened(clip: &Clip) -> Result<Clip, MatchError> {
+/// Plays a clip that was synthesised at a lower rate at the database's rate: faster.
+fn at_database_rate(clip: &Clip) -> Result<Clip, MatchError> {
     if clip.fps() >= RATE as f64 {
         return Ok(clip.clone());
     }

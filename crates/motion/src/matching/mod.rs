@@ -92,6 +92,7 @@
 mod builder;
 mod control;
 mod controller;
+mod cycle;
 mod database;
 mod desired;
 mod drive;
@@ -100,7 +101,6 @@ mod features;
 mod made;
 mod motion;
 mod pace;
-mod round;
 mod scenario;
 pub mod search;
 mod simulation;

@@ -1,24 +1,27 @@
+//! The greatest speeds of motions.
+
 use super::features::RATE;
 use crate::clip::Clip;
 use crate::math::{Planar, quat, stats, wrap_angle};
 
-/// What one step in a thousand exceeds is rare.
-const RARE: f32 = 0.999;
-/// Steps that are looked at for that: enough for the percentile, and bounded for long clips.
+/// The percentile that counts as rare.
+const RARE_PERCENTILE: f32 = 0.999;
+/// The number of steps from which it is computed: enough for the percentile, and bounded for long
+/// clips.
 const SAMPLES: usize = 4_000;
-/// No joint counts as slower than this, radians per second: 60° per second.
+/// The least value for a joint, radians per second: 60° per second.
 const MIN_JOINT_RADPS: f32 = std::f32::consts::FRAC_PI_3;
 
-/// How fast the motions of a database go: what a transition or a pull towards the wish should not
-/// exceed by much, since nothing in the clips does.
+/// The greatest usual speeds of the motions of a database: a transition or a pull towards the
+/// simulation object should not exceed them by much.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pace {
-    /// Per joint: the angular speed against its parent that one step in a thousand exceeds, radians
-    /// per second; at least 60° per second.
+    /// Per joint: the 99.9th percentile of its angular speed relative to its parent, radians per
+    /// second; at least 60° per second.
     pub joints_radps: Vec<f32>,
     /// The highest speed of the simulation root over the ground, metres per second.
     pub travel_mps: f64,
-    /// The highest speed at which it turns, radians per second.
+    /// The highest yaw rate, radians per second.
     pub turn_radps: f64,
 }
 
@@ -33,7 +36,7 @@ impl Pace {
                 quat::angle_between(from, to) * RATE as f32
             });
             let turns: Vec<f32> = turns.collect();
-            stats::percentile(&turns, RARE).unwrap_or(0.0).max(MIN_JOINT_RADPS)
+            stats::percentile(&turns, RARE_PERCENTILE).unwrap_or(0.0).max(MIN_JOINT_RADPS)
         };
         let steps = || roots.windows(2).map(|pair| (pair[0], pair[1]));
         Self {
@@ -47,7 +50,7 @@ impl Pace {
         }
     }
 
-    /// The faster of each.
+    /// Returns the greatest of each.
     pub(super) fn of_all<'a>(paces: impl IntoIterator<Item = &'a Self>) -> Self {
         let mut all = Self::default();
         for pace in paces {
@@ -72,7 +75,7 @@ mod tests {
     use crate::synth::{Action, Params, synthesize};
 
     #[test]
-    fn a_run_is_faster_than_a_walk_and_a_set_is_as_fast_as_its_fastest() {
+    fn pace_of_a_set_is_that_of_its_fastest() {
         let pace = |action: Action| {
             let clip = synthesize(&Params::new(action)).unwrap().clip;
             let roles = Roles::detect(clip.skeleton());

@@ -1,12 +1,14 @@
+//! Built-in recordings.
+
 use super::control::{Control, Recording};
 use super::features::RATE;
 use glam::DVec2;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Recorded input that shows what a controller can do.
+/// Recorded input that demonstrates a controller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub enum Scenario {
-    /// Walks off and on, straight.
+    /// Starts and stops walking, straight.
     WalkStraight,
     /// Turns left by 90° from a walk.
     TurnLeft,
@@ -16,7 +18,7 @@ pub enum Scenario {
     Spin,
     /// Starts and stops three times.
     StartStop,
-    /// Goes over from a walk into a run, and back.
+    /// Changes from a walk to a run, and back.
     WalkToRun,
     /// Walks a figure eight.
     FigureEight,
@@ -27,7 +29,7 @@ const WALK_MPS: f64 = 1.4;
 const RUN_MPS: f64 = 3.2;
 
 impl Scenario {
-    /// All of them.
+    /// All scenarios.
     pub const ALL: [Self; 7] = [
         Self::WalkStraight,
         Self::TurnLeft,
@@ -38,7 +40,7 @@ impl Scenario {
         Self::FigureEight,
     ];
 
-    /// Short, stable, fit for a link.
+    /// Returns the id, which is short, stable and fit for a link.
     #[must_use]
     pub const fn id(self) -> &'static str {
         match self {
@@ -52,7 +54,7 @@ impl Scenario {
         }
     }
 
-    /// What a person calls it.
+    /// Returns the title on screen.
     #[must_use]
     pub const fn title(self) -> &'static str {
         match self {
@@ -66,13 +68,13 @@ impl Scenario {
         }
     }
 
-    /// The scenario with this id.
+    /// Returns the scenario with this id.
     #[must_use]
     pub fn find(id: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|scenario| scenario.id() == id)
     }
 
-    /// Its input.
+    /// Returns its input.
     #[must_use]
     pub fn recording(self) -> Recording {
         let mut recording = Recording::new();
@@ -102,7 +104,7 @@ impl Scenario {
                 }
             }
             Self::FigureEight => {
-                // A tenth of a second at a time: a whole turn to the left in 9 s, then one to the
+                // In steps of a tenth of a second: a whole turn to the left in 9 s, then one to the
                 // right.
                 for part in 0..180_u32 {
                     let share = f64::from(part % 90) / 90.0;

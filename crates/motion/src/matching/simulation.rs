@@ -1,24 +1,24 @@
-//! The simulation root: where the character is meant to be, without the sway of the stride.
+//! The simulation root: the ground frame of the character without the sway of the stride.
 
+use super::cycle::cycle_frame;
 use super::features::RATE;
-use super::round::standing;
 use crate::math::{Planar, wrap_angle};
 use glam::DVec2;
 
-/// Over this time positions are smoothed, and directions, seconds.
+/// Time over which positions and directions are smoothed, seconds.
 const POSITION_SECS: f64 = 1.0;
 const DIRECTION_SECS: f64 = 1.6;
 
-/// The simulation root of a clip at [`RATE`] frames per second: `world_from_simulation` of each
-/// frame, from `frames` ([`crate::clip::character_frames`]).
+/// Returns the simulation root of each frame of a clip at [`RATE`] frames per second,
+/// `world_from_simulation`, from `frames` ([`crate::clip::character_frames`]).
 ///
 /// Positions of the hips over the ground are smoothed by a Savitzky-Golay filter of third degree
 /// over a second, and facing directions, as vectors, over 1.6 s (Holden et al., "Learned Motion
 /// Matching", 2020, section 3, and his notes on the simulation bone). Unlike a mean it does not cut
 /// corners. The windows are longer than his (0.5 s and 1 s), which let the sway of a stride of a
-/// second pass: with it left in, every other half stride of a straight walk looks a little better
-/// than the one that is playing. At the ends of the clip the polynomial of the first or last window
-/// goes on; clips shorter than a window are smoothed over what there is.
+/// second pass: with the sway, every other half stride of a straight walk would match a little
+/// better than the one that is playing. At the ends of the clip the polynomial of the first or last
+/// window is extrapolated; clips shorter than a window are smoothed over their whole length.
 #[must_use]
 pub fn simulation_roots(frames: &[Planar]) -> Vec<Planar> {
     let positions: Vec<DVec2> = frames.iter().map(|frame| frame.shift).collect();
@@ -30,8 +30,8 @@ pub fn simulation_roots(frames: &[Planar]) -> Vec<Planar> {
     let mut yaw_before = None;
     (positions.into_iter().zip(directions).zip(frames))
         .map(|((shift, direction), frame)| {
-            // A body that turns by half a turn within the window may leave no direction; the one
-            // before goes on.
+            // A body that turns by half a turn within the window may have a mean direction of 0;
+            // the previous one is then kept.
             let yaw = if direction.length() > 0.05 {
                 libm::atan2(direction.x, direction.y)
             } else {
@@ -43,24 +43,24 @@ pub fn simulation_roots(frames: &[Planar]) -> Vec<Planar> {
         .collect()
 }
 
-/// The simulation roots of a cycle, whose frame behind the last is the first, moved by `cycle`:
-/// smoothed over what comes before and behind when it goes round.
+/// Returns the simulation roots of a cycle, whose frame after the last is the first, moved by
+/// `cycle`: smoothed over the neighbouring repetitions.
 pub(super) fn simulation_roots_of_cycle(frames: &[Planar], cycle: &Planar) -> Vec<Planar> {
-    // So much is looked at to either side.
+    // The number of frames to either side that are read.
     let around = (0.5 * POSITION_SECS.max(DIRECTION_SECS) * RATE as f64).round() as isize;
     let whole: Vec<Planar> = (-around..frames.len() as isize + around)
-        .map(|frame| standing(frames, cycle, frame))
+        .map(|frame| cycle_frame(frames, cycle, frame))
         .collect();
     let roots = simulation_roots(&whole);
     roots.into_iter().skip(around as usize).take(frames.len()).collect()
 }
 
-/// Each value replaced by that of the cubic that fits it and `half` neighbours to either side best
-/// (Savitzky and Golay 1964). Near the ends the cubic of the outermost window is read beside its
+/// Replaces each value by that of the cubic that best fits it and `half` neighbours to either side
+/// (Savitzky and Golay 1964). Near the ends the cubic of the outermost window is evaluated off its
 /// middle. O(values × half).
 fn savitzky_golay(values: &[DVec2], half: usize) -> Vec<DVec2> {
     let half = half.min(values.len().saturating_sub(1) / 2);
-    // A cubic goes through four values: fewer than five cannot be smoothed.
+    // A cubic passes through four values: fewer than five cannot be smoothed.
     if half < 2 {
         return values.to_vec();
     }
@@ -130,7 +130,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn cubics_pass_unchanged_and_sway_is_gone() {
+    fn savitzky_golay_keeps_cubics_and_removes_sway() {
         let cubic = |i: usize| {
             let t = i as f64 / 20.0;
             DVec2::new(1.0 + t - 0.3 * t * t, 0.1 * t * t * t)

@@ -1,34 +1,36 @@
+//! Tags of frames, and filters by tags.
+
 use super::features::RATE;
 use crate::math::{Planar, wrap_angle};
 use std::ops::Range;
 
-/// What can be said about a stretch of a clip.
+/// A property of a range of frames.
 #[derive(
     Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
 )]
 pub enum Tag {
-    /// Goes at a walk.
+    /// The character walks.
     Walk,
-    /// Goes at a run.
+    /// The character runs.
     Run,
-    /// Stands.
+    /// The character stands.
     Idle,
-    /// Turns.
+    /// The character turns.
     Turn,
-    /// Is never searched.
+    /// The frames are never searched.
     Exclude,
-    /// A word of the user's own, by its number from 0 to 26.
+    /// A tag of the user, by its number from 0 to 26.
     Own(u8),
 }
 
 impl Tag {
-    /// The most words of one's own.
+    /// The greatest number of user tags.
     pub const MAX_OWN: u8 = 27;
 
-    /// The tags that are not the user's own.
+    /// The built-in tags.
     pub const FIXED: [Self; 5] = [Self::Walk, Self::Run, Self::Idle, Self::Turn, Self::Exclude];
 
-    /// What a person calls it; nothing for one's own.
+    /// Returns the name on screen; empty for user tags.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -54,61 +56,61 @@ impl Tag {
     }
 }
 
-/// Tags of one frame, or those that are asked for.
+/// A set of tags: of one frame, or of a filter.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
 )]
 pub struct TagSet(pub u32);
 
 impl TagSet {
-    /// No tag.
+    /// The empty set.
     pub const NONE: Self = Self(0);
 
-    /// These tags.
+    /// Returns the set of these tags.
     #[must_use]
     pub fn of(tags: &[Tag]) -> Self {
         Self(tags.iter().fold(0, |bits, tag| bits | tag.bit()))
     }
 
-    /// Whether a tag is in it.
+    /// Returns whether a tag is in the set.
     #[must_use]
     pub const fn has(self, tag: Tag) -> bool {
         self.0 & tag.bit() != 0
     }
 
-    /// With a tag, or without it.
+    /// Returns the set with a tag, or without it.
     #[must_use]
     pub const fn with(self, tag: Tag, wanted: bool) -> Self {
         if wanted { Self(self.0 | tag.bit()) } else { Self(self.0 & !tag.bit()) }
     }
 
-    /// Whether both have a tag in common.
+    /// Returns whether both sets have a tag in common.
     #[must_use]
     pub const fn meets(self, other: Self) -> bool {
         self.0 & other.0 != 0
     }
 }
 
-/// Which frames may be found.
+/// A filter of frames by tags.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
 )]
 pub struct TagFilter {
-    /// A frame must have at least one of these; none asks for nothing.
+    /// The required tags: a frame must have at least one of these; an empty set admits all.
     pub ask: TagSet,
-    /// A frame must have none of these. [`Tag::Exclude`] is always forbidden.
+    /// The forbidden tags: a frame must have none of these. [`Tag::Exclude`] is always forbidden.
     pub forbid: TagSet,
 }
 
 impl TagFilter {
-    /// Whether a frame with these tags may be found.
+    /// Returns whether the filter admits a frame with these tags.
     #[must_use]
     pub fn admits(self, tags: TagSet) -> bool {
         (self.ask == TagSet::NONE || tags.meets(self.ask)) && !tags.meets(self.forbidden())
     }
 
-    /// Whether among frames that have `any` tags between them and `all` of these in common there
-    /// can be one that is admitted.
+    /// Returns whether the filter may admit one of several frames, which have the tags `any`
+    /// between them and `all` of these in common.
     pub(super) fn may_admit(self, any: TagSet, all: TagSet) -> bool {
         (self.ask == TagSet::NONE || any.meets(self.ask)) && !all.meets(self.forbidden())
     }
@@ -118,7 +120,7 @@ impl TagFilter {
     }
 }
 
-/// A stretch of a clip with a tag.
+/// A range of frames of a clip with a tag.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct TagRange {
     /// The tag.
@@ -127,14 +129,14 @@ pub struct TagRange {
     pub frames: Range<usize>,
 }
 
-/// Below this speed a body of 1.75 m stands, above the other one it runs, metres per second:
-/// between walking (at most 2.2) and running there is the preferred transition at about 2 m/s
+/// The speed below which a body of 1.75 m stands, and the speed above which it runs, metres per
+/// second: between walking (at most 2.2) and running lies the preferred transition at about 2 m/s
 /// (Hreljac 1993).
-const STANDS_MPS: f64 = 0.25;
-const RUNS_MPS: f64 = 2.1;
-/// Above this rate it turns, radians per second: 17° per second.
-const TURNS_RPS: f64 = 0.3;
-/// Speed and turn rate are measured over this time to either side, and shorter stretches are noise,
+const MAX_IDLE_MPS: f64 = 0.25;
+const MIN_RUN_MPS: f64 = 2.1;
+/// The yaw rate above which it turns, radians per second: 17° per second.
+const MIN_TURN_RPS: f64 = 0.3;
+/// Half the time over which speed and turn rate are measured, and the least duration of a range,
 /// seconds.
 const REACH_SECS: f64 = 0.2;
 
@@ -149,7 +151,7 @@ pub fn suggest_tags(roots: &[Planar], fps: f64, scale: f64) -> Vec<TagRange> {
         let (before, after) = (frame.saturating_sub(reach), (frame + reach).min(last));
         let secs = (after - before).max(1) as f64 / fps;
         let (from, to) = (&roots[before], &roots[after]);
-        // Halves, so that a quick spin is not taken for its complement.
+        // In two halves, so that a quick spin is not mistaken for its complement.
         let middle = &roots[usize::midpoint(before, after)];
         let turned = wrap_angle(middle.yaw - from.yaw) + wrap_angle(to.yaw - middle.yaw);
         (from.shift.distance(to.shift) / secs / scale.max(1e-3), turned.abs() / secs)
@@ -172,14 +174,14 @@ pub fn suggest_tags(roots: &[Planar], fps: f64, scale: f64) -> Vec<TagRange> {
             }
         }
     };
-    add(Tag::Walk, &|(speed, _)| (STANDS_MPS..RUNS_MPS).contains(&speed));
-    add(Tag::Run, &|(speed, _)| speed >= RUNS_MPS);
-    add(Tag::Idle, &|(speed, turn)| speed < STANDS_MPS && turn < TURNS_RPS);
-    add(Tag::Turn, &|(_, turn)| turn >= TURNS_RPS);
+    add(Tag::Walk, &|(speed, _)| (MAX_IDLE_MPS..MIN_RUN_MPS).contains(&speed));
+    add(Tag::Run, &|(speed, _)| speed >= MIN_RUN_MPS);
+    add(Tag::Idle, &|(speed, turn)| speed < MAX_IDLE_MPS && turn < MIN_TURN_RPS);
+    add(Tag::Turn, &|(_, turn)| turn >= MIN_TURN_RPS);
     ranges
 }
 
-/// The tags of each of `frames` frames at [`RATE`], from ranges at `fps`.
+/// Returns the tags of each of `frames` frames at [`RATE`], from ranges at `fps`.
 pub(super) fn spread(ranges: &[TagRange], fps: f64, frames: usize) -> Vec<TagSet> {
     let mut tags = vec![TagSet::NONE; frames];
     let scale = RATE as f64 / fps;
@@ -198,7 +200,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn speed_and_turn_rate_suggest_tags() {
+    fn suggest_tags_follows_speed_and_turn_rate() {
         let fps = 60.0;
         // Two seconds of standing, two of walking, two of running, two of turning on the spot.
         let mut at = Planar::IDENTITY;
@@ -224,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn filters_ask_for_one_and_forbid_all() {
+    fn tag_filter_requires_one_and_forbids_all() {
         let [walk, turn, own] = [Tag::Walk, Tag::Turn, Tag::Own(26)].map(|tag| TagSet::of(&[tag]));
         let filter = TagFilter { ask: TagSet(walk.0 | own.0), forbid: turn };
         assert!(
@@ -235,7 +237,7 @@ mod tests {
         );
         assert!(!TagFilter::default().admits(TagSet::of(&[Tag::Exclude, Tag::Walk])));
         assert_eq!(TagSet::of(&[Tag::Own(27), Tag::Own(255)]), TagSet::NONE);
-        // Ranges beyond the clip, and the other way round, say nothing.
+        // Ranges beyond the clip, and reversed ranges, are ignored.
         let odd = TagRange { tag: Tag::Run, frames: Range { start: 9, end: 3 } };
         let far = TagRange { tag: Tag::Run, frames: 70..usize::MAX };
         assert!(spread(&[odd, far], 60.0, 50).iter().all(|tags| *tags == TagSet::NONE));

@@ -1,3 +1,5 @@
+//! Tests of databases and controllers.
+
 use super::search::{Question, scan};
 use super::*;
 use crate::blend::Source;
@@ -12,8 +14,8 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use std::sync::{Arc, OnceLock};
 
-/// A small database of the synthesiser's motions, built once.
-fn small() -> &'static Arc<Database> {
+/// Returns a small database of synthesised motions, built once.
+fn small_database() -> &'static Arc<Database> {
     static DATABASE: OnceLock<Arc<Database>> = OnceLock::new();
     DATABASE.get_or_init(|| {
         Arc::new(Database::new(made_clips(1.75).unwrap(), &DatabaseOptions::default()).unwrap())
@@ -38,7 +40,7 @@ fn joint(name: &str, parent: Option<usize>, offset: [f32; 3]) -> Joint {
     }
 }
 
-/// The oracle's body: hips, and on either side a thigh that swings and a foot.
+/// Returns the oracle's body: hips, and on either side a thigh that swings and a foot.
 fn oracle_clip(golden: &Value) -> MatchClip {
     let skeleton = Skeleton::new(vec![
         joint("Hips", None, [0.0; 3]),
@@ -70,7 +72,7 @@ fn oracle_clip(golden: &Value) -> MatchClip {
 }
 
 #[test]
-fn roots_features_and_scales_are_the_oracle_s() {
+fn database_agrees_with_the_oracle() {
     let golden = golden();
     let options = DatabaseOptions { mirrored: false, ..DatabaseOptions::default() };
     let database = Database::new(vec![oracle_clip(&golden)], &options).unwrap();
@@ -104,7 +106,7 @@ fn roots_features_and_scales_are_the_oracle_s() {
 }
 
 #[test]
-fn the_simulation_object_goes_the_oracle_s_way() {
+fn simulation_agrees_with_the_oracle() {
     let pair = |value: &Value| DVec2::from_slice(&numbers(value));
     for case in golden()["simulation"].as_array().unwrap() {
         let start = Simulation {
@@ -128,7 +130,7 @@ fn the_simulation_object_goes_the_oracle_s_way() {
 }
 
 #[test]
-fn what_cannot_be_searched_is_told_in_a_sentence() {
+fn database_of_invalid_clips_is_refused() {
     let options = DatabaseOptions::default();
     assert_eq!(Database::new(vec![], &options), Err(MatchError::NoClips));
     let walk = MatchClip::new(
@@ -140,7 +142,7 @@ fn what_cannot_be_searched_is_told_in_a_sentence() {
     let alone = Database::new(vec![short.clone()], &options);
     assert!(matches!(alone, Err(MatchError::NoValidFrame { clips: 1, .. })), "{alone:?}");
     assert!(alone.unwrap_err().to_string().contains("0.57 s"));
-    // Beside a longer one it is left out.
+    // With a longer clip it is left out.
     let both = Database::new(vec![short, walk.clone()], &options).unwrap();
     assert!(matches!(both.skipped(), [MatchError::TooShort { .. }]) && both.motions().len() == 2);
     assert_eq!(both.motions()[0].source(), 1);
@@ -173,8 +175,8 @@ fn what_cannot_be_searched_is_told_in_a_sentence() {
 }
 
 #[test]
-fn other_rates_other_times_and_other_tags_change_what_they_should() {
-    let database = small();
+fn database_with_other_rates_times_and_tags_differs_as_documented() {
+    let database = small_database();
     let features = FeatureOptions { trajectory_secs: vec![0.25, 0.5], ..FeatureOptions::default() };
     let retimed = DatabaseBuilder::retimed(database, &features).unwrap().finish().unwrap();
     assert_eq!((retimed.frames(), retimed.features().layout().dims()), (database.frames(), 23));
@@ -183,11 +185,10 @@ fn other_rates_other_times_and_other_tags_change_what_they_should() {
     // The same motion at another rate gives the same features.
     let clip = synthesize(&Params::new(Action::Walk)).unwrap().clip;
     let finer = resample(&clip, 120.0, Interpolation::Cubic).unwrap();
-    // As a clip that ends: a round takes a whole number of frames, which are not the same ones at
-    // every rate.
+    // As a clip that ends: a repetition has a whole number of frames, which differ between rates.
     let [usual, fine] = [clip, finer].map(|clip| {
         let roles = Roles::detect(clip.skeleton());
-        Database::new(vec![MatchClip::new(Arc::new(clip), roles)], &rounds(false)).unwrap()
+        Database::new(vec![MatchClip::new(Arc::new(clip), roles)], &cycle_options(false)).unwrap()
     });
     assert_eq!(usual.frames(), fine.frames());
     assert!(usual.valid().iter().all(|&frame| usual.tags(frame as usize).has(Tag::Walk)));
@@ -216,8 +217,8 @@ fn other_rates_other_times_and_other_tags_change_what_they_should() {
 
 /// A mirrored copy has the mirrored features.
 #[test]
-fn mirrored_copies_are_mirror_images() {
-    let database = small();
+fn mirrored_motion_has_mirrored_features() {
+    let database = small_database();
     let layout = database.features().layout();
     for motion in (0..database.motions().len()).step_by(2) {
         for frame in [5, 70] {
@@ -249,19 +250,20 @@ fn options() -> ControllerOptions {
 }
 
 #[test]
-fn a_recording_replays_bit_for_bit_and_screens_do_not_matter() {
+fn recording_replays_bit_for_bit_at_any_screen_rate() {
     let recording = Scenario::Spin.recording();
     let again = Recording::from_text(&recording.to_text()).unwrap();
-    let first = drive(small(), options(), &recording).unwrap();
-    assert_eq!(drive(small(), options(), &again).unwrap(), first);
+    let first = drive(small_database(), options(), &recording).unwrap();
+    assert_eq!(drive(small_database(), options(), &again).unwrap(), first);
     for method in [SearchMethod::Scan, SearchMethod::Tree] {
-        let other = drive(small(), ControllerOptions { method, ..options() }, &recording).unwrap();
+        let other =
+            drive(small_database(), ControllerOptions { method, ..options() }, &recording).unwrap();
         assert_eq!(other.clip, first.clip, "{method:?}");
     }
-    // 144 Hz, and 25 Hz, ask for the same ticks.
+    // 144 Hz and 25 Hz give the same ticks.
     for rate in [144.0, 25.0] {
         let mut controller =
-            Controller::new(Arc::clone(small()), options(), &Planar::IDENTITY).unwrap();
+            Controller::new(Arc::clone(small_database()), options(), &Planar::IDENTITY).unwrap();
         let control = Control::new(DVec2::new(0.0, 1.4), None);
         let ticks: usize =
             (0..(2.0 * rate) as usize).map(|_| controller.step(1.0 / rate, &control)).sum();
@@ -279,11 +281,11 @@ fn a_recording_replays_bit_for_bit_and_screens_do_not_matter() {
 }
 
 #[test]
-fn scenarios_are_followed_without_stutter_or_skating() {
+fn scenarios_are_followed_without_stutter_or_skating_feet() {
     for scenario in Scenario::ALL {
         assert_eq!(Scenario::find(scenario.id()), Some(scenario));
-        let driven = drive(small(), options(), &scenario.recording()).unwrap();
-        let metrics = driven.metrics(small());
+        let driven = drive(small_database(), options(), &scenario.recording()).unwrap();
+        let metrics = driven.metrics(small_database());
         assert!(
             metrics.error_cm < 10.0 && metrics.worst_error_cm < 36.0,
             "{scenario:?} {metrics:?}"
@@ -296,15 +298,15 @@ fn scenarios_are_followed_without_stutter_or_skating() {
             matches!(scenario, Scenario::TurnLeft | Scenario::TurnRight | Scenario::Spin)
         );
     }
-    let straight = drive(small(), options(), &Scenario::WalkStraight.recording()).unwrap();
+    let straight = drive(small_database(), options(), &Scenario::WalkStraight.recording()).unwrap();
     let settled = straight.jumps.iter().filter(|jump| jump.frame > 180).count();
     assert!(settled <= 5, "{:?}", straight.jumps);
 }
 
 #[test]
-fn jumps_are_continuous() {
+fn jumps_have_continuous_poses_and_velocities() {
     let driven = drive(
-        small(),
+        small_database(),
         ControllerOptions { planting: None, following: None, ..options() },
         &Scenario::FigureEight.recording(),
     )
@@ -317,11 +319,11 @@ fn jumps_are_continuous() {
     let most = (1..clip.frames()).map(step).fold(0.0, f32::max);
     assert!(driven.jumps.len() > 3);
     for jump in driven.jumps.iter().filter(|jump| jump.frame > 1) {
-        // It leaves with the velocity that it had; what an offset of half a radian is drawn back by
-        // in one tick is 0.03.
+        // It starts with the velocity that it had; the pull of an offset of half a radian in one
+        // tick is 0.03.
         let (before, at) = (step(jump.frame.saturating_sub(1)), step(jump.frame));
         // That is the step that the old clip makes next, which may be longer than the one before.
-        let motion = &small().motions()[jump.from.place.motion];
+        let motion = &small_database().motions()[jump.from.place.motion];
         let next = motion.next(jump.from.place.frame).unwrap_or(jump.from.place.frame);
         let own = (motion.clip().rotations(jump.from.place.frame).iter())
             .zip(motion.clip().rotations(next))
@@ -333,9 +335,9 @@ fn jumps_are_continuous() {
     assert!(most < 0.5, "{most}");
 }
 
-/// A half-life that is dragged in the middle of a jump leaves the offset's velocity as it is.
+/// A change of the half-life in the middle of a jump keeps the offset's velocity.
 #[test]
-fn options_that_change_during_a_jump_keep_the_velocity() {
+fn options_changed_during_a_jump_keep_the_velocity() {
     let options = |half_life_secs| ControllerOptions {
         transition: Inertialization::Offset(Decay::Spring { half_life_secs }),
         planting: None,
@@ -345,8 +347,9 @@ fn options_that_change_during_a_jump_keep_the_velocity() {
     let recording = Scenario::StartStop.recording();
     let mut compared = 0;
     for ticks_after_jump in [1, 4, 8] {
-        let start =
-            || Controller::new(Arc::clone(small()), options(0.15), &Planar::IDENTITY).unwrap();
+        let start = || {
+            Controller::new(Arc::clone(small_database()), options(0.15), &Planar::IDENTITY).unwrap()
+        };
         let (mut kept, mut changed) = (start(), start());
         let mut since_jump = usize::MAX;
         for control in recording.controls() {
@@ -378,7 +381,7 @@ fn options_that_change_during_a_jump_keep_the_velocity() {
     assert_eq!(compared, 3);
 }
 
-/// One stride of a made gait, without the frame that stands for its first again.
+/// Returns one stride of a made gait, without the frame that equals its first.
 fn one_stride(action: Action, fps: f32, turn_rate_dps: f32) -> MatchClip {
     let params = Params { turn_rate_dps, fps, ..Params::new(action) };
     let clip = Arc::new(synthesize(&params).unwrap().clip);
@@ -389,12 +392,12 @@ fn one_stride(action: Action, fps: f32, turn_rate_dps: f32) -> MatchClip {
     MatchClip::new(Arc::new(clip.crop(cycle.range()).unwrap()), roles)
 }
 
-fn rounds(cycles: bool) -> DatabaseOptions {
+fn cycle_options(cycles: bool) -> DatabaseOptions {
     DatabaseOptions { cycles, ..DatabaseOptions::default() }
 }
 
 #[test]
-fn a_cycle_has_the_features_of_its_clip_played_again_and_again() {
+fn cycle_has_the_features_of_its_repeated_clip() {
     for (action, fps, turn) in [
         (Action::Walk, 60.0, 0.0),
         (Action::Run, 60.0, 0.0),
@@ -403,7 +406,7 @@ fn a_cycle_has_the_features_of_its_clip_played_again_and_again() {
     ] {
         let stride = one_stride(action, fps, turn);
         let secs = stride.clip.frames() as f64 / stride.clip.fps();
-        let database = Database::new(vec![stride.clone()], &rounds(true)).unwrap();
+        let database = Database::new(vec![stride.clone()], &cycle_options(true)).unwrap();
         assert!(database.skipped().is_empty() && database.motions().len() == 2);
         let layout = database.features().layout().clone();
         for motion in database.motions() {
@@ -413,16 +416,16 @@ fn a_cycle_has_the_features_of_its_clip_played_again_and_again() {
                 (motion.frames() as f64 / RATE as f64 - secs).abs() < 1.6 / RATE as f64,
                 "{name} {secs}"
             );
-            // The slow way: nine rounds as one long clip, of which the fifth is looked at.
+            // The slow way: nine repetitions as one long clip, of which the fifth is compared.
             let frames = motion.frames();
-            // Over the seam it goes on as before.
+            // The motion continues over the seam.
             let step =
                 |frame: usize| motion.root(frame).inverse().after(&motion.root(frame + 1)).shift;
             assert!(step(frames - 1).distance(step(frames - 2)) < 0.1 * step(0).length(), "{name}");
             let long = repeat_clip(motion.clip(), &motion.cycle().unwrap(), 9).unwrap();
             let long = Database::new(
                 vec![MatchClip::new(Arc::new(long), stride.roles.clone())],
-                &rounds(false),
+                &cycle_options(false),
             )
             .unwrap();
             let long = &long.motions()[0];
@@ -446,12 +449,12 @@ fn a_cycle_has_the_features_of_its_clip_played_again_and_again() {
                 }
             }
         }
-        // Without rounds it ends, and is too short to look ahead in where it lasts less than a
-        // second.
-        let ends = Database::new(vec![stride.clone()], &rounds(false));
+        // Without repetition it ends, and is too short for its trajectory features if it lasts less
+        // than a second.
+        let ends = Database::new(vec![stride.clone()], &cycle_options(false));
         assert_eq!(ends.is_err(), secs < 1.0, "{secs} {ends:?}");
     }
-    let whole: Vec<&str> = small()
+    let whole: Vec<&str> = small_database()
         .motions()
         .iter()
         .filter(|motion| motion.is_cycle())
@@ -462,16 +465,16 @@ fn a_cycle_has_the_features_of_its_clip_played_again_and_again() {
 }
 
 #[test]
-fn a_cycle_plays_round_and_round() {
+fn cycle_plays_without_end() {
     let stride = one_stride(Action::Walk, 60.0, 0.0);
-    let options = DatabaseOptions { mirrored: false, ..rounds(true) };
+    let options = DatabaseOptions { mirrored: false, ..cycle_options(true) };
     let database = Arc::new(Database::new(vec![stride], &options).unwrap());
     let motion = Arc::clone(&database.motions()[0]);
     let frames = motion.frames();
     let control = Control::new(DVec2::new(0.0, 1.4), None);
     let mut controller =
         Controller::new(Arc::clone(&database), self::options(), &Planar::IDENTITY).unwrap();
-    let (mut rounds, mut most, mut ends) = (0, 0.0f32, 0);
+    let (mut cycle_options, mut most, mut ends) = (0, 0.0f32, 0);
     for tick in 0..1_200 {
         let before = controller.place().frame;
         let jumps = controller.jumps();
@@ -482,7 +485,7 @@ fn a_cycle_plays_round_and_round() {
         ends += usize::from(search.is_some_and(|search| search.reason == Reason::ClipEnd));
         if controller.jumps() == jumps {
             assert_eq!(controller.place().frame, (before + 1) % frames, "{tick}");
-            rounds += usize::from(before + 1 == frames);
+            cycle_options += usize::from(before + 1 == frames);
         }
         if tick > 300 {
             let turned = pose.iter().zip(&controller.pose().rotations);
@@ -491,7 +494,7 @@ fn a_cycle_plays_round_and_round() {
         }
     }
     // Twenty seconds are nearly twenty strides, and none of them ends.
-    assert!(rounds >= 15 && ends == 0, "{rounds} {ends}");
+    assert!(cycle_options >= 15 && ends == 0, "{cycle_options} {ends}");
     let own = (0..frames - 1).flat_map(|frame| {
         let clip = motion.clip();
         let turned = clip.rotations(frame).iter().zip(clip.rotations(frame + 1));
@@ -507,13 +510,14 @@ fn a_cycle_plays_round_and_round() {
 }
 
 #[test]
-fn votes_for_another_clip_let_jumps_within_a_clip_pass() {
+fn votes_for_another_clip_allow_jumps_within_a_clip() {
     let options = ControllerOptions {
         hysteresis: Hysteresis::ThreeVotesForAnotherClip,
         prefer_current: 0.0,
         ..options()
     };
-    let mut controller = Controller::new(Arc::clone(small()), options, &Planar::IDENTITY).unwrap();
+    let mut controller =
+        Controller::new(Arc::clone(small_database()), options, &Planar::IDENTITY).unwrap();
     let mut elsewhere = 0;
     for control in Scenario::FigureEight.recording().controls() {
         let (before, jumps) = (controller.place(), controller.jumps());
@@ -536,14 +540,14 @@ fn votes_for_another_clip_let_jumps_within_a_clip_pass() {
             elsewhere = 0;
         } else if !jumped {
             let voted = matches!(search.held, Some(Held::Same | Held::Votes)) && elsewhere < 3;
-            // A frame of another clip that is not cheaper at all, when the input is still.
+            // A frame of another clip that is not cheaper at all, while the input is constant.
             assert!(voted || search.held == Some(Held::CurrentClip), "{search:?}");
         }
     }
-    // In a database of one clip there is nothing to vote for.
+    // In a database of one clip no votes are needed.
     let walk = synthesize(&Params::new(Action::Walk)).unwrap().clip;
     let roles = Roles::detect(walk.skeleton());
-    let alone = DatabaseOptions { mirrored: false, ..rounds(false) };
+    let alone = DatabaseOptions { mirrored: false, ..cycle_options(false) };
     let alone =
         Arc::new(Database::new(vec![MatchClip::new(Arc::new(walk), roles)], &alone).unwrap());
     let jumps = |hysteresis| {
@@ -557,8 +561,8 @@ fn votes_for_another_clip_let_jumps_within_a_clip_pass() {
 }
 
 #[test]
-fn a_clip_that_is_named_is_preferred_while_the_input_is_still() {
-    let motions = small().motions();
+fn preferred_source_is_kept_while_the_input_is_constant() {
+    let motions = small_database().motions();
     let named =
         motions.iter().find(|motion| motion.clip().name() == "walk 1.9 m/s").unwrap().source();
     let share = |prefer_source, prefer_current| {
@@ -570,7 +574,7 @@ fn a_clip_that_is_named_is_preferred_while_the_input_is_still() {
             ..options()
         };
         let mut controller =
-            Controller::new(Arc::clone(small()), options, &Planar::IDENTITY).unwrap();
+            Controller::new(Arc::clone(small_database()), options, &Planar::IDENTITY).unwrap();
         let mut there = 0;
         for tick in 0..480 {
             controller.tick(&Control::new(DVec2::new(0.0, 1.4), None));
@@ -586,11 +590,11 @@ fn a_clip_that_is_named_is_preferred_while_the_input_is_still() {
 }
 
 #[test]
-fn hysteresis_holds_back_and_tags_are_obeyed() {
+fn hysteresis_suppresses_jumps_and_tags_filter_frames() {
     let recording = Scenario::StartStop.recording();
     let jumps = |hysteresis| {
         let options = ControllerOptions { hysteresis, prefer_current: 0.0, ..options() };
-        drive(small(), options, &recording).unwrap().jumps
+        drive(small_database(), options, &recording).unwrap().jumps
     };
     let free = jumps(Hysteresis::None).len();
     for hysteresis in [
@@ -607,7 +611,7 @@ fn hysteresis_holds_back_and_tags_are_obeyed() {
 
     let walk = TagFilter { ask: TagSet::of(&[Tag::Run]), forbid: TagSet::of(&[Tag::Turn]) };
     let mut controller =
-        Controller::new(Arc::clone(small()), options(), &Planar::IDENTITY).unwrap();
+        Controller::new(Arc::clone(small_database()), options(), &Planar::IDENTITY).unwrap();
     let control = Control::new(DVec2::new(0.0, 1.4), None).with_filter(walk);
     let mut places = BTreeSet::new();
     for _ in 0..180 {
@@ -618,9 +622,12 @@ fn hysteresis_holds_back_and_tags_are_obeyed() {
     }
     assert!(!places.is_empty());
     for place in places {
-        assert!(walk.admits(small().tags(small().number(place).unwrap())), "{place:?}");
+        assert!(
+            walk.admits(small_database().tags(small_database().number(place).unwrap())),
+            "{place:?}"
+        );
     }
-    // Nothing has such a tag: the clip goes on, and at its end the character stands.
+    // No frame has such a tag: the clip continues, and at its end the character stands.
     let nowhere =
         control.with_filter(TagFilter { ask: TagSet::of(&[Tag::Own(7)]), forbid: TagSet::NONE });
     for _ in 0..600 {
@@ -631,10 +638,11 @@ fn hysteresis_holds_back_and_tags_are_obeyed() {
 }
 
 #[test]
-fn a_search_tells_why() {
+fn search_record_has_reason_and_costs() {
     let options = ControllerOptions { candidates: 6, ..options() };
     let mut controller =
-        Controller::new(Arc::clone(small()), options, &Planar::new(0.4, 2.0, -1.0)).unwrap();
+        Controller::new(Arc::clone(small_database()), options, &Planar::new(0.4, 2.0, -1.0))
+            .unwrap();
     assert!(controller.root().shift.distance(DVec2::new(2.0, -1.0)) < 1e-9);
     let control = Control::new(DVec2::new(1.0, 1.0), None);
     for _ in 0..90 {
@@ -651,44 +659,45 @@ fn a_search_tells_why() {
             (candidate.split.iter().sum::<f32>() - candidate.cost).abs()
                 < 1e-4 * candidate.cost.max(1.0)
         );
-        assert!(small().pose(candidate.place, &controller.root()).is_some());
+        assert!(small_database().pose(candidate.place, &controller.root()).is_some());
     }
     assert_eq!((controller.desired().len(), controller.matched().len()), (3, 3));
     assert!(serde_json::to_string(search).is_ok());
-    // Weights are live, options are checked.
+    // Weights apply at once, options are checked.
     let mut other = options;
     other.weights.0[0] = -1.0;
     assert!(matches!(controller.set_options(other), Err(MatchError::Setting { .. })));
     other.weights.0 = [0.0, 0.0, 1.0, 1.0, 1.0];
     controller.set_options(other).unwrap();
     controller.tick(&control);
-    let tagged = small().retagged(0, &[]);
+    let tagged = small_database().retagged(0, &[]);
     controller.set_database(Arc::new(tagged));
     controller.tick(&control);
     assert!(controller.pose().root_translation.is_finite());
 }
 
 #[test]
-fn planted_feet_stand() {
+fn planted_feet_stand_still() {
     let recording = Scenario::WalkToRun.recording();
     let slide = |planting| {
         let driven =
-            drive(small(), ControllerOptions { planting, ..options() }, &recording).unwrap();
-        driven.metrics(small()).skate_cm.unwrap()
+            drive(small_database(), ControllerOptions { planting, ..options() }, &recording)
+                .unwrap();
+        driven.metrics(small_database()).skate_cm.unwrap()
     };
     let (with, without) = (slide(options().planting), slide(None));
     assert!(with < 0.5 * without, "{with} {without}");
 }
 
 #[test]
-fn contacts_of_a_mirror_image_are_swapped() {
+fn mirrored_contacts_are_swapped() {
     let contacts = Contacts::from_flags([vec![true, false, true], vec![false, false, true]]);
     let swapped = Contacts::from_flags([vec![false, false, true], vec![true, false, true]]);
     assert_eq!(motion::mirrored_contacts(&contacts), swapped);
 }
 
 #[test]
-fn walks_are_neither_pulled_along_at_a_run_nor_spun_around() {
+fn controller_of_walks_is_not_pulled_faster_than_its_clips() {
     let clip = synthesize(&Params::new(Action::Walk)).unwrap().clip;
     let roles = Roles::detect(clip.skeleton());
     let database = Arc::new(
@@ -712,7 +721,7 @@ fn walks_are_neither_pulled_along_at_a_run_nor_spun_around() {
     assert!(fastest < 1.2 * pace.travel_mps, "{fastest}");
     assert!(fastest_turn < 2.0, "{fastest_turn}");
     assert!(farthest <= 0.35 + 1e-9, "{farthest}");
-    // It came around all the same, as far as it is held to what is asked for.
+    // It has turned all the same, as far as it is held to the simulation object.
     let off = wrap_angle(controller.root().yaw - std::f64::consts::PI).abs();
     assert!(off < 1.01, "{off}");
 }

@@ -1,3 +1,5 @@
+//! Foot planting during playback.
+
 use super::super::Database;
 use super::options::FootPlanting;
 use crate::math::curve::smoothstep;
@@ -7,29 +9,30 @@ use crate::skeleton::{Pose, Side, Skeleton, WorldPose, world_pose_of};
 use crate::transition::Leg;
 use glam::{Quat, Vec3};
 
-/// Plants feet while playing: what [`crate::transition::foot_lock`] does with a whole clip, without
-/// knowing what comes.
+/// Foot planting during playback, tick by tick: like [`crate::transition::foot_lock`] for a whole
+/// clip, without knowledge of the future.
 ///
-/// While a foot is said to stand, the slide of the point of it that moves least in its clip is
-/// taken back, tick by tick, so that this point stands exactly. The shift that has come together
-/// then decays, with its velocity, when the foot is lifted. A foot that would be held too far from
-/// its own way is let go until it is lifted. What is below the ground is lifted out of it.
+/// While a foot is planted, the slide of its stillest point in the clip is subtracted, tick by
+/// tick, so that this point stands exactly. When the foot is lifted, the accumulated shift decays
+/// from its own velocity. A foot that would be held too far from its animated position is released
+/// until it is lifted. Points below the ground are lifted above it.
 ///
-/// Where a leg cannot reach the place where its foot stands, the hips are lowered.
+/// Where a leg cannot reach the position of its planted foot, the hips are lowered.
 ///
-/// None of this turns a joint of the leg faster, beyond its own motion, than three quarters of what
-/// it usually does not exceed: a leg that is nearly straight would snap when its foot is let go,
-/// since there a centimetre is many degrees of the knee. The foot slips a little then.
+/// No correction turns a joint of the leg faster, in addition to its own motion, than three
+/// quarters of the speed that it usually does not exceed: a leg that is nearly straight would snap
+/// when its foot is released, since there a centimetre is many degrees of the knee. In that case
+/// the foot slips a little.
 ///
-/// A foot comes to stand when the clip says so *and* it has come down: right after a jump it may
-/// still be on its way to where the new clip has it. Where the body carries it over the ground, as
-/// one that is pulled back to a slower pace does, it stands if it can be held until its clip lifts
-/// it; else it is lifted before it lands. One that was let go comes to stand again when it is back
-/// on its own way.
+/// A foot becomes planted when the clip has a contact *and* the foot has come down: right after a
+/// jump it may still be on its way to its position in the new clip. Where the body carries the foot
+/// over the ground, as when it is pulled back to a slower pace, the foot is planted if it can be
+/// held until its clip lifts it; otherwise it is lifted before it lands. A released foot is planted
+/// again when it is back at its animated position.
 ///
-/// What moves over the ground is off it: a foot that a transition, a pull towards the wish or the
-/// way back from where it stood moves over the ground faster than its clip does is lifted, as in a
-/// step, and not dragged.
+/// A foot that moves over the ground is off the ground: if a transition, the pull towards the
+/// simulation object or the decay of its shift moves a foot over the ground faster than its clip
+/// does, it is lifted, as in a step, and not dragged.
 #[derive(Clone, Debug)]
 pub(super) struct Feet {
     both: Vec<Foot>,
@@ -37,72 +40,74 @@ pub(super) struct Feet {
     scale: f32,
     ground_m: f32,
     stand_m: f32,
-    /// How far the hips are lowered, metres, and how fast.
+    /// The amount by which the hips are lowered, metres, and its rate.
     lower: f32,
     lower_rate: f32,
     world: WorldPose,
 }
 
-/// A foot has come down when it is no higher than this above the ground, metres for a body of 1.75
-/// m, and the body does not carry it over the ground faster than this, metres per second: a little
-/// more than what [`crate::clip::ContactOptions`] asks for, since what is left of a transition
-/// sways it.
-const DOWN_M: f32 = 0.06;
-const DOWN_MPS: f32 = 0.6;
+/// A foot has landed when it is no higher than this above the ground, metres for a body of 1.75 m,
+/// and the body does not carry it over the ground faster than this, metres per second. Both are a
+/// little more than in [`crate::clip::ContactOptions`], since the rest of a transition makes the
+/// foot sway.
+const LANDED_M: f32 = 0.06;
+const LANDED_MPS: f32 = 0.6;
 
-/// A foot that was let go may stand again when no more than this share of
-/// [`FootPlanting::most_shift_m`] is left.
-const BACK_SHARE: f32 = 0.25;
+/// A released foot may be planted again when at most this share of [`FootPlanting::most_shift_m`]
+/// is left.
+const RESUME_SHARE: f32 = 0.25;
 
-/// A foot that is moved over the ground is lifted by this, metres for a body of 1.75 m: enough for
-/// what is seen as sliding to be a step.
-const LIFT_M: f32 = 0.04;
-/// It is so above this speed, metres per second; slower than [`SLIP_MPS`] it stays down.
-const LIFTED_MPS: f32 = 0.5;
-const SLIP_MPS: f32 = 0.05;
-/// The hips are lowered by no more than this, metres for a body of 1.75 m, where a leg cannot reach
-/// the place where its foot stands.
+/// The greatest clearance of a foot that is moved over the ground, metres for a body of 1.75 m:
+/// enough to look like a step instead of a slide.
+const MAX_CLEARANCE_M: f32 = 0.04;
+/// The speed of the foot at which that clearance is reached, metres per second; below [`MIN_CLEARANCE_MPS`]
+/// it is 0.
+const FULL_CLEARANCE_MPS: f32 = 0.5;
+const MIN_CLEARANCE_MPS: f32 = 0.05;
+/// The greatest amount by which the hips are lowered, metres for a body of 1.75 m, where a leg
+/// cannot reach the position of its planted foot.
 const MAX_LOWERED_M: f32 = 0.08;
-/// Half-life of that, seconds.
+/// Half-life of lowering the hips, seconds.
 const LOWER_HALF_LIFE_SECS: f64 = 0.03;
 
-/// Poses from which it is seen about which axis knees bend, at most.
-const EXAMPLES: usize = 240;
+/// The greatest number of poses from which the axes of the knees are computed.
+const MAX_EXAMPLES: usize = 240;
 
-/// Half-life of lifting and setting down, seconds.
+/// Half-life of lifting a foot and setting it down, seconds.
 const LIFT_HALF_LIFE_SECS: f64 = 0.04;
 
-/// Of the speed that a joint usually does not exceed, what planting may add to it.
+/// The speed that planting may add to a joint, as a share of the speed that the joint usually does
+/// not exceed.
 const ADDED_SPEED: f32 = 0.75;
 
-/// What a foot does in the frame that plays.
+/// The state of a foot in the clip, in the frame that plays.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(in super::super) struct OwnFoot {
-    /// Whether it is on the ground.
+pub(in super::super) struct FootState {
+    /// Whether it is planted.
     pub(in super::super) planted: bool,
-    /// For how many more frames it stays there, this one among them; shortly before it lands, for
-    /// how many it will. 0 in the air.
+    /// The number of frames for which it stays planted, including this one; shortly before it
+    /// lands, the length of the next stance. 0 otherwise.
     pub(in super::super) stance_frames: usize,
-    /// How high its lowest point is above where it is as a rule while the foot stands, metres.
+    /// The height of its lowest point above the usual height of a planted foot, metres.
     pub(in super::super) above_m: f32,
-    /// How far its lowest point comes down in the next frames, metres.
-    pub(in super::super) falls_m: f32,
-    /// Which of its points moves least over the ground: while it is pulled along, another one may
-    /// seem to stand.
+    /// The amount by which its lowest point comes down in the next frames, metres.
+    pub(in super::super) descent_m: f32,
+    /// The index of the point that moves least over the ground in the clip; while the foot is
+    /// pulled along, another point may seem to stand.
     pub(in super::super) stillest: usize,
-    /// The velocity of that point, metres per second, in the frame of the character.
+    /// The velocity of that point in the frame of the character, metres per second.
     pub(in super::super) velocity_mps: Vec3,
 }
 
-impl OwnFoot {
-    /// The same in the world, where the character is here.
+impl FootState {
+    /// Returns the state with its velocity in the world.
     pub(super) fn turned(self, world_from_character: &Planar) -> Self {
         Self { velocity_mps: world_from_character.apply_vector(self.velocity_mps), ..self }
     }
 }
 
-/// [`spring::towards`] in single precision.
-fn towards_number(
+/// Steps a number as [`spring::towards`] does, in single precision.
+fn towards_f32(
     value: f32,
     rate: f32,
     target: f32,
@@ -119,10 +124,11 @@ fn towards_number(
     (value as f32, rate as f32)
 }
 
-/// How high a foot is to be that moves over the ground at this speed, metres and metres per second
-/// for a body of 1.75 m.
+/// Returns the clearance of a foot that moves over the ground at this speed, metres and metres per
+/// second for a body of 1.75 m.
 fn clearance(speed_mps: f32) -> f32 {
-    LIFT_M * smoothstep((speed_mps - SLIP_MPS) / (LIFTED_MPS - SLIP_MPS))
+    MAX_CLEARANCE_M
+        * smoothstep((speed_mps - MIN_CLEARANCE_MPS) / (FULL_CLEARANCE_MPS - MIN_CLEARANCE_MPS))
 }
 
 #[derive(Clone, Debug)]
@@ -136,11 +142,11 @@ struct Foot {
     rate: Vec3,
     lift: f32,
     lift_rate: f32,
-    /// How far its ankle is moved in all, against the hips as they are in the clip.
+    /// The total correction of its ankle, relative to the hips of the clip.
     moved: Vec3,
     stands: bool,
-    let_go: bool,
-    /// What planting did to thigh, shin and foot in the last tick: on the left of their local
+    released: bool,
+    /// The corrections of thigh, shin and foot in the last tick, applied on the left of their local
     /// rotations.
     turned: [Quat; 3],
 }
@@ -148,9 +154,10 @@ struct Foot {
 impl Feet {
     pub(super) fn new(database: &Database) -> Self {
         let (skeleton, roles) = (database.skeleton(), database.roles());
-        // How a knee bends can be seen where it bends: of all motions, since in some nobody bends
-        // one.
-        let poses = || (0..database.frames()).step_by(database.frames().div_ceil(EXAMPLES).max(1));
+        // The axis of a knee is measured where the knee bends. All motions are used, because in
+        // some of them it never does.
+        let poses =
+            || (0..database.frames()).step_by(database.frames().div_ceil(MAX_EXAMPLES).max(1));
         let examples: Vec<WorldPose> = poses()
             .filter_map(|frame| database.place(frame))
             .filter_map(|place| Some(database.motion(place.motion)?.clip().world_pose(place.frame)))
@@ -169,7 +176,7 @@ impl Feet {
                 lift_rate: 0.0,
                 moved: Vec3::ZERO,
                 stands: false,
-                let_go: false,
+                released: false,
                 turned: [Quat::IDENTITY; 3],
             })
         };
@@ -187,13 +194,14 @@ impl Feet {
         }
     }
 
-    /// One tick of `dt_secs`: `own` is what the feet do in the clip; `pose` is in the world and is
-    /// corrected, where there are options. Which feet stand.
+    /// Corrects `pose`, which is in the world, by one tick of `dt_secs`; without options only
+    /// contacts are computed. `own` are the states of the feet in the clip. Returns which feet are
+    /// planted.
     pub(super) fn apply(
         &mut self,
         skeleton: &Skeleton,
         pose: &mut Pose,
-        own: [OwnFoot; 2],
+        own: [FootState; 2],
         options: Option<&FootPlanting>,
         usual_radps: &[f32],
         dt_secs: f64,
@@ -215,9 +223,9 @@ impl Feet {
             let points = foot.before.get(own.stillest).zip(now.get(own.stillest));
             let step = points.map(|(before, now)| (*now - *before) * Vec3::new(1.0, 0.0, 1.0));
             let slow =
-                step.is_some_and(|step| step.length() < DOWN_MPS * self.scale * dt_secs as f32);
+                step.is_some_and(|step| step.length() < LANDED_MPS * self.scale * dt_secs as f32);
             let stood = foot.stands;
-            let down = lowest - self.stand_m < DOWN_M * self.scale;
+            let down = lowest - self.stand_m < LANDED_M * self.scale;
             foot.before = now;
             let Some(options) = options else {
                 foot.stands = own.planted && (stood || (slow && down));
@@ -228,26 +236,26 @@ impl Feet {
                 continue;
             };
             let most_shift = options.most_shift_m * self.scale;
-            // What the body's way over the ground adds to the foot's own.
+            // The part of the step that comes from the body's motion, not from the clip's.
             let over_ground = Vec3::new(1.0, 0.0, 1.0);
             let slip = step.map_or(0.0, |step| {
                 (step - own.velocity_mps * over_ground * dt_secs as f32).length()
             });
-            let holds = slip < DOWN_MPS * self.scale * dt_secs as f32
+            let holds = slip < LANDED_MPS * self.scale * dt_secs as f32
                 || slip * own.stance_frames as f32 <= most_shift;
-            foot.let_go &= own.planted && foot.shift.length() > BACK_SHARE * most_shift;
+            foot.released &= own.planted && foot.shift.length() > RESUME_SHARE * most_shift;
             foot.stands =
-                own.planted && !foot.let_go && (stood || (holds && down && step.is_some()));
+                own.planted && !foot.released && (stood || (holds && down && step.is_some()));
             stand[foot.side.index()] = foot.stands;
             let before = foot.shift;
             match step.filter(|_| stood) {
                 Some(step) if foot.stands => {
                     foot.shift -= step;
                     foot.rate = -step / dt_secs as f32;
-                    foot.let_go = foot.shift.length() > most_shift;
-                    foot.stands = !foot.let_go;
+                    foot.released = foot.shift.length() > most_shift;
+                    foot.stands = !foot.released;
                 }
-                // Set down just now: it stays where it is.
+                // A foot that has just landed stays in place.
                 _ if foot.stands => foot.rate = Vec3::ZERO,
                 _ => {
                     (foot.shift, foot.rate) = spring::response(options.half_life_secs, dt_secs)
@@ -262,16 +270,16 @@ impl Feet {
                 let above = own.above_m / self.scale;
                 let own_speed = (own.velocity_mps * over_ground).length() / self.scale;
                 if holds {
-                    // What the clip itself does is left alone.
+                    // The clip's own motion is not changed.
                     let clear = clearance(speed).min(clearance(speed - own_speed).max(above));
                     (clear * self.scale + self.stand_m - lowest).max(0.0)
                 } else {
                     let clear = clearance(slip / (dt_secs as f32 * self.scale));
-                    (clear * self.scale + self.stand_m - (lowest - own.falls_m)).max(0.0)
+                    (clear * self.scale + self.stand_m - (lowest - own.descent_m)).max(0.0)
                 }
             };
             (foot.lift, foot.lift_rate) =
-                towards_number(foot.lift, foot.lift_rate, target, LIFT_HALF_LIFE_SECS, dt_secs);
+                towards_f32(foot.lift, foot.lift_rate, target, LIFT_HALF_LIFE_SECS, dt_secs);
             foot.moved = foot.shift + Vec3::Y * (foot.lift + (self.ground_m - lowest).max(0.0));
             too_high = too_high.max(foot.leg.too_high(&self.world, foot.moved));
         }
@@ -281,27 +289,27 @@ impl Feet {
         }
         let target = too_high.min(MAX_LOWERED_M * self.scale);
         (self.lower, self.lower_rate) =
-            towards_number(self.lower, self.lower_rate, target, LOWER_HALF_LIFE_SECS, dt_secs);
+            towards_f32(self.lower, self.lower_rate, target, LOWER_HALF_LIFE_SECS, dt_secs);
         pose.root_translation.y -= self.lower;
         for foot in &mut self.both {
             let shift = foot.moved + Vec3::Y * self.lower;
             let free = foot.leg.joints().map(|joint| pose.rotations[joint]);
-            // A hundredth of a millimetre is not seen.
+            // A correction of a hundredth of a millimetre is invisible.
             if shift.length_squared() > 1e-10 {
                 foot.leg.move_ankle(&self.world, shift, foot.axis, &mut pose.rotations);
             } else if foot.turned == [Quat::IDENTITY; 3] {
                 continue;
             }
-            foot.turn_no_faster(free, &mut pose.rotations, usual_radps, dt_secs as f32);
+            foot.limit_speed(free, &mut pose.rotations, usual_radps, dt_secs as f32);
         }
         stand
     }
 }
 
 impl Foot {
-    /// Goes from what was done to the leg in the last tick only as far towards what was done now as
-    /// its joints may turn in a tick. `free` are their local rotations without planting.
-    fn turn_no_faster(
+    /// Limits the change of the leg's correction since the last tick to the speed that its joints
+    /// may have. `free` are their local rotations without planting.
+    fn limit_speed(
         &mut self,
         free: [Quat; 3],
         local: &mut [Quat],
@@ -315,7 +323,7 @@ impl Foot {
             quat::renormalize(local[joints[index]] * free[index].conjugate())
         });
         self.turned = towards(self.turned, wanted, most_turn);
-        // What is not held back stays as it was worked out, bit for bit.
+        // Unlimited corrections are kept as computed, bit for bit.
         if self.turned != wanted {
             for (index, joint) in joints.into_iter().enumerate() {
                 local[joint] = quat::renormalize(self.turned[index] * free[index]);
@@ -324,8 +332,9 @@ impl Foot {
     }
 }
 
-/// From what was done to the joints of a leg as far towards what is wanted as each may turn, all by
-/// the same share; what is wanted where they may.
+/// Interpolates the corrections of a leg's joints from the last ones towards the wanted ones, all
+/// by the same share, so that none turns by more than `most_turn`; returns the wanted ones where
+/// possible.
 fn towards(last: [Quat; 3], wanted: [Quat; 3], most_turn: [f32; 3]) -> [Quat; 3] {
     let mut share = 1.0_f32;
     for ((last, wanted), most) in last.into_iter().zip(wanted).zip(most_turn) {
@@ -363,13 +372,13 @@ mod tests {
         Database::new(clips.collect(), &options).unwrap()
     }
 
-    /// Plays a clip, the left foot doing what `own` says of each frame, through `change`: what each
-    /// pose comes to.
+    /// Plays a clip through `change`, with `own` as the state of the left foot in each frame;
+    /// returns the corrected poses.
     fn played(
         database: &Database,
         usual: &[f32],
         frames: std::ops::Range<usize>,
-        own: impl Fn(usize) -> OwnFoot,
+        own: impl Fn(usize) -> FootState,
         change: impl Fn(usize, &mut Pose),
     ) -> Vec<Pose> {
         let clip: &Clip = database.motion(0).unwrap().clip();
@@ -377,7 +386,7 @@ mod tests {
         let pose = |frame: usize| {
             let mut pose = clip.pose(frame);
             change(frame, &mut pose);
-            let own = [own(frame), OwnFoot::default()];
+            let own = [own(frame), FootState::default()];
             feet.apply(database.skeleton(), &mut pose, own, Some(&PLANTING), usual, TICK_SECS);
             pose
         };
@@ -393,16 +402,16 @@ mod tests {
     }
 
     #[test]
-    fn a_foot_that_is_let_go_does_not_snap_the_knee() {
+    fn released_foot_does_not_snap_the_knee() {
         let database = database(&[Action::Walk]);
         let motion = database.motion(0).unwrap();
         let pace = &motion.pace().joints_radps;
         let stances = motion.contacts().intervals(Side::Left);
         let stance = stances.into_iter().find(|stance| stance.start > 0).unwrap();
-        // The foot is said to stand for longer than it does, as a wrong contact has it: the body
+        // The foot is marked as planted for longer than it is, as with a wrong contact: the body
         // walks on, and the leg is stretched.
         let own =
-            |frame: usize| OwnFoot { planted: frame < stance.end + 8, ..motion.feet(frame)[0] };
+            |frame: usize| FootState { planted: frame < stance.end + 8, ..motion.feet(frame)[0] };
         let fastest = |usual: &[f32]| {
             let poses = played(&database, usual, stance.start..motion.frames(), own, |_, _| {});
             let legs = Side::BOTH.map(|side| {
@@ -422,23 +431,23 @@ mod tests {
         assert!(held <= 1.0 + ADDED_SPEED + 0.05, "{held}");
     }
 
-    /// A body that stands and is pushed over the ground, its feet in the air in the clip or not:
-    /// what moves is lifted, what stands stays.
+    /// A standing body is pushed over the ground, with its feet in the air in the clip or planted:
+    /// a moving foot is lifted, a planted one stays.
     #[test]
-    fn a_foot_that_is_moved_over_the_ground_is_lifted() {
+    fn foot_moved_over_the_ground_is_lifted() {
         let database = database(&[Action::Idle]);
         let push = |frame: usize, pose: &mut Pose| {
             pose.root_translation += Vec3::X * 0.005 * frame.saturating_sub(10) as f32;
         };
-        let path = |own: OwnFoot| {
+        let path = |own: FootState| {
             let poses = played(&database, &[], 0..40, |_| own, push);
             poses.iter().map(|pose| left_foot(&database, pose)).collect::<Vec<_>>()
         };
-        let stands = OwnFoot { planted: true, ..OwnFoot::default() };
+        let stands = FootState { planted: true, ..FootState::default() };
         let stood = path(stands);
         assert!(stood[39].distance(stood[1]) < 4e-3, "{} {}", stood[1], stood[39]);
-        let moved = path(OwnFoot::default());
-        // It goes at 0.3 m/s: not as fast as to be lifted to the full, and not at once.
+        let moved = path(FootState::default());
+        // At 0.3 m/s it is lifted neither fully nor at once.
         assert!(
             (moved[39] - moved[0]).x > 0.14 && moved[39].y - moved[0].y > 0.01,
             "{} {}",
@@ -446,27 +455,27 @@ mod tests {
             moved[39]
         );
         assert!(moved.windows(2).all(|pair| pair[1].y - pair[0].y < 6e-3));
-        // What the clip itself does is left alone.
-        let own = path(OwnFoot {
+        // The clip's own motion is not changed.
+        let own = path(FootState {
             above_m: database.motion(0).unwrap().feet(0)[0].above_m,
             velocity_mps: Vec3::X * 0.3,
-            ..OwnFoot::default()
+            ..FootState::default()
         });
         assert!((own[39].y - own[0].y).abs() < 1e-3, "{} {}", own[0], own[39]);
     }
 
-    /// A body that is pulled back to a slower pace carries its feet over the ground: one that can
-    /// be held for all of its stance is.
+    /// A body that is pulled back to a slower pace carries its feet over the ground: a foot that
+    /// can be held for all of its stance is planted.
     #[test]
-    fn a_foot_that_is_carried_along_stands_where_it_can_be_held() {
+    fn carried_foot_is_planted_where_it_can_be_held() {
         let database = database(&[Action::Idle]);
         let push =
             |frame: usize, pose: &mut Pose| pose.root_translation += Vec3::X * 0.015 * frame as f32;
         let way = |stance: std::ops::Range<usize>| {
-            let own = |frame: usize| OwnFoot {
+            let own = |frame: usize| FootState {
                 planted: stance.contains(&frame),
                 stance_frames: if stance.contains(&frame) { stance.end - frame } else { 0 },
-                ..OwnFoot::default()
+                ..FootState::default()
             };
             let poses = played(&database, &[], 0..stance.end, own, push);
             left_foot(&database, &poses[stance.end - 1])
@@ -479,10 +488,10 @@ mod tests {
         assert!(long > 0.25 && long < 0.35, "{long}");
     }
 
-    /// One that cannot be held is in the air when it would land, and does not touch the ground
+    /// A foot that cannot be held is in the air when it would land, and does not touch the ground
     /// while it moves.
     #[test]
-    fn a_foot_that_is_carried_too_far_is_lifted_before_it_lands() {
+    fn foot_carried_too_far_is_lifted_before_landing() {
         let database = database(&[Action::Run]);
         let motion = database.motion(0).unwrap();
         let push = |frame: usize, pose: &mut Pose| {
@@ -515,12 +524,13 @@ mod tests {
         }
     }
 
-    /// One stance is not given up for good: where the foot is back on its own way it stands again.
+    /// A stance is not given up for good: where the foot is back at its animated position it is
+    /// planted again.
     #[test]
-    fn a_foot_that_was_let_go_stands_again() {
+    fn released_foot_is_planted_again() {
         let database = database(&[Action::Idle]);
-        let stands = OwnFoot { planted: true, ..OwnFoot::default() };
-        // Pushed by 0.5 m, which is farther than a foot is held.
+        let stands = FootState { planted: true, ..FootState::default() };
+        // A push by 0.5 m, farther than a foot is held.
         let push = |frame: usize, pose: &mut Pose| {
             pose.root_translation += Vec3::X * (0.01 * frame.clamp(10, 60) as f32);
         };
@@ -534,7 +544,7 @@ mod tests {
     }
 
     #[test]
-    fn knees_bend_as_they_do_in_any_of_the_motions() {
+    fn knee_axes_come_from_all_motions() {
         let [walk, both] = [&[Action::Walk][..], &[Action::Idle, Action::Walk]]
             .map(|actions| Feet::new(&database(actions)));
         for (walk, both) in walk.both.iter().zip(&both.both) {

@@ -1,4 +1,4 @@
-//! The controller: from what the player asks for to the character's pose, tick by tick.
+//! The controller: from the player's input to the character's pose, tick by tick.
 
 mod feet;
 mod options;
@@ -19,26 +19,27 @@ use crate::math::{Planar, quat, spring, wrap_angle};
 use crate::skeleton::Pose;
 use crate::transition::{Inertializer, MovingPose};
 use feet::Feet;
-pub(super) use feet::OwnFoot;
+pub(super) use feet::FootState;
 use glam::{DVec2, Vec3};
 use std::sync::Arc;
 
-/// Seconds of a tick.
+/// Duration of a tick, seconds.
 const TICK_SECS: f64 = 1.0 / RATE as f64;
-/// A character is pulled along no faster than this share of the fastest that its clips go.
+/// The greatest speed at which a character is pulled along, as a share of the greatest speed of its
+/// clips.
 const PULL_SHARE: f64 = 1.1;
-/// Clips that go nowhere, or straight on alone, count as this fast, metres and radians per second:
-/// 0.5 m/s and 80° per second.
+/// The least values of that greatest speed, for clips that stay in place or walk straight on alone,
+/// metres and radians per second: 0.5 m/s and 80° per second.
 const MIN_PULL_MPS: f64 = 0.5;
 const MIN_TWIST_RADPS: f64 = 1.4;
-/// After a pause of the page nobody wants to wait for all that was missed, ticks.
+/// The greatest number of ticks per step: after a pause of the page the missed time is skipped.
 const MAX_TICKS_AT_ONCE: usize = 30;
 
-/// A character that is driven by a database.
+/// A character that is controlled by motion matching.
 ///
-/// It goes on in ticks of 1/60 s ([`Self::tick`]) whatever the screen's rate is: the same input
+/// It advances in ticks of 1/60 s ([`Self::tick`]) whatever the screen's rate is: the same input
 /// gives the same motion, bit for bit. Features and queries are rounded to a grid, so that machines
-/// whose trigonometry differs in its last digit choose the same frames, but for ties of less than
+/// whose trigonometry differs in its last digit choose the same frames, except for ties within
 /// that. [`Self::step`] runs as many ticks as fit into a frame of the screen; [`Self::shown`] is
 /// the pose between the last two.
 #[derive(Debug)]
@@ -55,29 +56,29 @@ pub struct Controller {
     pose: Pose,
     previous: Pose,
     planted: [bool; 2],
-    /// Real time that has not been a tick yet.
+    /// Real time that has not become a tick yet, seconds.
     left_secs: f64,
     tick: u64,
     jumps: u64,
     last_search: Option<u64>,
     last_jump: Option<u64>,
     last_change: u64,
-    asked: Asked,
+    last_input: LastInput,
     votes: u32,
     tree: Option<TreeIndex>,
     record: Option<SearchRecord>,
 }
 
-/// What the last search was asked with.
+/// The input of the last search.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Asked {
+struct LastInput {
     velocity: DVec2,
     yaw: f64,
     filter: TagFilter,
 }
 
 impl Controller {
-    /// A character that stands at `start`, in the frame of the database that looks most like
+    /// Returns a character that stands at `start`, in the frame of the database that is most like
     /// standing still.
     ///
     /// # Errors
@@ -105,7 +106,7 @@ impl Controller {
             last_search: None,
             last_jump: None,
             last_change: 0,
-            asked: Asked::default(),
+            last_input: LastInput::default(),
             votes: 0,
             tree: None,
             record: None,
@@ -116,20 +117,20 @@ impl Controller {
         Ok(controller)
     }
 
-    /// The database.
+    /// Returns the database.
     #[must_use]
     pub fn database(&self) -> &Arc<Database> {
         &self.database
     }
 
-    /// The options.
+    /// Returns the options.
     #[must_use]
     pub fn options(&self) -> &ControllerOptions {
         &self.options
     }
 
-    /// Other options from the next tick on. A transition that is under way continues from where it
-    /// is, pose and velocity.
+    /// Sets options from the next tick on. A transition in progress continues from its pose and
+    /// velocity.
     ///
     /// # Errors
     /// [`MatchError::Setting`] when one is out of range; the old ones stay.
@@ -144,7 +145,8 @@ impl Controller {
         Ok(())
     }
 
-    /// Goes on in another database of the same clips: with other tags, or other trajectory times.
+    /// Continues with another database of the same clips: with other tags, or other trajectory
+    /// times.
     pub fn set_database(&mut self, database: Arc<Database>) {
         self.weights = self.options.weights.spread(database.features().layout());
         let known = database
@@ -160,14 +162,14 @@ impl Controller {
         }
     }
 
-    /// The character's pose after the last tick, in the world, feet planted.
+    /// Returns the character's pose after the last tick, in the world, with planted feet.
     #[must_use]
     pub fn pose(&self) -> &Pose {
         &self.pose
     }
 
-    /// The pose between the last two ticks that belongs to the time that [`Self::step`] has been
-    /// given: one tick behind it, and smooth at any rate of the screen.
+    /// Returns the pose between the last two ticks at the time given to [`Self::step`]: one tick
+    /// behind it, and smooth at any rate of the screen.
     #[must_use]
     pub fn shown(&self) -> Pose {
         let part = (self.left_secs / TICK_SECS).clamp(0.0, 1.0) as f32;
@@ -183,50 +185,50 @@ impl Controller {
         }
     }
 
-    /// Where the character stands and what it faces: `world_from_character`.
+    /// Returns the character's ground frame: `world_from_character`.
     #[must_use]
     pub fn root(&self) -> Planar {
         self.root
     }
 
-    /// The simulation object.
+    /// Returns the simulation object.
     #[must_use]
     pub fn simulation(&self) -> &Simulation {
         &self.simulation
     }
 
-    /// The frame that is playing.
+    /// Returns the frame that is playing.
     #[must_use]
     pub fn place(&self) -> Place {
         self.place
     }
 
-    /// Which feet stand: left, right. The clip has them on the ground, and they have come down
-    /// there.
+    /// Returns which feet are planted: left, right. A planted foot has a contact in its clip, and
+    /// has landed.
     #[must_use]
     pub fn planted(&self) -> [bool; 2] {
         self.planted
     }
 
-    /// Ticks since the beginning.
+    /// Returns the number of ticks since the beginning.
     #[must_use]
     pub fn ticks(&self) -> u64 {
         self.tick
     }
 
-    /// Jumps since the beginning.
+    /// Returns the number of jumps since the beginning.
     #[must_use]
     pub fn jumps(&self) -> u64 {
         self.jumps
     }
 
-    /// What the last search came to.
+    /// Returns the record of the last search.
     #[must_use]
     pub fn last_search(&self) -> Option<&SearchRecord> {
         self.record.as_ref()
     }
 
-    /// The trajectory that is asked for, at the trajectory times, in the world.
+    /// Returns the desired trajectory, at the trajectory times, in the world.
     #[must_use]
     pub fn desired(&self) -> Vec<Planar> {
         let at = |frames: &usize| {
@@ -236,14 +238,14 @@ impl Controller {
         self.database.features().layout().ahead().iter().map(at).collect()
     }
 
-    /// The trajectory of the clip that is playing, at the trajectory times, in the world.
+    /// Returns the trajectory of the clip that is playing, at the trajectory times, in the world.
     #[must_use]
     pub fn matched(&self) -> Vec<Planar> {
         self.database.trajectory(self.place, &self.root)
     }
 
-    /// Real time passes: runs the ticks that fit in, all with the same input. How many they were is
-    /// what a recording must hold.
+    /// Advances real time: runs the ticks that fit into it, all with the same input. Returns their
+    /// number, which a recording must hold.
     pub fn step(&mut self, dt_secs: f64, control: &Control) -> usize {
         if dt_secs > 0.0 && dt_secs.is_finite() {
             self.left_secs += dt_secs;
@@ -257,13 +259,13 @@ impl Controller {
         ticks
     }
 
-    /// One tick of 1/60 s.
+    /// Runs one tick of 1/60 s.
     pub fn tick(&mut self, control: &Control) {
-        self.simulation.ask(control);
+        self.simulation.set_goal(control);
         if let Some(reason) = self.reason(control.filter()) {
             self.seek(reason, control.filter());
         }
-        let travelled = self.go_on();
+        let travelled = self.advance_frame();
         self.simulation = self.simulation.after(TICK_SECS, &self.options.steering);
         self.follow(&travelled);
         std::mem::swap(&mut self.pose, &mut self.previous);
@@ -271,8 +273,8 @@ impl Controller {
         self.tick += 1;
     }
 
-    /// Plays one frame further; the step that the character made, in its own frame.
-    fn go_on(&mut self) -> Planar {
+    /// Plays one frame further; returns the step of the character in its own frame.
+    fn advance_frame(&mut self) -> Planar {
         let mut step = Planar::IDENTITY;
         if let Some(motion) = self.database.motion(self.place.motion)
             && let Some(next) = motion.next(self.place.frame)
@@ -287,12 +289,12 @@ impl Controller {
         step
     }
 
-    /// Draws the character to the simulation object, and holds it near (Holden, "Code vs Data
+    /// Pulls the character towards the simulation object, and holds it near (Holden, "Code vs Data
     /// Driven Displacement", 2021).
     ///
-    /// It is drawn and held no faster than anything in the clips goes: walks alone cannot be pulled
-    /// along at a run, nor spun around. The simulation object then waits, so that it is never
-    /// farther away than it may be.
+    /// The pull is no faster than the motion in the clips: walks alone cannot be pulled along at a
+    /// run, nor spun around. The simulation object then waits, so that its distance stays within
+    /// the limit.
     fn follow(&mut self, travelled: &Planar) {
         let Some(following) = self.options.following else {
             return;
@@ -301,7 +303,7 @@ impl Controller {
             self.simulation.position - self.root.shift,
             wrap_angle(self.simulation.yaw - self.root.yaw),
         );
-        // The exact share of plain exponential decay.
+        // The exact share of exponential decay.
         let share = 1.0 - spring::velocity_decay(following.half_life_secs, TICK_SECS).0;
         let most = |own: f64| own * following.most_share;
         let drawn = (off * share).clamp_length_max(most(travelled.shift.length()));
@@ -362,7 +364,7 @@ impl Controller {
             self.feet.apply(self.database.skeleton(), pose, own, planting, usual, TICK_SECS);
     }
 
-    /// Stands where the simulation object is.
+    /// Begins at the simulation object.
     fn begin(&mut self) {
         let query = self.query();
         if let Some(hit) = self.find(&query, TagFilter::default(), None).best
@@ -376,15 +378,15 @@ impl Controller {
         self.record = None;
     }
 
-    /// A frame as a pose in the character's own frame, and how it moves there.
+    /// Returns a frame as a pose with velocities in the character's own frame.
     fn moving(&self, place: Place) -> MovingPose {
         let Some(motion) = self.database.motion(place.motion) else {
             return MovingPose::default();
         };
         let last = motion.frames().saturating_sub(1);
         let (clip, frame) = (motion.clip(), place.frame.min(last));
-        // The step from this frame to the next; behind the last one of a clip that ends it is the
-        // one before.
+        // The step from this frame to the next; for the last one of a clip that ends, the step
+        // before.
         let (from, to) = if motion.next(frame).is_some() {
             (frame, frame + 1)
         } else {

@@ -1,34 +1,35 @@
+//! Options of the controller.
+
 use super::super::desired::Steering;
 use super::super::{MatchError, Weights};
 use crate::math::Decay;
 use crate::transition::Inertialization;
 
-/// What keeps the controller from jumping at every search that finds something a little better.
+/// The conditions that suppress jumps to frames that are only a little better.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Hysteresis {
-    /// Nothing: the best frame is taken.
+    /// None: the best frame is always taken.
     None,
-    /// The frame that is playing counts as this much better than it is: a share of its cost from 0
-    /// to 1, and a constant.
+    /// The cost of the frame that is playing is reduced by a share from 0 to 1, and by a constant.
     ContinuingBias {
         /// The share of its cost.
         share: f32,
-        /// Cost that is forgiven in any case.
+        /// The constant.
         constant: f32,
     },
-    /// No jump sooner than this after another, seconds.
+    /// The least time between two jumps, seconds.
     MinimumTime {
         /// Seconds.
         secs: f64,
     },
-    /// A jump needs three searches in a row that want one.
+    /// A jump needs three consecutive searches in favour of one.
     ThreeVotes,
-    /// A jump into another clip needs three searches in a row that want one; within its clip it
-    /// jumps at once.
+    /// A jump into another clip needs three consecutive searches in favour of one; within its clip
+    /// the character jumps at once.
     ThreeVotesForAnotherClip,
 }
 
-/// Which search is asked. All find the same frame.
+/// The search algorithm. All find the same frame.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
 )]
@@ -38,59 +39,61 @@ pub enum SearchMethod {
     Boxes,
     /// The k-d tree of the crate `kiddo`, rebuilt for new weights or another filter.
     Tree,
-    /// All frames.
+    /// A scan of all frames.
     Scan,
 }
 
-/// How the character is held to the simulation object.
+/// How the character follows the simulation object.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Following {
-    /// Half-life with which the character is drawn to the simulation object, seconds.
+    /// Half-life with which the character is pulled towards the simulation object, seconds.
     pub half_life_secs: f64,
-    /// Of its own speed, the most that it is drawn by; so that who stands is not pushed along.
+    /// The greatest speed of the pull as a share of the character's own speed, so that a standing
+    /// character is not pushed along.
     pub most_share: f64,
-    /// The farthest it may be away, metres.
+    /// The greatest distance, metres.
     pub most_m: f64,
-    /// The farthest it may be turned away, radians.
+    /// The greatest difference of yaw, radians.
     pub most_radians: f64,
 }
 
-/// How feet are planted while playing.
+/// Options of foot planting during playback.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct FootPlanting {
-    /// Half-life with which a foot that was lifted comes back to its own way, seconds.
+    /// Half-life with which a lifted foot returns to its animated position, seconds.
     pub half_life_secs: f64,
-    /// The farthest that a foot is held from its own way, metres, for a body of 1.75 m; then it is
-    /// let go.
+    /// The greatest distance of a planted foot from its animated position, metres, for a body of
+    /// 1.75 m; beyond it the foot is released.
     pub most_shift_m: f32,
 }
 
-/// How a controller searches, goes over, and follows.
+/// Options of a controller: search, transitions, and following.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ControllerOptions {
-    /// How much each block of features counts.
+    /// The weight of each block of features.
     pub weights: Weights,
     /// Seconds between searches.
     pub search_interval_secs: f64,
-    /// Which search.
+    /// The search algorithm.
     pub method: SearchMethod,
-    /// What keeps it from jumping too often.
+    /// The suppression of jumps.
     pub hysteresis: Hysteresis,
-    /// While the input stays as it is, one clip is preferred: a frame of another clip must be
-    /// cheaper by this share of the cost, from 0 (no matter) to 1.
+    /// While the input is constant, one clip is preferred: a frame of another clip must be cheaper
+    /// by this share of the cost, from 0 (no preference) to 1.
     pub prefer_current: f32,
-    /// Which clip that is, by its number among those that the database was built from; `None`
+    /// The preferred clip, by its number among those from which the database was built; `None`
     /// prefers the clip that is playing.
     pub prefer_source: Option<usize>,
-    /// How a jump is hidden.
+    /// The transition at a jump.
     pub transition: Inertialization,
-    /// How the simulation object is steered.
+    /// The steering of the simulation object.
     pub steering: Steering,
-    /// How the character follows it; `None` lets it go where its clips lead.
+    /// How the character follows it; `None` leaves root motion to the clips.
     pub following: Option<Following>,
-    /// How feet are planted; `None` leaves them as they are.
+    /// Foot planting; `None` leaves feet unchanged.
     pub planting: Option<FootPlanting>,
-    /// Of how many candidates each search keeps a record, at most 32. More than one costs a scan.
+    /// The number of candidates in the record of each search, at most 32. More than one costs a
+    /// scan.
     pub candidates: usize,
 }
 
@@ -118,10 +121,10 @@ impl Default for ControllerOptions {
 }
 
 impl ControllerOptions {
-    /// Whether every number lies in its range.
+    /// Checks that every number is in its range.
     ///
     /// # Errors
-    /// [`MatchError::Setting`] for the first that does not.
+    /// [`MatchError::Setting`] with the first number that is not.
     pub fn validate(&self) -> Result<(), MatchError> {
         let check = |what, value: f64, least: f64, most: f64| {
             if (least..=most).contains(&value) {

@@ -1,63 +1,65 @@
+//! Records of searches.
+
 use super::super::{Block, Place};
 
-/// Why a search was made.
+/// The cause of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 pub enum Reason {
-    /// It was time.
+    /// The search interval has passed.
     Interval,
     /// The clip ends.
     ClipEnd,
-    /// The player asked for something else.
+    /// The input has changed.
     InputChange,
 }
 
-/// Why the controller stayed where it was.
+/// The reason why the controller did not jump to the winner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 pub enum Held {
-    /// The winner is where it is playing, or next to it.
+    /// The winner is the frame that is playing, or next to it.
     Same,
     /// The winner is not better by the continuing bias.
     Bias,
     /// The last jump is too recent.
     MinimumTime,
-    /// Not three votes yet.
+    /// Fewer than three votes so far.
     Votes,
-    /// The input is still, and the winner is in another clip.
+    /// The input is constant, and the winner is in another clip.
     CurrentClip,
-    /// No frame has the tags that are asked for.
+    /// No frame has the required tags.
     Nothing,
 }
 
-/// A frame that could be gone to.
+/// A possible target of a jump.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Candidate {
-    /// Where.
+    /// The frame.
     pub place: Place,
-    /// What it costs.
+    /// Its cost.
     pub cost: f32,
-    /// The same, block by block, in the order of [`Block::ALL`].
+    /// Its cost block by block, in the order of [`Block::ALL`].
     pub split: [f32; Block::COUNT],
 }
 
-/// What a search came to.
+/// The result of a search.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct SearchRecord {
-    /// When, in ticks since the controller began.
+    /// The time, in ticks since the controller began.
     pub tick: u64,
-    /// Why.
+    /// The cause.
     pub reason: Reason,
     /// The frame that was playing, and its cost.
     pub current: Candidate,
-    /// The frame of least cost among those admitted, or that of a clip that is preferred.
+    /// The admitted frame of least cost, or that of a clip that is preferred.
     pub winner: Option<Candidate>,
-    /// The best frames of the neighbourhoods, the winner first:
-    /// [`super::ControllerOptions::candidates`] of them at most. Beside the winner they are frames
-    /// that cost less than those next to them in their clip, the cheapest first.
+    /// The best frames of their neighbourhoods, the winner first: at most
+    /// [`super::ControllerOptions::candidates`]. All but the winner are frames that cost less than
+    /// those next to them in their clip, the cheapest first.
     pub candidates: Vec<Candidate>,
-    /// What kept it from going to the winner; `None` when it went.
+    /// The reason why it did not jump to the winner; `None` when it did.
     pub held: Option<Held>,
-    /// Frames that the search looked at.
+    /// Number of frames that the search visited.
     pub visited: usize,
-    /// The normalised features that were looked for.
+    /// The normalised features of the query.
     pub query: Vec<f32>,
 }

@@ -1,21 +1,21 @@
-//! When to search, what for, and whether to go there.
+//! When to search, the query, and the decision to jump.
 
 use super::super::features::{MAX_DIMS, RATE};
 use super::super::motion::{Motion, write_trajectory};
 use super::super::search::{Found, Hit, Question, TreeIndex, scan};
 use super::super::{Place, TagFilter};
 use super::record::{Candidate, Held, Reason, SearchRecord};
-use super::{Asked, Controller, Hysteresis, SearchMethod, TICK_SECS};
+use super::{Controller, Hysteresis, LastInput, SearchMethod, TICK_SECS};
 use crate::math::wrap_angle;
 
-/// An input that has changed by this much since the last search does not wait for the next, metres
-/// per second and radians.
+/// A change of the input since the last search that triggers a search at once, metres per second
+/// and radians.
 const CHANGE_MPS: f64 = 0.5;
 const CHANGE_RADIANS: f64 = 0.6;
-/// A winner this near to the frame that is playing is the same place: going there would be a
-/// stutter, frames.
+/// A winner this near to the frame that is playing, in frames, is not a jump: it would be a
+/// stutter.
 const SAME_FRAMES: usize = RATE / 5;
-/// The input is still when it has not changed for this long, ticks.
+/// The input counts as constant when it has not changed for this long, ticks.
 const STILL_TICKS: u64 = RATE as u64 / 2;
 
 impl Controller {
@@ -25,9 +25,9 @@ impl Controller {
         // A cycle has no end.
         let ends = playing
             .is_none_or(|motion| !motion.is_cycle() && self.place.frame + 2 >= motion.frames());
-        let changed = self.asked.velocity.distance(simulation.goal_velocity) > CHANGE_MPS
-            || wrap_angle(self.asked.yaw - simulation.goal_yaw).abs() > CHANGE_RADIANS
-            || self.asked.filter != filter;
+        let changed = self.last_input.velocity.distance(simulation.goal_velocity) > CHANGE_MPS
+            || wrap_angle(self.last_input.yaw - simulation.goal_yaw).abs() > CHANGE_RADIANS
+            || self.last_input.filter != filter;
         if changed {
             self.last_change = self.tick;
         }
@@ -42,8 +42,8 @@ impl Controller {
         }
     }
 
-    /// What is looked for: the body as it is in the clip that is playing, and the trajectory that
-    /// is asked for; normalised.
+    /// Returns the query: the body as in the clip that is playing, and the desired trajectory;
+    /// normalised.
     pub(super) fn query(&self) -> Vec<f32> {
         let features = self.database.features();
         let layout = features.layout();
@@ -62,7 +62,7 @@ impl Controller {
         row.to_vec()
     }
 
-    /// The best admitted frame, `known` being one of them.
+    /// Returns the best admitted frame; `known` is one of them.
     pub(super) fn find(&mut self, query: &[f32], filter: TagFilter, known: Option<Hit>) -> Found {
         let question = Question { query, weights: &self.weights, filter };
         let candidates = self.database.candidates();
@@ -107,7 +107,7 @@ impl Controller {
             }
         };
         self.last_search = Some(self.tick);
-        self.asked = Asked {
+        self.last_input = LastInput {
             velocity: self.simulation.goal_velocity,
             yaw: self.simulation.goal_yaw,
             filter,
@@ -127,7 +127,7 @@ impl Controller {
             winner.into_iter().take(self.options.candidates).collect();
         if self.options.candidates > 1 {
             candidates = self.best(&query, filter).into_iter().filter_map(candidate).collect();
-            // The winner comes first, also where it is not the cheapest.
+            // The winner comes first, even if it is not the cheapest.
             candidates.retain(|other| winner.is_none_or(|winner| winner.place != other.place));
             candidates.splice(0..0, winner);
             candidates.truncate(self.options.candidates);
@@ -144,24 +144,25 @@ impl Controller {
         });
     }
 
-    /// Whether the input has not changed for a while.
+    /// Returns whether the input has not changed for a while.
     fn is_still(&self) -> bool {
         self.tick >= self.last_change + STILL_TICKS
     }
 
-    /// Whether a motion is of the clip that is preferred now, by its name.
+    /// Returns whether a motion belongs to the preferred clip.
     fn is_preferred(&self, motion: usize) -> bool {
         let source = self.options.prefer_source.filter(|_| self.is_still());
         source.is_some() && self.database.motion(motion).map(Motion::source) == source
     }
 
-    /// A cost as it counts: frames of the clip that is preferred are cheaper.
+    /// Returns the cost of a frame including the preference: frames of the preferred clip are
+    /// cheaper.
     fn counted(&self, motion: usize, cost: f32) -> f32 {
         if self.is_preferred(motion) { cost * (1.0 - self.options.prefer_current) } else { cost }
     }
 
-    /// The best frame of the clip that is preferred now, if it counts as no dearer than the best of
-    /// all; else that one.
+    /// Returns the best frame of the preferred clip, if it is no more expensive than the best of
+    /// all including the preference; otherwise that one.
     fn preferred(&self, query: &[f32], filter: TagFilter, best: Option<Hit>) -> Option<Hit> {
         let best = best?;
         let question = Question { query, weights: &self.weights, filter };
@@ -184,7 +185,7 @@ impl Controller {
         named.filter(|named| counted(named) <= counted(&best)).or(Some(best))
     }
 
-    /// What speaks against going to the winner.
+    /// Returns the reason not to jump to the winner.
     fn held(
         &mut self,
         reason: Reason,
@@ -208,7 +209,7 @@ impl Controller {
             self.votes = 0;
             return Some(Held::Same);
         }
-        // A frame that has not the tags that are asked for is left as soon as may be.
+        // A frame without the required tags is left as soon as possible.
         if filter.admits(self.database.tags(current.frame)) {
             match self.options.hysteresis {
                 Hysteresis::ContinuingBias { share, constant }
@@ -244,7 +245,7 @@ impl Controller {
         None
     }
 
-    /// Goes on at another place; what differs dies away.
+    /// Jumps to another frame; the difference decays.
     fn jump(&mut self, to: Place) {
         let (old, new) = (self.moving(self.place), self.moving(to));
         self.inertializer.trigger_within(&old, &new, &self.database.pace().joints_radps);
@@ -253,7 +254,8 @@ impl Controller {
         self.last_jump = Some(self.tick);
     }
 
-    /// The best frames that cost no more than those next to them in their clip, the best first.
+    /// Returns the best frames that cost no more than those next to them in their clip, the best
+    /// first.
     fn best(&self, query: &[f32], filter: TagFilter) -> Vec<Hit> {
         let question = Question { query, weights: &self.weights, filter };
         let database = &self.database;

@@ -1,16 +1,18 @@
+//! Exact search by bounding boxes.
+
 use super::super::tags::{TagFilter, TagSet};
 use super::{Found, Hit, Question};
 
-/// Numbers that are computed side by side.
+/// Number of values that are computed side by side.
 pub(super) const LANES: usize = 8;
-/// Frames in a leaf.
+/// Number of frames in a leaf.
 pub(super) const LEAF: usize = 16;
 const GROUPS: usize = LEAF / LANES;
 
 type Lane = [f32; LANES];
 
-/// One level of boxes, eight side by side: for each pack of eight and each dimension their low
-/// ends, then their high ends.
+/// One level of boxes, in packs of eight: for each pack and each dimension their lower bounds, then
+/// their upper bounds.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Level {
     packs: Vec<f32>,
@@ -24,7 +26,7 @@ impl Level {
             for dim in 0..dims {
                 for end in [0, 1] {
                     packs.extend((0..LANES).map(|lane| {
-                        // Lanes beyond the last box repeat it.
+                        // Lanes after the last box repeat it.
                         let (low, high) = pack.get(lane).unwrap_or(&pack[pack.len() - 1]);
                         if end == 0 { low[dim] } else { high[dim] }
                     }));
@@ -35,17 +37,16 @@ impl Level {
     }
 }
 
-/// Boxes around frames that lie near each other, eight boxes to a larger one: an exact search that
-/// looks at few frames.
+/// An exact search by a hierarchy of bounding boxes, which visits few frames.
 ///
-/// A leaf holds 16 frames that are alike, by whatever clip; above it every box has eight children.
-/// Boxes are opened nearest first, and not at all once they are farther than the best frame so far,
-/// which the caller may already have (the frame that is playing). Distances to eight frames or
-/// eight boxes are computed side by side.
+/// A leaf holds 16 similar frames, of whatever clip; above it every box has eight children. Boxes
+/// are opened nearest first, and skipped once they are farther than the best frame so far, which
+/// the caller may already have (the frame that is playing). Distances to eight frames or eight
+/// boxes are computed side by side.
 ///
-/// Boxes hold normalised features; weights come with the question. So sliders of weights need no
-/// new index. Where boxes do not help, as for a query unlike anything in the database, what is left
-/// is scanned leaf by leaf.
+/// Boxes hold normalised features; weights come with the query. Changed weights therefore need no
+/// new index. Where boxes do not help, as for a query unlike anything in the database, the
+/// remaining frames are scanned leaf by leaf.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BoxIndex {
     dims: usize,
@@ -64,11 +65,11 @@ pub struct BoxMasks {
     levels: Vec<Vec<(TagSet, TagSet)>>,
     /// Tags of the frames in the order of leaves.
     frames: Vec<TagSet>,
-    /// No frame of the database is excluded: without a filter there is nothing to test.
+    /// Whether no frame of the database is excluded: without a filter nothing is tested.
     free: bool,
 }
 
-/// A box that waits to be opened.
+/// A box that is to be opened.
 #[derive(Clone, Copy)]
 struct Open {
     bound: f32,
@@ -76,27 +77,27 @@ struct Open {
     index: u32,
 }
 
-/// After so many of all leaves, boxes have not helped.
-const HELPLESS: f32 = 0.25;
+/// The share of all leaves after which the search falls back to a scan.
+const FALLBACK_SHARE: f32 = 0.25;
 
 impl BoxIndex {
     pub(super) fn new(dims: usize, ids: Vec<u32>, cells: Vec<f32>, levels: Vec<Level>) -> Self {
         Self { dims, ids, cells, levels }
     }
 
-    /// Frames that can be found.
+    /// Returns the number of frames that can be found.
     #[must_use]
     pub fn len(&self) -> usize {
         self.ids.len()
     }
 
-    /// Whether there are none.
+    /// Returns whether there are none.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.ids.is_empty()
     }
 
-    /// What the tags of all frames come to for the boxes. O(frames): tags change without a new
+    /// Returns the tags of the boxes from those of all frames. O(frames): tags change without a new
     /// index.
     #[must_use]
     pub fn masks(&self, tags: &[TagSet]) -> BoxMasks {
@@ -126,8 +127,8 @@ impl BoxIndex {
         BoxMasks { levels, frames, free }
     }
 
-    /// The best admitted frame. `known` is one that the filter admits and that is in the index; it
-    /// is beaten or returned.
+    /// Returns the best admitted frame. `known` is a frame that the filter admits and that is in
+    /// the index; it or a better one is returned.
     #[must_use]
     pub fn search(&self, masks: &BoxMasks, question: &Question<'_>, known: Option<Hit>) -> Found {
         if !question.is_sound(self.dims) || self.ids.is_empty() {
@@ -163,9 +164,9 @@ impl Search<'_> {
     fn run(&mut self) {
         let top = self.index.levels.len() - 1;
         let leaves = self.index.levels[0].boxes;
-        let most = ((leaves as f32 * HELPLESS) as usize).max(64);
+        let most = ((leaves as f32 * FALLBACK_SHARE) as usize).max(64);
         let mut opened = 0;
-        // Nearest last, level by level: the deepest stack is seven siblings on every level.
+        // Nearest last, level by level: the deepest stack has seven siblings on every level.
         let mut stack: Vec<Open> = Vec::with_capacity(LANES * (top + 1));
         self.open(top, 0, &mut stack);
         let mut seen: Vec<u64> = Vec::new();
@@ -187,7 +188,7 @@ impl Search<'_> {
                 seen[index / 64] |= 1 << (index % 64);
             }
             if opened >= most {
-                // What was opened before the notes began is looked at again: an eighth of a
+                // Leaves that were opened before they were marked are scanned again: an eighth of a
                 // quarter.
                 for leaf in 0..leaves {
                     if seen[leaf / 64] >> (leaf % 64) & 1 == 0 {
@@ -199,8 +200,8 @@ impl Search<'_> {
         }
     }
 
-    /// Measures the eight children in a pack and puts those that may hold something better on the
-    /// stack.
+    /// Computes the bounds of the eight children in a pack and puts those that may contain a better
+    /// frame on the stack.
     fn open(&mut self, level: usize, pack: usize, stack: &mut Vec<Open>) {
         let boxes = &self.index.levels[level];
         let size = self.index.dims * 2 * LANES;
@@ -261,16 +262,16 @@ impl Search<'_> {
     }
 }
 
-/// Dimensions between two looks at whether a group can be left.
-const STRIDE: usize = 9;
+/// Number of dimensions between two checks whether a group can be skipped.
+const DIMS_PER_CHECK: usize = 9;
 
-/// The costs of eight frames; `None` as soon as all are above `limit`.
+/// Returns the costs of eight frames; `None` as soon as all are above `limit`.
 #[inline]
 fn frame_costs(cells: &[f32], question: &Question<'_>, limit: f32) -> Option<Lane> {
     let mut costs = [0.0; LANES];
     let parts = cells
-        .chunks(STRIDE * LANES)
-        .zip(question.query.chunks(STRIDE).zip(question.weights.chunks(STRIDE)));
+        .chunks(DIMS_PER_CHECK * LANES)
+        .zip(question.query.chunks(DIMS_PER_CHECK).zip(question.weights.chunks(DIMS_PER_CHECK)));
     for (cells, (query, weights)) in parts {
         for (cell, (&q, &w)) in cells.as_chunks::<LANES>().0.iter().zip(query.iter().zip(weights)) {
             for (cost, x) in costs.iter_mut().zip(cell) {
@@ -285,12 +286,12 @@ fn frame_costs(cells: &[f32], question: &Question<'_>, limit: f32) -> Option<Lan
     Some(costs)
 }
 
-/// Lower bounds of the costs in eight boxes: exact unless all are above `limit`.
+/// Returns lower bounds of the costs in eight boxes: exact unless all are above `limit`.
 #[inline]
 fn box_bounds(cells: &[f32], question: &Question<'_>, limit: f32) -> Lane {
     let mut bounds = [0.0; LANES];
-    let parts = (cells.chunks(STRIDE * 2 * LANES))
-        .zip(question.query.chunks(STRIDE).zip(question.weights.chunks(STRIDE)));
+    let parts = (cells.chunks(DIMS_PER_CHECK * 2 * LANES))
+        .zip(question.query.chunks(DIMS_PER_CHECK).zip(question.weights.chunks(DIMS_PER_CHECK)));
     for (cells, (query, weights)) in parts {
         let ends = cells.as_chunks::<{ 2 * LANES }>().0;
         for (ends, (&q, &w)) in ends.iter().zip(query.iter().zip(weights)) {

@@ -1,14 +1,16 @@
+//! Construction of the index of boxes.
+
 use super::BoxIndex;
 use super::boxes::{LANES, LEAF, Level};
 use crate::matching::Features;
 use crate::matching::features::MAX_DIMS;
 use crate::registration::Progress;
 
-/// Builds a [`BoxIndex`] in slices.
+/// The construction of a [`BoxIndex`] in slices.
 ///
-/// Frames are sorted into leaves by halving: a range of frames is split at a whole number of
-/// leaves, along the dimension in which it is widest. Splits lie at powers of two, so that eight
-/// leaves, eight times eight and so on are whole branches of that tree. O(n log n).
+/// Frames are sorted into leaves by bisection: a range of frames is split at a whole number of
+/// leaves, along the dimension in which it is widest. Splits lie at powers of two, so that groups
+/// of eight leaves, of 64 and so on are whole branches of that tree. O(n log n).
 #[derive(Clone, Debug)]
 pub struct BoxBuilder {
     ids: Vec<u32>,
@@ -18,13 +20,13 @@ pub struct BoxBuilder {
     total: usize,
 }
 
-/// Frames whose widest dimension is told from a sample of this many.
+/// Number of frames in the sample from which the widest dimension is chosen.
 const SAMPLE: usize = 256;
 
 impl BoxBuilder {
-    /// For the rows `valid` of some features. `factors` say how wide a dimension counts (the
-    /// weights that are most likely asked with): any will do, but boxes are best where they are
-    /// right.
+    /// Begins the construction for the rows `valid` of some features. `factors` scale the widths of
+    /// dimensions (the weights that are most likely used in queries): any are valid, but boxes are
+    /// best when they match.
     #[must_use]
     pub fn new(valid: &[u32], factors: &[f32]) -> Self {
         let leaves = valid.len().div_ceil(LEAF);
@@ -38,11 +40,11 @@ impl BoxBuilder {
         }
     }
 
-    /// Sorts about so many frames further.
+    /// Sorts about `frames` more frames.
     pub fn advance(&mut self, features: &Features, frames: usize) -> Progress {
         let mut left = frames;
         while let Some((first, leaves)) = self.open.pop() {
-            // The larger part of a whole tree is to the left.
+            // The larger part of a tree is on the left.
             let half = leaves.next_power_of_two() / 2;
             let (start, end) = (first * LEAF, ((first + leaves) * LEAF).min(self.ids.len()));
             let middle = half * LEAF;
@@ -75,13 +77,13 @@ impl BoxBuilder {
         Progress { done: self.done, total: self.total }
     }
 
-    /// Does what is left, and makes the boxes.
+    /// Sorts the remaining frames, and builds the boxes.
     #[must_use]
     pub fn finish(mut self, features: &Features) -> BoxIndex {
         while !self.open.is_empty() {
             self.advance(features, usize::MAX);
         }
-        // Whatever order halving left them in: within a leaf the frames are in order of time.
+        // Within a leaf the frames are in order of time, whatever order bisection gave them.
         for leaf in self.ids.chunks_mut(LEAF) {
             leaf.sort_unstable();
         }
@@ -90,7 +92,7 @@ impl BoxBuilder {
         let mut cells = vec![0.0; groups * dims * LANES];
         for (ids, cell) in self.ids.chunks(LANES).zip(cells.chunks_exact_mut(dims * LANES)) {
             for lane in 0..LANES {
-                // Lanes beyond the last frame repeat it.
+                // Lanes after the last frame repeat it.
                 let id = ids.get(lane).or(ids.last()).copied().unwrap_or(0);
                 let row = features.row(id as usize).unwrap_or(&[]);
                 for (dim, &value) in row.iter().enumerate() {
@@ -124,7 +126,7 @@ impl BoxBuilder {
     }
 }
 
-/// The dimension in which these rows spread most.
+/// Returns the dimension in which these rows have the greatest spread.
 fn widest(features: &Features, ids: &[u32], factors: &[f32]) -> usize {
     let dims = features.layout().dims();
     let stride = ids.len().div_ceil(SAMPLE).max(1);

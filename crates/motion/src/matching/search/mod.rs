@@ -3,8 +3,8 @@
 //! Each returns the frame of least cost that a filter admits; of equal costs the first frame. The
 //! cost of a frame is `Σ (w_d (q_d - x_d))²`, summed in the order of dimensions in `f32`, so that
 //! every search computes the same bits. Bounds are computed in the same order from the nearest
-//! value in a box: as rounding never turns an order round, a bound is never above the cost of a
-//! frame in its box, and no slack is needed.
+//! value in a box: as rounding is monotonic, a bound is never above the cost of a frame in its box,
+//! and no tolerance is needed.
 
 mod boxes;
 mod build;
@@ -18,7 +18,7 @@ pub use tree::TreeIndex;
 
 use super::tags::{TagFilter, TagSet};
 
-/// A frame and what it costs.
+/// A frame and its cost.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Hit {
     /// The frame's number in the database.
@@ -28,36 +28,36 @@ pub struct Hit {
 }
 
 impl Hit {
-    /// Whether it comes before another: it costs less, or the same and is the earlier frame.
+    /// Returns whether it precedes another: it costs less, or the same and is the earlier frame.
     #[must_use]
     pub fn beats(&self, other: &Self) -> bool {
         self.cost < other.cost || (self.cost == other.cost && self.frame < other.frame)
     }
 }
 
-/// What is looked for.
+/// A query.
 #[derive(Clone, Copy, Debug)]
 pub struct Question<'a> {
     /// A normalised row.
     pub query: &'a [f32],
-    /// One factor for each of its numbers.
+    /// One factor for each dimension.
     pub weights: &'a [f32],
-    /// Which frames may be found.
+    /// The filter of frames.
     pub filter: TagFilter,
 }
 
-/// What was found.
+/// The result of a search.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Found {
-    /// The frame of least cost; `None` where no frame is admitted, or the query is no row of
-    /// numbers.
+    /// The frame of least cost; `None` where no frame is admitted, or the query is not a finite
+    /// row.
     pub best: Option<Hit>,
-    /// Frames whose cost was computed, in whole or in part.
+    /// Number of frames whose cost was computed, in whole or in part.
     pub visited: usize,
 }
 
 impl Question<'_> {
-    /// What a row of features costs.
+    /// Returns the cost of a row of features.
     #[must_use]
     pub fn cost(&self, row: &[f32]) -> f32 {
         let mut cost = 0.0;
@@ -68,7 +68,7 @@ impl Question<'_> {
         cost
     }
 
-    /// Whether it is a question about rows of so many numbers.
+    /// Returns whether query and weights have this number of dimensions, and are finite.
     pub(super) fn is_sound(&self, dims: usize) -> bool {
         self.query.len() == dims
             && self.weights.len() == dims
@@ -77,7 +77,7 @@ impl Question<'_> {
     }
 }
 
-/// Frames that a search may look at: rows, their tags, and which of them count.
+/// The frames of a search: rows, their tags, and which of them are valid.
 #[derive(Clone, Copy, Debug)]
 pub struct Candidates<'a> {
     /// Normalised rows.

@@ -1,6 +1,8 @@
+//! The slow, obvious search.
+
 use super::{Candidates, Found, Hit, Question};
 
-/// Looks at every admitted frame: the slow, obvious search. O(frames × dimensions).
+/// Scans every admitted frame. O(frames × dimensions).
 #[must_use]
 pub fn scan(candidates: &Candidates<'_>, question: &Question<'_>) -> Found {
     let mut found = Found::default();

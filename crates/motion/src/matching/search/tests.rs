@@ -1,10 +1,12 @@
+//! Tests that all searches agree.
+
 use super::*;
 use crate::matching::tags::Tag;
 use crate::matching::{FeatureOptions, Features, Layout, Normalisation};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 
-/// From -1 to 1.
+/// Returns a random number from -1 to 1.
 fn number(random: &mut Pcg64Mcg) -> f32 {
     (random.next_u32() >> 8) as f32 / (1 << 23) as f32 - 1.0
 }
@@ -15,8 +17,8 @@ struct Field {
     valid: Vec<u32>,
 }
 
-/// Frames that wander through the space of features as a motion does, with clips whose ends cannot
-/// be found, and tags.
+/// Returns frames that move through the space of features as a motion does, with clips whose ends
+/// cannot be found, and tags.
 fn field(times: usize, frames: usize, seed: u64) -> Field {
     let mut random = Pcg64Mcg::seed_from_u64(seed);
     let trajectory_secs = (1..=times).map(|i| i as f64 / 3.0).collect();
@@ -32,7 +34,7 @@ fn field(times: usize, frames: usize, seed: u64) -> Field {
             *speed = 0.9 * *speed + 0.03 * number(&mut random);
             *at += *speed;
         }
-        // Some frames are there twice: equal costs.
+        // Some frames are duplicated: equal costs.
         if frame % 13 == 5 {
             let twin = rows.len() - layout.dims();
             rows.extend_from_within(twin..);
@@ -81,10 +83,10 @@ fn filters() -> [TagFilter; 6] {
     ]
 }
 
-/// 10,000 random queries: noise, frames of the field with a little noise, and frames as they are;
-/// random weights, some of them 0; filters; with and without a frame that is known already.
+/// 10,000 random queries: noise, frames of the field with a little noise, and unchanged frames;
+/// random weights, some of them 0; filters; with and without a known frame.
 #[test]
-fn all_searches_agree_on_ten_thousand_queries() {
+fn searches_of_ten_thousand_queries_agree() {
     let mut asked = 0;
     for (round, (times, frames)) in
         [(3, 3_000), (1, 700), (6, 900), (3, 20), (3, 90)].into_iter().enumerate()
@@ -126,7 +128,7 @@ fn all_searches_agree_on_ten_thousand_queries() {
                     let cost = question.cost(field.features.row(known).unwrap());
                     let warm = index.search(&masks, &question, Some(Hit { frame: known, cost }));
                     assert_eq!(warm.best, oracle.best);
-                    assert!(warm.visited <= index.len() + index.len() / 16 + LEAST);
+                    assert!(warm.visited <= index.len() + index.len() / 16 + SMALL_INDEX);
                 }
                 asked += 1;
             }
@@ -135,11 +137,11 @@ fn all_searches_agree_on_ten_thousand_queries() {
     assert_eq!(asked, 10_000);
 }
 
-/// Frames that may be looked at twice in a small index.
-const LEAST: usize = 200;
+/// Frames that may be visited twice in a small index.
+const SMALL_INDEX: usize = 200;
 
 #[test]
-fn near_frames_are_found_without_looking_at_many() {
+fn box_search_near_a_frame_visits_few_frames() {
     let field = field(3, 20_000, 5);
     let (index, weights) = (field.index(), vec![1.0; 27]);
     let masks = index.masks(&field.tags);
@@ -153,7 +155,7 @@ fn near_frames_are_found_without_looking_at_many() {
 }
 
 #[test]
-fn what_is_no_question_finds_nothing() {
+fn search_of_an_invalid_query_finds_nothing() {
     let field = field(3, 400, 1);
     let (candidates, index) = (field.candidates(), field.index());
     let masks = index.masks(&field.tags);
@@ -163,14 +165,14 @@ fn what_is_no_question_finds_nothing() {
         assert_eq!(scan(&candidates, &question), Found::default());
         assert_eq!(index.search(&masks, &question, None), Found::default());
     }
-    // Costs that overflow are all the same.
+    // Costs that overflow are all equal.
     let far = vec![1e30; 27];
     let question = Question { query: &far, weights: &weights, filter: TagFilter::default() };
     assert_eq!(index.search(&masks, &question, None).best, scan(&candidates, &question).best);
     let empty = Candidates { valid: &[], ..candidates };
     assert!(TreeIndex::new(&empty, &weights, TagFilter::default()).is_none());
     assert_eq!(BoxBuilder::new(&[], &[]).finish(&field.features).len(), 0);
-    // Rows that are all the same make a tree of no depth, or none.
+    // Rows that are all equal make a tree of no depth, or none.
     let layout = Layout::new(&FeatureOptions::default()).unwrap();
     let same = Features::normalise(layout, Normalisation::Block, vec![1.0; 27 * 5_000], |_| true);
     let valid: Vec<u32> = (0..5_000).collect();

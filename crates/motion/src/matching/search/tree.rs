@@ -1,17 +1,19 @@
+//! Exact search by a k-d tree.
+
 use super::{Candidates, Found, Hit, Question};
 use crate::matching::TagFilter;
 use crate::matching::features::MAX_DIMS;
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 
-/// Dimensions of the default set.
-const USUAL_DIMS: usize = 27;
+/// Number of dimensions of the default features.
+const DEFAULT_DIMS: usize = 27;
 
 /// The crate `kiddo`'s k-d tree over the admitted frames.
 ///
 /// Its coordinates are features times weights, and it holds admitted frames only: new weights or
-/// another filter need a new tree, where [`super::BoxIndex`] needs none. The tree computes
-/// distances in an order of its own; what it finds within a hair of the nearest is costed again, so
-/// that cost and frame are those of the other searches.
+/// another filter need a new tree, where [`super::BoxIndex`] needs none. The tree sums distances in
+/// an order of its own; the frames within rounding of the nearest are evaluated again, so that cost
+/// and frame are those of the other searches.
 #[derive(Debug)]
 pub struct TreeIndex {
     tree: Tree,
@@ -23,17 +25,17 @@ pub struct TreeIndex {
 
 #[derive(Debug)]
 enum Tree {
-    Usual(Box<ImmutableKdTree<f32, USUAL_DIMS>>),
-    /// Rows of other lengths are filled up with zeros.
+    Usual(Box<ImmutableKdTree<f32, DEFAULT_DIMS>>),
+    /// Rows of other lengths, padded with zeros.
     Any(Box<ImmutableKdTree<f32, MAX_DIMS>>),
 }
 
-/// Rounding in `f32` over at most [`MAX_DIMS`] terms, as a share.
-const HAIR: f32 = 2e-5;
+/// The relative rounding error in `f32` over at most [`MAX_DIMS`] terms.
+const ROUNDING_SHARE: f32 = 2e-5;
 
 impl TreeIndex {
-    /// A tree for these weights and this filter; `None` where no frame is admitted, or the tree
-    /// cannot be built (very many equal rows).
+    /// Returns a tree for these weights and this filter; `None` where no frame is admitted, or the
+    /// tree cannot be built (very many equal rows).
     #[must_use]
     pub fn new(candidates: &Candidates<'_>, weights: &[f32], filter: TagFilter) -> Option<Self> {
         let admitted = |&&id: &&u32| {
@@ -43,7 +45,7 @@ impl TreeIndex {
         if ids.is_empty() {
             return None;
         }
-        let tree = if candidates.features.layout().dims() == USUAL_DIMS {
+        let tree = if candidates.features.layout().dims() == DEFAULT_DIMS {
             Tree::Usual(Box::new(
                 ImmutableKdTree::new_from_slice(&points(candidates, &ids, weights)).ok()?,
             ))
@@ -55,14 +57,15 @@ impl TreeIndex {
         Some(Self { tree, ids, weights: weights.to_vec(), filter })
     }
 
-    /// Whether it answers questions with these weights and this filter.
+    /// Returns whether it was built for these weights and this filter.
     #[must_use]
     pub fn fits(&self, weights: &[f32], filter: TagFilter) -> bool {
         self.weights == weights && self.filter == filter
     }
 
-    /// The best admitted frame; nothing for a question that the tree was not built for. The tree
-    /// does not tell what it visits: `visited` counts the frames that were costed again.
+    /// Returns the best admitted frame; nothing for a query for which the tree was not built. The
+    /// tree does not report the frames that it visits: `visited` counts those that were evaluated
+    /// again.
     #[must_use]
     pub fn search(&self, candidates: &Candidates<'_>, question: &Question<'_>) -> Found {
         let mut found = Found::default();
@@ -92,10 +95,10 @@ impl TreeIndex {
     }
 }
 
-/// All that are no farther than the nearest, but for rounding.
+/// Returns all points that are no farther than the nearest, within rounding.
 fn near<const K: usize>(tree: &ImmutableKdTree<f32, K>, query: &[f32; K]) -> Vec<usize> {
     let nearest = tree.query(query).nearest_one::<SquaredEuclidean<f32>>().execute();
-    let radius = nearest.distance * (1.0 + HAIR) + f32::MIN_POSITIVE;
+    let radius = nearest.distance * (1.0 + ROUNDING_SHARE) + f32::MIN_POSITIVE;
     let within = tree.query(query).within::<SquaredEuclidean<f32>>(radius).unsorted().execute();
     within.into_iter().map(|item| item.item as usize).collect()
 }

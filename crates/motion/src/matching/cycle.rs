@@ -1,4 +1,4 @@
-//! Clips that are cycles: one round of them, which plays again and again.
+//! Clips that are cycles, and their repetition.
 
 use super::features::RATE;
 use crate::blend::Source;
@@ -9,27 +9,28 @@ use crate::skeleton::Roles;
 use crate::transition::{Loop, LoopOptions, WholeCycle};
 use std::sync::Arc;
 
-/// Ends that are this near to each other, as a share of the farthest that a pose of the clip is
-/// away from the first, make a cycle of any clip.
-const MEETS: f64 = 0.05;
-/// Those of a single stride may be farther apart: cycles from a capture seldom close by themselves.
-const STRIDE_MEETS: f64 = 0.35;
+/// The greatest distance between the ends of a cycle, as a share of the greatest distance of any
+/// pose of the clip to the first.
+const MAX_GAP_SHARE: f64 = 0.05;
+/// The greatest distance for a single stride, which may be larger: captured cycles seldom close by
+/// themselves.
+const MAX_STRIDE_GAP_SHARE: f64 = 0.35;
 
 /// Closes a clip that is a cycle; `None` for one that is not.
 ///
-/// A cycle is a clip whose end leads into its beginning ([`WholeCycle`]): any clip whose ends all
-/// but meet, and a single stride, with one stance of each foot, whose ends are near each other.
+/// A cycle is a clip whose end leads into its beginning ([`WholeCycle`]): any clip whose ends
+/// nearly meet, and a single stride, with one stance of each foot, whose ends are near each other.
 pub(super) fn closed(clip: &Arc<Clip>, roles: &Roles) -> Option<Loop> {
     let source = Source::new(Arc::clone(clip), roles);
-    let whole = WholeCycle::of(&source).filter(|whole| whole.gap_share <= STRIDE_MEETS)?;
+    let whole = WholeCycle::of(&source).filter(|whole| whole.gap_share <= MAX_STRIDE_GAP_SHARE)?;
     let looped = whole.close(&LoopOptions::default()).ok()?;
-    let meets = whole.added_frames <= 1 && whole.gap_share <= MEETS;
+    let meets = whole.added_frames <= 1 && whole.gap_share <= MAX_GAP_SHARE;
     (meets || events_of(&looped, roles).is_some()).then_some(looped)
 }
 
-/// One round of a cycle at [`RATE`] frames per second, and where it leads: the frame behind its
-/// last is its first, moved by that. A round takes a whole number of frames, so that it may be
-/// faster or slower by up to half a frame.
+/// Returns one repetition of a cycle at [`RATE`] frames per second, and its transform: the frame
+/// after its last one is its first, moved by that. A repetition has a whole number of frames, so
+/// that it may be faster or slower by up to half a frame.
 pub(super) fn at_rate(looped: &Loop) -> Option<(Clip, Planar)> {
     let (clip, cycle) = (&looped.clip, looped.cycle);
     let secs = clip.frames() as f64 / clip.fps();
@@ -37,7 +38,7 @@ pub(super) fn at_rate(looped: &Loop) -> Option<(Clip, Planar)> {
     if clip.fps() == RATE as f64 {
         return Some((clip.clone(), cycle));
     }
-    // Read in the middle of three rounds, so that no end is in the way, and laid back onto the
+    // Sampled in the middle one of three repetitions, away from both ends, and moved back onto the
     // first.
     let three = looped.repeat(3).ok()?;
     let poses = (0..frames).map(|frame| {
@@ -49,21 +50,21 @@ pub(super) fn at_rate(looped: &Loop) -> Option<(Clip, Planar)> {
     Some((round.transformed(&cycle.inverse()).with_provenance(clip.provenance()), cycle))
 }
 
-/// Where the character stands in a frame of a cycle that goes round, of which `stands` are one
-/// round: also before it and behind it.
-pub(super) fn standing(stands: &[Planar], cycle: &Planar, frame: isize) -> Planar {
+/// Returns the ground frame of a repeated cycle at any frame, before it and after it, from those of
+/// one repetition.
+pub(super) fn cycle_frame(stands: &[Planar], cycle: &Planar, frame: isize) -> Planar {
     let (round, frame) =
         (frame.div_euclid(stands.len() as isize), frame.rem_euclid(stands.len() as isize));
-    moved_by(cycle, round).after(&stands[frame as usize])
+    cycle_power(cycle, round).after(&stands[frame as usize])
 }
 
-/// A cycle made `rounds` times, backwards where that is negative.
-pub(super) fn moved_by(cycle: &Planar, rounds: isize) -> Planar {
+/// Returns the transform of `rounds` repetitions, backwards where that is negative.
+pub(super) fn cycle_power(cycle: &Planar, rounds: isize) -> Planar {
     let once = if rounds < 0 { cycle.inverse() } else { *cycle };
     (0..rounds.unsigned_abs()).fold(Planar::IDENTITY, |all, _| once.after(&all))
 }
 
-/// The way of the mirror image: see [`crate::clip::mirror`].
+/// Returns the transform of the mirror image: see [`crate::clip::mirror`].
 pub(super) fn mirrored(cycle: &Planar) -> Planar {
     Planar::new(-cycle.yaw, -cycle.shift.x, cycle.shift.y)
 }
