@@ -3,7 +3,7 @@
 use super::cycle;
 use super::database::{Database, DatabaseOptions, MatchClip, spread_all};
 use super::features::{Features, Layout, RATE};
-use super::motion::{FeatureJoints, Motion, mirrored_contacts};
+use super::motion::{DatabaseClip, FeatureJoints, mirrored_contacts};
 use super::pace::Pace;
 use super::search::{BoxBuilder, BoxIndex};
 use super::tags::{TagRange, suggest_tags};
@@ -39,7 +39,7 @@ pub struct DatabaseBuilder {
     layout: Layout,
     skeleton: Arc<Skeleton>,
     roles: Roles,
-    motions: Vec<Arc<Motion>>,
+    motions: Vec<Arc<DatabaseClip>>,
     skipped: Vec<MatchError>,
     longest_secs: f64,
     /// The next clip, and its stage.
@@ -100,7 +100,7 @@ impl GatheredFeatures {
         self.starts.len() - 1
     }
 
-    fn push(&mut self, motion: &Motion, layout: &Layout) {
+    fn push(&mut self, motion: &DatabaseClip, layout: &Layout) {
         let start = self.starts.last().copied().unwrap_or(0);
         self.valid.extend((start..start + motion.valid(layout)).map(|frame| frame as u32));
         let begin = self.rows.len();
@@ -233,8 +233,14 @@ impl DatabaseBuilder {
             },
             Stage::Measure(round) => {
                 let contacts = round.contacts(&self.roles)?;
-                let mut motion =
-                    Motion::new(round.clip, round.cycle, &self.roles, contacts, self.next, false)?;
+                let mut motion = DatabaseClip::new(
+                    round.clip,
+                    round.cycle,
+                    &self.roles,
+                    contacts,
+                    self.next,
+                    false,
+                )?;
                 motion.tags = self.tags_of(&motion);
                 self.motions.push(Arc::new(motion));
                 self.stage = if self.options.mirrored { Stage::Mirror } else { self.next_clip() };
@@ -256,7 +262,7 @@ impl DatabaseBuilder {
             Stage::MeasureMirrored(round) => {
                 if let Some(original) = self.motions.last() {
                     let contacts = mirrored_contacts(original.contacts());
-                    let mut motion = Motion::new(
+                    let mut motion = DatabaseClip::new(
                         round.clip,
                         round.cycle,
                         &self.roles,
@@ -353,7 +359,7 @@ impl DatabaseBuilder {
         Ok(PreparedClip { clip, cycle: None })
     }
 
-    fn tags_of(&self, motion: &Motion) -> Vec<TagRange> {
+    fn tags_of(&self, motion: &DatabaseClip) -> Vec<TagRange> {
         let Some(from) = self.clips.get(self.next) else {
             return Vec::new();
         };

@@ -1,7 +1,7 @@
 //! The database: frames of all clips, with features, tags and search index.
 
 use super::features::{FeatureOptions, RATE};
-use super::motion::Motion;
+use super::motion::DatabaseClip;
 use super::pace::Pace;
 use super::search::{BoxIndex, BoxMasks, Candidates, Question};
 use super::tags::{self, TagRange, TagSet};
@@ -80,7 +80,7 @@ pub struct Database {
     pub(super) options: DatabaseOptions,
     pub(super) skeleton: Arc<Skeleton>,
     pub(super) roles: Roles,
-    pub(super) motions: Vec<Arc<Motion>>,
+    pub(super) motions: Vec<Arc<DatabaseClip>>,
     /// The joints other than the root that move relative to their parent in any of them.
     pub(super) moving: Vec<usize>,
     /// The number of each motion's first frame; then the number of all frames.
@@ -139,13 +139,13 @@ impl Database {
 
     /// Returns the motions: each clip, followed by its mirror image where that was requested.
     #[must_use]
-    pub fn motions(&self) -> &[Arc<Motion>] {
+    pub fn motions(&self) -> &[Arc<DatabaseClip>] {
         &self.motions
     }
 
     /// Returns one motion.
     #[must_use]
-    pub fn motion(&self, motion: usize) -> Option<&Motion> {
+    pub fn motion(&self, motion: usize) -> Option<&DatabaseClip> {
         self.motions.get(motion).map(|motion| &**motion)
     }
 
@@ -280,7 +280,7 @@ impl Database {
     pub fn retagged(&self, source: usize, tags: &[TagRange]) -> Self {
         let mut tagged = self.clone();
         for motion in tagged.motions.iter_mut().filter(|motion| motion.source() == source) {
-            let mut changed = Motion::clone(motion);
+            let mut changed = DatabaseClip::clone(motion);
             changed.tags = tags.to_vec();
             *motion = Arc::new(changed);
         }
@@ -291,7 +291,8 @@ impl Database {
 }
 
 /// Returns the tags of all frames.
-pub(super) fn spread_all(motions: &[Arc<Motion>]) -> Vec<TagSet> {
-    let one = |motion: &Arc<Motion>| tags::spread(motion.tags(), RATE as f64, motion.frames());
+pub(super) fn spread_all(motions: &[Arc<DatabaseClip>]) -> Vec<TagSet> {
+    let one =
+        |motion: &Arc<DatabaseClip>| tags::spread(motion.tags(), RATE as f64, motion.frames());
     motions.iter().flat_map(one).collect()
 }

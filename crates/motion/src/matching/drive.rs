@@ -3,7 +3,7 @@
 use super::control::Recording;
 use super::database::Database;
 use super::features::RATE;
-use super::{Candidate, Controller, ControllerOptions, MatchError, Reason};
+use super::{Candidate, Controller, ControllerOptions, MatchError, SearchReason};
 use crate::clip::{Clip, Contacts, character_frames};
 use crate::math::{Planar, wrap_angle};
 use crate::metrics::{Better, Metric, foot_slides_cm};
@@ -36,7 +36,7 @@ pub struct Jump {
     /// The first frame of the drive that is played from the new frame.
     pub frame: usize,
     /// The cause of the search.
-    pub reason: Reason,
+    pub reason: SearchReason,
     /// The frame before the jump, and the cost of continuing there.
     pub from: Candidate,
     /// The frame after the jump, and its cost.

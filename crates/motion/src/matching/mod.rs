@@ -109,8 +109,8 @@ mod tags;
 pub use builder::DatabaseBuilder;
 pub use control::{Control, Recording, RecordingError};
 pub use controller::{
-    Candidate, Controller, ControllerOptions, Following, FootPlanting, Held, Hysteresis, Reason,
-    SearchMethod, SearchRecord,
+    Candidate, Controller, ControllerOptions, Following, FootPlanting, HoldReason, Hysteresis,
+    SearchMethod, SearchReason, SearchRecord,
 };
 pub use database::{Database, DatabaseOptions, MatchClip, Place};
 pub use desired::{Simulation, Steering};
@@ -118,10 +118,10 @@ pub use drive::{Drive, DriveMetrics, Jump, drive};
 pub use error::MatchError;
 pub use features::{Block, FeatureOptions, Features, Layout, Normalisation, RATE, Weights};
 pub use made::{made_clip, made_clips, made_params};
-pub use motion::Motion;
+pub use motion::DatabaseClip;
 pub use pace::Pace;
 pub use scenario::Scenario;
-pub use search::{Found, Hit};
+pub use search::{Hit, SearchResult};
 pub use simulation::simulation_roots;
 pub use tags::{Tag, TagFilter, TagRange, TagSet, suggest_tags};
 

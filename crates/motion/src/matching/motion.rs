@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 /// A clip of a database, with its measurements.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Motion {
+pub struct DatabaseClip {
     clip: Arc<Clip>,
     roots: Vec<Planar>,
     contacts: Contacts,
@@ -54,7 +54,7 @@ impl FeatureJoints {
     }
 }
 
-impl Motion {
+impl DatabaseClip {
     /// Measures a clip at [`RATE`]; a cycle has the transform of one repetition in `cycle`.
     pub(super) fn new(
         clip: Arc<Clip>,

@@ -482,7 +482,7 @@ fn cycle_plays_without_end() {
         controller.tick(&control);
         let search =
             controller.last_search().filter(|search| search.tick + 1 == controller.ticks());
-        ends += usize::from(search.is_some_and(|search| search.reason == Reason::ClipEnd));
+        ends += usize::from(search.is_some_and(|search| search.reason == SearchReason::ClipEnd));
         if controller.jumps() == jumps {
             assert_eq!(controller.place().frame, (before + 1) % frames, "{tick}");
             cycle_options += usize::from(before + 1 == frames);
@@ -533,15 +533,16 @@ fn votes_for_another_clip_allow_jumps_within_a_clip() {
         let jumped = controller.jumps() > jumps;
         let other = winner.place.motion != before.motion;
         elsewhere = if other { elsewhere + 1 } else { 0 };
-        if search.reason == Reason::ClipEnd {
+        if search.reason == SearchReason::ClipEnd {
             elsewhere = 0;
         } else if jumped && other {
             assert!(elsewhere >= 3, "{search:?}");
             elsewhere = 0;
         } else if !jumped {
-            let voted = matches!(search.held, Some(Held::Same | Held::Votes)) && elsewhere < 3;
+            let voted =
+                matches!(search.held, Some(HoldReason::Same | HoldReason::Votes)) && elsewhere < 3;
             // A frame of another clip that is not cheaper at all, while the input is constant.
-            assert!(voted || search.held == Some(Held::CurrentClip), "{search:?}");
+            assert!(voted || search.held == Some(HoldReason::CurrentClip), "{search:?}");
         }
     }
     // In a database of one clip no votes are needed.
@@ -556,7 +557,8 @@ fn votes_for_another_clip_allow_jumps_within_a_clip() {
     };
     let free = jumps(Hysteresis::None);
     assert!(
-        free.iter().any(|jump| jump.reason != Reason::ClipEnd) && free == jumps(options.hysteresis)
+        free.iter().any(|jump| jump.reason != SearchReason::ClipEnd)
+            && free == jumps(options.hysteresis)
     );
 }
 
@@ -606,7 +608,7 @@ fn hysteresis_suppresses_jumps_and_tags_filter_frames() {
         assert!(jumps(hysteresis).len() < free, "{hysteresis:?}");
     }
     let apart = jumps(Hysteresis::MinimumTime { secs: 0.5 });
-    let apart = apart.windows(2).filter(|pair| pair[1].reason != Reason::ClipEnd);
+    let apart = apart.windows(2).filter(|pair| pair[1].reason != SearchReason::ClipEnd);
     assert!(apart.map(|pair| pair[1].frame - pair[0].frame).all(|frames| frames >= 30));
 
     let walk = TagFilter { ask: TagSet::of(&[Tag::Run]), forbid: TagSet::of(&[Tag::Turn]) };
@@ -634,7 +636,7 @@ fn hysteresis_suppresses_jumps_and_tags_filter_frames() {
         controller.tick(&nowhere);
     }
     let search = controller.last_search().unwrap();
-    assert_eq!((search.winner, search.held), (None, Some(Held::Nothing)));
+    assert_eq!((search.winner, search.held), (None, Some(HoldReason::Nothing)));
 }
 
 #[test]

@@ -53,7 +53,7 @@ pub(super) struct Feet {
 const LANDED_M: f32 = 0.06;
 const LANDED_MPS: f32 = 0.6;
 
-/// A released foot may be planted again when at most this share of [`FootPlanting::most_shift_m`]
+/// A released foot may be planted again when at most this share of [`FootPlanting::max_shift_m`]
 /// is left.
 const RESUME_SHARE: f32 = 0.25;
 
@@ -235,7 +235,7 @@ impl Feet {
                 foot.turned = [Quat::IDENTITY; 3];
                 continue;
             };
-            let most_shift = options.most_shift_m * self.scale;
+            let most_shift = options.max_shift_m * self.scale;
             // The part of the step that comes from the body's motion, not from the clip's.
             let over_ground = Vec3::new(1.0, 0.0, 1.0);
             let slip = step.map_or(0.0, |step| {
@@ -358,7 +358,7 @@ mod tests {
     use crate::synth::{Action, Params, synthesize};
     use std::sync::Arc;
 
-    const PLANTING: FootPlanting = FootPlanting { half_life_secs: 0.08, most_shift_m: 0.3 };
+    const PLANTING: FootPlanting = FootPlanting { half_life_secs: 0.08, max_shift_m: 0.3 };
     const TICK_SECS: f64 = 1.0 / 60.0;
 
     fn database(actions: &[Action]) -> Database {

@@ -6,7 +6,7 @@ mod record;
 mod seek;
 
 pub use options::{ControllerOptions, Following, FootPlanting, Hysteresis, SearchMethod};
-pub use record::{Candidate, Held, Reason, SearchRecord};
+pub use record::{Candidate, HoldReason, SearchReason, SearchRecord};
 
 use super::control::Control;
 use super::database::{Database, Place};
@@ -305,12 +305,13 @@ impl Controller {
         );
         // The exact share of exponential decay.
         let share = 1.0 - spring::velocity_decay(following.half_life_secs, TICK_SECS).0;
-        let most = |own: f64| own * following.most_share;
+        let most = |own: f64| own * following.max_share;
         let drawn = (off * share).clamp_length_max(most(travelled.shift.length()));
         let most_turn = most(travelled.yaw.abs());
         let turned = (turn * share).clamp(-most_turn, most_turn);
-        let left = (off - drawn).clamp_length_max(following.most_m);
-        let left_turn = (turn - turned).clamp(-following.most_radians, following.most_radians);
+        let left = (off - drawn).clamp_length_max(following.max_distance_m);
+        let left_turn =
+            (turn - turned).clamp(-following.max_angle_radians, following.max_angle_radians);
         let pace = self.database.pace();
         let room = |fastest: f64, own: f64| (fastest * TICK_SECS - own).max(0.0);
         let most_pull =
@@ -323,10 +324,11 @@ impl Controller {
             Planar { yaw: wrap_angle(self.root.yaw + twisted), shift: self.root.shift + pulled };
         if pulled.length() < (off - left).length() {
             self.simulation.position =
-                self.root.shift + (off - pulled).clamp_length_max(following.most_m);
+                self.root.shift + (off - pulled).clamp_length_max(following.max_distance_m);
         }
         if twisted.abs() < (turn - left_turn).abs() {
-            let ahead = (turn - twisted).clamp(-following.most_radians, following.most_radians);
+            let ahead =
+                (turn - twisted).clamp(-following.max_angle_radians, following.max_angle_radians);
             self.simulation.yaw = wrap_angle(self.root.yaw + ahead);
         }
     }

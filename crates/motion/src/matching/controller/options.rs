@@ -50,11 +50,11 @@ pub struct Following {
     pub half_life_secs: f64,
     /// The greatest speed of the pull as a share of the character's own speed, so that a standing
     /// character is not pushed along.
-    pub most_share: f64,
+    pub max_share: f64,
     /// The greatest distance, metres.
-    pub most_m: f64,
+    pub max_distance_m: f64,
     /// The greatest difference of yaw, radians.
-    pub most_radians: f64,
+    pub max_angle_radians: f64,
 }
 
 /// Options of foot planting during playback.
@@ -64,7 +64,7 @@ pub struct FootPlanting {
     pub half_life_secs: f64,
     /// The greatest distance of a planted foot from its animated position, metres, for a body of
     /// 1.75 m; beyond it the foot is released.
-    pub most_shift_m: f32,
+    pub max_shift_m: f32,
 }
 
 /// Options of a controller: search, transitions, and following.
@@ -110,11 +110,11 @@ impl Default for ControllerOptions {
             steering: Steering { velocity_half_life_secs: 0.28, facing_half_life_secs: 0.3 },
             following: Some(Following {
                 half_life_secs: 0.1,
-                most_share: 0.5,
-                most_m: 0.35,
-                most_radians: 1.0,
+                max_share: 0.5,
+                max_distance_m: 0.35,
+                max_angle_radians: 1.0,
             }),
-            planting: Some(FootPlanting { half_life_secs: 0.08, most_shift_m: 0.3 }),
+            planting: Some(FootPlanting { half_life_secs: 0.08, max_shift_m: 0.3 }),
             candidates: 1,
         }
     }
@@ -160,13 +160,13 @@ impl ControllerOptions {
         check("a facing half-life (s)", self.steering.facing_half_life_secs, 0.0, 10.0)?;
         if let Some(following) = &self.following {
             check("an adjustment half-life (s)", following.half_life_secs, 0.0, 10.0)?;
-            check("an adjustment share", following.most_share, 0.0, 10.0)?;
-            check("a largest distance (m)", following.most_m, 0.0, 100.0)?;
-            check("a largest turn (rad)", following.most_radians, 0.0, 4.0)?;
+            check("an adjustment share", following.max_share, 0.0, 10.0)?;
+            check("a largest distance (m)", following.max_distance_m, 0.0, 100.0)?;
+            check("a largest turn (rad)", following.max_angle_radians, 0.0, 4.0)?;
         }
         if let Some(planting) = &self.planting {
             check("a foot half-life (s)", planting.half_life_secs, 0.0, 10.0)?;
-            check("a largest foot shift (m)", f64::from(planting.most_shift_m), 0.0, 10.0)?;
+            check("a largest foot shift (m)", f64::from(planting.max_shift_m), 0.0, 10.0)?;
         }
         check("a number of candidates", self.candidates as f64, 0.0, 32.0)
     }

@@ -4,7 +4,7 @@ use super::super::{Block, Place};
 
 /// The cause of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
-pub enum Reason {
+pub enum SearchReason {
     /// The search interval has passed.
     Interval,
     /// The clip ends.
@@ -15,7 +15,7 @@ pub enum Reason {
 
 /// The reason why the controller did not jump to the winner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
-pub enum Held {
+pub enum HoldReason {
     /// The winner is the frame that is playing, or next to it.
     Same,
     /// The winner is not better by the continuing bias.
@@ -47,7 +47,7 @@ pub struct SearchRecord {
     /// The time, in ticks since the controller began.
     pub tick: u64,
     /// The cause.
-    pub reason: Reason,
+    pub reason: SearchReason,
     /// The frame that was playing, and its cost.
     pub current: Candidate,
     /// The admitted frame of least cost, or that of a clip that is preferred.
@@ -57,7 +57,7 @@ pub struct SearchRecord {
     /// those next to them in their clip, the cheapest first.
     pub candidates: Vec<Candidate>,
     /// The reason why it did not jump to the winner; `None` when it did.
-    pub held: Option<Held>,
+    pub held: Option<HoldReason>,
     /// Number of frames that the search visited.
     pub visited: usize,
     /// The normalised features of the query.

@@ -1,10 +1,10 @@
 //! When to search, the query, and the decision to jump.
 
 use super::super::features::{MAX_DIMS, RATE};
-use super::super::motion::{Motion, write_trajectory};
-use super::super::search::{Found, Hit, Question, TreeIndex, scan};
+use super::super::motion::{DatabaseClip, write_trajectory};
+use super::super::search::{Hit, Question, SearchResult, TreeIndex, scan};
 use super::super::{Place, TagFilter};
-use super::record::{Candidate, Held, Reason, SearchRecord};
+use super::record::{Candidate, HoldReason, SearchReason, SearchRecord};
 use super::{Controller, Hysteresis, LastInput, SearchMethod, TICK_SECS};
 use crate::math::wrap_angle;
 
@@ -19,7 +19,7 @@ const SAME_FRAMES: usize = RATE / 5;
 const STILL_TICKS: u64 = RATE as u64 / 2;
 
 impl Controller {
-    pub(super) fn reason(&mut self, filter: TagFilter) -> Option<Reason> {
+    pub(super) fn reason(&mut self, filter: TagFilter) -> Option<SearchReason> {
         let simulation = &self.simulation;
         let playing = self.database.motion(self.place.motion);
         // A cycle has no end.
@@ -34,11 +34,11 @@ impl Controller {
         let interval = (self.options.search_interval_secs * RATE as f64).round().max(1.0) as u64;
         let due = self.last_search.is_none_or(|last| self.tick >= last + interval);
         if ends {
-            Some(Reason::ClipEnd)
+            Some(SearchReason::ClipEnd)
         } else if changed {
-            Some(Reason::InputChange)
+            Some(SearchReason::InputChange)
         } else {
-            due.then_some(Reason::Interval)
+            due.then_some(SearchReason::Interval)
         }
     }
 
@@ -63,7 +63,12 @@ impl Controller {
     }
 
     /// Returns the best admitted frame; `known` is one of them.
-    pub(super) fn find(&mut self, query: &[f32], filter: TagFilter, known: Option<Hit>) -> Found {
+    pub(super) fn find(
+        &mut self,
+        query: &[f32],
+        filter: TagFilter,
+        known: Option<Hit>,
+    ) -> SearchResult {
         let question = Question { query, weights: &self.weights, filter };
         let candidates = self.database.candidates();
         match self.options.method {
@@ -84,7 +89,7 @@ impl Controller {
     }
 
     /// Searches, and jumps where the winner is worth it.
-    pub(super) fn seek(&mut self, reason: Reason, filter: TagFilter) {
+    pub(super) fn seek(&mut self, reason: SearchReason, filter: TagFilter) {
         let query = self.query();
         let here = self.database.number(self.place).unwrap_or(0);
         let cost = |frame: usize| {
@@ -97,7 +102,7 @@ impl Controller {
         let found = self.find(&query, filter, admitted.then_some(current));
         let best = self.preferred(&query, filter, found.best);
         let held = match best.and_then(|best| Some((best, self.database.place(best.frame)?))) {
-            None => Some(Held::Nothing),
+            None => Some(HoldReason::Nothing),
             Some((best, to)) => {
                 let held = self.held(reason, filter, current, best, to);
                 if held.is_none() {
@@ -152,7 +157,7 @@ impl Controller {
     /// Returns whether a motion belongs to the preferred clip.
     fn is_preferred(&self, motion: usize) -> bool {
         let source = self.options.prefer_source.filter(|_| self.is_still());
-        source.is_some() && self.database.motion(motion).map(Motion::source) == source
+        source.is_some() && self.database.motion(motion).map(DatabaseClip::source) == source
     }
 
     /// Returns the cost of a frame including the preference: frames of the preferred clip are
@@ -188,12 +193,12 @@ impl Controller {
     /// Returns the reason not to jump to the winner.
     fn held(
         &mut self,
-        reason: Reason,
+        reason: SearchReason,
         filter: TagFilter,
         current: Hit,
         best: Hit,
         to: Place,
-    ) -> Option<Held> {
+    ) -> Option<HoldReason> {
         let playing = self.database.motion(self.place.motion);
         let apart =
             playing.map_or(usize::MAX, |motion| motion.frames_between(to.frame, self.place.frame));
@@ -201,13 +206,13 @@ impl Controller {
         let elsewhere = to.motion != self.place.motion;
         let cost = self.counted(to.motion, best.cost);
         let current_cost = self.counted(self.place.motion, current.cost);
-        if reason == Reason::ClipEnd {
+        if reason == SearchReason::ClipEnd {
             self.votes = 0;
             return None;
         }
         if same {
             self.votes = 0;
-            return Some(Held::Same);
+            return Some(HoldReason::Same);
         }
         // A frame without the required tags is left as soon as possible.
         if filter.admits(self.database.tags(current.frame)) {
@@ -215,20 +220,20 @@ impl Controller {
                 Hysteresis::ContinuingBias { share, constant }
                     if cost + constant >= current_cost * (1.0 - share) =>
                 {
-                    return Some(Held::Bias);
+                    return Some(HoldReason::Bias);
                 }
                 Hysteresis::MinimumTime { secs }
                     if self
                         .last_jump
                         .is_some_and(|last| (self.tick - last) as f64 * TICK_SECS < secs) =>
                 {
-                    return Some(Held::MinimumTime);
+                    return Some(HoldReason::MinimumTime);
                 }
                 Hysteresis::ThreeVotesForAnotherClip if !elsewhere => {}
                 Hysteresis::ThreeVotes | Hysteresis::ThreeVotesForAnotherClip => {
                     self.votes += 1;
                     if self.votes < 3 {
-                        return Some(Held::Votes);
+                        return Some(HoldReason::Votes);
                     }
                 }
                 _ => {}
@@ -238,7 +243,7 @@ impl Controller {
                 && elsewhere
                 && best.cost >= current.cost * (1.0 - self.options.prefer_current)
             {
-                return Some(Held::CurrentClip);
+                return Some(HoldReason::CurrentClip);
             }
         }
         self.votes = 0;

@@ -1,7 +1,7 @@
 //! Exact search by bounding boxes.
 
 use super::super::tags::{TagFilter, TagSet};
-use super::{Found, Hit, Question};
+use super::{Hit, Question, SearchResult};
 
 /// Number of values that are computed side by side.
 pub(super) const LANES: usize = 8;
@@ -130,9 +130,14 @@ impl BoxIndex {
     /// Returns the best admitted frame. `known` is a frame that the filter admits and that is in
     /// the index; it or a better one is returned.
     #[must_use]
-    pub fn search(&self, masks: &BoxMasks, question: &Question<'_>, known: Option<Hit>) -> Found {
+    pub fn search(
+        &self,
+        masks: &BoxMasks,
+        question: &Question<'_>,
+        known: Option<Hit>,
+    ) -> SearchResult {
         if !question.is_sound(self.dims) || self.ids.is_empty() {
-            return Found::default();
+            return SearchResult::default();
         }
         let mut search = Search {
             index: self,
@@ -143,7 +148,7 @@ impl BoxIndex {
             visited: 0,
         };
         search.run();
-        Found { best: search.best, visited: search.visited }
+        SearchResult { best: search.best, visited: search.visited }
     }
 }
 

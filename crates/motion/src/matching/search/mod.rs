@@ -48,7 +48,7 @@ pub struct Question<'a> {
 
 /// The result of a search.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Found {
+pub struct SearchResult {
     /// The frame of least cost; `None` where no frame is admitted, or the query is not a finite
     /// row.
     pub best: Option<Hit>,

@@ -1,11 +1,11 @@
 //! The slow, obvious search.
 
-use super::{Candidates, Found, Hit, Question};
+use super::{Candidates, Hit, Question, SearchResult};
 
 /// Scans every admitted frame. O(frames × dimensions).
 #[must_use]
-pub fn scan(candidates: &Candidates<'_>, question: &Question<'_>) -> Found {
-    let mut found = Found::default();
+pub fn scan(candidates: &Candidates<'_>, question: &Question<'_>) -> SearchResult {
+    let mut found = SearchResult::default();
     if !question.is_sound(candidates.features.layout().dims()) {
         return found;
     }

@@ -162,8 +162,8 @@ fn search_of_an_invalid_query_finds_nothing() {
     let weights = vec![1.0; 27];
     for query in [vec![0.0; 26], vec![f32::NAN; 27], vec![f32::INFINITY; 27], vec![]] {
         let question = Question { query: &query, weights: &weights, filter: TagFilter::default() };
-        assert_eq!(scan(&candidates, &question), Found::default());
-        assert_eq!(index.search(&masks, &question, None), Found::default());
+        assert_eq!(scan(&candidates, &question), SearchResult::default());
+        assert_eq!(index.search(&masks, &question, None), SearchResult::default());
     }
     // Costs that overflow are all equal.
     let far = vec![1e30; 27];

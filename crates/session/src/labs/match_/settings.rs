@@ -58,9 +58,9 @@ pub(crate) fn options_of(params: &Params) -> ControllerOptions {
         },
         following: params.is_on(Key::Adjust).then(|| Following {
             half_life_secs: number(Key::AdjustHalfLife),
-            most_share: number(Key::AdjustShare),
-            most_m: number(Key::ClampDistance),
-            most_radians: number(Key::ClampTurn).to_radians(),
+            max_share: number(Key::AdjustShare),
+            max_distance_m: number(Key::ClampDistance),
+            max_angle_radians: number(Key::ClampTurn).to_radians(),
         }),
         planting: usual.planting.filter(|_: &FootPlanting| params.is_on(Key::PlantFeet)),
         candidates: number(Key::ShownCandidates) as usize,

@@ -4,7 +4,7 @@
 use crate::labs::kept::{read_ids, write_ids};
 use crate::outside::short;
 use crate::params::{Key, Params, format_number};
-use segue_motion::matching::{Database, Motion, RATE, Tag, TagFilter, TagRange, TagSet};
+use segue_motion::matching::{Database, DatabaseClip, RATE, Tag, TagFilter, TagRange, TagSet};
 use std::sync::Arc;
 
 /// A link with more tags is an accident.
@@ -121,7 +121,7 @@ pub(crate) fn filter_of(params: &Params) -> Result<TagFilter, String> {
 
 /// What a motion's clip is called in parameters: its id among those that the database was built
 /// from, its own name in the synthesiser's set.
-pub(crate) fn clip_name<'a>(motion: &'a Motion, ids: &'a [String]) -> &'a str {
+pub(crate) fn clip_name<'a>(motion: &'a DatabaseClip, ids: &'a [String]) -> &'a str {
     ids.get(motion.source()).map_or(motion.clip().name(), String::as_str)
 }
 
