@@ -2,7 +2,7 @@
 //! of parameters).
 
 use segue_motion::gait::GaitFacts;
-use segue_motion::matching::{Block, Database, Held, RATE, Reason, SearchRecord};
+use segue_motion::matching::{Block, Database, HoldReason, RATE, SearchReason, SearchRecord};
 use segue_motion::path::HardTurn;
 use segue_session::JobKind;
 use segue_session::choices::{Hysteresis, LoopMethod, Mistake, PathKeep};
@@ -1009,15 +1009,15 @@ pub(crate) fn hysteresis(word: Hysteresis) -> &'static str {
 }
 
 /// Whether a search led anywhere.
-fn held(held: Option<Held>) -> &'static str {
+fn held(held: Option<HoldReason>) -> &'static str {
     match held {
         None => "went over to the best frame",
-        Some(Held::Same) => "stayed: it plays the best frame already",
-        Some(Held::Bias) => "stayed: not better by the bias",
-        Some(Held::MinimumTime) => "stayed: the last jump is too recent",
-        Some(Held::Votes) => "stayed: not three votes yet",
-        Some(Held::CurrentClip) => "stayed in its clip: the input is still",
-        Some(Held::Nothing) => "stayed: no frame has the tags that are asked for",
+        Some(HoldReason::Same) => "stayed: it plays the best frame already",
+        Some(HoldReason::Bias) => "stayed: not better by the bias",
+        Some(HoldReason::MinimumTime) => "stayed: the last jump is too recent",
+        Some(HoldReason::Votes) => "stayed: not three votes yet",
+        Some(HoldReason::CurrentClip) => "stayed in its clip: the input is still",
+        Some(HoldReason::Nothing) => "stayed: no frame has the tags that are asked for",
     }
 }
 
@@ -1030,9 +1030,9 @@ pub(crate) fn outcome_of_search(search: &SearchRecord, is_live: bool) -> String 
 /// What a search came to, and what it took.
 pub(crate) fn searched(search: &SearchRecord, frames: usize) -> String {
     let why = match search.reason {
-        Reason::Interval => "It was time to search",
-        Reason::ClipEnd => "The clip came to its end",
-        Reason::InputChange => "The input changed",
+        SearchReason::Interval => "It was time to search",
+        SearchReason::ClipEnd => "The clip came to its end",
+        SearchReason::InputChange => "The input changed",
     };
     format!("{why}; {}. {} of {frames} frames were looked at.", held(search.held), search.visited)
 }

@@ -8,7 +8,7 @@ use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{palette_of, space};
 use eframe::egui::{Ui, vec2};
-use segue_motion::matching::{Database, Motion, RATE, Tag};
+use segue_motion::matching::{Database, DatabaseClip, RATE, Tag};
 use segue_session::{HandTag, Key, Session, Value, own_words, write_tags};
 
 /// What "what plays now" reaches to either side, frames.
@@ -122,7 +122,7 @@ fn set(tags: &[HandTag], out: &mut Out) {
 }
 
 /// The clip of a bar in the strip.
-fn motion_of(database: &Database, bar: usize) -> Option<&Motion> {
+fn motion_of(database: &Database, bar: usize) -> Option<&DatabaseClip> {
     let originals = database.motions().iter().filter(|motion| !motion.is_mirrored());
     originals.map(|motion| &**motion).nth(bar)
 }
