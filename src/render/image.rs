@@ -17,7 +17,7 @@ pub(crate) struct Image {
 }
 
 /// Why there is no picture.
-#[derive(Debug, thiserror::Error)]
+#[derive(Debug, thiserror::Error, segue_text::ToMessage)]
 pub(crate) enum ImageError {
     /// The size is zero or more than the device can draw.
     #[error(
@@ -30,7 +30,7 @@ pub(crate) enum ImageError {
     )]
     Device(String),
     /// Packing failed.
-    #[error("the picture could not be packed as PNG: {0}")]
+    #[error("the picture could not be packed as PNG: {why}", why = .0.to_string())]
     Pack(#[from] std::io::Error),
 }
 

@@ -17,7 +17,8 @@ const PARTS: [(&str, Part); 6] = [
 ];
 
 /// The crates below the app.
-const LIBRARIES: [&str; 3] = ["segue-motion", "segue-formats", "segue-session"];
+const LIBRARIES: [&str; 5] =
+    ["segue-text", "segue-text-derive", "segue-motion", "segue-formats", "segue-session"];
 
 type Part = fn(&mut Report);
 

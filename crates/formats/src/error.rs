@@ -1,7 +1,7 @@
 use super::text::{position, quoted};
 
 /// Why a file could not be read: where, what stood there, and what would have been right.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error, segue_text::ToMessage, serde::Serialize, serde::Deserialize)]
 #[error("{file}:{line}:{column}: found {found}, expected {expected}")]
 pub struct ImportError {
     /// The file's name, as the caller gave it.

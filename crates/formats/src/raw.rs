@@ -22,7 +22,7 @@ pub(super) struct RawMotion {
 }
 
 /// Why a motion makes no clip. The readers see to it that neither happens.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error, segue_text::ToMessage)]
 pub(super) enum RawError {
     #[error(transparent)]
     Skeleton(#[from] SkeletonError),

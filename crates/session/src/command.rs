@@ -85,7 +85,7 @@ pub enum CompanyChange {
 }
 
 /// Why a command could not be carried out. Nothing is changed then.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error, segue_text::ToMessage)]
 pub enum CommandError {
     /// A value that does not fit.
     #[error(transparent)]
@@ -94,7 +94,7 @@ pub enum CommandError {
     #[error(transparent)]
     Import(#[from] ImportError),
     /// A clip that is not there.
-    #[error("there is no clip `{}` in the library", short(.0))]
+    #[error("there is no clip `{id}` in the library", id = short(.0))]
     NoClip(String),
     /// A pane without a result to keep.
     #[error(transparent)]

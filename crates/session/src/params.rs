@@ -407,7 +407,7 @@ impl Key {
 }
 
 /// Why a value does not fit its parameter.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error, segue_text::ToMessage)]
 pub enum ValueError {
     /// Not a number.
     #[error("{key}: found `{}`, expected a number{}{}", short(.found), of_unit(.unit), if *.auto { " or `auto`" } else { "" })]

@@ -31,7 +31,7 @@ pub struct GlbOptions {
 }
 
 /// Why a clip is no `.glb` file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error, segue_text::ToMessage)]
 pub enum GlbError {
     /// The format counts bytes with 32 bits.
     #[error(

@@ -11,7 +11,7 @@ use glam::{Quat, Vec3};
 const MAX_START_SECS: f64 = 3_600.0;
 
 /// Error laying one clip over another.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error, segue_text::ToMessage)]
 pub enum LayerError {
     /// The clips have different skeletons.
     #[error("`{base}` and `{over}` move different skeletons: retarget one onto the other first")]

@@ -115,7 +115,7 @@ use crate::registration::RegistrationError;
 pub(crate) const MAX_SECS: f64 = 60.0;
 
 /// Error blending two clips.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error, segue_text::ToMessage)]
 pub enum BlendError {
     /// The clips have different skeletons.
     #[error("`{a}` and `{b}` move different skeletons: retarget one onto the other first")]
@@ -137,8 +137,8 @@ pub enum BlendError {
     },
     /// The window does not fit between its first frame and the end of the clip.
     #[error(
-        "{window} frames from frame {at} do not fit into the {which} clip of {frames} frames: lower the window to {} or start it earlier",
-        frames.saturating_sub(*at)
+        "{window} frames from frame {at} do not fit into the {which} clip of {frames} frames: lower the window to {most} or start it earlier",
+        most = frames.saturating_sub(*at)
     )]
     Window {
         /// "outgoing" or "incoming".

@@ -8,7 +8,7 @@ use crate::skeleton::{Mirror, NoCounterparts, Roles, rest_is_plausible};
 const SAMPLES: usize = 240;
 
 /// Error mirroring a clip.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error, segue_text::ToMessage)]
 pub enum MirrorError {
     /// Left and right are unknown.
     #[error(transparent)]

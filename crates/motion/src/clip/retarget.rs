@@ -7,7 +7,7 @@ use glam::Vec3;
 use std::sync::Arc;
 
 /// Error retargeting a clip.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error, segue_text::ToMessage)]
 pub enum RetargetError {
     /// No joint of one skeleton corresponds to a joint of the other.
     #[error(

@@ -46,7 +46,7 @@ pub struct JointTranslations {
 }
 
 /// Error building a [`Clip`].
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error, segue_text::ToMessage)]
 pub enum ClipError {
     /// The frame rate is not finite and positive.
     #[error("a frame rate of {0} frames per second cannot be played: give a number above 0")]

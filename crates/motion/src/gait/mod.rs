@@ -84,7 +84,7 @@ use crate::clip::ClipError;
 use crate::transition::LoopError;
 
 /// Error blending gaits by speed.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error, segue_text::ToMessage)]
 pub enum GaitError {
     /// The joints of a foot are unknown.
     #[error("`{name}` has no joints that are known as its feet: choose these joints by hand")]

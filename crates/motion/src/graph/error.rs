@@ -2,9 +2,10 @@ use super::GraphOptions;
 use crate::blend::BlendError;
 use crate::clip::ClipError;
 use crate::registration::RegistrationError;
+use segue_text::{Message, msg};
 
 /// Why there is no graph, and what would do.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error, segue_text::ToMessage)]
 pub enum GraphError {
     /// No clips.
     #[error("a motion graph needs a clip: choose at least one")]
@@ -32,9 +33,9 @@ pub enum GraphError {
     },
     /// The segment holds nothing but blends.
     #[error(
-        "a blend window of {window} frames leaves nothing of a segment of {segment}: {}raise the segment to {}",
-        if *segment > 1 { format!("lower the window to {} or ", segment - 1) } else { String::new() },
-        window + 1
+        "a blend window of {window} frames leaves nothing of a segment of {segment}: {or_lower}raise the segment to {longer}",
+        or_lower = or_lower_window(*segment),
+        longer = window + 1
     )]
     SegmentTooShort {
         /// Frames of a segment.
@@ -54,8 +55,8 @@ pub enum GraphError {
     },
     /// No clip has room for a window, with a frame before and one behind it.
     #[error(
-        "a blend window of {window} frames does not fit into the longest clip ({longest} frames) with a frame to either side: {}add a longer clip",
-        if *longest > 2 { format!("lower it to {}, or ", longest - 2) } else { String::new() }
+        "a blend window of {window} frames does not fit into the longest clip ({longest} frames) with a frame to either side: {or_lower}add a longer clip",
+        or_lower = or_lower_it(*longest)
     )]
     WindowTooLong {
         /// Frames of the blend window.
@@ -75,8 +76,8 @@ pub enum GraphError {
     },
     /// No transition is good enough.
     #[error(
-        "no two windows are closer than {threshold_cm} cm: raise the threshold to {:.1} cm, the best transition lies at {nearest_cm:.2} cm",
-        above(*nearest_cm)
+        "no two windows are closer than {threshold_cm} cm: raise the threshold to {enough_cm:.1} cm, the best transition lies at {nearest_cm:.2} cm",
+        enough_cm = above(*nearest_cm)
     )]
     NoTransition {
         /// The threshold, centimetres.
@@ -86,8 +87,8 @@ pub enum GraphError {
     },
     /// No transition is good enough, and no sensible threshold would do.
     #[error(
-        "the closest two windows are {nearest_cm:.2} cm apart, which is no transition any more: {}add clips that move alike",
-        if *window > 1 { format!("lower the blend window of {window} frames, or ") } else { String::new() }
+        "the closest two windows are {nearest_cm:.2} cm apart, which is no transition any more: {or_lower}add clips that move alike",
+        or_lower = or_lower_blend_window(*window)
     )]
     TooFar {
         /// Frames of the blend window.
@@ -97,10 +98,9 @@ pub enum GraphError {
     },
     /// There is one clip, and nowhere in it to go.
     #[error(
-        "with a blend window of {window} frames one can go {:.2} s away at most in the only clip that is long enough, less than the minimum jump of {min_jump_secs} s: lower the jump to {:.2} s, {}or add a clip",
-        floored(*farthest_secs),
-        floored(*farthest_secs),
-        lower_window.map_or_else(String::new, |window| format!("the window to {window}, "))
+        "with a blend window of {window} frames one can go {most_secs:.2} s away at most in the only clip that is long enough, less than the minimum jump of {min_jump_secs} s: lower the jump to {most_secs:.2} s, {lower_window}or add a clip",
+        most_secs = floored(*farthest_secs),
+        lower_window = lower_window.map_or_else(Message::default, |window| msg!("the window to {window}, ", window))
     )]
     NowhereToGo {
         /// Frames of the blend window.
@@ -122,12 +122,8 @@ pub enum GraphError {
     },
     /// The transitions lead to an end, each of them.
     #[error(
-        "every way through the graph of {transitions} transitions comes to an end: {}more clips may lead back",
-        if *threshold_cm < GraphOptions::MAX_THRESHOLD_CM {
-            format!("a threshold above {threshold_cm} cm, or ")
-        } else {
-            String::new()
-        }
+        "every way through the graph of {transitions} transitions comes to an end: {or_raise}more clips may lead back",
+        or_raise = or_raise_threshold(*threshold_cm)
     )]
     NoCycle {
         /// Transitions in the graph.
@@ -135,6 +131,38 @@ pub enum GraphError {
         /// The threshold, centimetres.
         threshold_cm: f64,
     },
+}
+
+fn or_lower_window(segment: usize) -> Message {
+    if segment > 1 {
+        msg!("lower the window to {frames} or ", frames = segment - 1)
+    } else {
+        Message::default()
+    }
+}
+
+fn or_lower_it(longest: usize) -> Message {
+    if longest > 2 {
+        msg!("lower it to {frames}, or ", frames = longest - 2)
+    } else {
+        Message::default()
+    }
+}
+
+fn or_lower_blend_window(window: usize) -> Message {
+    if window > 1 {
+        msg!("lower the blend window of {window} frames, or ", window)
+    } else {
+        Message::default()
+    }
+}
+
+fn or_raise_threshold(threshold_cm: f64) -> Message {
+    if threshold_cm < GraphOptions::MOST_THRESHOLD_CM {
+        msg!("a threshold above {threshold_cm} cm, or ", threshold_cm)
+    } else {
+        Message::default()
+    }
 }
 
 /// The next tenth of a centimetre, which is what a threshold is set in.

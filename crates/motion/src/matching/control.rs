@@ -96,7 +96,7 @@ pub struct Recording {
 }
 
 /// Error reading a recording.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error, segue_text::ToMessage)]
 pub enum RecordingError {
     /// A run that cannot be read.
     #[error("part {part} of the recorded input, `{found}`, is not of the form ticks.x.z")]
@@ -107,7 +107,7 @@ pub enum RecordingError {
         found: String,
     },
     /// The recording is longer than [`Recording::MAX_TICKS`].
-    #[error("the recorded input is longer than {} minutes", Recording::MAX_TICKS / 3_600)]
+    #[error("the recorded input is longer than {minutes} minutes", minutes = Recording::MAX_TICKS / 3_600)]
     TooLong,
 }
 

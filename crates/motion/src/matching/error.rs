@@ -5,7 +5,7 @@ use crate::synth::SynthError;
 use crate::transition::FootLockError;
 
 /// Error building a database or a controller.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error, segue_text::ToMessage)]
 pub enum MatchError {
     /// There are no clips.
     #[error("motion matching needs clips: choose at least one")]

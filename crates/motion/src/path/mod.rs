@@ -94,7 +94,7 @@ pub use spline::{FARTHEST_M, GroundSpline, Jet, MAX_POINTS, MIN_POINTS, SplineEn
 pub use turning::{HardTurn, hard_turns, turn_rates};
 
 /// Error fitting, editing or following a path.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error, segue_text::ToMessage)]
 pub enum PathEditError {
     /// The clip is too short to have a path.
     #[error("{frames} frames are no way over the ground: take a clip of two or more")]
@@ -103,13 +103,13 @@ pub enum PathEditError {
         frames: usize,
     },
     /// The character does not travel.
-    #[error("this motion stays within {:.0} cm, so that there is no path to edit: choose one that travels", extent_m * 100.0)]
+    #[error("this motion stays within {extent_cm:.0} cm, so that there is no path to edit: choose one that travels", extent_cm = extent_m * 100.0)]
     Stands {
         /// The diagonal of the bounding box of the root's trajectory, metres.
         extent_m: f64,
     },
     /// The path is shorter than the least length.
-    #[error("a path of {:.1} cm has no direction: draw its control points apart", length_m * 100.0)]
+    #[error("a path of {length_cm:.1} cm has no direction: draw its control points apart", length_cm = length_m * 100.0)]
     NoLength {
         /// Its length, metres.
         length_m: f64,

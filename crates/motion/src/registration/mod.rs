@@ -124,7 +124,7 @@ pub use terms::{PairTerms, Progress, distances_directly};
 pub use transition::{Region, SearchOptions, TransitionSearch, WindowMatch, best_transition};
 
 /// Error aligning or comparing two motions.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error, segue_text::ToMessage)]
 pub enum RegistrationError {
     /// The clouds do not have the same points.
     #[error(

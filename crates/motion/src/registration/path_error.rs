@@ -2,9 +2,10 @@
 
 use super::RegistrationError;
 use super::path::MAX_SLOPE_LIMIT;
+use segue_text::{Message, msg};
 
 /// Error finding a path through a distance matrix. Pairs of frames are (first clip, second clip).
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error, segue_text::ToMessage)]
 pub enum PathError {
     /// A clip is shorter than the window.
     #[error(
@@ -38,8 +39,8 @@ pub enum PathError {
     },
     /// Two pins of which the later one in the first clip is not later in the second.
     #[error(
-        "the pins at frames {} | {} and {} | {} exclude each other, for both clips only go forward: remove one, or move the later one on in both clips",
-        first.0, first.1, second.0, second.1
+        "the pins at frames {a} | {b} and {later_a} | {later_b} exclude each other, for both clips only go forward: remove one, or move the later one on in both clips",
+        a = first.0, b = first.1, later_a = second.0, later_b = second.1
     )]
     Pins {
         /// Frames of the pin that comes first in the first clip.
@@ -48,7 +49,7 @@ pub enum PathError {
         second: (usize, usize),
     },
     /// A pin that excludes the corner at which the path must begin or end.
-    #[error("the pin at frames {} | {} holds one clip back at the path's {end}: free the {end}, or move the pin inwards", pin.0, pin.1)]
+    #[error("the pin at frames {a} | {b} holds one clip back at the path's {end}: free the {end}, or move the pin inwards", a = pin.0, b = pin.1)]
     PinAtEnd {
         /// Frames of the pin.
         pin: (usize, usize),
@@ -57,8 +58,8 @@ pub enum PathError {
     },
     /// One clip is so much longer than the other that the limit leaves no path.
     #[error(
-        "no path with a slope limit of {slope_limit} goes from {} to {}: raise the slope limit to {needed} or more, free the ends, or move the pins",
-        place(*from, "the start"), place(*to, "the end")
+        "no path with a slope limit of {slope_limit} goes from {start} to {end}: raise the slope limit to {needed} or more, free the ends, or move the pins",
+        start = place(*from, "the start"), end = place(*to, "the end")
     )]
     NoPath {
         /// Frames at which the part without a path begins; `None` for a free start.
@@ -78,6 +79,6 @@ pub enum PathError {
     NotFinite,
 }
 
-fn place(frames: Option<(usize, usize)>, free: &str) -> String {
-    frames.map_or_else(|| free.to_owned(), |(i, j)| format!("frames {i} | {j}"))
+fn place(frames: Option<(usize, usize)>, free: &'static str) -> Message {
+    frames.map_or(Message::word(free), |(i, j)| msg!("frames {i} | {j}", i, j))
 }

@@ -31,7 +31,7 @@ pub struct Joint {
 }
 
 /// Error in a list of joints.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error, segue_text::ToMessage)]
 pub enum SkeletonError {
     /// The list is empty.
     #[error("a skeleton needs at least one joint")]

@@ -165,7 +165,7 @@ impl Params {
 }
 
 /// Why no motion was made.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error, segue_text::ToMessage)]
 pub enum SynthError {
     /// A parameter outside its range, or not a number.
     #[error("{what} {value}{unit} cannot be made: choose between {min} and {max}{unit}")]

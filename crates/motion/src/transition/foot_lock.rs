@@ -41,7 +41,7 @@ impl Default for FootLockOptions {
 }
 
 /// Error of the foot lock.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error, segue_text::ToMessage)]
 pub enum FootLockError {
     /// The skeleton has no leg of thigh, shin and foot, one below the other.
     #[error(

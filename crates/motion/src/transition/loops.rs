@@ -24,7 +24,7 @@ impl Default for LoopOptions {
 }
 
 /// Error closing a cycle.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error, segue_text::ToMessage)]
 pub enum LoopError {
     /// The frames are not in the clip, or too few.
     #[error(

@@ -81,7 +81,7 @@ pub struct Made<'a> {
 }
 
 /// Why a pane has no result to hand on.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error, segue_text::ToMessage)]
 pub enum NoResult {
     /// It cannot be made: what is missing and what to do.
     #[error("{0}")]

@@ -22,7 +22,7 @@ const SECTIONS: [(Section, &[&str]); 3] = [
 ];
 
 /// Why a file is no lesson.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error, segue_text::ToMessage)]
 pub enum LessonError {
     /// Too large.
     #[error("it has {found} bytes, a lesson has at most {MOST_BYTES}")]

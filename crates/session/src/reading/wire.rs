@@ -20,10 +20,10 @@ use std::sync::Arc;
 const PIECE_BYTES: usize = 48 << 14;
 
 /// Why pieces do not make a report.
-#[derive(Debug, thiserror::Error)]
+#[derive(Debug, thiserror::Error, segue_text::ToMessage)]
 pub enum WireError {
     /// The head is not one.
-    #[error("the head of a report cannot be read: {0}")]
+    #[error("the head of a report cannot be read: {why}", why = .0.to_string())]
     Head(#[from] serde_json::Error),
     /// More or fewer bytes than the head tells of.
     #[error("a report of {expected} bytes came with {found}")]
@@ -34,7 +34,7 @@ pub enum WireError {
         found: usize,
     },
     /// There is no memory for it.
-    #[error("there is no memory for its {} MB: remove clips that you do not need", .bytes.div_ceil(1_000_000))]
+    #[error("there is no memory for its {mb} MB: remove clips that you do not need", mb = .bytes.div_ceil(1_000_000))]
     NoRoom {
         /// How many bytes it has.
         bytes: usize,

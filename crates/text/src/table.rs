@@ -1,0 +1,207 @@
+//! A language's templates, and how messages are written out.
+
+use crate::template::{Digits, Part, names, parts};
+use crate::{Arg, Message};
+use std::collections::BTreeMap;
+
+/// The templates of a language, by those of English.
+#[derive(Clone, Debug, Default)]
+pub struct Table {
+    rows: BTreeMap<String, String>,
+}
+
+/// Why a template is not the translation of another.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum TemplateError {
+    /// It names what the other one does not have.
+    Unknown(String),
+    /// It leaves out what the other one tells.
+    Missing(String),
+}
+
+impl Table {
+    /// Returns a table of rows: the English template, and that of the language. The rows `", "`,
+    /// `" "` and `"."` are what stands between the entries of a list, between sentences, and at the
+    /// end of one.
+    #[must_use]
+    pub fn new<K: Into<String>, V: Into<String>>(rows: impl IntoIterator<Item = (K, V)>) -> Self {
+        let rows = rows.into_iter().map(|(english, own)| (english.into(), own.into()));
+        Self { rows: rows.collect() }
+    }
+
+    /// Returns the row of an English template.
+    #[must_use]
+    pub fn row(&self, english: &str) -> Option<&str> {
+        self.rows.get(english).map(String::as_str)
+    }
+
+    /// Returns a message in this language. What has no row is English.
+    #[must_use]
+    pub fn write(&self, message: &Message) -> String {
+        Writer { table: Some(self) }.message(message)
+    }
+
+    /// Checks that a translation tells what the English template tells: both use the same names, and
+    /// the translation may choose forms by any of them.
+    ///
+    /// # Errors
+    /// [`TemplateError`] with the first name that is on one side only.
+    pub fn check(english: &str, own: &str) -> Result<(), TemplateError> {
+        let [expected, found] = [names(english), names(own)];
+        if let Some(name) = found.iter().find(|name| !expected.contains(name)) {
+            return Err(TemplateError::Unknown((*name).to_owned()));
+        }
+        match expected.iter().find(|name| !found.contains(name)) {
+            Some(name) => Err(TemplateError::Missing((*name).to_owned())),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Returns a message in English.
+pub(crate) fn english(message: &Message) -> String {
+    Writer { table: None }.message(message)
+}
+
+#[derive(Clone, Copy)]
+struct Writer<'a> {
+    table: Option<&'a Table>,
+}
+
+impl Writer<'_> {
+    fn row<'a>(&'a self, english: &'a str) -> &'a str {
+        self.table.and_then(|table| table.row(english)).unwrap_or(english)
+    }
+
+    fn message(self, message: &Message) -> String {
+        let mut whole = String::new();
+        self.template(self.row(message.template()), message, None, &mut whole);
+        whole
+    }
+
+    /// Writes a template, or the form of one; `count` stands for `#` there.
+    fn template(self, template: &str, message: &Message, count: Option<&str>, whole: &mut String) {
+        for part in parts(template) {
+            match part {
+                Part::Words(words) => match count {
+                    Some(count) => whole.push_str(&words.replace('#', count)),
+                    None => whole.push_str(words),
+                },
+                Part::Value(name, digits) => {
+                    if let Some(arg) = message.arg(name) {
+                        whole.push_str(&self.arg(arg, digits));
+                    }
+                }
+                Part::Forms(name, forms) => {
+                    let Some(arg) = message.arg(name) else { continue };
+                    // A choice goes by the English word, whatever its translation.
+                    let word = Writer { table: None }.arg(arg, Digits::default());
+                    let exact = format!("={word}");
+                    let is_one = matches!(arg, Arg::Count(1));
+                    let plural = if is_one { "one" } else { "other" };
+                    if let Some(form) = forms.find(&[&exact, &word, plural, "other"]) {
+                        self.template(form, message, Some(&word), whole);
+                    }
+                }
+            }
+        }
+    }
+
+    fn arg(self, arg: &Arg, digits: Digits) -> String {
+        let joined = |parts: &[Arg], between: &str| {
+            let parts: Vec<String> = parts.iter().map(|part| self.arg(part, digits)).collect();
+            parts.join(self.row(between))
+        };
+        match arg {
+            Arg::Text(text) => text.clone(),
+            Arg::Count(count) => format!("{count:0width$}", width = digits.least),
+            Arg::Number(number) => match digits.behind {
+                Some(behind) => format!("{number:.behind$}"),
+                None => format!("{number:0width$}", width = digits.least),
+            },
+            Arg::Message(message) => self.message(message),
+            Arg::List(parts) => joined(parts, ", "),
+            Arg::Sentences(parts) => joined(parts, " "),
+            Arg::Note(note) => sentence(self.message(note), self.row(".")),
+        }
+    }
+}
+
+/// A note, `the rest pose was taken`, as a sentence: `The rest pose was taken.`
+fn sentence(note: String, stop: &str) -> String {
+    let mut letters = note.chars();
+    let first = letters.next().map_or_else(String::new, |first| first.to_uppercase().to_string());
+    let has_stop = note.is_empty() || note.ends_with(stop);
+    format!("{first}{}{}", letters.as_str(), if has_stop { "" } else { stop })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::msg;
+
+    #[test]
+    fn plural_form_is_that_of_the_count() {
+        let told = |dead: usize| {
+            msg!("{dead, plural, =0 {no dead end} one {# dead end} other {# dead ends}}.", dead)
+                .to_string()
+        };
+        assert_eq!([0, 1, 7].map(told), ["no dead end.", "1 dead end.", "7 dead ends."]);
+    }
+
+    #[test]
+    fn plural_of_a_translation_is_its_own() {
+        let table = Table::new([("{n} clips", "{n, plural, one {einen Clip} other {# Clips}}")]);
+        let told = |n: usize| table.write(&msg!("{n} clips", n));
+        assert_eq!([1, 2].map(told), ["einen Clip", "2 Clips"]);
+    }
+
+    #[test]
+    fn choice_goes_by_the_english_word() {
+        let table = Table::new([
+            ("the {side} foot", "{side, select, left {左腳} other {{side}的腳}}"),
+            ("left", "左"),
+            ("right", "右"),
+        ]);
+        let told = |side: &'static str| table.write(&msg!("the {side} foot", side));
+        assert_eq!(["left", "right"].map(told), ["左腳", "右的腳"]);
+    }
+
+    #[test]
+    fn numbers_have_the_digits_of_the_template() {
+        let (cm, secs) = (2.345_f64, 7);
+        let message = msg!("{cm:.1} cm, {cm} cm, 0:{secs:02}", cm, secs);
+        assert_eq!(message.to_string(), "2.3 cm, 2.345 cm, 0:07");
+        let table = Table::new([("{cm:.1} cm, {cm} cm, 0:{secs:02}", "{secs} {cm:.0}")]);
+        assert_eq!(table.write(&message), "7 2");
+        assert_eq!(msg!("{x}", x = 0.1_f32).to_string(), "0.1");
+    }
+
+    #[test]
+    fn list_has_the_comma_of_the_language() {
+        let table = Table::new([(", ", "、"), ("left", "左"), ("right", "右")]);
+        let message = msg!("{sides}", sides = vec!["left", "right"]);
+        assert_eq!(
+            (table.write(&message), message.to_string()),
+            ("左、右".into(), "left, right".into())
+        );
+    }
+
+    #[test]
+    fn note_becomes_a_sentence_of_the_language() {
+        let table = Table::new([("the rest pose was taken", "採用靜止姿勢"), (".", "。")]);
+        let told = |note: &Message| [note.to_string(), table.write(note)];
+        let note = || Message::word("the rest pose was taken");
+        assert_eq!(told(&note().sentence()), ["The rest pose was taken.", "採用靜止姿勢。"]);
+        assert_eq!(told(&note().sentence().sentence())[1], "採用靜止姿勢。");
+        assert_eq!(told(&Message::default().sentence()), ["", ""]);
+    }
+
+    #[test]
+    fn check_finds_names_that_do_not_agree() {
+        let check = |own| Table::check("{name} of {count} clips", own);
+        assert_eq!(check("{count, plural, other {# 個}}中的{name}"), Ok(()));
+        assert_eq!(check("{count} 個"), Err(TemplateError::Missing("name".to_owned())));
+        assert_eq!(check("{name}{count}{x}"), Err(TemplateError::Unknown("x".to_owned())));
+    }
+}
