@@ -10,6 +10,7 @@ use super::warning::{ImportWarning, Tally, WarningKind};
 use super::{ImportError, ImportOptions, has_extension};
 use flate2::bufread::{DeflateDecoder, GzDecoder};
 use rawzip::{CompressionMethod, ErrorKind, ZipArchive, ZipFileHeaderRecord, ZipSliceArchive};
+use segue_text::{Message, ToMessage, msg};
 use std::io;
 
 /// The endings of files that hold motion, or a part of it.
@@ -90,8 +91,10 @@ pub fn unpack(name: &str, bytes: &[u8], limits: &ArchiveLimits) -> Result<Unpack
         let unreadable = warnings
             .iter()
             .find(|warning| matches!(warning.kind, WarningKind::UnreadableFiles { .. }));
-        let found = unreadable
-            .map_or_else(|| "an archive without motion files".to_owned(), ToString::to_string);
+        let found = unreadable.map_or_else(
+            || Message::word("an archive without motion files"),
+            ToMessage::to_message,
+        );
         return Err(ImportError::whole_file(
             name,
             found,
@@ -103,12 +106,12 @@ pub fn unpack(name: &str, bytes: &[u8], limits: &ArchiveLimits) -> Result<Unpack
     Ok(Unpacked { files, warnings })
 }
 
-fn open(bytes: &[u8]) -> Result<ZipSliceArchive<&[u8]>, String> {
-    let cut_off = || "a zip archive without an end: it was cut off".to_owned();
+fn open(bytes: &[u8]) -> Result<ZipSliceArchive<&[u8]>, Message> {
+    let cut_off = || Message::word("a zip archive without an end: it was cut off");
     let archive = ZipArchive::from_slice(bytes).map_err(|error| match error.kind() {
         ErrorKind::MissingEndOfCentralDirectory if is_zip(bytes) => cut_off(),
-        ErrorKind::MissingEndOfCentralDirectory => "no zip archive".to_owned(),
-        _ => format!("a damaged zip archive ({error})"),
+        ErrorKind::MissingEndOfCentralDirectory => "no zip archive".into(),
+        _ => msg!("a damaged zip archive ({error})", error = error.to_string()),
     })?;
     // The end of an archive inside one that was cut off may look like its own. But then nothing in
     // it is at the start, and something comes after.
@@ -130,7 +133,7 @@ struct Unpacking<'a> {
 /// Why a file did not come out.
 enum Miss {
     /// It is left out.
-    Unreadable(String),
+    Unreadable(Message),
     /// The archive is refused.
     TooMuch,
     /// Likewise, for there is no memory for the file.
@@ -141,7 +144,7 @@ impl From<io::Error> for Miss {
     fn from(error: io::Error) -> Self {
         match error.kind() {
             io::ErrorKind::OutOfMemory => Self::NoMemory,
-            _ => Self::Unreadable(format!("it is damaged ({error})")),
+            _ => Self::Unreadable(msg!("it is damaged ({error})", error = error.to_string())),
         }
     }
 }
@@ -159,11 +162,11 @@ impl Unpacking<'_> {
                 Ok(Some(entry)) => self.entry(archive, &entry, folder, depth)?,
                 Ok(None) => return Ok(()),
                 Err(error) if depth == 0 => {
-                    let found = format!("a damaged zip archive ({error})");
+                    let found = msg!("a damaged zip archive ({error})", error = error.to_string());
                     return Err(ImportError::whole_file(self.name, found, "a list of its files"));
                 }
                 Err(error) => {
-                    self.unreadable(folder, format!("damaged ({error})"));
+                    self.unreadable(folder, msg!("damaged ({error})", error = error.to_string()));
                     return Ok(());
                 }
             }
@@ -202,7 +205,7 @@ impl Unpacking<'_> {
             self.tally.add(WarningKind::PathsOutside, None);
         }
         if is_zip && depth >= DEPTH {
-            self.unreadable(&path, "an archive inside an archive inside this one".to_owned());
+            self.unreadable(&path, "an archive inside an archive inside this one".into());
             return Ok(());
         }
         let mut bytes = match self.read(archive, entry) {
@@ -236,11 +239,12 @@ impl Unpacking<'_> {
         entry: &ZipFileHeaderRecord<'_>,
     ) -> Result<Vec<u8>, Miss> {
         if entry.flags().is_encrypted() {
-            return Err(Miss::Unreadable("it is encrypted".to_owned()));
+            return Err(Miss::Unreadable("it is encrypted".into()));
         }
         let packed = archive.get_entry(entry.wayfinder());
-        let packed =
-            packed.map_err(|error| Miss::Unreadable(format!("it is damaged ({error})")))?;
+        let packed = packed.map_err(|error| {
+            Miss::Unreadable(msg!("it is damaged ({error})", error = error.to_string()))
+        })?;
         let bytes = match entry.compression_method() {
             CompressionMethod::STORE => {
                 read_at_most(packed.verifying_reader(packed.data()), self.left)
@@ -249,10 +253,11 @@ impl Unpacking<'_> {
                 read_at_most(packed.verifying_reader(DeflateDecoder::new(packed.data())), self.left)
             }
             other => {
-                let name = other
-                    .name()
-                    .map_or_else(|| format!("method {}", other.as_u16()), str::to_owned);
-                return Err(Miss::Unreadable(format!(
+                let name = other.name().map_or_else(
+                    || msg!("method {number}", number = other.as_u16()),
+                    Message::word,
+                );
+                return Err(Miss::Unreadable(msg!(
                     "it is packed with {name}, which is not read here"
                 )));
             }
@@ -272,17 +277,17 @@ impl Unpacking<'_> {
         }
     }
 
-    fn unreadable(&mut self, path: &str, why: String) {
+    fn unreadable(&mut self, path: &str, why: Message) {
         let path = super::text::short(path.as_bytes());
         self.tally.add(WarningKind::UnreadableFiles { path, why }, None);
     }
 
     fn too_much(&self) -> ImportError {
-        let most = format!("{} MB", self.limits.max_bytes >> 20);
+        let mb = self.limits.max_bytes >> 20;
         ImportError::whole_file(
             self.name,
-            format!("more than {most} after unpacking"),
-            format!("at most {most}"),
+            msg!("more than {mb} MB after unpacking"),
+            msg!("at most {mb} MB"),
         )
         .with_hint("unpack the archive and open a part of its files")
     }

@@ -6,6 +6,7 @@ use super::raw::RawMotion;
 use super::t_pose::first_frame_is_t_pose;
 use super::warning::{Tally, WarningKind};
 use super::{ImportOptions, ImportedClip, stem};
+use segue_text::ToMessage;
 
 /// One clip for each character of a file: measured, in metres and Y up, without a T-pose row where
 /// there is one.
@@ -55,7 +56,7 @@ pub(super) fn assemble(
         };
         let clip = raw
             .into_clip(clip_name, fps, &measure)
-            .map_err(|error| Fault::new(0, error.to_string(), "a skeleton with a motion"))?;
+            .map_err(|error| Fault::new(0, error.to_message(), "a skeleton with a motion"))?;
         clips.push(ImportedClip {
             clip,
             t_pose_first_row,

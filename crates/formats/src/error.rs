@@ -1,7 +1,16 @@
 use super::text::{position, quoted};
+use segue_text::Message;
 
 /// Why a file could not be read: where, what stood there, and what would have been right.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error, segue_text::ToMessage, serde::Serialize, serde::Deserialize)]
+#[derive(
+    Clone,
+    Debug,
+    PartialEq,
+    thiserror::Error,
+    segue_text::ToMessage,
+    serde::Serialize,
+    serde::Deserialize,
+)]
 #[error("{file}:{line}:{column}: found {found}, expected {expected}")]
 pub struct ImportError {
     /// The file's name, as the caller gave it.
@@ -11,19 +20,19 @@ pub struct ImportError {
     /// The column in characters, counted from 1.
     pub column: usize,
     /// What stands there.
-    pub found: String,
+    pub found: Message,
     /// What would have been read.
-    pub expected: String,
+    pub expected: Message,
     /// What the person can do about it, where there is something better to say than `expected`.
-    pub hint: Option<String>,
+    pub hint: Option<Message>,
 }
 
 impl ImportError {
     /// An error about the file as a whole.
     pub(super) fn whole_file(
         file: &str,
-        found: impl Into<String>,
-        expected: impl Into<String>,
+        found: impl Into<Message>,
+        expected: impl Into<Message>,
     ) -> Self {
         Self {
             file: file.to_owned(),
@@ -35,7 +44,7 @@ impl ImportError {
         }
     }
 
-    pub(super) fn with_hint(mut self, hint: impl Into<String>) -> Self {
+    pub(super) fn with_hint(mut self, hint: impl Into<Message>) -> Self {
         self.hint = Some(hint.into());
         self
     }
@@ -43,26 +52,30 @@ impl ImportError {
 
 /// An [`ImportError`] before its byte offset is turned into line and column. Lines are counted only
 /// when there is something to report.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Fault {
     pub(super) at: usize,
-    pub(super) found: String,
-    pub(super) expected: String,
-    pub(super) hint: Option<String>,
+    pub(super) found: Message,
+    pub(super) expected: Message,
+    pub(super) hint: Option<Message>,
 }
 
 impl Fault {
-    pub(super) fn new(at: usize, found: impl Into<String>, expected: impl Into<String>) -> Self {
+    pub(super) fn new(at: usize, found: impl Into<Message>, expected: impl Into<Message>) -> Self {
         Self { at, found: found.into(), expected: expected.into(), hint: None }
     }
 
     /// At `at` stands `token`, which is empty at the end of the file.
-    pub(super) fn at_token(at: usize, token: &[u8], expected: impl Into<String>) -> Self {
-        let found = if token.is_empty() { "the end of the file".to_owned() } else { quoted(token) };
+    pub(super) fn at_token(at: usize, token: &[u8], expected: impl Into<Message>) -> Self {
+        let found = if token.is_empty() {
+            Message::word("the end of the file")
+        } else {
+            quoted(token).into()
+        };
         Self::new(at, found, expected)
     }
 
-    pub(super) fn with_hint(mut self, hint: impl Into<String>) -> Self {
+    pub(super) fn with_hint(mut self, hint: impl Into<Message>) -> Self {
         self.hint = Some(hint.into());
         self
     }

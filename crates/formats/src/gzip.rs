@@ -1,5 +1,6 @@
 use super::ImportError;
 use flate2::read::GzDecoder;
+use segue_text::msg;
 use std::io::{self, Read};
 
 /// Whether the bytes start as a gzip file does.
@@ -19,7 +20,7 @@ pub fn unpack_gzip(name: &str, packed: &[u8], most: usize) -> Result<Vec<u8>, Im
     match read_at_most(GzDecoder::new(packed), most) {
         Ok(Some(bytes)) => Ok(bytes),
         Ok(None) => {
-            let found = format!("more than {} MB after unpacking", most >> 20);
+            let found = msg!("more than {mb} MB after unpacking", mb = most >> 20);
             Err(ImportError::whole_file(name, found, "a smaller file"))
         }
         Err(error) if error.kind() == io::ErrorKind::OutOfMemory => Err(no_memory(name)),

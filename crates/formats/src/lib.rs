@@ -51,7 +51,7 @@
 //! let shorter = read(&text[..text.len() - 40])?;
 //! assert!(shorter.clips[0].clip.frames() == walk.frames() - 1 && !shorter.warnings.is_empty());
 //! let error = read(&text.replacen("OFFSET", "OFSET", 1)).err().ok_or("it was read")?;
-//! assert_eq!((error.line, error.column, error.found.as_str()), (4, 2, "`OFSET`"));
+//! assert_eq!((error.line, error.column, error.found.to_string().as_str()), (4, 2, "`OFSET`"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -94,6 +94,7 @@ pub use warning::{ImportWarning, WarningKind};
 
 use segue_motion::clip::{Clip, UpAxis};
 use segue_motion::skin::SkinnedMesh;
+use segue_text::msg;
 use std::sync::Arc;
 
 /// What a person may know better than the file.
@@ -205,9 +206,9 @@ pub fn import_with_progress(
         FileKind::Unknown => {
             let found = match name.rsplit_once('.') {
                 Some((_, extension)) if !extension.is_empty() => {
-                    format!("a file that ends in .{extension}")
+                    msg!("a file that ends in .{extension}", extension = extension.to_owned())
                 }
-                _ => "a file of unknown format".to_owned(),
+                _ => "a file of unknown format".into(),
             };
             let error = ImportError::whole_file(
                 name,
@@ -307,8 +308,8 @@ fn check_size(name: &str, bytes: &[u8], options: &ImportOptions) -> Result<(), I
     if bytes.len() <= options.max_bytes {
         return check_not_empty(name, bytes);
     }
-    let found = format!("a file of {} MB", bytes.len().div_ceil(1 << 20));
-    Err(ImportError::whole_file(name, found, format!("at most {} MB", options.max_bytes >> 20))
+    let found = msg!("a file of {mb} MB", mb = bytes.len().div_ceil(1 << 20));
+    Err(ImportError::whole_file(name, found, msg!("at most {mb} MB", mb = options.max_bytes >> 20))
         .with_hint("cut the motion into parts"))
 }
 

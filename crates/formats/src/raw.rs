@@ -6,6 +6,7 @@ use super::measure::Measure;
 use glam::{Quat, Vec3};
 use segue_motion::clip::{Clip, ClipError, JointTranslations, Provenance, UpAxis};
 use segue_motion::skeleton::{Joint, Skeleton, SkeletonError, WorldPose, world_pose_into};
+use segue_text::msg;
 use std::sync::Arc;
 
 /// Translations nearer to the rest offset than this are the offset, metres.
@@ -49,8 +50,10 @@ impl RawMotion {
             taken = taken.and_then(|()| track.try_reserve_exact(frames));
         }
         taken.map_err(|_| {
-            let found =
-                format!("a motion for which there is no memory after {} frames", self.frames());
+            let found = msg!(
+                "a motion for which there is no memory after {frames} frames",
+                frames = self.frames()
+            );
             Fault::new(0, found, "a motion that fits into memory")
                 .with_hint("cut the motion into parts")
         })
@@ -190,7 +193,7 @@ mod tests {
         let mut raw = RawMotion { joints: vec![joint], ..RawMotion::default() };
         for frames in [usize::MAX, usize::MAX / 64] {
             let refused = raw.reserve(frames).unwrap_err();
-            assert!(refused.found.contains("no memory"), "{refused:?}");
+            assert!(refused.found.to_string().contains("no memory"), "{refused:?}");
         }
         raw.reserve(100).unwrap();
         assert!(raw.rotations.capacity() >= 100 && raw.root_translations.capacity() >= 100);

@@ -1,5 +1,6 @@
 use super::text::position;
 use segue_motion::clip::UpAxis;
+use segue_text::{Message, ToMessage, msg};
 use std::fmt;
 
 /// A kind of oddity that a file was read in spite of, or a note on how it was read.
@@ -73,7 +74,7 @@ pub enum WarningKind {
         /// The first of them.
         path: String,
         /// Why it cannot be read.
-        why: String,
+        why: Message,
     },
     /// Animated scales: the scale at rest is taken.
     ScaleAnimation,
@@ -178,7 +179,7 @@ pub enum WarningKind {
     /// Meshes with a skin that cannot be read: left out.
     BrokenMesh {
         /// Why the first of them cannot be read.
-        why: String,
+        why: Message,
     },
 }
 
@@ -193,11 +194,6 @@ pub struct ImportWarning {
     pub line: Option<usize>,
 }
 
-/// `1 row` or `3 rows`.
-fn number_of(count: usize, thing: &str) -> String {
-    if count == 1 { format!("1 {thing}") } else { format!("{count} {thing}s") }
-}
-
 /// A length that may be of any size, with its unit.
 fn length(metres: f64) -> String {
     match metres {
@@ -209,219 +205,221 @@ fn length(metres: f64) -> String {
 
 impl fmt::Display for ImportWarning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let n = |thing: &str| number_of(self.count, thing);
-        let one = self.count == 1;
+        self.to_message().fmt(f)
+    }
+}
+
+impl ToMessage for ImportWarning {
+    fn to_message(&self) -> Message {
+        let count = self.count;
+        let one = count == 1;
         let place = match self.line {
-            Some(line) if one => format!(" (line {line})"),
-            Some(line) => format!(" (first: line {line})"),
-            None => String::new(),
+            Some(line) if one => msg!(" (line {line})"),
+            Some(line) => msg!(" (first: line {line})"),
+            None => Message::default(),
         };
         match &self.kind {
             WarningKind::Latin1Names => {
-                write!(f, "{} not in UTF-8{place}; read as Latin-1", n("name"))
-            }
-            WarningKind::ChannelCount { declared, named } => {
-                let lines = if one {
-                    "1 CHANNELS line gives a number that disagrees"
-                } else {
-                    "CHANNELS lines give numbers that disagree"
-                };
-                let lines = if one { lines.to_owned() } else { format!("{} {lines}", self.count) };
-                write!(
-                    f,
-                    "{lines} with the names after it{place}, such as {declared} for {named}; the names count"
+                msg!(
+                    "{count, plural, one {# name} other {# names}} not in UTF-8{place}; read as Latin-1"
                 )
             }
-            WarningKind::ScaleChannels => write!(f, "{}{place} ignored", n("scale channel")),
+            WarningKind::ChannelCount { declared, named } => {
+                msg!(
+                    "{count, plural, one {# CHANNELS line gives a number that disagrees} other {# CHANNELS lines give numbers that disagree}} with the names after it{place}, such as {declared} for {named}; the names count"
+                )
+            }
+            WarningKind::ScaleChannels => msg!(
+                "{count, plural, one {# scale channel} other {# scale channels}}{place} ignored"
+            ),
             WarningKind::EndSiteChannels => {
-                write!(f, "{} of End Sites{place} ignored", n("channel"))
+                msg!(
+                    "{count, plural, one {# channel} other {# channels}} of End Sites{place} ignored"
+                )
             }
             WarningKind::SeveralEndSites => {
-                write!(f, "{} with more than one End Site{place}; one was kept", n("joint"))
+                msg!(
+                    "{count, plural, one {# joint} other {# joints}} with more than one End Site{place}; one was kept"
+                )
             }
             WarningKind::MissingOffset => {
-                write!(f, "{} without OFFSET{place}; placed on the parent", n("joint"))
+                msg!(
+                    "{count, plural, one {# joint} other {# joints}} without OFFSET{place}; placed on the parent"
+                )
             }
-            WarningKind::NoFrames => write!(f, "the file holds a skeleton and no motion"),
+            WarningKind::NoFrames => msg!("the file holds a skeleton and no motion"),
             WarningKind::FrameCount { declared, found } => {
-                write!(
-                    f,
+                msg!(
                     "the header says {declared} frames{place}, the file holds {found}; the rows count"
                 )
             }
             WarningKind::FrameTime { found: None } => {
-                write!(f, "no frame time; 30 frames per second are taken")
+                msg!("no frame time; 30 frames per second are taken")
             }
             WarningKind::FrameTime { found: Some(found) } => {
-                write!(
-                    f,
-                    "a frame time of {found} is no time{place}; 30 frames per second are taken"
-                )
+                msg!("a frame time of {found} is no time{place}; 30 frames per second are taken")
             }
             WarningKind::UnlikelyFrameTime { secs } => {
-                write!(
-                    f,
+                msg!(
                     "a frame time of {secs} s is unlikely{place}; taken as written, the frame rate can be set by hand"
                 )
             }
             WarningKind::TruncatedRow { found, expected } => {
-                write!(
-                    f,
-                    "the last row holds {} instead of {expected}{place}; dropped",
-                    number_of(*found, "number")
+                msg!(
+                    "the last row holds {found, plural, one {# number} other {# numbers}} instead of {expected}{place}; dropped"
                 )
             }
-            WarningKind::RowsAcrossLines => write!(
-                f,
+            WarningKind::RowsAcrossLines => msg!(
                 "no line holds exactly one frame{place}; the numbers were read one after the other"
             ),
             WarningKind::NotFinite => {
-                write!(f, "{} without a number{place}; the last good value was held", n("value"))
-            }
-            WarningKind::DecimalCommas => {
-                write!(f, "the numbers have decimal commas{place}; read as points")
-            }
-            WarningKind::MissingSpaces => {
-                write!(f, "{} between numbers{place}; split before the sign", n("missing space"))
-            }
-            WarningKind::HiddenFiles => write!(f, "{} of the archive left out", n("hidden file")),
-            WarningKind::OtherFiles => {
-                write!(f, "{} of the archive without motion left out", n("file"))
-            }
-            WarningKind::TooManyFiles { most } => {
-                write!(f, "{} of the archive left out: the first {most} are read", n("motion file"))
-            }
-            WarningKind::PathsOutside => write!(
-                f,
-                "{} of the archive with a path out of it; the rest of the path was taken",
-                n("file")
-            ),
-            WarningKind::UnreadableFiles { path, why } if one => {
-                write!(f, "`{path}` in the archive left out: {why}")
-            }
-            WarningKind::UnreadableFiles { path, why } => {
-                write!(f, "{} of the archive left out, the first: `{path}`, {why}", n("file"))
-            }
-            WarningKind::ScaleAnimation => write!(f, "{} ignored", n("animated scale")),
-            WarningKind::UnevenScale => write!(
-                f,
-                "{} scaled by a different factor along each axis; joints below are exact at rest and near in motion",
-                n("node")
-            ),
-            WarningKind::Resampled { fps } => {
-                write!(f, "the keys have no common rate; sampled at {fps} frames per second")
-            }
-            WarningKind::NotMetres { metres_per_unit } => {
-                write!(
-                    f,
-                    "the body is far too large for metres; units of {metres_per_unit} m are taken"
+                msg!(
+                    "{count, plural, one {# value} other {# values}} without a number{place}; the last good value was held"
                 )
             }
+            WarningKind::DecimalCommas => {
+                msg!("the numbers have decimal commas{place}; read as points")
+            }
+            WarningKind::MissingSpaces => {
+                msg!(
+                    "{count, plural, one {# missing space} other {# missing spaces}} between numbers{place}; split before the sign"
+                )
+            }
+            WarningKind::HiddenFiles => msg!(
+                "{count, plural, one {# hidden file} other {# hidden files}} of the archive left out"
+            ),
+            WarningKind::OtherFiles => {
+                msg!(
+                    "{count, plural, one {# file} other {# files}} of the archive without motion left out"
+                )
+            }
+            WarningKind::TooManyFiles { most } => {
+                msg!(
+                    "{count, plural, one {# motion file} other {# motion files}} of the archive left out: the first {most} are read"
+                )
+            }
+            WarningKind::PathsOutside => msg!(
+                "{count, plural, one {# file} other {# files}} of the archive with a path out of it; the rest of the path was taken"
+            ),
+            WarningKind::UnreadableFiles { path, why } if one => {
+                msg!("`{path}` in the archive left out: {why}")
+            }
+            WarningKind::UnreadableFiles { path, why } => {
+                msg!(
+                    "{count, plural, one {# file} other {# files}} of the archive left out, the first: `{path}`, {why}"
+                )
+            }
+            WarningKind::ScaleAnimation => {
+                msg!("{count, plural, one {# animated scale} other {# animated scales}} ignored")
+            }
+            WarningKind::UnevenScale => msg!(
+                "{count, plural, one {# node} other {# nodes}} scaled by a different factor along each axis; joints below are exact at rest and near in motion"
+            ),
+            WarningKind::Resampled { fps } => {
+                msg!("the keys have no common rate; sampled at {fps} frames per second")
+            }
+            WarningKind::NotMetres { metres_per_unit } => {
+                msg!("the body is far too large for metres; units of {metres_per_unit} m are taken")
+            }
             WarningKind::RestFromFirstRow => {
-                write!(f, "all OFFSETs are zero; the rest pose was taken from the first row")
+                msg!("all OFFSETs are zero; the rest pose was taken from the first row")
             }
             WarningKind::TPose { dropped: true } => {
-                write!(f, "the first row is a T-pose{place}; dropped")
+                msg!("the first row is a T-pose{place}; dropped")
             }
             WarningKind::TPose { dropped: false } => {
-                write!(f, "the first row is a T-pose{place}; kept and marked")
+                msg!("the first row is a T-pose{place}; kept and marked")
             }
             WarningKind::AssumedFrameRate { fps } => {
-                write!(
-                    f,
+                msg!(
                     "the format has no frame rate; {fps} frames per second are taken, it can be set by hand"
                 )
             }
-            WarningKind::FrameNumbers => write!(
-                f,
-                "{} out of order{place}; frames were taken as they come",
-                n("frame number")
+            WarningKind::FrameNumbers => msg!(
+                "{count, plural, one {# frame number} other {# frame numbers}} out of order{place}; frames were taken as they come"
             ),
             WarningKind::MissingBones => {
-                write!(f, "{}{place} without some of the bones; their pose was held", n("frame"))
-            }
-            WarningKind::UnknownBones { name } => {
-                write!(
-                    f,
-                    "{} of the motion{place} not in the skeleton, such as `{name}`; left out",
-                    n("bone")
+                msg!(
+                    "{count, plural, one {# frame} other {# frames}}{place} without some of the bones; their pose was held"
                 )
             }
-            WarningKind::ValueCount { name, found, expected } => write!(
-                f,
-                "{}{place} with more or fewer values than the skeleton has degrees of freedom, such as {found} for the {expected} of `{name}`; \
-                 left at rest",
-                n("bone")
+            WarningKind::UnknownBones { name } => {
+                msg!(
+                    "{count, plural, one {# bone} other {# bones}} of the motion{place} not in the skeleton, such as `{name}`; left out"
+                )
+            }
+            WarningKind::ValueCount { name, found, expected } => msg!(
+                "{count, plural, one {# bone} other {# bones}}{place} with more or fewer values than the skeleton has degrees of freedom, such as {found} for the {expected} of `{name}`; left at rest"
             ),
             WarningKind::RestingBones { name } => {
-                write!(
-                    f,
-                    "{} of the skeleton without values in the motion, such as `{name}`; left at rest",
-                    n("bone")
+                msg!(
+                    "{count, plural, one {# bone} other {# bones}} of the skeleton without values in the motion, such as `{name}`; left at rest"
                 )
             }
             WarningKind::UnknownInHierarchy { name } => {
-                write!(
-                    f,
-                    "{} in the hierarchy{place} without bone, such as `{name}`; left out",
-                    n("name")
+                msg!(
+                    "{count, plural, one {# name} other {# names}} in the hierarchy{place} without bone, such as `{name}`; left out"
                 )
             }
             WarningKind::LooseBones { name } => {
-                write!(f, "{}{place} not below the root, such as `{name}`; left out", n("bone"))
+                msg!(
+                    "{count, plural, one {# bone} other {# bones}}{place} not below the root, such as `{name}`; left out"
+                )
             }
-            WarningKind::OffGround { metres } => write!(
-                f,
-                "the feet never come nearer than {:.0} cm {} the ground; the skeleton may be that of another person",
-                metres.abs() * 100.0,
-                if *metres > 0.0 { "above" } else { "below" }
+            WarningKind::OffGround { metres } => msg!(
+                "the feet never come nearer than {cm:.0} cm {side} the ground; the skeleton may be that of another person",
+                cm = metres.abs() * 100.0,
+                side = if *metres > 0.0 { "above" } else { "below" }
             ),
             WarningKind::Textures => {
-                write!(f, "{} left out; the plain colour was taken", n("texture"))
+                msg!(
+                    "{count, plural, one {# texture} other {# textures}} left out; the plain colour was taken"
+                )
             }
             WarningKind::MorphTargets => {
-                write!(f, "{} with morph targets; they keep their shape", n("surface"))
+                msg!(
+                    "{count, plural, one {# surface} other {# surfaces}} with morph targets; they keep their shape"
+                )
             }
             WarningKind::BrokenMesh { why } => {
-                write!(f, "{} left out; the first has {why}", n("surface"))
+                msg!(
+                    "{count, plural, one {# surface} other {# surfaces}} left out; the first has {why}"
+                )
             }
             WarningKind::UncertainUp { up } => {
                 let axis = match up {
                     UpAxis::Y => "Y",
                     UpAxis::Z => "Z",
                 };
-                write!(f, "the motion does not tell which axis points up; {axis} is taken")
+                msg!("the motion does not tell which axis points up; {axis} is taken")
             }
             WarningKind::UnlikelyHeight { metres } => {
-                write!(f, "the body is {} tall: its unit may be another one", length(*metres))
-            }
-            WarningKind::WildRows { metres, evened: false } => {
-                write!(
-                    f,
-                    "{} with a root that is {} away for that row alone",
-                    n("row"),
-                    length(*metres)
+                msg!(
+                    "the body is {metres} tall: its unit may be another one",
+                    metres = length(*metres)
                 )
             }
-            WarningKind::WildRows { metres, evened: true } => write!(
-                f,
-                "{} with a root that is {} away for that row alone; put between its neighbours",
-                n("row"),
-                length(*metres)
+            WarningKind::WildRows { metres, evened: false } => {
+                msg!(
+                    "{count, plural, one {# row} other {# rows}} with a root that is {metres} away for that row alone",
+                    metres = length(*metres)
+                )
+            }
+            WarningKind::WildRows { metres, evened: true } => msg!(
+                "{count, plural, one {# row} other {# rows}} with a root that is {metres} away for that row alone; put between its neighbours",
+                metres = length(*metres)
             ),
             WarningKind::RootJumps { metres } => {
-                write!(
-                    f,
-                    "{} of the root from one frame to the next, up to {}",
-                    n("jump"),
-                    length(*metres)
+                msg!(
+                    "{count, plural, one {# jump} other {# jumps}} of the root from one frame to the next, up to {metres}",
+                    metres = length(*metres)
                 )
             }
             WarningKind::FarAway { metres } => {
-                write!(f, "the root goes {} away from the origin", length(*metres))
+                msg!("the root goes {metres} away from the origin", metres = length(*metres))
             }
             WarningKind::UnknownUnit => {
-                write!(f, "the size of the skeleton fits no unit of length; centimetres are taken")
+                msg!("the size of the skeleton fits no unit of length; centimetres are taken")
             }
         }
     }

@@ -9,6 +9,7 @@ use segue_motion::metrics::{Metric, MotionTrace, ResultMetrics};
 use std::sync::Arc;
 
 mod blend;
+mod error;
 mod feet;
 mod gauge;
 mod graph;
@@ -28,6 +29,7 @@ mod speed;
 mod view;
 
 pub use blend::mistake_shows;
+pub use error::LabError;
 pub(super) use gauge::Gauge;
 pub use graph::{
     At, Built, Cast, Distances, Field, Passed, Trace, Walk, WalkGhost, check_graph_clips, graph_of,

@@ -93,6 +93,7 @@ pub use compare::{Compare, MAX_PANES};
 pub use document::{
     ClipInfo, Companion, Job, Lesson, LessonPage, Loaded, Made, NoResult, Pane, Session, Shown,
 };
+pub use labs::LabError;
 pub use labs::{
     At, Built, Cast, Distances, Field, Passed, Trace, Walk, WalkGhost, check_graph_clips, graph_of,
     write_jump, write_path, write_visits,
@@ -110,7 +111,7 @@ pub use labs::{MOST_ALSO, weight_curve, write_also, write_pairs};
 pub use library::{Entry, Library, Origin, SourceFile, file_id, split_reference};
 pub use memory::{MemoryUse, PageMemory};
 pub use motion::{FeetReading, Motion, curve_kind, frame_at, joint_of, word_of_joint};
-pub use notice::{Level, Notice, Notices, sentence};
+pub use notice::{Level, Notice, Notices};
 pub use numbers::{NumberRow, NumberTable, digits};
 pub use params::{
     Choice, Group, Key, Kind, PARAMS, Param, Params, Value, ValueError, decimals_of, format_number,

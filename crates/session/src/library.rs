@@ -7,6 +7,7 @@ use super::samples::Sample;
 use segue_formats::{FileKind, ImportOptions};
 use segue_motion::skeleton::Roles;
 use segue_motion::skin::{Character, SkinnedMesh};
+use segue_text::Message;
 use std::sync::Arc;
 
 /// Where a clip comes from.
@@ -67,11 +68,11 @@ pub struct Entry {
     pub mesh: Option<Arc<SkinnedMesh>>,
     /// Why there is no motion though the file is known: reading it failed or was stopped. It is
     /// read again when that is asked for.
-    pub unread: Option<String>,
+    pub unread: Option<Message>,
     /// How its file was read; `None` for what comes from no file, and until it is read.
     pub about: Option<About>,
     /// What was odd in the file, one sentence each.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Message>,
     /// The roles, where they were corrected by hand.
     pub roles_by_hand: Option<Roles>,
 }

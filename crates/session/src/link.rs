@@ -3,6 +3,7 @@
 use super::outside::short;
 use super::params::{Key, Params, Value};
 use percent_encoding::{AsciiSet, CONTROLS, utf8_percent_encode};
+use segue_text::{Message, ToMessage, msg};
 
 /// What a query string must escape. Colons, commas, slashes and parentheses stay readable; every
 /// browser takes them as they are.
@@ -24,7 +25,7 @@ pub struct Link {
     /// The values that were understood, in the order of the link.
     pub values: Vec<(Key, Value)>,
     /// One sentence for each key that is unknown and each value that does not fit.
-    pub problems: Vec<String>,
+    pub problems: Vec<Message>,
 }
 
 /// Keys that belong to the page's loader, not to the state.
@@ -38,13 +39,12 @@ pub fn read(query: &str) -> Link {
         match Key::from_name(&name) {
             Some(key) => match key.param().parse(&text) {
                 Ok(value) => link.values.push((key, value)),
-                Err(error) => link.problems.push(error.to_string()),
+                Err(error) => link.problems.push(error.to_message()),
             },
             None if LOADER_KEYS.contains(&name.as_ref()) => {}
-            None => {
-                link.problems
-                    .push(format!("`{}` is not a parameter of this version", short(&name)));
-            }
+            None => link
+                .problems
+                .push(msg!("`{name}` is not a parameter of this version", name = short(&name))),
         }
     }
     link
@@ -116,7 +116,7 @@ mod tests {
             }
             params.set(Key::Play, Value::Switch(false)).unwrap();
             let link = read(&write(&params));
-            prop_assert_eq!(&link.problems, &Vec::<String>::new());
+            prop_assert_eq!(&link.problems, &Vec::<Message>::new());
             let mut back = Params::default();
             for (key, value) in link.values {
                 back.set(key, value).unwrap();
@@ -150,8 +150,9 @@ mod tests {
             link.values,
             [(Key::BlendWindow, Value::Number(24.0)), (Key::Align, Value::Switch(false))]
         );
+        let problems: Vec<String> = link.problems.iter().map(ToString::to_string).collect();
         assert_eq!(
-            link.problems,
+            problems,
             [
                 "`colour` is not a parameter of this version",
                 "weight_law: found `steep`, expected smooth, linear, smoother"

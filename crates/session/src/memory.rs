@@ -5,6 +5,7 @@ use super::motion::Motion;
 use super::reading::Content;
 use glam::{Quat, Vec3};
 use segue_motion::clip::Clip;
+use segue_text::{Message, msg};
 use std::cmp::Reverse;
 
 /// What a page says of its memory, bytes. The memory of a WebAssembly grows and never shrinks: what
@@ -150,7 +151,7 @@ pub(super) fn refusal(
     needed: u64,
     memory: MemoryUse,
     library: &Library,
-) -> String {
+) -> Message {
     let mut large: Vec<(&str, u64)> = library
         .entries()
         .iter()
@@ -158,27 +159,27 @@ pub(super) fn refusal(
         .filter(|(_, bytes)| *bytes >= WORTH_REMOVING)
         .collect();
     large.sort_by_key(|(_, bytes)| Reverse(*bytes));
-    let named: Vec<String> = large
+    let named: Vec<Message> = large
         .iter()
         .take(MOST_NAMED)
         .map(|(name, bytes)| {
-            let size = format!("{} MB", megabytes(*bytes));
-            format!("{name} ({size})")
+            msg!("{name} ({mb} MB)", name = (*name).to_owned(), mb = megabytes(*bytes))
         })
         .collect();
     let advice = if named.is_empty() {
-        "Cut the motion into parts.".to_owned()
+        Message::word("Cut the motion into parts.")
     } else {
-        format!("Remove clips that you do not need; the largest are {}.", named.join(", "))
+        msg!("Remove clips that you do not need; the largest are {named}.")
     };
-    let told = format!(
-        "There is no memory for {name} ({} MB): its clips need {} MB, and {} of {} MB are left.",
-        megabytes(size),
-        megabytes(needed),
-        memory.left() / 1_000_000,
-        megabytes(memory.limit),
+    let told = msg!(
+        "There is no memory for {name} ({size} MB): its clips need {needed} MB, and {left} of {limit} MB are left.",
+        name = name.to_owned(),
+        size = megabytes(size),
+        needed = megabytes(needed),
+        left = memory.left() / 1_000_000,
+        limit = megabytes(memory.limit),
     );
-    format!("{told} {advice}")
+    Message::joined(vec![told, advice], " ")
 }
 
 #[cfg(test)]
@@ -260,7 +261,7 @@ mod tests {
         let memory = MemoryUse { used: 2_900_000_000, limit: 3_000_000_000 };
         let none = refusal("long.bvh", 480_000_000, 1_250_000_001, memory, &Library::default());
         assert_eq!(
-            none,
+            none.to_string(),
             "There is no memory for long.bvh (480 MB): its clips need 1251 MB, and 100 of 3000 MB are left. Cut the motion into parts."
         );
         // Five files, the smallest of which would not help.
@@ -274,7 +275,7 @@ mod tests {
         assert_eq!(library_bytes(&library), 80_000_001);
         let named = refusal("long.bvh", 1, 1, memory, &library);
         assert!(
-            named.ends_with("Remove clips that you do not need; the largest are a (30 MB), b (20 MB), c (11 MB)."),
+            named.to_string().ends_with("Remove clips that you do not need; the largest are a (30 MB), b (20 MB), c (11 MB)."),
             "{named}"
         );
     }

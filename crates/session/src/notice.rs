@@ -1,15 +1,7 @@
 //! What Segue has to say, until it is read.
 
 use super::outside::short;
-
-/// A note, `the rest pose was taken`, as a sentence: `The rest pose was taken.`
-#[must_use]
-pub fn sentence(note: &str) -> String {
-    let mut letters = note.chars();
-    let first = letters.next().map_or_else(String::new, |first| first.to_uppercase().to_string());
-    let stop = if note.ends_with('.') || note.is_empty() { "" } else { "." };
-    format!("{first}{}{stop}", letters.as_str())
-}
+use segue_text::{Message, msg};
 
 /// How much it matters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,7 +22,7 @@ pub struct Notice {
     /// How much it matters.
     pub level: Level,
     /// What happened and what to do, in a sentence or two.
-    pub text: String,
+    pub text: Message,
     /// What it is about, in a word: a file, a key. Where a row has no room for more, this stands
     /// for it.
     pub about: String,
@@ -65,19 +57,19 @@ const MOST_NAMED: usize = 24;
 
 impl Notices {
     /// Says something. The same text again moves to the end instead of standing there twice.
-    pub fn say(&mut self, level: Level, text: impl Into<String>) {
+    pub fn say(&mut self, level: Level, text: impl Into<Message>) {
         let text = text.into();
-        let about = short(head(&text));
+        let about = text.subject().map_or_else(|| text.to_string(), str::to_owned);
         self.put(level, text, &about, None);
     }
 
     /// Says something of a file or key.
-    pub fn say_of(&mut self, level: Level, about: &str, text: impl Into<String>) {
+    pub fn say_of(&mut self, level: Level, about: &str, text: impl Into<Message>) {
         self.put(level, text.into(), about, None);
     }
 
     /// Warns of clips, by their ids, that can be read better.
-    pub fn offer(&mut self, text: impl Into<String>, clips: Vec<String>) {
+    pub fn offer(&mut self, text: impl Into<Message>, clips: Vec<String>) {
         let about = clips.first().cloned().unwrap_or_default();
         self.put(Level::Warning, text.into(), &about, None);
         if let Some(notice) = self.list.last_mut() {
@@ -92,7 +84,7 @@ impl Notices {
     }
 
     /// Says that a clip is missing. It stays until [`Notices::keep_missing`] finds that it is not.
-    pub fn miss(&mut self, reference: &str, text: impl Into<String>) {
+    pub fn miss(&mut self, reference: &str, text: impl Into<Message>) {
         self.put(Level::Warning, text.into(), reference, Some(reference.to_owned()));
     }
 
@@ -106,7 +98,7 @@ impl Notices {
         self.list.retain(|notice| notice.awaits.as_deref().is_none_or(&is_missing));
     }
 
-    fn put(&mut self, level: Level, text: String, about: &str, awaits: Option<String>) {
+    fn put(&mut self, level: Level, text: Message, about: &str, awaits: Option<String>) {
         self.list.retain(|notice| notice.text != text);
         self.more.retain(|notice| notice.text != text);
         let notice = Notice {
@@ -158,12 +150,12 @@ impl Notices {
         let last = last.map(|at| self.list.remove(at));
         self.more.extend(last.filter(|notice| Some(notice.id) != self.sum));
         self.more.push(error);
-        let mut named: Vec<&str> =
-            self.more.iter().take(MOST_NAMED).map(|notice| notice.about.as_str()).collect();
+        let mut named: Vec<String> =
+            self.more.iter().take(MOST_NAMED).map(|notice| notice.about.clone()).collect();
         if self.more.len() > MOST_NAMED {
-            named.push("…");
+            named.push("…".to_owned());
         }
-        let text = format!("{} more did not work: {}.", self.more.len(), named.join(", "));
+        let text = msg!("{count} more did not work: {named}.", count = self.more.len(), named);
         self.sum = Some(self.next_id);
         self.list.push(Notice {
             id: self.next_id,
@@ -222,29 +214,12 @@ impl Notices {
     }
 }
 
-/// What an error is about, in most of them a file or a key: what stands before the first colon with
-/// a space behind it, without line and column, and before the words that it does not work. The
-/// colon of an address or of a host's port is none.
-fn head(text: &str) -> &str {
-    let end = [": ", " could", " cannot"].into_iter().filter_map(|sign| text.find(sign)).min();
-    let mut head = text.get(..end.unwrap_or(text.len())).unwrap_or(text).trim_end_matches('.');
-    if text.get(head.len()..).is_some_and(|rest| rest.starts_with(':')) {
-        while let Some((before, place)) = head.rsplit_once(':')
-            && !place.is_empty()
-            && place.bytes().all(|digit| digit.is_ascii_digit())
-        {
-            head = before;
-        }
-    }
-    head
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn texts(notices: &Notices) -> Vec<&str> {
-        notices.list().iter().map(|notice| notice.text.as_str()).collect()
+    fn texts(notices: &Notices) -> Vec<String> {
+        notices.list().iter().map(|notice| notice.text.to_string()).collect()
     }
 
     #[test]
@@ -275,35 +250,43 @@ mod tests {
     #[test]
     fn no_error_is_lost() {
         let mut notices = Notices::default();
-        let errors: Vec<String> =
-            (0..40).map(|n| format!("f{n}.bvh:1:2: found `x`, expected `y`")).collect();
+        let errors: Vec<Message> = (0..40)
+            .map(|n| msg!("{file}:1:2: found `x`, expected `y`", file = format!("f{n}.bvh")))
+            .collect();
         for (n, error) in errors.iter().enumerate() {
             notices.say(Level::Error, error.clone());
             notices.say(Level::Info, format!("info {n}"));
             if n == 5 {
                 assert_eq!(
                     texts(&notices)[..3],
-                    errors[..3],
+                    [0, 1, 2].map(|n| errors[n].to_string()),
                     "the first ones stand there as they are"
                 );
-                assert!(texts(&notices).contains(&"3 more did not work: f3.bvh, f4.bvh, f5.bvh."));
+                assert!(
+                    texts(&notices)
+                        .contains(&"3 more did not work: f3.bvh, f4.bvh, f5.bvh.".to_owned())
+                );
             }
         }
         assert!(notices.list().len() <= MOST);
-        let sum = notices.list().iter().find(|notice| notice.text.starts_with("37 more")).unwrap();
-        assert!(sum.text.ends_with("f26.bvh, …."), "{}", sum.text);
+        let sum = notices
+            .list()
+            .iter()
+            .find(|notice| notice.text.to_string().starts_with("37 more"))
+            .unwrap();
+        assert!(sum.text.to_string().ends_with("f26.bvh, …."), "{}", sum.text);
         // Listeners hear of each, once.
-        let heard: Vec<&str> =
-            notices.errors_since(0).iter().map(|notice| notice.text.as_str()).collect();
-        assert_eq!(heard, errors);
+        let heard: Vec<&Message> =
+            notices.errors_since(0).iter().map(|notice| &notice.text).collect();
+        assert_eq!(heard, errors.iter().collect::<Vec<_>>());
         let last = notices.errors_since(0).last().unwrap().id;
         assert_eq!(notices.errors_since(last + 1).len(), 0);
         let id = sum.id;
         notices.dismiss(id);
-        notices.say(Level::Error, "x.bvh could not be read: gone.");
+        notices.say_of(Level::Error, "x.bvh", "x.bvh could not be read: gone.");
         assert_eq!(notices.errors_since(0).len(), 4);
-        notices.say(Level::Error, "y.bvh: gone.");
-        assert!(texts(&notices).contains(&"2 more did not work: x.bvh, y.bvh."));
+        notices.say_of(Level::Error, "y.bvh", "y.bvh: gone.");
+        assert!(texts(&notices).contains(&"2 more did not work: x.bvh, y.bvh.".to_owned()));
     }
 
     #[test]
@@ -317,18 +300,13 @@ mod tests {
             "walk.bvh",
             "There is no file at https://a.org/walk.bvh (answer 404).",
         );
-        notices.say(
-            Level::Error,
-            "127.0.0.1:8000 cannot be reached. Check the address: http://127.0.0.1:8000/x",
-        );
-        notices.say(Level::Error, "a/b.bvh:12:3: found `x`, expected a number");
-        notices.say(Level::Error, format!("{}: gone.", "y".repeat(500)));
+        let file = "a/b.bvh".to_owned();
+        notices.say(Level::Error, msg!("{file}:12:3: found `x`, expected a number"));
+        let inner = msg!("`{file}`: gone", file = "y".repeat(500));
+        notices.say(Level::Error, msg!("No result: {inner}."));
         let sum = texts(&notices).pop().unwrap().to_owned();
         let long = short(&"y".repeat(500));
-        assert_eq!(
-            sum,
-            format!("5 more did not work: 4, walk.bvh, 127.0.0.1:8000, a/b.bvh, {long}.")
-        );
+        assert_eq!(sum, format!("4 more did not work: 4, walk.bvh, a/b.bvh, {long}."));
     }
 
     #[test]
@@ -350,7 +328,8 @@ mod tests {
         notices.miss("run~5678", "drop run");
         notices.say(Level::Warning, "odd");
         notices.keep_missing(|reference| reference == "run~5678");
-        let left: Vec<&str> = notices.list().iter().map(|notice| notice.text.as_str()).collect();
+        let left: Vec<String> =
+            notices.list().iter().map(|notice| notice.text.to_string()).collect();
         assert_eq!(left, ["drop run", "odd"]);
     }
 

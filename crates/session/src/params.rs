@@ -10,6 +10,7 @@ use super::choices::{
 };
 use super::compare::Compare;
 use super::outside::short;
+use segue_text::{Message, msg};
 use serde_json::Value as Json;
 use std::fmt;
 
@@ -410,7 +411,10 @@ impl Key {
 #[derive(Clone, Debug, PartialEq, thiserror::Error, segue_text::ToMessage)]
 pub enum ValueError {
     /// Not a number.
-    #[error("{key}: found `{}`, expected a number{}{}", short(.found), of_unit(.unit), if *.auto { " or `auto`" } else { "" })]
+    #[error(
+        "{key}: found `{found}`, expected a number{unit}{auto}",
+        found = short(.found), unit = of_unit(.unit), auto = or_auto(*.auto)
+    )]
     NotANumber {
         /// The parameter.
         key: &'static str,
@@ -422,7 +426,7 @@ pub enum ValueError {
         auto: bool,
     },
     /// A number outside of the range.
-    #[error("{key}: found {found}, expected {min} to {max}{}", unit_suffix(.unit))]
+    #[error("{key}: found {found}, expected {min} to {max}{unit}", unit = unit_suffix(.unit))]
     OutOfRange {
         /// The parameter.
         key: &'static str,
@@ -436,7 +440,7 @@ pub enum ValueError {
         unit: &'static str,
     },
     /// A word that is none of the choices.
-    #[error("{key}: found `{}`, expected {expected}", short(.found))]
+    #[error("{key}: found `{found}`, expected {expected}", found = short(.found))]
     NotAChoice {
         /// The parameter.
         key: &'static str,
@@ -446,7 +450,7 @@ pub enum ValueError {
         expected: String,
     },
     /// Not a comparison.
-    #[error("compare: found `{}`, expected {expected}", short(.found))]
+    #[error("compare: found `{found}`, expected {expected}", found = short(.found))]
     NotAComparison {
         /// What was there.
         found: String,
@@ -455,12 +459,16 @@ pub enum ValueError {
     },
 }
 
-fn of_unit(unit: &str) -> String {
-    if unit.is_empty() { String::new() } else { format!(" of {unit}") }
+fn of_unit(unit: &'static str) -> Message {
+    if unit.is_empty() { Message::default() } else { msg!(" of {unit}") }
 }
 
-fn unit_suffix(unit: &str) -> String {
-    if unit.is_empty() { String::new() } else { format!(" {unit}") }
+fn or_auto(auto: bool) -> Message {
+    if auto { Message::word(" or `auto`") } else { Message::default() }
+}
+
+fn unit_suffix(unit: &'static str) -> Message {
+    if unit.is_empty() { Message::default() } else { msg!(" {unit}") }
 }
 
 impl Param {

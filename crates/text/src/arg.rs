@@ -2,6 +2,7 @@
 
 use crate::{Message, ToMessage};
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// An argument of a [`Message`].
@@ -15,10 +16,8 @@ pub enum Arg {
     Number(f64),
     /// What is translated in turn.
     Message(Message),
-    /// Several, with commas between them.
-    List(Vec<Arg>),
-    /// Several sentences, behind each other.
-    Sentences(Vec<Arg>),
+    /// Several, with a comma, a semicolon or a space between them.
+    Joined(Vec<Arg>, Cow<'static, str>),
     /// A note, `the rest pose was taken`, as a sentence.
     Note(Message),
 }
@@ -86,7 +85,7 @@ impl ToArg for Message {
 
 impl<T: ToArg> ToArg for Vec<T> {
     fn to_arg(&self) -> Arg {
-        Arg::List(self.iter().map(ToArg::to_arg).collect())
+        Arg::Joined(self.iter().map(ToArg::to_arg).collect(), Cow::Borrowed(", "))
     }
 }
 

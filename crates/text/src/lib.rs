@@ -105,11 +105,22 @@ impl Message {
         Self::new("{text}", vec![(Cow::Borrowed("text"), Arg::Text(text.into()))])
     }
 
-    /// Returns several messages behind each other, as one.
+    /// Returns several messages as one, with a comma, a semicolon or a space between them.
     #[must_use]
-    pub fn sentences(parts: Vec<Self>) -> Self {
+    pub fn joined(parts: Vec<Self>, between: &'static str) -> Self {
         let parts = parts.into_iter().map(Arg::Message).collect();
-        Self::new("{sentences}", vec![(Cow::Borrowed("sentences"), Arg::Sentences(parts))])
+        let joined = Arg::Joined(parts, Cow::Borrowed(between));
+        Self::new("{parts}", vec![(Cow::Borrowed("parts"), joined)])
+    }
+
+    /// Returns the first data in the message, such as the name of the file that it is about.
+    #[must_use]
+    pub fn subject(&self) -> Option<&str> {
+        self.args.iter().find_map(|(_, arg)| match arg {
+            Arg::Text(text) => Some(text.as_str()),
+            Arg::Message(message) | Arg::Note(message) => message.subject(),
+            Arg::Count(_) | Arg::Number(_) | Arg::Joined(..) => None,
+        })
     }
 
     /// Returns a note, `the rest pose was taken`, as a sentence: `The rest pose was taken.`
@@ -141,6 +152,12 @@ impl From<&'static str> for Message {
     }
 }
 
+impl From<String> for Message {
+    fn from(data: String) -> Self {
+        Self::data(data)
+    }
+}
+
 impl fmt::Display for Message {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         formatter.write_str(&table::english(self))
@@ -151,6 +168,11 @@ impl fmt::Display for Message {
 pub trait ToMessage {
     /// Returns what is told.
     fn to_message(&self) -> Message;
+
+    /// Returns it as a sentence of its own.
+    fn to_sentence(&self) -> Message {
+        self.to_message().sentence()
+    }
 }
 
 impl ToMessage for Message {
@@ -238,7 +260,7 @@ mod tests {
 
     #[test]
     fn sentences_stand_behind_each_other_by_the_rule_of_the_language() {
-        let message = Message::sentences(vec!["It is so.".into(), "It is not.".into()]);
+        let message = Message::joined(vec!["It is so.".into(), "It is not.".into()], " ");
         assert_eq!(message.to_string(), "It is so. It is not.");
         let table = Table::new([("It is so.", "是。"), ("It is not.", "不是。"), (" ", "")]);
         assert_eq!(table.write(&message), "是。不是。");

@@ -21,8 +21,8 @@ pub enum TemplateError {
 
 impl Table {
     /// Returns a table of rows: the English template, and that of the language. The rows `", "`,
-    /// `" "` and `"."` are what stands between the entries of a list, between sentences, and at the
-    /// end of one.
+    /// `"; "`, `" "` and `"."` are what stands between the entries of a list, between clauses,
+    /// between sentences, and at the end of one.
     #[must_use]
     pub fn new<K: Into<String>, V: Into<String>>(rows: impl IntoIterator<Item = (K, V)>) -> Self {
         let rows = rows.into_iter().map(|(english, own)| (english.into(), own.into()));
@@ -108,10 +108,6 @@ impl Writer<'_> {
     }
 
     fn arg(self, arg: &Arg, digits: Digits) -> String {
-        let joined = |parts: &[Arg], between: &str| {
-            let parts: Vec<String> = parts.iter().map(|part| self.arg(part, digits)).collect();
-            parts.join(self.row(between))
-        };
         match arg {
             Arg::Text(text) => text.clone(),
             Arg::Count(count) => format!("{count:0width$}", width = digits.least),
@@ -120,8 +116,10 @@ impl Writer<'_> {
                 None => format!("{number:0width$}", width = digits.least),
             },
             Arg::Message(message) => self.message(message),
-            Arg::List(parts) => joined(parts, ", "),
-            Arg::Sentences(parts) => joined(parts, " "),
+            Arg::Joined(parts, between) => {
+                let parts: Vec<String> = parts.iter().map(|part| self.arg(part, digits)).collect();
+                parts.join(self.row(between))
+            }
             Arg::Note(note) => sentence(self.message(note), self.row(".")),
         }
     }

@@ -8,6 +8,7 @@ use super::skeleton::AcclaimSkeleton;
 use crate::error::Fault;
 use crate::text::{name, quoted};
 use crate::warning::{Tally, WarningKind};
+use segue_text::msg;
 use std::collections::HashSet;
 
 /// Bytes between two reports of progress.
@@ -318,7 +319,7 @@ impl Frames<'_, '_> {
             return Err(Fault::new(
                 in_line,
                 quoted(junk),
-                format!("a number for {}", quoted(joint_name().as_bytes())),
+                msg!("a number for {name}", name = quoted(joint_name().as_bytes())),
             ));
         }
         if usage == Use::Unnamed {
@@ -335,8 +336,12 @@ impl Frames<'_, '_> {
         let dofs: Vec<&str> = motor
             .map(|motor| motor.dofs.iter().map(|dof| dof.name()).collect())
             .unwrap_or_default();
-        let found = format!("{} values for {}", run.count, quoted(joint_name().as_bytes()));
-        Err(Fault::new(at, found, format!("{expected}: {}", dofs.join(" ")))
+        let found = msg!(
+            "{count} values for {name}",
+            count = run.count,
+            name = quoted(joint_name().as_bytes())
+        );
+        Err(Fault::new(at, found, msg!("{expected}: {dofs}", dofs = dofs.join(" ")))
             .with_hint("complete the line or delete it, then drop the file again"))
     }
 
@@ -438,8 +443,10 @@ impl Frames<'_, '_> {
     /// values are values.
     fn check(&mut self) -> Result<(), Fault> {
         if self.used == 0 {
-            let expected =
-                format!("a motion of the skeleton {}", quoted(self.skeleton.name().as_bytes()));
+            let expected = msg!(
+                "a motion of the skeleton {name}",
+                name = quoted(self.skeleton.name().as_bytes())
+            );
             let fault = Fault::new(
                 0,
                 "no bone with the names and degrees of freedom of the skeleton",
@@ -448,7 +455,11 @@ impl Frames<'_, '_> {
             return Err(fault.with_hint("drop the ASF file that belongs to it"));
         }
         if self.not_finite * 100 > self.values {
-            let found = format!("no number in {} of {} values", self.not_finite, self.values);
+            let found = msg!(
+                "no number in {count} of {values} values",
+                count = self.not_finite,
+                values = self.values
+            );
             let fault = Fault::new(self.first_not_finite, found, "at most 1 % of them");
             return Err(
                 fault.with_hint("export the motion again: too much of it is lost to be filled in")

@@ -6,6 +6,7 @@ use crate::bvh::{FIRST_ROWS, MEMORY_FLOOR, MEMORY_PER_BYTE};
 use crate::error::Fault;
 use crate::raw::RawMotion;
 use glam::{DQuat, DVec3, Quat, Vec3};
+use segue_text::msg;
 
 /// Collects rows as rotations, in file units and file axes.
 pub(super) struct Converter<'s> {
@@ -65,9 +66,9 @@ impl<'s> Converter<'s> {
     pub(super) fn row(&mut self, values: &[f64]) -> Result<(), Fault> {
         self.bytes += self.bytes_per_row;
         if self.bytes > self.limit {
-            let found = format!(
-                "a motion of more than {} MB, most of it in bones without values",
-                self.limit >> 20
+            let found = msg!(
+                "a motion of more than {mb} MB, most of it in bones without values",
+                mb = self.limit >> 20
             );
             return Err(Fault::new(0, found, "a motion that fits into memory")
                 .with_hint("cut the motion into parts"));

@@ -2,6 +2,7 @@ use crate::bvh::{Scan, scan};
 use crate::error::Fault;
 use crate::text::is_space;
 use crate::warning::{Tally, WarningKind};
+use segue_text::Message;
 
 /// White space of these files: commas and parentheses are some.
 #[inline]
@@ -172,7 +173,7 @@ impl<'a> Lexer<'a> {
     }
 
     /// An error at the next token.
-    pub(super) fn unexpected(&mut self, expected: impl Into<String>) -> Fault {
+    pub(super) fn unexpected(&mut self, expected: impl Into<Message>) -> Fault {
         let token = self.peek();
         Fault::at_token(self.at, token, expected)
     }
@@ -188,7 +189,7 @@ mod tests {
         for expected in ["limits", "-1.5", "inf", "2", "3", ":end", ""] {
             assert_eq!(lexer.take(), expected.as_bytes());
         }
-        assert_eq!(lexer.unexpected("x").found, "the end of the file");
+        assert_eq!(lexer.unexpected("x").found.to_string(), "the end of the file");
     }
 
     #[test]

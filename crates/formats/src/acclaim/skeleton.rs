@@ -7,6 +7,7 @@ use crate::warning::{ImportWarning, Tally, WarningKind};
 use crate::{ImportOptions, check_size, stem};
 use glam::{DMat3, DVec3, Vec3};
 use segue_motion::skeleton::{Channel, Joint};
+use segue_text::msg;
 use std::collections::HashMap;
 
 /// Metres per unit of a file whose `:units` have a `length` of 1: inches, as the CMU database
@@ -185,7 +186,7 @@ fn build(asf: &Asf<'_>, tally: &mut Tally) -> Result<AcclaimSkeleton, Fault> {
     if let Some(bone) = tree.circle().and_then(bone) {
         return Err(Fault::new(
             bone.at,
-            format!("{} below itself", quoted(bone.name)),
+            msg!("{name} below itself", name = quoted(bone.name)),
             "a hierarchy without circles",
         ));
     }
@@ -198,7 +199,7 @@ fn build(asf: &Asf<'_>, tally: &mut Tally) -> Result<AcclaimSkeleton, Fault> {
     for &(place, depth) in &order {
         let Some(bone) = bone(place) else { continue };
         if depth > MAX_DEPTH {
-            let found = format!("a bone below more than {MAX_DEPTH} others");
+            let found = msg!("a bone below more than {MAX_DEPTH} others");
             return Err(Fault::new(bone.at, found, "a skeleton"));
         }
         let (name, is_utf8) = name(bone.name);

@@ -7,6 +7,7 @@ use crate::error::Fault;
 use crate::raw::RawMotion;
 use glam::{Quat, Vec3};
 use segue_motion::skeleton::{Channel, Joint};
+use segue_text::msg;
 use std::ops::Range;
 
 /// Bytes of motion in memory per byte of file, at most. A joint with a single channel of single
@@ -167,9 +168,9 @@ impl Converter {
 impl RowSink for Converter {
     fn row(&mut self, values: &[f64], end: usize) -> Result<(), Fault> {
         if (self.rows as u64 + 1).saturating_mul(self.bytes_per_row) > self.limit {
-            let found = format!(
-                "a motion of more than {} MB, most of it in joints without channels",
-                self.limit >> 20
+            let found = msg!(
+                "a motion of more than {mb} MB, most of it in joints without channels",
+                mb = self.limit >> 20
             );
             return Err(Fault::new(0, found, "a motion that fits into memory")
                 .with_hint("export fewer frames or fewer joints"));
@@ -218,6 +219,6 @@ mod tests {
         let refused = (0..1000).find_map(|row| converter.row(&[0.0], 2 * row).err());
         let held = converter.characters[0].raw.rotations.capacity() * size_of::<Quat>();
         assert!((held as u64) < converter.limit + converter.limit / 4, "{held}");
-        assert!(refused.is_some_and(|fault| fault.found.contains("without channels")));
+        assert!(refused.is_some_and(|fault| fault.found.to_string().contains("without channels")));
     }
 }

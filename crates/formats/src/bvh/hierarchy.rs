@@ -3,6 +3,7 @@ use crate::error::Fault;
 use crate::text::{name, quoted, short};
 use crate::warning::WarningKind;
 use segue_motion::skeleton::Channel;
+use segue_text::msg;
 
 /// Joints nested deeper than this are refused: no skeleton is, and what comes after may recurse.
 pub(crate) const MAX_DEPTH: usize = 4096;
@@ -129,10 +130,8 @@ pub(super) fn hierarchy(lexer: &mut Lexer<'_>) -> Result<Hierarchy, Stop> {
             Some(scope) if !scope.is_end_site && (is("JOINT") || is("END") || is("ENDSITE")) => {
                 let parent = scope.joint;
                 if is("JOINT") && open.len() >= MAX_DEPTH {
-                    let found = format!("joints nested more than {MAX_DEPTH} deep");
-                    return Err(
-                        Fault::new(start, found, format!("at most {MAX_DEPTH} levels")).into()
-                    );
+                    let found = msg!("joints nested more than {MAX_DEPTH} deep");
+                    return Err(Fault::new(start, found, msg!("at most {MAX_DEPTH} levels")).into());
                 }
                 lexer.at += token.len();
                 open.push(if is("JOINT") {
@@ -150,9 +149,9 @@ pub(super) fn hierarchy(lexer: &mut Lexer<'_>) -> Result<Hierarchy, Stop> {
                     .get(scope.joint)
                     .map_or_else(String::new, |j| quoted(j.name.as_bytes()));
                 let expected = match (token.is_empty() || end_of_joints, scope.is_end_site) {
-                    (true, _) => format!("`}}` for joint {joint}"),
-                    (_, true) => "`OFFSET` or `}`".to_owned(),
-                    _ => "`OFFSET`, `CHANNELS`, `JOINT`, `End Site` or `}`".to_owned(),
+                    (true, _) => msg!("`}}` for joint {joint}"),
+                    (_, true) => "`OFFSET` or `}`".into(),
+                    _ => "`OFFSET`, `CHANNELS`, `JOINT`, `End Site` or `}`".into(),
                 };
                 return Err(lexer.unexpected(expected).into());
             }
@@ -269,7 +268,7 @@ mod tests {
 
     fn fault(text: &str) -> (usize, String, String) {
         match parse(text) {
-            Err(Stop::Fault(fault)) => (fault.at, fault.found, fault.expected),
+            Err(Stop::Fault(fault)) => (fault.at, fault.found.to_string(), fault.expected.to_string()),
             other => panic!("{other:?}"),
         }
     }

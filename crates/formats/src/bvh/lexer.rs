@@ -2,6 +2,7 @@ use super::number::{Scan, scan, token_end};
 use crate::error::Fault;
 use crate::text::is_space;
 use crate::warning::{Tally, WarningKind};
+use segue_text::Message;
 
 /// Why reading stopped before the end.
 #[derive(Clone, Debug, PartialEq)]
@@ -118,7 +119,7 @@ impl<'a> Lexer<'a> {
     }
 
     /// An error at the next token.
-    pub(super) fn unexpected(&mut self, expected: impl Into<String>) -> Fault {
+    pub(super) fn unexpected(&mut self, expected: impl Into<Message>) -> Fault {
         let token = self.peek();
         Fault::at_token(self.at, token, expected)
     }
@@ -144,6 +145,6 @@ mod tests {
         lexer.at = 10;
         assert_eq!((lexer.rest_of_line(), lexer.at), (b"Hips".as_slice(), 15));
         lexer.at = 24;
-        assert_eq!(lexer.unexpected("y").found, "the end of the file");
+        assert_eq!(lexer.unexpected("y").found.to_string(), "the end of the file");
     }
 }

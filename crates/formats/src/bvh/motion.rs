@@ -6,6 +6,7 @@ use super::number::{Scan, scan};
 use crate::error::Fault;
 use crate::text::is_space;
 use crate::warning::WarningKind;
+use segue_text::msg;
 
 /// Bytes between two reports of progress.
 const PROGRESS_STEP: usize = 1 << 18;
@@ -116,11 +117,11 @@ impl Rows<'_, '_> {
                 return Ok(count);
             }
             let found = if column >= width {
-                format!("a row of more than {width} numbers")
+                msg!("a row of more than {width} numbers")
             } else {
-                format!("a row of {column} numbers")
+                msg!("a row of {column} numbers")
             };
-            return Err(Fault::new(start, found, format!("{width} numbers, one for each channel"))
+            return Err(Fault::new(start, found, msg!("{width} numbers, one for each channel"))
                 .with_hint("complete the row or delete it, then drop the file again")
                 .into());
         }
@@ -284,7 +285,11 @@ impl Rows<'_, '_> {
     /// More than one in a hundred values that are no numbers: the rest is not to be trusted either.
     fn check_share_of_bad_values(&self) -> Result<(), Stop> {
         if self.not_finite * 100 > self.values {
-            let found = format!("no number in {} of {} values", self.not_finite, self.values);
+            let found = msg!(
+                "no number in {count} of {values} values",
+                count = self.not_finite,
+                values = self.values
+            );
             let fault = Fault::new(self.first_not_finite, found, "at most 1 % of them");
             return Err(fault
                 .with_hint("export the motion again: too much of it is lost to be filled in")
@@ -367,7 +372,7 @@ mod tests {
             (expected, vec!["the last row holds 1 number instead of 2 (line 3); dropped".into()])
         );
         assert_eq!((fault("1 2\n3\n5 6", 2).at, fault("1\n3 4", 2).at), (4, 0));
-        assert_eq!(fault("1 2\n3 4 5\n", 2).found, "a row of more than 2 numbers");
+        assert_eq!(fault("1 2\n3 4 5\n", 2).found.to_string(), "a row of more than 2 numbers");
     }
 
     #[test]
@@ -397,14 +402,14 @@ mod tests {
             ["2 values without a number (first: line 101); the last good value was held"]
         );
         let refused = fault("1 2\nnan 3\n", 2);
-        assert_eq!((refused.at, refused.found.as_str()), (4, "no number in 1 of 4 values"));
+        assert_eq!((refused.at, refused.found.to_string().as_str()), (4, "no number in 1 of 4 values"));
     }
 
     #[test]
     fn words_are_no_rows() {
-        assert_eq!(fault("1 2\nabc 4\n", 2).found, "`abc`");
-        assert_eq!(fault("1 2\n3 4\nHIERARCHY", 2).found, "`HIERARCHY`");
-        assert_eq!(fault("1", 0).expected, "the end of the file, since no joint has channels");
+        assert_eq!(fault("1 2\nabc 4\n", 2).found.to_string(), "`abc`");
+        assert_eq!(fault("1 2\n3 4\nHIERARCHY", 2).found.to_string(), "`HIERARCHY`");
+        assert_eq!(fault("1", 0).expected.to_string(), "the end of the file, since no joint has channels");
     }
 
     #[test]

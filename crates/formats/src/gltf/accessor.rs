@@ -8,6 +8,7 @@ use gltf::json::accessor::{
 };
 use gltf::json::buffer::View;
 use gltf::json::validation::{Checked, USize64};
+use segue_text::msg;
 
 const VALID: &str = "a valid glTF 2.0 file";
 
@@ -85,15 +86,21 @@ impl Document<'_> {
         let accessor = self
             .root
             .get(index)
-            .ok_or_else(|| self.error(format!("accessor {at}, which is not there"), VALID))?;
+            .ok_or_else(|| self.error(msg!("accessor {at}, which is not there"), VALID))?;
         let (Checked::Valid(GenericComponentType(component)), Checked::Valid(kind)) =
             (accessor.component_type, accessor.type_)
         else {
-            return Err(self.error(format!("accessor {at} of an unknown type"), VALID));
+            return Err(self.error(msg!("accessor {at} of an unknown type"), VALID));
         };
         let Some(read) = reader(component).filter(|_| kind == expected) else {
-            let found = format!("accessor {at} with {kind:?} of {component:?}");
-            return Err(self.error(found, &format!("{expected:?} of another type")));
+            let found = msg!(
+                "accessor {at} with {kind} of {component}",
+                kind = format!("{kind:?}"),
+                component = format!("{component:?}")
+            );
+            return Err(
+                self.error(found, msg!("{kind} of another type", kind = format!("{expected:?}")))
+            );
         };
         let width = kind.multiplicity();
         let count = self.size(accessor.count)?;
@@ -107,7 +114,7 @@ impl Document<'_> {
             // Zeros that no byte stands for.
             if count > self.total_bytes() {
                 return Err(
-                    self.error(format!("accessor {at} with {count} values and no data"), VALID)
+                    self.error(msg!("accessor {at} with {count} values and no data"), VALID)
                 );
             }
             self.spend(count, size_of::<T>() * width)?;
@@ -117,7 +124,7 @@ impl Document<'_> {
             let Checked::Valid(IndexComponentType(index_type)) = sparse.indices.component_type
             else {
                 return Err(
-                    self.error(format!("accessor {at} with indices of an unknown type"), VALID)
+                    self.error(msg!("accessor {at} with indices of an unknown type"), VALID)
                 );
             };
             let count = self.size(sparse.count)?;
@@ -138,7 +145,7 @@ impl Document<'_> {
                 let Some(target) = values.get_mut(start..).and_then(|rest| rest.get_mut(..width))
                 else {
                     return Err(
-                        self.error(format!("accessor {at} with an index beyond its end"), VALID)
+                        self.error(msg!("accessor {at} with an index beyond its end"), VALID)
                     );
                 };
                 for (value, bytes) in target.iter_mut().zip(content.chunks_exact(component.size()))
@@ -161,7 +168,7 @@ impl Document<'_> {
         let view = self
             .root
             .get(view)
-            .ok_or_else(|| self.error(format!("buffer view {at}, which is not there"), VALID))?;
+            .ok_or_else(|| self.error(msg!("buffer view {at}, which is not there"), VALID))?;
         let buffer = self.buffer(view.buffer.value())?;
         let start = self.size(view.byte_offset.unwrap_or_default())?;
         let (length, offset) =
@@ -179,9 +186,9 @@ impl Document<'_> {
                 Ok(Elements { bytes, stride, size, count })
             }
             _ => {
-                let found = format!(
-                    "buffer view {at} with {} bytes for {count} values of {size}",
-                    bytes.map_or(0, <[u8]>::len)
+                let found = msg!(
+                    "buffer view {at} with {bytes} bytes for {count} values of {size}",
+                    bytes = bytes.map_or(0, <[u8]>::len)
                 );
                 Err(self
                     .error(found, "all bytes of the animation")
@@ -192,7 +199,7 @@ impl Document<'_> {
 
     fn size(&self, value: USize64) -> Result<usize, ImportError> {
         usize::try_from(value.0)
-            .map_err(|_| self.error(format!("a size of {} bytes", value.0), VALID))
+            .map_err(|_| self.error(msg!("a size of {bytes} bytes", bytes = value.0), VALID))
     }
 }
 

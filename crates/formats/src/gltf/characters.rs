@@ -5,6 +5,7 @@ use super::node::{Nodes, World};
 use crate::ImportError;
 use glam::DVec3;
 use segue_motion::skeleton::Joint;
+use segue_text::msg;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -37,7 +38,7 @@ pub(super) fn characters(
         let joints: Vec<usize> = skin.joints.iter().map(gltf::json::Index::value).collect();
         if let Some(missing) = joints.iter().find(|&&joint| joint >= nodes.all.len()) {
             return Err(document.error(
-                format!("node {missing} in a skin, which is not there"),
+                msg!("node {missing} in a skin, which is not there"),
                 "a valid glTF 2.0 file",
             ));
         }

@@ -8,6 +8,7 @@ use gltf::json::accessor::Type;
 use gltf::json::animation::{Interpolation, Sampler};
 use gltf::json::validation::Checked;
 use segue_motion::math::quat;
+use segue_text::msg;
 use std::sync::Arc;
 
 /// Times this near to a key, in frames, are the key: keys are stored in single precision.
@@ -67,8 +68,9 @@ impl Curve {
         }
         let per_key = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
         if values.len() != times.len() * per_key {
-            let found = format!("{} values for {} keys", values.len(), times.len());
-            return Err(document.error(found, &format!("{per_key} for each key")));
+            let found =
+                msg!("{values} values for {keys} keys", values = values.len(), keys = times.len());
+            return Err(document.error(found, msg!("{per_key} for each key")));
         }
         Ok((!times.is_empty()).then_some(Self {
             times,

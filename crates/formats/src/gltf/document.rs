@@ -6,6 +6,7 @@ use base64::Engine as _;
 use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use gltf::json::{Root, Value};
+use segue_text::{Message, msg};
 use std::cell::Cell;
 use std::sync::Arc;
 
@@ -26,7 +27,7 @@ enum Buffer<'a> {
     Slice(&'a [u8]),
     Shared(Arc<[u8]>),
     /// Why it is not there. Only a buffer that is needed is missed.
-    Missing(String),
+    Missing(Message),
 }
 
 impl<'a> Document<'a> {
@@ -49,14 +50,19 @@ impl<'a> Document<'a> {
         let buffers = root.buffers.iter().enumerate();
         let buffers = buffers.map(|(index, buffer)| match (&buffer.uri, binary) {
             (None, Some(binary)) if index == 0 => Buffer::Slice(binary),
-            (None, _) => Buffer::Missing(format!("buffer {index} without data")),
+            (None, _) => Buffer::Missing(msg!("buffer {index} without data")),
             (Some(uri), _) => match uri.strip_prefix("data:") {
                 Some(data) => embedded(data).map_or_else(
-                    || Buffer::Missing(format!("buffer {index} with data that is no Base64")),
+                    || Buffer::Missing(msg!("buffer {index} with data that is no Base64")),
                     |bytes| Buffer::Shared(bytes.into()),
                 ),
                 None => external(uri, resolve).map_or_else(
-                    || Buffer::Missing(format!("no file `{}` beside it", short(uri.as_bytes()))),
+                    || {
+                        Buffer::Missing(msg!(
+                            "no file `{name}` beside it",
+                            name = short(uri.as_bytes())
+                        ))
+                    },
                     Buffer::Shared,
                 ),
             },
@@ -68,7 +74,11 @@ impl<'a> Document<'a> {
         self.name
     }
 
-    pub(super) fn error(&self, found: impl Into<String>, expected: &str) -> ImportError {
+    pub(super) fn error(
+        &self,
+        found: impl Into<Message>,
+        expected: impl Into<Message>,
+    ) -> ImportError {
         ImportError::whole_file(self.name, found, expected)
     }
 
@@ -81,7 +91,7 @@ impl<'a> Document<'a> {
                 .error(why.clone(), "the binary data of the animation")
                 .with_hint("open it together with its .bin file")),
             None => Err(self.error(
-                format!("a view of buffer {index}, which is not there"),
+                msg!("a view of buffer {index}, which is not there"),
                 "a valid glTF 2.0 file",
             )),
         }
@@ -112,14 +122,14 @@ impl<'a> Document<'a> {
 }
 
 /// The JSON and the binary chunk of a `.glb` file.
-fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
+fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Message> {
     /// Magic, version and length of the file.
     const HEADER: usize = 12;
     let word = |at: usize| bytes.get(at..at + 4)?.try_into().ok().map(u32::from_le_bytes);
     match word(4) {
         Some(2) => {}
-        Some(version) => return Err(format!("glTF version {version}")),
-        None => return Err("a file that was cut off".to_owned()),
+        Some(version) => return Err(msg!("glTF version {version}")),
+        None => return Err("a file that was cut off".into()),
     }
     let (mut json, mut binary) = (None, None);
     let mut at = HEADER;
@@ -127,7 +137,7 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
         let chunk = bytes.get(at + 8..).and_then(|rest| rest.get(..length as usize));
         let Some(chunk) = chunk else {
             let there = bytes.len() - at - 8;
-            return Err(format!(
+            return Err(msg!(
                 "{there} bytes of a part that should have {length}: the file was cut off"
             ));
         };
@@ -140,7 +150,7 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), String> {
         // Chunks end at multiples of four; not every writer knows.
         at += 8 + chunk.len();
     }
-    json.map(|json| (json, binary)).ok_or_else(|| "a file without JSON".to_owned())
+    json.map(|json| (json, binary)).ok_or_else(|| "a file without JSON".into())
 }
 
 fn parse(name: &str, json: &[u8]) -> Result<Root, ImportError> {
@@ -154,7 +164,7 @@ fn parse(name: &str, json: &[u8]) -> Result<Root, ImportError> {
         column: error.column().max(1),
         ..ImportError::whole_file(
             name,
-            format!("JSON that is no glTF ({error})"),
+            msg!("JSON that is no glTF ({error})", error = error.to_string()),
             "a glTF 2.0 file",
         )
     };
@@ -179,7 +189,11 @@ fn parse(name: &str, json: &[u8]) -> Result<Root, ImportError> {
 }
 
 fn version(name: &str, found: &str) -> ImportError {
-    ImportError::whole_file(name, format!("glTF version {}", short(found.as_bytes())), "glTF 2.0")
+    ImportError::whole_file(
+        name,
+        msg!("glTF version {version}", version = short(found.as_bytes())),
+        "glTF 2.0",
+    )
 }
 
 /// The content of a data URI after `data:`. Padding and white space are optional, percent signs are

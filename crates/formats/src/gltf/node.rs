@@ -3,6 +3,7 @@
 use super::document::Document;
 use crate::ImportError;
 use glam::{DMat3, DMat4, DQuat, DVec3};
+use segue_text::msg;
 
 /// Sizes and distances beyond this are lost in single precision.
 const FAR: f64 = 1e18;
@@ -62,14 +63,13 @@ impl Nodes {
                 match all.get_mut(child) {
                     Some(node) if node.parent.is_none() => node.parent = Some(parent),
                     Some(node) => {
-                        let found = format!("node {child} (`{}`) with two parents", node.name);
+                        let found =
+                            msg!("node {child} (`{name}`) with two parents", name = node.name);
                         return Err(document.error(found, "a tree of nodes"));
                     }
                     None => {
-                        return Err(document.error(
-                            format!("node {child}, which is not there"),
-                            "a tree of nodes",
-                        ));
+                        return Err(document
+                            .error(msg!("node {child}, which is not there"), "a tree of nodes"));
                     }
                 }
             }
@@ -93,7 +93,8 @@ impl Nodes {
             if !(position.abs().max_element() < FAR
                 && linear.to_cols_array().iter().all(|entry| entry.abs() < FAR))
             {
-                let found = format!("node {index} (`{}`) farther away than can be told", node.name);
+                let found =
+                    msg!("node {index} (`{name}`) farther away than can be told", name = node.name);
                 return Err(document.error(found, "a scene of some size"));
             }
         }

@@ -18,6 +18,7 @@ use gltf::json::validation::Checked;
 use segue_motion::clip::UpAxis;
 use segue_motion::math::quat;
 use segue_motion::skin::SkinnedMesh;
+use segue_text::{ToMessage, msg};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -106,7 +107,7 @@ impl Motion {
             };
             let Some(moved) = nodes.all.get(node) else {
                 return Err(document.error(
-                    format!("an animation of node {node}, which is not there"),
+                    msg!("an animation of node {node}, which is not there"),
                     "a valid glTF 2.0 file",
                 ));
             };
@@ -163,7 +164,7 @@ fn key_times(document: &Document<'_>, input: Index<Accessor>) -> Result<Arc<[f32
         Ok(times.into())
     } else {
         Err(document.error(
-            format!("times of keys that do not rise (accessor {})", input.value()),
+            msg!("times of keys that do not rise (accessor {index})", index = input.value()),
             "rising times",
         ))
     }
@@ -368,7 +369,7 @@ impl Context<'_> {
         };
         let clip = raw
             .into_clip(name, fps, &measure)
-            .map_err(|error| self.document.error(error.to_string(), "a skeleton with a motion"))?;
+            .map_err(|error| self.document.error(error.to_message(), "a skeleton with a motion"))?;
         Ok(ImportedClip { clip, t_pose_first_row, t_pose_dropped, measure, mendable, mesh: None })
     }
 }

@@ -12,6 +12,7 @@ use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
 use gltf::json::{Index, Material};
 use segue_motion::skin::{RigidTransform, SkinnedMesh};
+use segue_text::{Message, msg};
 
 /// More vertices, or triangles, are no character that anybody could show.
 const MOST: u64 = 1 << 21;
@@ -127,7 +128,11 @@ impl Binding {
         let (matrices, _) = inverse_bind.as_chunks::<16>();
         if skin.inverse_bind_matrices.is_some() && matrices.len() < joints.len() {
             return Err(document.error(
-                format!("{} bind matrices for {} joints", matrices.len(), joints.len()),
+                msg!(
+                    "{matrices} bind matrices for {joints} joints",
+                    matrices = matrices.len(),
+                    joints = joints.len()
+                ),
                 "one for each",
             ));
         }
@@ -178,7 +183,7 @@ impl Part {
         if before.saturating_add(claimed) > MOST
             || primitive.indices.is_some_and(|indices| document.claimed(indices) > 3 * MOST)
         {
-            return Err(document.error(format!("{claimed} vertices"), "at most two millions"));
+            return Err(document.error(msg!("{claimed} vertices"), "at most two millions"));
         }
         let positions = vectors(&document.lengths(positions, Type::Vec3)?);
         let count = positions.len();
@@ -220,7 +225,7 @@ impl Part {
         };
         if let Some(index) = indices.iter().find(|index| **index as usize >= count) {
             return Err(document.error(
-                format!("a triangle with vertex {index} of {count}"),
+                msg!("a triangle with vertex {index} of {count}"),
                 "a vertex that is there",
             ));
         }
@@ -247,7 +252,7 @@ impl Part {
 
     /// Puts the vertices where the skin has them at rest, and names the joints that move them from
     /// there.
-    fn rest(&mut self, binding: &Binding, influences: &[Vec<(usize, f32)>]) -> Result<(), String> {
+    fn rest(&mut self, binding: &Binding, influences: &[Vec<(usize, f32)>]) -> Result<(), Message> {
         let has_normals = self.normals.len() == self.positions.len();
         let mut mirrored = 0usize;
         for (vertex, influences) in influences.iter().enumerate() {
@@ -263,7 +268,10 @@ impl Part {
             for (place, &(joint, weight)) in sorted.iter().enumerate() {
                 let (Some(rest), Some(&own)) = (binding.rest.get(joint), binding.joints.get(joint))
                 else {
-                    return Err(format!("a vertex with joint {joint} of {}", binding.rest.len()));
+                    return Err(msg!(
+                        "a vertex with joint {joint} of {count}",
+                        count = binding.rest.len()
+                    ));
                 };
                 matrix += *rest * f64::from(weight / total);
                 joints[place] = own.unwrap_or_default();

@@ -41,7 +41,7 @@ pub struct RootWay {
 }
 
 /// Why a clip's way over the ground cannot be told.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error, segue_text::ToMessage)]
 pub enum RootWayError {
     /// The skeleton has no feet that are known.
     #[error("No foot of this body is known: set its roles, then try again.")]

@@ -158,7 +158,7 @@ fn or_lower_blend_window(window: usize) -> Message {
 }
 
 fn or_raise_threshold(threshold_cm: f64) -> Message {
-    if threshold_cm < GraphOptions::MOST_THRESHOLD_CM {
+    if threshold_cm < GraphOptions::MAX_THRESHOLD_CM {
         msg!("a threshold above {threshold_cm} cm, or ", threshold_cm)
     } else {
         Message::default()

@@ -8,6 +8,7 @@ use crate::notice::Level;
 use crate::reading::{Content, ReadReport, ReadSetup};
 use crate::samples::{self, SETS, SINGLES, Sample, SampleSet};
 use segue_formats::{ImportError, ImportOptions};
+use segue_text::{Message, ToMessage, msg};
 use std::sync::Arc;
 
 /// No bundled take unpacks to more. A damaged file must not fill the memory.
@@ -68,7 +69,7 @@ impl Session {
         let new: Vec<_> =
             set.samples.iter().filter(|sample| self.library.get(sample.id).is_none()).collect();
         if new.is_empty() {
-            self.say(Level::Info, format!("{} is in the library already.", set.label));
+            self.say(Level::Info, msg!("{name} is in the library already.", name = set.label));
         } else {
             self.remember(None);
         }
@@ -147,8 +148,12 @@ impl Session {
 
     /// Says why a bundled take that was asked for has not come. It is asked for again when
     /// something else is done that needs it.
-    pub fn fail_sample(&mut self, sample: &'static Sample, reason: &str) {
-        let text = format!("{} could not be loaded: {reason}.", sample.label);
+    pub fn fail_sample(&mut self, sample: &'static Sample, reason: impl Into<Message>) {
+        let text = msg!(
+            "{name} could not be loaded: {reason}.",
+            name = sample.label,
+            reason = reason.into()
+        );
         self.library.change(sample.id, |entry| entry.unread = Some(text.clone()));
         self.awaited.samples.retain(|awaited| *awaited != sample);
         self.awaited.failed.push(sample);
@@ -171,7 +176,7 @@ impl Session {
         let mut clips = match read {
             Ok(clips) => clips.unwrap_or_default(),
             Err(error) => {
-                self.fail_sample(sample, &error.to_string());
+                self.fail_sample(sample, error.to_message());
                 return Err(error);
             }
         };

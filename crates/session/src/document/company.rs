@@ -3,6 +3,7 @@
 
 use super::Session;
 use crate::command::{CommandError, CompanyChange};
+use crate::labs::LabError;
 use crate::labs::lab::{self, Beside};
 use crate::labs::{read_ids, recipe_id, recipe_name, take_up, write_ids};
 use crate::library::{Entry, Origin, split_reference};
@@ -21,7 +22,7 @@ pub struct Companion {
     /// What a person calls it.
     pub name: String,
     /// What it does, or why that is not to be seen.
-    pub motion: Result<Arc<Motion>, String>,
+    pub motion: Result<Arc<Motion>, LabError>,
 }
 
 impl Companion {

@@ -5,6 +5,7 @@ use super::Session;
 use super::panes::{Answer, Pane};
 use crate::choices;
 use crate::command::CommandError;
+use crate::labs::LabError;
 use crate::labs::{Crowd, Gauge, HandTag, Live, filter_of, lab, options_in, read_ids, read_tags};
 use crate::params::{Key, Params, Value};
 use segue_motion::matching::{Control, ControllerOptions, Database, RATE, Recording};
@@ -41,7 +42,7 @@ fn is_own(params: &Params) -> bool {
 }
 
 /// What a pane is driven by: its parameters, and its database; `None` while that is built.
-type Wanted = (Arc<Params>, Result<Option<Arc<Database>>, String>);
+type Wanted = (Arc<Params>, Result<Option<Arc<Database>>, LabError>);
 
 impl Session {
     /// Whether a character is driven now: it goes on with time, and has no end.
@@ -252,7 +253,7 @@ impl Session {
     pub(super) fn match_database(
         &mut self,
         params: &Params,
-    ) -> Result<Option<Arc<Database>>, String> {
+    ) -> Result<Option<Arc<Database>>, LabError> {
         let clips = self.lab_clips(params)?;
         self.labs.match_database(clips, params)
     }
@@ -288,7 +289,7 @@ fn driven(
     database: &Arc<Database>,
     options: ControllerOptions,
     gauge: &mut Gauge,
-) -> Result<Answer, String> {
+) -> Result<Answer, LabError> {
     let (changed, live) = match live {
         Some(live) => (live.change(database, options)?, live),
         None => (true, live.insert(Live::new(database, options)?)),

@@ -5,6 +5,7 @@ use crate::JobKind;
 use crate::{Walk, write_jump, write_path};
 use glam::DVec2;
 use segue_motion::graph::Place;
+use segue_text::ToMessage;
 
 fn opened(link: &str) -> Session {
     let mut session = Session::new();
@@ -159,7 +160,7 @@ fn a_change_is_made_in_slices_from_what_is_known_and_can_be_given_up() {
     session.work();
     session.apply(Command::StopGraph(true)).unwrap();
     assert!(!session.work() && session.jobs().is_empty() && session.graph_is_stopped());
-    assert!(session.panes()[0].problem.as_ref().unwrap().contains("Stopped"));
+    assert!(session.panes()[0].problem.as_ref().unwrap().to_string().contains("Stopped"));
     assert!(session.panes()[0].outcome.is_none(), "a walk in another graph is not this one");
     session.apply(Command::StopGraph(false)).unwrap();
     while session.work() {}
@@ -182,7 +183,7 @@ fn the_mistakes_spin_on_the_same_walk() {
     assert_eq!(way(walk_of(&session, 0)), way(walk_of(&session, 1)));
     assert!(number(&session, 0, "spins") == 0.0 && number(&session, 1, "spins") > 0.0);
     let both = opened(&format!("{SMALL}&atan=atan&transform=first"));
-    assert!(both.panes()[0].problem.as_ref().unwrap().contains("Two mistakes at once"));
+    assert!(both.panes()[0].problem.as_ref().unwrap().to_string().contains("Two mistakes at once"));
 }
 
 #[test]
@@ -243,7 +244,7 @@ fn a_clip_is_gone_to_and_a_path_is_followed() {
         assert!(same.count() >= 5 * 60, "what has played stays");
     }
     set(&mut session, Key::GoTo, Value::Text("6:9".into()));
-    assert!(session.panes()[0].problem.as_ref().unwrap().contains("no clip 9"));
+    assert!(session.panes()[0].problem.as_ref().unwrap().to_string().contains("no clip 9"));
     set(&mut session, Key::GoTo, Value::Text(String::new()));
 
     let line: Vec<DVec2> = (0..=10).map(|k| DVec2::new(0.1 * f64::from(k), f64::from(k))).collect();
@@ -330,7 +331,7 @@ fn one_transition_plays_alone() {
     set(&mut session, Key::Jump, Value::Text(none));
     let pane = &session.panes()[0];
     assert!(
-        pane.problem.as_ref().unwrap().contains("There is no transition from frame 1"),
+        pane.problem.as_ref().unwrap().to_string().contains("There is no transition from frame 1"),
         "{:?}",
         pane.problem
     );
@@ -373,6 +374,7 @@ fn every_setting_answers_and_no_earlier_walk_stands_for_it() {
                     None => made += 1,
                     Some(problem) => {
                         refused += 1;
+                        let problem = problem.to_sentence().to_string();
                         assert!(problem.ends_with('.') && problem.contains(':'), "{problem}");
                         assert!(pane.outcome.is_none());
                     }

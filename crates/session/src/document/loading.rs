@@ -5,12 +5,13 @@ use super::{Job, Session};
 use crate::command::{CommandError, Request};
 use crate::labs::JobKind;
 use crate::library::{Entry, Origin, SourceFile, file_id, file_stem};
-use crate::notice::{Level, sentence};
+use crate::notice::Level;
 use crate::outside;
 use crate::params::{Key, Value};
 use crate::reading::{Companion, Content, LARGE_BYTES, ReadFile, ReadReport, ReadSetup, ReadTask};
 use crate::samples::Sample;
 use segue_formats::{FileKind, ImportError, ImportOptions, acclaim};
+use segue_text::{Message, ToMessage, msg};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -20,7 +21,7 @@ pub struct Loaded {
     /// The ids of its clips.
     pub ids: Vec<String>,
     /// What was odd in it, one sentence each.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Message>,
 }
 
 /// Of the files of an archive that are not read, so many are told one by one.
@@ -186,13 +187,14 @@ impl Session {
     pub fn finish_reading(
         &mut self,
         task: u64,
-        report: Result<ReadReport, String>,
-    ) -> Option<Result<Loaded, String>> {
+        report: Result<ReadReport, Message>,
+    ) -> Option<Result<Loaded, Message>> {
         let report = match report {
             Ok(report) => report,
             Err(reason) => {
                 let (name, _) = self.file_of_task(task)?;
-                let text = format!("{name} could not be read: {reason}.");
+                let name = name.to_owned();
+                let text = msg!("{name} could not be read: {reason}.");
                 return self.fail_reading(task, reason, text);
             }
         };
@@ -214,7 +216,7 @@ impl Session {
                 if let Err(error) = &refilled {
                     self.mark_unread(
                         task.setup.sha256.as_deref().unwrap_or_default(),
-                        Some(&error.to_string()),
+                        Some(&error.to_message()),
                     );
                     self.tell_unread(error);
                 }
@@ -239,21 +241,21 @@ impl Session {
             Purpose::New(came) => self.admit(report, &content, &task.setup, came),
             Purpose::Sample(sample) => self.take_sample(sample, report).map(|()| Loaded::default()),
         };
-        Some(loaded.map_err(|error| error.to_string()))
+        Some(loaded.map_err(|error| error.to_message()))
     }
 
     /// Ends a task whose file is not read, for that reason; `text` is what is said of it.
     pub(super) fn fail_reading(
         &mut self,
         task: u64,
-        reason: String,
-        text: String,
-    ) -> Option<Result<Loaded, String>> {
+        reason: Message,
+        text: Message,
+    ) -> Option<Result<Loaded, Message>> {
         let Reading { task, purpose, .. } = self.end_task(task)?;
         if let Purpose::Sample(sample) = purpose {
             // It would be asked for at once, and so on for ever: the next thing that is done asks
             // for it.
-            self.fail_sample(sample, &reason);
+            self.fail_sample(sample, reason.clone());
             return Some(Err(reason));
         }
         if let Purpose::Again(_) = purpose {
@@ -315,7 +317,7 @@ impl Session {
         let Reading { task, purpose, .. } = self.reading.remove(at);
         let again = matches!(purpose, Purpose::Again(_));
         if again {
-            let text = format!("Reading {} was stopped: drop the file again.", task.name);
+            let text = msg!("Reading {name} was stopped: drop the file again.", name = task.name);
             self.mark_unread(task.setup.sha256.as_deref().unwrap_or_default(), Some(&text));
         }
         self.requests
@@ -324,10 +326,10 @@ impl Session {
 
     /// Notes with the clips of a file why they have no motion, so that it is not read over and
     /// over.
-    fn mark_unread(&mut self, sha256: &str, why: Option<&str>) {
+    fn mark_unread(&mut self, sha256: &str, why: Option<&Message>) {
         let entries = self.library.entries().to_vec();
         for entry in entries.iter().filter(|entry| entry.sha256() == Some(sha256)) {
-            self.library.change(&entry.id, |entry| entry.unread = why.map(str::to_owned));
+            self.library.change(&entry.id, |entry| entry.unread = why.cloned());
         }
     }
 
@@ -381,7 +383,7 @@ impl Session {
                     {
                         loaded.warnings.push(
                             "its figure has no limbs that are known: only its own clips move it"
-                                .to_owned(),
+                                .into(),
                         );
                     }
                     if let Some(first) = first.filter(|entry| self.takes_character(entry, came)) {
@@ -404,9 +406,9 @@ impl Session {
         self.history.settle();
         self.library_revision += 1;
         if !names.is_empty() {
-            let mut told = vec![in_the_library(&names)];
+            let mut told: Vec<Message> = in_the_library(&names).into_iter().collect();
             let mut more = 0;
-            for warning in loaded.warnings.iter().map(|warning| sentence(warning)) {
+            for warning in loaded.warnings.iter().map(ToMessage::to_sentence) {
                 if told.contains(&warning) {
                     continue;
                 }
@@ -417,9 +419,9 @@ impl Session {
                 }
             }
             if more > 0 {
-                told.push(format!("{more} more remarks stand with the clips."));
+                told.push(msg!("{more} more remarks stand with the clips."));
             }
-            let text = told.join(" ");
+            let text = Message::joined(told, " ");
             // A T-pose in front is how the takes of whole databases come: good to know, and nothing
             // to do about it.
             let is_odd = loaded.warnings.len() > t_poses;
@@ -430,25 +432,24 @@ impl Session {
                 [id] if is_odd && self.is_half(id) => self.notices.miss(id, text),
                 // A skeleton that was waited for: it has its motion.
                 [id] if self.library.get(id).is_none() => {
-                    self.say(Level::Info, in_the_library(&names));
+                    in_the_library(&names).into_iter().for_each(|text| self.say(Level::Info, text));
                 }
                 _ if !mends.is_empty() => self.offer_mends(text, mends),
                 _ => self.say(if is_odd { Level::Warning } else { Level::Info }, text),
             }
         } else if !loaded.warnings.is_empty() {
             // What holds for the archive holds though nothing in it can be read.
-            let told: Vec<String> =
-                loaded.warnings.iter().map(|warning| sentence(warning)).collect();
-            self.say(Level::Warning, told.join(" "));
+            let told: Vec<Message> = loaded.warnings.iter().map(ToMessage::to_sentence).collect();
+            self.say(Level::Warning, Message::joined(told, " "));
         }
         // Listeners are told of each.
-        loaded.warnings.extend(failures.iter().map(ToString::to_string));
+        loaded.warnings.extend(failures.iter().map(ToMessage::to_message));
         self.refresh();
         Ok(loaded)
     }
 
     /// Warns of clips that can be read better; with those of an earlier warning, as one.
-    fn offer_mends(&mut self, text: String, clips: Vec<String>) {
+    fn offer_mends(&mut self, text: Message, clips: Vec<String>) {
         let mut all = self.notices.take_offer();
         all.retain(|id| !clips.contains(id));
         let is_alone = all.is_empty();
@@ -461,10 +462,9 @@ impl Session {
             if all.len() > named.len() {
                 named.push("…".to_owned());
             }
-            format!(
-                "{} clips are of a size or at a place that cannot be right: {}.",
-                all.len(),
-                named.join(", ")
+            msg!(
+                "{count} clips are of a size or at a place that cannot be right: {named}.",
+                count = all.len()
             )
         };
         self.notices.offer(text, all);
@@ -481,7 +481,7 @@ impl Session {
             clips.iter().filter_map(|id| Some((id, self.mend_of(id)?))).collect::<Vec<_>>()
         {
             if let Err(error) = self.reread(id, &options) {
-                self.say(Level::Error, error.to_string());
+                self.say(Level::Error, error.to_message());
             }
         }
         self.history.before_change(&self.params, &library, None);
@@ -504,7 +504,7 @@ impl Session {
 
     /// Says why a file was not read.
     fn tell_unread(&mut self, error: &ImportError) {
-        self.notices.say_of(Level::Error, &error.file, error.to_string());
+        self.notices.say_of(Level::Error, &error.file, error.to_message());
         self.revision += 1;
     }
 
@@ -516,15 +516,12 @@ impl Session {
             self.tell_unread(error);
         }
         if !rest.is_empty() {
-            let mut named: Vec<&str> =
-                rest.iter().take(MOST_FAILURES).map(|error| error.file.as_str()).collect();
+            let mut named: Vec<String> =
+                rest.iter().take(MOST_FAILURES).map(|error| error.file.clone()).collect();
             if rest.len() > named.len() {
-                named.push("…");
+                named.push("…".to_owned());
             }
-            self.say(
-                Level::Error,
-                format!("{} more did not work: {}.", rest.len(), named.join(", ")),
-            );
+            self.say(Level::Error, msg!("{count} more did not work: {named}.", count = rest.len()));
         }
     }
 
@@ -728,9 +725,8 @@ impl Session {
     /// Says why a motion still waits though a skeleton has come.
     fn tell_misfit(&mut self, id: &str) {
         if let Some(entry) = self.library.get(id).filter(|entry| entry.awaits_skeleton()) {
-            let told: Vec<String> =
-                entry.warnings.iter().map(|warning| sentence(warning)).collect();
-            self.notices.miss(id, told.join(" "));
+            let told: Vec<Message> = entry.warnings.iter().map(ToMessage::to_sentence).collect();
+            self.notices.miss(id, Message::joined(told, " "));
         }
     }
 
@@ -800,11 +796,11 @@ impl Session {
 }
 
 /// `walk.bvh is in the library.`
-fn in_the_library(names: &[String]) -> String {
+fn in_the_library(names: &[String]) -> Option<Message> {
     match names {
-        [] => String::new(),
-        [name] => format!("{name} is in the library."),
-        several => format!("{} files are in the library.", several.len()),
+        [] => None,
+        [name] => Some(msg!("{name} is in the library.")),
+        several => Some(msg!("{count} files are in the library.", count = several.len())),
     }
 }
 
@@ -814,7 +810,7 @@ fn file_entries(
     file: ReadFile,
     content: &Content,
     options: &ImportOptions,
-) -> Result<(Vec<Entry>, Vec<String>), ImportError> {
+) -> Result<(Vec<Entry>, Vec<Message>), ImportError> {
     let read = file.result?;
     let source = SourceFile {
         name: file.name,
@@ -830,9 +826,9 @@ fn file_entries(
     };
     let mut warnings = read.warnings;
     if read.awaits_skeleton {
-        warnings.push(format!(
-            "{} waits for its skeleton: drop the .asf file that belongs to it.",
-            source.name
+        warnings.push(msg!(
+            "{name} waits for its skeleton: drop the .asf file that belongs to it.",
+            name = source.name
         ));
         let id = file_id(&source.name, &source.sha256, 0);
         let entry = Entry {

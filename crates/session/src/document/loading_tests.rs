@@ -57,7 +57,7 @@ pub(super) fn files(session: &Session) -> Vec<(String, &'static str, usize)> {
 fn a_motion_waits_for_its_skeleton() {
     let mut session = Session::new();
     let loaded = session.load("01_02.amc", bytes(AMC)).unwrap();
-    assert!(loaded.warnings[0].contains("drop the .asf file"), "{:?}", loaded.warnings);
+    assert!(loaded.warnings[0].to_string().contains("drop the .asf file"), "{:?}", loaded.warnings);
     assert_eq!(files(&session), [("01_02".to_owned(), "amc", 0)]);
     // It waits through a reload, too.
     let mut restored = Session::new();
@@ -338,7 +338,7 @@ fn a_motion_has_the_skeleton_of_its_name() {
             if ahead {
                 come(&[own[1], own[0]]);
             } else {
-                assert!(come(&own[..1]).contains("It is on the skeleton of 16.asf."));
+                assert!(come(&own[..1]).to_string().contains("It is on the skeleton of 16.asf."));
                 come(&own[1..]);
             }
             assert_eq!(
@@ -364,8 +364,8 @@ fn what_waits_for_its_other_half_says_so_until_that_has_come() {
             assert_eq!(told(&session, Level::Warning), 1);
             session.load(files[1].0, bytes(files[1].1)).unwrap();
             serve(&mut session);
-            let texts: Vec<&str> =
-                session.notices().list().iter().map(|notice| notice.text.as_str()).collect();
+            let texts: Vec<String> =
+                session.notices().list().iter().map(|notice| notice.text.to_string()).collect();
             assert!(
                 !texts.iter().any(|text| text.contains("no motion") || text.contains("waits")),
                 "{texts:?}"
@@ -408,7 +408,7 @@ fn an_archive_brings_all_its_motions() {
     let loaded = session.load("takes.zip", Arc::from(zip(&names))).unwrap();
     assert_eq!(loaded.ids.len(), 2, "{loaded:?}");
     assert_eq!(files(&session), [("01_01".to_owned(), "amc", 2), ("walk".to_owned(), "bvh", 2)]);
-    assert!(session.notices().list().last().unwrap().text.contains("2 files"));
+    assert!(session.notices().list().last().unwrap().text.to_string().contains("2 files"));
     // What came out of the archive is stored file by file.
     let mut restored = Session::new();
     restored.restore(&session.saved(), stored(&session), None);
@@ -550,7 +550,10 @@ fn a_figure_that_no_clip_moves_is_not_cast_for_others() {
     session.apply(Command::OpenLink("lab=blend".into())).unwrap();
     let loaded = session.load("spider.glb", spider()).unwrap();
     assert!(
-        loaded.warnings.iter().any(|warning| warning.contains("only its own clips move it")),
+        loaded
+            .warnings
+            .iter()
+            .any(|warning| warning.to_string().contains("only its own clips move it")),
         "{:?}",
         loaded.warnings
     );
@@ -589,7 +592,11 @@ fn a_motion_file_without_a_motion_waits_for_nothing() {
         assert!(error.to_string().starts_with("01_02.amc:"), "{error}");
         assert_eq!(session.library().entries().len(), before, "{text}");
         assert!(
-            session.notices().list().iter().all(|notice| !notice.text.contains("waits")),
+            session
+                .notices()
+                .list()
+                .iter()
+                .all(|notice| !notice.text.to_string().contains("waits")),
             "{text}"
         );
     }
@@ -603,7 +610,7 @@ fn a_skeleton_that_does_not_fit_is_named() {
             .notices()
             .list()
             .iter()
-            .map(|notice| notice.text.clone())
+            .map(|notice| notice.text.to_string())
             .collect::<Vec<_>>()
             .join("\n")
     };
@@ -635,7 +642,7 @@ fn a_character_with_a_motion_brings_both() {
     let loaded = session.load("walker.glb", person(60)).unwrap();
     assert_eq!(session.params().text(Key::A), loaded.ids[0]);
     assert_eq!(session.params().text(Key::Character), loaded.ids[0]);
-    assert_eq!(loaded.warnings, [""; 0]);
+    assert_eq!(loaded.warnings, []);
 }
 
 #[test]
@@ -644,8 +651,8 @@ fn files_of_an_archive_that_cannot_be_read_are_counted_before_they_are_told() {
     let files: Vec<(&str, &str)> = names.iter().map(|name| (name.as_str(), "")).collect();
     let mut session = Session::new();
     let loaded = session.load("many.zip", Arc::from(zip(&files))).unwrap();
-    let errors: Vec<&str> =
-        session.notices().errors_since(0).iter().map(|notice| notice.text.as_str()).collect();
+    let errors: Vec<String> =
+        session.notices().errors_since(0).iter().map(|notice| notice.text.to_string()).collect();
     assert_eq!(errors.len(), MOST_FAILURES + 1, "{errors:#?}");
     assert_eq!(
         errors[MOST_FAILURES],
@@ -660,10 +667,10 @@ fn limit_of_an_archive_is_told_though_nothing_in_it_can_be_read() {
     let files: Vec<(&str, &str)> = names.iter().map(|name| (name.as_str(), "")).collect();
     let mut session = Session::new();
     session.load("many.zip", Arc::from(zip(&files))).unwrap();
-    let told: Vec<&str> =
-        session.notices().list().iter().map(|notice| notice.text.as_str()).collect();
+    let told: Vec<String> =
+        session.notices().list().iter().map(|notice| notice.text.to_string()).collect();
     assert!(
-        told.contains(&"50 motion files of the archive left out: the first 2000 are read."),
+        told.iter().any(|text| text == "50 motion files of the archive left out: the first 2000 are read."),
         "{told:#?}"
     );
 }
@@ -745,7 +752,7 @@ fn clip_in_a_wrong_unit_or_with_a_wild_row_is_mended_by_what_its_notice_offers()
         let mut session = Session::new();
         let loaded = session.load("x.bvh", bytes(&text)).unwrap();
         assert!(
-            loaded.warnings.iter().any(|warning| warning.contains(part)),
+            loaded.warnings.iter().any(|warning| warning.to_string().contains(part)),
             "{part}: {:?}",
             loaded.warnings
         );
@@ -762,7 +769,7 @@ fn clip_in_a_wrong_unit_or_with_a_wild_row_is_mended_by_what_its_notice_offers()
     }
     // A person of a usual size who goes a usual way is told nothing of the kind.
     let loaded = Session::new().load("x.bvh", bytes(&text)).unwrap();
-    assert_eq!(loaded.warnings, [""; 0]);
+    assert_eq!(loaded.warnings, []);
 }
 
 #[test]
@@ -782,7 +789,7 @@ fn several_absurd_clips_are_mended_at_once_whether_they_come_packed_or_one_by_on
             }
             let text = offer(&session).text;
             assert_eq!(
-                text,
+                text.to_string(),
                 "3 clips are of a size or at a place that cannot be right: tiny, huge, wild."
             );
         }
@@ -845,9 +852,9 @@ fn empty_motion_is_told_as_an_empty_file_and_waits_for_no_skeleton() {
             let before = files(&session);
             let error = session.load("01_02.amc", bytes(empty)).unwrap_err().to_string();
             assert_eq!(error, "01_02.amc:1:1: found an empty file, expected a motion file");
-            let told: Vec<&str> =
-                session.notices().list().iter().map(|notice| notice.text.as_str()).collect();
-            assert!(told.contains(&&*error), "{told:?}");
+            let told: Vec<String> =
+                session.notices().list().iter().map(|notice| notice.text.to_string()).collect();
+            assert!(told.contains(&error), "{told:?}");
             assert_eq!(files(&session), before, "nothing waits");
         }
     }
@@ -860,7 +867,7 @@ fn skeleton_whose_hierarchy_names_unknown_bones_is_told_with_its_motion() {
     session.load("01.asf", bytes(&asf)).unwrap();
     let loaded = session.load("01_02.amc", bytes(AMC)).unwrap();
     assert!(
-        loaded.warnings.iter().any(|warning| warning.contains("such as `tail`")),
+        loaded.warnings.iter().any(|warning| warning.to_string().contains("such as `tail`")),
         "{:?}",
         loaded.warnings
     );
@@ -893,10 +900,13 @@ fn values_of_a_link_of_any_length_are_quoted_in_short_and_its_problems_counted()
         let mut session = Session::new();
         session.apply(Command::OpenLink(link.clone())).unwrap();
         while session.work() {}
-        let said = session.notices().list().iter().map(|notice| notice.text.clone());
-        let problems = session.panes().iter().filter_map(|pane| pane.problem.clone());
+        let said = session.notices().list().iter().map(|notice| notice.text.to_string());
+        let problems = session
+            .panes()
+            .iter()
+            .filter_map(|pane| pane.problem.as_ref().map(ToString::to_string));
         let lesson = session.lesson().and_then(|lesson| match lesson {
-            Lesson::Failed(reason) => Some(reason),
+            Lesson::Failed(reason) => Some(reason.to_string()),
             _ => None,
         });
         let texts: Vec<String> = said.chain(problems).chain(lesson).collect();

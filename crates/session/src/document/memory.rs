@@ -4,6 +4,7 @@ use super::{Loaded, Session};
 use crate::memory::{Memory, MemoryUse, PageMemory, expected_bytes, library_bytes, refusal};
 use crate::motion::FeetReader;
 use crate::reading::ReadTask;
+use segue_text::Message;
 
 impl Session {
     /// Takes what the page says of its memory. Once more than half of it is taken, motion that only
@@ -35,7 +36,7 @@ impl Session {
 
     /// Ends a task because there is no memory for the `needed` bytes of its clips. `None` where
     /// nobody waits for it any longer.
-    pub fn refuse_for_memory(&mut self, task: u64, needed: u64) -> Option<Result<Loaded, String>> {
+    pub fn refuse_for_memory(&mut self, task: u64, needed: u64) -> Option<Result<Loaded, Message>> {
         let (name, size) = self.file_of_task(task)?;
         let memory = self.memory().unwrap_or(MemoryUse { used: 0, limit: 0 });
         let text = refusal(name, size, needed, memory, &self.library);

@@ -32,11 +32,11 @@ fn a_file_that_memory_cannot_hold_is_refused_with_its_name_and_size() {
     assert_eq!(session.memory_lacking_for(&read), Some(360_000_000));
     let refused = session.refuse_for_memory(task, 360_000_000).unwrap().unwrap_err();
     assert!(
-        refused.starts_with("There is no memory for long.bvh (480 MB): its clips need 360 MB, and 359 of 3000 MB are left."),
+        refused.to_string().starts_with("There is no memory for long.bvh (480 MB): its clips need 360 MB, and 359 of 3000 MB are left."),
         "{refused}"
     );
     let notice = session.notices().list().last().unwrap();
-    assert_eq!((notice.text.as_str(), notice.about.as_str()), (refused.as_str(), "long.bvh"));
+    assert_eq!((notice.text.to_string(), notice.about.as_str()), (refused.to_string(), "long.bvh"));
     assert!(!session.is_reading(task) && session.refuse_for_memory(task, 1).is_none());
 }
 

@@ -45,6 +45,7 @@ use super::transport::Span;
 use super::undo::History;
 use segue_motion::skin::Character;
 use segue_motion::synth;
+use segue_text::{Message, msg};
 use std::sync::Arc;
 
 /// What the first visitor sees: the experiment of the course, running.
@@ -330,13 +331,13 @@ impl Session {
     }
 
     /// Says something to the user.
-    pub fn say(&mut self, level: Level, text: impl Into<String>) {
+    pub fn say(&mut self, level: Level, text: impl Into<Message>) {
         self.notices.say(level, text);
         self.revision += 1;
     }
 
     /// Tells the user something of a file or key.
-    pub fn say_of(&mut self, level: Level, about: &str, text: impl Into<String>) {
+    pub fn say_of(&mut self, level: Level, about: &str, text: impl Into<Message>) {
         self.notices.say_of(level, about, text);
         self.revision += 1;
     }
@@ -648,9 +649,9 @@ impl Session {
         if addresses.len() > MOST_SOURCES {
             self.say(
                 Level::Warning,
-                format!(
-                    "The link names {} files; the first {MOST_SOURCES} are loaded.",
-                    addresses.len()
+                msg!(
+                    "The link names {count} files; the first {MOST_SOURCES} are loaded.",
+                    count = addresses.len()
                 ),
             );
         }
@@ -660,9 +661,9 @@ impl Session {
             } else {
                 self.say(
                     Level::Error,
-                    format!(
-                        "src: found `{}`, expected an address that starts with https://.",
-                        outside::short(&address)
+                    msg!(
+                        "src: found `{address}`, expected an address that starts with https://.",
+                        address = outside::short(&address)
                     ),
                 );
             }
@@ -710,7 +711,7 @@ impl Session {
             self.set_unchecked(key, Value::Text(next));
             forget_places(&mut self.params, slot, &[]);
         }
-        self.say(Level::Info, format!("{} was removed; undo brings it back.", entry.name));
+        self.say(Level::Info, msg!("{name} was removed; undo brings it back.", name = entry.name));
         Ok(())
     }
 
@@ -774,7 +775,7 @@ impl Session {
         ))?;
         let name = recipe_name(&recipe);
         self.remember(None);
-        let said = format!("{name} is in the library now: choose it as A or B.");
+        let said = msg!("{name} is in the library now: choose it as A or B.");
         self.library.put(Entry {
             motion: is_whole.then(|| Arc::clone(&outcome.motion)),
             ..Entry::new(id, name, Origin::Made)

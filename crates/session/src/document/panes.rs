@@ -4,6 +4,7 @@
 use super::Session;
 use super::going_round::{Glide, durations};
 use crate::compare::{Compare, MAX_PANES};
+use crate::labs::LabError;
 use crate::labs::{Gauge, Inputs, JobKind, LabClips, MoreClip, Outcome, Slot, Source};
 use crate::labs::{belongs_to, lab, preset_motion, recipe_ingredients, recipe_name, recipe_params};
 use crate::library::{Entry, Origin, split_reference};
@@ -11,6 +12,7 @@ use crate::motion::{FeetReading, Motion};
 use crate::outside;
 use crate::params::{Key, Kind, Params, Value};
 use segue_motion::math::Planar;
+use segue_text::ToMessage;
 use std::sync::Arc;
 
 /// One pane of the stage: a result under one value of the compared parameter.
@@ -26,7 +28,7 @@ pub struct Pane {
     /// ([`Pane::is_outdated`]). Always `None` beside a [`problem`](Self::problem).
     pub outcome: Option<Arc<Outcome>>,
     /// Why the result cannot be made: what is missing and what to do.
-    pub problem: Option<String>,
+    pub problem: Option<LabError>,
     /// The clips that the result would have been made of, as they lie on the stage in its place.
     /// Empty where there is no problem.
     pub sources: Vec<Source>,
@@ -67,8 +69,8 @@ pub(super) enum Answer {
     Same { is_draft: bool },
     /// The result is being computed.
     Awaited,
-    /// The result cannot be made, for the reason that the sentence tells.
-    Refused(String),
+    /// The result cannot be made, for that reason.
+    Refused(LabError),
 }
 
 /// A result, and what it was made from.
@@ -81,11 +83,11 @@ pub struct Made<'a> {
 }
 
 /// Why a pane has no result to hand on.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error, segue_text::ToMessage)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error, ToMessage)]
 pub enum NoResult {
     /// It cannot be made: what is missing and what to do.
-    #[error("{0}")]
-    Refused(String),
+    #[error("{problem}", problem = .0.to_sentence())]
+    Refused(LabError),
     /// It is not there yet.
     #[error("the result is still being computed")]
     Awaited,
@@ -290,18 +292,17 @@ impl Session {
     }
 
     /// The motion of a clip with its feet read as the parameters ask for.
-    fn motion_read(&mut self, reference: &str, params: &Params) -> Result<Arc<Motion>, String> {
+    fn motion_read(&mut self, reference: &str, params: &Params) -> Result<Arc<Motion>, LabError> {
         let motion = self.motion_of(reference)?;
         Ok(self.feet.read(&motion, FeetReading::of(params)))
     }
 
     /// The motion of a clip: made or asked for when it is not there yet.
-    pub(super) fn motion_of(&mut self, reference: &str) -> Result<Arc<Motion>, String> {
+    pub(super) fn motion_of(&mut self, reference: &str) -> Result<Arc<Motion>, LabError> {
         let Some(entry) = self.library.find(reference) else {
-            return Err(format!(
-                "`{}` is not here: drop its file, or choose another clip.",
-                outside::short(split_reference(reference).0)
-            ));
+            return Err(LabError::MissingClip {
+                name: outside::short(split_reference(reference).0),
+            });
         };
         if let Some(motion) = &entry.motion {
             return Ok(Arc::clone(motion));
@@ -312,27 +313,29 @@ impl Session {
                 let sample = *sample;
                 self.ask_for_sample(sample);
                 let failed = self.library.get(&id).and_then(|entry| entry.unread.clone());
-                return Err(failed.unwrap_or_else(|| format!("{} is being loaded.", sample.label)));
+                return Err(
+                    failed.map_or(LabError::Loading { name: sample.label }, LabError::Unread)
+                );
             }
             Origin::Preset => Arc::new(preset_motion(&id)?),
             Origin::Made => {
                 let params = recipe_params(&id)
-                    .ok_or_else(|| format!("`{}` names no motion.", outside::short(&id)))?;
+                    .ok_or_else(|| LabError::NoRecipe { id: outside::short(&id) })?;
                 self.made_again(&params)?
             }
             Origin::File(file) if entry.awaits_skeleton() => {
-                return Err(format!("{} waits for its skeleton: drop its .asf file.", file.name));
+                return Err(LabError::AwaitsSkeleton { file: file.name.clone() });
             }
             Origin::File(_) if entry.unread.is_some() => {
-                return Err(entry.unread.clone().unwrap_or_default());
+                return Err(LabError::Unread(entry.unread.clone().unwrap_or_default()));
             }
             Origin::File(file) => {
                 let file = file.clone();
-                if !self.read_anew(&file, None).map_err(|error| error.to_string())? {
-                    return Err(format!("{} is being read.", file.name));
+                if !self.read_anew(&file, None)? {
+                    return Err(LabError::Reading { file: file.name.clone() });
                 }
                 let motion = self.library.find(&id).and_then(|entry| entry.motion.clone());
-                return motion.ok_or_else(|| format!("{} has no such clip any more.", file.name));
+                return motion.ok_or_else(|| LabError::NoSuchClip { file: file.name.clone() });
             }
         };
         let by_hand = self.library.get(&id).and_then(|entry| entry.roles_by_hand.clone());
@@ -352,7 +355,7 @@ impl Session {
         &mut self,
         ids: &[String],
         params: &Params,
-    ) -> Result<Vec<Arc<Motion>>, String> {
+    ) -> Result<Vec<Arc<Motion>>, LabError> {
         let motions = self.motions_of(ids)?;
         let reading = FeetReading::of(params);
         Ok(motions.iter().map(|motion| self.feet.read(motion, reading)).collect())
@@ -360,7 +363,7 @@ impl Session {
 
     /// The motions of several clips. What is not there yet is made or asked for, all of it, before
     /// the first that is missing is told.
-    pub(super) fn motions_of(&mut self, ids: &[String]) -> Result<Vec<Arc<Motion>>, String> {
+    pub(super) fn motions_of(&mut self, ids: &[String]) -> Result<Vec<Arc<Motion>>, LabError> {
         let motion = |id: &String| {
             self.bring(id);
             self.motion_of(id)
@@ -370,7 +373,7 @@ impl Session {
     }
 
     /// What a recipe makes, once more: its clips may have to be made themselves, or loaded.
-    fn made_again(&mut self, params: &Params) -> Result<Arc<Motion>, String> {
+    fn made_again(&mut self, params: &Params) -> Result<Arc<Motion>, LabError> {
         for key in [Key::A, Key::B] {
             let reference = params.text(key).to_owned();
             let _was_gone = self.bring_back(&reference) || self.bring(&reference);
@@ -381,7 +384,7 @@ impl Session {
         match pane.result() {
             Ok(made) => Ok(Arc::clone(&made.outcome.motion)),
             Err(NoResult::Refused(problem)) => Err(problem),
-            Err(NoResult::Awaited) => Err(format!("{} is being made.", recipe_name(params))),
+            Err(NoResult::Awaited) => Err(LabError::BeingMade { name: recipe_name(params) }),
         }
     }
 
@@ -482,7 +485,7 @@ impl Session {
 
     /// The clips that the lab of the parameters makes its result from. All are asked for before the
     /// first that is missing is told: what is to be fetched comes together.
-    pub(super) fn lab_clips(&mut self, params: &Params) -> Result<LabClips, String> {
+    pub(super) fn lab_clips(&mut self, params: &Params) -> Result<LabClips, LabError> {
         let lab = lab::of(params.lab());
         let slots: Vec<_> = (lab.slots().iter())
             .map(|slot| self.motion_read(params.text(slot.key()), params))
@@ -500,7 +503,7 @@ impl Session {
     }
 
     /// What a pane's result depends on; `None` while that is still being computed.
-    fn inputs(&mut self, params: &Params, match_window: usize) -> Result<Option<Inputs>, String> {
+    fn inputs(&mut self, params: &Params, match_window: usize) -> Result<Option<Inputs>, LabError> {
         let clips = self.lab_clips(params)?;
         lab::of(params.lab()).inputs(&mut self.labs, clips, params, match_window)
     }

@@ -113,17 +113,19 @@ fn where_a_character_stands_is_where_its_clip_has_it() {
 fn what_is_no_path_says_so_and_loses_nothing() {
     let session = open("lab=path&a=idle");
     assert!(
-        session.panes()[0].problem.as_ref().unwrap().contains("stays within"),
+        session.panes()[0].problem.as_ref().unwrap().to_string().contains("stays within"),
         "{:?}",
         session.panes()[0].problem
     );
     let session = open("lab=path&a=walk&path=nonsense!");
-    assert!(session.panes()[0].problem.as_ref().unwrap().contains("not a path from a link"));
+    assert!(
+        session.panes()[0].problem.as_ref().unwrap().to_string().contains("not a path from a link")
+    );
     assert_eq!(session.params().text(Key::Path), "nonsense!");
     // All points in one place: no direction.
     let code = GroundSpline::uniform(vec![DVec2::ONE; 6]).unwrap().to_code();
     let mut session = open(&format!("lab=path&a=walk&path={code}"));
-    assert!(session.panes()[0].problem.as_ref().unwrap().contains("no direction"));
+    assert!(session.panes()[0].problem.as_ref().unwrap().to_string().contains("no direction"));
     session.apply(Command::Reset(Key::Path)).unwrap();
     assert!(!path(&session).is_edited);
     // Closed and crossing itself is fine.
@@ -210,7 +212,7 @@ fn characters_on_paths_of_their_own_play_together_from_a_link() {
 #[test]
 fn whoever_is_not_here_is_named() {
     let session = open("lab=path&a=walk&others=somebody~0123456789ab,walk");
-    assert!(session.company()[0].motion.as_ref().unwrap_err().contains("somebody"));
+    assert!(session.company()[0].motion.as_ref().unwrap_err().to_string().contains("somebody"));
     assert!(session.company()[1].motion.is_ok());
 }
 

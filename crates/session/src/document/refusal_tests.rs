@@ -217,7 +217,7 @@ fn stands_for_nothing(link: &str, bad: &Change, part: &str) {
     let state = session.query();
     let pane = &session.panes()[0];
     let problem = pane.problem.clone().unwrap_or_else(|| panic!("{state} was made"));
-    assert!(problem.contains(part), "{state}: {problem}");
+    assert!(problem.to_string().contains(part), "{state}: {problem}");
     assert!(session.jobs().is_empty(), "{state}");
 
     // Nothing of what was there before is shown or handed on, by any way.

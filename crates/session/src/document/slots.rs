@@ -7,6 +7,7 @@ use crate::labs::{Slot, lab, recipe_name, recipe_params};
 use crate::library::{Entry, Origin, split_reference};
 use crate::outside;
 use crate::params::{Key, Kind, Params, Value};
+use segue_text::msg;
 
 /// How a file has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -123,18 +124,16 @@ impl Session {
 
     /// Tells who opened a link to a clip that is neither here nor can be brought which file to
     /// drop.
-    fn look_for(&mut self, what: &str, reference: &str) {
+    fn look_for(&mut self, what: &'static str, reference: &str) {
         if reference.is_empty() || self.bring_back(reference) || self.bring(reference) {
             return;
         }
         let (name, sha, _) = split_reference(reference);
         let [name, sha] = [name, sha].map(outside::short);
         let text = if sha.is_empty() {
-            format!(
-                "{what} is `{name}`, which is not here: drop that file, or choose another clip."
-            )
+            msg!("{what} is `{name}`, which is not here: drop that file, or choose another clip.")
         } else {
-            format!(
+            msg!(
                 "{what} is `{name}` (SHA-256 {sha}…), which is not here: drop that file to complete the link."
             )
         };

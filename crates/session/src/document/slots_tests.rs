@@ -18,8 +18,8 @@ fn ids(session: &Session) -> [&str; 2] {
 }
 
 fn said(session: &Session) -> String {
-    let texts: Vec<&str> =
-        session.notices().list().iter().map(|notice| notice.text.as_str()).collect();
+    let texts: Vec<String> =
+        session.notices().list().iter().map(|notice| notice.text.to_string()).collect();
     texts.join("\n")
 }
 

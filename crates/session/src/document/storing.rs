@@ -10,6 +10,7 @@ use crate::reading::{Content, LARGE_BYTES};
 use crate::saved::{Saved, SavedEntry, SavedFile};
 use crate::undo::History;
 use segue_formats::ImportOptions;
+use segue_text::msg;
 use std::sync::Arc;
 
 impl Session {
@@ -202,10 +203,7 @@ impl Session {
         if !lost.is_empty() {
             self.say(
                 Level::Warning,
-                format!(
-                    "Not found in this browser's storage any more: {}. Drop them again.",
-                    lost.join(", ")
-                ),
+                msg!("Not found in this browser's storage any more: {lost}. Drop them again."),
             );
         }
     }

@@ -7,6 +7,7 @@ use crate::lesson::{CONTENTS, LESSONS, LessonError, Page, Source, Text, parse, s
 use crate::link::{self, Link};
 use crate::notice::Level;
 use crate::params::{Group, Key, PARAMS, Param, Params};
+use segue_text::{Message, msg};
 use std::sync::Arc;
 
 /// So many of a link's problems are named, the others are counted.
@@ -22,7 +23,7 @@ pub enum Lesson<'a> {
     /// A text is under way.
     Waiting,
     /// There is no such text: why.
-    Failed(String),
+    Failed(Message),
 }
 
 /// The page of a lesson that is open.
@@ -60,9 +61,9 @@ impl Session {
         };
         let Some(page) = pages.get(index) else {
             let found = index + 1;
-            return Some(Lesson::Failed(format!(
-                "lesson: found page {found}, expected 1 to {}.",
-                pages.len()
+            return Some(Lesson::Failed(msg!(
+                "lesson: found page {found}, expected 1 to {last}.",
+                last = pages.len()
             )));
         };
         if name == CONTENTS {
@@ -114,7 +115,7 @@ impl Session {
     }
 
     /// Takes the text of a lesson, or why it did not come. A text that nobody waits for is kept.
-    pub fn finish_lesson(&mut self, source: &Source, text: Result<&[u8], String>) {
+    pub fn finish_lesson(&mut self, source: &Source, text: Result<&[u8], Message>) {
         let read = text.and_then(|bytes| parse(bytes).map_err(|error| unread(source, &error)));
         let text = match read {
             Ok(pages) => Text::Here(Arc::from(pages)),
@@ -246,7 +247,7 @@ impl Session {
 
     /// Takes over all parameters, as those of a link that names some of them: says what is wrong
     /// with it and what is missing.
-    pub(super) fn take_over(&mut self, params: Params, problems: &[String], named: &[Key]) {
+    pub(super) fn take_over(&mut self, params: Params, problems: &[Message], named: &[Key]) {
         let had = std::mem::replace(&mut self.params, params).text(Key::Src).to_owned();
         let new_sources = self.sources_beyond(&had);
         self.note_named(named, !new_sources.is_empty());
@@ -254,14 +255,18 @@ impl Session {
             _ if problems.is_empty() => {}
             0 => self.say(
                 Level::Warning,
-                format!("The link was used, but for this: {}.", problems.join("; ")),
+                msg!(
+                    "The link was used, but for this: {problems}.",
+                    problems = Message::joined(problems.to_vec(), "; ")
+                ),
             ),
             more => {
-                let first = problems.get(..MOST_PROBLEMS).unwrap_or(problems).join("; ");
+                let first = problems.get(..MOST_PROBLEMS).unwrap_or(problems);
                 self.say(
                     Level::Warning,
-                    format!(
-                        "The link was used, but for this: {first}; and {more} more like these."
+                    msg!(
+                        "The link was used, but for this: {first}; and {more} more like these.",
+                        first = Message::joined(first.to_vec(), "; ")
                     ),
                 );
             }
@@ -272,10 +277,10 @@ impl Session {
     }
 }
 
-/// A sentence on a file that is no lesson.
-fn unread(source: &Source, error: &LessonError) -> String {
+/// What is said of a file that is no lesson.
+fn unread(source: &Source, error: &LessonError) -> Message {
     let (Source::BuiltIn(name) | Source::Web(name)) = source;
-    format!("{name} is no lesson: {error}.")
+    msg!("{name} is no lesson: {error}.")
 }
 
 /// What a link of a lesson sets even where it does not name it: what makes the result.

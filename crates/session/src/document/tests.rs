@@ -209,7 +209,8 @@ fn a_link_to_a_dropped_file_waits_for_it() {
     receiver.apply(Command::OpenLink(query.clone())).unwrap();
     let notice = receiver.notices().list().last().unwrap();
     assert!(
-        notice.text.contains("mine") && notice.text.contains("drop that file"),
+        notice.text.to_string().contains("mine")
+            && notice.text.to_string().contains("drop that file"),
         "{}",
         notice.text
     );
@@ -221,8 +222,8 @@ fn a_link_to_a_dropped_file_waits_for_it() {
         sender.slot(Slot::A).map(|entry| entry.sha256().map(str::to_owned))
     );
     assert_eq!(receiver.panes()[0].problem, None);
-    let said: Vec<&str> =
-        receiver.notices().list().iter().map(|notice| notice.text.as_str()).collect();
+    let said: Vec<String> =
+        receiver.notices().list().iter().map(|notice| notice.text.to_string()).collect();
     assert!(!said.iter().any(|text| text.contains("drop that file")), "{said:?}");
     assert_eq!(receiver.params().number(Key::BlendWindow), 24.0);
 }
@@ -246,7 +247,9 @@ fn the_work_survives_storage() {
 
     let mut without = Session::new();
     without.restore(&saved, |_| None, None);
-    assert!(without.notices().list().iter().any(|notice| notice.text.contains("kept.bvh")));
+    assert!(
+        without.notices().list().iter().any(|notice| notice.text.to_string().contains("kept.bvh"))
+    );
 }
 
 #[test]
@@ -385,7 +388,13 @@ fn addresses_are_asked_for_and_others_are_refused() {
         .apply(Command::OpenLink("src=https://example.org/a.bvh%20ftp://x/b.bvh".into()))
         .unwrap();
     assert_eq!(session.take_requests(), [Request::Fetch("https://example.org/a.bvh".into())]);
-    assert!(session.notices().list().iter().any(|notice| notice.text.contains("ftp://x/b.bvh")));
+    assert!(
+        session
+            .notices()
+            .list()
+            .iter()
+            .any(|notice| notice.text.to_string().contains("ftp://x/b.bvh"))
+    );
 }
 
 /// The task that the session has just asked for.
@@ -444,7 +453,12 @@ fn a_large_file_is_read_elsewhere_and_then_joins_the_library() {
     // After a reload it is asked for again, and is there as soon as it was read.
     let mut restored = Session::new();
     restored.restore(&session.saved(), |key| Some(Content::Outside(key.into())), None);
-    assert!(restored.panes()[0].problem.as_ref().is_some_and(|text| text.contains("being read")));
+    assert!(
+        restored.panes()[0]
+            .problem
+            .as_ref()
+            .is_some_and(|text| text.to_string().contains("being read"))
+    );
     let again = asked(&mut restored);
     assert!(
         restored.take_requests().iter().all(|request| !matches!(request, Request::Read(_))),
@@ -719,7 +733,10 @@ fn a_stored_file_that_cannot_be_read_is_not_read_again_and_again() {
     blend_window(&mut session, 20.0);
     assert_eq!(reads(&mut session), 0);
     assert!(
-        session.panes()[0].problem.as_ref().is_some_and(|text| text.contains("it is gone")),
+        session.panes()[0]
+            .problem
+            .as_ref()
+            .is_some_and(|text| text.to_string().contains("it is gone")),
         "{:?}",
         session.panes()[0].problem
     );
@@ -728,7 +745,12 @@ fn a_stored_file_that_cannot_be_read_is_not_read_again_and_again() {
     session.apply(Command::StopReading(task.id)).unwrap();
     blend_window(&mut session, 20.0);
     assert_eq!(reads(&mut session), 0);
-    assert!(session.panes()[0].problem.as_ref().is_some_and(|text| text.contains("stopped")));
+    assert!(
+        session.panes()[0]
+            .problem
+            .as_ref()
+            .is_some_and(|text| text.to_string().contains("stopped"))
+    );
     // Asked for by hand it is read once more.
     let id = session.slot(Slot::A).unwrap().id.clone();
     session.apply(Command::Reimport(id, segue_formats::ImportOptions::default())).unwrap();

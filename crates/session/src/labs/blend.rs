@@ -4,6 +4,7 @@ use super::lab_set::{JobKind, LabClips, LabSet, Sliced};
 use super::pair::Pair;
 use super::{MatchSearch, Outcome, Slot, Source, Transition};
 use crate::compare::MAX_PANES;
+use crate::labs::LabError;
 use crate::motion::Motion;
 use crate::params::{Key, Params};
 use crate::{LabId, choices};
@@ -49,7 +50,7 @@ impl Lab for BlendLab {
         clips: LabClips,
         params: &Params,
         match_window: usize,
-    ) -> Result<Option<Inputs>, String> {
+    ) -> Result<Option<Inputs>, LabError> {
         let pair = labs.pairs.of_slots(&clips.slots)?;
         Ok(Some(Inputs::new(labs.blender.inputs(&pair, params, match_window)?)))
     }
@@ -88,7 +89,7 @@ impl Lab for TransitionLab {
         clips: LabClips,
         params: &Params,
         match_window: usize,
-    ) -> Result<Option<Inputs>, String> {
+    ) -> Result<Option<Inputs>, LabError> {
         BlendLab.inputs(labs, clips, params, match_window)
     }
 }
@@ -226,7 +227,7 @@ fn open_search(pair: &Pair, window: usize) -> SearchOptions {
     options
 }
 
-fn pose_search(pair: &Pair) -> Result<PoseSearch, String> {
+fn pose_search(pair: &Pair) -> Result<PoseSearch, LabError> {
     let skeleton = pair.a.clip.skeleton();
     let search = PoseSearch::new(
         (&pair.a.clip, &pair.a.ground_frames),
@@ -234,7 +235,7 @@ fn pose_search(pair: &Pair) -> Result<PoseSearch, String> {
         &limb_weights(skeleton),
         pair.a.roles.body_height(skeleton).into(),
     );
-    search.map_err(|error| error.to_string())
+    search.map_err(LabError::from)
 }
 
 /// Makes blends, and keeps what does not change from one to the next: the pair of clips and the
@@ -267,7 +268,7 @@ impl Blender {
         pair: &Arc<Pair>,
         params: &Params,
         match_window: usize,
-    ) -> Result<BlendInputs, String> {
+    ) -> Result<BlendInputs, LabError> {
         self.meet(pair)?;
         let (frames_a, frames_b) = (pair.a.clip.frames(), pair.incoming.clip.frames());
         let in_transition = params.lab() == LabId::Transition;
@@ -326,7 +327,7 @@ impl Blender {
     }
 
     /// Begins to compare the frames of two clips that were not the last ones.
-    fn meet(&mut self, pair: &Arc<Pair>) -> Result<(), String> {
+    fn meet(&mut self, pair: &Arc<Pair>) -> Result<(), LabError> {
         if self.pair.as_ref().is_some_and(|known| Arc::ptr_eq(known, pair)) {
             return Ok(());
         }
@@ -338,7 +339,7 @@ impl Blender {
             &weights,
             body_height.into(),
         );
-        self.search = Some(search.map_err(|error| error.to_string())?);
+        self.search = Some(search?);
         self.pair = Some(Arc::clone(pair));
         self.poses = None;
         self.found.clear();
@@ -364,7 +365,7 @@ impl Blender {
 
     /// The frames that the user named, and the best match for what is left open. Until the
     /// distances are known, the middle of what is allowed.
-    fn place(&mut self, pair: &Pair, wanted: Wanted) -> Result<Place, String> {
+    fn place(&mut self, pair: &Pair, wanted: Wanted) -> Result<Place, LabError> {
         if wanted.weights.is_some() && self.poses.is_none() {
             self.poses = Some(pose_search(pair)?);
             self.compare_rows(ROWS_AT_ONCE);
@@ -397,14 +398,14 @@ impl Blender {
         let (leave, enter, distance_cm, is_widened) =
             match (wanted.weights, &self.poses, &self.search) {
                 (Some(weights), Some(search), _) => {
-                    let best = search.best(weights, &options).map_err(|error| error.to_string())?;
+                    let best = search.best(weights, &options)?;
                     (best.leave, best.enter, best.position_cm, best.grown)
                 }
                 (_, _, Some(search)) => {
-                    let best = search.best(&options).map_err(|error| error.to_string())?;
+                    let best = search.best(&options)?;
                     (best.leave, best.enter, best.rms_cm, best.grown)
                 }
-                _ => return Err("there are no clips to match".to_owned()),
+                _ => return Err(LabError::NothingToMatch),
             };
         let latest =
             |frames: usize| frames.saturating_sub(wanted.behind) as f64 / pair.a.clip.fps();
@@ -456,7 +457,7 @@ impl Sliced for Blender {
 }
 
 impl LabInputs for BlendInputs {
-    fn run(&self) -> Result<Outcome, String> {
+    fn run(&self) -> Result<Outcome, LabError> {
         let Self { pair, place, options, mistake, foot_lock } = self;
         let [a, b] = &pair.profiles;
         let (from, to) = (a.source(), b.source());
@@ -466,7 +467,7 @@ impl LabInputs for BlendInputs {
             }
             None => concatenate(from, place.leave, to, place.enter, options),
         };
-        let made = made.map_err(|error| error.to_string())?;
+        let made = made?;
         let fps = made.clip.fps();
         let secs = |frame: usize| frame as f64 / fps;
         let window = made.transition.clone();

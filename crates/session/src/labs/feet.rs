@@ -1,5 +1,6 @@
 //! Planted feet: held where they stand, and how far they slide.
 
+use crate::labs::LabError;
 use crate::params::{Key, Params};
 use segue_motion::clip::{Clip, Contacts};
 use segue_motion::metrics::Metric;
@@ -41,11 +42,11 @@ pub(super) fn locking(
     contacts: &Contacts,
     ground_m: f32,
     lock: Lock,
-) -> Result<Option<FootLocking>, String> {
+) -> Result<Option<FootLocking>, LabError> {
     match FootLocking::new(clip, roles, contacts, &lock.on_ground(ground_m)) {
         Ok(locking) => Ok(Some(locking)),
         Err(FootLockError::NoLegs) => Ok(None),
-        Err(error) => Err(error.to_string()),
+        Err(error) => Err(error.into()),
     }
 }
 
@@ -56,12 +57,12 @@ pub(super) fn with_feet(
     contacts: &Contacts,
     ground_m: f32,
     lock: Option<Lock>,
-) -> Result<Arc<Clip>, String> {
+) -> Result<Arc<Clip>, LabError> {
     let Some(lock) = lock else {
         return Ok(Arc::clone(free));
     };
     match locking(Arc::clone(free), roles, contacts, ground_m, lock)? {
-        Some(locking) => Ok(Arc::new(locking.finish().map_err(|error| error.to_string())?)),
+        Some(locking) => Ok(Arc::new(locking.finish()?)),
         None => Ok(Arc::clone(free)),
     }
 }

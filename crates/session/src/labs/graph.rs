@@ -1,6 +1,7 @@
 //! The Graph lab: several clips as a motion graph, and a walk through it that goes on while it
 //! plays.
 
+use crate::labs::LabError;
 use super::lab::{Beside, Inputs, Lab, LabInputs};
 use super::lab_set::{LabClips, LabSet};
 use crate::LabId;
@@ -17,6 +18,7 @@ pub use built::{Built, Distances, Field};
 pub use cast::Cast;
 pub(crate) use grapher::Grapher;
 pub use walk::{At, Passed, Trace, Walk, WalkGhost};
+pub(crate) use wanted::MOST_CLIPS;
 pub use wanted::{check_graph_clips, graph_of, write_jump, write_path, write_visits};
 pub(crate) use wanted::{clips_of, read_path, read_visits};
 
@@ -39,7 +41,7 @@ impl Lab for GraphLab {
         &[]
     }
 
-    fn more_clips(&self, params: &Params) -> Result<Vec<String>, String> {
+    fn more_clips(&self, params: &Params) -> Result<Vec<String>, LabError> {
         clips_of(params.text(Key::Clips))
     }
 
@@ -65,7 +67,7 @@ impl Lab for GraphLab {
         clips: LabClips,
         params: &Params,
         _match_window: usize,
-    ) -> Result<Option<Inputs>, String> {
+    ) -> Result<Option<Inputs>, LabError> {
         let clips = clips.more.into_iter().map(|clip| (clip.name, clip.motion)).collect();
         Ok(labs.grapher.inputs(clips, params)?.map(Inputs::new))
     }
@@ -82,7 +84,7 @@ impl PartialEq for GraphInputs {
 }
 
 impl LabInputs for GraphInputs {
-    fn run(&self) -> Result<Outcome, String> {
+    fn run(&self) -> Result<Outcome, LabError> {
         let walk = &self.0;
         let (mut sources, mut transition) = (Vec::new(), None);
         if let (true, [left, entered]) = (walk.is_jump, walk.passed.as_slice())

@@ -1,6 +1,7 @@
 //! The In place lab: a clip's way over the ground is taken out, or put back from its planted feet.
 
 use super::feet::{Lock, slide, with_feet};
+use crate::labs::LabError;
 use super::lab::{Inputs, Lab, LabInputs};
 use super::lab_set::{LabClips, LabSet};
 use super::{Measured, Outcome, Slot};
@@ -49,7 +50,7 @@ impl Lab for InPlaceLab {
         clips: LabClips,
         params: &Params,
         _match_window: usize,
-    ) -> Result<Option<Inputs>, String> {
+    ) -> Result<Option<Inputs>, LabError> {
         Ok(Some(Inputs::new(InPlaceInputs {
             motion: Arc::clone(clips.first()?),
             way: params.choice(),
@@ -78,7 +79,7 @@ impl PartialEq for InPlaceInputs {
 }
 
 impl LabInputs for InPlaceInputs {
-    fn run(&self) -> Result<Outcome, String> {
+    fn run(&self) -> Result<Outcome, LabError> {
         let source = &self.motion;
         let (moves, contacts) = match self.way {
             RootWay::TakeOut => {
@@ -86,8 +87,7 @@ impl LabInputs for InPlaceInputs {
             }
             RootWay::PutBack => {
                 let options = &source.feet.contacts;
-                let found = way_from_feet(&source.clip, &source.roles, options, self.turns)
-                    .map_err(|error| error.to_string())?;
+                let found = way_from_feet(&source.clip, &source.roles, options, self.turns)?;
                 (found.world_from_clip, found.contacts)
             }
         };

@@ -5,6 +5,7 @@ use super::{
     Outcome, Slot, blend, graph, in_place, layers, loop_, make, match_, path, register, speed, view,
 };
 use crate::LabId;
+use crate::labs::LabError;
 use crate::params::{Group, Key, Params, Value};
 use std::any::Any;
 use std::fmt;
@@ -40,7 +41,7 @@ pub(crate) trait Lab: Sync {
     ///
     /// # Errors
     /// Says what of the list cannot be read.
-    fn more_clips(&self, _params: &Params) -> Result<Vec<String>, String> {
+    fn more_clips(&self, _params: &Params) -> Result<Vec<String>, LabError> {
         Ok(Vec::new())
     }
 
@@ -61,7 +62,7 @@ pub(crate) trait Lab: Sync {
         clips: LabClips,
         params: &Params,
         match_window: usize,
-    ) -> Result<Option<Inputs>, String>;
+    ) -> Result<Option<Inputs>, LabError>;
 
     /// What the result is called; `a` and `b` are what the clips in its slots are called.
     fn result_name(&self, params: &Params, a: &str, b: &str) -> String;
@@ -126,7 +127,7 @@ pub(crate) trait LabInputs: fmt::Debug + PartialEq + Send + Sync + 'static {
     ///
     /// # Errors
     /// Says why there can be no result, and what to do.
-    fn run(&self) -> Result<Outcome, String>;
+    fn run(&self) -> Result<Outcome, LabError>;
 
     /// Returns whether the result is shown while more of it is computed: it will be another motion
     /// then, or have numbers.
@@ -141,13 +142,13 @@ pub(crate) struct Inputs(Arc<dyn AnyInputs>);
 
 /// [`LabInputs`] of a lab that is not known here.
 trait AnyInputs: Any + fmt::Debug + Send + Sync {
-    fn run(&self) -> Result<Outcome, String>;
+    fn run(&self) -> Result<Outcome, LabError>;
     fn is_draft(&self) -> bool;
     fn equals(&self, other: &dyn AnyInputs) -> bool;
 }
 
 impl<T: LabInputs> AnyInputs for T {
-    fn run(&self) -> Result<Outcome, String> {
+    fn run(&self) -> Result<Outcome, LabError> {
         LabInputs::run(self)
     }
 
@@ -167,7 +168,7 @@ impl Inputs {
     }
 
     /// Makes the result; errors as [`LabInputs::run`].
-    pub(crate) fn run(&self) -> Result<Outcome, String> {
+    pub(crate) fn run(&self) -> Result<Outcome, LabError> {
         self.0.run()
     }
 

@@ -7,6 +7,7 @@ use super::layers::Layerer;
 use super::loop_::CycleFinder;
 use super::match_::{Driver, HandTag, Source as MatchSource, filter_of, read_tags};
 use super::pair::Pairs;
+use crate::labs::LabError;
 use super::path::Paths;
 use super::register::Registrars;
 use super::speed::GaitFinder;
@@ -86,8 +87,8 @@ pub(crate) struct MoreClip {
 }
 
 impl LabClips {
-    pub(super) fn first(&self) -> Result<&Arc<Motion>, String> {
-        self.slots.first().ok_or_else(|| "There is no clip in A.".to_owned())
+    pub(super) fn first(&self) -> Result<&Arc<Motion>, LabError> {
+        self.slots.first().ok_or(LabError::NoClip)
     }
 
     pub(super) fn motions(&self) -> Vec<Arc<Motion>> {
@@ -172,7 +173,7 @@ impl LabSet {
         &mut self,
         clips: LabClips,
         params: &Params,
-    ) -> Result<Option<Arc<Database>>, String> {
+    ) -> Result<Option<Arc<Database>>, LabError> {
         let tags: Vec<HandTag> = read_tags(params.text(Key::Tags))?;
         filter_of(params)?;
         let database = self.driver.database(&MatchSource::new(clips.motions(), params))?;

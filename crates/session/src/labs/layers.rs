@@ -6,6 +6,7 @@ use super::{LabFacts, Outcome, Slot, Source};
 use crate::LabId;
 use crate::choices;
 use crate::compare::MAX_PANES;
+use crate::labs::LabError;
 use crate::motion::Motion;
 use crate::params::{Key, Params};
 use segue_motion::blend::{
@@ -40,7 +41,7 @@ impl Lab for LayersLab {
         clips: LabClips,
         params: &Params,
         _match_window: usize,
-    ) -> Result<Option<Inputs>, String> {
+    ) -> Result<Option<Inputs>, LabError> {
         let pair = labs.pairs.of_slots(&clips.slots)?;
         Ok(Some(Inputs::new(labs.layerer.inputs(&pair, params)?)))
     }
@@ -125,7 +126,7 @@ impl Layerer {
         &mut self,
         pair: &Arc<Pair>,
         params: &Params,
-    ) -> Result<LayerInputs, String> {
+    ) -> Result<LayerInputs, LabError> {
         Ok(LayerInputs {
             pair: Arc::clone(pair),
             timed: self.timed(pair, params)?,
@@ -134,7 +135,7 @@ impl Layerer {
         })
     }
 
-    fn timed(&mut self, pair: &Arc<Pair>, params: &Params) -> Result<Arc<Timed>, String> {
+    fn timed(&mut self, pair: &Arc<Pair>, params: &Params) -> Result<Arc<Timed>, LabError> {
         let wanted = (params.choice(), params.number(Key::LayerStart));
         let known = self
             .timed
@@ -155,7 +156,7 @@ impl Layerer {
         &mut self,
         pair: &Arc<Pair>,
         wanted: (choices::LayerFit, f64),
-    ) -> Result<Timed, String> {
+    ) -> Result<Timed, LabError> {
         let (a, b) = (&pair.a.clip, &pair.incoming.clip);
         let times =
             || Arc::new((0..a.frames()).map(|frame| a.time_of(frame)).collect::<Vec<f64>>());
@@ -180,8 +181,7 @@ impl Layerer {
             time: time_of(fit),
             ..LayerOptions::default()
         };
-        let shown = layer_timed(a, roles, &reading.over, &whole, &reading.times)
-            .map_err(|error| error.to_string())?;
+        let shown = layer_timed(a, roles, &reading.over, &whole, &reading.times)?;
         let shown = Arc::new(Motion::analyze_feet(
             shown.with_name(b.name()),
             Some(roles.clone()),
@@ -277,13 +277,12 @@ fn options_of(params: &Params) -> LayerOptions {
 }
 
 impl LabInputs for LayerInputs {
-    fn run(&self) -> Result<Outcome, String> {
+    fn run(&self) -> Result<Outcome, LabError> {
         let (pair, timed) = (&self.pair, &self.timed);
         let (a, roles) = (&pair.a, pair.a.roles.clone());
         let options = LayerOptions { time: time_of(timed.fit), ..self.options.clone() };
         let Reading { over, times } = &timed.reading;
-        let made = layer_timed(&a.clip, &roles, over, &options, times)
-            .map_err(|error| error.to_string())?;
+        let made = layer_timed(&a.clip, &roles, over, &options, times)?;
         let free = Arc::new(made.with_name(format!("{} + {}", a.clip.name(), pair.b.clip.name())));
         let shares: Vec<f32> = mask(a.clip.skeleton(), &roles, &options.parts, options.feather)
             .into_iter()

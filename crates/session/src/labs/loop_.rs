@@ -8,6 +8,7 @@ use super::rounds::{Rounds, repeated, rounds};
 use super::{Cycle, CycleMade, Outcome, Slot, Source};
 use crate::LabId;
 use crate::choices;
+use crate::labs::LabError;
 use crate::motion::Motion;
 use crate::params::{Key, Params};
 use segue_motion::blend;
@@ -61,7 +62,7 @@ impl Lab for LoopLab {
         clips: LabClips,
         params: &Params,
         _match_window: usize,
-    ) -> Result<Option<Inputs>, String> {
+    ) -> Result<Option<Inputs>, LabError> {
         Ok(Some(Inputs::new(labs.cycles.inputs(clips.first()?, params)?)))
     }
 }
@@ -104,7 +105,7 @@ impl CycleFinder {
         &mut self,
         motion: &Arc<Motion>,
         params: &Params,
-    ) -> Result<LoopInputs, String> {
+    ) -> Result<LoopInputs, LabError> {
         let fps = motion.clip.fps();
         let last = motion.clip.frames().saturating_sub(1);
         let mut given = [Key::LoopFrom, Key::LoopTo]
@@ -125,7 +126,7 @@ impl CycleFinder {
         &mut self,
         motion: &Arc<Motion>,
         given: [Option<usize>; 2],
-    ) -> Result<Arc<Found>, String> {
+    ) -> Result<Arc<Found>, LabError> {
         if let Some(found) = &self.known
             && Arc::ptr_eq(&found.motion, motion)
             && found.given == given
@@ -136,8 +137,7 @@ impl CycleFinder {
         let search =
             CycleSearch { start: given[0], end: given[1], ..CycleSearch::new(motion.clip.fps()) };
         let body_height = motion.roles.body_height(motion.clip.skeleton());
-        let cut = find_cycle(&source, &motion.contacts, body_height.into(), &search)
-            .map_err(|error| error.to_string())?;
+        let cut = find_cycle(&source, &motion.contacts, body_height.into(), &search)?;
         let found = Arc::new(Found { motion: Arc::clone(motion), source, given, cut });
         self.known = Some(Arc::clone(&found));
         Ok(found)
@@ -161,14 +161,13 @@ fn options(params: &Params) -> LoopOptions {
 }
 
 impl LabInputs for LoopInputs {
-    fn run(&self) -> Result<Outcome, String> {
+    fn run(&self) -> Result<Outcome, LabError> {
         let Found { motion, source, cut, .. } = &*self.found;
-        let looped = close_loop(source, cut.cycle.clone(), &self.options)
-            .map_err(|error| error.to_string())?;
+        let looped = close_loop(source, cut.cycle.clone(), &self.options)?;
         let (fps, frames) = (looped.clip.fps(), cut.cycle.len());
         // One more, of which the first frame is the one behind the last.
         let three = looped.repeat(4).and_then(|clip| clip.crop(0..3 * frames + 1));
-        let three = three.map_err(|error| error.to_string())?;
+        let three = three?;
         let contacts = repeated(&motion.contacts, &cut.cycle, 3 * frames + 1);
         let Rounds { motion: played, mut slides } =
             rounds(&motion.roles, frames, three, &contacts, motion.ground_m, self.foot_lock)?;

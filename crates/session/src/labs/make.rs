@@ -3,6 +3,7 @@ use super::kept::{belongs_to, counts};
 use super::lab::{Inputs, Lab, LabInputs};
 use super::lab_set::{LabClips, LabSet};
 use super::{Outcome, Slot};
+use crate::labs::LabError;
 use crate::motion::{FeetReading, Motion};
 use crate::outside::short;
 use crate::params::{Key, Kind, Params, Value};
@@ -41,7 +42,7 @@ impl Lab for MakeLab {
         _clips: LabClips,
         params: &Params,
         _match_window: usize,
-    ) -> Result<Option<Inputs>, String> {
+    ) -> Result<Option<Inputs>, LabError> {
         Ok(Some(Inputs::new(MakeInputs::of(params))))
     }
 }
@@ -123,8 +124,8 @@ fn synth_params(params: &Params) -> synth::Params {
 }
 
 /// The motion that the Make lab is set to.
-fn make(params: &Params) -> Result<Outcome, String> {
-    let made = synth::synthesize(&synth_params(params)).map_err(|error| error.to_string())?;
+fn make(params: &Params) -> Result<Outcome, LabError> {
+    let made = synth::synthesize(&synth_params(params))?;
     let mut motion =
         Motion::analyze_feet(made.clip.with_name(made_id(params)), None, FeetReading::of(params));
     let slid = |motion: &Motion| foot_slide_cm(&motion.clip, &motion.roles, &motion.contacts);
@@ -138,12 +139,12 @@ fn make(params: &Params) -> Result<Outcome, String> {
 }
 
 /// A built-in motion by its id.
-pub(crate) fn preset_motion(id: &str) -> Result<Motion, String> {
+pub(crate) fn preset_motion(id: &str) -> Result<Motion, LabError> {
     let preset = synth::presets()
         .into_iter()
         .find(|preset| preset.id == id)
-        .ok_or_else(|| format!("`{}` is no built-in motion.", short(id)))?;
-    let made = synth::synthesize(&preset.params).map_err(|error| error.to_string())?;
+        .ok_or_else(|| LabError::NoPreset { id: short(id) })?;
+    let made = synth::synthesize(&preset.params)?;
     Ok(Motion::analyze(made.clip.with_name(preset.title), None))
 }
 
@@ -181,7 +182,7 @@ impl MakeInputs {
 }
 
 impl LabInputs for MakeInputs {
-    fn run(&self) -> Result<Outcome, String> {
+    fn run(&self) -> Result<Outcome, LabError> {
         make(&self.params)
     }
 }

@@ -6,6 +6,7 @@ use super::lab::{Inputs, Lab};
 use super::lab_set::{LabClips, LabSet};
 use crate::LabId;
 use crate::choices;
+use crate::labs::LabError;
 use crate::params::{Key, Params, Value};
 mod crowd;
 mod driver;
@@ -44,10 +45,8 @@ impl Lab for MatchLab {
         &[]
     }
 
-    fn more_clips(&self, params: &Params) -> Result<Vec<String>, String> {
-        read_ids(params.text(Key::MatchClips)).ok_or_else(|| {
-            "The list of clips cannot be read: its brackets do not close.".to_owned()
-        })
+    fn more_clips(&self, params: &Params) -> Result<Vec<String>, LabError> {
+        read_ids(params.text(Key::MatchClips)).ok_or(LabError::MatchClips)
     }
 
     fn with_clips(&self, ids: &[String]) -> Option<Vec<(Key, Value)>> {
@@ -75,9 +74,9 @@ impl Lab for MatchLab {
         clips: LabClips,
         params: &Params,
         _match_window: usize,
-    ) -> Result<Option<Inputs>, String> {
+    ) -> Result<Option<Inputs>, LabError> {
         let Some(recording) = recording_of(params)? else {
-            return Err("Nothing was driven yet.".to_owned());
+            return Err(LabError::NothingDriven);
         };
         let Some(database) = labs.match_database(clips, params)? else {
             return Ok(None);

@@ -1,4 +1,5 @@
 use super::Retargeted;
+use crate::labs::LabError;
 use crate::motion::Motion;
 use segue_motion::blend;
 use segue_motion::clip::{Clip, Interpolation, resample, retarget_onto};
@@ -31,7 +32,7 @@ impl Pair {
         [&self.a, &self.incoming].map(|motion| Arc::clone(&motion.clip)).into()
     }
 
-    fn new(a: &Arc<Motion>, b: &Arc<Motion>) -> Result<Self, String> {
+    fn new(a: &Arc<Motion>, b: &Arc<Motion>) -> Result<Self, LabError> {
         let (incoming, retargeted) = fitted(a, b)?;
         let profiles = [a, &incoming].map(|motion| {
             Profile::new(Arc::new(source_of(motion)), &motion.roles, motion.contacts.clone())
@@ -44,7 +45,7 @@ impl Pair {
 pub(super) fn fitted(
     a: &Arc<Motion>,
     b: &Arc<Motion>,
-) -> Result<(Arc<Motion>, Option<Arc<Retargeted>>), String> {
+) -> Result<(Arc<Motion>, Option<Arc<Retargeted>>), LabError> {
     let same_skeleton =
         Arc::ptr_eq(a.clip.skeleton(), b.clip.skeleton()) || a.clip.skeleton() == b.clip.skeleton();
     let same_rate = (a.clip.fps() - b.clip.fps()).abs() <= 1e-4 * a.clip.fps();
@@ -53,12 +54,10 @@ pub(super) fn fitted(
     }
     let mut clip = (*b.clip).clone();
     if !same_skeleton {
-        clip =
-            retarget_onto(&clip, &b.roles, &a.clip, &a.roles).map_err(|error| error.to_string())?;
+        clip = retarget_onto(&clip, &b.roles, &a.clip, &a.roles)?;
     }
     if !same_rate {
-        clip = resample(&clip, a.clip.fps(), Interpolation::Cubic)
-            .map_err(|error| error.to_string())?;
+        clip = resample(&clip, a.clip.fps(), Interpolation::Cubic)?;
     }
     let roles = if same_skeleton { b.roles.clone() } else { a.roles.clone() };
     let retargeted = (!same_skeleton).then(|| Arc::new(Retargeted::between(a, b)));
@@ -92,15 +91,15 @@ pub(crate) struct Pairs(Option<Arc<Pair>>);
 
 impl Pairs {
     /// As [`of`](Self::of), for the clips of a lab's slots.
-    pub(crate) fn of_slots(&mut self, slots: &[Arc<Motion>]) -> Result<Arc<Pair>, String> {
+    pub(crate) fn of_slots(&mut self, slots: &[Arc<Motion>]) -> Result<Arc<Pair>, LabError> {
         match slots {
             [a, b] => self.of(a, b),
-            _ => Err("There are no clips in A and B.".to_owned()),
+            _ => Err(LabError::NoPair),
         }
     }
 
     /// B on the skeleton and at the rate of A.
-    pub(crate) fn of(&mut self, a: &Arc<Motion>, b: &Arc<Motion>) -> Result<Arc<Pair>, String> {
+    pub(crate) fn of(&mut self, a: &Arc<Motion>, b: &Arc<Motion>) -> Result<Arc<Pair>, LabError> {
         if let Some(pair) = &self.0
             && Arc::ptr_eq(&pair.a, a)
             && Arc::ptr_eq(&pair.b, b)

@@ -9,6 +9,7 @@ use super::{LabFacts, Outcome, Slot, Source};
 use crate::LabId;
 use crate::choices;
 use crate::compare::MAX_PANES;
+use crate::labs::LabError;
 use crate::motion::Motion;
 use crate::params::{Key, Params, Value, ValueError};
 use planter::{Planted, Planter};
@@ -62,7 +63,7 @@ impl Lab for PathLab {
         clips: LabClips,
         params: &Params,
         _match_window: usize,
-    ) -> Result<Option<Inputs>, String> {
+    ) -> Result<Option<Inputs>, LabError> {
         Ok(Some(Inputs::new(labs.paths.inputs(clips.first()?, params)?)))
     }
 }
@@ -79,10 +80,9 @@ pub struct FittedMotion {
 }
 
 impl FittedMotion {
-    fn new(motion: &Arc<Motion>, options: FitOptions) -> Result<Self, String> {
+    fn new(motion: &Arc<Motion>, options: FitOptions) -> Result<Self, LabError> {
         let source = source_of(motion);
-        let path =
-            FittedPath::new(Arc::new(source), &options).map_err(|error| error.to_string())?;
+        let path = FittedPath::new(Arc::new(source), &options)?;
         let off = path.residuals().map(|residual| residual.shift.length() * 100.0);
         Ok(Self {
             motion: Arc::clone(motion),
@@ -205,7 +205,7 @@ impl Paths {
         &mut self,
         motion: &Arc<Motion>,
         params: &Params,
-    ) -> Result<PathInputs, String> {
+    ) -> Result<PathInputs, LabError> {
         let options = FitOptions {
             control_points: params.number(Key::ControlPoints) as usize,
             smoothing: params.number(Key::PathSmoothing),
@@ -233,7 +233,7 @@ impl Paths {
         &mut self,
         motion: &Arc<Motion>,
         options: FitOptions,
-    ) -> Result<Arc<FittedMotion>, String> {
+    ) -> Result<Arc<FittedMotion>, LabError> {
         let is_it = |known: &&Arc<FittedMotion>| {
             Arc::ptr_eq(&known.motion, motion) && known.options == options
         };
@@ -295,16 +295,16 @@ fn carry_options(params: &Params) -> CarryOptions {
 }
 
 /// The path, and the motion on it as its feet come.
-fn free_motion(inputs: &PathInputs) -> Result<(Arc<Road>, EditedMotion), String> {
+fn free_motion(inputs: &PathInputs) -> Result<(Arc<Road>, EditedMotion), LabError> {
     let fitted = &inputs.fitted;
     let road = if inputs.code.is_empty() {
         Arc::clone(&fitted.road)
     } else {
         let spline = GroundSpline::from_code(&inputs.code);
-        Arc::new(spline.and_then(Road::new).map_err(|error| error.to_string())?)
+        Arc::new(spline.and_then(Road::new)?)
     };
     let options = MotionOptions { carry: inputs.carry, foot_lock: None };
-    let made = fitted.editor.motion(&road, &options).map_err(|error| error.to_string())?;
+    let made = fitted.editor.motion(&road, &options)?;
     Ok((road, made))
 }
 
@@ -316,7 +316,7 @@ impl PathInputs {
         free: &Arc<Clip>,
         contacts: &Contacts,
         turns: &[f64],
-    ) -> Result<Option<FootLocking>, String> {
+    ) -> Result<Option<FootLocking>, LabError> {
         let Some(lock) = self.lock else {
             return Ok(None);
         };
@@ -327,7 +327,7 @@ impl PathInputs {
 }
 
 impl LabInputs for PathInputs {
-    fn run(&self) -> Result<Outcome, String> {
+    fn run(&self) -> Result<Outcome, LabError> {
         let (road, made) = free_motion(self)?;
         let fitted = &self.fitted;
         let free = Arc::new(made.clip);
@@ -335,7 +335,7 @@ impl LabInputs for PathInputs {
             Feet::Free | Feet::Awaited => (free, made.slide_cm.carried),
             Feet::AtOnce => {
                 let clip = match self.locking(&free, &made.contacts, &made.turns)? {
-                    Some(locking) => Arc::new(locking.finish().map_err(|error| error.to_string())?),
+                    Some(locking) => Arc::new(locking.finish()?),
                     None => free,
                 };
                 let slide_cm = foot_slide_cm(&clip, &fitted.motion.roles, &made.contacts);

@@ -1,5 +1,6 @@
 //! The Register lab: two clips laid on each other in time, blended or joined along it.
 
+use crate::labs::LabError;
 use super::lab::{Beside, Inputs, Lab, LabInputs};
 use super::lab_set::{LabClips, LabSet};
 use crate::LabId;
@@ -52,7 +53,7 @@ impl Lab for RegisterLab {
         format!("{} and {} registered", params.text(Key::A), params.text(Key::B))
     }
 
-    fn more_clips(&self, params: &Params) -> Result<Vec<String>, String> {
+    fn more_clips(&self, params: &Params) -> Result<Vec<String>, LabError> {
         Ok(read_also(params.text(Key::WarpAlso))?.into_iter().map(|(id, _)| id).collect())
     }
 
@@ -70,7 +71,7 @@ impl Lab for RegisterLab {
         clips: LabClips,
         params: &Params,
         _match_window: usize,
-    ) -> Result<Option<Inputs>, String> {
+    ) -> Result<Option<Inputs>, LabError> {
         let pair = labs.pairs.of_slots(&clips.slots)?;
         let weights = read_also(params.text(Key::WarpAlso))?.into_iter().map(|(_, weight)| weight);
         let also: Vec<_> = clips.motions().into_iter().zip(weights).collect();
@@ -178,7 +179,7 @@ enum Made {
 }
 
 impl Made {
-    fn of(params: &Params) -> Result<Self, String> {
+    fn of(params: &Params) -> Result<Self, LabError> {
         if params.choice::<choices::WarpMode>() == choices::WarpMode::Join {
             return Ok(Self::Join {
                 part_secs: [Key::WarpFrom, Key::WarpTo].map(|key| params.optional(key)),
@@ -286,7 +287,7 @@ impl RegisterInputs {
         ]
     }
 
-    fn blend(&self, weight: &WeightCurve) -> Result<Draft, String> {
+    fn blend(&self, weight: &WeightCurve) -> Result<Draft, LabError> {
         let [a, b] = self.sources();
         let partner = Partner { source: b, registration: self.found.way(self.is_plain), weight };
         let weights: Vec<WeightCurve> =
@@ -297,7 +298,7 @@ impl RegisterInputs {
             weight,
         });
         let partners: Vec<Partner<'_>> = std::iter::once(partner).chain(also).collect();
-        let made = registered_blend(a, &partners).map_err(|error| sentence(&error))?;
+        let made = registered_blend(a, &partners)?;
         let also = self.also.iter().map(|also| &also.pair.incoming.contacts);
         let all: Vec<&Contacts> = self.contacts().into_iter().chain(also).collect();
         let contacts = made.contacts(&all);
@@ -330,7 +331,7 @@ impl RegisterInputs {
     /// From and to in frames of A: what was asked for, inside of what is registered; the middle
     /// half of it where nothing was, so that no seam of a kept clip is left out: behind the last
     /// one of A, before the first one of B.
-    fn part(&self, part_secs: [Option<f64>; 2]) -> Result<[usize; 2], String> {
+    fn part(&self, part_secs: [Option<f64>; 2]) -> Result<[usize; 2], LabError> {
         let [from, to] = self.span();
         let fps = self.pair.a.clip.fps();
         let Pair { a, incoming, .. } = &*self.pair;
@@ -343,11 +344,10 @@ impl RegisterInputs {
                 to.min(self.found.registration.warp().inverse(incoming.before_seams() as f64));
         }
         if part_secs.contains(&None) && room != [from, to] && room[0] + 2.0 > room[1] {
-            return Err(format!(
-                "Behind the last seam of A, at {:.2} s, and before the first one of B, at {:.2} s of A, there is no room to go over: set by hand where the join begins and ends.",
-                room[0] / fps,
-                room[1] / fps
-            ));
+            return Err(LabError::NoRoomToJoin {
+                last_secs: room[0] / fps,
+                first_secs: room[1] / fps,
+            });
         }
         let asked = |secs: Option<f64>, share: f64| {
             let frame = secs.map_or(room[0] + share * (room[1] - room[0]), |secs| secs * fps);
@@ -356,18 +356,17 @@ impl RegisterInputs {
         };
         let [leave, arrive] = [asked(part_secs[0], 0.25), asked(part_secs[1], 0.75)];
         if leave + 2 > arrive {
-            return Err(format!(
-                "The join begins at {:.2} s and ends at {:.2} s of A, of which {:.2} to {:.2} s are registered: move its end behind its beginning.",
-                leave as f64 / fps,
-                arrive as f64 / fps,
-                from / fps,
-                to / fps
-            ));
+            return Err(LabError::JoinBackwards {
+                begin_secs: leave as f64 / fps,
+                end_secs: arrive as f64 / fps,
+                from_secs: from / fps,
+                to_secs: to / fps,
+            });
         }
         Ok([leave, arrive])
     }
 
-    fn join(&self, [leave, arrive]: [usize; 2], law: WeightLaw) -> Result<Draft, String> {
+    fn join(&self, [leave, arrive]: [usize; 2], law: WeightLaw) -> Result<Draft, LabError> {
         let [a, b] = self.sources();
         let [contacts_a, contacts_b] = self.contacts();
         let warp = self.found.registration.warp();
@@ -375,8 +374,7 @@ impl RegisterInputs {
             let enter = (warp.at(leave as f64).round().max(0.0)) as usize;
             let window = (arrive - leave).min(b.clip().frames().saturating_sub(enter + 1));
             let options = DissolveOptions { window, law, ..DissolveOptions::default() };
-            let joined =
-                dissolve(a, leave, b, enter, &options).map_err(|error| sentence(&error))?;
+            let joined = dissolve(a, leave, b, enter, &options)?;
             let beat = |p: usize| Beat {
                 frames: [(leave + p) as f64, (enter + p) as f64],
                 weights: of_two(1.0 - law.alpha((p + 1) as f64 / window.max(1) as f64)),
@@ -385,8 +383,7 @@ impl RegisterInputs {
             let contacts = Contacts::joined(contacts_a, contacts_b, leave, enter, joined.handover);
             (joined, during, contacts)
         } else {
-            let made = registered_join(a, b, &self.found.registration, leave, arrive, law)
-                .map_err(|error| sentence(&error))?;
+            let made = registered_join(a, b, &self.found.registration, leave, arrive, law)?;
             let contacts = made.contacts(contacts_a, contacts_b);
             (made.joined, made.during.iter().map(beat).collect(), contacts)
         };
@@ -466,7 +463,7 @@ impl RegisterInputs {
 }
 
 impl LabInputs for RegisterInputs {
-    fn run(&self) -> Result<Outcome, String> {
+    fn run(&self) -> Result<Outcome, LabError> {
         let pair = &self.pair;
         let fps = pair.a.clip.fps();
         let (draft, part, is_join) = match &self.made {
@@ -540,15 +537,6 @@ impl LabInputs for RegisterInputs {
             ..Outcome::plain(motion)
         })
     }
-}
-
-/// An error as a sentence.
-fn sentence(error: &impl std::fmt::Display) -> String {
-    let words = error.to_string();
-    let mut letters = words.chars();
-    letters
-        .next()
-        .map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
 }
 
 /// The weights of A and of B where there are no more.

@@ -1,8 +1,9 @@
 //! A cycle that is played several times: what the Speed and the Loop lab show.
 
 use super::feet::{Lock, slide, slide_before, with_feet};
+use crate::labs::LabError;
 use crate::motion::{FeetReading, Motion};
-use segue_motion::clip::{Clip, ClipError, Contacts, character_frames};
+use segue_motion::clip::{Clip, Contacts, character_frames};
 use segue_motion::metrics::{Metric, foot_slide_cm};
 use segue_motion::skeleton::{Roles, Side};
 use segue_motion::transition::repeat_clip;
@@ -32,13 +33,12 @@ pub(super) fn rounds(
     contacts: &Contacts,
     ground_m: f32,
     lock: Option<Lock>,
-) -> Result<Rounds, String> {
-    let sentence = |error: ClipError| error.to_string();
+) -> Result<Rounds, LabError> {
     let fps = three.fps();
     let count = (SHOWN_SECS * fps / cycle_frames as f64).ceil().clamp(2.0, 12.0) as usize;
     let stands = character_frames(&three, roles);
     let (Some(first), Some(second)) = (stands.first(), stands.get(cycle_frames)) else {
-        return Err("the cycle has no frames".to_owned());
+        return Err(LabError::EmptyCycle);
     };
     let cycle = second.after(&first.inverse());
     let three = Arc::new(three);
@@ -48,11 +48,10 @@ pub(super) fn rounds(
     if lock.is_some() {
         slides = vec![slide(slid(&held)), slide_before(slides[0].value)];
     }
-    let middle = held.crop(cycle_frames..2 * cycle_frames).map_err(sentence)?;
+    let middle = held.crop(cycle_frames..2 * cycle_frames)?;
     let frames = count * cycle_frames + 1;
     let clip = repeat_clip(&middle.transformed(&cycle.inverse()), &cycle, count + 1)
-        .and_then(|clip| clip.crop(0..frames))
-        .map_err(sentence)?;
+        .and_then(|clip| clip.crop(0..frames))?;
     Ok(Rounds {
         motion: Motion {
             ground_frames: character_frames(&clip, roles),

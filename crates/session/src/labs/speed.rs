@@ -5,6 +5,7 @@ use super::lab::{Inputs, Lab, LabInputs};
 use super::lab_set::{LabClips, LabSet};
 use super::pair::Pair;
 use super::rounds::{Rounds, rounds};
+use crate::labs::LabError;
 use super::{Cycle, CycleMade, Outcome};
 use crate::LabId;
 use crate::params::{Key, Kind, Params};
@@ -47,7 +48,7 @@ impl Lab for SpeedLab {
         clips: LabClips,
         params: &Params,
         _match_window: usize,
-    ) -> Result<Option<Inputs>, String> {
+    ) -> Result<Option<Inputs>, LabError> {
         let pair = labs.pairs.of_slots(&clips.slots)?;
         Ok(Some(Inputs::new(labs.gaits.inputs(&pair, params)?)))
     }
@@ -89,7 +90,7 @@ impl GaitFinder {
         &mut self,
         pair: &Arc<Pair>,
         params: &Params,
-    ) -> Result<SpeedInputs, String> {
+    ) -> Result<SpeedInputs, LabError> {
         let gaits = self.gaits(pair)?;
         let clips_mps = [0, 1].map(|clip: usize| gaits.cycles[clip].speed_mps());
         Ok(SpeedInputs {
@@ -104,7 +105,7 @@ impl GaitFinder {
         })
     }
 
-    fn gaits(&mut self, pair: &Arc<Pair>) -> Result<Arc<Gaits>, String> {
+    fn gaits(&mut self, pair: &Arc<Pair>) -> Result<Arc<Gaits>, LabError> {
         if let Some(gaits) = &self.known
             && Arc::ptr_eq(&gaits.pair, pair)
         {
@@ -112,7 +113,7 @@ impl GaitFinder {
         }
         let find = |profile: &segue_motion::metrics::Profile, roles: &Roles| {
             let found = GaitCycle::find(profile.source(), roles, profile.contacts());
-            found.map_err(|error| error.to_string())
+            found.map_err(LabError::from)
         };
         let [first, second] = &pair.profiles;
         let cycles = [find(first, &pair.a.roles)?, find(second, &pair.incoming.roles)?];
@@ -138,20 +139,20 @@ impl SpeedInputs {
     }
 
     /// The gait at another speed than the one asked for.
-    pub(crate) fn run_at(&self, speed_mps: f64) -> Result<Outcome, String> {
+    pub(crate) fn run_at(&self, speed_mps: f64) -> Result<Outcome, LabError> {
         let asked_mps = speed_mps;
         Self { asked_mps, ..self.clone() }.run()
     }
 }
 
 impl LabInputs for SpeedInputs {
-    fn run(&self) -> Result<Outcome, String> {
+    fn run(&self) -> Result<Outcome, LabError> {
         let (pair, [a, b]) = (&self.gaits.pair, &self.gaits.cycles);
         let options = SpeedOptions { alignment: self.alignment, ..SpeedOptions::default() };
         let roles = &pair.a.roles;
-        let blend = SpeedBlend::new(a, b, roles, &options).map_err(|error| error.to_string())?;
+        let blend = SpeedBlend::new(a, b, roles, &options)?;
         let fps = pair.a.clip.fps();
-        let three = blend.cycles_at(self.asked_mps, 3).map_err(|error| error.to_string())?;
+        let three = blend.cycles_at(self.asked_mps, 3)?;
         let (facts, cycle_frames) = (three.facts, (three.clip.frames() - 1) / 3);
         let Rounds { motion, mut slides } = rounds(
             roles,

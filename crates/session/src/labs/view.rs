@@ -9,8 +9,8 @@ use super::{Measured, Outcome, Slot};
 use crate::LabId;
 use crate::choices;
 use crate::compare::MAX_PANES;
+use crate::labs::LabError;
 use crate::motion::Motion;
-use crate::notice::sentence;
 use crate::params::{Key, Params};
 use segue_motion::clip::take_in_place;
 use segue_motion::math::Planar;
@@ -59,7 +59,7 @@ impl Lab for ViewLab {
         clips: LabClips,
         params: &Params,
         _match_window: usize,
-    ) -> Result<Option<Inputs>, String> {
+    ) -> Result<Option<Inputs>, LabError> {
         Ok(labs.viewer.inputs(clips.first()?, params).map(Inputs::new))
     }
 }
@@ -89,7 +89,7 @@ impl PartialEq for ViewInputs {
 }
 
 impl LabInputs for ViewInputs {
-    fn run(&self) -> Result<Outcome, String> {
+    fn run(&self) -> Result<Outcome, LabError> {
         let shown = match &self.viewed {
             None => Outcome::plain(Arc::clone(&self.motion)),
             Some(viewed) => viewed.made.clone()?,
@@ -140,7 +140,7 @@ impl Ground {
     }
 
     /// The motion there.
-    fn moved(&self, motion: &Arc<Motion>) -> Result<Arc<Motion>, String> {
+    fn moved(&self, motion: &Arc<Motion>) -> Result<Arc<Motion>, LabError> {
         let frames = &motion.ground_frames;
         let mut moves = match self.root_motion {
             RootMotion::World if self.start == [None; 2] && self.heading_deg.is_none() => {
@@ -150,8 +150,7 @@ impl Ground {
             RootMotion::InPlace => take_in_place(frames, true),
             RootMotion::Residual => {
                 let source = source_of(motion);
-                let path = FittedPath::new(Arc::new(source), &FitOptions::default())
-                    .map_err(|error| sentence(&error.to_string()))?;
+                let path = FittedPath::new(Arc::new(source), &FitOptions::default())?;
                 path.places().iter().map(|place| place.frame.inverse()).collect()
             }
         };
@@ -186,7 +185,7 @@ impl Ground {
 struct Viewed {
     of: Arc<Motion>,
     lock: Option<Lock>,
-    made: Result<Outcome, String>,
+    made: Result<Outcome, LabError>,
 }
 
 /// Holds feet and measures clips slice by slice, and keeps what as many panes as there can be have
@@ -332,7 +331,7 @@ impl Sliced for Viewer {
 /// What a slice of work leads to.
 enum Step {
     On(Box<Stage>),
-    Done(Box<Result<Outcome, String>>),
+    Done(Box<Result<Outcome, LabError>>),
 }
 
 fn on(stage: Stage) -> Step {
@@ -362,7 +361,7 @@ fn next(of: &Arc<Motion>, stage: Stage) -> Step {
                     let motion = Motion { clip: Arc::new(locked), ..Motion::clone(of) };
                     on(Stage::measuring(Arc::new(motion), Some(slide_before(before_cm))))
                 }
-                Err(error) => Step::Done(Box::new(Err(error.to_string()))),
+                Err(error) => Step::Done(Box::new(Err(error.into()))),
             }
         }
         Stage::Measuring { motion, before, mut meter } => {

@@ -2,6 +2,7 @@
 
 use super::page::Page;
 use crate::outside::short;
+use segue_text::{Message, msg};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -58,7 +59,7 @@ pub(super) fn lesson_of_file(name: &str) -> Option<&'static str> {
 ///
 /// # Errors
 /// What was found in place of a lesson, and what there is.
-pub fn source_of(lesson: &str, lang: &str) -> Result<(Source, usize), String> {
+pub fn source_of(lesson: &str, lang: &str) -> Result<(Source, usize), Message> {
     if lesson.starts_with("https://") || lesson.starts_with("http://") {
         let (address, page) = lesson.split_once('#').unwrap_or((lesson, "1"));
         let page = page.parse::<usize>().unwrap_or(1).max(1) - 1;
@@ -66,10 +67,11 @@ pub fn source_of(lesson: &str, lang: &str) -> Result<(Source, usize), String> {
     }
     match file_name(lesson) {
         Some(file) => Ok((Source::BuiltIn(format!("{lang}/{file}")), 0)),
-        None => Err(format!(
-            "lesson: found `{}`, expected {CONTENTS}, {}, or an address that starts with https://.",
-            short(lesson),
-            LESSONS.join(", ")
+        None => Err(msg!(
+            "lesson: found `{found}`, expected {contents}, {lessons}, or an address that starts with https://.",
+            found = short(lesson),
+            contents = CONTENTS.to_owned(),
+            lessons = LESSONS.map(str::to_owned).to_vec()
         )),
     }
 }
@@ -82,7 +84,7 @@ pub(crate) enum Text {
     /// It is here.
     Here(Arc<[Page]>),
     /// It did not come, or is no lesson: why.
-    Failed(String),
+    Failed(Message),
 }
 
 /// The texts that were asked for, by where they are.

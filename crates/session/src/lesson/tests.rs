@@ -150,7 +150,10 @@ fn lessons_are_found_by_name_and_by_address() {
     assert_eq!(source_of("https://a.org/x.md#3", "en"), Ok((web.clone(), 2)));
     assert_eq!(source_of("https://a.org/x.md#top", "en"), Ok((web, 0)));
     assert!(
-        source_of("cooking", "en").unwrap_err().contains("expected contents, alignment, slerp")
+        source_of("cooking", "en")
+            .unwrap_err()
+            .to_string()
+            .contains("expected contents, alignment, slerp")
     );
     assert_eq!(shelf::lesson_of_file("02-slerp.md"), Some("slerp"));
     assert_eq!(shelf::lesson_of_file("03-slerp.md"), None);

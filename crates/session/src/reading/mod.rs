@@ -15,6 +15,7 @@ use segue_formats::{
 };
 use segue_motion::skeleton::Roles;
 use segue_motion::skin::SkinnedMesh;
+use segue_text::{Message, ToMessage, msg};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 use std::collections::BTreeMap;
@@ -79,7 +80,7 @@ pub struct ReadReport {
     /// The motion files.
     pub files: Vec<ReadFile>,
     /// What is to be said of the whole, one sentence each.
-    pub notes: Vec<String>,
+    pub notes: Vec<Message>,
 }
 
 impl ReadReport {
@@ -113,7 +114,7 @@ pub struct ReadClips {
     /// One for each character.
     pub clips: Vec<ReadClip>,
     /// What was odd, one sentence each.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Message>,
     /// The skeleton file that the motion was read with.
     pub companion: Option<Companion>,
     /// Whether there are no clips because the skeleton file is not here.
@@ -173,7 +174,7 @@ pub fn read(
                 .into_iter()
                 .map(|file| (outside::file_name(&format!("{name}/{}", file.path)), file.bytes))
                 .collect();
-            (files, unpacked.warnings.iter().map(ToString::to_string).collect())
+            (files, unpacked.warnings.iter().map(ToMessage::to_message).collect())
         }),
         FileKind::Gzip => unpack_gzip(name, bytes, most)
             .map(|bytes| (vec![(without_gz(name).to_owned(), bytes)], Vec::new())),
@@ -208,7 +209,7 @@ pub fn read(
 /// Reads what came out of an archive of `packed` bytes.
 fn read_several(
     mut files: Vec<(String, Vec<u8>)>,
-    notes: Vec<String>,
+    notes: Vec<Message>,
     packed: usize,
     setup: &ReadSetup,
     progress: &mut dyn FnMut(usize) -> bool,
@@ -298,7 +299,7 @@ impl One<'_> {
                     Some((own, skeleton)) => {
                         companion = Some((*own).clone());
                         if !acclaim::goes_by_name(name, &own.name) {
-                            warnings.push(format!("it is on the skeleton of {}", own.name));
+                            warnings.push(msg!("it is on the skeleton of {file}", file = own.name));
                         }
                         let read = acclaim::read_motion_with_progress(
                             name,
@@ -338,21 +339,25 @@ impl One<'_> {
 
 /// What is to be said where there are skeletons, and none is that of the motion: of the one that is
 /// most like it.
-fn misfit(name: &str, bytes: &[u8], skeletons: &[(&Companion, AcclaimSkeleton)]) -> Option<String> {
+fn misfit(
+    name: &str,
+    bytes: &[u8],
+    skeletons: &[(&Companion, AcclaimSkeleton)],
+) -> Option<Message> {
     let fits =
         skeletons.iter().map(|(own, skeleton)| (own, acclaim::matching_bones(bytes, skeleton)));
     let (own, (fitting, bones)) =
         fits.max_by_key(|(own, (fitting, _))| (acclaim::goes_by_name(name, &own.name), *fitting))?;
-    Some(format!(
-        "the skeleton of {} does not fit: {fitting} of {bones} bones have its names and degrees of freedom",
-        own.name
+    Some(msg!(
+        "the skeleton of {file} does not fit: {fitting} of {bones} bones have its names and degrees of freedom",
+        file = own.name
     ))
 }
 
 impl ReadClips {
     fn of(imported: Imported, setup: &ReadSetup) -> Self {
         Self {
-            warnings: imported.warnings.iter().map(ToString::to_string).collect(),
+            warnings: imported.warnings.iter().map(ToMessage::to_message).collect(),
             clips: (imported.clips.into_iter().enumerate())
                 .map(|(index, clip)| ReadClip::new(clip, setup.roles.get(&index).cloned()))
                 .collect(),

@@ -11,6 +11,7 @@ use segue_motion::clip::{Clip, ClipError, Contacts, JointTranslations, Provenanc
 use segue_motion::math::Planar;
 use segue_motion::skeleton::{FoldedChain, Joint, Roles, Side, Skeleton, SkeletonError};
 use segue_motion::skin::{RigidTransform, SkinnedMesh};
+use segue_text::Message;
 use serde::{Deserialize, Serialize};
 use std::collections::TryReserveError;
 use std::sync::Arc;
@@ -50,7 +51,7 @@ pub enum WireError {
 #[derive(Serialize, Deserialize)]
 struct Head {
     files: Vec<FileHead>,
-    notes: Vec<String>,
+    notes: Vec<Message>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -69,7 +70,7 @@ struct ClipsHead {
     clips: Vec<ClipHead>,
     #[serde(default)]
     meshes: Vec<MeshHead>,
-    warnings: Vec<String>,
+    warnings: Vec<Message>,
     companion: Option<Companion>,
     awaits_skeleton: bool,
 }

@@ -1,3 +1,4 @@
+use crate::labs::LabError;
 use crate::labs::Retargeted;
 use crate::labs::pair::source_of;
 use crate::motion::Motion;
@@ -23,14 +24,12 @@ pub(super) type Fitted = (Arc<Motion>, Option<Arc<Retargeted>>);
 
 impl Cast {
     /// The clips in order; the rest of what has to be known of them is found by [`Self::advance`].
-    pub(super) fn new(names: Vec<String>, fitted: Vec<Fitted>) -> Result<Self, String> {
+    pub(super) fn new(names: Vec<String>, fitted: Vec<Fitted>) -> Result<Self, LabError> {
         let (motions, retargeted): (Vec<_>, Vec<_>) = fitted.into_iter().unzip();
-        let first = motions.first().ok_or("A motion graph needs a clip: add at least one.")?;
+        let first = motions.first().ok_or(LabError::NoGraphClips)?;
         let height = f64::from(first.roles.body_height(first.clip.skeleton()));
         let sources = motions.iter().map(|motion| Arc::new(source_of(motion))).collect();
-        let set = Arc::new(
-            FrameSet::new(sources, height).map_err(|error| super::wanted::sentence(&error))?,
-        );
+        let set = Arc::new(FrameSet::new(sources, height)?);
         let contacts = motions.iter().map(|motion| motion.contacts.clone()).collect();
         let profile = WalkProfile::begun(Arc::clone(&set), &first.roles, contacts);
         Ok(Self { names, motions, retargeted, set, profile, jolts: JoltSearch::default() })

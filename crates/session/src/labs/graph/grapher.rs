@@ -2,9 +2,10 @@ use super::super::lab_set::{JobKind, Sliced};
 use super::built::Building;
 use super::cast::Fitted;
 use super::maker::Maker;
-use super::wanted::{GraphKey, Wanted, sentence};
+use super::wanted::{GraphKey, Wanted};
 use super::{Built, Cast, Field, GraphInputs};
 use crate::compare::MAX_PANES;
+use crate::labs::LabError;
 use crate::labs::pair::fitted;
 use crate::motion::Motion;
 use crate::params::Params;
@@ -36,7 +37,7 @@ pub(crate) struct Grapher {
     fitted: Vec<Fitted>,
     /// The clips, while they are measured.
     casting: Option<Box<Cast>>,
-    cast: Option<Result<Arc<Cast>, String>>,
+    cast: Option<Result<Arc<Cast>, LabError>>,
     all: Option<AllPairs>,
     sweep: Option<PausedAllSweep>,
     /// Distances that are counted, and how far.
@@ -48,8 +49,8 @@ pub(crate) struct Grapher {
     /// What was found last, by these options.
     found: Vec<(GraphOptions, Arc<Candidates>)>,
     building: Option<(GraphKey, Building)>,
-    built: Vec<(GraphKey, Result<Arc<Built>, String>)>,
-    makers: Vec<(Wanted, Result<Maker, String>)>,
+    built: Vec<(GraphKey, Result<Arc<Built>, LabError>)>,
+    makers: Vec<(Wanted, Result<Maker, LabError>)>,
     /// What panes show or wait for, the first pane's first.
     wanted: Vec<Wanted>,
     now_secs: f64,
@@ -106,7 +107,7 @@ impl Grapher {
         &mut self,
         clips: Vec<(String, Arc<Motion>)>,
         params: &Params,
-    ) -> Result<Option<GraphInputs>, String> {
+    ) -> Result<Option<GraphInputs>, LabError> {
         self.meet(clips);
         let wanted = Wanted::guided(params, self.guide.as_ref(), self.clips.len())?;
         let known = self.makers.iter().find(|(known, _)| *known == wanted);
@@ -119,7 +120,7 @@ impl Grapher {
             self.wanted.push(wanted);
         }
         match found {
-            Ok(None) if self.stopped => Err("Stopped. Change anything, or go on.".to_owned()),
+            Ok(None) if self.stopped => Err(LabError::Stopped),
             found => found,
         }
     }
@@ -142,7 +143,7 @@ impl Grapher {
         self.known(key)?.as_ref().ok()
     }
 
-    fn known(&self, key: GraphKey) -> Option<&Result<Arc<Built>, String>> {
+    fn known(&self, key: GraphKey) -> Option<&Result<Arc<Built>, LabError>> {
         self.built.iter().find(|(known, _)| *known == key).map(|(_, built)| built)
     }
 
@@ -226,7 +227,7 @@ impl Grapher {
         Some(0.1 * fitted + 0.4 * pairs + 0.25 * swept + 0.1 * searched)
     }
 
-    fn maker(&self, wanted: &Wanted) -> Option<&Result<Maker, String>> {
+    fn maker(&self, wanted: &Wanted) -> Option<&Result<Maker, LabError>> {
         self.makers.iter().find(|(known, _)| known == wanted).map(|(_, maker)| maker)
     }
 
@@ -254,7 +255,7 @@ impl Grapher {
     }
 
     /// Does a slice of what is needed next.
-    fn step(&mut self, wanted: &Wanted) -> Result<(), String> {
+    fn step(&mut self, wanted: &Wanted) -> Result<(), LabError> {
         if let Some(guide) = &wanted.guide {
             // Without it a walk would go by chance. One that cannot be made has told so: then there
             // is nothing to go like.
@@ -287,9 +288,9 @@ impl Grapher {
         let Some(cast) = self.ready_cast()? else {
             return Ok(());
         };
-        wanted.graph.options.check(cast.set()).map_err(|error| sentence(&error))?;
+        wanted.graph.options.check(cast.set())?;
         if let Some(built) = self.known(wanted.graph) {
-            let built = Arc::clone(built.as_ref().map_err(String::clone)?);
+            let built = Arc::clone(built.as_ref().map_err(LabError::clone)?);
             let like = self.makers.iter().filter_map(|(_, maker)| maker.as_ref().ok());
             let maker = Maker::new(&built, wanted, like);
             self.settle(wanted, maker);
@@ -298,7 +299,7 @@ impl Grapher {
         self.worked_for = Some(wanted.graph);
         let key = wanted.graph;
         let Some((_, building)) = self.building.take().filter(|(known, _)| *known == key) else {
-            let found = self.search_slice(&cast, key).map_err(|error| sentence(&error))?;
+            let found = self.search_slice(&cast, key)?;
             self.building = found.map(|found| (key, Building::Found(found)));
             return Ok(());
         };
@@ -308,7 +309,7 @@ impl Grapher {
                 return Ok(());
             }
             Ok(ControlFlow::Break(built)) => Ok(Arc::new(built)),
-            Err(error) => Err(sentence(&error)),
+            Err(error) => Err(error.into()),
         };
         if self.built.len() >= 2 * MAX_PANES {
             drop(self.built.remove(0));
@@ -318,7 +319,7 @@ impl Grapher {
     }
 
     /// The clips on one skeleton, one more in each slice.
-    fn ready_cast(&mut self) -> Result<Option<Arc<Cast>>, String> {
+    fn ready_cast(&mut self) -> Result<Option<Arc<Cast>>, LabError> {
         if let Some(cast) = &self.cast {
             return cast.clone().map(Some);
         }
@@ -327,7 +328,10 @@ impl Grapher {
         {
             match fitted(first, next) {
                 Ok(ready) => self.fitted.push(ready),
-                Err(problem) => self.cast = Some(Err(format!("{name}: {problem}"))),
+                Err(problem) => {
+                    self.cast =
+                        Some(Err(LabError::OfClip { name: name.clone(), error: Box::new(problem) }))
+                }
             }
             return Ok(None);
         }
@@ -469,7 +473,7 @@ impl Grapher {
         }
     }
 
-    fn settle(&mut self, wanted: &Wanted, maker: Result<Maker, String>) {
+    fn settle(&mut self, wanted: &Wanted, maker: Result<Maker, LabError>) {
         self.is_ready |= maker.is_err();
         self.makers.retain(|(known, _)| known != wanted);
         if self.makers.len() >= 2 * MAX_PANES {

@@ -1,7 +1,8 @@
 use super::plan::Plan;
 use super::walk::Trace;
-use super::wanted::{Wanted, sentence};
+use super::wanted::Wanted;
 use super::{Built, Passed, Walk};
+use crate::labs::LabError;
 use crate::labs::feet::{locking, slide, slide_before};
 use crate::motion::Motion;
 use petgraph::graph::NodeIndex;
@@ -148,7 +149,7 @@ impl Maker {
         built: &Arc<Built>,
         wanted: &Wanted,
         mut others: impl Iterator<Item = &'a Self>,
-    ) -> Result<Self, String> {
+    ) -> Result<Self, LabError> {
         let knows = |other: &&Self| {
             other.run_is_known
                 && Arc::ptr_eq(&other.built, built)
@@ -157,13 +158,12 @@ impl Maker {
         let mut maker = if let Some(known) = others.find(knows) {
             Self::like(known, wanted)?
         } else {
-            let choices =
-                Choices::new(built.graph(), &wanted.weights).map_err(|error| sentence(&error))?;
+            let choices = Choices::new(built.graph(), &wanted.weights)?;
             let run = RunLength::new(built.graph(), &choices);
             Self::idle(built, wanted, Arc::new(choices), run)?
         };
         if !wanted.path.is_empty() && wanted.jump.is_none() {
-            let path = GroundPath::new(&wanted.path).map_err(|error| sentence(&error))?;
+            let path = GroundPath::new(&wanted.path)?;
             let search = PathSearch::new(
                 built.graph(),
                 NodeIndex::new(0),
@@ -177,14 +177,14 @@ impl Maker {
     }
 
     /// One that goes by what has been found of the path so far.
-    fn preview(&self, found: Followed, length_m: f64) -> Result<Self, String> {
+    fn preview(&self, found: Followed, length_m: f64) -> Result<Self, LabError> {
         let mut maker = Self::like(self, &self.wanted)?;
         maker.follow(found, length_m, true);
         Ok(maker)
     }
 
     /// One in the same graph with the same weights: how long it runs is known.
-    fn like(other: &Self, wanted: &Wanted) -> Result<Self, String> {
+    fn like(other: &Self, wanted: &Wanted) -> Result<Self, LabError> {
         let mut maker =
             Self::idle(&other.built, wanted, Arc::clone(&other.choices), other.run.clone())?;
         maker.run_is_known = true;
@@ -196,9 +196,9 @@ impl Maker {
         wanted: &Wanted,
         choices: Arc<Choices>,
         run: RunLength,
-    ) -> Result<Self, String> {
+    ) -> Result<Self, LabError> {
         Ok(Self {
-            plan: Plan::new(built.graph(), &choices, wanted).map_err(|error| sentence(&error))?,
+            plan: Plan::new(built.graph(), &choices, wanted)?,
             run,
             run_is_known: false,
             search: None,
@@ -254,8 +254,11 @@ impl Maker {
 
     /// One slice. `true` when there is a new walk to give out. `guide` is the walk that this one
     /// goes like.
-    pub(super) fn step(&mut self, now_secs: f64, guide: Option<&mut Plan>) -> Result<bool, String> {
-        let told = |error: GraphError| sentence(&error);
+    pub(super) fn step(
+        &mut self,
+        now_secs: f64,
+        guide: Option<&mut Plan>,
+    ) -> Result<bool, LabError> {
         if let Some([leave, enter]) = self.wanted.jump {
             self.walk = Some(Arc::new(self.jump(leave, enter)?));
             return Ok(true);
@@ -275,14 +278,14 @@ impl Maker {
             self.goal = self.next_goal(now_secs);
         }
         if self.frames < self.goal && !self.ends {
-            self.stay(guide).map_err(told)?;
+            self.stay(guide)?;
             return Ok(false);
         }
         let found = if let Some(publishing) = self.publishing.take() {
             publishing
         } else {
             let assembling = Assembling::new(&self.pieces, self.goal.min(self.frames));
-            Publishing::Assembling(Box::new(assembling.ok_or(GraphError::NoClips).map_err(told)?))
+            Publishing::Assembling(Box::new(assembling.ok_or(GraphError::NoClips)?))
         };
         match self.published(found)? {
             Ok(motion) => {
@@ -306,13 +309,16 @@ impl Maker {
 
     /// A slice of what is between the pieces and a walk that is shown: the motion, or what is left
     /// to do.
-    fn published(&mut self, publishing: Publishing) -> Result<Result<Motion, Publishing>, String> {
+    fn published(
+        &mut self,
+        publishing: Publishing,
+    ) -> Result<Result<Motion, Publishing>, LabError> {
         match publishing {
             Publishing::Assembling(mut assembling) => {
                 if !assembling.advance(&self.pieces, PUBLISHED_FRAMES) {
                     return Ok(Err(Publishing::Assembling(assembling)));
                 }
-                let motion = self.motion(*assembling).map_err(|error| sentence(&error))?;
+                let motion = self.motion(*assembling)?;
                 let Some(lock) = self.wanted.foot_lock else {
                     return Ok(self.unseen(motion, None));
                 };
@@ -333,7 +339,7 @@ impl Maker {
                 if locking.advance(LOCKED_FRAMES) {
                     return Ok(Err(Publishing::Locking(locking, motion)));
                 }
-                let clip = Arc::new(locking.finish().map_err(|error| error.to_string())?);
+                let clip = Arc::new(locking.finish()?);
                 let free = Arc::clone(&motion.clip);
                 Ok(self.unseen(Motion { clip, ..*motion }, Some(free)))
             }
@@ -365,7 +371,7 @@ impl Maker {
     }
 
     /// A slice of the search for a path, or of the walk that shows the best so far.
-    fn seek(&mut self, now_secs: f64) -> Result<bool, String> {
+    fn seek(&mut self, now_secs: f64) -> Result<bool, LabError> {
         if let Some(mut preview) = self.preview.take() {
             if preview.step(now_secs, None)? {
                 self.walk = preview.walk;
@@ -518,17 +524,17 @@ impl Maker {
     }
 
     /// The end of one clip, a transition, and the beginning of another.
-    fn jump(&mut self, leave: Place, enter: Place) -> Result<Walk, String> {
+    fn jump(&mut self, leave: Place, enter: Place) -> Result<Walk, LabError> {
         let whole = Arc::clone(self.built.whole());
         let index = self.built.jump_of(leave, enter).ok_or_else(|| {
-            let name = |place: Place| self.built.cast.names().get(place.clip).map_or("?", String::as_str);
-            format!(
-                "There is no transition from frame {} of {} to frame {} of {} any more: go back to the walk, or raise the threshold.",
-                leave.frame,
-                name(leave),
-                enter.frame,
-                name(enter)
-            )
+            let name =
+                |place: Place| self.built.cast.names().get(place.clip).map_or("?", String::as_str);
+            LabError::NoJump {
+                leave: leave.frame,
+                from: name(leave).to_owned(),
+                enter: enter.frame,
+                to: name(enter).to_owned(),
+            }
         })?;
         let set = self.built.cast.set();
         let around = (AROUND_JUMP_SECS * self.fps()).round() as usize;
@@ -546,12 +552,11 @@ impl Maker {
             jump: Some(index),
         };
         for stay in [first, second] {
-            let piece = self.stitcher.stitch(&whole, &stay).map_err(|error| sentence(&error))?;
+            let piece = self.stitcher.stitch(&whole, &stay)?;
             self.take(piece);
         }
         while self.meter() {}
-        let assembling = Assembling::new(&self.pieces, self.frames)
-            .ok_or_else(|| sentence(&GraphError::NoClips))?;
+        let assembling = Assembling::new(&self.pieces, self.frames).ok_or(GraphError::NoClips)?;
         let mut publishing = Publishing::Assembling(Box::new(assembling));
         // A few seconds of motion.
         let motion = loop {

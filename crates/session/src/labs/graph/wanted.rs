@@ -1,4 +1,5 @@
 use crate::choices;
+use crate::labs::LabError;
 use crate::labs::blend::{align_by, root_blend, weight_law};
 use crate::labs::feet::Lock;
 use crate::labs::kept::{read_ids, write_ids};
@@ -6,15 +7,15 @@ use crate::outside::short;
 use crate::params::{Key, Params, Value};
 use glam::DVec2;
 use segue_motion::graph::{
-    Construction, Continuity, DistanceLaw, GraphError, GraphOptions, Place, StitchOptions,
-    WalkMistake, WeightOptions,
+    Construction, Continuity, DistanceLaw, GraphOptions, Place, StitchOptions, WalkMistake,
+    WeightOptions,
 };
 use segue_motion::math::Decay;
 use segue_motion::transition::{Inertialization, Method, Mistake};
 use std::fmt::Write as _;
 
 /// More clips make a picture that nobody can read.
-const MOST_CLIPS: usize = 64;
+pub(crate) const MOST_CLIPS: usize = 64;
 /// Points of a ground path, visits of clips: more are an accident.
 const MOST_POINTS: usize = 1_000;
 
@@ -48,7 +49,7 @@ pub(super) struct GraphKey {
 }
 
 impl Wanted {
-    pub(super) fn of(params: &Params, clips: usize) -> Result<Self, String> {
+    pub(super) fn of(params: &Params, clips: usize) -> Result<Self, LabError> {
         let window = params.number(Key::BlendWindow) as usize;
         let of_transform = match params.choice::<choices::Transform>() {
             choices::Transform::First => Some(WalkMistake::FirstFrameOnly),
@@ -62,7 +63,7 @@ impl Wanted {
             choices::Atan::Atan2 => None,
         };
         if of_transform.is_some() && of_angle.is_some() {
-            return Err("Two mistakes at once cannot be told apart: choose the transform of the whole clip, or atan2.".to_owned());
+            return Err(LabError::TwoMistakes);
         }
         let method = match params.choice::<choices::WalkMethod>() {
             choices::WalkMethod::Inertialize => {
@@ -74,10 +75,7 @@ impl Wanted {
         };
         let visits = read_visits(params.text(Key::GoTo))?;
         if let Some((_, clip)) = visits.iter().find(|(_, clip)| *clip >= clips) {
-            return Err(format!(
-                "Go to: there is no clip {clip}, they are counted from 0 to {}.",
-                clips.saturating_sub(1)
-            ));
+            return Err(LabError::NoVisit { clip: *clip, last: clips.saturating_sub(1) });
         }
         Ok(Self {
             graph: GraphKey {
@@ -136,7 +134,7 @@ impl Wanted {
         params: &Params,
         guide: Option<&Params>,
         clips: usize,
-    ) -> Result<Self, String> {
+    ) -> Result<Self, LabError> {
         let wanted = Self::of(params, clips)?;
         let guide = guide.and_then(|guide| Self::of(guide, clips).ok());
         let but_for_window = |graph: GraphKey| GraphKey {
@@ -154,23 +152,9 @@ impl Wanted {
     }
 }
 
-/// An error as a sentence of its own.
-pub(super) fn sentence(error: &GraphError) -> String {
-    let text = error.to_string();
-    let mut letters = text.chars();
-    letters
-        .next()
-        .map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
-}
-
 /// The ids of a list of clips. An id may stand there several times, and counts once.
-pub(crate) fn clips_of(text: &str) -> Result<Vec<String>, String> {
-    let listed = read_ids(text).ok_or_else(|| {
-        format!(
-            "Clips: found `{}`, expected clips with commas between them, as in walk,run.",
-            short(text)
-        )
-    })?;
+pub(crate) fn clips_of(text: &str) -> Result<Vec<String>, LabError> {
+    let listed = read_ids(text).ok_or_else(|| LabError::GraphClips { found: short(text) })?;
     let mut ids: Vec<String> = Vec::new();
     for id in listed.iter().map(|id| id.trim()).filter(|id| !id.is_empty()) {
         if !ids.iter().any(|known| known == id) {
@@ -178,10 +162,8 @@ pub(crate) fn clips_of(text: &str) -> Result<Vec<String>, String> {
         }
     }
     match ids.len() {
-        0 => Err("A motion graph needs a clip: add at least one.".to_owned()),
-        count if count > MOST_CLIPS => {
-            Err(format!("These are {count} clips: take {MOST_CLIPS} at most."))
-        }
+        0 => Err(LabError::NoGraphClips),
+        count if count > MOST_CLIPS => Err(LabError::TooManyGraphClips { count }),
         _ => Ok(ids),
     }
 }
@@ -189,8 +171,8 @@ pub(crate) fn clips_of(text: &str) -> Result<Vec<String>, String> {
 /// Says what is wrong with a list of clips for a graph, before anything is set.
 ///
 /// # Errors
-/// The sentence that would stand in place of the result.
-pub fn check_graph_clips(text: &str) -> Result<(), String> {
+/// [`LabError`] would stand in place of the result.
+pub fn check_graph_clips(text: &str) -> Result<(), LabError> {
     clips_of(text).map(drop)
 }
 
@@ -203,9 +185,12 @@ pub fn graph_of(ids: &[String]) -> Vec<(Key, Value)> {
 }
 
 /// Pairs of two numbers with a colon between them and commas between the pairs.
-fn read_pairs(text: &str, what: &str, like: &str) -> Result<Vec<(f64, f64)>, String> {
-    let refuse =
-        |part: &str| format!("{what}: found `{}`, expected pairs as in {like}.", short(part));
+fn read_pairs(
+    text: &str,
+    what: &'static str,
+    example: &'static str,
+) -> Result<Vec<(f64, f64)>, LabError> {
+    let refuse = |part: &str| LabError::Pairs { what, found: short(part), example };
     let number = |text: &str| text.trim().parse::<f64>().ok().filter(|number| number.abs() < 1e5);
     let pairs: Vec<(f64, f64)> = (text.split(','))
         .filter(|part| !part.trim().is_empty())
@@ -215,16 +200,13 @@ fn read_pairs(text: &str, what: &str, like: &str) -> Result<Vec<(f64, f64)>, Str
         })
         .collect::<Result<_, _>>()?;
     if pairs.len() > MOST_POINTS {
-        return Err(format!(
-            "{what}: found {} pairs, expected {MOST_POINTS} at most.",
-            pairs.len()
-        ));
+        return Err(LabError::TooManyPairs { what, count: pairs.len(), most: MOST_POINTS });
     }
     Ok(pairs)
 }
 
 /// When to set off for which clip.
-pub(crate) fn read_visits(text: &str) -> Result<Vec<(f64, usize)>, String> {
+pub(crate) fn read_visits(text: &str) -> Result<Vec<(f64, usize)>, LabError> {
     let pairs = read_pairs(text, "Go to", "12.5:3,40:0")?;
     let mut visits: Vec<(f64, usize)> =
         pairs.into_iter().map(|(secs, clip)| (secs.max(0.0), clip.max(0.0) as usize)).collect();
@@ -239,7 +221,7 @@ pub fn write_visits(visits: &[(f64, usize)]) -> String {
 }
 
 /// The points of a ground path, (x, z) in metres.
-pub(crate) fn read_path(text: &str) -> Result<Vec<DVec2>, String> {
+pub(crate) fn read_path(text: &str) -> Result<Vec<DVec2>, LabError> {
     let pairs = read_pairs(text, "Ground path", "0:0,1.5:4")?;
     Ok(pairs.into_iter().map(|(x, z)| DVec2::new(x, z)).collect())
 }
@@ -254,7 +236,7 @@ pub fn write_path(points: &[DVec2]) -> String {
     )
 }
 
-fn read_jump(text: &str) -> Result<Option<[Place; 2]>, String> {
+fn read_jump(text: &str) -> Result<Option<[Place; 2]>, LabError> {
     if text.trim().is_empty() {
         return Ok(None);
     }
@@ -263,9 +245,7 @@ fn read_jump(text: &str) -> Result<Option<[Place; 2]>, String> {
         Some(Place { clip: clip.trim().parse().ok()?, frame: frame.trim().parse().ok()? })
     };
     let ends = text.split_once('-').and_then(|(leave, enter)| Some([place(leave)?, place(enter)?]));
-    ends.map(Some).ok_or_else(|| {
-        format!("Transition: found `{}`, expected clips and frames as in 0:52-3:14.", short(text))
-    })
+    ends.map(Some).ok_or_else(|| LabError::Jump { found: short(text) })
 }
 
 /// A transition as the parameter has it.

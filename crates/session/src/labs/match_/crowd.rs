@@ -1,5 +1,6 @@
 //! Others that walk about, with the same clips and controllers of their own.
 
+use crate::labs::LabError;
 use glam::DVec2;
 use segue_motion::matching::{Control, Controller, ControllerOptions, Database, RATE};
 use segue_motion::math::Planar;
@@ -29,7 +30,7 @@ impl Crowd {
         options: ControllerOptions,
         about: &Planar,
         count: usize,
-    ) -> Result<Self, String> {
+    ) -> Result<Self, LabError> {
         let options = ControllerOptions { candidates: 1, ..options };
         let walker = |index: usize| {
             // A sunflower: as even as it is far from rows.
@@ -37,8 +38,7 @@ impl Crowd {
                 (2.399_963 * (index + 1) as f64, APART_M * libm::sqrt((index + 1) as f64));
             let shift = about.shift + DVec2::new(libm::sin(turn), libm::cos(turn)) * reach;
             let start = Planar { yaw: chance(index as u64, 0) * TAU, shift };
-            Controller::new(Arc::clone(database), options, &start)
-                .map_err(|error| error.to_string())
+            Controller::new(Arc::clone(database), options, &start).map_err(LabError::from)
         };
         Ok(Self {
             database: Arc::clone(database),
@@ -53,10 +53,10 @@ impl Crowd {
     }
 
     /// Everybody takes over other options.
-    pub(crate) fn change(&mut self, options: ControllerOptions) -> Result<(), String> {
+    pub(crate) fn change(&mut self, options: ControllerOptions) -> Result<(), LabError> {
         let options = ControllerOptions { candidates: 1, ..options };
         for walker in self.walkers.iter_mut().filter(|walker| *walker.options() != options) {
-            walker.set_options(options).map_err(|error| error.to_string())?;
+            walker.set_options(options)?;
         }
         Ok(())
     }

@@ -5,6 +5,7 @@ use super::tagging::{HandTag, tagged};
 use super::trace::Tracer;
 use crate::choices;
 use crate::compare::MAX_PANES;
+use crate::labs::LabError;
 use crate::labs::Outcome;
 use crate::labs::lab::LabInputs;
 use crate::motion::Motion;
@@ -94,7 +95,7 @@ impl PartialEq for ReplayInputs {
 }
 
 impl LabInputs for ReplayInputs {
-    fn run(&self) -> Result<Outcome, String> {
+    fn run(&self) -> Result<Outcome, LabError> {
         Ok(Outcome::clone(&self.0))
     }
 }
@@ -121,11 +122,11 @@ struct Tagged {
 #[derive(Debug, Default)]
 pub(crate) struct Driver {
     made: Vec<MatchClip>,
-    databases: Vec<(Source, Result<Arc<Database>, String>)>,
+    databases: Vec<(Source, Result<Arc<Database>, LabError>)>,
     tagged: Vec<Tagged>,
     building: Option<(Source, Box<DatabaseBuilder>)>,
     wanted: Vec<Source>,
-    replays: Vec<(Script, Result<Arc<Outcome>, String>)>,
+    replays: Vec<(Script, Result<Arc<Outcome>, LabError>)>,
     playing: Option<(Script, Box<Playing>)>,
     scripts: Vec<Script>,
     is_ready: bool,
@@ -133,7 +134,7 @@ pub(crate) struct Driver {
 
 impl Driver {
     /// A database. `None` while it is built: [`work`](Self::work), then ask again.
-    pub(crate) fn database(&mut self, source: &Source) -> Result<Option<Arc<Database>>, String> {
+    pub(crate) fn database(&mut self, source: &Source) -> Result<Option<Arc<Database>>, LabError> {
         if let Some((_, known)) = self.databases.iter().find(|(known, _)| known == source) {
             return known.clone().map(Some);
         }
@@ -173,7 +174,7 @@ impl Driver {
         options: ControllerOptions,
         recording: Recording,
         filter: TagFilter,
-    ) -> Result<Option<ReplayInputs>, String> {
+    ) -> Result<Option<ReplayInputs>, LabError> {
         let script = Script { database, options, recording, filter };
         if let Some((_, known)) = self.replays.iter().find(|(known, _)| *known == script) {
             return known.clone().map(|outcome| Some(ReplayInputs(outcome)));
@@ -223,7 +224,7 @@ impl Driver {
         Ok(None)
     }
 
-    fn play(&mut self, script: &Script) -> Result<Option<Outcome>, String> {
+    fn play(&mut self, script: &Script) -> Result<Option<Outcome>, LabError> {
         let under_way = self.playing.take().filter(|(of, _)| of == script);
         let mut playing = if let Some((_, playing)) = under_way {
             playing
@@ -231,7 +232,7 @@ impl Driver {
             let controller =
                 Controller::new(Arc::clone(&script.database), script.options, &Planar::IDENTITY);
             Box::new(Playing {
-                tracer: Tracer::new(controller.map_err(|error| sentence(&error))?, usize::MAX),
+                tracer: Tracer::new(controller?, usize::MAX),
                 controls: script
                     .recording
                     .controls()
@@ -268,7 +269,7 @@ impl Sliced for Driver {
         }
         if let Some(source) = self.next_source().cloned() {
             let built = self.build(&source);
-            if let Some(built) = built.map_err(|error| sentence(&error)).transpose() {
+            if let Some(built) = built.map_err(LabError::from).transpose() {
                 if self.databases.len() >= 2 * MAX_PANES {
                     drop(self.databases.remove(0));
                 }
@@ -322,12 +323,4 @@ impl Sliced for Driver {
 /// set.
 fn filtered(control: Control, filter: TagFilter) -> Control {
     if filter == TagFilter::default() { control } else { control.with_filter(filter) }
-}
-
-/// An error as a sentence.
-fn sentence(error: &MatchError) -> String {
-    let text = error.to_string();
-    let mut letters = text.chars();
-    let first = letters.next().map_or_else(String::new, |first| first.to_uppercase().to_string());
-    format!("{first}{}.", letters.as_str())
 }

@@ -1,6 +1,7 @@
 //! A character that is driven now.
 
 use super::trace::Tracer;
+use crate::labs::LabError;
 use crate::labs::{Gauge, Outcome};
 use segue_motion::matching::{Control, Controller, ControllerOptions, Database, RATE};
 use segue_motion::math::Planar;
@@ -30,9 +31,8 @@ impl Live {
     pub(crate) fn new(
         database: &Arc<Database>,
         options: ControllerOptions,
-    ) -> Result<Self, String> {
-        let controller = Controller::new(Arc::clone(database), options, &Planar::IDENTITY)
-            .map_err(|error| error.to_string())?;
+    ) -> Result<Self, LabError> {
+        let controller = Controller::new(Arc::clone(database), options, &Planar::IDENTITY)?;
         let mut tracer = Tracer::new(controller, KEPT);
         tracer.note(false);
         Ok(Self { tracer, jumps: VecDeque::new(), metrics: Vec::new(), found: None })
@@ -52,7 +52,7 @@ impl Live {
         &mut self,
         database: &Arc<Database>,
         options: ControllerOptions,
-    ) -> Result<bool, String> {
+    ) -> Result<bool, LabError> {
         let controller = &mut self.tracer.controller;
         let moves = !Arc::ptr_eq(controller.database(), database);
         if moves {
@@ -60,7 +60,7 @@ impl Live {
         }
         let differs = *controller.options() != options;
         if differs {
-            controller.set_options(options).map_err(|error| error.to_string())?;
+            controller.set_options(options)?;
         }
         Ok(moves || differs)
     }
@@ -90,7 +90,7 @@ impl Live {
 
     /// What was done last, with numbers: those that every lab has as soon as what it is made of is
     /// measured.
-    pub(crate) fn outcome(&mut self, gauge: &mut Gauge) -> Result<Outcome, String> {
+    pub(crate) fn outcome(&mut self, gauge: &mut Gauge) -> Result<Outcome, LabError> {
         let mut outcome = self.tracer.outcome(true)?;
         let ticks = self.tracer.controller.ticks();
         if ticks.is_multiple_of(MEASURED) || self.metrics.is_empty() {

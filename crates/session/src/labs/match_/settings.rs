@@ -2,6 +2,7 @@
 
 use super::tagging::clip_name;
 use crate::choices;
+use crate::labs::LabError;
 use crate::labs::read_ids;
 use crate::outside::short;
 use crate::params::{Key, Params};
@@ -71,7 +72,7 @@ pub(crate) fn options_of(params: &Params) -> ControllerOptions {
 pub(crate) fn options_in(
     database: &Database,
     params: &Params,
-) -> Result<ControllerOptions, String> {
+) -> Result<ControllerOptions, LabError> {
     let options = options_of(params);
     let name = params.text(Key::PreferClip);
     if name.is_empty() {
@@ -79,17 +80,14 @@ pub(crate) fn options_in(
     }
     let ids = read_ids(params.text(Key::MatchClips)).unwrap_or_default();
     let named = database.motions().iter().find(|motion| clip_name(motion, &ids) == name);
-    let source = named.map(|motion| motion.source()).ok_or_else(|| {
-        format!(
-            "`{}` is not among the clips to choose frames from: choose another clip to prefer, or none.",
-            short(name)
-        )
-    })?;
+    let source = named
+        .map(|motion| motion.source())
+        .ok_or_else(|| LabError::NoPreferredClip { name: short(name) })?;
     Ok(ControllerOptions { prefer_source: Some(source), ..options })
 }
 
 /// The input that is played; `None` where the user drives.
-pub(crate) fn recording_of(params: &Params) -> Result<Option<Recording>, String> {
+pub(crate) fn recording_of(params: &Params) -> Result<Option<Recording>, LabError> {
     if let Some(scenario) = Scenario::find(params.choice::<choices::Scenario>().word()) {
         return Ok(Some(scenario.recording()));
     }
@@ -97,10 +95,9 @@ pub(crate) fn recording_of(params: &Params) -> Result<Option<Recording>, String>
     if text.is_empty() {
         return Ok(None);
     }
-    let recording = Recording::from_text(text)
-        .map_err(|error| format!("The recorded input cannot be played: {error}."))?;
+    let recording = Recording::from_text(text)?;
     if recording.ticks() == 0 {
-        return Err("The recorded input holds nothing: drive anew.".to_owned());
+        return Err(LabError::EmptyRecording);
     }
     Ok(Some(recording))
 }

@@ -1,6 +1,7 @@
 //! Tags that are set by hand, beside those that speed and turn rate suggest:
 //! `walk:0.2-1.5:exclude,run:0-1:-turn,walk:2-3:proud`.
 
+use crate::labs::LabError;
 use crate::labs::kept::{read_ids, write_ids};
 use crate::outside::short;
 use crate::params::{Key, Params, format_number};
@@ -26,22 +27,14 @@ pub struct HandTag {
 }
 
 /// Reads the parameter `tags`.
-pub(crate) fn read_tags(text: &str) -> Result<Vec<HandTag>, String> {
+pub(crate) fn read_tags(text: &str) -> Result<Vec<HandTag>, LabError> {
     if text.trim().is_empty() {
         return Ok(Vec::new());
     }
-    let refuse = |found: &str| {
-        format!(
-            "Tags: found `{}`, expected a clip, its seconds and a word, as in walk:0.2-1.5:exclude.",
-            short(found)
-        )
-    };
+    let refuse = |found: &str| LabError::Tags { found: short(found) };
     let parts = read_ids(text).ok_or_else(|| refuse(text))?;
     if parts.len() > MOST_TAGS {
-        return Err(format!(
-            "Tags: {} are more than can be kept: use at most {MOST_TAGS}.",
-            parts.len()
-        ));
+        return Err(LabError::TooMany { what: "Tags", count: parts.len(), most: MOST_TAGS });
     }
     parts.iter().map(|part| read_tag(part).ok_or_else(|| refuse(part))).collect()
 }
@@ -100,7 +93,7 @@ fn tag_of(word: &str, own: &[&str]) -> Option<Tag> {
 }
 
 /// Which frames may be found.
-pub(crate) fn filter_of(params: &Params) -> Result<TagFilter, String> {
+pub(crate) fn filter_of(params: &Params) -> Result<TagFilter, LabError> {
     let tags = read_tags(params.text(Key::Tags))?;
     let own = own_words(&tags);
     let set = |key: Key| {
@@ -108,13 +101,8 @@ pub(crate) fn filter_of(params: &Params) -> Result<TagFilter, String> {
         if word.is_empty() || word == key.param().format(&key.param().default_value()) {
             return Ok(TagSet::NONE);
         }
-        let tag = tag_of(word, &own).ok_or_else(|| {
-            format!(
-                "No frame has the tag `{}`: tag a stretch of a clip with it, or choose another tag.",
-                short(word)
-            )
-        })?;
-        Ok::<_, String>(TagSet::of(&[tag]))
+        let tag = tag_of(word, &own).ok_or_else(|| LabError::NoTag { word: short(word) })?;
+        Ok::<_, LabError>(TagSet::of(&[tag]))
     };
     Ok(TagFilter { ask: set(Key::AskTag)?, forbid: set(Key::ForbidTag)? })
 }

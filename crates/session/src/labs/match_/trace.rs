@@ -1,5 +1,6 @@
 //! What a character did, tick by tick: its motion, and why it went where it went.
 
+use crate::labs::LabError;
 use crate::labs::{LabFacts, Outcome};
 use crate::motion::{FeetReading, Motion};
 use segue_motion::clip::{Clip, Contacts};
@@ -150,7 +151,7 @@ impl Tracer {
     }
 
     /// The motion with all that is known of it but its numbers.
-    pub(super) fn outcome(&self, is_live: bool) -> Result<Outcome, String> {
+    pub(super) fn outcome(&self, is_live: bool) -> Result<Outcome, LabError> {
         let database = self.controller.database();
         let clip = Clip::from_poses(
             "drive",
@@ -159,7 +160,7 @@ impl Tracer {
             self.poses.iter().cloned(),
         );
         let motion = Motion {
-            clip: Arc::new(clip.map_err(|error| error.to_string())?),
+            clip: Arc::new(clip?),
             roles: database.roles().clone(),
             contacts: self.contacts(),
             ground_frames: self.moments.iter().map(|moment| moment.root).collect(),

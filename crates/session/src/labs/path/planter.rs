@@ -3,6 +3,7 @@
 
 use super::{PathInputs, free_motion};
 use crate::compare::MAX_PANES;
+use crate::labs::LabError;
 use segue_motion::clip::{Clip, Contacts};
 use segue_motion::metrics::SlideMeter;
 use segue_motion::transition::FootLocking;
@@ -12,7 +13,7 @@ use std::sync::Arc;
 const PER_SLICE: usize = 500;
 
 /// The motion with its feet planted, and how far they slide now, centimetres.
-type Made = Result<(Arc<Clip>, Option<f64>), String>;
+type Made = Result<(Arc<Clip>, Option<f64>), LabError>;
 
 /// What came of it.
 #[derive(Debug)]
@@ -93,7 +94,7 @@ impl Planter {
     }
 }
 
-fn begin(of: &PathInputs) -> Result<Stage, String> {
+fn begin(of: &PathInputs) -> Result<Stage, LabError> {
     let (_, free) = free_motion(of)?;
     let (roles, clip) = (&of.fitted.motion.roles, Arc::new(free.clip));
     Ok(match of.locking(&clip, &free.contacts, &free.turns)? {
@@ -109,7 +110,7 @@ fn step(of: &PathInputs, stage: Stage) -> Result<Stage, Made> {
             if locking.advance(PER_SLICE) {
                 return Ok(Stage::Locking(locking, contacts));
             }
-            let clip = locking.finish().map_err(|error| Err(error.to_string()))?;
+            let clip = locking.finish().map_err(|error| Err(error.into()))?;
             let meter = SlideMeter::new(&clip, &of.fitted.motion.roles);
             Ok(Stage::Measuring(Arc::new(clip), contacts, meter))
         }

@@ -1,5 +1,6 @@
 //! Lists of pairs as links carry them: `12-30,50-71`, `0.3:run`.
 
+use crate::labs::LabError;
 use crate::labs::kept::{read_ids, write_ids};
 use crate::outside::short;
 use crate::params::format_number;
@@ -8,13 +9,13 @@ use crate::params::format_number;
 const MOST_PAIRS: usize = 64;
 
 /// Reads pairs of frames of A and B that must meet: `12-30,50-71`.
-pub(crate) fn read_pins(text: &str) -> Result<Vec<(usize, usize)>, String> {
+pub(crate) fn read_pins(text: &str) -> Result<Vec<(usize, usize)>, LabError> {
     read(text, "Pins", "a frame of A and one of B, as in 12-30,50-71", usize::MAX)
 }
 
 /// Reads a weight over the course of a blend: per cent of the blend and per cent of B,
 /// `0-0,50-100`.
-pub(crate) fn read_weights(text: &str) -> Result<Vec<(usize, usize)>, String> {
+pub(crate) fn read_weights(text: &str) -> Result<Vec<(usize, usize)>, LabError> {
     read(text, "Weight over time", "per cent of the blend and of B, as in 0-0,50-100", 100)
 }
 
@@ -22,13 +23,8 @@ pub(crate) fn read_weights(text: &str) -> Result<Vec<(usize, usize)>, String> {
 pub const MOST_ALSO: usize = 6;
 
 /// Reads clips and their weights: `0.3:run,0.2:fast_walk`.
-pub(crate) fn read_also(text: &str) -> Result<Vec<(String, f64)>, String> {
-    let refuse = |found: &str| {
-        format!(
-            "More clips: found `{}`, expected a weight from 0 to 1 and a clip, as in 0.3:run,0.2:fast_walk.",
-            short(found)
-        )
-    };
+pub(crate) fn read_also(text: &str) -> Result<Vec<(String, f64)>, LabError> {
+    let refuse = |found: &str| LabError::MoreClips { found: short(found) };
     if text.trim().is_empty() {
         return Ok(Vec::new());
     }
@@ -39,10 +35,7 @@ pub(crate) fn read_also(text: &str) -> Result<Vec<(String, f64)>, String> {
     };
     let pairs = read_ids(text).ok_or_else(|| refuse(text))?;
     if pairs.len() > MOST_ALSO {
-        return Err(format!(
-            "More clips: {} are more than can be blended: use at most {MOST_ALSO}.",
-            pairs.len()
-        ));
+        return Err(LabError::TooManyMoreClips { count: pairs.len() });
     }
     pairs.iter().map(|pair| read(pair).ok_or_else(|| refuse(pair))).collect()
 }
@@ -58,10 +51,10 @@ pub fn write_also(clips: &[(String, f64)]) -> String {
 
 fn read(
     text: &str,
-    name: &str,
-    expected: &str,
+    what: &'static str,
+    expected: &'static str,
     most: usize,
-) -> Result<Vec<(usize, usize)>, String> {
+) -> Result<Vec<(usize, usize)>, LabError> {
     let read = |pair: &str| {
         let (a, b) = pair.split_once('-')?;
         let number = |word: &str| word.trim().parse().ok().filter(|number: &usize| *number <= most);
@@ -70,15 +63,11 @@ fn read(
     let words = text.split(',').map(str::trim).filter(|word| !word.is_empty());
     let pairs: Vec<(usize, usize)> = words
         .map(|pair| {
-            read(pair)
-                .ok_or_else(|| format!("{name}: found `{}`, expected {expected}.", short(pair)))
+            read(pair).ok_or_else(|| LabError::FramePairs { what, found: short(pair), expected })
         })
         .collect::<Result<_, _>>()?;
     if pairs.len() > MOST_PAIRS {
-        return Err(format!(
-            "{name}: {} are more than can be kept: use at most {MOST_PAIRS}.",
-            pairs.len()
-        ));
+        return Err(LabError::TooMany { what, count: pairs.len(), most: MOST_PAIRS });
     }
     Ok(pairs)
 }
@@ -104,7 +93,7 @@ mod tests {
         assert_eq!(write_pairs(&[(50, 71), (12, 30), (50, 71)]), "12-30,50-71");
         assert_eq!(read_pins(""), Ok(vec![]));
         for bad in ["12", "12-", "a-b", "1-2-3", "-4"] {
-            assert!(read_pins(bad).unwrap_err().contains(&format!("`{bad}`")));
+            assert!(read_pins(bad).unwrap_err().to_string().contains(&format!("`{bad}`")));
         }
         assert!(read_pins(&"1-1,".repeat(65)).is_err());
         let also =
@@ -114,8 +103,10 @@ mod tests {
         for bad in ["run", "2:run", "x:run", "0.5:", "NaN:run", "0.1:run("] {
             assert!(read_also(bad).is_err(), "{bad}");
         }
-        assert!(read_also(&["0.1:run"; 7].join(",")).unwrap_err().contains("at most 6"));
+        assert!(
+            read_also(&["0.1:run"; 7].join(",")).unwrap_err().to_string().contains("at most 6")
+        );
         assert_eq!(read_weights("0-0,100-100"), Ok(vec![(0, 0), (100, 100)]));
-        assert!(read_weights("0-101").unwrap_err().contains("`0-101`"));
+        assert!(read_weights("0-101").unwrap_err().to_string().contains("`0-101`"));
     }
 }

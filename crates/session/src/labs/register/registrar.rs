@@ -1,7 +1,8 @@
 use super::super::lab_set::{JobKind, Sliced};
-use super::{Also, DistanceMap, Made, RegisterInputs, read_pins, sentence};
+use super::{Also, DistanceMap, Made, RegisterInputs, read_pins};
 use crate::choices;
 use crate::compare::MAX_PANES;
+use crate::labs::LabError;
 use crate::labs::feet::Lock;
 use crate::labs::pair::{Pair, Pairs};
 use crate::motion::Motion;
@@ -53,7 +54,7 @@ impl Registrars {
         pair: &Arc<Pair>,
         also: &[(Arc<Motion>, f64)],
         params: &Params,
-    ) -> Result<Option<RegisterInputs>, String> {
+    ) -> Result<Option<RegisterInputs>, LabError> {
         let pins = read_pins(params.text(Key::Pins))?;
         let found = self.b.found(pair, wanted_of(pair, params, pins)?)?;
         let made = Made::of(params)?;
@@ -126,7 +127,7 @@ struct Registrar {
     /// The last ones that were asked for, at most one for each pane.
     maps: Vec<Arc<DistanceMap>>,
     search: Option<(Wanted, PathSearch)>,
-    found: Vec<(Wanted, Result<Arc<Found>, String>)>,
+    found: Vec<(Wanted, Result<Arc<Found>, LabError>)>,
     /// What panes wait for.
     wanted: Vec<Wanted>,
     /// All of that has just been found, and nobody has asked for it yet.
@@ -142,7 +143,7 @@ impl Registrar {
 
     /// What is known of the two. `None` when that takes longer than a frame: [`work`](Self::work),
     /// then ask again.
-    fn found(&mut self, pair: &Arc<Pair>, wanted: Wanted) -> Result<Option<Arc<Found>>, String> {
+    fn found(&mut self, pair: &Arc<Pair>, wanted: Wanted) -> Result<Option<Arc<Found>>, LabError> {
         self.meet(pair)?;
         let at_once = pair.a.clip.frames().saturating_mul(pair.incoming.clip.frames()) <= AT_ONCE;
         loop {
@@ -197,7 +198,7 @@ impl Registrar {
         Some(0.45 * terms + 0.45 * swept)
     }
 
-    fn meet(&mut self, pair: &Arc<Pair>) -> Result<(), String> {
+    fn meet(&mut self, pair: &Arc<Pair>) -> Result<(), LabError> {
         if self.pair.as_ref().is_some_and(|known| Arc::ptr_eq(known, pair)) {
             return Ok(());
         }
@@ -207,7 +208,7 @@ impl Registrar {
         let stride = (pairs / MOST_PAIRS).sqrt().ceil().max(1.0) as usize;
         let weights = limb_weights(a.skeleton());
         let terms = PairTerms::new(a, 0..a.frames(), b, 0..b.frames(), &weights, stride);
-        self.terms = Some(terms.map_err(|error| sentence(&error))?);
+        self.terms = Some(terms?);
         self.pair = Some(Arc::clone(pair));
         Ok(())
     }
@@ -215,7 +216,7 @@ impl Registrar {
     /// Does a slice of what is needed next.
     fn step(&mut self, wanted: &Wanted) {
         let (Some(pair), Some(terms)) = (&self.pair, &mut self.terms) else {
-            self.keep(wanted, Err("There are no clips to register.".to_owned()));
+            self.keep(wanted, Err(LabError::NothingToRegister));
             return;
         };
         let stride = terms.stride();
@@ -259,11 +260,11 @@ impl Registrar {
                 }
                 self.maps.push(Arc::new(DistanceMap::new(sweep.finish(), pair)));
             }
-            Err(error) => self.keep(wanted, Err(sentence(&error))),
+            Err(error) => self.keep(wanted, Err(error.into())),
         }
     }
 
-    fn keep(&mut self, wanted: &Wanted, found: Result<Found, String>) {
+    fn keep(&mut self, wanted: &Wanted, found: Result<Found, LabError>) {
         if self.found.len() >= 2 * MAX_PANES {
             drop(self.found.remove(0));
         }
@@ -271,7 +272,7 @@ impl Registrar {
     }
 }
 
-fn wanted_of(pair: &Pair, params: &Params, pins: Vec<(usize, usize)>) -> Result<Wanted, String> {
+fn wanted_of(pair: &Pair, params: &Params, pins: Vec<(usize, usize)>) -> Result<Wanted, LabError> {
     let window = params.number(Key::RegistrationWindow) as usize;
     let slack = params.number(Key::EndSlack) / 100.0;
     let end = if params.choice::<choices::Ends>() == choices::Ends::Corner {
@@ -281,9 +282,7 @@ fn wanted_of(pair: &Pair, params: &Params, pins: Vec<(usize, usize)>) -> Result<
     };
     let (frames_a, frames_b) = (pair.a.clip.frames(), pair.incoming.clip.frames());
     if let Some((a, b)) = pins.iter().find(|(a, b)| *a >= frames_a || *b >= frames_b) {
-        return Err(format!(
-            "The pin at frames {a} | {b} lies beyond the clips, which have {frames_a} and {frames_b} frames: move it inside or remove it."
-        ));
+        return Err(LabError::PinBeyond { a: *a, b: *b, frames_a, frames_b });
     }
     let usual = RegistrationOptions::new(pair.a.clip.fps()).smoothing;
     Ok(Wanted {
@@ -327,10 +326,10 @@ fn curves(
     })
 }
 
-/// The sentence of an error, with the frames that its windows stand for.
-fn in_frames(error: PathError, middle: usize) -> String {
+/// The error with the frames that its windows stand for.
+fn in_frames(error: PathError, middle: usize) -> LabError {
     let moved = |frames: (usize, usize)| (frames.0 + middle, frames.1 + middle);
-    let error = match error {
+    LabError::Warp(match error {
         PathError::Pins { first, second } => {
             PathError::Pins { first: moved(first), second: moved(second) }
         }
@@ -339,6 +338,5 @@ fn in_frames(error: PathError, middle: usize) -> String {
             PathError::NoPath { from: from.map(moved), to: to.map(moved), slope_limit, needed }
         }
         other => other,
-    };
-    sentence(&error)
+    })
 }
