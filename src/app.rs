@@ -27,6 +27,7 @@ use picture::Picture;
 use segue_session::Storing;
 use segue_session::export::file_name;
 use segue_session::{Command, CommandError, Key, Lesson, Level, Session, Value, link};
+use segue_text::{ToMessage, msg};
 use speech::{Speech, Spoken};
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
@@ -260,7 +261,7 @@ impl Segue {
     /// Says what has happened to the platform.
     #[cfg(target_arch = "wasm32")]
     pub(crate) fn complain(&mut self, text: &str) {
-        self.session.say(Level::Error, text);
+        self.session.say(Level::Error, text.to_owned());
     }
 
     /// Carries out a command that the user or the page's API gave.
@@ -355,7 +356,7 @@ impl Segue {
     /// Carries out a command of the user's. What cannot be done is said.
     fn obey(&mut self, command: Command) {
         if let Err(error) = self.apply(command) {
-            self.session.say(Level::Warning, error.to_string());
+            self.session.say(Level::Warning, error.to_message());
         }
     }
 
@@ -496,7 +497,10 @@ impl Segue {
                 Ok(file) => platform::download(&file.name, file.mime, &file.bytes, &self.inbox),
                 Err(reason) => self.session.say(
                     Level::Error,
-                    format!("The file could not be saved: {}.", reason.trim_end_matches('.')),
+                    msg!(
+                        "The file could not be saved: {reason}.",
+                        reason = reason.trim_end_matches('.').to_owned()
+                    ),
                 ),
             },
             Action::SavePicture => {
@@ -512,10 +516,8 @@ impl Segue {
                 Some(film) => film.save(&self.stage_name(), &self.inbox),
                 None => {
                     if let Err(reason) = self.begin_film() {
-                        self.session.say(
-                            Level::Error,
-                            format!("The page could not be recorded: {reason}."),
-                        );
+                        self.session
+                            .say(Level::Error, msg!("The page could not be recorded: {reason}."));
                     }
                 }
             },
@@ -614,7 +616,7 @@ impl Segue {
         let mut events = std::mem::take(&mut self.events);
         for notice in self.session.notices().errors_since(self.told.next_notice) {
             self.told.next_notice = notice.id + 1;
-            events.push(Event::Error { message: notice.text.clone() });
+            events.push(Event::Error { message: notice.text.to_string() });
         }
         for job in self.session.jobs() {
             events.push(Event::Progress {

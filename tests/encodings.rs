@@ -102,7 +102,7 @@ fn result(session: &mut Session, [a, b]: &[String; 2], lab: &str) -> Result<Arc<
     while session.work() {}
     let pane = session.panes().first().expect("a pane");
     match (&pane.outcome, &pane.problem) {
-        (_, Some(problem)) => Err(problem.clone()),
+        (_, Some(problem)) => Err(problem.to_string()),
         (Some(outcome), None) => Ok(Arc::clone(outcome)),
         (None, None) => Err("neither a result nor a reason".into()),
     }

@@ -212,7 +212,8 @@ impl Segue {
 
     pub(super) fn loaded_clips(&mut self, loaded: Loaded) -> LoadedClips {
         let clips = self.clips().into_iter().filter(|clip| loaded.ids.contains(&clip.id)).collect();
-        LoadedClips { clips, warnings: loaded.warnings }
+        let warnings = loaded.warnings.iter().map(ToString::to_string).collect();
+        LoadedClips { clips, warnings }
     }
 
     /// Has a file read elsewhere, exactly as if it were dropped on the page, and keeps what comes
@@ -499,6 +500,7 @@ fn pane_number(which: &str) -> Option<usize> {
 mod tests {
     use super::*;
     use crate::platform::{Inbox, Storage};
+use segue_text::ToMessage;
     use serde_json::json;
 
     fn open(link: &str) -> Segue {
@@ -651,7 +653,8 @@ mod tests {
                 segue.report(None).map(drop),
                 segue.keep("result").map(drop),
             ];
-            let sentence = segue.session.panes()[0].problem.clone().unwrap();
+            let problem = segue.session.panes()[0].problem.clone().unwrap();
+            let sentence = problem.to_sentence().to_string();
             assert!(sentence.contains(part), "{good}: {sentence}");
             assert_eq!(refused, std::array::from_fn(|_| Err(sentence.clone())), "{good}");
             assert_eq!(segue.clips().len(), kept);
@@ -772,7 +775,7 @@ mod tests {
                 .notices()
                 .list()
                 .iter()
-                .filter(|notice| notice.text == crate::ui::HOST_READS)
+                .filter(|notice| notice.text.to_string() == crate::ui::HOST_READS)
                 .count()
         };
         segue.tell_of_host();

@@ -6,6 +6,7 @@ use crate::platform::{self, FileBytes, Incoming, LargeFile, ReadNews};
 use crate::ui;
 use segue_session::reading::Content;
 use segue_session::{Command, Key, Level, Request, Value};
+use segue_text::{Message, msg};
 
 impl Segue {
     pub(super) fn receive(&mut self, incoming: Incoming) {
@@ -24,8 +25,13 @@ impl Segue {
                     }
                     Err(reason) => {
                         let reason = reason.trim_end_matches('.');
-                        self.session
-                            .say(Level::Error, format!("The report could not be made: {reason}."));
+                        self.session.say(
+                            Level::Error,
+                            msg!(
+                                "The report could not be made: {reason}.",
+                                reason = reason.to_owned()
+                            ),
+                        );
                     }
                 }
             }
@@ -37,12 +43,15 @@ impl Segue {
                     Ok(Ok(())) => {}
                     // It was said.
                     Ok(Err(error)) => log::info!("{} was not loaded: {error}", sample.label),
-                    Err(reason) => self.session.fail_sample(sample, &reason),
+                    Err(reason) => self.session.fail_sample(sample, reason),
                 }
             }
             Incoming::Lesson { source, result } => {
                 self.downloads.end_lesson(&source);
-                let text = result.as_ref().map(|bytes| &**bytes).map_err(Clone::clone);
+                let text = result
+                    .as_ref()
+                    .map(|bytes| &**bytes)
+                    .map_err(|reason| Message::data(reason.clone()));
                 self.session.finish_lesson(&source, text);
             }
             Incoming::Language(files) => {
@@ -128,7 +137,9 @@ impl Segue {
         let result = match news {
             ReadNews::Progress(_) => None,
             ReadNews::NoRoom(needed) => self.session.refuse_for_memory(task, needed),
-            ReadNews::Done(report) => self.session.finish_reading(task, report),
+            ReadNews::Done(report) => {
+                self.session.finish_reading(task, report.map_err(Message::data))
+            }
         };
         let Some(result) = result else { return };
         if let (true, Ok(loaded)) = (brings_clips, &result) {
@@ -136,6 +147,7 @@ impl Segue {
         }
         if self.read.contains_key(&task) {
             let result = result.map(|loaded| self.loaded_clips(loaded));
+            let result = result.map_err(|reason| reason.to_string());
             self.read.insert(task, Some(result));
         }
     }
@@ -185,7 +197,7 @@ impl Segue {
     /// Stops waiting for lessons: whoever opens one waits for that one alone.
     pub(super) fn stop_lessons(&mut self) {
         for source in self.downloads.end_lessons() {
-            let reason = format!("Loading {} was stopped.", lesson_file(&source));
+            let reason = msg!("Loading {name} was stopped.", name = lesson_file(&source));
             self.session.finish_lesson(&source, Err(reason));
         }
     }

@@ -2,7 +2,7 @@
 //! in the View lab.
 
 use super::kit::{self, Tree, TreeRow};
-use super::language::tr;
+use super::language::{say, tr};
 use super::out::Out;
 use super::rows::save_rows_ui;
 use super::state::{Typing, UiState};
@@ -14,8 +14,9 @@ use segue_motion::clip::{UpAxis, ground_speed};
 use segue_motion::skeleton::{Channel, Role, Skeleton};
 use segue_session::{
     Command, Entry, Key, Motion, Origin, Session, SourceFile, Value, format_number, joint_of,
-    sentence, word_of_joint,
+    word_of_joint,
 };
+use segue_text::ToMessage;
 
 /// The tree of joints scrolls above this height, points.
 const TREE_HEIGHT: f32 = 264.0;
@@ -31,7 +32,7 @@ pub(crate) fn clip_panel_ui(
     ui: &mut Ui,
 ) {
     for warning in &entry.warnings {
-        sentence_ui(warning, palette_of(ui).warning, ui);
+        sentence_ui(&say(warning, ui), palette_of(ui).warning, ui);
     }
     let Some(motion) = &entry.motion else {
         let status = text::status(entry);
@@ -73,7 +74,7 @@ fn facts_ui(entry: &Entry, motion: &Motion, ui: &mut Ui) {
     }
     let muted = palette_of(ui).muted;
     if let Some(about) = &entry.about {
-        sentence_ui(&sentence(&about.measure), muted, ui);
+        sentence_ui(&say(&about.measure.to_sentence(), ui), muted, ui);
     }
     let channels = channels_in_words(clip.skeleton());
     if !channels.is_empty() {

@@ -3,7 +3,7 @@
 mod prose;
 
 use super::kit::{self, Button, Icon, MenuItem};
-use super::language::tr;
+use super::language::{say, tr};
 use super::out::{Action, Out};
 use super::state::UiState;
 use super::text;
@@ -64,7 +64,7 @@ pub(super) fn lessons_panel_ui(session: &Session, state: &mut UiState, out: &mut
                 }
             }
             Lesson::Failed(problem) => {
-                note_ui(problem, true, ui);
+                note_ui(&say(problem, ui), true, ui);
                 if kit::button_ui(Button::new(text::TRY_AGAIN).icon(Icon::Loop), ui).clicked() {
                     out.commands.push(Command::Try(format!("{}={name}", Key::Lesson.param().name)));
                 }

@@ -3,7 +3,7 @@
 use super::clip_panel::clip_panel_ui;
 use super::kit::{self, Button, ClipRow, Icon, MenuItem, Part};
 use super::labs::view::compare_clips;
-use super::language::tr;
+use super::language::{say, tr};
 use super::out::{Action, Out};
 use super::state::{Typing, UiState};
 use super::text;
@@ -185,7 +185,8 @@ fn entry_ui(entry: &Entry, session: &Session, state: &mut UiState, out: &mut Out
     let part = part_of(session, entry);
     let open = state.details.as_ref() == Some(&entry.id);
     let blending = session.uses(Slot::B);
-    let warning = entry.warnings.join("\n");
+    let warnings: Vec<String> = entry.warnings.iter().map(|warning| say(warning, ui)).collect();
+    let warning = warnings.join("\n");
     let actions =
         [(Icon::Sliders, text::DETAILS), (Icon::Pencil, text::RENAME), (Icon::Trash, text::REMOVE)];
     let facts = facts(entry);

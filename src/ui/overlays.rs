@@ -3,7 +3,7 @@
 
 use super::commands;
 use super::kit::{self, Mood, Notice, NoticeEvent};
-use super::language::tr;
+use super::language::{say, tr};
 use super::out::Out;
 use super::state::UiState;
 use super::text;
@@ -27,10 +27,12 @@ fn notices_ui(session: &Session, state: &UiState, out: &mut Out, ui: &mut Ui) {
         Level::Warning => Mood::Warning,
         Level::Error => Mood::Bad,
     };
+    let texts: Vec<String> = list.iter().map(|notice| say(&notice.text, ui)).collect();
     let notices: Vec<Notice<'_>> = list
         .iter()
-        .map(|notice| Notice {
-            text: &notice.text,
+        .zip(&texts)
+        .map(|(notice, text)| Notice {
+            text,
             mood: mood(notice.level),
             action: match notice.mends.len() {
                 0 => "",

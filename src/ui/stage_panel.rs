@@ -7,7 +7,7 @@ use super::labs::path::ground_line::{GroundLine, ground_line};
 use super::labs::path::hand::path_of;
 use super::labs::path::stage::{frame_once, handles_ui, said_ui};
 use super::labs::{self, Shown, Title};
-use super::language::tr;
+use super::language::{say, tr};
 use super::out::{Action, Out};
 use super::state::{Filming, Layout, UiState};
 use super::text;
@@ -17,6 +17,7 @@ use segue::scene::{camera_of, resting_point, shown_size};
 use segue_motion::metrics::Better;
 use segue_session::choices;
 use segue_session::{CycleMade, Key, Kind, Pane, Session, Value};
+use segue_text::ToMessage;
 
 /// Draws the 3D picture: the whole stage, and for each pane that is shown its index in the session
 /// and its place.
@@ -219,7 +220,7 @@ fn pane_ui(
     };
     kit::pane_header_ui(&title, rect, ui);
     if let Some(problem) = &pane.problem {
-        return problem_ui(problem, rect, ui);
+        return problem_ui(&say(&problem.to_sentence(), ui), rect, ui);
     } else if pane.outcome.is_none() {
         let jobs = session.jobs();
         let words = jobs.first().map_or(text::EMPTY_PANE.to_owned(), text::under_way);

@@ -5,6 +5,7 @@ use super::raw::RawMotion;
 use glam::Vec3;
 use segue_motion::clip::{Provenance, UpAxis};
 use segue_motion::skeleton::{Role, Roles, Side, Skeleton};
+use segue_text::{Message, ToMessage, msg};
 use std::fmt;
 
 /// Metres per unit of the CMU motion capture database: inches scaled by 0.45, as its skeleton files
@@ -81,28 +82,33 @@ impl Measure {
 
 impl fmt::Display for Measure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.to_message().fmt(f)
+    }
+}
+
+impl ToMessage for Measure {
+    fn to_message(&self) -> Message {
         let metres = self.provenance.metres_per_unit;
-        let unit = match metres {
-            1.0 => "metres".to_owned(),
-            0.3048 => "feet".to_owned(),
-            0.1 => "decimetres".to_owned(),
-            0.0254 => "inches".to_owned(),
-            0.01 => "centimetres".to_owned(),
-            0.001 => "millimetres".to_owned(),
-            CMU_METRES_PER_UNIT => "CMU units of 5.64 cm".to_owned(),
-            _ => format!("units of {metres} m"),
+        let unit: Message = match metres {
+            1.0 => "metres".into(),
+            0.3048 => "feet".into(),
+            0.1 => "decimetres".into(),
+            0.0254 => "inches".into(),
+            0.01 => "centimetres".into(),
+            0.001 => "millimetres".into(),
+            CMU_METRES_PER_UNIT => "CMU units of 5.64 cm".into(),
+            _ => msg!("units of {metres} m"),
         };
-        let how = if self.unit_detected { "read as" } else { "set to" };
         let up = match self.provenance.up {
             UpAxis::Y => "Y up",
             UpAxis::Z => "Z up",
         };
-        write!(
-            f,
-            "{:.1} units tall, {how} {unit}: {:.2} m; {up}",
-            self.height_units,
-            self.height_metres()
-        )
+        let (units, height) = (self.height_units, self.height_metres());
+        if self.unit_detected {
+            msg!("{units:.1} units tall, read as {unit}: {height:.2} m; {up}")
+        } else {
+            msg!("{units:.1} units tall, set to {unit}: {height:.2} m; {up}")
+        }
     }
 }
 

@@ -585,7 +585,12 @@ fn deep_chains_are_read_and_bottomless_ones_refused() {
         ("joints nested more than 4096 deep", "at most 4096 levels")
     );
     // Nothing but opening: neither a stack overflow nor a wait.
-    assert!(refused("ROOT a {".to_owned() + &"JOINT a {".repeat(1_000_000)).found.to_string().contains("4096"));
+    assert!(
+        refused("ROOT a {".to_owned() + &"JOINT a {".repeat(1_000_000))
+            .found
+            .to_string()
+            .contains("4096")
+    );
 }
 
 #[test]

@@ -86,6 +86,7 @@ impl Reader {
 mod tests {
     use super::*;
     use segue_session::reading::Content;
+    use segue_text::Message;
     use std::time::Duration;
 
     #[test]
@@ -115,7 +116,7 @@ mod tests {
                 None => std::thread::sleep(Duration::from_millis(1)),
             }
         };
-        let loaded = session.finish_reading(id, report).unwrap().unwrap();
+        let loaded = session.finish_reading(id, report.map_err(Message::data)).unwrap().unwrap();
         assert_eq!(loaded.ids.len(), 1);
     }
 }

@@ -8,7 +8,7 @@ pub(crate) mod stage;
 use crate::ui::kit::{self, Button, Icon};
 use crate::ui::labs::path::hand::path_of;
 use crate::ui::labs::{Compares, LabUi, Shown, Title};
-use crate::ui::language::tr;
+use crate::ui::language::{say, tr};
 use crate::ui::out::Out;
 use crate::ui::rows::clip_sets_ui;
 use crate::ui::rows::{Detail, param_row_ui};
@@ -19,6 +19,7 @@ use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Rect, RichText, Ui, UiBuilder, pos2, vec2};
 use segue_motion::path::PathEdit;
 use segue_session::{Command, CompanyChange, Key, LabId, OnPath, Session, Slot, Value};
+use segue_text::ToMessage;
 
 /// The lab's part of the page.
 pub(super) const LAB: LabUi = LabUi {
@@ -58,8 +59,8 @@ pub(super) fn path_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     slot_row_ui(Slot::A, session, out, ui);
     let pane = session.panes().first();
     let path = pane.and_then(|pane| path_of(session, pane));
-    if let Some(problem) = pane.and_then(|pane| pane.problem.as_deref()) {
-        kit::note_ui(problem, palette.warning, ui);
+    if let Some(problem) = pane.and_then(|pane| pane.problem.as_ref()) {
+        kit::note_ui(&say(&problem.to_sentence(), ui), palette.warning, ui);
     }
     ui.add_space(space::S);
     let edited = path.filter(|path| path.is_edited);
@@ -88,7 +89,7 @@ pub(super) fn path_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
         out.set_once(Key::Path, Value::Text(String::new()));
     }
     if let Some(said) = &state.path.said {
-        kit::note_ui(said, palette.warning, ui);
+        kit::note_ui(&say(said, ui), palette.warning, ui);
     }
     if let Some(path) = path {
         warnings_ui(path, ui);
@@ -272,7 +273,7 @@ fn company_ui(
                 });
             });
             if let Err(problem) = &companion.motion {
-                kit::note_ui(problem, palette.warning, ui);
+                kit::note_ui(&say(&problem.to_sentence(), ui), palette.warning, ui);
             }
         });
     }

@@ -5,7 +5,7 @@ use crate::ui::kit::{
     WeightCurveRow,
 };
 use crate::ui::labs::{Compares, LabUi, Shown, Title};
-use crate::ui::language::tr;
+use crate::ui::language::{say, tr};
 use crate::ui::out::Out;
 use crate::ui::rows::clip_sets_ui;
 use crate::ui::rows::{Detail, param_row_ui};
@@ -23,6 +23,7 @@ use segue_session::{
     Command, DistanceMap, Key, MOST_ALSO, Registered, Session, Slot, Value, weight_curve,
     write_also, write_pairs,
 };
+use segue_text::ToMessage;
 use std::sync::Arc;
 
 /// The lab's part of the page.
@@ -281,8 +282,8 @@ fn map_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
             }
         });
     }
-    if let Some(problem) = session.panes().first().and_then(|pane| pane.problem.as_deref()) {
-        kit::note_ui(problem, palette.warning, ui);
+    if let Some(problem) = session.panes().first().and_then(|pane| pane.problem.as_ref()) {
+        kit::note_ui(&say(&problem.to_sentence(), ui), palette.warning, ui);
     }
     ui.add_space(space::S);
 }

@@ -14,6 +14,7 @@
 //! - a row of words and numbers that all have entries, `27 seam °/s best`, is translated word by
 //!   word.
 
+use segue_text::{Message, Table};
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -29,6 +30,7 @@ const LONGEST_ROW: usize = 14;
 /// See the module.
 #[derive(Debug)]
 pub(crate) struct Catalogue {
+    table: Table,
     exact: BTreeMap<String, String>,
     /// Those with the most words of their own come first.
     patterns: Vec<Pattern>,
@@ -39,6 +41,8 @@ pub(crate) struct Catalogue {
 #[derive(Debug)]
 struct Pattern {
     english: Vec<Piece>,
+    /// The names of its placeholders, where they have names.
+    names: Vec<String>,
     translation: String,
     letters: usize,
 }
@@ -63,17 +67,19 @@ impl Catalogue {
             serde_json::from_slice(json).map_err(|error| error.to_string())?;
         let mut exact = BTreeMap::new();
         let mut patterns = Vec::new();
+        let table = Table::new(sections.values().flatten());
         for (english, translation) in sections.into_values().flatten() {
             let pieces = pieces(&english);
             if let [Piece::Words(words)] = pieces.as_slice() {
                 exact.insert(words.clone(), translation);
             } else {
                 let letters = pieces.iter().map(Piece::letters).sum();
-                patterns.push(Pattern { english: pieces, translation, letters });
+                let names = names(&english);
+                patterns.push(Pattern { english: pieces, names, translation, letters });
             }
         }
         patterns.sort_by_key(|pattern| std::cmp::Reverse(pattern.letters));
-        Ok(Self { exact, patterns, known: Mutex::default() })
+        Ok(Self { table, exact, patterns, known: Mutex::default() })
     }
 
     /// The translation of a text; `None` where there is none.
@@ -88,6 +94,17 @@ impl Catalogue {
         }
         known.insert(text.to_owned(), found.clone());
         found
+    }
+
+    /// A message in this language. One that is not known as a whole is looked for as what it is in
+    /// English.
+    pub(crate) fn say(&self, message: &Message) -> String {
+        if self.table.has(message) {
+            let found = |data: &str| self.find(data).map(|found| found.to_string());
+            return self.table.write_with(message, found);
+        }
+        let english = message.to_string();
+        self.find(&english).map_or(english, |found| found.to_string())
     }
 
     /// What was asked so far, with what was found.
@@ -167,7 +184,7 @@ impl Catalogue {
                     part != english.trim() || !has_word(english) || !english.trim().contains(' ')
                 };
                 (pattern.letters >= ENOUGH || parts.iter().zip(&filled).all(known))
-                    .then(|| put_in(&pattern.translation, &parts))
+                    .then(|| put_in(&pattern.translation, &pattern.names, &parts))
             };
             fits(text).or_else(|| Some(format!("{}。", fits(note.as_deref()?)?)))
         })
@@ -294,7 +311,8 @@ fn pieces(entry: &str) -> Vec<Piece> {
     while !rest.is_empty() {
         let placeholder = [("{}", Piece::Anything), ("{#}", Piece::Number), ("{=}", Piece::Kept)]
             .into_iter()
-            .find_map(|(sign, piece)| Some((rest.strip_prefix(sign)?, piece)));
+            .find_map(|(sign, piece)| Some((rest.strip_prefix(sign)?, piece)))
+            .or_else(|| Some((named(rest)?.1, Piece::Anything)));
         if let Some((after, piece)) = placeholder {
             if !words.is_empty() {
                 pieces.push(Piece::Words(std::mem::take(&mut words)));
@@ -311,6 +329,20 @@ fn pieces(entry: &str) -> Vec<Piece> {
         pieces.push(Piece::Words(words));
     }
     pieces
+}
+
+/// A placeholder with a name at the beginning of a text, `{cm:.1}`: its name, and what follows.
+fn named(text: &str) -> Option<(&str, &str)> {
+    let (inside, rest) = text.strip_prefix('{')?.split_once('}')?;
+    let name = inside.split(':').next()?;
+    let is_name = |sign: char| sign.is_ascii_alphanumeric() || sign == '_';
+    (!name.is_empty() && name.chars().all(is_name)).then_some((name, rest))
+}
+
+/// The names in an entry, in order.
+fn names(entry: &str) -> Vec<String> {
+    let found = entry.match_indices('{').filter_map(|(at, _)| named(entry.get(at..)?));
+    found.map(|(name, _)| name.to_owned()).collect()
 }
 
 /// Whether `text` is made of these pieces; `filled` holds then what the placeholders stand for.
@@ -355,7 +387,7 @@ fn fill<'a>(pieces: &[Piece], text: &'a str, filled: &mut Vec<&'a str>) -> bool 
 }
 
 /// A translation with its placeholders filled.
-fn put_in(translation: &str, parts: &[String]) -> String {
+fn put_in(translation: &str, names: &[String], parts: &[String]) -> String {
     let mut whole = String::new();
     let mut rest = translation;
     let mut next = 0;
@@ -366,7 +398,9 @@ fn put_in(translation: &str, parts: &[String]) -> String {
             rest = after;
             continue;
         };
-        let index = index.parse().unwrap_or_else(|_| {
+        let name = index.split(':').next().unwrap_or_default();
+        let of_name = names.iter().position(|known| known == name);
+        let index = of_name.or_else(|| index.parse().ok()).unwrap_or_else(|| {
             next += 1;
             next - 1
         });
@@ -471,7 +505,9 @@ mod tests {
     #[test]
     fn translations_hold_their_parts_in_any_order() {
         let parts = ["a".to_owned(), "b".to_owned()];
-        assert_eq!(put_in("{1}{0}", &parts), "ba");
-        assert_eq!(put_in("{} {}{2}{", &parts), "a b{");
+        assert_eq!(put_in("{1}{0}", &[], &parts), "ba");
+        assert_eq!(put_in("{} {}{2}{", &[], &parts), "a b{");
+        let names = ["name".to_owned(), "cm".to_owned()];
+        assert_eq!(put_in("{cm:.1} {name}", &names, &parts), "b a");
     }
 }

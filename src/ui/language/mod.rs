@@ -14,7 +14,7 @@
 mod catalogue;
 mod tongue;
 
-pub(crate) use tongue::{Tongue, speak_english, tr};
+pub(crate) use tongue::{Tongue, say, speak_english, tr};
 
 use segue_session::Session;
 use segue_session::choices;

@@ -3,6 +3,7 @@
 use super::catalogue::Catalogue;
 use eframe::egui::output::OutputEvent;
 use eframe::egui::{Context, FontData, FullOutput, Id, Plugin, Role, Ui};
+use segue_text::Message;
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -64,6 +65,14 @@ pub(crate) fn tr<'a>(text: &'a str, ui: &Ui) -> Cow<'a, str> {
     match catalogue_of(ui.ctx()).and_then(|catalogue| catalogue.find(text)) {
         Some(found) => Cow::Owned(found.to_string()),
         None => Cow::Borrowed(text),
+    }
+}
+
+/// A message in the language of the interface.
+pub(crate) fn say(message: &Message, ui: &Ui) -> String {
+    match catalogue_of(ui.ctx()) {
+        Some(catalogue) => catalogue.say(message),
+        None => message.to_string(),
     }
 }
 

@@ -18,7 +18,7 @@ fn deliver(session: &mut Session) {
                 }
                 Source::Web(address) => Err(format!("There is no file at {address} (answer 404).")),
             };
-            session.finish_lesson(&source, text.as_deref().map_err(Clone::clone));
+            session.finish_lesson(&source, text.as_deref().map_err(|reason| reason.clone().into()));
         }
     }
     while session.work() {}

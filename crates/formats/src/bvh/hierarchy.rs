@@ -268,7 +268,9 @@ mod tests {
 
     fn fault(text: &str) -> (usize, String, String) {
         match parse(text) {
-            Err(Stop::Fault(fault)) => (fault.at, fault.found.to_string(), fault.expected.to_string()),
+            Err(Stop::Fault(fault)) => {
+                (fault.at, fault.found.to_string(), fault.expected.to_string())
+            }
             other => panic!("{other:?}"),
         }
     }

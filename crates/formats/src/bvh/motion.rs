@@ -402,14 +402,20 @@ mod tests {
             ["2 values without a number (first: line 101); the last good value was held"]
         );
         let refused = fault("1 2\nnan 3\n", 2);
-        assert_eq!((refused.at, refused.found.to_string().as_str()), (4, "no number in 1 of 4 values"));
+        assert_eq!(
+            (refused.at, refused.found.to_string().as_str()),
+            (4, "no number in 1 of 4 values")
+        );
     }
 
     #[test]
     fn words_are_no_rows() {
         assert_eq!(fault("1 2\nabc 4\n", 2).found.to_string(), "`abc`");
         assert_eq!(fault("1 2\n3 4\nHIERARCHY", 2).found.to_string(), "`HIERARCHY`");
-        assert_eq!(fault("1", 0).expected.to_string(), "the end of the file, since no joint has channels");
+        assert_eq!(
+            fault("1", 0).expected.to_string(),
+            "the end of the file, since no joint has channels"
+        );
     }
 
     #[test]

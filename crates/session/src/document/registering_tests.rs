@@ -6,6 +6,7 @@ use crate::Registered;
 use segue_motion::clip::{Clip, ground_speed};
 use segue_motion::math::Planar;
 use segue_motion::skeleton::Side;
+use segue_text::ToMessage;
 
 fn opened(link: &str) -> Session {
     let mut session = Session::new();
@@ -166,7 +167,8 @@ fn what_cannot_be_is_said_and_no_earlier_result_stands_for_it() {
         session.apply(Command::Set(values)).unwrap();
         while session.work() {}
         let pane = &session.panes()[0];
-        let problem = pane.problem.as_ref().map(ToString::to_string).unwrap_or_default();
+        let problem = pane.problem.as_ref().map(|problem| problem.to_sentence().to_string());
+        let problem = problem.unwrap_or_default();
         assert!(problem.to_string().contains(sentence), "{value}: {problem}");
         assert!(pane.outcome.is_none());
         assert!(session.distance_map().is_some());

@@ -1,7 +1,7 @@
 //! Why a lab has no result.
 
-use crate::labs::graph::MAX_CLIPS;
-use crate::labs::register::MAX_ALSO;
+use crate::labs::graph::MOST_CLIPS;
+use crate::labs::register::MOST_ALSO;
 use segue_formats::ImportError;
 use segue_motion::blend::{BlendError, LayerError};
 use segue_motion::clip::{ClipError, RetargetError, RootWayError};
@@ -104,7 +104,7 @@ pub enum LabError {
     #[error("A motion graph needs a clip: add at least one.")]
     NoGraphClips,
     /// The graph has too many clips.
-    #[error("These are {count} clips: take {MAX_CLIPS} at most.")]
+    #[error("These are {count} clips: take {MOST_CLIPS} at most.")]
     TooManyGraphClips {
         /// How many.
         count: usize,
@@ -227,7 +227,7 @@ pub enum LabError {
         found: String,
     },
     /// A blend has too many further clips.
-    #[error("More clips: {count} are more than can be blended: use at most {MAX_ALSO}.")]
+    #[error("More clips: {count} are more than can be blended: use at most {MOST_ALSO}.")]
     TooManyMoreClips {
         /// How many.
         count: usize,

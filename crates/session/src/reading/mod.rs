@@ -136,7 +136,7 @@ pub struct ReadClip {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct About {
     /// Unit, height and up axis, in words.
-    pub measure: String,
+    pub measure: Message,
     /// Whether the file's first row is a T-pose that the motion does not start from.
     pub t_pose_first_row: bool,
     /// Whether that row was left out.
@@ -384,7 +384,7 @@ fn without_gz(name: &str) -> &str {
 impl From<&ImportedClip> for About {
     fn from(imported: &ImportedClip) -> Self {
         Self {
-            measure: imported.measure.to_string(),
+            measure: imported.measure.to_message(),
             t_pose_first_row: imported.t_pose_first_row,
             t_pose_dropped: imported.t_pose_dropped,
             fitting_unit: imported.mendable.metres_per_unit,

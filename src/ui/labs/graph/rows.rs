@@ -2,7 +2,7 @@
 
 use super::{close_jump, map, no_way, shows_jump, table};
 use crate::ui::kit::{self, Button, Histogram, Icon};
-use crate::ui::language::tr;
+use crate::ui::language::{say, tr};
 use crate::ui::out::{Action, Out};
 use crate::ui::rows::clip_sets_ui;
 use crate::ui::rows::{Detail, param_row_ui};
@@ -16,6 +16,7 @@ use segue_session::JobKind;
 use segue_session::LabId;
 use segue_session::choices;
 use segue_session::{Built, Command, Key, Session, Value, graph_of, link, write_visits};
+use segue_text::ToMessage;
 use std::sync::Arc;
 
 /// All rows of the lab.
@@ -30,8 +31,8 @@ pub(crate) fn graph_ui(session: &Session, state: &mut UiState, out: &mut Out, ui
     {
         close_jump(state, out);
     }
-    if let Some(problem) = session.panes().iter().find_map(|pane| pane.problem.as_deref()) {
-        kit::note_ui(problem, palette.warning, ui);
+    if let Some(problem) = session.panes().iter().find_map(|pane| pane.problem.as_ref()) {
+        kit::note_ui(&say(&problem.to_sentence(), ui), palette.warning, ui);
     }
     if !state.has_map_panel {
         map::map_ui(session, f32::INFINITY, state, out, ui);

@@ -3,7 +3,7 @@
 use super::tags::tags_ui;
 use super::why::why_ui;
 use crate::ui::kit::{self, Button, Icon};
-use crate::ui::language::tr;
+use crate::ui::language::{say, tr};
 use crate::ui::out::Out;
 use crate::ui::rows::clip_sets_ui;
 use crate::ui::rows::{Detail, param_row_ui};
@@ -14,7 +14,8 @@ use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{RichText, Ui, vec2};
 use segue_motion::matching::RATE;
 use segue_session::choices;
-use segue_session::{Command, Key, Selected, Session, Value, sentence, write_ids};
+use segue_session::{Command, Key, Selected, Session, Value, write_ids};
+use segue_text::ToMessage;
 
 /// All rows of the lab.
 pub(crate) fn drive_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
@@ -22,8 +23,8 @@ pub(crate) fn drive_ui(session: &Session, state: &mut UiState, out: &mut Out, ui
     kit::section_header_ui(&lab_label(session), ui);
     kit::note_ui(text::MATCH_ABOUT, palette.muted, ui);
     clip_sets_ui(session, out, ui);
-    if let Some(problem) = session.panes().first().and_then(|pane| pane.problem.as_deref()) {
-        kit::note_ui(problem, palette.warning, ui);
+    if let Some(problem) = session.panes().first().and_then(|pane| pane.problem.as_ref()) {
+        kit::note_ui(&say(&problem.to_sentence(), ui), palette.warning, ui);
     }
     ui.add_space(space::XS);
     row(Key::Scenario, session, out, ui);
@@ -234,7 +235,7 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         let skipped = driven.database.skipped();
         kit::note_ui(&text::database(&driven.database), palette.muted, ui);
         for error in skipped.iter().take(3) {
-            kit::note_ui(&sentence(&error.to_string()), palette.warning, ui);
+            kit::note_ui(&say(&error.to_sentence(), ui), palette.warning, ui);
         }
     }
     row(Key::Mirrored, session, out, ui);

@@ -7,7 +7,8 @@ use segue_motion::path::{
     FitOptions, GroundSpline, PathEdit, PathEditError, Pins, Road, SplineEnds, drawn_path,
 };
 use segue_session::LabId;
-use segue_session::{Command, Key, OnPath, Pane, Session, Value, sentence, spline_ends};
+use segue_session::{Command, Key, OnPath, Pane, Session, Value, spline_ends};
+use segue_text::{Message, ToMessage};
 
 /// The hand on the path, remembered between frames.
 #[derive(Clone, Debug, Default)]
@@ -21,7 +22,7 @@ pub(crate) struct PathHand {
     /// The point that is dragged.
     pub(crate) held: Option<Held>,
     /// Why the last edit was not made.
-    pub(crate) said: Option<String>,
+    pub(crate) said: Option<Message>,
     /// The camera was put where the whole path is in sight; with these values.
     pub(crate) framed: Option<Vec<(Key, Value)>>,
 }
@@ -90,7 +91,7 @@ impl PathHand {
                 true
             }
             Err(error) => {
-                self.said = Some(sentence(&error.to_string()));
+                self.said = Some(error.to_sentence());
                 false
             }
         }
@@ -141,7 +142,7 @@ impl PathHand {
     /// Takes the chosen control point away.
     pub(crate) fn remove_point(&mut self, path: &OnPath, session: &Session, out: &mut Out) {
         let Some(index) = self.chosen else {
-            self.said = Some(text::CHOOSE_POINT.to_owned());
+            self.said = Some(text::CHOOSE_POINT.into());
             return;
         };
         let spline = path.road.spline();

@@ -3,6 +3,7 @@
 use crate::ui::kit;
 use crate::ui::labs::path::ground_line::View;
 use crate::ui::labs::path::hand::{Held, path_of, snapped};
+use crate::ui::language::say;
 use crate::ui::out::Out;
 use crate::ui::state::UiState;
 use crate::ui::text;
@@ -212,11 +213,11 @@ fn place_input(
 /// Why the last edit was not made, where the hand is.
 pub(crate) fn said_ui(stage: Rect, numbers_top: f32, state: &UiState, ui: &mut Ui) {
     let words = match &state.path.said {
-        Some(said) => said.as_str(),
-        None if state.drawing.is_some() => text::DRAW_HINT,
+        Some(said) => say(said, ui),
+        None if state.drawing.is_some() => text::DRAW_HINT.to_owned(),
         None => return,
     };
-    kit::caption_ui(words, stage.with_max_y(numbers_top - space::S), ui);
+    kit::caption_ui(&words, stage.with_max_y(numbers_top - space::S), ui);
 }
 
 /// When the lab opens, the whole path comes into sight, unless somebody has put the camera
