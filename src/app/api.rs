@@ -500,7 +500,7 @@ fn pane_number(which: &str) -> Option<usize> {
 mod tests {
     use super::*;
     use crate::platform::{Inbox, Storage};
-use segue_text::ToMessage;
+    use segue_text::ToMessage;
     use serde_json::json;
 
     fn open(link: &str) -> Segue {

@@ -198,13 +198,10 @@ fn pattern(fields: &Fields, bound: &[Field], is_used: impl Fn(&Field) -> bool) -
     let used = bound.iter().filter(|field| is_used(field));
     let entries = used.map(|field| {
         let binding = &field.binding;
-        match field.name.parse::<usize>() {
-            Ok(index) => {
-                let index = Literal::usize_unsuffixed(index);
-                quote!(#index: #binding,)
-            }
-            Err(_) => quote!(#binding,),
-        }
+        if let Ok(index) = field.name.parse::<usize>() {
+            let index = Literal::usize_unsuffixed(index);
+            quote!(#index: #binding,)
+        } else { quote!(#binding,) }
     });
     if matches!(fields, Fields::Unit) { TokenStream::new() } else { quote!({ #(#entries)* .. }) }
 }

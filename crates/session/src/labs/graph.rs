@@ -1,10 +1,10 @@
 //! The Graph lab: several clips as a motion graph, and a walk through it that goes on while it
 //! plays.
 
-use crate::labs::LabError;
 use super::lab::{Beside, Inputs, Lab, LabInputs};
 use super::lab_set::{LabClips, LabSet};
 use crate::LabId;
+use crate::labs::LabError;
 use crate::params::{Key, Params, Value};
 mod built;
 mod cast;

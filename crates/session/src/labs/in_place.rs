@@ -1,12 +1,12 @@
 //! The In place lab: a clip's way over the ground is taken out, or put back from its planted feet.
 
 use super::feet::{Lock, slide, with_feet};
-use crate::labs::LabError;
 use super::lab::{Inputs, Lab, LabInputs};
 use super::lab_set::{LabClips, LabSet};
 use super::{Measured, Outcome, Slot};
 use crate::LabId;
 use crate::choices::RootWay;
+use crate::labs::LabError;
 use crate::motion::Motion;
 use crate::params::{Key, Params};
 use segue_motion::clip::{Clip, take_in_place, way_from_feet};

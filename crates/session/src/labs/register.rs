@@ -1,9 +1,9 @@
 //! The Register lab: two clips laid on each other in time, blended or joined along it.
 
-use crate::labs::LabError;
 use super::lab::{Beside, Inputs, Lab, LabInputs};
 use super::lab_set::{LabClips, LabSet};
 use crate::LabId;
+use crate::labs::LabError;
 use crate::params::{Key, Params};
 mod map;
 mod pairs;
