@@ -101,7 +101,7 @@ fn every_link_is_understood_and_gives_what_it_promises() {
         for query in
             std::iter::once(String::new()).chain(page.tries.iter().map(|link| link.query.clone()))
         {
-            assert_eq!(link::read(&query).problems, Vec::<String>::new(), "{lesson}: {query}");
+            assert_eq!(link::read(&query).problems, [], "{lesson}: {query}");
             let session = tried(lesson, &query);
             checked += check_numbers(lesson, &query, &session, &mut wrong);
             let said: Vec<_> = session
@@ -241,7 +241,7 @@ fn links_of_the_labs_document_give_results_with_sane_numbers() {
             .iter()
             .find(|link| link.starts_with(begins))
             .unwrap_or_else(|| panic!("{begins}"));
-        assert_eq!(link::read(link).problems, Vec::<String>::new(), "{link}");
+        assert_eq!(link::read(link).problems, [], "{link}");
         let mut session = Session::new();
         session.apply(Command::OpenLink((*link).to_owned())).expect("a link is never refused");
         let named = link.matches("cmu16_").count();

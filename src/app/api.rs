@@ -210,7 +210,7 @@ impl Segue {
         Ok((key, value))
     }
 
-    pub(super) fn loaded_clips(&mut self, loaded: Loaded) -> LoadedClips {
+    pub(super) fn loaded_clips(&mut self, loaded: &Loaded) -> LoadedClips {
         let clips = self.clips().into_iter().filter(|clip| loaded.ids.contains(&clip.id)).collect();
         let warnings = loaded.warnings.iter().map(ToString::to_string).collect();
         LoadedClips { clips, warnings }

@@ -146,7 +146,7 @@ impl Segue {
             self.keeper.store_clips(&self.session, &self.vault, &loaded.ids);
         }
         if self.read.contains_key(&task) {
-            let result = result.map(|loaded| self.loaded_clips(loaded));
+            let result = result.map(|loaded| self.loaded_clips(&loaded));
             let result = result.map_err(|reason| reason.to_string());
             self.read.insert(task, Some(result));
         }

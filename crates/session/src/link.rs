@@ -42,9 +42,10 @@ pub fn read(query: &str) -> Link {
                 Err(error) => link.problems.push(error.to_message()),
             },
             None if LOADER_KEYS.contains(&name.as_ref()) => {}
-            None => link
-                .problems
-                .push(msg!("`{name}` is not a parameter of this version", name = short(&name))),
+            None => {
+                link.problems
+                    .push(msg!("`{name}` is not a parameter of this version", name = short(&name)));
+            }
         }
     }
     link

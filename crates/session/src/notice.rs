@@ -304,7 +304,7 @@ mod tests {
         notices.say(Level::Error, msg!("{file}:12:3: found `x`, expected a number"));
         let inner = msg!("`{file}`: gone", file = "y".repeat(500));
         notices.say(Level::Error, msg!("No result: {inner}."));
-        let sum = texts(&notices).pop().unwrap().to_owned();
+        let sum = texts(&notices).pop().unwrap();
         let long = short(&"y".repeat(500));
         assert_eq!(sum, format!("4 more did not work: 4, walk.bvh, a/b.bvh, {long}."));
     }

@@ -201,7 +201,9 @@ fn pattern(fields: &Fields, bound: &[Field], is_used: impl Fn(&Field) -> bool) -
         if let Ok(index) = field.name.parse::<usize>() {
             let index = Literal::usize_unsuffixed(index);
             quote!(#index: #binding,)
-        } else { quote!(#binding,) }
+        } else {
+            quote!(#binding,)
+        }
     });
     if matches!(fields, Fields::Unit) { TokenStream::new() } else { quote!({ #(#entries)* .. }) }
 }

@@ -12,10 +12,7 @@ pub(crate) fn names(template: &str) -> Result<Vec<String>, String> {
     while let Some((at, letter)) = letters.next() {
         let is_double = letters.peek().is_some_and(|(_, next)| *next == letter);
         match letter {
-            '{' if is_double && depth == 0 => {
-                letters.next();
-            }
-            '}' if is_double && depth == 0 => {
+            '{' | '}' if is_double && depth == 0 => {
                 letters.next();
             }
             '}' if depth == 0 => return Err("a `}` that closes nothing: write `}}`".to_owned()),

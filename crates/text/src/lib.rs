@@ -208,6 +208,7 @@ mod tests {
         Unit,
     }
 
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "an attribute hands over references")]
     fn double(count: &usize) -> usize {
         2 * count
     }

@@ -151,13 +151,13 @@ impl Writer<'_> {
                 let parts: Vec<String> = parts.iter().map(|part| self.arg(part, digits)).collect();
                 parts.join(self.row(between))
             }
-            Arg::Note(note) => sentence(self.message(note), self.row(".")),
+            Arg::Note(note) => sentence(&self.message(note), self.row(".")),
         }
     }
 }
 
 /// A note, `the rest pose was taken`, as a sentence: `The rest pose was taken.`
-fn sentence(note: String, stop: &str) -> String {
+fn sentence(note: &str, stop: &str) -> String {
     let mut letters = note.chars();
     let first = letters.next().map_or_else(String::new, |first| first.to_uppercase().to_string());
     let has_stop = note.is_empty() || note.ends_with(stop);

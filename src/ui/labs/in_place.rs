@@ -2,6 +2,7 @@
 
 use crate::ui::kit;
 use crate::ui::labs::{Compares, LabUi, Shown, Title};
+use crate::ui::language::say;
 use crate::ui::out::Out;
 use crate::ui::rows::{
     Detail, clip_sets_ui, foot_rows_ui, lab_label, param_row_ui, save_result_ui, slot_row_ui,
@@ -11,6 +12,7 @@ use crate::ui::text;
 use crate::ui::theme::{palette_of, space};
 use eframe::egui::Ui;
 use segue_session::{Key, Session, Slot, Value};
+use segue_text::ToMessage;
 
 /// The lab's part of the page.
 pub(super) const LAB: LabUi = LabUi {
@@ -31,8 +33,8 @@ fn in_place_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut U
     kit::note_ui(text::IN_PLACE_ABOUT, palette_of(ui).muted, ui);
     clip_sets_ui(session, out, ui);
     slot_row_ui(Slot::A, session, out, ui);
-    if let Some(problem) = session.panes().first().and_then(|pane| pane.problem.as_deref()) {
-        kit::note_ui(problem, palette_of(ui).warning, ui);
+    if let Some(problem) = session.panes().first().and_then(|pane| pane.problem.as_ref()) {
+        kit::note_ui(&say(&problem.to_sentence(), ui), palette_of(ui).warning, ui);
     }
     ui.add_space(space::S);
     param_row_ui(Key::RootWay, &Detail::default(), session, out, ui);

@@ -6,6 +6,7 @@ use segue_formats::{FileKind, ImportOptions, kind_of};
 use segue_motion::skeleton::Skeleton;
 use segue_session::reading::{Companion, ReadReport, ReadSetup, read};
 use segue_session::{Command, Request, Session};
+use segue_text::msg;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -266,10 +267,11 @@ fn loaded(session: &mut Session, name: &str, bytes: &Arc<[u8]>) -> Result<Vec<St
     // A large file is to be read elsewhere, which is here.
     for request in session.take_requests() {
         if let Request::Read(task) = request {
-            let report =
-                read(&task.name, bytes, &task.setup, &mut |_| true).ok_or("it was not read");
-            let done = session.finish_reading(task.id, report.map_err(str::to_owned));
-            ids.extend(done.transpose()?.map(|loaded| loaded.ids).unwrap_or_default());
+            let report = read(&task.name, bytes, &task.setup, &mut |_| true)
+                .ok_or_else(|| msg!("it was not read"));
+            let done = session.finish_reading(task.id, report).transpose();
+            let loaded = done.map_err(|error| error.to_string())?;
+            ids.extend(loaded.map(|loaded| loaded.ids).unwrap_or_default());
         }
     }
     Ok(ids)
@@ -288,7 +290,7 @@ fn opened(session: &mut Session, link: &str) -> Result<Arc<Skeleton>, String> {
     let pane = &session.panes()[0];
     match (&pane.outcome, &pane.problem) {
         (Some(outcome), None) => Ok(Arc::clone(outcome.motion.clip.skeleton())),
-        (_, problem) => Err(problem.clone().unwrap_or_default()),
+        (_, problem) => Err(problem.as_ref().map(ToString::to_string).unwrap_or_default()),
     }
 }
 

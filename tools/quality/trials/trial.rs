@@ -468,8 +468,10 @@ fn shown(session: &mut Session, link: &str) -> Result<Arc<Outcome>, Came> {
     }
     let pane = session.panes().first().ok_or(Came::Silent)?;
     match (&pane.problem, &pane.outcome) {
-        (Some(sentence), _) if sentence.trim().is_empty() => Err(Came::Silent),
-        (Some(sentence), _) => Err(Came::Refused(sentence.clone())),
+        (Some(problem), _) => Err(match problem.to_string() {
+            sentence if sentence.trim().is_empty() => Came::Silent,
+            sentence => Came::Refused(sentence),
+        }),
         (None, Some(outcome)) => Ok(Arc::clone(outcome)),
         (None, None) => Err(Came::Silent),
     }

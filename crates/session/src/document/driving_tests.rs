@@ -309,10 +309,7 @@ fn what_cannot_be_done_is_a_sentence() {
         let problem =
             session.panes()[0].problem.as_ref().map(|problem| problem.to_sentence().to_string());
         let problem = problem.unwrap_or_default();
-        assert!(
-            problem.to_string().contains(part) && problem.to_string().ends_with('.'),
-            "{link}: {problem}"
-        );
+        assert!(problem.contains(part) && problem.ends_with('.'), "{link}: {problem}");
         assert!(session.jobs().is_empty());
     }
     let mut session = open(SMALL);

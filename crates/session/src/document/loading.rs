@@ -432,7 +432,9 @@ impl Session {
                 [id] if is_odd && self.is_half(id) => self.notices.miss(id, text),
                 // A skeleton that was waited for: it has its motion.
                 [id] if self.library.get(id).is_none() => {
-                    in_the_library(&names).into_iter().for_each(|text| self.say(Level::Info, text));
+                    if let Some(text) = in_the_library(&names) {
+                        self.say(Level::Info, text);
+                    }
                 }
                 _ if !mends.is_empty() => self.offer_mends(text, mends),
                 _ => self.say(if is_odd { Level::Warning } else { Level::Info }, text),

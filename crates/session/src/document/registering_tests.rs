@@ -169,7 +169,7 @@ fn what_cannot_be_is_said_and_no_earlier_result_stands_for_it() {
         let pane = &session.panes()[0];
         let problem = pane.problem.as_ref().map(|problem| problem.to_sentence().to_string());
         let problem = problem.unwrap_or_default();
-        assert!(problem.to_string().contains(sentence), "{value}: {problem}");
+        assert!(problem.contains(sentence), "{value}: {problem}");
         assert!(pane.outcome.is_none());
         assert!(session.distance_map().is_some());
         session.apply(Command::Reset(key)).unwrap();

@@ -282,12 +282,12 @@ pub enum LabError {
     /// The result is no clip.
     #[error(transparent)]
     Clip(#[from] ClipError),
-    /// The feet do not tell the way over the ground.
-    #[error(transparent)]
-    RootWay(#[from] RootWayError),
     /// A clip does not fit the skeleton.
     #[error(transparent)]
     Retarget(#[from] RetargetError),
+    /// The clip has no way over the ground.
+    #[error(transparent)]
+    RootWay(#[from] RootWayError),
     /// There is no gait.
     #[error(transparent)]
     Gait(#[from] GaitError),

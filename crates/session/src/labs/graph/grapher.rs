@@ -329,8 +329,10 @@ impl Grapher {
             match fitted(first, next) {
                 Ok(ready) => self.fitted.push(ready),
                 Err(problem) => {
-                    self.cast =
-                        Some(Err(LabError::OfClip { name: name.clone(), error: Box::new(problem) }))
+                    self.cast = Some(Err(LabError::OfClip {
+                        name: name.clone(),
+                        error: Box::new(problem),
+                    }));
                 }
             }
             return Ok(None);
