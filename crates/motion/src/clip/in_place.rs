@@ -1,5 +1,5 @@
 use super::contacts::{FootTracks, GROUND_PERCENTILE, REFERENCE_HEIGHT_M, drop_short_runs};
-use super::{Clip, ContactOptions, Contacts};
+use super::{Clip, ContactOptions, Contacts, character_frames};
 use crate::math::{Planar, stats};
 use crate::skeleton::{Roles, Side};
 use glam::DVec2;
@@ -51,7 +51,8 @@ pub enum RootWayError {
     NoContacts,
 }
 
-/// Finds the way over the ground of a clip that goes in place, from its planted feet.
+/// Finds the way over the ground of a clip that goes in place, from its planted feet. A way that it
+/// has already is taken out first: what comes back tells how well its feet agree with it.
 ///
 /// A planted foot stands still in the world, so the body moves against the foot's own motion.
 /// Feet that carry the body are found by height and by backward motion: below the contact height
@@ -76,6 +77,8 @@ pub fn way_from_feet(
     options: &ContactOptions,
     turns: bool,
 ) -> Result<RootWay, RootWayError> {
+    let taken = take_in_place(&character_frames(clip, roles), turns);
+    let clip = &clip.transformed_by_frame(&taken);
     let feet = Feet::of(clip, roles, options);
     if feet.points.is_empty() {
         return Err(RootWayError::NoFeet);
@@ -91,12 +94,12 @@ pub fn way_from_feet(
         .map(|(frame, velocity)| feet.step(&carries, &contacts, *velocity, frame, turns))
         .collect();
     bridge(&mut steps, (FLIGHT_SECS * clip.fps()).round() as usize);
+    let mut place = taken.first().map_or(Planar::IDENTITY, Planar::inverse);
     let mut world_from_clip = Vec::with_capacity(clip.frames());
-    let mut place = Planar::IDENTITY;
-    world_from_clip.push(place);
-    for step in steps.into_iter().flatten() {
-        place = place.after(&step);
-        world_from_clip.push(place);
+    let mut steps = steps.into_iter().flatten();
+    for taken in &taken {
+        world_from_clip.push(place.after(taken));
+        place = steps.next().map_or(place, |step| place.after(&step));
     }
     Ok(RootWay { world_from_clip, contacts })
 }
@@ -304,7 +307,6 @@ fn bridge(steps: &mut [Option<Planar>], reach: usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::clip::character_frames;
     use crate::math::wrap_angle;
     use crate::synth::{Action, Params, synthesize};
     use proptest::prelude::*;
@@ -371,6 +373,14 @@ mod tests {
     }
 
     #[test]
+    fn way_of_a_recorded_clip_is_found_anew() {
+        let (clip, roles, frames) = made(&Params::new(Action::Walk));
+        let (wanted, found) = (whole(&frames), whole(&put_back(&clip, &roles, true)));
+        let off = wanted.shift.distance(found.shift);
+        assert!(off < 0.01 * wanted.shift.length(), "{off} m of {wanted:?}");
+    }
+
+    #[test]
     fn standing_body_stays() {
         let (_, found) = came_back(&Params::new(Action::Idle));
         assert!(found.shift.length() < 0.02 && found.yaw.abs() < 0.03, "{found:?}");
@@ -391,7 +401,8 @@ mod tests {
         let (clip, roles, _) = made(&Params::new(Action::Walk));
         let one = clip.crop(0..1).expect("a frame");
         let way = way_from_feet(&one, &roles, &ContactOptions::default(), true).expect("a way");
-        assert_eq!(way.world_from_clip, [Planar::IDENTITY]);
+        let [stays] = way.world_from_clip[..] else { panic!("one frame") };
+        assert!(stays.shift.length() < 1e-9 && stays.yaw.abs() < 1e-9, "{stays:?}");
     }
 
     #[test]
