@@ -25,7 +25,7 @@ use eframe::egui::Ui;
 use glam::DVec2;
 use graph::seed_detail;
 use segue_session::LabId;
-use segue_session::{Command, Group, Key, PARAMS, Pane, Params, Session, Slot, Value};
+use segue_session::{Command, Group, Key, Mark, PARAMS, Pane, Params, Session, Slot, Value};
 
 /// A lab's part of the page; each lab's own file has it, as `LAB`.
 struct LabUi {
@@ -151,16 +151,11 @@ pub(crate) fn lab_panel_ui(session: &Session, state: &mut UiState, out: &mut Out
 fn group_ui(title: &str, group: Group, session: &Session, out: &mut Out, ui: &mut Ui) {
     kit::folded_ui(title, ui, |ui| {
         for param in
-            PARAMS.iter().filter(|param| param.group == group && !is_handled_elsewhere(param.key))
+            PARAMS.iter().filter(|param| param.group == group && !param.has(Mark::ByPointer))
         {
             param_row_ui(param.key, &Detail::default(), session, out, ui);
         }
     });
-}
-
-/// What only the pointer on the stage sets.
-fn is_handled_elsewhere(key: Key) -> bool {
-    matches!(key, Key::PanX | Key::PanY | Key::PanZ)
 }
 
 /// The parameters that an embedding page wants its readers to try: those that its link names,

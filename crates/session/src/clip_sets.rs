@@ -4,7 +4,7 @@ use super::document::Session;
 use super::labs::lab::{self, Lab};
 use super::library::{Entry, Origin};
 use super::link;
-use super::params::{Key, Value};
+use super::params::{Key, Kind, Mark, Value};
 use super::samples::SUBJECT_16;
 
 /// A choice of clips for the whole lab.
@@ -41,7 +41,8 @@ impl Session {
     /// Whether the open lab works with these clips.
     #[must_use]
     pub fn uses_clip_set(&self, set: ClipSet) -> bool {
-        let names_clips = |key: Key| matches!(key, Key::A | Key::B | Key::Clips | Key::MatchClips);
+        let names_clips =
+            |key: Key| matches!(key.param().kind, Kind::Clip) || key.param().has(Mark::Clips);
         self.clip_set(set).is_some_and(|values| {
             let mut clips = values.iter().filter(|(key, _)| names_clips(*key));
             clips.all(|(key, value)| self.params().get(*key) == value)

@@ -114,7 +114,8 @@ pub use motion::{FeetReading, Motion, curve_kind, frame_at, joint_of, word_of_jo
 pub use notice::{Level, Notice, Notices};
 pub use numbers::{NumberRow, NumberTable, digits};
 pub use params::{
-    Choice, Group, Key, Kind, PARAMS, Param, Params, Value, ValueError, decimals_of, format_number,
+    Choice, Group, Key, Kind, Mark, PARAMS, Param, Params, Value, ValueError, decimals_of,
+    format_number,
 };
 pub use report::{ReportFacts, report};
 pub use samples::{SAMPLES_CREDIT, Sample, SampleSet};

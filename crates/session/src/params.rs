@@ -156,7 +156,36 @@ pub struct Param {
     pub group: Group,
     /// One sentence of help.
     pub help: &'static str,
+    /// What is special about it.
+    marks: &'static [Mark],
     default: Start,
+}
+
+/// What may be special about a parameter: a column of the table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mark {
+    /// A place in the clip in A: it means nothing in another clip.
+    PlaceInA,
+    /// A place in the clip in B.
+    PlaceInB,
+    /// Looked at or worked with: no result is made from it, though it stands in a lab.
+    LookedAt,
+    /// Says how feet are read and held, in every lab with clips.
+    Feet,
+    /// Says how planted feet are held, which counts only while they are; also in every lab.
+    Lock,
+    /// A list of clips that a lab works with.
+    Clips,
+    /// Part of what is shown, though it belongs to the page.
+    State,
+    /// A change of it is no step of undo: looking around, playing and stopping.
+    NoUndo,
+    /// No panes are made of its values, though it belongs to a lab: clips are read anew for it.
+    NoCompare,
+    /// Panes can be made of its values, though it belongs to no lab.
+    Compare,
+    /// Set by the pointer on the stage alone: no panel shows it.
+    ByPointer,
 }
 
 /// A [`Value`] that can stand in a constant.
@@ -170,7 +199,7 @@ enum Start {
 }
 
 macro_rules! parameters {
-    ($($key:ident $name:literal $label:literal $group:ident$(($lab:ident))?, $kind:expr, $default:expr, $unit:literal, $help:literal;)*) => {
+    ($($key:ident $name:literal $label:literal $group:ident$(($lab:ident))?, $kind:expr, $default:expr, $unit:literal, $help:literal $([$($mark:ident),*])?;)*) => {
         /// The name of a parameter inside the program; its row is [`Key::param`].
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         #[expect(missing_docs, reason = "the help sentence of the row says it")]
@@ -178,7 +207,7 @@ macro_rules! parameters {
 
         /// Every parameter, in the order in which links and panels show them.
         pub static PARAMS: &[Param] = &[$(Param {
-            key: Key::$key, name: $name, label: $label, kind: $kind, unit: $unit, group: Group::$group$((LabId::$lab))?, help: $help, default: $default,
+            key: Key::$key, name: $name, label: $label, kind: $kind, unit: $unit, group: Group::$group$((LabId::$lab))?, help: $help, marks: &[$($(Mark::$mark),*)?], default: $default,
         }),*];
     };
 }
@@ -194,32 +223,32 @@ const fn logarithmic(min: f64, max: f64, step: f64) -> Kind {
 }
 
 parameters! {
-    Lab "lab" "Lab" Page, Kind::Choice(LabId::CHOICES), Start::Choice(LabId::Blend.word()), "", "Which experiment is open.";
-    A "a" "A" Page, Kind::Clip, Start::Text("walk"), "", "The clip that plays first.";
-    B "b" "B" Page, Kind::Clip, Start::Text("run"), "", "The clip that follows.";
+    Lab "lab" "Lab" Page, Kind::Choice(LabId::CHOICES), Start::Choice(LabId::Blend.word()), "", "Which experiment is open." [State];
+    A "a" "A" Page, Kind::Clip, Start::Text("walk"), "", "The clip that plays first." [State];
+    B "b" "B" Page, Kind::Clip, Start::Text("run"), "", "The clip that follows." [State];
 
     BlendWindow "blend_window" "Blend window" Lab(Blend), number(1.0, 240.0, 1.0), Start::Number(30.0), "frames", "How long A fades into B. Long drags, short bursts.";
-    LeaveA "leave_a" "Leave A at" Lab(Blend), auto(0.0, 600.0, 0.001), Start::Auto, "s", "Where the blend window begins in A. Left to Segue: the best match in A's second half.";
-    EnterB "enter_b" "Enter B at" Lab(Blend), auto(0.0, 600.0, 0.001), Start::Auto, "s", "Where the blend window begins in B. Left to Segue: the best match in B's first half.";
+    LeaveA "leave_a" "Leave A at" Lab(Blend), auto(0.0, 600.0, 0.001), Start::Auto, "s", "Where the blend window begins in A. Left to Segue: the best match in A's second half." [PlaceInA];
+    EnterB "enter_b" "Enter B at" Lab(Blend), auto(0.0, 600.0, 0.001), Start::Auto, "s", "Where the blend window begins in B. Left to Segue: the best match in B's first half." [PlaceInB];
     WeightLaw "weight_law" "Weight law" Lab(Blend), Kind::Choice(WeightLaw::CHOICES), Start::Choice(WeightLaw::Smooth.word()), "", "How the weight moves from A to B inside the window.";
     Align "align" "Align to A" Lab(Blend), Kind::Switch, Start::Switch(true), "", "Turns and moves B over the ground so that it continues A.";
     AlignBy "align_by" "Align by" Lab(Blend), Kind::Choice(AlignBy::CHOICES), Start::Choice(AlignBy::Window.word()), "", "What is laid on what: all joints over the blend window, as well as they fit, or the place and facing of the first posture alone.";
     RootBlend "root_blend" "Blend root by velocity" Lab(Blend), Kind::Switch, Start::Switch(true), "", "Blends how the character moves instead of where it is: its speed does not dent, and feet slide less. Off, B stays where the alignment puts it.";
 
-    FootLock "foot_lock" "Foot lock" Lab(Blend), Kind::Switch, Start::Switch(false), "", "Holds planted feet where they stand, and bends the legs to it.";
-    LockBlend "lock_blend" "Lock blend" Lab(Blend), number(0.02, 1.0, 0.01), Start::Number(0.2), "s", "How long a foot takes to reach the place where it is held, and to leave it again. Longer: softer, and more of the swing changes. Shorter: the swing stays as it was, and the foot moves suddenly.";
-    LockReach "lock_reach" "Lock reach" Lab(Blend), number(1.0, 100.0, 1.0), Start::Number(30.0), "cm", "How far a foot may be moved to be held, for a body of 1.75 m. Farther: feet that slide a long way are held too, and legs bend more. Nearer: legs stay closer to how they were, and feet slide.";
-    LockClearance "lock_clearance" "Swing clearance" Lab(Blend), number(0.0, 10.0, 0.5), Start::Number(2.5), "cm", "How high above where it stands a foot is kept while it swings, for a body of 1.75 m. Higher: low swings are lifted more. 0 leaves swings as they are.";
-    Ground "ground" "Ground" Lab(Blend), auto(-100.0, 100.0, 0.5), Start::Auto, "cm", "The height of the ground for foot lock and penetration. Left to Segue: planted feet tell it, and it is 0 unless they stand or dip more than 3 cm elsewhere.";
-    ContactHeight "contact_height" "Contact height" Lab(Blend), number(1.0, 15.0, 0.5), Start::Number(4.0), "cm", "A foot is planted below this height above its own lowest level, for a body of 1.75 m. Higher: longer stances.";
-    ContactSpeed "contact_speed" "Contact speed" Lab(Blend), number(0.1, 2.0, 0.05), Start::Number(0.4), "m/s", "A foot is planted while it is slower than this. Faster: longer stances, and feet that slide are held too.";
+    FootLock "foot_lock" "Foot lock" Lab(Blend), Kind::Switch, Start::Switch(false), "", "Holds planted feet where they stand, and bends the legs to it." [Feet];
+    LockBlend "lock_blend" "Lock blend" Lab(Blend), number(0.02, 1.0, 0.01), Start::Number(0.2), "s", "How long a foot takes to reach the place where it is held, and to leave it again. Longer: softer, and more of the swing changes. Shorter: the swing stays as it was, and the foot moves suddenly." [Lock];
+    LockReach "lock_reach" "Lock reach" Lab(Blend), number(1.0, 100.0, 1.0), Start::Number(30.0), "cm", "How far a foot may be moved to be held, for a body of 1.75 m. Farther: feet that slide a long way are held too, and legs bend more. Nearer: legs stay closer to how they were, and feet slide." [Lock];
+    LockClearance "lock_clearance" "Swing clearance" Lab(Blend), number(0.0, 10.0, 0.5), Start::Number(2.5), "cm", "How high above where it stands a foot is kept while it swings, for a body of 1.75 m. Higher: low swings are lifted more. 0 leaves swings as they are." [Lock];
+    Ground "ground" "Ground" Lab(Blend), auto(-100.0, 100.0, 0.5), Start::Auto, "cm", "The height of the ground for foot lock and penetration. Left to Segue: planted feet tell it, and it is 0 unless they stand or dip more than 3 cm elsewhere." [Feet, NoCompare];
+    ContactHeight "contact_height" "Contact height" Lab(Blend), number(1.0, 15.0, 0.5), Start::Number(4.0), "cm", "A foot is planted below this height above its own lowest level, for a body of 1.75 m. Higher: longer stances." [Feet, NoCompare];
+    ContactSpeed "contact_speed" "Contact speed" Lab(Blend), number(0.1, 2.0, 0.05), Start::Number(0.4), "m/s", "A foot is planted while it is slower than this. Faster: longer stances, and feet that slide are held too." [Feet, NoCompare];
 
     Method "method" "Method" Lab(Transition), Kind::Choice(TransitionMethod::CHOICES), Start::Choice(TransitionMethod::Inertialize.word()), "", "How A goes over into B.";
     HalfLife "half_life" "Half-life" Lab(Transition), logarithmic(0.02, 1.5, 0.01), Start::Number(0.2), "s", "How slowly the difference from A decays: half of it is left after 1.2 half-lives.";
     BlendTime "blend_time" "Blend time" Lab(Transition), logarithmic(0.05, 2.0, 0.01), Start::Number(0.4), "s", "When nothing of A is left, for cubic, quintic and dead blend. A quintic ends sooner where the difference is small and closes fast: it would overshoot otherwise.";
     ExtrapolationHalfLife "extrapolation_half_life" "Extrapolation half-life" Lab(Transition), logarithmic(0.02, 1.0, 0.01), Start::Number(0.1), "s", "How long A runs on by itself in a dead blend: half of its velocity is left after this time.";
-    MixFrameA "mix_frame_a" "Leave A at" Lab(Transition), auto(0.0, 1_000_000.0, 1.0), Start::Auto, "frame", "The frame of A at which B takes over. Left to Segue: the best match in A's second half.";
-    MixFrameB "mix_frame_b" "Enter B at" Lab(Transition), auto(0.0, 1_000_000.0, 1.0), Start::Auto, "frame", "The frame of B that plays then. Left to Segue: the best match in B's first half.";
+    MixFrameA "mix_frame_a" "Leave A at" Lab(Transition), auto(0.0, 1_000_000.0, 1.0), Start::Auto, "frame", "The frame of A at which B takes over. Left to Segue: the best match in A's second half." [PlaceInA];
+    MixFrameB "mix_frame_b" "Enter B at" Lab(Transition), auto(0.0, 1_000_000.0, 1.0), Start::Auto, "frame", "The frame of B that plays then. Left to Segue: the best match in B's first half." [PlaceInB];
     MatchBy "match_by" "Match by" Lab(Transition), Kind::Choice(MatchBy::CHOICES), Start::Choice(MatchBy::Pose.word()), "", "What the best match compares: two poses, or windows of the whole body.";
     MatchPosition "match_position" "Weight of positions" Lab(Transition), number(0.0, 1.0, 0.05), Start::Number(0.6), "", "How much it counts where the joints are.";
     MatchRotation "match_rotation" "Weight of rotations" Lab(Transition), number(0.0, 1.0, 0.05), Start::Number(0.4), "", "How much it counts how the joints are turned.";
@@ -228,8 +257,8 @@ parameters! {
     Speed "speed" "Speed" Lab(Speed), auto(0.2, 10.0, 0.05), Start::Auto, "m/s", "How fast it goes. Left to Segue: half way between both clips.";
     PhaseAlign "phase_align" "Align phases" Lab(Speed), Kind::Switch, Start::Switch(true), "", "Lays strikes of the feet on strikes. Without it each clip begins where it begins, and legs cross.";
 
-    LoopFrom "loop_from" "Cycle from" Lab(Loop), auto(0.0, 600.0, 0.001), Start::Auto, "s", "Where the cycle begins in A.";
-    LoopTo "loop_to" "Cycle to" Lab(Loop), auto(0.0, 600.0, 0.001), Start::Auto, "s", "Where in A the cycle is over: the pose that becomes the first one again.";
+    LoopFrom "loop_from" "Cycle from" Lab(Loop), auto(0.0, 600.0, 0.001), Start::Auto, "s", "Where the cycle begins in A." [PlaceInA];
+    LoopTo "loop_to" "Cycle to" Lab(Loop), auto(0.0, 600.0, 0.001), Start::Auto, "s", "Where in A the cycle is over: the pose that becomes the first one again." [PlaceInA];
     LoopMethod "loop_method" "Method" Lab(Loop), Kind::Choice(LoopMethod::CHOICES), Start::Choice(LoopMethod::Exact.word()), "", "How the difference between the ends is spread over the cycle.";
     LoopRatio "loop_ratio" "Ratio" Lab(Loop), number(0.0, 1.0, 0.05), Start::Number(0.5), "", "How much of the difference the beginning takes; the end takes the rest.";
     Mistake "mistake" "Break it" Lab(Transition), Kind::Choice(Mistake::CHOICES), Start::Choice(Mistake::None.word()), "", "One classic mistake, made on purpose: see what it looks like, and what the numbers say.";
@@ -242,7 +271,7 @@ parameters! {
     LayerFit "layer_fit" "B's time" Lab(Layers), Kind::Choice(LayerFit::CHOICES), Start::Choice(LayerFit::Step.word()), "", "In step: a cycle of B strikes with A's feet. Loop: B starts again at its end. Hold: it stays in its last frame.";
     LayerStart "layer_start" "B begins at" Lab(Layers), number(-10.0, 10.0, 0.01), Start::Number(0.0), "s", "B's time at A's first frame; in step, how far B runs ahead.";
     KeepOrientation "keep_orientation" "Keep B's posture" Lab(Layers), Kind::Switch, Start::Switch(true), "", "B's trunk leans and turns as in B, however A's hips tilt: for partial layers.";
-    MaskColors "mask_colors" "Colour by share" Lab(Layers), Kind::Switch, Start::Switch(true), "", "Every limb in the colours of A and B, by its share of each.";
+    MaskColors "mask_colors" "Colour by share" Lab(Layers), Kind::Switch, Start::Switch(true), "", "Every limb in the colours of A and B, by its share of each." [LookedAt];
 
     RootMotion "root_motion" "Way over the ground" Lab(View), Kind::Choice(RootMotion::CHOICES), Start::Choice(RootMotion::World.word()), "", "Recorded: as it is in the clip. In place: where the body stands and faces is taken out of every frame. Residual: a smooth path and its direction are taken out, and the sway about it stays.";
     PlaceX "place_x" "Starts at x" Lab(View), auto(-100.0, 100.0, 0.01), Start::Auto, "m", "Where the first frame stands, along x; the whole clip is moved along. Left to Segue: where it was recorded.";
@@ -254,14 +283,14 @@ parameters! {
     WarpWeight "warp_weight" "Weight of B" Lab(Register), number(0.0, 1.0, 0.01), Start::Number(0.5), "", "0 is A, 1 is B; between them a motion that is in neither clip.";
     WarpAlso "warp_also" "More clips" Lab(Register), Kind::Text, Start::Text(""), "", "Further clips in a blend, registered to A like B, each with its weight, as in 0.3:run,0.2:fast_walk. A has what the others leave.";
     WarpCurve "warp_curve" "Weight over time" Lab(Register), Kind::Text, Start::Text(""), "", "The weight of B over the blend: per cent of the blend and per cent of B, as in 0-0,50-100,100-0. Empty: the same weight all the time.";
-    WarpFrom "warp_from" "Leave A at" Lab(Register), auto(0.0, 600.0, 0.01), Start::Auto, "s", "Where in A a join begins to go over into B.";
-    WarpTo "warp_to" "All B at" Lab(Register), auto(0.0, 600.0, 0.01), Start::Auto, "s", "Where in A, on its own clock, a join is all B.";
+    WarpFrom "warp_from" "Leave A at" Lab(Register), auto(0.0, 600.0, 0.01), Start::Auto, "s", "Where in A a join begins to go over into B." [PlaceInA];
+    WarpTo "warp_to" "All B at" Lab(Register), auto(0.0, 600.0, 0.01), Start::Auto, "s", "Where in A, on its own clock, a join is all B." [PlaceInA];
     RegistrationWindow "registration_window" "Window" Lab(Register), number(1.0, 121.0, 1.0), Start::Number(5.0), "frames", "How many frames about each pair are compared. One frame compares poses; more also tell how they move.";
     SlopeLimit "slope_limit" "Slope limit" Lab(Register), number(1.0, 16.0, 1.0), Start::Number(2.0), "steps", "How many steps in a row one clip may go on while the other stands still.";
     Ends "ends" "Ends" Lab(Register), Kind::Choice(Ends::CHOICES), Start::Choice(Ends::Free.word()), "", "Corner: first meets first, last meets last. Free: a clip may begin or end inside the other.";
     EndSlack "end_slack" "Left out at most" Lab(Register), number(0.0, 50.0, 1.0), Start::Number(40.0), "%", "How much of one clip may be left out at each free end.";
     WarpSmoothing "warp_smoothing" "Smoothing" Lab(Register), auto(0.0, 60.0, 1.0), Start::Auto, "frames", "Over how many frames to either side the timewarp and the alignment are smoothed. Left to Segue: a tenth of a second.";
-    Pins "pins" "Pins" Lab(Register), Kind::Text, Start::Text(""), "", "Pairs of frames of A and B, at A's rate, that must meet, as in 12-30,50-71.";
+    Pins "pins" "Pins" Lab(Register), Kind::Text, Start::Text(""), "", "Pairs of frames of A and B, at A's rate, that must meet, as in 12-30,50-71." [PlaceInA, PlaceInB];
 
     ControlPoints "control_points" "Control points" Lab(Path), number(4.0, 64.0, 1.0), Start::Number(8.0), "points", "How finely the path follows the way of the hips. Four cannot follow a turn, many follow every sway.";
     PathSmoothing "path_smoothing" "Smoothing" Lab(Path), number(0.0, 5.0, 0.01), Start::Number(0.0), "", "How much a bend counts against the distance from the hips: 0 is least squares alone.";
@@ -269,12 +298,12 @@ parameters! {
     PathFacing "path_facing" "Body faces" Lab(Path), Kind::Choice(PathFacing::CHOICES), Start::Choice(PathFacing::Path.word()), "", "Whether the body turns where the path turns, or faces as it did before.";
     PathOffset "path_offset" "Sway of the hips" Lab(Path), Kind::Choice(PathOffset::CHOICES), Start::Choice(PathOffset::Path.word()), "", "Whether the way from the path to the hips turns with the path, or stays as it was in the world: then sway to the side becomes a surge where the path has turned.";
     PathSpline "path_spline" "Spline" Lab(Path), Kind::Choice(PathSpline::CHOICES), Start::Choice(PathSpline::Clamped.word()), "", "Clamped: the path begins in the first control point and ends in the last. Uniform: the same path from other control points, beside which it begins and ends.";
-    Path "path" "Path" Lab(Path), Kind::Text, Start::Text(""), "", "The edited path: its control points to 1 cm in a short word. Empty: the path as it was fitted.";
-    PathGrid "path_grid" "Snap to grid" Lab(Path), number(0.0, 2.0, 0.05), Start::Number(0.0), "m", "Width of the grid that moved points snap to; 0 is none.";
-    PinStart "pin_start" "Pin the start" Lab(Path), Kind::Switch, Start::Switch(false), "", "Whatever is done to the path, its start stays where it is.";
-    PinEnd "pin_end" "Pin the end" Lab(Path), Kind::Switch, Start::Switch(false), "", "Whatever is done to the path, its end stays where it is.";
-    Others "others" "Others" Lab(Path), Kind::Text, Start::Text(""), "", "Clips that play along on the stage, each in a colour of its own: ids, separated by commas.";
-    Clips "clips" "Clips" Lab(Graph), Kind::Text, Start::Text("walk,walk_left,walk_right,slow_walk,fast_walk,start,stop,idle"), "", "The clips of the graph, as in walk,run,idle. Those that move another skeleton than the first are moved onto it.";
+    Path "path" "Path" Lab(Path), Kind::Text, Start::Text(""), "", "The edited path: its control points to 1 cm in a short word. Empty: the path as it was fitted." [PlaceInA];
+    PathGrid "path_grid" "Snap to grid" Lab(Path), number(0.0, 2.0, 0.05), Start::Number(0.0), "m", "Width of the grid that moved points snap to; 0 is none." [LookedAt];
+    PinStart "pin_start" "Pin the start" Lab(Path), Kind::Switch, Start::Switch(false), "", "Whatever is done to the path, its start stays where it is." [LookedAt];
+    PinEnd "pin_end" "Pin the end" Lab(Path), Kind::Switch, Start::Switch(false), "", "Whatever is done to the path, its end stays where it is." [LookedAt];
+    Others "others" "Others" Lab(Path), Kind::Text, Start::Text(""), "", "Clips that play along on the stage, each in a colour of its own: ids, separated by commas." [LookedAt];
+    Clips "clips" "Clips" Lab(Graph), Kind::Text, Start::Text("walk,walk_left,walk_right,slow_walk,fast_walk,start,stop,idle"), "", "The clips of the graph, as in walk,run,idle. Those that move another skeleton than the first are moved onto it." [Clips];
     Construction "construction" "Construction" Lab(Graph), Kind::Choice(Construction::CHOICES), Start::Choice(Construction::Minima.word()), "", "Segments: all clips are cut into equal parts. Local minima: one goes over where two windows are more alike than all around.";
     SegmentSize "segment_size" "Segment size" Lab(Graph), number(1.0, 600.0, 1.0), Start::Number(60.0), "frames", "How long each part of a clip is. It must be longer than the blend window.";
     EdgeThreshold "edge_threshold" "Edge threshold" Lab(Graph), number(0.1, 60.0, 0.1), Start::Number(8.0), "cm", "One goes over only between windows that are closer than this: root mean square per joint on a body of 1.75 m.";
@@ -297,12 +326,12 @@ parameters! {
 
     Scenario "scenario" "Input" Lab(Match), Kind::Choice(Scenario::CHOICES), Start::Choice(Scenario::Own.word()), "", "Who drives: you, or input that was written down, the same for everybody.";
     Drive "drive" "Recorded input" Lab(Match), Kind::Text, Start::Text(""), "", "Input that is played again, exactly: stretches of ticks and velocities. Empty: drive yourself.";
-    MatchClips "match_clips" "Clips" Lab(Match), Kind::Text, Start::Text(""), "", "The clips to choose frames from: ids, separated by commas. Empty: the synthesiser's set of walks, runs, turns, starts, stops and spins.";
+    MatchClips "match_clips" "Clips" Lab(Match), Kind::Text, Start::Text(""), "", "The clips to choose frames from: ids, separated by commas. Empty: the synthesiser's set of walks, runs, turns, starts, stops and spins." [Clips];
     Mirrored "mirrored" "Mirrored copies" Lab(Match), Kind::Switch, Start::Switch(true), "", "Every clip a second time, left and right exchanged.";
     MatchCycles "match_cycles" "Cycles go round" Lab(Match), Kind::Switch, Start::Switch(true), "", "A clip that is a cycle plays round and round and is searched to its last frame. Off: it ends, and what is near its end is never chosen.";
-    WalkSpeed "walk_speed" "Walking speed" Lab(Match), number(0.3, 2.2, 0.05), Start::Number(1.4), "m/s", "How fast the character is asked to walk.";
-    RunSpeed "run_speed" "Running speed" Lab(Match), number(1.5, 6.0, 0.05), Start::Number(3.2), "m/s", "How fast it is asked to go with Shift.";
-    Strafe "strafe" "Strafe" Lab(Match), Kind::Switch, Start::Switch(false), "", "It faces where the camera looks, whichever way it goes.";
+    WalkSpeed "walk_speed" "Walking speed" Lab(Match), number(0.3, 2.2, 0.05), Start::Number(1.4), "m/s", "How fast the character is asked to walk." [LookedAt];
+    RunSpeed "run_speed" "Running speed" Lab(Match), number(1.5, 6.0, 0.05), Start::Number(3.2), "m/s", "How fast it is asked to go with Shift." [LookedAt];
+    Strafe "strafe" "Strafe" Lab(Match), Kind::Switch, Start::Switch(false), "", "It faces where the camera looks, whichever way it goes." [LookedAt];
     WeightPath "weight_path" "Path ahead" Lab(Match), number(0.0, 4.0, 0.05), Start::Number(1.0), "×", "How much it counts where the next second leads.";
     WeightFacing "weight_facing" "Facing ahead" Lab(Match), number(0.0, 4.0, 0.05), Start::Number(1.25), "×", "How much it counts what the body will face.";
     WeightFeet "weight_feet" "Feet, where" Lab(Match), number(0.0, 4.0, 0.05), Start::Number(0.75), "×", "How much it counts where the feet are.";
@@ -313,7 +342,7 @@ parameters! {
     AheadFar "ahead_far" "Look ahead, far" Lab(Match), number(0.2, 3.0, 0.01), Start::Number(1.0), "s", "The last. Frames nearer to their clip's end than this are never chosen, unless the clip is a cycle.";
     Normalisation "normalisation" "Normalise" Lab(Match), Kind::Choice(Normalisation::CHOICES), Start::Choice(Normalisation::Block.word()), "", "By block: positions, directions and velocities keep their proportions among themselves. By dimension: each number varies by as much, also where it hardly moves.";
     SearchInterval "search_interval" "Search every" Lab(Match), logarithmic(0.02, 2.0, 0.01), Start::Number(0.1), "s", "How often the best frame is looked for. A clip's end and another input do not wait.";
-    SearchBy "search_by" "Search by" Lab(Match), Kind::Choice(SearchBy::CHOICES), Start::Choice(SearchBy::Boxes.word()), "", "Three searches that find the same frame: how many frames they look at differs.";
+    SearchBy "search_by" "Search by" Lab(Match), Kind::Choice(SearchBy::CHOICES), Start::Choice(SearchBy::Boxes.word()), "", "Three searches that find the same frame: how many frames they look at differs." [LookedAt];
     Hysteresis "hysteresis" "Hysteresis" Lab(Match), Kind::Choice(Hysteresis::CHOICES), Start::Choice(Hysteresis::Bias.word()), "", "What keeps it from jumping for next to nothing.";
     BiasShare "bias_share" "Bias, share" Lab(Match), number(0.0, 0.9, 0.01), Start::Number(0.15), "", "A better frame must be cheaper by this share of the present cost.";
     BiasConstant "bias_constant" "Bias, constant" Lab(Match), number(0.0, 5.0, 0.05), Start::Number(0.2), "cost", "And by this.";
@@ -333,8 +362,8 @@ parameters! {
     AskTag "ask_tag" "Only frames of" Lab(Match), Kind::Text, Start::Text("any"), "", "Frames must have this tag: walk, run, idle, turn, or a word of your own.";
     ForbidTag "forbid_tag" "No frames of" Lab(Match), Kind::Text, Start::Text("nothing"), "", "Frames must not have this tag.";
     Tags "tags" "Tags" Lab(Match), Kind::Text, Start::Text(""), "", "Tags by hand: clip, seconds and word, as in walk:0.2-1.5:exclude. A word behind a minus sign is taken away there.";
-    ShownCandidates "shown_candidates" "Candidates shown" Lab(Match), number(1.0, 8.0, 1.0), Start::Number(5.0), "frames", "How many of the best frames each search tells of.";
-    Crowd "crowd" "Characters" Lab(Match), number(1.0, 100.0, 1.0), Start::Number(1.0), "", "Others walk about you, each with a controller of its own, all with the same clips.";
+    ShownCandidates "shown_candidates" "Candidates shown" Lab(Match), number(1.0, 8.0, 1.0), Start::Number(5.0), "frames", "How many of the best frames each search tells of." [LookedAt];
+    Crowd "crowd" "Characters" Lab(Match), number(1.0, 100.0, 1.0), Start::Number(1.0), "", "Others walk about you, each with a controller of its own, all with the same clips." [LookedAt];
 
     RootWay "root_way" "Way over the ground" Lab(InPlace), Kind::Choice(RootWay::CHOICES), Start::Choice(RootWay::TakeOut.word()), "", "Taken out: the body stays over the origin. Put back: found from the planted feet of a clip that goes in place.";
     RootWayTurn "root_way_turn" "With the turn" Lab(InPlace), Kind::Switch, Start::Switch(true), "", "The turn of the body is taken out or put back, too. Off: it faces as it does in the clip.";
@@ -354,7 +383,7 @@ parameters! {
     Character "character" "Figure" Stage, Kind::Text, Start::Text(""), "", "The clip whose file brought a mesh with a skin: its character is moved. Empty: a body is made around the bones.";
     FigureHeight "figure_height" "Height" Stage, number(0.5, 1.5, 0.01), Start::Number(1.0), "×", "How high the character is beside its clip. Its steps and its path grow with it.";
     FigureBuild "figure_build" "Build" Stage, number(0.6, 1.6, 0.05), Start::Number(1.0), "×", "How broad the character is: 1 is average.";
-    Skinning "skinning" "Skinning" Stage, Kind::Choice(Skinning::CHOICES), Start::Choice(Skinning::Dual.word()), "", "How the skin follows two joints at once: twist a forearm to see the difference.";
+    Skinning "skinning" "Skinning" Stage, Kind::Choice(Skinning::CHOICES), Start::Choice(Skinning::Dual.word()), "", "How the skin follows two joints at once: twist a forearm to see the difference." [Compare];
     Twist "twist" "Twist of the hands" Stage, number(-180.0, 180.0, 1.0), Start::Number(0.0), "°", "Turns both hands about their forearms, whatever the clip does. Linear blend wraps the wrist like a candy wrapper, dual quaternions keep it round.";
     Axes "axes" "Joint axes" Stage, Kind::Switch, Start::Switch(false), "", "Red, green and blue arrows for x, y and z of every joint.";
     Sources "sources" "A and B as ghosts" Stage, Kind::Switch, Start::Switch(true), "", "Shows both sources inside the transition.";
@@ -370,21 +399,21 @@ parameters! {
     FollowJoint "follow_joint" "Follow joint" Camera, Kind::Text, Start::Text("hips"), "", "The joint that the camera stays with.";
     FollowHalfLife "follow_half_life" "Camera half-life" Camera, logarithmic(0.02, 2.0, 0.01), Start::Number(0.2), "s", "How lazily the camera follows.";
     Camera "camera" "Camera" Camera, Kind::Choice(Camera::CHOICES), Start::Choice(Camera::Orbit.word()), "", "From the side, or from above.";
-    CameraYaw "camera_yaw" "Camera direction" Camera, number(-180.0, 180.0, 0.5), Start::Number(62.0), "°", "From where the camera looks, around the vertical.";
-    CameraPitch "camera_pitch" "Camera pitch" Camera, number(-10.0, 89.0, 0.5), Start::Number(9.0), "°", "How far above the horizon the camera stands.";
-    CameraDistance "camera_distance" "Camera distance" Camera, logarithmic(0.5, 60.0, 0.05), Start::Number(4.8), "m", "How far away the camera stands.";
-    PanX "pan_x" "Camera shift x" Camera, number(-100.0, 100.0, 0.01), Start::Number(0.0), "m", "How far the middle of the picture lies beside what the camera follows, along x.";
-    PanY "pan_y" "Camera shift y" Camera, number(-100.0, 100.0, 0.01), Start::Number(0.0), "m", "Likewise upwards.";
-    PanZ "pan_z" "Camera shift z" Camera, number(-100.0, 100.0, 0.01), Start::Number(0.0), "m", "Likewise along z.";
+    CameraYaw "camera_yaw" "Camera direction" Camera, number(-180.0, 180.0, 0.5), Start::Number(62.0), "°", "From where the camera looks, around the vertical." [NoUndo];
+    CameraPitch "camera_pitch" "Camera pitch" Camera, number(-10.0, 89.0, 0.5), Start::Number(9.0), "°", "How far above the horizon the camera stands." [NoUndo];
+    CameraDistance "camera_distance" "Camera distance" Camera, logarithmic(0.5, 60.0, 0.05), Start::Number(4.8), "m", "How far away the camera stands." [NoUndo];
+    PanX "pan_x" "Camera shift x" Camera, number(-100.0, 100.0, 0.01), Start::Number(0.0), "m", "How far the middle of the picture lies beside what the camera follows, along x." [NoUndo, ByPointer];
+    PanY "pan_y" "Camera shift y" Camera, number(-100.0, 100.0, 0.01), Start::Number(0.0), "m", "Likewise upwards." [NoUndo, ByPointer];
+    PanZ "pan_z" "Camera shift z" Camera, number(-100.0, 100.0, 0.01), Start::Number(0.0), "m", "Likewise along z." [NoUndo, ByPointer];
 
-    Play "play" "Play" Transport, Kind::Switch, Start::Switch(true), "", "Whether time runs.";
+    Play "play" "Play" Transport, Kind::Switch, Start::Switch(true), "", "Whether time runs." [NoUndo];
     Rate "rate" "Playback speed" Transport, logarithmic(0.05, 4.0, 0.05), Start::Number(1.0), "×", "How fast time runs.";
     Loop "loop" "Loop" Transport, Kind::Switch, Start::Switch(true), "", "Starts again at the end.";
-    Time "t" "Time" Transport, number(0.0, 3600.0, 0.001), Start::Number(0.0), "s", "Where the playhead stands; written to the link while paused.";
+    Time "t" "Time" Transport, number(0.0, 3600.0, 0.001), Start::Number(0.0), "s", "Where the playhead stands; written to the link while paused." [NoUndo];
     In "in" "In mark" Transport, auto(0.0, 3600.0, 0.01), Start::Auto, "s", "Where playing begins.";
     Out "out" "Out mark" Transport, auto(0.0, 3600.0, 0.01), Start::Auto, "s", "Where playing ends.";
 
-    Compare "compare" "Compare" Page, Kind::Compare, Start::Text(""), "", "One pane for each value of a parameter, as in blend_window:30,15,10.";
+    Compare "compare" "Compare" Page, Kind::Compare, Start::Text(""), "", "One pane for each value of a parameter, as in blend_window:30,15,10." [State];
     Theme "theme" "Theme" Page, Kind::Choice(PageTheme::CHOICES), Start::Choice(PageTheme::Auto.word()), "", "Dark, light, or as the system has it.";
     Lang "lang" "Language" Page, Kind::Choice(PageLanguage::CHOICES), Start::Choice(PageLanguage::Auto.word()), "", "English, Traditional Chinese, or as the browser has it. A link that names none leaves every reader their own.";
     Projector "projector" "Projector" Page, Kind::Switch, Start::Switch(false), "", "Larger type for the back row.";
@@ -599,28 +628,20 @@ impl Param {
         }
     }
 
-    /// Whether a change of it is a step that undo takes back. Looking around, playing and stopping
-    /// are not.
+    /// Returns whether it has a mark.
     #[must_use]
-    pub const fn is_undoable(&self) -> bool {
-        use Key::{CameraDistance, CameraPitch, CameraYaw, PanX, PanY, PanZ, Play, Time};
-        !matches!(
-            self.key,
-            CameraYaw | CameraPitch | CameraDistance | PanX | PanY | PanZ | Play | Time
-        )
+    pub fn has(&self, mark: Mark) -> bool {
+        self.marks.contains(&mark)
     }
 
-    /// Whether compare can make panes of it: a clip, a number or choice that changes the result,
-    /// and the two ways of skinning.
+    /// Returns whether compare can make panes of it: a clip, or a number or choice that changes the
+    /// result.
     #[must_use]
     pub fn is_comparable(&self) -> bool {
+        let of_lab = self.group.is_of_lab() && !self.has(Mark::NoCompare);
         match self.kind {
-            // Clips are read anew for these.
-            _ if matches!(self.key, Key::Ground | Key::ContactHeight | Key::ContactSpeed) => false,
             Kind::Clip => true,
-            Kind::Number { .. } | Kind::Choice(_) => {
-                self.group.is_of_lab() || self.key == Key::Skinning
-            }
+            Kind::Number { .. } | Kind::Choice(_) => of_lab || self.has(Mark::Compare),
             _ => false,
         }
     }
@@ -783,6 +804,14 @@ mod tests {
                 "{}",
                 param.name
             );
+            let is_place = param.has(Mark::PlaceInA) || param.has(Mark::PlaceInB);
+            let default = param.format(&param.default_value());
+            assert!(!is_place || default == "auto" || default.is_empty(), "{}", param.name);
+            let is_of_lab = param.group.is_of_lab();
+            let outside = [Mark::State, Mark::NoUndo, Mark::Compare, Mark::ByPointer];
+            for &mark in param.marks {
+                assert_eq!(is_of_lab, !outside.contains(&mark), "{}: {mark:?}", param.name);
+            }
             assert!(param.help.ends_with('.') && !param.label.is_empty(), "{}", param.name);
             assert!(
                 param.name.bytes().all(|b| b.is_ascii_lowercase() || b == b'_'),

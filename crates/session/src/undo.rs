@@ -1,5 +1,5 @@
 use super::library::{Entry, Library, Origin};
-use super::params::{Key, PARAMS, Params};
+use super::params::{Key, Mark, PARAMS, Params};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -118,7 +118,7 @@ impl History {
         *open = None;
         let left = std::mem::replace(library, state.library);
         library.take_motions_of(&left);
-        for param in PARAMS.iter().filter(|param| param.is_undoable()) {
+        for param in PARAMS.iter().filter(|param| !param.has(Mark::NoUndo)) {
             params.copy_from(&state.params, param.key);
         }
         true

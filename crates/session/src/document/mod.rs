@@ -38,7 +38,7 @@ use super::memory::Memory;
 use super::motion::{FeetReader, Motion};
 use super::notice::{Level, Notices};
 use super::outside;
-use super::params::{Key, Params, Value};
+use super::params::{Key, Mark, Params, Value};
 use super::reading::{Reads, read};
 use super::samples;
 use super::transport::Span;
@@ -575,7 +575,7 @@ impl Session {
                 changed.extend(forget_places(&mut params, slot, &named));
             }
         }
-        let mut undoable = changed.iter().copied().filter(|key| key.param().is_undoable());
+        let mut undoable = changed.iter().copied().filter(|key| !key.param().has(Mark::NoUndo));
         if let Some(first) = undoable.next() {
             // A slider that is dragged changes one parameter again and again: one step.
             let alone = undoable.next().is_none();

@@ -6,7 +6,7 @@ use crate::command::CommandError;
 use crate::labs::{Slot, lab, recipe_name, recipe_params};
 use crate::library::{Entry, Origin, split_reference};
 use crate::outside;
-use crate::params::{Key, Kind, Params, Value};
+use crate::params::{Key, Kind, Mark, PARAMS, Params, Value};
 use segue_text::msg;
 
 /// How a file has come.
@@ -205,21 +205,13 @@ pub(super) fn is_built_in(entry: &Entry) -> bool {
 /// Sets back what says where in a slot's clip something happens, but for what was `given` for the
 /// clip that is there now: it means nothing in another clip. Returns what has changed.
 pub(super) fn forget_places(params: &mut Params, slot: Slot, given: &[Key]) -> Vec<Key> {
-    let places: &[Key] = match slot {
-        Slot::A => &[
-            Key::LeaveA,
-            Key::MixFrameA,
-            Key::LoopFrom,
-            Key::LoopTo,
-            Key::WarpFrom,
-            Key::WarpTo,
-            Key::Path,
-            Key::Pins,
-        ],
-        Slot::B => &[Key::EnterB, Key::MixFrameB, Key::Pins],
+    let mark = match slot {
+        Slot::A => Mark::PlaceInA,
+        Slot::B => Mark::PlaceInB,
     };
+    let places = PARAMS.iter().filter(|param| param.has(mark)).map(|param| param.key);
     let mut changed = Vec::new();
-    for key in places.iter().copied().filter(|key| !given.contains(key)) {
+    for key in places.filter(|key| !given.contains(key)) {
         let result = params.set(key, key.param().default_value());
         debug_assert!(result.is_ok(), "defaults fit: {result:?}");
         if result == Ok(true) {

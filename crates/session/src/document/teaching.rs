@@ -6,7 +6,7 @@ use crate::command::{CommandError, Request};
 use crate::lesson::{CONTENTS, LESSONS, LessonError, Page, Source, Text, parse, source_of};
 use crate::link::{self, Link};
 use crate::notice::Level;
-use crate::params::{Group, Key, PARAMS, Param, Params};
+use crate::params::{Group, Key, Mark, PARAMS, Param, Params};
 use segue_text::{Message, msg};
 use std::sync::Arc;
 
@@ -285,7 +285,7 @@ fn unread(source: &Source, error: &LessonError) -> Message {
 
 /// What a link of a lesson sets even where it does not name it: what makes the result.
 fn is_of_page_state(param: &Param) -> bool {
-    param.group.is_of_lab() || matches!(param.key, Key::Lab | Key::A | Key::B | Key::Compare)
+    param.group.is_of_lab() || param.has(Mark::State)
 }
 
 /// What belongs to who reads, and not to what is shown: no lesson changes it.

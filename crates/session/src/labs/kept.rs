@@ -1,9 +1,9 @@
 //! Results that are kept: their id is the recipe, and all that a link needs to make them again.
 
-use super::lab::{self, is_of_lock};
+use super::lab;
 use super::make::made_id;
 use super::{Outcome, Slot};
-use crate::params::{Key, Kind, PARAMS, Param, Params, Value};
+use crate::params::{Key, Kind, Mark, PARAMS, Param, Params, Value};
 use crate::{LabId, Selected};
 use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, utf8_percent_encode};
 
@@ -20,7 +20,7 @@ pub(crate) fn belongs_to(key: Key, lab: LabId) -> bool {
 
 /// Whether a parameter can change the result: how feet are held changes nothing while they are not.
 pub(super) fn counts(params: &Params, key: Key) -> bool {
-    params.is_on(Key::FootLock) || !is_of_lock(key)
+    params.is_on(Key::FootLock) || !key.param().has(Mark::Lock)
 }
 
 /// Whether a parameter is part of what a lab's result is made from.
@@ -28,18 +28,7 @@ fn is_ingredient(key: Key, lab: LabId) -> bool {
     match key {
         Key::A => lab::of(lab).slots().contains(&Slot::A),
         Key::B => lab::of(lab).slots().contains(&Slot::B),
-        // Looked at or worked with, and not made from.
-        Key::MaskColors
-        | Key::PathGrid
-        | Key::PinStart
-        | Key::PinEnd
-        | Key::Others
-        | Key::WalkSpeed
-        | Key::RunSpeed
-        | Key::Strafe
-        | Key::ShownCandidates
-        | Key::SearchBy
-        | Key::Crowd => false,
+        _ if key.param().has(Mark::LookedAt) => false,
         _ => belongs_to(key, lab),
     }
 }

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::LabId;
 use crate::labs::LabError;
-use crate::params::{Group, Key, Params, Value};
+use crate::params::{Group, Key, Mark, Params, Value};
 use std::any::Any;
 use std::fmt;
 use std::sync::Arc;
@@ -104,9 +104,10 @@ pub(crate) trait Lab: Sync {
 
     /// Whether the result depends on a parameter.
     fn depends_on(&self, key: Key) -> bool {
-        matches!(key.param().group, Group::Lab(lab) if self.parameters_of().contains(&lab))
+        let param = key.param();
+        matches!(param.group, Group::Lab(lab) if self.parameters_of().contains(&lab))
             || self.shared_keys().contains(&key)
-            || (self.has_feet() && is_of_feet(key))
+            || (self.has_feet() && (param.has(Mark::Feet) || param.has(Mark::Lock)))
     }
 }
 
@@ -205,15 +206,4 @@ pub(crate) fn of(lab: LabId) -> &'static dyn Lab {
         LabId::Match => &match_::MatchLab,
         LabId::InPlace => &in_place::InPlaceLab,
     }
-}
-
-/// Returns whether a parameter says how feet are read and held: every lab with clips has these.
-fn is_of_feet(key: Key) -> bool {
-    matches!(key, Key::FootLock | Key::Ground | Key::ContactHeight | Key::ContactSpeed)
-        || is_of_lock(key)
-}
-
-/// Returns whether a parameter says how planted feet are held.
-pub(super) fn is_of_lock(key: Key) -> bool {
-    matches!(key, Key::LockBlend | Key::LockReach | Key::LockClearance)
 }
