@@ -66,8 +66,9 @@ pub enum Reference {
 pub enum LayerMode {
     /// The layer replaces the base, joint by joint: slerp by mask × weight.
     Override,
-    /// The difference of the layer to a reference pose is added: `base · exp(w log(reference⁻¹ ·
-    /// over))`, in every joint's own frame, so that a bent arm waves as a straight one does.
+    /// The difference of the layer to a reference pose is added:
+    /// `base · exp(w log(reference⁻¹ · over))`, in every joint's own frame, so that a bent arm
+    /// waves as a straight one does.
     Additive(Reference),
 }
 

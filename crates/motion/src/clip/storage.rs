@@ -288,8 +288,8 @@ impl Clip {
         world
     }
 
-    /// Returns the world positions of all joints over a range of frames: frame-major, `range.len()
-    /// × joints` long, metres. The range is clamped to the clip.
+    /// Returns the world positions of all joints over a range of frames: frame-major,
+    /// `range.len() × joints` long, metres. The range is clamped to the clip.
     #[must_use]
     pub fn world_positions(&self, range: Range<usize>) -> Vec<Vec3> {
         let end = range.end.min(self.frames());

@@ -1,3 +1,5 @@
+//! The motion graph, and its construction.
+
 use super::error::above;
 use super::{Candidates, FrameSet, GraphError, Place};
 use crate::math::Planar;
@@ -7,34 +9,33 @@ use petgraph::graph::{DiGraph, EdgeIndex, NodeIndex};
 use petgraph::visit::EdgeRef;
 use std::sync::Arc;
 
-/// How the graph is made.
+/// The construction of a graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Construction {
-    /// Each clip is cut into segments of so many frames; one goes from the end of one into the
-    /// start of another.
+    /// Each clip is cut into segments of equal length; transitions lead from the end of a segment
+    /// to the start of another.
     Segments {
-        /// Frames of a segment. What is left at a clip's end belongs to its last segment.
+        /// Frames of a segment. The rest at a clip's end belongs to its last segment.
         segment_size: usize,
     },
-    /// One goes where the distance has a local minimum, and the clips are cut there (Kovar,
-    /// Gleicher, Pighin 2002, section 3.2).
+    /// Transitions are local minima of the distance, and the clips are cut there (Kovar, Gleicher,
+    /// Pighin 2002, section 3.2).
     Minima,
 }
 
-/// What a graph is made with.
+/// Options of a graph.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct GraphOptions {
-    /// How it is made.
+    /// The construction.
     pub construction: Construction,
-    /// Frames that a transition takes, and over which windows are compared; at least 1.
+    /// Frames of a transition, and of the windows that are compared; at least 1.
     pub blend_window: usize,
-    /// The largest distance of two windows between which one goes, centimetres on the reference
-    /// body.
+    /// The greatest distance of two windows for a transition, centimetres on the reference body.
     pub edge_threshold_cm: f64,
-    /// One does not go to what is less than so many seconds away in the same clip.
+    /// The least time between the two frames of a transition within one clip, seconds.
     pub min_jump_secs: f64,
-    /// The most transitions out of a stretch; the closest are kept, and [`MotionGraph::left_out`]
-    /// counts the others.
+    /// The greatest number of transitions out of a stretch; the closest are kept, and
+    /// [`MotionGraph::left_out`] counts the others.
     pub most_ways_out: usize,
 }
 
@@ -51,16 +52,16 @@ impl Default for GraphOptions {
 }
 
 impl GraphOptions {
-    /// Windows that are farther apart than this, centimetres, are not alike in any sense: nobody is
-    /// told to raise a threshold beyond it.
+    /// The greatest sensible threshold, centimetres: windows that are farther apart are not alike,
+    /// and no error suggests to raise the threshold beyond it.
     pub const MAX_THRESHOLD_CM: f64 = 60.0;
 
-    /// Frames of the shortest jump. From a frame to the next is none.
+    /// Returns the least number of frames of a jump, at least 2: the next frame is not a jump.
     pub(super) fn min_jump(&self, set: &FrameSet) -> usize {
         ((self.min_jump_secs * set.fps()).round() as usize).max(2)
     }
 
-    /// Why one cannot go from anywhere to anywhere, where that is so.
+    /// Returns the reason why no transition is possible.
     fn nowhere(&self, set: &FrameSet) -> GraphError {
         let window = self.blend_window;
         let least = match self.construction {
@@ -84,11 +85,10 @@ impl GraphOptions {
         }
     }
 
-    /// Whether a graph of these clips can be made so, for all that can be said before distances are
-    /// known.
+    /// Checks the options against the clips, as far as possible without distances.
     ///
     /// # Errors
-    /// [`GraphError`] says which number does not fit, and what would do.
+    /// [`GraphError`] names the option that does not fit, and what to change.
     pub fn check(&self, set: &FrameSet) -> Result<(), GraphError> {
         let setting = |what, value: f64, least: f64, most: f64| {
             if (least..=most).contains(&value) {
@@ -117,7 +117,8 @@ impl GraphOptions {
         Ok(())
     }
 
-    /// The segments of a clip; none where it is shorter than one, or the construction has none.
+    /// Returns the segments of a clip; empty where it is shorter than one, or for another
+    /// construction.
     pub(super) fn stretches(&self, set: &FrameSet, clip: usize) -> Vec<Stretch> {
         let Construction::Segments { segment_size } = self.construction else {
             return Vec::new();
@@ -130,7 +131,7 @@ impl GraphOptions {
         (0..count).map(|index| Stretch { clip, start: index * size, end: end(index) }).collect()
     }
 
-    /// Whether a segment is entered at this frame.
+    /// Returns whether a segment is entered at this frame.
     pub(super) fn is_entered_at(&self, set: &FrameSet, place: Place) -> bool {
         let Construction::Segments { segment_size } = self.construction else {
             return false;
@@ -139,7 +140,7 @@ impl GraphOptions {
         place.frame.is_multiple_of(size) && place.frame / size < set.frames_of(place.clip) / size
     }
 
-    /// Whether a segment is left at this frame.
+    /// Returns whether a segment is left at this frame.
     pub(super) fn is_left_at(&self, set: &FrameSet, place: Place) -> bool {
         let (end, frames) = (place.frame + self.blend_window, set.frames_of(place.clip));
         let Construction::Segments { segment_size } = self.construction else {
@@ -150,7 +151,7 @@ impl GraphOptions {
             && (end == frames || (end.is_multiple_of(size) && end >= size && end / size < count))
     }
 
-    /// Whether a segment is entered or left at this frame.
+    /// Returns whether a segment is entered or left at this frame.
     pub(super) fn is_end(&self, set: &FrameSet, place: Place) -> bool {
         self.is_entered_at(set, place) || self.is_left_at(set, place)
     }
@@ -170,7 +171,7 @@ pub struct Stretch {
 /// A way from one stretch to the next: an edge of the graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
-    /// The clip goes on.
+    /// The clip continues.
     Continue,
     /// A transition: its index in [`MotionGraph::jumps`].
     Jump(usize),
@@ -187,7 +188,8 @@ pub struct Jump {
     pub window: usize,
     /// The distance of the two windows, centimetres on the reference body.
     pub distance_cm: f64,
-    /// How the entered clip lies best on the one that is left: `left_world_from_entered_world`.
+    /// The best alignment of the entered clip with the one that is left:
+    /// `left_world_from_entered_world`.
     pub alignment: Planar,
 }
 
@@ -202,18 +204,18 @@ pub struct MotionGraph {
 }
 
 impl MotionGraph {
-    /// The graph of these places. `options` are those by which they were found; the threshold may
-    /// be lower than it was then.
+    /// Builds the graph of these candidates. `options` are those by which they were found; the
+    /// threshold may be lower.
     ///
-    /// Segments: a node each, in the order of clips and frames. A segment is left `blend_window`
+    /// Segments: one node each, in the order of clips and frames. A segment is left `blend_window`
     /// frames before its end and entered at its start; where that is more than half of a segment,
     /// transitions overlap. Minima: each clip is cut where it is left and where a transition into
-    /// it is over, `blend_window` frames behind where it was entered, so that transitions do not
-    /// overlap.
+    /// it is over, `blend_window` frames after the frame where it was entered, so that transitions
+    /// do not overlap.
     ///
     /// # Errors
     /// [`GraphError`] when the options do not fit the clips, or there is no transition; it says
-    /// what would do.
+    /// what to change.
     pub fn new(
         set: &Arc<FrameSet>,
         candidates: &Candidates,
@@ -272,7 +274,7 @@ impl MotionGraph {
         Ok(made)
     }
 
-    /// Frames from where a stretch is entered to where its node begins.
+    /// Returns the number of frames from the entry of a stretch to the start of its node.
     fn arrival(&self) -> usize {
         match self.options.construction {
             Construction::Segments { .. } => 0,
@@ -280,7 +282,7 @@ impl MotionGraph {
         }
     }
 
-    /// Frames from where a stretch is left to where its node ends.
+    /// Returns the number of frames from where a stretch is left to the end of its node.
     fn departure(&self) -> usize {
         self.options.blend_window - self.arrival()
     }
@@ -319,7 +321,7 @@ impl MotionGraph {
         }
     }
 
-    /// The nodes by an end of theirs, one per cut of the set.
+    /// Returns the nodes by one of their ends, one per cut of the set.
     fn nodes_at(&self, end: fn(&Stretch) -> usize) -> Vec<Option<NodeIndex>> {
         let mut nodes = vec![None; self.set.cuts()];
         for (node, stretch) in self.graph.node_indices().zip(self.graph.node_weights()) {
@@ -331,38 +333,38 @@ impl MotionGraph {
         nodes
     }
 
-    /// The clips.
+    /// Returns the clips.
     #[must_use]
     pub fn set(&self) -> &Arc<FrameSet> {
         &self.set
     }
 
-    /// What it was made with.
+    /// Returns the options.
     #[must_use]
     pub fn options(&self) -> &GraphOptions {
         &self.options
     }
 
-    /// Nodes and edges.
+    /// Returns nodes and edges.
     #[must_use]
     pub fn graph(&self) -> &DiGraph<Stretch, Way> {
         &self.graph
     }
 
-    /// The transitions, closest first.
+    /// Returns the transitions, closest first.
     #[must_use]
     pub fn jumps(&self) -> &[Jump] {
         &self.jumps
     }
 
-    /// Transitions below the threshold that are no part of the graph, because as many closer ones
-    /// as there may be leave the same stretch.
+    /// Returns the number of transitions below the threshold that were left out, because the
+    /// greatest number of closer ones leave the same stretch.
     #[must_use]
     pub fn left_out(&self) -> usize {
         self.left_out
     }
 
-    /// The transition of an edge; `None` where the clip goes on, and where there is no such edge.
+    /// Returns the transition of an edge; `None` where the clip continues, and for an unknown edge.
     #[must_use]
     pub fn jump(&self, edge: EdgeIndex) -> Option<&Jump> {
         match self.graph.edge_weight(edge)? {
@@ -371,8 +373,7 @@ impl MotionGraph {
         }
     }
 
-    /// The frames that play from where a node begins to where the node at the other end of an edge
-    /// does.
+    /// Returns the number of frames between the starts of the two nodes of an edge.
     #[must_use]
     pub fn frames_of(&self, edge: EdgeIndex) -> usize {
         let node =
@@ -384,14 +385,14 @@ impl MotionGraph {
         }
     }
 
-    /// Nodes without a way out: the clips' ends.
+    /// Returns the nodes without a way out: the clips' ends.
     #[must_use]
     pub fn dead_ends(&self) -> Vec<NodeIndex> {
         self.graph.externals(Direction::Outgoing).collect()
     }
 
-    /// The strongly connected components, largest first (by frames, then by the first node): inside
-    /// one, every node can be reached from every other.
+    /// Returns the strongly connected components, largest first (by frames, then by the first
+    /// node): inside one, every node can be reached from every other.
     #[must_use]
     pub fn components(&self) -> Vec<Vec<NodeIndex>> {
         let frames = |nodes: &[NodeIndex]| -> usize {
@@ -409,18 +410,18 @@ impl MotionGraph {
         components
     }
 
-    /// The graph of the largest component alone: no walk in it comes to an end.
+    /// Returns the graph of the largest component alone: no walk in it comes to an end.
     ///
     /// # Errors
-    /// [`GraphError::NoCycle`] when no component has a way inside it.
+    /// [`GraphError::NoCycle`] when no component has an edge inside it.
     pub fn pruned(&self) -> Result<Self, GraphError> {
         self.pruned_to(&self.components())
     }
 
-    /// [`Self::pruned`] where the components are known.
+    /// Returns the graph of the largest of known components, as [`Self::pruned`] does.
     ///
     /// # Errors
-    /// [`GraphError::NoCycle`] when no component has a way inside it.
+    /// [`GraphError::NoCycle`] when no component has an edge inside it.
     pub fn pruned_to(&self, components: &[Vec<NodeIndex>]) -> Result<Self, GraphError> {
         let inside = |nodes: &[NodeIndex]| {
             let within = |edge: petgraph::graph::EdgeReference<'_, Way>| {
@@ -466,7 +467,7 @@ impl MotionGraph {
         Ok(pruned)
     }
 
-    /// The node that a frame lies in; `None` where the graph has none.
+    /// Returns the node of a frame; `None` where the graph has none.
     #[must_use]
     pub fn node_at(&self, place: Place) -> Option<NodeIndex> {
         let holds = |stretch: &Stretch| {

@@ -1,55 +1,56 @@
+//! Candidates for transitions.
+
 use super::{AllPairs, Construction, FrameDistances, FrameSet, GraphError, GraphOptions, Place};
 use crate::math::Planar;
 use crate::registration::Progress;
 use std::sync::Arc;
 
-/// More are not held: of these many the closest are kept.
+/// The greatest number of candidates in memory; the closest are kept.
 const MAX_CANDIDATES: usize = 400_000;
 
-/// To align what was found takes as long as to look at so many cells.
+/// The cost of aligning one candidate, in cells scanned (for progress).
 const CELLS_PER_FOUND: usize = 100;
 
-/// A frame in which a joint's turning changes so many times as much as in all but one in a hundred
-/// frames is not left or entered.
+/// The greatest jolt ([`jolts`](crate::clip)) of a frame at which a clip is left or entered, as a
+/// multiple of the clip's 99th percentile.
 const MAX_JOLT: f32 = 4.0;
 
-/// A place where one may go from one stretch of motion into another.
+/// A possible transition.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Candidate {
-    /// Where its clip is left.
+    /// The frame at which its clip is left.
     pub leave: Place,
-    /// Where the other, or the same, is entered.
+    /// The frame at which the other clip, or the same, is entered.
     pub enter: Place,
     /// The distance of the two windows, centimetres on the reference body, rounded to 0.001 cm.
     pub distance_cm: f64,
-    /// How the entered clip lies best on the one that is left: `left_world_from_entered_world`.
+    /// The best alignment of the entered clip with the one that is left:
+    /// `left_world_from_entered_world`.
     pub alignment: Planar,
 }
 
-/// All places below the threshold, closest first.
+/// All candidates below the threshold, closest first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidates {
     pub(super) found: Vec<Candidate>,
-    /// The smallest distance at a place where one could go, below the threshold or not.
+    /// The smallest distance of any possible transition, below the threshold or not.
     pub(super) nearest_cm: Option<f64>,
-    /// How many were below the threshold and are not held.
+    /// The number of candidates below the threshold that are not kept.
     pub(super) left_out: usize,
-    /// The threshold by which they were found, centimetres: they serve all lower ones as well.
+    /// The threshold of the search, centimetres: the result is valid for all lower ones.
     pub(super) threshold_cm: f64,
 }
 
 impl Candidates {
-    /// The places that the options ask for: starts and ends of segments, or local minima of the
-    /// distance; no farther than the threshold.
+    /// Finds the candidates for a construction: starts and ends of segments, or local minima of the
+    /// distance, up to the threshold.
     ///
-    /// A place is left out where one could not go: the window would cross the end of its clip,
-    /// nothing of the outgoing clip would play before it, or nothing of the incoming one behind it;
-    /// where one would jump less than the shortest jump inside a clip; and, of minima, where a
-    /// joint jolts.
+    /// A candidate is left out if a window crosses the end of its clip, nothing of the outgoing
+    /// clip would play before it, or nothing of the incoming one after it; if it is shorter than
+    /// the shortest jump inside a clip; and, for minima, if a joint jolts there.
     ///
     /// # Errors
-    /// [`GraphError`] when the options do not fit the clips, or the distances are those of another
-    /// window.
+    /// [`GraphError`] when the options do not fit the clips, or the distances have another window.
     pub fn find(
         all: &AllPairs,
         distances: &FrameDistances,
@@ -60,27 +61,27 @@ impl Candidates {
         Ok(search.finish())
     }
 
-    /// The places, closest first.
+    /// Returns the candidates, closest first.
     #[must_use]
     pub fn found(&self) -> &[Candidate] {
         &self.found
     }
 
-    /// The smallest distance of two windows between which one could go, centimetres, below the
-    /// threshold or not.
+    /// Returns the smallest distance of two windows with a possible transition, centimetres, below
+    /// the threshold or not.
     #[must_use]
     pub fn nearest_cm(&self) -> Option<f64> {
         self.nearest_cm
     }
 
-    /// How many places below the threshold are left out because there are too many (400,000); those
-    /// kept are the closest.
+    /// Returns the number of candidates below the threshold beyond the limit of 400,000; the
+    /// closest are kept.
     #[must_use]
     pub fn left_out(&self) -> usize {
         self.left_out
     }
 
-    /// Whether all places that are no farther than this are held.
+    /// Returns whether all candidates up to this distance are included.
     #[must_use]
     pub fn are_all_within(&self, cm: f64) -> bool {
         let farthest = self.found.last().map_or(0.0, |last| last.distance_cm);
@@ -88,22 +89,21 @@ impl Candidates {
     }
 }
 
-/// [`Candidates::find`] in slices. Between them it holds neither the pairs nor the distances.
+/// The search of [`Candidates::find`] in slices. It holds neither the pairs nor the distances.
 #[derive(Clone, Debug)]
 pub struct CandidateSearch {
     picker: Picker,
-    /// The clips a ≤ b and the row that come next.
+    /// The next clips a ≤ b and row.
     next: (usize, usize, usize),
     done: usize,
     total: usize,
 }
 
 impl CandidateSearch {
-    /// Prepares the search.
+    /// Begins the search.
     ///
     /// # Errors
-    /// [`GraphError`] when the options do not fit the clips, or the distances are those of another
-    /// window.
+    /// [`GraphError`] when the options do not fit the clips, or the distances have another window.
     pub fn new(distances: &FrameDistances, options: &GraphOptions) -> Result<Self, GraphError> {
         let set = distances.set();
         options.check(set)?;
@@ -126,12 +126,12 @@ impl CandidateSearch {
         })
     }
 
-    /// Looks at about `cells` more cells of the matrix (less where much is found), at least one row
-    /// of a pair of clips, and says how many are done. All that is between two clips is looked at
-    /// in one slice if the construction is by segments: that is little.
+    /// Scans about `cells` more cells of the matrix (fewer where many candidates are found), at
+    /// least one row of a pair of clips, and returns the progress. For the construction by segments
+    /// a pair of clips is one slice.
     ///
     /// # Errors
-    /// [`GraphError::Registration`]; not for the pairs and distances that it was made of.
+    /// [`GraphError::Registration`]; not for the pairs and distances from which it was made.
     pub fn advance(
         &mut self,
         all: &AllPairs,
@@ -194,26 +194,27 @@ impl CandidateSearch {
         Ok(Progress { done, total: self.total })
     }
 
-    /// How far it has come.
+    /// Returns the progress.
     #[must_use]
     pub fn progress(&self) -> Progress {
         Progress { done: self.done.min(self.total), total: self.total }
     }
 
-    /// What was found so far.
+    /// Returns the candidates found so far.
     #[must_use]
     pub fn finish(self) -> Candidates {
         self.picker.finish()
     }
 }
 
-/// The pair of clips after a ≤ b, from its first row on.
+/// Returns the pair of clips after a ≤ b, with its first row.
 fn following(a: usize, b: usize, clips: usize) -> (usize, usize, usize) {
     if b + 1 < clips { (a, b + 1, 0) } else { (a + 1, a + 1, 0) }
 }
 
-/// No larger than its eight neighbours; of a plateau the first. It compares the distances as they
-/// were summed: products and sums in an order that is the same on every machine.
+/// Returns whether a cell is no larger than its eight neighbours; of a plateau the first cell.
+/// Unrounded distances are compared: products and sums in an order that is the same on every
+/// machine.
 pub(super) fn is_minimum(
     at: impl Fn(usize, usize) -> Option<f32>,
     row: usize,
@@ -225,7 +226,7 @@ pub(super) fn is_minimum(
     for r in row.saturating_sub(1)..=row + 1 {
         for c in column.saturating_sub(1)..=column + 1 {
             let Some(there) = at(r, c) else { continue };
-            // Strictly smaller than what comes before it, so that a plateau is counted once.
+            // Strictly smaller than previous cells, so that a plateau is counted once.
             if there < here || (there == here && (r, c) < (row, column)) {
                 return false;
             }
@@ -234,13 +235,13 @@ pub(super) fn is_minimum(
     true
 }
 
-/// Takes places in, in any order.
+/// The collection of candidates, offered in any order.
 #[derive(Clone, Debug)]
 pub(super) struct Picker {
     set: Arc<FrameSet>,
     pub(super) options: GraphOptions,
     min_jump: usize,
-    /// Metres of the clips' own body.
+    /// The threshold, metres of the clips' own body.
     threshold_m: f32,
     nearest_m: f32,
     found: Vec<Candidate>,
@@ -251,7 +252,7 @@ impl Picker {
     pub(super) fn new(set: Arc<FrameSet>, options: GraphOptions) -> Self {
         Self {
             min_jump: options.min_jump(&set),
-            // A little more than the threshold; what is above it is told by the rounded distance.
+            // A little above the threshold; the rounded distance decides.
             threshold_m: ((options.edge_threshold_cm + 0.001) / set.cm_per_m()) as f32,
             nearest_m: f32::INFINITY,
             found: Vec::new(),
@@ -261,13 +262,12 @@ impl Picker {
         }
     }
 
-    /// Whether a distance could matter: one that is below the threshold, or nearer than all before
-    /// it.
+    /// Returns whether a distance is relevant: below the threshold, or smaller than all before it.
     pub(super) fn is_worth(&self, distance: f32) -> bool {
         distance <= self.threshold_m || distance < self.nearest_m
     }
 
-    /// The cells of clips a ≤ b in which a segment is left and another entered, each once.
+    /// Returns the cells of clips a ≤ b in which a segment is left and another entered, each once.
     pub(super) fn cells(&self, a: usize, b: usize) -> Vec<(usize, usize)> {
         let (of_a, of_b) = (self.ends(a), self.ends(b));
         let mut cells = Vec::new();
@@ -281,7 +281,7 @@ impl Picker {
         cells
     }
 
-    /// The frames of a clip at which its segments are entered or left.
+    /// Returns the frames of a clip at which its segments are entered or left.
     fn ends(&self, clip: usize) -> Vec<usize> {
         let mut frames: Vec<usize> = (self.options.stretches(&self.set, clip).iter())
             .flat_map(|stretch| [stretch.start, stretch.end - self.options.blend_window])
@@ -291,7 +291,7 @@ impl Picker {
         frames
     }
 
-    /// A pair of windows; a ≤ b. `alignment` is asked for what is taken.
+    /// Offers a pair of windows; a ≤ b. `alignment` is called for accepted ones.
     pub(super) fn offer(
         &mut self,
         a: Place,
@@ -332,8 +332,8 @@ impl Picker {
         Ok(())
     }
 
-    /// Whether something plays before the transition, its windows fit, and something plays behind
-    /// it.
+    /// Returns whether a frame plays before the transition, its windows fit, and a frame plays
+    /// after it.
     fn can_go(&self, leave: Place, enter: Place) -> bool {
         let window = self.options.blend_window;
         let fits = leave.frame >= 1
@@ -348,8 +348,8 @@ impl Picker {
         }
     }
 
-    /// No joint jolts around a frame: a capture that trembles has velocities there that nobody had,
-    /// and a transition would carry them on.
+    /// Returns whether no joint jolts around a frame: a transition would carry on the velocities of
+    /// a trembling capture.
     fn is_calm(&self, place: Place) -> bool {
         let around = place.frame.saturating_sub(1)..=place.frame;
         let jolts = self.set.jolts(place.clip).get(around);
@@ -358,7 +358,7 @@ impl Picker {
 
     fn thin_out(&mut self) {
         if self.found.len() > MAX_CANDIDATES {
-            // Which they are is enough, they are sorted in the end.
+            // They are sorted at the end.
             self.found.select_nth_unstable_by(MAX_CANDIDATES, closest_first);
             self.left_out += self.found.len() - MAX_CANDIDATES;
             self.found.truncate(MAX_CANDIDATES);

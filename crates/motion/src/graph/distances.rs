@@ -1,3 +1,5 @@
+//! Distances between all windows of a set of clips.
+
 use super::{FrameSet, GraphError, Place};
 use crate::registration::{
     Alignment, DistanceMatrix, MAX_PAIRS, PairTerms, PausedSelfSweep, PausedSweep, PointClouds,
@@ -6,15 +8,15 @@ use crate::registration::{
 };
 use std::sync::Arc;
 
-/// To find where the joints of a frame are takes as long as to compare so many pairs.
+/// The cost of the kinematics of one frame, in pairs compared (for progress).
 pub(super) const PAIRS_PER_FRAME: usize = 250;
 
 /// The terms of all pairs of frames of a set, clip by clip, from which the distances of windows of
 /// any length follow ([`PairTerms`]). Every pair is compared once: the distance of two windows is
-/// the same both ways.
+/// symmetric.
 ///
-/// Made in slices. 6,000 frames are 18 million pairs, 216 MB and about 0.2 s; for more than 11,500
-/// frames use [`CandidateStream`](super::CandidateStream), which holds none of it.
+/// It is computed in slices. 6,000 frames are 18 million pairs, 216 MB and about 0.2 s; for more
+/// than 11,500 frames use [`CandidateStream`](super::CandidateStream), which does not store them.
 #[derive(Clone, Debug)]
 pub struct AllPairs {
     set: Arc<FrameSet>,
@@ -24,7 +26,7 @@ pub struct AllPairs {
     clouds: Vec<PointClouds>,
     /// (a, b) with a ≤ b, row by row, as far as they are begun.
     blocks: Vec<Block>,
-    /// Pairs in the blocks before the last.
+    /// Number of pairs in all blocks but the last.
     done: usize,
 }
 
@@ -35,7 +37,7 @@ enum Block {
 }
 
 impl Block {
-    /// Pairs done and pairs in all.
+    /// Returns the pairs done and the pairs in all.
     fn pairs(&self) -> (usize, usize) {
         match self {
             Self::Itself(terms, n) => {
@@ -65,8 +67,7 @@ impl AllPairs {
     /// Prepares the comparison. Nothing is compared yet: call [`advance`](Self::advance).
     ///
     /// # Errors
-    /// [`GraphError::Registration`] when the pairs are more than memory should be taken for (67
-    /// million, 12 bytes each).
+    /// [`GraphError::Registration`] when there are more than 67 million pairs (12 bytes each).
     pub fn new(set: Arc<FrameSet>) -> Result<Self, GraphError> {
         let frames = set.frames();
         let pairs = frames.saturating_mul(frames.saturating_add(1)) / 2;
@@ -84,15 +85,14 @@ impl AllPairs {
         })
     }
 
-    /// The frames that are compared.
+    /// Returns the frames that are compared.
     #[must_use]
     pub fn set(&self) -> &Arc<FrameSet> {
         &self.set
     }
 
-    /// Compares about `pairs` more pairs of frames, and says how much is done. 100,000 take about a
-    /// millisecond. Before that the points of the frames are found, which counts as 250 pairs a
-    /// frame.
+    /// Compares about `pairs` more pairs of frames, and returns the progress. 100,000 take about a
+    /// millisecond. The points of the frames are computed first, which counts as 250 pairs a frame.
     ///
     /// # Errors
     /// [`GraphError::Registration`] when a position is not finite.
@@ -110,7 +110,7 @@ impl AllPairs {
         Ok(self.progress())
     }
 
-    /// The points of at least so many more frames of a clip.
+    /// Computes the points of at least `frames` more frames of a clip.
     fn find_points(&mut self, frames: usize) -> Result<(), GraphError> {
         let Some(source) = self.set.clip(self.clouds.len()) else {
             return Ok(());
@@ -134,7 +134,7 @@ impl AllPairs {
         Ok(())
     }
 
-    /// Whether a block is under way, or the next one could be begun.
+    /// Returns whether a block is in progress, after beginning the next one if possible.
     fn has_block(&mut self) -> Result<bool, GraphError> {
         let last = self.blocks.last().map(Block::pairs);
         if last.is_some_and(|(done, total)| done < total) {
@@ -156,15 +156,15 @@ impl AllPairs {
         Ok(true)
     }
 
-    /// All pairs at once.
+    /// Compares all remaining pairs.
     ///
     /// # Errors
-    /// As [`advance`](Self::advance).
+    /// The same as for [`advance`](Self::advance).
     pub fn finish(&mut self) -> Result<(), GraphError> {
         self.advance(usize::MAX).map(|_| ())
     }
 
-    /// How much is done, in pairs of frames.
+    /// Returns the progress, in pairs of frames.
     #[must_use]
     pub fn progress(&self) -> Progress {
         let frames = self.set.frames();
@@ -177,7 +177,8 @@ impl AllPairs {
         }
     }
 
-    /// The distances of all windows of `window` frames (0 counts as 1), in slices.
+    /// Returns the computation of the distances of all windows of `window` frames (0 counts as 1),
+    /// in slices.
     ///
     /// # Errors
     /// [`GraphError::Registration`] before all pairs are compared.
@@ -189,7 +190,7 @@ impl AllPairs {
         Ok(AllSweep { all: self, window: window.max(1), blocks: Vec::new(), now: None })
     }
 
-    /// [`Self::sweep`] in one call.
+    /// Computes [`Self::sweep`] in one call.
     ///
     /// # Errors
     /// [`GraphError::Registration`] before all pairs are compared.
@@ -197,8 +198,8 @@ impl AllPairs {
         self.sweep(window)?.finish()
     }
 
-    /// How the window of `window` frames from frame `b` lies best on that from frame `a`:
-    /// `a_world_from_b_world`. O(window).
+    /// Returns the alignment of the window of `window` frames from frame `b` with that from frame
+    /// `a`: `a_world_from_b_world`. O(window).
     ///
     /// # Errors
     /// [`GraphError::Registration`] before all pairs are compared, or when a window crosses the end
@@ -227,18 +228,18 @@ impl AllPairs {
     }
 }
 
-/// From where heights are summed: the middle of the body in the first frame.
+/// Returns the origin of heights: the middle of the body in the first frame.
 pub(super) fn level_m(set: &FrameSet) -> Result<f64, GraphError> {
     let first = set.clip(0).ok_or(GraphError::NoClips)?;
     Ok(PointClouds::level_m(first.clip(), set.weights())?)
 }
 
-/// Where the block of clips a ≤ b is kept.
+/// Returns the index of the block of clips a ≤ b.
 fn block_of(clips: usize, a: usize, b: usize) -> usize {
     (a * clips + b).saturating_sub(a * (a + 1) / 2)
 }
 
-/// The running sums of all pairs of clips, on the way.
+/// The running sums of all pairs of clips, in progress.
 #[derive(Clone, Debug)]
 pub struct AllSweep<'a> {
     all: &'a AllPairs,
@@ -253,7 +254,7 @@ enum Now<'a> {
     Pair(Sweep<'a>),
 }
 
-/// An [`AllSweep`] that lets go of the terms until it goes on.
+/// An [`AllSweep`] that does not borrow the terms until it is resumed.
 #[derive(Clone, Debug)]
 pub struct PausedAllSweep {
     window: usize,
@@ -268,7 +269,7 @@ enum PausedNow {
 }
 
 impl PausedAllSweep {
-    /// Goes on where it was left. `all` is what the sweep was made of.
+    /// Resumes the sweep. `all` is that from which it was made.
     #[must_use]
     pub fn resume(self, all: &AllPairs) -> AllSweep<'_> {
         let now = match (self.now, all.blocks.get(self.blocks.len())) {
@@ -283,13 +284,13 @@ impl PausedAllSweep {
         AllSweep { all, window: self.window, blocks: self.blocks, now }
     }
 
-    /// Frames of the windows.
+    /// Returns the number of frames of the windows.
     #[must_use]
     pub fn window(&self) -> usize {
         self.window
     }
 
-    /// How many pairs of clips are done, and of how many.
+    /// Returns the progress, in pairs of clips.
     #[must_use]
     pub fn progress(&self, all: &AllPairs) -> Progress {
         Progress { done: self.blocks.len(), total: all.blocks.len() }
@@ -297,7 +298,7 @@ impl PausedAllSweep {
 }
 
 impl AllSweep<'_> {
-    /// Lets go of the terms, so that the rest can be done later.
+    /// Stops borrowing the terms, so that the rest can be computed later.
     #[must_use]
     pub fn pause(self) -> PausedAllSweep {
         PausedAllSweep {
@@ -310,7 +311,8 @@ impl AllSweep<'_> {
         }
     }
 
-    /// Does up to `rows` more rows of a pair of clips, and says how many pairs of clips are done.
+    /// Computes up to `rows` more rows of a pair of clips, and returns the progress in pairs of
+    /// clips.
     ///
     /// # Errors
     /// [`GraphError::Registration`] when the terms are not complete.
@@ -341,7 +343,7 @@ impl AllSweep<'_> {
         Ok(Progress { done: self.blocks.len(), total })
     }
 
-    /// The rest, and the distances.
+    /// Computes the remaining rows and returns the distances.
     ///
     /// # Errors
     /// [`GraphError::Registration`] when the terms are not complete.
@@ -363,7 +365,7 @@ pub struct FrameDistances {
     blocks: Vec<BlockDistances>,
 }
 
-/// Of one pair of clips.
+/// The distances of one pair of clips.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum BlockDistances {
     Itself(SymmetricDistances),
@@ -371,7 +373,7 @@ pub(super) enum BlockDistances {
 }
 
 impl BlockDistances {
-    /// (rows, columns)
+    /// Returns (rows, columns).
     pub(super) fn size(&self) -> (usize, usize) {
         match self {
             Self::Itself(distances) => (distances.rows(), distances.rows()),
@@ -386,7 +388,7 @@ impl BlockDistances {
         }
     }
 
-    /// A row from its first column on that is held once: the column, and the distances.
+    /// Returns the stored part of a row: its first column, and the distances.
     pub(super) fn row(&self, row: usize) -> (usize, &[f32]) {
         match self {
             Self::Itself(distances) => (row, distances.row(row)),
@@ -395,7 +397,7 @@ impl BlockDistances {
     }
 }
 
-/// How far a histogram is counted.
+/// The position up to which a histogram is counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CountedTo {
     block: usize,
@@ -403,20 +405,20 @@ pub struct CountedTo {
 }
 
 impl FrameDistances {
-    /// The frames that are compared.
+    /// Returns the frames that are compared.
     #[must_use]
     pub fn set(&self) -> &Arc<FrameSet> {
         &self.set
     }
 
-    /// Frames of each window.
+    /// Returns the number of frames of each window.
     #[must_use]
     pub fn window(&self) -> usize {
         self.window
     }
 
-    /// The distance of the windows that start at two frames, centimetres; `None` where a window
-    /// crosses the end of its clip.
+    /// Returns the distance of the windows that start at two frames, centimetres; `None` where a
+    /// window crosses the end of its clip.
     #[must_use]
     pub fn cm(&self, a: Place, b: Place) -> Option<f64> {
         let (a, b) = (a.min(b), a.max(b));
@@ -424,7 +426,7 @@ impl FrameDistances {
         Some(self.set.rounded_cm(block.get(a.frame, b.frame)?))
     }
 
-    /// Of clips a ≤ b.
+    /// Returns the distances of clips a ≤ b.
     pub(super) fn block(&self, a: usize, b: usize) -> Option<&BlockDistances> {
         let clips = self.set.clips().len();
         if b >= clips {
@@ -433,9 +435,9 @@ impl FrameDistances {
         self.blocks.get(block_of(clips, a, b))
     }
 
-    /// A picture of a part of the matrix: `rows` and `columns` are frames of the set, every value
-    /// is the mean distance (centimetres) of a square of `factor` × `factor` of them, of which at
-    /// most 4 × 4 are looked at, row-major; NaN where no window starts.
+    /// Returns a picture of a part of the matrix: `rows` and `columns` are frames of the set, every
+    /// value is the mean distance (centimetres) of a square of `factor` × `factor` of them, of
+    /// which at most 4 × 4 are sampled, row-major; NaN where no window starts.
     #[must_use]
     pub fn picture(
         &self,
@@ -472,8 +474,8 @@ impl FrameDistances {
         picture
     }
 
-    /// How many pairs of windows lie in each of `bins` ranges of `bin_cm` centimetres; the last one
-    /// takes what is farther. Every pair counts once, a window with itself not.
+    /// Returns the number of pairs of windows in each of `bins` ranges of `bin_cm` centimetres; the
+    /// last range is open. Every pair counts once, a window with itself does not.
     #[must_use]
     pub fn histogram(&self, bin_cm: f64, bins: usize) -> Vec<u32> {
         let mut counts = vec![0_u32; bins.max(1)];
@@ -481,8 +483,8 @@ impl FrameDistances {
         counts
     }
 
-    /// [`Self::histogram`] of about `cells` more pairs of windows, at least one row, from where
-    /// `at` says on, added to what is counted already; `true` behind the last.
+    /// Adds about `cells` more pairs of windows, at least one row, from position `at` on, to the
+    /// counts of [`Self::histogram`]; returns `true` after the last.
     pub fn count(&self, at: &mut CountedTo, cells: usize, bin_cm: f64, counts: &mut [u32]) -> bool {
         let mut left = cells.max(1);
         while left > 0 && at.block < self.blocks.len() {

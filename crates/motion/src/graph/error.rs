@@ -1,13 +1,15 @@
+//! Errors of motion graphs.
+
 use super::GraphOptions;
 use crate::blend::BlendError;
 use crate::clip::ClipError;
 use crate::registration::RegistrationError;
 use segue_text::{Message, msg};
 
-/// Why there is no graph, and what would do.
+/// Error building a graph or a walk.
 #[derive(Clone, Debug, PartialEq, thiserror::Error, segue_text::ToMessage)]
 pub enum GraphError {
-    /// No clips.
+    /// There are no clips.
     #[error("a motion graph needs a clip: choose at least one")]
     NoClips,
     /// A clip cannot follow another.
@@ -16,22 +18,22 @@ pub enum GraphError {
     /// The clips cannot be compared.
     #[error(transparent)]
     Registration(#[from] RegistrationError),
-    /// What was stitched is no clip.
+    /// A stitched piece is not a valid clip.
     #[error(transparent)]
     Clip(#[from] ClipError),
-    /// A number outside its range.
+    /// A number out of range.
     #[error("{what} of {value} cannot be used: give a number from {least} to {most}")]
     Setting {
-        /// Which number.
+        /// Name of the number.
         what: &'static str,
         /// The number given.
         value: f64,
-        /// The least that can be used.
+        /// The least value.
         least: f64,
-        /// The most that can be used.
+        /// The greatest value.
         most: f64,
     },
-    /// The segment holds nothing but blends.
+    /// The segment is not longer than the blend window.
     #[error(
         "a blend window of {window} frames leaves nothing of a segment of {segment}: {or_lower}raise the segment to {longer}",
         or_lower = or_lower_window(*segment),
@@ -53,7 +55,7 @@ pub enum GraphError {
         /// Frames of the longest clip.
         longest: usize,
     },
-    /// No clip has room for a window, with a frame before and one behind it.
+    /// No clip is long enough for a window with a frame before and one after it.
     #[error(
         "a blend window of {window} frames does not fit into the longest clip ({longest} frames) with a frame to either side: {or_lower}add a longer clip",
         or_lower = or_lower_it(*longest)
@@ -64,7 +66,7 @@ pub enum GraphError {
         /// Frames of the longest clip.
         longest: usize,
     },
-    /// The distances are those of another window.
+    /// The distances have another window.
     #[error(
         "these are distances of windows of {found} frames, the graph asks for {expected}: sum them again"
     )]
@@ -74,7 +76,7 @@ pub enum GraphError {
         /// The graph's window.
         expected: usize,
     },
-    /// No transition is good enough.
+    /// No transition is below the threshold.
     #[error(
         "no two windows are closer than {threshold_cm} cm: raise the threshold to {enough_cm:.1} cm, the best transition lies at {nearest_cm:.2} cm",
         enough_cm = above(*nearest_cm)
@@ -82,10 +84,10 @@ pub enum GraphError {
     NoTransition {
         /// The threshold, centimetres.
         threshold_cm: f64,
-        /// The distance of the best transition there could be, centimetres.
+        /// The distance of the best possible transition, centimetres.
         nearest_cm: f64,
     },
-    /// No transition is good enough, and no sensible threshold would do.
+    /// No transition is below the greatest sensible threshold.
     #[error(
         "the closest two windows are {nearest_cm:.2} cm apart, which is no transition any more: {or_lower}add clips that move alike",
         or_lower = or_lower_blend_window(*window)
@@ -93,10 +95,10 @@ pub enum GraphError {
     TooFar {
         /// Frames of the blend window.
         window: usize,
-        /// The distance of the best transition there could be, centimetres.
+        /// The distance of the best possible transition, centimetres.
         nearest_cm: f64,
     },
-    /// There is one clip, and nowhere in it to go.
+    /// There is one clip, and every jump in it is too short.
     #[error(
         "with a blend window of {window} frames one can go {most_secs:.2} s away at most in the only clip that is long enough, less than the minimum jump of {min_jump_secs} s: lower the jump to {most_secs:.2} s, {lower_window}or add a clip",
         most_secs = floored(*farthest_secs),
@@ -105,14 +107,14 @@ pub enum GraphError {
     NowhereToGo {
         /// Frames of the blend window.
         window: usize,
-        /// A window with which one could go somewhere; none where there is none.
+        /// A window with which a jump is possible; `None` if there is none.
         lower_window: Option<usize>,
         /// The shortest jump, seconds.
         min_jump_secs: f64,
-        /// How far one can go, seconds.
+        /// The longest possible jump, seconds.
         farthest_secs: f64,
     },
-    /// There are places to go to, and none of them is better than its neighbours.
+    /// Transitions are possible, and none of them is a local minimum.
     #[error(
         "no distance of windows of {window} frames has a local minimum where one could go: cut the clips into segments, or add clips"
     )]
@@ -120,7 +122,7 @@ pub enum GraphError {
         /// Frames of the blend window.
         window: usize,
     },
-    /// The transitions lead to an end, each of them.
+    /// All transitions lead to an end.
     #[error(
         "every way through the graph of {transitions} transitions comes to an end: {or_raise}more clips may lead back",
         or_raise = or_raise_threshold(*threshold_cm)
@@ -133,7 +135,7 @@ pub enum GraphError {
     },
 }
 
-fn or_lower_window(segment: usize) -> Message {
+/// Rounds up to a tenth of a centimetre, the step of a threshold.
     if segment > 1 {
         msg!("lower the window to {frames} or ", frames = segment - 1)
     } else {
@@ -170,7 +172,7 @@ pub(super) fn above(nearest_cm: f64) -> f64 {
     (nearest_cm * 10.0 - 1e-6).ceil() / 10.0
 }
 
-/// Hundredths of a second, which a jump is set in.
+/// Rounds down to hundredths of a second, the step of a jump.
 fn floored(secs: f64) -> f64 {
     (secs * 100.0 + 1e-6).floor() / 100.0
 }

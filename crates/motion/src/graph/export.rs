@@ -1,12 +1,15 @@
+//! Export of graphs as JSON and for Graphviz.
+
 use super::{Choices, MotionGraph};
 use petgraph::dot::{Config, Dot};
 use petgraph::visit::EdgeRef;
 use serde_json::{Value, json};
 
 impl MotionGraph {
-    /// The graph as JSON: `clips` (name, frames), `fps`, `options`, `nodes` (clip, start, end,
-    /// component: 0 is the largest) and `edges` (from, to, probability; transitions also leave,
-    /// enter, window, `distance_cm`, and their alignment: yaw in radians, x and z in metres).
+    /// Returns the graph as JSON: `clips` (name, frames), `fps`, `options`, `nodes` (clip, start,
+    /// end, component: 0 is the largest) and `edges` (from, to, probability; transitions also
+    /// leave, enter, window, `distance_cm`, and their alignment: yaw in radians, x and z in
+    /// metres).
     #[must_use]
     pub fn to_json(&self, choices: &Choices) -> Value {
         let clips = self.set.clips().iter().map(|source| {
@@ -47,8 +50,8 @@ impl MotionGraph {
         })
     }
 
-    /// The graph in Graphviz' language: nodes by clip and frames, transitions dashed, both as wide
-    /// as they are probable.
+    /// Returns the graph in the DOT language of Graphviz: nodes by clip and frames, transitions
+    /// dashed, widths by probability.
     #[must_use]
     pub fn to_dot(&self, choices: &Choices) -> String {
         let mut probability = vec![0.0; self.graph.edge_count()];

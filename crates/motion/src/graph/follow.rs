@@ -1,3 +1,5 @@
+//! The search for a walk along a path on the ground.
+
 use super::{GraphError, Jump, MotionGraph, StitchOptions, Stitcher, Way};
 use crate::math::Planar;
 use glam::DVec2;
@@ -7,29 +9,29 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// How far a search looks ahead before it commits itself, seconds.
+/// How far the search looks ahead before it commits itself, seconds.
 const HORIZON_SECS: f64 = 4.0;
-/// How much of what it found it then keeps, seconds.
-const KEPT_SECS: f64 = 1.0;
-/// What a second costs on the path itself, m²·s⁻¹: otherwise to stand still on it would be best.
-const PATIENCE: f64 = 0.05;
-/// Ways over the ground are read every so many frames.
-const READ_EVERY: usize = 4;
+/// The part of its result that it then keeps, seconds.
+const COMMITTED_SECS: f64 = 1.0;
+/// The cost of a second on the path itself, m²·s⁻¹: without it standing still would be best.
+const STANDSTILL_COST: f64 = 0.05;
+/// The number of frames between samples of the trajectory.
+const FRAMES_PER_SAMPLE: usize = 4;
 
-/// A line on the ground, to be walked along.
+/// A polyline on the ground along which a walk is searched.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroundPath {
     points: Vec<DVec2>,
-    /// Metres from the start to each point.
+    /// Distance from the start to each point, metres.
     lengths: Vec<f64>,
 }
 
 impl GroundPath {
-    /// The line through these points, (x, z) in metres. Points that are not finite, or repeat the
-    /// one before, are left out.
+    /// Returns the polyline through these points, (x, z) in metres. Points that are not finite, or
+    /// repeat the one before, are left out.
     ///
     /// # Errors
-    /// [`GraphError::Setting`] when less than 10 cm of line is left.
+    /// [`GraphError::Setting`] when it is shorter than 10 cm.
     pub fn new(points: &[DVec2]) -> Result<Self, GraphError> {
         let mut path = Self { points: Vec::new(), lengths: Vec::new() };
         for &point in points.iter().filter(|point| point.is_finite()) {
@@ -50,13 +52,13 @@ impl GroundPath {
         Ok(path)
     }
 
-    /// Metres from end to end.
+    /// Returns the length, metres.
     #[must_use]
     pub fn length(&self) -> f64 {
         self.lengths.last().copied().unwrap_or(0.0)
     }
 
-    /// The point so many metres from the start; the ends beyond them.
+    /// Returns the point at this distance from the start, clamped to the ends.
     #[must_use]
     pub fn at(&self, metres: f64) -> DVec2 {
         let next = self.lengths.partition_point(|&length| length <= metres);
@@ -74,39 +76,39 @@ impl GroundPath {
     }
 }
 
-/// A way through a graph along a path.
+/// A walk through a graph along a path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Followed {
-    /// Its edges, from the start node on: for [`Walker::take`](super::Walker::take).
+    /// Its edges, from the start node on, for [`Walker::take`](super::Walker::take).
     pub edges: Vec<EdgeIndex>,
-    /// Where the first clip lies: `world_from_clip`.
+    /// The transform of the first clip: `world_from_clip`.
     pub world_from_first: Planar,
-    /// How far off the path it is, metres: the root of the mean square.
+    /// Root mean square distance from the path, metres.
     pub rms_m: f64,
-    /// How far it comes along the path, metres.
+    /// Distance covered along the path, metres.
     pub along_m: f64,
-    /// The end of the path is reached.
+    /// Whether the end of the path is reached.
     pub arrives: bool,
-    /// Nodes that were looked at.
+    /// Number of nodes visited.
     pub looked_at: usize,
 }
 
-/// A way through the graph whose trace on the ground stays close to a path (Kovar, Gleicher, Pighin
-/// 2002, section 5): branch and bound over what lies a few seconds ahead, of which the first is
-/// kept, and so on.
+/// Finds a walk through the graph whose trajectory stays close to a path (Kovar, Gleicher, Pighin
+/// 2002, section 5): branch and bound over the next few seconds, of which the first is kept, and so
+/// on.
 ///
-/// The cost is the squared distance, summed over time, of the character from the point of the path
-/// that is as far along it as the character has walked; a little is added per second. `budget` is
-/// the number of nodes that are looked at in all. When it is used up, the best so far is given. The
-/// character starts at node `start`, at the path's first point, and faces along it.
+/// The cost is the squared distance, integrated over time, between the character and the point of
+/// the path at the distance that the character has walked, plus a little per second. `budget` is
+/// the number of nodes that are visited in all; when it is used up, the best walk so far is
+/// returned. The character starts at node `start`, at the path's first point, and faces along it.
 ///
-/// *Why a number and not a time.* A number gives the same way on every machine, so that a link that
-/// holds a path shows everybody the same walk. Time bounds the waiting alone: whoever cannot wait
-/// for the end shows [`PathSearch::so_far`], and goes on.
+/// The limit is a number of nodes and not a time, so that every machine finds the same walk, and a
+/// link that holds a path shows the same everywhere. For a preview before the end use
+/// [`PathSearch::so_far`].
 ///
-/// Clips are laid on each other as a [`Stitcher`] with these options does, so that what it makes of
-/// the way lies where the way was planned. Transitions that overlap are taken to begin from the
-/// clip that is left; there it may be off by centimetres.
+/// Clips are aligned as by a [`Stitcher`] with these options, so that its walk has the planned
+/// trajectory. Overlapping transitions are planned from the clip that is left; there the trajectory
+/// may be off by centimetres.
 #[must_use]
 pub fn follow(
     graph: &MotionGraph,
@@ -120,11 +122,11 @@ pub fn follow(
     search.so_far(graph, path)
 }
 
-/// [`follow`] in slices of a number of nodes. However it is cut, it finds the same.
+/// The search of [`follow`] in slices of a number of nodes. The slices do not change the result.
 #[derive(Clone, Debug)]
 pub struct PathSearch {
     stitcher: Stitcher,
-    /// Where the transitions that were looked at lay the clip that they enter: by their numbers,
+    /// The transforms of entered clips by visited transitions, by their indices:
     /// `left_from_entered`.
     placings: RefCell<BTreeMap<usize, Planar>>,
     world_from_first: Planar,
@@ -132,13 +134,13 @@ pub struct PathSearch {
     edges: Vec<EdgeIndex>,
     looked_at: usize,
     budget: usize,
-    /// The search of what lies ahead of `here`.
+    /// The search ahead of `here`.
     ahead: Option<Ahead>,
     is_over: bool,
 }
 
 impl PathSearch {
-    /// Stands at the start; the arguments are those of [`follow`].
+    /// Begins the search at the start; the arguments are those of [`follow`].
     #[must_use]
     pub fn new(
         graph: &MotionGraph,
@@ -148,7 +150,7 @@ impl PathSearch {
         options: &StitchOptions,
     ) -> Self {
         let world_from_first = first_place(graph, start, path);
-        // A mistake is made in the walk, not in the plan.
+        // A mistake belongs to the walk, not to the plan.
         let options = StitchOptions { mistake: None, ..*options };
         Self {
             stitcher: Stitcher::new(Arc::clone(graph.set()), &options),
@@ -171,8 +173,8 @@ impl PathSearch {
         }
     }
 
-    /// Looks at about `nodes` more nodes; `true` when the path, the ways or the budget are at an
-    /// end. Every call is given the same graph and path.
+    /// Visits about `nodes` more nodes; returns `true` when the path is complete, or no walk or
+    /// budget is left. Every call must be given the same graph and path.
     pub fn advance(&mut self, graph: &MotionGraph, path: &GroundPath, nodes: usize) -> bool {
         let ground = Ground { graph, path, stitcher: &self.stitcher, placings: &self.placings };
         let until = self.looked_at.saturating_add(nodes.max(1));
@@ -185,7 +187,7 @@ impl PathSearch {
                 }
                 none => {
                     // Enough for every second of the path at a slow walk.
-                    let stages = (path.length() / KEPT_SECS / 0.7).ceil().max(1.0) as usize;
+                    let stages = (path.length() / COMMITTED_SECS / 0.7).ceil().max(1.0) as usize;
                     none.insert(Ahead::new(Limits {
                         stop_at: (self.looked_at + (self.budget / stages).max(64)).min(self.budget),
                         until: self.here.frames as f64 + HORIZON_SECS * graph.set().fps(),
@@ -193,9 +195,9 @@ impl PathSearch {
                 }
             };
             if ahead.advance(&ground, &self.here, &mut self.looked_at, until) {
-                // The first second of the best way ahead is gone.
+                // The first second of the best walk ahead is kept.
                 let best = self.ahead.take().and_then(|ahead| ahead.best);
-                let kept = self.here.frames as f64 + KEPT_SECS * graph.set().fps();
+                let kept = self.here.frames as f64 + COMMITTED_SECS * graph.set().fps();
                 let before = self.edges.len();
                 for edge in best.map(|(_, way)| way).unwrap_or_default() {
                     if self.edges.len() > before && self.here.frames as f64 >= kept {
@@ -210,13 +212,13 @@ impl PathSearch {
         self.is_over
     }
 
-    /// How much of the path is walked along, 0 to 1.
+    /// Returns the progress along the path, 0 to 1.
     #[must_use]
     pub fn progress(&self, path: &GroundPath) -> f64 {
         (self.here.along / path.length()).min(1.0)
     }
 
-    /// The best so far: what is kept, and the best way ahead.
+    /// Returns the best walk so far: the kept part, and the best walk ahead.
     #[must_use]
     pub fn so_far(&self, graph: &MotionGraph, path: &GroundPath) -> Followed {
         let ground = Ground { graph, path, stitcher: &self.stitcher, placings: &self.placings };
@@ -246,39 +248,39 @@ fn first_place(graph: &MotionGraph, start: NodeIndex, path: &GroundPath) -> Plan
     frame.map_or(world, |frame| world.after(&frame.inverse()))
 }
 
-/// At the start of a node.
+/// The state at the start of a node.
 #[derive(Clone, Copy, Debug)]
 struct State {
     node: NodeIndex,
     /// `world_from_clip` of the node's clip.
     world: Planar,
-    /// Where the character was read last.
+    /// The last sampled position of the character.
     last: Option<DVec2>,
-    /// Metres walked.
+    /// Distance walked, metres.
     along: f64,
-    /// In 1e-6 m² · frames: whole numbers, which compare alike everywhere.
+    /// In 1e-6 m² · frames: integers, which compare alike on every machine.
     cost: u64,
     square: f64,
     frames: usize,
 }
 
-/// When a search of what lies ahead ends.
+/// The limits of a search ahead.
 #[derive(Clone, Copy, Debug)]
 struct Limits {
-    /// So many nodes are looked at in all.
+    /// The number of nodes in all after which it stops.
     stop_at: usize,
-    /// The frame up to which is searched.
+    /// The last frame that is searched.
     until: f64,
 }
 
-/// Branch and bound over the ways of a few seconds, depth first.
+/// Branch and bound over the walks of a few seconds, depth first.
 #[derive(Clone, Debug)]
 struct Ahead {
     limits: Limits,
     is_begun: bool,
-    /// The edges that lead to the deepest level.
+    /// The edges to the deepest level.
     trail: Vec<EdgeIndex>,
-    /// On each level the ways that were not gone yet.
+    /// The edges on each level that are not visited yet.
     levels: Vec<std::vec::IntoIter<(EdgeIndex, State)>>,
     best: Option<(u64, Vec<EdgeIndex>)>,
 }
@@ -288,7 +290,8 @@ impl Ahead {
         Self { limits, is_begun: false, trail: Vec::new(), levels: Vec::new(), best: None }
     }
 
-    /// Goes on until so many nodes are looked at; `true` when all ways are gone, or enough of them.
+    /// Continues until `until` nodes are visited; returns `true` when all walks are searched, or
+    /// enough of them.
     fn advance(
         &mut self,
         ground: &Ground<'_>,
@@ -300,7 +303,7 @@ impl Ahead {
             self.descend(ground, here, looked_at);
         }
         while let Some(level) = self.levels.last_mut() {
-            // The first way down is always gone to its end.
+            // The first walk is always searched to its end.
             if self.best.is_some() && *looked_at >= self.limits.stop_at {
                 return true;
             }
@@ -332,8 +335,8 @@ impl Ahead {
             *looked_at += ways.len();
         }
         if ways.is_empty() {
-            // At the horizon, at the end of the path, or in a dead end: there what lies ahead
-            // cannot be walked.
+            // At the horizon, at the end of the path, or in a dead end, beyond which no walk
+            // continues.
             let cost = if goes_on { u64::MAX - 1 } else { bound };
             if is_better(bound) && is_better(cost) {
                 self.best = Some((cost, self.trail.clone()));
@@ -341,14 +344,14 @@ impl Ahead {
             self.trail.pop();
             return;
         }
-        // The most promising first: a good bound early.
+        // The most promising first, for a good bound early.
         ways.sort_by_key(|(bound, edge, _)| (*bound, *edge));
         let ways: Vec<_> = ways.into_iter().map(|(_, edge, next)| (edge, next)).collect();
         self.levels.push(ways.into_iter());
     }
 }
 
-/// Where one walks.
+/// The data of a search.
 struct Ground<'a> {
     graph: &'a MotionGraph,
     path: &'a GroundPath,
@@ -357,13 +360,14 @@ struct Ground<'a> {
 }
 
 impl Ground<'_> {
-    /// What is still to be paid at least: the rest of the path on the path itself, at a run.
+    /// Returns a lower bound of the remaining cost: the rest of the path on the path itself, at a
+    /// run.
     fn to_come(&self, state: &State) -> u64 {
         let left = (self.path.length() - state.along).max(0.0);
-        (left / 4.0 * PATIENCE * self.graph.set().fps() * 1e6) as u64
+        (left / 4.0 * STANDSTILL_COST * self.graph.set().fps() * 1e6) as u64
     }
 
-    /// The state at the other end of an edge.
+    /// Returns the state at the other end of an edge.
     fn behind(&self, here: &State, edge: EdgeIndex) -> State {
         let mut next = *here;
         let graph = self.graph.graph();
@@ -386,8 +390,8 @@ impl Ground<'_> {
         next
     }
 
-    /// Where a transition lays the clip that it enters; where that cannot be made, where it is
-    /// aligned.
+    /// Returns the transform of the clip that a transition enters; where the transition cannot be
+    /// made, its alignment.
     fn placing(&self, index: usize, jump: &Jump) -> Planar {
         let place = || self.stitcher.placing(jump).unwrap_or(jump.alignment);
         *self.placings.borrow_mut().entry(index).or_insert_with(place)
@@ -399,15 +403,15 @@ impl Ground<'_> {
         };
         let mut frame = frames.start;
         while frame < frames.end {
-            let count = READ_EVERY.min(frames.end - frame);
+            let count = FRAMES_PER_SAMPLE.min(frames.end - frame);
             if let Some(at) = source.frames().get(frame) {
                 let at = state.world.apply_ground(at.shift);
                 state.along += state.last.map_or(0.0, |last| last.distance(at));
                 let square = at.distance_squared(self.path.at(state.along));
                 state.square += square * count as f64;
-                state.cost = state
-                    .cost
-                    .saturating_add(((square + PATIENCE) * 1e6).round() as u64 * count as u64);
+                state.cost = state.cost.saturating_add(
+                    ((square + STANDSTILL_COST) * 1e6).round() as u64 * count as u64,
+                );
                 state.last = Some(at);
             }
             state.frames += count;

@@ -1,3 +1,5 @@
+//! The frames of several clips.
+
 use super::GraphError;
 use crate::blend::{Source, check};
 use crate::clip::{JoltScan, jolts};
@@ -13,27 +15,27 @@ pub struct Place {
     pub frame: usize,
 }
 
-/// Several clips of one skeleton at one frame rate: all their frames, one behind the other. Windows
-/// do not cross from one clip into the next.
+/// Several clips of one skeleton at one frame rate, one after the other. Windows do not cross from
+/// one clip into the next.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameSet {
     clips: Vec<Arc<Source>>,
-    /// The number of each clip's first frame; behind them the number of frames.
+    /// The number of each clip's first frame; then the number of all frames.
     starts: Vec<usize>,
     weights: Vec<f64>,
     body_height: f64,
-    /// Per clip and frame, how much the joints jolt; found when it is asked for, if not ahead
-    /// ([`JoltSearch`]).
+    /// Per clip and frame, the jolts of the joints; computed on demand, or ahead by a
+    /// [`JoltSearch`].
     jolts: Vec<OnceLock<Vec<f32>>>,
 }
 
 impl FrameSet {
-    /// The clips in this order; `body_height` (metres, [`crate::skeleton::Roles::body_height`]) is
-    /// what distances are scaled by.
+    /// Returns the set of clips in this order; distances are scaled by `body_height` (metres,
+    /// [`crate::skeleton::Roles::body_height`]).
     ///
     /// # Errors
-    /// [`GraphError::NoClips`], or [`GraphError::Blend`] when a clip moves another skeleton, runs
-    /// at another rate or has no frames; [`GraphError::Setting`] for a height that is none.
+    /// [`GraphError::NoClips`], or [`GraphError::Blend`] when a clip has another skeleton or frame
+    /// rate, or no frames; [`GraphError::Setting`] for a height out of range.
     pub fn new(clips: Vec<Arc<Source>>, body_height: f64) -> Result<Self, GraphError> {
         let first = clips.first().ok_or(GraphError::NoClips)?;
         for clip in &clips {
@@ -55,8 +57,7 @@ impl FrameSet {
         Ok(Self { jolts: vec![OnceLock::new(); clips.len()], clips, starts, weights, body_height })
     }
 
-    /// How much the joints of a clip jolt in each of its frames ([`jolts`]); empty where there is
-    /// no such clip.
+    /// Returns the jolts of a clip's frames ([`jolts`]); empty for an unknown clip.
     pub(super) fn jolts(&self, clip: usize) -> &[f32] {
         match (self.jolts.get(clip), self.clips.get(clip)) {
             (Some(found), Some(source)) => found.get_or_init(|| jolts(source.clip())),
@@ -64,102 +65,101 @@ impl FrameSet {
         }
     }
 
-    /// The clips.
+    /// Returns the clips.
     #[must_use]
     pub fn clips(&self) -> &[Arc<Source>] {
         &self.clips
     }
 
-    /// One clip.
+    /// Returns one clip.
     #[must_use]
     pub fn clip(&self, clip: usize) -> Option<&Arc<Source>> {
         self.clips.get(clip)
     }
 
-    /// Frames of one clip; 0 where there is none.
+    /// Returns the number of frames of one clip; 0 for an unknown one.
     #[must_use]
     pub fn frames_of(&self, clip: usize) -> usize {
         self.clips.get(clip).map_or(0, |source| source.clip().frames())
     }
 
-    /// Frames of all clips together.
+    /// Returns the number of frames of all clips together.
     #[must_use]
     pub fn frames(&self) -> usize {
         self.starts.last().copied().unwrap_or(0)
     }
 
-    /// Frames of the longest clip.
+    /// Returns the number of frames of the longest clip.
     #[must_use]
     pub fn longest(&self) -> usize {
         self.clips.iter().map(|source| source.clip().frames()).max().unwrap_or(0)
     }
 
-    /// Frames per second, of all clips.
+    /// Returns the frame rate of all clips, frames per second.
     #[must_use]
     pub fn fps(&self) -> f64 {
         self.clips.first().map_or(1.0, |source| source.clip().fps())
     }
 
-    /// One weight per joint, by which points are weighed.
+    /// Returns the weights of the joints.
     #[must_use]
     pub fn weights(&self) -> &[f64] {
         &self.weights
     }
 
-    /// The clip and its frame of a frame of the set.
+    /// Returns the clip of a frame of the set, and its frame there.
     #[must_use]
     pub fn place(&self, frame: usize) -> Option<Place> {
-        // Clips have frames, so that no two start at one number.
+        // Clips are not empty, so that no two start at the same number.
         let clip = self.starts.partition_point(|&start| start <= frame).checked_sub(1)?;
         (clip < self.clips.len()).then(|| Place { clip, frame: frame - self.starts[clip] })
     }
 
-    /// The number in the set of a clip's frame; `None` outside the clip.
+    /// Returns the number in the set of a clip's frame; `None` outside the clip.
     #[must_use]
     pub fn number(&self, place: Place) -> Option<usize> {
         (place.frame < self.frames_of(place.clip)).then(|| self.starts[place.clip] + place.frame)
     }
 
-    /// The number of a cut before a frame, or behind the last one of its clip, counted over all
-    /// clips; less than [`Self::cuts`].
+    /// Returns the number of the cut before a frame, or after the last one of its clip, counted
+    /// over all clips; less than [`Self::cuts`].
     pub(super) fn cut(&self, place: Place) -> Option<usize> {
         (place.clip < self.clips.len() && place.frame <= self.frames_of(place.clip))
             .then(|| self.starts[place.clip] + place.clip + place.frame)
     }
 
-    /// How many such cuts there are.
+    /// Returns the number of cuts.
     pub(super) fn cuts(&self) -> usize {
         self.frames() + self.clips.len()
     }
 
-    /// A distance in metres of the clips' own body, as centimetres on the reference body, rounded
-    /// to 0.001 cm: so it is told, ordered, and held against a threshold. What lies within a last
-    /// digit of the middle between two such numbers may still be rounded either way, where the
+    /// Converts a distance in metres of the clips' own body to centimetres on the reference body,
+    /// rounded to 0.001 cm, as it is shown, ordered, and compared with a threshold. A value within
+    /// a last digit of the middle between two roundings may still be rounded either way, where the
     /// clips themselves differ by a last digit.
     #[must_use]
     pub fn rounded_cm(&self, rms_m: f32) -> f64 {
         (f64::from(rms_m) * self.cm_per_m() * 1_000.0).round() / 1_000.0
     }
 
-    /// Centimetres on the reference body per metre of the clips' own.
+    /// Returns centimetres on the reference body per metre of the clips' own.
     pub(super) fn cm_per_m(&self) -> f64 {
         DistanceMatrix::cm_scale(self.body_height)
     }
 }
 
-/// Finds how much the joints of a set's clips jolt, which a search for minima asks for, in slices.
-/// Without it a search finds it itself, a whole clip at a time: 0.1 s for 30,000 frames of 31
-/// joints.
+/// The computation of a set's jolts, which a search for minima needs, in slices. Otherwise the
+/// search computes them, a whole clip at a time: 0.1 s for 30,000 frames of 31 joints.
 #[derive(Clone, Debug, Default)]
 pub struct JoltSearch {
-    /// The clip that comes next.
+    /// The next clip.
     clip: usize,
     begun: Option<JoltScan>,
 }
 
 impl JoltSearch {
-    /// Looks at about so many more frames of single joints, at least at one joint of one clip;
-    /// `true` when nothing is left to do. Every call is given the same set.
+    /// Processes about `joint_frames` more frames of single joints, at least one joint of one clip;
+    /// returns `true` when nothing is left to do. Every call must be given the same set.
     pub fn advance(&mut self, set: &FrameSet, joint_frames: usize) -> bool {
         let (Some(source), Some(found)) = (set.clips.get(self.clip), set.jolts.get(self.clip))
         else {
@@ -169,7 +169,7 @@ impl JoltSearch {
         let joints = (joint_frames / clip.frames().max(1)).max(1);
         let mut begun = self.begun.take().unwrap_or_else(|| JoltScan::new(clip));
         if begun.advance(clip, joints) {
-            // Who was asked meanwhile has found the same.
+            // A search may have computed the same values in the meantime.
             found.get_or_init(|| begun.finish());
             self.clip += 1;
         } else {

@@ -1,3 +1,5 @@
+//! Measurements of walks.
+
 use super::stitch::PieceSeam;
 use super::{FrameSet, MotionGraph, Place, WalkPiece};
 use crate::clip::{Clip, Contacts, stillest_step, turn_change};

@@ -1,3 +1,5 @@
+//! Coarse pictures of all distances.
+
 use super::parts::{Part, Parts};
 use super::{FrameSet, GraphError, Place};
 use crate::blend::align_onto;

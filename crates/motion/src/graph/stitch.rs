@@ -1,3 +1,5 @@
+//! The motion of walks, stitched from clips.
+
 use super::{FrameSet, GraphError, Jump, MotionGraph, Place, Stay};
 use crate::blend::{AlignBy, Assembly, RootBlend, Source, WeightLaw, alignment_of};
 use crate::clip::Clip;

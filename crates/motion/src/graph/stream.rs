@@ -1,3 +1,5 @@
+//! Candidates of clips that are too long for storing all pairs.
+
 use super::candidates::{Picker, is_minimum};
 use super::parts::Parts;
 use super::{
@@ -6,12 +8,12 @@ use super::{
 use crate::registration::Progress;
 use std::sync::Arc;
 
-/// [`Candidates`] of clips that are too long for all pairs to be held: tile after tile of 256 × 256
-/// windows is compared, searched, and dropped. A [`DistanceOverview`] is left of them.
+/// The search for [`Candidates`] in clips that are too long for storing all pairs: tile after tile
+/// of 256 × 256 windows is compared, searched, and dropped. A [`DistanceOverview`] remains.
 ///
-/// 30,000 frames of 31 joints are 7,000 tiles of 1.5 ms each, and 1 MB at a time beside the points
-/// (12 bytes per joint and frame), the overview (8 MB) and what is found. A new window or threshold
-/// means to begin again.
+/// 30,000 frames of 31 joints are 7,000 tiles of 1.5 ms each. They take 1 MB at a time in addition
+/// to the points (12 bytes per joint and frame), the overview (8 MB) and the candidates. A new
+/// window or threshold needs a new search.
 #[derive(Clone, Debug)]
 pub struct CandidateStream {
     options: GraphOptions,
@@ -22,7 +24,7 @@ pub struct CandidateStream {
     total: usize,
 }
 
-/// First the parts are made, then the tiles of them.
+/// The two stages: first the parts are made, then their tiles.
 #[derive(Clone, Debug)]
 enum Work {
     Parts(Arc<Parts>),
@@ -62,8 +64,8 @@ impl CandidateStream {
         })
     }
 
-    /// Does up to `steps` more steps, and says how many are done: each prepares one of the parts
-    /// that the clips are cut into, or compares two of them. A step takes about 1.5 ms.
+    /// Processes up to `steps` more steps, and returns the progress: each step prepares one part,
+    /// or compares two. A step takes about 1.5 ms.
     ///
     /// # Errors
     /// [`GraphError::Registration`] when a position is not finite.
@@ -75,16 +77,16 @@ impl CandidateStream {
         Ok(self.progress())
     }
 
-    /// How many steps are done.
+    /// Returns the progress, in steps.
     #[must_use]
     pub fn progress(&self) -> Progress {
         Progress { done: self.done, total: self.total }
     }
 
-    /// The rest, what is found, and the distances from afar.
+    /// Processes the remaining steps and returns candidates and overview.
     ///
     /// # Errors
-    /// As [`advance`](Self::advance).
+    /// The same as for [`advance`](Self::advance).
     pub fn finish(mut self) -> Result<(Candidates, DistanceOverview), GraphError> {
         self.advance(usize::MAX)?;
         let overview = match self.work {

@@ -1,3 +1,5 @@
+//! Tests of motion graphs.
+
 use super::*;
 use crate::blend::{Source, align_onto};
 use crate::clip::fixtures::{points_clip, points_skeleton};

@@ -1,3 +1,5 @@
+//! Walks through a graph.
+
 use super::{Choices, GraphError, MotionGraph, Place};
 use petgraph::algo::astar;
 use petgraph::graph::{EdgeIndex, NodeIndex};
@@ -7,12 +9,12 @@ use rand_pcg::rand_core::Rng;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// The stream of the generator: any odd number would do, this one is what its author gives.
+/// The stream of the generator: any odd number is valid, this one is its author's.
 const STREAM: u64 = 0x0a02_bdbf_7bb3_c0a7;
-/// Shares are counted so much finer where they are discounted.
+/// The number of bits by which shares are refined when they are discounted.
 const DISCOUNT_BITS: u32 = 16;
 
-/// One clip from where it is entered to where it is left.
+/// A part of a walk in one clip, from the frame where it is entered to the frame where it is left.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Stay {
     /// The clip's index.
@@ -25,19 +27,19 @@ pub struct Stay {
     pub jump: Option<usize>,
 }
 
-/// Goes through a graph, by chance or to where it is told. The same graph, choices and seed give
-/// the same way on every machine.
+/// A walk through a graph, random or to a given target. The same graph, choices and seed give the
+/// same walk on every machine.
 #[derive(Clone, Debug)]
 pub struct Walker {
     graph: Arc<MotionGraph>,
     choices: Arc<Choices>,
     rng: Pcg32,
     at: NodeIndex,
-    /// The clip's frame at which the present stay began, and the transition that led there.
+    /// The clip's frame at which the current stay began, and the transition that led there.
     since: (usize, Option<usize>),
     ended: bool,
     visits: Vec<u32>,
-    /// What a way into a node is worth after every visit of it.
+    /// The factor on the probability of the edges into a node for every visit of it.
     discount: f64,
     ahead: VecDeque<EdgeIndex>,
 }
@@ -69,10 +71,10 @@ impl Walker {
         Some(self)
     }
 
-    /// Every visit of a node makes the ways into it less probable: by this factor, 0 to 1, for
-    /// each. 1 changes nothing, and is what a walk starts with; 0 goes where one has been least.
-    /// Visits count beyond those of the least visited of the ways out, so that a long walk is as
-    /// curious as a short one.
+    /// Sets the factor, 0 to 1, by which every visit of a node reduces the probability of the edges
+    /// into it. 1, the default, changes nothing; with 0 the least visited nodes are chosen. Visits
+    /// count relative to those of the least visited of the alternatives, so that the effect does
+    /// not depend on the length of a walk.
     ///
     /// # Errors
     /// [`GraphError::Setting`] outside 0 to 1.
@@ -89,20 +91,20 @@ impl Walker {
         Ok(self)
     }
 
-    /// The node that plays now.
+    /// Returns the current node.
     #[must_use]
     pub fn node(&self) -> NodeIndex {
         self.at
     }
 
-    /// How often each node was visited.
+    /// Returns the number of visits of each node.
     #[must_use]
     pub fn visits(&self) -> &[u32] {
         &self.visits
     }
 
-    /// From here the shortest way (in frames) to a clip, then by chance again. False, and nothing
-    /// changes, where there is no way.
+    /// Takes the shortest way (in frames) to a clip from here, then continues randomly. Returns
+    /// `false`, and changes nothing, where there is no way.
     pub fn go_to_clip(&mut self, clip: usize) -> bool {
         let graph = &self.graph.graph;
         let is_there =
@@ -122,18 +124,18 @@ impl Walker {
         true
     }
 
-    /// Takes these edges next, one behind the other; the first leaves the present node.
+    /// Takes these edges next, one after the other; the first leaves the current node.
     pub fn take(&mut self, edges: impl IntoIterator<Item = EdgeIndex>) {
         self.ahead = edges.into_iter().collect();
     }
 
-    /// Whether it is on a way that it was told to go.
+    /// Returns whether it is on a given way.
     #[must_use]
     pub fn has_way(&self) -> bool {
         !self.ahead.is_empty()
     }
 
-    /// The next edge; `None` in a dead end.
+    /// Returns the next edge; `None` in a dead end.
     pub fn next_edge(&mut self) -> Option<EdgeIndex> {
         let edge = self.decided()?;
         self.ahead.pop_front();
@@ -142,7 +144,7 @@ impl Walker {
             *visits = visits.saturating_add(1);
         }
         self.at = to;
-        // Whoever goes edge by edge and then asks for a stay gets the one that he is in.
+        // A walker that was moved edge by edge returns the current stay when it is asked for one.
         if let Some(super::Way::Jump(index)) = self.graph.graph.edge_weight(edge) {
             let enter = self.graph.jumps.get(*index)?.enter;
             self.since = (enter.frame, Some(*index));
@@ -150,8 +152,7 @@ impl Walker {
         Some(edge)
     }
 
-    /// The edge that comes next, in front of those ahead: chance is asked once, and what it said
-    /// holds.
+    /// Returns the next edge, in front of those ahead: it is drawn once and then kept.
     fn decided(&mut self) -> Option<EdgeIndex> {
         let leads_from_here = |edge: &EdgeIndex| {
             self.graph.graph.edge_endpoints(*edge).is_some_and(|(from, _)| from == self.at)
@@ -165,10 +166,9 @@ impl Walker {
         Some(edge)
     }
 
-    /// Goes on in its clip to the first node that begins at `frame` of the clip or behind it:
-    /// whatever is decided there, what plays before that frame stays. It stops where chance has
-    /// chosen a transition; that one leaves the clip behind `frame` if the stay does that
-    /// [`Self::next_stay`] would give now.
+    /// Continues in its clip to the first node that begins at or after `frame` of the clip, so that
+    /// the frames before it are decided. It stops at a randomly chosen transition, which leaves the
+    /// clip after `frame` if the stay that [`Self::next_stay`] would return does.
     pub fn go_on_to(&mut self, frame: usize) {
         while self.graph.graph.node_weight(self.at).is_some_and(|stretch| stretch.start < frame) {
             let way = self.decided().and_then(|edge| self.graph.graph.edge_weight(edge));
@@ -178,15 +178,15 @@ impl Walker {
         }
     }
 
-    /// Up to the next transition; the last stay, before a dead end, goes to where its node ends,
-    /// and `None` comes behind it.
+    /// Returns the stay up to the next transition; the last stay, before a dead end, ends with its
+    /// node, and then `None` is returned.
     pub fn next_stay(&mut self) -> Option<Stay> {
         if self.ended {
             return None;
         }
         loop {
             let stretch = *self.graph.graph.node_weight(self.at)?;
-            // Before the edge is gone: behind a transition begins the next stay.
+            // Before the edge is taken: a transition begins the next stay.
             let (from, jump) = self.since;
             let stay = |to: usize| Stay { clip: stretch.clip, from, to, jump };
             let Some(edge) = self.next_edge() else {
@@ -199,7 +199,7 @@ impl Walker {
         }
     }
 
-    /// Shares of 2³² as whole numbers, and one draw of 64 bits.
+    /// Draws an edge: shares of 2³² as integers, and one draw of 64 bits.
     fn chosen(&mut self) -> Option<EdgeIndex> {
         let ways = self.choices.ways(self.at);
         let visits = |edge: EdgeIndex| {
@@ -221,9 +221,9 @@ impl Walker {
     }
 }
 
-/// What ways are worth, by their shares and how often their ends were visited. Only how much more
-/// often one was visited than another counts: however long a walk is, the least visited way keeps
-/// all of its share, and ratios stay what they are until they are too small for the whole numbers.
+/// Returns the weights of edges, by their shares and the visits of their ends. Only the difference
+/// to the least visited one counts: however long a walk is, the least visited edge keeps all of its
+/// share, and ratios stay the same until they are too small for integers.
 ///
 /// The power is `libm`'s, which is the same on every machine.
 fn discounted(ways: impl Iterator<Item = (u64, u32)> + Clone, factor: f64) -> Vec<u64> {
@@ -231,7 +231,7 @@ fn discounted(ways: impl Iterator<Item = (u64, u32)> + Clone, factor: f64) -> Ve
     if factor >= 1.0 {
         return ways.map(|(share, _)| finer(share)).collect();
     }
-    // Where one never goes, nobody has been.
+    // Edges that are never taken are not counted as the least visited.
     let open = ways.clone().filter(|(share, _)| *share > 0);
     let least = open.map(|(_, visits)| visits).min().unwrap_or(0);
     let worth = |(share, visits): (u64, u32)| match visits.saturating_sub(least) {
@@ -246,7 +246,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_seen_often_is_worth_less_than_what_was_seen_seldom_however_long_a_walk_is() {
+    fn discounted_shares_fall_with_visits_in_walks_of_any_length() {
         let shares = [(1_u64 << 32) - 3, 2, 1, 0];
         for before in [0, 10, 5_000, 3_000_000_000] {
             for factor in [0.5, 0.9] {
@@ -266,7 +266,7 @@ mod tests {
                 assert_eq!(worths[3], 0, "what cannot be chosen stays so");
             }
         }
-        // Nothing is left of a place but where all others were seen as often.
+        // With the factor 0 only the least visited nodes remain.
         let all_seen = |visits: [u32; 3]| discounted([5, 6, 7].into_iter().zip(visits), 0.0);
         assert_eq!(all_seen([9, 9, 9]), [5, 6, 7].map(|share: u64| share << DISCOUNT_BITS));
         assert_eq!(all_seen([9, 8, 9]), [0, 6 << DISCOUNT_BITS, 0]);

@@ -1,44 +1,46 @@
+//! Probabilities of the ways out of a stretch.
+
 use super::{GraphError, MotionGraph, Way};
 use petgraph::graph::{EdgeIndex, NodeIndex};
 
-/// How the distance of a transition makes it more or less probable.
+/// The law by which the distance of a transition determines its probability.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum DistanceLaw {
-    /// 1 / D: a transition twice as far is half as probable.
+    /// 1 / D: a transition at twice the distance has half the probability.
     Inverse,
-    /// exp(-D / σ), with D less the smallest of the node (Lee, Chai, Reitsma, Hodgins, Pollard
+    /// exp(-D / σ), with D minus the smallest of the node (Lee, Chai, Reitsma, Hodgins, Pollard
     /// 2002, section 4.1).
     Exponential {
         /// σ, centimetres.
         sigma_cm: f64,
     },
-    /// All alike.
+    /// Equal probabilities.
     Uniform,
     /// D itself: the classic mistake, by which the worst transitions are the most probable.
     Proportional,
 }
 
-/// How probable it is that a clip goes on where it can and there are transitions.
+/// The probability that a clip continues where it can and there are transitions.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Continuity {
-    /// With this probability, 0 to 1, however many transitions there are.
+    /// This probability, 0 to 1, however many transitions there are.
     Share(f64),
-    /// With this weight, above 0, among the weights that [`DistanceLaw`] gives the transitions:
-    /// every further way out makes it less probable.
+    /// This weight, above 0, among the weights that [`DistanceLaw`] gives the transitions: every
+    /// further way out makes it less probable.
     Weight(f64),
 }
 
 impl Continuity {
-    /// The largest weight that can be given.
+    /// The greatest weight.
     pub const MAX_WEIGHT: f64 = 1e6;
 }
 
-/// How probable each way out of a stretch is.
+/// Options of the probabilities of ways out.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct WeightOptions {
-    /// How probable it is that the clip goes on.
+    /// The probability that the clip continues.
     pub continuity: Continuity,
-    /// How the transitions share the rest.
+    /// The distribution of the rest over transitions.
     pub law: DistanceLaw,
 }
 
@@ -48,27 +50,27 @@ impl Default for WeightOptions {
     }
 }
 
-/// Shares of a node's ways out add up to this.
+/// The sum of the shares of a node's ways out.
 const WHOLE: u64 = 1 << 32;
-/// The smallest distance that is divided by, centimetres.
+/// The least distance used as a divisor, centimetres.
 const MIN_CM: f64 = 0.01;
-/// More steps do not change where a walk is found in the long run.
-const MAX_STEPS: usize = 2_000;
+/// The greatest number of iterations for the stationary distribution.
+const MAX_ITERATIONS: usize = 2_000;
 
-/// The ways out of every node with their probabilities, as whole numbers.
+/// The ways out of every node with their probabilities, as integers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Choices {
-    /// Edges in the order of their indices, one node's behind the other's, with shares of [`WHOLE`]
-    /// that add up to it for each node.
+    /// Edges in the order of their indices, node by node, with shares that sum to [`WHOLE`] for
+    /// each node.
     ways: Vec<(EdgeIndex, u64)>,
-    /// Where in `ways` those of a node end.
+    /// The end of each node's part of `ways`.
     ends: Vec<usize>,
 }
 
 impl Choices {
-    /// The probabilities of a graph's edges. Those of one node add up to 1, exactly: they are
-    /// multiples of 2⁻³². A node whose clip ends has transitions only; one without transitions goes
-    /// on; one without both has none.
+    /// Computes the probabilities of a graph's edges. Those of one node sum to 1 exactly: they are
+    /// multiples of 2⁻³². A node whose clip ends has transitions only; one without transitions
+    /// continues; one without both has none.
     ///
     /// # Errors
     /// [`GraphError::Setting`] when the continuity is out of range, or σ not above 0.
@@ -109,7 +111,7 @@ impl Choices {
         Ok(Self { ways, ends })
     }
 
-    /// The ways out of a node, with shares of 2³² that add up to it.
+    /// Returns the ways out of a node, with shares that sum to 2³².
     pub(super) fn ways(&self, node: NodeIndex) -> &[(EdgeIndex, u64)] {
         let end_of = |index: usize| self.ends.get(index).copied();
         let from = node.index().checked_sub(1).map_or(Some(0), end_of);
@@ -117,53 +119,52 @@ impl Choices {
         range.and_then(|range| self.ways.get(range)).unwrap_or_default()
     }
 
-    /// The ways out of a node with their probabilities.
+    /// Returns the ways out of a node with their probabilities.
     pub fn probabilities(&self, node: NodeIndex) -> impl Iterator<Item = (EdgeIndex, f64)> + '_ {
         self.ways(node).iter().map(|&(edge, share)| (edge, share_of(share)))
     }
 
-    /// The probability that the clip goes on behind a node.
+    /// Returns the probability that the clip continues after a node.
     #[must_use]
     pub fn p_continue(&self, graph: &MotionGraph, node: NodeIndex) -> f64 {
         let goes_on = |edge: &(EdgeIndex, f64)| graph.jump(edge.0).is_none();
         self.probabilities(node).filter(goes_on).map(|(_, p)| p).sum()
     }
 
-    /// How many nodes play on end until the next transition, on average, if all are like this one:
-    /// 1 / (1 - p). Infinite where the clip always goes on.
+    /// Returns the mean number of consecutive nodes until the next transition, if all are like this
+    /// one: 1 / (1 - p). Infinite where the clip always continues.
     #[must_use]
     pub fn expected_run_nodes(&self, graph: &MotionGraph, node: NodeIndex) -> f64 {
         (1.0 - self.p_continue(graph, node)).recip()
     }
 
-    /// Seconds from one transition to the next in a long walk, on average: frames per step over
-    /// transitions per step, weighed by how often a walk comes through each node (the stationary
-    /// distribution, by power iteration). `None` where a walk has no transitions in the long run,
-    /// or comes to an end.
+    /// Returns the mean time from one transition to the next in a long walk, seconds: frames per
+    /// step over transitions per step, weighted by how often a walk visits each node (the
+    /// stationary distribution, by power iteration). `None` where a walk has no transitions in the
+    /// long run, or comes to an end.
     #[must_use]
     pub fn expected_run_secs(&self, graph: &MotionGraph) -> Option<f64> {
         let mut run = RunLength::new(graph, self);
-        while !run.advance(MAX_STEPS) {}
+        while !run.advance(MAX_ITERATIONS) {}
         run.secs(graph, self)
     }
 }
 
-/// [`Choices::expected_run_secs`] in slices.
+/// The computation of [`Choices::expected_run_secs`] in slices.
 #[derive(Clone, Debug)]
 pub struct RunLength {
-    /// How probable it is to be in each node.
+    /// The probability of each node.
     now: Vec<f64>,
     next: Vec<f64>,
-    /// The ways into every node, one node's behind the other's: where they come from, and half of
-    /// how probable they are there.
+    /// The edges into every node, node by node: their origin, and half of their probability there.
     ways: Vec<(u32, f64)>,
-    /// Where in `ways` those of a node end.
+    /// The end of each node's part of `ways`.
     ends: Vec<usize>,
     steps: usize,
 }
 
 impl RunLength {
-    /// Of walks through a graph.
+    /// Begins the computation for walks through a graph.
     #[must_use]
     pub fn new(graph: &MotionGraph, choices: &Choices) -> Self {
         let nodes = graph.graph.node_count();
@@ -186,17 +187,17 @@ impl RunLength {
         }
     }
 
-    /// Does up to `steps` more steps, O(edges) each; `true` when no more are needed.
+    /// Computes up to `steps` more steps, O(edges) each; returns `true` when no more are needed.
     pub fn advance(&mut self, steps: usize) -> bool {
         for _ in 0..steps {
-            if self.steps >= MAX_STEPS {
+            if self.steps >= MAX_ITERATIONS {
                 break;
             }
             self.steps += 1;
             let (mut from, mut change) = (0, 0.0);
             for ((next, &end), &now) in self.next.iter_mut().zip(&self.ends).zip(&self.now) {
-                // Half of it stays where it is: a walk that comes round in a fixed number of steps
-                // would never settle.
+                // Half of the probability stays in place: otherwise a walk of a fixed period would
+                // not converge.
                 let arriving = self.ways[from..end]
                     .iter()
                     .map(|&(from, share)| self.now[from as usize] * share);
@@ -206,13 +207,14 @@ impl RunLength {
             }
             std::mem::swap(&mut self.now, &mut self.next);
             if change < 1e-12 {
-                self.steps = MAX_STEPS;
+                self.steps = MAX_ITERATIONS;
             }
         }
-        self.steps >= MAX_STEPS
+        self.steps >= MAX_ITERATIONS
     }
 
-    /// Seconds from one transition to the next; `None` where there are none in the long run.
+    /// Returns the mean time from one transition to the next, seconds; `None` where there are none
+    /// in the long run.
     #[must_use]
     pub fn secs(&self, graph: &MotionGraph, choices: &Choices) -> Option<f64> {
         let (mut frames, mut jumps) = (0.0, 0.0);
@@ -226,14 +228,14 @@ impl RunLength {
     }
 }
 
-/// A share as a probability.
+/// Returns a share as a probability.
 fn share_of(share: u64) -> f64 {
     share as f64 / WHOLE as f64
 }
 
-/// Brings things together that belong to the same of `groups`: where those of each group end, and
-/// the numbers of the things in that order, in which things of one group stay in theirs. Three
-/// passes over flat arrays: of very many edges, lists of lists would take most of the time.
+/// Groups items by `of`: returns the end of each group, and the indices of the items in that order,
+/// stable within a group. Three passes over flat arrays: with very many edges, lists of lists would
+/// take most of the time.
 fn grouped(groups: usize, of: impl Iterator<Item = NodeIndex> + Clone) -> (Vec<usize>, Vec<usize>) {
     let mut next = vec![0; groups + 1];
     let mut count = 0;
@@ -285,7 +287,7 @@ fn share_out(
         None => (edge, share),
         Some(distance) => (edge, (weight(distance) / sum * for_jumps as f64).floor() as u64),
     }));
-    // What rounding down has left goes to the closest transition, the first of equals.
+    // The remainder of rounding down goes to the closest transition, the first of equals.
     let own = ways.get_mut(first..).unwrap_or_default();
     let given: u64 = own.iter().map(|&(_, share)| share).sum();
     let closest = edges.iter().position(|&(_, distance)| distance == Some(nearest));

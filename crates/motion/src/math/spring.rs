@@ -17,8 +17,9 @@ pub fn rate(half_life_secs: f64) -> f64 {
     2.0 * LN_2 / half_life_secs.max(1e-9)
 }
 
-/// Returns the response of a critically damped spring after `secs`: `x(t) = e^(-yt) (x + (v + xy)
-/// t)` and its derivative. Exact for any step; two short steps equal one long step.
+/// Returns the response of a critically damped spring after `secs`:
+/// `x(t) = e^(-yt) (x + (v + xy) t)` and its derivative. Exact for any step; two short steps equal
+/// one long step.
 #[must_use]
 pub fn response(half_life_secs: f64, secs: f64) -> Response {
     let y = rate(half_life_secs);
@@ -97,11 +98,11 @@ pub fn secs_until(half_life_secs: f64, share: f64) -> f64 {
 /// 2.885 half-lives.
 ///
 /// Equivalent means that both mix in the same amount of the old motion: the areas under their
-/// weights are equal. The spring's `(1 + yt) e^(-yt)` has the area `2 / y`, the dissolve's `2t³ -
-/// 3t² + 1` over `T` has `T / 2`, so `T = 4 / y = 2h / ln 2`. With this window the character also
-/// ends in the same position: where velocities fade, the distance covered is the velocity times
-/// that area. (Equal times to the last tenth would give 3.49 half-lives: a spring is fast at first
-/// and has a long tail.)
+/// weights are equal. The spring's `(1 + yt) e^(-yt)` has the area `2 / y`, the dissolve's
+/// `2t³ - 3t² + 1` over `T` has `T / 2`, so `T = 4 / y = 2h / ln 2`. With this window the character
+/// also ends in the same position: where velocities fade, the distance covered is the velocity
+/// times that area. (Equal times to the last tenth would give 3.49 half-lives: a spring is fast at
+/// first and has a long tail.)
 #[must_use]
 pub fn equivalent_window_secs(half_life_secs: f64) -> f64 {
     4.0 / rate(half_life_secs)

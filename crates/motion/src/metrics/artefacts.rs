@@ -75,9 +75,9 @@ impl MotionTrace {
     }
 
     /// Returns skating, centimetres per second (Zhang et al. 2018, "Mode-Adaptive Neural Networks",
-    /// section 7): the mean over the frames and both feet of `|v| (2 - 2^(h / H))` for `h < H = 2.5
-    /// cm`, v being the velocity of the toe over the ground and h its height above the 2nd
-    /// percentile of its heights. `None` without feet.
+    /// section 7): the mean over the frames and both feet of `|v| (2 - 2^(h / H))` for
+    /// `h < H = 2.5 cm`, v being the velocity of the toe over the ground and h its height above the
+    /// 2nd percentile of its heights. `None` without feet.
     #[must_use]
     pub fn skating_cm_per_sec(&self) -> Option<f64> {
         self.skating_cm_per_sec

@@ -66,8 +66,8 @@ pub struct TransitionMetrics {
     /// one.
     pub jump_cm: Option<f64>,
     /// Yaw of the blend, degrees. With `r`, `a`, `b` the yaw of a step of the result and of the
-    /// sources: the largest sum, over any run of consecutive steps of the transition, of `r -
-    /// max(0, a, b)` or of `min(0, a, b) - r`. That is the turn beyond that of either source.
+    /// sources: the largest sum, over any run of consecutive steps of the transition, of
+    /// `r - max(0, a, b)` or of `min(0, a, b) - r`. That is the turn beyond that of either source.
     pub spin_deg: Option<f64>,
     /// Slide at the seam, centimetres. A foot is planted while its source has it planted: A before
     /// the handover, B from then on. For every step between planted frames, the step over the

@@ -1,57 +1,58 @@
+//! Motion carried from its own path to an edited one.
+
 use super::{FittedPath, PathEditError, Road, Waypoint};
 use crate::clip::{Clip, Contacts, JointTranslations};
 use crate::math::{Planar, curve, quat};
 use crate::skeleton::Side;
 use std::ops::Range;
 
-/// What stays when a path becomes longer or shorter.
+/// The quantity that is kept when a path becomes longer or shorter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Timing {
-    /// Every metre: what was so many metres behind the start still is. Speed, stride and duration
-    /// stay. A motion that is longer than its new path goes on behind it on the rest of its own
-    /// path, or round again where the new one is closed; one that is shorter ends on the way.
+    /// Distance: a frame keeps its distance from the start. Speed, stride and duration are kept. A
+    /// motion that is longer than its new path continues on the rest of its own path, or around
+    /// again where the new one is closed; one that is shorter ends before the end of the path.
     #[default]
     Metres,
-    /// The speed: the motion takes the whole path, and where the path has become longer time runs
-    /// slower. Strides grow with the path.
+    /// Speed: the motion covers the whole path, and takes longer where the path has become longer.
+    /// Strides grow with the path.
     Speed,
-    /// The duration: the motion takes the whole path in the same time. Every frame stays at its own
-    /// place of the path, so that nothing changes where the path did not.
+    /// Duration: the motion covers the whole path in the same time. Every frame keeps its
+    /// parameter, so that nothing changes where the path did not.
     Duration,
 }
 
-/// What the body does where the path turns.
+/// The orientation of the body where the path turns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Orientation {
-    /// It turns with the path: the angle between body and path stays.
+    /// The body turns with the path: the angle between body and path is kept.
     #[default]
     Path,
-    /// It faces as it did in the world, and is only moved: walking sideways comes out of walking
-    /// ahead.
+    /// The body keeps its orientation in the world: a walk ahead becomes a walk sideways.
     World,
 }
 
-/// What becomes of the way from the path to the character where the path turns.
+/// The offset of the character from the path where the path turns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Offset {
-    /// It turns with the path: what swayed to the left of the path still does (Gleicher 2001,
+    /// The offset turns with the path: sway to the left of the path remains so (Gleicher 2001,
     /// section 4).
     #[default]
     Path,
-    /// It stays as it was in the world: on a path that has turned by a quarter, sway to the side
-    /// becomes a surge ahead. The naive way, for comparison.
+    /// The offset is kept in the world: on a path that has turned by a quarter, sway to the side
+    /// becomes sway ahead. For comparison.
     World,
 }
 
-/// How a motion is laid on another path.
+/// Options of carrying a motion to another path.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(default)]
 pub struct CarryOptions {
-    /// What stays.
+    /// The quantity that is kept.
     pub timing: Timing,
-    /// What the body does.
+    /// The orientation of the body.
     pub orientation: Orientation,
-    /// What the way from the path to the character does.
+    /// The offset from the path.
     pub offset: Offset,
 }
 
@@ -60,34 +61,33 @@ pub struct CarryOptions {
 pub struct Carried {
     /// The motion, at the frame rate of the original.
     pub clip: Clip,
-    /// For every frame of it the frame of the original that it shows; whole numbers but for
-    /// [`Timing::Speed`].
+    /// For every frame, the frame of the original; integers except for [`Timing::Speed`].
     pub frames: Vec<f64>,
-    /// For every frame of it the frame of the new path that it rides in.
+    /// For every frame, the frame of the new path to which it belongs.
     pub places: Vec<Waypoint>,
-    /// For every frame of it where the character stands and what it faces.
+    /// For every frame, the ground frame of the character.
     pub characters: Vec<Planar>,
-    /// For every frame of it by how much it turned the whole body, radians.
+    /// For every frame, the yaw by which the whole body was turned, radians.
     pub turns: Vec<f64>,
 }
 
-/// Steadily moving characters keep their speed; one that is slower than this is about to stand, and
-/// time runs more and more as it did, metres per second.
+/// Characters above this speed keep it; below it the character is about to stand, and time
+/// approaches that of the original, metres per second.
 const STEADY_MPS: f64 = 0.3;
-/// Time runs at most so many times slower or faster.
+/// The greatest factor by which time runs slower or faster.
 const MAX_STRETCH: f64 = 10.0;
-/// A frame this near to a frame of the original is that frame.
+/// The tolerance within which a frame is a frame of the original.
 const WHOLE: f64 = 1e-6;
 
-/// Lays a motion on another path: `world_from_new_path · path_from_world` of every frame (Gleicher,
-/// Motion Path Editing, 2001, section 4).
+/// Carries a motion to another path: every frame is moved by
+/// `world_from_new_path · path_from_world` (Gleicher, "Motion Path Editing", 2001, section 4).
 ///
-/// What the fit left over, sway of the hips and the yaw of the body against the path, stays as it
-/// was in the path's frame. Heights and all angles but the root's yaw stay. On the path that was
-/// fitted the motion comes out as it is. O(frames × joints).
+/// The residual of the fit, sway of the hips and the yaw of the body against the path, is kept in
+/// the path's frame. Heights and all angles but the root's yaw stay. On the fitted path the motion
+/// is reproduced. O(frames × joints).
 ///
 /// # Errors
-/// [`PathEditError`] when the path has no length, or the result is no clip.
+/// [`PathEditError`] when the path has no length, or the result is not a valid clip.
 pub fn carry(
     path: &FittedPath,
     edited: &Road,
@@ -135,15 +135,15 @@ pub fn carry(
     })
 }
 
-/// Whether a place of the old path is farther from the start than the new one is long; a closed one
-/// has no end.
+/// Returns whether a waypoint of the old path is farther from the start than the new path is long;
+/// a closed one has no end.
 fn is_behind(edited: &Road, old: &Waypoint) -> bool {
     !edited.spline().is_closed() && old.along_m > edited.length_m()
 }
 
-/// The rest of the old path, joined to the end of the new one. Straight on instead, a body that
-/// goes ahead would turn with every bend of the old path: fitted paths follow the sway of the hips
-/// in hooks, above all at their ends.
+/// Returns the waypoint on the rest of the old path, joined to the end of the new one. If the path
+/// continued straight, a body that walks ahead would turn with every bend of the old path: fitted
+/// paths follow the sway of the hips, above all at their ends.
 fn behind(path: &FittedPath, edited: &Road, old: &Waypoint) -> Waypoint {
     let length = edited.length_m();
     let (end, left) = (edited.at_length(length), path.road().at_length(length));
@@ -151,7 +151,7 @@ fn behind(path: &FittedPath, edited: &Road, old: &Waypoint) -> Waypoint {
 }
 
 impl Carried {
-    /// The contacts of the result, from those of the original.
+    /// Returns the contacts of the result, from those of the original.
     #[must_use]
     pub fn contacts(&self, original: &Contacts) -> Contacts {
         let planted = |side| {
@@ -160,7 +160,7 @@ impl Carried {
         Contacts::from_flags(Side::BOTH.map(planted))
     }
 
-    /// Metres of the path that the motion takes, from the first frame to the last.
+    /// Returns the distances from the start of the path that the motion covers, metres.
     #[must_use]
     pub fn taken_m(&self) -> Range<f64> {
         let along = |place: Option<&Waypoint>| place.map_or(0.0, |place| place.along_m);
@@ -168,7 +168,7 @@ impl Carried {
     }
 }
 
-/// The frames of the original that are shown when it keeps its speed on the edited path.
+/// Returns the frames of the original when speed is kept on the edited path.
 fn at_speed(path: &FittedPath, edited: &Road) -> Vec<f64> {
     let fps = path.source().clip().fps();
     let along: Vec<f64> = path.parameters().iter().map(|&u| edited.length_at(u)).collect();
@@ -197,8 +197,8 @@ fn at_speed(path: &FittedPath, edited: &Road) -> Vec<f64> {
         .collect()
 }
 
-/// The frames of a clip in this order, each moved over the ground; between frames, positions are on
-/// the straight line and rotations on the great circle.
+/// Returns the frames of a clip in this order, each moved over the ground; between frames positions
+/// are interpolated linearly and rotations spherically.
 fn moved(clip: &Clip, frames: &[f64], moves: &[Planar]) -> Result<Clip, PathEditError> {
     let joints = clip.skeleton().len();
     let last = clip.frames().saturating_sub(1);

@@ -1,3 +1,5 @@
+//! The compact text form of paths, for links.
+
 use super::spline::{MAX_POINTS, uniform_knots};
 use super::{GroundSpline, PathEditError, SplineEnds};
 use base64::Engine as _;
@@ -5,22 +7,22 @@ use base64::engine::general_purpose::URL_SAFE_NO_PAD;
 use glam::{DVec2, I64Vec2};
 use std::ops::Range;
 
-/// Written points are whole numbers of this length, metres.
+/// Unit of encoded points, metres.
 const UNIT_M: f64 = 0.01;
-/// Written knots are whole numbers of this share.
+/// Unit of encoded knots.
 const KNOT_UNIT: f64 = 1.0 / 1_048_576.0;
 const CLOSED: u64 = 1;
 const KNOTS: u64 = 2;
 const UNCLAMPED: u64 = 4;
 
 impl GroundSpline {
-    /// The path as a short word for links, letters, digits, `-` and `_`: control points to 1 cm,
-    /// about three letters to a point and coordinate.
+    /// Encodes the path as a short text for links, of letters, digits, `-` and `_`: control points
+    /// to 1 cm, about three characters per point and coordinate.
     ///
-    /// The word is base64 of numbers of seven bits to a byte: a flag for "closed", one for "has
-    /// knots of its own" and one for "unclamped", the number of points, the differences of their
-    /// coordinates, and the differences of the inner knots where they are not uniform. The ends of
-    /// a closed path follow from its other points and are left out.
+    /// The text is base64 of variable-length integers of seven bits to a byte: flags for a closed
+    /// path, for knots of its own and for an unclamped path, the number of points, the differences
+    /// of their coordinates, and the differences of the inner knots where they are not uniform. The
+    /// ends of a closed path follow from its other points and are left out.
     #[must_use]
     pub fn to_code(&self) -> String {
         let uniform = self.inner_knots() == uniform_knots(self.points().len());
@@ -37,7 +39,7 @@ impl GroundSpline {
             let step = here - before;
             before = here;
             for value in [step.x, step.y] {
-                // The sign goes into the lowest bit.
+                // The sign is stored in the lowest bit.
                 write(&mut bytes, ((value << 1) ^ (value >> 63)) as u64);
             }
         }
@@ -52,13 +54,12 @@ impl GroundSpline {
         URL_SAFE_NO_PAD.encode(bytes)
     }
 
-    /// The path of a word from [`Self::to_code`].
+    /// Decodes a path from [`Self::to_code`].
     ///
     /// # Errors
-    /// [`PathEditError::Code`] for a word that is none, and the errors of
-    /// [`GroundSpline::with_knots`].
+    /// [`PathEditError::Code`] for an invalid text, and the errors of [`GroundSpline::with_knots`].
     pub fn from_code(code: &str) -> Result<Self, PathEditError> {
-        // Two numbers of at most ten bytes to a point are far less.
+        // Two integers of at most ten bytes per point are far less.
         let bytes = (code.len() <= MAX_POINTS * 40)
             .then(|| URL_SAFE_NO_PAD.decode(code).ok())
             .flatten()
@@ -105,7 +106,7 @@ impl GroundSpline {
         Ok(if closed { spline.joined() } else { spline })
     }
 
-    /// The path as its word tells it: what a link can hold.
+    /// Returns the path rounded to what its text form can hold.
     ///
     /// # Errors
     /// [`PathEditError::Knots`] where knots come too close to each other.
@@ -114,7 +115,7 @@ impl GroundSpline {
     }
 }
 
-/// The points that a word holds.
+/// Returns the range of the points that are encoded.
 fn own_points(count: usize, closed: bool) -> Range<usize> {
     let ends = usize::from(closed);
     ends..count - ends
@@ -150,7 +151,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(64))]
 
         #[test]
-        fn a_path_comes_back_to_the_centimetre(way in prop::collection::vec((-50.0f64..50.0, -50.0f64..50.0), 6..20), at in 0.01f64..0.99, closed: bool) {
+        fn code_of_a_path_decodes_to_the_centimetre(way in prop::collection::vec((-50.0f64..50.0, -50.0f64..50.0), 6..20), at in 0.01f64..0.99, closed: bool) {
             let mut path = GroundSpline::uniform(way.into_iter().map(DVec2::from).collect()).unwrap();
             if closed {
                 path = path.joined();
@@ -165,14 +166,14 @@ mod tests {
                 }
                 prop_assert_eq!(back.is_closed(), path.is_closed());
                 prop_assert_eq!(back.points().len(), path.points().len());
-                // What a link holds is held by the next link too.
+                // The encoding of a decoded path is the same.
                 prop_assert_eq!(back.to_code(), path.to_code());
                 prop_assert_eq!(back.rounded().unwrap(), back);
             }
         }
 
         #[test]
-        fn any_word_gives_a_path_or_an_error(word in "[A-Za-z0-9_-]{0,60}") {
+        fn from_code_of_any_text_does_not_panic(word in "[A-Za-z0-9_-]{0,60}") {
             if let Ok(path) = GroundSpline::from_code(&word) {
                 prop_assert!(path.points().iter().all(|p| p.abs().max_element() <= FARTHEST_M));
             }
@@ -180,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn a_word_is_short() {
+    fn code_is_short() {
         let points = (0..8).map(|k| DVec2::new(f64::from(k).sin(), 1.3 * f64::from(k))).collect();
         let path = GroundSpline::uniform(points).unwrap();
         assert!(path.to_code().len() <= 48, "{}", path.to_code());

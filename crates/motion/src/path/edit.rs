@@ -1,10 +1,12 @@
+//! Edits of paths.
+
 use super::fit::{FitOptions, fit_with_knots};
 use super::{GroundSpline, PathEditError, Road, SplineEnds};
 use crate::math::wrap_angle;
 use glam::DVec2;
 use std::f64::consts::TAU;
 
-/// Ends of a path that stay where they are, whatever is done to it.
+/// The pinned ends of a path, which no edit moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct Pins {
     /// The start.
@@ -13,66 +15,65 @@ pub struct Pins {
     pub end: bool,
 }
 
-/// One thing that is done to a path. Positions are (x, z), metres.
+/// An edit of a path. Positions are (x, z), metres.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum PathEdit {
-    /// A control point goes elsewhere. On a closed path the ends move as one, and their neighbours
-    /// with them.
+    /// Moves a control point. On a closed path the ends move together, and their neighbours with
+    /// them.
     Move {
-        /// Which.
+        /// Index of the point.
         index: usize,
-        /// Where to.
+        /// The target.
         to: DVec2,
     },
-    /// One more control point at this parameter; the path stays as it is (Boehm, Inserting New
-    /// Knots into B-spline Curves, 1980).
+    /// Inserts a control point at this parameter; the curve does not change (Boehm, "Inserting New
+    /// Knots into B-spline Curves", 1980).
     Insert {
         /// The parameter, inside 0 and 1 and not on a knot.
         at: f64,
     },
-    /// One control point fewer; the others move as little as they must to keep the path (least
-    /// squares). Undoes [`Self::Insert`].
+    /// Removes a control point; the others move as little as necessary to keep the curve (least
+    /// squares). The inverse of [`Self::Insert`].
     Remove {
-        /// Which; not an end.
+        /// Index of the point; not an end.
         index: usize,
     },
-    /// Every point between the ends goes this share of its way to the line between its neighbours.
+    /// Moves every point between the ends by this share towards the line between its neighbours.
     Smooth {
         /// From 0 to 1.
         share: f64,
     },
-    /// Every point goes to the nearest crossing of a grid.
+    /// Moves every point to the nearest crossing of a grid.
     Snap {
         /// Width of the grid, metres.
         grid_m: f64,
     },
-    /// The whole path moves.
+    /// Shifts the whole path.
     Shift {
-        /// By how much.
+        /// The shift.
         by: DVec2,
     },
-    /// The whole path turns about its pinned end, or its middle.
+    /// Rotates the whole path about its pinned end, or its middle.
     Rotate {
         /// About +Y.
         radians: f64,
     },
-    /// The whole path grows from its pinned end, or its middle.
+    /// Scales the whole path from its pinned end, or its middle.
     Scale {
         /// From 0.01 to 100.
         factor: f64,
     },
-    /// Left becomes right: the path is mirrored at the line from its start to its end. The
-    /// character is not.
+    /// Mirrors the path at the line from its start to its end. The character is not mirrored.
     Mirror,
-    /// Curves are bent open, the length stays; 1 makes a straight line.
+    /// Straightens curves and keeps the length; 1 makes a straight line.
     Straighten {
         /// From 0 to 1.
         share: f64,
     },
-    /// The path is bent by a whole turn, until it ends where and as it starts. The length stays
-    /// nearly; a path whose ends are near each other is only joined.
+    /// Bends the path by a whole turn, until it ends in its starting point and direction. The
+    /// length is nearly kept; a path whose ends are near each other is only joined.
     Close,
-    /// A closed path becomes one with two ends, in the same place for the time being.
+    /// Opens a closed path: it gets two ends, at the same position.
     Open,
 }
 
@@ -80,19 +81,19 @@ pub enum PathEdit {
 const MAX_SCALE: f64 = 100.0;
 /// The widest grid, metres.
 const MAX_GRID_M: f64 = 100.0;
-/// Places at which a path is measured for each control point before it is bent.
+/// The number of samples per control point at which a path is measured before it is bent.
 const SAMPLES: usize = 32;
 /// Ends that are nearer to each other than this share of the length are joined without a turn.
 const NEARLY_CLOSED: f64 = 0.25;
-/// A closed path has an end, a neighbour to either side of it, and two points away from it.
+/// A closed path has an end, a neighbour to either side of it, and at least two more points.
 const MIN_CLOSED: usize = 6;
 
 impl GroundSpline {
-    /// The path after an edit.
+    /// Returns the path after an edit.
     ///
     /// # Errors
-    /// [`PathEditError`] says what is wrong: a point that is not there, a pinned end that would
-    /// have to move, a number out of range, too few or too many points.
+    /// [`PathEditError`] for an unknown point, a pinned end that would have to move, a number out
+    /// of range, or too few or too many points.
     pub fn edited(&self, edit: &PathEdit, pins: Pins) -> Result<Self, PathEditError> {
         if self.ends() == SplineEnds::Uniform {
             return self.edited_unclamped(edit, pins);
@@ -160,7 +161,7 @@ impl GroundSpline {
         }
     }
 
-    /// A control point that is moved is the unclamped path's own; all else is done to the same
+    /// Moves control points of an unclamped path directly; all other edits are applied to the same
     /// curve, clamped.
     fn edited_unclamped(&self, edit: &PathEdit, pins: Pins) -> Result<Self, PathEditError> {
         let count = self.points().len();
@@ -170,7 +171,7 @@ impl GroundSpline {
                 .edited(edit, pins)?
                 .with_ends(SplineEnds::Uniform));
         };
-        // Three points have a say at either end.
+        // Three points determine either end.
         if (pins.start && index < 3) || (pins.end && index + 3 >= count) {
             return Err(PathEditError::Pinned);
         }
@@ -200,7 +201,7 @@ impl GroundSpline {
             points[1] += by;
             points[last - 1] += by;
         } else if held && (index == 1 || index == last - 1) {
-            // The end stays, so that its other neighbour goes the opposite way.
+            // The end stays, so that its other neighbour moves in the opposite direction.
             let [first_span, last_span] = self.end_spans();
             if index == 1 {
                 points[last - 1] = points[0] - (points[1] - points[0]) * (last_span / first_span);
@@ -220,7 +221,7 @@ impl GroundSpline {
         if index == 0 || index == count - 1 || count <= least {
             return Err(PathEditError::NotRemoved { index, least });
         }
-        // The knot that is nearest to where the point has its say goes with it.
+        // The knot nearest to the point's Greville abscissa is removed with it.
         let at = self.greville()[index];
         let mut knots = self.inner_knots().to_vec();
         let nearest =
@@ -245,7 +246,7 @@ impl GroundSpline {
         self.with_points(points)
     }
 
-    /// What a path turns about.
+    /// Returns the pivot of rotations.
     fn pivot(&self, pins: Pins) -> Result<DVec2, PathEditError> {
         let points = self.points();
         match (pins.start, pins.end) {
@@ -257,7 +258,7 @@ impl GroundSpline {
         }
     }
 
-    /// The direction from the start to the end; that of the start where they are one.
+    /// Returns the direction from the start to the end; that of the start where they coincide.
     fn overall_yaw(&self) -> f64 {
         let way = self.points()[self.points().len() - 1] - self.points()[0];
         if way.length() > super::road::MIN_LENGTH_M {
@@ -267,8 +268,8 @@ impl GroundSpline {
         }
     }
 
-    /// This path with its pinned ends where they are in `before`: shifted, or where both are pinned
-    /// turned and scaled as well. Ends of a path whose own ends coincide are put in place alone.
+    /// Returns this path with its pinned ends as in `before`: shifted, or with two pinned ends
+    /// rotated and scaled as well. Coinciding ends are moved alone.
     fn held_by(self, before: &Self, pins: Pins) -> Result<Self, PathEditError> {
         let ends = |spline: &Self| (spline.points()[0], spline.points()[spline.points().len() - 1]);
         let ((start, end), (from, to)) = (ends(before), ends(&self));
@@ -286,16 +287,16 @@ impl GroundSpline {
                 {
                     return all(&|p| p + (start - from));
                 }
-                // As complex numbers: the quotient of the two ways turns and scales.
+                // As complex numbers: the quotient of the two chords rotates and scales.
                 let quotient = DVec2::new(way.dot(own), own.perp_dot(way)) / own.length_squared();
                 all(&|p| start + quotient.rotate(p - from))
             }
         }
     }
 
-    /// The path whose direction is another function of its direction (unwrapped), the share of the
-    /// length that lies before, and the mean direction. It has the same length and start. What is
-    /// missing between its ends is spread evenly if it is to be a loop.
+    /// Returns the path whose direction is a function of its direction (unwrapped), the share of
+    /// the length before the point, and the mean direction. It has the same length and start. For a
+    /// loop, the gap between its ends is distributed evenly.
     fn bent(
         &self,
         heading: impl Fn(f64, f64, f64) -> f64,
@@ -304,7 +305,7 @@ impl GroundSpline {
         let road = Road::new(self.clone())?;
         let steps = self.points().len() * SAMPLES;
         let along = |k: f64| road.length_m() * k / steps as f64;
-        // Directions hold in the middle of each step.
+        // Directions apply to the middle of each step.
         let mut headings: Vec<f64> = Vec::with_capacity(steps);
         for k in 0..steps {
             let own = road.at_length(along(k as f64 + 0.5)).frame.yaw;
@@ -322,7 +323,7 @@ impl GroundSpline {
                 *point += missing * (k as f64 / steps as f64);
             }
         }
-        // Each place keeps its parameter, so that the motion keeps its places.
+        // Each point keeps its parameter, so that frames stay in place.
         let parameters: Vec<f64> =
             (0..=steps).map(|k| road.parameter_at(along(k as f64))).collect();
         fit_with_knots(&points, &parameters, self.inner_knots(), &pinned_fit())
@@ -355,8 +356,8 @@ impl GroundSpline {
             .held_by(self, Pins { start: pins.start || !pins.end, end: pins.end && !pins.start })
     }
 
-    /// A path whose ends coincide, closed: the neighbours of the end are put on one line through
-    /// it.
+    /// Returns the closed path for coinciding ends: the neighbours of the end are put on one line
+    /// through it.
     fn closed_in_place(&self) -> Result<Self, PathEditError> {
         let mut points = self.points().to_vec();
         let last = points.len() - 1;
@@ -371,7 +372,7 @@ impl GroundSpline {
 }
 
 impl Road {
-    /// How far the path turns from its start to its end, radians, positive to the left.
+    /// Returns the total turn of the path from its start to its end, radians, positive to the left.
     fn total_turn(&self) -> f64 {
         let places = self.evenly(self.spline().points().len() * SAMPLES);
         let steps = places.windows(2).map(|pair| wrap_angle(pair[1].frame.yaw - pair[0].frame.yaw));
@@ -379,12 +380,12 @@ impl Road {
     }
 }
 
-/// Through both ends.
+/// Returns options that fix both ends.
 fn pinned_fit() -> FitOptions {
     FitOptions { pin_ends: true, ..FitOptions::default() }
 }
 
-/// A turn about +Y of a point of the ground.
+/// Rotates a point of the ground about +Y.
 fn turned(p: DVec2, radians: f64) -> DVec2 {
     crate::math::Planar::new(radians, 0.0, 0.0).apply_ground(p)
 }

@@ -1,19 +1,21 @@
+//! Least-squares fit of paths.
+
 use super::PathEditError;
 use super::spline::{GroundSpline, SplineEnds, bounds, check_count, uniform_knots};
 use glam::DVec2;
 
-/// How a path is fitted.
+/// Options of a fit.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(default)]
 pub struct FitOptions {
-    /// Control points, from 4 to 256. Four cannot follow a turn; many follow every sway of the
-    /// hips.
+    /// Number of control points, from 4 to 256. Four cannot follow a turn; many follow every sway
+    /// of the hips.
     pub control_points: usize,
-    /// How much a bend counts against the distance from the points: 0 for least squares alone.
+    /// The weight of bending relative to the distance from the points: 0 for least squares alone.
     pub smoothing: f64,
-    /// The path starts in the first and ends in the last point.
+    /// Whether the path starts in the first and ends in the last point.
     pub pin_ends: bool,
-    /// Whose control points come out; the curve is the same.
+    /// The kind of control points returned; the curve is the same.
     pub ends: SplineEnds,
 }
 
@@ -23,13 +25,13 @@ impl Default for FitOptions {
     }
 }
 
-/// The strongest smoothing: the path is a straight line by then.
+/// The greatest smoothing: the path is then a straight line.
 pub const MAX_SMOOTHING: f64 = 1e6;
-/// Smoothing where the points do not say where every control point is.
+/// Smoothing where the points do not determine every control point.
 const FILL: f64 = 1e-8;
-/// A pivot below this share of the largest one is none.
+/// The least pivot, as a share of the largest one.
 const MIN_PIVOT: f64 = 1e-7;
-/// A drawn curve is at least this long, metres.
+/// The least length of a drawn curve, metres.
 const MIN_DRAWN_M: f64 = 0.1;
 
 impl FitOptions {
@@ -52,32 +54,32 @@ impl FitOptions {
     }
 }
 
-/// The path with uniform knots that comes closest to `points` (x, z; metres) at their `parameters`
-/// (from 0 to 1, none of them falling).
+/// Returns the path with uniform knots that is closest to `points` (x, z; metres) at their
+/// `parameters` (from 0 to 1, not descending).
 ///
-/// What is made small is `mean |C(u_k) - p_k|² + smoothing · mean |h Δ_i|²`, with `Δ_i` the change
-/// of slope of the control polygon over the Greville abscissae at its inner point i, and h the mean
-/// spacing: a straight way costs nothing (after Eilers and Marx, Flexible Smoothing with B-splines
-/// and Penalties, 1996). Rows go one by one into a banded triangle by Givens rotations, which does
-/// not square the condition of the problem (Cox, in The State of the Art in Numerical Analysis,
-/// 1977; Dierckx, Curve and Surface Fitting with Splines, 1993, section 4.1): O(points + control
-/// points). Where points are missing for a control point, the path goes straight there.
+/// It minimizes `mean |C(u_k) - p_k|² + smoothing · mean |h Δ_i|²`, with `Δ_i` the change of slope
+/// of the control polygon over the Greville abscissae at its inner point i, and h the mean spacing:
+/// a straight path costs nothing (after Eilers and Marx, "Flexible Smoothing with B-splines and
+/// Penalties", 1996). Rows are added one by one to a banded triangle by Givens rotations, which
+/// does not square the condition of the problem (Cox, in "The State of the Art in Numerical
+/// Analysis", 1977; Dierckx, "Curve and Surface Fitting with Splines", 1993, section 4.1): O(points
+/// + control points). The path is straight where points for a control point are missing.
 ///
 /// # Errors
-/// [`PathEditError`] for options out of range, no points, lists of different length, and numbers
-/// that are none.
+/// [`PathEditError`] for options out of range, no points, lists of different length, and values
+/// that are not finite.
 pub fn fit_spline(
     points: &[DVec2],
     parameters: &[f64],
     options: &FitOptions,
 ) -> Result<GroundSpline, PathEditError> {
-    // Before memory is taken for the knots.
+    // Before memory is allocated for the knots.
     options.validate()?;
     let knots = uniform_knots(options.control_points);
     fit_with_knots(points, parameters, &knots, options)
 }
 
-/// Likewise with given inner knots; the number of control points follows from them.
+/// Returns the closest path with given inner knots, which determine the number of control points.
 pub(super) fn fit_with_knots(
     points: &[DVec2],
     parameters: &[f64],
@@ -95,7 +97,7 @@ pub(super) fn fit_with_knots(
     if let Some(index) = points.iter().position(|point| !point.is_finite()) {
         return Err(PathEditError::Point { index });
     }
-    // Numbers stay small around the first point.
+    // Relative to the first point, so that numbers are small.
     let count = inner_knots.len() + 4;
     let shape = GroundSpline::with_knots(vec![DVec2::ZERO; count], inner_knots)?;
     let pins: Vec<(usize, DVec2)> =
@@ -136,12 +138,12 @@ pub(super) fn fit_with_knots(
     Ok(fitted.with_ends(options.ends))
 }
 
-/// A curve drawn by hand, (x, z) in metres in the order of drawing, as a path with uniform knots
-/// over its chord length.
+/// Returns a curve drawn by hand, (x, z) in metres in the order of drawing, as a path with uniform
+/// knots over its chord length.
 ///
 /// # Errors
-/// [`PathEditError`] for options out of range, numbers that are none, and a curve that is shorter
-/// than 10 cm.
+/// [`PathEditError`] for options out of range, values that are not finite, and a curve that is
+/// shorter than 10 cm.
 pub fn drawn_path(points: &[DVec2], options: &FitOptions) -> Result<GroundSpline, PathEditError> {
     let (parameters, length_m) = chord_parameters(points);
     if !length_m.is_finite() {
@@ -154,8 +156,8 @@ pub fn drawn_path(points: &[DVec2], options: &FitOptions) -> Result<GroundSpline
     fit_spline(points, &parameters, options)
 }
 
-/// The share of the way that lies before each point, and the length of the whole, metres; the
-/// shares are 0 where there is no way.
+/// Returns the share of the length before each point, and the whole length, metres; the shares are
+/// 0 where the length is.
 pub(super) fn chord_parameters(points: &[DVec2]) -> (Vec<f64>, f64) {
     let mut along = 0.0;
     let mut before = points.first().copied().unwrap_or_default();
@@ -173,13 +175,13 @@ pub(super) fn chord_parameters(points: &[DVec2]) -> (Vec<f64>, f64) {
     (lengths, along)
 }
 
-/// The diagonal of the box around points, metres.
+/// Returns the diagonal of the bounding box of points, metres.
 pub(super) fn extent(points: &[DVec2]) -> f64 {
     let (low, high) = bounds(points);
     high.distance(low)
 }
 
-/// The triangle of a QR decomposition whose rows hold four numbers from the diagonal on, and its
+/// The triangle of a QR decomposition, with rows of four numbers from the diagonal on, and its
 /// right-hand side.
 struct Band {
     rows: Vec<[f64; 4]>,
@@ -191,7 +193,7 @@ impl Band {
         Self { rows: vec![[0.0; 4]; size], right: vec![DVec2::ZERO; size] }
     }
 
-    /// One more equation, in which the unknowns of `pins` are known.
+    /// Adds an equation in which the unknowns of `pins` are known.
     fn add_pinned(
         &mut self,
         start: usize,
@@ -208,7 +210,7 @@ impl Band {
         self.add(start, row, right);
     }
 
-    /// One more equation: its numbers stand at the unknowns from `start` on.
+    /// Adds an equation whose coefficients belong to the unknowns from `start` on.
     fn add(&mut self, start: usize, mut row: [f64; 4], mut right: DVec2) {
         for (own, own_right) in self.rows.iter_mut().zip(&mut self.right).skip(start) {
             if row == [0.0; 4] {
@@ -227,13 +229,13 @@ impl Band {
         }
     }
 
-    /// The unknowns; `None` where the equations do not determine them.
+    /// Returns the unknowns; `None` where the equations do not determine them.
     fn solve(&self) -> Option<Vec<DVec2>> {
         let largest = self.rows.iter().map(|row| row[0].abs()).fold(0.0, f64::max);
         let mut found = vec![DVec2::ZERO; self.rows.len()];
         for i in (0..self.rows.len()).rev() {
             let row = self.rows[i];
-            // NaN compares as no pivot.
+            // NaN does not count as a pivot.
             let pivot = row[0].abs() > largest * MIN_PIVOT;
             if !pivot {
                 return None;

@@ -1,3 +1,5 @@
+//! A motion and the path fitted to it.
+
 use super::fit::{FitOptions, chord_parameters, extent, fit_spline};
 use super::{PathEditError, Road};
 use crate::blend::Source;
@@ -5,14 +7,13 @@ use crate::math::{Planar, wrap_angle};
 use glam::DVec2;
 use std::sync::Arc;
 
-/// The hips sway from step to step; the way that a frame has come is measured after a Gaussian of
-/// this deviation has calmed the sway, seconds.
+/// The standard deviation of the Gaussian that removes the sway of the hips before distances are
+/// measured, seconds.
 const SWAY_SECS: f64 = 0.3;
-/// A motion that stays within this distance stands, metres.
+/// A motion that stays within this distance counts as standing, metres.
 const STANDS_M: f64 = 0.2;
 
-/// A motion, the path that was fitted to its way over the ground, and where on that path each frame
-/// is.
+/// A motion, the path that was fitted to its trajectory, and the position of each frame on it.
 #[derive(Clone, Debug)]
 pub struct FittedPath {
     source: Arc<Source>,
@@ -21,7 +22,7 @@ pub struct FittedPath {
     places: Vec<super::Waypoint>,
 }
 
-/// How well a path follows a motion.
+/// The accuracy of a fit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FitError {
     /// Root of the mean squared distance between root and path, centimetres.
@@ -33,11 +34,11 @@ pub struct FitError {
 }
 
 impl FittedPath {
-    /// Fits a path to the way of a motion's root over the ground.
+    /// Fits a path to the trajectory of a motion's root over the ground.
     ///
-    /// The parameter of a frame is the share of the way that lies before it, by chord length; sway
-    /// of the hips and small steps on the spot do not count as way: it is measured on the root's
-    /// way smoothed over about one step. The fit is to the root itself.
+    /// The parameter of a frame is the share of the distance before it, by chord length; sway of
+    /// the hips and small steps on the spot do not count as distance, because it is measured on the
+    /// trajectory smoothed over about one step. The fit is to the root itself.
     ///
     /// # Errors
     /// [`PathEditError`] for options out of range, fewer than two frames, and a motion that stays
@@ -62,38 +63,38 @@ impl FittedPath {
         Ok(Self { source, road, parameters, places })
     }
 
-    /// The motion.
+    /// Returns the motion.
     #[must_use]
     pub fn source(&self) -> &Arc<Source> {
         &self.source
     }
 
-    /// The path.
+    /// Returns the path.
     #[must_use]
     pub fn road(&self) -> &Road {
         &self.road
     }
 
-    /// Where on the path each frame is, in its parameter; never falling.
+    /// Returns the parameter of each frame on the path; not descending.
     #[must_use]
     pub fn parameters(&self) -> &[f64] {
         &self.parameters
     }
 
-    /// The frame of the path that each frame of the motion rides in.
+    /// Returns the frame of the path to which each frame of the motion belongs.
     #[must_use]
     pub fn places(&self) -> &[super::Waypoint] {
         &self.places
     }
 
-    /// What the path leaves over, frame by frame, `path_from_character`: metres to the left of the
-    /// path (x) and along it (z), and the yaw against its direction.
+    /// Returns the residual of every frame, `path_from_character`: metres to the left of the path
+    /// (x) and along it (z), and the yaw against its direction.
     pub fn residuals(&self) -> impl Iterator<Item = Planar> + '_ {
         let frames = self.places.iter().zip(self.source.frames());
         frames.map(|(place, character)| place.frame.inverse().after(character))
     }
 
-    /// How far the root is from the path.
+    /// Returns the distances of the root from the path.
     #[must_use]
     pub fn error(&self) -> FitError {
         let (mut sum, mut most, mut frame) = (0.0, 0.0, 0);
@@ -111,7 +112,7 @@ impl FittedPath {
         }
     }
 
-    /// The parameter at a fractional frame, clamped to the motion.
+    /// Returns the parameter at a fractional frame, clamped to the motion.
     pub(super) fn parameter(&self, frame: f64) -> f64 {
         let (index, part) = self.between(frame);
         let (from, to) =
@@ -119,7 +120,7 @@ impl FittedPath {
         from + (to - from) * part
     }
 
-    /// Where the character is at a fractional frame.
+    /// Returns the ground frame at a fractional frame.
     pub(super) fn character(&self, frame: f64) -> Planar {
         let frames = self.source.frames();
         let (index, part) = self.between(frame);
@@ -128,15 +129,15 @@ impl FittedPath {
         Planar::new(from.yaw + wrap_angle(to.yaw - from.yaw) * part, shift.x, shift.y)
     }
 
-    /// The frame before a fractional one, and the rest.
+    /// Returns the frame before a fractional one, and the fraction.
     pub(super) fn between(&self, frame: f64) -> (usize, f64) {
         let at = frame.max(0.0).min((self.parameters.len() - 1) as f64);
         (at.floor() as usize, at.fract())
     }
 }
 
-/// A Gaussian mean with the deviation given in frames. Behind the ends the way goes on as it came,
-/// turned about the end by half a turn: the ends stay where they are.
+/// Returns a Gaussian mean with the deviation in frames. Beyond its ends the trajectory is
+/// continued point-symmetrically, so that the ends stay in place.
 fn smoothed(way: &[DVec2], deviation: f64) -> Vec<DVec2> {
     let (Some(&first), Some(&last)) = (way.first(), way.last()) else {
         return vec![];

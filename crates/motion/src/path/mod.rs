@@ -17,7 +17,7 @@
 //! Picture a dancer in a tram: bend the rails, and the dance goes along. When the path changes,
 //! every frame is moved with the frame of the path that it belongs to ([`carry`]), and the feet are
 //! planted again ([`PathEditor`]). [`Timing`] says what happens to time where a path becomes
-//! longer: stride length, speed or duration is kept. [`hard_turns`] reports turns that are sharper
+//! longer: distance, speed or duration is kept. [`hard_turns`] reports turns that are sharper
 //! than those of the original motion (curvature × speed).
 //!
 //! # Example

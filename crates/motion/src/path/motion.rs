@@ -1,3 +1,5 @@
+//! The motion of an edited path.
+
 use super::{CarryOptions, FittedPath, HardTurn, PathEditError, Road, Waypoint, carry, hard_turns};
 use crate::clip::{Clip, Contacts};
 use crate::math::Planar;
@@ -6,51 +8,51 @@ use crate::skeleton::Roles;
 use crate::transition::{FootLockOptions, FootLocking};
 use std::sync::Arc;
 
-/// How the motion of an edited path is made.
+/// Options of the motion of an edited path.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(default)]
 pub struct MotionOptions {
-    /// How it is laid on the path.
+    /// Options of carrying it to the path.
     pub carry: CarryOptions,
-    /// How its feet are planted afterwards; `None` leaves them sliding.
+    /// Options of the foot lock afterwards; `None` for none.
     pub foot_lock: Option<FootLockOptions>,
 }
 
-/// A motion on an edited path, with what can be said against it.
+/// A motion on an edited path, with its measurements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EditedMotion {
     /// The motion.
     pub clip: Clip,
-    /// For every frame of it the frame of the original that it shows.
+    /// For every frame, the frame of the original.
     pub frames: Vec<f64>,
-    /// For every frame of it the frame of the edited path that it rides in.
+    /// For every frame, the frame of the edited path to which it belongs.
     pub places: Vec<Waypoint>,
-    /// For every frame of it where the character stands and what it faces, before its feet are
-    /// planted.
+    /// For every frame, the ground frame of the character before the foot lock.
     pub characters: Vec<Planar>,
-    /// For every frame of it by how much the path turned the whole body, radians.
+    /// For every frame, the yaw by which the path turned the whole body, radians.
     pub turns: Vec<f64>,
-    /// When which foot is on the ground.
+    /// The contacts of the feet.
     pub contacts: Contacts,
-    /// How far a planted foot slides in the worst stance, centimetres; `None` without feet or
+    /// The slide of a planted foot in the worst stance, centimetres; `None` without feet or
     /// stances.
     pub slide_cm: Slide,
-    /// Where the path turns faster than the original does.
+    /// Turns that are faster than those of the original.
     pub hard_turns: Vec<HardTurn>,
 }
 
-/// Foot skate of a motion in its three states, each as [`foot_slide_cm`].
+/// Foot slide of a motion in its three states, each as [`foot_slide_cm`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Slide {
     /// The original, centimetres.
     pub original: Option<f64>,
     /// On the edited path, centimetres.
     pub carried: Option<f64>,
-    /// With its feet planted, centimetres; as before where they were not.
+    /// With foot lock, centimetres; equal to `carried` without.
     pub locked: Option<f64>,
 }
 
-/// The motion of a path that is edited live: what does not change under the hand is measured once.
+/// The motion of a path that is edited interactively: everything that does not depend on the edit
+/// is measured once.
 #[derive(Clone, Debug)]
 pub struct PathEditor {
     path: FittedPath,
@@ -60,25 +62,25 @@ pub struct PathEditor {
 }
 
 impl PathEditor {
-    /// Takes a fitted motion; `contacts` are those of the original.
+    /// Returns the editor of a fitted motion; `contacts` are those of the original.
     #[must_use]
     pub fn new(path: FittedPath, roles: &Roles, contacts: Contacts) -> Self {
         let slide_cm = foot_slide_cm(path.source().clip(), roles, &contacts);
         Self { path, roles: roles.clone(), contacts, slide_cm }
     }
 
-    /// The fitted motion.
+    /// Returns the fitted motion.
     #[must_use]
     pub fn path(&self) -> &FittedPath {
         &self.path
     }
 
-    /// The motion on an edited path: laid on it, its feet planted, and measured. O(frames ×
+    /// Returns the motion on an edited path: carried, with foot lock, and measured. O(frames ×
     /// joints).
     ///
     /// # Errors
-    /// [`PathEditError`] when feet are to be planted and there are no legs or the options are out
-    /// of range, or the result is no clip.
+    /// [`PathEditError`] when a foot lock is requested and there are no legs or its options are out
+    /// of range, or the result is not a valid clip.
     pub fn motion(
         &self,
         edited: &Road,

@@ -1,13 +1,16 @@
+//! Paths by arc length.
+
 use super::spline::unit;
 use super::{GroundSpline, PathEditError};
 use crate::math::Planar;
 use glam::DVec2;
 
-/// Each polynomial piece is measured in at least this many parts.
+/// The least number of parts into which each polynomial piece is divided.
 const PARTS: usize = 8;
-/// A part whose halves together measure within this of the whole is not halved again, metres.
+/// The tolerance of a part's length against the sum of its halves, metres.
 const QUADRATURE_TOLERANCE_M: f64 = 1e-6;
-/// Halvings of a part at most. Near the tip of a hairpin the error falls to a quarter with each.
+/// The greatest number of bisections of a part. Near the tip of a hairpin the error falls to a
+/// quarter with each.
 const MAX_HALVINGS: u32 = 24;
 /// Gauss-Legendre with five points on `[-1, 1]`: exact up to degree nine.
 const NODES: [(f64, f64); 5] = [
@@ -17,37 +20,37 @@ const NODES: [(f64, f64); 5] = [
     (0.538_469_310_105_683_1, 0.478_628_670_499_366_5),
     (0.906_179_845_938_664, 0.236_926_885_056_189_1),
 ];
-/// A path is at least this long, metres.
+/// The least length of a path, metres.
 pub(super) const MIN_LENGTH_M: f64 = 1e-3;
-/// Parameters are found to this length, metres.
+/// The tolerance of parameters, as a length, metres.
 const TOLERANCE_M: f64 = 1e-11;
-/// Lengths that are the same but for rounding, metres.
+/// Lengths that differ by less are equal within rounding, metres.
 const SAME_M: f64 = 1e-8;
 
-/// A path that knows its length: read by parameter or by metres from its start.
+/// A path with arc length: evaluated by parameter or by distance from its start.
 ///
 /// Lengths are integrals of the speed by adaptive Gauss-Legendre quadrature: at least eight parts
-/// of five nodes to a piece, halved until both halves agree with the whole to a micrometre. Only
+/// of five nodes per piece, bisected until both halves agree with the whole to a micrometre. Only
 /// the tip of a hairpin, where the speed nearly vanishes, needs more parts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Road {
     spline: GroundSpline,
-    /// Ends of the parts.
+    /// The end of each part.
     parameters: Vec<f64>,
-    /// Metres from the start to these ends.
+    /// Distance from the start to these ends, metres.
     lengths: Vec<f64>,
-    /// Metres per unit of the parameter at these ends.
+    /// Speed at these ends, metres per unit of the parameter.
     speeds: Vec<f64>,
 }
 
-/// The frame of a path at one place, `world_from_path`: +Z runs along the path.
+/// The frame of a path at one point, `world_from_path`: +Z runs along the path.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Waypoint {
-    /// Where, and which way the path runs.
+    /// Position and direction.
     pub frame: Planar,
-    /// 1/m, positive to the left.
+    /// Curvature, 1/m, positive to the left.
     pub curvature: f64,
-    /// Metres from the start of the path; may lie before it and behind its end.
+    /// Distance from the start of the path, metres; may lie before the start and after the end.
     pub along_m: f64,
 }
 
@@ -77,19 +80,19 @@ impl Road {
         Ok(Self { spline, parameters, lengths, speeds })
     }
 
-    /// The path.
+    /// Returns the path.
     #[must_use]
     pub fn spline(&self) -> &GroundSpline {
         &self.spline
     }
 
-    /// Its length, metres.
+    /// Returns its length, metres.
     #[must_use]
     pub fn length_m(&self) -> f64 {
         self.lengths.last().copied().unwrap_or(0.0)
     }
 
-    /// Metres from the start to `parameter`, which is clamped to the path.
+    /// Returns the distance from the start to `parameter`, which is clamped to the path, metres.
     #[must_use]
     pub fn length_at(&self, parameter: f64) -> f64 {
         let u = unit(parameter);
@@ -97,7 +100,7 @@ impl Road {
         self.lengths[part] + length_between(&self.spline, self.parameters[part], u)
     }
 
-    /// The parameter `along_m` metres from the start, clamped to the path.
+    /// Returns the parameter at the distance `along_m` from the start, clamped to the path.
     #[must_use]
     pub fn parameter_at(&self, along_m: f64) -> f64 {
         let wanted = along_m.max(0.0).min(self.length_m());
@@ -107,7 +110,7 @@ impl Road {
         if high <= low {
             return from;
         }
-        // Newton's method, held between bounds that close in: the length rises.
+        // Newton's method, safeguarded by bounds: the length is monotonic.
         let (mut left, mut right) = (from, to);
         let mut u = self.guess(part, wanted).clamp(from, to);
         for _ in 0..40 {
@@ -121,21 +124,21 @@ impl Road {
                 right = u;
             }
             let next = u + missing / self.spline.jet(u).first.length();
-            // Where the path stands the step is no number, and the middle is taken.
+            // Where the speed is 0 the step is not finite, and the middle is taken.
             u = if next > left && next < right { next } else { 0.5 * (left + right) };
         }
         u
     }
 
-    /// The parameter at a length inside of a part, nearly: the cubic that has its ends and its
-    /// slopes there, or the straight line where the path stands.
+    /// Returns an estimate of the parameter at a length inside of a part: by the cubic with its
+    /// ends and slopes, or linearly where the speed is 0.
     fn guess(&self, part: usize, wanted: f64) -> f64 {
         let (from, to) = (self.parameters[part], self.parameters[part + 1]);
         let length = self.lengths[part + 1] - self.lengths[part];
         let t = (wanted - self.lengths[part]) / length;
         let slopes = [self.speeds[part], self.speeds[part + 1]].map(|speed| length / speed);
         let line = from + (to - from) * t;
-        // Beyond three times the mean slope the cubic turns back.
+        // Beyond three times the mean slope the cubic is not monotonic.
         if slopes.iter().any(|&slope| slope.is_nan() || slope > 3.0 * (to - from)) {
             return line;
         }
@@ -143,14 +146,14 @@ impl Road {
         line + t * (1.0 - t) * (bow[0] * (1.0 - t) - bow[1] * t)
     }
 
-    /// The frame of the path at `parameter`, which is clamped to the path.
+    /// Returns the frame of the path at `parameter`, which is clamped to the path.
     #[must_use]
     pub fn at(&self, parameter: f64) -> Waypoint {
         self.waypoint(parameter, self.length_at(parameter))
     }
 
-    /// The frame of the path `along_m` metres from its start. Beyond its ends an open path goes
-    /// straight on and a closed one round again.
+    /// Returns the frame of the path at the distance `along_m` from its start. Beyond its ends an
+    /// open path continues straight and a closed one repeats.
     #[must_use]
     pub fn at_length(&self, along_m: f64) -> Waypoint {
         let length = self.length_m();
@@ -167,9 +170,9 @@ impl Road {
         waypoint
     }
 
-    /// [`Self::at_length`] for one who would be at `parameter` if nothing had changed: where that
-    /// is as far from the start, it is the place. In the tip of a hairpin many parameters lie
-    /// within less than any tolerance on the length, and the path turns round between them.
+    /// Returns [`Self::at_length`], but the frame at `parameter` if that is at the same distance.
+    /// In the tip of a hairpin many parameters lie within any tolerance on the length, and the path
+    /// reverses between them.
     pub(super) fn at_length_near(&self, along_m: f64, parameter: f64) -> Waypoint {
         if (self.length_at(parameter) - along_m).abs() < SAME_M {
             self.waypoint(parameter, along_m)
@@ -191,8 +194,8 @@ impl Road {
         }
     }
 
-    /// Points along the path, evenly spaced by length, for drawing and for fits: `count` of them,
-    /// at least two.
+    /// Returns points along the path, evenly spaced by length, for drawing and for fits: `count` of
+    /// them, at least two.
     #[must_use]
     pub fn evenly(&self, count: usize) -> Vec<Waypoint> {
         let last = count.max(2) - 1;
@@ -205,13 +208,13 @@ impl Road {
     }
 }
 
-/// The part that holds `value`.
+/// Returns the part that holds `value`.
 fn part_of(ends: &[f64], value: f64) -> usize {
     ends.partition_point(|&end| end <= value).clamp(1, ends.len() - 1) - 1
 }
 
-/// Measures `from..to` of one piece and hands `add` the end and the length of each part of it, in
-/// order.
+/// Measures `from..to` of one piece and passes the end and the length of each part of it to `add`,
+/// in order.
 fn measure(
     spline: &GroundSpline,
     from: f64,
@@ -230,7 +233,7 @@ fn measure(
     }
 }
 
-/// The length between two parameters of one piece.
+/// Returns the length between two parameters of one piece.
 fn length_between(spline: &GroundSpline, from: f64, to: f64) -> f64 {
     let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
     let piece = spline.piece(middle);

@@ -1,3 +1,5 @@
+//! Cubic B-spline paths over the ground.
+
 use super::PathEditError;
 use glam::DVec2;
 

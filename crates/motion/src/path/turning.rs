@@ -1,3 +1,5 @@
+//! Turns that are sharper than those of a motion.
+
 use super::{Carried, FittedPath, Waypoint};
 use crate::math::{stats, wrap_angle};
 use glam::DVec2;

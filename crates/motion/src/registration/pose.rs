@@ -73,8 +73,8 @@ const CALM_REACH_SECS: f64 = 0.05;
 /// [`super::TransitionSearch`] compares windows of the whole body's points and finds their
 /// alignment. This search compares one frame of each clip in the character's own frame. The three
 /// terms are mean squares over joints (weighted, [`super::limb_weights`]); each is divided by its
-/// mean over all pairs of frames, so that the weights do not depend on units: `cost = Σ wₖ Dₖ /
-/// mean(Dₖ) / Σ wₖ`.
+/// mean over all pairs of frames, so that the weights do not depend on units:
+/// `cost = Σ wₖ Dₖ / mean(Dₖ) / Σ wₖ`.
 ///
 /// The terms are stored separately: new weights or regions cost a pass over the grid, not a new
 /// comparison. Pairs are compared every `max(⌈fps / 60⌉, ⌈frames / 1000⌉)` frames, in slices; the

@@ -133,11 +133,11 @@ const CANDIDATES: usize = 4;
 /// The search for the best transition between two clips, with everything cached that does not
 /// depend on the window.
 ///
-/// The search goes from coarse to fine. All pairs of windows are compared every `max(⌈fps / 30⌉,
-/// ⌈frames / 400⌉)` frames; the four lowest minima of that grid are searched again at the full
-/// frame rate, within one stride. The root-mean-square distance of the result is within 5 % or 0.2
-/// cm of the smallest over *all* pairs of frames (tested against them), and is exact for the pair
-/// returned if it was refined.
+/// The search goes from coarse to fine. All pairs of windows are compared every
+/// `max(⌈fps / 30⌉, ⌈frames / 400⌉)` frames; the four lowest minima of that grid are searched again
+/// at the full frame rate, within one stride. The root-mean-square distance of the result is within
+/// 5 % or 0.2 cm of the smallest over *all* pairs of frames (tested against them), and is exact for
+/// the pair returned if it was refined.
 #[derive(Clone, Debug)]
 pub struct TransitionSearch {
     outgoing: Arc<Clip>,

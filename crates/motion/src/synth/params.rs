@@ -1,3 +1,5 @@
+//! Parameters of synthesised motions.
+
 use crate::clip::ClipError;
 use crate::skeleton::SkeletonError;
 

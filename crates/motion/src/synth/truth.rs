@@ -1,3 +1,5 @@
+//! Ground truth of synthesised motions.
+
 use crate::clip::Clip;
 
 /// What of a foot stands still on the ground in a frame.

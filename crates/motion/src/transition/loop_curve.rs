@@ -39,12 +39,12 @@ const MAX_CYCLES: f64 = 10.0;
 /// and of their velocities' difference `V`.
 ///
 /// With the ratio `r`, `r D` is added at the head and `(1 - r) D` subtracted at the tail, so that
-/// `offset(0) - offset(T) = D`, and likewise for velocities. The springs' offset is `decay(r X, r
-/// W; t) - decay((1 - r) X, -(1 - r) W; T - t)`. Each spring still has an offset at the other end;
-/// X and W are the solution of
+/// `offset(0) - offset(T) = D`, and likewise for velocities. The springs' offset is
+/// `decay(r X, r W; t) - decay((1 - r) X, -(1 - r) W; T - t)`. Each spring still has an offset at
+/// the other end; X and W are the solution of
 ///
-/// `(1 - k) X + (1 - 2r) T e W = D` and `(2r - 1) y² T e X + (1 - (1 - yT) e) W = V`, with `e =
-/// e^(-yT)` and `k = (1 + yT) e`.
+/// `(1 - k) X + (1 - 2r) T e W = D` and `(2r - 1) y² T e X + (1 - (1 - yT) e) W = V`, with
+/// `e = e^(-yT)` and `k = (1 + yT) e`.
 #[derive(Clone, Copy, Debug)]
 pub struct LoopCurve {
     method: LoopMethod,

@@ -1,3 +1,5 @@
+//! Tests of path edits.
+
 use super::*;
 use proptest::prelude::*;
 use std::f64::consts::PI;

@@ -1,3 +1,5 @@
+//! Tests of path fits.
+
 use super::*;
 use crate::path::Road;
 use proptest::prelude::*;

@@ -1,3 +1,5 @@
+//! Tests of arc length.
+
 use super::*;
 use proptest::prelude::*;
 use std::f64::consts::FRAC_PI_2;
