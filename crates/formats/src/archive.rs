@@ -1,8 +1,8 @@
 //! Zip archives of motion files.
 //!
-//! What comes out is motion only, in the order of paths, whatever order the archive has. Nothing is
-//! ever allocated because a header says so, an archive inside the archive is opened and one inside
-//! that is not, and paths never lead out of the archive: they are names, nothing else.
+//! Only motion files are unpacked, in the order of paths, whatever the order in the archive is.
+//! Nothing is allocated because a header says so. An archive inside the archive is opened, one
+//! inside that is not. Paths are only names and never lead out of the archive.
 
 use super::gzip::{no_memory, read_at_most};
 use super::text::name as decoded;
@@ -16,50 +16,50 @@ use std::io;
 /// The endings of files that hold motion, or a part of it.
 const MOTION: [&str; 6] = ["bvh", "asf", "amc", "glb", "gltf", "bin"];
 
-/// See [`ArchiveLimits::default`].
+/// The greatest number of motion files by default; see [`ArchiveLimits::default`].
 pub const MAX_FILES: usize = 2000;
 
-/// Archives inside archives are opened to this depth.
+/// The depth to which archives inside archives are opened.
 const DEPTH: usize = 1;
 
-/// How much an archive may hold.
+/// Limits of an archive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct ArchiveLimits {
-    /// The most bytes that its motion files have together once they are unpacked. Larger archives
-    /// are refused.
+    /// The greatest size of all motion files together after unpacking, bytes. Larger archives are
+    /// refused.
     pub max_bytes: usize,
-    /// The most motion files that are read. Further ones are left out, and told.
+    /// The greatest number of motion files that are read. Further ones are left out with a warning.
     pub max_files: usize,
 }
 
 impl Default for ArchiveLimits {
-    /// As much as a single file may have, in as many files as a list has that a person looks
+    /// The size limit of a single file, and as many files as fit into a list that users can look
     /// through.
     fn default() -> Self {
         Self { max_bytes: ImportOptions::default().max_bytes, max_files: MAX_FILES }
     }
 }
 
-/// A file of an archive, unpacked.
+/// An unpacked file of an archive.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ArchivedFile {
-    /// Where it lies in the archive, with `/` between folders; below an archive inside the archive,
-    /// that one's path comes first. The ending `.gz` of a file that was packed once more is gone.
+    /// Its path in the archive, with `/` between folders; in an archive inside the archive, after
+    /// that one's path. The ending `.gz` of a compressed file is removed.
     pub path: String,
-    /// What it holds.
+    /// Its content.
     pub bytes: Vec<u8>,
 }
 
-/// What comes out of an archive.
+/// The content of an archive.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Unpacked {
     /// The motion files, sorted by path; at least one.
     pub files: Vec<ArchivedFile>,
-    /// What was left out, and why: one line per kind.
+    /// The files that were left out, and why: one per kind.
     pub warnings: Vec<ImportWarning>,
 }
 
-/// Whether the bytes start as a zip archive does.
+/// Returns whether the bytes start as those of a zip archive.
 #[must_use]
 pub fn is_zip(bytes: &[u8]) -> bool {
     // The second one is an archive without files.
@@ -67,14 +67,14 @@ pub fn is_zip(bytes: &[u8]) -> bool {
 }
 
 /// Unpacks the motion files of a zip archive: `.bvh`, `.asf`, `.amc`, `.glb`, `.gltf` with its
-/// `.bin`, each also packed once more as `.gz`.
+/// `.bin`, each also compressed as `.gz`.
 ///
-/// A file that is damaged, encrypted or packed in an unusual way is left out with a warning, as
-/// long as others are there.
+/// A file that is damaged, encrypted or compressed in an unusual way is left out with a warning, as
+/// long as there are others.
 ///
 /// # Errors
-/// [`ImportError`] when this is no zip archive, when it is cut off, when its files unpack to more
-/// than the limit, and when no motion comes out.
+/// [`ImportError`] when this is not a zip archive, when it is truncated, when its files unpack to
+/// more than the limit, and when no motion file is unpacked.
 pub fn unpack(name: &str, bytes: &[u8], limits: &ArchiveLimits) -> Result<Unpacked, ImportError> {
     let mut unpacking = Unpacking {
         name,
@@ -101,7 +101,8 @@ pub fn unpack(name: &str, bytes: &[u8], limits: &ArchiveLimits) -> Result<Unpack
             "motion files (.bvh, .asf, .amc, .glb, .gltf)",
         ));
     }
-    // Stable: of two files with one path, the one that comes first in the archive stays first.
+    // The sort is stable: of two files with one path, the one that comes first in the archive stays
+    // first.
     files.sort_by(|a, b| a.path.cmp(&b.path));
     Ok(Unpacked { files, warnings })
 }
@@ -113,8 +114,8 @@ fn open(bytes: &[u8]) -> Result<ZipSliceArchive<&[u8]>, Message> {
         ErrorKind::MissingEndOfCentralDirectory => "no zip archive".into(),
         _ => msg!("a damaged zip archive ({error})", error = error.to_string()),
     })?;
-    // The end of an archive inside one that was cut off may look like its own. But then nothing in
-    // it is at the start, and something comes after.
+    // The end of an inner archive of a truncated archive may look like its own. In that case
+    // nothing in it is at the start, and something follows.
     let is_inner = archive.end_offset() < bytes.len() as u64
         && bytes.starts_with(b"PK\x03\x04")
         && archive.entries().all(|entry| entry.is_ok_and(|entry| entry.local_header_offset() > 0));
@@ -123,24 +124,24 @@ fn open(bytes: &[u8]) -> Result<ZipSliceArchive<&[u8]>, Message> {
 
 struct Unpacking<'a> {
     name: &'a str,
-    /// Bytes that may still come out.
+    /// The number of bytes that may still be unpacked.
     left: usize,
     limits: ArchiveLimits,
     files: Vec<ArchivedFile>,
     tally: Tally,
 }
 
-/// Why a file did not come out.
-enum Miss {
-    /// It is left out.
+/// The reason why a file was not unpacked.
+enum UnpackFailure {
+    /// It cannot be read, and is left out.
     Unreadable(Message),
-    /// The archive is refused.
+    /// It exceeds the size limit; the archive is refused.
     TooMuch,
-    /// Likewise, for there is no memory for the file.
+    /// There is no memory for the file; the archive is refused.
     NoMemory,
 }
 
-impl From<io::Error> for Miss {
+impl From<io::Error> for UnpackFailure {
     fn from(error: io::Error) -> Self {
         match error.kind() {
             io::ErrorKind::OutOfMemory => Self::NoMemory,
@@ -183,7 +184,7 @@ impl Unpacking<'_> {
         if entry.is_dir() {
             return Ok(());
         }
-        let (path, leads_out) = tidy(&decoded(entry.file_path().as_bytes()).0);
+        let (path, leads_out) = sanitized_path(&decoded(entry.file_path().as_bytes()).0);
         if path.split('/').any(|part| part.starts_with('.') || part == "__MACOSX") {
             self.tally.add(WarningKind::HiddenFiles, None);
             return Ok(());
@@ -237,13 +238,13 @@ impl Unpacking<'_> {
         &self,
         archive: &ZipSliceArchive<&[u8]>,
         entry: &ZipFileHeaderRecord<'_>,
-    ) -> Result<Vec<u8>, Miss> {
+    ) -> Result<Vec<u8>, UnpackFailure> {
         if entry.flags().is_encrypted() {
-            return Err(Miss::Unreadable("it is encrypted".into()));
+            return Err(UnpackFailure::Unreadable("it is encrypted".into()));
         }
         let packed = archive.get_entry(entry.wayfinder());
         let packed = packed.map_err(|error| {
-            Miss::Unreadable(msg!("it is damaged ({error})", error = error.to_string()))
+            UnpackFailure::Unreadable(msg!("it is damaged ({error})", error = error.to_string()))
         })?;
         let bytes = match entry.compression_method() {
             CompressionMethod::STORE => {
@@ -257,20 +258,20 @@ impl Unpacking<'_> {
                     || msg!("method {number}", number = other.as_u16()),
                     Message::word,
                 );
-                return Err(Miss::Unreadable(msg!(
+                return Err(UnpackFailure::Unreadable(msg!(
                     "it is packed with {name}, which is not read here"
                 )));
             }
         };
-        bytes?.ok_or(Miss::TooMuch)
+        bytes?.ok_or(UnpackFailure::TooMuch)
     }
 
     /// Leaves a file out, or refuses the archive.
-    fn miss(&mut self, path: &str, miss: Miss) -> Result<(), ImportError> {
+    fn miss(&mut self, path: &str, miss: UnpackFailure) -> Result<(), ImportError> {
         match miss {
-            Miss::TooMuch => Err(self.too_much()),
-            Miss::NoMemory => Err(no_memory(self.name)),
-            Miss::Unreadable(why) => {
+            UnpackFailure::TooMuch => Err(self.too_much()),
+            UnpackFailure::NoMemory => Err(no_memory(self.name)),
+            UnpackFailure::Unreadable(why) => {
                 self.unreadable(path, why);
                 Ok(())
             }
@@ -297,9 +298,9 @@ fn is_motion(path: &str) -> bool {
     MOTION.iter().any(|extension| has_extension(path, extension))
 }
 
-/// A path inside the archive: with `/` only, and without drives, roots, `.` and `..`. Tells whether
-/// it would have led out.
-fn tidy(path: &str) -> (String, bool) {
+/// Returns a path inside the archive with `/` only, and without drives, roots, `.` and `..`, and
+/// whether it would have led out.
+fn sanitized_path(path: &str) -> (String, bool) {
     let is_drive = |part: &str| part.len() == 2 && part.ends_with(':');
     let mut leads_out = path.starts_with(['/', '\\']);
     let mut parts: Vec<&str> = Vec::new();

@@ -1,4 +1,4 @@
-//! From the motions of a file, in its own units, to clips.
+//! Assembly of clips from the motions of a file in its own units.
 
 use super::error::Fault;
 use super::measure::{UpKnown, measure};
@@ -8,10 +8,9 @@ use super::warning::{Tally, WarningKind};
 use super::{ImportOptions, ImportedClip, stem};
 use segue_text::ToMessage;
 
-/// One clip for each character of a file: measured, in metres and Y up, without a T-pose row where
-/// there is one.
+/// Returns one clip for each character of a file: in metres and Y up, without a leading T-pose.
 ///
-/// `unit_of_file` is what the file itself says of its unit, metres; `first_row_at` the place of its
+/// `unit_of_file` is the unit that the file itself states, metres; `first_row_at` the place of its
 /// first row.
 pub(super) fn assemble(
     name: &str,
@@ -30,7 +29,8 @@ pub(super) fn assemble(
         tally.add(WarningKind::RestFromFirstRow, None);
     }
     let t_poses: Vec<bool> = motions.iter().map(first_frame_is_t_pose).collect();
-    // Characters of one file stay in step: the row goes only where it is a T-pose for all of them.
+    // Characters of one file stay in step: the row is dropped only if it is a T-pose for all of
+    // them.
     let dropped = options.drop_t_pose && t_poses.iter().all(|&is_t_pose| is_t_pose);
     if t_poses.contains(&true) {
         tally.add(WarningKind::TPose { dropped }, Some(first_row_at));

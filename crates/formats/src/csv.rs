@@ -1,8 +1,8 @@
 //! Comma-separated values: a clip as a table for spreadsheets and scripts, one row per frame.
 //!
-//! As RFC 4180 has it: a header row, lines that end with CR LF, quotation marks around names that
-//! need them. Numbers have a decimal point and as many digits as it takes to read the same number
-//! back. Columns say their unit: `Hips.x_m`.
+//! The format is that of RFC 4180: a header row, lines that end with CR LF, quotation marks around
+//! names that need them. Numbers have a decimal point and as many digits as are needed to read the
+//! same number back. Columns name their unit: `Hips.x_m`.
 
 use super::bvh::RotationOrder;
 use glam::Quat;
@@ -12,7 +12,7 @@ use segue_motion::skeleton::{Side, WorldPose};
 use std::collections::BTreeMap;
 use std::fmt::{Display, Write as _};
 
-/// How local rotations are written.
+/// The representation of local rotations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum CsvRotations {
     /// Four columns `.qx`, `.qy`, `.qz`, `.qw`: unit quaternions, each in the hemisphere of the one
@@ -25,27 +25,27 @@ pub enum CsvRotations {
     Euler(RotationOrder),
 }
 
-/// What the table looks like.
+/// Options of the table.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct CsvOptions {
-    /// How rotations are written.
+    /// The representation of rotations.
     pub rotations: CsvRotations,
 }
 
-/// What goes into the table.
+/// The content of the table.
 #[derive(Clone, Copy, Debug)]
 pub struct CsvInputs<'a> {
     /// The motion.
     pub clip: &'a Clip,
-    /// When its feet are on the ground; no columns where `None`.
+    /// The contacts of its feet; no columns where `None`.
     pub contacts: Option<&'a Contacts>,
-    /// More columns, by name: one value per frame. Rows beyond the end of one are empty there.
+    /// Further columns, by name: one value per frame. Missing values are empty cells.
     pub columns: &'a [(String, Vec<f32>)],
 }
 
 /// Writes a clip as a table: `time_s`; for each joint its position in the world (metres) and its
 /// local rotation; `left_foot_contact` and `right_foot_contact` (0 or 1); the columns of `inputs`.
-/// Values that are no numbers are empty. Joints of the same name are numbered: `Hand (2)`.
+/// Values that are not finite are empty. Joints of the same name are numbered: `Hand (2)`.
 #[must_use]
 pub fn write_csv(inputs: &CsvInputs<'_>, options: &CsvOptions) -> String {
     let unfolded = inputs.clip.unfolded();
@@ -117,8 +117,8 @@ fn header(out: &mut String, inputs: &CsvInputs<'_>, rotations: CsvRotations) {
     out.push_str("\r\n");
 }
 
-/// Returns a name as a cell: in quotation marks where it holds what would end it, and behind an
-/// apostrophe where a spreadsheet would take it for a formula (OWASP, CSV injection).
+/// Returns a name as a cell: in quotation marks where it contains a delimiter, and after an
+/// apostrophe where a spreadsheet would read it as a formula (OWASP, CSV injection).
 #[must_use]
 pub fn cell(name: &str) -> String {
     let apostrophe = if name.starts_with(['=', '+', '-', '@', '\t', '\r']) { "'" } else { "" };
@@ -143,7 +143,7 @@ impl<'a> Row<'a> {
 
     fn value(&mut self, value: f32) {
         if value.is_finite() {
-            // Not -0.
+            // Avoids -0.
             self.cell(value + 0.0);
         } else {
             self.out.push(',');
@@ -164,7 +164,7 @@ mod tests {
     use segue_motion::synth::{Action, Params, synthesize};
     use std::sync::Arc;
 
-    /// Lines and cells; a comma in quotation marks is none.
+    /// Returns lines and cells; a comma in quotation marks is not a delimiter.
     fn table(text: &str) -> Vec<Vec<String>> {
         let lines = text.strip_suffix("\r\n").unwrap().split("\r\n");
         let cells = |line: &str| {
@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn every_number_comes_back_as_it_was() {
+    fn write_csv_keeps_every_number() {
         let clip = synthesize(&Params::new(Action::Walk)).unwrap().clip;
         let values = (0..clip.frames()).map(|frame| Vec3::splat(0.01 * frame as f32)).collect();
         let clip = clip.with_translations(vec![JointTranslations { joint: 3, values }]).unwrap();
@@ -237,9 +237,9 @@ mod tests {
     }
 
     #[test]
-    fn angles_make_the_rotation_and_do_not_jump() {
+    fn write_csv_angles_are_continuous() {
         let run = synthesize(&Params::new(Action::Run)).unwrap().clip;
-        // It spins as it runs: angles go on beyond half a turn.
+        // The body spins as it runs: angles continue beyond half a turn.
         let poses = (0..run.frames()).map(|frame| {
             let mut pose = run.pose(frame);
             pose.rotations[0] = Quat::from_rotation_y(0.2 * frame as f32) * pose.rotations[0];
@@ -273,7 +273,7 @@ mod tests {
     }
 
     #[test]
-    fn no_name_is_a_formula() {
+    fn cell_of_a_formula_is_escaped() {
         for (name, written) in [
             ("=HYPERLINK(\"x\",\"y\")", "\"'=HYPERLINK(\"\"x\"\",\"\"y\"\")\""),
             ("+1", "'+1"),
@@ -288,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn names_are_told_apart() {
+    fn write_csv_numbers_equal_names() {
         let joint = |name: &str, parent| Joint {
             name: name.into(),
             parent,

@@ -1,3 +1,5 @@
+//! Errors of files, with their place.
+
 use super::text::{position, quoted};
 use segue_text::Message;
 

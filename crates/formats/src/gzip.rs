@@ -1,15 +1,17 @@
+//! Gzip files, and reading with a limit.
+
 use super::ImportError;
 use flate2::read::GzDecoder;
 use segue_text::msg;
 use std::io::{self, Read};
 
-/// Whether the bytes start as a gzip file does.
+/// Returns whether the bytes start as those of a gzip file.
 pub(super) fn is_gzip(bytes: &[u8]) -> bool {
     bytes.starts_with(&[0x1f, 0x8b])
 }
 
-/// Unpacks a gzip file. Bytes that are no gzip file come back as they are: a server may have
-/// unpacked them on the way.
+/// Unpacks a gzip file. Bytes that are not a gzip file are returned unchanged: a server may have
+/// unpacked them already.
 ///
 /// # Errors
 /// [`ImportError`] when it is damaged or unpacks to more than `most` bytes.
@@ -28,15 +30,15 @@ pub fn unpack_gzip(name: &str, packed: &[u8], most: usize) -> Result<Vec<u8>, Im
     }
 }
 
-/// Says that there is no memory for what comes out of the packed file `name`.
+/// Returns the error that there is no memory for the content of the packed file `name`.
 pub(super) fn no_memory(name: &str) -> ImportError {
     let found = "more than there is memory for after unpacking";
     ImportError::whole_file(name, found, "a smaller file")
         .with_hint("unpack the archive and open a part of its files")
 }
 
-/// Reads to the end, or gives `None` when there is more than `most`. The buffer grows with what
-/// comes, whatever a header promises; where there is no memory for it, the error is of the kind
+/// Reads to the end, or returns `None` when there is more than `most`. The buffer grows with the
+/// data, whatever a header says; where there is no memory for it, the error is of the kind
 /// [`io::ErrorKind::OutOfMemory`].
 pub(super) fn read_at_most(reader: impl Read, most: usize) -> io::Result<Option<Vec<u8>>> {
     let mut bytes = Vec::new();
@@ -51,7 +53,7 @@ mod tests {
     use std::io::Write as _;
 
     #[test]
-    fn unpacks_or_says_why_not() {
+    fn unpack_gzip_of_damaged_data_is_refused() {
         let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
         encoder.write_all(b"HIERARCHY").unwrap();
         let packed = encoder.finish().unwrap();

@@ -1,14 +1,14 @@
 //! Motion files: from bytes to clips and back.
 //!
-//! [`import`] reads whatever it is given, by content rather than by name. Everything with a
-//! sensible reading is read, and what was odd about it comes back as [`ImportWarning`]s, one line
-//! per kind; the rest is refused with an [`ImportError`] that says where. Memory follows the bytes
-//! that are there, never a number in a header.
+//! [`import`] recognises files by content rather than by name. Everything with a sensible reading
+//! is read, and oddities are returned as [`ImportWarning`]s, one per kind; the rest is refused with
+//! an [`ImportError`] that says where. Memory is bounded by the size of the file, never by a number
+//! in a header.
 //!
 //! # The idea
 //!
-//! A motion file is a skeleton and a table of numbers, but no format says all that a [`Clip`]
-//! needs. What is missing is found:
+//! A motion file is a skeleton and a table of numbers, but no format contains all that a [`Clip`]
+//! needs. Missing information is inferred:
 //!
 //! ```text
 //! bytes → kind (first words) → skeleton and numbers, in the file's units and axes
@@ -16,8 +16,8 @@
 //!       → metres, Y up, parents first → Clip
 //! ```
 //!
-//! A body that is 174 units tall is measured in centimetres, one of 1.74 in metres, and how the
-//! body stands tells which way is up. Where that is wrong, [`ImportOptions`] say better.
+//! A body that is 174 units tall is measured in centimetres, one of 1.74 in metres, and the stance
+//! of the body shows which axis is up. [`ImportOptions`] override both.
 //!
 //! | | read | written |
 //! |---|---|---|
@@ -38,7 +38,7 @@
 //! let text = bvh::write(&walk, &bvh::WriteOptions::default());
 //! let read = |text: &str| import("walk.bvh", text.as_bytes(), &ImportOptions::default());
 //!
-//! // There and back: every joint is where it was, and the centimetres were found by the height.
+//! // There and back: every joint keeps its position, and centimetres were inferred by the height.
 //! let file = read(&text)?;
 //! let back = &file.clips[0].clip;
 //! let everywhere = |clip: &Clip| clip.world_positions(0..clip.frames());
@@ -47,7 +47,7 @@
 //! assert!(there.iter().zip(&here).all(|(p, q)| p.distance(*q) < 1e-5));
 //! assert!(file.clips[0].measure.unit_detected && file.warnings.is_empty());
 //!
-//! // A row that is cut off is told and left out; a slip of the pen is told with its place.
+//! // A truncated row is reported and dropped; a typing error is reported with its place.
 //! let shorter = read(&text[..text.len() - 40])?;
 //! assert!(shorter.clips[0].clip.frames() == walk.frames() - 1 && !shorter.warnings.is_empty());
 //! let error = read(&text.replacen("OFFSET", "OFSET", 1)).err().ok_or("it was read")?;
@@ -57,19 +57,18 @@
 //!
 //! # Accuracy and cost
 //!
-//! A clip that is written as BVH and read back is the same to 1e-5 (metres, radians), whatever its
+//! A clip that is written as BVH and read back is equal to 1e-5 (metres, radians), whatever its
 //! channels and rotation orders. Reading a BVH file takes memory of at most three times its size,
-//! and time by its length. Any bytes are read or refused, none panic.
+//! and linear time. Any bytes are read or refused, none panic.
 //!
 //! # What it does not do
 //!
-//! No FBX, no meshes, no materials. [`import`] neither opens archives nor looks for a second file:
-//! whoever holds the files does, and hands an AMC file over with its skeleton
-//! ([`acclaim::read_motion`]).
+//! No FBX. [`import`] neither opens archives nor looks for a second file: the caller has the files,
+//! and passes an AMC file with its skeleton ([`acclaim::read_motion`]).
 //!
 //! # Sources
 //!
-//! The formats' own documents are named in [`bvh`], [`acclaim`] and [`gltf`].
+//! [`bvh`], [`acclaim`] and [`gltf`] cite the documents of their formats.
 
 pub mod acclaim;
 pub mod archive;
@@ -97,27 +96,28 @@ use segue_motion::skin::SkinnedMesh;
 use segue_text::msg;
 use std::sync::Arc;
 
-/// What a person may know better than the file.
+/// Options of an import, which override the file or what is inferred.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ImportOptions {
-    /// Metres per unit of length; found by the height of the character where `None` or no length.
+    /// Metres per unit of length; inferred from the height of the character where `None` or out of
+    /// range.
     pub metres_per_unit: Option<f64>,
-    /// The up axis; found by the stance of the character where `None`.
+    /// The up axis; inferred from the stance of the character where `None`.
     pub up: Option<UpAxis>,
-    /// Frames per second; what the file says where `None` or no rate.
+    /// Frames per second; those of the file where `None` or out of range.
     pub fps: Option<f64>,
-    /// Larger files are refused.
+    /// The greatest size of a file, bytes.
     pub max_bytes: usize,
-    /// Whether a first row that is a T-pose is left out; otherwise it is only marked.
+    /// Whether a first row that is a T-pose is dropped; otherwise it is only marked.
     pub drop_t_pose: bool,
-    /// Whether rows in which the root is metres away, and back in the next, get a place between
-    /// their neighbours.
+    /// Whether single rows in which the root is metres away are replaced by positions between their
+    /// neighbours.
     #[serde(default)]
     pub even_wild_rows: bool,
 }
 
 impl Default for ImportOptions {
-    /// Everything as found, up to 512 MB, without a T-pose in front.
+    /// Everything inferred, up to 512 MB, without a leading T-pose.
     fn default() -> Self {
         Self {
             metres_per_unit: None,
@@ -135,14 +135,14 @@ impl Default for ImportOptions {
 pub struct ImportedClip {
     /// The motion, in metres and Y up.
     pub clip: Clip,
-    /// Whether the first row of the file is a T-pose that the motion does not start from. Frame 0
-    /// of `clip` is that row unless [`t_pose_dropped`](Self::t_pose_dropped).
+    /// Whether the first row of the file is a T-pose that does not belong to the motion. Frame 0 of
+    /// `clip` is that row unless [`t_pose_dropped`](Self::t_pose_dropped).
     pub t_pose_first_row: bool,
     /// Whether the first row was left out.
     pub t_pose_dropped: bool,
-    /// The unit and up axis that were found or given; its text is a note for people.
+    /// The unit and up axis that were inferred or given; its text is a note for users.
     pub measure: Measure,
-    /// What could be read better.
+    /// The problems that another import could fix.
     pub mendable: Mendable,
     /// The character's own mesh, bound to the clip's skeleton; all clips of one character share it.
     pub mesh: Option<Arc<SkinnedMesh>>,
@@ -154,30 +154,30 @@ impl ImportedClip {
     }
 }
 
-/// What a file holds.
+/// The content of a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Imported {
     /// One clip for each character.
     pub clips: Vec<ImportedClip>,
-    /// What was odd, one line per kind.
+    /// The oddities of the file, one per kind.
     pub warnings: Vec<ImportWarning>,
 }
 
-/// Reads a motion file. An ASF file is read as its skeleton alone; for an AMC file, which is
-/// nothing without one, see [`acclaim`]. `name` is the file's name: for errors, for the name of the
-/// clip, and for its ending where the content says nothing.
+/// Reads a motion file. An ASF file is read as its skeleton alone; for an AMC file, which needs a
+/// skeleton, see [`acclaim`]. `name` is the file's name: for errors, for the name of the clip, and
+/// for its ending where the content is not conclusive.
 ///
 /// # Errors
-/// [`ImportError`] when the file is too large, of no known format, or broken.
+/// [`ImportError`] when the file is too large, of unknown format, or broken.
 pub fn import(name: &str, bytes: &[u8], options: &ImportOptions) -> Result<Imported, ImportError> {
     Ok(import_with_progress(name, bytes, options, &mut |_| true)?.unwrap_or_default())
 }
 
-/// [`import`] that reports the bytes read so far about every 256 KB, and stops with `None` when
-/// `progress` returns `false`.
+/// Reads a motion file as [`import`] does, reports the bytes read so far about every 256 KB, and
+/// stops with `None` when `progress` returns `false`.
 ///
 /// # Errors
-/// As [`import`].
+/// The same as for [`import`].
 pub fn import_with_progress(
     name: &str,
     bytes: &[u8],
@@ -220,7 +220,7 @@ pub fn import_with_progress(
     }
 }
 
-/// What a file is.
+/// The format of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub enum FileKind {
     /// Skeleton and motion, [`bvh`].
@@ -235,12 +235,12 @@ pub enum FileKind {
     Zip,
     /// One file, packed with gzip.
     Gzip,
-    /// Nothing that is known here.
+    /// An unknown format.
     Unknown,
 }
 
 impl FileKind {
-    /// What people call it.
+    /// Returns the name on screen.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -255,10 +255,11 @@ impl FileKind {
     }
 }
 
-/// What a file is: by its first words, and where they say nothing by the ending of its name.
+/// Returns the format of a file: by its first words, and where they are not conclusive by the
+/// ending of its name.
 #[must_use]
 pub fn kind_of(name: &str, bytes: &[u8]) -> FileKind {
-    /// Comments may come first; UTF-16 has two bytes for each.
+    /// Comments may come first; UTF-16 has two bytes for each character.
     const HEAD: usize = 16 << 10;
     if archive::is_zip(bytes) {
         return FileKind::Zip;
@@ -295,7 +296,7 @@ fn has_extension(name: &str, extension: &str) -> bool {
     name.rsplit_once('.').is_some_and(|(_, found)| found.eq_ignore_ascii_case(extension))
 }
 
-/// The file's name without folders and ending.
+/// Returns the file's name without folders and ending.
 fn stem(name: &str) -> &str {
     let file = name.rsplit(['/', '\\']).next().unwrap_or(name);
     match file.rsplit_once('.') {
@@ -313,7 +314,7 @@ fn check_size(name: &str, bytes: &[u8], options: &ImportOptions) -> Result<(), I
         .with_hint("cut the motion into parts"))
 }
 
-/// Refuses a file of nothing, or of white space alone.
+/// Refuses a file that is empty, or has only white space.
 fn check_not_empty(name: &str, bytes: &[u8]) -> Result<(), ImportError> {
     if bytes.iter().any(|byte| !text::is_space(*byte)) {
         return Ok(());
@@ -326,7 +327,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_file_is_known_by_its_content_or_its_name() {
+    fn kind_of_a_file_follows_content_or_name() {
         let options = ImportOptions::default();
         let text = b"# a comment\nROOT Hips { OFFSET 0 1 0 }";
         assert_eq!(import("dir/walk.txt", text, &options).unwrap().clips[0].clip.name(), "walk");
@@ -350,7 +351,7 @@ mod tests {
     }
 
     #[test]
-    fn content_counts_before_the_ending() {
+    fn kind_of_a_file_prefers_content_to_the_ending() {
         let kinds = [
             ("x.amc", "HIERARCHY\nROOT a", FileKind::Bvh),
             ("x.bvh", "# by hand\n:version 1.10\n:root", FileKind::Asf),
@@ -366,14 +367,14 @@ mod tests {
     }
 
     #[test]
-    fn the_size_is_checked_first() {
+    fn import_of_a_large_file_is_refused_first() {
         let options = ImportOptions { max_bytes: 10 << 20, ..ImportOptions::default() };
         let error = import("big.bvh", &vec![b' '; (10 << 20) + 1], &options).unwrap_err();
         assert_eq!(error.to_string(), "big.bvh:1:1: found a file of 11 MB, expected at most 10 MB");
     }
 
     #[test]
-    fn stems() {
+    fn stem_is_the_name_without_folders_and_ending() {
         for (name, expected) in [
             ("a/b.c/walk.bvh", "walk"),
             ("C:\\x\\run.1.bvh", "run.1"),

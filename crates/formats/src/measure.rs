@@ -1,5 +1,5 @@
-//! How long a file's unit is, and which of its axes is up. No motion format says; the size and
-//! stance of a person do.
+//! Inference of a file's unit and up axis from the size and stance of the character; no motion
+//! format states them reliably.
 
 use super::raw::RawMotion;
 use glam::Vec3;
@@ -12,9 +12,9 @@ use std::fmt;
 /// say (`:units … length 0.45`).
 pub const CMU_METRES_PER_UNIT: f64 = 0.0254 / 0.45;
 
-/// Heights in file units (from, below) that make a person of a unit. Between people of 1.2 to 2.2 m
-/// there is no overlap; for the gaps, the bound is where both neighbours are equally far from a
-/// person of 1.7 m, but for centimetres, which are more common than inches.
+/// Ranges of a person's height in file units (from, below), and the unit. Between people of 1.2 to
+/// 2.2 m there is no overlap; in the gaps, the bound is where both neighbours are equally far from
+/// a person of 1.7 m, except for centimetres, which are more common than inches.
 const UNITS: [(f64, f64, f64); 7] = [
     (0.3, 3.1, 1.0),
     (3.1, 9.7, 0.3048),
@@ -25,47 +25,46 @@ const UNITS: [(f64, f64, f64); 7] = [
     (500.0, 5000.0, 0.001),
 ];
 
-/// An axis along which a body is longer than along another by this is up.
-const CLEARLY: f32 = 1.25;
+/// The ratio of a body's lengths along two axes from which on the longer one is up.
+const CLEAR_RATIO: f32 = 1.25;
 
-/// How a file was measured, and by what.
+/// The unit and up axis of a file, and how they are known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measure {
-    /// The unit and the up axis that the clip was read with.
+    /// The unit and the up axis with which the clip was read.
     pub provenance: Provenance,
     /// The height of the character standing upright, in the file's units: from the lengths of its
-    /// bones ([`Roles::body_height`]) where names tell its legs, else its extent.
+    /// bones ([`Roles::body_height`]) where names give its legs, otherwise its extent.
     pub height_units: f64,
-    /// Whether the unit was found by the height, or by the word of the file where that fits the
+    /// Whether the unit was inferred from the height, or stated by the file and confirmed by the
     /// height, rather than given.
     pub unit_detected: bool,
-    /// Whether the height fits no unit, so that centimetres were taken.
+    /// Whether the height fits no unit, so that centimetres were assumed.
     pub unit_unknown: bool,
     /// How the up axis is known.
     pub up_known: UpKnown,
 }
 
-/// How an up axis is known.
+/// The source of an up axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UpKnown {
     /// It was given.
     Given,
-    /// It was found by the stance.
+    /// It was inferred from the stance.
     Found,
-    /// What speaks for it hardly outweighs what speaks against it, as for a body that lies in every
-    /// frame.
+    /// The evidence is weak, as for a body that lies in every frame.
     Uncertain,
 }
 
 impl Measure {
-    /// The height of the character standing upright, metres.
+    /// Returns the height of the character standing upright, metres.
     #[must_use]
     pub fn height_metres(&self) -> f64 {
         self.height_units * self.provenance.metres_per_unit
     }
 
-    /// The same with the unit that the file itself tells of, metres, where that makes the character
-    /// as tall as a person (0.9 to 2.5 m) and no other unit was given.
+    /// Returns the measure with the unit stated by the file, metres, if that makes the character as
+    /// tall as a person (0.9 to 2.5 m) and no other unit was given.
     pub(super) fn with_unit_of_file(self, metres_per_unit: Option<f64>) -> Self {
         match metres_per_unit
             .filter(|unit| self.unit_detected && (0.9..2.5).contains(&(self.height_units * unit)))
@@ -112,11 +111,11 @@ impl ToMessage for Measure {
     }
 }
 
-/// Measures a motion in file units and axes. What is given is taken as it is.
+/// Measures a motion in file units and axes. Given values are used unchanged.
 ///
-/// Where names tell the legs, nothing depends on the rest pose, which in some files means nothing:
-/// the height follows from bone lengths, and up is where limbs and head point over all frames, and
-/// on whose floor the body moves ([`Evidence`]).
+/// Where names give the legs, nothing depends on the rest pose, which may be implausible: the
+/// height follows from bone lengths, and the up axis is the one along which limbs and head point
+/// over all frames, and on whose floor the body moves ([`Evidence`]).
 pub(super) fn measure(
     raw: &RawMotion,
     metres_per_unit: Option<f64>,
@@ -152,7 +151,7 @@ pub(super) fn measure(
     }
 }
 
-/// The height of a body whose joints no name tells: that of its rest pose, or of the median frame
+/// Returns the height of a body without known roles: that of its rest pose, or of the median frame
 /// where the rest pose lies flat.
 fn extent_along(axis: usize, raw: &RawMotion, rest: &Body, frames: &[Body]) -> f32 {
     // A rest pose that lies flat (bones along their own axes) says nothing about height; the frames
@@ -164,7 +163,7 @@ fn extent_along(axis: usize, raw: &RawMotion, rest: &Body, frames: &[Body]) -> f
         Some(&median) if !upright => median,
         _ => {
             let height = rest.extent()[axis];
-            // No legs: the root's height stands for them.
+            // Without legs, the root's height is used.
             let has_legs = rest.low[axis] < -0.2 * height;
             let offset = raw.joints.first().map_or(0.0, |root| root.offset[axis]);
             let root = if offset == 0.0 {
@@ -177,7 +176,7 @@ fn extent_along(axis: usize, raw: &RawMotion, rest: &Body, frames: &[Body]) -> f
     }
 }
 
-/// A body whose legs are told by their joints' names.
+/// A body whose legs are known by their joints' names.
 struct Named<'a> {
     skeleton: &'a Skeleton,
     roles: Roles,
@@ -185,13 +184,13 @@ struct Named<'a> {
     height: f64,
 }
 
-/// What speaks for an axis as the one that points up.
+/// The evidence that an axis points up.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Evidence {
     /// How far limbs and head point along it, −1 to 1: from feet to hips, from hands to shoulders,
     /// from hips to head.
     limbs: f32,
-    /// 0 to 1: the lowest point of the body stays at one level, and near 0, as on a floor.
+    /// 0 to 1: the lowest point of the body stays at one level near 0, as on a floor.
     floor: f32,
 }
 
@@ -201,9 +200,10 @@ impl Evidence {
     }
 }
 
-/// Less evidence than this for one axis over the other leaves it to the rest pose, and is told.
-const CERTAIN: f32 = 0.6;
-/// A floor is level and near 0 within this share of the body's height.
+/// The least difference of evidence between the axes; below it the rest pose decides, with a
+/// warning.
+const MIN_EVIDENCE: f32 = 0.6;
+/// The tolerance of a floor's level, as a share of the body's height.
 const FLOOR_SHARE: f32 = 0.15;
 
 impl<'a> Named<'a> {
@@ -214,16 +214,16 @@ impl<'a> Named<'a> {
         (height.is_finite() && height > 0.0).then_some(Self { skeleton, roles, height })
     }
 
-    /// The up axis, and how certain that is.
+    /// Returns the up axis, and how certain it is.
     fn up_axis(&self, raw: &RawMotion, by_shape: impl FnOnce() -> UpAxis) -> (UpAxis, UpKnown) {
         let [y, z] = self.evidence(raw).map(Evidence::sum);
-        if (y - z).abs() < CERTAIN {
+        if (y - z).abs() < MIN_EVIDENCE {
             return (by_shape(), UpKnown::Uncertain);
         }
         (if z > y { UpAxis::Z } else { UpAxis::Y }, UpKnown::Found)
     }
 
-    /// For Y and for Z.
+    /// Returns the evidence for Y and for Z.
     fn evidence(&self, raw: &RawMotion) -> [Evidence; 2] {
         let frames = raw.frames();
         let samples = UP_SAMPLES.min(frames);
@@ -249,7 +249,7 @@ impl<'a> Named<'a> {
         [1, 2].map(|axis| Evidence { limbs: limbs[axis], floor: floor(axis) })
     }
 
-    /// Where limbs and head point in a frame, each counted by its length; unit length.
+    /// Returns the direction of limbs and head in a frame, weighted by length; unit length.
     fn limb_direction(&self, points: &[Vec3]) -> Option<Vec3> {
         let at = |role| self.roles.get(role).and_then(|joint| points.get(joint).copied());
         let between = |from: Role, to: Role| Some(at(to)? - at(from)?).filter(|v| v.is_finite());
@@ -261,7 +261,7 @@ impl<'a> Named<'a> {
     }
 }
 
-/// Frames that are looked at for the up axis, spread over the clip.
+/// The number of frames that are read for the up axis, spread over the clip.
 const UP_SAMPLES: usize = 32;
 
 fn index(up: UpAxis) -> usize {
@@ -271,7 +271,7 @@ fn index(up: UpAxis) -> usize {
     }
 }
 
-/// The box around a body.
+/// The bounding box of a body.
 #[derive(Clone, Copy)]
 struct Body {
     low: Vec3,
@@ -294,13 +294,14 @@ impl Body {
         self.high - self.low
     }
 
-    /// How far the lowest point is from the ground, were this axis up: as a share of the height.
+    /// Returns the distance of the lowest point from the ground if this axis were up, as a share of
+    /// the height.
     fn off_ground(&self, axis: usize) -> f32 {
         self.low[axis].abs() / self.extent()[axis].max(f32::MIN_POSITIVE)
     }
 }
 
-/// Up to eight frames spread over the clip.
+/// Returns the bodies of up to eight frames spread over the clip.
 fn sampled_frames(raw: &RawMotion, skeleton: &Skeleton) -> Vec<Body> {
     const SAMPLES: usize = 8;
     let frames = raw.frames();
@@ -309,7 +310,7 @@ fn sampled_frames(raw: &RawMotion, skeleton: &Skeleton) -> Vec<Body> {
         .collect()
 }
 
-/// The up axis, Y where nothing speaks for Z.
+/// Returns the up axis; Y without evidence for Z.
 fn up_axis(rest_points: &[Vec3], rest: &Body, frames: &[Body]) -> UpAxis {
     let by_rest = longer_axis(rest.extent(), lateral_axis(rest_points, rest));
     // Frames in which the feet are on the ground of one axis and far from that of the other.
@@ -327,7 +328,7 @@ fn up_axis(rest_points: &[Vec3], rest: &Body, frames: &[Body]) -> UpAxis {
         {
             UpAxis::Y
         }
-        // The root turns a Y-up rest pose upright in a Z-up world.
+        // The root rotates a Y-up rest pose upright in a Z-up world.
         Some(UpAxis::Y)
             if share(&|body| stands(body, 2, 1) && body.extent().z > 2.0 * body.extent().y)
                 > 0.9 =>
@@ -341,23 +342,23 @@ fn up_axis(rest_points: &[Vec3], rest: &Body, frames: &[Body]) -> UpAxis {
     }
 }
 
-/// Which of Y and Z is up by a body's size along both, when they are clearly different and the arms
-/// do not run along one of them.
+/// Returns which of Y and Z is up by a body's size along both, when they are clearly different and
+/// the arms do not run along one of them.
 fn longer_axis(extent: Vec3, lateral: Option<usize>) -> Option<UpAxis> {
-    // Lying along X: what is left says nothing.
+    // For a body that lies along X the other axes say nothing.
     if extent.y.max(extent.z) < 0.35 * extent.x {
         return None;
     }
     match lateral {
         Some(1) => Some(UpAxis::Z),
         Some(2) => Some(UpAxis::Y),
-        _ if extent.z > CLEARLY * extent.y => Some(UpAxis::Z),
-        _ if extent.y > CLEARLY * extent.z => Some(UpAxis::Y),
+        _ if extent.z > CLEAR_RATIO * extent.y => Some(UpAxis::Z),
+        _ if extent.y > CLEAR_RATIO * extent.z => Some(UpAxis::Y),
         _ => None,
     }
 }
 
-/// The axis across which the rest pose is its own mirror image: left to right.
+/// Returns the axis across which the rest pose is symmetric: left to right.
 fn lateral_axis(points: &[Vec3], rest: &Body) -> Option<usize> {
     /// Every point is compared with every other; rigs are smaller, and what is larger is no rig.
     const MOST: usize = 512;
@@ -383,7 +384,8 @@ mod tests {
     use glam::Quat;
     use segue_motion::skeleton::Joint;
 
-    /// A person 1.66 m tall in T-pose, facing +Z with Y up, from pelvis to feet, head and hands.
+    /// Returns a person 1.66 m tall in T-pose, facing +Z with Y up, from pelvis to feet, head and
+    /// hands.
     fn person(map: impl Fn(Vec3) -> Vec3, root: Vec3) -> RawMotion {
         let parts = [
             (None, [0.0, 0.0, 0.0], None),
@@ -418,7 +420,7 @@ mod tests {
     const STANDING: Vec3 = Vec3::new(3.0, 0.94, -2.0);
 
     #[test]
-    fn every_usual_unit_is_found_by_the_height_of_a_person() {
+    fn measure_of_a_person_in_any_unit_finds_the_unit() {
         for (_, _, unit) in UNITS {
             let raw = person(|v| v / unit as f32, STANDING);
             let found = measure(&raw, None, None);
@@ -434,7 +436,7 @@ mod tests {
     }
 
     #[test]
-    fn up_is_found_whichever_way_the_person_faces() {
+    fn measure_finds_up_for_any_facing() {
         let facing_z = |v: Vec3| v;
         let facing_x = |v: Vec3| Vec3::new(v.z, v.y, -v.x);
         let z_up = |v: Vec3| Vec3::new(v.x, -v.z, v.y);
@@ -446,22 +448,22 @@ mod tests {
     }
 
     #[test]
-    fn a_root_that_turns_the_rest_pose_upright_counts() {
+    fn measure_with_a_rotated_root_finds_up() {
         let mut raw = person(|v| v, Vec3::new(0.0, -2.0, 0.94));
         raw.rotations[0] = Quat::from_rotation_x(std::f32::consts::FRAC_PI_2);
         assert_eq!(measure(&raw, None, None).provenance.up, UpAxis::Z);
     }
 
     #[test]
-    fn what_is_given_is_taken() {
+    fn measure_with_given_values_keeps_them() {
         let found = measure(&person(|v| v, STANDING), Some(0.5), Some(UpAxis::Z));
         assert_eq!(found.provenance, Provenance { metres_per_unit: 0.5, up: UpAxis::Z });
         assert!(!found.unit_detected && found.up_known == UpKnown::Given);
         assert!(measure(&person(|v| v, STANDING), Some(f64::NAN), None).unit_detected);
     }
 
-    /// The same person with joints that are named, in a motion of three frames, each moved and
-    /// turned.
+    /// Returns the same person with named joints, in a motion of three frames, each moved and
+    /// rotated.
     fn named(frames: [(Vec3, Quat); 3]) -> RawMotion {
         let mut raw = person(|v| v * 100.0, Vec3::ZERO);
         let names = [
@@ -490,7 +492,7 @@ mod tests {
     }
 
     #[test]
-    fn up_of_named_joints_is_where_the_body_points_whatever_the_rest_pose() {
+    fn measure_of_named_joints_finds_up_for_any_rest_pose() {
         let quarter = Quat::from_rotation_x(std::f32::consts::FRAC_PI_2);
         let walks = [0.0, 1.0, 2.0]
             .map(|way| (Vec3::new(way, 0.94, 0.3 * way), Quat::from_rotation_y(way)));
@@ -499,13 +501,13 @@ mod tests {
         let turned = walks.map(|(at, turn)| (quarter * at, quarter * turn));
         let found = measure(&named(turned), None, None);
         assert_eq!((found.provenance.up, found.up_known), (UpAxis::Z, UpKnown::Found));
-        // A runner whose way goes along both axes of the ground.
+        // A runner whose trajectory goes along both axes of the ground.
         let runs = turned.map(|(at, turn)| (at + Vec3::new(0.0, 9.0 * at.x, 0.0), turn));
         assert_eq!(measure(&named(runs), None, None).provenance.up, UpAxis::Z);
     }
 
     #[test]
-    fn body_that_lies_leaves_up_to_the_rest_pose_and_says_so() {
+    fn measure_of_a_lying_body_is_uncertain() {
         let lies = Quat::from_rotation_x(std::f32::consts::FRAC_PI_2);
         let found = measure(&named([(Vec3::new(0.0, 0.1, 0.0), lies); 3]), None, None);
         assert_eq!((found.provenance.up, found.up_known), (UpAxis::Y, UpKnown::Uncertain));
@@ -514,11 +516,11 @@ mod tests {
     }
 
     #[test]
-    fn height_of_named_joints_is_that_of_their_bones() {
+    fn measure_of_named_joints_takes_height_from_bones() {
         let mut raw = named([(STANDING, Quat::IDENTITY); 3]);
         let height = measure(&raw, None, None).height_units;
         assert!((height - 83.0 / 0.491).abs() < 0.01, "{height}");
-        // The same bones, each in a frame of its own: a rest pose that means nothing.
+        // The same bones, each in a frame of its own: an implausible rest pose.
         for (index, joint) in raw.joints.iter_mut().enumerate() {
             let turn = Quat::from_scaled_axis(Vec3::new(index as f32, 1.0, -0.7 * index as f32));
             joint.offset = turn * joint.offset;
@@ -527,7 +529,7 @@ mod tests {
     }
 
     #[test]
-    fn the_note_is_a_sentence() {
+    fn measure_displays_as_a_sentence() {
         let said = measure(&person(|v| v * 100.0, STANDING), None, None).to_string();
         assert_eq!(said, "166.0 units tall, read as centimetres: 1.66 m; Y up");
     }

@@ -1,21 +1,21 @@
-//! A T-pose in front of a motion, as converters of captured motion put there.
+//! Detection of a leading T-pose, which converters of captured motion add.
 
 use super::raw::RawMotion;
 use glam::Quat;
 use segue_motion::math::quat;
 
-/// Joints that turn by less than this are at rest, radians (1°).
+/// Joints that are rotated by less than this are at rest, radians (1°).
 const AT_REST: f32 = 0.017_453_3;
 
-/// Frames after the first that are compared.
+/// The number of frames after the first that are compared.
 const FRAMES: usize = 30;
 
-/// Whether the first frame is a T-pose that the motion does not start from.
+/// Returns whether the first frame is a T-pose that does not belong to the motion.
 ///
-/// Two things must hold for the joints that move at all: most are at rest in the first frame and
-/// not in the second, and the step from the first frame to the second is many times larger than
-/// those that follow. A motion that starts in the rest pose and leaves it smoothly fails the
-/// second, a cut into a take fails the first.
+/// Two conditions must hold for the joints that move at all: most are at rest in the first frame
+/// and not in the second, and the step from the first frame to the second is many times larger than
+/// the following ones. A motion that starts in the rest pose and leaves it smoothly fails the
+/// second condition, a cut within a take fails the first.
 pub(super) fn first_frame_is_t_pose(raw: &RawMotion) -> bool {
     let frames = raw.frames().min(FRAMES);
     if frames < 3 {
@@ -80,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn only_a_jump_out_of_the_rest_pose_counts() {
+    fn first_frame_is_t_pose_only_before_a_jump() {
         let walk =
             |frame: usize, joint: usize| 0.4 + 0.1 * (frame as f32 * 0.3 + joint as f32).sin();
         assert!(first_frame_is_t_pose(&motion(|frame, joint| {

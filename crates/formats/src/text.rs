@@ -1,11 +1,11 @@
-//! Bytes of a text file as UTF-8, and places in it.
+//! Text files as UTF-8, and places in them.
 
 use std::borrow::Cow;
 
-/// The text of a file without byte order mark and without padding after its end; UTF-16 is turned
-/// into UTF-8.
+/// Returns the text of a file without byte order mark and without padding after its end; UTF-16 is
+/// converted to UTF-8.
 ///
-/// Bytes that are no UTF-8 stay as they are: only names may hold them, and [`name`] reads those.
+/// Bytes that are not UTF-8 are kept: only names may contain them, and [`name`] converts those.
 pub(super) fn decode(bytes: &[u8]) -> Cow<'_, [u8]> {
     if let Some(rest) = bytes.strip_prefix(&[0xef, 0xbb, 0xbf]) {
         return Cow::Borrowed(without_padding(rest));
@@ -13,7 +13,7 @@ pub(super) fn decode(bytes: &[u8]) -> Cow<'_, [u8]> {
     let utf16 = match bytes {
         [0xff, 0xfe, rest @ ..] => Some((rest, false)),
         [0xfe, 0xff, rest @ ..] => Some((rest, true)),
-        // Without a mark, four bytes tell: ASCII text has a NUL in every other one.
+        // Without a mark, four bytes decide: ASCII text in UTF-16 has a NUL in every other one.
         [a, 0, b, 0, ..] if *a != 0 && *b != 0 => Some((bytes, false)),
         [0, a, 0, b, ..] if *a != 0 && *b != 0 => Some((bytes, true)),
         _ => None,
@@ -33,7 +33,7 @@ pub(super) fn decode(bytes: &[u8]) -> Cow<'_, [u8]> {
     Cow::Owned(text)
 }
 
-/// Cuts off NUL bytes and the old end-of-file mark (Ctrl-Z) after the data, with the white space
+/// Removes NUL bytes and the old end-of-file mark (Ctrl-Z) after the data, with the white space
 /// between them.
 fn without_padding(text: &[u8]) -> &[u8] {
     let is_padding = |b: &u8| matches!(b, 0 | 0x1a);
@@ -42,13 +42,13 @@ fn without_padding(text: &[u8]) -> &[u8] {
     if tail.iter().any(is_padding) { data } else { text }
 }
 
-/// White space of any kind, line ends among it.
+/// Returns whether a byte is white space, including line ends.
 #[inline]
 pub(super) fn is_space(b: u8) -> bool {
     matches!(b, b' ' | b'\t' | b'\n' | b'\r' | 0x0b | 0x0c)
 }
 
-/// Line and column (in characters), both from 1, of a byte offset.
+/// Returns line and column (in characters) of a byte offset, both from 1.
 pub(super) fn position(text: &[u8], at: usize) -> (usize, usize) {
     let before = &text[..at.min(text.len())];
     // Of CRLF only the LF counts.
@@ -57,12 +57,12 @@ pub(super) fn position(text: &[u8], at: usize) -> (usize, usize) {
     let line = 1 + memchr::memchr2_iter(b'\n', b'\r', before).filter(ends_line).count();
     let start =
         memchr::memrchr2_iter(b'\n', b'\r', before).find(ends_line).map_or(0, |end| end + 1);
-    // Continuation bytes of UTF-8 are no characters of their own.
+    // Continuation bytes of UTF-8 are not characters.
     let column = before[start..].iter().filter(|&&b| b & 0xc0 != 0x80).count() + 1;
     (line, column)
 }
 
-/// A name as text, and whether it was UTF-8. Where it is not, every byte is read as Latin-1, so
+/// Returns a name as text, and whether it was UTF-8. Otherwise every byte is read as Latin-1, so
 /// that nothing is lost.
 pub(super) fn name(bytes: &[u8]) -> (String, bool) {
     match std::str::from_utf8(bytes) {
@@ -71,10 +71,10 @@ pub(super) fn name(bytes: &[u8]) -> (String, bool) {
     }
 }
 
-/// Something found in a file, for a message: short, on one line, without control characters.
+/// Returns a quotation from a file for a message: short, on one line, without control characters.
 pub(super) fn short(bytes: &[u8]) -> String {
-    const LONGEST: usize = 40;
-    let head = &bytes[..bytes.len().min(4 * LONGEST)];
+    const MAX_BYTES: usize = 40;
+    let head = &bytes[..bytes.len().min(4 * MAX_BYTES)];
     let text = match std::str::from_utf8(head) {
         // The cut went through a character: none is longer than four bytes.
         Err(error) if head.len() < bytes.len() && error.valid_up_to() + 4 > head.len() => {
@@ -83,20 +83,20 @@ pub(super) fn short(bytes: &[u8]) -> String {
         _ => name(head).0,
     };
     let mut short = String::new();
-    for c in text.chars().take(LONGEST) {
+    for c in text.chars().take(MAX_BYTES) {
         if c.is_control() {
             short.extend(c.escape_default());
         } else {
             short.push(c);
         }
     }
-    if text.chars().nth(LONGEST).is_some() {
+    if text.chars().nth(MAX_BYTES).is_some() {
         short.push('…');
     }
     short
 }
 
-/// [`short`] in quotation marks.
+/// Returns [`short`] in quotation marks.
 pub(super) fn quoted(bytes: &[u8]) -> String {
     format!("`{}`", short(bytes))
 }
@@ -106,7 +106,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_encoding_gives_the_same_text() {
+    fn decode_of_every_encoding_gives_the_same_text() {
         let text = "HIERARCHY\nROOT Säule\n";
         let little: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
         let big: Vec<u8> = text.encode_utf16().flat_map(u16::to_be_bytes).collect();
@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn padding_goes_and_white_space_alone_stays() {
+    fn decode_removes_padding_and_keeps_white_space() {
         assert_eq!(decode(b"1 2\n\0\0\n\0").as_ref(), b"1 2");
         assert_eq!(decode(b"1 2\n\x1a").as_ref(), b"1 2");
         assert_eq!(decode(b"1 2\n\n").as_ref(), b"1 2\n\n");
@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_quoted_stays_short_and_on_one_line() {
+    fn short_is_short_and_on_one_line() {
         assert_eq!(quoted(b"a\nb"), "`a\\nb`");
         assert_eq!(quoted(b"S\xe4ule"), "`Säule`");
         assert_eq!(quoted(&[b'x'; 500]).chars().count(), 43);

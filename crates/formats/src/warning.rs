@@ -1,3 +1,5 @@
+//! Warnings about oddities of files that were read.
+
 use super::text::position;
 use segue_motion::clip::UpAxis;
 use segue_text::{Message, ToMessage, msg};

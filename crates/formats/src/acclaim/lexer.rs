@@ -1,3 +1,5 @@
+//! Tokens and numbers of ASF and AMC files.
+
 use crate::bvh::{Scan, scan};
 use crate::error::Fault;
 use crate::text::is_space;

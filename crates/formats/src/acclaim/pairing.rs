@@ -1,3 +1,5 @@
+//! Pairing of motion files with skeleton files.
+
 use super::amc::{first_fault, first_frame};
 use super::asf::is_section;
 use super::lexer::{Lexer, is_digits};
@@ -6,16 +8,16 @@ use crate::error::ImportError;
 use crate::text::decode;
 use crate::{check_not_empty, stem};
 
-/// Bytes at the beginning of a file that are looked at.
+/// The number of bytes at the beginning of a file that are read.
 const HEAD: usize = 64 << 10;
 
-/// Whether the first words are those of a skeleton file: a section such as `:version`.
+/// Returns whether the first words are those of a skeleton file: a section such as `:version`.
 pub(crate) fn starts_like_asf(text: &[u8]) -> bool {
     is_section(Lexer::new(text).peek())
 }
 
-/// Whether the first words are those of a motion file: `:FULLY-SPECIFIED` and the like, or a number
-/// and the name of a bone.
+/// Returns whether the first words are those of a motion file: `:FULLY-SPECIFIED` and the like, or
+/// a number and the name of a bone.
 pub(crate) fn starts_like_amc(text: &[u8]) -> bool {
     let mut lexer = Lexer::new(text);
     let first = lexer.take();
@@ -30,15 +32,15 @@ pub(crate) fn starts_like_amc(text: &[u8]) -> bool {
         && lexer.number().is_ok()
 }
 
-/// The bones of an AMC file and how many values each has: those of the first frame, as far as the
-/// first 64 KB hold it. Empty for anything else.
+/// Returns the bones of an AMC file with their numbers of values: those of the first frame, as far
+/// as the first 64 KB contain it. Empty for anything else.
 #[must_use]
 pub fn bone_names(amc_bytes: &[u8]) -> Vec<(String, usize)> {
     first_frame(&decode(amc_bytes.get(..HEAD).unwrap_or(amc_bytes)))
 }
 
-/// Whether an AMC file has a motion at all, whatever its skeleton: a first frame with the values of
-/// a bone. Looks at the first 64 KB.
+/// Checks that an AMC file has a motion, whatever its skeleton: a first frame with the values of a
+/// bone. Reads the first 64 KB.
 ///
 /// # Errors
 /// [`ImportError`] with the place where that frame should be.
@@ -48,8 +50,8 @@ pub fn check_motion(amc_name: &str, amc_bytes: &[u8]) -> Result<(), ImportError>
     first_fault(&text).map_or(Ok(()), |fault| Err(fault.locate(amc_name, &text)))
 }
 
-/// How many bones of a motion a skeleton has with as many values, and how many bones the motion
-/// has.
+/// Returns the number of a motion's bones that a skeleton has with as many values, and the number
+/// of the motion's bones.
 #[must_use]
 pub fn matching_bones(amc_bytes: &[u8], skeleton: &AcclaimSkeleton) -> (usize, usize) {
     let bones = bone_names(amc_bytes);
@@ -63,12 +65,12 @@ fn fitting(bones: &[(String, usize)], skeleton: &AcclaimSkeleton) -> usize {
     bones.iter().filter(fits).count()
 }
 
-/// Which of several skeletons a motion belongs to, by index. `None` where it has half of the
-/// motion's bones or fewer for none of them.
+/// Returns the index of the skeleton to which a motion belongs. `None` if none of them has more
+/// than half of the motion's bones.
 ///
-/// What counts, most important first: how many bones have the name and the number of values that
-/// the skeleton says; the file names (equal, or the motion's goes on after the skeleton's, as
-/// `01_01.amc` and `01.asf` of the CMU database); the folder; how many letters the names share at
+/// The criteria, most important first: the number of bones with the name and the number of values
+/// of the skeleton; the file names (equal, or the motion's continues the skeleton's, as `01_01.amc`
+/// and `01.asf` of the CMU database); the folder; the number of characters that the names share at
 /// the beginning. Of equals the first one is taken.
 #[must_use]
 pub fn best_skeleton(
@@ -79,21 +81,21 @@ pub fn best_skeleton(
     let bones = bone_names(amc_bytes);
     let ranked = skeletons.iter().enumerate().filter_map(|(index, (asf_name, skeleton))| {
         let fit = fitting(&bones, skeleton);
-        let rank = (fit, kinship(amc_name, asf_name), std::cmp::Reverse(index));
+        let rank = (fit, name_match_score(amc_name, asf_name), std::cmp::Reverse(index));
         (2 * fit > bones.len()).then_some((rank, index))
     });
     ranked.max().map(|(_, index)| index)
 }
 
-/// Whether the name of a motion file says that it belongs to a skeleton file: they are called the
-/// same, or the motion's goes on after the skeleton's.
+/// Returns whether the name of a motion file belongs to a skeleton file: the names are equal, or
+/// the motion's continues the skeleton's.
 #[must_use]
 pub fn goes_by_name(amc: &str, asf: &str) -> bool {
-    kinship(amc, asf).0 > 0
+    name_match_score(amc, asf).0 > 0
 }
 
-/// How much the name of a motion file says that it belongs to a skeleton file; more is more.
-fn kinship(amc: &str, asf: &str) -> (u8, usize, usize) {
+/// Scores how well the name of a motion file matches that of a skeleton file; higher is better.
+fn name_match_score(amc: &str, asf: &str) -> (u8, usize, usize) {
     let (motion, skeleton) = (stem(amc).to_lowercase(), stem(asf).to_lowercase());
     let same = match motion.strip_prefix(&skeleton) {
         Some("") => 2,
@@ -104,8 +106,8 @@ fn kinship(amc: &str, asf: &str) -> (u8, usize, usize) {
     (same, shared_folders(amc, asf), shared(&motion, &skeleton))
 }
 
-/// The number of folders that two paths have in common from the top; one more where they are all
-/// folders of both.
+/// Returns the number of folders that two paths have in common from the top; one more where they
+/// are all folders of both.
 fn shared_folders(a: &str, b: &str) -> usize {
     let folders = |path: &str| -> Vec<String> {
         let mut parts: Vec<String> = path.split(['/', '\\']).map(str::to_lowercase).collect();
@@ -122,21 +124,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_tell_in_this_order() {
+    fn best_skeleton_prefers_bones_then_names_then_folders() {
         let ranks = [
-            kinship("a/walk.amc", "b/WALK.asf"),
-            kinship("01_01.amc", "x/01.asf"),
-            kinship("a/b/walk.amc", "a/b/skeleton.asf"),
-            kinship("a/b/walk.amc", "a/skeleton.asf"),
-            kinship("a/walking.amc", "b/walk.asf"),
-            kinship("a/walking.amc", "b/run.asf"),
+            name_match_score("a/walk.amc", "b/WALK.asf"),
+            name_match_score("01_01.amc", "x/01.asf"),
+            name_match_score("a/b/walk.amc", "a/b/skeleton.asf"),
+            name_match_score("a/b/walk.amc", "a/skeleton.asf"),
+            name_match_score("a/walking.amc", "b/walk.asf"),
+            name_match_score("a/walking.amc", "b/run.asf"),
         ];
         assert!(ranks.is_sorted_by(|a, b| a > b), "{ranks:?}");
-        assert_eq!(kinship("011_01.amc", "01.asf").0, 0, "not subject 1");
+        assert_eq!(name_match_score("011_01.amc", "01.asf").0, 0, "not subject 1");
     }
 
     #[test]
-    fn the_first_words_tell_the_kind() {
+    fn first_words_determine_the_kind() {
         assert!(starts_like_asf(b"# AST/ASF file\r\n:Version 1.10"));
         assert!(!starts_like_asf(b":fully-specified"));
         for text in ["#!OML:ASF x\n:FULLY-SPECIFIED\n", ":degrees", "7\nroot 1 2", "1\nroot (1,"] {
@@ -148,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_without_a_frame_is_no_motion() {
+    fn check_motion_without_a_frame_is_refused() {
         for text in [":DEGREES\n1\nroot 1 2 3\n", "# by hand\n:FULLY-SPECIFIED\n7\nroot (1,\n2)\n"]
         {
             assert_eq!(check_motion("a.amc", text.as_bytes()), Ok(()), "{text}");
@@ -173,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_frame_tells_the_bones() {
+    fn bone_names_are_those_of_the_first_frame() {
         let text = ":DEGREES\n1\nroot 1 2 nan # x\nhead (4, 5)\n\n2\nroot 1\n";
         assert_eq!(bone_names(text.as_bytes()), [("root".to_owned(), 3), ("head".to_owned(), 2)]);
         assert_eq!(bone_names(b"HIERARCHY ROOT a"), []);

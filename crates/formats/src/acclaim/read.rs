@@ -1,3 +1,5 @@
+//! Reading of AMC files with their skeleton.
+
 use super::amc::{Stop, frames};
 use super::convert::Converter;
 use super::skeleton::AcclaimSkeleton;
@@ -10,7 +12,8 @@ use crate::{ImportOptions, Imported, check_size};
 use segue_motion::clip::Clip;
 use segue_motion::skeleton::{Role, Roles, WorldPose};
 
-/// Frames per second of the CMU database, taken where nobody says otherwise: no AMC file tells.
+/// Frame rate of the CMU database, frames per second, assumed where none is given: AMC files have
+/// none.
 pub const DEFAULT_FPS: f64 = 120.0;
 
 /// Reads an AMC file, the motion of a skeleton: one clip in metres and Y up, with the skeleton's
@@ -18,28 +21,28 @@ pub const DEFAULT_FPS: f64 = 120.0;
 ///
 /// `name` is the file's name; it is used in errors and, without its ending, as the name of the
 /// clip. The frame rate is that of the options, or [`DEFAULT_FPS`]. The unit is that of the
-/// options; or 0.0254 m divided by the `length` of the skeleton's `:units`, the convention of the
-/// CMU database, where the character is then 0.9 to 2.5 m tall at rest; or else what makes it the
-/// size of a person.
+/// options; otherwise 0.0254 m divided by the `length` of the skeleton's `:units`, the convention
+/// of the CMU database, if the character is then 0.9 to 2.5 m tall at rest; otherwise it is
+/// inferred from the height.
 ///
 /// # Errors
-/// [`ImportError`] with the place of what cannot be read, and where no bone is one of the skeleton.
+/// [`ImportError`] with the place that cannot be read, and when the skeleton has none of the bones.
 pub fn read_motion(
     name: &str,
     bytes: &[u8],
     skeleton: &AcclaimSkeleton,
     options: &ImportOptions,
 ) -> Result<Imported, ImportError> {
-    // Never cancelled, so never `None`.
+    // It is never cancelled, and therefore never `None`.
     Ok(read_motion_with_progress(name, bytes, skeleton, options, &mut |_| true)?
         .unwrap_or_default())
 }
 
-/// [`read_motion`] that reports the bytes read so far about every 256 KB, and stops with `None`
-/// when `progress` returns `false`.
+/// Reads an AMC file as [`read_motion`] does, reports the bytes read so far about every 256 KB, and
+/// stops with `None` when `progress` returns `false`.
 ///
 /// # Errors
-/// As [`read_motion`].
+/// The same as for [`read_motion`].
 pub fn read_motion_with_progress(
     name: &str,
     bytes: &[u8],
@@ -64,10 +67,10 @@ pub fn read_motion_with_progress(
         .map_err(|fault| fault.locate(name, &text))
 }
 
-/// The skeleton alone, as a clip without frames.
+/// Returns the skeleton alone, as a clip without frames.
 ///
 /// # Errors
-/// None that the reader of the skeleton would not have told.
+/// Only those of the reader of the skeleton.
 pub fn skeleton_clip(
     skeleton: &AcclaimSkeleton,
     options: &ImportOptions,
@@ -103,13 +106,13 @@ fn finish(
     Ok(Imported { clips, warnings })
 }
 
-/// How high over the ground (y = 0) the feet of a motion are at their lowest, metres, where that is
-/// no place for feet: the values of a motion are those of one body, and on longer or shorter legs
-/// it sinks in or floats. `None` where all is well or there are no feet.
+/// Returns the height of the lowest feet of a motion over the ground (y = 0), metres, if it is
+/// implausible: the values of a motion belong to one body, and with longer or shorter legs it sinks
+/// in or floats. `None` otherwise, and without feet.
 fn off_ground(clip: &Clip) -> Option<f32> {
-    /// Frames that are looked at, spread over the clip.
+    /// The number of frames that are read, spread over the clip.
     const SAMPLES: usize = 240;
-    /// Feet below or above this share of a body's height are in the ground or in the air: marker
+    /// Feet below or above these shares of a body's height are in the ground or in the air: marker
     /// noise and soles stay within.
     const SUNK: f32 = -0.06;
     const AFLOAT: f32 = 0.1;
@@ -129,7 +132,7 @@ fn off_ground(clip: &Clip) -> Option<f32> {
         lows.push(heights.fold(f32::MAX, f32::min));
     }
     lows.sort_by(f32::total_cmp);
-    // One frame in twenty may be a slip of the capture.
+    // One frame in twenty may be a fault of the capture.
     let low = *lows.get(lows.len() / 20)?;
     let share = low / roles.body_height(clip.skeleton());
     (!(SUNK..AFLOAT).contains(&share)).then_some(low)

@@ -1,3 +1,5 @@
+//! The skeleton of an ASF file.
+
 use super::asf::{self, Asf, Dof, FileBone, Mention};
 use super::lexer::Lexer;
 use crate::bvh::MAX_DEPTH;

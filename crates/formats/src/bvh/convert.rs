@@ -1,4 +1,4 @@
-//! From rows of channels to rotations and translations, one row at a time.
+//! Conversion of rows of channels to rotations and translations, one row at a time.
 
 use super::hierarchy::{Column, Hierarchy};
 use super::motion::RowSink;
@@ -10,18 +10,18 @@ use segue_motion::skeleton::{Channel, Joint};
 use segue_text::msg;
 use std::ops::Range;
 
-/// Bytes of motion in memory per byte of file, at most. A joint with a single channel of single
-/// digits takes 8; only files in which most joints have no channel at all, and those made to fill
-/// the memory, come near.
+/// The greatest ratio of memory of a motion to bytes of the file. A joint with a single channel of
+/// single digits takes 8; only files in which most joints have no channel at all, and malicious
+/// ones, come near.
 pub(crate) const MEMORY_PER_BYTE: u64 = 16;
 
-/// Rows that there is room for before their length is known.
+/// The number of rows for which memory is reserved before their length is known.
 pub(crate) const FIRST_ROWS: usize = 64;
 
-/// Motions below this are always taken.
+/// Motions below this size are always accepted, bytes.
 pub(crate) const MEMORY_FLOOR: u64 = 64 << 20;
 
-/// Whether a channel turns, and about or along which axis (0 to 2).
+/// Returns whether a channel is a rotation, and its axis (0 to 2).
 pub(super) fn kind(channel: Channel) -> (bool, usize) {
     match channel {
         Channel::XPosition => (false, 0),
@@ -33,7 +33,7 @@ pub(super) fn kind(channel: Channel) -> (bool, usize) {
     }
 }
 
-/// Where a coordinate comes from.
+/// The source of a coordinate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Source {
     Column(usize),
@@ -43,28 +43,29 @@ enum Source {
 /// One character of the file, in file units and file axes.
 struct Character {
     turns: Turns,
-    /// Where the root is, and after it each joint that has a track, in the order of the tracks.
+    /// The position of the root, then that of each joint that has a track, in the order of the
+    /// tracks.
     places: Vec<[Source; 3]>,
     raw: RawMotion,
 }
 
-/// Collects rows as rotations.
+/// The collection of rows as rotations.
 pub(super) struct Converter {
     characters: Vec<Character>,
-    /// What the header says of the number of rows.
+    /// The number of rows according to the header.
     declared: f64,
-    /// Where the first row starts and the last one ends.
+    /// Start of the first row and end of the last one.
     bytes: Range<usize>,
     rows: usize,
-    /// For how many rows there is room.
+    /// The number of rows for which memory is reserved.
     room: usize,
     bytes_per_row: u64,
     limit: u64,
 }
 
 impl Converter {
-    /// `declared` is the number of rows that the header speaks of, `bytes` where the rows are in
-    /// the file; these bound what is allocated.
+    /// Returns a converter. `declared` is the number of rows according to the header, `bytes` the
+    /// range of the rows in the file; both bound what is allocated.
     pub(super) fn new(tree: &Hierarchy, declared: f64, bytes: Range<usize>) -> Self {
         let mut positions: Vec<[Source; 3]> =
             tree.joints.iter().map(|joint| joint.offset.map(Source::Offset)).collect();
@@ -125,14 +126,14 @@ impl Converter {
         }
     }
 
-    /// Makes room for the rows to come, as many as the bytes from `end` on hold if they are as long
-    /// as those before. Growing by halves, as vectors do, would at the end need room for the motion
-    /// twice.
+    /// Reserves memory for the remaining rows: as many as the bytes from `end` on hold if they are
+    /// as long as the rows so far. Growing by doubling, as vectors do, would need memory for the
+    /// motion twice at the end.
     fn make_room(&mut self, end: usize) -> Result<(), Fault> {
         let left = self.bytes.end.saturating_sub(end) as f64;
         let as_before =
             left * self.rows as f64 / end.saturating_sub(self.bytes.start).max(1) as f64;
-        // The header is believed as far as the bytes agree.
+        // The header is used only if it agrees with the bytes.
         let expected = (self.declared - self.rows as f64).clamp(0.9 * as_before, 1.1 * as_before);
         let fits = self.limit / self.bytes_per_row.max(1) / 4;
         let rows = (expected as u64).min(fits) as usize;
@@ -144,7 +145,7 @@ impl Converter {
         Ok(())
     }
 
-    /// What channels are before any good value: positions stand at their OFFSET, rotations at 0.
+    /// Returns the initial values of channels: positions are the OFFSET, rotations 0.
     pub(super) fn first_row(tree: &Hierarchy) -> Vec<f64> {
         let value = |column: &Column| match column.channel.map(kind) {
             Some((false, axis)) => {
@@ -155,7 +156,7 @@ impl Converter {
         tree.columns.iter().map(value).collect()
     }
 
-    /// One motion for each ROOT, in file units and file axes.
+    /// Returns one motion for each ROOT, in file units and file axes.
     pub(super) fn finish(mut self) -> Vec<RawMotion> {
         for character in &mut self.characters {
             character.raw.rotations.shrink_to_fit();

@@ -1,4 +1,4 @@
-//! The head of the MOTION section: how many rows there are said to be, and how far apart.
+//! The head of the MOTION section: number of rows and frame time.
 
 use super::hierarchy::starts_motion_header;
 use super::lexer::{Lexer, Stop};
@@ -6,31 +6,31 @@ use super::number::{Scan, scan, token_end};
 use crate::text::{is_space, short};
 use crate::warning::WarningKind;
 
-/// Frames per second where the file does not say.
+/// Frame rate if the file has none, frames per second.
 pub(super) const DEFAULT_FPS: f64 = 30.0;
 
-/// Frame times are snapped to 1/N within this relative distance, with room for the rounding of
+/// Frame times are snapped to 1/N within this relative distance, which includes the rounding of
 /// `.03333`.
 const SNAP: f64 = 1.0001e-4;
 
-/// What the header says.
+/// The content of the header.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Header {
     /// Whether there is a MOTION section.
     pub(super) present: bool,
-    /// `Frames:`, as written, and where.
+    /// `Frames:`, as written, and its place.
     pub(super) frames: Option<(String, usize)>,
-    /// `Frame Time:`, as written and as a number, and where.
+    /// `Frame Time:`, as written and as a number, and its place.
     pub(super) frame_time: Option<(String, Option<f64>, usize)>,
 }
 
 impl Header {
-    /// The number of frames that are said to come. Never a reason to allocate.
+    /// Returns the declared number of frames. Never used for allocation.
     pub(super) fn declared_frames(&self) -> Option<f64> {
         self.frames.as_ref().and_then(|(text, _)| fast_float2::parse(text).ok())
     }
 
-    /// Frames per second, always a number above 0; what is odd about it goes into the tally.
+    /// Returns the frame rate, always above 0; oddities are added to the tally.
     pub(super) fn fps(&self, lexer: &mut Lexer<'_>) -> f64 {
         match &self.frame_time {
             Some((_, Some(secs), at))
@@ -53,7 +53,7 @@ impl Header {
     }
 }
 
-/// 1/`secs`, or the whole number next to it where only the digits of the file are between them.
+/// Returns 1/`secs`, or the nearest integer where the difference is the rounding of the file.
 /// 23.976 and 119.88 stay.
 fn snapped(secs: f64) -> f64 {
     let whole = secs.recip().round();
@@ -88,7 +88,7 @@ pub(super) fn header(lexer: &mut Lexer<'_>) -> Result<Header, Stop> {
     }
 }
 
-/// The offset behind a keyword, whatever its case.
+/// Returns the offset after a keyword, in any case.
 fn keyword(text: &[u8], at: usize, word: &[u8]) -> Option<usize> {
     let end = at.checked_add(word.len())?;
     text.get(at..end).filter(|found| found.eq_ignore_ascii_case(word)).map(|_| end)
@@ -101,7 +101,7 @@ fn past_blanks(text: &[u8], mut at: usize) -> usize {
     at
 }
 
-/// Goes past the colon to the value; stays on the line, since the next one is data.
+/// Skips the colon; stays on the line, since the next line is data.
 fn to_value(lexer: &mut Lexer<'_>) {
     lexer.at = past_blanks(lexer.text, lexer.at);
     if lexer.text.get(lexer.at) == Some(&b':') {
@@ -109,7 +109,7 @@ fn to_value(lexer: &mut Lexer<'_>) {
     }
 }
 
-/// The token after the colon, if there is one on the line.
+/// Returns the token after the colon, if there is one on the line.
 fn value<'a>(lexer: &mut Lexer<'a>) -> &'a [u8] {
     to_value(lexer);
     let end = token_end(lexer.text, lexer.at);

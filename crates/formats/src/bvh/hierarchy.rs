@@ -1,3 +1,5 @@
+//! The HIERARCHY section of a BVH file.
+
 use super::lexer::{Lexer, Stop};
 use crate::error::Fault;
 use crate::text::{name, quoted, short};
@@ -5,10 +7,10 @@ use crate::warning::WarningKind;
 use segue_motion::skeleton::Channel;
 use segue_text::msg;
 
-/// Joints nested deeper than this are refused: no skeleton is, and what comes after may recurse.
+/// The greatest depth of joints: no skeleton is deeper, and later stages may recurse.
 pub(crate) const MAX_DEPTH: usize = 4096;
 
-/// A joint as the file has it: file units, file axes.
+/// A joint of the file: file units, file axes.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct FileJoint {
     pub(super) name: String,
@@ -30,28 +32,28 @@ pub(super) struct Column {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Hierarchy {
     pub(super) joints: Vec<FileJoint>,
-    /// What a row holds, in the order of the CHANNELS lines.
+    /// The content of a row, in the order of the CHANNELS lines.
     pub(super) columns: Vec<Column>,
 }
 
-/// Where in the tree a token stands.
+/// The current position in the tree.
 struct Scope {
     joint: usize,
     is_end_site: bool,
     has_offset: bool,
-    /// Of the joint, for messages.
+    /// The place of the joint, for messages.
     at: usize,
 }
 
-/// What a channel's name asks for.
+/// The meaning of a channel's name.
 enum ChannelName {
-    /// A channel that moves or turns the joint.
+    /// A channel that moves or rotates the joint.
     Kept(Channel),
-    /// A scale channel: its numbers are read past.
+    /// A scale channel, whose numbers are skipped.
     Scale,
 }
 
-/// The channel of a name. Case does not matter.
+/// Returns the channel of a name, in any case.
 fn channel_name(token: &[u8]) -> Option<ChannelName> {
     let (axis, kind) = token.split_first()?;
     let axis = b"xyz".iter().position(|a| *a == axis.to_ascii_lowercase())?;
@@ -69,7 +71,7 @@ fn channel_name(token: &[u8]) -> Option<ChannelName> {
     }
 }
 
-/// Reads up to the MOTION section or the end of the file. Iterative: the depth of the tree costs
+/// Reads up to the MOTION section or the end of the file. Iterative: the depth of the tree takes
 /// heap, not stack.
 pub(super) fn hierarchy(lexer: &mut Lexer<'_>) -> Result<Hierarchy, Stop> {
     let mut tree = Hierarchy::default();
@@ -117,8 +119,7 @@ pub(super) fn hierarchy(lexer: &mut Lexer<'_>) -> Result<Hierarchy, Stop> {
                 } else if scope.has_offset || joint.end_site.is_some() {
                     lexer.tally.add(WarningKind::SeveralEndSites, Some(start));
                 } else if offset != [0.0; 3] {
-                    // An End Site on the joint itself is a mere marker of a leaf: the bone has no
-                    // length.
+                    // An End Site at the joint itself only marks a leaf: the bone has no length.
                     joint.end_site = Some(offset);
                 }
                 scope.has_offset = true;

@@ -1,15 +1,17 @@
+//! Tokens of the HIERARCHY section of a BVH file.
+
 use super::number::{Scan, scan, token_end};
 use crate::error::Fault;
 use crate::text::is_space;
 use crate::warning::{Tally, WarningKind};
 use segue_text::Message;
 
-/// Why reading stopped before the end.
+/// The reason why reading stopped before the end.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Stop {
     /// The file cannot be read.
     Fault(Fault),
-    /// A number has the other decimal sign than those before it; the fault says so.
+    /// A number has another decimal sign than those before it; the fault says so.
     OtherDecimalSign(Fault),
     /// The caller asked to stop.
     Cancelled,
@@ -21,7 +23,7 @@ impl From<Fault> for Stop {
     }
 }
 
-/// A place in a file, and what was odd up to there. Borrows the bytes: nothing is copied but names.
+/// A place in a file, and the oddities up to there. It borrows the bytes: only names are copied.
 #[derive(Debug)]
 pub(super) struct Lexer<'a> {
     pub(super) text: &'a [u8],
@@ -36,7 +38,7 @@ impl<'a> Lexer<'a> {
         Self { text, at: 0, commas, tally: Tally::default() }
     }
 
-    /// Goes past white space, and past comments: `#` and `//` to the end of the line.
+    /// Skips white space, and comments: `#` and `//` to the end of the line.
     pub(super) fn skip_blank(&mut self) {
         while let Some(&b) = self.text.get(self.at) {
             if is_space(b) {
@@ -54,7 +56,7 @@ impl<'a> Lexer<'a> {
         matches!(rest, [b'#', ..] | [b'/', b'/', ..])
     }
 
-    /// The offset of the next line end, or of the end of the file.
+    /// Returns the offset of the next line end, or of the end of the file.
     pub(super) fn line_end(&self) -> usize {
         let rest = self.text.get(self.at..).unwrap_or_default();
         rest.iter()
@@ -62,8 +64,8 @@ impl<'a> Lexer<'a> {
             .map_or(self.text.len(), |length| self.at + length)
     }
 
-    /// The next token, which stays where it is. A brace is a token of its own. Empty at the end of
-    /// the file.
+    /// Returns the next token without consuming it. A brace is a token. Empty at the end of the
+    /// file.
     pub(super) fn peek(&mut self) -> &'a [u8] {
         self.skip_blank();
         let end = match self.text.get(self.at) {
@@ -73,11 +75,11 @@ impl<'a> Lexer<'a> {
         self.text.get(self.at..end).unwrap_or_default()
     }
 
-    /// The rest of the line up to an opening brace, without white space at either end. What it ends
-    /// with is not taken.
+    /// Returns the rest of the line up to an opening brace, without surrounding white space. The
+    /// brace or line end is not consumed.
     pub(super) fn rest_of_line(&mut self) -> &'a [u8] {
         let rest = self.text.get(self.at..).unwrap_or_default();
-        // The brace is looked for together with the line end: a whole file may be one line.
+        // The brace and the line end are searched together: a whole file may be one line.
         let line = rest
             .iter()
             .position(|b| matches!(b, b'{' | b'\n' | b'\r'))
@@ -88,7 +90,7 @@ impl<'a> Lexer<'a> {
         line.get(start..end).unwrap_or_default()
     }
 
-    /// One number of the HIERARCHY section.
+    /// Reads one number of the HIERARCHY section.
     pub(super) fn number(&mut self) -> Result<f64, Stop> {
         self.skip_blank();
         match scan(self.text, self.at, self.commas) {
@@ -118,7 +120,7 @@ impl<'a> Lexer<'a> {
         )
     }
 
-    /// An error at the next token.
+    /// Returns an error at the next token.
     pub(super) fn unexpected(&mut self, expected: impl Into<Message>) -> Fault {
         let token = self.peek();
         Fault::at_token(self.at, token, expected)

@@ -1,3 +1,5 @@
+//! Reading of BVH files.
+
 use super::convert::Converter;
 use super::header::{DEFAULT_FPS, header};
 use super::hierarchy::hierarchy;
@@ -15,17 +17,17 @@ use crate::{ImportOptions, Imported, check_size};
 /// clip.
 ///
 /// # Errors
-/// [`ImportError`] with the place of what cannot be read.
+/// [`ImportError`] with the place that cannot be read.
 pub fn read(name: &str, bytes: &[u8], options: &ImportOptions) -> Result<Imported, ImportError> {
-    // Never cancelled, so never `None`.
+    // It is never cancelled, and therefore never `None`.
     Ok(read_with_progress(name, bytes, options, &mut |_| true)?.unwrap_or_default())
 }
 
-/// [`read`] that reports the bytes read so far now and then, and stops with `None` when `progress`
-/// returns `false`.
+/// Reads a BVH file as [`read`] does, reports the bytes read so far about every 256 KB, and stops
+/// with `None` when `progress` returns `false`.
 ///
 /// # Errors
-/// As [`read`].
+/// The same as for [`read`].
 pub fn read_with_progress(
     name: &str,
     bytes: &[u8],
@@ -35,8 +37,8 @@ pub fn read_with_progress(
     check_size(name, bytes, options)?;
     let text = decode(bytes);
     let result = match parse(name, &text, options, false, progress) {
-        // The first number with a comma. If all have one it is read that way; if not, the first
-        // complaint was right.
+        // The first number with a comma. If all numbers have one, the file is read that way;
+        // otherwise the first error is returned.
         Err(Stop::OtherDecimalSign(complaint)) => match parse(name, &text, options, true, progress)
         {
             Err(Stop::OtherDecimalSign(_)) => Err(Stop::Fault(complaint)),

@@ -1,3 +1,5 @@
+//! Writing of BVH files.
+
 use super::convert::kind;
 use super::euler::{compose, distance, nearest, one_angle, precise, three_angles, two_angles};
 use glam::{DQuat, DVec3, Quat, Vec3};
@@ -5,7 +7,7 @@ use segue_motion::clip::{Clip, Interpolation, UpAxis, resample};
 use segue_motion::skeleton::{Channel, Joint, Skeleton};
 use std::fmt::Write as _;
 
-/// Rotations that fewer than three channels give back this well (radians) need no more.
+/// The tolerance, radians, within which rotations of fewer than three channels are sufficient.
 const SAME_ROTATION: f64 = 2e-6;
 
 /// Translations this near to the OFFSET (metres) need no channel.
@@ -19,7 +21,7 @@ pub enum RotationOrder {
     Xzy,
     Yxz,
     Yzx,
-    /// What most files have.
+    /// The order of most files.
     #[default]
     Zxy,
     Zyx,
@@ -38,28 +40,28 @@ impl RotationOrder {
         }
     }
 
-    /// The axes (0 to 2), in order.
+    /// Returns the axes (0 to 2), in order.
     pub(crate) fn axes(self) -> [usize; 3] {
         self.channels().map(|channel| kind(channel).1)
     }
 
-    /// The angles about the axes, radians, that make a rotation; of all solutions the one nearest
+    /// Returns the angles about the axes, radians, of a rotation; of all solutions the one nearest
     /// to `near`.
     pub(crate) fn angles(self, q: Quat, near: [f64; 3]) -> [f64; 3] {
         three_angles(precise(q), self.axes(), near)
     }
 }
 
-/// How to write a BVH file. By default the way that the clip came from.
+/// Options of writing a BVH file. The defaults are those of the file that the clip came from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct WriteOptions {
-    /// Metres per unit of the file; the clip's own where `None` or no length.
+    /// Metres per unit of the file; the clip's own where `None` or out of range.
     pub metres_per_unit: Option<f64>,
     /// The file's up axis; the clip's own where `None`.
     pub up: Option<UpAxis>,
     /// One order for the rotations of all joints; each joint's own where `None`.
     pub rotation_order: Option<RotationOrder>,
-    /// Frames per second; the clip's own where `None` or no rate that [`resample`] knows.
+    /// Frames per second; the clip's own where `None` or not accepted by [`resample`].
     pub fps: Option<f64>,
 }
 
@@ -73,9 +75,9 @@ pub struct WriteOptions {
 /// Joints that the clip's file has above the one that carries the body are written again
 /// ([`Clip::unfolded`]).
 ///
-/// Some programs put positions in the place of the OFFSET, others add the two. So the root, which
-/// always moves, has an OFFSET of zero where it has all three positions; and a joint that stays at
-/// its OFFSET is not given positions that its source did not have.
+/// Some programs use positions in place of the OFFSET, others add the two. The root, which always
+/// moves, therefore has an OFFSET of zero where it has all three positions, and a joint that stays
+/// at its OFFSET is not given positions that its source did not have.
 #[must_use]
 pub fn write(clip: &Clip, options: &WriteOptions) -> String {
     let resampled = options.fps.and_then(|fps| resample(clip, fps, Interpolation::default()).ok());
@@ -101,7 +103,7 @@ struct Writer<'a> {
     clip: &'a Clip,
     units_per_metre: f64,
     up: UpAxis,
-    /// Digits after the point of lengths.
+    /// Number of decimals of lengths.
     decimals: usize,
     plans: Vec<Plan>,
     /// For each joint, the index of its translations.
@@ -134,7 +136,7 @@ impl<'a> Writer<'a> {
         writer.plans =
             (0..skeleton.len()).map(|joint| writer.plan(joint, options.rotation_order)).collect();
         if writer.columns() == 0 {
-            // A row must hold something, or there would be no rows.
+            // A row must not be empty, or there would be no rows.
             let channels = [POSITIONS.as_slice(), &RotationOrder::default().channels()].concat();
             writer.plans[0] = Plan { axes: axes_of(&channels), channels };
         }
@@ -145,7 +147,7 @@ impl<'a> Writer<'a> {
         self.plans.iter().map(|plan| plan.channels.len()).sum()
     }
 
-    /// The local translation of a joint, file axes, metres.
+    /// Returns the local translation of a joint, file axes, metres.
     fn translation(&self, joint: usize, frame: usize) -> Vec3 {
         let translation = match (joint, self.tracks[joint]) {
             (0, _) => self.clip.root_translations()[frame],
@@ -158,7 +160,7 @@ impl<'a> Writer<'a> {
     fn to_file(&self, v: Vec3) -> Vec3 {
         match self.up {
             UpAxis::Y => v,
-            // Undoes the turn of the import: -90° about X.
+            // The inverse of the rotation of the import: -90° about X.
             UpAxis::Z => Vec3::new(v.x, -v.z, v.y),
         }
     }
@@ -229,7 +231,7 @@ impl<'a> Writer<'a> {
         }
         let mut order = Vec::with_capacity(joints.len());
         out.push_str("HIERARCHY\n");
-        // What is still to be written: joints to open, and depths to close.
+        // The remaining steps: joints to open, and depths to close.
         let mut todo = vec![Step::Open(0, 0)];
         while let Some(step) = todo.pop() {
             match step {

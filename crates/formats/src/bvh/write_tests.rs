@@ -1,3 +1,5 @@
+//! Tests of written BVH files.
+
 use super::*;
 use segue_motion::clip::{JointTranslations, Provenance};
 use std::sync::Arc;

@@ -1,3 +1,5 @@
+//! Reading of glTF files.
+
 use super::characters::{Character, characters};
 use super::curve::{Curve, Kind, SAME_FRAME, rotation};
 use super::document::Document;

@@ -1,3 +1,5 @@
+//! Writing of GLB files.
+
 use super::bones::Bones;
 use glam::{Mat4, Quat, Vec3};
 use segue_motion::clip::{Clip, Interpolation, resample};
