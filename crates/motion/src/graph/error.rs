@@ -135,7 +135,7 @@ pub enum GraphError {
     },
 }
 
-/// Rounds up to a tenth of a centimetre, the step of a threshold.
+fn or_lower_window(segment: usize) -> Message {
     if segment > 1 {
         msg!("lower the window to {frames} or ", frames = segment - 1)
     } else {
@@ -167,7 +167,7 @@ fn or_raise_threshold(threshold_cm: f64) -> Message {
     }
 }
 
-/// The next tenth of a centimetre, which is what a threshold is set in.
+/// Rounds up to a tenth of a centimetre, the step of a threshold.
 pub(super) fn above(nearest_cm: f64) -> f64 {
     (nearest_cm * 10.0 - 1e-6).ceil() / 10.0
 }
