@@ -337,6 +337,28 @@ fn every_sentence_has_its_translation() {
     );
 }
 
+/// A row is found by the very template, with the names in it.
+#[test]
+fn template_of_a_message_has_a_row_with_its_names() {
+    let (_, entries) = catalogue();
+    let mut missing = BTreeSet::new();
+    let mut seen = 0;
+    for (path, source) in sources().iter().filter(|(path, _)| !NOT_SHOWN.contains(&path.as_str())) {
+        for literal in literals(source) {
+            let before = literal.before.trim_end();
+            let is_template = ["msg!(", "#[error("].iter().any(|sign| before.ends_with(sign));
+            if is_template && is_two_letters(&plain(&literal.text).replace("{}", "")) {
+                seen += 1;
+                if !entries.contains_key(&literal.text) {
+                    missing.insert(format!("{path}: {:?}", literal.text));
+                }
+            }
+        }
+    }
+    assert!(seen > 200, "only {seen} templates found");
+    assert!(missing.is_empty(), "{missing:#?}");
+}
+
 #[test]
 fn no_translation_is_of_something_that_is_not_said() {
     let (text, entries) = catalogue();

@@ -230,7 +230,7 @@ fn a_third_of_the_segment_leaves_nothing_beside_the_window_and_is_refused() {
     assert_eq!(
         session.panes()[2].problem.as_ref().map(ToString::to_string).as_deref(),
         Some(
-            "A blend window of 20 frames leaves nothing of a segment of 20: lower the window to 19 or raise the segment to 21."
+            "a blend window of 20 frames leaves nothing of a segment of 20: lower the window to 19 or raise the segment to 21"
         )
     );
 }
