@@ -435,7 +435,7 @@ pub(crate) fn command_button_ui(
         "" => what.into_owned(),
         keys => format!("{what} ({keys})"),
     };
-    if response.on_hover_text(tooltip).clicked() {
+    if response.on_hover_text(tr(&tooltip, ui)).clicked() {
         command.run(&mut Target { session, state, out, ui });
     }
 }
