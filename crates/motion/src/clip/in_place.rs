@@ -1,3 +1,5 @@
+//! Clips without root motion, whose trajectory follows from their planted feet.
+
 use super::contacts::{FootTracks, GROUND_PERCENTILE, REFERENCE_HEIGHT_M, drop_short_runs};
 use super::{Clip, ContactOptions, Contacts, character_frames};
 use crate::math::{Planar, stats};

@@ -1,3 +1,5 @@
+//! Deviation of a clip from another, by parts of the body.
+
 use super::Metric;
 use crate::blend::{BodyPart, mask};
 use crate::clip::Clip;
