@@ -149,7 +149,7 @@ def artefacts(motion, sources):
         "flashes": int((np.diff(flashing, prepend=-100) > 3).sum()),
         "spins": int((np.diff(spinning) == 1).sum()),
         "root_jumps": int((of["mps"] > 2 * fast + 1e-6).sum()),
-        "most_turned_deg": float(of["turned"].max()),
+        "max_turn_deg": float(of["turned"].max()),
         "stances": len(of["stances"]),
         "stance_median_cm": float(np.median(of["stances"])) if of["stances"] else None,
         "stance_p90_cm": float(np.percentile(of["stances"], 90)) if of["stances"] else None,
