@@ -288,7 +288,7 @@ fn stage_ui(mock: &Mock, phone: bool, ui: &mut Ui) {
         let metrics = [
             Metric {
                 value: ["41", "126", "214"][index],
-                label: "jump °/s",
+                label: "velocity jump °/s",
                 rank,
                 hint: "How much the speed of the joints jumps.",
             },

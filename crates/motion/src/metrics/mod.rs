@@ -33,7 +33,7 @@
 //! | | unit | definition |
 //! |---|---|---|
 //! | foot slide | cm | the farthest that a planted foot moves in the worst stance |
-//! | place jump | cm | the character's step over the ground, beyond the usual |
+//! | position jump | cm | the character's step over the ground, beyond the usual |
 //! | penetration | cm | the depth of the deepest point below the ground |
 //! | lag | s | the time until the velocity is the new clip's, to 10 % |
 //!

@@ -62,7 +62,7 @@ pub struct TransitionMetrics {
     /// transition, the largest change of a joint's angular velocity (a vector in the parent's
     /// frame) from one step to the next, minus the usual value for that joint.
     pub seam_dps: Option<f64>,
-    /// Place jump, centimetres: the largest step of the character over the ground, minus the usual
+    /// Position jump, centimetres: the largest step of the character over the ground, minus the usual
     /// one.
     pub jump_cm: Option<f64>,
     /// Yaw of the blend, degrees. With `r`, `a`, `b` the yaw of a step of the result and of the
@@ -119,7 +119,7 @@ impl TransitionMetrics {
         [
             Metric::lower(
                 "jump_cm",
-                "Place jump",
+                "Position jump",
                 self.jump_cm,
                 "cm",
                 "How far the character moves over the ground in one frame at the transition, beyond its usual step.",

@@ -16,7 +16,7 @@ pub struct ClipMetrics {
     /// Foot slide, centimetres: [`foot_slide_cm`](super::foot_slide_cm). `None` without feet or
     /// stances.
     pub foot_slide_cm: Option<f64>,
-    /// Place jump, centimetres: the largest step of the character over the ground, minus the 99th
+    /// Position jump, centimetres: the largest step of the character over the ground, minus the 99th
     /// percentile of its steps.
     pub jump_cm: Option<f64>,
     /// Penetration, centimetres: the depth of the deepest joint or end site below the ground.
@@ -54,7 +54,7 @@ impl ClipMetrics {
             ),
             Metric::lower(
                 "clip_jump_cm",
-                "Largest place jump",
+                "Largest position jump",
                 self.jump_cm,
                 "cm",
                 "How far the character moves over the ground in one frame, beyond all but one in a hundred frames of the clip: the worst.",
