@@ -60,7 +60,7 @@ const NO_SENTENCE: [&str; 30] = [
     "{} and {} registered",
     "{} loop",
     "{} in place",
-    "{} with its way",
+    "{} with root motion",
     "(prefers-reduced-motion: reduce)",
     "try it",
     "variety",

@@ -316,16 +316,16 @@ pub(crate) const METRICS: &[(&str, &str)] = &[
     ("loop_before_deg", "bare seam"),
     ("cycle_s", "cycle s"),
     ("cycle_frames", "frames"),
-    ("cycle_m", "way m"),
+    ("cycle_m", "travelled m"),
     ("cycle_turn_deg", "turn"),
-    ("root_way_m", "way m"),
+    ("root_way_m", "travelled m"),
     ("root_way_mps", "m/s"),
     ("root_way_turn_deg", "turn"),
 ];
 
 /// What the In place lab does.
 pub(crate) const IN_PLACE_ABOUT: &str =
-    "Takes the way over the ground out of a clip, or finds it again from the feet that stand.";
+    "Removes the root motion of a clip, or rebuilds it from the planted feet.";
 /// What the Speed lab does.
 pub(crate) const SPEED_ABOUT: &str = "Blends two gaits, such as a walk and a run, to any speed between them. Drag the speed while it plays.";
 /// Opens the speeds of A and B and the one between.

@@ -204,17 +204,17 @@ choices! {
         World "world" "as it was",
     }
 
-    /// What is left of a clip's way over the ground.
+    /// How much of a clip's root motion is kept.
     RootMotion of RootMotion {
         World "world" "recorded",
         InPlace "in_place" "in place",
         Residual "residual" "residual",
     }
 
-    /// What becomes of a clip's way over the ground.
+    /// What becomes of a clip's root motion.
     RootWay of RootWay {
-        TakeOut "take_out" "taken out",
-        PutBack "put_back" "put back",
+        TakeOut "take_out" "removed",
+        PutBack "put_back" "rebuilt",
     }
 
     /// The frame in which a character on a path keeps its heading.

@@ -273,7 +273,7 @@ parameters! {
     KeepOrientation "keep_orientation" "Keep B's posture" Lab(Layers), Kind::Switch, Start::Switch(true), "", "B's trunk leans and turns as in B, however A's hips tilt: for partial layers.";
     MaskColors "mask_colors" "Colour by share" Lab(Layers), Kind::Switch, Start::Switch(true), "", "Every limb in the colours of A and B, by its share of each." [LookedAt];
 
-    RootMotion "root_motion" "Way over the ground" Lab(View), Kind::Choice(RootMotion::CHOICES), Start::Choice(RootMotion::World.word()), "", "Recorded: as it is in the clip. In place: where the body stands and faces is taken out of every frame. Residual: a smooth path and its direction are taken out, and the sway about it stays.";
+    RootMotion "root_motion" "Root motion" Lab(View), Kind::Choice(RootMotion::CHOICES), Start::Choice(RootMotion::World.word()), "", "Recorded: as it is in the clip. In place: position and facing are removed from every frame. Residual: a smooth path and its direction are removed, and the sway about it stays.";
     PlaceX "place_x" "Starts at x" Lab(View), auto(-100.0, 100.0, 0.01), Start::Auto, "m", "Where the first frame stands, along x; the whole clip is moved along. Left to Segue: where it was recorded.";
     PlaceZ "place_z" "Starts at z" Lab(View), auto(-100.0, 100.0, 0.01), Start::Auto, "m", "Where the first frame stands, along z.";
     PlaceHeading "place_heading" "Starts facing" Lab(View), auto(-180.0, 180.0, 0.5), Start::Auto, "°", "What the first frame faces, 0 along z and 90 along x; the whole clip is turned along.";
@@ -365,8 +365,8 @@ parameters! {
     ShownCandidates "shown_candidates" "Candidates shown" Lab(Match), number(1.0, 8.0, 1.0), Start::Number(5.0), "frames", "How many of the best frames each search tells of." [LookedAt];
     Crowd "crowd" "Characters" Lab(Match), number(1.0, 100.0, 1.0), Start::Number(1.0), "", "Others walk about you, each with a controller of its own, all with the same clips." [LookedAt];
 
-    RootWay "root_way" "Way over the ground" Lab(InPlace), Kind::Choice(RootWay::CHOICES), Start::Choice(RootWay::TakeOut.word()), "", "Taken out: the body stays over the origin. Put back: found from the planted feet of a clip that goes in place.";
-    RootWayTurn "root_way_turn" "With the turn" Lab(InPlace), Kind::Switch, Start::Switch(true), "", "The turn of the body is taken out or put back, too. Off: it faces as it does in the clip.";
+    RootWay "root_way" "Root motion" Lab(InPlace), Kind::Choice(RootWay::CHOICES), Start::Choice(RootWay::TakeOut.word()), "", "Removed: the body stays over the origin. Rebuilt: computed from the planted feet of a clip that goes in place.";
+    RootWayTurn "root_way_turn" "Include turning" Lab(InPlace), Kind::Switch, Start::Switch(true), "", "Turning is removed or rebuilt, too. Off: the body faces as it does in the clip.";
 
     Gait "gait" "Motion" Lab(Make), Kind::Choice(MadeAction::CHOICES), Start::Choice(MadeAction::Walk.word()), "", "What the character does.";
     GaitSpeed "gait_speed" "Speed" Lab(Make), auto(0.4, 6.5, 0.05), Start::Auto, "m/s", "How fast it walks or runs: a walk takes 0.4 to 2.2, a run 1.8 to 6.5.";

@@ -1,4 +1,4 @@
-//! Clips without root motion, whose trajectory follows from their planted feet.
+//! Clips without root motion, and root motion computed from planted feet.
 
 use super::contacts::{FootTracks, GROUND_PERCENTILE, REFERENCE_HEIGHT_M, drop_short_runs};
 use super::{Clip, ContactOptions, Contacts, character_frames};
@@ -6,22 +6,22 @@ use crate::math::{Planar, stats};
 use crate::skeleton::{Roles, Side};
 use glam::DVec2;
 
-/// The speed of the body is first told over this time, seconds: about one step.
+/// The first estimate of the body's speed is a mean over this time, seconds: about one step.
 const STEP_SECS: f64 = 0.5;
-/// Below this speed of a body of 1.75 m, metres per second, no direction tells stance from swing:
-/// what is low stands.
+/// Below this speed of a body of 1.75 m, metres per second, direction does not separate stance
+/// from swing, and every low foot stands.
 const STANDING_MPS: f64 = 0.15;
-/// A foot on the ground goes backward at no less than this share of the body's speed. One that
-/// swings goes forward.
-const LEAST_BACKWARD: f64 = 0.6;
-/// The velocity at the ends of a flight is told over this time, seconds.
+/// A standing foot moves backward at no less than this share of the body's speed. A swinging foot
+/// moves forward.
+const MIN_BACKWARD_SHARE: f64 = 0.6;
+/// The velocity at either end of a flight is a mean over this time, seconds.
 const FLIGHT_SECS: f64 = 0.1;
-/// The first guess at the speed is made better this many times.
+/// Number of refinements of the first estimate.
 const ROUNDS: usize = 3;
 
-/// Returns what takes a clip in place, frame by frame: each moves the body over the origin, with
-/// `turns` so that it faces +Z. `character_frames` are those of [`character_frames`]; to be applied
-/// by [`Clip::transformed_by_frame`].
+/// Returns the transforms that take a clip in place, one for each frame: each moves the body over
+/// the origin, and with `turns` makes it face +Z. `character_frames` are those of
+/// [`character_frames`]; for [`Clip::transformed_by_frame`].
 ///
 /// [`character_frames`]: super::character_frames
 #[must_use]
@@ -32,44 +32,44 @@ pub fn take_in_place(character_frames: &[Planar], turns: bool) -> Vec<Planar> {
     character_frames.iter().map(taken).collect()
 }
 
-/// The way over the ground of a clip that went in place.
+/// The root motion of a clip that moves in place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RootWay {
-    /// What moves each frame to where it belongs, to be applied by [`Clip::transformed_by_frame`];
-    /// the first frame stays where it is.
+    /// The transform of each frame, for [`Clip::transformed_by_frame`]; the first frame keeps its
+    /// place.
     pub world_from_clip: Vec<Planar>,
-    /// When which foot carries the body.
+    /// The intervals in which each foot carries the body.
     pub contacts: Contacts,
 }
 
-/// Why a clip's way over the ground cannot be told.
+/// Error computing root motion from planted feet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error, segue_text::ToMessage)]
 pub enum RootWayError {
-    /// The skeleton has no feet that are known.
+    /// The skeleton has no known feet.
     #[error("No foot of this body is known: set its roles, then try again.")]
     NoFeet,
-    /// No foot comes down to the ground.
+    /// No foot reaches the ground.
     #[error("No foot ever stands on the ground here: raise the contact height.")]
     NoContacts,
 }
 
-/// Finds the way over the ground of a clip that goes in place, from its planted feet. A way that it
-/// has already is taken out first: what comes back tells how well its feet agree with it.
+/// Computes the root motion of a clip that moves in place, from its planted feet. Root motion that
+/// the clip has is removed first, so that the result shows how well its feet agree with it.
 ///
 /// A planted foot stands still in the world, so the body moves against the foot's own motion.
 /// Feet that carry the body are found by height and by backward motion: below the contact height
 /// each point (ankle, ball, tip) counts by `(1 - height / limit)²`; the mean of their steps,
-/// smoothed over half a second, is a first guess at the body's velocity; what does not go backward
-/// at 0.6 of it is a foot that swings low and drops out, three times over. Where nothing carries the
-/// body, as in the flight of a run, its velocity goes evenly from the last known to the next. With
-/// `turns` the body also turns against the turn of the feet that carry it, as far as ankle and tip
-/// both do.
+/// smoothed over half a second, is a first guess at the body's velocity; a point that does not
+/// move backward at 0.6 of it belongs to a foot that swings low, and is left out; this is repeated
+/// three times. Where nothing carries the body, as in the flight of a run, its velocity is
+/// interpolated from the last known to the next. With `turns` the body also turns against the turn
+/// of the feet that carry it, where ankle and tip both do.
 ///
-/// Each foot counts by the point of it that goes backward most: the others roll about it.
+/// Each foot counts by its point that moves backward fastest: the others roll about it.
 ///
-/// The speed limits of `options` are not used. Synthesised walks come back within 1 % of their way,
-/// runs within 7 %, too short: a foot that comes down or leaves is a little slower than the ground.
-/// A foot that slides in the source is taken as standing. O(frames × joints).
+/// The speed limits of `options` are not used. The distance of synthesised walks is reproduced
+/// within 1 %, that of runs within 7 %, too short: a foot that lands or leaves is a little slower
+/// than the ground. A foot that slides in the source is taken as standing. O(frames × joints).
 ///
 /// # Errors
 /// [`RootWayError`]
@@ -117,7 +117,7 @@ struct FootPoint {
     side: Side,
     /// Over the ground, (x, z) in metres.
     way: Vec<DVec2>,
-    /// How much it may carry the body by its height alone, 0 to 1.
+    /// Share of the body that it may carry by its height alone, 0 to 1.
     lows: Vec<f64>,
 }
 
@@ -147,7 +147,8 @@ impl Feet {
         Self { points, scale }
     }
 
-    /// Returns how much each point carries the body, 0 to 1: low points, but for those that swing.
+    /// Returns the share of the body that each point carries, 0 to 1: that of low points that do
+    /// not swing.
     fn carrying(&self, fps: f64) -> Vec<Vec<f64>> {
         let mut carries: Vec<Vec<f64>> =
             self.points.iter().map(|point| point.lows.clone()).collect();
@@ -159,7 +160,7 @@ impl Feet {
                     let velocity = velocities.get(frame).copied().unwrap_or_default();
                     let speed = velocity.length();
                     let backward = point.velocity(frame, fps).dot(velocity) / -speed.max(1e-9);
-                    let stands = speed < standing_mps || backward >= LEAST_BACKWARD * speed;
+                    let stands = speed < standing_mps || backward >= MIN_BACKWARD_SHARE * speed;
                     *weight = if stands { point.lows[frame] } else { 0.0 };
                 }
             }
@@ -167,7 +168,7 @@ impl Feet {
         carries
     }
 
-    /// The body's velocity in each frame, metres per second, over about one step.
+    /// Returns the body's velocity in each frame, metres per second, as a mean over about one step.
     fn velocities(&self, carries: &[Vec<f64>], fps: f64) -> Vec<DVec2> {
         let frames = self.points.first().map_or(0, |point| point.way.len());
         let weighed = |frame: usize| {
@@ -211,7 +212,7 @@ impl Feet {
         Contacts::from_flags(Side::BOTH.map(flags))
     }
 
-    /// The step of the body from a frame to the next; `None` where nothing carries it.
+    /// Returns the step of the body from a frame to the next; `None` where nothing carries it.
     fn step(
         &self,
         carries: &[Vec<f64>],
@@ -274,8 +275,8 @@ impl FootPoint {
     }
 }
 
-/// Fills gaps between known steps evenly, from the mean of up to `reach` steps before to that of the
-/// steps behind; before the first known step and behind the last the body goes on in this way.
+/// Fills gaps between known steps evenly, from the mean of up to `reach` steps before to that of
+/// the steps behind; before the first known step and behind the last the body goes on in this way.
 fn bridge(steps: &mut [Option<Planar>], reach: usize) {
     let known = steps.to_vec();
     let mean = |run: &mut dyn Iterator<Item = &Option<Planar>>| {

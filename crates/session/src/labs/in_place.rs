@@ -1,4 +1,4 @@
-//! The In place lab: a clip's way over the ground is taken out, or put back from its planted feet.
+//! The In place lab: the root motion of a clip is removed, or rebuilt from its planted feet.
 
 use super::feet::{Lock, slide, with_feet};
 use super::lab::{Inputs, Lab, LabInputs};
@@ -14,7 +14,7 @@ use segue_motion::math::Planar;
 use segue_motion::metrics::{Metric, foot_slide_cm};
 use std::sync::Arc;
 
-/// The In place lab: one clip, without its way over the ground or with a new one.
+/// The In place lab: one clip without root motion, or with a rebuilt one.
 pub(super) struct InPlaceLab;
 
 impl Lab for InPlaceLab {
@@ -29,14 +29,14 @@ impl Lab for InPlaceLab {
     fn result_name(&self, params: &Params, a: &str, _b: &str) -> String {
         match params.choice() {
             RootWay::TakeOut => format!("{a}, in place"),
-            RootWay::PutBack => format!("{a}, way put back"),
+            RootWay::PutBack => format!("{a}, root motion rebuilt"),
         }
     }
 
     fn file_stem(&self, params: &Params) -> String {
         match params.choice() {
             RootWay::TakeOut => format!("{} in place", params.text(Key::A)),
-            RootWay::PutBack => format!("{} with its way", params.text(Key::A)),
+            RootWay::PutBack => format!("{} with root motion", params.text(Key::A)),
         }
     }
 
@@ -115,7 +115,7 @@ impl LabInputs for InPlaceInputs {
             "Foot slide in place",
             slid(&standing),
             "cm",
-            "How far a planted foot goes in the worst stance without the way over the ground.",
+            "How far a planted foot moves in the worst stance without root motion.",
         ));
         Ok(Outcome {
             metrics,
@@ -131,7 +131,7 @@ impl LabInputs for InPlaceInputs {
     }
 }
 
-/// Returns the numbers of a way over the ground.
+/// Returns how far, how fast and with what turn a body travels.
 fn way_metrics(frames: &[Planar], fps: f64) -> [Metric; 3] {
     let steps = || frames.windows(2).map(|pair| pair[0].inverse().after(&pair[1]));
     let way_m: f64 = steps().map(|step| step.shift.length()).sum();
@@ -139,24 +139,24 @@ fn way_metrics(frames: &[Planar], fps: f64) -> [Metric; 3] {
     [
         Metric::fact(
             "root_way_m",
-            "Way",
+            "Distance travelled",
             way_m,
             "m",
-            "The way of the hips over the ground that is taken out, or put back.",
+            "The distance that the body travels over the ground: what is removed, or rebuilt.",
         ),
         Metric::fact(
             "root_way_mps",
-            "Speed on the way",
+            "Mean speed",
             way_m / secs,
             "m/s",
-            "That way by its time.",
+            "The distance travelled, divided by its duration.",
         ),
         Metric::fact(
             "root_way_turn_deg",
-            "Turn on the way",
+            "Total turn",
             steps().map(|step| step.yaw).sum::<f64>().to_degrees(),
             "°",
-            "How far the body turns on that way, to the left.",
+            "How far the body turns over the clip, to the left.",
         ),
     ]
 }
