@@ -84,7 +84,8 @@ onBackend("webgl2", `${BURSTS} bursts of lost WebGL contexts`, async ({ open }) 
 });
 
 onBackend("both", "WebGL 2 draws once two WebGPU devices have died within 10 s", async ({ open }) => {
-  const opened = await open("lab=blend&play=off", { ...SMALL, prepare });
+  // Playing, so that every device goes on drawing: a still page may be done after one frame.
+  const opened = await open("lab=blend", { ...SMALL, prepare });
   const { page, segue } = opened;
   await page.evaluate(() => {
     window.errors = [];

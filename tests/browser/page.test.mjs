@@ -19,6 +19,7 @@ const STAND_IN = `
     setListener(listener) { this.tell = listener; }
     hasPanicked() { return Boolean(window.panic); }
     panicSummary() { return window.panic; }
+    isEmbedded() { return new URLSearchParams(window.location.search).has("embed"); }
     stats() { return { backend: "webgl2" }; }
     clips() { return [{ id: "walk" }]; }
     async set(values) { if (values.wrong) throw "wrong: no such key"; window.lastSet = values; }
