@@ -73,6 +73,8 @@ enum Focus {
     /// As [`Self::Respected`], but for widgets that were focused by the pointer: one drags a
     /// slider, and wants to see the motion play.
     RespectedByKeyboard,
+    /// The key is left to a menu that is open, which closes itself.
+    MenuRespected,
 }
 
 /// What a command is called and how it is given.
@@ -189,7 +191,7 @@ struct Target<'a> {
 
 impl UiCommand {
     fn row(self) -> Row {
-        use Focus::{Ignored, Respected, RespectedByKeyboard};
+        use Focus::{Ignored, MenuRespected, Respected, RespectedByKeyboard};
         use Trigger::{Copy, Keys, Typed};
         let keys = |triggers, focus| Row { text: "", tooltip: "", icon: None, triggers, focus };
         let named =
@@ -239,7 +241,7 @@ impl UiCommand {
             }
             Self::SwitchLanguage => named(text::OR_ENGLISH, Icon::Language, &[]),
             Self::ToggleHelp => named(text::HELP, Icon::Help, &[Typed("?")]),
-            Self::Close => keys(&[Keys(NONE, Keyboard::Escape)], Ignored),
+            Self::Close => keys(&[Keys(NONE, Keyboard::Escape)], MenuRespected),
         }
     }
 
@@ -328,16 +330,13 @@ impl UiCommand {
                 out.set_once(Key::Lang, Value::Choice(other.tag()));
             }
             Self::ToggleHelp => state.help_open = !state.help_open,
-            Self::Close => close(session, state, out, ui),
+            Self::Close => close(session, state, out),
         }
     }
 }
 
-/// Closes the lesson, or what lies in front of it. A menu that is open closes itself.
-fn close(session: &Session, state: &mut UiState, out: &mut Out, ui: &Ui) {
-    if Popup::is_any_open(ui.ctx()) {
-        return;
-    }
+/// Closes the lesson, or what lies in front of it.
+fn close(session: &Session, state: &mut UiState, out: &mut Out) {
     let lies_in_front = state.help_open || state.library_open || state.drawing.is_some();
     if lessons_panel::is_open(session) && !lies_in_front {
         toggle_lessons(session, out);
@@ -370,6 +369,7 @@ pub(crate) fn take_keys(session: &Session, state: &mut UiState, out: &mut Out, u
         Focus::Ignored => true,
         Focus::Respected => focus.is_none(),
         Focus::RespectedByKeyboard => focus.is_none() || touched == focus,
+        Focus::MenuRespected => !Popup::is_any_open(ctx),
     };
     let is_pressed = |trigger: Trigger| {
         ctx.input_mut(|input| match trigger {
@@ -430,12 +430,15 @@ pub(crate) fn command_button_ui(
     let button = button.name(name).hint("").selected(command.is_on(session));
     let enabled = command.is_enabled(session);
     let response = ui.add_enabled_ui(enabled, |ui| kit::button_ui(button, ui)).inner;
-    let what = tr(if row.tooltip.is_empty() { name } else { row.tooltip }, ui);
-    let tooltip = match keys_of(&[command]).as_str() {
-        "" => what.into_owned(),
-        keys => format!("{what} ({keys})"),
-    };
-    if response.on_hover_text(tr(&tooltip, ui)).clicked() {
+    // Made only while the pointer is over the button.
+    let response = response.on_hover_ui(|ui| {
+        let what = tr(if row.tooltip.is_empty() { name } else { row.tooltip }, ui);
+        ui.label(match keys_of(&[command]).as_str() {
+            "" => what.into_owned(),
+            keys => format!("{what} ({keys})"),
+        });
+    });
+    if response.clicked() {
         command.run(&mut Target { session, state, out, ui });
     }
 }

@@ -763,6 +763,23 @@ fn choices_show_the_value_in_force() {
 }
 
 #[test]
+fn escape_closes_a_menu_and_nothing_behind_it() {
+    let mut harness = harness(DESK, DARK, page("lab=transition&play=off"));
+    harness.state_mut().state.help_open = true;
+    harness.run_steps(2);
+    harness.get_by_role_and_label(Role::ComboBox, "Method").click();
+    harness.run_steps(3);
+    assert!(harness.query_by_label("dead blend").is_some(), "the menu is open");
+    harness.key_press(Keyboard::Escape);
+    harness.run_steps(3);
+    assert!(harness.query_by_label("dead blend").is_none(), "the menu is closed");
+    assert!(harness.state().state.help_open);
+    harness.key_press(Keyboard::Escape);
+    harness.run_steps(2);
+    assert!(!harness.state().state.help_open);
+}
+
+#[test]
 fn hysteresis_shows_the_rows_of_its_choice() {
     for (link, bias, time) in [
         ("hysteresis=bias", true, false),
