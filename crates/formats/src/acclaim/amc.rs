@@ -439,8 +439,9 @@ impl Frames<'_, '_> {
         goes_on
     }
 
-    /// What can be said at the end: whether the motion fits the skeleton at all, and whether most
-    /// values are values.
+    /// Checks the whole motion after its last frame: refuses it where it names no bone of the
+    /// skeleton, or where more than 1 % of its values are not finite; warns of bones that it never
+    /// moves.
     fn check(&mut self) -> Result<(), Fault> {
         if self.used == 0 {
             let expected = msg!(

@@ -10,8 +10,8 @@
 //! `orientation` are the frame of reference of the whole motion. Commas and parentheses are white
 //! space, `#` begins a comment, limits are not applied.
 //!
-//! What is not in the files (the frame rate) or not reliably (the unit of length) is found as
-//! [`read_motion`] says.
+//! The files have no frame rate and no reliable unit of length; [`read_motion`] describes how both
+//! are determined.
 
 mod amc;
 mod asf;

@@ -167,10 +167,10 @@ impl Usual {
 /// Reads lines of plain numbers.
 #[derive(Debug, Default)]
 pub(super) struct Lines {
-    /// What the digits of each number are to be divided by: all at once, since one division takes
-    /// as long as the rest of a number.
+    /// The power of ten that divides the digits of each number. The divisions are done together,
+    /// because one alone takes as long as the rest of reading a number.
     divisors: Vec<f64>,
-    /// The number of digits behind the point that was usual in the lines before.
+    /// The usual number of digits after the decimal point in the lines before.
     decimals: usize,
 }
 

@@ -1,5 +1,5 @@
-//! What an animation does to one property of one node: keys over time, and the three ways to go
-//! from one to the next.
+//! Animation curves: the keys of one property of one node over time, and the three interpolations
+//! between them.
 
 use super::document::Document;
 use crate::ImportError;

@@ -5,11 +5,11 @@
 //! rotation and scale, and binary arrays (accessors) with keys over time. Lengths are metres, +Y is
 //! up, and a character looks along +Z: as inside Segue.
 //!
-//! What is read is motion, and who moves: which nodes are joints is told by the skins, and where
-//! there is none by the animations. Joints get new axes, so that at rest every rotation is the
-//! identity and offsets are what the rest pose shows, as everywhere in Segue; scales of nodes go
-//! into offsets. World positions stay what they are. A mesh with a skin comes along with its plain
-//! colour; other meshes and images are not looked at.
+//! The reader takes motion and skinned meshes. The joints are the nodes that skins name, or that
+//! animations move where there is no skin. Joints get new axes, so that in the rest pose every
+//! rotation is the identity and offsets are those of the rest pose, as everywhere in Segue; scales
+//! of nodes go into offsets. World positions do not change. A skinned mesh keeps its base colour;
+//! other meshes and images are ignored.
 
 mod accessor;
 mod bones;

@@ -11,10 +11,10 @@ use std::sync::Arc;
 
 /// How the name of the program that wrote a file begins, where that was Segue.
 pub(super) const GENERATOR: &str = "Segue ";
-/// What a body that Segue made around the bones is called in a file: whoever reads the file has it
-/// already.
+/// The name in a file of the mesh that Segue generates around a skeleton. A reader that finds it can
+/// leave the mesh out, because it generates the same one.
 pub(super) const MADE_BODY: &str = "Body";
-/// What the mesh of a character is called.
+/// The name in a file of a character's mesh.
 const CHARACTER: &str = "Character";
 /// What an index of 16 bits can tell apart.
 const MAX_JOINTS: usize = 1 << 16;

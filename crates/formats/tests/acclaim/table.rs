@@ -91,8 +91,8 @@ fn units_of_length() {
         let text = with(ASF, ":units\n  mass 1.0\n  length 1.0\n  angle deg\n", units);
         same_skeleton(text);
     }
-    // What the file says is taken where it makes a person: 160 units of an inch by 2.54 are 1.6 m,
-    // of an inch by 2 are 2.03 m.
+    // The unit in the file is used where it gives the height of a person: 160 units of 1/2.54 inch
+    // are 1.6 m, and 160 units of 1/2 inch are 2.03 m.
     for (length, metres) in [("2.54", 0.01), ("2.0", 0.0127), ("0.1", 0.01)] {
         let (clip, warnings) =
             clip_of(with(ASF, "length 1.0", &format!("length {length}")), amc(1));
@@ -297,8 +297,8 @@ fn a_file_that_is_cut_off_loses_its_last_frame() {
         let cut = &text[..end];
         let (clip, warnings) = clip_of(ASF, cut);
         let whole = clip.frames() == 3;
-        // What ends with a whole line is a frame without some of its bones, and what ends with a
-        // whole number may be one cut off.
+        // A file cut at the end of a line lacks some bones of its last frame; one cut after a digit
+        // may lack the rest of a number.
         let told = warnings.iter().any(|text| {
             text.contains("dropped") || text.contains("held") || text.contains("left out")
         });

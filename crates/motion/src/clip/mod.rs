@@ -80,7 +80,7 @@
 mod carrier;
 mod contacts;
 mod curves;
-#[allow(
+#[expect(
     clippy::missing_panics_doc,
     clippy::must_use_candidate,
     clippy::unwrap_used,

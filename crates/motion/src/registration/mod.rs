@@ -89,7 +89,7 @@ mod cloud;
 mod clouds;
 mod curves;
 mod distance;
-#[allow(
+#[expect(
     clippy::missing_panics_doc,
     clippy::must_use_candidate,
     clippy::unwrap_used,

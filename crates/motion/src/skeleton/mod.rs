@@ -82,7 +82,7 @@
 mod ancestry;
 mod carrier;
 mod corrections;
-#[allow(
+#[expect(
     clippy::missing_panics_doc,
     clippy::must_use_candidate,
     clippy::unwrap_used,
