@@ -7,6 +7,8 @@ import { random, striding, until } from "./help.mjs";
 const SMALL = { viewport: [960, 640] };
 const LOSSES = 20;
 const BURSTS = 5;
+/** Each page loses two WebGPU devices: where they die within 10 s, it draws by WebGL 2 from then on. */
+const WEBGPU_PAGES = 10;
 
 /** In the page: `lose()` takes the graphics away that draw at present. */
 const prepare = (page) => page.addInitScript(() => {
@@ -82,6 +84,26 @@ onBackend("webgl2", `${BURSTS} bursts of lost WebGL contexts`, async ({ open }) 
   });
   await isAlive(opened, ids);
 });
+
+for (let index = 1; index <= WEBGPU_PAGES; index++) {
+  onBackend("both", `two WebGPU devices destroyed at any moment, page ${index} of ${WEBGPU_PAGES}`, async ({ open }) => {
+    const opened = await open("lab=blend", { ...SMALL, prepare });
+    const { page, segue } = opened;
+    assert.equal((await segue("stats")).backend, "webgpu");
+    const next = random(100 + index);
+    const ids = await whileBusy(opened, async () => {
+      for (let loss = 0; loss < 2; loss++) {
+        await until("there is a device", () => page.evaluate(() => window.device !== window.dead));
+        await page.waitForTimeout(1500 * next());
+        await page.evaluate(() => {
+          window.dead = window.device;
+          window.lose("webgpu");
+        });
+      }
+    });
+    await isAlive(opened, ids);
+  });
+}
 
 onBackend("both", "WebGL 2 draws once two WebGPU devices have died within 10 s", async ({ open }) => {
   // Playing, so that every device goes on drawing: a still page may be done after one frame.
