@@ -46,11 +46,17 @@ onBackend("webgl2", "a page that a lesson's link opens has no hold on this one",
     answers["/mine.md"] = { type: "text/plain", text: `# Mine\n\n${link(far).repeat(6)}` };
     const { page, segue } = await open("", DESK);
     await segue("set", { lesson: `${far}/mine.md` });
-    const popup = page.context().waitForEvent("page", { timeout: 60_000 });
-    await page.mouse.move(160, 400);
-    await page.mouse.down();
-    await page.mouse.up();
-    const other = await popup;
+    const pages = [];
+    page.context().on("page", (opened) => pages.push(opened));
+    // The lesson may come, and be laid out, after any one click.
+    await until("the link opens a page", async () => {
+      await page.mouse.move(160, 400);
+      await page.mouse.down();
+      await page.mouse.up();
+      await page.waitForTimeout(300);
+      return pages.length > 0;
+    }, 60_000);
+    const [other] = pages;
     await other.waitForLoadState();
     assert.match(other.url(), /other\.html$/);
     assert.deepEqual(await other.evaluate(() => [window.opener, document.referrer]), [null, ""]);

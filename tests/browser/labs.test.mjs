@@ -31,6 +31,17 @@ onBothBackends("the exact loop has no seam, one spring alone has", async ({ open
   assert.ok(linear > 5 * Math.max(exact, 0.1), `the linear one: ${linear} °/s`);
 });
 
+// Fails when the rebuilt root motion is not that of the clip it was removed from.
+onBothBackends("root motion that was removed is rebuilt from the feet", async ({ open }) => {
+  const { segue } = await open("lab=in_place&a=walk&compare=root_way:take_out,put_back&play=off", DESK);
+  await segue("set", {});
+  const [removed, rebuilt] = await panes(segue, "root_way_m");
+  assert.ok(removed > 1, `removed ${removed} m`);
+  assert.ok(Math.abs(rebuilt - removed) < 0.02 * removed, `rebuilt ${rebuilt} m of ${removed} m`);
+  const [start, end] = await Promise.all([0, 1].map((time) => segue("pose", "result", time)));
+  assert.ok(apart(start, end) > 0.01, "its body moves");
+});
+
 // Fails when the mask lets the legs through, or keeps the arms back.
 onBothBackends("a layer moves what its mask covers, and nothing else", async ({ open }) => {
   const { segue } = await open("lab=layers&mask=arms&feather=0&play=off", DESK);
