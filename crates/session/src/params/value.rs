@@ -1,0 +1,101 @@
+//! Values of parameters, and why one does not fit.
+
+use crate::Selected;
+use crate::outside::short;
+use segue_text::{Message, msg};
+
+/// The value of a parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// Left to Segue.
+    Auto,
+    /// A number.
+    Number(f64),
+    /// A switch.
+    Switch(bool),
+    /// The key of a choice.
+    Choice(&'static str),
+    /// A clip's id or free text.
+    Text(String),
+}
+
+impl Value {
+    /// Returns a choice as its type; `None` for anything else.
+    #[must_use]
+    pub fn choice<C: Selected>(&self) -> Option<C> {
+        match self {
+            Self::Choice(word) => C::from_word(word),
+            _ => None,
+        }
+    }
+}
+
+impl<C: Selected> From<C> for Value {
+    fn from(choice: C) -> Self {
+        Self::Choice(choice.word())
+    }
+}
+
+/// Why a value does not fit its parameter.
+#[derive(Clone, Debug, PartialEq, thiserror::Error, segue_text::ToMessage)]
+pub enum ValueError {
+    /// Not a number.
+    #[error(
+        "{key}: found `{found}`, expected a number{unit}{auto}",
+        found = short(.found), unit = of_unit(.unit), auto = or_auto(*.auto)
+    )]
+    NotANumber {
+        /// The parameter.
+        key: &'static str,
+        /// What was there.
+        found: String,
+        /// Its unit.
+        unit: &'static str,
+        /// Whether `auto` would do.
+        auto: bool,
+    },
+    /// A number outside of the range.
+    #[error("{key}: found {found}, expected {min} to {max}{unit}", unit = unit_suffix(.unit))]
+    OutOfRange {
+        /// The parameter.
+        key: &'static str,
+        /// What was there.
+        found: f64,
+        /// Smallest value.
+        min: f64,
+        /// Largest value.
+        max: f64,
+        /// Its unit.
+        unit: &'static str,
+    },
+    /// A word that is none of the choices.
+    #[error("{key}: found `{found}`, expected {expected}", found = short(.found))]
+    NotAChoice {
+        /// The parameter.
+        key: &'static str,
+        /// What was there.
+        found: String,
+        /// The words that there are.
+        expected: String,
+    },
+    /// Not a comparison.
+    #[error("compare: found `{found}`, expected {expected}", found = short(.found))]
+    NotAComparison {
+        /// What was there.
+        found: String,
+        /// What would do.
+        expected: String,
+    },
+}
+
+fn of_unit(unit: &'static str) -> Message {
+    if unit.is_empty() { Message::default() } else { msg!(" of {unit}") }
+}
+
+fn or_auto(auto: bool) -> Message {
+    if auto { Message::word(" or `auto`") } else { Message::default() }
+}
+
+fn unit_suffix(unit: &'static str) -> Message {
+    if unit.is_empty() { Message::default() } else { msg!(" {unit}") }
+}
