@@ -1,11 +1,11 @@
 //! Whose motion a lab works with: made, captured, or what the user brought.
 
-use super::document::Session;
 use super::labs::lab::{self, Lab};
 use super::library::{Entry, Origin};
 use super::link;
 use super::params::{Key, Kind, Mark, Value};
 use super::samples::SUBJECT_16;
+use super::session::Session;
 
 /// A choice of clips for the whole lab.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,10 +1,10 @@
-use super::document::NoResult;
 use super::labs::Slot;
 use super::lesson::Source;
 use super::outside::short;
 use super::params::{Key, Value, ValueError};
 use super::reading::ReadTask;
 use super::samples::{Sample, SampleSet};
+use super::session::NoResult;
 use segue_formats::{ImportError, ImportOptions};
 use segue_motion::matching::Control;
 use segue_motion::skeleton::Role;

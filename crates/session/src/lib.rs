@@ -69,11 +69,14 @@ mod command;
 mod compare;
 mod document;
 pub mod export;
+#[cfg(test)]
+mod fixtures;
 mod labs;
 pub mod lesson;
 mod library;
 pub mod link;
 mod memory;
+mod missing;
 mod motion;
 mod notice;
 mod numbers;
@@ -83,16 +86,13 @@ pub mod reading;
 mod report;
 mod samples;
 mod saved;
+mod session;
 pub mod transport;
-mod undo;
 
 pub use choices::{LabId, Selected};
 pub use clip_sets::ClipSet;
 pub use command::{Command, CommandError, CompanyChange, Request};
 pub use compare::{Compare, MAX_PANES};
-pub use document::{
-    ClipInfo, Companion, Job, Lesson, LessonPage, Loaded, Made, NoResult, Pane, Session, Shown,
-};
 pub use labs::LabError;
 pub use labs::{
     At, Built, Cast, Distances, Field, Passed, Trace, Walk, WalkGhost, check_graph_clips, graph_of,
@@ -120,3 +120,6 @@ pub use params::{
 pub use report::{ReportFacts, report};
 pub use samples::{SAMPLES_CREDIT, Sample, SampleSet};
 pub use saved::{Saved, SavedEntry, Storing};
+pub use session::{
+    ClipInfo, Companion, Job, Lesson, LessonPage, Loaded, Made, NoResult, Pane, Session, Shown,
+};

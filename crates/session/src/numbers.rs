@@ -1,7 +1,7 @@
 //! The numbers of all panes side by side.
 
-use super::document::{Pane, Session};
 use super::outside::markdown;
+use super::session::{Pane, Session};
 use segue_formats::csv;
 use segue_motion::metrics::{Better, Metric};
 use std::fmt::Write as _;

@@ -1,11 +1,11 @@
 //! What is shown, written down for others: a homework, a bug, a note.
 
-use super::document::{NoResult, Session};
 use super::labs::{recipe_ingredients, recipe_params};
 use super::library::{Entry, Origin};
 use super::numbers::NumberTable;
 use super::outside::{markdown, markdown_code, markdown_sentence};
 use super::params::{Key, Kind, Value, format_number};
+use super::session::{NoResult, Session};
 use std::fmt::Write as _;
 
 /// What a report says beyond the document.

@@ -45,6 +45,15 @@ impl Lab for GraphLab {
         clips_of(params.text(Key::Clips))
     }
 
+    fn without_clip(&self, params: &Params, id: &str) -> Vec<(Key, Value)> {
+        let ids = self.listed(params);
+        let others: Vec<String> = ids.iter().filter(|known| *known != id).cloned().collect();
+        if others.is_empty() || others.len() == ids.len() {
+            return Vec::new();
+        }
+        graph_of(&others)
+    }
+
     fn with_clips(&self, ids: &[String]) -> Option<Vec<(Key, Value)>> {
         Some(graph_of(ids))
     }
@@ -130,3 +139,6 @@ impl LabInputs for GraphInputs {
         self.0.followed.as_ref().is_some_and(|trace| trace.is_searching)
     }
 }
+
+#[cfg(test)]
+mod command_tests;

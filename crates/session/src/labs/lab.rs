@@ -37,6 +37,11 @@ pub(crate) trait Lab: Sync {
         self.more_clips(params).unwrap_or_default()
     }
 
+    /// Returns what is to be set so that the lab no longer names a clip; nothing where it does not.
+    fn without_clip(&self, _params: &Params, _id: &str) -> Vec<(Key, Value)> {
+        Vec::new()
+    }
+
     /// The ids of the clips that the result is made from besides those in its slots.
     ///
     /// # Errors

@@ -86,3 +86,6 @@ impl Lab for MatchLab {
         Ok(replay.map(Inputs::new))
     }
 }
+
+#[cfg(test)]
+mod command_tests;

@@ -1,7 +1,7 @@
 //! The Path lab: a motion on another path.
 
 use super::feet::{Lock, locking, slide, slide_before};
-use super::kept::{read_ids, recipe_ingredients, recipe_params};
+use super::kept::{read_ids, recipe_ingredients, recipe_params, write_ids};
 use super::lab::{Beside, Inputs, Lab, LabInputs};
 use super::lab_set::{JobKind, LabClips, LabSet, Sliced};
 use super::pair::source_of;
@@ -39,6 +39,15 @@ impl Lab for PathLab {
 
     fn listed(&self, params: &Params) -> Vec<String> {
         read_ids(params.text(Key::Others)).unwrap_or_default()
+    }
+
+    fn without_clip(&self, params: &Params, id: &str) -> Vec<(Key, Value)> {
+        let ids = self.listed(params);
+        let others: Vec<String> = ids.iter().filter(|known| *known != id).cloned().collect();
+        if others.len() == ids.len() {
+            return Vec::new();
+        }
+        vec![(Key::Others, Value::Text(write_ids(&others)))]
     }
 
     fn result_name(&self, _params: &Params, a: &str, _b: &str) -> String {
@@ -443,3 +452,6 @@ pub(crate) fn take_up(params: &mut Params, id: &str) -> Result<(), ValueError> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod command_tests;

@@ -1,4 +1,4 @@
-use crate::document::Session;
+use crate::session::Session;
 use crate::{Command, Transition};
 use segue_motion::clip::Clip;
 use segue_motion::registration::{align, limb_weights, rms_cm};

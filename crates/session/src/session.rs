@@ -8,7 +8,6 @@ mod graphing;
 mod loading;
 mod memory;
 mod panes;
-mod slots;
 mod storing;
 mod teaching;
 
@@ -19,30 +18,26 @@ pub use loading::Loaded;
 use loading::Reading;
 pub use panes::Job;
 pub use panes::{Made, NoResult, Pane, Shown};
-use slots::forget_places;
 pub use teaching::{Lesson, LessonPage};
 
-use super::command::{Command, CommandError, Request};
-use super::compare::Compare;
-use super::labs::{
-    CycleMade, DistanceMap, LabSet, Outcome, Slot, read_also, read_pins, read_weights,
-};
-use super::labs::{
+use crate::command::{Command, CommandError, Request};
+use crate::compare::Compare;
+use crate::document::Document;
+use crate::labs::{CycleMade, DistanceMap, LabSet, Outcome, Slot, read_pins, read_weights};
+use crate::labs::{
     is_as_it_is, made_motion_has, middle_mps, range_of, recipe_id, recipe_name, recipe_params,
     synth_action,
 };
-use super::lesson::Shelf;
-use super::library::{Entry, Library, Origin};
-use super::link;
-use super::memory::Memory;
-use super::motion::{FeetReader, Motion};
-use super::notice::{Level, Notices};
-use super::outside;
-use super::params::{Key, Mark, Params, Value};
-use super::reading::{Reads, read};
-use super::samples;
-use super::transport::Span;
-use super::undo::History;
+use crate::lesson::Shelf;
+use crate::library::{Entry, Library, Origin};
+use crate::link;
+use crate::memory::Memory;
+use crate::motion::{FeetReader, Motion};
+use crate::notice::{Level, Notices};
+use crate::outside;
+use crate::params::{Key, Params, Value};
+use crate::reading::{Reads, read};
+use crate::transport::Span;
 use segue_motion::skin::Character;
 use segue_motion::synth;
 use segue_text::{Message, msg};
@@ -80,9 +75,7 @@ pub struct ClipInfo {
 /// The document. See the module.
 #[derive(Debug)]
 pub struct Session {
-    params: Params,
-    library: Library,
-    history: History,
+    pub(crate) document: Document,
     notices: Notices,
     panes: Vec<Pane>,
     /// Clips whose feet are read otherwise than usual.
@@ -101,12 +94,7 @@ pub struct Session {
     memory: Option<Memory>,
     /// The library revision at which motion outside of the library was let go last.
     let_go_at: Option<u64>,
-    /// Whether A and B were named with the addresses of the link, or since.
-    named: [bool; 2],
-    library_revision: u64,
     revision: u64,
-    /// The parameters that the opened link names.
-    named_by_link: Vec<Key>,
 }
 
 impl Default for Session {
@@ -132,9 +120,7 @@ impl Session {
     fn that_reads(reads: Option<Reads>) -> Self {
         let mut session = Self {
             reads,
-            params: Params::default(),
-            library: preset_entries().collect(),
-            history: History::default(),
+            document: Document::default(),
             notices: Notices::default(),
             panes: Vec::new(),
             feet: FeetReader::default(),
@@ -148,10 +134,7 @@ impl Session {
             tasks: 0,
             memory: None,
             let_go_at: None,
-            named: [false; 2],
-            library_revision: 0,
             revision: 0,
-            named_by_link: Vec::new(),
         };
         session.open_link(WELCOME);
         session.refresh();
@@ -161,13 +144,13 @@ impl Session {
     /// The parameters.
     #[must_use]
     pub fn params(&self) -> &Params {
-        &self.params
+        &self.document.params
     }
 
     /// The library.
     #[must_use]
     pub fn library(&self) -> &Library {
-        &self.library
+        &self.document.library
     }
 
     /// What there is to say.
@@ -199,14 +182,14 @@ impl Session {
     }
 
     /// A pane by its number, counted from 0.
-    pub(super) fn pane(&self, index: usize) -> Result<&Pane, CommandError> {
+    pub(crate) fn pane(&self, index: usize) -> Result<&Pane, CommandError> {
         self.panes.get(index).ok_or(CommandError::NotPossible("there is no such pane"))
     }
 
     /// Grows with every change of library content; tells storage when to save.
     #[must_use]
     pub fn library_revision(&self) -> u64 {
-        self.library_revision
+        self.document.library_revision
     }
 
     /// Grows with every change that anybody could see, except the playhead's.
@@ -218,13 +201,13 @@ impl Session {
     /// Whether there is a step to take back.
     #[must_use]
     pub fn can_undo(&self) -> bool {
-        self.history.can_undo()
+        self.document.history.can_undo()
     }
 
     /// Whether there is a step to do again.
     #[must_use]
     pub fn can_redo(&self) -> bool {
-        self.history.can_redo()
+        self.document.history.can_redo()
     }
 
     /// What is asked of the outside since the last call.
@@ -235,11 +218,11 @@ impl Session {
     /// The query string that restores this state, without `?`.
     #[must_use]
     pub fn query(&self) -> String {
-        let query = link::write(&self.params);
+        let query = link::write(&self.document.params);
         if self.would_set_up() {
             // The lab, which is named only where it is not the first one, says that there is a
             // state besides.
-            format!("{query}&{}={}", Key::Lab.param().name, self.params.lab().word())
+            format!("{query}&{}={}", Key::Lab.param().name, self.document.params.lab().word())
         } else {
             query
         }
@@ -251,14 +234,14 @@ impl Session {
     pub fn choices<C: Selected>(&self) -> Vec<C> {
         match self.compare().filter(|compare| compare.key == C::KEY) {
             Some(compare) => compare.values.iter().filter_map(Value::choice).collect(),
-            None => vec![self.params.choice()],
+            None => vec![self.document.params.choice()],
         }
     }
 
     /// The comparison that is open.
     #[must_use]
     pub fn compare(&self) -> Option<Compare> {
-        Compare::parse(self.params.text(Key::Compare)).ok()
+        self.document.compare()
     }
 
     /// What is on the stage in the pane that stands for all where only one can: the first. As
@@ -285,15 +268,15 @@ impl Session {
     #[must_use]
     pub fn now_secs(&self) -> f64 {
         self.driven_secs()
-            .unwrap_or_else(|| self.params.number(Key::Time).min(self.duration_secs()))
+            .unwrap_or_else(|| self.document.params.number(Key::Time).min(self.duration_secs()))
     }
 
     /// The part that plays.
     #[must_use]
     pub fn span(&self) -> Span {
         Span::between(
-            self.params.optional(Key::In),
-            self.params.optional(Key::Out),
+            self.document.params.optional(Key::In),
+            self.document.params.optional(Key::Out),
             self.duration_secs(),
         )
     }
@@ -302,14 +285,14 @@ impl Session {
     /// the parameter `character` names.
     #[must_use]
     pub fn character(&self) -> Option<Character> {
-        self.library.find(self.params.text(Key::Character))?.character()
+        self.document.library.find(self.document.params.text(Key::Character))?.character()
     }
 
     /// Why the chosen character is not to be seen, in a sentence: what is on the stage cannot move
     /// it. `None` where it can, or none is chosen.
     #[must_use]
     pub fn character_note(&self) -> Option<String> {
-        let entry = self.library.find(self.params.text(Key::Character))?;
+        let entry = self.document.library.find(self.document.params.text(Key::Character))?;
         let character = entry.character()?;
         let shown = self.panes.iter().filter_map(|pane| pane.outcome.as_ref());
         let mut motions = shown.map(|outcome| &outcome.motion);
@@ -327,7 +310,7 @@ impl Session {
     /// The clip in a slot.
     #[must_use]
     pub fn slot(&self, slot: Slot) -> Option<&Arc<Entry>> {
-        self.library.find(self.params.text(slot.key()))
+        self.document.slot(slot)
     }
 
     /// Says something to the user.
@@ -345,24 +328,27 @@ impl Session {
     /// Lets time pass: moves the playhead while playing. Says whether anything moved.
     pub fn tick(&mut self, dt_secs: f64) -> bool {
         let mut changed = self.notices.tick(dt_secs);
-        if self.params.is_on(Key::Play) && self.drive_on(dt_secs * self.params.number(Key::Rate)) {
+        if self.document.params.is_on(Key::Play)
+            && self.drive_on(dt_secs * self.document.params.number(Key::Rate))
+        {
             changed = true;
         } else if self.is_playing() && !self.is_own_drive() {
             let (span, before, rate) =
-                (self.span(), self.now_secs(), self.params.number(Key::Rate));
-            let (now, moving) = span.advance(before, dt_secs, rate, self.params.is_on(Key::Loop));
+                (self.span(), self.now_secs(), self.document.params.number(Key::Rate));
+            let (now, moving) =
+                span.advance(before, dt_secs, rate, self.document.params.is_on(Key::Loop));
             let rounds = span.rounds(before, dt_secs, rate);
             if moving && rounds > 0 {
                 self.come_round(rounds);
             }
-            self.set_unchecked(Key::Time, Value::Number(now));
+            self.document.set_unchecked(Key::Time, Value::Number(now));
             if !moving {
-                self.set_unchecked(Key::Play, Value::Switch(false));
+                self.document.set_unchecked(Key::Play, Value::Switch(false));
                 self.revision += 1;
             }
             changed = true;
         }
-        let gait_secs = dt_secs * self.params.number(Key::Rate);
+        let gait_secs = dt_secs * self.document.params.number(Key::Rate);
         self.glide(gait_secs) || changed
     }
 
@@ -370,13 +356,7 @@ impl Session {
     /// then plays.
     #[must_use]
     pub fn is_playing(&self) -> bool {
-        self.params.is_on(Key::Play) && (self.is_driven() || self.duration_secs() > 0.0)
-    }
-
-    /// Sets a value that is known to fit.
-    fn set_unchecked(&mut self, key: Key, value: Value) {
-        let result = self.params.set(key, value);
-        debug_assert!(result.is_ok(), "{result:?}");
+        self.document.params.is_on(Key::Play) && (self.is_driven() || self.duration_secs() > 0.0)
     }
 
     /// Carries a command out and recomputes what depends on it.
@@ -395,23 +375,23 @@ impl Session {
             Command::Set(values) => self.set(values)?,
             Command::Reset(key) => {
                 self.set(vec![(key, key.param().default_value())])?;
-                self.history.settle();
+                self.document.settle();
             }
-            Command::Settle => self.history.settle(),
+            Command::Settle => self.document.settle(),
             Command::OpenLink(query) => {
-                self.remember(None);
+                self.document.remember(None);
                 self.open_link(&query);
                 held = None;
             }
-            Command::Assign(slot, id) => self.assign(slot, id)?,
+            Command::Assign(slot, id) => {
+                let id = self.document.assignable(id)?;
+                self.set(vec![(slot.key(), Value::Text(id))])?;
+                self.document.settle();
+            }
             Command::LoadSamples(set) => self.load_samples(set),
             Command::Remove(id) => self.remove(&id)?,
             Command::Rename(id, name) => {
-                if name.trim().is_empty() {
-                    return Err(CommandError::NotPossible("a clip needs a name"));
-                }
-                let name = outside::clip_name(&name);
-                self.change_entry(&id, |entry| entry.name = name)?;
+                self.document.rename(&id, &name)?;
             }
             Command::CorrectRole(id, role, joint) => self.correct_role(&id, role, joint)?,
             Command::Reimport(id, options) => self.reimport(&id, &options)?,
@@ -423,39 +403,39 @@ impl Session {
             Command::Seek(_) if self.is_driven() => {}
             Command::Seek(secs) => {
                 let to = if secs.is_finite() { secs.clamp(0.0, self.duration_secs()) } else { 0.0 };
-                self.set_unchecked(Key::Time, Value::Number(to));
+                self.document.set_unchecked(Key::Time, Value::Number(to));
             }
             Command::Step(frames) => self.step(frames),
             Command::TogglePlay => {
-                let playing = self.params.is_on(Key::Play);
-                if !playing && !self.params.is_on(Key::Loop) && self.now_secs() >= self.span().end {
-                    self.set_unchecked(Key::Time, Value::Number(self.span().start));
+                let playing = self.document.params.is_on(Key::Play);
+                if !playing
+                    && !self.document.params.is_on(Key::Loop)
+                    && self.now_secs() >= self.span().end
+                {
+                    self.document.set_unchecked(Key::Time, Value::Number(self.span().start));
                 }
-                self.set_unchecked(Key::Play, Value::Switch(!playing));
+                self.document.set_unchecked(Key::Play, Value::Switch(!playing));
             }
             Command::Compare(key) => {
                 let full = self
+                    .document
                     .params
                     .optional(key)
                     .or_else(|| self.automatic_value(key))
                     .unwrap_or_default();
                 let compare = Compare::full_half_third(key, full, self.range_of(key))
-                    .or_else(|| Compare::choices(key, self.params.get(key)))
+                    .or_else(|| Compare::choices(key, self.document.params.get(key)))
                     .ok_or(CommandError::NotPossible(
                         "only a number or a choice of the lab can be compared",
                     ))?;
                 self.set(vec![(Key::Compare, Value::Text(compare.to_string()))])?;
-                self.history.settle();
+                self.document.settle();
             }
             Command::Try(query) => self.try_out(&query)?,
             Command::StopGraph(stop) => self.labs.grapher.stop(stop),
             Command::Undo | Command::Redo => {
-                let (params, library) = (&mut self.params, &mut self.library);
                 let undoes = matches!(command, Command::Undo);
-                if (undoes && self.history.undo(params, library))
-                    || (!undoes && self.history.redo(params, library))
-                {
-                    self.library_revision += 1;
+                if if undoes { self.document.undo() } else { self.document.redo() } {
                     // What had not been read by then.
                     self.read_stored(Vec::new());
                 }
@@ -491,7 +471,7 @@ impl Session {
             Key::MixFrameA => self.frame_in(Slot::A, transition?.leave_a_secs),
             Key::MixFrameB => self.frame_in(Slot::B, transition?.enter_b_secs),
             Key::GaitSpeed => {
-                Some(f64::from(synth::Params::new(synth_action(&self.params)).speed_mps))
+                Some(f64::from(synth::Params::new(synth_action(&self.document.params)).speed_mps))
             }
             Key::WarpFrom => Some(outcome.registered()?.part_secs[0]),
             Key::WarpTo => Some(outcome.registered()?.part_secs[1]),
@@ -512,14 +492,14 @@ impl Session {
     /// place.
     #[must_use]
     pub fn view_is_changed(&self) -> bool {
-        lab::of(self.params.lab()).shows_clip() && !is_as_it_is(&self.params)
+        lab::of(self.document.params.lab()).shows_clip() && !is_as_it_is(&self.document.params)
     }
 
     /// The distances that the Register lab looks at: those of the first pane, newer ones where it
     /// has no result for them.
     #[must_use]
     pub fn distance_map(&self) -> Option<&Arc<DistanceMap>> {
-        if !lab::of(self.params.lab()).has(Beside::DistanceMap) {
+        if !lab::of(self.document.params.lab()).has(Beside::DistanceMap) {
             return None;
         }
         let pane = self.panes.first()?;
@@ -531,20 +511,20 @@ impl Session {
     /// Pairs of frames of A and B, at A's rate, that must meet; none where they cannot be read.
     #[must_use]
     pub fn pins(&self) -> Vec<(usize, usize)> {
-        read_pins(self.params.text(Key::Pins)).unwrap_or_default()
+        read_pins(self.document.params.text(Key::Pins)).unwrap_or_default()
     }
 
     /// The weight of B over the course of a registered blend, in per cent of both; empty where it
     /// stays the same, or cannot be read.
     #[must_use]
     pub fn weight_keys(&self) -> Vec<(usize, usize)> {
-        read_weights(self.params.text(Key::WarpCurve)).unwrap_or_default()
+        read_weights(self.document.params.text(Key::WarpCurve)).unwrap_or_default()
     }
 
     /// The further clips of a registered blend, with their weights; none where they cannot be read.
     #[must_use]
     pub fn also_blended(&self) -> Vec<(String, f64)> {
-        read_also(self.params.text(Key::WarpAlso)).unwrap_or_default()
+        self.document.also_blended()
     }
 
     /// The frame of a slot's clip at a time, at its own rate.
@@ -553,52 +533,14 @@ impl Session {
         Some((secs * motion.clip.fps()).round())
     }
 
-    fn remember(&mut self, key: Option<Key>) {
-        self.history.before_change(&self.params, &self.library, key);
-    }
-
     fn set(&mut self, values: Vec<(Key, Value)>) -> Result<(), CommandError> {
-        let mut params = self.params.clone();
         let named: Vec<Key> = values.iter().map(|(key, _)| *key).collect();
-        let mut changed = Vec::new();
-        for (key, value) in values {
-            if params.set(key, value)? {
-                changed.push(key);
-            }
-        }
-        let chosen = [Slot::A, Slot::B].map(|slot| changed.contains(&slot.key()).then_some(slot));
-        for slot in chosen.into_iter().flatten() {
-            let before = self.slot(slot).map(|entry| &entry.id);
-            let now = self.library.find(params.text(slot.key())).map(|entry| &entry.id);
-            // Another name of the same clip changes nothing.
-            if before.is_none() || before != now {
-                changed.extend(forget_places(&mut params, slot, &named));
-            }
-        }
-        let mut undoable = changed.iter().copied().filter(|key| !key.param().has(Mark::NoUndo));
-        if let Some(first) = undoable.next() {
-            // A slider that is dragged changes one parameter again and again: one step.
-            let alone = undoable.next().is_none();
-            self.remember(alone.then_some(first));
-        }
-        let had = std::mem::replace(&mut self.params, params).text(Key::Src).to_owned();
-        let new_sources = self.sources_beyond(&had);
-        self.note_named(&named, !new_sources.is_empty());
-        for slot in chosen.into_iter().flatten() {
-            let id = self.params.text(slot.key()).to_owned();
-            self.bring_back(&id);
-        }
-        if changed
-            .iter()
-            .any(|key| matches!(key, Key::Lab | Key::Clips | Key::MatchClips | Key::Others))
-        {
-            self.bring_back_listed();
-        }
-        self.fetch(new_sources);
-        if changed.iter().any(|key| key.param().group.is_of_lab()) {
+        let changes = self.document.set(values)?;
+        self.fetch(changes.new_sources);
+        if changes.keys.iter().any(|key| key.param().group.is_of_lab()) {
             self.labs.grapher.stop(false);
         }
-        if changed.contains(&Key::Lesson) {
+        if changes.keys.contains(&Key::Lesson) {
             self.lesson_was_set(named);
         }
         Ok(())
@@ -609,40 +551,33 @@ impl Session {
         let mut params = Params::default();
         let named: Vec<Key> = link.values.iter().map(|(key, _)| *key).collect();
         // A language is the reader's own until a link names another one.
-        params.copy_from(&self.params, Key::Lang);
+        params.copy_from(&self.document.params, Key::Lang);
         for (key, value) in link.values {
             let result = params.set(key, value);
             debug_assert!(result.is_ok(), "links hold checked values: {result:?}");
         }
-        self.named = [false; 2];
+        self.document.note_link(&named);
         self.take_over(params, &link.problems, &named);
-        self.named_by_link.clone_from(&named);
         self.lesson_was_set(named);
     }
 
     /// Whether the link that was opened names this parameter, be it with its default.
     #[must_use]
     pub fn names(&self, key: Key) -> bool {
-        self.named_by_link.contains(&key)
+        self.document.link_names(key)
     }
 
     /// Whether the motion that Make is set to has that parameter: nobody who stands has a speed.
     #[must_use]
     pub fn made_motion_has(&self, key: Key) -> bool {
-        made_motion_has(&self.params, key)
+        made_motion_has(&self.document.params, key)
     }
 
     /// What of a number's range makes sense now, where that is less than the table says: the speeds
     /// and lengths of a made motion.
     #[must_use]
     pub fn range_of(&self, key: Key) -> Option<(f64, f64)> {
-        range_of(&self.params, key)
-    }
-
-    /// The addresses of files that were not named before. `had` is the parameter as it was.
-    fn sources_beyond(&self, had: &str) -> Vec<String> {
-        let is_new = |address: &&str| had.split_whitespace().all(|known| known != *address);
-        self.params.text(Key::Src).split_whitespace().filter(is_new).map(str::to_owned).collect()
+        range_of(&self.document.params, key)
     }
 
     fn fetch(&mut self, addresses: Vec<String>) {
@@ -670,48 +605,9 @@ impl Session {
         }
     }
 
-    fn change_entry(
-        &mut self,
-        id: &str,
-        change: impl FnOnce(&mut Entry),
-    ) -> Result<(), CommandError> {
-        if self.library.find(id).is_none() {
-            return Err(CommandError::NoClip(id.to_owned()));
-        }
-        self.remember(None);
-        self.library.change(id, change);
-        self.library_revision += 1;
-        Ok(())
-    }
-
     fn remove(&mut self, id: &str) -> Result<(), CommandError> {
-        let entry =
-            Arc::clone(self.library.find(id).ok_or_else(|| CommandError::NoClip(id.to_owned()))?);
-        self.remember(None);
-        self.library.remove(&entry.id);
-        self.leave_company(&entry.id);
-        self.leave_out_of_graph(&entry.id);
-        self.library_revision += 1;
-        if self.params.text(Key::Character) == entry.id {
-            self.set_unchecked(Key::Character, Value::Text(String::new()));
-        }
-        // A slot that held the clip takes the first one that the other slot does not hold.
-        for slot in [Slot::A, Slot::B] {
-            let key = slot.key();
-            if self.params.text(key) != entry.id {
-                continue;
-            }
-            let other = self.params.text(if slot == Slot::A { Key::B } else { Key::A }).to_owned();
-            let entries = self.library.entries();
-            let next = entries
-                .iter()
-                .find(|e| e.id != other && e.motion.is_some())
-                .or_else(|| entries.first());
-            let next = next.map(|e| e.id.clone()).unwrap_or_default();
-            self.set_unchecked(key, Value::Text(next));
-            forget_places(&mut self.params, slot, &[]);
-        }
-        self.say(Level::Info, msg!("{name} was removed; undo brings it back.", name = entry.name));
+        let name = self.document.remove(id)?;
+        self.say(Level::Info, msg!("{name} was removed; undo brings it back."));
         Ok(())
     }
 
@@ -721,7 +617,8 @@ impl Session {
         role: segue_motion::skeleton::Role,
         joint: Option<usize>,
     ) -> Result<(), CommandError> {
-        let entry = self.library.find(id).ok_or_else(|| CommandError::NoClip(id.to_owned()))?;
+        let entry =
+            self.document.library.find(id).ok_or_else(|| CommandError::NoClip(id.to_owned()))?;
         let motion =
             entry.motion.as_ref().ok_or(CommandError::NotPossible("the clip is not loaded yet"))?;
         if joint.is_some_and(|joint| joint >= motion.clip.skeleton().len()) {
@@ -734,12 +631,12 @@ impl Session {
             _ => None,
         };
         if let Some(file) = file {
-            self.change_entry(id, |entry| entry.roles_by_hand = Some(roles))?;
+            self.document.change_entry(id, |entry| entry.roles_by_hand = Some(roles))?;
             self.read_again(file, None);
             return Ok(());
         }
         let corrected = Arc::new(Motion::analyze((*motion.clip).clone(), Some(roles.clone())));
-        self.change_entry(id, |entry| {
+        self.document.change_entry(id, |entry| {
             entry.motion = Some(corrected);
             entry.roles_by_hand = Some(roles);
         })
@@ -767,20 +664,18 @@ impl Session {
         let id = recipe_id(&params, &outcome, fps).ok_or(CommandError::NotPossible(
             "what was found lies beyond what a link can say: use shorter clips",
         ))?;
-        if self.library.find(&id).is_some() {
+        if self.document.library.find(&id).is_some() {
             return Err(known);
         }
         let recipe = recipe_params(&id).ok_or(CommandError::NotPossible(
             "it is made of results of results, more than a link can hold: save it as a file, and open that",
         ))?;
         let name = recipe_name(&recipe);
-        self.remember(None);
         let said = msg!("{name} is in the library now: choose it as A or B.");
-        self.library.put(Entry {
+        self.document.add(Entry {
             motion: is_whole.then(|| Arc::clone(&outcome.motion)),
             ..Entry::new(id, name, Origin::Made)
         });
-        self.library_revision += 1;
         self.say(Level::Info, said);
         Ok(())
     }
@@ -789,7 +684,7 @@ impl Session {
         let Some(fps) = self.main_outcome().map(|outcome| outcome.motion.clip.fps()) else {
             return;
         };
-        self.set_unchecked(Key::Play, Value::Switch(false));
+        self.document.set_unchecked(Key::Play, Value::Switch(false));
         if self.is_driven() {
             // What was not yet asked for cannot be stepped back to.
             self.drive_ticks(frames.clamp(0, 60) as usize);
@@ -797,7 +692,7 @@ impl Session {
         }
         let frame = (self.now_secs() * fps).round() + frames as f64;
         let to = (frame / fps).clamp(0.0, self.duration_secs());
-        self.set_unchecked(Key::Time, Value::Number(to));
+        self.document.set_unchecked(Key::Time, Value::Number(to));
     }
 
     /// Makes what is built in and was not needed yet: about 2 ms a clip.
@@ -808,24 +703,13 @@ impl Session {
     /// Everything that the API tells of the clips. What was not made or loaded yet has no frames.
     #[must_use]
     pub fn clip_infos(&self) -> Vec<ClipInfo> {
-        self.library.entries().iter().map(|entry| clip_info(entry)).collect()
+        self.document.library.entries().iter().map(|entry| clip_info(entry)).collect()
     }
 }
 
 /// A value in whole steps; never the zero below zero.
 fn to_step(value: f64, step: f64) -> f64 {
     (value / step).round() * step + 0.0
-}
-
-/// What the library holds at first.
-fn preset_entries() -> impl Iterator<Item = Entry> {
-    synth::presets().into_iter().map(|preset| Entry::new(preset.id, preset.title, Origin::Preset))
-}
-
-/// What comes with Segue: the presets, and the bundled takes, which join the library when they are
-/// asked for.
-fn built_in_entries() -> impl Iterator<Item = Entry> {
-    preset_entries().chain(samples::all().map(bundled::sample_entry))
 }
 
 fn clip_info(entry: &Entry) -> ClipInfo {
@@ -847,27 +731,17 @@ fn clip_info(entry: &Entry) -> ClipInfo {
 #[cfg(test)]
 mod bundled_tests;
 #[cfg(test)]
-mod driving_tests;
-#[cfg(test)]
 mod going_round_tests;
 #[cfg(test)]
-mod graphing_tests;
-#[cfg(test)]
-mod keeping_tests;
+mod keep_tests;
 #[cfg(test)]
 mod loading_tests;
 #[cfg(test)]
-mod measuring_tests;
-#[cfg(test)]
 mod memory_tests;
 #[cfg(test)]
-mod path_tests;
+mod metric_tests;
 #[cfg(test)]
 mod refusal_tests;
-#[cfg(test)]
-mod registering_tests;
-#[cfg(test)]
-mod slots_tests;
 #[cfg(test)]
 mod storing_tests;
 #[cfg(test)]

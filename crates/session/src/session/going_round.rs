@@ -125,7 +125,7 @@ impl Session {
             })
         };
         Held {
-            time: self.params.number(Key::Time),
+            time: self.document.params.number(Key::Time),
             now_secs,
             panes: self.panes.iter().map(showing).collect(),
         }
@@ -135,8 +135,8 @@ impl Session {
     /// and the character its place, and a gait that plays changes its speed from the one that it
     /// has. Unless the playhead was put elsewhere: then everything begins where it lies.
     pub(super) fn go_on_from(&mut self, held: &Held) {
-        let moved = self.params.number(Key::Time) != held.time;
-        let playing = self.params.is_on(Key::Play);
+        let moved = self.document.params.number(Key::Time) != held.time;
+        let playing = self.document.params.is_on(Key::Play);
         let replaced = |session: &Self, index: usize| {
             let old = &held.panes.get(index)?.as_ref()?.outcome;
             let new = session.panes.get(index)?.outcome.as_ref()?;
@@ -146,7 +146,7 @@ impl Session {
             let to = held.now_secs / old_secs * new_secs;
             let duration = self.duration_secs();
             let to = if to > duration { to.rem_euclid(duration.max(new_secs)) } else { to };
-            self.set_unchecked(Key::Time, Value::Number(to));
+            self.document.set_unchecked(Key::Time, Value::Number(to));
         }
         let now_secs = self.now_secs();
         for index in 0..self.panes.len() {
@@ -182,7 +182,7 @@ impl Session {
 
     /// Gaits on their way to another speed get nearer to it. Says whether there were any.
     pub(super) fn glide(&mut self, dt_secs: f64) -> bool {
-        let (now_secs, playing) = (self.now_secs(), self.params.is_on(Key::Play));
+        let (now_secs, playing) = (self.now_secs(), self.document.params.is_on(Key::Play));
         let mut any = false;
         for pane in &mut self.panes {
             any |= pane.glide_on(now_secs, dt_secs, playing);
@@ -196,7 +196,7 @@ impl Session {
     pub(super) fn come_round(&mut self, rounds: usize) {
         let span = self.span();
         let walks_on = self.panes.len() == 1
-            && self.params.choice::<choices::Follow>() != choices::Follow::Off;
+            && self.document.params.choice::<choices::Follow>() != choices::Follow::Off;
         for pane in &mut self.panes {
             if !walks_on || pane.outcome.as_ref().is_none_or(|outcome| outcome.cycle.is_none()) {
                 pane.place = Planar::IDENTITY;

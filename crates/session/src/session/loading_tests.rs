@@ -1,57 +1,12 @@
 //! Files that lean on others: motions and their skeletons, archives.
 
 use super::loading::MOST_FAILURES;
-use super::tests::settle;
-use super::*;
 use crate::Notice;
+use crate::fixtures::*;
 use crate::reading::Content;
 use segue_formats::ImportOptions;
 use segue_formats::archive::MAX_FILES;
 use std::io::Write as _;
-
-pub(super) const ASF: &str = "\
-:version 1.10
-:name toy
-:units
-  length 1.0
-  angle deg
-:root
-  order TX TY TZ RX RY RZ
-  axis XYZ
-  position 0 0 0
-  orientation 0 0 0
-:bonedata
-  begin
-    id 1
-    name thigh
-    direction 0 -1 0
-    length 85
-    axis 0 0 0 XYZ
-    dof rx
-  end
-  begin
-    id 2
-    name spine
-    direction 0 1 0
-    length 80
-    axis 0 0 0 XYZ
-    dof rx
-  end
-:hierarchy
-  begin
-    root thigh spine
-  end
-";
-pub(super) const AMC: &str = ":FULLY-SPECIFIED\n:DEGREES\n1\nroot 0 85 0 0 0 0\nthigh 10\nspine 1\n2\nroot 0 85 1 0 0 0\nthigh 20\nspine 2\n";
-
-pub(super) fn bytes(text: &str) -> Arc<[u8]> {
-    Arc::from(text.as_bytes())
-}
-
-pub(super) fn files(session: &Session) -> Vec<(String, &'static str, usize)> {
-    let infos = session.clip_infos().into_iter().filter(|info| info.sha256.is_some());
-    infos.map(|info| (info.name, info.format, info.frames)).collect()
-}
 
 #[test]
 fn a_motion_waits_for_its_skeleton() {
@@ -113,33 +68,6 @@ fn stored(session: &Session) -> impl Fn(&str) -> Option<Content> + Copy + '_ {
 /// How many notices of a level there are.
 fn told(session: &Session, level: Level) -> usize {
     session.notices().list().iter().filter(|notice| notice.level == level).count()
-}
-
-/// Reads what the session asks to have read, as a worker does: in order, with the setup that it was
-/// asked with.
-pub(super) fn serve(session: &mut Session) {
-    loop {
-        let asked: Vec<_> = (session.take_requests().into_iter())
-            .filter_map(|request| match request {
-                Request::Read(task) => Some(task),
-                _ => None,
-            })
-            .collect();
-        if asked.is_empty() {
-            return;
-        }
-        for task in asked {
-            let Content::Here(bytes) = &task.content else { panic!("{task:?}") };
-            let report =
-                crate::reading::read(&task.name, bytes, &task.setup, &mut |_| true).unwrap();
-            assert!(
-                session.is_reading(task.id)
-                    && session.is_reading_small()
-                    && session.jobs().iter().all(|job| job.task.is_none())
-            );
-            session.finish_reading(task.id, Ok(report));
-        }
-    }
 }
 
 /// Names and bytes of what is dropped.

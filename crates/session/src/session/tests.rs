@@ -1,5 +1,7 @@
-use super::*;
+//! The session, by commands: undo, links, files, results that are kept, and the simpler labs.
+
 use crate::JobKind;
+use crate::fixtures::*;
 use crate::reading::{Content, LARGE_BYTES, read};
 use crate::transport::Span;
 use glam::Quat;
@@ -9,10 +11,6 @@ use segue_motion::transition::{FootLockOptions, foot_lock};
 
 fn blend_window(session: &mut Session, frames: f64) {
     session.apply(Command::Set(vec![(Key::BlendWindow, Value::Number(frames))])).unwrap();
-}
-
-pub(super) fn settle(session: &mut Session) {
-    while session.work() {}
 }
 
 #[test]
@@ -154,20 +152,6 @@ fn the_playhead_goes_round_in_the_span_between_the_marks() {
     assert_eq!(session.now_secs(), now);
     session.apply(Command::Step(1)).unwrap();
     assert!((session.now_secs() - now - 1.0 / 60.0).abs() < 0.02);
-}
-
-pub(super) fn made_bvh(seed: f64) -> Arc<[u8]> {
-    let mut session = Session::new();
-    session
-        .apply(Command::Set(vec![
-            (Key::Lab, Value::Choice("make")),
-            (Key::Seed, Value::Number(seed)),
-        ]))
-        .unwrap();
-    let clip = Arc::clone(&session.main_outcome().unwrap().motion.clip);
-    segue_formats::bvh::write(&clip, &segue_formats::bvh::WriteOptions::default())
-        .into_bytes()
-        .into()
 }
 
 #[test]

@@ -1,5 +1,7 @@
-use super::library::{Entry, Library, Origin};
-use super::params::{Key, Mark, PARAMS, Params};
+//! The states that undo and redo bring back.
+
+use crate::library::{Entry, Library, Origin};
+use crate::params::{Key, Mark, PARAMS, Params};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -12,7 +14,7 @@ struct State {
 
 /// The steps that can be taken back, and those that were.
 #[derive(Clone, Debug, Default)]
-pub(super) struct History {
+pub(crate) struct History {
     past: Vec<State>,
     future: Vec<State>,
     /// The parameter that the last step changed, while its slider is still held: more of the same
@@ -26,7 +28,7 @@ const MOST_STEPS: usize = 200;
 impl History {
     /// Remembers the state before a change. With `key`, changes of one parameter in one gesture are
     /// one step.
-    pub(super) fn before_change(&mut self, params: &Params, library: &Library, key: Option<Key>) {
+    pub(crate) fn before_change(&mut self, params: &Params, library: &Library, key: Option<Key>) {
         if key.is_some() && self.open == key {
             return;
         }
@@ -39,12 +41,12 @@ impl History {
     }
 
     /// Ends a gesture: the next change is a step of its own.
-    pub(super) fn settle(&mut self) {
+    pub(crate) fn settle(&mut self) {
         self.open = None;
     }
 
     /// Adds clips to every state that lacks them: they were there all along, and only came late.
-    pub(super) fn add_to_all(&mut self, entries: &[Arc<Entry>]) {
+    pub(crate) fn add_to_all(&mut self, entries: &[Arc<Entry>]) {
         for state in self.past.iter_mut().chain(&mut self.future) {
             for entry in entries
                 .iter()
@@ -59,7 +61,7 @@ impl History {
 
     /// Lets go of the motions of files that `library` does not hold; says whether there were any.
     /// They are read again when a step brings them back.
-    pub(super) fn let_go_of_motions_outside(&mut self, library: &Library) -> bool {
+    pub(crate) fn let_go_of_motions_outside(&mut self, library: &Library) -> bool {
         let held: BTreeSet<_> = library
             .entries()
             .iter()
@@ -86,21 +88,21 @@ impl History {
         any
     }
 
-    pub(super) fn can_undo(&self) -> bool {
+    pub(crate) fn can_undo(&self) -> bool {
         !self.past.is_empty()
     }
 
-    pub(super) fn can_redo(&self) -> bool {
+    pub(crate) fn can_redo(&self) -> bool {
         !self.future.is_empty()
     }
 
     /// Swaps the present for the state before the last step; says whether there was one.
-    pub(super) fn undo(&mut self, params: &mut Params, library: &mut Library) -> bool {
+    pub(crate) fn undo(&mut self, params: &mut Params, library: &mut Library) -> bool {
         Self::swap(&mut self.past, &mut self.future, &mut self.open, params, library)
     }
 
     /// Swaps the present for the state that was last taken back.
-    pub(super) fn redo(&mut self, params: &mut Params, library: &mut Library) -> bool {
+    pub(crate) fn redo(&mut self, params: &mut Params, library: &mut Library) -> bool {
         Self::swap(&mut self.future, &mut self.past, &mut self.open, params, library)
     }
 

@@ -1,8 +1,8 @@
 //! Files into the library.
 
-use super::slots::Came;
 use super::{Job, Session};
 use crate::command::{CommandError, Request};
+use crate::document::Arrival;
 use crate::labs::JobKind;
 use crate::library::{Entry, Origin, SourceFile, file_id, file_stem};
 use crate::notice::Level;
@@ -41,10 +41,10 @@ pub(super) struct Reading {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Purpose {
     /// Its clips join the library.
-    New(Came),
+    New(Arrival),
     /// Its clips are there already, and only want their motion. Those that waited for a skeleton,
     /// which has come so, are offered A and B.
-    Again(Option<Came>),
+    Again(Option<Arrival>),
     /// It is the motion of a bundled take.
     Sample(&'static Sample),
 }
@@ -69,7 +69,7 @@ impl Session {
     /// # Errors
     /// [`ImportError`] with name, line, column, found and expected; nothing already loaded changes.
     pub fn load(&mut self, name: &str, bytes: Arc<[u8]>) -> Result<Loaded, ImportError> {
-        self.load_that_came(name, bytes, Came::ByHand)
+        self.load_that_came(name, bytes, Arrival::ByHand)
     }
 
     /// Reads a file that was fetched from an address in the link: as [`Session::load`], but where
@@ -79,14 +79,14 @@ impl Session {
     /// # Errors
     /// As [`Session::load`].
     pub fn load_fetched(&mut self, name: &str, bytes: Arc<[u8]>) -> Result<Loaded, ImportError> {
-        self.load_that_came(name, bytes, Came::ByLink)
+        self.load_that_came(name, bytes, Arrival::ByLink)
     }
 
     fn load_that_came(
         &mut self,
         name: &str,
         bytes: Arc<[u8]>,
-        came: Came,
+        came: Arrival,
     ) -> Result<Loaded, ImportError> {
         let (name, setup, size) =
             (&outside::file_name(name), self.setup_for_new(), bytes.len() as u64);
@@ -102,14 +102,14 @@ impl Session {
     /// by [`Session::load`]. Returns the task's number.
     pub fn begin_reading(&mut self, name: &str, content: Content, size: u64) -> u64 {
         let setup = self.setup_for_new();
-        self.begin(name, content, size, setup, Purpose::New(Came::ByHand))
+        self.begin(name, content, size, setup, Purpose::New(Arrival::ByHand))
     }
 
     /// As [`Session::begin_reading`], for a file that was fetched: its clips join the library as by
     /// [`Session::load_fetched`].
     pub fn begin_reading_fetched(&mut self, name: &str, content: Content, size: u64) -> u64 {
         let setup = self.setup_for_new();
-        self.begin(name, content, size, setup, Purpose::New(Came::ByLink))
+        self.begin(name, content, size, setup, Purpose::New(Arrival::ByLink))
     }
 
     pub(super) fn begin(
@@ -135,7 +135,7 @@ impl Session {
 
     /// Has a file of the library read anew elsewhere, as its entries say, unless that is under way.
     /// `came`: see [`Purpose::Again`].
-    pub(super) fn read_again(&mut self, file: SourceFile, came: Option<Came>) {
+    pub(super) fn read_again(&mut self, file: SourceFile, came: Option<Arrival>) {
         let setup = self.setup_of(&file);
         let same = |reading: &Reading| {
             reading.task.setup == setup
@@ -155,12 +155,13 @@ impl Session {
     }
 
     fn roles_by_hand(&self, file: &SourceFile) -> BTreeMap<usize, segue_motion::skeleton::Roles> {
-        let entries = self.library.entries().iter().filter_map(|entry| match &entry.origin {
-            Origin::File(own) if own.sha256 == file.sha256 => {
-                Some((own.index, entry.roles_by_hand.clone()?))
-            }
-            _ => None,
-        });
+        let entries =
+            self.document.library.entries().iter().filter_map(|entry| match &entry.origin {
+                Origin::File(own) if own.sha256 == file.sha256 => {
+                    Some((own.index, entry.roles_by_hand.clone()?))
+                }
+                _ => None,
+            });
         entries.collect()
     }
 
@@ -208,7 +209,7 @@ impl Session {
         };
         let loaded = match purpose {
             Purpose::Again(came) => {
-                let waiting: Vec<String> = (self.library.entries().iter())
+                let waiting: Vec<String> = (self.document.library.entries().iter())
                     .filter(|entry| entry.awaits_skeleton())
                     .map(|entry| entry.id.clone())
                     .collect();
@@ -327,9 +328,9 @@ impl Session {
     /// Notes with the clips of a file why they have no motion, so that it is not read over and
     /// over.
     fn mark_unread(&mut self, sha256: &str, why: Option<&Message>) {
-        let entries = self.library.entries().to_vec();
+        let entries = self.document.library.entries().to_vec();
         for entry in entries.iter().filter(|entry| entry.sha256() == Some(sha256)) {
-            self.library.change(&entry.id, |entry| entry.unread = why.cloned());
+            self.document.library.change(&entry.id, |entry| entry.unread = why.cloned());
         }
     }
 
@@ -349,7 +350,7 @@ impl Session {
         report: ReadReport,
         content: &Content,
         setup: &ReadSetup,
-        came: Came,
+        came: Arrival,
     ) -> Result<Loaded, ImportError> {
         // Of several files some may be good; one alone fails as a whole.
         if let [ReadFile { result: Err(error), .. }] = report.files.as_slice() {
@@ -357,7 +358,7 @@ impl Session {
             self.tell_unread(&error);
             return Err(error);
         }
-        self.remember(None);
+        self.document.remember(None);
         let mut loaded = Loaded::default();
         let (mut names, mut t_poses, mut failures) = (Vec::new(), 0, Vec::new());
         let brings_skeleton = |file: &ReadFile| {
@@ -387,7 +388,7 @@ impl Session {
                         );
                     }
                     if let Some(first) = first.filter(|entry| self.takes_character(entry, came)) {
-                        self.set_unchecked(Key::Character, Value::Text(first.id.clone()));
+                        self.document.set_unchecked(Key::Character, Value::Text(first.id.clone()));
                     }
                     for entry in entries {
                         loaded.ids.push(entry.id.clone());
@@ -403,8 +404,8 @@ impl Session {
             self.read_waiting(came);
             self.drop_used_skeletons();
         }
-        self.history.settle();
-        self.library_revision += 1;
+        self.document.settle();
+        self.document.library_revision += 1;
         if !names.is_empty() {
             let mut told: Vec<Message> = in_the_library(&names).into_iter().collect();
             let mut more = 0;
@@ -429,9 +430,9 @@ impl Session {
                 loaded.ids.iter().filter(|id| self.mend_of(id).is_some()).cloned().collect();
             match loaded.ids.as_slice() {
                 // Until its other half comes.
-                [id] if is_odd && self.is_half(id) => self.notices.miss(id, text),
+                [id] if is_odd && self.document.is_half(id) => self.notices.miss(id, text),
                 // A skeleton that was waited for: it has its motion.
-                [id] if self.library.get(id).is_none() => {
+                [id] if self.document.library.get(id).is_none() => {
                     if let Some(text) = in_the_library(&names) {
                         self.say(Level::Info, text);
                     }
@@ -459,7 +460,8 @@ impl Session {
         let text = if is_alone {
             text
         } else {
-            let names = all.iter().filter_map(|id| Some(self.library.get(id)?.name.as_str()));
+            let names =
+                all.iter().filter_map(|id| Some(self.document.library.get(id)?.name.as_str()));
             let mut named: Vec<String> = names.take(MOST_FAILURES).map(outside::short).collect();
             if all.len() > named.len() {
                 named.push("…".to_owned());
@@ -478,7 +480,7 @@ impl Session {
     pub(super) fn mend(&mut self, notice: u64) {
         let found = self.notices.list().iter().find(|found| found.id == notice);
         let clips = found.map(|found| found.mends.clone()).unwrap_or_default();
-        let library = self.library.clone();
+        let library = self.document.library.clone();
         for (id, options) in
             clips.iter().filter_map(|id| Some((id, self.mend_of(id)?))).collect::<Vec<_>>()
         {
@@ -486,13 +488,13 @@ impl Session {
                 self.say(Level::Error, error.to_message());
             }
         }
-        self.history.before_change(&self.params, &library, None);
+        self.document.remember_library(&library);
         self.notices.dismiss(notice);
     }
 
     /// How a clip could be read better, where that is safe.
     fn mend_of(&self, id: &str) -> Option<ImportOptions> {
-        let entry = self.library.get(id)?;
+        let entry = self.document.library.get(id)?;
         let (Origin::File(file), Some(about)) = (&entry.origin, &entry.about) else {
             return None;
         };
@@ -528,16 +530,16 @@ impl Session {
     }
 
     /// Adds a clip. What the library has of the same one stays as it was said by hand.
-    fn join(&mut self, entry: Entry, came: Came) {
+    fn join(&mut self, entry: Entry, came: Arrival) {
         let id = entry.id.clone();
-        let known = self.library.get(&id).cloned();
+        let known = self.document.library.get(&id).cloned();
         match &known {
             Some(known) => self.join_again(known, entry),
-            None => self.library.put(entry),
+            None => self.document.library.put(entry),
         }
         // A skeleton alone plays nothing, nor does a character that comes without a motion of its
         // own; a motion that waits for one may come into its place when it can be read.
-        let plays = self.library.get(&id).is_some_and(|entry| {
+        let plays = self.document.library.get(&id).is_some_and(|entry| {
             entry
                 .motion
                 .as_ref()
@@ -545,8 +547,8 @@ impl Session {
         });
         // What the link fetches once more, after a reload, has the place that it was given then, or
         // none.
-        if plays && (known.is_none() || came == Came::ByHand) {
-            self.offer(&id, came);
+        if plays && (known.is_none() || came == Arrival::ByHand) {
+            self.document.offer(&id, came);
         }
     }
 
@@ -560,7 +562,7 @@ impl Session {
         }
         let is_read_as_said = had.options == has.options && known.roles_by_hand.is_none();
         let file = SourceFile { options: had.options, ..has.clone() };
-        self.library.put(Entry {
+        self.document.library.put(Entry {
             name: known.name.clone(),
             roles_by_hand: known.roles_by_hand.clone(),
             origin: Origin::File(file.clone()),
@@ -576,13 +578,13 @@ impl Session {
 
     /// Whether a file with a skin becomes the character. One that the link fetches does not when it
     /// was here before, or the link names another.
-    fn takes_character(&self, entry: &Entry, came: Came) -> bool {
-        let is_free = self.params.text(Key::Character).is_empty();
+    fn takes_character(&self, entry: &Entry, came: Arrival) -> bool {
+        let is_free = self.document.params.text(Key::Character).is_empty();
         // One that only its own clips move is no character for all the others.
         let replaces = entry.character().is_some_and(|character| character.has_limbs());
         match came {
-            Came::ByHand => is_free || replaces,
-            Came::ByLink => is_free && self.library.get(&entry.id).is_none(),
+            Arrival::ByHand => is_free || replaces,
+            Arrival::ByLink => is_free && self.document.library.get(&entry.id).is_none(),
         }
     }
 
@@ -599,7 +601,7 @@ impl Session {
             let (entries, warnings) = file_entries(file, &Content::Here(Arc::from([])), options)?;
             loaded.warnings.extend(warnings);
             for new in entries {
-                self.library.change(&new.id, |entry| {
+                self.document.library.change(&new.id, |entry| {
                     let (Origin::File(file), Origin::File(new_file)) =
                         (&mut entry.origin, new.origin)
                     else {
@@ -618,7 +620,7 @@ impl Session {
                 loaded.ids.push(new.id);
             }
         }
-        self.library_revision += 1;
+        self.document.library_revision += 1;
         Ok(loaded)
     }
 
@@ -627,7 +629,7 @@ impl Session {
     pub(super) fn read_anew(
         &mut self,
         file: &SourceFile,
-        came: Option<Came>,
+        came: Option<Arrival>,
     ) -> Result<bool, ImportError> {
         let (Content::Here(bytes), Some(read)) =
             (&file.content, self.reads.filter(|_| !file.is_large()))
@@ -661,7 +663,7 @@ impl Session {
     /// were read with.
     fn companions(&self) -> Vec<Companion> {
         let mut all: Vec<Companion> = Vec::new();
-        for entry in self.library.entries() {
+        for entry in self.document.library.entries() {
             let Origin::File(file) = &entry.origin else {
                 continue;
             };
@@ -681,13 +683,6 @@ impl Session {
         all
     }
 
-    /// Whether a clip of the library is a motion without its skeleton, or a skeleton without a
-    /// motion.
-    pub(super) fn is_half(&self, id: &str) -> bool {
-        let is_skeleton = |entry: &Entry| matches!(&entry.origin, Origin::File(file) if file.kind == FileKind::Asf);
-        self.library.get(id).is_some_and(|entry| entry.awaits_skeleton() || is_skeleton(entry))
-    }
-
     /// Whether a motion leans on a skeleton, and one has come since it was read.
     fn misses_skeleton(&self, report: &ReadReport, setup: &ReadSetup) -> bool {
         let leans_on_one = |file: &ReadFile| file.kind == FileKind::Amc;
@@ -695,8 +690,8 @@ impl Session {
     }
 
     /// A skeleton has come: motions that waited for it are read.
-    fn read_waiting(&mut self, came: Came) {
-        let (entries, skeletons) = (self.library.entries().to_vec(), self.companions());
+    fn read_waiting(&mut self, came: Arrival) {
+        let (entries, skeletons) = (self.document.library.entries().to_vec(), self.companions());
         let is_named = |file: &SourceFile, skeleton: &Companion| {
             acclaim::goes_by_name(&file.name, &skeleton.name)
         };
@@ -726,22 +721,22 @@ impl Session {
 
     /// Says why a motion still waits though a skeleton has come.
     fn tell_misfit(&mut self, id: &str) {
-        if let Some(entry) = self.library.get(id).filter(|entry| entry.awaits_skeleton()) {
+        if let Some(entry) = self.document.library.get(id).filter(|entry| entry.awaits_skeleton()) {
             let told: Vec<Message> = entry.warnings.iter().map(ToMessage::to_sentence).collect();
             self.notices.miss(id, Message::joined(told, " "));
         }
     }
 
     /// Offers a clip that waited, if it moves by now.
-    fn offer_moving(&mut self, id: &str, came: Came) {
-        if self.library.find(id).is_some_and(|entry| entry.motion.is_some()) {
-            self.offer(id, came);
+    fn offer_moving(&mut self, id: &str, came: Arrival) {
+        if self.document.library.find(id).is_some_and(|entry| entry.motion.is_some()) {
+            self.document.offer(id, came);
         }
     }
 
     /// Skeletons that have a motion by now need no row of their own.
     fn drop_used_skeletons(&mut self) {
-        let entries = self.library.entries().to_vec();
+        let entries = self.document.library.entries().to_vec();
         let used = |sha256: &str| {
             entries.iter().any(|entry| match &entry.origin {
                 Origin::File(file) => {
@@ -753,7 +748,7 @@ impl Session {
         for entry in &entries {
             if matches!(&entry.origin, Origin::File(file) if file.kind == FileKind::Asf && used(&file.sha256))
             {
-                self.library.remove(&entry.id);
+                self.document.library.remove(&entry.id);
             }
         }
     }
@@ -763,34 +758,35 @@ impl Session {
         id: &str,
         options: &ImportOptions,
     ) -> Result<(), CommandError> {
-        let library = self.library.clone();
+        let library = self.document.library.clone();
         self.reread(id, options)?;
-        self.history.before_change(&self.params, &library, None);
+        self.document.remember_library(&library);
         Ok(())
     }
 
     /// Reads a clip's file again with other options. An error changes nothing.
     fn reread(&mut self, id: &str, options: &ImportOptions) -> Result<(), CommandError> {
-        let entry =
-            Arc::clone(self.library.find(id).ok_or_else(|| CommandError::NoClip(id.to_owned()))?);
+        let entry = Arc::clone(
+            self.document.library.find(id).ok_or_else(|| CommandError::NoClip(id.to_owned()))?,
+        );
         let Origin::File(file) = &entry.origin else {
             return Err(CommandError::NotPossible(
                 "only a clip that came from a file can be read again",
             ));
         };
         let file = SourceFile { options: *options, ..file.clone() };
-        let library = self.library.clone();
+        let library = self.document.library.clone();
         // At once, wherever it is read: what is chosen meanwhile adds to it, and taking it back
         // stops it from coming.
         for entry in library.entries().iter().filter(|entry| entry.sha256() == Some(&file.sha256)) {
-            self.library.change(&entry.id, |entry| {
+            self.document.library.change(&entry.id, |entry| {
                 if let Origin::File(file) = &mut entry.origin {
                     file.options = *options;
                 }
             });
         }
         if let Err(error) = self.read_anew(&file, None) {
-            self.library = library;
+            self.document.library = library;
             return Err(error.into());
         }
         Ok(())

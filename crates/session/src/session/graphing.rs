@@ -2,20 +2,20 @@
 
 use super::Session;
 use crate::labs::lab::{self, Beside};
-use crate::labs::{Built, Cast, Field, Walk, clips_of, graph_of, read_path, read_visits};
+use crate::labs::{Built, Cast, Field, Walk, clips_of, read_path, read_visits};
 use crate::params::Key;
 use glam::DVec2;
 use std::sync::Arc;
 
 impl Session {
     fn is_graph_lab(&self) -> bool {
-        lab::of(self.params.lab()).has(Beside::Graph)
+        lab::of(self.document.params.lab()).has(Beside::Graph)
     }
 
     /// The ids of the clips that the graph is made of; none where the list cannot be read.
     #[must_use]
     pub fn graph_clip_ids(&self) -> Vec<String> {
-        clips_of(self.params.text(Key::Clips)).unwrap_or_default()
+        clips_of(self.document.params.text(Key::Clips)).unwrap_or_default()
     }
 
     /// The clips of the graph, on one skeleton; `None` outside of the Graph lab and while they are
@@ -66,7 +66,7 @@ impl Session {
     /// When the walk sets off for which clip: seconds, and the clip's index.
     #[must_use]
     pub fn graph_visits(&self) -> Vec<(f64, usize)> {
-        read_visits(self.params.text(Key::GoTo)).unwrap_or_default()
+        read_visits(self.document.params.text(Key::GoTo)).unwrap_or_default()
     }
 
     /// The line that the walk follows, (x, z) in metres.
@@ -75,18 +75,6 @@ impl Session {
         if !self.is_graph_lab() {
             return Vec::new();
         }
-        read_path(self.params.text(Key::WalkPath)).unwrap_or_default()
-    }
-
-    /// Takes a clip out of the graph's list.
-    pub(super) fn leave_out_of_graph(&mut self, id: &str) {
-        let mut ids = self.graph_clip_ids();
-        let before = ids.len();
-        ids.retain(|known| known != id);
-        if !ids.is_empty() && ids.len() < before {
-            for (key, value) in graph_of(&ids) {
-                self.set_unchecked(key, value);
-            }
-        }
+        read_path(self.document.params.text(Key::WalkPath)).unwrap_or_default()
     }
 }

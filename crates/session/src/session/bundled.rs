@@ -3,10 +3,10 @@
 use super::Session;
 use super::loading::Purpose;
 use crate::command::Request;
-use crate::library::{Entry, Origin};
+use crate::library::Origin;
 use crate::notice::Level;
 use crate::reading::{Content, ReadReport, ReadSetup};
-use crate::samples::{self, SETS, SINGLES, Sample, SampleSet};
+use crate::samples::{SETS, SINGLES, Sample, SampleSet};
 use segue_formats::{ImportError, ImportOptions};
 use segue_text::{Message, ToMessage, msg};
 use std::sync::Arc;
@@ -60,52 +60,40 @@ impl Session {
         *asked = if samples.is_empty() { 1 } else { *asked + 1 };
         samples.push(sample);
         self.requests.push(Request::Sample(sample));
-        self.library.change(sample.id, |entry| entry.unread = None);
+        self.document.library.change(sample.id, |entry| entry.unread = None);
     }
 
     /// Puts all takes of a set into the library. Their motions are asked for; the first ones take
     /// the places of built-in clips in A and B.
     pub(super) fn load_samples(&mut self, set: &'static SampleSet) {
-        let new: Vec<_> =
-            set.samples.iter().filter(|sample| self.library.get(sample.id).is_none()).collect();
+        let new: Vec<_> = set
+            .samples
+            .iter()
+            .filter(|sample| self.document.library.get(sample.id).is_none())
+            .collect();
         if new.is_empty() {
             self.say(Level::Info, msg!("{name} is in the library already.", name = set.label));
         } else {
-            self.remember(None);
+            self.document.remember(None);
         }
         for sample in &new {
-            self.bring_sample(sample.id);
+            self.document.bring_sample(sample.id);
         }
-        self.offer_together(new.into_iter().map(|sample| sample.id));
+        self.document.offer_together(new.into_iter().map(|sample| sample.id));
         self.ask_for_missing_samples();
-    }
-
-    /// Whether that is a bundled take. It is in the library then.
-    pub(super) fn bring_sample(&mut self, id: &str) -> bool {
-        let Some(sample) = samples::all().find(|sample| sample.id == id) else {
-            return false;
-        };
-        if self.library.get(id).is_none() {
-            self.library.put(sample_entry(sample));
-            self.library_revision += 1;
-        }
-        true
     }
 
     /// The id of a clip that a parameter may name: one of the library, or a bundled take, which
     /// joins the library when it is named.
     #[must_use]
     pub fn nameable(&self, reference: &str) -> Option<String> {
-        let in_library = self.library.find(reference).map(|entry| entry.id.clone());
-        in_library.or_else(|| {
-            samples::all().find(|sample| sample.id == reference).map(|sample| sample.id.to_owned())
-        })
+        self.document.nameable(reference)
     }
 
     /// Asks for the motions of all takes in the library that have none.
     pub(super) fn ask_for_missing_samples(&mut self) {
         let missing: Vec<_> =
-            (self.library.entries().iter())
+            (self.document.library.entries().iter())
                 .filter(|entry| entry.motion.is_none())
                 .filter_map(|entry| {
                     if let Origin::Sample(sample) = entry.origin { Some(sample) } else { None }
@@ -154,7 +142,7 @@ impl Session {
             name = sample.label,
             reason = reason.into()
         );
-        self.library.change(sample.id, |entry| entry.unread = Some(text.clone()));
+        self.document.library.change(sample.id, |entry| entry.unread = Some(text.clone()));
         self.awaited.samples.retain(|awaited| *awaited != sample);
         self.awaited.failed.push(sample);
         self.say(Level::Error, text);
@@ -183,7 +171,7 @@ impl Session {
         self.awaited.samples.retain(|awaited| *awaited != sample);
         if !clips.clips.is_empty() {
             let clip = clips.clips.swap_remove(0);
-            self.library.change(sample.id, |entry| {
+            self.document.library.change(sample.id, |entry| {
                 entry.motion = Some(Arc::new(clip.motion.with_roles(entry.roles_by_hand.as_ref())));
                 entry.unread = None;
                 entry.about = Some(clip.about);
@@ -193,9 +181,4 @@ impl Session {
         self.refresh();
         Ok(())
     }
-}
-
-/// What the library holds of a take that has not come.
-pub(super) fn sample_entry(sample: &'static Sample) -> Entry {
-    Entry::new(sample.id, sample.label, Origin::Sample(sample))
 }

@@ -10,12 +10,13 @@ impl Session {
     /// Takes what the page says of its memory. Once more than half of it is taken, motion that only
     /// steps back hold is let go: it is read again when it comes back.
     pub fn note_memory(&mut self, page: PageMemory) {
-        let memory = Memory::follow(self.memory, page, library_bytes(&self.library));
+        let memory = Memory::follow(self.memory, page, library_bytes(&self.document.library));
         self.memory = Some(memory);
         // Once for every change: there may be many steps of many clips.
         if memory.is_scarce()
-            && self.let_go_at.replace(self.library_revision) != Some(self.library_revision)
-            && self.history.let_go_of_motions_outside(&self.library)
+            && self.let_go_at.replace(self.document.library_revision)
+                != Some(self.document.library_revision)
+            && self.document.history.let_go_of_motions_outside(&self.document.library)
         {
             self.feet = FeetReader::default();
         }
@@ -39,7 +40,7 @@ impl Session {
     pub fn refuse_for_memory(&mut self, task: u64, needed: u64) -> Option<Result<Loaded, Message>> {
         let (name, size) = self.file_of_task(task)?;
         let memory = self.memory().unwrap_or(MemoryUse { used: 0, limit: 0 });
-        let text = refusal(name, size, needed, memory, &self.library);
+        let text = refusal(name, size, needed, memory, &self.document.library);
         self.fail_reading(task, text.clone(), text)
     }
 }

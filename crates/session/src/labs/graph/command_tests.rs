@@ -1,7 +1,7 @@
 //! The Graph lab, by commands.
 
-use super::*;
 use crate::JobKind;
+use crate::fixtures::*;
 use crate::{Walk, write_jump, write_path};
 use glam::DVec2;
 use segue_motion::graph::Place;
@@ -712,7 +712,7 @@ struct GoldenWalk {
 /// (`labs.test.mjs`). Where a change makes another walk on purpose, write down what the test found.
 #[test]
 fn the_walk_is_the_one_that_is_written_down() {
-    let text = include_str!("../../tests/golden/walk.json");
+    let text = include_str!("../../../tests/golden/walk.json");
     let golden: GoldenWalk = serde_json::from_str(text).unwrap();
     let session = opened(&golden.link);
     let (walk, ids) = (walk(&session), session.graph_clip_ids());

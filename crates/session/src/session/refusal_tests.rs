@@ -1,7 +1,6 @@
 //! Where a result cannot be made, nothing stands for it: every lab, every kind of refusal.
 
-use super::tests::settle;
-use super::*;
+use crate::fixtures::*;
 use crate::{NumberTable, ReportFacts, report};
 use segue_formats::bvh;
 use segue_motion::clip::Clip;
@@ -85,7 +84,7 @@ impl Clips {
         };
         let mut other = Session::new();
         let id = other.load(name, bytes).unwrap().ids.remove(0);
-        session.library.put_shared(Arc::clone(other.library.find(&id).unwrap()));
+        session.document.library.put_shared(Arc::clone(other.library().find(&id).unwrap()));
         id
     }
 

@@ -1,9 +1,8 @@
 //! Files for which there is no memory, and motion that nobody needs.
 
-use super::tests::settle;
-use super::*;
+use crate::fixtures::*;
 use crate::memory::PageMemory;
-use crate::reading::{Content, LARGE_BYTES, ReadSetup};
+use crate::reading::{LARGE_BYTES, ReadSetup, read};
 use segue_formats::bvh;
 use segue_motion::synth::{Action, Params as SynthParams, synthesize};
 

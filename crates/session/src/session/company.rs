@@ -41,19 +41,19 @@ impl Session {
     }
 
     pub(super) fn company_ids(&self) -> Vec<String> {
-        read_ids(self.params.text(Key::Others)).unwrap_or_default()
+        read_ids(self.document.params.text(Key::Others)).unwrap_or_default()
     }
 
     /// Finds or makes everybody in the list.
     pub(super) fn refresh_company(&mut self) {
         self.company.clear();
-        if !lab::of(self.params.lab()).has(Beside::Company) {
+        if !lab::of(self.document.params.lab()).has(Beside::Company) {
             return;
         }
         for id in self.company_ids().into_iter().take(MOST) {
-            self.bring(&id);
+            self.document.bring(&id);
             let motion = self.motion_of(&id);
-            let entry = self.library.find(&id);
+            let entry = self.document.library.find(&id);
             let name =
                 entry.map_or_else(|| split_reference(&id).0.to_owned(), |entry| entry.name.clone());
             self.company.push(Companion { id, name, motion });
@@ -64,48 +64,43 @@ impl Session {
     pub(super) fn change_company(&mut self, change: CompanyChange) -> Result<(), CommandError> {
         let mut ids = self.company_ids();
         let nobody = CommandError::NotPossible("nobody is in this place of the list");
-        let mut params = self.params.clone();
+        let mut params = self.document.params.clone();
         match change {
             CompanyChange::Join(_) | CompanyChange::JoinResult(_) if ids.len() >= MOST => {
                 return Err(CommandError::NotPossible("the stage is full: six play along already"));
             }
             CompanyChange::Join(id) => {
-                let id = self.library.find(&id).ok_or(CommandError::NoClip(id))?.id.clone();
-                self.remember(None);
+                let id =
+                    self.document.library.find(&id).ok_or(CommandError::NoClip(id))?.id.clone();
+                self.document.remember(None);
                 ids.push(id);
             }
             CompanyChange::JoinResult(pane) => {
                 let made = self.made_by(pane)?;
-                self.remember(None);
+                self.document.remember(None);
                 ids.push(self.put_made(made));
             }
             CompanyChange::Edit(place) => {
                 let id = ids.get(place).cloned().ok_or(nobody)?;
                 let made = self.made_by(0)?;
                 take_up(&mut params, &id)?;
-                self.remember(None);
+                self.document.remember(None);
                 ids[place] = self.put_made(made);
             }
             CompanyChange::Leave(place) => {
                 if place >= ids.len() {
                     return Err(nobody);
                 }
-                self.remember(None);
+                self.document.remember(None);
                 ids.remove(place);
             }
         }
         params.set(Key::Others, Value::Text(write_ids(&ids)))?;
-        self.params = params;
+        self.document.params = params;
         Ok(())
     }
 
     /// Takes a clip off the stage that is no longer in the library.
-    pub(super) fn leave_company(&mut self, id: &str) {
-        let mut ids = self.company_ids();
-        ids.retain(|other| other != id);
-        self.set_unchecked(Key::Others, Value::Text(write_ids(&ids)));
-    }
-
     /// The result of a pane, as an entry of the library.
     fn made_by(&self, pane: usize) -> Result<Entry, CommandError> {
         let made = self.pane(pane)?.recipe()?;
@@ -120,9 +115,9 @@ impl Session {
     /// Puts it into the library, if it is not there; its id.
     fn put_made(&mut self, made: Entry) -> String {
         let id = made.id.clone();
-        if self.library.find(&id).is_none() {
-            self.library.put(made);
-            self.library_revision += 1;
+        if self.document.library.find(&id).is_none() {
+            self.document.library.put(made);
+            self.document.library_revision += 1;
         }
         id
     }

@@ -1,4 +1,6 @@
-use super::*;
+//! Results that loop: in place, phase and speed they go on from what played before.
+
+use crate::fixtures::*;
 use crate::{Cycle, CycleMade};
 use glam::Quat;
 use segue_motion::clip::Interpolation;

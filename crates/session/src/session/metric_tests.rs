@@ -1,7 +1,6 @@
 //! The numbers that every lab has.
 
-use super::tests::settle;
-use super::*;
+use crate::fixtures::*;
 use crate::labs::lab_set::Sliced as _;
 use crate::labs::{Gauge, Measured};
 use crate::motion::Motion;

@@ -5,6 +5,7 @@ use super::Session;
 use crate::command::{CommandError, Request};
 use crate::lesson::{CONTENTS, LESSONS, LessonError, Page, Source, Text, parse, source_of};
 use crate::link::{self, Link};
+use crate::missing::look_for_clips;
 use crate::notice::Level;
 use crate::params::{Group, Key, Mark, PARAMS, Param, Params};
 use segue_text::{Message, msg};
@@ -46,7 +47,7 @@ impl Session {
     /// The lesson that is open; `None` where none is.
     #[must_use]
     pub fn lesson(&self) -> Option<Lesson<'_>> {
-        let name = self.params.text(Key::Lesson);
+        let name = self.document.params.text(Key::Lesson);
         if name.is_empty() {
             return None;
         }
@@ -111,7 +112,7 @@ impl Session {
         PARAMS
             .iter()
             .filter(counts)
-            .all(|param| wanted.get(param.key) == self.params.get(param.key))
+            .all(|param| wanted.get(param.key) == self.document.params.get(param.key))
     }
 
     /// Takes the text of a lesson, or why it did not come. A text that nobody waits for is kept.
@@ -141,13 +142,14 @@ impl Session {
 
     /// The page that is open.
     fn lesson_page(&self) -> Option<&Page> {
-        let (source, index) = source_of(self.params.text(Key::Lesson), self.shelf.language).ok()?;
+        let (source, index) =
+            source_of(self.document.params.text(Key::Lesson), self.shelf.language).ok()?;
         self.shelf.pages(&source)?.get(index)
     }
 
     /// Asks for the text of the open lesson, where it was not asked for yet.
     pub(super) fn ask_for_lesson(&mut self) {
-        let name = self.params.text(Key::Lesson);
+        let name = self.document.params.text(Key::Lesson);
         if name.is_empty() {
             return;
         }
@@ -167,7 +169,7 @@ impl Session {
         // What did not come may come now.
         self.shelf.texts.retain(|_, text| !matches!(text, Text::Failed(_)));
         let alone = values.into_iter().all(is_about_the_reader);
-        let lesson = self.params.text(Key::Lesson);
+        let lesson = self.document.params.text(Key::Lesson);
         self.shelf.to_set_up = (alone && !lesson.is_empty()).then(|| lesson.to_owned());
         self.set_up();
     }
@@ -175,14 +177,14 @@ impl Session {
     /// Whether a link that names only what is not as in the table would set the document up for a
     /// lesson, in place of what is there.
     pub(super) fn would_set_up(&self) -> bool {
-        let mut changed = self.params.changed().map(|(param, _)| param.key);
-        !self.params.text(Key::Lesson).is_empty() && changed.all(is_about_the_reader)
+        let mut changed = self.document.params.changed().map(|(param, _)| param.key);
+        !self.document.params.text(Key::Lesson).is_empty() && changed.all(is_about_the_reader)
     }
 
     /// Sets the document up as the open page says, if it waits for that and the text is here.
     /// Whether it did.
     fn set_up(&mut self) -> bool {
-        if self.shelf.to_set_up.as_deref() != Some(self.params.text(Key::Lesson)) {
+        if self.shelf.to_set_up.as_deref() != Some(self.document.params.text(Key::Lesson)) {
             self.shelf.to_set_up = None;
             return false;
         }
@@ -202,13 +204,13 @@ impl Session {
     pub(super) fn try_out(&mut self, query: &str) -> Result<(), CommandError> {
         let link = link::read(query);
         if let Some(lesson) = link.values.iter().find(|(key, _)| *key == Key::Lesson) {
-            if self.params.get(Key::Lesson) == &lesson.1 {
+            if self.document.params.get(Key::Lesson) == &lesson.1 {
                 // It is open already: what did not come is asked for again.
-                self.remember(None);
+                self.document.remember(None);
                 self.lesson_was_set([Key::Lesson]);
             }
             self.set(vec![lesson.clone()])?;
-            self.history.settle();
+            self.document.settle();
             return Ok(());
         }
         let page = self.lesson_page().ok_or(CommandError::NotPossible("no lesson is open"))?;
@@ -218,7 +220,7 @@ impl Session {
         let named: Vec<Key> =
             links.iter().flat_map(|link| &link.values).map(|(key, _)| *key).collect();
         let params = self.laid_over(&links, false);
-        self.remember(None);
+        self.document.remember(None);
         self.take_over(params, &problems, &named);
         Ok(())
     }
@@ -227,7 +229,7 @@ impl Session {
     /// makes a result. What is about the reader stays as it is, as do A and B where no link names
     /// them; stage, camera and time too, unless the page is `new`.
     fn laid_over(&self, links: &[Link], new: bool) -> Params {
-        let mut params = self.params.clone();
+        let mut params = self.document.params.clone();
         let defaults = Params::default();
         let starts_anew =
             |param: &&Param| is_of_page_state(param) || (new && param.group != Group::Page);
@@ -248,9 +250,7 @@ impl Session {
     /// Takes over all parameters, as those of a link that names some of them: says what is wrong
     /// with it and what is missing.
     pub(super) fn take_over(&mut self, params: Params, problems: &[Message], named: &[Key]) {
-        let had = std::mem::replace(&mut self.params, params).text(Key::Src).to_owned();
-        let new_sources = self.sources_beyond(&had);
-        self.note_named(named, !new_sources.is_empty());
+        let new_sources = self.document.replace_params(params, named);
         match problems.get(MOST_PROBLEMS..).map_or(0, <[_]>::len) {
             _ if problems.is_empty() => {}
             0 => self.say(
@@ -272,7 +272,7 @@ impl Session {
             }
         }
         self.fetch(new_sources);
-        self.look_for_clips();
+        look_for_clips(&mut self.document, &mut self.notices);
         self.labs.grapher.stop(false);
     }
 }

@@ -1,8 +1,6 @@
 //! Which clips take A and B, and what becomes of the places in those that were there.
 
-use super::loading_tests::{AMC, ASF, bytes, files, serve};
-use super::tests::{made_bvh, settle};
-use super::*;
+use crate::fixtures::*;
 use crate::reading::Content;
 use segue_formats::ImportOptions;
 use segue_motion::skeleton::Role;
@@ -141,7 +139,7 @@ fn a_file_that_comes_again_leaves_what_was_said_of_it() {
     assert_eq!(told(session.library().get(&id).unwrap()), told(&before));
 
     // One that could not be read is read as it was said.
-    session.library.change(&id, |entry| entry.motion = None);
+    session.document.library.change(&id, |entry| entry.motion = None);
     session.load("x.bvh", bytes).unwrap();
     assert_eq!(told(session.library().get(&id).unwrap()), told(&before));
 }

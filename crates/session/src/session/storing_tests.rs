@@ -1,8 +1,7 @@
 //! What survives a reload, and what comes back late.
 
-use super::tests::{made_bvh, settle};
-use super::*;
 use crate::choices;
+use crate::fixtures::*;
 use crate::reading::Content;
 use crate::saved::Saved;
 use segue_motion::skeleton::Role;

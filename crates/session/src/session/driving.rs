@@ -81,7 +81,7 @@ impl Session {
     /// cannot be read.
     #[must_use]
     pub fn match_clip_ids(&self) -> Vec<String> {
-        read_ids(self.params.text(Key::MatchClips)).unwrap_or_default()
+        read_ids(self.document.params.text(Key::MatchClips)).unwrap_or_default()
     }
 
     /// The time in what was seen last that is shown now: one tick behind, so that it is smooth at
@@ -98,9 +98,9 @@ impl Session {
         if self.is_driven()
             && before.is_at_rest()
             && !control.is_at_rest()
-            && !self.params.is_on(Key::Play)
+            && !self.document.params.is_on(Key::Play)
         {
-            self.set_unchecked(Key::Play, Value::Switch(true));
+            self.document.set_unchecked(Key::Play, Value::Switch(true));
             self.revision += 1;
         }
     }
@@ -121,7 +121,7 @@ impl Session {
             (Key::Drive, Value::Text(text)),
             (Key::Time, Value::Number(0.0)),
         ])?;
-        self.history.settle();
+        self.document.settle();
         Ok(())
     }
 
@@ -150,7 +150,7 @@ impl Session {
     /// So many ticks with the present input.
     pub(super) fn drive_ticks(&mut self, ticks: usize) {
         // One that cannot be read is told where the database is asked for.
-        let filter = filter_of(&self.params).unwrap_or_default();
+        let filter = filter_of(&self.document.params).unwrap_or_default();
         let Driving { lives, crowd, control, recording, unmeasured, tick_ms, .. } =
             &mut self.driving;
         *unmeasured = ticks;
@@ -186,7 +186,7 @@ impl Session {
 
     /// The characters that the parameters ask for; none where nobody drives.
     pub(super) fn refresh_driving(&mut self) {
-        if !is_own(&self.params) {
+        if !is_own(&self.document.params) {
             self.restart_driving();
             return;
         }
@@ -229,7 +229,7 @@ impl Session {
             };
             pane.take(answer, &params);
         }
-        let count = self.params.number(Key::Crowd) as usize - 1;
+        let count = self.document.params.number(Key::Crowd) as usize - 1;
         self.driving.crowd = match (self.driving.crowd.take(), main) {
             (_, Some(_)) if count == 0 => None,
             (Some(mut crowd), Some((database, options))) if crowd.is_of(&database, count) => {
@@ -246,7 +246,7 @@ impl Session {
     /// The tags that were set by hand; none where they cannot be read.
     #[must_use]
     pub fn hand_tags(&self) -> Vec<HandTag> {
-        read_tags(self.params.text(Key::Tags)).unwrap_or_default()
+        read_tags(self.document.params.text(Key::Tags)).unwrap_or_default()
     }
 
     /// The database that the parameters ask for; `None` while it is built.
@@ -271,7 +271,7 @@ impl Session {
 
     /// Whether the user drives in the lab that is open, now or as soon as there is a database.
     pub(super) fn is_own_drive(&self) -> bool {
-        is_own(&self.params)
+        is_own(&self.document.params)
     }
 }
 

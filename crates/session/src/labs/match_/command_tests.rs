@@ -1,7 +1,7 @@
 //! The Match lab, by commands.
 
-use super::*;
 use crate::Driven;
+use crate::fixtures::*;
 use glam::DVec2;
 use segue_motion::matching::{
     Control, Controller, Database, DatabaseOptions, Normalisation, RATE, Scenario, Tag, TagSet,

@@ -1,5 +1,7 @@
-use super::*;
+//! The Path lab, by commands.
+
 use crate::JobKind;
+use crate::fixtures::*;
 use crate::{CompanyChange, OnPath};
 use glam::DVec2;
 use segue_motion::path::{GroundSpline, PathEdit, Pins};

@@ -1,7 +1,7 @@
 //! Lessons, by commands.
 
-use super::*;
 use crate::choices;
+use crate::fixtures::*;
 use crate::lesson::Source;
 
 const PAGE: &str = "# One\n\n[Begin](?lab=blend&a=walk&b=run&blend_window=30)\n\n## Try\n\n- [Ten](?blend_window=10) Short.\n- [Loop](?lab=loop&a=walk_left) A loop.\n\n# Two\n\n[Next](?lab=make&gait=run)\n";

@@ -1,8 +1,7 @@
 //! Bundled takes, alone and as a set: asked for, come, failed, taken back, stored.
 
-use super::tests::settle;
-use super::*;
 use crate::clip_sets::ClipSet;
+use crate::fixtures::*;
 use crate::samples::{Sample, SampleSet};
 
 fn set() -> &'static SampleSet {
@@ -109,7 +108,7 @@ fn in_view_the_first_of_a_set_is_looked_at_and_own_clips_keep_their_places() {
     session.apply(load()).unwrap();
     assert_eq!(session.params().text(Key::A), "cmu16_walk");
     let mut session = Session::new();
-    let own = session.load("x.bvh", super::tests::made_bvh(1.0)).unwrap().ids.remove(0);
+    let own = session.load("x.bvh", made_bvh(1.0)).unwrap().ids.remove(0);
     session.apply(load()).unwrap();
     assert_eq!(
         [Key::A, Key::B].map(|key| session.params().text(key).to_owned()),
@@ -261,11 +260,7 @@ fn the_users_own_clips_take_the_place_of_the_set_in_graph_and_match() {
         session.apply(Command::OpenLink(format!("lab={lab}&scenario=straight"))).unwrap();
         let own: Vec<String> = [1.0, 2.0]
             .map(|seed| {
-                session
-                    .load(&format!("own {seed}.bvh"), super::tests::made_bvh(seed))
-                    .unwrap()
-                    .ids
-                    .remove(0)
+                session.load(&format!("own {seed}.bvh"), made_bvh(seed)).unwrap().ids.remove(0)
             })
             .into();
         session.apply(load()).unwrap();

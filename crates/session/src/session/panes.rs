@@ -8,6 +8,7 @@ use crate::labs::LabError;
 use crate::labs::{Gauge, Inputs, JobKind, LabClips, MoreClip, Outcome, Slot, Source};
 use crate::labs::{belongs_to, lab, preset_motion, recipe_ingredients, recipe_name, recipe_params};
 use crate::library::{Entry, Origin, split_reference};
+use crate::missing::dismiss_found;
 use crate::motion::{FeetReading, Motion};
 use crate::outside;
 use crate::params::{Key, Kind, Params, Value};
@@ -245,7 +246,7 @@ impl Session {
     /// One slice of the work that is left over when a change would take longer than a frame. `true`
     /// while there is more.
     pub fn work(&mut self) -> bool {
-        if self.labs.work(self.params.number(Key::Time)) {
+        if self.labs.work(self.document.params.number(Key::Time)) {
             return true;
         }
         if self.labs.is_ready() {
@@ -269,7 +270,8 @@ impl Session {
             _ => false,
         };
         let unmade = |entry: &&Arc<Entry>| entry.motion.is_none() && is_quick(entry);
-        let next = self.library.entries().iter().find(unmade).map(|entry| entry.id.clone());
+        let next =
+            self.document.library.entries().iter().find(unmade).map(|entry| entry.id.clone());
         next.is_some_and(|id| self.motion_of(&id).is_ok())
     }
 
@@ -288,7 +290,7 @@ impl Session {
     /// Whether the clip in a slot is part of what the lab shows.
     #[must_use]
     pub fn uses(&self, slot: Slot) -> bool {
-        lab::of(self.params.lab()).slots().contains(&slot)
+        lab::of(self.document.params.lab()).slots().contains(&slot)
     }
 
     /// The motion of a clip with its feet read as the parameters ask for.
@@ -299,7 +301,7 @@ impl Session {
 
     /// The motion of a clip: made or asked for when it is not there yet.
     pub(super) fn motion_of(&mut self, reference: &str) -> Result<Arc<Motion>, LabError> {
-        let Some(entry) = self.library.find(reference) else {
+        let Some(entry) = self.document.library.find(reference) else {
             return Err(LabError::MissingClip {
                 name: outside::short(split_reference(reference).0),
             });
@@ -312,7 +314,7 @@ impl Session {
             Origin::Sample(sample) => {
                 let sample = *sample;
                 self.ask_for_sample(sample);
-                let failed = self.library.get(&id).and_then(|entry| entry.unread.clone());
+                let failed = self.document.library.get(&id).and_then(|entry| entry.unread.clone());
                 return Err(
                     failed.map_or(LabError::Loading { name: sample.label }, LabError::Unread)
                 );
@@ -334,17 +336,17 @@ impl Session {
                 if !self.read_anew(&file, None)? {
                     return Err(LabError::Reading { file: file.name.clone() });
                 }
-                let motion = self.library.find(&id).and_then(|entry| entry.motion.clone());
+                let motion = self.document.library.find(&id).and_then(|entry| entry.motion.clone());
                 return motion.ok_or_else(|| LabError::NoSuchClip { file: file.name.clone() });
             }
         };
-        let by_hand = self.library.get(&id).and_then(|entry| entry.roles_by_hand.clone());
+        let by_hand = self.document.library.get(&id).and_then(|entry| entry.roles_by_hand.clone());
         let motion = if by_hand.is_some() {
             Arc::new(Arc::unwrap_or_clone(motion).with_roles(by_hand.as_ref()))
         } else {
             motion
         };
-        self.library.change(&id, |entry| entry.motion = Some(Arc::clone(&motion)));
+        self.document.library.change(&id, |entry| entry.motion = Some(Arc::clone(&motion)));
         self.revision += 1;
         Ok(motion)
     }
@@ -365,7 +367,7 @@ impl Session {
     /// the first that is missing is told.
     pub(super) fn motions_of(&mut self, ids: &[String]) -> Result<Vec<Arc<Motion>>, LabError> {
         let motion = |id: &String| {
-            self.bring(id);
+            self.document.bring(id);
             self.motion_of(id)
         };
         let motions: Vec<_> = ids.iter().map(motion).collect();
@@ -376,7 +378,7 @@ impl Session {
     fn made_again(&mut self, params: &Params) -> Result<Arc<Motion>, LabError> {
         for key in [Key::A, Key::B] {
             let reference = params.text(key).to_owned();
-            let _was_gone = self.bring_back(&reference) || self.bring(&reference);
+            let _was_gone = self.document.bring_back(&reference) || self.document.bring(&reference);
         }
         let mut pane = Pane::default();
         self.labs.grapher.guide_by(None);
@@ -390,7 +392,7 @@ impl Session {
 
     /// The parameters with a pane's own value of the compared one.
     pub(super) fn params_of(&self, pane: &Pane) -> Params {
-        let mut params = self.params.clone();
+        let mut params = self.document.params.clone();
         if let Some((key, value)) = &pane.variant {
             let result = params.set(*key, value.clone());
             debug_assert!(result.is_ok(), "compare holds checked values: {result:?}");
@@ -406,6 +408,7 @@ impl Session {
         let param = key.param();
         Some(match (param.kind, value) {
             (Kind::Clip, Value::Text(id)) => self
+                .document
                 .library
                 .find(id)
                 .map_or_else(|| split_reference(id).0.to_owned(), |entry| entry.name.clone()),
@@ -417,7 +420,7 @@ impl Session {
     pub(super) fn refresh(&mut self) {
         self.revision += 1;
         self.ask_for_lesson();
-        let lab = self.params.lab();
+        let lab = self.document.params.lab();
         let is_clip = |key: Key| recipe_ingredients(lab).any(|ingredient| ingredient == key);
         // What is only looked at may be compared in every lab.
         let uses = |key: Key| {
@@ -437,13 +440,13 @@ impl Session {
                 .collect(),
             None => vec![None],
         };
-        for clip in self.compared_clips() {
-            self.bring(&clip);
+        for clip in self.document.compared_clips() {
+            self.document.bring(&clip);
         }
-        self.forget_found();
+        dismiss_found(&self.document, &mut self.notices);
         let mut old = std::mem::take(&mut self.panes).into_iter();
         self.labs.ask_anew();
-        let match_window = widest_window(&self.params, compare.as_ref());
+        let match_window = widest_window(&self.document.params, compare.as_ref());
         self.labs.grapher.guide_by(None);
         for variant in variants {
             let mut pane = old.next().unwrap_or_default();
@@ -495,7 +498,11 @@ impl Session {
             if lab.has_feet() { self.motions_read(&ids, params) } else { self.motions_of(&ids) };
         let slots = slots.into_iter().collect::<Result<_, _>>()?;
         let more = ids.into_iter().zip(motions?).map(|(id, motion)| MoreClip {
-            name: self.library.find(&id).map_or_else(|| id.clone(), |entry| entry.name.clone()),
+            name: self
+                .document
+                .library
+                .find(&id)
+                .map_or_else(|| id.clone(), |entry| entry.name.clone()),
             id,
             motion,
         });

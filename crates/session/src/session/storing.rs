@@ -1,14 +1,15 @@
 //! The work into storage, and back from it: before anything is shown, or later.
 
-use super::{Session, built_in_entries};
+use super::Session;
+use crate::document::built_in_entries;
 use crate::labs::{recipe_name, recipe_params};
 use crate::library::{Entry, Origin, SourceFile};
 use crate::link;
+use crate::missing::look_for_clips;
 use crate::notice::Level;
 use crate::params::Key;
 use crate::reading::{Content, LARGE_BYTES};
 use crate::saved::{Saved, SavedEntry, SavedFile};
-use crate::undo::History;
 use segue_formats::ImportOptions;
 use segue_text::msg;
 use std::sync::Arc;
@@ -20,6 +21,7 @@ impl Session {
         Saved {
             query: self.query(),
             entries: self
+                .document
                 .library
                 .entries()
                 .iter()
@@ -41,19 +43,19 @@ impl Session {
     ) {
         let (entries, lost) = self.stored_entries(&saved.entries, content_of);
         if !entries.is_empty() {
-            self.library = entries.into_iter().collect();
+            self.document.library = entries.into_iter().collect();
         }
         // A language that was chosen by hand stays, whatever link the page is opened with, unless
         // the link names another.
         self.speak_as(saved);
         self.open_link(query.unwrap_or(&saved.query));
-        self.history = History::default();
+        self.document.forget_steps();
         // What was shown until now is none of this work's, and stands in for nothing of it.
         self.panes.clear();
         // What is shown is asked for first.
         self.refresh();
         self.read_stored(lost);
-        self.look_for_clips();
+        look_for_clips(&mut self.document, &mut self.notices);
         self.refresh();
     }
 
@@ -62,7 +64,7 @@ impl Session {
     /// every stored clip joins that. Taking back what was done before does not take them away.
     pub fn restore_late(&mut self, saved: &Saved, content_of: impl FnMut(&str) -> Option<Content>) {
         let (entries, lost) = self.stored_entries(&saved.entries, content_of);
-        let before = std::mem::take(&mut self.library);
+        let before = std::mem::take(&mut self.document.library);
         let mut came = Vec::new();
         for entry in entries {
             let entry = match before.get(&entry.id) {
@@ -72,25 +74,26 @@ impl Session {
             if before.get(&entry.id).is_none() {
                 came.push(entry.id.clone());
             }
-            self.library.put_shared(entry);
+            self.document.library.put_shared(entry);
         }
-        let nothing_came = self.library.entries().is_empty();
+        let nothing_came = self.document.library.entries().is_empty();
         for entry in before.entries() {
             // A preset that is not stored was removed on an earlier visit. What the parameters name
             // of these comes back.
             let stays = nothing_came || !matches!(entry.origin, Origin::Preset);
-            if stays && self.library.get(&entry.id).is_none() {
-                self.library.put_shared(Arc::clone(entry));
+            if stays && self.document.library.get(&entry.id).is_none() {
+                self.document.library.put_shared(Arc::clone(entry));
             }
         }
-        self.look_for_clips();
+        look_for_clips(&mut self.document, &mut self.notices);
         self.read_stored(lost);
-        let came: Vec<_> = came.iter().filter_map(|id| self.library.get(id).cloned()).collect();
-        self.history.add_to_all(&came);
-        if self.params.get(Key::Lang) == &Key::Lang.param().default_value() {
+        let came: Vec<_> =
+            came.iter().filter_map(|id| self.document.library.get(id).cloned()).collect();
+        self.document.history.add_to_all(&came);
+        if self.document.params.get(Key::Lang) == &Key::Lang.param().default_value() {
             self.speak_as(saved);
         }
-        self.library_revision += 1;
+        self.document.library_revision += 1;
         self.refresh();
     }
 
@@ -101,18 +104,21 @@ impl Session {
         saved: &[SavedEntry],
         content_of: impl FnMut(&str) -> Option<Content>,
     ) {
-        let new: Vec<SavedEntry> =
-            saved.iter().filter(|entry| self.library.get(&entry.id).is_none()).cloned().collect();
+        let new: Vec<SavedEntry> = saved
+            .iter()
+            .filter(|entry| self.document.library.get(&entry.id).is_none())
+            .cloned()
+            .collect();
         let (entries, lost) = self.stored_entries(&new, content_of);
         for entry in entries {
-            self.library.put(entry);
+            self.document.library.put(entry);
         }
-        self.look_for_clips();
+        look_for_clips(&mut self.document, &mut self.notices);
         self.read_stored(lost);
         let came: Vec<_> =
-            new.iter().filter_map(|entry| self.library.get(&entry.id).cloned()).collect();
-        self.history.add_to_all(&came);
-        self.library_revision += 1;
+            new.iter().filter_map(|entry| self.document.library.get(&entry.id).cloned()).collect();
+        self.document.history.add_to_all(&came);
+        self.document.library_revision += 1;
         self.refresh();
     }
 
@@ -124,7 +130,7 @@ impl Session {
     ) -> (Vec<Entry>, Vec<String>) {
         let (mut entries, mut lost) = (Vec::new(), Vec::new());
         for stored in saved {
-            let here = self.library.get(&stored.id).map(|entry| (**entry).clone());
+            let here = self.document.library.get(&stored.id).map(|entry| (**entry).clone());
             let is_as_stored = |entry: &Entry| {
                 let is_read_so = match (&entry.origin, &stored.file) {
                     (Origin::File(here), Some(file)) => {
@@ -173,7 +179,7 @@ impl Session {
         if let Some((key, chosen)) =
             link::read(&saved.query).values.into_iter().find(|(key, _)| *key == Key::Lang)
         {
-            self.set_unchecked(key, chosen);
+            self.document.set_unchecked(key, chosen);
         }
     }
 
@@ -182,7 +188,7 @@ impl Session {
     /// are gone.
     pub(super) fn read_stored(&mut self, mut lost: Vec<String>) {
         self.ask_for_missing_samples();
-        let entries = self.library.entries().to_vec();
+        let entries = self.document.library.entries().to_vec();
         for entry in entries {
             let Origin::File(file) = &entry.origin else {
                 continue;
@@ -192,11 +198,11 @@ impl Session {
             let read_by_now = |entry: &Arc<Entry>| {
                 entry.motion.is_some() || entry.unread.is_some() || waits(entry)
             };
-            if self.library.get(&entry.id).is_none_or(read_by_now) {
+            if self.document.library.get(&entry.id).is_none_or(read_by_now) {
                 continue;
             }
             if self.read_anew(file, None).is_err() {
-                self.library.remove(&entry.id);
+                self.document.library.remove(&entry.id);
                 lost.push(file.name.clone());
             }
         }

@@ -1,7 +1,6 @@
 //! Results that are kept, and what is made of them.
 
-use super::tests::settle;
-use super::*;
+use crate::fixtures::*;
 use segue_motion::math::wrap_angle;
 
 fn opened(link: &str) -> Session {
@@ -98,7 +97,7 @@ fn results_with_a_further_clip_of_a_file_are_kept() {
         origin: Origin::File(crate::SourceFile { index: 1, ..file.clone() }),
         ..(*first).clone()
     };
-    session.library.put(second);
+    session.document.library.put(second);
     session.apply(Command::Set(vec![(Key::Lab, Value::Choice("blend"))])).unwrap();
     let kept = join(&mut session, "run", &format!("{id}.2"));
     assert!(kept.starts_with("blend(a:run,b:two~"), "{kept}");

@@ -1,8 +1,8 @@
 //! The Register lab, by commands.
 
-use super::*;
 use crate::JobKind;
 use crate::Registered;
+use crate::fixtures::*;
 use segue_motion::clip::{Clip, ground_speed};
 use segue_motion::math::Planar;
 use segue_motion::skeleton::Side;
@@ -162,7 +162,7 @@ fn what_cannot_be_is_said_and_no_earlier_result_stands_for_it() {
                 (Key::SlopeLimit, Value::Number(1.0)),
                 (Key::Ends, Value::Choice("corner")),
             ]);
-            session.bring(value);
+            session.document.bring(value);
         }
         session.apply(Command::Set(values)).unwrap();
         while session.work() {}

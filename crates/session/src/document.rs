@@ -1,0 +1,177 @@
+//! The document: parameters and library. Undo and storage see nothing else.
+
+mod clips;
+mod edits;
+mod history;
+mod slots;
+
+use crate::compare::Compare;
+use crate::labs::Slot;
+use crate::library::{Entry, Library};
+use crate::params::{Key, Mark, Params, Value, ValueError};
+pub(crate) use clips::built_in_entries;
+use clips::preset_entries;
+use history::History;
+pub(crate) use slots::Arrival;
+use slots::forget_places;
+use std::sync::Arc;
+
+/// The state that a link and undo bring back, and the steps between its versions.
+#[derive(Debug)]
+pub(crate) struct Document {
+    pub(crate) params: Params,
+    pub(crate) library: Library,
+    pub(crate) history: History,
+    /// Grows with every change of library content.
+    pub(crate) library_revision: u64,
+    /// Whether A and B were named together with the addresses of the link, or since.
+    named_slots: [bool; 2],
+    /// The parameters that the opened link names.
+    keys_of_link: Vec<Key>,
+}
+
+/// The difference that a command has made to the parameters.
+#[derive(Debug)]
+pub(crate) struct Changes {
+    /// The parameters that have another value than before.
+    pub(crate) keys: Vec<Key>,
+    /// The addresses of files that were not named before.
+    pub(crate) new_sources: Vec<String>,
+}
+
+impl Default for Document {
+    fn default() -> Self {
+        Self {
+            params: Params::default(),
+            library: preset_entries().collect(),
+            history: History::default(),
+            library_revision: 0,
+            named_slots: [false; 2],
+            keys_of_link: Vec::new(),
+        }
+    }
+}
+
+impl Document {
+    /// Returns the clip in a slot.
+    pub(crate) fn slot(&self, slot: Slot) -> Option<&Arc<Entry>> {
+        self.library.find(self.params.text(slot.key()))
+    }
+
+    /// Returns the comparison that is open.
+    pub(crate) fn compare(&self) -> Option<Compare> {
+        Compare::parse(self.params.text(Key::Compare)).ok()
+    }
+
+    /// Returns whether the link that was opened names this parameter, be it with its default.
+    pub(crate) fn link_names(&self, key: Key) -> bool {
+        self.keys_of_link.contains(&key)
+    }
+
+    /// Remembers the state before a change, as a step for undo. With `key`, changes of one
+    /// parameter in one gesture are one step.
+    pub(crate) fn remember(&mut self, key: Option<Key>) {
+        self.history.before_change(&self.params, &self.library, key);
+    }
+
+    /// Remembers an earlier library as the state before a change.
+    pub(crate) fn remember_library(&mut self, library: &Library) {
+        self.history.before_change(&self.params, library, None);
+    }
+
+    /// Forgets all steps of undo and redo.
+    pub(crate) fn forget_steps(&mut self) {
+        self.history = History::default();
+    }
+
+    /// Ends a gesture: the next change is a step of its own.
+    pub(crate) fn settle(&mut self) {
+        self.history.settle();
+    }
+
+    /// Takes the last step back. Returns whether there was one.
+    pub(crate) fn undo(&mut self) -> bool {
+        let is_undone = self.history.undo(&mut self.params, &mut self.library);
+        self.library_revision += u64::from(is_undone);
+        is_undone
+    }
+
+    /// Does the step again that was taken back last. Returns whether there was one.
+    pub(crate) fn redo(&mut self) -> bool {
+        let is_redone = self.history.redo(&mut self.params, &mut self.library);
+        self.library_revision += u64::from(is_redone);
+        is_redone
+    }
+
+    /// Sets a value that is known to fit.
+    pub(crate) fn set_unchecked(&mut self, key: Key, value: Value) {
+        let result = self.params.set(key, value);
+        debug_assert!(result.is_ok(), "{result:?}");
+    }
+
+    /// Sets parameters, all or none, as a step for undo where one of them has its place there.
+    ///
+    /// # Errors
+    /// [`ValueError`] says which value does not fit.
+    pub(crate) fn set(&mut self, values: Vec<(Key, Value)>) -> Result<Changes, ValueError> {
+        let mut params = self.params.clone();
+        let named: Vec<Key> = values.iter().map(|(key, _)| *key).collect();
+        let mut changed = Vec::new();
+        for (key, value) in values {
+            if params.set(key, value)? {
+                changed.push(key);
+            }
+        }
+        let chosen = [Slot::A, Slot::B].map(|slot| changed.contains(&slot.key()).then_some(slot));
+        for slot in chosen.into_iter().flatten() {
+            let before = self.slot(slot).map(|entry| &entry.id);
+            let now = self.library.find(params.text(slot.key())).map(|entry| &entry.id);
+            // Another name of the same clip changes nothing.
+            if before.is_none() || before != now {
+                changed.extend(forget_places(&mut params, slot, &named));
+            }
+        }
+        let mut undoable = changed.iter().copied().filter(|key| !key.param().has(Mark::NoUndo));
+        if let Some(first) = undoable.next() {
+            // A slider that is dragged changes one parameter again and again: one step.
+            let alone = undoable.next().is_none();
+            self.remember(alone.then_some(first));
+        }
+        let new_sources = self.replace_params(params, &named);
+        for slot in chosen.into_iter().flatten() {
+            let id = self.params.text(slot.key()).to_owned();
+            self.bring_back(&id);
+        }
+        if changed
+            .iter()
+            .any(|key| matches!(key, Key::Lab | Key::Clips | Key::MatchClips | Key::Others))
+        {
+            self.bring_back_listed();
+        }
+        Ok(Changes { keys: changed, new_sources })
+    }
+
+    /// Takes over the parameters of a link that names some of them. Returns the addresses of files
+    /// that were not named before.
+    pub(crate) fn replace_params(&mut self, params: Params, named: &[Key]) -> Vec<String> {
+        let had = std::mem::replace(&mut self.params, params).text(Key::Src).to_owned();
+        let new_sources = self.sources_beyond(&had);
+        self.note_named_slots(named, !new_sources.is_empty());
+        new_sources
+    }
+
+    /// Notes which parameters a link names that is about to replace all of them.
+    pub(crate) fn note_link(&mut self, named: &[Key]) {
+        self.named_slots = [false; 2];
+        self.keys_of_link = named.to_vec();
+    }
+
+    /// Returns the addresses of files that `had`, the parameter as it was, does not name.
+    fn sources_beyond(&self, had: &str) -> Vec<String> {
+        let is_new = |address: &&str| had.split_whitespace().all(|known| known != *address);
+        self.params.text(Key::Src).split_whitespace().filter(is_new).map(str::to_owned).collect()
+    }
+}
+
+#[cfg(test)]
+mod slot_tests;

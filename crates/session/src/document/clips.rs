@@ -1,0 +1,110 @@
+//! Clips that parameters name: found in the library, or brought into it by their id.
+
+use super::Document;
+use crate::labs::{lab, read_also, recipe_name, recipe_params};
+use crate::library::{Entry, Origin};
+use crate::params::{Key, Kind, Value};
+use crate::samples::{self, Sample};
+use segue_formats::FileKind;
+use segue_motion::synth;
+
+/// Returns the entries of the presets, which the library holds at first.
+pub(super) fn preset_entries() -> impl Iterator<Item = Entry> {
+    synth::presets().into_iter().map(|preset| Entry::new(preset.id, preset.title, Origin::Preset))
+}
+
+/// Returns the entries of all that comes with Segue: the presets, and the bundled takes, which join
+/// the library when they are asked for.
+pub(crate) fn built_in_entries() -> impl Iterator<Item = Entry> {
+    preset_entries().chain(samples::all().map(sample_entry))
+}
+
+/// Returns the entry of a bundled take without its motion.
+fn sample_entry(sample: &'static Sample) -> Entry {
+    Entry::new(sample.id, sample.label, Origin::Sample(sample))
+}
+
+impl Document {
+    /// Returns the clips that are compared with each other.
+    pub(crate) fn compared_clips(&self) -> Vec<String> {
+        let compare =
+            self.compare().filter(|compare| matches!(compare.key.param().kind, Kind::Clip));
+        let values = compare.map(|compare| compare.values).unwrap_or_default();
+        let clips = values.into_iter().filter_map(|value| match value {
+            Value::Text(id) => Some(id),
+            _ => None,
+        });
+        clips.collect()
+    }
+
+    /// Returns the further clips of a registered blend, with their weights; none where they cannot
+    /// be read.
+    pub(crate) fn also_blended(&self) -> Vec<(String, f64)> {
+        read_also(self.params.text(Key::WarpAlso)).unwrap_or_default()
+    }
+
+    /// Makes sure that a clip is in the library. Returns whether it is, or can be made or fetched
+    /// by its id.
+    pub(crate) fn bring(&mut self, reference: &str) -> bool {
+        if self.library.find(reference).is_some() || self.bring_sample(reference) {
+            return true;
+        }
+        let Some(params) = recipe_params(reference) else {
+            return false;
+        };
+        self.library.put(Entry::new(reference, recipe_name(&params), Origin::Made));
+        self.library_revision += 1;
+        true
+    }
+
+    /// Makes sure that a bundled take is in the library. Returns whether the id is that of one.
+    pub(crate) fn bring_sample(&mut self, id: &str) -> bool {
+        let Some(sample) = samples::all().find(|sample| sample.id == id) else {
+            return false;
+        };
+        if self.library.get(id).is_none() {
+            self.library.put(sample_entry(sample));
+            self.library_revision += 1;
+        }
+        true
+    }
+
+    /// Returns the built-in clip of that id, where it is not in the library.
+    pub(super) fn removed_built_in(&self, id: &str) -> Option<Entry> {
+        let is_gone = self.library.get(id).is_none();
+        is_gone.then(|| built_in_entries().find(|entry| entry.id == id)).flatten()
+    }
+
+    /// Puts a built-in clip back that was removed from the library. Returns whether it did.
+    pub(crate) fn bring_back(&mut self, id: &str) -> bool {
+        let Some(entry) = self.removed_built_in(id) else {
+            return false;
+        };
+        self.library.put(entry);
+        self.library_revision += 1;
+        true
+    }
+
+    /// Puts back what the open lab's own list of clips names.
+    pub(crate) fn bring_back_listed(&mut self) {
+        for id in lab::of(self.params.lab()).listed(&self.params) {
+            self.bring_back(&id);
+        }
+    }
+
+    /// Returns the id of a clip that a parameter may name: one of the library, or a bundled take,
+    /// which joins the library when it is named.
+    pub(crate) fn nameable(&self, reference: &str) -> Option<String> {
+        let in_library = self.library.find(reference).map(|entry| entry.id.clone());
+        in_library.or_else(|| {
+            samples::all().find(|sample| sample.id == reference).map(|sample| sample.id.to_owned())
+        })
+    }
+
+    /// Returns whether a clip of the library is a motion without its skeleton, or a skeleton
+    /// without a motion.
+    pub(crate) fn is_half(&self, id: &str) -> bool {
+        let is_skeleton = |entry: &Entry| matches!(&entry.origin, Origin::File(file) if file.kind == FileKind::Asf);
+        self.library.get(id).is_some_and(|entry| entry.awaits_skeleton() || is_skeleton(entry))
+    }
+}

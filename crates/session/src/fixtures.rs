@@ -1,0 +1,109 @@
+//! Shared by the tests that drive a session by commands: the names that they use, small files, and
+//! the work around a session.
+
+pub(crate) use crate::command::{Command, CommandError, Request};
+
+pub(crate) use crate::labs::{Outcome, Slot};
+pub(crate) use crate::library::{Entry, Origin};
+pub(crate) use crate::link;
+pub(crate) use crate::motion::Motion;
+pub(crate) use crate::notice::Level;
+pub(crate) use crate::params::{Key, Value};
+pub(crate) use crate::reading::Content;
+pub(crate) use crate::{Lesson, Loaded, NoResult, Pane, Session, Shown};
+pub(crate) use std::sync::Arc;
+
+/// A skeleton with two bones.
+pub(crate) const ASF: &str = "\
+:version 1.10
+:name toy
+:units
+  length 1.0
+  angle deg
+:root
+  order TX TY TZ RX RY RZ
+  axis XYZ
+  position 0 0 0
+  orientation 0 0 0
+:bonedata
+  begin
+    id 1
+    name thigh
+    direction 0 -1 0
+    length 85
+    axis 0 0 0 XYZ
+    dof rx
+  end
+  begin
+    id 2
+    name spine
+    direction 0 1 0
+    length 80
+    axis 0 0 0 XYZ
+    dof rx
+  end
+:hierarchy
+  begin
+    root thigh spine
+  end
+";
+/// A motion of [`ASF`] with two frames.
+pub(crate) const AMC: &str = ":FULLY-SPECIFIED\n:DEGREES\n1\nroot 0 85 0 0 0 0\nthigh 10\nspine 1\n2\nroot 0 85 1 0 0 0\nthigh 20\nspine 2\n";
+
+/// Does all work that is left over.
+pub(crate) fn settle(session: &mut Session) {
+    while session.work() {}
+}
+
+/// Returns a synthesised motion as a BVH file.
+pub(crate) fn made_bvh(seed: f64) -> Arc<[u8]> {
+    let mut session = Session::new();
+    session
+        .apply(Command::Set(vec![
+            (Key::Lab, Value::Choice("make")),
+            (Key::Seed, Value::Number(seed)),
+        ]))
+        .unwrap();
+    let clip = Arc::clone(&session.main_outcome().unwrap().motion.clip);
+    segue_formats::bvh::write(&clip, &segue_formats::bvh::WriteOptions::default())
+        .into_bytes()
+        .into()
+}
+
+/// Returns the bytes of a text.
+pub(crate) fn bytes(text: &str) -> Arc<[u8]> {
+    Arc::from(text.as_bytes())
+}
+
+/// Returns name, format and frames of the clips that files brought.
+pub(crate) fn files(session: &Session) -> Vec<(String, &'static str, usize)> {
+    let infos = session.clip_infos().into_iter().filter(|info| info.sha256.is_some());
+    infos.map(|info| (info.name, info.format, info.frames)).collect()
+}
+
+/// Reads what the session asks to have read, as a worker does: in order, with the setup that it was
+/// asked with.
+pub(crate) fn serve(session: &mut Session) {
+    loop {
+        let asked: Vec<_> = (session.take_requests().into_iter())
+            .filter_map(|request| match request {
+                Request::Read(task) => Some(task),
+                _ => None,
+            })
+            .collect();
+        if asked.is_empty() {
+            return;
+        }
+        for task in asked {
+            let Content::Here(bytes) = &task.content else { panic!("{task:?}") };
+            let report =
+                crate::reading::read(&task.name, bytes, &task.setup, &mut |_| true).unwrap();
+            assert!(
+                session.is_reading(task.id)
+                    && session.is_reading_small()
+                    && session.jobs().iter().all(|job| job.task.is_none())
+            );
+            session.finish_reading(task.id, Ok(report));
+        }
+    }
+}

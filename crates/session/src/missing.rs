@@ -1,0 +1,53 @@
+//! Clips that the parameters name and the library does not have: the user is told which file to drop.
+
+use crate::document::Document;
+use crate::labs::Slot;
+use crate::library::split_reference;
+use crate::notice::Notices;
+use crate::outside;
+use segue_text::msg;
+
+/// Brings in every clip that the parameters name, and asks the user for those that cannot be
+/// brought in.
+pub(crate) fn look_for_clips(document: &mut Document, notices: &mut Notices) {
+    for slot in [Slot::A, Slot::B] {
+        let reference = document.params.text(slot.key()).to_owned();
+        look_for(document, notices, slot.label(), &reference);
+    }
+    for reference in document.compared_clips() {
+        look_for(document, notices, "A clip to compare", &reference);
+    }
+    for (reference, _) in document.also_blended() {
+        look_for(document, notices, "A clip of the blend", &reference);
+    }
+    document.bring_back_listed();
+}
+
+fn look_for(document: &mut Document, notices: &mut Notices, what: &'static str, reference: &str) {
+    if reference.is_empty() || document.bring_back(reference) || document.bring(reference) {
+        return;
+    }
+    let (name, sha, _) = split_reference(reference);
+    let [name, sha] = [name, sha].map(outside::short);
+    let text = if sha.is_empty() {
+        msg!("{what} is `{name}`, which is not here: drop that file, or choose another clip.")
+    } else {
+        msg!(
+            "{what} is `{name}` (SHA-256 {sha}…), which is not here: drop that file to complete the link."
+        )
+    };
+    notices.miss(reference, text);
+}
+
+/// Takes the notices away that ask for clips which have arrived since, or which are no longer
+/// named.
+pub(crate) fn dismiss_found(document: &Document, notices: &mut Notices) {
+    let slots = [Slot::A, Slot::B].map(|slot| document.params.text(slot.key()).to_owned());
+    let others = document.also_blended().into_iter().map(|(reference, _)| reference);
+    let named: Vec<String> =
+        slots.into_iter().chain(document.compared_clips()).chain(others).collect();
+    notices.keep_missing(|reference| match document.library.find(reference) {
+        Some(entry) => document.is_half(&entry.id),
+        None => named.iter().any(|name| name == reference),
+    });
+}
