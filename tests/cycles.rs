@@ -143,9 +143,9 @@ fn a_course_s_own_pair_of_single_cycles_blends_to_a_speed() {
         assert_eq!(pane.problem, None);
         let outcome = pane.outcome.as_ref().unwrap();
         let motion = &outcome.motion;
-        let stands = character_frames(&motion.clip, &motion.roles);
+        let stands = character_frames(motion.clip(), motion.roles());
         let way: f64 = stands.windows(2).map(|pair| pair[0].shift.distance(pair[1].shift)).sum();
-        let measured = way / motion.clip.duration_secs();
+        let measured = way / motion.clip().duration_secs();
         let shown = outcome
             .metrics
             .iter()

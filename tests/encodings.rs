@@ -110,9 +110,9 @@ fn result(session: &mut Session, [a, b]: &[String; 2], lab: &str) -> Result<Arc<
 
 /// Where the joints are in the character's frame, by name, frame by frame.
 fn seen_from_character(outcome: &Outcome) -> BTreeMap<String, Vec<Vec3>> {
-    let clip = &outcome.motion.clip;
+    let clip = outcome.motion.clip();
     let mut joints: BTreeMap<String, Vec<Vec3>> = BTreeMap::new();
-    for (frame, here) in outcome.motion.ground_frames.iter().enumerate() {
+    for (frame, here) in outcome.motion.ground_frames().iter().enumerate() {
         let world = clip.world_pose(frame);
         for (joint, position) in clip.skeleton().joints().iter().zip(world.positions) {
             joints.entry(joint.name.clone()).or_default().push(here.inverse().apply(position));

@@ -182,8 +182,8 @@ fn check_bounds(what: &str, session: &Session, bounds: &[(usize, &str, f64, f64)
                 ));
             }
         }
-        let root = outcome.motion.clip.root_translations();
-        let fps = outcome.motion.clip.fps() as f32;
+        let root = outcome.motion.clip().root_translations();
+        let fps = outcome.motion.clip().fps() as f32;
         let fastest =
             root.windows(2).map(|pair| pair[0].distance(pair[1]) * fps).fold(0.0, f32::max);
         if !(0.2..8.0).contains(&fastest) {

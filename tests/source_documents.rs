@@ -12,12 +12,11 @@ use glam::{DVec2, Vec3};
 use petgraph::visit::EdgeRef;
 use segue::scene::{Colors, Director, Look, Viewport};
 use segue_motion::blend::WeightLaw;
+use segue_motion::clip::Motion;
 use segue_motion::graph::{Construction, MotionGraph};
 use segue_motion::math::{Planar, quat, spring};
 use segue_motion::path::SplineEnds;
-use segue_session::{
-    Command, CycleMade, Key, Level, Motion, Outcome, Pane, Session, Slot, Value, Walk,
-};
+use segue_session::{Command, CycleMade, Key, Level, Outcome, Pane, Session, Slot, Value, Walk};
 use std::sync::Arc;
 
 /// An angle by the shorter way round, radians.
@@ -79,14 +78,14 @@ fn is_rising(values: &[f64]) -> bool {
 #[test]
 fn transform_sets_the_first_frame_in_a_place_and_takes_the_whole_clip_along() {
     let mut session = opened("lab=view&a=walk_left&place_x=2&place_z=-1&place_heading=90");
-    let first = motion(&session, 0).ground_frames[0];
+    let first = motion(&session, 0).ground_frames()[0];
     assert!(
         first.shift.distance(DVec2::new(2.0, -1.0)) < 1e-5
             && (first.yaw.to_degrees() - 90.0).abs() < 1e-3
     );
     let own = clip(&mut session, "walk_left");
-    let moved = first.after(&own.ground_frames[0].inverse());
-    let (there, here) = (&motion(&session, 0).clip, &own.clip);
+    let moved = first.after(&own.ground_frames()[0].inverse());
+    let (there, here) = (motion(&session, 0).clip(), own.clip());
     assert_eq!(there.frames(), here.frames());
     for frame in (0..here.frames()).step_by(17) {
         let (p, q) = (there.world_pose(frame), here.world_pose(frame));
@@ -110,21 +109,21 @@ fn a_blend_in_the_world_slerps_joints_and_mixes_roots_by_the_weight() {
         (frame(transition.leave_a_secs), frame(transition.enter_b_secs), transition.window_frames);
     assert_eq!(window, 30);
     // The first posture of B stands where A's does, and faces there.
-    let placed = b.world_from_clip.after(&b.motion.ground_frames[enter]);
-    let stands = a.motion.ground_frames[leave];
+    let placed = b.world_from_clip.after(&b.motion.ground_frames()[enter]);
+    let stands = a.motion.ground_frames()[leave];
     assert!(
         placed.shift.distance(stands.shift) < 1e-4
             && wrap_angle(placed.yaw - stands.yaw).abs() < 1e-4
     );
-    let (clip_a, clip_b) = (&a.motion.clip, b.motion.clip.transformed(&b.world_from_clip));
+    let (clip_a, clip_b) = (a.motion.clip(), b.motion.clip().transformed(&b.world_from_clip));
     for p in 0..window {
         let weight = WeightLaw::Linear.alpha((p + 1) as f64 / window as f64) as f32;
         assert!((weight - (1.0 - (p + 1) as f32 / window as f32)).abs() < 1e-6);
         let root = clip_b.root_translations()[enter + p]
             .lerp(clip_a.root_translations()[leave + p], weight);
-        assert!(root.distance(made.motion.clip.root_translations()[leave + p]) < 1e-4);
+        assert!(root.distance(made.motion.clip().root_translations()[leave + p]) < 1e-4);
         let (qa, qb) = (clip_a.rotations(leave + p), clip_b.rotations(enter + p));
-        for (joint, &found) in made.motion.clip.rotations(leave + p).iter().enumerate() {
+        for (joint, &found) in made.motion.clip().rotations(leave + p).iter().enumerate() {
             // Toward the nearer of a rotation's two quaternions.
             let near = if qa[joint].dot(qb[joint]) < 0.0 { -qa[joint] } else { qa[joint] };
             assert!(
@@ -262,10 +261,10 @@ fn a_transform_of_the_first_frame_alone_flashes() {
     let walk = walk(&session, 2);
     for passed in walk.passed.iter() {
         let settled = passed.start + passed.seam.map_or(0, |seam| seam.frames);
-        if settled < passed.end.min(walk.motion.ground_frames.len()) {
+        if settled < passed.end.min(walk.motion.ground_frames().len()) {
             let recorded = &walk.built.cast().motions()[passed.stay.clip];
-            let stood = recorded.ground_frames[passed.stay.from + settled - passed.start];
-            let stands = walk.motion.ground_frames[settled];
+            let stood = recorded.ground_frames()[passed.stay.from + settled - passed.start];
+            let stands = walk.motion.ground_frames()[settled];
             assert!(stands.shift.distance(stood.shift) < 1e-3, "{stands:?} {stood:?}");
         }
     }
@@ -276,7 +275,7 @@ fn a_walk_has_the_root_and_the_weight_that_it_is_asked_for() {
     let link = "lab=graph&clips=walk,walk_left,walk_right&walk_seconds=30&continuity=0.5";
     let sessions = ["", "&root_blend=off", "&root_blend=off&align_by=first", "&weight_law=linear"]
         .map(|more| opened(&format!("{link}{more}")));
-    let places = |session: &Session| motion(session, 0).ground_frames.clone();
+    let places = |session: &Session| motion(session, 0).ground_frames().to_vec();
     let usual = places(&sessions[0]);
     for (other, name) in sessions[1..].iter().zip(["root", "alignment", "law"]) {
         let found = places(other);
@@ -296,16 +295,16 @@ fn a_walk_has_the_root_and_the_weight_that_it_is_asked_for() {
 fn the_motion_without_its_path_stays_in_place_and_faces_one_way() {
     let mut session = opened("lab=view&a=walk_left&compare=root_motion:world,in_place,residual");
     let own = clip(&mut session, "walk_left");
-    assert!(Arc::ptr_eq(&motion(&session, 0).clip, &own.clip));
+    assert!(Arc::ptr_eq(motion(&session, 0).clip(), own.clip()));
     let still = motion(&session, 1);
-    let facing = segue_motion::clip::character_frames(&still.clip, &still.roles);
-    for (frame, told) in facing.iter().zip(&still.ground_frames) {
+    let facing = segue_motion::clip::character_frames(still.clip(), still.roles());
+    for (frame, told) in facing.iter().zip(still.ground_frames()) {
         for stands in [frame, told] {
             assert!(stands.shift.length() < 1e-3 && stands.yaw.abs() < 1e-3, "{stands:?}");
         }
     }
     // Beside its path the hips sway, and stay within a few centimetres.
-    let residual = &motion(&session, 2).ground_frames;
+    let residual = motion(&session, 2).ground_frames();
     let far =
         residual.iter().map(|frame| (frame.shift - residual[0].shift).length()).fold(0.0, f64::max);
     let turned = residual
@@ -315,13 +314,14 @@ fn the_motion_without_its_path_stays_in_place_and_faces_one_way() {
     assert!(far > 0.005 && far < 0.25 && turned < 0.6);
     // Heights and the body's own pose stay.
     for pane in [1, 2] {
-        let there = &motion(&session, pane).clip;
+        let there = motion(&session, pane).clip();
         for frame in (0..there.frames()).step_by(13) {
             assert!(
-                (there.root_translations()[frame].y - own.clip.root_translations()[frame].y).abs()
+                (there.root_translations()[frame].y - own.clip().root_translations()[frame].y)
+                    .abs()
                     < 1e-5
             );
-            assert_eq!(there.rotations(frame)[1..], own.clip.rotations(frame)[1..]);
+            assert_eq!(there.rotations(frame)[1..], own.clip().rotations(frame)[1..]);
         }
     }
 }
@@ -335,8 +335,8 @@ fn four_control_points_make_a_path_whose_residual_is_carried_along() {
     let finer = number(&opened("lab=path&a=walk_left&control_points=16"), 0, "fit_rms_cm");
     assert!(finer < error);
     // Not edited, it is the recording.
-    let recorded = &outcome(&session, 0).sources[0].motion.clip;
-    let made = &motion(&session, 0).clip;
+    let recorded = outcome(&session, 0).sources[0].motion.clip();
+    let made = motion(&session, 0).clip();
     let off = made
         .root_translations()
         .iter()
@@ -377,7 +377,7 @@ fn a_join_goes_over_by_time_in_a_straight_line_where_it_shall() {
         let session = opened(&format!("lab=register&a=walk&b=run&warp_mode=join&weight_law={law}"));
         let made = outcome(&session, 0).clone();
         let transition = made.transition.expect("a transition");
-        let from = (transition.start_secs * made.motion.clip.fps()).round() as usize;
+        let from = (transition.start_secs * made.motion.clip().fps()).round() as usize;
         let beats = &made.registered().expect("a registration").beats;
         // Where on A's clock each frame of the transition is, and B's weight there.
         beats[from..from + transition.window_frames]
@@ -442,9 +442,9 @@ fn an_offset_that_stays_in_the_world_is_no_longer_to_the_left_of_the_path() {
         let made = outcome(&session, pane);
         let path = made.path().expect("a path");
         assert!(path.is_edited);
-        let old = path.fitted.places().iter().zip(&path.fitted.motion().ground_frames);
+        let old = path.fitted.places().iter().zip(path.fitted.motion().ground_frames());
         for ((old, stood), (place, stands)) in
-            old.zip(path.places.iter().zip(&made.motion.ground_frames))
+            old.zip(path.places.iter().zip(made.motion.ground_frames()))
         {
             let local =
                 |place: &Planar, stands: &Planar| place.inverse().apply_ground(stands.shift);
@@ -482,7 +482,7 @@ fn the_path_of_an_unclamped_basis_begins_beside_its_first_control_point() {
 fn a_body_faces_along_an_edited_path_or_as_it_did() {
     let session = opened(&format!("{CURVE}&compare=path_facing:path,world"));
     let turned = |pane: usize| {
-        let frames = &motion(&session, pane).ground_frames;
+        let frames = motion(&session, pane).ground_frames();
         frames.iter().map(|frame| wrap_angle(frame.yaw - frames[0].yaw).abs()).fold(0.0, f64::max)
     };
     assert!(turned(0) > 0.4 && turned(1) < 0.3);
@@ -497,7 +497,7 @@ fn two_gaits_blend_to_one_and_a_half_metres_per_second() {
     let Some(CycleMade::Gait { asked_mps, .. }) = made.cycle.map(|cycle| cycle.made) else {
         panic!("a gait")
     };
-    let frames = &made.motion.ground_frames;
+    let frames = made.motion.ground_frames();
     let way = frames[0].shift.distance(frames[frames.len() - 1].shift);
     let speed = way / made.duration_secs();
     assert!((asked_mps - 1.5).abs() < 1e-9 && (speed / 1.5 - 1.0).abs() < 0.02);
@@ -557,7 +557,7 @@ fn a_character_that_is_driven_turns_as_the_stick_does() {
     let link = "lab=match&hysteresis=votes&search_by=tree&scenario=";
     for (scenario, degrees) in [("spin", 180.0), ("left", 90.0), ("right", -90.0)] {
         let session = opened(&format!("{link}{scenario}"));
-        let frames = &motion(&session, 0).ground_frames;
+        let frames = motion(&session, 0).ground_frames();
         let (mut turned, mut farthest) = (0.0_f64, 0.0_f64);
         for pair in frames.windows(2) {
             turned += wrap_angle(pair[1].yaw - pair[0].yaw).to_degrees();
@@ -573,7 +573,7 @@ fn a_character_that_is_driven_turns_as_the_stick_does() {
 fn every_search_finds_the_same_frames() {
     let made = ["tree", "boxes", "scan"]
         .map(|by| opened(&format!("lab=match&scenario=left&search_by={by}")));
-    let roots = |session: &Session| motion(session, 0).clip.root_translations().to_vec();
+    let roots = |session: &Session| motion(session, 0).clip().root_translations().to_vec();
     let first: Vec<Vec3> = roots(&made[0]);
     assert!(first.len() > 100 && made[1..].iter().all(|other| roots(other) == first));
 }
@@ -597,7 +597,7 @@ fn the_homeworks_own_files_are_shown_in_place_and_on_a_path() {
             .expect("a link is never refused");
         while session.work() {}
         let still = motion(&session, 0);
-        assert!(still.ground_frames.iter().all(|frame| frame.shift.length() < 1e-3));
+        assert!(still.ground_frames().iter().all(|frame| frame.shift.length() < 1e-3));
         session.apply(Command::Set(vec![(Key::Lab, Value::Choice("path"))])).expect("a lab");
         while session.work() {}
         assert!(number(&session, 0, "fit_rms_cm") < 5.0);

@@ -8,6 +8,7 @@ use crate::platform::{self, FileBytes};
 use eframe::wgpu::Backend;
 use glam::{Quat, Vec3};
 use segue::scene::pose_at;
+use segue_motion::clip::Motion;
 use segue_motion::math::Planar;
 use segue_motion::metrics::{Better, Metric};
 use segue_motion::skeleton::Side;
@@ -17,8 +18,8 @@ use segue_session::export::{
 use segue_session::outside;
 use segue_session::reading::Content;
 use segue_session::{
-    ClipInfo, Command, CommandError, Key, Kind, Loaded, Made, Motion, PARAMS, Pane, Param,
-    ReportFacts, Value, check_graph_clips, file_stem, frame_at, report,
+    ClipInfo, Command, CommandError, Key, Kind, Loaded, Made, PARAMS, Pane, Param, ReportFacts,
+    Value, check_graph_clips, file_stem, frame_at, report,
 };
 use serde::Serialize;
 use serde_json::{Map, Value as Json};
@@ -351,7 +352,7 @@ impl Segue {
         let motion = self.motion(which)?;
         let world = pose_at(&motion, secs, &Planar::IDENTITY).ok_or("the clip has no frames")?;
         let frame = frame_at(&motion, secs);
-        let joints = motion.clip.skeleton().joints();
+        let joints = motion.clip().skeleton().joints();
         Ok(PoseInfo {
             joints: joints.iter().map(|joint| joint.name.clone()).collect(),
             parents: joints
@@ -360,7 +361,7 @@ impl Segue {
                 .collect(),
             positions: world.positions.iter().flat_map(Vec3::to_array).collect(),
             rotations: world.rotations.iter().flat_map(Quat::to_array).collect(),
-            contacts: [Side::Left, Side::Right].map(|side| motion.contacts.planted(side, frame)),
+            contacts: [Side::Left, Side::Right].map(|side| motion.contacts().planted(side, frame)),
         })
     }
 
@@ -416,7 +417,7 @@ impl Segue {
         let params = self.session.params();
         let (motion, curves, stem) = match self.subject(which)? {
             Subject::Clip(motion) => {
-                (motion, plotted_of_clip(motion, params), motion.clip.name().to_owned())
+                (motion, plotted_of_clip(motion, params), motion.clip().name().to_owned())
             }
             Subject::Result(pane, made) => {
                 let value = pane.variant.as_ref().map(|(key, value)| {
@@ -669,7 +670,7 @@ mod tests {
         assert_eq!(file.name, "walk.bvh");
         let loaded = load(&mut segue, &file.name, &file.bytes).unwrap();
         assert_eq!(loaded.clips.len(), 1);
-        assert_eq!(loaded.clips[0].frames, segue.motion("walk").unwrap().clip.frames());
+        assert_eq!(loaded.clips[0].frames, segue.motion("walk").unwrap().clip().frames());
         assert_eq!(
             segue.export("result", "fbx", None).unwrap_err(),
             "found `fbx`, expected one of bvh, csv, glb"
@@ -707,7 +708,7 @@ mod tests {
         assert!(header.ends_with(
             "left foot.speed_m_per_s,A left foot.speed_m_per_s,B left foot.speed_m_per_s"
         ));
-        let frames = segue.motion("result:1").unwrap().clip.frames();
+        let frames = segue.motion("result:1").unwrap().clip().frames();
         assert_eq!(table.lines().count(), frames + 1);
     }
 

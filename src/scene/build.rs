@@ -5,14 +5,14 @@ use super::{
     Body, Camera, CameraRig, Color, Layer, Lens, Look, Pane, Skinning, Stage, Viewport, with_alpha,
 };
 use glam::{Quat, Vec3};
-use segue_motion::clip::Interpolation;
+use segue_motion::clip::{Interpolation, Motion};
 use segue_motion::graph::Place;
 use segue_motion::matching;
 use segue_motion::math::Planar;
 use segue_motion::skeleton::{Role, Side, WorldPose, world_pose, world_pose_into};
 use segue_session::choices;
 use segue_session::{
-    self, Built, DistanceMap, Key, Motion, Outcome, Params, Session, Slot, Walk, joint_of,
+    self, Built, DistanceMap, Key, Outcome, Params, Session, Slot, Walk, joint_of,
 };
 use std::sync::Arc;
 
@@ -326,9 +326,9 @@ impl Director {
             }
             if params.is_on(Key::Trail) {
                 let ways = motion
-                    .ground_frames
+                    .ground_frames()
                     .iter()
-                    .step_by(motion.ground_frames.len().div_ceil(PATH_POINTS).max(1));
+                    .step_by(motion.ground_frames().len().div_ceil(PATH_POINTS).max(1));
                 pane.add_path(
                     ways.map(|place| (place.origin().with_y(0.004), color)),
                     2.0,
@@ -351,7 +351,7 @@ impl Director {
             return;
         };
         let skeleton = database.skeleton();
-        if shown.outcome.motion.clip.skeleton() != skeleton {
+        if shown.outcome.motion.clip().skeleton() != skeleton {
             return;
         }
         let body = self.body(&shown.outcome.motion);
@@ -420,7 +420,7 @@ impl Director {
         };
         let last = jump.window.saturating_sub(1);
         let stands = shown.place.after(&shown.outcome.motion.standing_at(shown.now));
-        let fps = a.clip.fps();
+        let fps = a.clip().fps();
         let secs = |frame: usize| frame as f64 / fps;
         let middle = a.standing_at(secs(leave.frame + last / 2));
         let world_from_a = stands.after(&middle.inverse());
@@ -523,7 +523,7 @@ impl Director {
             // Half of the way there a ghost is as clear as it gets: only where it lies on the
             // result it must not be seen.
             let share = (2.0 * share).clamp(0.0, 1.0) as f32;
-            if share < 0.02 || !(0.0..=source.motion.clip.duration_secs()).contains(&at) {
+            if share < 0.02 || !(0.0..=source.motion.clip().duration_secs()).contains(&at) {
                 continue;
             }
             if let Some(world) =
@@ -569,7 +569,7 @@ impl Director {
         let body = self.body(motion);
         let joint = joint_of(motion, params.text(Key::FollowJoint)).unwrap_or(0);
         let point = *body.seen_pose(world).positions.get(body.seen_joint(joint))?;
-        let hips = motion.roles.get(Role::Hips).unwrap_or(0);
+        let hips = motion.roles().get(Role::Hips).unwrap_or(0);
         // Bobbing with every step makes an audience seasick: hips are followed over the ground, at
         // the height of a standing body's middle.
         Some(if joint == hips { point.with_y(middle_height(motion)) } else { point })
@@ -588,7 +588,7 @@ impl Director {
                 Slot::A => colors.a,
                 Slot::B => colors.b,
             };
-            let at = now.min(source.motion.clip.duration_secs());
+            let at = now.min(source.motion.clip().duration_secs());
             if let Some(world) = pose_at(&source.motion, at, &source.world_from_clip) {
                 let body = self.body(&source.motion);
                 pane.add_ghost(&body, &world, with_alpha(color, colors.ghost_alpha));
@@ -657,8 +657,8 @@ struct Shown<'a> {
 /// The pose of a motion at a time, in the world that the motion lies in.
 #[must_use]
 pub fn pose_at(motion: &Motion, secs: f64, world_from_clip: &Planar) -> Option<WorldPose> {
-    let pose = motion.clip.sample(secs, Interpolation::Linear)?;
-    let mut world = world_pose(motion.clip.skeleton(), &pose);
+    let pose = motion.clip().sample(secs, Interpolation::Linear)?;
+    let mut world = world_pose(motion.clip().skeleton(), &pose);
     if *world_from_clip != Planar::IDENTITY {
         world.apply(world_from_clip);
     }
@@ -698,10 +698,11 @@ fn skinning_of(session: &Session, pane: usize) -> Skinning {
 /// The pose with both hands turned about their forearms, by degrees; `None` where they are not to
 /// be.
 fn twisted(motion: &Motion, world: &WorldPose, degrees: f64) -> Option<WorldPose> {
-    let (skeleton, mut world) = (motion.clip.skeleton(), (degrees != 0.0).then(|| world.clone())?);
+    let (skeleton, mut world) =
+        (motion.clip().skeleton(), (degrees != 0.0).then(|| world.clone())?);
     for side in Side::BOTH {
         let (Some(elbow), Some(hand)) =
-            (motion.roles.get(Role::forearm(side)), motion.roles.get(Role::hand(side)))
+            (motion.roles().get(Role::forearm(side)), motion.roles().get(Role::hand(side)))
         else {
             continue;
         };
@@ -758,14 +759,14 @@ pub fn resting_point(outcome: &Outcome, place: &Planar) -> Vec3 {
 
 /// Where a motion begins, at the height of the middle of the body.
 fn resting_place(motion: &Motion, place: &Planar) -> Vec3 {
-    let start = motion.ground_frames.first().map_or(Vec3::ZERO, Planar::origin);
+    let start = motion.ground_frames().first().map_or(Vec3::ZERO, Planar::origin);
     place.apply(start).with_y(middle_height(motion))
 }
 
 /// The height in the middle of the picture: a little below the body's own, because the panes'
 /// numbers lie over the lower edge.
 fn middle_height(motion: &Motion) -> f32 {
-    motion.roles.body_height(motion.clip.skeleton()) * 0.4
+    motion.roles().body_height(motion.clip().skeleton()) * 0.4
 }
 
 /// A's colour where nothing of B is, B's where all is, softened by the clay of the body.
@@ -789,8 +790,8 @@ fn color_at(outcome: &Outcome, secs: f64, colors: &Colors) -> Color {
 }
 
 fn add_ground_path(outcome: &Outcome, at: &Planar, now: f64, colors: &Colors, pane: &mut Pane) {
-    let frames = &outcome.motion.ground_frames;
-    let fps = outcome.motion.clip.fps();
+    let frames = outcome.motion.ground_frames();
+    let fps = outcome.motion.clip().fps();
     // Of a long walk what lies about the present.
     let near = match outcome.walk() {
         Some(walk) if !walk.is_jump && walk.followed.is_none() => {
@@ -826,7 +827,7 @@ fn add_joint_trail(shown: &Shown<'_>, body: &Body, joint: usize, color: Color, p
     let points = (-STEPS..=STEPS).filter_map(|step| {
         let part = f64::from(step) / f64::from(STEPS);
         let at = shown.now + part * REACH_SECS;
-        let inside = (0.0..=motion.clip.duration_secs()).contains(&at);
+        let inside = (0.0..=motion.clip().duration_secs()).contains(&at);
         let world = inside.then(|| pose_at(motion, at, &shown.place)).flatten()?;
         let position = *body.seen_pose(&world).positions.get(joint)?;
         Some((position, with_alpha(color, 1.0 - 0.85 * part.abs() as f32)))
@@ -857,7 +858,7 @@ fn add_mark(at: Vec3, color: Color, edge: Color, pane: &mut Pane) {
 
 /// The bones of the figure that a pose of `motion` moves.
 fn add_bones(body: &Body, motion: &Motion, world: &WorldPose, color: Color, pane: &mut Pane) {
-    let (skeleton, _) = body.seen((motion.clip.skeleton(), &motion.roles));
+    let (skeleton, _) = body.seen((motion.clip().skeleton(), motion.roles()));
     let world = body.seen_pose(world);
     for (index, joint) in skeleton.joints().iter().enumerate() {
         if let Some(parent) = joint.parent {
@@ -889,16 +890,16 @@ fn add_axes(world: &WorldPose, colors: &Colors, pane: &mut Pane) {
 fn add_contacts(shown: &Shown<'_>, body: &Body, colors: &Colors, pane: &mut Pane) {
     let (motion, now) = (&shown.outcome.motion, shown.now);
     let frame = segue_session::frame_at(motion, now);
-    let dt = motion.clip.dt_secs();
-    if !Side::BOTH.iter().any(|&side| motion.contacts.planted(side, frame)) {
+    let dt = motion.clip().dt_secs();
+    if !Side::BOTH.iter().any(|&side| motion.contacts().planted(side, frame)) {
         return;
     }
-    let (_, roles) = body.seen((motion.clip.skeleton(), &motion.roles));
+    let (_, roles) = body.seen((motion.clip().skeleton(), motion.roles()));
     let world = body.seen_pose(&shown.world);
     let earlier = pose_at(motion, now - f64::from(dt), &shown.place);
     let earlier = earlier.as_ref().map(|earlier| body.seen_pose(earlier));
     for side in Side::BOTH {
-        if !motion.contacts.planted(side, frame) {
+        if !motion.contacts().planted(side, frame) {
             continue;
         }
         let Some(foot) = roles.get(Role::foot(side)) else {

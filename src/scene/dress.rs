@@ -2,11 +2,11 @@
 //! while: until it is there, limbs are worn.
 
 use super::Body;
-use segue_motion::clip::reference_pose;
+use segue_motion::clip::{Motion, reference_pose};
 use segue_motion::skeleton::{Roles, Skeleton, WorldPose};
 use segue_motion::skin::{Character, Drive, Sculptor, Sculpture, SkinnedMesh};
 use segue_session::choices;
-use segue_session::{Key, Motion, Params, Session};
+use segue_session::{Key, Params, Session};
 use std::sync::{Arc, Weak};
 
 /// So many skeletons' skins are kept, whether they are worn or not.
@@ -64,7 +64,7 @@ pub(super) fn worn_character(session: &Session) -> Option<Character> {
 /// How many times as large a character is by itself as the motion that moves it; `None` where it
 /// cannot.
 pub(super) fn size_beside(character: &Character, motion: &Motion) -> Option<f32> {
-    let size = character.size_beside(motion.clip.skeleton(), &motion.roles)?;
+    let size = character.size_beside(motion.clip().skeleton(), motion.roles())?;
     Some(size.clamp(SIZES.0, SIZES.1))
 }
 
@@ -95,15 +95,15 @@ impl Wardrobe {
 
     /// The body of a motion's skeleton.
     pub(super) fn body(&mut self, motion: &Motion) -> Arc<Body> {
-        let skeleton = motion.clip.skeleton();
+        let skeleton = motion.clip().skeleton();
         let known = |(known, roles, _): &&(Weak<Skeleton>, Roles, Arc<Body>)| {
-            known.as_ptr() == Arc::as_ptr(skeleton) && *roles == motion.roles
+            known.as_ptr() == Arc::as_ptr(skeleton) && roles == motion.roles()
         };
         if let Some((.., body)) = self.bodies.iter().find(known) {
             return Arc::clone(body);
         }
         let body = Arc::new(self.led(motion).unwrap_or_else(|| self.made(motion)));
-        self.bodies.push((Arc::downgrade(skeleton), motion.roles.clone(), Arc::clone(&body)));
+        self.bodies.push((Arc::downgrade(skeleton), motion.roles().clone(), Arc::clone(&body)));
         body
     }
 
@@ -111,7 +111,7 @@ impl Wardrobe {
     /// the size of the motion, so that it stands where all else of the motion is drawn; the world
     /// is shown smaller by as much.
     fn led(&mut self, motion: &Motion) -> Option<Body> {
-        let skeleton = motion.clip.skeleton();
+        let skeleton = motion.clip().skeleton();
         let character = self.character.as_ref()?;
         let size = size_beside(character, motion)?;
         let known = self.sizes.iter().find(|(known, _)| *known == size);
@@ -120,17 +120,17 @@ impl Wardrobe {
         if known.is_none() {
             self.sizes.push((size, sized.clone()));
         }
-        let drive = Drive::new(&motion.clip, &motion.roles, &sized)?;
-        Some(Body::led(&sized, drive, skeleton, &motion.roles).of_size(size))
+        let drive = Drive::new(motion.clip(), motion.roles(), &sized)?;
+        Some(Body::led(&sized, drive, skeleton, motion.roles()).of_size(size))
     }
 
     /// A body about the bones.
     fn made(&mut self, motion: &Motion) -> Body {
         let Cut { skin, girth } = self.cut;
-        let skeleton = motion.clip.skeleton();
-        let reference = reference_pose(&motion.clip, &motion.roles);
-        let body = Body::standing(skeleton, Some(&motion.roles), &reference).with_girth(girth);
-        match skin.then(|| self.mesh(skeleton, &motion.roles, &reference)).flatten() {
+        let skeleton = motion.clip().skeleton();
+        let reference = reference_pose(motion.clip(), motion.roles());
+        let body = Body::standing(skeleton, Some(motion.roles()), &reference).with_girth(girth);
+        match skin.then(|| self.mesh(skeleton, motion.roles(), &reference)).flatten() {
             Some(mesh) => body.with_skin(mesh),
             None => body,
         }

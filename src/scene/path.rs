@@ -82,8 +82,8 @@ pub(super) fn add_drawn(marks: &PathMarks, colors: &Colors, pane: &mut Pane) {
 fn add_original(path: &OnPath, colors: &Colors, pane: &mut Pane) {
     let (motion, places) = (path.fitted.motion(), path.fitted.places());
     let strength = if path.is_edited { 0.6 } else { 1.0 };
-    let way = motion.ground_frames.iter();
-    let stride = motion.ground_frames.len().div_ceil(1200).max(1);
+    let way = motion.ground_frames().iter();
+    let stride = motion.ground_frames().len().div_ceil(1200).max(1);
     let faint = with_alpha(colors.a, 0.45 * strength);
     pane.add_path(
         way.clone().step_by(stride).map(|place| (place.origin().with_y(LOWEST), faint)),
@@ -95,7 +95,7 @@ fn add_original(path: &OnPath, colors: &Colors, pane: &mut Pane) {
             curve(path.fitted.road()).into_iter().map(|place| on_ground(place.frame.shift, MIDDLE));
         pane.add_dashed_path(fitted, with_alpha(colors.a, 0.8), 0.08, 1.5, Layer::Ground);
     }
-    let apart = (motion.clip.fps() * RESIDUAL_SECS)
+    let apart = (motion.clip().fps() * RESIDUAL_SECS)
         .max(places.len() as f64 / RESIDUALS as f64)
         .max(1.0) as usize;
     for (place, character) in places.iter().zip(way).step_by(apart) {

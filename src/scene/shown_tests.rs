@@ -32,7 +32,7 @@ fn session(link: &str, size: f32) -> Session {
     session.apply(Command::OpenLink(link.into())).unwrap();
     while session.work() {}
     let motion = &session.main_outcome().unwrap().motion;
-    let leg = motion.roles.leg_length(motion.clip.skeleton()).unwrap();
+    let leg = motion.roles().leg_length(motion.clip().skeleton()).unwrap();
     session.load("person.glb", character_file(leg * size)).unwrap();
     while session.work() {}
     session
@@ -86,7 +86,7 @@ fn assert_drawn_together(session: &mut Session, size: f32, what: &str) {
         let shown = session.panes()[0].shown_at(session.now_secs()).unwrap();
         let world = pose_at(motion, shown.secs, &shown.place).unwrap();
         let hips = drawn(&pane, &character, Role::Hips);
-        let moved = world.positions[motion.roles.get(Role::Hips).unwrap()];
+        let moved = world.positions[motion.roles().get(Role::Hips).unwrap()];
         assert!(hips.xz().distance(moved.xz()) < 2e-3, "{what}: hips at {hips} beside {moved}");
         let [left, right] = Side::BOTH.map(|side| {
             let toe =
@@ -100,7 +100,7 @@ fn assert_drawn_together(session: &mut Session, size: f32, what: &str) {
             assert!(from < 2e-3 || ring.radius > 0.15, "{what}: a ring {from} m beside the foot");
             rings += 1;
         }
-        let leg = motion.roles.leg_length(motion.clip.skeleton()).unwrap();
+        let leg = motion.roles().leg_length(motion.clip().skeleton()).unwrap();
         let head = drawn(&pane, &character, Role::Head);
         assert!((1.3..2.4).contains(&(head.y / leg)), "{what}: {head} on legs of {leg} m");
         // The hips sway about the curve that is fitted to their way.
@@ -135,7 +135,7 @@ fn rings_trail_and_camera_belong_to_a_character_of_any_size() {
         for lab in ["view", "blend", "transition", "loop", "path"] {
             let mut session = session(&format!("lab={lab}&a=walk&{others}"), size);
             assert_drawn_together(&mut session, size, &format!("{lab}, {size}"));
-            let roles = Roles::detect(session.main_outcome().unwrap().motion.clip.skeleton());
+            let roles = Roles::detect(session.main_outcome().unwrap().motion.clip().skeleton());
             assert!(roles.get(Role::Hips).is_some());
             set(&mut session, Key::A, Value::Text("run".into()));
             assert_drawn_together(&mut session, size, &format!("{lab} of another clip, {size}"));
@@ -216,12 +216,12 @@ fn an_exported_character_is_the_one_on_the_stage() {
             assert!(mesh.colors.iter().filter(|known| is_near(known)).count() > 500);
         }
         // And where the stage has it, in its own size.
-        assert_eq!(back.clip.frames(), motion.clip.frames());
+        assert_eq!(back.clip.frames(), motion.clip().frames());
         let shown = shown_size(&session, motion);
         let mut director = Director::default();
         let mut farthest = 0.0f32;
-        for frame in 0..motion.clip.frames() {
-            set(&mut session, Key::Time, Value::Number(motion.clip.time_of(frame)));
+        for frame in 0..motion.clip().frames() {
+            set(&mut session, Key::Time, Value::Number(motion.clip().time_of(frame)));
             let pane = staged(&mut director, &session);
             let skin = pane.figures[0].skin.as_ref().unwrap();
             // A link keeps the time to the millisecond.
@@ -236,7 +236,7 @@ fn an_exported_character_is_the_one_on_the_stage() {
         let plain = ExportOptions { body: ExportBody::Plain, ..options };
         let bytes = export(motion, Some(&character), &[], &plain).unwrap();
         let back = import("x.glb", &bytes, &ImportOptions::default()).unwrap().clips.remove(0);
-        assert_eq!(names(back.clip.skeleton()), names(motion.clip.skeleton()));
+        assert_eq!(names(back.clip.skeleton()), names(motion.clip().skeleton()));
         assert!(back.mesh.is_none());
     }
 }

@@ -10,11 +10,10 @@ use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{RichText, Ui};
 use segue_formats::ImportOptions;
-use segue_motion::clip::{UpAxis, ground_speed};
+use segue_motion::clip::{Motion, UpAxis, ground_speed};
 use segue_motion::skeleton::{Channel, Role, Skeleton};
 use segue_session::{
-    Command, Entry, Key, Motion, Origin, Session, SourceFile, Value, format_number, joint_of,
-    word_of_joint,
+    Command, Entry, Key, Origin, Session, SourceFile, Value, format_number, joint_of, word_of_joint,
 };
 use segue_text::ToMessage;
 
@@ -58,15 +57,15 @@ fn sentence_ui(sentence: &str, color: eframe::egui::Color32, ui: &mut Ui) {
 }
 
 fn facts_ui(entry: &Entry, motion: &Motion, ui: &mut Ui) {
-    let clip = &motion.clip;
-    let speed = ground_speed(&motion.ground_frames, clip.fps());
+    let clip = motion.clip();
+    let speed = ground_speed(motion.ground_frames(), clip.fps());
     let facts = [
         (text::LENGTH, format!("{:.2}", clip.duration_secs()), "s"),
         (text::FRAMES, clip.frames().to_string(), ""),
         (text::FRAME_RATE, format_number(clip.fps(), 0.01), "fps"),
         (text::JOINTS, clip.skeleton().len().to_string(), ""),
-        (text::BODY_HEIGHT, format!("{:.2}", motion.roles.body_height(clip.skeleton())), "m"),
-        (text::GROUND, format_number(f64::from(motion.ground_m) * 100.0, 0.1), "cm"),
+        (text::BODY_HEIGHT, format!("{:.2}", motion.roles().body_height(clip.skeleton())), "m"),
+        (text::GROUND, format_number(f64::from(motion.ground_m()) * 100.0, 0.1), "cm"),
         (text::MEAN_SPEED, format!("{speed:.2}"), "m/s"),
     ];
     for (label, value, unit) in facts {
@@ -108,7 +107,7 @@ fn overrides_ui(
     let options = file.options;
     let mut reread =
         |options: ImportOptions| out.commands.push(Command::Reimport(entry.id.clone(), options));
-    let provenance = motion.clip.provenance();
+    let provenance = motion.clip().provenance();
 
     let known =
         UNITS.iter().find(|(metres, _)| (metres / provenance.metres_per_unit - 1.0).abs() < 1e-6);
@@ -193,7 +192,7 @@ fn rate_of(text: &str) -> Option<f64> {
 
 /// The joints, one of them chosen: the one whose curve is plotted, and that is marked on the stage.
 fn joints_ui(motion: &Motion, session: &Session, out: &mut Out, ui: &mut Ui) {
-    let joints = motion.clip.skeleton().joints();
+    let joints = motion.clip().skeleton().joints();
     let parents: Vec<Option<usize>> = joints.iter().map(|joint| joint.parent).collect();
     let tree = Tree {
         label: text::JOINT_TREE,
@@ -203,7 +202,7 @@ fn joints_ui(motion: &Motion, session: &Session, out: &mut Out, ui: &mut Ui) {
     };
     let row = |joint: usize| TreeRow {
         name: joints[joint].name.clone(),
-        detail: motion.roles.role_of(joint).map_or("", Role::name).to_owned(),
+        detail: motion.roles().role_of(joint).map_or("", Role::name).to_owned(),
         hint: in_words(&joints[joint].channels),
     };
     if let Some(joint) = kit::tree_ui(&tree, row, ui) {
@@ -213,11 +212,12 @@ fn joints_ui(motion: &Motion, session: &Session, out: &mut Out, ui: &mut Ui) {
 
 fn roles_ui(entry: &Entry, motion: &Motion, out: &mut Out, ui: &mut Ui) {
     sentence_ui(text::BODY_PARTS_HELP, palette_of(ui).muted, ui);
-    let joints = motion.clip.skeleton().joints().iter().enumerate();
+    let joints = motion.clip().skeleton().joints().iter().enumerate();
     let mut options = vec![(None, text::NOBODY)];
     options.extend(joints.map(|(index, joint)| (Some(index), joint.name.as_str())));
     for role in Role::ALL {
-        if let Some(joint) = kit::choice_row_ui(role.name(), motion.roles.get(role), &options, ui) {
+        if let Some(joint) = kit::choice_row_ui(role.name(), motion.roles().get(role), &options, ui)
+        {
             out.commands.push(Command::CorrectRole(entry.id.clone(), role, joint));
         }
     }

@@ -158,7 +158,7 @@ fn part_of(session: &Session, entry: &Entry) -> Part {
 fn facts(entry: &Entry) -> String {
     match &entry.motion {
         Some(motion) => {
-            let clip = &motion.clip;
+            let clip = motion.clip();
             format!(
                 "{:.1} s · {} frames · {} joints",
                 clip.duration_secs(),

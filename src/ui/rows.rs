@@ -22,7 +22,7 @@ pub(crate) fn foot_rows_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
     if session.params().is_on(Key::FootLock)
         && let Some(outcome) = session.main_outcome()
-        && !has_legs(outcome.motion.clip.skeleton(), &outcome.motion.roles)
+        && !has_legs(outcome.motion.clip().skeleton(), outcome.motion.roles())
     {
         let words = egui::RichText::new(tr(text::NO_LEGS, ui)).font(theme_of(ui).font(Type::Small));
         ui.label(words.color(palette_of(ui).warning));
@@ -89,7 +89,7 @@ pub(crate) fn pair_ui(session: &Session, out: &mut Out, ui: &mut Ui) -> f64 {
             line.on_hover_text(tr(&retargeted.unmatched.join(", "), ui));
         }
     }
-    let rate = |slot| Some(session.slot(slot)?.motion.as_ref()?.clip.fps());
+    let rate = |slot| Some(session.slot(slot)?.motion.as_ref()?.clip().fps());
     if let (Some(a), Some(b)) = (rate(Slot::A), rate(Slot::B))
         && (a - b).abs() > 1e-4 * a
     {
@@ -98,7 +98,7 @@ pub(crate) fn pair_ui(session: &Session, out: &mut Out, ui: &mut Ui) -> f64 {
         ui.label(words.color(palette_of(ui).muted));
     }
     ui.add_space(space::S);
-    outcome.map_or(60.0, |outcome| outcome.motion.clip.fps())
+    outcome.map_or(60.0, |outcome| outcome.motion.clip().fps())
 }
 
 /// Where A is left and B entered, in seconds or in frames of each clip. How that was found is one
@@ -111,11 +111,11 @@ pub(crate) fn place_rows_ui(keys: [Key; 2], session: &Session, out: &mut Out, ui
     for (index, (key, slot)) in keys.into_iter().zip([Slot::A, Slot::B]).enumerate() {
         let motion = session.slot(slot).and_then(|entry| entry.motion.as_ref());
         let latest_secs = motion.map(|motion| {
-            let end = motion.clip.duration_secs();
+            let end = motion.clip().duration_secs();
             search.map_or(end, |search| search.latest_secs[index].min(end))
         });
         let in_frames =
-            |secs: f64| motion.map_or(secs, |motion| (secs * motion.clip.fps()).round());
+            |secs: f64| motion.map_or(secs, |motion| (secs * motion.clip().fps()).round());
         let max =
             latest_secs.map(|secs| if key.param().unit == "s" { secs } else { in_frames(secs) });
         let help = match (said_below == index, automatic[index]) {

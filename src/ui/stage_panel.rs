@@ -318,7 +318,7 @@ fn written(metric: &segue_motion::metrics::Metric) -> String {
 
 /// What a pane says of itself: the value in which it differs, or what it shows.
 fn pane_words(pane: &Pane, session: &Session) -> Title {
-    let fps = pane.outcome.as_ref().map_or(60.0, |outcome| outcome.motion.clip.fps());
+    let fps = pane.outcome.as_ref().map_or(60.0, |outcome| outcome.motion.clip().fps());
     // What is on the stage, if it is of earlier parameters; else what is asked for.
     let params = pane.made_from().unwrap_or(session.params());
     if let Some((key, value)) = pane.compared() {
@@ -539,12 +539,12 @@ pub(super) fn framing(
 ) -> Option<Vec<(Key, Value)>> {
     let outcomes = || session.panes().iter().filter_map(|pane| pane.shown_at(0.0));
     let places = outcomes().flat_map(|shown| {
-        let frames = &shown.outcome.motion.ground_frames;
+        let frames = shown.outcome.motion.ground_frames();
         frames.iter().map(move |frame| shown.place.after(frame).origin())
     });
     let company = session.company().iter().filter_map(|companion| companion.motion.as_ref().ok());
     let company = company
-        .flat_map(|motion| motion.ground_frames.iter().map(segue_motion::math::Planar::origin));
+        .flat_map(|motion| motion.ground_frames().iter().map(segue_motion::math::Planar::origin));
     let paths = session.panes().iter().filter_map(|pane| path_of(session, pane));
     let points = paths.flat_map(|path| path.road.spline().points());
     let points = points.map(|point| glam::Vec3::new(point.x as f32, 0.0, point.y as f32));
@@ -555,7 +555,7 @@ pub(super) fn framing(
         });
     let first = outcomes().next().filter(|_| low.is_finite())?;
     let motion = &first.outcome.motion;
-    let height = motion.roles.body_height(motion.clip.skeleton());
+    let height = motion.roles().body_height(motion.clip().skeleton());
     let mut bounds = segue::scene::Bounds::default();
     bounds.include(low - glam::Vec3::new(0.4, 0.0, 0.4));
     bounds.include(high + glam::Vec3::new(0.4, height, 0.4));

@@ -192,7 +192,7 @@ fn file(session: &Session) -> String {
     )
     .expect("a page as the tests need it");
     let (head, rows) = text.split_once("MOTION\n").expect("a page as the tests need it");
-    let frames = motion.clip.frames();
+    let frames = motion.clip().frames();
     let root_end = head
         .match_indices('\n')
         .filter(|(at, _)| head[..*at].contains("CHANNELS"))
@@ -252,7 +252,7 @@ fn the_clip_panel_tells_what_was_read() {
     let page = with_file("lab=view&play=off");
     let entry = loaded(&page);
     assert!(entry.about.as_ref().unwrap().t_pose_first_row, "{:?}", entry.about);
-    let joints = entry.motion.as_ref().unwrap().clip.skeleton().len();
+    let joints = entry.motion.as_ref().unwrap().clip().skeleton().len();
     for (name, size, theme) in [
         ("view-desk-dark", DESK, DARK),
         ("view-desk-light", DESK, LIGHT),
@@ -873,7 +873,7 @@ fn notice_offers_to_mend_a_clip() {
         .motion
         .clone()
         .expect("it is looked at");
-    let text = segue_formats::bvh::write(&walk.clip, &segue_formats::bvh::WriteOptions::default());
+    let text = segue_formats::bvh::write(walk.clip(), &segue_formats::bvh::WriteOptions::default());
     let rows: Vec<&str> = text.lines().collect();
     let row = rows.len() - 20;
     let (_, rest) = rows[row].split_once(' ').expect("a row of numbers");

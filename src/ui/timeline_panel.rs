@@ -10,11 +10,11 @@ use super::text;
 use super::theme::palette_of;
 use super::transport_row::{Playhead, transport_row_ui};
 use eframe::egui::{Color32, RectAlign, Ui};
-use segue_motion::clip::joint_curve;
+use segue_motion::clip::{Motion, joint_curve};
 use segue_motion::skeleton::{Role, Side};
 use segue_session::choices;
 use segue_session::{
-    Command, CycleMade, Key, Kind, Motion, Outcome, Pane, Registered, Session, Slot, Source, Value,
+    Command, CycleMade, Key, Kind, Outcome, Pane, Registered, Session, Slot, Source, Value,
     curve_kind, frame_at, joint_of,
 };
 use std::sync::Arc;
@@ -61,7 +61,7 @@ pub(crate) fn timeline_panel_ui(
     if let Some(driven) = outcome.driven() {
         return drive_panel_ui(session, outcome, driven, layout, state, out, ui);
     }
-    let clip = &outcome.motion.clip;
+    let clip = outcome.motion.clip();
     let (joint, quantity) = (params.text(Key::Joint), params.choice::<choices::Curve>());
     let unit = unit_of(quantity);
     let caption = format!("{joint} · {} {unit}", quantity.label());
@@ -158,7 +158,7 @@ pub(crate) fn timeline_panel_ui(
 }
 
 fn timeline_event(event: TimelineEvent, session: &Session, outcome: &Outcome, out: &mut Out) {
-    let (params, fps) = (session.params(), outcome.motion.clip.fps());
+    let (params, fps) = (session.params(), outcome.motion.clip().fps());
     let in_transition = transition::is_open(session);
     let at_end = |end: f64, secs: f64| (secs - end).abs() < 0.5 / fps;
     // The flags do not pass each other.
@@ -250,7 +250,7 @@ fn seams(outcome: &Outcome, color: Color32) -> Vec<Moment<'static>> {
 
 /// Where the path turns harder than the motion can.
 fn hard_turns(outcome: &Outcome, color: Color32) -> impl Iterator<Item = Moment<'static>> {
-    let fps = outcome.motion.clip.fps();
+    let fps = outcome.motion.clip().fps();
     let turns = outcome.path().into_iter().flat_map(|path| &path.hard_turns);
     turns.map(move |turn| Moment { time: turn.worst as f64 / fps, color, name: text::HARD_MOMENT })
 }
@@ -409,9 +409,9 @@ fn curve(
     let Some(joint) = joint_of(motion, joint) else {
         return Vec::new();
     };
-    let values = joint_curve(&motion.clip, joint, curve_kind(quantity));
+    let values = joint_curve(motion.clip(), joint, curve_kind(quantity));
     let stride = values.len().div_ceil(CURVE_POINTS).max(1);
-    let fps = motion.clip.fps();
+    let fps = motion.clip().fps();
     values
         .iter()
         .enumerate()
@@ -431,7 +431,7 @@ fn registered_curve(
     let Some(joint) = joint_of(&source.motion, joint) else {
         return Vec::new();
     };
-    let values = joint_curve(&source.motion.clip, joint, curve_kind(quantity));
+    let values = joint_curve(source.motion.clip(), joint, curve_kind(quantity));
     let (fps, clip) = (registered.map.fps(), usize::from(source.slot == Slot::B));
     let stride = registered.beats.len().div_ceil(CURVE_POINTS).max(1);
     let beats = registered.beats.iter().enumerate().step_by(stride);
@@ -479,7 +479,7 @@ fn curve_menu_ui(outcome: &Outcome, row: &eframe::egui::Response, out: &mut Out,
         kit::menu_line_ui(ui);
         eframe::egui::ScrollArea::vertical().max_height(320.0).show(ui, |ui| {
             for role in
-                Role::ALL.into_iter().filter(|&role| outcome.motion.roles.get(role).is_some())
+                Role::ALL.into_iter().filter(|&role| outcome.motion.roles().get(role).is_some())
             {
                 if kit::menu_item_ui(
                     kit::MenuItem { text: role.name(), ..kit::MenuItem::default() },

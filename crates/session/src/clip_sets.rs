@@ -64,6 +64,6 @@ fn captured(lab: &dyn Lab) -> Option<Vec<(Key, Value)>> {
 
 /// Whether it is a file of the user's that moves: a skeleton or a character alone does not.
 fn is_own_motion(entry: &Entry) -> bool {
-    let moves = entry.motion.as_ref().is_some_and(|motion| motion.clip.frames() > 1);
+    let moves = entry.motion.as_ref().is_some_and(|motion| motion.clip().frames() > 1);
     moves && matches!(entry.origin, Origin::File(_))
 }

@@ -1,12 +1,12 @@
 //! A motion as the bytes of a file.
 
 use super::labs::{Outcome, Source};
-use super::motion::{Motion, curve_kind, joint_of};
+use super::motion::{curve_kind, joint_of};
 use super::params::{Key, Params};
 use segue_formats::bvh::{self, RotationOrder};
 use segue_formats::csv::{CsvInputs, CsvOptions, write_csv};
 use segue_formats::gltf::{GlbError, GlbOptions, write_character_glb, write_glb};
-use segue_motion::clip::{Clip, CurveKind, joint_curve};
+use segue_motion::clip::{Clip, CurveKind, Motion, joint_curve};
 use segue_motion::skin::{Character, Drive};
 
 /// A kind of file that motions are saved as.
@@ -121,11 +121,11 @@ pub fn export(
                 fps: options.fps,
                 ..bvh::WriteOptions::default()
             };
-            Ok(bvh::write(&motion.clip, &how).into_bytes())
+            Ok(bvh::write(motion.clip(), &how).into_bytes())
         }
         ExportFormat::Csv => {
             let inputs =
-                CsvInputs { clip: &motion.clip, contacts: Some(&motion.contacts), columns };
+                CsvInputs { clip: motion.clip(), contacts: Some(motion.contacts()), columns };
             Ok(write_csv(&inputs, &CsvOptions::default()).into_bytes())
         }
         ExportFormat::Glb => {
@@ -133,7 +133,7 @@ pub fn export(
             let character = character.filter(|_| options.body == ExportBody::Character);
             match character.and_then(|character| Some((led(motion, character)?, character))) {
                 Some((clip, character)) => write_character_glb(&clip, &character.mesh, &how),
-                None => write_glb(&motion.clip, &how),
+                None => write_glb(motion.clip(), &how),
             }
         }
     }
@@ -142,7 +142,7 @@ pub fn export(
 /// The motion as the character on the stage has it; `None` where it moves no joint of the
 /// character.
 fn led(motion: &Motion, character: &Character) -> Option<Clip> {
-    Drive::new(&motion.clip, &motion.roles, character)?.clip(&motion.clip).ok()
+    Drive::new(motion.clip(), motion.roles(), character)?.clip(motion.clip()).ok()
 }
 
 /// The curve that is plotted of a clip: of the chosen joint, the chosen quantity. None where the
@@ -174,14 +174,14 @@ fn plotted(motion: &Motion, whose: &str, params: &Params) -> Option<Column> {
         CurveKind::AngularSpeed => "turn_deg_per_s",
     };
     let joint = joint_of(motion, name)?;
-    Some((format!("{whose}{name}.{quantity}"), joint_curve(&motion.clip, joint, kind)))
+    Some((format!("{whose}{name}.{quantity}"), joint_curve(motion.clip(), joint, kind)))
 }
 
 /// The values of a source's frames at the frames of the result.
 fn in_time_of(result: &Motion, source: &Source, values: &[f32]) -> Vec<f32> {
-    let fps = source.motion.clip.fps();
-    let at = |frame: usize| ((result.clip.time_of(frame) - source.starts_at_secs) * fps).round();
-    (0..result.clip.frames())
+    let fps = source.motion.clip().fps();
+    let at = |frame: usize| ((result.clip().time_of(frame) - source.starts_at_secs) * fps).round();
+    (0..result.clip().frames())
         .map(|frame| {
             // A frame before the first is no index; a cast alone would make it 0.
             let inside = Some(at(frame)).filter(|at| *at >= 0.0);
@@ -230,7 +230,7 @@ mod tests {
                     .unwrap();
             if format == ExportFormat::Csv {
                 let text = String::from_utf8(bytes).unwrap();
-                assert_eq!(text.lines().count(), motion.clip.frames() + 1);
+                assert_eq!(text.lines().count(), motion.clip().frames() + 1);
                 assert!(
                     text.lines().next().unwrap().ends_with("left_foot_contact,right_foot_contact")
                 );
@@ -238,7 +238,7 @@ mod tests {
                 let clip = read_back(&bytes, &format!("x.{}", format.name()));
                 assert_eq!(
                     (clip.frames(), clip.skeleton().len()),
-                    (motion.clip.frames(), motion.clip.skeleton().len())
+                    (motion.clip().frames(), motion.clip().skeleton().len())
                 );
             }
         }
@@ -279,11 +279,11 @@ mod tests {
             names,
             ["left foot.speed_m_per_s", "A left foot.speed_m_per_s", "B left foot.speed_m_per_s"]
         );
-        assert!(columns.iter().all(|(_, values)| values.len() == outcome.motion.clip.frames()));
+        assert!(columns.iter().all(|(_, values)| values.len() == outcome.motion.clip().frames()));
         let (a, b) = (&columns[1].1, &columns[2].1);
         // Outside of the transition the result is the source: B plays to the end, and not before it
         // was begun.
-        let fps = outcome.motion.clip.fps();
+        let fps = outcome.motion.clip().fps();
         let transition = outcome.transition.unwrap();
         let before = (transition.start_secs * fps).round() as usize / 2;
         assert!((columns[0].1[before] - a[before]).abs() < 1e-3);

@@ -6,11 +6,11 @@ pub(crate) use crate::command::{Command, CommandError, Request};
 pub(crate) use crate::labs::{Outcome, Slot};
 pub(crate) use crate::library::{Entry, Origin};
 pub(crate) use crate::link;
-pub(crate) use crate::motion::Motion;
 pub(crate) use crate::notice::Level;
 pub(crate) use crate::params::{Key, Value};
 pub(crate) use crate::reading::Content;
 pub(crate) use crate::{Lesson, Loaded, NoResult, Pane, Session, Shown};
+pub(crate) use segue_motion::clip::Motion;
 pub(crate) use std::sync::Arc;
 
 /// A skeleton with two bones.
@@ -64,7 +64,7 @@ pub(crate) fn made_bvh(seed: f64) -> Arc<[u8]> {
             (Key::Seed, Value::Number(seed)),
         ]))
         .unwrap();
-    let clip = Arc::clone(&session.main_outcome().unwrap().motion.clip);
+    let clip = Arc::clone(&session.main_outcome().unwrap().motion.clip());
     segue_formats::bvh::write(&clip, &segue_formats::bvh::WriteOptions::default())
         .into_bytes()
         .into()

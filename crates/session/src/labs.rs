@@ -1,8 +1,7 @@
 //! What is made from clips and parameters: inputs in, clip and numbers out.
 
-use super::motion::Motion;
 use super::params::Key;
-use segue_motion::clip::Clip;
+use segue_motion::clip::{Clip, Motion};
 use segue_motion::gait::GaitFacts;
 use segue_motion::math::Planar;
 use segue_motion::metrics::{Metric, MotionTrace, ResultMetrics};
@@ -324,7 +323,7 @@ impl Outcome {
     /// Seconds from the first frame to the last.
     #[must_use]
     pub fn duration_secs(&self) -> f64 {
-        self.motion.clip.duration_secs()
+        self.motion.clip().duration_secs()
     }
 
     /// Which time of a source goes into the result at a time of the result, and where the source
@@ -333,8 +332,8 @@ impl Outcome {
     #[must_use]
     pub fn source_at(&self, source: &Source, secs: f64) -> Option<(f64, Planar)> {
         let beat = self.registered()?.beat_at(secs)?;
-        let at = beat.frames[usize::from(source.slot == Slot::B)] / self.motion.clip.fps();
-        let inside = at >= 0.0 && at <= source.motion.clip.duration_secs();
+        let at = beat.frames[usize::from(source.slot == Slot::B)] / self.motion.clip().fps();
+        let inside = at >= 0.0 && at <= source.motion.clip().duration_secs();
         inside.then(|| {
             let stands = source.motion.standing_at(at);
             (at, self.motion.standing_at(secs).after(&stands.inverse()))

@@ -44,7 +44,7 @@
 //! // The link is the state: another session makes the same motion of it. And there is a way back.
 //! let mut other = Session::new();
 //! other.apply(Command::OpenLink(session.query()))?;
-//! let clip = |session: &Session| session.main_outcome().map(|made| made.motion.clip.clone());
+//! let clip = |session: &Session| session.main_outcome().map(|made| made.motion.clip().clone());
 //! assert!(clip(&session).is_some() && clip(&session) == clip(&other));
 //! session.apply(Command::Undo)?;
 //! assert_eq!(session.query(), "blend_window=24");
@@ -110,7 +110,7 @@ pub use labs::{JobKind, file_stem, write_ids};
 pub use labs::{MOST_ALSO, weight_curve, write_also, write_pairs};
 pub use library::{Entry, Library, Origin, SourceFile, file_id, split_reference};
 pub use memory::{MemoryUse, PageMemory};
-pub use motion::{FeetReading, Motion, curve_kind, frame_at, joint_of, word_of_joint};
+pub use motion::{curve_kind, foot_options, frame_at, joint_of, word_of_joint};
 pub use notice::{Level, Notice, Notices};
 pub use numbers::{NumberRow, NumberTable, digits};
 pub use params::{

@@ -1,10 +1,10 @@
 //! The clips that there are: built in, dropped, or made here.
 
-use super::motion::Motion;
 use super::outside;
 use super::reading::{About, Companion, Content, LARGE_BYTES};
 use super::samples::Sample;
 use segue_formats::{FileKind, ImportOptions};
+use segue_motion::clip::Motion;
 use segue_motion::skeleton::Roles;
 use segue_motion::skin::{Character, SkinnedMesh};
 use segue_text::Message;
@@ -117,8 +117,8 @@ impl Entry {
     pub fn character(&self) -> Option<Character> {
         let motion = self.motion.as_ref()?;
         Some(Character {
-            skeleton: Arc::clone(motion.clip.skeleton()),
-            roles: motion.roles.clone(),
+            skeleton: Arc::clone(motion.clip().skeleton()),
+            roles: motion.roles().clone(),
             mesh: Arc::clone(self.mesh.as_ref()?),
         })
     }

@@ -1,7 +1,6 @@
 //! How much memory the page has, how much of it is in use, and what a file will need of it.
 
 use super::library::{Entry, Library, Origin};
-use super::motion::Motion;
 use super::reading::Content;
 use glam::{Quat, Vec3};
 use segue_motion::clip::Clip;
@@ -85,13 +84,6 @@ impl Memory {
     }
 }
 
-impl Motion {
-    /// How much memory its arrays take, bytes.
-    pub(super) fn bytes(&self) -> u64 {
-        clip_bytes(&self.clip)
-    }
-}
-
 fn clip_bytes(clip: &Clip) -> u64 {
     motion_bytes(clip.frames(), clip.skeleton().len(), clip.translations().len())
 }
@@ -122,7 +114,7 @@ pub(super) fn library_bytes(library: &Library) -> u64 {
 }
 
 fn entry_bytes(entry: &Entry) -> u64 {
-    let motion = entry.motion.as_ref().map_or(0, |motion| motion.bytes());
+    let motion = entry.motion.as_ref().map_or(0, |motion| clip_bytes(motion.clip()));
     let file = match &entry.origin {
         Origin::File(file) if file.index == 0 => match &file.content {
             Content::Here(bytes) => bytes.len() as u64,

@@ -32,12 +32,13 @@ use crate::lesson::Shelf;
 use crate::library::{Entry, Library, Origin};
 use crate::link;
 use crate::memory::Memory;
-use crate::motion::{FeetReader, Motion};
+use crate::motion::FeetReader;
 use crate::notice::{Level, Notices};
 use crate::outside;
 use crate::params::{Key, Params, Value};
 use crate::reading::{Reads, read};
 use crate::transport::Span;
+use segue_motion::clip::Motion;
 use segue_motion::skin::Character;
 use segue_motion::synth;
 use segue_text::{Message, msg};
@@ -259,7 +260,7 @@ impl Session {
         let sources = self.panes.iter().flat_map(|pane| &pane.sources);
         results
             .map(|outcome| outcome.duration_secs())
-            .chain(sources.map(|source| source.motion.clip.duration_secs()))
+            .chain(sources.map(|source| source.motion.clip().duration_secs()))
             .chain(self.company.iter().filter_map(Companion::duration_secs))
             .fold(0.0, f64::max)
     }
@@ -297,7 +298,7 @@ impl Session {
         let shown = self.panes.iter().filter_map(|pane| pane.outcome.as_ref());
         let mut motions = shown.map(|outcome| &outcome.motion);
         let moves =
-            |motion: &Arc<Motion>| character.is_moved_by(motion.clip.skeleton(), &motion.roles);
+            |motion: &Arc<Motion>| character.is_moved_by(motion.clip().skeleton(), motion.roles());
         let is_left_out = motions.any(|motion| !moves(motion));
         is_left_out.then(|| {
             format!(
@@ -475,8 +476,8 @@ impl Session {
             }
             Key::WarpFrom => Some(outcome.registered()?.part_secs[0]),
             Key::WarpTo => Some(outcome.registered()?.part_secs[1]),
-            Key::WarpSmoothing => Some((0.1 * outcome.motion.clip.fps()).round()),
-            Key::Ground => Some(f64::from(outcome.motion.ground_m) * 100.0),
+            Key::WarpSmoothing => Some((0.1 * outcome.motion.clip().fps()).round()),
+            Key::Ground => Some(f64::from(outcome.motion.ground_m()) * 100.0),
             Key::PlaceX => Some(to_step(outcome.motion.standing_at(0.0).shift.x, 0.01)),
             Key::PlaceZ => Some(to_step(outcome.motion.standing_at(0.0).shift.y, 0.01)),
             Key::PlaceHeading => {
@@ -530,7 +531,7 @@ impl Session {
     /// The frame of a slot's clip at a time, at its own rate.
     fn frame_in(&self, slot: Slot, secs: f64) -> Option<f64> {
         let motion = self.slot(slot)?.motion.as_ref()?;
-        Some((secs * motion.clip.fps()).round())
+        Some((secs * motion.clip().fps()).round())
     }
 
     fn set(&mut self, values: Vec<(Key, Value)>) -> Result<(), CommandError> {
@@ -621,10 +622,10 @@ impl Session {
             self.document.library.find(id).ok_or_else(|| CommandError::NoClip(id.to_owned()))?;
         let motion =
             entry.motion.as_ref().ok_or(CommandError::NotPossible("the clip is not loaded yet"))?;
-        if joint.is_some_and(|joint| joint >= motion.clip.skeleton().len()) {
+        if joint.is_some_and(|joint| joint >= motion.clip().skeleton().len()) {
             return Err(CommandError::NotPossible("the skeleton has no such joint"));
         }
-        let mut roles = motion.roles.clone();
+        let mut roles = motion.roles().clone();
         roles.set(role, joint);
         let file = match &entry.origin {
             Origin::File(file) if file.is_large() || self.is_read_again(file) => Some(file.clone()),
@@ -635,7 +636,7 @@ impl Session {
             self.read_again(file, None);
             return Ok(());
         }
-        let corrected = Arc::new(Motion::analyze((*motion.clip).clone(), Some(roles.clone())));
+        let corrected = Arc::new(Motion::clone(&motion).with_corrected_roles(&roles));
         self.document.change_entry(id, |entry| {
             entry.motion = Some(corrected);
             entry.roles_by_hand = Some(roles);
@@ -655,7 +656,7 @@ impl Session {
         let is_whole = !outcome.awaits_feet() && !self.is_driven();
         let fps = [Slot::A, Slot::B].map(|slot| {
             let motion = self.slot(slot).and_then(|entry| entry.motion.as_ref());
-            motion.map_or(1.0, |motion| motion.clip.fps())
+            motion.map_or(1.0, |motion| motion.clip().fps())
         });
         let known = CommandError::NotPossible("this clip is in the library already");
         if lab::of(params.lab()).shows_clip() && is_as_it_is(&params) {
@@ -681,7 +682,7 @@ impl Session {
     }
 
     fn step(&mut self, frames: i64) {
-        let Some(fps) = self.main_outcome().map(|outcome| outcome.motion.clip.fps()) else {
+        let Some(fps) = self.main_outcome().map(|outcome| outcome.motion.clip().fps()) else {
             return;
         };
         self.document.set_unchecked(Key::Play, Value::Switch(false));
@@ -714,7 +715,7 @@ fn to_step(value: f64, step: f64) -> f64 {
 
 fn clip_info(entry: &Entry) -> ClipInfo {
     let motion = entry.motion.as_deref();
-    let clip = motion.map(|motion| &motion.clip);
+    let clip = motion.map(|motion| motion.clip());
     ClipInfo {
         id: entry.id.clone(),
         name: entry.name.clone(),
@@ -723,7 +724,7 @@ fn clip_info(entry: &Entry) -> ClipInfo {
         frames: clip.map_or(0, |clip| clip.frames()),
         fps: clip.map_or(0.0, |clip| clip.fps()),
         duration: clip.map_or(0.0, |clip| clip.duration_secs()),
-        height: motion.map_or(0.0, |motion| motion.roles.body_height(motion.clip.skeleton())),
+        height: motion.map_or(0.0, |motion| motion.roles().body_height(motion.clip().skeleton())),
         sha256: entry.sha256().map(str::to_owned),
     }
 }

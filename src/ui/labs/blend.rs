@@ -43,7 +43,7 @@ pub(crate) fn is_welcome(session: &Session) -> bool {
 pub(super) fn blend_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     kit::section_header_ui(&lab_label(session), ui);
     let fps = pair_ui(session, out, ui);
-    let duration = |slot| Some(session.slot(slot)?.motion.as_ref()?.clip.duration_secs());
+    let duration = |slot| Some(session.slot(slot)?.motion.as_ref()?.clip().duration_secs());
     let window = session.params().number(Key::BlendWindow);
     let shortest =
         [Slot::A, Slot::B].into_iter().filter_map(duration).fold(f64::INFINITY, f64::min);

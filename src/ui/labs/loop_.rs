@@ -46,7 +46,7 @@ pub(super) fn loop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     let duration = session
         .slot(Slot::A)
         .and_then(|entry| entry.motion.as_ref())
-        .map(|motion| motion.clip.duration_secs());
+        .map(|motion| motion.clip().duration_secs());
     let automatic = |key| params.optional(key).is_none();
     let distance_cm = cycle.and_then(|cycle| match cycle.made {
         CycleMade::Cut { distance_cm, .. } => Some(distance_cm),

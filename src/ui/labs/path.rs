@@ -186,7 +186,7 @@ fn whole_ui(path: &OnPath, session: &Session, state: &mut UiState, out: &mut Out
 
 /// Where the path asks for more than the motion can.
 fn warnings_ui(path: &OnPath, ui: &mut Ui) {
-    let fps = path.fitted.motion().clip.fps();
+    let fps = path.fitted.motion().clip().fps();
     let warning = palette_of(ui).warning;
     for turn in path.hard_turns.iter().take(MOST_WARNINGS) {
         kit::note_ui(&text::hard_turn(turn, fps), warning, ui);

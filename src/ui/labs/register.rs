@@ -75,7 +75,7 @@ pub(super) fn register_ui(session: &Session, state: &mut UiState, out: &mut Out,
     if modes.contains(&WarpMode::Join) {
         let last = |slot| {
             let motion = session.slot(slot).and_then(|entry| entry.motion.as_ref());
-            motion.map(|motion| motion.clip.duration_secs())
+            motion.map(|motion| motion.clip().duration_secs())
         };
         let detail = Detail { max: last(Slot::A), ..Detail::default() };
         param_row_ui(Key::WarpFrom, &detail, session, out, ui);
@@ -223,7 +223,7 @@ fn map_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let picture = picture_of(map, ui);
     let fps = map.fps();
     let secs = |frames: [f64; 2]| frames.map(|frame| frame / fps);
-    let spans = [0, 1].map(|clip: usize| map.motions()[clip].clip.duration_secs());
+    let spans = [0, 1].map(|clip: usize| map.motions()[clip].clip().duration_secs());
     let matrix = map.matrix();
     let (first, last) = (
         secs(map.pair_of((0, 0))),
@@ -330,7 +330,7 @@ fn map_event(
 }
 
 fn feet_of(map: &DistanceMap, clip: usize) -> Feet {
-    let contacts = &map.motions()[clip].contacts;
+    let contacts = map.motions()[clip].contacts();
     Side::BOTH.map(|side| {
         let stances = contacts.intervals(side).into_iter();
         stances

@@ -87,7 +87,7 @@ fn the_map_is_pointed_at_pressed_and_pinned() {
     let spans = [Key::A, Key::B].map(|key| {
         let session = &harness.state().session;
         let entry = session.library().find(session.params().text(key)).unwrap();
-        entry.motion.as_ref().unwrap().clip.duration_secs()
+        entry.motion.as_ref().unwrap().clip().duration_secs()
     });
     let [a, b] = harness.state().state.hovered_pair.expect("pointed at");
     let fps = harness.state().session.distance_map().unwrap().fps();

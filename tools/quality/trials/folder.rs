@@ -248,7 +248,7 @@ impl MotionFile {
         let mut clips = Vec::new();
         for file in report.files {
             let read = file.result.map_err(|error| error.to_string())?;
-            clips.extend(read.clips.iter().map(|clip| Arc::clone(clip.motion.clip.skeleton())));
+            clips.extend(read.clips.iter().map(|clip| Arc::clone(clip.motion.clip().skeleton())));
         }
         Ok(clips)
     }
@@ -289,7 +289,7 @@ fn opened(session: &mut Session, link: &str) -> Result<Arc<Skeleton>, String> {
     session.apply(Command::OpenLink(link.to_owned())).map_err(|error| error.to_string())?;
     let pane = &session.panes()[0];
     match (&pane.outcome, &pane.problem) {
-        (Some(outcome), None) => Ok(Arc::clone(outcome.motion.clip.skeleton())),
+        (Some(outcome), None) => Ok(Arc::clone(outcome.motion.clip().skeleton())),
         (_, problem) => Err(problem.as_ref().map(ToString::to_string).unwrap_or_default()),
     }
 }

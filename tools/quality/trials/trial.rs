@@ -3,11 +3,11 @@
 
 use super::folder::{Chance, Motions, encoded};
 use super::guard::{guarded, shared_out};
-use segue_motion::clip::{Clip, mirror};
+use segue_motion::clip::{Clip, Motion, mirror};
 use segue_motion::math::stats;
 use segue_motion::metrics::{Artefacts, MotionTrace};
 use segue_motion::path::GroundSpline;
-use segue_session::{Command, CycleMade, Motion, Outcome, Session, write_ids};
+use segue_session::{Command, CycleMade, Outcome, Session, write_ids};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -414,8 +414,8 @@ impl<'a> Bench<'a> {
             {
                 let motion = &outcome.motion;
                 traces.extend(
-                    mirror(&motion.clip, &motion.roles)
-                        .map(|clip| MotionTrace::new(&clip, &motion.roles)),
+                    mirror(motion.clip(), motion.roles())
+                        .map(|clip| MotionTrace::new(&clip, motion.roles())),
                 );
             }
         }
@@ -478,7 +478,7 @@ fn shown(session: &mut Session, link: &str) -> Result<Arc<Outcome>, Came> {
 }
 
 fn traced(motion: &Motion) -> MotionTrace {
-    MotionTrace::new(&motion.clip, &motion.roles)
+    MotionTrace::new(motion.clip(), motion.roles())
 }
 
 fn is_finite(clip: &Clip) -> bool {
@@ -495,13 +495,13 @@ fn measured(
     sources: &[&MotionTrace],
     feet: &[&MotionTrace],
 ) -> Numbers {
-    if !is_finite(&motion.clip) {
+    if !is_finite(motion.clip()) {
         return Numbers { not_finite: true, ..Numbers::default() };
     }
     let trace = traced(motion);
     let Artefacts { spins, flashes, new_flashes, root_jumps, new_root_jumps } =
         trace.beside(sources);
-    let joints = motion.clip.skeleton().joints();
+    let joints = motion.clip().skeleton().joints();
     let stances: Vec<f64> = feet.iter().flat_map(|source| source.stances_cm()).copied().collect();
     Numbers {
         not_finite: values.iter().any(|value| !value.is_finite()),
@@ -539,9 +539,9 @@ fn cut_part(outcome: &Outcome, a: &Motion) -> Option<MotionTrace> {
     let CycleMade::Cut { from_secs, to_secs, .. } = outcome.cycle?.made else {
         return None;
     };
-    let frame = |secs: f64| (secs * a.clip.fps()).round() as usize;
-    let part = a.clip.crop(frame(from_secs)..(frame(to_secs) + 1).min(a.clip.frames())).ok()?;
-    Some(MotionTrace::new(&part, &a.roles))
+    let frame = |secs: f64| (secs * a.clip().fps()).round() as usize;
+    let part = a.clip().crop(frame(from_secs)..(frame(to_secs) + 1).min(a.clip().frames())).ok()?;
+    Some(MotionTrace::new(&part, a.roles()))
 }
 
 /// The middle one of some numbers.

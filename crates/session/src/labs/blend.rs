@@ -5,11 +5,10 @@ use super::pair::Pair;
 use super::{MatchSearch, Outcome, Slot, Source, Transition};
 use crate::compare::MAX_PANES;
 use crate::labs::LabError;
-use crate::motion::Motion;
 use crate::params::{Key, Params};
 use crate::{LabId, choices};
 use segue_motion::blend::{AlignBy, RootBlend, WeightLaw};
-use segue_motion::clip::{Clip, Contacts};
+use segue_motion::clip::{Clip, Contacts, Motion};
 use segue_motion::math::{Decay, Planar};
 use segue_motion::metrics::{Subject, TransitionMetrics, foot_slide_cm};
 use segue_motion::registration::{
@@ -213,14 +212,14 @@ fn method_of(params: &Params, window: usize) -> Method {
 /// and no seam of a kept clip is left out. The window fits behind the last one of A.
 fn open_search(pair: &Pair, window: usize) -> SearchOptions {
     let mut options = SearchOptions::new(window);
-    let share = |frame: f64, motion: &Motion| frame / motion.clip.frames().max(1) as f64;
-    if !pair.a.seams.is_empty() {
-        let (frames, behind) = (pair.a.clip.frames(), pair.a.behind_seams());
+    let share = |frame: f64, motion: &Motion| frame / motion.clip().frames().max(1) as f64;
+    if !pair.a.seams().is_empty() {
+        let (frames, behind) = (pair.a.clip().frames(), pair.a.behind_seams());
         let half = frames.div_ceil(2);
         let from = if half + window <= frames { behind.max(half) } else { behind };
         options.leave.from = share(from as f64 - 0.5, &pair.a);
     }
-    if !pair.incoming.seams.is_empty() {
+    if !pair.incoming.seams().is_empty() {
         options.enter.to =
             options.enter.to.min(share(pair.incoming.before_seams() as f64 + 0.5, &pair.incoming));
     }
@@ -228,12 +227,12 @@ fn open_search(pair: &Pair, window: usize) -> SearchOptions {
 }
 
 fn pose_search(pair: &Pair) -> Result<PoseSearch, LabError> {
-    let skeleton = pair.a.clip.skeleton();
+    let skeleton = pair.a.clip().skeleton();
     let search = PoseSearch::new(
-        (&pair.a.clip, &pair.a.ground_frames),
-        (&pair.incoming.clip, &pair.incoming.ground_frames),
+        (pair.a.clip(), pair.a.ground_frames()),
+        (pair.incoming.clip(), pair.incoming.ground_frames()),
         &limb_weights(skeleton),
-        pair.a.roles.body_height(skeleton).into(),
+        pair.a.roles().body_height(skeleton).into(),
     );
     search.map_err(LabError::from)
 }
@@ -270,13 +269,13 @@ impl Blender {
         match_window: usize,
     ) -> Result<BlendInputs, LabError> {
         self.meet(pair)?;
-        let (frames_a, frames_b) = (pair.a.clip.frames(), pair.incoming.clip.frames());
+        let (frames_a, frames_b) = (pair.a.clip().frames(), pair.incoming.clip().frames());
         let in_transition = params.lab() == LabId::Transition;
-        let fps = pair.a.clip.fps();
+        let fps = pair.a.clip().fps();
         let given = if in_transition {
             [
                 params.optional(Key::MixFrameA),
-                params.optional(Key::MixFrameB).map(|frame| frame / pair.b.clip.fps() * fps),
+                params.optional(Key::MixFrameB).map(|frame| frame / pair.b.clip().fps() * fps),
             ]
         } else {
             [Key::LeaveA, Key::EnterB].map(|key| params.optional(key).map(|secs| secs * fps))
@@ -331,11 +330,11 @@ impl Blender {
         if self.pair.as_ref().is_some_and(|known| Arc::ptr_eq(known, pair)) {
             return Ok(());
         }
-        let weights = limb_weights(pair.a.clip.skeleton());
-        let body_height = pair.a.roles.body_height(pair.a.clip.skeleton());
+        let weights = limb_weights(pair.a.clip().skeleton());
+        let body_height = pair.a.roles().body_height(pair.a.clip().skeleton());
         let search = TransitionSearch::new(
-            Arc::clone(&pair.a.clip),
-            Arc::clone(&pair.incoming.clip),
+            Arc::clone(pair.a.clip()),
+            Arc::clone(pair.incoming.clip()),
             &weights,
             body_height.into(),
         );
@@ -371,7 +370,7 @@ impl Blender {
             self.compare_rows(ROWS_AT_ONCE);
         }
         let Wanted { window, leave, enter, .. } = wanted;
-        let (frames_a, frames_b) = (pair.a.clip.frames(), pair.incoming.clip.frames());
+        let (frames_a, frames_b) = (pair.a.clip().frames(), pair.incoming.clip().frames());
         if self.is_searching() {
             return Ok(Place {
                 leave: leave.unwrap_or(
@@ -408,7 +407,7 @@ impl Blender {
                 _ => return Err(LabError::NothingToMatch),
             };
         let latest =
-            |frames: usize| frames.saturating_sub(wanted.behind) as f64 / pair.a.clip.fps();
+            |frames: usize| frames.saturating_sub(wanted.behind) as f64 / pair.a.clip().fps();
         let place = Place {
             leave,
             enter,
@@ -481,39 +480,35 @@ impl LabInputs for BlendInputs {
             search: place.search,
         };
         let contacts = Contacts::joined(
-            &pair.a.contacts,
-            &pair.incoming.contacts,
+            pair.a.contacts(),
+            pair.incoming.contacts(),
             place.leave,
             place.enter,
             made.handover,
         );
-        let name = format!("{} to {}", pair.a.clip.name(), pair.b.clip.name());
-        let roles = pair.a.roles.clone();
+        let name = format!("{} to {}", pair.a.clip().name(), pair.b.clip().name());
+        let roles = pair.a.roles().clone();
         let free = Arc::new(made.clip.with_name(name));
         let clip = with_feet(&free, &roles, &contacts, pair.ground_m(), *foot_lock)?;
-        let motion = Motion {
-            clip,
-            roles,
-            contacts,
-            ground_frames: made.frames,
-            seams: pair.a.seams_joined(&window, &pair.incoming, place.enter),
-            ground_m: pair.ground_m(),
-            feet: pair.a.feet,
-        };
-        let slid = |clip: &Clip| foot_slide_cm(clip, &motion.roles, &motion.contacts);
-        let mut metrics = vec![slide(slid(&motion.clip))];
+        let motion = Motion::with_ground_frames(clip, &roles, made.frames)
+            .with_feet(pair.a.feet())
+            .with_contacts(contacts)
+            .with_ground_m(pair.ground_m())
+            .with_seams(pair.a.seams_joined(&window, &pair.incoming, place.enter));
+        let slid = |clip: &Clip| foot_slide_cm(clip, motion.roles(), motion.contacts());
+        let mut metrics = vec![slide(slid(motion.clip()))];
         if foot_lock.is_some() {
             metrics.push(slide_before(slid(&free)));
         }
         let at_seam = TransitionMetrics::measure(&Subject {
-            result: &motion.clip,
+            result: motion.clip(),
             start: window.start,
             end: window.end,
             handover: made.handover,
             enter: place.enter,
             a,
             b,
-            roles: &motion.roles,
+            roles: motion.roles(),
             ground_m: pair.ground_m(),
         });
         metrics.extend(at_seam.list());

@@ -29,9 +29,9 @@ impl Gauge {
     /// The numbers of a result. `None` when they take longer than a frame: [`work`](Self::work),
     /// then ask again.
     pub(crate) fn numbers(&mut self, outcome: &Outcome) -> Option<ResultMetrics> {
-        let (mut left, roles) = (AT_ONCE, &outcome.motion.roles);
+        let (mut left, roles) = (AT_ONCE, outcome.motion.roles());
         let own = match &outcome.measured {
-            Measured::Motion => self.trace(&outcome.motion.clip, roles, &mut left),
+            Measured::Motion => self.trace(outcome.motion.clip(), roles, &mut left),
             Measured::Clip(clip) => self.trace(clip, roles, &mut left),
             Measured::Trace(trace) => Some(Arc::clone(trace)),
         };
@@ -42,8 +42,8 @@ impl Gauge {
     /// The numbers of what was just done by somebody who is driven: a few seconds, which are
     /// measured at once. `None` while its clips are not.
     pub(crate) fn numbers_now(&mut self, outcome: &Outcome) -> Option<ResultMetrics> {
-        let clips = self.traces(&outcome.beside, &outcome.motion.roles, &mut 0)?;
-        Some(measured(&MotionTrace::new(&outcome.motion.clip, &outcome.motion.roles), &clips))
+        let clips = self.traces(&outcome.beside, outcome.motion.roles(), &mut 0)?;
+        Some(measured(&MotionTrace::new(outcome.motion.clip(), outcome.motion.roles()), &clips))
     }
 
     /// What is known of some clips; `None` while one of them is not measured. All that are not

@@ -99,7 +99,7 @@ impl LabInputs for GraphInputs {
         if let (true, [left, entered]) = (walk.is_jump, walk.passed.as_slice())
             && let Some(seam) = entered.seam
         {
-            let fps = walk.motion.clip.fps();
+            let fps = walk.motion.clip().fps();
             let secs = |frame: usize| frame as f64 / fps;
             let clips = [(Slot::A, left), (Slot::B, entered)];
             sources.extend(clips.into_iter().filter_map(|(slot, part)| {
@@ -127,7 +127,7 @@ impl LabInputs for GraphInputs {
                 .cast
                 .motions()
                 .iter()
-                .map(|motion| Arc::clone(&motion.clip))
+                .map(|motion| Arc::clone(motion.clip()))
                 .collect(),
             measured: walk.trace.clone().map_or(Measured::Motion, Measured::Trace),
             ..Outcome::plain(Arc::clone(&walk.motion))

@@ -7,9 +7,8 @@ use super::{Measured, Outcome, Slot};
 use crate::LabId;
 use crate::choices::RootWay;
 use crate::labs::LabError;
-use crate::motion::Motion;
 use crate::params::{Key, Params};
-use segue_motion::clip::{Clip, take_in_place, way_from_feet};
+use segue_motion::clip::{Clip, Motion, take_in_place, way_from_feet};
 use segue_motion::math::Planar;
 use segue_motion::metrics::{Metric, foot_slide_cm};
 use std::sync::Arc;
@@ -83,32 +82,32 @@ impl LabInputs for InPlaceInputs {
         let source = &self.motion;
         let (moves, contacts) = match self.way {
             RootWay::TakeOut => {
-                (take_in_place(&source.ground_frames, self.turns), source.contacts.clone())
+                (take_in_place(source.ground_frames(), self.turns), source.contacts().clone())
             }
             RootWay::PutBack => {
-                let options = &source.feet.contacts;
-                let found = way_from_feet(&source.clip, &source.roles, options, self.turns)?;
+                let options = &source.feet().contacts;
+                let found = way_from_feet(source.clip(), source.roles(), options, self.turns)?;
                 (found.world_from_clip, found.contacts)
             }
         };
         let ground_frames: Vec<Planar> =
-            moves.iter().zip(&source.ground_frames).map(|(at, frame)| at.after(frame)).collect();
+            moves.iter().zip(source.ground_frames()).map(|(at, frame)| at.after(frame)).collect();
         let moved = |clip: &Clip| Arc::new(clip.transformed_by_frame(&moves));
         let lock =
-            |clip| with_feet(clip, &source.roles, &contacts, source.ground_m, self.foot_lock);
+            |clip| with_feet(clip, source.roles(), &contacts, source.ground_m(), self.foot_lock);
         // Feet stand where the body goes its way: in the source, or in the result.
         let (going, standing, frames) = match self.way {
             RootWay::TakeOut => {
-                let going = lock(&source.clip)?;
-                (Arc::clone(&going), moved(&going), &source.ground_frames)
+                let going = lock(source.clip())?;
+                (Arc::clone(&going), moved(&going), source.ground_frames())
             }
             RootWay::PutBack => {
-                (lock(&moved(&source.clip))?, Arc::clone(&source.clip), &ground_frames)
+                (lock(&moved(source.clip()))?, Arc::clone(source.clip()), ground_frames.as_slice())
             }
         };
         let clip = Arc::clone(if self.way == RootWay::TakeOut { &standing } else { &going });
-        let slid = |clip| foot_slide_cm(clip, &source.roles, &contacts);
-        let mut metrics = way_metrics(frames, source.clip.fps()).to_vec();
+        let slid = |clip| foot_slide_cm(clip, source.roles(), &contacts);
+        let mut metrics = way_metrics(frames, source.clip().fps()).to_vec();
         metrics.push(slide(slid(&going)));
         metrics.push(Metric::fact(
             "foot_slide_in_place_cm",
@@ -119,14 +118,11 @@ impl LabInputs for InPlaceInputs {
         ));
         Ok(Outcome {
             metrics,
-            beside: vec![Arc::clone(&source.clip)],
+            beside: vec![Arc::clone(source.clip())],
             measured: Measured::Clip(going),
-            ..Outcome::plain(Arc::new(Motion {
-                clip,
-                contacts,
-                ground_frames,
-                ..Motion::clone(source)
-            }))
+            ..Outcome::plain(Arc::new(
+                source.with_clip(clip, ground_frames).with_contacts(contacts),
+            ))
         })
     }
 }
@@ -180,7 +176,7 @@ mod tests {
 
     /// From the first place on the ground to the last, metres.
     fn way_m(session: &Session) -> f64 {
-        let frames = &session.main_outcome().expect("a result").motion.ground_frames;
+        let frames = session.main_outcome().expect("a result").motion.ground_frames();
         frames[0].shift.distance(frames[frames.len() - 1].shift)
     }
 
@@ -204,7 +200,7 @@ mod tests {
     fn turn_stays_where_it_is_not_taken_out() {
         let yaws = |link: &str| {
             let session = opened(link);
-            let frames = &session.main_outcome().expect("a result").motion.ground_frames;
+            let frames = session.main_outcome().expect("a result").motion.ground_frames();
             [frames[0].yaw, frames[frames.len() - 1].yaw]
         };
         let walk = yaws("lab=view&a=walk_left");

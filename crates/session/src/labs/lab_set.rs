@@ -12,8 +12,8 @@ use super::register::Registrars;
 use super::speed::GaitFinder;
 use super::view::Viewer;
 use crate::labs::LabError;
-use crate::motion::Motion;
 use crate::params::{Key, Params};
+use segue_motion::clip::Motion;
 use segue_motion::matching::Database;
 use std::sync::Arc;
 

@@ -7,12 +7,11 @@ use crate::LabId;
 use crate::choices;
 use crate::compare::MAX_PANES;
 use crate::labs::LabError;
-use crate::motion::Motion;
 use crate::params::{Key, Params};
 use segue_motion::blend::{
     BodyPart, LayerMode, LayerOptions, LayerTime, Reference, layer_timed, mask,
 };
-use segue_motion::clip::{Clip, Contacts, character_frames};
+use segue_motion::clip::{Clip, Contacts, Motion};
 use segue_motion::gait::{GaitCycle, strike_phases};
 use segue_motion::math::Planar;
 use segue_motion::metrics::{Profile, Subject, TransitionMetrics, deviations, foot_slide_cm};
@@ -157,7 +156,7 @@ impl Layerer {
         pair: &Arc<Pair>,
         wanted: (choices::LayerFit, f64),
     ) -> Result<Timed, LabError> {
-        let (a, b) = (&pair.a.clip, &pair.incoming.clip);
+        let (a, b) = (pair.a.clip(), pair.incoming.clip());
         let times =
             || Arc::new((0..a.frames()).map(|frame| a.time_of(frame)).collect::<Vec<f64>>());
         let plain = || Reading { over: Arc::clone(b), times: times() };
@@ -173,7 +172,7 @@ impl Layerer {
                 (Reading { over, times: times() }, LayerFit::Looped)
             }
         };
-        let roles = &pair.a.roles;
+        let roles = pair.a.roles();
         let whole = LayerOptions {
             parts: vec![BodyPart::Whole],
             feather: 0,
@@ -182,11 +181,8 @@ impl Layerer {
             ..LayerOptions::default()
         };
         let shown = layer_timed(a, roles, &reading.over, &whole, &reading.times)?;
-        let shown = Arc::new(Motion::analyze_feet(
-            shown.with_name(b.name()),
-            Some(roles.clone()),
-            pair.b.feet,
-        ));
+        let shown =
+            Arc::new(Motion::with_roles(shown.with_name(b.name()), roles).with_feet(pair.b.feet()));
         let source = source_of(&shown);
         Ok(Timed {
             pair: Arc::clone(pair),
@@ -194,7 +190,7 @@ impl Layerer {
             reading,
             fit,
             has_no_steps: wanted_fit == choices::LayerFit::Step && fit != LayerFit::InStep,
-            profile: Profile::new(Arc::new(source), roles, shown.contacts.clone()),
+            profile: Profile::new(Arc::new(source), roles, shown.contacts().clone()),
             shown,
         })
     }
@@ -209,12 +205,12 @@ impl Layerer {
         }
         let reading = GaitCycle::find(
             pair.profiles[1].source(),
-            &pair.incoming.roles,
-            &pair.incoming.contacts,
+            pair.incoming.roles(),
+            pair.incoming.contacts(),
         )
         .ok()
         .and_then(|cycle| {
-            let phases = strike_phases(&pair.a.contacts, cycle.events().right_strike)?;
+            let phases = strike_phases(pair.a.contacts(), cycle.events().right_strike)?;
             Some(Reading {
                 over: once_more(cycle.looped())?,
                 times: Arc::new(phases.into_iter().map(|phase| phase * cycle.secs()).collect()),
@@ -279,23 +275,24 @@ fn options_of(params: &Params) -> LayerOptions {
 impl LabInputs for LayerInputs {
     fn run(&self) -> Result<Outcome, LabError> {
         let (pair, timed) = (&self.pair, &self.timed);
-        let (a, roles) = (&pair.a, pair.a.roles.clone());
+        let (a, roles) = (&pair.a, pair.a.roles().clone());
         let options = LayerOptions { time: time_of(timed.fit), ..self.options.clone() };
         let Reading { over, times } = &timed.reading;
-        let made = layer_timed(&a.clip, &roles, over, &options, times)?;
-        let free = Arc::new(made.with_name(format!("{} + {}", a.clip.name(), pair.b.clip.name())));
-        let shares: Vec<f32> = mask(a.clip.skeleton(), &roles, &options.parts, options.feather)
+        let made = layer_timed(a.clip(), &roles, over, &options, times)?;
+        let free =
+            Arc::new(made.with_name(format!("{} + {}", a.clip().name(), pair.b.clip().name())));
+        let shares: Vec<f32> = mask(a.clip().skeleton(), &roles, &options.parts, options.feather)
             .into_iter()
             .map(|share| share * options.weight)
             .collect();
         let root_share = shares.first().copied().unwrap_or(0.0);
         let walks_as_b = options.mode == LayerMode::Override && root_share > 0.5;
-        let ground_m = if root_share == 0.0 { a.ground_m } else { pair.ground_m() };
+        let ground_m = if root_share == 0.0 { a.ground_m() } else { pair.ground_m() };
         // Legs that are not touched stand as they stood.
         let contacts = if root_share == 0.0 {
-            a.contacts.clone()
+            a.contacts().clone()
         } else {
-            Contacts::detect(&free, &roles, &a.feet.contacts)
+            Contacts::detect(&free, &roles, &a.feet().contacts)
         };
         let clip = with_feet(&free, &roles, &contacts, ground_m, self.foot_lock)?;
         let slid = |clip: &Clip| foot_slide_cm(clip, &roles, &contacts);
@@ -316,16 +313,12 @@ impl LabInputs for LayerInputs {
         });
         metrics
             .extend(everywhere.list().into_iter().filter(|metric| metric.id == "penetration_cm"));
-        metrics.extend(deviations(&clip, &a.clip, &roles));
-        let motion = Motion {
-            ground_frames: character_frames(&clip, &roles),
-            clip,
-            roles,
-            contacts,
-            seams: a.seams.clone(),
-            ground_m,
-            feet: a.feet,
-        };
+        metrics.extend(deviations(&clip, a.clip(), &roles));
+        let motion = Motion::with_roles(clip, &roles)
+            .with_feet(a.feet())
+            .with_contacts(contacts)
+            .with_ground_m(ground_m)
+            .with_seams(a.seams().to_vec());
         let source = |slot, motion| Source::new(slot, motion, 0.0, Planar::IDENTITY);
         Ok(Outcome {
             sources: vec![source(Slot::A, a), source(Slot::B, &timed.shown)],
@@ -336,7 +329,7 @@ impl LabInputs for LayerInputs {
                 has_no_steps: timed.has_no_steps,
             })),
             metrics,
-            beside: vec![Arc::clone(&a.clip), Arc::clone(&timed.shown.clip)],
+            beside: vec![Arc::clone(a.clip()), Arc::clone(timed.shown.clip())],
             ..Outcome::plain(Arc::new(motion))
         })
     }

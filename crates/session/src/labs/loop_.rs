@@ -9,9 +9,9 @@ use super::{Cycle, CycleMade, Outcome, Slot, Source};
 use crate::LabId;
 use crate::choices;
 use crate::labs::LabError;
-use crate::motion::Motion;
 use crate::params::{Key, Params};
 use segue_motion::blend;
+use segue_motion::clip::Motion;
 use segue_motion::math::Planar;
 use segue_motion::metrics::Metric;
 use segue_motion::transition::{
@@ -106,8 +106,8 @@ impl CycleFinder {
         motion: &Arc<Motion>,
         params: &Params,
     ) -> Result<LoopInputs, LabError> {
-        let fps = motion.clip.fps();
-        let last = motion.clip.frames().saturating_sub(1);
+        let fps = motion.clip().fps();
+        let last = motion.clip().frames().saturating_sub(1);
         let mut given = [Key::LoopFrom, Key::LoopTo]
             .map(|key| params.optional(key).map(|secs| ((secs * fps).round() as usize).min(last)));
         if let [Some(from), Some(to)] = &mut given
@@ -135,9 +135,9 @@ impl CycleFinder {
         }
         let source = source_of(motion);
         let search =
-            CycleSearch { start: given[0], end: given[1], ..CycleSearch::new(motion.clip.fps()) };
-        let body_height = motion.roles.body_height(motion.clip.skeleton());
-        let cut = find_cycle(&source, &motion.contacts, body_height.into(), &search)?;
+            CycleSearch { start: given[0], end: given[1], ..CycleSearch::new(motion.clip().fps()) };
+        let body_height = motion.roles().body_height(motion.clip().skeleton());
+        let cut = find_cycle(&source, motion.contacts(), body_height.into(), &search)?;
         let found = Arc::new(Found { motion: Arc::clone(motion), source, given, cut });
         self.known = Some(Arc::clone(&found));
         Ok(found)
@@ -168,9 +168,9 @@ impl LabInputs for LoopInputs {
         // One more, of which the first frame is the one behind the last.
         let three = looped.repeat(4).and_then(|clip| clip.crop(0..3 * frames + 1));
         let three = three?;
-        let contacts = repeated(&motion.contacts, &cut.cycle, 3 * frames + 1);
+        let contacts = repeated(motion.contacts(), &cut.cycle, 3 * frames + 1);
         let Rounds { motion: played, mut slides } =
-            rounds(&motion.roles, frames, three, &contacts, motion.ground_m, self.foot_lock)?;
+            rounds(motion.roles(), frames, three, &contacts, motion.ground_m(), self.foot_lock)?;
         let secs = |frame: usize| frame as f64 / fps;
         let step = looped
             .frames
@@ -235,7 +235,7 @@ impl LabInputs for LoopInputs {
                 },
             }),
             metrics,
-            beside: vec![Arc::clone(&motion.clip)],
+            beside: vec![Arc::clone(motion.clip())],
             ..Outcome::plain(Arc::new(played))
         })
     }

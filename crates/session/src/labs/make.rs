@@ -4,10 +4,11 @@ use super::lab::{Inputs, Lab, LabInputs};
 use super::lab_set::{LabClips, LabSet};
 use super::{Outcome, Slot};
 use crate::labs::LabError;
-use crate::motion::{FeetReading, Motion};
+use crate::motion::foot_options;
 use crate::outside::short;
 use crate::params::{Key, Kind, Params, Value};
 use crate::{LabId, choices};
+use segue_motion::clip::Motion;
 use segue_motion::metrics::foot_slide_cm;
 use segue_motion::synth::{self, Action};
 use std::sync::Arc;
@@ -127,11 +128,13 @@ fn synth_params(params: &Params) -> synth::Params {
 fn make(params: &Params) -> Result<Outcome, LabError> {
     let made = synth::synthesize(&synth_params(params))?;
     let mut motion =
-        Motion::analyze_feet(made.clip.with_name(made_id(params)), None, FeetReading::of(params));
-    let slid = |motion: &Motion| foot_slide_cm(&motion.clip, &motion.roles, &motion.contacts);
+        Motion::analyze(made.clip.with_name(made_id(params))).with_feet(foot_options(params));
+    let slid = |motion: &Motion| foot_slide_cm(motion.clip(), motion.roles(), motion.contacts());
     let mut metrics = vec![slide(slid(&motion))];
     let lock = Lock::of(params);
-    motion.clip = with_feet(&motion.clip, &motion.roles, &motion.contacts, motion.ground_m, lock)?;
+    let clip =
+        with_feet(motion.clip(), motion.roles(), motion.contacts(), motion.ground_m(), lock)?;
+    motion = motion.with_clip(clip, motion.ground_frames().to_vec());
     if lock.is_some() {
         metrics = vec![slide(slid(&motion)), slide_before(metrics[0].value)];
     }
@@ -145,7 +148,7 @@ pub(crate) fn preset_motion(id: &str) -> Result<Motion, LabError> {
         .find(|preset| preset.id == id)
         .ok_or_else(|| LabError::NoPreset { id: short(id) })?;
     let made = synth::synthesize(&preset.params)?;
-    Ok(Motion::analyze(made.clip.with_name(preset.title), None))
+    Ok(Motion::analyze(made.clip.with_name(preset.title)))
 }
 
 /// The id of a made clip: the motion and what differs from its default, `run(turn_rate:20,seed:9)`.

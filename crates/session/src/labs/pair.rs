@@ -1,8 +1,7 @@
 use super::Retargeted;
 use crate::labs::LabError;
-use crate::motion::Motion;
 use segue_motion::blend;
-use segue_motion::clip::{Clip, Interpolation, resample, retarget_onto};
+use segue_motion::clip::{Clip, Interpolation, Motion, resample, retarget_onto};
 use segue_motion::metrics::Profile;
 use segue_motion::skeleton::Retargeting;
 use std::sync::Arc;
@@ -24,18 +23,18 @@ impl Pair {
     /// The height of the ground under both clips, metres: the lower one, so that no foot is lifted
     /// off the ground that its own clip has.
     pub(super) fn ground_m(&self) -> f32 {
-        self.a.ground_m.min(self.incoming.ground_m)
+        self.a.ground_m().min(self.incoming.ground_m())
     }
 
     /// Both clips on the skeleton of A.
     pub(super) fn clips(&self) -> Vec<Arc<Clip>> {
-        [&self.a, &self.incoming].map(|motion| Arc::clone(&motion.clip)).into()
+        [&self.a, &self.incoming].map(|motion| Arc::clone(motion.clip())).into()
     }
 
     fn new(a: &Arc<Motion>, b: &Arc<Motion>) -> Result<Self, LabError> {
         let (incoming, retargeted) = fitted(a, b)?;
         let profiles = [a, &incoming].map(|motion| {
-            Profile::new(Arc::new(source_of(motion)), &motion.roles, motion.contacts.clone())
+            Profile::new(Arc::new(source_of(motion)), motion.roles(), motion.contacts().clone())
         });
         Ok(Self { a: Arc::clone(a), b: Arc::clone(b), incoming, profiles, retargeted })
     }
@@ -46,39 +45,37 @@ pub(super) fn fitted(
     a: &Arc<Motion>,
     b: &Arc<Motion>,
 ) -> Result<(Arc<Motion>, Option<Arc<Retargeted>>), LabError> {
-    let same_skeleton =
-        Arc::ptr_eq(a.clip.skeleton(), b.clip.skeleton()) || a.clip.skeleton() == b.clip.skeleton();
-    let same_rate = (a.clip.fps() - b.clip.fps()).abs() <= 1e-4 * a.clip.fps();
+    let same_skeleton = Arc::ptr_eq(a.clip().skeleton(), b.clip().skeleton())
+        || a.clip().skeleton() == b.clip().skeleton();
+    let same_rate = (a.clip().fps() - b.clip().fps()).abs() <= 1e-4 * a.clip().fps();
     if same_skeleton && same_rate {
         return Ok((Arc::clone(b), None));
     }
-    let mut clip = (*b.clip).clone();
+    let mut clip = Arc::clone(b.clip());
     if !same_skeleton {
-        clip = retarget_onto(&clip, &b.roles, &a.clip, &a.roles)?;
+        clip = Arc::new(retarget_onto(&clip, b.roles(), a.clip(), a.roles())?);
     }
     if !same_rate {
-        clip = resample(&clip, a.clip.fps(), Interpolation::Cubic)?;
+        clip = Arc::new(resample(&clip, a.clip().fps(), Interpolation::Cubic)?);
     }
-    let roles = if same_skeleton { b.roles.clone() } else { a.roles.clone() };
+    let roles = if same_skeleton { b.roles().clone() } else { a.roles().clone() };
     let retargeted = (!same_skeleton).then(|| Arc::new(Retargeted::between(a, b)));
-    let (rate, rate_b) = (a.clip.fps(), b.clip.fps());
-    let motion = Motion {
-        seams: b.seams_at(|frame| (frame as f64 * rate / rate_b).round() as usize),
-        ..Motion::analyze_feet(clip, Some(roles), b.feet)
-    };
+    let (rate, rate_b) = (a.clip().fps(), b.clip().fps());
+    let seams = b.seams_at(|frame| (frame as f64 * rate / rate_b).round() as usize);
+    let motion = Motion::with_roles(clip, &roles).with_feet(b.feet()).with_seams(seams);
     Ok((Arc::new(motion), retargeted))
 }
 
 /// A motion as what is blended.
 pub(super) fn source_of(motion: &Motion) -> blend::Source {
-    blend::Source::with_frames(Arc::clone(&motion.clip), motion.ground_frames.clone())
+    blend::Source::with_frames(Arc::clone(motion.clip()), motion.ground_frames().to_vec())
 }
 
 impl Retargeted {
     /// What happens to `b` on the skeleton of `a`.
     fn between(a: &Motion, b: &Motion) -> Self {
-        let skeleton = a.clip.skeleton();
-        let way = Retargeting::new(b.clip.skeleton(), &b.roles, skeleton, &a.roles);
+        let skeleton = a.clip().skeleton();
+        let way = Retargeting::new(b.clip().skeleton(), b.roles(), skeleton, a.roles());
         let joints = skeleton.joints().iter().enumerate();
         let unmoved = joints.filter(|(joint, _)| way.as_ref().is_none_or(|way| !way.moves(*joint)));
         Self { unmatched: unmoved.map(|(_, joint)| joint.name.clone()).collect() }
@@ -140,13 +137,13 @@ mod tests {
     fn slower_incoming_clip_is_resampled_without_velocity_steps() {
         let at = |fps: f32| {
             let params = Params { fps, ..Params::new(Action::Walk) };
-            Arc::new(Motion::analyze(synthesize(&params).unwrap().clip, None))
+            Arc::new(Motion::analyze(synthesize(&params).unwrap().clip))
         };
         let (a, b) = (at(120.0), at(30.0));
         let (incoming, _) = fitted(&a, &b).unwrap();
-        assert_eq!(incoming.clip.fps(), 120.0);
-        let (made, true_one) = (roughest(&incoming.clip), roughest(&a.clip));
-        let linear = roughest(&resample(&b.clip, 120.0, Interpolation::Linear).unwrap());
+        assert_eq!(incoming.clip().fps(), 120.0);
+        let (made, true_one) = (roughest(incoming.clip()), roughest(a.clip()));
+        let linear = roughest(&resample(b.clip(), 120.0, Interpolation::Linear).unwrap());
         assert!(made < 0.6 * linear, "{made} rad/s per frame, linearly {linear}, truly {true_one}");
     }
 }

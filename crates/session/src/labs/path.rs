@@ -10,10 +10,9 @@ use crate::LabId;
 use crate::choices;
 use crate::compare::MAX_PANES;
 use crate::labs::LabError;
-use crate::motion::Motion;
 use crate::params::{Key, Params, Value, ValueError};
 use planter::{Planted, Planter};
-use segue_motion::clip::{Clip, Contacts};
+use segue_motion::clip::{Clip, Contacts, Motion};
 use segue_motion::math::Planar;
 use segue_motion::metrics::{Metric, foot_slide_cm};
 use segue_motion::path::{
@@ -105,7 +104,7 @@ impl FittedMotion {
                 .zip(off)
                 .map(Into::into)
                 .collect(),
-            editor: PathEditor::new(path, &motion.roles, motion.contacts.clone()),
+            editor: PathEditor::new(path, motion.roles(), motion.contacts().clone()),
         })
     }
 
@@ -229,7 +228,7 @@ impl Paths {
             feet: Feet::Free,
         };
         if inputs.lock.is_some() {
-            inputs.feet = if motion.clip.frames() <= AT_ONCE {
+            inputs.feet = if motion.clip().frames() <= AT_ONCE {
                 Feet::AtOnce
             } else {
                 self.planter.ask(&inputs).map_or(Feet::Awaited, Feet::Planted)
@@ -330,7 +329,7 @@ impl PathInputs {
             return Ok(None);
         };
         let motion = &self.fitted.motion;
-        let locking = locking(Arc::clone(free), &motion.roles, contacts, motion.ground_m, lock)?;
+        let locking = locking(Arc::clone(free), motion.roles(), contacts, motion.ground_m(), lock)?;
         Ok(locking.map(|locking| locking.with_body_yaws(turns)))
     }
 }
@@ -347,7 +346,7 @@ impl LabInputs for PathInputs {
                     Some(locking) => Arc::new(locking.finish()?),
                     None => free,
                 };
-                let slide_cm = foot_slide_cm(&clip, &fitted.motion.roles, &made.contacts);
+                let slide_cm = foot_slide_cm(&clip, fitted.motion.roles(), &made.contacts);
                 (clip, slide_cm)
             }
             Feet::Planted(planted) => planted.made.clone()?,
@@ -402,17 +401,13 @@ impl LabInputs for PathInputs {
                 "The fitted path from its start to its end.",
             ));
         }
-        let (frames, before) = (clip.frames(), fitted.motion.clip.frames().max(1));
+        let (frames, before) = (clip.frames(), fitted.motion.clip().frames().max(1));
         let seams = fitted.motion.seams_at(|frame| frame * frames / before);
-        let motion = Motion {
-            clip,
-            roles: fitted.motion.roles.clone(),
-            contacts: made.contacts,
-            ground_frames: made.characters,
-            seams,
-            ground_m: fitted.motion.ground_m,
-            feet: fitted.motion.feet,
-        };
+        let motion = Motion::with_ground_frames(clip, fitted.motion.roles(), made.characters)
+            .with_feet(fitted.motion.feet())
+            .with_contacts(made.contacts)
+            .with_ground_m(fitted.motion.ground_m())
+            .with_seams(seams);
         Ok(Outcome {
             sources: vec![Source::new(Slot::A, &fitted.motion, 0.0, Planar::IDENTITY)],
             facts: LabFacts::Path(Arc::new(OnPath {
@@ -424,7 +419,7 @@ impl LabInputs for PathInputs {
                 awaits_feet: matches!(self.feet, Feet::Awaited),
             })),
             metrics,
-            beside: vec![Arc::clone(&fitted.motion.clip)],
+            beside: vec![Arc::clone(fitted.motion.clip())],
             ..Outcome::plain(Arc::new(motion))
         })
     }

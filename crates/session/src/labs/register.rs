@@ -19,13 +19,12 @@ use super::feet::{Lock, slide, slide_before, with_feet};
 use super::pair::Pair;
 use super::{LabFacts, Outcome, Slot, Source, Transition};
 use crate::choices;
-use crate::motion::Motion;
 use registrar::Found;
 use segue_motion::blend::{
     self, DissolveOptions, FrameMix, Partner, RegisteredBlend, WeightCurve, WeightLaw, dissolve,
     registered_blend, registered_join,
 };
-use segue_motion::clip::{Clip, Contacts};
+use segue_motion::clip::{Clip, Contacts, Motion};
 use segue_motion::math::Planar;
 use segue_motion::metrics::{Metric, Subject, TransitionMetrics, foot_slide_cm};
 use segue_motion::registration::Registration;
@@ -149,7 +148,7 @@ impl Registered {
             return self.steps.intervals(side).into_iter().map(secs).collect();
         };
         let clip = usize::from(slot == Slot::B);
-        let contacts = &self.map.motions()[clip].contacts;
+        let contacts = self.map.motions()[clip].contacts();
         let flags =
             self.beats.iter().map(|beat| stands(contacts, side, beat.frames[clip])).collect();
         let in_result = Contacts::from_flags([flags, Vec::new()]);
@@ -274,7 +273,7 @@ impl RegisterInputs {
 
     /// Of A and of B.
     fn contacts(&self) -> [&Contacts; 2] {
-        [&self.pair.a.contacts, &self.pair.incoming.contacts]
+        [self.pair.a.contacts(), self.pair.incoming.contacts()]
     }
 
     /// The frames of A that are registered: first and last.
@@ -299,7 +298,7 @@ impl RegisterInputs {
         });
         let partners: Vec<Partner<'_>> = std::iter::once(partner).chain(also).collect();
         let made = registered_blend(a, &partners)?;
-        let also = self.also.iter().map(|also| &also.pair.incoming.contacts);
+        let also = self.also.iter().map(|also| also.pair.incoming.contacts());
         let all: Vec<&Contacts> = self.contacts().into_iter().chain(also).collect();
         let contacts = made.contacts(&all);
         let RegisteredBlend { clip, mixes, frames } = made;
@@ -333,13 +332,13 @@ impl RegisterInputs {
     /// one of A, before the first one of B.
     fn part(&self, part_secs: [Option<f64>; 2]) -> Result<[usize; 2], LabError> {
         let [from, to] = self.span();
-        let fps = self.pair.a.clip.fps();
+        let fps = self.pair.a.clip().fps();
         let Pair { a, incoming, .. } = &*self.pair;
         let mut room = [from, to];
-        if !a.seams.is_empty() {
+        if !a.seams().is_empty() {
             room[0] = from.max(a.behind_seams() as f64);
         }
-        if !incoming.seams.is_empty() {
+        if !incoming.seams().is_empty() {
             room[1] =
                 to.min(self.found.registration.warp().inverse(incoming.before_seams() as f64));
         }
@@ -410,7 +409,7 @@ impl RegisterInputs {
 
     /// All clips on the skeleton of A.
     fn beside(&self) -> Vec<Arc<Clip>> {
-        let also = self.also.iter().map(|also| Arc::clone(&also.pair.incoming.clip));
+        let also = self.also.iter().map(|also| Arc::clone(also.pair.incoming.clip()));
         self.pair.clips().into_iter().chain(also).collect()
     }
 
@@ -430,7 +429,7 @@ impl RegisterInputs {
         distance_cm: Option<f64>,
     ) -> Vec<Metric> {
         let [a, b] = &self.pair.profiles;
-        let roles = &self.pair.a.roles;
+        let roles = self.pair.a.roles();
         let slid = |clip: &Clip| foot_slide_cm(clip, roles, contacts);
         let mut metrics = vec![slide(slid(clip))];
         if self.foot_lock.is_some() {
@@ -465,7 +464,7 @@ impl RegisterInputs {
 impl LabInputs for RegisterInputs {
     fn run(&self) -> Result<Outcome, LabError> {
         let pair = &self.pair;
-        let fps = pair.a.clip.fps();
+        let fps = pair.a.clip().fps();
         let (draft, part, is_join) = match &self.made {
             Made::Blend { weight } => (self.blend(weight)?, self.span(), false),
             Made::Join { part_secs, law } => {
@@ -474,14 +473,14 @@ impl LabInputs for RegisterInputs {
             }
         };
         let Draft { clip: free, frames, beats, contacts, mixed, world_from_b } = draft;
-        let roles = pair.a.roles.clone();
+        let roles = pair.a.roles().clone();
         let sign = if is_join { "→" } else { "+" };
         let also = self.also.iter().map(|also| &also.pair.b);
         let others: Vec<&str> =
-            std::iter::once(&pair.b).chain(also).map(|motion| motion.clip.name()).collect();
+            std::iter::once(&pair.b).chain(also).map(|motion| motion.clip().name()).collect();
         let free = Arc::new(free.with_name(format!(
             "{} {sign} {}",
-            pair.a.clip.name(),
+            pair.a.clip().name(),
             others.join(" + ")
         )));
         let clip = with_feet(&free, &roles, &contacts, self.ground_m(), self.foot_lock)?;
@@ -510,16 +509,14 @@ impl LabInputs for RegisterInputs {
             Source::new(Slot::A, &pair.a, 0.0, Planar::IDENTITY),
             Source::new(Slot::B, &pair.incoming, secs(mixed.end) - left, world_from_b),
         ];
-        let steps = Contacts::detect(&clip, &roles, &pair.a.feet.contacts);
-        let motion = Arc::new(Motion {
-            clip,
-            roles,
-            contacts,
-            ground_frames: frames,
-            seams,
-            ground_m: self.ground_m(),
-            feet: pair.a.feet,
-        });
+        let steps = Contacts::detect(&clip, &roles, &pair.a.feet().contacts);
+        let motion = Arc::new(
+            Motion::with_ground_frames(clip, &roles, frames)
+                .with_feet(pair.a.feet())
+                .with_contacts(contacts)
+                .with_ground_m(self.ground_m())
+                .with_seams(seams),
+        );
         Ok(Outcome {
             facts: LabFacts::Registered(Arc::new(Registered {
                 map: Arc::clone(&self.found.map),

@@ -2,8 +2,7 @@
 
 use super::feet::{Lock, slide, slide_before, with_feet};
 use crate::labs::LabError;
-use crate::motion::{FeetReading, Motion};
-use segue_motion::clip::{Clip, Contacts, character_frames};
+use segue_motion::clip::{Clip, Contacts, Motion, character_frames};
 use segue_motion::metrics::{Metric, foot_slide_cm};
 use segue_motion::skeleton::{Roles, Side};
 use segue_motion::transition::repeat_clip;
@@ -53,15 +52,9 @@ pub(super) fn rounds(
     let clip = repeat_clip(&middle.transformed(&cycle.inverse()), &cycle, count + 1)
         .and_then(|clip| clip.crop(0..frames))?;
     Ok(Rounds {
-        motion: Motion {
-            ground_frames: character_frames(&clip, roles),
-            clip: Arc::new(clip),
-            roles: roles.clone(),
-            contacts: repeated(contacts, &(cycle_frames..2 * cycle_frames), frames),
-            seams: Vec::new(),
-            ground_m,
-            feet: FeetReading::default(),
-        },
+        motion: Motion::with_roles(clip, roles)
+            .with_contacts(repeated(contacts, &(cycle_frames..2 * cycle_frames), frames))
+            .with_ground_m(ground_m),
         slides,
     })
 }

@@ -116,7 +116,7 @@ impl GaitFinder {
             found.map_err(LabError::from)
         };
         let [first, second] = &pair.profiles;
-        let cycles = [find(first, &pair.a.roles)?, find(second, &pair.incoming.roles)?];
+        let cycles = [find(first, pair.a.roles())?, find(second, pair.incoming.roles())?];
         let gaits = Arc::new(Gaits { pair: Arc::clone(pair), cycles });
         self.known = Some(Arc::clone(&gaits));
         Ok(gaits)
@@ -149,9 +149,9 @@ impl LabInputs for SpeedInputs {
     fn run(&self) -> Result<Outcome, LabError> {
         let (pair, [a, b]) = (&self.gaits.pair, &self.gaits.cycles);
         let options = SpeedOptions { alignment: self.alignment, ..SpeedOptions::default() };
-        let roles = &pair.a.roles;
+        let roles = pair.a.roles();
         let blend = SpeedBlend::new(a, b, roles, &options)?;
-        let fps = pair.a.clip.fps();
+        let fps = pair.a.clip().fps();
         let three = blend.cycles_at(self.asked_mps, 3)?;
         let (facts, cycle_frames) = (three.facts, (three.clip.frames() - 1) / 3);
         let Rounds { motion, mut slides } = rounds(
@@ -162,7 +162,7 @@ impl LabInputs for SpeedInputs {
             pair.ground_m(),
             self.foot_lock,
         )?;
-        let measured = f64::from(ground_speed(&motion.ground_frames, fps));
+        let measured = f64::from(ground_speed(motion.ground_frames(), fps));
         let mut metrics = vec![
             Metric::fact(
                 "speed_mps",

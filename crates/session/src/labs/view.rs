@@ -10,9 +10,8 @@ use crate::LabId;
 use crate::choices;
 use crate::compare::MAX_PANES;
 use crate::labs::LabError;
-use crate::motion::Motion;
 use crate::params::{Key, Params};
-use segue_motion::clip::take_in_place;
+use segue_motion::clip::{Motion, take_in_place};
 use segue_motion::math::Planar;
 use segue_motion::metrics::{ClipMeter, Metric, SlideMeter};
 use segue_motion::path::{FitOptions, FittedPath};
@@ -94,7 +93,7 @@ impl LabInputs for ViewInputs {
             None => Outcome::plain(Arc::clone(&self.motion)),
             Some(viewed) => viewed.made.clone()?,
         };
-        let measured = Measured::Clip(Arc::clone(&shown.motion.clip));
+        let measured = Measured::Clip(Arc::clone(shown.motion.clip()));
         let motion = self.ground.moved(&shown.motion)?;
         Ok(Outcome { motion, measured, ..shown })
     }
@@ -141,7 +140,7 @@ impl Ground {
 
     /// The motion there.
     fn moved(&self, motion: &Arc<Motion>) -> Result<Arc<Motion>, LabError> {
-        let frames = &motion.ground_frames;
+        let frames = motion.ground_frames();
         let mut moves = match self.root_motion {
             RootMotion::World if self.start == [None; 2] && self.heading_deg.is_none() => {
                 return Ok(Arc::clone(motion));
@@ -168,15 +167,9 @@ impl Ground {
         for planar in &mut moves {
             *planar = there.after(planar);
         }
-        Ok(Arc::new(Motion {
-            clip: Arc::new(motion.clip.transformed_by_frame(&moves)),
-            ground_frames: moves
-                .iter()
-                .zip(frames)
-                .map(|(planar, frame)| planar.after(frame))
-                .collect(),
-            ..Motion::clone(motion)
-        }))
+        let placed = moves.iter().zip(frames).map(|(planar, frame)| planar.after(frame));
+        let clip = motion.clip().transformed_by_frame(&moves);
+        Ok(Arc::new(motion.with_clip(clip, placed.collect())))
     }
 }
 
@@ -226,7 +219,7 @@ enum Stage {
 
 impl Stage {
     fn measuring(motion: Arc<Motion>, before: Option<Metric>) -> Self {
-        let meter = Box::new(ClipMeter::new(&motion.clip, &motion.roles, motion.ground_m));
+        let meter = Box::new(ClipMeter::new(motion.clip(), motion.roles(), motion.ground_m()));
         Self::Measuring { motion, before, meter }
     }
 }
@@ -239,7 +232,7 @@ impl Viewer {
         let lock = Lock::of(params);
         let viewed = self.known(motion, lock).or_else(|| {
             let index = self.begin(motion, lock);
-            while motion.clip.frames() <= AT_ONCE
+            while motion.clip().frames() <= AT_ONCE
                 && self.under_way.get(index).is_some_and(|at| Arc::ptr_eq(&at.motion, motion))
             {
                 self.step(index);
@@ -270,7 +263,7 @@ impl Viewer {
             lock,
             is_wanted: true,
             stage: match lock {
-                Some(lock) => Stage::Before(lock, SlideMeter::new(&motion.clip, &motion.roles)),
+                Some(lock) => Stage::Before(lock, SlideMeter::new(motion.clip(), motion.roles())),
                 None => Stage::measuring(Arc::clone(motion), None),
             },
         });
@@ -322,7 +315,7 @@ impl Sliced for Viewer {
         let progress = match &at.stage {
             Stage::Before(..) => 0.0,
             Stage::Locking { locking, .. } => 0.2 + 0.6 * locking.progress(),
-            Stage::Measuring { motion, meter, .. } => 0.8 + 0.2 * meter.progress(&motion.clip),
+            Stage::Measuring { motion, meter, .. } => 0.8 + 0.2 * meter.progress(motion.clip()),
         };
         Some((JobKind::HoldingFeet, f64::from(progress)))
     }
@@ -341,11 +334,11 @@ fn on(stage: Stage) -> Step {
 fn next(of: &Arc<Motion>, stage: Stage) -> Step {
     match stage {
         Stage::Before(lock, mut meter) => {
-            if meter.advance(&of.clip, &of.contacts, PER_SLICE) {
+            if meter.advance(of.clip(), of.contacts(), PER_SLICE) {
                 return on(Stage::Before(lock, meter));
             }
             let before_cm = meter.worst_cm();
-            match locking(Arc::clone(&of.clip), &of.roles, &of.contacts, of.ground_m, lock) {
+            match locking(Arc::clone(of.clip()), of.roles(), of.contacts(), of.ground_m(), lock) {
                 Ok(Some(locking)) => on(Stage::Locking { before_cm, locking: Box::new(locking) }),
                 Ok(None) => on(Stage::measuring(Arc::clone(of), Some(slide_before(before_cm)))),
                 Err(error) => Step::Done(Box::new(Err(error))),
@@ -358,17 +351,17 @@ fn next(of: &Arc<Motion>, stage: Stage) -> Step {
             match locking.finish() {
                 // Hips are only raised and lowered: the character stands where it stood.
                 Ok(locked) => {
-                    let motion = Motion { clip: Arc::new(locked), ..Motion::clone(of) };
+                    let motion = of.with_clip(locked, of.ground_frames().to_vec());
                     on(Stage::measuring(Arc::new(motion), Some(slide_before(before_cm))))
                 }
                 Err(error) => Step::Done(Box::new(Err(error.into()))),
             }
         }
         Stage::Measuring { motion, before, mut meter } => {
-            if meter.advance(&motion.clip, &motion.contacts, PER_SLICE) {
+            if meter.advance(motion.clip(), motion.contacts(), PER_SLICE) {
                 return on(Stage::Measuring { motion, before, meter });
             }
-            let found = meter.finish(&motion.ground_frames);
+            let found = meter.finish(motion.ground_frames());
             let slides = std::iter::once(slide(found.foot_slide_cm)).chain(before);
             Step::Done(Box::new(Ok(Outcome {
                 metrics: slides.chain(found.list()).collect(),

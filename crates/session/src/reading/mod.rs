@@ -5,7 +5,6 @@ mod wire;
 
 pub use wire::{Parcel, Unpacker, WireError};
 
-use super::motion::Motion;
 use super::outside;
 use segue_formats::acclaim::{self, AcclaimSkeleton};
 use segue_formats::archive::{self, ArchiveLimits};
@@ -13,6 +12,7 @@ use segue_formats::{
     FileKind, ImportError, ImportOptions, Imported, ImportedClip, gltf, import_with_progress,
     kind_of, unpack_gzip,
 };
+use segue_motion::clip::Motion;
 use segue_motion::skeleton::Roles;
 use segue_motion::skin::SkinnedMesh;
 use segue_text::{Message, ToMessage, msg};
@@ -396,7 +396,8 @@ impl From<&ImportedClip> for About {
 impl ReadClip {
     fn new(imported: ImportedClip, roles: Option<Roles>) -> Self {
         let about = About::from(&imported);
-        Self { mesh: imported.mesh, motion: Motion::analyze(imported.clip, roles), about }
+        let roles = roles.unwrap_or_else(|| Roles::detect(imported.clip.skeleton()));
+        Self { mesh: imported.mesh, motion: Motion::with_roles(imported.clip, &roles), about }
     }
 }
 

@@ -3,11 +3,10 @@
 
 use super::{About, Companion, ReadClip, ReadClips, ReadFile, ReadReport};
 use crate::memory::motion_bytes;
-use crate::motion::{FeetReading, Motion};
 use bytemuck::{AnyBitPattern, NoUninit, pod_read_unaligned};
 use glam::{DVec2, Quat, Vec3};
 use segue_formats::{FileKind, ImportError};
-use segue_motion::clip::{Clip, ClipError, Contacts, JointTranslations, Provenance};
+use segue_motion::clip::{Clip, ClipError, Contacts, JointTranslations, Motion, Provenance};
 use segue_motion::math::Planar;
 use segue_motion::skeleton::{FoldedChain, Joint, Roles, Side, Skeleton, SkeletonError};
 use segue_motion::skin::{RigidTransform, SkinnedMesh};
@@ -150,7 +149,7 @@ impl Parcel {
 }
 
 fn put_motion(piece: &mut Piece<'_>, motion: &Motion) {
-    let clip = &motion.clip;
+    let clip = motion.clip();
     for frame in 0..clip.frames() {
         piece.put(clip.rotations(frame));
     }
@@ -158,11 +157,11 @@ fn put_motion(piece: &mut Piece<'_>, motion: &Motion) {
     for track in clip.translations() {
         piece.put(&track.values);
     }
-    for place in &motion.ground_frames {
+    for place in motion.ground_frames() {
         piece.put(&[[place.yaw, place.shift.x, place.shift.y]]);
     }
     for frame in 0..clip.frames() {
-        piece.put(&[Side::BOTH.map(|side| u8::from(motion.contacts.planted(side, frame)))]);
+        piece.put(&[Side::BOTH.map(|side| u8::from(motion.contacts().planted(side, frame)))]);
     }
 }
 
@@ -267,15 +266,15 @@ impl ClipHead {
     fn of(clip: &ReadClip, meshes: &[&Arc<SkinnedMesh>]) -> Self {
         let motion = &clip.motion;
         Self {
-            name: motion.clip.name().to_owned(),
-            joints: motion.clip.skeleton().joints().to_vec(),
-            above: motion.clip.skeleton().folded_chain().cloned(),
-            fps: motion.clip.fps(),
-            frames: motion.clip.frames(),
-            provenance: motion.clip.provenance(),
-            moving: motion.clip.translations().iter().map(|track| track.joint).collect(),
-            roles: motion.roles.clone(),
-            ground_m: motion.ground_m,
+            name: motion.clip().name().to_owned(),
+            joints: motion.clip().skeleton().joints().to_vec(),
+            above: motion.clip().skeleton().folded_chain().cloned(),
+            fps: motion.clip().fps(),
+            frames: motion.clip().frames(),
+            provenance: motion.clip().provenance(),
+            moving: motion.clip().translations().iter().map(|track| track.joint).collect(),
+            roles: motion.roles().clone(),
+            ground_m: motion.ground_m(),
             about: clip.about.clone(),
             mesh: clip
                 .mesh
@@ -391,15 +390,13 @@ impl Arrays {
         let tracks = tracks.map(|(joint, values)| JointTranslations { joint, values }).collect();
         let clip = Clip::new(head.name, skeleton, head.fps, self.rotations, root)?;
         Ok(ReadClip {
-            motion: Motion {
-                clip: Arc::new(clip.with_translations(tracks)?.with_provenance(head.provenance)),
-                roles: head.roles,
-                contacts: Contacts::from_flags(self.contacts),
-                ground_frames: self.ground_frames,
-                seams: Vec::new(),
-                ground_m: head.ground_m,
-                feet: FeetReading::default(),
-            },
+            motion: Motion::with_ground_frames(
+                clip.with_translations(tracks)?.with_provenance(head.provenance),
+                &head.roles,
+                self.ground_frames,
+            )
+            .with_contacts(Contacts::from_flags(self.contacts))
+            .with_ground_m(head.ground_m),
             about: head.about,
             mesh,
         })
@@ -637,7 +634,7 @@ mod tests {
         long.files
             .push(ReadFile { unpacked: Some((0..=255).collect()), ..report(1.0).files.remove(0) });
         let skeleton =
-            long.files[0].result.as_ref().unwrap().clips[0].motion.clip.skeleton().clone();
+            long.files[0].result.as_ref().unwrap().clips[0].motion.clip().skeleton().clone();
         let mesh = Arc::new(SkinnedMesh {
             colors: vec![[0.5, 0.25, 1.0, 1.0]; 3],
             ..SkinnedMesh::around(&skeleton, &Roles::detect(&skeleton), 1.0)

@@ -172,7 +172,11 @@ impl Session {
         if !clips.clips.is_empty() {
             let clip = clips.clips.swap_remove(0);
             self.document.library.change(sample.id, |entry| {
-                entry.motion = Some(Arc::new(clip.motion.with_roles(entry.roles_by_hand.as_ref())));
+                let motion = match &entry.roles_by_hand {
+                    Some(roles) => clip.motion.with_corrected_roles(roles),
+                    None => clip.motion,
+                };
+                entry.motion = Some(Arc::new(motion));
                 entry.unread = None;
                 entry.about = Some(clip.about);
                 entry.warnings = clips.warnings;

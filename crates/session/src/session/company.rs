@@ -7,8 +7,8 @@ use crate::labs::LabError;
 use crate::labs::lab::{self, Beside};
 use crate::labs::{read_ids, recipe_id, recipe_name, take_up, write_ids};
 use crate::library::{Entry, Origin, split_reference};
-use crate::motion::Motion;
 use crate::params::{Key, Value};
+use segue_motion::clip::Motion;
 use std::sync::Arc;
 
 /// As many as a stage and an eye have room for.
@@ -29,7 +29,7 @@ impl Companion {
     /// How long it moves, seconds; `None` where nothing is to be seen.
     #[must_use]
     pub fn duration_secs(&self) -> Option<f64> {
-        self.motion.as_ref().ok().map(|motion| motion.clip.duration_secs())
+        self.motion.as_ref().ok().map(|motion| motion.clip().duration_secs())
     }
 }
 

@@ -35,7 +35,7 @@ fn shown(session: &Session) -> (Vec<Quat>, f32, Planar) {
 fn shown_at(session: &Session, secs: f64) -> (Vec<Quat>, f32, Planar) {
     let Shown { outcome, secs, place } = session.panes()[0].shown_at(secs).unwrap();
     let motion = &outcome.motion;
-    let pose = motion.clip.sample(secs, Interpolation::Linear).unwrap();
+    let pose = motion.clip().sample(secs, Interpolation::Linear).unwrap();
     let here = motion.standing_at(secs);
     let mut rotations = pose.rotations;
     rotations[0] = here.inverse().rotation() * rotations[0];
@@ -257,16 +257,16 @@ fn a_loop_goes_round_a_hundred_times_without_drift() {
 fn the_frames_of_every_cycle_are_those_of_the_first() {
     let mut session = open("lab=loop&a=walk_left");
     let outcome = Arc::clone(session.main_outcome().unwrap());
-    let clip = &outcome.motion.clip;
+    let clip = outcome.motion.clip();
     let frames = (cycle(&session).secs * clip.fps()).round() as usize;
     let own = |frame: usize| {
         let mut rotations = clip.rotations(frame).to_vec();
-        rotations[0] = outcome.motion.ground_frames[frame].inverse().rotation() * rotations[0];
+        rotations[0] = outcome.motion.ground_frames()[frame].inverse().rotation() * rotations[0];
         rotations
     };
     for frame in 0..clip.frames() - frames {
         assert!(turned(&own(frame), &own(frame + frames)).to_radians() < 1e-4, "{frame}");
-        let stands = &outcome.motion.ground_frames;
+        let stands = outcome.motion.ground_frames();
         let step = |frame: usize| stands[frame].inverse().after(&stands[frame + frames]);
         if frame + 2 * frames < clip.frames() {
             assert!(distance(&step(frame), &step(frame + frames)) < 1e-3, "{frame}");
@@ -300,7 +300,7 @@ fn the_classic_ways_to_close_a_loop_leave_what_the_exact_one_does_not() {
     let place = |pane: usize| session.panes()[pane].outcome.as_ref().unwrap().cycle.unwrap().made;
     assert_eq!(place(0), place(2));
     let (secs, frames) = (metric(&session, 0, "cycle_s"), metric(&session, 0, "cycle_frames"));
-    assert!((secs * session.main_outcome().unwrap().motion.clip.fps() - frames).abs() < 1e-9);
+    assert!((secs * session.main_outcome().unwrap().motion.clip().fps() - frames).abs() < 1e-9);
     assert!((metric(&session, 0, "cycle_m") / secs / 1.4 - 1.0).abs() < 0.05);
     // A half-life belongs to loops, too.
     assert_eq!(open("lab=loop&compare=half_life:0.1,0.4").panes().len(), 2);

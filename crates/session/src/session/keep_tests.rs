@@ -27,7 +27,7 @@ fn motion(session: &Session, id: &str) -> Arc<Motion> {
 
 /// How far the character has turned at the end, to the left, degrees.
 fn turned(motion: &Motion) -> f64 {
-    let frames = &motion.ground_frames;
+    let frames = motion.ground_frames();
     let steps = frames.windows(2).map(|pair| wrap_angle(pair[1].yaw - pair[0].yaw));
     steps.sum::<f64>().to_degrees()
 }
@@ -44,13 +44,13 @@ fn a_sequence_of_kept_results_keeps_its_middle() {
         let one = join(&mut session, "start", "walk");
         let two = join(&mut session, &one, "walk_left");
         let (first, second) = (motion(&session, &one), motion(&session, &two));
-        assert_eq!((first.seams.len(), second.seams.len()), (1, 2), "{lab}");
+        assert_eq!((first.seams().len(), second.seams().len()), (1, 2), "{lab}");
         let three = join(&mut session, &two, "stop");
         let third = motion(&session, &three);
         let left = session.main_outcome().unwrap().transition.unwrap().leave_a_secs;
-        let seam = second.behind_seams() as f64 / second.clip.fps();
+        let seam = second.behind_seams() as f64 / second.clip().fps();
         assert!(left + 1e-6 >= seam, "{lab}: {left} s lies before the seam at {seam} s");
-        assert_eq!(third.seams[..2], second.seams[..], "{lab}");
+        assert_eq!(third.seams()[..2], second.seams()[..], "{lab}");
         let turns = [turned(&first), turned(&second), turned(&third)];
         // What a registered join goes over in is a mixture of both, in which the turn is less.
         let is_mixed = lab.contains("register");
@@ -62,20 +62,20 @@ fn a_sequence_of_kept_results_keeps_its_middle() {
         // In front of another clip, too: what was kept is entered before its first seam.
         let after = join(&mut session, "walk", &two);
         let place = session.main_outcome().unwrap().transition.unwrap();
-        let first_seam = second.before_seams() as f64 / second.clip.fps();
+        let first_seam = second.before_seams() as f64 / second.clip().fps();
         assert!(
             place.enter_b_secs <= first_seam + 1e-6,
             "{lab}: {} {first_seam}",
             place.enter_b_secs
         );
-        assert_eq!(motion(&session, &after).seams.len(), 3, "{lab}");
+        assert_eq!(motion(&session, &after).seams().len(), 3, "{lab}");
 
         // The link alone brings the same motion back, seams and all.
         let again = opened(&format!("lab=view&a={three}"));
         let again = &again.main_outcome().unwrap().motion;
         assert_eq!(
-            (again.clip.root_translations(), &again.seams),
-            (third.clip.root_translations(), &third.seams),
+            (again.clip().root_translations(), again.seams()),
+            (third.clip().root_translations(), third.seams()),
             "{lab}"
         );
     }
@@ -85,7 +85,7 @@ fn a_sequence_of_kept_results_keeps_its_middle() {
 fn results_with_a_further_clip_of_a_file_are_kept() {
     let mut session = opened("lab=view&a=walk");
     let bytes = segue_formats::bvh::write(
-        &motion(&session, "walk").clip,
+        motion(&session, "walk").clip(),
         &segue_formats::bvh::WriteOptions::default(),
     );
     let id = session.load("two.bvh", bytes.into_bytes().into()).unwrap().ids.remove(0);
@@ -126,7 +126,7 @@ fn what_no_link_can_hold_is_not_kept() {
     // All that was kept can be made again.
     let last = opened(&format!("lab=view&a={id}"));
     assert_eq!(
-        motion(&session, &id).clip.frames(),
-        last.main_outcome().unwrap().motion.clip.frames()
+        motion(&session, &id).clip().frames(),
+        last.main_outcome().unwrap().motion.clip().frames()
     );
 }

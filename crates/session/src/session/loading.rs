@@ -543,7 +543,7 @@ impl Session {
             entry
                 .motion
                 .as_ref()
-                .is_some_and(|motion| motion.clip.frames() > usize::from(entry.mesh.is_some()))
+                .is_some_and(|motion| motion.clip().frames() > usize::from(entry.mesh.is_some()))
         });
         // What the link fetches once more, after a reload, has the place that it was given then, or
         // none.
@@ -853,7 +853,7 @@ fn file_entries(
         entry.name = entry
             .motion
             .as_ref()
-            .map_or_else(String::new, |motion| outside::clip_name(motion.clip.name()));
+            .map_or_else(String::new, |motion| outside::clip_name(motion.clip().name()));
         entry
     });
     Ok((named.collect(), warnings))

@@ -446,10 +446,10 @@ fn a_dropped_file_with_a_skin_becomes_the_character_and_drives() {
     assert_eq!(session.params().text(Key::A), before);
     let outcome = Arc::clone(session.main_outcome().unwrap());
     let drive =
-        segue_motion::skin::Drive::new(&outcome.motion.clip, &outcome.motion.roles, &character)
+        segue_motion::skin::Drive::new(outcome.motion.clip(), outcome.motion.roles(), &character)
             .unwrap();
     let mut transforms = Vec::new();
-    drive.transforms(&outcome.motion.clip.world_pose(10), &character.mesh, &mut transforms);
+    drive.transforms(&outcome.motion.clip().world_pose(10), &character.mesh, &mut transforms);
     assert_eq!(transforms.len(), character.skeleton.len());
     assert!(
         transforms.iter().all(
@@ -492,7 +492,7 @@ fn a_figure_that_no_clip_moves_is_not_cast_for_others() {
         session.apply(Command::OpenLink(link)).unwrap();
         settle(session);
         let motion = Arc::clone(&session.main_outcome().unwrap().motion);
-        let drive = segue_motion::skin::Drive::new(&motion.clip, &motion.roles, &character);
+        let drive = segue_motion::skin::Drive::new(motion.clip(), motion.roles(), &character);
         (drive.is_some(), session.character_note())
     };
     assert_eq!(show(&mut session, &spider_id), (true, None));
@@ -660,12 +660,12 @@ fn offer(session: &Session) -> Notice {
 
 fn height_metres(session: &Session, id: &str) -> f32 {
     let motion = session.library().find(id).unwrap().motion.clone().unwrap();
-    motion.roles.body_height(motion.clip.skeleton())
+    motion.roles().body_height(motion.clip().skeleton())
 }
 
 fn longest_step_metres(session: &Session, id: &str) -> f32 {
     let motion = session.library().find(id).unwrap().motion.clone().unwrap();
-    let roots = motion.clip.root_translations();
+    let roots = motion.clip().root_translations();
     roots.windows(2).map(|pair| pair[0].distance(pair[1])).fold(0.0, f32::max)
 }
 

@@ -3,7 +3,6 @@
 use crate::fixtures::*;
 use crate::labs::lab_set::Sliced as _;
 use crate::labs::{Gauge, Measured};
-use crate::motion::Motion;
 use crate::params::Kind;
 use glam::Quat;
 use segue_motion::clip::Clip;
@@ -90,7 +89,7 @@ fn every_lab_has_the_same_numbers_first_and_a_clean_result_shows_nothing() {
 
 /// A result whose frames are something else.
 fn spoiled(outcome: &Outcome, change: impl Fn(usize, &mut [Quat])) -> Outcome {
-    let clip = &outcome.motion.clip;
+    let clip = outcome.motion.clip();
     let mut rotations = Vec::new();
     for frame in 0..clip.frames() {
         let mut pose = clip.rotations(frame).to_vec();
@@ -101,7 +100,7 @@ fn spoiled(outcome: &Outcome, change: impl Fn(usize, &mut [Quat])) -> Outcome {
     let clip =
         Clip::new("spoiled", Arc::clone(clip.skeleton()), clip.fps(), rotations, roots).unwrap();
     Outcome {
-        motion: Arc::new(Motion { clip: Arc::new(clip), ..Motion::clone(&outcome.motion) }),
+        motion: Arc::new(outcome.motion.with_clip(clip, outcome.motion.ground_frames().to_vec())),
         measured: Measured::Motion,
         ..outcome.clone()
     }
@@ -124,7 +123,7 @@ fn a_fault_in_the_result_of_any_lab_is_told() {
     for link in LABS {
         let session = opened(link);
         let outcome = session.main_outcome().unwrap();
-        let clip = &outcome.motion.clip;
+        let clip = outcome.motion.clip();
         if clip.frames() < 60 {
             assert!(session.is_driven(), "{link}");
             continue;
@@ -160,7 +159,7 @@ fn long_results_are_shown_at_once_and_measured_in_slices() {
     let shorter = Command::Set(vec![(Key::BlendWindow, Value::Number(20.0))]);
     session.apply(shorter).unwrap();
     let outcome = Arc::clone(session.main_outcome().unwrap());
-    assert!(outcome.motion.clip.frames() > 2_000);
+    assert!(outcome.motion.clip().frames() > 2_000);
     assert_eq!(outcome.metrics[0], ResultMetrics::default().list()[0]);
     assert!(session.panes()[0].result().is_err() && session.jobs().is_empty());
     let mut slices = 0;
@@ -179,5 +178,8 @@ fn long_results_are_shown_at_once_and_measured_in_slices() {
     let id = session.library().entries().last().unwrap().id.clone();
     let mut other = Session::new();
     other.apply(Command::OpenLink(format!("lab=view&a={id}"))).unwrap();
-    assert_eq!(other.main_outcome().unwrap().motion.clip.frames(), outcome.motion.clip.frames());
+    assert_eq!(
+        other.main_outcome().unwrap().motion.clip().frames(),
+        outcome.motion.clip().frames()
+    );
 }

@@ -9,9 +9,10 @@ use crate::labs::{Gauge, Inputs, JobKind, LabClips, MoreClip, Outcome, Slot, Sou
 use crate::labs::{belongs_to, lab, preset_motion, recipe_ingredients, recipe_name, recipe_params};
 use crate::library::{Entry, Origin, split_reference};
 use crate::missing::dismiss_found;
-use crate::motion::{FeetReading, Motion};
+use crate::motion::foot_options;
 use crate::outside;
 use crate::params::{Key, Kind, Params, Value};
+use segue_motion::clip::Motion;
 use segue_motion::math::Planar;
 use segue_text::ToMessage;
 use std::sync::Arc;
@@ -296,7 +297,7 @@ impl Session {
     /// The motion of a clip with its feet read as the parameters ask for.
     fn motion_read(&mut self, reference: &str, params: &Params) -> Result<Arc<Motion>, LabError> {
         let motion = self.motion_of(reference)?;
-        Ok(self.feet.read(&motion, FeetReading::of(params)))
+        Ok(self.feet.read(&motion, foot_options(params)))
     }
 
     /// The motion of a clip: made or asked for when it is not there yet.
@@ -341,8 +342,8 @@ impl Session {
             }
         };
         let by_hand = self.document.library.get(&id).and_then(|entry| entry.roles_by_hand.clone());
-        let motion = if by_hand.is_some() {
-            Arc::new(Arc::unwrap_or_clone(motion).with_roles(by_hand.as_ref()))
+        let motion = if let Some(roles) = &by_hand {
+            Arc::new(Arc::unwrap_or_clone(motion).with_corrected_roles(roles))
         } else {
             motion
         };
@@ -359,7 +360,7 @@ impl Session {
         params: &Params,
     ) -> Result<Vec<Arc<Motion>>, LabError> {
         let motions = self.motions_of(ids)?;
-        let reading = FeetReading::of(params);
+        let reading = foot_options(params);
         Ok(motions.iter().map(|motion| self.feet.read(motion, reading)).collect())
     }
 

@@ -24,7 +24,7 @@ fn bytes_of(clip: &Clip) -> Arc<[u8]> {
 /// The first frames of the built-in walk, as a file.
 fn first_frames(frames: usize) -> Arc<[u8]> {
     let walk = opened("lab=view&a=walk");
-    bytes_of(&walk.main_outcome().unwrap().motion.clip.crop(0..frames).unwrap())
+    bytes_of(&walk.main_outcome().unwrap().motion.clip().crop(0..frames).unwrap())
 }
 
 /// A motion that has nothing in common with a person: no part of its body is known.
@@ -249,7 +249,7 @@ fn stands_for_nothing(link: &str, bad: &Change, part: &str) {
     let motion =
         |session: &Session| Arc::clone(&session.panes()[0].result().unwrap().outcome.motion);
     if !session.is_driven() {
-        assert_eq!(motion(&session).clip, motion(&opened(link)).clip, "{state}");
+        assert_eq!(motion(&session).clip(), motion(&opened(link)).clip(), "{state}");
     }
     assert!(session.panes()[0].sources.is_empty(), "{state}");
 }

@@ -218,7 +218,7 @@ impl Session {
 /// Whether nothing was said of a clip by hand.
 fn is_as_it_came(entry: &Entry) -> bool {
     let own_name = match &entry.origin {
-        Origin::File(_) => entry.motion.as_ref().map(|motion| motion.clip.name().to_owned()),
+        Origin::File(_) => entry.motion.as_ref().map(|motion| motion.clip().name().to_owned()),
         Origin::Made => recipe_params(&entry.id).map(|params| recipe_name(&params)),
         Origin::Preset | Origin::Sample(_) => {
             built_in_entries().find(|known| known.id == entry.id).map(|known| known.name)

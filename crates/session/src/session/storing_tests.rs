@@ -43,7 +43,7 @@ fn roles_that_were_corrected_by_hand_survive_for_every_kind_of_clip() {
     for id in ids {
         for session in [&restored, &again] {
             let motion = session.library().get(id).unwrap().motion.clone().unwrap();
-            assert_eq!(motion.roles.get(Role::Head), Some(1), "{id}");
+            assert_eq!(motion.roles().get(Role::Head), Some(1), "{id}");
         }
     }
 }
@@ -75,7 +75,9 @@ fn roles_for_joints_that_are_not_there_are_left_alone() {
     restored.restore(&saved, |_| None, None);
     settle(&mut restored);
     let motion = restored.library().get("idle").unwrap().motion.clone().unwrap();
-    assert!(motion.roles.get(Role::Head).is_some_and(|joint| joint < motion.clip.skeleton().len()));
+    assert!(
+        motion.roles().get(Role::Head).is_some_and(|joint| joint < motion.clip().skeleton().len())
+    );
 }
 
 #[test]

@@ -262,7 +262,7 @@ fn a_bundled_take_is_asked_for_and_takes_its_place() {
     session.load_sample(sample, &packed).unwrap();
     settle(&mut session);
     assert_eq!(session.panes()[0].problem, None);
-    assert!(session.main_outcome().unwrap().motion.clip.frames() > 30);
+    assert!(session.main_outcome().unwrap().motion.clip().frames() > 30);
 }
 
 #[test]
@@ -276,8 +276,8 @@ fn made_clips_are_kept_and_travel_in_the_link() {
     other.apply(Command::OpenLink(format!("lab=view&a={id}"))).unwrap();
     assert_eq!(other.panes()[0].problem, None);
     assert_eq!(
-        other.main_outcome().unwrap().motion.clip.rotations(9),
-        session.main_outcome().unwrap().motion.clip.rotations(9)
+        other.main_outcome().unwrap().motion.clip().rotations(9),
+        session.main_outcome().unwrap().motion.clip().rotations(9)
     );
 }
 
@@ -322,7 +322,7 @@ fn results_of_every_lab_are_kept_as_recipes() {
         other.apply(Command::OpenLink(format!("lab=view&a={id}"))).unwrap();
         settle(&mut other);
         assert_eq!(other.panes()[0].problem, None, "{id}");
-        let clip = |session: &Session| Arc::clone(&session.main_outcome().unwrap().motion.clip);
+        let clip = |session: &Session| Arc::clone(session.main_outcome().unwrap().motion.clip());
         assert_eq!(clip(&other).frames(), clip(&session).frames(), "{id}");
         assert_eq!(clip(&other).rotations(40), clip(&session).rotations(40), "{id}");
     }
@@ -358,8 +358,8 @@ fn what_was_found_is_part_of_the_recipe() {
         settle(&mut other);
         assert_eq!(other.panes()[0].problem, None, "{twice}");
         assert_eq!(
-            other.main_outcome().unwrap().motion.clip.root_translations().last(),
-            session.main_outcome().unwrap().motion.clip.root_translations().last(),
+            other.main_outcome().unwrap().motion.clip().root_translations().last(),
+            session.main_outcome().unwrap().motion.clip().root_translations().last(),
             "{twice}"
         );
     }
@@ -432,7 +432,7 @@ fn a_large_file_is_read_elsewhere_and_then_joins_the_library() {
     let report = read("long.bvh", &bytes, &again.setup, &mut |_| true).unwrap();
     session.finish_reading(again.id, Ok(report)).unwrap().unwrap();
     let motion = session.slot(Slot::A).unwrap().motion.clone().unwrap();
-    assert_eq!(motion.roles.get(segue_motion::skeleton::Role::Head), Some(1));
+    assert_eq!(motion.roles().get(segue_motion::skeleton::Role::Head), Some(1));
 
     // After a reload it is asked for again, and is there as soon as it was read.
     let mut restored = Session::new();
@@ -506,7 +506,7 @@ fn mix_frames_are_frames_of_each_clip() {
         .unwrap();
     settle(&mut session);
     let outcome = session.main_outcome().unwrap();
-    let fps = outcome.motion.clip.fps();
+    let fps = outcome.motion.clip().fps();
     let place = outcome.transition.unwrap();
     assert_eq!(
         ((place.leave_a_secs * fps).round(), (place.enter_b_secs * fps).round()),
@@ -550,7 +550,7 @@ fn rotations_of(clip: &Clip) -> Vec<Quat> {
 
 /// Those of the first pane's result.
 fn rotations(session: &Session) -> Vec<Quat> {
-    rotations_of(&session.main_outcome().unwrap().motion.clip)
+    rotations_of(session.main_outcome().unwrap().motion.clip())
 }
 
 #[test]
@@ -594,11 +594,13 @@ fn clearance_of_zero_leaves_the_swing_as_it_is() {
     let motion = &free.main_outcome().unwrap().motion;
     let held = |clearance_m| {
         let options = FootLockOptions {
-            ground_m: Some(motion.ground_m),
+            ground_m: Some(motion.ground_m()),
             clearance_m,
             ..FootLockOptions::default()
         };
-        rotations_of(&foot_lock(&motion.clip, &motion.roles, &motion.contacts, &options).unwrap())
+        rotations_of(
+            &foot_lock(motion.clip(), motion.roles(), motion.contacts(), &options).unwrap(),
+        )
     };
     assert_eq!(rotations(&opened("lab=blend&foot_lock=on&lock_clearance=0")), held(None));
     assert_eq!(rotations(&opened("lab=blend&foot_lock=on&lock_clearance=8")), held(Some(0.08)));
@@ -618,7 +620,7 @@ fn lock_settings_come_back_from_a_link() {
     assert_eq!(rotations(&again), rotations(&session));
     let panes = opened("lab=transition&foot_lock=on&compare=lock_reach:30,3");
     let of_pane =
-        |pane: usize| rotations_of(&panes.panes()[pane].outcome.as_ref().unwrap().motion.clip);
+        |pane: usize| rotations_of(panes.panes()[pane].outcome.as_ref().unwrap().motion.clip());
     assert_ne!(of_pane(0), of_pane(1));
 }
 
@@ -642,7 +644,7 @@ fn one_switch_holds_the_feet_in_every_lab() {
 fn a_held_view_is_kept_under_its_recipe() {
     let mut session = Session::new();
     session.apply(Command::OpenLink("lab=view&a=stop&foot_lock=on".into())).unwrap();
-    let held = session.main_outcome().unwrap().motion.clip.clone();
+    let held = session.main_outcome().unwrap().motion.clip().clone();
     session.apply(Command::Keep(0)).unwrap();
     session
         .apply(Command::OpenLink(
@@ -655,8 +657,8 @@ fn a_held_view_is_kept_under_its_recipe() {
     settle(&mut other);
     for session in [&session, &other] {
         let of_slot = |slot| session.slot(slot).unwrap().motion.as_ref().unwrap();
-        assert_eq!(of_slot(Slot::A).clip, held);
-        assert_eq!(of_slot(Slot::B).clip.name(), "walk(foot_lock:on)");
+        assert_eq!(*of_slot(Slot::A).clip(), held);
+        assert_eq!(of_slot(Slot::B).clip().name(), "walk(foot_lock:on)");
     }
 }
 
@@ -667,7 +669,7 @@ fn a_long_clip_is_held_in_slices_while_the_free_one_stays() {
     session.apply(Command::OpenLink(format!("lab=view&a={long}"))).unwrap();
     let free = session.main_outcome().unwrap().clone();
     assert!(
-        free.motion.clip.frames() > 1_000
+        free.motion.clip().frames() > 1_000
             && free.metrics.iter().all(|metric| metric.value.is_none())
     );
     session.apply(Command::Set(vec![(Key::FootLock, Value::Switch(true))])).unwrap();
@@ -683,11 +685,14 @@ fn a_long_clip_is_held_in_slices_while_the_free_one_stays() {
     let held = session.main_outcome().unwrap();
     let motion = &free.motion;
     let whole =
-        foot_lock(&motion.clip, &motion.roles, &motion.contacts, &FootLockOptions::default())
+        foot_lock(motion.clip(), motion.roles(), motion.contacts(), &FootLockOptions::default())
             .unwrap();
-    assert_eq!(*held.motion.clip, whole);
+    assert_eq!(**held.motion.clip(), whole);
     let before = held.metrics.iter().find(|metric| metric.id == "foot_slide_before_cm");
-    assert_eq!(before.unwrap().value, foot_slide_cm(&motion.clip, &motion.roles, &motion.contacts));
+    assert_eq!(
+        before.unwrap().value,
+        foot_slide_cm(motion.clip(), motion.roles(), motion.contacts())
+    );
 }
 
 /// A session whose slot A holds a large file from storage, that is being read.
@@ -807,9 +812,9 @@ fn the_layers_lab_opens_with_a_run_on_walking_legs() {
     assert!(layer.shares[0] == 0.0 && layer.shares.contains(&1.0));
     let walk = session.slot(Slot::A).unwrap().motion.clone().unwrap();
     // The legs are the walk's, bit for bit, and stand as they stood.
-    assert_eq!(outcome.motion.clip.root_translations(), walk.clip.root_translations());
-    assert_eq!(outcome.motion.contacts, walk.contacts);
-    let slide = foot_slide_cm(&walk.clip, &walk.roles, &walk.contacts);
+    assert_eq!(outcome.motion.clip().root_translations(), walk.clip().root_translations());
+    assert_eq!(outcome.motion.contacts(), walk.contacts());
+    let slide = foot_slide_cm(walk.clip(), walk.roles(), walk.contacts());
     assert_eq!(
         (number_of(outcome, "foot_slide_cm"), number_of(outcome, "off_legs_deg")),
         (slide.unwrap(), 0.0)
@@ -818,7 +823,9 @@ fn the_layers_lab_opens_with_a_run_on_walking_legs() {
     assert!(jump < 60.0, "{jump}");
     assert!(number_of(outcome, "off_arms_deg") > 10.0);
     // B's track and A's have the length of A.
-    assert!(outcome.sources.iter().all(|source| source.motion.clip.frames() == walk.clip.frames()));
+    assert!(
+        outcome.sources.iter().all(|source| source.motion.clip().frames() == walk.clip().frames())
+    );
 }
 
 #[test]
@@ -826,12 +833,12 @@ fn the_arms_of_a_run_in_step_swing_with_the_legs() {
     // As far apart as the hands are when the left foot strikes, in every cycle.
     let session = opened("lab=layers&mask=arms&keep_orientation=off");
     let outcome = session.main_outcome().unwrap();
-    let hand = outcome.motion.roles.get(segue_motion::skeleton::Role::LeftForearm).unwrap();
-    let strikes = outcome.motion.contacts.intervals(segue_motion::skeleton::Side::Left);
+    let hand = outcome.motion.roles().get(segue_motion::skeleton::Role::LeftForearm).unwrap();
+    let strikes = outcome.motion.contacts().intervals(segue_motion::skeleton::Side::Left);
     let at: Vec<_> = strikes
         .iter()
         .skip(1)
-        .map(|stance| outcome.motion.clip.rotations(stance.start)[hand])
+        .map(|stance| outcome.motion.clip().rotations(stance.start)[hand])
         .collect();
     assert!(at.len() >= 2);
     for pair in at.windows(2) {

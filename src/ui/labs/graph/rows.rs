@@ -83,7 +83,7 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
             let name = entry.map_or(id.as_str(), |entry| entry.name.as_str());
             let secs = entry
                 .and_then(|entry| entry.motion.as_ref())
-                .map(|motion| motion.clip.duration_secs());
+                .map(|motion| motion.clip().duration_secs());
             ui.push_id(id, |ui| {
                 ui.horizontal(|ui| {
                     ui.label(
@@ -284,7 +284,7 @@ fn ways_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
         }
     }
     if let Some(walk) = session.graph_walk().filter(|walk| walk.ends) {
-        kit::note_ui(&text::dead_end(walk.motion.clip.duration_secs()), palette.warning, ui);
+        kit::note_ui(&text::dead_end(walk.motion.clip().duration_secs()), palette.warning, ui);
     }
 }
 

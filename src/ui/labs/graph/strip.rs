@@ -32,7 +32,7 @@ pub(crate) fn walk_panel_ui(
     let playhead = Playhead {
         secs: session.now_secs(),
         frame: frame_at(&walk.motion, session.now_secs()),
-        frames: walk.motion.clip.frames(),
+        frames: walk.motion.clip().frames(),
     };
     transport_row_ui(playhead, &caption, layout, session, out, ui);
     if layout != Layout::Phone {
@@ -44,7 +44,7 @@ pub(crate) fn walk_panel_ui(
 /// Scrubbing, and where the walk goes from clip to clip.
 fn time_ui(session: &Session, walk: &Walk, out: &mut Out, ui: &mut Ui) {
     let palette = palette_of(ui);
-    let fps = walk.motion.clip.fps();
+    let fps = walk.motion.clip().fps();
     let mut seams: Vec<Moment<'_>> = (walk.passed.iter())
         .filter(|passed| passed.seam.is_some())
         .map(|passed| Moment {
@@ -52,7 +52,7 @@ fn time_ui(session: &Session, walk: &Walk, out: &mut Out, ui: &mut Ui) {
             color: palette.accent,
             name: text::SEAM,
         })
-        .filter(|moment| moment.time < walk.motion.clip.duration_secs())
+        .filter(|moment| moment.time < walk.motion.clip().duration_secs())
         .collect();
     if seams.len() > MOST_SEAMS {
         seams.clear();

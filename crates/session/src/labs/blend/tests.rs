@@ -14,7 +14,7 @@ fn opened(link: &str) -> Session {
 fn place(session: &Session) -> ([usize; 2], Transition) {
     let outcome = session.main_outcome().unwrap();
     let transition = outcome.transition.unwrap();
-    let fps = outcome.motion.clip.fps();
+    let fps = outcome.motion.clip().fps();
     let frame = |secs: f64| (secs * fps).round() as usize;
     ([frame(transition.leave_a_secs), frame(transition.enter_b_secs)], transition)
 }
@@ -46,7 +46,7 @@ fn frame_set_by_hand_near_an_end_is_the_one_that_is_matched_and_measured() {
         let (found, transition) = place(&session);
         let sources = &session.main_outcome().unwrap().sources;
         let [a, b] = [0, 1].map(|source: usize| &sources[source].motion);
-        let (frames_a, frames_b) = (a.clip.frames(), b.clip.frames());
+        let (frames_a, frames_b) = (a.clip().frames(), b.clip().frames());
         assert!(frames_a > 119 && frames_b > 73, "{frames_a} {frames_b}");
         let search = transition.search.unwrap();
         let left = [frame_a.map(|frame| frames_a - frame), frame_b.map(|frame| frames_b - frame)];
@@ -55,8 +55,8 @@ fn frame_set_by_hand_near_an_end_is_the_one_that_is_matched_and_measured() {
         assert!(!search.is_widened && !search.by_pose, "{link}");
         assert_eq!(frame_a.unwrap_or(found[0]), found[0], "{link}");
         assert_eq!(frame_b.unwrap_or(found[1]), found[1], "{link}");
-        let height = f64::from(a.roles.body_height(a.clip.skeleton()));
-        let apart = |pair| apart_cm(&a.clip, &b.clip, pair, window, height);
+        let height = f64::from(a.roles().body_height(a.clip().skeleton()));
+        let apart = |pair| apart_cm(a.clip(), b.clip(), pair, window, height);
         assert!(
             (f64::from(transition.distance_cm) - apart(found)).abs() < 0.01,
             "{link}: {transition:?}"

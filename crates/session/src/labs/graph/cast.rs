@@ -1,7 +1,7 @@
 use crate::labs::LabError;
 use crate::labs::Retargeted;
 use crate::labs::pair::source_of;
-use crate::motion::Motion;
+use segue_motion::clip::Motion;
 use segue_motion::graph::{FrameSet, JoltSearch, WalkProfile};
 use std::sync::Arc;
 
@@ -27,11 +27,11 @@ impl Cast {
     pub(super) fn new(names: Vec<String>, fitted: Vec<Fitted>) -> Result<Self, LabError> {
         let (motions, retargeted): (Vec<_>, Vec<_>) = fitted.into_iter().unzip();
         let first = motions.first().ok_or(LabError::NoGraphClips)?;
-        let height = f64::from(first.roles.body_height(first.clip.skeleton()));
+        let height = f64::from(first.roles().body_height(first.clip().skeleton()));
         let sources = motions.iter().map(|motion| Arc::new(source_of(motion))).collect();
         let set = Arc::new(FrameSet::new(sources, height)?);
-        let contacts = motions.iter().map(|motion| motion.contacts.clone()).collect();
-        let profile = WalkProfile::begun(Arc::clone(&set), &first.roles, contacts);
+        let contacts = motions.iter().map(|motion| motion.contacts().clone()).collect();
+        let profile = WalkProfile::begun(Arc::clone(&set), first.roles(), contacts);
         Ok(Self { names, motions, retargeted, set, profile, jolts: JoltSearch::default() })
     }
 

@@ -7,8 +7,8 @@ use super::{Built, Cast, Field, GraphInputs};
 use crate::compare::MAX_PANES;
 use crate::labs::LabError;
 use crate::labs::pair::fitted;
-use crate::motion::Motion;
 use crate::params::Params;
+use segue_motion::clip::Motion;
 use segue_motion::graph::{
     AllPairs, CandidateSearch, CandidateStream, Candidates, CountedTo, GraphError, GraphOptions,
     PausedAllSweep,

@@ -4,9 +4,8 @@ use super::wanted::Wanted;
 use super::{Built, Passed, Walk};
 use crate::labs::LabError;
 use crate::labs::feet::{locking, slide, slide_before};
-use crate::motion::Motion;
 use petgraph::graph::NodeIndex;
-use segue_motion::clip::{Clip, Contacts};
+use segue_motion::clip::{Clip, Contacts, Motion};
 use segue_motion::graph::{
     Assembling, Choices, Followed, GraphError, GroundPath, PathSearch, Place, RunLength, Stay,
     Stitcher, WalkMeter, WalkMetrics, WalkPiece,
@@ -77,10 +76,10 @@ impl Measuring {
     /// Nothing is measured yet; `free` is the walk without the foot lock, where there is one.
     fn new(shown: Motion, free: Option<Arc<Clip>>) -> Self {
         Self {
-            meter: TraceMeter::new(&shown.clip, &shown.roles),
-            slide: SlideMeter::new(&shown.clip, &shown.roles),
+            meter: TraceMeter::new(shown.clip(), shown.roles()),
+            slide: SlideMeter::new(shown.clip(), shown.roles()),
             free: free.map(|free| {
-                let meter = SlideMeter::new(&free, &shown.roles);
+                let meter = SlideMeter::new(&free, shown.roles());
                 (free, meter)
             }),
             shown,
@@ -89,7 +88,7 @@ impl Measuring {
 
     /// A slice. `false` when nothing is left to do.
     fn advance(&mut self, frames: usize) -> bool {
-        let Motion { clip, contacts, .. } = &self.shown;
+        let (clip, contacts) = (self.shown.clip(), self.shown.contacts());
         let of_free =
             |(free, meter): &mut (Arc<Clip>, SlideMeter)| meter.advance(free, contacts, frames);
         if self.slide.advance(clip, contacts, frames) | self.free.as_mut().is_some_and(of_free) {
@@ -101,7 +100,7 @@ impl Measuring {
     fn finish(self) -> (Motion, Seen) {
         let before = self.free.map(|(_, meter)| slide_before(meter.worst_cm()));
         let seen = Seen {
-            trace: Arc::new(self.meter.finish(&self.shown.clip)),
+            trace: Arc::new(self.meter.finish(self.shown.clip())),
             slides: std::iter::once(slide(self.slide.worst_cm())).chain(before).collect(),
         };
         (self.shown, seen)
@@ -242,7 +241,7 @@ impl Maker {
         let Some(walk) = self.walk.as_ref().filter(|_| self.search.is_none()) else {
             return true;
         };
-        let secs = walk.motion.clip.frames() as f64 / self.fps();
+        let secs = walk.motion.clip().frames() as f64 / self.fps();
         !walk.ends && !walk.is_jump && secs < (now_secs + AHEAD_SECS).min(LONGEST_SECS)
     }
 
@@ -323,16 +322,19 @@ impl Maker {
                     return Ok(self.unseen(motion, None));
                 };
                 match locking(
-                    Arc::clone(&motion.clip),
-                    &motion.roles,
-                    &motion.contacts,
-                    motion.ground_m,
+                    Arc::clone(motion.clip()),
+                    motion.roles(),
+                    motion.contacts(),
+                    motion.ground_m(),
                     lock,
                 )? {
                     Some(locking) => {
                         Ok(Err(Publishing::Locking(Box::new(locking), Box::new(motion))))
                     }
-                    None => Ok(self.unseen(motion.clone(), Some(motion.clip))),
+                    None => {
+                        let free = Arc::clone(motion.clip());
+                        Ok(self.unseen(motion, Some(free)))
+                    }
                 }
             }
             Publishing::Locking(mut locking, motion) => {
@@ -340,8 +342,9 @@ impl Maker {
                     return Ok(Err(Publishing::Locking(locking, motion)));
                 }
                 let clip = Arc::new(locking.finish()?);
-                let free = Arc::clone(&motion.clip);
-                Ok(self.unseen(Motion { clip, ..*motion }, Some(free)))
+                let free = Arc::clone(motion.clip());
+                let locked = motion.with_clip(clip, motion.ground_frames().to_vec());
+                Ok(self.unseen(locked, Some(free)))
             }
             Publishing::Measuring(mut measuring) => {
                 if measuring.advance(MEASURED_FRAMES) {
@@ -359,7 +362,7 @@ impl Maker {
     fn next_goal(&self, now_secs: f64) -> usize {
         let mut secs = self.wanted.measured_secs;
         if let Some(walk) = &self.walk {
-            secs = 1.25 * walk.motion.clip.frames() as f64 / self.fps();
+            secs = 1.25 * walk.motion.clip().frames() as f64 / self.fps();
         }
         if now_secs + AHEAD_SECS > secs {
             secs = now_secs + 2.0 * AHEAD_SECS;
@@ -459,7 +462,7 @@ impl Maker {
             let motion = self.built.cast.motions().get(place.clip);
             for side in Side::BOTH {
                 let stands = motion.is_some_and(|motion| {
-                    motion.contacts.planted(side, place.frame.min(motion.clip.frames() - 1))
+                    motion.contacts().planted(side, place.frame.min(motion.clip().frames() - 1))
                 });
                 self.planted[side.index()].push(stands);
             }
@@ -481,22 +484,15 @@ impl Maker {
             flags
         });
         let motions = self.built.cast.motions();
-        let roles = motions.first().map(|motion| motion.roles.clone());
-        Ok(Motion {
-            // The lowest: no foot is lifted off the ground that its own clip has.
-            ground_m: motions
-                .iter()
-                .map(|motion| motion.ground_m)
-                .min_by(f32::total_cmp)
-                .unwrap_or(0.0),
-            feet: motions.first().map(|motion| motion.feet).unwrap_or_default(),
-            contacts: Contacts::from_flags(planted),
-            roles: roles.unwrap_or_default(),
-            ground_frames,
-            // A walk is left anywhere: all of it is transitions.
-            seams: Vec::new(),
-            clip: Arc::new(clip),
-        })
+        let first = motions.first();
+        let roles = first.map(|motion| motion.roles().clone()).unwrap_or_default();
+        // The lowest: no foot is lifted off the ground that its own clip has.
+        let ground_m = motions.iter().map(|motion| motion.ground_m()).min_by(f32::total_cmp);
+        // Without seams: a walk is left anywhere, since all of it is transitions.
+        Ok(Motion::with_ground_frames(clip, &roles, ground_frames)
+            .with_feet(first.map(|motion| motion.feet()).unwrap_or_default())
+            .with_contacts(Contacts::from_flags(planted))
+            .with_ground_m(ground_m.unwrap_or(0.0)))
     }
 
     /// The walk as it is now.
@@ -515,7 +511,7 @@ impl Maker {
             missed: self.plan.missed().to_vec(),
             metrics: slides.copied().chain(walked).collect(),
             trace: self.seen.as_ref().map(|seen| Arc::clone(&seen.trace)),
-            ends: self.ends && motion.clip.frames() == self.frames,
+            ends: self.ends && motion.clip().frames() == self.frames,
             is_jump: self.wanted.jump.is_some(),
             followed: self.trace.clone(),
             is_guided: self.wanted.guide.is_some(),

@@ -1,6 +1,6 @@
 use super::Built;
-use crate::motion::Motion;
 use glam::DVec2;
+use segue_motion::clip::Motion;
 use segue_motion::graph::{Choices, PieceSeam, Place, Stay, WalkPiece};
 use segue_motion::math::Planar;
 use segue_motion::metrics::{Metric, MotionTrace};
@@ -112,8 +112,8 @@ pub struct Trace {
 impl Walk {
     /// The frame of the walk at a time.
     fn frame_at(&self, secs: f64) -> usize {
-        let last = self.motion.clip.frames().saturating_sub(1);
-        ((secs * self.motion.clip.fps()).max(0.0).round() as usize).min(last)
+        let last = self.motion.clip().frames().saturating_sub(1);
+        ((secs * self.motion.clip().fps()).max(0.0).round() as usize).min(last)
     }
 
     /// What it shows at a time; `None` for a walk without frames.
@@ -143,7 +143,7 @@ impl Walk {
     /// before it and out behind it.
     #[must_use]
     pub fn ghosts_at(&self, secs: f64, fade_secs: f64) -> [Option<WalkGhost<'_>>; 2] {
-        let fps = self.motion.clip.fps();
+        let fps = self.motion.clip().fps();
         let near = |passed: &&Passed| {
             let (Some(seam), start) = (passed.seam, passed.start as f64 / fps) else {
                 return false;
@@ -164,14 +164,14 @@ impl Walk {
         let behind = 1.0 - ((secs - start - length) / fade_secs).clamp(0.0, 1.0);
         // Where the walk meets its clips exactly: at the beginning the one that is left, at the end
         // the one that is entered.
-        let end = (passed.start + seam.frames).min(self.motion.clip.frames().saturating_sub(1));
+        let end = (passed.start + seam.frames).min(self.motion.clip().frames().saturating_sub(1));
         let laid = |place: Place, met: usize, walk_frame: usize, clear: f64| {
             let motion = self.built.cast().motions().get(place.clip)?;
-            let stands = motion.ground_frames.get(met)?;
+            let stands = motion.ground_frames().get(met)?;
             let world_from_clip =
-                self.motion.ground_frames.get(walk_frame)?.after(&stands.inverse());
+                self.motion.ground_frames().get(walk_frame)?.after(&stands.inverse());
             let secs = place.frame as f64 / fps + secs - start;
-            let there = (0.0..=motion.clip.duration_secs()).contains(&secs) && clear > 0.02;
+            let there = (0.0..=motion.clip().duration_secs()).contains(&secs) && clear > 0.02;
             there.then_some(WalkGhost { motion, secs, world_from_clip, clear })
         };
         [

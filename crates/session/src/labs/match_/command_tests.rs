@@ -40,8 +40,8 @@ fn a_scenario_by_link_is_what_the_core_makes_of_it() {
     options.candidates = 1;
     let played = drive(&database, options, &Scenario::Spin.recording()).unwrap();
     // The trajectory times of the sliders are hundredths of a second, and come to the same frames.
-    assert_eq!(outcome.motion.clip.root_translations(), played.clip.root_translations());
-    assert_eq!(outcome.motion.clip.rotations(200), played.clip.rotations(200));
+    assert_eq!(outcome.motion.clip().root_translations(), played.clip.root_translations());
+    assert_eq!(outcome.motion.clip().rotations(200), played.clip.rotations(200));
     let metrics = played.metrics(&database).list();
     // Behind those that every lab has.
     assert_eq!(outcome.metrics[4..][..metrics.len()], metrics);
@@ -61,7 +61,7 @@ fn what_is_driven_is_written_down_and_played_again_exactly() {
             assert!(session.tick(1.0 / 60.0));
         }
     }
-    let clip = Arc::clone(&session.main_outcome().unwrap().motion.clip);
+    let clip = Arc::clone(session.main_outcome().unwrap().motion.clip());
     let frames = clip.frames();
     assert!(session.recording().ticks().abs_diff(210) <= 1, "{}", session.recording().ticks());
     assert!(driven(&session).moments.last().unwrap().root.shift.distance(rest.shift) > 1.5);
@@ -69,7 +69,7 @@ fn what_is_driven_is_written_down_and_played_again_exactly() {
     session.apply(Command::ReplayDrive).unwrap();
     while session.work() {}
     assert!(!session.is_driven());
-    let replay = Arc::clone(&session.main_outcome().unwrap().motion.clip);
+    let replay = Arc::clone(session.main_outcome().unwrap().motion.clip());
     assert_eq!(replay.frames(), ticks);
     for back in 1..frames.min(ticks) {
         assert_eq!(
@@ -79,14 +79,14 @@ fn what_is_driven_is_written_down_and_played_again_exactly() {
     }
     // The link alone brings it back, and it is kept like any other clip.
     let mut other = open(&session.query());
-    let again = Arc::clone(&other.main_outcome().unwrap().motion.clip);
+    let again = Arc::clone(other.main_outcome().unwrap().motion.clip());
     assert_eq!(again.root_translations(), replay.root_translations());
     other.apply(Command::Keep(0)).unwrap();
     let id = other.library().entries().last().unwrap().id.clone();
     assert!(id.starts_with("match(drive:"), "{id}");
     let viewed = open(&format!("lab=view&a={}", id.replace('%', "%25")));
     assert_eq!(
-        viewed.main_outcome().unwrap().motion.clip.root_translations(),
+        viewed.main_outcome().unwrap().motion.clip().root_translations(),
         replay.root_translations()
     );
     // Undo leads back to a character that stands.

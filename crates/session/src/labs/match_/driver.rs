@@ -8,8 +8,8 @@ use crate::compare::MAX_PANES;
 use crate::labs::LabError;
 use crate::labs::Outcome;
 use crate::labs::lab::LabInputs;
-use crate::motion::Motion;
 use crate::params::{Key, Params};
+use segue_motion::clip::Motion;
 use segue_motion::matching::{
     Control, Controller, ControllerOptions, Database, DatabaseBuilder, DatabaseOptions,
     FeatureOptions, MatchClip, MatchError, Normalisation, Recording, TagFilter, made_clip,
@@ -203,7 +203,7 @@ impl Driver {
                 Box::new(DatabaseBuilder::retimed(database, &source.options.features)?)
             } else if !source.clips.is_empty() {
                 let clip = |motion: &Arc<Motion>| {
-                    MatchClip::new(Arc::clone(&motion.clip), motion.roles.clone())
+                    MatchClip::new(Arc::clone(motion.clip()), motion.roles().clone())
                 };
                 Box::new(DatabaseBuilder::new(
                     source.clips.iter().map(clip).collect(),

@@ -2,8 +2,7 @@
 
 use crate::labs::LabError;
 use crate::labs::{LabFacts, Outcome};
-use crate::motion::{FeetReading, Motion};
-use segue_motion::clip::{Clip, Contacts};
+use segue_motion::clip::{Clip, Contacts, Motion};
 use segue_motion::matching::{
     Control, Controller, Database, Drive, Jump, Place, RATE, SearchRecord, Simulation, Steering,
 };
@@ -159,15 +158,10 @@ impl Tracer {
             RATE as f64,
             self.poses.iter().cloned(),
         );
-        let motion = Motion {
-            clip: Arc::new(clip?),
-            roles: database.roles().clone(),
-            contacts: self.contacts(),
-            ground_frames: self.moments.iter().map(|moment| moment.root).collect(),
-            seams: Vec::new(),
-            ground_m: database.ground_m(),
-            feet: FeetReading::default(),
-        };
+        let frames = self.moments.iter().map(|moment| moment.root).collect();
+        let motion = Motion::with_ground_frames(clip?, database.roles(), frames)
+            .with_contacts(self.contacts())
+            .with_ground_m(database.ground_m());
         let driven = Driven {
             database: Arc::clone(database),
             steering: self.controller.options().steering,
@@ -204,9 +198,9 @@ impl Tracer {
             }
         }
         let drive = Drive {
-            clip: Clip::clone(&motion.clip),
-            contacts: motion.contacts.clone(),
-            roots: motion.ground_frames.clone(),
+            clip: Clip::clone(motion.clip()),
+            contacts: motion.contacts().clone(),
+            roots: motion.ground_frames().to_vec(),
             desired: self.moments.iter().map(|moment| moment.simulation.place()).collect(),
             goals: self.moments.iter().map(|moment| moment.simulation.goal_yaw).collect(),
             jumps,

@@ -40,13 +40,13 @@ fn a_path_that_nobody_edited_gives_the_clip_back() {
         let session = open(&format!("lab=path&a=walk_left&keep={keep}"));
         let made = &session.main_outcome().unwrap().motion;
         let original = path(&session).fitted.motion();
-        assert_eq!(made.clip.frames(), original.clip.frames());
-        for frame in 0..made.clip.frames() {
-            let apart = made.clip.root_translations()[frame]
-                .distance(original.clip.root_translations()[frame]);
+        assert_eq!(made.clip().frames(), original.clip().frames());
+        for frame in 0..made.clip().frames() {
+            let apart = made.clip().root_translations()[frame]
+                .distance(original.clip().root_translations()[frame]);
             assert!(apart < 1e-4, "{keep}, frame {frame}: {apart} m");
             let stands =
-                made.ground_frames[frame].shift.distance(original.ground_frames[frame].shift);
+                made.ground_frames()[frame].shift.distance(original.ground_frames()[frame].shift);
             assert!(stands < 1e-4, "{keep}, frame {frame}: {stands} m");
         }
         assert!(
@@ -74,14 +74,14 @@ fn a_dragged_point_takes_the_character_with_it_and_is_one_step() {
     }
     session.apply(Command::Settle).unwrap();
     let middle = |session: &Session| {
-        let frames = &session.main_outcome().unwrap().motion.ground_frames;
+        let frames = session.main_outcome().unwrap().motion.ground_frames();
         frames[frames.len() / 2].shift.x
     };
     assert!(middle(&session) > 0.3, "{}", middle(&session));
     assert!(path(&session).is_edited);
     // The link alone brings it back.
     let other = open(&session.query());
-    let clip = |session: &Session| Arc::clone(&session.main_outcome().unwrap().motion.clip);
+    let clip = |session: &Session| Arc::clone(session.main_outcome().unwrap().motion.clip());
     assert_eq!(clip(&other).root_translations(), clip(&session).root_translations());
     session.apply(Command::Undo).unwrap();
     assert_eq!(session.query(), before);
@@ -97,8 +97,8 @@ fn where_a_character_stands_is_where_its_clip_has_it() {
         let value = moved(&session, 3, DVec2::new(0.4, -0.3));
         set(&mut session, Key::Path, value);
         let made = &session.main_outcome().unwrap().motion;
-        let measured = segue_motion::clip::character_frames(&made.clip, &made.roles);
-        for (frame, (told, measured)) in made.ground_frames.iter().zip(&measured).enumerate() {
+        let measured = segue_motion::clip::character_frames(made.clip(), made.roles());
+        for (frame, (told, measured)) in made.ground_frames().iter().zip(&measured).enumerate() {
             let apart = told.shift.distance(measured.shift);
             let turned = segue_motion::math::wrap_angle(told.yaw - measured.yaw).abs();
             // Planted feet pull at the hips a little.
@@ -185,7 +185,7 @@ fn characters_on_paths_of_their_own_play_together_from_a_link() {
     assert_eq!(names(&other), [id.clone(), "run".to_owned()]);
     for (one, two) in session.company().iter().zip(other.company()) {
         let [one, two] =
-            [one, two].map(|companion| Arc::clone(&companion.motion.as_ref().unwrap().clip));
+            [one, two].map(|companion| Arc::clone(companion.motion.as_ref().unwrap().clip()));
         assert_eq!(one.root_translations(), two.root_translations());
     }
     assert!(other.duration_secs() >= other.company()[1].duration_secs().unwrap());
@@ -229,8 +229,8 @@ fn a_kept_path_is_a_clip_for_every_other_lab() {
     assert!(session.library().find(&id).is_some(), "{:?}", session.library().entries().last());
     let other = open(&format!("lab=path&a={id}&control_points=6"));
     assert_eq!(
-        path(&other).fitted.motion().clip.root_translations(),
-        session.main_outcome().unwrap().motion.clip.root_translations()
+        path(&other).fitted.motion().clip().root_translations(),
+        session.main_outcome().unwrap().motion.clip().root_translations()
     );
 }
 
@@ -242,13 +242,13 @@ fn feet_of_a_short_clip_are_held_on_its_own_ground() {
     let options =
         segue_motion::transition::FootLockOptions { ground_m: Some(0.04), ..Default::default() };
     let locked = segue_motion::transition::foot_lock(
-        &carried.clip,
-        &carried.roles,
-        &carried.contacts,
+        carried.clip(),
+        carried.roles(),
+        carried.contacts(),
         &options,
     )
     .unwrap();
-    let clip = &session.main_outcome().unwrap().motion.clip;
+    let clip = session.main_outcome().unwrap().motion.clip();
     assert!((0..clip.frames()).all(|frame| clip.rotations(frame) == locked.rotations(frame)));
     assert!(!path(&session).awaits_feet);
 }
@@ -280,23 +280,23 @@ fn the_feet_of_a_long_walk_are_planted_when_the_hand_rests() {
     assert!(session.jobs().is_empty());
     // The same as done at once.
     let known = path(&session).fitted.motion();
-    let roles = &known.roles;
+    let roles = known.roles();
     let now = Arc::clone(session.main_outcome().unwrap());
     let mut free = Session::new();
     open(&mut free, &session.query().replace("foot_lock=on&", ""));
     let carried = &free.main_outcome().unwrap().motion;
-    let frames = carried.ground_frames.iter().zip(&known.ground_frames);
+    let frames = carried.ground_frames().iter().zip(known.ground_frames());
     let turns: Vec<f64> = frames.map(|(new, old)| new.yaw - old.yaw).collect();
     let options = segue_motion::transition::FootLockOptions::default();
     let locking = segue_motion::transition::FootLocking::new(
-        Arc::clone(&carried.clip),
+        Arc::clone(carried.clip()),
         roles,
-        &carried.contacts,
+        carried.contacts(),
         &options,
     )
     .unwrap();
     let locked = locking.with_body_yaws(&turns).finish().unwrap();
-    let apart = locked.rotations(300).iter().zip(now.motion.clip.rotations(300));
+    let apart = locked.rotations(300).iter().zip(now.motion.clip().rotations(300));
     assert!(apart.map(|(a, b)| a.angle_between(*b)).all(|angle| angle < 1e-3));
 
     // Who keeps it before that keeps what will come of it.
@@ -307,7 +307,7 @@ fn the_feet_of_a_long_walk_are_planted_when_the_hand_rests() {
     while session.work() {}
     let kept = session.company()[0].motion.as_ref().unwrap();
     assert_eq!(
-        kept.clip.rotations(300),
-        session.main_outcome().unwrap().motion.clip.rotations(300)
+        kept.clip().rotations(300),
+        session.main_outcome().unwrap().motion.clip().rotations(300)
     );
 }

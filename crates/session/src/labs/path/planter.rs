@@ -96,7 +96,7 @@ impl Planter {
 
 fn begin(of: &PathInputs) -> Result<Stage, LabError> {
     let (_, free) = free_motion(of)?;
-    let (roles, clip) = (&of.fitted.motion.roles, Arc::new(free.clip));
+    let (roles, clip) = (of.fitted.motion.roles(), Arc::new(free.clip));
     Ok(match of.locking(&clip, &free.contacts, &free.turns)? {
         Some(locking) => Stage::Locking(locking, free.contacts),
         None => Stage::Measuring(Arc::clone(&clip), free.contacts, SlideMeter::new(&clip, roles)),
@@ -111,7 +111,7 @@ fn step(of: &PathInputs, stage: Stage) -> Result<Stage, Made> {
                 return Ok(Stage::Locking(locking, contacts));
             }
             let clip = locking.finish().map_err(|error| Err(error.into()))?;
-            let meter = SlideMeter::new(&clip, &of.fitted.motion.roles);
+            let meter = SlideMeter::new(&clip, of.fitted.motion.roles());
             Ok(Stage::Measuring(Arc::new(clip), contacts, meter))
         }
         Stage::Measuring(clip, contacts, mut meter) => {

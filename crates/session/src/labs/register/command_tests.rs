@@ -83,12 +83,12 @@ fn no_weight_is_a_and_all_weight_is_b() {
         assert!((first - first.round()).abs() < 1e-5, "{first}");
         let first = first.round() as usize;
         if link.contains("corner") {
-            assert_eq!((first, outcome.motion.clip.frames()), (0, of.clip.frames()));
+            assert_eq!((first, outcome.motion.clip().frames()), (0, of.clip().frames()));
         }
-        let stands = |motion: &Motion, frame: usize| motion.ground_frames[frame];
+        let stands = |motion: &Motion, frame: usize| motion.ground_frames()[frame];
         let moved = stands(&outcome.motion, 0).after(&stands(of, first).inverse());
-        for frame in 0..outcome.motion.clip.frames() {
-            let off = apart(&outcome.motion.clip, frame, &of.clip, first + frame, &moved);
+        for frame in 0..outcome.motion.clip().frames() {
+            let off = apart(outcome.motion.clip(), frame, of.clip(), first + frame, &moved);
             assert!(off < 1e-4, "{link}, frame {frame}: {off} m");
         }
     }
@@ -103,8 +103,8 @@ fn a_join_is_a_then_b_with_less_sliding_than_a_dissolve() {
     assert!(skate(0) < 0.5 * skate(1), "{} {}", skate(0), skate(1));
     for outcome in &outcomes {
         let (registered, transition) = (outcome.registered().unwrap(), outcome.transition.unwrap());
-        assert_eq!(registered.beats.len(), outcome.motion.clip.frames());
-        assert_eq!(outcome.motion.ground_frames.len(), outcome.motion.clip.frames());
+        assert_eq!(registered.beats.len(), outcome.motion.clip().frames());
+        assert_eq!(outcome.motion.ground_frames().len(), outcome.motion.clip().frames());
         let at = |secs: f64| registered.beat_at(secs).unwrap();
         assert_eq!(
             (at(0.0).weights, at(outcome.duration_secs()).weights),
@@ -117,7 +117,7 @@ fn a_join_is_a_then_b_with_less_sliding_than_a_dissolve() {
         let walk = session.slot(Slot::A).unwrap().motion.clone().unwrap();
         for frame in 0..(transition.start_secs * 60.0) as usize {
             assert!(
-                apart(&outcome.motion.clip, frame, &walk.clip, frame, &Planar::IDENTITY) < 1e-5
+                apart(outcome.motion.clip(), frame, walk.clip(), frame, &Planar::IDENTITY) < 1e-5
             );
         }
     }
@@ -242,23 +242,23 @@ fn more_than_two_clips_are_blended() {
     // With all of the weight the third clip plays alone, at its own speed.
     let speed = |session: &Session| {
         let motion = &session.main_outcome().unwrap().motion;
-        ground_speed(&motion.ground_frames, motion.clip.fps())
+        ground_speed(motion.ground_frames(), motion.clip().fps())
     };
     let alone = opened("lab=register&a=walk&b=run&warp_weight=0&warp_also=1:fast_walk");
     let fast = opened("lab=view&a=fast_walk");
     assert!((speed(&alone) - speed(&fast)).abs() < 0.03, "{} {}", speed(&alone), speed(&fast));
-    assert!(session.main_outcome().unwrap().motion.clip.name().contains(" + "), "both are named");
+    assert!(session.main_outcome().unwrap().motion.clip().name().contains(" + "), "both are named");
     // What is kept comes back from its id.
     let mut session = session;
     session.apply(Command::Keep(0)).unwrap();
     let id = session.library().entries().last().unwrap().id.clone();
     assert!(id.contains("warp_also:"), "{id}");
-    let before = session.main_outcome().unwrap().motion.clip.clone();
+    let before = session.main_outcome().unwrap().motion.clip().clone();
     let again = opened(&format!(
         "lab=view&a={}",
         percent_encoding::utf8_percent_encode(&id, percent_encoding::NON_ALPHANUMERIC)
     ));
-    assert_eq!(again.main_outcome().unwrap().motion.clip.rotations(20), before.rotations(20));
+    assert_eq!(again.main_outcome().unwrap().motion.clip().rotations(20), before.rotations(20));
     for (bad, word) in [("0.5:nobody", "nobody"), ("2:run", "`2:run`")] {
         let problem =
             opened(&format!("lab=register&warp_also={bad}")).panes()[0].problem.clone().unwrap();

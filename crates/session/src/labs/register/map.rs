@@ -1,5 +1,5 @@
 use crate::labs::pair::Pair;
-use crate::motion::Motion;
+use segue_motion::clip::Motion;
 use segue_motion::math::Planar;
 use segue_motion::registration::{DistanceMatrix, align, limb_weights};
 use std::sync::Arc;
@@ -18,11 +18,11 @@ pub struct DistanceMap {
 
 impl DistanceMap {
     pub(super) fn new(matrix: DistanceMatrix, pair: &Pair) -> Self {
-        let skeleton = pair.a.clip.skeleton();
+        let skeleton = pair.a.clip().skeleton();
         Self {
             matrix,
             weights: limb_weights(skeleton),
-            cm_scale: DistanceMatrix::cm_scale(pair.a.roles.body_height(skeleton).into()),
+            cm_scale: DistanceMatrix::cm_scale(pair.a.roles().body_height(skeleton).into()),
             motions: [Arc::clone(&pair.a), Arc::clone(&pair.incoming)],
         }
     }
@@ -42,7 +42,7 @@ impl DistanceMap {
     /// Frames per second of both.
     #[must_use]
     pub fn fps(&self) -> f64 {
-        self.motions[0].clip.fps()
+        self.motions[0].clip().fps()
     }
 
     /// What turns metres of the matrix into centimetres per joint on a body of 1.75 m.
@@ -62,7 +62,7 @@ impl DistanceMap {
     pub fn cell_of(&self, frames: [f64; 2]) -> Option<(usize, usize)> {
         let sizes = [self.matrix.rows(), self.matrix.columns()];
         let cell = |clip: usize| {
-            let (frame, frames) = (frames[clip], self.motions[clip].clip.frames() as f64);
+            let (frame, frames) = (frames[clip], self.motions[clip].clip().frames() as f64);
             let inside = frame >= -0.5 && frame <= frames - 0.5;
             let cell = ((frame - self.middle() as f64) / self.matrix.stride() as f64)
                 .round()
@@ -95,7 +95,7 @@ impl DistanceMap {
         let (i, j) = self.matrix.frames(row, column);
         let window = self.matrix.window();
         let [a, b] = [(0, i), (1, j)]
-            .map(|(clip, from)| self.motions[clip].clip.world_positions(from..from + window));
+            .map(|(clip, from)| self.motions[clip].clip().world_positions(from..from + window));
         Some(align(&a, &b, &self.weights, 0.0).ok()?.transform)
     }
 }

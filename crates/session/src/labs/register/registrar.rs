@@ -5,8 +5,8 @@ use crate::compare::MAX_PANES;
 use crate::labs::LabError;
 use crate::labs::feet::Lock;
 use crate::labs::pair::{Pair, Pairs};
-use crate::motion::Motion;
 use crate::params::{Key, Params};
+use segue_motion::clip::Motion;
 use segue_motion::registration::{
     PairTerms, PathEnd, PathError, PathOptions, PathSearch, PausedSweep, Registration,
     RegistrationOptions, RegistrationPath, limb_weights,
@@ -145,7 +145,8 @@ impl Registrar {
     /// then ask again.
     fn found(&mut self, pair: &Arc<Pair>, wanted: Wanted) -> Result<Option<Arc<Found>>, LabError> {
         self.meet(pair)?;
-        let at_once = pair.a.clip.frames().saturating_mul(pair.incoming.clip.frames()) <= AT_ONCE;
+        let at_once =
+            pair.a.clip().frames().saturating_mul(pair.incoming.clip().frames()) <= AT_ONCE;
         loop {
             if let Some((_, found)) = self.found.iter().find(|(known, _)| *known == wanted) {
                 return found.clone().map(Some);
@@ -203,7 +204,7 @@ impl Registrar {
             return Ok(());
         }
         *self = Self { wanted: std::mem::take(&mut self.wanted), ..Self::default() };
-        let (a, b) = (&pair.a.clip, &pair.incoming.clip);
+        let (a, b) = (pair.a.clip(), pair.incoming.clip());
         let pairs = a.frames() as f64 * b.frames() as f64;
         let stride = (pairs / MOST_PAIRS).sqrt().ceil().max(1.0) as usize;
         let weights = limb_weights(a.skeleton());
@@ -220,7 +221,7 @@ impl Registrar {
             return;
         };
         let stride = terms.stride();
-        let rows = (PER_SLICE * stride / pair.incoming.clip.frames().max(1)).max(4);
+        let rows = (PER_SLICE * stride / pair.incoming.clip().frames().max(1)).max(4);
         if !terms.progress().is_complete() {
             terms.advance(rows);
             return;
@@ -280,11 +281,11 @@ fn wanted_of(pair: &Pair, params: &Params, pins: Vec<(usize, usize)>) -> Result<
     } else {
         PathEnd::Border { slack }
     };
-    let (frames_a, frames_b) = (pair.a.clip.frames(), pair.incoming.clip.frames());
+    let (frames_a, frames_b) = (pair.a.clip().frames(), pair.incoming.clip().frames());
     if let Some((a, b)) = pins.iter().find(|(a, b)| *a >= frames_a || *b >= frames_b) {
         return Err(LabError::PinBeyond { a: *a, b: *b, frames_a, frames_b });
     }
-    let usual = RegistrationOptions::new(pair.a.clip.fps()).smoothing;
+    let usual = RegistrationOptions::new(pair.a.clip().fps()).smoothing;
     Ok(Wanted {
         window,
         path: PathOptions {

@@ -1,0 +1,289 @@
+//! Clips with what is derived from them once and used everywhere.
+
+use super::{Clip, ContactOptions, Contacts, character_frames, estimate_ground};
+use crate::math::{Planar, wrap_angle};
+use crate::skeleton::{Role, Roles};
+use std::ops::Range;
+use std::sync::{Arc, OnceLock};
+
+/// How the feet of a clip are read: when they are planted, and where the ground is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FootOptions {
+    /// When a foot counts as planted.
+    pub contacts: ContactOptions,
+    /// The height of the ground, metres; `None` to estimate it from the planted feet.
+    pub ground_m: Option<f32>,
+}
+
+/// A clip with its joint roles, ground frames, foot contacts and ground height: the input of every
+/// algorithm that combines clips.
+///
+/// [`analyze`](Self::analyze) makes it once; then it is shared in an [`Arc`]. Roles and ground
+/// frames are computed at once, in O(frames × joints). Contacts and ground height are computed on
+/// first use and kept, unless they are given ([`with_contacts`](Self::with_contacts),
+/// [`with_ground_m`](Self::with_ground_m)).
+#[derive(Clone, Debug)]
+pub struct Motion {
+    clip: Arc<Clip>,
+    roles: Roles,
+    ground_frames: Vec<Planar>,
+    feet: FootOptions,
+    contacts: OnceLock<Contacts>,
+    ground_m: OnceLock<f32>,
+    seams: Vec<Range<usize>>,
+}
+
+impl PartialEq for Motion {
+    /// Contacts and ground height that were not used yet are computed for the comparison.
+    fn eq(&self, other: &Self) -> bool {
+        self.clip == other.clip
+            && self.roles == other.roles
+            && self.ground_frames == other.ground_frames
+            && self.feet == other.feet
+            && self.seams == other.seams
+            && self.ground_m() == other.ground_m()
+            && self.contacts() == other.contacts()
+    }
+}
+
+impl Motion {
+    /// Analyses a clip; the roles of its joints are found in its skeleton ([`Roles::detect`]).
+    #[must_use]
+    pub fn analyze(clip: impl Into<Arc<Clip>>) -> Self {
+        let clip = clip.into();
+        let roles = Roles::detect(clip.skeleton());
+        Self::with_roles(clip, &roles)
+    }
+
+    /// Analyses a clip whose joints have these roles.
+    #[must_use]
+    pub fn with_roles(clip: impl Into<Arc<Clip>>, roles: &Roles) -> Self {
+        let clip = clip.into();
+        let ground_frames = character_frames(&clip, roles);
+        Self::with_ground_frames(clip, roles, ground_frames)
+    }
+
+    /// Returns the motion of a clip whose ground frames ([`character_frames`]) are known, one per
+    /// frame. Where some are missing the last one stays; surplus ones are dropped.
+    #[must_use]
+    pub fn with_ground_frames(
+        clip: impl Into<Arc<Clip>>,
+        roles: &Roles,
+        mut ground_frames: Vec<Planar>,
+    ) -> Self {
+        let clip = clip.into();
+        let last = ground_frames.last().copied().unwrap_or(Planar::IDENTITY);
+        ground_frames.resize(clip.frames(), last);
+        Self {
+            clip,
+            roles: roles.clone(),
+            ground_frames,
+            feet: FootOptions::default(),
+            contacts: OnceLock::new(),
+            ground_m: OnceLock::new(),
+            seams: Vec::new(),
+        }
+    }
+
+    /// Returns the same motion with its feet read by other options: contacts and ground height are
+    /// computed anew.
+    #[must_use]
+    pub fn with_feet(self, feet: FootOptions) -> Self {
+        Self { feet, contacts: OnceLock::new(), ground_m: OnceLock::new(), ..self }
+    }
+
+    /// Returns the same motion with these contacts in place of those that would be detected.
+    #[must_use]
+    pub fn with_contacts(self, contacts: Contacts) -> Self {
+        Self { contacts: contacts.into(), ..self }
+    }
+
+    /// Returns the same motion with this height of the ground in place of an estimate, metres.
+    #[must_use]
+    pub fn with_ground_m(self, ground_m: f32) -> Self {
+        Self { ground_m: ground_m.into(), ..self }
+    }
+
+    /// Returns the same motion with these seams ([`seams`](Self::seams)).
+    #[must_use]
+    pub fn with_seams(self, seams: Vec<Range<usize>>) -> Self {
+        Self { seams, ..self }
+    }
+
+    /// Returns the motion of a changed clip: one of as many frames, with these ground frames, in
+    /// which the same feet are planted on the same ground.
+    #[must_use]
+    pub fn with_clip(&self, clip: impl Into<Arc<Clip>>, ground_frames: Vec<Planar>) -> Self {
+        Self::with_ground_frames(clip, &self.roles, ground_frames)
+            .with_feet(self.feet)
+            .with_contacts(self.contacts().clone())
+            .with_ground_m(self.ground_m())
+            .with_seams(self.seams.clone())
+    }
+
+    /// Returns the same motion with corrected roles. Roles that name joints that the skeleton does
+    /// not have, as those of another version of the clip may, are ignored.
+    #[must_use]
+    pub fn with_corrected_roles(self, roles: &Roles) -> Self {
+        let joints = self.clip.skeleton().len();
+        let fits =
+            Role::ALL.into_iter().filter_map(|role| roles.get(role)).all(|joint| joint < joints);
+        if !fits || *roles == self.roles {
+            return self;
+        }
+        Self::with_roles(self.clip, roles).with_feet(self.feet).with_seams(self.seams)
+    }
+
+    /// Returns the clip.
+    #[must_use]
+    pub fn clip(&self) -> &Arc<Clip> {
+        &self.clip
+    }
+
+    /// Returns the roles of the joints.
+    #[must_use]
+    pub fn roles(&self) -> &Roles {
+        &self.roles
+    }
+
+    /// Returns the ground frames of the character, `world_from_character`, one per frame of the
+    /// clip.
+    #[must_use]
+    pub fn ground_frames(&self) -> &[Planar] {
+        &self.ground_frames
+    }
+
+    /// Returns how its feet are read.
+    #[must_use]
+    pub fn feet(&self) -> FootOptions {
+        self.feet
+    }
+
+    /// Returns the frames in which each foot is planted.
+    #[must_use]
+    pub fn contacts(&self) -> &Contacts {
+        let detect = || Contacts::detect(&self.clip, &self.roles, &self.feet.contacts);
+        self.contacts.get_or_init(detect)
+    }
+
+    /// Returns the height of the ground under the clip, metres.
+    #[must_use]
+    pub fn ground_m(&self) -> f32 {
+        let estimate = || estimate_ground(&self.clip, &self.roles, self.contacts());
+        *self.ground_m.get_or_init(|| self.feet.ground_m.unwrap_or_else(estimate))
+    }
+
+    /// Returns the frames in which one clip becomes another, in order: where a result was joined
+    /// from clips.
+    #[must_use]
+    pub fn seams(&self) -> &[Range<usize>] {
+        &self.seams
+    }
+
+    /// Returns the first frame after all seams; 0 without seams.
+    #[must_use]
+    pub fn behind_seams(&self) -> usize {
+        let last = self.clip.frames().saturating_sub(1);
+        self.seams.iter().map(|seam| seam.end).max().unwrap_or(0).min(last)
+    }
+
+    /// Returns the last frame before all seams; that of the clip without seams.
+    #[must_use]
+    pub fn before_seams(&self) -> usize {
+        let last = self.clip.frames().saturating_sub(1);
+        self.seams.iter().map(|seam| seam.start).min().unwrap_or(last).min(last)
+    }
+
+    /// Returns the seams in a motion that plays the same at another pace: `frame` gives the frame
+    /// at which one of this motion's frames plays there.
+    #[must_use]
+    pub fn seams_at(&self, frame: impl Fn(usize) -> usize) -> Vec<Range<usize>> {
+        self.seams.iter().map(|seam| frame(seam.start)..frame(seam.end)).collect()
+    }
+
+    /// Returns the seams of a motion that is this one up to the seam `own`, then `next`, whose
+    /// frame `enter` plays where `own` begins.
+    #[must_use]
+    pub fn seams_joined(&self, own: &Range<usize>, next: &Self, enter: usize) -> Vec<Range<usize>> {
+        let before = self.seams.iter().filter(|seam| seam.start < own.start);
+        let before = before.map(|seam| seam.start..seam.end.min(own.start));
+        let behind = next.seams.iter().filter(|seam| seam.start >= enter);
+        let behind =
+            behind.map(|seam| seam.start - enter + own.start..seam.end - enter + own.start);
+        before.chain([own.clone()]).chain(behind).collect()
+    }
+
+    /// Returns the ground frame of the character at a time: interpolated between two frames, and
+    /// that of the nearest frame outside the clip.
+    #[must_use]
+    pub fn standing_at(&self, secs: f64) -> Planar {
+        let last = self.ground_frames.len().saturating_sub(1);
+        // `max` takes NaN to 0.
+        let at = (secs * self.clip.fps()).max(0.0).min(last as f64);
+        let [here, next] = [at.floor() as usize, (at.floor() as usize + 1).min(last)]
+            .map(|frame| self.ground_frames.get(frame));
+        let (Some(here), Some(next)) = (here, next) else {
+            return Planar::IDENTITY;
+        };
+        Planar {
+            yaw: wrap_angle(here.yaw + wrap_angle(next.yaw - here.yaw) * at.fract()),
+            shift: here.shift.lerp(next.shift, at.fract()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::skeleton::Side;
+    use crate::synth::{Action, Params, synthesize};
+
+    fn walk() -> Clip {
+        synthesize(&Params::new(Action::Walk)).unwrap().clip
+    }
+
+    #[test]
+    fn contacts_and_ground_are_detected_on_first_use() {
+        let motion = Motion::analyze(walk());
+        let contacts = Contacts::detect(motion.clip(), motion.roles(), &ContactOptions::default());
+        assert_eq!(*motion.contacts(), contacts);
+        assert_eq!(motion.ground_m(), estimate_ground(motion.clip(), motion.roles(), &contacts));
+        assert_eq!(motion, Motion::analyze(walk()));
+    }
+
+    #[test]
+    fn given_contacts_and_ground_are_kept_by_a_changed_clip() {
+        let frames = walk().frames();
+        let none = Contacts::from_flags(Side::BOTH.map(|_| vec![false; frames]));
+        let motion = Motion::analyze(walk()).with_contacts(none.clone()).with_ground_m(0.5);
+        let changed = motion.with_clip(walk(), motion.ground_frames().to_vec());
+        assert_eq!((changed.contacts(), changed.ground_m()), (&none, 0.5));
+        let anew = changed.with_feet(FootOptions { ground_m: Some(0.1), ..FootOptions::default() });
+        assert_ne!(*anew.contacts(), none);
+        assert_eq!(anew.ground_m(), 0.1);
+    }
+
+    #[test]
+    fn ground_frames_are_as_many_as_the_frames_of_the_clip() {
+        let roles = Roles::default();
+        let place = Planar::new(0.5, 1.0, 2.0);
+        let short = Motion::with_ground_frames(walk(), &roles, vec![place]);
+        assert_eq!(short.ground_frames(), vec![place; walk().frames()]);
+        let long = Motion::with_ground_frames(walk(), &roles, vec![place; 100_000]);
+        assert_eq!(long.ground_frames().len(), walk().frames());
+        let none = Motion::with_ground_frames(walk(), &roles, Vec::new());
+        assert_eq!(none.standing_at(0.3), Planar::IDENTITY);
+    }
+
+    #[test]
+    fn corrected_roles_that_do_not_fit_are_ignored() {
+        let motion = Motion::analyze(walk());
+        let mut strange = motion.roles().clone();
+        strange.set(Role::Head, Some(10_000));
+        assert_eq!(motion.clone().with_corrected_roles(&strange), motion);
+        let mut headless = motion.roles().clone();
+        headless.set(Role::Head, None);
+        let corrected = motion.with_corrected_roles(&headless);
+        assert_eq!(*corrected.roles(), headless);
+    }
+}
