@@ -1,5 +1,5 @@
-//! How fast motion files are read, in bytes of text per second, beside another reader of the same
-//! files in the same run.
+//! Reading speed of motion files in bytes of text per second, compared with another reader of the
+//! same files.
 //!
 //! `cargo bench --package segue-formats`. The file of the CMU database is read where the machine
 //! has it.
@@ -11,13 +11,13 @@ use segue_motion::synth::{Action, Params, synthesize};
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
 
-/// What a long capture session leaves.
+/// The size of a long capture session.
 const LARGE: usize = 100_000_000;
 
-/// About as long as the CMU take, which stands in for it where it is not at hand.
+/// The approximate size of the CMU take, which it stands in for where that is missing.
 const SMALL: usize = 2_000_000;
 
-/// A take of that database.
+/// Returns a take of that database, if this machine has it.
 fn take() -> Vec<u8> {
     let beside = Path::new(env!("CARGO_MANIFEST_DIR"))
         .ancestors()
@@ -28,7 +28,7 @@ fn take() -> Vec<u8> {
     places.find_map(read).unwrap_or_else(|| made(SMALL))
 }
 
-/// A minute of walking in six decimals, over and over.
+/// Returns a minute of walking in six decimals, repeated.
 fn made(bytes: usize) -> Vec<u8> {
     let clip = synthesize(&Params { duration_secs: 60.0, ..Params::new(Action::Walk) })
         .expect("natural parameters")

@@ -211,7 +211,7 @@ impl Unpacking<'_> {
         }
         let mut bytes = match self.read(archive, entry) {
             Ok(bytes) => bytes,
-            Err(miss) => return self.miss(&path, miss),
+            Err(failure) => return self.handle_failure(&path, failure),
         };
         if is_zip {
             match open(&bytes) {
@@ -225,7 +225,7 @@ impl Unpacking<'_> {
             match read_at_most(GzDecoder::new(bytes.as_slice()), self.left) {
                 Ok(Some(unpacked)) => (bytes, kept) = (unpacked, inner),
                 Ok(None) => return Err(self.too_much()),
-                Err(error) => return self.miss(&path, error.into()),
+                Err(error) => return self.handle_failure(&path, error.into()),
             }
         }
         self.left = self.left.saturating_sub(bytes.len());
@@ -267,8 +267,8 @@ impl Unpacking<'_> {
     }
 
     /// Leaves a file out, or refuses the archive.
-    fn miss(&mut self, path: &str, miss: UnpackFailure) -> Result<(), ImportError> {
-        match miss {
+    fn handle_failure(&mut self, path: &str, failure: UnpackFailure) -> Result<(), ImportError> {
+        match failure {
             UnpackFailure::TooMuch => Err(self.too_much()),
             UnpackFailure::NoMemory => Err(no_memory(self.name)),
             UnpackFailure::Unreadable(why) => {

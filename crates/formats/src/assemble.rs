@@ -49,7 +49,7 @@ pub(super) fn assemble(
         if measure.up_known == UpKnown::Uncertain {
             tally.add(WarningKind::UncertainUp { up: measure.provenance.up }, None);
         }
-        let mendable = raw.tell_unlikely(&measure, options, tally);
+        let mendable = raw.warn_of_unlikely(&measure, options, tally);
         let clip_name = match raw.joints.first() {
             Some(root) if several => format!("{} ({})", stem(name), root.name),
             _ => stem(name).to_owned(),

@@ -1,9 +1,9 @@
-//! Errors of files, with their place.
+//! Errors about files, with the place of the fault.
 
 use super::text::{position, quoted};
 use segue_text::Message;
 
-/// Why a file could not be read: where, what stood there, and what would have been right.
+/// An error about a file: its place, the text that stands there, and the text that was expected.
 #[derive(
     Clone,
     Debug,
@@ -21,16 +21,16 @@ pub struct ImportError {
     pub line: usize,
     /// The column in characters, counted from 1.
     pub column: usize,
-    /// What stands there.
+    /// The text at that place.
     pub found: Message,
-    /// What would have been read.
+    /// The text that would have been read.
     pub expected: Message,
-    /// What the person can do about it, where there is something better to say than `expected`.
+    /// Advice to the user, where there is better advice than `expected`.
     pub hint: Option<Message>,
 }
 
 impl ImportError {
-    /// An error about the file as a whole.
+    /// Returns an error about the file as a whole.
     pub(super) fn whole_file(
         file: &str,
         found: impl Into<Message>,
@@ -52,8 +52,8 @@ impl ImportError {
     }
 }
 
-/// An [`ImportError`] before its byte offset is turned into line and column. Lines are counted only
-/// when there is something to report.
+/// An [`ImportError`] whose place is still a byte offset. Line and column are computed only when
+/// the error is reported.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Fault {
     pub(super) at: usize,
@@ -67,7 +67,7 @@ impl Fault {
         Self { at, found: found.into(), expected: expected.into(), hint: None }
     }
 
-    /// At `at` stands `token`, which is empty at the end of the file.
+    /// Returns a fault at `token`, which is empty at the end of the file.
     pub(super) fn at_token(at: usize, token: &[u8], expected: impl Into<Message>) -> Self {
         let found = if token.is_empty() {
             Message::word("the end of the file")
@@ -100,7 +100,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_error_reads_as_place_found_expected() {
+    fn import_error_displays_place_found_and_expected() {
         let fault = Fault::new(7, "`x`", "a number");
         let error = fault.locate("walk.bvh", "ä\r\nbü\rx".as_bytes());
         assert_eq!(error.to_string(), "walk.bvh:2:3: found `x`, expected a number");

@@ -360,9 +360,10 @@ fn longer_axis(extent: Vec3, lateral: Option<usize>) -> Option<UpAxis> {
 
 /// Returns the axis across which the rest pose is symmetric: left to right.
 fn lateral_axis(points: &[Vec3], rest: &Body) -> Option<usize> {
-    /// Every point is compared with every other; rigs are smaller, and what is larger is no rig.
-    const MOST: usize = 512;
-    if points.len() > MOST {
+    /// The greatest number of points: every point is compared with every other, and rigs have
+    /// fewer.
+    const MAX_POINTS: usize = 512;
+    if points.len() > MAX_POINTS {
         return None;
     }
     let tolerance = 0.02 * rest.extent().max_element();

@@ -9,11 +9,11 @@ use segue_motion::skeleton::{Joint, Skeleton, SkeletonError, WorldPose, world_po
 use segue_text::msg;
 use std::sync::Arc;
 
-/// Translations nearer to the rest offset than this are the offset, metres.
+/// Distance from the rest offset, metres, below which a translation is equal to it.
 const SAME_PLACE: f32 = 1e-6;
 
-/// Joints, rotations (frame-major), the root's way and the translations of other joints, all as in
-/// the file.
+/// A motion as in the file: joints, rotations (frame-major), the translations of the root, and
+/// those of other joints by index.
 #[derive(Clone, Debug, Default)]
 pub(super) struct RawMotion {
     pub(super) joints: Vec<Joint>,
@@ -22,7 +22,7 @@ pub(super) struct RawMotion {
     pub(super) tracks: Vec<(usize, Vec<Vec3>)>,
 }
 
-/// Why a motion makes no clip. The readers see to it that neither happens.
+/// An error that keeps a motion from becoming a clip. The readers rule out both cases.
 #[derive(Clone, Debug, PartialEq, thiserror::Error, segue_text::ToMessage)]
 pub(super) enum RawError {
     #[error(transparent)]
@@ -36,13 +36,13 @@ impl RawMotion {
         self.root_translations.len()
     }
 
-    /// The root's way, and then the tracks.
+    /// Returns the translations of the root, then those of each track.
     pub(super) fn translations_mut(&mut self) -> impl Iterator<Item = &mut Vec<Vec3>> {
         std::iter::once(&mut self.root_translations)
             .chain(self.tracks.iter_mut().map(|(_, values)| values))
     }
 
-    /// Takes the memory for so many more frames.
+    /// Reserves memory for `frames` more frames.
     pub(super) fn reserve(&mut self, frames: usize) -> Result<(), Fault> {
         let joints = self.joints.len();
         let mut taken = self.rotations.try_reserve_exact(frames.saturating_mul(joints));
@@ -59,14 +59,14 @@ impl RawMotion {
         })
     }
 
-    /// The local rotations of one frame; empty for one that there is not.
+    /// Returns the local rotations of a frame; empty if there is no such frame.
     pub(super) fn pose(&self, frame: usize) -> &[Quat] {
         let joints = self.joints.len();
         self.rotations.get(frame * joints..(frame + 1) * joints).unwrap_or_default()
     }
 
-    /// Where all OFFSETs are zero and position channels carry the skeleton, the first frame is the
-    /// rest pose. Tells whether that was so.
+    /// Takes the first frame as the rest pose if all OFFSETs are zero and position channels carry
+    /// the skeleton. Returns whether it did.
     pub(super) fn rest_from_first_frame(&mut self) -> bool {
         let degenerate = self.joints.len() > 1
             && self.joints.iter().skip(1).all(|joint| joint.offset == Vec3::ZERO);
@@ -82,7 +82,7 @@ impl RawMotion {
         changed
     }
 
-    /// Leaves out the first frame.
+    /// Removes the first frame.
     pub(super) fn drop_first_frame(&mut self) {
         self.rotations.drain(..self.joints.len().min(self.rotations.len()));
         for values in self.translations_mut() {
@@ -90,7 +90,7 @@ impl RawMotion {
         }
     }
 
-    /// Joints and end sites in the rest pose with the root at the origin, file units.
+    /// Returns joints and end sites in the rest pose, with the root at the origin, in file units.
     pub(super) fn rest_points(&self) -> Vec<Vec3> {
         let mut world = WorldPose::default();
         for joint in &self.joints {
@@ -104,7 +104,7 @@ impl RawMotion {
         with_end_sites(&self.joints, world)
     }
 
-    /// Joints and end sites in one frame, file units and axes.
+    /// Returns joints and end sites in a frame, in file units and axes.
     pub(super) fn world_points(&self, skeleton: &Skeleton, frame: usize) -> Vec<Vec3> {
         let mut world = WorldPose::default();
         let root = self.root_translations.get(frame).copied().unwrap_or_default();
@@ -114,8 +114,8 @@ impl RawMotion {
         with_end_sites(&self.joints, world)
     }
 
-    /// The clip in metres with Y up, its first joint the one that carries the body
-    /// ([`Clip::folded`]).
+    /// Converts the motion to a clip in metres with Y up, whose first joint is the one that carries
+    /// the body ([`Clip::folded`]).
     pub(super) fn into_clip(
         mut self,
         name: String,
@@ -157,12 +157,13 @@ impl RawMotion {
     }
 }
 
-/// -90° about X: +Z becomes +Y, and what a Z-up character faces by custom, -Y, becomes +Z.
+/// Rotates a vector by -90° about X: +Z becomes +Y, and -Y, which a Z-up character faces by
+/// convention, becomes +Z.
 fn y_up_from_z_up(v: Vec3) -> Vec3 {
     Vec3::new(v.x, v.z, -v.y)
 }
 
-/// The same as a rotation.
+/// The rotation of [`y_up_from_z_up`].
 pub(super) const Y_UP_FROM_Z_UP: Quat =
     Quat::from_xyzw(-std::f32::consts::FRAC_1_SQRT_2, 0.0, 0.0, std::f32::consts::FRAC_1_SQRT_2);
 
@@ -182,7 +183,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn frames_that_memory_cannot_hold_are_refused_and_take_nothing() {
+    fn reserve_beyond_memory_is_refused() {
         let joint = Joint {
             name: "root".into(),
             parent: None,

@@ -1,5 +1,5 @@
-//! Motions that nobody has made: bodies of no size that people have, roots that jump, places far
-//! from everything. They are read as they are, and told.
+//! Detection of implausible motions: bodies of a size that people do not have, roots that jump,
+//! positions far from the origin. They are read unchanged, with a warning.
 
 use super::ImportOptions;
 use super::measure::Measure;
@@ -7,30 +7,30 @@ use super::raw::RawMotion;
 use super::warning::{Tally, WarningKind};
 use glam::Vec3;
 
-/// Bodies of another height are told, metres: from a child that sits to a man on stilts.
+/// Plausible heights of a body, metres: from a seated child to a man on stilts.
 const LIKELY_METRES: std::ops::Range<f64> = 0.3..5.0;
-/// A unit is offered that makes a body as tall as a person, metres.
+/// Heights, metres, for which another unit is suggested.
 const PERSON_METRES: std::ops::Range<f64> = 0.9..2.5;
-/// A root that moves farther from one frame to the next is told, metres. A sprinter makes 0.4 m at
-/// 30 frames per second.
+/// A root that moves farther than this within one frame causes a warning, metres. A sprinter moves
+/// 0.4 m at 30 frames per second.
 const JUMP_METRES: f64 = 5.0;
-/// A root that goes farther from the origin is told, metres.
+/// A root farther than this from the origin causes a warning, metres.
 const FAR_METRES: f64 = 1000.0;
 
-/// What could be mended in how a clip was read, where that is safe.
+/// Problems of an imported clip that another import can safely fix.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Mendable {
-    /// Metres per unit that make the body as tall as a person: the power of ten of the unit that
-    /// was taken.
+    /// Metres per unit that make the body as tall as a person: the assumed unit times a power of
+    /// ten.
     pub metres_per_unit: Option<f64>,
-    /// Whether the root is elsewhere in single rows, and where it was in the row after them.
+    /// Whether the root is far off in single rows, and back in the next one.
     pub wild_rows: bool,
 }
 
 impl RawMotion {
-    /// Tells what is unlikely of a motion that was measured, and evens out the rows in which the
-    /// root is elsewhere where the options say so.
-    pub(super) fn tell_unlikely(
+    /// Adds warnings about what is implausible in a measured motion, and evens out single rows in
+    /// which the root is far off if the options say so.
+    pub(super) fn warn_of_unlikely(
         &mut self,
         measure: &Measure,
         options: &ImportOptions,
@@ -38,7 +38,7 @@ impl RawMotion {
     ) -> Mendable {
         let mut mendable = Mendable::default();
         let metres = measure.height_metres();
-        // What was said by hand is known by whoever said it.
+        // A unit that the user gave is not questioned.
         if options.metres_per_unit.is_none() && metres > 0.0 && !LIKELY_METRES.contains(&metres) {
             tally.add(WarningKind::UnlikelyHeight { metres }, None);
             mendable.metres_per_unit = fitting_unit(measure);
@@ -73,10 +73,10 @@ impl RawMotion {
     }
 }
 
-/// The power of ten of a unit that makes the body as tall as a person.
+/// Returns the assumed unit times the power of ten that makes the body as tall as a person.
 fn fitting_unit(measure: &Measure) -> Option<f64> {
     let unit = measure.provenance.metres_per_unit;
-    // From 1.7 m, the middle of the range, it is the nearest power.
+    // From 1.7 m, the middle of the range, this is the nearest power.
     let power = (1.7 / measure.height_metres()).log10().round();
     let fitting = unit * 10_f64.powi(power as i32);
     (fitting.is_finite()
@@ -87,11 +87,11 @@ fn fitting_unit(measure: &Measure) -> Option<f64> {
 
 #[derive(Debug, Default, PartialEq)]
 struct Jumps {
-    /// The rows in which the root is elsewhere: it jumps there and back.
+    /// The rows in which the root is far off: it jumps there and back.
     wild_rows: Vec<usize>,
     /// The farthest of these jumps, metres.
     wild_metres: Option<f64>,
-    /// How many jumps there are besides.
+    /// The number of jumps after which the root stays.
     others: usize,
     /// The farthest of those, metres.
     other_metres: f64,
@@ -106,7 +106,7 @@ fn jumps(way: &[Vec3], metres_per_unit: f64) -> Jumps {
     let mut row = 1;
     while let Some(metres) = distance(row - 1, row) {
         if metres > JUMP_METRES {
-            // In the last row, too: nothing says that the root stays there. In the first one it may
+            // The last row counts too: nothing shows that the root stays there. The first row may
             // be a body at the origin before the motion begins.
             let is_short = |from, to| distance(from, to).is_none_or(|metres| metres <= JUMP_METRES);
             let returns =
@@ -125,7 +125,7 @@ fn jumps(way: &[Vec3], metres_per_unit: f64) -> Jumps {
     found
 }
 
-/// Puts the root of a row between its neighbours.
+/// Moves the root of a row halfway between its neighbours.
 fn even_out(way: &mut [Vec3], row: usize) {
     let before = row.checked_sub(1).and_then(|before| way.get(before)).copied();
     let after = way.get(row + 1).copied();
@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn row_that_is_elsewhere_is_told_from_a_jump_that_stays() {
+    fn jumps_of_one_row_are_separate_from_jumps_that_stay() {
         assert_eq!(jumps(&walk(&[]), 1.0), Jumps::default());
         let found = jumps(&walk(&[(4, 1e18)]), 1.0);
         assert_eq!((found.wild_rows, found.others), (vec![4], 0));
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn wild_row_is_put_between_its_neighbours() {
+    fn even_out_moves_the_root_between_its_neighbours() {
         let mut way = walk(&[(4, 1e18), (9, 50.0)]);
         for row in [4, 9] {
             even_out(&mut way, row);

@@ -5,12 +5,12 @@ use segue_motion::clip::UpAxis;
 use segue_text::{Message, ToMessage, msg};
 use std::fmt;
 
-/// A kind of oddity that a file was read in spite of, or a note on how it was read.
+/// A kind of oddity in a file that could be read nevertheless, or a note on how it was read.
 #[derive(Clone, Debug, PartialEq)]
 pub enum WarningKind {
-    /// Names are no UTF-8.
+    /// Names that are not UTF-8.
     Latin1Names,
-    /// A joint's CHANNELS line gives another number than it has names. The names count.
+    /// A CHANNELS line with another number of channels than names. The names count.
     ChannelCount {
         /// The number in the file.
         declared: String,
@@ -21,55 +21,55 @@ pub enum WarningKind {
     ScaleChannels,
     /// An End Site with channels: their values are skipped.
     EndSiteChannels,
-    /// A joint has more than one End Site: the first one that is not at the joint itself is kept.
+    /// A joint with more than one End Site: the first one that is not at the joint itself is kept.
     SeveralEndSites,
-    /// A joint has no OFFSET line.
+    /// A joint without an OFFSET line.
     MissingOffset,
-    /// There is no MOTION section, or no row in it.
+    /// A file without a MOTION section, or without rows in it.
     NoFrames,
-    /// `Frames:` gives another number than there are rows. The rows count.
+    /// A number at `Frames:` that is not the number of rows. The rows count.
     FrameCount {
-        /// What the header says.
+        /// The number in the header.
         declared: String,
-        /// The rows that there are.
+        /// The number of rows.
         found: usize,
     },
-    /// `Frame Time:` is missing or no time. 30 frames per second are taken.
+    /// A `Frame Time:` that is missing or not a time. 30 frames per second are assumed.
     FrameTime {
-        /// What the header says; `None` where it says nothing.
+        /// The text in the header; `None` where there is none.
         found: Option<String>,
     },
-    /// `Frame Time:` is longer than a second or shorter than a ten-thousandth of one, and taken as
-    /// it is.
+    /// A `Frame Time:` that is longer than a second or shorter than a ten-thousandth of one. It is
+    /// used unchanged.
     UnlikelyFrameTime {
         /// Seconds.
         secs: f64,
     },
-    /// The last row is cut off, and dropped.
+    /// A truncated last row: dropped.
     TruncatedRow {
-        /// The numbers that it has.
+        /// The number of its values.
         found: usize,
-        /// The numbers of a row.
+        /// The number of values of a complete row.
         expected: usize,
     },
-    /// No line holds exactly one frame: the numbers are taken one after the other.
+    /// No line with exactly one frame: the numbers are read one after the other.
     RowsAcrossLines,
-    /// Values that are no numbers: each repeats the last good one of its channel.
+    /// Values that are not numbers: each repeats the last good value of its channel.
     NotFinite,
-    /// Numbers are written with a decimal comma.
+    /// Numbers with a decimal comma.
     DecimalCommas,
-    /// Two numbers without a space between them, split before the sign.
+    /// Two numbers without a space between them: split before the sign.
     MissingSpaces,
-    /// Hidden files of an archive, and what a Mac adds to it: left out.
+    /// Hidden files of an archive, and metadata that macOS adds: left out.
     HiddenFiles,
-    /// Files of an archive that hold no motion: left out.
+    /// Files of an archive without motion: left out.
     OtherFiles,
-    /// More motion files in an archive than are read: left out.
+    /// More motion files in an archive than the limit: left out.
     TooManyFiles {
-        /// How many are read.
+        /// The limit.
         most: usize,
     },
-    /// Files of an archive with a path that leads out of it: the rest of the path counts.
+    /// Files of an archive with a path that leads out of it: the rest of the path is used.
     PathsOutside,
     /// Files of an archive that cannot be read: left out.
     UnreadableFiles {
@@ -78,43 +78,44 @@ pub enum WarningKind {
         /// Why it cannot be read.
         why: Message,
     },
-    /// Animated scales: the scale at rest is taken.
+    /// Animated scales: the scale at rest is used.
     ScaleAnimation,
-    /// Nodes that are scaled by another factor along each axis: joints below them are where they
-    /// should be at rest, and nearly so in motion.
+    /// Nodes with a different scale along each axis: the joints below them are exact at rest, and
+    /// nearly so in motion.
     UnevenScale,
-    /// The keys of an animation lie at no common rate that can be played: it is sampled.
+    /// Keys of an animation that fit no common frame rate: the animation is resampled.
     Resampled {
         /// Frames per second.
         fps: f64,
     },
-    /// A format that is made for metres holds a body of another size.
+    /// A body whose size does not fit the unit of its format, metres.
     NotMetres {
         /// Metres per unit.
         metres_per_unit: f64,
     },
-    /// All OFFSETs are zero: the rest pose is taken from the position channels of the first row.
+    /// OFFSETs that are all zero: the rest pose is taken from the position channels of the first
+    /// row.
     RestFromFirstRow,
-    /// The first row is a T-pose in front of the motion.
+    /// A T-pose in the first row, in front of the motion.
     TPose {
         /// Whether it was left out.
         dropped: bool,
     },
-    /// The format has no frame rate: this one is taken.
+    /// A format without a frame rate: this one is assumed.
     AssumedFrameRate {
         /// Frames per second.
         fps: f64,
     },
-    /// Frame numbers that do not follow each other. Frames count as they come.
+    /// Frame numbers that are not consecutive. Frames are used in the order of the file.
     FrameNumbers,
-    /// Frames that leave out bones which frames before them have: their pose is held.
+    /// Frames without bones that earlier frames have: their pose is held.
     MissingBones,
     /// Bones of the motion that the skeleton does not have: left out.
     UnknownBones {
         /// The first of them.
         name: String,
     },
-    /// Bones with another number of values than the skeleton has degrees of freedom for: they rest.
+    /// Bones whose number of values is not their number of degrees of freedom: they stay at rest.
     ValueCount {
         /// The first of them.
         name: String,
@@ -123,80 +124,79 @@ pub enum WarningKind {
         /// Its degrees of freedom.
         expected: usize,
     },
-    /// Bones of the skeleton that can move, and of which the motion says nothing: they rest.
+    /// Bones of the skeleton that can move but have no values in the motion: they stay at rest.
     RestingBones {
         /// The first of them.
         name: String,
     },
-    /// Names in the hierarchy that no bone has: left out.
+    /// Names in the hierarchy that belong to no bone: left out.
     UnknownInHierarchy {
         /// The first of them.
         name: String,
     },
-    /// Bones that do not hang on the root: left out.
+    /// Bones that are not connected to the root: left out.
     LooseBones {
         /// The first of them.
         name: String,
     },
-    /// The lowest point of the motion is far from the ground: the skeleton may be that of another
-    /// person.
+    /// Feet far from the ground: the skeleton may be that of another person.
     OffGround {
-        /// Its height over the ground, metres.
+        /// The height of the feet over the ground, metres.
         metres: f32,
     },
-    /// A body of no size that people have.
+    /// A body of a size that people do not have.
     UnlikelyHeight {
         /// Its height, metres.
         metres: f64,
     },
-    /// Single rows in which the root is far from where it is before and after.
+    /// Single rows in which the root is far from its positions before and after.
     WildRows {
         /// The farthest jump, metres.
         metres: f64,
-        /// Whether they got a place between their neighbours.
+        /// Whether these positions were replaced by positions between their neighbours.
         evened: bool,
     },
-    /// The root jumps from one frame to the next, and stays there.
+    /// A root that jumps from one frame to the next and stays there.
     RootJumps {
         /// The farthest jump, metres.
         metres: f64,
     },
-    /// The root goes far from the origin.
+    /// A root far from the origin.
     FarAway {
-        /// How far, metres.
+        /// The greatest distance, metres.
         metres: f64,
     },
-    /// No unit of length makes this skeleton the size of a person: centimetres are taken.
+    /// A skeleton that is the size of a person in no unit of length: centimetres are assumed.
     UnknownUnit,
-    /// Neither the limbs nor the floor tell which axis points up, as for a body that lies: this one
-    /// is taken.
+    /// An up axis that neither the limbs nor the floor determine, as for a lying body: this one is
+    /// assumed.
     UncertainUp {
-        /// The axis that was taken.
+        /// The assumed axis.
         up: UpAxis,
     },
-    /// Images of materials: the colour without them is taken.
+    /// Images of materials: ignored, the base colour is used.
     Textures,
-    /// Meshes that change their shape by morph targets: they keep the one they have.
+    /// Meshes with morph targets: their shape stays the same.
     MorphTargets,
-    /// Meshes with a skin that cannot be read: left out.
+    /// Meshes whose skin cannot be read: left out.
     BrokenMesh {
-        /// Why the first of them cannot be read.
+        /// The reason for the first of them.
         why: Message,
     },
 }
 
-/// One line on one kind of oddity.
+/// One line about one kind of oddity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ImportWarning {
-    /// What it is.
+    /// The kind, with the details of the first occurrence.
     pub kind: WarningKind,
-    /// How often it occurs; at least 1.
+    /// The number of occurrences; at least 1.
     pub count: usize,
-    /// The line, counted from 1, where it occurs first; `None` where it is about the whole file.
+    /// The line of the first occurrence, from 1; `None` where it concerns the whole file.
     pub line: Option<usize>,
 }
 
-/// A length that may be of any size, with its unit.
+/// Formats a length of any magnitude with its unit.
 fn length(metres: f64) -> String {
     match metres {
         0.1..10.0 => format!("{metres:.1} m"),
@@ -427,15 +427,15 @@ impl ToMessage for ImportWarning {
     }
 }
 
-/// Oddities while they are counted; places are byte offsets until the end.
+/// Counts of oddities while a file is read; places are byte offsets until the end.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tally {
     entries: Vec<(WarningKind, usize, Option<usize>)>,
 }
 
 impl Tally {
-    /// Counts one oddity. Those of one kind become one line, which keeps the details and the place
-    /// of the first.
+    /// Counts one oddity. Those of one kind become one line, with the details and the place of the
+    /// first.
     pub(super) fn add(&mut self, kind: WarningKind, at: Option<usize>) {
         let same = |entry: &&mut (WarningKind, usize, Option<usize>)| {
             std::mem::discriminant(&entry.0) == std::mem::discriminant(&kind)
@@ -461,7 +461,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn one_line_for_each_kind() {
+    fn tally_of_one_kind_is_one_line() {
         let mut tally = Tally::default();
         tally.add(WarningKind::MissingSpaces, Some(2));
         tally.add(WarningKind::NoFrames, None);
@@ -478,7 +478,7 @@ mod tests {
     }
 
     #[test]
-    fn the_sentences_are_plain() {
+    fn warning_displays_as_a_sentence() {
         let say = |kind, count, line| ImportWarning { kind, count, line }.to_string();
         let row = WarningKind::TruncatedRow { found: 95, expected: 96 };
         assert_eq!(

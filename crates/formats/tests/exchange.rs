@@ -1,5 +1,5 @@
-//! What is exported is what others read: `bvh_anim` here, and for `three`
-//! (`tests/browser/read_back.mjs`) and `bvhio` (`tests/oracles/read_back.py`) the files that these
+//! Exported files, read by other programs: `bvh_anim` here, and `three`
+//! (`tests/browser/read_back.mjs`) and `bvhio` (`tests/oracles/read_back.py`) from files that these
 //! tests leave in the target folder. `cargo xtask test oracles` runs all three.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests: what fails here fails the test")]
@@ -22,10 +22,10 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
-/// A thousandth of a centimetre, metres.
-const AS_GOOD_AS_SAME: f64 = 1e-5;
+/// Tolerance for positions: a thousandth of a centimetre, metres.
+const TOLERANCE: f64 = 1e-5;
 
-/// Clips with the options that they are written with.
+/// Returns clips with the options by which they are written.
 fn cases() -> Vec<(String, Clip, WriteOptions)> {
     let made = |action| synthesize(&Params::new(action)).unwrap().clip;
     let own = WriteOptions::default();
@@ -56,7 +56,7 @@ fn cases() -> Vec<(String, Clip, WriteOptions)> {
     cases
 }
 
-/// The clip that a file with these options holds.
+/// Returns the clip that a file with these options holds.
 fn written(clip: &Clip, options: &WriteOptions) -> Clip {
     match options.fps {
         Some(fps) => {
@@ -71,8 +71,8 @@ fn unit(clip: &Clip, options: &WriteOptions) -> f64 {
     options.metres_per_unit.unwrap_or(clip.provenance().metres_per_unit)
 }
 
-/// World positions in metres, frame by frame, with the names of the joints: matrices multiplied
-/// from the root on. Positions replace the OFFSET.
+/// Returns world positions in metres, frame by frame, with the names of the joints, by multiplying
+/// matrices from the root on. Positions replace the OFFSET.
 fn positions(bvh: &Bvh, metres_per_unit: f64) -> Vec<Vec<(String, DVec3)>> {
     let frame = |frame: &bvh_anim::Frame| {
         let mut world: Vec<DMat4> = Vec::new();
@@ -108,7 +108,7 @@ fn positions(bvh: &Bvh, metres_per_unit: f64) -> Vec<Vec<(String, DVec3)>> {
 }
 
 #[test]
-fn exported_bvh_is_the_same_motion_to_another_reader() {
+fn exported_bvh_in_another_reader_is_the_same_motion() {
     for (name, clip, options) in cases() {
         for up in [UpAxis::Y, UpAxis::Z] {
             let text = write(&clip, &WriteOptions { up: Some(up), ..options });
@@ -135,12 +135,12 @@ fn exported_bvh_is_the_same_motion_to_another_reader() {
                 }
             }
             println!("{name}, {up:?} up: {:.6} cm apart", 100.0 * farthest);
-            assert!(farthest < AS_GOOD_AS_SAME, "{name}: {farthest} m");
+            assert!(farthest < TOLERANCE, "{name}: {farthest} m");
         }
     }
 }
 
-/// A child of two colours that walks as an adult does: its motion, and its mesh.
+/// Returns a child of two colours that walks as an adult does: its motion, and its mesh.
 fn character() -> (Clip, SkinnedMesh) {
     let walk = synthesize(&Params::new(Action::Walk)).unwrap().clip;
     let skeleton = humanoid(1.5).unwrap();
@@ -153,10 +153,10 @@ fn character() -> (Clip, SkinnedMesh) {
     (drive.clip(&walk).unwrap(), mesh)
 }
 
-/// Leaves what the readers in other languages compare: for each case the BVH and the GLB, and the
+/// Writes the files for the readers in other languages: for each case BVH and GLB, and the
 /// positions as CSV.
 #[test]
-fn files_for_other_readers() {
+fn exported_files_are_left_for_other_readers() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("exchange");
     // From earlier runs with other cases.
     fs::remove_dir_all(&folder).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Thirty small files that break importers, with what is to come of each.
+//! Thirty small files that break importers, with the expected result of each.
 
 mod common;
 
@@ -8,10 +8,10 @@ use segue_formats::{ImportOptions, Imported, import};
 use segue_motion::clip::{Clip, UpAxis};
 use segue_motion::skeleton::Channel;
 
-/// Names of the plain files' joints.
+/// Joint names of the plain files.
 const NAMES: [&str; 3] = ["Hips", "Spine", "Head"];
 
-/// `Rz · Rx · Ry` from degrees, by glam.
+/// Returns `Rz · Rx · Ry` from degrees, by glam.
 fn zxy(z: f32, x: f32, y: f32) -> Quat {
     Quat::from_rotation_z(z.to_radians())
         * Quat::from_rotation_x(x.to_radians())
@@ -26,7 +26,7 @@ fn assert_near(found: Quat, expected: Quat, what: &str) {
     );
 }
 
-/// The motion that almost all of the files hold: what its rows say, in metres.
+/// Checks the motion that almost all of the files hold, in metres.
 fn check_motion(name: &str, clip: &Clip, frames: usize) {
     assert_eq!((clip.frames(), clip.fps()), (frames, 30.0), "{name}");
     assert_eq!(clip.provenance().metres_per_unit, 0.01, "{name}");
@@ -68,7 +68,7 @@ fn check_skeleton(name: &str, clip: &Clip, names: [&str; 3], has_end_site: bool)
 }
 
 #[test]
-fn each_of_the_thirty_files_comes_out_as_it_should() {
+fn hard_files_are_read_as_expected() {
     let Some(data) = shared_data() else { return };
     let files = bvh_files(&data.join("hard"));
     assert_eq!(files.len(), 30);
@@ -90,7 +90,7 @@ fn each_of_the_thirty_files_comes_out_as_it_should() {
         let warnings: Vec<String> = warnings.iter().map(ToString::to_string).collect();
         let (mut expected_warnings, mut names, mut has_end_site) = (vec![], NAMES, true);
         match name.as_str() {
-            // What is not there, or not as the base file has it.
+            // Files that deviate from the base file.
             "16_missing_end_site.bvh" => {
                 has_end_site = false;
                 check_motion(name, clip, 4);
@@ -119,7 +119,7 @@ fn each_of_the_thirty_files_comes_out_as_it_should() {
                 );
             }
             "25_all_six_channels.bvh" => {
-                // All positions are the OFFSETs: no joint leaves its place.
+                // All positions are the OFFSETs: no joint moves against its parent.
                 assert_eq!(clip.skeleton().joints()[2].channels.len(), 6);
                 check_motion(name, clip, 4);
             }

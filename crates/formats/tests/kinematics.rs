@@ -1,4 +1,4 @@
-//! Channels of every kind put every joint where an independent reader puts it
+//! World positions of joints with every kind of channel, compared with an independent reader
 //! (`tests/cases/bvh_kinematics/oracle.py`).
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests: what fails here fails the test")]
@@ -22,7 +22,7 @@ fn check(up: UpAxis, metres_per_unit: f64, world_from_file: impl Fn(Vec3) -> Vec
     let imported = import("input.bvh", INPUT.as_bytes(), &options).unwrap();
     let warnings: Vec<String> = imported.warnings.iter().map(ToString::to_string).collect();
     assert_eq!(warnings[0], "3 scale channels (first: line 13) ignored");
-    // The numbers of this file are by chance: in metres they are far apart.
+    // The numbers of this file are random: in metres they are far apart.
     let wild = "1 jump of the root from one frame to the next, up to 5.1 m";
     assert!(warnings[1..].iter().all(|warning| warning == wild), "{warnings:?}");
     let clip = &imported.clips[0].clip;
@@ -51,18 +51,18 @@ fn check(up: UpAxis, metres_per_unit: f64, world_from_file: impl Fn(Vec3) -> Vec
 }
 
 #[test]
-fn every_joint_is_where_matrices_put_it() {
+fn world_positions_equal_the_oracle() {
     check(UpAxis::Y, 1.0, |p| p);
     check(UpAxis::Y, 0.01, |p| p * 0.01);
 }
 
 #[test]
-fn z_up_turns_the_whole_world() {
+fn world_positions_with_z_up_are_rotated() {
     check(UpAxis::Z, 1.0, |p| Vec3::new(p.x, p.z, -p.y));
 }
 
 #[test]
-fn only_joints_that_leave_their_offset_have_translations() {
+fn translations_exist_only_for_moving_joints() {
     let (found, _) = common::one(INPUT);
     let moving: BTreeMap<&str, usize> = found
         .clip

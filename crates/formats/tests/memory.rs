@@ -1,22 +1,22 @@
-//! What reading a file takes at its peak, the file itself among it, by an allocator that counts. In
-//! a binary of its own, with one test, so that nothing else allocates meanwhile.
+//! Peak memory of reading a file, the file itself included, measured by a counting allocator. A
+//! binary of its own with one test, so that nothing else allocates.
 
 use peak_alloc::PeakAlloc;
 use segue_formats::bvh::{WriteOptions, write};
 use segue_formats::{ImportOptions, import};
 use segue_motion::synth::{Action, Params, synthesize};
 
-/// Moves vectors that grow to a new place, as the allocators of browsers do.
+/// Moves growing vectors to a new place, as the allocators of browsers do.
 #[global_allocator]
 static ALLOCATOR: PeakAlloc = PeakAlloc;
 
-/// What the header says of the number of frames, in words, and made from that number.
+/// A description of the number of frames in the header, and the text made from the true number.
 type Header = (&'static str, fn(usize) -> String);
 
-/// 100 MB where the build is optimised; what counts is the ratio.
+/// 100 MB in optimised builds; the ratio is what is tested.
 const BYTES: usize = if cfg!(debug_assertions) { 12_000_000 } else { 100_000_000 };
 
-/// A walk over and over, with this in the place of the number of frames.
+/// Returns a file that repeats a walk, with `header` as the number of frames.
 fn file(header: impl Fn(usize) -> String) -> Vec<u8> {
     let clip = synthesize(&Params::new(Action::Walk)).expect("natural parameters").clip;
     let text = write(&clip, &WriteOptions::default());
@@ -33,7 +33,7 @@ fn file(header: impl Fn(usize) -> String) -> Vec<u8> {
 }
 
 #[test]
-fn the_peak_is_at_most_three_times_the_file() {
+fn peak_memory_is_at_most_three_times_the_file() {
     let headers: [Header; 4] = [
         ("right", |frames| format!("Frames: {frames}")),
         ("far too many", |_| "Frames: 4000000000".to_owned()),
@@ -53,7 +53,7 @@ fn the_peak_is_at_most_three_times_the_file() {
             bytes.len(),
             clip.frames()
         );
-        // The motion alone, so that the allocator is seen to count.
+        // The size of the motion alone, to check that the allocator counts.
         let motion = clip.frames() * clip.skeleton().len() * size_of::<glam::Quat>();
         assert!(peak > bytes.len() + motion, "{name}");
         assert!(ratio <= 3.0, "{name}: {ratio}");

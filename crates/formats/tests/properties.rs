@@ -1,5 +1,5 @@
-//! What must hold for any clip and any bytes: a clip comes back from its own file, and no file
-//! brings the reader down.
+//! Properties of any clip and any bytes: a clip reads back equal from its own file, and no file
+//! makes the reader panic.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests: what fails here fails the test")]
 
@@ -29,7 +29,7 @@ fn vector(size: f32) -> impl Strategy<Value = Vec3> {
     (-size..size, -size..size, -size..size).prop_map(|(x, y, z)| Vec3::new(x, y, z))
 }
 
-/// Any rotation, and often one at which some order of channels is in gimbal lock, or nearly.
+/// Any rotation; often one in which some order of channels is in gimbal lock, or nearly.
 fn rotation() -> impl Strategy<Value = Quat> {
     let quarter = std::f32::consts::FRAC_PI_2;
     prop_oneof![
@@ -43,7 +43,7 @@ fn rotation() -> impl Strategy<Value = Quat> {
     ]
 }
 
-/// The place of a joint's parent among those before it, its offset, its end site, and its channels.
+/// A joint: its parent among those before it, its offset, its end site, and its channels.
 type Bone = (prop::sample::Index, Vec3, Option<Vec3>, Vec<Channel>);
 
 fn bone() -> impl Strategy<Value = Bone> {
@@ -108,13 +108,13 @@ fn options() -> impl Strategy<Value = WriteOptions> {
     })
 }
 
-/// The local translation of a joint, whether it moves or not.
+/// Returns the local translation of a joint, whether it moves or not.
 fn translation(clip: &Clip, joint: usize, frame: usize) -> Vec3 {
     let track = clip.translations().iter().find(|track| track.joint == joint);
     track.map_or(clip.skeleton().joints()[joint].offset, |track| track.values[frame])
 }
 
-/// Joints in the order in which a file holds them: each followed by all below it.
+/// Returns the joints in the order of a file, depth first.
 fn file_order(skeleton: &Skeleton) -> Vec<usize> {
     let (mut order, mut todo) = (vec![], vec![0]);
     while let Some(joint) = todo.pop() {
@@ -125,8 +125,8 @@ fn file_order(skeleton: &Skeleton) -> Vec<usize> {
     order
 }
 
-/// For each joint of what was read the joint of the clip that was written, whose own form with the
-/// carrier first is `folded`.
+/// Returns for each joint that was read the joint of the written clip, whose form with the carrier
+/// first is `folded`.
 fn written_joints(back: &Clip, clip: &Clip, folded: &Clip) -> Vec<usize> {
     let order = file_order(clip.skeleton());
     let joints = 0..back.skeleton().len();
@@ -143,7 +143,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
     #[test]
-    fn a_clip_comes_back_from_its_file(clip in clip(), options in options()) {
+    fn written_bvh_reads_back_equal(clip in clip(), options in options()) {
         let text = write(&clip, &options);
         let provenance = Provenance {
             metres_per_unit: options.metres_per_unit.unwrap_or(clip.provenance().metres_per_unit),
@@ -164,7 +164,7 @@ proptest! {
             let (a, b) = (&back.skeleton().joints()[found], &clip.skeleton().joints()[joint]);
             prop_assert_eq!(&a.name, &b.name);
             prop_assert_eq!(a.parent.map(|parent| order[parent]), b.parent);
-            // That of a root with positions is zero in the file.
+            // The offset of a root with positions is zero in the file.
             prop_assert!(found == 0 || a.offset.distance(b.offset) < 1e-5);
             prop_assert_eq!(a.end_site.is_some(), b.end_site.is_some());
             prop_assert!(a.end_site.unwrap_or_default().distance(b.end_site.unwrap_or_default()) < 1e-5);
@@ -180,14 +180,14 @@ proptest! {
         for (a, b) in back.root_translations().iter().zip(clip.root_translations()) {
             prop_assert!(a.distance(*b) < 1e-5, "{a} {b}");
         }
-        // And what is read is written the same way again.
+        // A clip that was read is written the same way again.
         let again = write(back, &WriteOptions::default());
         let twice = import("clip.bvh", again.as_bytes(), &reading).map_err(|error| TestCaseError::fail(error.to_string()))?;
         prop_assert_eq!(twice.clips[0].clip.frames(), back.frames());
     }
 
     #[test]
-    fn a_clip_comes_back_from_its_glb(clip in clip()) {
+    fn written_glb_reads_back_equal(clip in clip()) {
         let bytes = write_glb(&clip, &GlbOptions::default()).unwrap();
         let reading = ImportOptions { metres_per_unit: Some(1.0), fps: Some(clip.fps()), drop_t_pose: false, ..ImportOptions::default() };
         let imported = gltf::read("clip.glb", &bytes, &|_| None, &reading).map_err(|error| TestCaseError::fail(error.to_string()))?;
@@ -216,7 +216,7 @@ proptest! {
     }
 
     #[test]
-    fn spoilt_files_are_read_or_refused(
+    fn damaged_files_are_read_or_refused(
         clip in clip(),
         plain: bool,
         edits in prop::collection::vec((any::<prop::sample::Index>(), 0..6_u8, any::<u8>(), any::<prop::sample::Index>()), 0..8),
@@ -248,7 +248,7 @@ proptest! {
                 for found in &imported.clips {
                     prop_assert!((0..found.clip.frames()).all(|frame| found.clip.rotations(frame).iter().all(|q| q.is_normalized())));
                     prop_assert!(found.clip.root_translations().iter().all(|p| p.is_finite()));
-                    // What was read can be written, and that be read.
+                    // A clip that was read can be written and read again.
                     let text = write(&found.clip, &WriteOptions::default());
                     let again = import("again.bvh", text.as_bytes(), &ImportOptions { drop_t_pose: false, ..ImportOptions::default() });
                     prop_assert_eq!(again.map(|again| again.clips[0].clip.frames()), Ok(found.clip.frames()));
@@ -263,14 +263,14 @@ proptest! {
     }
 
     #[test]
-    fn plain_rows_are_read_as_any_others_are(clip in clip(), edits in prop::collection::vec((any::<prop::sample::Index>(), "[-+0-9.,e \tn#\n]"), 0..4)) {
+    fn plain_rows_equal_the_slow_path(clip in clip(), edits in prop::collection::vec((any::<prop::sample::Index>(), "[-+0-9.,e \tn#\n]"), 0..4)) {
         let mut text = write(&clip, &WriteOptions::default());
         let rows = text.find("Frame Time").unwrap();
         for (at, piece) in edits {
             let at = rows + at.index(text.len() - rows);
             text.insert_str(at, &piece);
         }
-        // White space like any other, but no line is plain then.
+        // Other white space, with which no line takes the fast path.
         let slow = text.replace('\n', "\x0b\n");
         let read = |text: &str| import("clip.bvh", text.as_bytes(), &ImportOptions::default()).map_err(|error| (error.line, error.expected));
         prop_assert_eq!(read(&text), read(&slow));
@@ -287,8 +287,8 @@ proptest! {
 }
 
 #[test]
-fn long_runs_of_anything_take_no_longer_than_their_length() {
-    // Each would take minutes or hours were any of them read over and over again.
+fn long_runs_of_anything_are_read_in_linear_time() {
+    // Each would take minutes or hours if it were read repeatedly.
     let head =
         "ROOT a { CHANNELS 2 Xrotation Yposition } MOTION Frames: 4000000000 Frame Time: 0.01\n";
     let big = 2_000_000;

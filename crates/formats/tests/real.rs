@@ -1,5 +1,5 @@
-//! Captured motion as it is found in the world: it loads, with the right size, the right way up,
-//! and comes back from a file of our own.
+//! Captured motion from public databases: it loads with the right size and up axis, and reads back
+//! equal from a written file.
 
 mod common;
 
@@ -9,8 +9,8 @@ use segue_formats::{CMU_METRES_PER_UNIT, ImportOptions, import};
 use segue_motion::clip::{Clip, UpAxis};
 use segue_motion::math::quat;
 
-/// The height of the body over all frames: the median, in metres. Lowest and highest joint or end
-/// site.
+/// Returns the height of the body, metres: the median over all frames of the extent from the lowest
+/// to the highest joint or end site.
 fn standing_height(clip: &Clip) -> f32 {
     let height = |frame: usize| {
         let ys: Vec<f32> = points(clip, frame).iter().map(|p| p.y).collect();
@@ -21,7 +21,7 @@ fn standing_height(clip: &Clip) -> f32 {
     heights[heights.len() / 2]
 }
 
-/// What the conversions of CMU motion cut out of the body, metres: their `Neck` has no OFFSET,
+/// Returns the length that conversions of CMU motion lose, metres: their `Neck` has no OFFSET,
 /// where the database has a bone (thorax) as long as the one below it, `Spine1`.
 fn lost_in_conversion(clip: &Clip) -> f32 {
     let joints = clip.skeleton().joints();
@@ -29,7 +29,7 @@ fn lost_in_conversion(clip: &Clip) -> f32 {
     neck.and_then(|neck| neck.parent).map_or(0.0, |spine| joints[spine].offset.length())
 }
 
-/// The lowest point of the median frame, metres above the ground.
+/// Returns the lowest point of the median frame, metres above the ground.
 fn feet_above_ground(clip: &Clip) -> f32 {
     let low = |frame: usize| points(clip, frame).iter().map(|p| p.y).fold(f32::MAX, f32::min);
     let mut lows: Vec<f32> = (0..clip.frames()).step_by(5).map(low).collect();
@@ -38,10 +38,10 @@ fn feet_above_ground(clip: &Clip) -> f32 {
 }
 
 #[test]
-fn people_are_as_tall_as_people_and_stand_on_the_ground() {
+fn captured_people_have_plausible_height_and_ground_contact() {
     let Some(data) = shared_data() else { return };
-    // Name, joints, frames after the T-pose row, frames per second, metres per unit, whether there
-    // is a T-pose row.
+    // Name, joints, frames after the T-pose row, frames per second, metres per unit, and whether
+    // there is a T-pose row.
     let expected = [
         ("01_01.bvh", 31, 2751, 120.0, CMU_METRES_PER_UNIT, true),
         ("pirouette.bvh", 43, 591, 120.0, 0.01, true),
@@ -95,7 +95,7 @@ fn people_are_as_tall_as_people_and_stand_on_the_ground() {
 }
 
 #[test]
-fn a_t_pose_row_can_be_kept() {
+fn captured_t_pose_row_can_be_kept() {
     let Some(data) = shared_data() else { return };
     let bytes = std::fs::read(data.join("cmu/run.bvh")).unwrap();
     let options = ImportOptions { drop_t_pose: false, ..ImportOptions::default() };
@@ -109,7 +109,7 @@ fn a_t_pose_row_can_be_kept() {
 }
 
 #[test]
-fn real_motion_survives_the_way_out_and_in() {
+fn captured_motion_reads_back_equal() {
     let Some(data) = shared_data() else { return };
     let files = ["cmu", "games105"].iter().flat_map(|folder| bvh_files(&data.join(folder)));
     for (name, bytes) in files.filter(|(name, _)| name != "01_01.bvh") {

@@ -1,4 +1,4 @@
-//! What real BVH files do, one test for each kind of oddity, on files of our own.
+//! Oddities of real BVH files, one test for each kind, on synthetic files.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests: what fails here fails the test")]
 
@@ -10,7 +10,7 @@ use segue_formats::{ImportError, ImportOptions, bvh, import, import_with_progres
 use segue_motion::clip::{Clip, UpAxis};
 use segue_motion::skeleton::Channel;
 
-/// The motion of [`chain`] with four frames.
+/// Returns the motion of [`chain`] with four frames.
 fn plain() -> Clip {
     let (found, warnings) = one(chain(4));
     assert_eq!(warnings, [""; 0]);
@@ -18,7 +18,7 @@ fn plain() -> Clip {
     found.clip
 }
 
-/// Asserts that a file says the same as [`plain`] and returns its warnings.
+/// Asserts that a file has the content of [`plain`] and returns its warnings.
 fn same(text: impl AsRef<[u8]>) -> Vec<String> {
     let (found, warnings) = one(text.as_ref());
     assert_eq!(found.clip, plain(), "{}", String::from_utf8_lossy(text.as_ref()));
@@ -34,7 +34,7 @@ fn utf16(text: &str) -> Vec<u8> {
 }
 
 #[test]
-fn any_line_ends_and_white_space() {
+fn line_ends_and_white_space_of_any_kind_are_read() {
     let text = chain(4);
     assert_eq!(same(text.replace('\n', "\r\n")), [""; 0]);
     assert_eq!(same(text.replace('\n', "\r")), [""; 0]);
@@ -42,7 +42,7 @@ fn any_line_ends_and_white_space() {
     assert_eq!(same(text.replace(' ', "\t")), [""; 0]);
     assert_eq!(same(text.replace(' ', " \x0b \x0c ")), [""; 0]);
     assert_eq!(same(text.trim_end()), [""; 0]);
-    // Lines count in errors whatever ends them.
+    // Errors count lines, whatever ends them.
     for end in ["\n", "\r\n", "\r"] {
         assert_eq!(
             refused(text.replace("9.5\n2.5", "\n2.5").replace('\n', end)).line,
@@ -53,7 +53,7 @@ fn any_line_ends_and_white_space() {
 }
 
 #[test]
-fn byte_order_marks_utf16_comments_and_padding() {
+fn encodings_comments_and_padding_are_read() {
     let text = chain(4);
     assert_eq!(same(format!("\u{feff}{text}")), [""; 0]);
     assert_eq!(same(utf16(&text)), [""; 0]);
@@ -71,7 +71,7 @@ fn byte_order_marks_utf16_comments_and_padding() {
 }
 
 #[test]
-fn keywords_and_channels_in_any_case() {
+fn keywords_in_any_case_are_read() {
     let motion = chain(4);
     let shout = |text: &str, names: &[&str]| {
         names
@@ -86,7 +86,7 @@ fn keywords_and_channels_in_any_case() {
 }
 
 #[test]
-fn headers_without_colons_spaces_or_frame_time() {
+fn headers_without_colons_spaces_or_frame_time_are_read() {
     let with = |header: &str| chain(4).replace("Frames: 4\nFrame Time: 0.01\n", header);
     for header in [
         "Frames:4\nFrameTime:0.01\n",
@@ -109,7 +109,7 @@ fn headers_without_colons_spaces_or_frame_time() {
 }
 
 #[test]
-fn braces_and_lines_in_any_place() {
+fn braces_on_any_line_are_read() {
     let text = chain(4);
     assert_eq!(same(text.replace("\n{", " {").replace("\n  {", "{")), [""; 0]);
     let swapped = text.replace(
@@ -134,7 +134,7 @@ fn braces_and_lines_in_any_place() {
 }
 
 #[test]
-fn end_sites_may_be_missing_named_or_many() {
+fn end_sites_missing_named_or_repeated_are_read() {
     let text = chain(4);
     let without = text.replace("      End Site\n      {\n        OFFSET 0 22 0\n      }\n", "");
     assert_eq!(one(without).0.clip.skeleton().joints()[2].end_site, None);
@@ -170,7 +170,7 @@ fn names_are_kept_as_written() {
     );
     assert_eq!(names(named("腰", "Größe").as_bytes())[..2], ["腰", "Größe"]);
     assert_eq!(names(named("twin", "twin").as_bytes())[..2], ["twin", "twin"]);
-    // Joints are known by their place: what they are called changes nothing in their motion.
+    // Joints are identified by their place, so equal names change nothing in their motion.
     let twins = one(chain(4).replace("Pelvis", "twin").replace("Torso", "twin")).0.clip;
     assert_eq!(
         (twins.rotations(3), twins.skeleton().joints()[2].parent),
@@ -183,7 +183,7 @@ fn names_are_kept_as_written() {
 }
 
 #[test]
-fn each_root_is_one_character() {
+fn roots_each_give_a_character() {
     let second = "ROOT Other\n{\n OFFSET 100 80 0\n CHANNELS 2 Yposition Yrotation\n JOINT Tip\n {\n OFFSET 0 85 0\n CHANNELS 1 Xrotation\n }\n}\n";
     let rows = [0, 1, 2, 3]
         .map(|frame| format!("{} {} {} 30\n", row(frame), 80 + frame, 10 * frame))
@@ -205,7 +205,7 @@ fn each_root_is_one_character() {
 }
 
 #[test]
-fn any_number_of_channels_on_any_joint() {
+fn channels_of_any_number_are_read() {
     // 9 with scales, then 2, then 0: the scales are skipped.
     let text = CHAIN
         .replace("CHANNELS 6 Xposition", "CHANNELS 9 Xscale Yscale Zscale Xposition")
@@ -226,9 +226,9 @@ fn any_number_of_channels_on_any_joint() {
 }
 
 #[test]
-fn channels_in_any_order() {
-    // Rotations before positions, positions between rotations, and the axes of either in any order:
-    // the order of rotations is that of the product.
+fn channels_in_any_order_are_read() {
+    // Rotations before positions, positions between rotations, and any order of axes: the order of
+    // rotations is that of the product.
     let text = CHAIN
         .replace(
             "CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation",
@@ -246,7 +246,7 @@ fn channels_in_any_order() {
         );
     let text =
         format!("{text}MOTION\nFrames: 1\nFrame Time: 0.01\n10 3 20 1 30 2 40 50 60 70 80 90\n");
-    // A single frame, bent double: which way is up is not to be guessed from it.
+    // A single frame, bent double, from which the up axis must not be inferred.
     let options = ImportOptions {
         up: Some(UpAxis::Y),
         metres_per_unit: Some(0.01),
@@ -268,7 +268,7 @@ fn channels_in_any_order() {
 }
 
 #[test]
-fn positions_replace_the_offset_and_a_root_without_them_stays_on_it() {
+fn positions_replace_the_offset() {
     let hierarchy = CHAIN
         .replace(
             "CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation",
@@ -284,14 +284,14 @@ fn positions_replace_the_offset_and_a_root_without_them_stays_on_it() {
         "{hierarchy}MOTION\nFrames: 2\nFrame Time: 0.01\n5 3 10 0 42 0\n6 4 20 0 42 0\n"
     ));
     assert_eq!(found.clip.root_translations(), [Vec3::new(0.0, 0.88, 0.0); 2]);
-    // The Torso moves in x only and keeps its OFFSET in y; the Skull stays where its OFFSET is.
+    // The Torso moves in x only and keeps its OFFSET in y; the Skull stays at its OFFSET.
     let [track] = found.clip.translations() else { panic!("one joint moves") };
     assert_eq!(track.joint, 1);
     assert!(track.values[1].distance(Vec3::new(0.04, 0.12, 0.0)) < 1e-6);
 }
 
 #[test]
-fn a_root_that_stands_still_is_folded_into_the_hips_that_move_and_written_again() {
+fn root_that_never_moves_is_folded_and_written_again() {
     let text = "ROOT reference\n{\n OFFSET 0 0 0\n CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n JOINT Hips\n {\n  \
                 OFFSET 0 0 0\n  CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n  JOINT Head\n  {\n   OFFSET 0 75 0\n  \
                 }\n  JOINT Foot\n  {\n   OFFSET 0 -90 0\n  }\n }\n}\n\
@@ -316,7 +316,7 @@ fn a_root_that_stands_still_is_folded_into_the_hips_that_move_and_written_again(
 }
 
 #[test]
-fn zero_offsets_take_the_rest_pose_from_the_first_frame() {
+fn offsets_of_zero_take_the_rest_pose_from_the_first_frame() {
     let six = "CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation";
     let text = format!(
         "ROOT a\n{{\nOFFSET 0 0 0\n{six}\nJOINT b\n{{\nOFFSET 0 0 0\n{six}\nJOINT c\n{{\nOFFSET 0 0 0\n{six}\n}}\n}}\nJOINT d\n{{\nOFFSET 0 0 0\n{six}\n}}\n}}\n\
@@ -338,7 +338,7 @@ fn zero_offsets_take_the_rest_pose_from_the_first_frame() {
 }
 
 #[test]
-fn channel_names_count_not_their_number() {
+fn channels_with_a_wrong_number_follow_their_names() {
     let text = chain(4).replace("    CHANNELS 3 Z", "    CHANNELS 6 Z");
     let said = "CHANNELS lines give numbers that disagree with the names after it (first: line 9), such as 6 for 3; the names count";
     assert_eq!(same(text), [format!("2 {said}")]);
@@ -351,7 +351,7 @@ fn channel_names_count_not_their_number() {
 }
 
 #[test]
-fn rows_count_not_the_header() {
+fn frames_with_a_wrong_header_follow_the_rows() {
     for declared in ["3", "5", "0", "-4", "4000000000", "99999999999999999999"] {
         let text = chain(4).replace("Frames: 4", &format!("Frames: {declared}"));
         assert_eq!(
@@ -364,7 +364,7 @@ fn rows_count_not_the_header() {
 }
 
 #[test]
-fn rows_across_lines_and_wrong_rows() {
+fn rows_across_lines_are_read_and_wrong_rows_refused() {
     let text = chain(4);
     let (head, rows) = text.split_once("0.01\n").unwrap();
     let note =
@@ -375,7 +375,7 @@ fn rows_across_lines_and_wrong_rows() {
         let lines: Vec<String> = numbers.chunks(width).map(|line| line.join(" ")).collect();
         assert_eq!(same(format!("{head}0.01\n{}\n", lines.join("\n"))), [note], "{width}");
     }
-    // A cut last row, with and without its line end; inside a number; inside an exponent.
+    // A truncated last row: with and without its line end, inside a number, inside an exponent.
     for cut in ["0.5 90.5", "0.5 90.5\n", "0.5 90.5 -", "0.5 90.5 1e-"] {
         let warnings = same(format!("{text}{cut}"));
         assert_eq!(
@@ -401,7 +401,7 @@ fn rows_across_lines_and_wrong_rows() {
 }
 
 #[test]
-fn no_frames_are_a_skeleton_and_one_is_a_pose() {
+fn clip_of_no_frames_is_a_skeleton() {
     for text in [CHAIN.to_owned(), chain(0), format!("{CHAIN}MOTION"), CHAIN.trim_end().to_owned()]
     {
         let (found, warnings) = one(&text);
@@ -418,7 +418,7 @@ fn no_frames_are_a_skeleton_and_one_is_a_pose() {
 }
 
 #[test]
-fn frame_times_that_are_none_and_those_that_were_cut() {
+fn frame_times_invalid_or_rounded_are_read() {
     let fps = |time: &str| {
         let (found, warnings) = one(chain(2).replace("0.01\n", &format!("{time}\n")));
         (found.clip.fps(), warnings)
@@ -444,7 +444,7 @@ fn frame_times_that_are_none_and_those_that_were_cut() {
             format!("a frame time of {time} is no time (line 23); 30 frames per second are taken");
         assert_eq!(fps(time), (30.0, vec![said]));
     }
-    // What a person says goes, and then there is nothing to warn of.
+    // A frame rate that the user gives is used without a warning.
     let options = ImportOptions { fps: Some(48.0), ..ImportOptions::default() };
     let imported =
         import("test.bvh", chain(2).replace("0.01\n", "0\n").as_bytes(), &options).unwrap();
@@ -457,7 +457,7 @@ fn frame_times_that_are_none_and_those_that_were_cut() {
 }
 
 #[test]
-fn every_spelling_of_a_number() {
+fn numbers_in_every_spelling_are_read() {
     let text = chain(1).replace(
         "0.5 90.5 0.5 1.5 2.5 3.0 4.5",
         "+.5 9.05E+1 0.5000000000000000000001 1.5 2.50 3 45e-1",
@@ -471,8 +471,8 @@ fn every_spelling_of_a_number() {
 }
 
 #[test]
-fn values_that_are_no_numbers_repeat_the_last_good_one() {
-    // 600 values, of which 6 are none: exactly 1 %.
+fn values_not_finite_repeat_the_last_good_one() {
+    // 600 values, of which 6 are invalid: exactly 1 %.
     let spoilt = |count: usize| {
         let words = ["nan", "-nan(ind)", "1.#IND", "-1.#IND00", "inf", "1.#QNAN", "-Infinity"];
         let spoil = |frame: usize| words.get(frame.wrapping_sub(10)).filter(|_| frame < 10 + count);
@@ -514,7 +514,7 @@ fn values_that_are_no_numbers_repeat_the_last_good_one() {
 }
 
 #[test]
-fn decimal_commas_in_every_number_or_in_none() {
+fn decimal_commas_in_some_numbers_are_refused() {
     let commas = |text: &str| {
         let spelt = |word: &str| match word.parse::<f64>() {
             Ok(_) if word.contains('.') => word.replace('.', ","),
@@ -535,8 +535,8 @@ fn decimal_commas_in_every_number_or_in_none() {
     assert!(text.contains("OFFSET 0,0 12,0 0,0") && text.contains("Frame Time: 0,01"));
     assert_eq!(same(&text), ["the numbers have decimal commas; read as points"]);
     assert_eq!(same(text.replace(" 1,5 ", " 15,0e-1 ")).len(), 1);
-    // One point or one whole number among them, or commas between numbers: refused, at the first
-    // comma.
+    // With one point or one integer among them, or with commas between numbers, a file is refused
+    // at the first comma.
     let mixed = refused(text.replacen("1,5", "1.5", 1));
     assert_eq!(
         mixed.to_string(),
@@ -558,7 +558,7 @@ fn decimal_commas_in_every_number_or_in_none() {
 }
 
 #[test]
-fn a_missing_space_before_a_sign_is_put_back() {
+fn missing_spaces_before_signs_are_inserted() {
     let text = chain(4).replace(" 1.5 2.5 ", " 1.5-2.5 ");
     let spaced = chain(4).replace(" 1.5 2.5 ", " 1.5 -2.5 ");
     let (found, warnings) = one(&text);
@@ -567,7 +567,7 @@ fn a_missing_space_before_a_sign_is_put_back() {
         warnings,
         ["4 missing spaces between numbers (first: line 24); split before the sign"]
     );
-    // Also where rows must be counted, and behind an exponent.
+    // Also across lines, and after an exponent.
     let rows = "0e-1+1-2+3-4+5-6+7-8+9-10+11\n".repeat(3);
     assert_eq!(
         one(format!("{CHAIN}MOTION\nFrames: 3\nFrame Time: 0.01\n{rows}")).0.clip.frames(),
@@ -576,7 +576,7 @@ fn a_missing_space_before_a_sign_is_put_back() {
 }
 
 #[test]
-fn deep_chains_are_read_and_bottomless_ones_refused() {
+fn chains_that_are_too_deep_are_refused() {
     let nested = |depth: usize| {
         let joints = "JOINT j\n{\nOFFSET 0 1 0\nCHANNELS 1 Xrotation\n".repeat(depth - 1);
         let rows = "0 ".repeat(depth) + "\n";
@@ -593,7 +593,7 @@ fn deep_chains_are_read_and_bottomless_ones_refused() {
         (error.found.to_string().as_str(), error.expected.to_string().as_str()),
         ("joints nested more than 4096 deep", "at most 4096 levels")
     );
-    // Nothing but opening: neither a stack overflow nor a wait.
+    // Opening braces only: neither a stack overflow nor a long wait.
     assert!(
         refused("ROOT a {".to_owned() + &"JOINT a {".repeat(1_000_000))
             .found
@@ -603,7 +603,7 @@ fn deep_chains_are_read_and_bottomless_ones_refused() {
 }
 
 #[test]
-fn a_t_pose_in_front_is_marked_and_dropped() {
+fn t_pose_in_front_is_marked_and_dropped() {
     let bones = "CHANNELS 3 Zrotation Xrotation Yrotation";
     let mut hierarchy = CHAIN.replace("    }\n  }\n", "    }\n  }\n  @\n");
     let limb = |name: &str, x: f64| {
@@ -632,7 +632,7 @@ fn a_t_pose_in_front_is_marked_and_dropped() {
 }
 
 #[test]
-fn large_files_report_progress_can_be_stopped_and_have_a_cap() {
+fn large_files_report_progress_and_have_a_limit() {
     let text = chain(20_000);
     let mut reports = vec![];
     let imported =
@@ -657,7 +657,7 @@ fn large_files_report_progress_can_be_stopped_and_have_a_cap() {
 }
 
 #[test]
-fn unit_and_up_are_found_or_given() {
+fn unit_and_up_axis_are_inferred_or_given() {
     let z_up = chain(2)
         .replace("OFFSET 0 88 0", "OFFSET 0 0 88")
         .replace("OFFSET 0 12 0", "OFFSET 0 0 12")

@@ -1,4 +1,4 @@
-//! The frames of a motion file: one pass over the bytes, one row in memory.
+//! Parsing of the frames of a motion file: one pass over the bytes, one row in memory.
 
 use super::convert::Converter;
 use super::lexer::{
@@ -14,10 +14,10 @@ use std::collections::HashSet;
 /// Bytes between two reports of progress.
 const PROGRESS_STEP: usize = 1 << 18;
 
-/// Larger magnitudes are overflows, not measures.
-const LARGEST: f64 = 1e30;
+/// Larger magnitudes come from overflow, not from measurement.
+const MAX_MAGNITUDE: f64 = 1e30;
 
-/// Why reading stopped before the end.
+/// The reason why reading stopped before the end.
 #[derive(Debug)]
 pub(super) enum Stop {
     /// The file cannot be read.
@@ -32,23 +32,23 @@ impl From<Fault> for Stop {
     }
 }
 
-/// What a joint takes from the file.
+/// The use of a joint's values in the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Use {
-    /// The file has not named it so far.
+    /// The file has not named the joint so far.
     Unnamed,
-    /// Its values.
+    /// The values are read.
     Values,
-    /// Nothing: it was given another number of values when it was first named.
+    /// The values are skipped, because their number was wrong when the joint was first named.
     Nothing,
 }
 
 /// The numbers after a bone's name.
 struct Run {
     count: usize,
-    /// Where the last one starts.
+    /// The offset of the last number.
     last_at: usize,
-    /// The file ends inside a number.
+    /// Whether the file ends inside a number.
     cut: bool,
 }
 
@@ -57,34 +57,34 @@ struct Frames<'r, 'a> {
     at: usize,
     skeleton: &'r AcclaimSkeleton,
     tally: &'r mut Tally,
-    /// The values of all joints. It keeps those of the frame before, so that what is not given is
+    /// The values of all joints. Values of the frame before are kept, so that a missing one is
     /// held.
     row: Vec<f64>,
     uses: Vec<Use>,
-    /// The name of each joint as the file last spelled it, which spares looking it up.
+    /// The name of each joint as last spelled in the file, which saves a lookup.
     spelled: Vec<&'a [u8]>,
-    /// The joint that was named after each joint in the frame before.
+    /// The joint that followed each joint in the frame before.
     next: Vec<usize>,
     /// The last frame that named each joint; frames are counted from 1.
     named_in: Vec<usize>,
     unknown: HashSet<&'a [u8]>,
-    /// Joints with values, in all and in this frame.
+    /// The number of joints with values, in all and in this frame.
     used: usize,
     used_in_frame: usize,
-    /// Numbers of this frame and of the one before.
+    /// The number of values in this frame and in the one before.
     numbers: usize,
     numbers_before: usize,
     /// The frame being read, counted from 1; 0 before the first one.
     frame: usize,
     frame_at: usize,
-    /// Its number in the file.
+    /// The number of the frame in the file.
     number: f64,
     values: u64,
     not_finite: u64,
     first_not_finite: usize,
 }
 
-/// Reads all frames into `converter` and returns where the first one stands.
+/// Reads all frames into `converter` and returns the offset of the first one.
 pub(super) fn frames(
     text: &[u8],
     skeleton: &AcclaimSkeleton,
@@ -195,7 +195,7 @@ impl Frames<'_, '_> {
         })
     }
 
-    /// Whether the name of a joint stands here, as it was spelled before.
+    /// Returns whether the name of a joint stands here, spelled as before.
     #[inline]
     fn spells(&self, joint: usize) -> bool {
         let rest = self.text.get(self.at..).unwrap_or_default();
@@ -212,7 +212,8 @@ impl Frames<'_, '_> {
         }
     }
 
-    /// A line that begins with a colon. `:DEGREES` and `:RADIANS` count before the first frame.
+    /// Reads a line that begins with a colon. `:DEGREES` and `:RADIANS` have an effect before the
+    /// first frame.
     fn header(&mut self, converter: &mut Converter<'_>) {
         let word = self.text.get(self.at + 1..token_end(self.text, self.at)).unwrap_or_default();
         if self.frame == 0 && word.eq_ignore_ascii_case(b"radians") {
@@ -245,7 +246,7 @@ impl Frames<'_, '_> {
         converter.row(&self.row).map_err(|fault| Fault { at: self.frame_at, ..fault })
     }
 
-    /// The file ends inside of the frame, which is dropped.
+    /// Drops the frame in which the file ends.
     fn truncated(&mut self, first_at: Option<usize>, at: usize) -> Result<usize, Stop> {
         if self.frame <= 1 {
             return Err(Fault::new(at, "the end of the file", "a whole frame").into());
@@ -255,7 +256,7 @@ impl Frames<'_, '_> {
         first_at.ok_or(Stop::Cancelled)
     }
 
-    /// The values of a bone, whose name has been read. `false` where the file ends before them.
+    /// Reads the values of a bone whose name has been read. Returns `false` if the file ends first.
     #[inline]
     fn bone(&mut self, joint: usize, at: usize) -> Result<bool, Fault> {
         let usage = self.uses.get(joint).copied().unwrap_or(Use::Nothing);
@@ -290,7 +291,7 @@ impl Frames<'_, '_> {
         }
     }
 
-    /// A bone that is named for the first time, or has another number of values than it should.
+    /// Handles a bone that is named for the first time, or has an unexpected number of values.
     #[cold]
     fn odd_bone(&mut self, joint: usize, at: usize, run: &Run) -> Result<bool, Fault> {
         let usage = self.uses.get(joint).copied().unwrap_or(Use::Nothing);
@@ -345,8 +346,8 @@ impl Frames<'_, '_> {
             .with_hint("complete the line or delete it, then drop the file again"))
     }
 
-    /// The numbers on the rest of the line, into the row; a value that is no number leaves what is
-    /// there.
+    /// Reads the numbers on the rest of the line into the row; a value that is not a number keeps
+    /// the value that is there.
     #[inline]
     fn numbers(&mut self, slots: Option<std::ops::Range<usize>>) -> Run {
         let text = self.text;
@@ -362,7 +363,7 @@ impl Frames<'_, '_> {
             // The common case: a plain number with white space after it.
             let value = match fast_float2::parse_partial::<f64, _>(rest) {
                 Ok((value, length))
-                    if value.abs() <= LARGEST
+                    if value.abs() <= MAX_MAGNITUDE
                         && rest.get(length).is_none_or(|&next| is_blank(next)) =>
                 {
                     self.at = at + length;
@@ -390,7 +391,7 @@ impl Frames<'_, '_> {
         }
     }
 
-    /// Anything but a plain number.
+    /// Reads anything but a plain number.
     #[cold]
     fn odd_number(&mut self) -> Odd {
         let start = self.at;
@@ -414,7 +415,8 @@ impl Frames<'_, '_> {
         Odd::Value(value)
     }
 
-    /// Where lines do not end with frames, the last number before a name is that of the next frame.
+    /// Returns the last number before a name to the input: where frames do not end with lines, it
+    /// is the number of the next frame.
     fn give_back_frame_number(&mut self, run: &Run) {
         let token =
             self.text.get(run.last_at..token_end(self.text, run.last_at)).unwrap_or_default();
@@ -424,7 +426,7 @@ impl Frames<'_, '_> {
         }
     }
 
-    /// Whether the next line goes on with numbers that are no frame number.
+    /// Returns whether the next line continues with numbers that are not a frame number.
     fn goes_on_below(&mut self) -> bool {
         if self.text.get(self.at).is_some_and(|b| !matches!(b, b'\n' | b'\r')) {
             return false;
@@ -476,23 +478,25 @@ impl Frames<'_, '_> {
     }
 }
 
+/// A value that is not a plain number.
 enum Odd {
-    /// A number, or none where the last good one is to be held.
+    /// A number; `None` where the last good one is held.
     Value(Option<f64>),
     /// The file ends inside a number.
     Cut,
-    /// No number at all.
+    /// Anything else.
     None,
 }
 
-/// The number of a frame, where a token is a number.
+/// Returns the number of a frame, if the token is one.
 fn frame_number(token: &[u8]) -> Option<f64> {
     let starts = matches!(token.first(), Some(b'0'..=b'9' | b'+' | b'-' | b'.'));
     let number = fast_float2::parse(token).ok().filter(|_| starts)?;
     (is_digits(token) || f64::is_finite(number)).then_some(number)
 }
 
-/// Why the beginning of a file is no motion: there is no first frame, or no value in it.
+/// Returns the reason why the beginning of a file is not a motion: it has no first frame, or no
+/// value in it.
 pub(super) fn first_fault(text: &[u8]) -> Option<Fault> {
     if first_frame(text).iter().any(|(_, values)| *values > 0) {
         return None;
@@ -510,8 +514,8 @@ pub(super) fn first_fault(text: &[u8]) -> Option<Fault> {
     Some(Fault::at_token(at, token_at(at), "a bone and its values"))
 }
 
-/// The bones of the first frame and how many values each has, as far as the beginning of a file
-/// tells.
+/// Returns the bones of the first frame and their numbers of values, as far as the beginning of a
+/// file contains them.
 pub(super) fn first_frame(text: &[u8]) -> Vec<(String, usize)> {
     let mut bones: Vec<(String, usize)> = Vec::new();
     let (mut at, mut frames) = (0, 0);

@@ -1,22 +1,22 @@
-//! The skeleton file as it is written: sections, bones and who hangs on whom.
+//! Parsing of a skeleton file: its sections, its bones and their hierarchy.
 
 use super::lexer::Lexer;
 use crate::error::Fault;
 use crate::text::quoted;
 use std::collections::HashSet;
 
-/// The sections that skeleton files have.
+/// The sections of skeleton files.
 const SECTIONS: [&str; 8] =
     [":version", ":name", ":units", ":documentation", ":root", ":bonedata", ":hierarchy", ":skin"];
 
 /// One degree of freedom: one value per frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Dof {
-    /// Along an axis (0 to 2).
+    /// A translation along an axis (0 to 2).
     Move(usize),
-    /// About an axis (0 to 2).
+    /// A rotation about an axis (0 to 2).
     Turn(usize),
-    /// Along the bone: it grows by so much.
+    /// A change of the bone's length.
     Stretch,
 }
 
@@ -50,9 +50,9 @@ pub(super) struct FileBone<'a> {
     pub(super) at: usize,
     pub(super) direction: [f64; 3],
     pub(super) length: f64,
-    /// Turns about X, Y and Z that make the bone's own axes: the root's `orientation`.
+    /// The rotations about X, Y and Z that make the bone's own axes; the root's `orientation`.
     pub(super) axis: [f64; 3],
-    /// The order of these turns, about fixed axes; the first one is applied first.
+    /// The order of these rotations, about fixed axes; the first one is applied first.
     pub(super) axis_order: [usize; 3],
     pub(super) dofs: Vec<Dof>,
 }
@@ -71,23 +71,23 @@ impl FileBone<'_> {
     }
 }
 
-/// One name of the hierarchy.
+/// An occurrence of a name in the hierarchy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Mention<'a> {
     pub(super) name: &'a [u8],
     pub(super) at: usize,
 }
 
-/// What a skeleton file says.
+/// The content of a skeleton file.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Asf<'a> {
-    /// `length` of `:units`, where it is a length.
+    /// The `length` of `:units`, if it is a length.
     pub(super) length: Option<f64>,
     pub(super) radians: bool,
     pub(super) root: FileBone<'a>,
     pub(super) root_position: [f64; 3],
     pub(super) bones: Vec<FileBone<'a>>,
-    /// Parent and child.
+    /// Pairs of parent and child.
     pub(super) links: Vec<(Mention<'a>, Mention<'a>)>,
 }
 
@@ -95,7 +95,7 @@ fn is(token: &[u8], word: &str) -> bool {
     token.eq_ignore_ascii_case(word.as_bytes())
 }
 
-/// Whether a token is one of the words that begin a section of a skeleton file.
+/// Returns whether a token begins a section of a skeleton file.
 pub(super) fn is_section(token: &[u8]) -> bool {
     SECTIONS.iter().any(|section| is(token, section))
 }
@@ -147,12 +147,13 @@ pub(super) fn read<'a>(lexer: &mut Lexer<'a>) -> Result<Asf<'a>, Fault> {
     }
 }
 
-/// At the end of a section.
+/// Returns whether a token ends a section.
 fn section_ends(token: &[u8]) -> bool {
     matches!(token.first(), None | Some(b':'))
 }
 
-/// Units that are missing or no units leave what was assumed: the size of the skeleton and degrees.
+/// Reads the units. If they are missing or invalid, the defaults stay: a unit inferred from the
+/// size of the skeleton, and degrees.
 fn units(lexer: &mut Lexer<'_>, asf: &mut Asf<'_>) {
     while !section_ends(lexer.peek()) {
         let key = lexer.take();
@@ -188,7 +189,7 @@ fn root(lexer: &mut Lexer<'_>, asf: &mut Asf<'_>) -> Result<(), Fault> {
     Ok(())
 }
 
-/// The names of degrees of freedom up to the first token that is none.
+/// Reads names of degrees of freedom up to the first token that is not one.
 fn dofs(lexer: &mut Lexer<'_>) -> Result<Vec<Dof>, Fault> {
     let mut list = Vec::new();
     while let Some(dof) = Dof::of(lexer.peek()) {
@@ -201,7 +202,7 @@ fn dofs(lexer: &mut Lexer<'_>) -> Result<Vec<Dof>, Fault> {
     Ok(list)
 }
 
-/// `XYZ` and the like; where there is none it is `XYZ`.
+/// Reads an order of axes such as `XYZ`, which is also the default.
 fn axis_order(lexer: &mut Lexer<'_>) -> Result<[usize; 3], Fault> {
     let token = lexer.peek_in_line();
     if token.is_empty() {
@@ -218,7 +219,7 @@ fn axis_order(lexer: &mut Lexer<'_>) -> Result<[usize; 3], Fault> {
     }
 }
 
-/// The words that begin a field of a bone.
+/// Returns whether a token begins a field of a bone.
 fn is_field(token: &[u8]) -> bool {
     [
         "id",
@@ -282,7 +283,7 @@ fn bone<'a>(lexer: &mut Lexer<'a>) -> Result<FileBone<'a>, Fault> {
                 return Err(lexer.unexpected("a degree of freedom: tx, ty, tz, rx, ry, rz or l"));
             }
         } else {
-            // The numbers of a field that says nothing about the motion, limits among them.
+            // The numbers of a field that does not affect the motion, such as limits.
             while !section_ends(lexer.peek()) && !is_field(lexer.peek()) {
                 lexer.take();
             }
@@ -294,7 +295,7 @@ fn bone<'a>(lexer: &mut Lexer<'a>) -> Result<FileBone<'a>, Fault> {
     Ok(bone)
 }
 
-/// A parent and its children on each line.
+/// Reads lines of a parent and its children.
 fn hierarchy<'a>(lexer: &mut Lexer<'a>, links: &mut Vec<(Mention<'a>, Mention<'a>)>) {
     while !section_ends(lexer.peek()) {
         let parent = mention(lexer);

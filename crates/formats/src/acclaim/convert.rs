@@ -1,4 +1,4 @@
-//! From rows of values to rotations and translations.
+//! Conversion of rows of values to rotations and translations.
 
 use super::asf::Dof;
 use super::skeleton::{AcclaimSkeleton, Motor};
@@ -8,23 +8,23 @@ use crate::raw::RawMotion;
 use glam::{DQuat, DVec3, Quat, Vec3};
 use segue_text::msg;
 
-/// Collects rows as rotations, in file units and file axes.
+/// A collector of rows as rotations, in file units and file axes.
 pub(super) struct Converter<'s> {
     skeleton: &'s AcclaimSkeleton,
-    /// Values of turns are radians.
+    /// Whether the values of rotations are radians.
     pub(super) radians: bool,
     raw: RawMotion,
     /// The root's orientation: the frame of reference of the whole motion.
     orientation: DQuat,
     bytes_per_row: u64,
-    /// Rows for which there is memory.
+    /// The number of rows for which memory is reserved.
     room: usize,
     bytes: u64,
     limit: u64,
 }
 
 impl<'s> Converter<'s> {
-    /// `bytes` is the length of the file and bounds what is allocated.
+    /// Returns a converter. `bytes` is the length of the file and bounds what is allocated.
     pub(super) fn new(skeleton: &'s AcclaimSkeleton, bytes: usize) -> Self {
         let stretches = |joint: usize| {
             skeleton.motors.get(joint).is_some_and(|motor| motor.dofs.contains(&Dof::Stretch))
@@ -59,9 +59,9 @@ impl<'s> Converter<'s> {
         }
     }
 
-    /// Takes one row: the values of all joints, joint after joint.
+    /// Appends one row: the values of all joints, joint after joint.
     ///
-    /// A turn by M about the bone's own axes C is C · M · C⁻¹ in the frame of its parent, which is
+    /// A rotation M about the bone's own axes C is C · M · C⁻¹ in the frame of its parent, which is
     /// the joint's rotation.
     pub(super) fn row(&mut self, values: &[f64]) -> Result<(), Fault> {
         self.bytes += self.bytes_per_row;
@@ -110,18 +110,18 @@ impl<'s> Converter<'s> {
         Ok(())
     }
 
-    /// The motion, in file units and file axes.
+    /// Returns the motion, in file units and file axes.
     pub(super) fn finish(self) -> RawMotion {
         self.raw
     }
 }
 
-fn value(motor: &Motor, own: &[f64], wanted: Dof) -> f64 {
-    let place = motor.dofs.iter().position(|dof| *dof == wanted);
+fn value(motor: &Motor, own: &[f64], dof: Dof) -> f64 {
+    let place = motor.dofs.iter().position(|other| *other == dof);
     place.and_then(|place| own.get(place).copied()).unwrap_or_default()
 }
 
-/// The turns of a bone one after the other about fixed axes, M.
+/// Returns M, the product of a bone's rotations about fixed axes.
 fn turn(motor: &Motor, own: &[f64], radians: bool) -> DQuat {
     let turns = motor.dofs.iter().zip(own).filter_map(|(dof, &value)| {
         let angle = if radians { value } else { value.to_radians() };

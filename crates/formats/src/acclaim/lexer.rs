@@ -6,13 +6,13 @@ use crate::text::is_space;
 use crate::warning::{Tally, WarningKind};
 use segue_text::Message;
 
-/// White space of these files: commas and parentheses are some.
+/// Returns whether a byte is white space of these files, which includes commas and parentheses.
 #[inline]
 pub(super) fn is_blank(b: u8) -> bool {
     is_space(b) || matches!(b, b',' | b'(' | b')')
 }
 
-/// What stands where a number should.
+/// The result of reading a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Number {
     /// A number that ends before `end`; `glued` when the next one follows without a space.
@@ -25,19 +25,20 @@ pub(super) enum Number {
     None,
 }
 
-/// Where the token that starts at `at` ends. A `#` inside of a token (`1.#IND`) is no comment.
+/// Returns the end of the token that starts at `at`. A `#` inside a token (`1.#IND`) is not a
+/// comment.
 pub(super) fn token_end(text: &[u8], at: usize) -> usize {
     let rest = text.get(at..).unwrap_or_default();
     rest.iter().position(|&b| is_blank(b)).map_or(text.len(), |length| at + length)
 }
 
-/// The end of the line that `at` is on.
+/// Returns the end of the line that contains `at`.
 pub(super) fn line_end(text: &[u8], at: usize) -> usize {
     let rest = text.get(at..).unwrap_or_default();
     rest.iter().position(|b| matches!(b, b'\n' | b'\r')).map_or(text.len(), |length| at + length)
 }
 
-/// Goes past white space, and past comments from `#` to the end of the line.
+/// Skips white space, and comments from `#` to the end of the line.
 #[inline]
 pub(super) fn skip_blank(text: &[u8], mut at: usize) -> usize {
     while let Some(&b) = text.get(at) {
@@ -52,7 +53,7 @@ pub(super) fn skip_blank(text: &[u8], mut at: usize) -> usize {
     at
 }
 
-/// [`skip_blank`] that stays on the line.
+/// Skips white space and comments as [`skip_blank`] does, but stays on the line.
 #[inline]
 pub(super) fn skip_blank_in_line(text: &[u8], mut at: usize) -> usize {
     while let Some(&b) = text.get(at) {
@@ -69,20 +70,20 @@ pub(super) fn skip_blank_in_line(text: &[u8], mut at: usize) -> usize {
     at
 }
 
-/// The number at `at`, however it is spelled.
+/// Reads the number at `at`, in any spelling.
 pub(super) fn number(text: &[u8], at: usize) -> Number {
     let end = number_end(text, at);
     match scan(text.get(..end).unwrap_or_default(), at, false) {
         Scan::Value { value, end, glued } => Number::Value { value, end, glued },
         Scan::NotFinite { end, glued } => Number::NotFinite { end, glued },
         Scan::Cut if end == text.len() => Number::Cut,
-        // Commas end tokens, so that decimal commas never get here.
+        // Commas end tokens, so decimal commas do not occur here.
         Scan::Cut | Scan::Bad | Scan::OtherDecimalSign => Number::None,
     }
 }
 
-/// The end of the token at `at`, or the end of the sign with which another number begins in it: no
-/// further, so that a long run of numbers without spaces takes no longer than one with.
+/// Returns the end of the token at `at`, or of the sign with which another number begins in it.
+/// Looking no further keeps a long run of numbers without spaces linear.
 fn number_end(text: &[u8], at: usize) -> usize {
     let mut before = b'+';
     for (index, &b) in text.iter().enumerate().skip(at) {
@@ -97,12 +98,12 @@ fn number_end(text: &[u8], at: usize) -> usize {
     text.len()
 }
 
-/// Whether a token consists of digits only, as frame numbers do.
+/// Returns whether a token consists of digits only, as frame numbers do.
 pub(super) fn is_digits(token: &[u8]) -> bool {
     !token.is_empty() && token.iter().all(u8::is_ascii_digit)
 }
 
-/// A place in a skeleton file, and what was odd up to there.
+/// A position in a skeleton file, and the oddities up to there.
 #[derive(Debug)]
 pub(super) struct Lexer<'a> {
     pub(super) text: &'a [u8],
@@ -115,13 +116,13 @@ impl<'a> Lexer<'a> {
         Self { text, at: 0, tally: Tally::default() }
     }
 
-    /// The next token, which stays where it is. Empty at the end of the file.
+    /// Returns the next token without consuming it. Empty at the end of the file.
     pub(super) fn peek(&mut self) -> &'a [u8] {
         self.at = skip_blank(self.text, self.at);
         self.here()
     }
 
-    /// The next token of this line, which stays where it is. Empty at the end of the line.
+    /// Returns the next token of this line without consuming it. Empty at the end of the line.
     pub(super) fn peek_in_line(&mut self) -> &'a [u8] {
         self.at = skip_blank_in_line(self.text, self.at);
         self.here()
@@ -131,7 +132,7 @@ impl<'a> Lexer<'a> {
         self.text.get(self.at..token_end(self.text, self.at)).unwrap_or_default()
     }
 
-    /// The next token, and goes past it.
+    /// Consumes and returns the next token.
     pub(super) fn take(&mut self) -> &'a [u8] {
         let token = self.peek();
         self.at += token.len();
@@ -142,7 +143,7 @@ impl<'a> Lexer<'a> {
         self.at = line_end(self.text, self.at);
     }
 
-    /// Goes to the next line that begins with a colon, or to the end of the file.
+    /// Skips to the next line that begins with a colon, or to the end of the file.
     pub(super) fn skip_to_section(&mut self) {
         loop {
             self.skip_line();
@@ -174,7 +175,7 @@ impl<'a> Lexer<'a> {
         Ok([self.number()?, self.number()?, self.number()?])
     }
 
-    /// An error at the next token.
+    /// Returns an error at the next token.
     pub(super) fn unexpected(&mut self, expected: impl Into<Message>) -> Fault {
         let token = self.peek();
         Fault::at_token(self.at, token, expected)
@@ -186,7 +187,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn commas_and_parentheses_are_white_space() {
+    fn tokens_end_at_commas_and_parentheses() {
         let mut lexer = Lexer::new(b"# a\n limits (-1.5,inf) # b\r(2 3)\n:end");
         for expected in ["limits", "-1.5", "inf", "2", "3", ":end", ""] {
             assert_eq!(lexer.take(), expected.as_bytes());
@@ -195,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn a_section_begins_with_a_colon_on_a_line_of_its_own() {
+    fn skip_to_section_stops_at_a_colon_on_a_new_line() {
         let mut lexer = Lexer::new(b":documentation a :b\n c :d\n  :root\n");
         lexer.skip_to_section();
         assert_eq!(lexer.peek(), b":root");
@@ -204,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_end_at_commas_and_signs() {
+    fn number_ends_at_commas_and_signs() {
         assert_eq!(number(b"1.5,2", 0), Number::Value { value: 1.5, end: 3, glued: false });
         assert_eq!(number(b"1.5-2)", 0), Number::Value { value: 1.5, end: 3, glued: true });
         assert_eq!(number(b"-1.#IND ", 0), Number::NotFinite { end: 7, glued: false });

@@ -112,10 +112,10 @@ fn finish(
 fn off_ground(clip: &Clip) -> Option<f32> {
     /// The number of frames that are read, spread over the clip.
     const SAMPLES: usize = 240;
-    /// Feet below or above these shares of a body's height are in the ground or in the air: marker
-    /// noise and soles stay within.
-    const SUNK: f32 = -0.06;
-    const AFLOAT: f32 = 0.1;
+    /// Feet below or above these shares of a body's height are below the ground or in the air.
+    /// Marker noise and soles stay within.
+    const MIN_SHARE: f32 = -0.06;
+    const MAX_SHARE: f32 = 0.1;
     let roles = Roles::detect(clip.skeleton());
     let feet = [Role::LeftFoot, Role::LeftToe, Role::RightFoot, Role::RightToe]
         .map(|role| roles.get(role));
@@ -135,5 +135,5 @@ fn off_ground(clip: &Clip) -> Option<f32> {
     // One frame in twenty may be a fault of the capture.
     let low = *lows.get(lows.len() / 20)?;
     let share = low / roles.body_height(clip.skeleton());
-    (!(SUNK..AFLOAT).contains(&share)).then_some(low)
+    (!(MIN_SHARE..MAX_SHARE).contains(&share)).then_some(low)
 }

@@ -13,27 +13,28 @@ use segue_text::msg;
 use std::collections::HashMap;
 
 /// Metres per unit of a file whose `:units` have a `length` of 1: inches, as the CMU database
-/// explains its 0.45.
+/// documents its 0.45.
 const METRES_PER_LENGTH: f64 = 0.0254;
 
-/// How the values of a bone move it.
+/// The degrees of freedom of a bone.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Motor {
     pub(super) dofs: Vec<Dof>,
-    /// Where its values begin in a row.
+    /// The index of its first value in a row.
     pub(super) first_value: usize,
-    /// The bone's own axes, C, about which its degrees of freedom turn. For the root: its
+    /// The bone's own axes C, about which its degrees of freedom rotate. For the root: its
     /// orientation.
     pub(super) axes: DMat3,
     /// Unit vector along the bone at rest, or zero.
     pub(super) direction: DVec3,
-    /// Where the joint stands in the parent's frame at rest; the root in the world. File units.
+    /// The position of the joint in the parent's frame at rest, of the root in the world. File
+    /// units.
     pub(super) offset: DVec3,
 }
 
 /// The skeleton of an ASF file, ready for the motions of AMC files.
 ///
-/// Each bone is a joint of the bone's name at the bone's *start*, so that the joint's rotation
+/// Each bone is a joint with the bone's name at the bone's *start*, so that the joint's rotation
 /// turns the bone; its tip is the offset of the joints below, or an end site. The root is joint 0,
 /// called `root`. Lengths are in the file's units until a clip is made.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,7 +49,7 @@ pub struct AcclaimSkeleton {
     pub(super) unit_of_file: Option<f64>,
     pub(super) warnings: Vec<ImportWarning>,
     by_name: HashMap<String, usize>,
-    /// Case set aside; the first of several.
+    /// Joints by name in lower case; of several, the first.
     by_lowercase_name: HashMap<String, usize>,
 }
 
@@ -56,8 +57,8 @@ pub struct AcclaimSkeleton {
 /// of the skeleton alone.
 ///
 /// # Errors
-/// [`ImportError`] with the place of what cannot be read: a missing section, a number that is none,
-/// a bone under two parents or under itself.
+/// [`ImportError`] with the place of the fault: a missing section, an invalid number, a bone below
+/// two parents or below itself.
 pub fn read_skeleton(
     file_name: &str,
     bytes: &[u8],
@@ -78,36 +79,36 @@ pub fn read_skeleton(
 }
 
 impl AcclaimSkeleton {
-    /// What was odd about the file, one line per kind.
+    /// Returns the oddities of the file, one line per kind.
     #[must_use]
     pub fn warnings(&self) -> &[ImportWarning] {
         &self.warnings
     }
 
-    /// The file's name without folders and ending.
+    /// Returns the file's name without folders and ending.
     #[must_use]
     pub fn name(&self) -> &str {
         stem(&self.file)
     }
 
-    /// The names of the joints, parents first.
+    /// Returns the names of the joints, parents first.
     pub fn joint_names(&self) -> impl Iterator<Item = &str> {
         self.joints.iter().map(|joint| joint.name.as_str())
     }
 
-    /// The joint of a bone's name, as written or else in any case.
+    /// Returns the joint of a bone's name; the exact case takes precedence.
     pub(super) fn find(&self, bone: &str) -> Option<usize> {
         let lowercase = || self.by_lowercase_name.get(&bone.to_lowercase());
         self.by_name.get(bone).or_else(lowercase).copied()
     }
 
-    /// The number of values per frame that a joint takes.
+    /// Returns the number of values per frame of a joint.
     pub(super) fn values(&self, joint: usize) -> usize {
         self.motors.get(joint).map_or(0, |motor| motor.dofs.len())
     }
 }
 
-/// Who hangs on whom, by place in the file; the root is 0 and the bones follow.
+/// The hierarchy, by place in the file; the root is 0 and the bones follow.
 struct Tree {
     parents: Vec<Option<usize>>,
     children: Vec<Vec<usize>>,
@@ -149,8 +150,8 @@ fn tree(asf: &Asf<'_>, tally: &mut Tally) -> Result<Tree, Fault> {
 }
 
 impl Tree {
-    /// The bones below the root in the order of the hierarchy, each followed by all below it, with
-    /// their depths.
+    /// Returns the bones below the root with their depths, in the order of the hierarchy: each is
+    /// followed by all below it.
     fn order(&self) -> Vec<(usize, usize)> {
         let mut order = Vec::new();
         let mut open = vec![(0, 0)];
@@ -162,14 +163,14 @@ impl Tree {
         order
     }
 
-    /// A bone that is below itself.
-    fn circle(&self) -> Option<usize> {
-        // Which walk came by first; walks are counted from 1.
-        let mut walks = vec![0_usize; self.parents.len()];
+    /// Returns a bone that is below itself.
+    fn cycle(&self) -> Option<usize> {
+        // The first pass that reached each bone; passes are counted from 1.
+        let mut passes = vec![0_usize; self.parents.len()];
         (0..self.parents.len()).find(|&start| {
             let mut at = Some(start);
             while let Some(bone) = at {
-                match walks.get_mut(bone) {
+                match passes.get_mut(bone) {
                     Some(walk) if *walk == 0 => *walk = start + 1,
                     Some(walk) => return *walk == start + 1,
                     None => return false,
@@ -185,7 +186,7 @@ fn build(asf: &Asf<'_>, tally: &mut Tally) -> Result<AcclaimSkeleton, Fault> {
     let tree = tree(asf, tally)?;
     let bone =
         |place: usize| place.checked_sub(1).map_or(Some(&asf.root), |index| asf.bones.get(index));
-    if let Some(bone) = tree.circle().and_then(bone) {
+    if let Some(bone) = tree.cycle().and_then(bone) {
         return Err(Fault::new(
             bone.at,
             msg!("{name} below itself", name = quoted(bone.name)),
@@ -265,8 +266,8 @@ fn build(asf: &Asf<'_>, tally: &mut Tally) -> Result<AcclaimSkeleton, Fault> {
     })
 }
 
-/// The channels that say the same in a file that multiplies them from left to right, with turns
-/// about the bone's own axes: the turns backwards.
+/// Returns the equivalent channels of a file that multiplies them from left to right, with
+/// rotations about the bone's own axes: the rotations in reverse order.
 fn channels(dofs: &[Dof]) -> Vec<Channel> {
     let moves = dofs.iter().filter_map(|dof| match dof {
         Dof::Move(0) => Some(Channel::XPosition),
@@ -283,7 +284,7 @@ fn channels(dofs: &[Dof]) -> Vec<Channel> {
     moves.chain(turns).collect()
 }
 
-/// The turns of `axis`, one after the other about fixed axes.
+/// Returns the product of the rotations of `axis` about fixed axes.
 fn axes(bone: &FileBone<'_>, radians: bool) -> DMat3 {
     bone.axis_order.iter().fold(DMat3::IDENTITY, |axes, &index| {
         let value = bone.axis.get(index).copied().unwrap_or_default();

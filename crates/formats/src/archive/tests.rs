@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use rawzip::ZipArchiveWriter;
 use std::io::Write as _;
 
-/// Written by another program: see `make.py` beside it.
+/// An archive by another program: see `make.py` beside it.
 const TAKES: &[u8] = include_bytes!("../../tests/cases/archive/takes.zip");
 
 fn zip(files: &[(&str, &[u8])]) -> Vec<u8> {
@@ -34,7 +34,7 @@ fn sentences(unpacked: &Unpacked) -> Vec<String> {
 }
 
 #[test]
-fn motion_comes_out_sorted_and_the_rest_is_told() {
+fn unpack_sorts_motion_and_warns_of_the_rest() {
     let unpacked = unpack("takes.zip", TAKES, &ArchiveLimits::default()).unwrap();
     let expected = [
         "a.zip/inner/jump.amc",
@@ -61,7 +61,7 @@ fn motion_comes_out_sorted_and_the_rest_is_told() {
 }
 
 #[test]
-fn a_damaged_file_is_left_out_and_the_others_are_read() {
+fn unpack_of_a_damaged_file_reads_the_others() {
     let whole = zip(&[("good.bvh", b"HIERARCHY good"), ("torn.bvh", &[b'x'; 400])]);
     let at = |pattern: &[u8], from: usize| {
         from + whole[from..].windows(pattern.len()).position(|w| w == pattern).unwrap()
@@ -92,7 +92,7 @@ fn a_damaged_file_is_left_out_and_the_others_are_read() {
 }
 
 #[test]
-fn what_is_no_archive_of_motion_is_refused() {
+fn unpack_without_motion_is_refused() {
     let say =
         |bytes: &[u8]| unpack("a.zip", bytes, &ArchiveLimits::default()).unwrap_err().to_string();
     assert_eq!(say(b"HIERARCHY"), "a.zip:1:1: found no zip archive, expected a zip archive");
@@ -110,7 +110,7 @@ fn what_is_no_archive_of_motion_is_refused() {
 }
 
 #[test]
-fn a_bomb_is_refused_before_it_fills_the_memory() {
+fn unpack_of_a_bomb_is_refused() {
     let limits = ArchiveLimits { max_bytes: 3 << 20, ..ArchiveLimits::default() };
     let megabyte = vec![b' '; 1 << 20];
     let three = zip(&[
@@ -133,7 +133,7 @@ fn a_bomb_is_refused_before_it_fills_the_memory() {
 }
 
 #[test]
-fn more_files_than_are_read_are_told_by_one_line() {
+fn unpack_of_too_many_files_warns_once() {
     let files: Vec<(String, &[u8])> =
         (0..MAX_FILES + 50).map(|n| (format!("{n}.bvh"), &b""[..])).collect();
     let files: Vec<(&str, &[u8])> =
@@ -145,7 +145,7 @@ fn more_files_than_are_read_are_told_by_one_line() {
 }
 
 #[test]
-fn paths_stay_inside() {
+fn unpack_keeps_paths_inside() {
     for (path, expected, leads_out) in [
         ("a/b.bvh", "a/b.bvh", false),
         ("./a//b.bvh", "a/b.bvh", false),
@@ -164,7 +164,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
     #[test]
-    fn spoilt_archives_are_read_or_refused(edits in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..12), cut in any::<prop::sample::Index>()) {
+    fn unpack_of_damaged_bytes_reads_or_refuses(edits in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..12), cut in any::<prop::sample::Index>()) {
         let mut bytes = TAKES.to_vec();
         for (at, value) in &edits {
             let at = at.index(bytes.len());
@@ -182,7 +182,7 @@ proptest! {
 }
 
 #[test]
-fn an_archive_that_memory_cannot_hold_is_refused_and_not_called_damaged() {
+fn unpack_without_memory_is_refused() {
     let mut unpacking = Unpacking {
         name: "all.zip",
         left: 1,
@@ -191,9 +191,10 @@ fn an_archive_that_memory_cannot_hold_is_refused_and_not_called_damaged() {
         tally: Tally::default(),
     };
     let damaged = io::Error::new(io::ErrorKind::InvalidData, "a bad block");
-    assert_eq!(unpacking.miss("a.bvh", damaged.into()), Ok(()));
-    let refused =
-        unpacking.miss("b.bvh", io::Error::from(io::ErrorKind::OutOfMemory).into()).unwrap_err();
+    assert_eq!(unpacking.handle_failure("a.bvh", damaged.into()), Ok(()));
+    let refused = unpacking
+        .handle_failure("b.bvh", io::Error::from(io::ErrorKind::OutOfMemory).into())
+        .unwrap_err();
     assert_eq!(refused.file, "all.zip");
     assert!(refused.found.to_string().contains("memory"), "{refused}");
     let left_out = unpacking.tally.into_warnings(b"");

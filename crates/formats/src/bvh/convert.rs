@@ -209,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn joints_without_channels_cannot_fill_the_memory() {
+    fn rows_of_joints_without_channels_are_bounded_in_memory() {
         let mut joints = vec![bare(None)];
         joints.extend((0..100_000).map(|_| bare(Some(0))));
         let tree = Hierarchy {

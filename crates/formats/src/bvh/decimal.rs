@@ -1,30 +1,31 @@
-//! Lines of plain decimal numbers, fast: what almost all of a motion file is.
+//! Fast reading of lines of plain decimal numbers, which make up almost all of a motion file.
 //!
-//! Eight bytes at a time in one 64-bit word, the first one lowest: whether they are digits, and
-//! what number they make, takes a handful of operations without a branch (D. Lemire, "Number
-//! parsing at a gigabyte per second", Software: Practice and Experience 51, 2021). Where a number
-//! ends is found before and apart from what it is, so that the next one can be begun meanwhile. In
-//! a file nearly all numbers have as many digits behind the point, and where that is known the rest
-//! follows from where the point is.
+//! Eight bytes are handled at a time in one 64-bit word, the first byte lowest: checking that they
+//! are digits and computing their number takes a handful of operations without a branch (D. Lemire,
+//! "Number parsing at a gigabyte per second", Software: Practice and Experience 51, 2021). The end
+//! of a number is found before and independently of its value, so that the next one can begin in
+//! the meantime. In most files nearly all numbers have the same number of decimals, and then the
+//! position of the point gives the rest.
 //!
-//! Whatever is not plain is left to [`super::number`], which reads the same numbers slowly.
+//! All other numbers are left to [`super::number`], which reads the same numbers slowly.
 
-/// A byte in all places of a word.
+/// Returns a word with a byte in all eight places.
 const fn all(byte: u8) -> u64 {
     u64::from_le_bytes([byte; 8])
 }
 
-/// Where the point of a number stands.
+/// A position of the decimal point.
 #[derive(Clone, Copy, Debug)]
 struct Point {
-    /// What stays where it is when the point is taken out of the last eight bytes: those behind it.
+    /// Mask of the bytes behind the point, which stay in place when the point is taken out of the
+    /// last eight bytes.
     kept: u64,
-    /// The power of ten that all digits are to be divided by, for a number without and with a minus
+    /// The power of ten by which all digits are divided, for a number without and with a minus
     /// sign.
     divisors: [f64; 2],
 }
 
-/// By the number of digits behind the point, up to 7, and at last for no point.
+/// Points by the number of digits behind them, up to 7; the last entry is for no point.
 const POINTS: [Point; 9] = [
     point(0, 1.0),
     point(!0 << 56, 1e1),
@@ -41,52 +42,53 @@ const fn point(kept: u64, divisor: f64) -> Point {
     Point { kept, divisors: [divisor, -divisor] }
 }
 
-/// The last row of [`POINTS`].
+/// The index of the last row of [`POINTS`].
 const NO_POINT: usize = 8;
 
-/// So many digits, and a power of ten up to 1e22, are exact as doubles.
+/// The greatest number of digits that a double holds exactly; powers of ten are exact up to 1e22.
 const MAX_DIGITS: usize = 15;
 
-/// Larger magnitudes are overflows, not measures: they would not survive being scaled in `f32`.
-pub(super) const LARGEST: f64 = 1e30;
+/// Larger magnitudes come from overflow, not from measurement: they would overflow when scaled in
+/// `f32`.
+pub(super) const MAX_MAGNITUDE: f64 = 1e30;
 
-/// The number that eight digits make, the first one lowest; less eight times `b'0'`, so that
-/// missing ones are zeros. `None` if they are no digits.
+/// Returns the number of eight digits minus `b'0'` each, the first one lowest, so that missing
+/// digits are zeros. `None` if they are not digits.
 #[inline]
 fn eight_digits(digits: u64) -> Option<u32> {
-    // Digits are 0 to 9 now, and the highest bit is set for anything else. A carry would come from
-    // such a byte.
+    // Digits are 0 to 9 now; for anything else the highest bit is set, perhaps by a carry from such
+    // a byte.
     if (digits.wrapping_add(all(0x76)) | digits) & all(0x80) != 0 {
         return None;
     }
-    // Neighbours become pairs, pairs fours, fours all eight.
+    // Combines neighbours to pairs, pairs to fours, and fours to all eight.
     let pairs = digits.wrapping_mul(10).wrapping_add(digits >> 8);
     let low = (pairs & 0x0000_00ff_0000_00ff).wrapping_mul(100 + (1_000_000 << 32));
     let high = ((pairs >> 16) & 0x0000_00ff_0000_00ff).wrapping_mul(1 + (10_000 << 32));
     Some((low.wrapping_add(high) >> 32) as u32)
 }
 
-/// The last `count` (1 to 8) of eight bytes as digits for [`eight_digits`].
+/// Returns the last `count` (1 to 8) of eight bytes as digits for [`eight_digits`].
 #[inline]
 fn last_digits(word: u64, count: usize) -> u64 {
     let unused = 64_usize.wrapping_sub(8 * count);
     (word ^ all(b'0')) >> unused << unused
 }
 
-/// Any number between two offsets. `None` where there is none, or one too large to be a measure.
+/// Reads any number between two offsets. `None` if there is none, or if it is too large to be a
+/// measurement.
 #[cold]
 fn long_number(text: &[u8], start: usize, end: usize) -> Option<f64> {
     let value = fast_float2::parse::<f64, _>(text.get(start..end)?).ok()?;
-    (value.abs() <= LARGEST).then_some(value)
+    (value.abs() <= MAX_MAGNITUDE).then_some(value)
 }
 
-/// All digits of a number, what they are to be divided by, and where its point stands, a row of
-/// [`POINTS`].
+/// The digits of a number, their divisor, and the row of its point in [`POINTS`].
 type Parts = (f64, f64, usize);
 
-/// A number between two offsets that is made of a minus sign or none and at most 15 digits, among
-/// them perhaps a point with at most 7 behind it. Its digits and the power of ten are exact, so
-/// that their quotient is the double next to the number (W. Clinger, "How to read floating point
+/// Reads a number between two offsets that has an optional minus sign and at most 15 digits, with
+/// an optional point and at most 7 digits behind it. Its digits and the power of ten are exact, so
+/// that their quotient is the double nearest to the number (W. Clinger, "How to read floating point
 /// numbers accurately", 1990).
 #[inline]
 fn short_number(text: &[u8], start: usize, end: usize) -> Option<Parts> {
@@ -96,15 +98,15 @@ fn short_number(text: &[u8], start: usize, end: usize) -> Option<Parts> {
     let length = end.wrapping_sub(start);
     let negative = *text.get(start)? == b'-';
 
-    // The last point, seen from the end: the highest byte that is zero without its bits. Nothing is
-    // carried from one byte to the next.
+    // The last point, as seen from the end: the highest byte that is zero after removing its bits.
+    // No carry crosses bytes.
     let points = last ^ all(b'.');
     let points = !((points & all(0x7f)).wrapping_add(all(0x7f)) | points | all(0x7f));
     let decimals = (points.leading_zeros() / 8) as usize;
     let at = if decimals < length { decimals } else { NO_POINT };
     let &Point { kept, divisors } = POINTS.get(at)?;
     let has_point = usize::from(at != NO_POINT);
-    // What is before the point moves up by one.
+    // The digits before the point move up by one.
     let digits = last & kept | before & !kept;
 
     let count = length.wrapping_sub(usize::from(negative)).wrapping_sub(has_point);
@@ -122,14 +124,13 @@ fn short_number(text: &[u8], start: usize, end: usize) -> Option<Parts> {
     Some(((u64::from(first) * 100_000_000 + u64::from(rest)) as f64, divisor, at))
 }
 
-/// Numbers with the same number of digits behind the point: those of a file are mostly alike. Where
-/// the end of such a number is follows from where its point is, and all that follows from where the
-/// point is seen from the end is the same for all.
+/// The number of decimals that most numbers of a file share. With it, the end of a number follows
+/// from its point, and everything counted from the end is the same for all numbers.
 #[derive(Clone, Copy, Debug)]
 struct Usual {
     decimals: usize,
     point: Point,
-    /// The byte of the point among the last eight.
+    /// Mask of the byte of the point among the last eight.
     at: u64,
 }
 
@@ -138,12 +139,12 @@ impl Usual {
         Some(Self { decimals, point: *POINTS.get(decimals)?, at: 0xff_u64 << 56 >> (8 * decimals) })
     }
 
-    /// As [`short_number`], of at most 8 digits and with a blank behind it: all digits, what to
-    /// divide them by, and the number's end. `None` for any other number.
+    /// Reads a number as [`short_number`] does, of at most 8 digits and with a blank behind it.
+    /// Returns its digits, their divisor and the number's end; `None` for any other number.
     #[inline]
     fn number(&self, text: &[u8], start: usize) -> Option<(f64, f64, usize)> {
         let word = u64::from_le_bytes(*text.get(start..)?.first_chunk()?);
-        // Of digits the bit of 0x10 is set, of a point it is not. The first byte may be a sign.
+        // Digits have the bit 0x10 set, a point does not. The first byte may be a sign.
         let whole = ((!word & (all(0x10) << 8)).trailing_zeros() / 8) as usize;
         let end = start.wrapping_add(whole).wrapping_add(1 + self.decimals);
         let bytes: &[u8; 10] = text.get(end.wrapping_sub(9)..end.checked_add(1)?)?.first_chunk()?;
@@ -164,7 +165,7 @@ impl Usual {
     }
 }
 
-/// Reads lines of plain numbers.
+/// A reader of lines of plain numbers.
 #[derive(Debug, Default)]
 pub(super) struct Lines {
     /// The power of ten that divides the digits of each number. The divisions are done together,
@@ -178,8 +179,8 @@ impl Lines {
     /// Reads a line of `row.len()` plain numbers with blanks between them into `row`, and returns
     /// the offset of the line's end.
     ///
-    /// `None` when there is anything else in it: what stands in `row` for the numbers before that
-    /// is then of no use, and the rest is as it was.
+    /// Returns `None` if the line contains anything else. The values in `row` are then invalid up
+    /// to that point, and unchanged after it.
     pub(super) fn line(&mut self, text: &[u8], at: usize, row: &mut [f64]) -> Option<usize> {
         self.divisors.resize(row.len(), 1.0);
         let usual = Usual::new(self.decimals)?;
@@ -205,7 +206,7 @@ impl Lines {
         if !matches!(text.get(end), Some(b'\n' | b'\r')) {
             return None;
         }
-        // What is unusual in most of a line is the rule.
+        // If most of a line is unusual, it becomes the new usual.
         if 2 * unusual.0 > row.len() && unusual.1 != NO_POINT {
             self.decimals = unusual.1;
         }
@@ -214,7 +215,7 @@ impl Lines {
     }
 }
 
-/// The next byte that is neither a space nor a tab.
+/// Returns the offset of the next byte that is neither a space nor a tab.
 #[inline]
 fn past_blanks(text: &[u8], mut at: usize) -> Option<usize> {
     while matches!(text.get(at)?, b' ' | b'\t') {
@@ -223,13 +224,14 @@ fn past_blanks(text: &[u8], mut at: usize) -> Option<usize> {
     Some(at)
 }
 
-/// The next byte that is a space or lower, after `at` or there. `None` near the end of the text.
+/// Returns the offset of the first byte from `at` on that is a space or lower. `None` near the end
+/// of the text.
 #[inline]
 fn end_of_word(text: &[u8], at: usize) -> Option<usize> {
     let (words, _) = text.get(at..at.checked_add(16)?)?.as_chunks::<8>();
     let &[first, second] = words else { return None };
     let (first, second) = (blanks(u64::from_le_bytes(first)), blanks(u64::from_le_bytes(second)));
-    // Both are looked at and no branch is taken, since no one can tell which it will be.
+    // Both words are evaluated without a branch, because it would be unpredictable.
     let in_second = if first == 0 { second.trailing_zeros() } else { 0 };
     match (first.trailing_zeros() + in_second) / 8 {
         16 => text.get(at..)?.iter().position(|b| *b <= b' ').map(|length| at + length),
@@ -237,8 +239,8 @@ fn end_of_word(text: &[u8], at: usize) -> Option<usize> {
     }
 }
 
-/// Marks the first byte that is a space or lower, by its highest bit. What is set above that may be
-/// the borrow of it.
+/// Sets the highest bit of the first byte that is a space or lower. Bits above it may be set by its
+/// borrow.
 #[inline]
 fn blanks(word: u64) -> u64 {
     word.wrapping_sub(all(b' ' + 1)) & !word & all(0x80)
@@ -254,7 +256,7 @@ mod tests {
         short_number(text.as_bytes(), start, end).map(|(digits, divisor, _)| digits / divisor)
     }
 
-    /// What the slow way reads, where it reads one number.
+    /// Reads one number by the slow path, if the text is one.
     fn slow(text: &str) -> Option<u64> {
         match scan(text.as_bytes(), 0, false) {
             Scan::Value { value, end, glued: false } if end == text.len() => Some(value.to_bits()),
@@ -266,7 +268,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(2000))]
 
         #[test]
-        fn numbers_are_those_of_the_slow_way(
+        fn short_number_equals_the_slow_path(
             before in "[-0-9. ]{0,17}",
             text in "[-+]{0,2}[0-9]{0,17}[.,]{0,2}[0-9]{0,18}([eE][-+]?[0-9]{0,3})?",
             after in "[ 0-9.]{0,9}",
@@ -278,14 +280,14 @@ mod tests {
         }
 
         #[test]
-        fn usual_numbers_are_short(before in "[-0-9. ]{17}", text in "-?([0-9]{1,15}|[0-9]{0,9}\\.[0-9]{1,6}|[0-9]{1,8}\\.)") {
+        fn short_number_reads_all_usual_numbers(before in "[-0-9. ]{17}", text in "-?([0-9]{1,15}|[0-9]{0,9}\\.[0-9]{1,6}|[0-9]{1,8}\\.)") {
             let all = format!("{before}{text}");
             let found = short(&all, before.len(), all.len());
             prop_assert_eq!(found.map(f64::to_bits), slow(&text));
         }
 
         #[test]
-        fn numbers_of_usual_shape_are_those_of_the_slow_way(
+        fn usual_number_equals_the_slow_path(
             before in "[-0-9. ]{9}",
             text in "[-+]?[0-9]{0,9}[.,]?[0-9]{0,9}|[!-~]{1,12}",
             after in "[ \t][ -~]{10}",
@@ -300,7 +302,7 @@ mod tests {
         }
 
         #[test]
-        fn numbers_of_usual_shape_are_read_as_such(before in "[-0-9. ]{9}", whole in "-?[0-9]{1,4}", decimals in "[0-9]{1,4}", blank in "[ \t]") {
+        fn usual_number_reads_numbers_of_its_shape(before in "[-0-9. ]{9}", whole in "-?[0-9]{1,4}", decimals in "[0-9]{1,4}", blank in "[ \t]") {
             let text = format!("{whole}.{decimals}");
             let all = format!("{before}{text}{blank}2.345678901");
             let found = Usual::new(decimals.len()).unwrap().number(all.as_bytes(), before.len());
@@ -309,17 +311,17 @@ mod tests {
         }
 
         #[test]
-        fn words_end_at_the_first_blank(word in "[!-~\u{80}-\u{ff}]{0,40}", blank in 0..=b' ', after: [u8; 16]) {
+        fn end_of_word_is_the_first_blank(word in "[!-~\u{80}-\u{ff}]{0,40}", blank in 0..=b' ', after: [u8; 16]) {
             let text = [word.as_bytes(), &[blank], &after].concat();
             prop_assert_eq!(end_of_word(&text, 0), Some(word.len()));
         }
 
         #[test]
-        fn a_line_is_its_words(words in prop::collection::vec("-?[0-9]{1,4}(\\.[0-9]{0,9})?|1e-7", 0..40), gap in "[ \t]{1,70}", indent in "[ \t]{0,3}") {
+        fn lines_equal_their_words(words in prop::collection::vec("-?[0-9]{1,4}(\\.[0-9]{0,9})?|1e-7", 0..40), gap in "[ \t]{1,70}", indent in "[ \t]{0,3}") {
             let text = format!("{indent}{}\n{}", words.join(&gap), "\n".repeat(16));
             let mut row = vec![0.0; words.len()];
             let mut lines = Lines::default();
-            // The second time it knows what is usual.
+            // The second pass knows the usual number of decimals.
             for _ in 0..2 {
                 let end = lines.line(text.as_bytes(), 0, &mut row);
                 prop_assert_eq!(end, text.find('\n'));
@@ -330,7 +332,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_odd_is_left_to_the_slow_way() {
+    fn lines_with_anything_odd_are_refused() {
         let line = |text: &str, row: &mut [f64]| Lines::default().line(text.as_bytes(), 0, row);
         let padding = " ".repeat(16);
         for second in
@@ -340,8 +342,8 @@ mod tests {
             assert_eq!(line(&format!("1 {second}\n{padding}"), &mut row), None, "{second}");
             assert_eq!(row[1], 8.0, "{second}");
         }
-        // Too many, a comment, other white space, and the end of the text, where there are no
-        // sixteen bytes to look at.
+        // Too many numbers, a comment, other white space, and the end of the text, where fewer than
+        // sixteen bytes are left.
         for text in ["1 2 3\n", "1 2 # 3\n", "1 2\x0b\n", "1 2\0\n"] {
             assert_eq!(line(&format!("{text}{padding}"), &mut [7.0, 8.0]), None, "{text}");
         }

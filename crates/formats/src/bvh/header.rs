@@ -126,8 +126,8 @@ fn frame_time(
     let start = lexer.at;
     let secs = match scan(lexer.text, start, lexer.commas) {
         Scan::Value { value, .. } => Some(value),
-        // `Frame Time: 0` has no digits after the comma to show what it is; it is no time either
-        // way.
+        // `Frame Time: 0` has no digits after the comma to show which sign it is; it is not a time
+        // either way.
         Scan::OtherDecimalSign
             if !matches!(
                 lexer.text.get(start..token_end(lexer.text, start)),
@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn colons_spaces_and_order_are_free() {
+    fn header_in_any_layout_is_read() {
         let spellings = [
             "MOTION\nFrames: 4\nFrame Time: .5\n",
             "motion Frames:4 FrameTime:.5 ",
@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_is_never_taken_from_the_next_line() {
+    fn header_without_a_value_leaves_the_next_line() {
         let (header, at) = read("MOTION\nFrames:\nFrame Time:\n1 2 3");
         assert_eq!((header.declared_frames(), header.frame_time, at), (None, None, 27));
         assert!(!read("").0.present);
@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn frame_rates_snap_to_whole_numbers_that_they_were_cut_from() {
+    fn fps_of_a_rounded_frame_time_is_an_integer() {
         for (secs, fps) in [
             (0.008_333_3, 120.0),
             (0.03333, 30.0),
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_time_gives_thirty_frames_per_second() {
+    fn fps_without_a_frame_time_is_the_default() {
         for text in ["0", "-0.03", "nan", "abc", "1e400", "1e-320"] {
             let text = format!("MOTION\nFrame Time: {text}\n");
             let mut lexer = Lexer::new(text.as_bytes(), false);

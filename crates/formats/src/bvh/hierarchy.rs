@@ -160,7 +160,8 @@ pub(super) fn hierarchy(lexer: &mut Lexer<'_>) -> Result<Hierarchy, Stop> {
     }
 }
 
-/// `Frames:4` or `Frame` without a MOTION line before it.
+/// Returns whether a token begins the header of a MOTION section without a MOTION line: `Frames:4`
+/// or `Frame`.
 pub(super) fn starts_motion_header(token: &[u8]) -> bool {
     token.get(..5).is_some_and(|head| head.eq_ignore_ascii_case(b"frame"))
 }
@@ -194,7 +195,7 @@ fn open_brace(lexer: &mut Lexer<'_>) -> Result<(), Stop> {
     }
 }
 
-/// `CHANNELS 6 Xposition …`: names are read as long as there are any; the number only has a say
+/// Reads `CHANNELS 6 Xposition …`. Names are read as long as there are any; the number only matters
 /// where a name is wrong.
 fn channels(
     lexer: &mut Lexer<'_>,
@@ -277,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn one_line_and_any_order_will_do() {
+    fn hierarchy_in_any_layout_is_read() {
         let tree = parse("root A { channels 1 zROTATION offset 1 2 3 JOINT B C { OFFSET 4 5 6} END SITE x{OFFSET 7 8 9}}").unwrap();
         assert_eq!(tree.joints[0].offset, [1.0, 2.0, 3.0]);
         assert_eq!(tree.joints[0].end_site, Some([7.0, 8.0, 9.0]));
@@ -286,13 +287,13 @@ mod tests {
     }
 
     #[test]
-    fn a_name_may_stand_on_its_own_line_or_be_missing() {
+    fn hierarchy_names_on_their_own_line_or_missing_are_read() {
         let tree = parse("ROOT\n  Hips \n{ JOINT\n { } }").unwrap();
         assert_eq!(tree.joints.iter().map(|j| j.name.as_str()).collect::<Vec<_>>(), ["Hips", ""]);
     }
 
     #[test]
-    fn mistakes_are_named_where_they_stand() {
+    fn hierarchy_mistakes_are_refused_with_their_place() {
         assert_eq!(fault("").2, "`HIERARCHY` and a `ROOT`");
         assert_eq!(fault("PK\u{3}").1, "`PK\\u{3}`");
         assert_eq!(fault("ROOT A\nOFFSET"), (7, "`OFFSET`".into(), "`{`".into()));
@@ -307,7 +308,7 @@ mod tests {
     }
 
     #[test]
-    fn depth_is_limited_and_iterative() {
+    fn hierarchy_depth_is_limited() {
         let nested = |depth: usize| {
             format!("ROOT r {{ {} {}", "JOINT j { ".repeat(depth - 1), "}".repeat(depth))
         };

@@ -132,7 +132,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn tokens_end_at_white_space_and_braces() {
+    fn peek_ends_at_white_space_and_braces() {
         let mut lexer = Lexer::new(b"# a\n  ROOT\tHips{ // b\r}x", false);
         let mut take = |expected: &[u8], at: usize| {
             assert_eq!((lexer.peek(), lexer.at), (expected, at));

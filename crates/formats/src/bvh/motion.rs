@@ -1,6 +1,6 @@
-//! The rows of the MOTION section: one pass over the bytes, one row in memory.
+//! Parsing of the rows of the MOTION section: one pass over the bytes, one row in memory.
 
-use super::decimal::{LARGEST, Lines};
+use super::decimal::{Lines, MAX_MAGNITUDE};
 use super::lexer::{Lexer, Stop};
 use super::number::{Scan, scan};
 use crate::error::Fault;
@@ -11,28 +11,29 @@ use segue_text::msg;
 /// Bytes between two reports of progress.
 const PROGRESS_STEP: usize = 1 << 18;
 
-/// Where complete rows go.
+/// A receiver of complete rows.
 pub(super) trait RowSink {
-    /// Takes one row, which ends at `end`; an error says why no more can be taken.
+    /// Takes one row, which ends at `end`; an error says why no more rows can be taken.
     fn row(&mut self, values: &[f64], end: usize) -> Result<(), Fault>;
 }
 
-/// Called now and then with the bytes read so far; `false` stops.
+/// A callback with the number of bytes read so far; it returns `false` to stop.
 pub(super) type Progress<'a> = &'a mut dyn FnMut(usize) -> bool;
 
-/// How a line of numbers ended.
+/// The end of a line of numbers.
 enum End {
-    /// At a line end or the end of the file.
+    /// A line end or the end of the file.
     Line,
-    /// In the middle of a number, at the end of the file.
+    /// The end of the file inside a number.
     Cut,
 }
 
-/// Reads all rows into `sink` and returns how many there are. `first_row` holds what channels have
+/// Reads all rows into `sink` and returns their number. `first_row` holds the values of channels
 /// before any good value.
 ///
-/// A line that holds exactly one row makes lines count: then a shorter last row is dropped and any
-/// other wrong row is refused. Where no line holds exactly one row, numbers are taken one after the
+/// A line that holds exactly one row makes lines count: a shorter last row is then dropped and any
+/// other wrong row is refused. If no line holds exactly one row, numbers are read one after the
+/// other.
 /// other.
 pub(super) fn rows(
     lexer: &mut Lexer<'_>,
@@ -71,8 +72,8 @@ pub(super) fn rows(
 
 struct Rows<'l, 'a> {
     lexer: &'l mut Lexer<'a>,
-    /// The row being read. It keeps the values of the row before, so that a value that is none
-    /// repeats the last good one.
+    /// The row being read. It keeps the values of the row before, so that an invalid value repeats
+    /// the last good one.
     row: Vec<f64>,
     values: u64,
     not_finite: u64,
@@ -82,7 +83,7 @@ struct Rows<'l, 'a> {
 }
 
 impl Rows<'_, '_> {
-    /// Whether any line holds as many numbers as a row has. Usually the first one does.
+    /// Returns whether any line holds as many numbers as a row has. Usually the first one does.
     fn a_line_is_one_row(&self) -> bool {
         let rest = self.lexer.text.get(self.lexer.at..).unwrap_or_default();
         rest.split(|b| matches!(b, b'\n' | b'\r')).any(|line| count_numbers(line) == self.row.len())
@@ -171,14 +172,14 @@ impl Rows<'_, '_> {
         Ok(())
     }
 
-    /// Reads a line that holds one row of plain numbers and nothing else; if it does not, nothing
-    /// has happened.
-    // Not inlined: browsers only optimise a function from one call to its next, and a file would be
-    // over before its reader is fast.
+    /// Reads a line that holds one row of plain numbers and nothing else; otherwise changes
+    /// nothing.
+    // Not inlined: browsers optimise a function only between calls, and a whole file would be read
+    // before its reader is fast.
     #[inline(never)]
     fn plain_line(&mut self) -> bool {
-        // Where that fails, those before the first odd number are read again, and those behind it
-        // are still of the row before.
+        // On failure, the numbers before the first odd one are read again, and those after it are
+        // still those of the row before.
         if self.lexer.commas {
             return false;
         }
@@ -191,7 +192,7 @@ impl Rows<'_, '_> {
     }
 
     /// Reads numbers into the row: up to the end of the line, or, `across_lines`, until the row is
-    /// full. A line is read no further than one number too many.
+    /// full. Reads at most one number more than a row has.
     #[inline]
     fn numbers(
         &mut self,
@@ -214,7 +215,7 @@ impl Rows<'_, '_> {
                     match fast_float2::parse_partial::<f64, _>(rest) {
                         Ok((value, length))
                             if !self.lexer.commas
-                                && value.abs() <= LARGEST
+                                && value.abs() <= MAX_MAGNITUDE
                                 && rest.get(length).is_none_or(|&next| is_space(next)) =>
                         {
                             at += length;
@@ -250,7 +251,7 @@ impl Rows<'_, '_> {
         Ok(End::Line)
     }
 
-    /// Anything but a plain number.
+    /// Reads anything but a plain number.
     #[cold]
     fn odd_number(&mut self, column: usize) -> Result<Odd, Stop> {
         if self.lexer.at_comment() {
@@ -282,7 +283,7 @@ impl Rows<'_, '_> {
         Ok(Odd::Number(end))
     }
 
-    /// More than one in a hundred values that are no numbers: the rest is not to be trusted either.
+    /// Refuses a file in which more than 1 % of the values are not numbers.
     fn check_share_of_bad_values(&self) -> Result<(), Stop> {
         if self.not_finite * 100 > self.values {
             let found = msg!(
@@ -299,17 +300,18 @@ impl Rows<'_, '_> {
     }
 }
 
+/// The result of reading an odd number.
 enum Odd {
-    /// Read, up to this offset.
+    /// A number up to this offset.
     Number(usize),
-    /// A comment, up to this offset.
+    /// A comment up to this offset.
     Comment(usize),
     /// The file ends inside a number.
     Cut,
 }
 
-/// How many numbers a line seems to hold: white space and signs inside a token count, what they are
-/// does not.
+/// Returns the approximate number of numbers on a line: white space and signs inside a token count,
+/// their content does not.
 fn count_numbers(line: &[u8]) -> usize {
     let mut count = 0;
     let mut before = b' ';
@@ -360,7 +362,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_count_where_one_holds_a_row() {
+    fn rows_with_a_matching_line_are_read_by_line() {
         let expected = vec![vec![1.0, 2.0], vec![3.0, 4.0]];
         assert_eq!(read("1 2\n3 4\n", 2).unwrap(), (expected.clone(), vec![]));
         assert_eq!(read("\r\n 1\t2 \r\r\n\n# x\n3 4 // y", 2).unwrap(), (expected.clone(), vec![]));
@@ -376,7 +378,7 @@ mod tests {
     }
 
     #[test]
-    fn lines_do_not_count_where_none_holds_a_row() {
+    fn rows_without_a_matching_line_are_read_across_lines() {
         let expected = vec![vec![1.0, 2.0], vec![3.0, 4.0]];
         let note =
             "no line holds exactly one frame (line 1); the numbers were read one after the other";
@@ -393,7 +395,7 @@ mod tests {
     }
 
     #[test]
-    fn the_last_good_value_is_held() {
+    fn rows_with_invalid_values_hold_the_last_good_one() {
         let many = "1 2\n".repeat(100);
         let (rows, warnings) = read(&format!("{many}nan 5\n6 1.#IND\n"), 2).unwrap();
         assert_eq!(rows[100..], [[1.0, 5.0], [6.0, 5.0]]);
@@ -409,7 +411,7 @@ mod tests {
     }
 
     #[test]
-    fn words_are_no_rows() {
+    fn rows_of_words_are_refused() {
         assert_eq!(fault("1 2\nabc 4\n", 2).found.to_string(), "`abc`");
         assert_eq!(fault("1 2\n3 4\nHIERARCHY", 2).found.to_string(), "`HIERARCHY`");
         assert_eq!(
@@ -419,7 +421,7 @@ mod tests {
     }
 
     #[test]
-    fn missing_spaces_are_split() {
+    fn rows_with_missing_spaces_are_split() {
         let (rows, warnings) = read("1-2\n3e-1+4\n", 2).unwrap();
         assert_eq!(rows, [[1.0, -2.0], [0.3, 4.0]]);
         assert_eq!(
@@ -429,7 +431,7 @@ mod tests {
     }
 
     #[test]
-    fn reading_can_be_watched_and_stopped() {
+    fn rows_report_progress_and_stop() {
         let text = "1 2\n".repeat(200_000);
         let mut lexer = Lexer::new(text.as_bytes(), false);
         let mut seen = vec![];

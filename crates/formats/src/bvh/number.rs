@@ -1,24 +1,24 @@
-//! One number of a BVH file, as people and programs write them.
+//! Reading of one number of a BVH file, in all spellings of people and programs.
 
-use super::decimal::LARGEST;
+use super::decimal::MAX_MAGNITUDE;
 use crate::text::is_space;
 
-/// What stands at a place where a number should.
+/// The result of reading a number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Scan {
     /// A number that ends before `end`; `glued` when the next one follows without a space.
     Value { value: f64, end: usize, glued: bool },
-    /// `nan`, `-nan(ind)`, `1.#IND`, `inf`, or a number out of all bounds.
+    /// `nan`, `-nan(ind)`, `1.#IND`, `inf`, or a number out of range.
     NotFinite { end: usize, glued: bool },
-    /// The other decimal sign than the one that this file has used so far.
+    /// A decimal sign other than the one that the file has used so far.
     OtherDecimalSign,
-    /// The beginning of a number at the very end of the file: it is cut off.
+    /// The beginning of a number at the very end of the file: it is truncated.
     Cut,
     /// Anything else.
     Bad,
 }
 
-/// The end of the run of bytes without white space and braces that starts at `at`.
+/// Returns the end of the run of bytes without white space and braces that starts at `at`.
 pub(super) fn token_end(text: &[u8], at: usize) -> usize {
     let rest = text.get(at..).unwrap_or_default();
     rest.iter()
@@ -53,7 +53,7 @@ pub(crate) fn scan(text: &[u8], at: usize, commas: bool) -> Scan {
     };
     match fast_float2::parse::<f64, _>(digits) {
         Ok(_) if commas && !has_decimal_comma(piece) => Scan::OtherDecimalSign,
-        Ok(value) if value.abs() <= LARGEST => Scan::Value { value, end, glued },
+        Ok(value) if value.abs() <= MAX_MAGNITUDE => Scan::Value { value, end, glued },
         // The crate's own `nan` and `inf` end here as well.
         Ok(_) => Scan::NotFinite { end, glued },
         Err(_) if end == text.len() && is_cut(piece) => Scan::Cut,
@@ -61,9 +61,8 @@ pub(crate) fn scan(text: &[u8], at: usize, commas: bool) -> Scan {
     }
 }
 
-/// The end of the number at `at`: of its token, or before a sign in it that is not that of an
-/// exponent. Looks no further, so that a long run of numbers without spaces takes no longer than
-/// one with.
+/// Returns the end of the number at `at`: of its token, or before a sign in it that does not belong
+/// to an exponent. Looking no further keeps a long run of numbers without spaces linear.
 fn piece_end(text: &[u8], at: usize) -> usize {
     let mut before = b'+';
     for (index, &b) in text.iter().enumerate().skip(at) {
@@ -80,8 +79,8 @@ fn without_sign(piece: &[u8]) -> &[u8] {
     piece.strip_prefix(b"-").or_else(|| piece.strip_prefix(b"+")).unwrap_or(piece)
 }
 
-/// The spellings of C libraries for what is no number: `nan`, `nan(ind)`, `inf`, `infinity`,
-/// `1.#IND00`, `1.#QNAN`, `1.#INF`.
+/// Returns whether a piece is a spelling of NaN or infinity by C libraries: `nan`, `nan(ind)`,
+/// `inf`, `infinity`, `1.#IND00`, `1.#QNAN`, `1.#INF`.
 fn not_a_number(piece: &[u8]) -> bool {
     let starts = |text: &[u8], word: &[u8]| {
         text.get(..word.len()).is_some_and(|head| head.eq_ignore_ascii_case(word))
@@ -101,15 +100,15 @@ fn not_a_number(piece: &[u8]) -> bool {
     })
 }
 
-/// Whether there is exactly one comma and no point, with digits around it: `,5` and `1,` are commas
-/// between numbers at least as likely.
+/// Returns whether there is exactly one comma and no point, with digits around it. In `,5` and `1,`
+/// the comma may as well separate numbers.
 fn has_decimal_comma(piece: &[u8]) -> bool {
     let has_one_comma = piece.split(|b| *b == b',').count() == 2;
     let inside = without_sign(piece).first() != Some(&b',') && piece.last() != Some(&b',');
     has_one_comma && inside && !piece.contains(&b'.')
 }
 
-/// Whether bytes could go on to a number, but are none yet: `-`, `1e`, `1.5e-`, `.`.
+/// Returns whether bytes are the beginning of a number, but not yet one: `-`, `1e`, `1.5e-`, `.`.
 fn is_cut(piece: &[u8]) -> bool {
     let body = without_sign(piece);
     let mantissa = match body {
@@ -134,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn every_usual_spelling_is_read() {
+    fn scan_reads_every_usual_spelling() {
         let cases = [
             ("1", 1.0),
             ("+1", 1.0),
@@ -153,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_number_is_told_from_what_is_nothing() {
+    fn scan_distinguishes_not_finite_from_bad() {
         for text in [
             "nan",
             "NaN",
@@ -184,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sign_starts_a_new_number_unless_an_exponent_has_it() {
+    fn scan_splits_at_signs_outside_exponents() {
         assert_eq!(scan(b"0.0-7.5", 0, false), Scan::Value { value: 0.0, end: 3, glued: true });
         assert_eq!(scan(b"1e-3+2", 0, false), Scan::Value { value: 1e-3, end: 4, glued: true });
         assert_eq!(scan(b"-nan(ind)-2", 0, false), Scan::NotFinite { end: 9, glued: true });
@@ -192,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn decimal_commas_need_their_mode() {
+    fn scan_of_decimal_commas_depends_on_the_mode() {
         assert_eq!(scan(b"1,5", 0, false), Scan::OtherDecimalSign);
         assert_eq!(scan(b"1,5", 0, true), Scan::Value { value: 1.5, end: 3, glued: false });
         assert_eq!(
@@ -206,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn a_number_may_be_cut_off_at_the_end_only() {
+    fn scan_reports_truncation_at_the_end_only() {
         for text in ["-", "1e", "1.5e-", ".", "+."] {
             assert_eq!(scan(text.as_bytes(), 0, false), Scan::Cut, "{text}");
         }

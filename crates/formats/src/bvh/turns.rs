@@ -1,32 +1,32 @@
-//! Rotations from turns about axes, those of four joints at once.
+//! Rotations from angles about axes, for four joints at once.
 
 use glam::{Mat4, Quat, Vec4};
 
-/// So many joints are turned at once: the lanes of [`Vec4`].
+/// The number of joints that are computed at once: the lanes of [`Vec4`].
 const LANES: usize = 4;
 
-/// Joints in a row that turn about the same axes.
+/// Consecutive joints with the same rotation axes.
 #[derive(Debug)]
 struct Run {
     joints: usize,
-    /// The axes (0 to 2) of the turns of each, in order.
+    /// The axes (0 to 2) of the rotations of each joint, in order.
     axes: Vec<usize>,
 }
 
-/// What turns the joints of a character, and room for one row of it.
+/// The rotation channels of a character, with buffers for one row.
 #[derive(Debug, Default)]
 pub(super) struct Turns {
     runs: Vec<Run>,
-    /// The columns of the angles: run by run, in each four joints at a time, and of these for each
-    /// turn in order the columns of the four. Where there are fewer than four joints, the last one
-    /// stands for those that are missing.
+    /// The columns of the angles: run by run, within a run four joints at a time, and of these for
+    /// each rotation in order the columns of the four. If there are fewer than four joints, the
+    /// last one is repeated.
     columns: Vec<[usize; LANES]>,
-    /// The angles of the row, as they stand in `columns`.
+    /// The angles of the row, in the order of `columns`.
     half_angles: Vec<HalfAngles>,
 }
 
 impl Turns {
-    /// Of the turns of each joint: axis and column, in order.
+    /// Returns the rotation channels, given axis and column of each joint's rotations in order.
     pub(super) fn new(joints: &[Vec<(usize, usize)>]) -> Self {
         let alike = |a: &Vec<(usize, usize)>, b: &Vec<(usize, usize)>| {
             a.iter().map(|turn| turn.0).eq(b.iter().map(|turn| turn.0))
@@ -50,9 +50,9 @@ impl Turns {
     }
 
     /// Appends the rotation of each joint in a row of values, degrees: the product `R₀ · R₁ · …` of
-    /// its turns.
-    // Not inlined, and small: browsers optimise a function from one call to its next, and sooner
-    // where there is less of it.
+    /// its rotations.
+    // Not inlined, and small: browsers optimise a function only between calls, and small ones
+    // sooner.
     #[inline(never)]
     pub(super) fn rotations_into(&mut self, row: &[f64], rotations: &mut Vec<Quat>) {
         let reduced;
@@ -62,7 +62,7 @@ impl Turns {
             reduced = without_whole_turns(row);
             &reduced
         };
-        // Apart from what is made of them, so that the compiler makes vectors of them.
+        // Separate from the use of the angles, so that the compiler vectorises it.
         for (half_angles, columns) in self.half_angles.iter_mut().zip(&self.columns) {
             half_angles.set(columns.map(|column| row.get(column).copied().unwrap_or_default()));
         }
@@ -86,26 +86,27 @@ impl Turns {
     }
 }
 
-/// Far beyond what turns, the whole turns go first, at the cost of a division.
+/// Removes whole turns from angles that are too large for [`HalfAngles::set`], at the cost of a
+/// division.
 #[cold]
 fn without_whole_turns(row: &[f64]) -> Vec<f64> {
     row.iter().map(|degrees| degrees % 720.0).collect()
 }
 
-/// Half of four angles.
+/// Four half angles.
 #[derive(Clone, Copy, Debug, Default)]
 struct HalfAngles {
-    /// The nearest whole numbers of quarter turns.
+    /// The nearest integers of quarter turns.
     quarters: [f32; LANES],
-    /// What is left of the half angles without them: at most π/4, radians.
+    /// The half angles without these quarter turns: at most π/4, radians.
     rests: [f32; LANES],
 }
 
 impl HalfAngles {
-    /// Of angles below 1e9, degrees.
+    /// Sets four angles below 1e9, degrees.
     #[inline]
     fn set(&mut self, degrees: [f64; LANES]) {
-        // Adding this rounds to a whole number, for magnitudes below 2⁵¹.
+        // Adding this rounds to an integer, for magnitudes below 2⁵¹.
         const ROUND: f64 = 6_755_399_441_055_744.0;
         let Self { quarters, rests } = self;
         for ((quarters, rest), degrees) in quarters.iter_mut().zip(rests).zip(degrees) {
@@ -116,15 +117,14 @@ impl HalfAngles {
         }
     }
 
-    /// Their sines and cosines, within 1e-7 of what they should be: which is what `f32` can tell
-    /// apart.
+    /// Returns sines and cosines, to within 1e-7, the precision of `f32`.
     #[inline]
     fn sin_cos(&self) -> (Vec4, Vec4) {
         // As above, in single precision and for magnitudes below 2²².
         const ROUND: Vec4 = Vec4::splat(12_582_912.0);
         let (x, quarters) = (Vec4::from_array(self.rests), Vec4::from_array(self.quarters));
         let x2 = x * x;
-        // The Taylor series; the first terms left out are below 2e-9 at π/4.
+        // The Taylor series; the first omitted terms are below 2e-9 at π/4.
         let sin = x + x
             * (x2
                 * (-1.0 / 6.0
@@ -133,15 +133,15 @@ impl HalfAngles {
             + x2 * (-0.5
                 + x2 * (1.0 / 24.0
                     + x2 * (-1.0 / 720.0 + x2 * (1.0 / 40_320.0 + x2 * (-1.0 / 3_628_800.0)))));
-        // From -2 to 2 quarter turns are left, whose sine and cosine are whole numbers: the
-        // addition theorem is exact with them.
+        // The remaining -2 to 2 quarter turns have integer sines and cosines, so the addition
+        // theorem is exact.
         let quarters = quarters - 4.0 * ((quarters * 0.25 + ROUND) - ROUND);
         let (whole_sin, whole_cos) = (quarters * (2.0 - quarters.abs()), 1.0 - quarters.abs());
         (sin * whole_cos + cos * whole_sin, cos * whole_cos - sin * whole_sin)
     }
 }
 
-/// Quaternions that grow turn by turn, coordinate by coordinate.
+/// Products of rotations as quaternions, by component.
 struct Product {
     x: Vec4,
     y: Vec4,
@@ -152,11 +152,11 @@ struct Product {
 impl Product {
     const IDENTITY: Self = Self { x: Vec4::ZERO, y: Vec4::ZERO, z: Vec4::ZERO, w: Vec4::ONE };
 
-    /// Times turns about an axis, given sine and cosine of half the angles.
+    /// Multiplies by rotations about an axis, given the sines and cosines of the half angles.
     #[inline]
     fn turned(self, axis: usize, (s, c): (Vec4, Vec4)) -> Self {
         let Self { x, y, z, w } = self;
-        // The axis, the next one and the one after it, in a circle.
+        // The axis and the two after it, in cyclic order.
         let turned = |[along, next, after]: [Vec4; 3]| {
             let turned = [along * c + w * s, next * c + after * s, after * c - next * s];
             (turned, w * c - along * s)
@@ -191,7 +191,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn the_fast_sine_is_the_sine() {
+    fn sin_cos_is_accurate() {
         for degrees in (-80_000..80_000).map(|step| f64::from(step) * 0.037_1) {
             let mut half_angles = HalfAngles::default();
             half_angles.set([degrees; LANES]);
@@ -206,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn whole_turns_of_huge_angles_go_first() {
+    fn without_whole_turns_keeps_huge_angles_accurate() {
         let joints = [[(0, 0)], [(1, 1)], [(1, 3)]].map(Vec::from);
         let mut rotations = vec![];
         Turns::new(&joints).rotations_into(&[1e30, -7.2e12 - 90.0, 77.0, 90.0], &mut rotations);
@@ -219,11 +219,11 @@ mod tests {
 
     proptest! {
         #[test]
-        fn turns_multiply_in_their_order(
+        fn rotations_into_multiplies_in_order(
             kinds in prop::collection::vec((prop::collection::vec(0..3_usize, 0..7), 1..6_usize), 0..5),
             angles in prop::collection::vec(-1e4..1e4, 1..200),
         ) {
-            // Any columns, in any order.
+            // Columns in an arbitrary order.
             let mut column = 0;
             let mut next = || { column += 31; column % angles.len() };
             let joints: Vec<Vec<(usize, usize)>> = kinds

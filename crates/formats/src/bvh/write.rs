@@ -220,9 +220,9 @@ impl<'a> Writer<'a> {
         Plan { axes: axes_of(&channels), channels }
     }
 
-    /// HIERARCHY. Returns the joints in the order in which they stand there, which is that of the
-    /// numbers in a row: each is followed by all below it, while a skeleton only has parents first.
-    /// Without recursion.
+    /// Writes the HIERARCHY without recursion. Returns the joints in its order, which is that of
+    /// the numbers in a row: each joint is followed by all below it, while a skeleton only has
+    /// parents first.
     fn hierarchy(&self, out: &mut String) -> Vec<usize> {
         let joints = self.clip.skeleton().joints();
         let mut children: Vec<Vec<usize>> = vec![Vec::new(); joints.len()];
@@ -232,15 +232,15 @@ impl<'a> Writer<'a> {
         let mut order = Vec::with_capacity(joints.len());
         out.push_str("HIERARCHY\n");
         // The remaining steps: joints to open, and depths to close.
-        let mut todo = vec![Step::Open(0, 0)];
-        while let Some(step) = todo.pop() {
+        let mut steps = vec![Step::Open(0, 0)];
+        while let Some(step) = steps.pop() {
             match step {
                 Step::Close(depth) => line(out, depth, "}"),
                 Step::Open(index, depth) => {
                     order.push(index);
                     self.joint(out, index, depth, children[index].is_empty());
-                    todo.push(Step::Close(depth));
-                    todo.extend(
+                    steps.push(Step::Close(depth));
+                    steps.extend(
                         children[index].iter().rev().map(|&child| Step::Open(child, depth + 1)),
                     );
                 }
@@ -337,13 +337,13 @@ fn axes_of(channels: &[Channel]) -> Vec<usize> {
         .collect()
 }
 
-/// Whether axes are three different ones: those hold any rotation.
+/// Returns whether axes are three different ones, which represent any rotation.
 fn is_order(axes: &[usize]) -> bool {
     matches!(axes, &[a, b, c] if a != b && b != c && a != c)
 }
 
-/// The angles about `axes` (radians) that come nearest to a rotation; 0 for axes beyond the third
-/// and for those that repeat another.
+/// Returns the angles about `axes` (radians) that are nearest to a rotation; 0 for axes beyond the
+/// third and for repeated ones.
 fn angles(axes: &[usize], q: DQuat, near: [f64; 3]) -> [f64; 3] {
     match *axes {
         [a, b, c, ..] if is_order(&[a, b, c]) => three_angles(q, [a, b, c], near),
@@ -377,7 +377,7 @@ fn written_name(name: &str) -> String {
     name.chars().map(replaced).collect::<String>().trim().to_owned()
 }
 
-/// Tabs, but not thousands of them on every line of a chain that deep.
+/// Writes tabs, up to a limit: very deep chains would take quadratic space.
 fn indent(out: &mut String, depth: usize) {
     out.extend(std::iter::repeat_n('\t', depth.min(64)));
 }
@@ -388,7 +388,7 @@ fn line(out: &mut String, depth: usize, text: &str) {
     out.push('\n');
 }
 
-/// A number with at most so many digits after the point, none of them in vain.
+/// Writes a number with at most `decimals` digits after the point, without trailing zeros.
 fn number(out: &mut String, value: f64, decimals: usize) {
     let start = out.len();
     // Writing to a string cannot fail.

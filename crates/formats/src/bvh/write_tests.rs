@@ -21,7 +21,7 @@ fn clip(joints: Vec<Joint>, rotations: Vec<Quat>) -> Clip {
 }
 
 #[test]
-fn a_bare_skeleton_gets_what_its_motion_needs() {
+fn write_without_channels_adds_those_of_the_motion() {
     let turned = Quat::from_rotation_x(0.5);
     let joints =
         vec![joint(None, "Hips", &[]), joint(Some(0), "Still", &[]), joint(Some(1), "Turns", &[])];
@@ -35,7 +35,7 @@ fn a_bare_skeleton_gets_what_its_motion_needs() {
 }
 
 #[test]
-fn channels_stay_until_the_motion_outgrows_them() {
+fn write_keeps_channels_that_hold_the_motion() {
     use Channel::{XPosition, XRotation, YRotation, ZRotation};
     let channels_of = |channels: &[Channel], q: Quat, options: &WriteOptions| {
         let joints = vec![
@@ -86,7 +86,7 @@ fn channels_stay_until_the_motion_outgrows_them() {
 }
 
 #[test]
-fn a_moving_joint_gets_positions() {
+fn write_of_a_moving_joint_adds_positions() {
     let joints =
         vec![joint(None, "r", &[Channel::XPosition]), joint(Some(0), "j", &[Channel::ZRotation])];
     let clip = clip(joints, vec![Quat::IDENTITY; 2]);
@@ -99,13 +99,13 @@ fn a_moving_joint_gets_positions() {
 }
 
 #[test]
-fn names_stay_on_their_line() {
+fn write_of_names_keeps_them_on_one_line() {
     assert_eq!(written_name("a{b}\nc "), "a(b) c");
     assert_eq!(written_name("mixamorig:Hips センター"), "mixamorig:Hips センター");
 }
 
 #[test]
-fn numbers_are_short() {
+fn number_has_no_trailing_zeros() {
     let text = |value: f64| {
         let mut out = String::from("x");
         number(&mut out, value, 6);
@@ -124,7 +124,7 @@ fn numbers_are_short() {
 }
 
 #[test]
-fn another_frame_rate_is_resampled() {
+fn write_at_another_rate_resamples() {
     let joints = vec![joint(None, "r", &[])];
     let clip = clip(joints, (0..5).map(|i| Quat::from_rotation_x(0.1 * i as f32)).collect());
     let at = |fps| {

@@ -12,7 +12,7 @@ use segue_text::msg;
 
 const VALID: &str = "a valid glTF 2.0 file";
 
-/// Where elements lie: their bytes, from one to the next, and how many.
+/// The layout of elements in a buffer: their bytes, stride, size and count.
 #[derive(Clone, Copy)]
 struct Elements<'a> {
     bytes: &'a [u8],
@@ -29,8 +29,8 @@ impl<'a> Elements<'a> {
 }
 
 impl Document<'_> {
-    /// The elements of an accessor as numbers, one element after the other. Integers are fractions
-    /// of their largest value (section 3.6.2.2).
+    /// Reads the elements of an accessor as floats, one element after the other. Normalised
+    /// integers are fractions of their largest value (section 3.6.2.2).
     pub(super) fn floats(
         &self,
         index: Index<Accessor>,
@@ -41,7 +41,7 @@ impl Document<'_> {
         })
     }
 
-    /// The same of whole numbers that are not negative: indices of vertices and joints.
+    /// Reads the elements of an accessor as unsigned integers: indices of vertices and joints.
     pub(super) fn integers(
         &self,
         index: Index<Accessor>,
@@ -54,8 +54,8 @@ impl Document<'_> {
         })
     }
 
-    /// The same of lengths: integers stand for themselves unless the accessor says that they are
-    /// fractions (`KHR_mesh_quantization`).
+    /// Reads the elements of an accessor as lengths: integers are plain values unless the accessor
+    /// is normalised (`KHR_mesh_quantization`).
     pub(super) fn lengths(
         &self,
         index: Index<Accessor>,
@@ -69,13 +69,13 @@ impl Document<'_> {
         })
     }
 
-    /// The number of elements that an accessor claims; nothing has been checked.
+    /// Returns the number of elements that an accessor declares, unchecked.
     pub(super) fn claimed(&self, index: Index<Accessor>) -> u64 {
         self.root.get(index).map_or(0, |accessor| accessor.count.0)
     }
 
-    /// The elements of an accessor. `reader` gives what reads one component of a type, or `None`
-    /// where the type does not fit.
+    /// Reads the elements of an accessor. `reader` returns the function that reads one component of
+    /// a type, or `None` where the type does not fit.
     fn values<T: Copy + Default>(
         &self,
         index: Index<Accessor>,
@@ -111,7 +111,7 @@ impl Document<'_> {
             let parts = elements.iter().flat_map(|element| element.chunks_exact(component.size()));
             parts.map(|bytes| read(component, bytes)).collect()
         } else {
-            // Zeros that no byte stands for.
+            // An accessor without a view is all zeros, and no byte of the file bounds their number.
             if count > self.total_bytes() {
                 return Err(
                     self.error(msg!("accessor {at} with {count} values and no data"), VALID)

@@ -1,20 +1,20 @@
-//! A body of simple bones around a skeleton at rest: what programs show of an armature is mostly
-//! the skin on it.
+//! A mesh of simple bones around a skeleton at rest, for programs that show an armature only by its
+//! skin.
 
 use glam::{Quat, Vec3};
 use segue_motion::skeleton::Skeleton;
 use segue_motion::skin::{RigidTransform, SkinnedMesh};
 
 /// Bones shorter than this have no direction, metres.
-const SHORTEST: f32 = 1e-4;
-/// How far from its start a bone is thickest, and how far it then reaches to each side, as shares
-/// of its length.
-const WAIST: f32 = 0.2;
-const GIRTH: f32 = 0.1;
-/// The size of the mark for a joint from which no bone starts, metres.
-const MARK: f32 = 0.015;
+const MIN_BONE_LENGTH: f32 = 1e-4;
+/// The position of the thickest part of a bone, and its radius there, as shares of the bone's
+/// length.
+const WAIST_SHARE: f32 = 0.2;
+const GIRTH_SHARE: f32 = 0.1;
+/// The size of the octahedron at a joint from which no bone starts, metres.
+const MARKER_SIZE: f32 = 0.015;
 
-/// Triangles, three vertices each; every vertex follows one joint.
+/// Triangles of three vertices each; every vertex follows one joint.
 #[derive(Default)]
 pub(super) struct Bones {
     pub(super) positions: Vec<Vec3>,
@@ -23,8 +23,8 @@ pub(super) struct Bones {
 }
 
 impl Bones {
-    /// One octahedron from each joint to each joint below it and to its end, and a small one where
-    /// there is neither.
+    /// Builds an octahedron from each joint to each of its children and to its end site, and a
+    /// small one at joints with neither.
     pub(super) fn around(skeleton: &Skeleton, positions: &[Vec3]) -> Self {
         let mut bones = Self::default();
         let mut has_bone = vec![false; skeleton.len()];
@@ -37,20 +37,20 @@ impl Bones {
             }
         }
         for (joint, _) in has_bone.iter().enumerate().filter(|(_, has_bone)| !**has_bone) {
-            let up = Vec3::Y * MARK;
+            let up = Vec3::Y * MARKER_SIZE;
             bones.octahedron(
                 joint,
                 positions[joint] - up,
                 positions[joint] + up,
                 0.5,
-                [Vec3::Z * MARK, Vec3::X * MARK],
+                [Vec3::Z * MARKER_SIZE, Vec3::X * MARKER_SIZE],
             );
         }
         bones
     }
 
-    /// The bones as a mesh that is bound where the joints are at `positions`, of a skeleton of at
-    /// most 65,536 joints.
+    /// Converts the bones to a mesh that is bound with the joints at `positions`. The skeleton has
+    /// at most 65,536 joints.
     pub(super) fn into_mesh(self, positions: &[Vec3]) -> SkinnedMesh {
         let bind =
             |&position: &Vec3| RigidTransform { rotation: Quat::IDENTITY, translation: -position };
@@ -70,7 +70,7 @@ impl Bones {
     fn bone(&mut self, joint: usize, start: Vec3, end: Vec3) -> bool {
         let along = end - start;
         let length = along.length();
-        let Some(direction) = along.try_normalize().filter(|_| length > SHORTEST) else {
+        let Some(direction) = along.try_normalize().filter(|_| length > MIN_BONE_LENGTH) else {
             return false;
         };
         let (side, other) = direction.any_orthonormal_pair();
@@ -78,13 +78,14 @@ impl Bones {
             joint,
             start,
             end,
-            WAIST,
-            [side * (GIRTH * length), other * (GIRTH * length)],
+            WAIST_SHARE,
+            [side * (GIRTH_SHARE * length), other * (GIRTH_SHARE * length)],
         );
         true
     }
 
-    /// `side`, `other` and the way from `start` to `end` are right-handed.
+    /// Adds an octahedron; `side`, `other` and the direction from `start` to `end` are
+    /// right-handed.
     fn octahedron(
         &mut self,
         joint: usize,
@@ -102,7 +103,7 @@ impl Bones {
         }
     }
 
-    /// A triangle that is seen from outside: its corners run anticlockwise there.
+    /// Adds a triangle whose corners run anticlockwise as seen from outside.
     fn triangle(&mut self, joint: usize, [a, b, c]: [Vec3; 3]) {
         let normal = (b - a).cross(c - a).normalize_or(Vec3::Y);
         self.positions.extend([a, b, c]);
@@ -117,7 +118,7 @@ mod tests {
     use segue_motion::skeleton::fixtures;
 
     #[test]
-    fn every_joint_has_a_closed_body_that_is_seen_from_outside() {
+    fn bones_of_every_joint_are_closed_and_face_outwards() {
         let skeleton = fixtures::cmu_bvh();
         let positions = skeleton.rest_positions();
         let bones = Bones::around(&skeleton, &positions);

@@ -1,4 +1,4 @@
-//! Which nodes are the joints of a character.
+//! Selection of the nodes that are joints of a character.
 
 use super::document::Document;
 use super::node::{Nodes, World};
@@ -13,21 +13,22 @@ use std::ops::Range;
 pub(super) struct Character {
     /// The node of each joint.
     pub(super) nodes: Vec<usize>,
-    /// At rest, in the file's unit, and with axes that have no rotation at rest.
+    /// The joints in the file's unit, with axes that have no rotation at rest.
     pub(super) joints: Vec<Joint>,
-    /// What the root hangs on; it never moves.
+    /// The node above the root; it never moves.
     pub(super) above: World,
-    /// Nodes whose scale differs from axis to axis, and so bends what is below them when they turn.
+    /// The number of nodes whose scale differs by axis: they shear their descendants when they
+    /// rotate.
     pub(super) uneven: usize,
 }
 
-/// The characters of a file, in the order of its nodes. `moves` tells which nodes are moved or
-/// turned by an animation.
+/// Returns the characters of a file, in the order of its nodes. `moves` says which nodes an
+/// animation moves or rotates.
 ///
-/// With skins, a character is a tree of skins: those of which one hangs below the other, or that
-/// share joints. Its joints are those of the skins and the nodes between them, up to the last node
-/// above them that moves. Without skins, each tree of nodes is a character: what moves, what is
-/// between, and what hangs on it and shows nothing.
+/// With skins, a character is a tree of skins: skins of which one is below the other, or that share
+/// joints. Its joints are those of the skins and the nodes between them, up to the last node above
+/// them that moves. Without skins, each tree of nodes is a character, made of the nodes that move,
+/// the nodes between them, and the nodes below them that show nothing.
 pub(super) fn characters(
     document: &Document<'_>,
     nodes: &Nodes,
@@ -51,7 +52,7 @@ pub(super) fn characters(
     }
     let mut tops = std::mem::take(&mut search.tops);
     tops.sort_by_key(|&top| search.below[top].start);
-    // What hangs below another character belongs to it.
+    // Nodes below another character belong to that character.
     let mut end = 0;
     tops.retain(|&top| {
         let is_first = search.below[top].start >= end;
@@ -64,20 +65,20 @@ pub(super) fn characters(
 struct Search<'a> {
     nodes: &'a Nodes,
     moves: &'a [bool],
-    /// For every node, what it is the top of: a range of [`Nodes::order`] that starts with itself.
+    /// For every node, its subtree: a range of [`Nodes::order`] that starts with the node itself.
     below: Vec<Range<usize>>,
     /// For every node, the root of its tree.
     roots: Vec<usize>,
     /// Whether a node is a joint of a skin, or moves where there are no skins.
     is_joint: Vec<bool>,
     has_skins: bool,
-    /// The top of each set of joints.
+    /// The top node of each set of joints.
     tops: Vec<usize>,
-    /// Nodes of the character that is being put together.
+    /// The nodes of the character that is being built.
     taken: Vec<bool>,
-    /// The index of each of them.
+    /// The joint index of each of these nodes.
     indices: Vec<usize>,
-    /// Where their bones end.
+    /// The ends of their bones.
     ends: Vec<Option<DVec3>>,
 }
 
@@ -111,8 +112,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// A set of joints that belong together, as far as they are in one tree: their top is the
-    /// lowest node that all of them are, or hang on.
+    /// Adds a set of joints that belong together, as far as they are in one tree: their top is the
+    /// lowest node that is each of them or above it.
     fn add(&mut self, joints: &[usize]) {
         let mut tops: BTreeMap<usize, usize> = BTreeMap::new();
         for &joint in joints {
@@ -177,7 +178,7 @@ impl<'a> Search<'a> {
         Character { nodes: joint_nodes, joints, above, uneven }
     }
 
-    /// A leaf that only says where the bone of its parent ends is an end site and no joint.
+    /// Takes a leaf that only marks the end of its parent's bone as an end site instead of a joint.
     fn take_as_end(&mut self, node: usize) {
         let leaf = &self.nodes.all[node];
         let Some(parent) = leaf.parent.filter(|&parent| self.taken[parent]) else {

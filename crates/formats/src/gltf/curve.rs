@@ -11,21 +11,21 @@ use segue_motion::math::quat;
 use segue_text::msg;
 use std::sync::Arc;
 
-/// Times this near to a key, in frames, are the key: keys are stored in single precision.
+/// Tolerance in frames within which a time is that of a key: keys are stored in single precision.
 pub(super) const SAME_FRAME: f64 = 0.01;
 
 /// A curve of vectors or of quaternions.
 pub(super) struct Curve {
-    /// Seconds, not falling. Not empty.
+    /// Seconds, not decreasing; not empty.
     pub(super) times: Arc<[f32]>,
-    /// One for each key; three for a cubic spline: the slope before it, the value and the slope
-    /// after it, per second.
+    /// One value for each key; for a cubic spline three: the in-tangent, the value and the
+    /// out-tangent, tangents per second.
     values: Vec<Vec4>,
     interpolation: Interpolation,
     is_rotation: bool,
 }
 
-/// What a curve moves.
+/// The property that a curve animates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     Vector,
@@ -33,8 +33,8 @@ pub(super) enum Kind {
 }
 
 impl Curve {
-    /// Reads a sampler. `held` counts the values that are no numbers: each repeats the one before
-    /// it. `None` for a curve without keys.
+    /// Reads a sampler. `held` counts the values that are not finite: each repeats the one before
+    /// it. Returns `None` for a curve without keys.
     pub(super) fn read(
         document: &Document<'_>,
         sampler: &Sampler,
@@ -80,9 +80,9 @@ impl Curve {
         }))
     }
 
-    /// The value at a time, seconds; before the first key and after the last one it stays. Times
-    /// within `same_secs` of a key are the key. `key` is where the last search ended, for times
-    /// that rise.
+    /// Returns the value at a time, seconds; before the first key and after the last one it is
+    /// constant. Times within `same_secs` of a key are that key's. `key` is the position of the
+    /// last search, for times that increase.
     pub(super) fn at(&self, secs: f64, same_secs: f64, key: &mut usize) -> Vec4 {
         let time = |key: usize| f64::from(self.times[key]);
         let last = self.times.len() - 1;
@@ -98,7 +98,7 @@ impl Curve {
         let t = (since / span) as f32;
         match self.interpolation {
             Interpolation::CubicSpline => {
-                // Section C.5: slopes are per second.
+                // Section C.5: tangents are per second.
                 let (t2, t3, span) = (t * t, t * t * t, span as f32);
                 let [.., from, leaving] = self.triple(key);
                 let [arriving, to, ..] = self.triple(key + 1);
@@ -125,14 +125,14 @@ impl Curve {
         [self.values[3 * key], self.values[3 * key + 1], self.values[3 * key + 2]]
     }
 
-    /// Whether any value is another than `rest` by more than a thousandth.
+    /// Returns whether any value differs from `rest` by more than a thousandth.
     pub(super) fn differs_from(&self, rest: Vec4) -> bool {
         (0..self.times.len())
             .any(|key| (self.key(key) - rest).abs().max_element() > 1e-3 * rest.abs().max_element())
     }
 }
 
-/// The unit quaternion of a value.
+/// Returns the unit quaternion of a value.
 pub(super) fn rotation(value: Vec4) -> Quat {
     quat::renormalize(Quat::from_vec4(value))
 }

@@ -1,4 +1,4 @@
-//! The JSON of a file and the binary buffers that it names.
+//! The JSON of a file and the binary buffers that it refers to.
 
 use crate::ImportError;
 use crate::text::{decode, short};
@@ -10,29 +10,29 @@ use segue_text::{Message, msg};
 use std::cell::Cell;
 use std::sync::Arc;
 
-/// Gives the bytes of a file beside the one that is read, by the name that stands in it; `None`
-/// where it is not there.
+/// Returns the bytes of a file beside the one that is read, by the name in its JSON; `None` if
+/// there is no such file.
 pub(super) type Resolve<'a> = &'a dyn Fn(&str) -> Option<Arc<[u8]>>;
 
-/// A file, taken apart. Nothing in `root` has been checked.
+/// A file, split into JSON and buffers. Nothing in `root` has been checked.
 pub(super) struct Document<'a> {
     name: &'a str,
     pub(super) root: Root,
     buffers: Vec<Buffer<'a>>,
-    /// Bytes that may still be made from this file.
+    /// The number of bytes that may still be allocated for this file.
     left: Cell<usize>,
 }
 
 enum Buffer<'a> {
     Slice(&'a [u8]),
     Shared(Arc<[u8]>),
-    /// Why it is not there. Only a buffer that is needed is missed.
+    /// The reason why the buffer is missing. It is an error only if the buffer is needed.
     Missing(Message),
 }
 
 impl<'a> Document<'a> {
-    /// `most` bounds the bytes that are made from the file: a few bytes of JSON may ask for any
-    /// number of values.
+    /// Opens a file. `most` bounds the bytes that are allocated for it: a few bytes of JSON may ask
+    /// for any number of values.
     pub(super) fn open(
         name: &'a str,
         bytes: &'a [u8],
@@ -82,7 +82,7 @@ impl<'a> Document<'a> {
         ImportError::whole_file(self.name, found, expected)
     }
 
-    /// The bytes of a buffer.
+    /// Returns the bytes of a buffer.
     pub(super) fn buffer(&self, index: usize) -> Result<&[u8], ImportError> {
         match self.buffers.get(index) {
             Some(Buffer::Slice(bytes)) => Ok(bytes),
@@ -97,14 +97,14 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// The bytes of all buffers.
+    /// Returns the number of bytes of all buffers.
     pub(super) fn total_bytes(&self) -> usize {
         (0..self.buffers.len())
             .filter_map(|index| self.buffer(index).ok())
             .fold(0, |sum, bytes| sum.saturating_add(bytes.len()))
     }
 
-    /// Asks for memory before it is taken.
+    /// Checks and counts memory before it is allocated.
     pub(super) fn spend(&self, count: usize, bytes_each: usize) -> Result<(), ImportError> {
         let left =
             count.checked_mul(bytes_each).and_then(|bytes| self.left.get().checked_sub(bytes));
@@ -121,7 +121,7 @@ impl<'a> Document<'a> {
     }
 }
 
-/// The JSON and the binary chunk of a `.glb` file.
+/// Returns the JSON and the binary chunk of a `.glb` file.
 fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Message> {
     /// Magic, version and length of the file.
     const HEADER: usize = 12;
@@ -141,13 +141,13 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Message> {
                 "{there} bytes of a part that should have {length}: the file was cut off"
             ));
         };
-        // The first of each kind counts, and other kinds are for others (section 4.4.3).
+        // The first of each kind is used; other kinds are extensions (section 4.4.3).
         match kind {
             b"JSON" => json = json.or(Some(chunk)),
             b"BIN\0" => binary = binary.or(Some(chunk)),
             _ => {}
         }
-        // Chunks end at multiples of four; not every writer knows.
+        // Chunks should end at multiples of four, but not all writers pad them.
         at += 8 + chunk.len();
     }
     json.map(|json| (json, binary)).ok_or_else(|| "a file without JSON".into())
@@ -175,7 +175,7 @@ fn parse(name: &str, json: &[u8]) -> Result<Root, ImportError> {
         Some(found) if !found.starts_with("2.") => return Err(version(name, found)),
         _ => {}
     }
-    // Channels that move something else than a node (KHR_animation_pointer) are valid, but the
+    // Channels that animate something other than a node (KHR_animation_pointer) are valid, but the
     // library does not know them.
     let animations = value.get_mut("animations").and_then(Value::as_array_mut);
     for channels in animations
@@ -196,8 +196,8 @@ fn version(name: &str, found: &str) -> ImportError {
     )
 }
 
-/// The content of a data URI after `data:`. Padding and white space are optional, percent signs are
-/// undone.
+/// Returns the content of a data URI after `data:`. Padding and white space are optional, percent
+/// signs are decoded.
 fn embedded(data: &str) -> Option<Vec<u8>> {
     const READER: GeneralPurpose = GeneralPurpose::new(
         &STANDARD,
@@ -214,7 +214,7 @@ fn embedded(data: &str) -> Option<Vec<u8>> {
     READER.decode(content).ok()
 }
 
-/// A file beside this one: by its name as written, else by what the percent signs in it stand for.
+/// Returns a file beside this one: by its name as written, otherwise percent-decoded.
 fn external(uri: &str, resolve: Resolve<'_>) -> Option<Arc<[u8]>> {
     resolve(uri).or_else(|| resolve(&percent_encoding::percent_decode_str(uri).decode_utf8().ok()?))
 }

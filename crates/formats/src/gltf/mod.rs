@@ -25,7 +25,7 @@ mod write;
 pub use read::read;
 pub use write::{GlbError, GlbOptions, write_character_glb, write_glb};
 
-/// Whether the bytes are a `.glb` file, or JSON that may be a `.gltf` file.
+/// Returns whether the bytes are a `.glb` file, or JSON that may be a `.gltf` file.
 #[must_use]
 pub fn is_gltf(bytes: &[u8]) -> bool {
     let is_json = || {

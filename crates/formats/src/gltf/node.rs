@@ -5,10 +5,10 @@ use crate::ImportError;
 use glam::{DMat3, DMat4, DQuat, DVec3};
 use segue_text::msg;
 
-/// Sizes and distances beyond this are lost in single precision.
-const FAR: f64 = 1e18;
+/// Sizes and distances beyond this lose their meaning in single precision.
+const MAX_MAGNITUDE: f64 = 1e18;
 
-/// A node as the file has it: its place in the tree, and its transform when no animation moves it.
+/// A node of the file: its place in the tree, and its transform at rest.
 pub(super) struct Node {
     pub(super) name: String,
     pub(super) parent: Option<usize>,
@@ -16,19 +16,19 @@ pub(super) struct Node {
     pub(super) translation: DVec3,
     pub(super) rotation: DQuat,
     pub(super) scale: DVec3,
-    /// Whether it shows nothing: no mesh and no camera.
+    /// Whether it has neither a mesh nor a camera.
     pub(super) is_bare: bool,
-    /// The node in the world, its scale and those above it included.
+    /// The node's transform in the world, with its own scale and those above it.
     pub(super) world: World,
 }
 
-/// A node in the world at rest.
+/// The transform of a node in the world at rest.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct World {
     pub(super) position: DVec3,
-    /// The rotations alone.
+    /// The product of the rotations alone.
     pub(super) rotation: DQuat,
-    /// Rotations and scales: takes lengths along the node's axes to the world.
+    /// The product of rotations and scales, from the node's axes to the world's.
     pub(super) linear: DMat3,
 }
 
@@ -36,13 +36,13 @@ impl World {
     pub(super) const IDENTITY: Self =
         Self { position: DVec3::ZERO, rotation: DQuat::IDENTITY, linear: DMat3::IDENTITY };
 
-    /// Where a child's translation leads.
+    /// Returns the world position of a translation in the node's axes.
     pub(super) fn point(&self, translation: DVec3) -> DVec3 {
         self.position + self.linear * translation
     }
 }
 
-/// All nodes, and their order in which each is followed by all below it.
+/// All nodes, and an order in which each is followed by its descendants.
 pub(super) struct Nodes {
     pub(super) all: Vec<Node>,
     pub(super) order: Vec<usize>,
@@ -90,8 +90,8 @@ impl Nodes {
                     * DMat3::from_diagonal(node.scale),
             };
             let World { position, linear, .. } = node.world;
-            if !(position.abs().max_element() < FAR
-                && linear.to_cols_array().iter().all(|entry| entry.abs() < FAR))
+            if !(position.abs().max_element() < MAX_MAGNITUDE
+                && linear.to_cols_array().iter().all(|entry| entry.abs() < MAX_MAGNITUDE))
             {
                 let found =
                     msg!("node {index} (`{name}`) farther away than can be told", name = node.name);
@@ -104,7 +104,7 @@ impl Nodes {
         Ok(Self { all, order })
     }
 
-    /// From a node up to the root of its tree, itself first.
+    /// Returns the nodes from one up to the root of its tree, itself first.
     pub(super) fn upwards(&self, node: usize) -> impl Iterator<Item = usize> + '_ {
         std::iter::successors(Some(node), |&node| self.all[node].parent)
     }

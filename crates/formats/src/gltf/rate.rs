@@ -1,58 +1,59 @@
-//! The frame rate of an animation, which has none: keys lie where they like.
+//! Inference of the frame rate of an animation from the times of its keys; the format has none.
 
-/// What is taken where the keys say nothing, frames per second.
+/// The rate where the keys determine none, frames per second.
 const DEFAULT_FPS: f64 = 30.0;
-/// Lower rates are multiplied until they come nearest to the default: a pose every second is no
+/// Lower rates are multiplied until they come nearest to the default: a pose every second is not a
 /// frame rate.
-const LOWEST_FPS: f64 = 20.0;
-/// Higher rates are those of slips.
-const HIGHEST_FPS: f64 = 1000.0;
-/// Keys nearer to each other are one, seconds.
+const MIN_FPS: f64 = 20.0;
+/// Higher rates come from keys that are close by accident.
+const MAX_FPS: f64 = 1000.0;
+/// Keys closer than this are one key, seconds.
 const SAME_KEY_SECS: f64 = 1e-4;
-/// Keys this near to a frame lie on it, in frames.
+/// Tolerance in frames within which a key is on a frame.
 const ON_FRAME: f64 = 0.02;
-/// How many frames may lie between the two keys that are nearest to each other: for keys at 0, 2
-/// and 5 frames.
+/// The greatest number of frames between the two closest keys, so that keys at 0, 2 and 5 frames
+/// are found.
 const MAX_BETWEEN: u32 = 4;
 
-/// When an animation plays, and how often it is read.
+/// The time range and frame rate of an animation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Rate {
     /// Frames per second.
     pub(super) fps: f64,
     /// The first key, seconds.
     pub(super) start_secs: f64,
-    /// From the first key to the last, in frames: at least 1.
+    /// The number of frames from the first key to the last; at least 1.
     pub(super) frames: f64,
-    /// Whether every key lies on a frame.
+    /// Whether every key is on a frame.
     pub(super) holds_keys: bool,
 }
 
-/// The lowest rate at which every key lies on a frame: a whole one where it can be. `keys` are the
-/// times of all keys of all curves, seconds, in any order. `given` is taken as it is.
+/// Returns the lowest rate at which every key is on a frame, an integer if possible. `keys` are the
+/// times of all keys of all curves, seconds, in any order. `given` overrides the rate.
 pub(super) fn rate(mut keys: Vec<f64>, given: Option<f64>) -> Rate {
     keys.sort_by(f64::total_cmp);
-    // Distances are measured from the first of keys that are one.
+    // The distance is measured from the first key of a group.
     keys.dedup_by(|key, kept| *key - *kept < SAME_KEY_SECS);
     let (start, end) = (keys.first().copied().unwrap_or(0.0), keys.last().copied().unwrap_or(0.0));
     let span = end - start;
     let holds = |fps: f64| {
         keys.iter().all(|&key| {
             let at = (key - start) * fps;
-            // Seconds in single precision are worse than this late in a long animation.
+            // Late in a long animation, the rounding of seconds in single precision exceeds the
+            // tolerance.
             (at - at.round()).abs() < ON_FRAME + fps * key.abs() * f64::from(f32::EPSILON)
         })
     };
     let found = given.or_else(|| {
         let nearest = keys.windows(2).map(|pair| pair[1] - pair[0]).min_by(f64::total_cmp)?;
-        // Where every frame has a key, their number says it best.
+        // If every frame has a key, their number gives the most accurate rate.
         let even = (keys.len() - 1) as f64 / span;
         let candidates = std::iter::once(even)
             .chain((1..=MAX_BETWEEN).map(|between| f64::from(between) / nearest));
         candidates
             .flat_map(|fps| [fps.round(), fps])
-            .map(|fps| if fps < LOWEST_FPS { fps * (DEFAULT_FPS / fps).round() } else { fps })
-            .find(|&fps| fps > 0.0 && fps <= HIGHEST_FPS && holds(fps))
+            .map(|fps| if fps < MIN_FPS { fps * (DEFAULT_FPS / fps).round() } else { fps })
+            .find(|&fps| fps > 0.0 && fps <= MAX_FPS && holds(fps))
     });
     let fps = found.unwrap_or(DEFAULT_FPS);
     Rate { fps, start_secs: start, frames: (span * fps).round() + 1.0, holds_keys: holds(fps) }
@@ -69,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn keys_on_every_frame_give_their_rate() {
+    fn rate_of_keys_on_every_frame_is_theirs() {
         for fps in [24.0, 25.0, 30.0, 60.0, 120.0, 240.0] {
             assert_eq!(found((0..5000).map(|i| f64::from(i) / fps)), (fps, 5000.0, true));
             assert_eq!(found((100..150).map(|i| f64::from(i) / fps)), (fps, 50.0, true));
@@ -79,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn keys_on_some_frames_give_the_lowest_rate_that_holds_them() {
+    fn rate_of_sparse_keys_is_the_lowest_that_holds_them() {
         assert_eq!(found([0.0, 2.0 / 24.0, 5.0 / 24.0, 12.0 / 24.0]), (24.0, 13.0, true));
         assert_eq!(found([0.0, 2.0]), (30.0, 61.0, true));
         assert_eq!(found([0.0, 0.1, 0.2]), (30.0, 7.0, true));
@@ -87,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn keys_anywhere_are_sampled() {
+    fn rate_of_irregular_keys_is_the_default() {
         assert_eq!(found([0.0, 0.0123, 0.5171, 0.9]), (30.0, 28.0, false));
         assert_eq!(found([]), (30.0, 1.0, true));
         assert_eq!(found([0.7]), (30.0, 1.0, true));

@@ -81,10 +81,10 @@ pub fn read(
     Ok(imported)
 }
 
-/// An animation.
+/// One animation of the file.
 struct Motion {
     name: String,
-    /// By node.
+    /// Curves by node.
     turns: BTreeMap<usize, Curve>,
     places: BTreeMap<usize, Curve>,
     rate: Rate,
@@ -236,8 +236,8 @@ impl Context<'_> {
         Ok(())
     }
 
-    /// The mesh on the joints that its clips have ([`Clip::folded`]): what followed a joint above
-    /// the carrier follows the carrier.
+    /// Moves the mesh to the joints of its clips ([`Clip::folded`]): vertices of a joint above the
+    /// carrier follow the carrier.
     fn folded(mut mesh: SkinnedMesh, rest: &RawMotion) -> SkinnedMesh {
         let measure = measure(rest, Some(1.0), Some(UpAxis::Y));
         if let Ok(clip) = rest.clone().into_clip(String::new(), 1.0, &measure)
@@ -253,8 +253,8 @@ impl Context<'_> {
         mesh
     }
 
-    /// Whether Segue wrote the file: the body in it is one that Segue makes around the bones
-    /// itself.
+    /// Returns whether Segue wrote the file, so that the mesh is the one that Segue generates
+    /// around the skeleton.
     fn is_own(&self) -> bool {
         let root = &self.document.root;
         let is_made = |mesh: &gltf::json::Mesh| mesh.name.as_deref() == Some(MADE_BODY);
@@ -263,16 +263,16 @@ impl Context<'_> {
             && root.meshes.iter().all(is_made)
     }
 
-    /// Metres per unit. The format is made for metres, but not every exporter knows: animals and
-    /// people of a hundred metres are in centimetres.
+    /// Returns the metres per unit. The format prescribes metres, but not every exporter follows
+    /// it: characters of a hundred metres are in centimetres.
     fn unit(&self, rest: &RawMotion, tally: &mut Tally) -> f64 {
-        /// Nothing that moves on joints is higher, in each unit.
-        const HIGHEST: [(f64, f64); 2] = [(10.0, 1.0), (1000.0, 0.01)];
+        /// The greatest plausible height, for each unit.
+        const MAX_HEIGHTS: [(f64, f64); 2] = [(10.0, 1.0), (1000.0, 0.01)];
         let found = measure(rest, self.options.metres_per_unit, Some(UpAxis::Y));
         if !found.unit_detected {
             return found.provenance.metres_per_unit;
         }
-        let unit = HIGHEST.iter().find(|(highest, _)| found.height_units <= *highest);
+        let unit = MAX_HEIGHTS.iter().find(|(highest, _)| found.height_units <= *highest);
         let metres_per_unit = unit.map_or(0.001, |(_, unit)| *unit);
         if metres_per_unit != 1.0 {
             tally.add(WarningKind::NotMetres { metres_per_unit }, None);
@@ -280,14 +280,13 @@ impl Context<'_> {
         metres_per_unit
     }
 
-    /// Reads an animation frame by frame. With `G` for rotations in the world at rest, a joint
-    /// turns by `G(parent) · local · G(joint)⁻¹`, and a translation is taken to the parent's new
+    /// Samples an animation frame by frame. With `G` for rotations in the world at rest, a joint
+    /// rotates by `G(parent) · local · G(joint)⁻¹`, and a translation is mapped to the parent's new
     /// axes by the parent's rotation and scale at rest.
     fn sampled(&self, character: &Character, motion: &Motion) -> Result<RawMotion, ImportError> {
         let Rate { fps, start_secs, frames, .. } = motion.rate;
         let joints = character.joints.len();
-        // Too many frames for a number of bytes are too many for `spend`, which takes what
-        // saturates for too much.
+        // Saturates: `spend` refuses the number of bytes that follows from it.
         let frames = frames as usize;
         self.document
             .spend(frames.saturating_mul(joints), size_of::<Quat>() + size_of::<Vec3>())?;
@@ -331,7 +330,7 @@ impl Context<'_> {
                 let values = (0..frames).map(|frame| {
                     let local = curve.at(secs(frame), same_secs, &mut key).truncate();
                     let place = (at + axes * local.as_dvec3()).as_vec3();
-                    // Between finite keys, a spline with steep slopes need not stay finite.
+                    // Between finite keys, a spline with steep tangents may still overflow.
                     if place.is_finite() {
                         good = place;
                     }
@@ -364,7 +363,7 @@ impl Context<'_> {
         }
         let measure =
             measure(&raw, Some(metres_per_unit), Some(self.options.up.unwrap_or_default()));
-        let mendable = raw.tell_unlikely(&measure, self.options, tally);
+        let mendable = raw.warn_of_unlikely(&measure, self.options, tally);
         let name = match raw.joints.first() {
             Some(root) if self.several => format!("{name} ({})", root.name),
             _ => name.to_owned(),

@@ -1,5 +1,5 @@
-//! The mesh of a character: all primitives whose skin lies on its joints, bound to them as they
-//! rest in the file.
+//! The mesh of a character: all primitives with a skin on its joints, bound to the rest pose of the
+//! file.
 
 use super::characters::Character;
 use super::document::Document;
@@ -14,17 +14,18 @@ use gltf::json::{Index, Material};
 use segue_motion::skin::{RigidTransform, SkinnedMesh};
 use segue_text::{Message, msg};
 
-/// More vertices, or triangles, are no character that anybody could show.
-const MOST: u64 = 1 << 21;
-/// Sets of joints and weights that are read; the four greatest weights of all count.
+/// The greatest number of vertices of a character; beyond it the mesh is left out.
+const MAX_VERTICES: u64 = 1 << 21;
+/// The number of sets of joints and weights that are read; of all their weights the four greatest
+/// are used.
 const SETS: u32 = 2;
 
-/// The mesh of a character at rest, in the file's unit; `None` where it has none. What cannot be
-/// read is left out and told.
+/// Returns the mesh of a character at rest, in the file's unit; `None` if it has none. Parts that
+/// cannot be read are left out with a warning.
 ///
-/// The inverse bind matrices may scale, and lie in any pose: vertices are taken where the skin puts
-/// them at rest (section 3.7.3.3 of the specification), and are bound there anew, so that rigid
-/// motions of the joints move them from then on.
+/// The inverse bind matrices may scale, and may describe any pose: vertices are moved to where the
+/// skin puts them at rest (section 3.7.3.3 of the specification), and bound there again, so that
+/// rigid motions of the joints move them from then on.
 pub(super) fn mesh(
     document: &Document<'_>,
     nodes: &Nodes,
@@ -106,11 +107,11 @@ fn material<'a>(
     document.root.get(index?)
 }
 
-/// What moves the vertices of a skin at rest.
+/// The rest transforms by which a skin deforms its vertices.
 struct Binding {
     /// The character's joint for each joint of the skin.
     joints: Vec<Option<u16>>,
-    /// Takes points of the mesh to where the joint puts them at rest.
+    /// For each joint of the skin, the transform from the mesh to the joint at rest.
     rest: Vec<DMat4>,
 }
 
@@ -151,7 +152,7 @@ impl Binding {
     }
 }
 
-/// One primitive: its vertices at rest.
+/// One primitive, with its vertices at rest.
 struct Part {
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
@@ -162,7 +163,8 @@ struct Part {
 }
 
 impl Part {
-    /// `None` for what is no surface, or has no skin. `before` vertices were read already.
+    /// Reads a primitive; `None` if it is not a surface or has no skin. `before` is the number of
+    /// vertices that have been read.
     fn read(
         document: &Document<'_>,
         primitive: &Primitive,
@@ -180,8 +182,8 @@ impl Part {
             return Ok(None);
         };
         let claimed = document.claimed(positions);
-        if before.saturating_add(claimed) > MOST
-            || primitive.indices.is_some_and(|indices| document.claimed(indices) > 3 * MOST)
+        if before.saturating_add(claimed) > MAX_VERTICES
+            || primitive.indices.is_some_and(|indices| document.claimed(indices) > 3 * MAX_VERTICES)
         {
             return Err(document.error(msg!("{claimed} vertices"), "at most two millions"));
         }
@@ -250,8 +252,8 @@ impl Part {
         Ok(Some(part))
     }
 
-    /// Puts the vertices where the skin has them at rest, and names the joints that move them from
-    /// there.
+    /// Moves the vertices to where the skin has them at rest, and sets the joints that move them
+    /// from there.
     fn rest(&mut self, binding: &Binding, influences: &[Vec<(usize, f32)>]) -> Result<(), Message> {
         let has_normals = self.normals.len() == self.positions.len();
         let mut mirrored = 0usize;
@@ -261,7 +263,7 @@ impl Part {
             sorted.truncate(4);
             let mut total: f32 = sorted.iter().map(|(_, weight)| weight).sum();
             if sorted.is_empty() {
-                // A vertex that nothing moves follows the first joint.
+                // A vertex without weights follows the first joint.
                 (sorted, total) = (vec![(0, 1.0)], 1.0);
             }
             let (mut matrix, mut joints, mut weights) = (DMat4::ZERO, [0; 4], [0.0; 4]);
@@ -323,8 +325,8 @@ impl Part {
     }
 }
 
-/// Takes normals along with a surface: the inverse transpose times the determinant, which is there
-/// for flattened surfaces, too.
+/// Returns the matrix that transforms normals with a surface: the inverse transpose times the
+/// determinant, which also exists for flattened surfaces.
 fn cofactors(m: DMat3) -> DMat3 {
     let [x, y, z]: [DVec3; 3] = [m.x_axis, m.y_axis, m.z_axis];
     let sign = m.determinant().signum();
@@ -335,7 +337,7 @@ fn vectors(values: &[f32]) -> Vec<Vec3> {
     values.as_chunks::<3>().0.iter().copied().map(Vec3::from_array).collect()
 }
 
-/// The triangles of indices that are a list, a strip or a fan (section 3.7.2.1).
+/// Returns the triangles of a list, a strip or a fan of indices (section 3.7.2.1).
 fn triangles(indices: &[u32], mode: Mode) -> Vec<[u32; 3]> {
     let own = |[a, b, c]: [u32; 3]| (a != b && b != c && c != a).then_some([a, b, c]);
     match mode {
@@ -353,7 +355,7 @@ fn triangles(indices: &[u32], mode: Mode) -> Vec<[u32; 3]> {
     }
 }
 
-/// A part of a linear colour as written in a palette (IEC 61966-2-1).
+/// Converts a channel of a linear colour to sRGB (IEC 61966-2-1).
 fn encoded(linear: f32) -> f32 {
     if !linear.is_finite() || linear >= 1.0 {
         1.0

@@ -1,5 +1,5 @@
-//! Files are made here, as JSON with their numbers embedded, and read against matrices multiplied
-//! node by node.
+//! Tests of glTF files: the files are built here as JSON with embedded numbers, and compared with
+//! matrices multiplied node by node.
 
 use super::*;
 use crate::{ImportError, ImportOptions, Imported};
@@ -16,21 +16,21 @@ use std::sync::Arc;
 
 mod skin_tests;
 
-/// A file of ours, with the name of the program that wrote it changed.
+/// Changes the name of the generator in a file of Segue's.
 fn by_another_program(mut bytes: Vec<u8>) -> Vec<u8> {
     let at = bytes.windows(6).position(|w| w == b"Segue ").unwrap();
     bytes[at..at + 5].copy_from_slice(b"Other");
     bytes
 }
 
-/// A file that is being made.
-struct Made {
+/// A glTF file under construction.
+struct GltfBuilder {
     root: Value,
     bytes: Vec<u8>,
 }
 
-impl Made {
-    /// Nodes, and the joints of a skin.
+impl GltfBuilder {
+    /// Returns a file with nodes, and a skin with joints.
     fn new(nodes: &Value, joints: &[usize]) -> Self {
         let mut root = json!({ "asset": { "version": "2.0" }, "nodes": nodes, "accessors": [], "bufferViews": [] });
         if !joints.is_empty() {
@@ -65,7 +65,7 @@ impl Made {
         self.accessor(json!({ "bufferView": view, "componentType": 5126, "count": values.len() / width, "type": kind }))
     }
 
-    /// One more channel of the first animation.
+    /// Adds a channel to the first animation.
     fn channel(
         &mut self,
         node: usize,
@@ -114,7 +114,7 @@ fn open(bytes: &[u8]) -> Result<Imported, ImportError> {
         metres_per_unit: Some(1.0),
         ..ImportOptions::default()
     };
-    read("dir/made.gltf", bytes, &|_| None, &options)
+    read("dir/builder.gltf", bytes, &|_| None, &options)
 }
 
 fn only(imported: &Imported) -> &Clip {
@@ -126,7 +126,7 @@ fn sentences(imported: &Imported) -> Vec<String> {
     imported.warnings.iter().map(ToString::to_string).collect()
 }
 
-/// Two bones: `Hips` at 1 m with `Chest` 0.5 m above.
+/// Returns two bones: `Hips` at 1 m with `Chest` 0.5 m above.
 fn two_bones() -> Value {
     json!([{ "name": "Hips", "translation": [0, 1, 0], "children": [1] }, { "name": "Chest", "translation": [0, 0.5, 0], "children": [2] }, { "name": "Tip", "translation": [0, 0.3, 0] }])
 }
@@ -136,7 +136,7 @@ fn about_z(angle: f32) -> [f32; 4] {
 }
 
 #[test]
-fn a_clip_comes_back_from_its_file() {
+fn written_clip_reads_back_equal() {
     let clip = wander(&fixtures::cmu_bvh(), 40, 5).with_name("wander & more");
     let values = (0..40).map(|i| Vec3::new(0.02, 0.3 + 0.001 * i as f32, 0.0)).collect();
     let clip = clip.with_translations(vec![JointTranslations { joint: 7, values }]).unwrap();
@@ -148,7 +148,7 @@ fn a_clip_comes_back_from_its_file() {
     let back = only(&imported);
     assert_eq!((back.name(), back.fps(), back.frames()), ("wander & more", 30.0, 40));
     assert_eq!(back.provenance().metres_per_unit, 1.0);
-    // Nodes are read each followed by all below it.
+    // Nodes are read depth first.
     let joints = clip.skeleton().joints();
     let places: Vec<usize> =
         joints.iter().map(|joint| back.skeleton().find(&joint.name).unwrap()).collect();
@@ -184,15 +184,21 @@ fn a_clip_comes_back_from_its_file() {
 }
 
 #[test]
-fn each_interpolation_is_what_the_format_says() {
+fn interpolation_follows_the_specification() {
     let times = [0.0, 0.5, 1.0];
-    let mut made = Made::new(&two_bones(), &[0, 1]);
-    made.channel(0, "translation", "STEP", &times, &[0.0, 1.0, 0.0, 2.0, 1.0, 0.0, 3.0, 1.0, 0.0]);
+    let mut builder = GltfBuilder::new(&two_bones(), &[0, 1]);
+    builder.channel(
+        0,
+        "translation",
+        "STEP",
+        &times,
+        &[0.0, 1.0, 0.0, 2.0, 1.0, 0.0, 3.0, 1.0, 0.0],
+    );
     let turns = [about_z(0.0), about_z(1.0), about_z(0.5)];
-    // The long way round: the shorter one is meant.
+    // The negated quaternion: interpolation must still take the shorter way.
     let turns = [turns[0], turns[1].map(|v| -v), turns[2]].concat();
-    made.channel(1, "rotation", "LINEAR", &times, &turns);
-    let imported = made.read();
+    builder.channel(1, "rotation", "LINEAR", &times, &turns);
+    let imported = builder.read();
     let clip = only(&imported);
     assert_eq!((clip.fps(), clip.frames()), (30.0, 31));
     assert_eq!(
@@ -208,24 +214,24 @@ fn each_interpolation_is_what_the_format_says() {
             "frame {frame}"
         );
     }
-    // A cubic that a spline with the right slopes follows exactly.
+    // A cubic, which a spline with the right tangents follows exactly.
     let (value, slope) = (|t: f32| t * t * t - t + 1.0, |t: f32| 3.0 * t * t - 1.0);
     let triples: Vec<f32> = times
         .iter()
         .flat_map(|&t| [0.0, slope(t), 0.0, 0.0, value(t), 0.0, 0.0, slope(t), 0.0])
         .collect();
-    let mut made = Made::new(&two_bones(), &[0, 1]);
-    made.channel(0, "translation", "CUBICSPLINE", &times, &triples);
-    let imported = made.read();
+    let mut builder = GltfBuilder::new(&two_bones(), &[0, 1]);
+    builder.channel(0, "translation", "CUBICSPLINE", &times, &triples);
+    let imported = builder.read();
     for (frame, place) in only(&imported).root_translations().iter().enumerate() {
         assert!((place.y - value(frame as f32 / 30.0)).abs() < 1e-6, "frame {frame}");
     }
 }
 
 #[test]
-fn small_numbers_sparse_ones_and_strides_are_read() {
-    let mut made = Made::new(&two_bones(), &[0, 1]);
-    // Rotations as normalised shorts, interleaved with something else.
+fn accessors_of_every_layout_are_read() {
+    let mut builder = GltfBuilder::new(&two_bones(), &[0, 1]);
+    // Rotations as normalised shorts, interleaved with other data.
     let turns: Vec<u8> = [0.0, 0.4, 0.8]
         .into_iter()
         .flat_map(|angle| {
@@ -233,18 +239,18 @@ fn small_numbers_sparse_ones_and_strides_are_read() {
             [q.concat(), vec![0xee; 4]].concat()
         })
         .collect();
-    let view = made.view(&turns);
-    made.root["bufferViews"][view]["byteStride"] = json!(12);
-    let input = made.floats("SCALAR", 1, &[0.0, 0.1, 0.2]);
-    let output = made.accessor(json!({ "bufferView": view, "componentType": 5122, "normalized": true, "count": 3, "type": "VEC4" }));
-    made.sampler(1, "rotation", json!({ "input": input, "output": output }));
-    // Translations that are zero but for the last one.
+    let view = builder.view(&turns);
+    builder.root["bufferViews"][view]["byteStride"] = json!(12);
+    let input = builder.floats("SCALAR", 1, &[0.0, 0.1, 0.2]);
+    let output = builder.accessor(json!({ "bufferView": view, "componentType": 5122, "normalized": true, "count": 3, "type": "VEC4" }));
+    builder.sampler(1, "rotation", json!({ "input": input, "output": output }));
+    // Translations that are all zero except the last one.
     let (indices, values) =
-        (made.view(&[2]), made.view(&[0, 0, 128, 63, 0, 0, 0, 64, 0, 0, 64, 64]));
-    let output = made.accessor(json!({ "componentType": 5126, "count": 3, "type": "VEC3", "sparse": {
+        (builder.view(&[2]), builder.view(&[0, 0, 128, 63, 0, 0, 0, 64, 0, 0, 64, 64]));
+    let output = builder.accessor(json!({ "componentType": 5126, "count": 3, "type": "VEC3", "sparse": {
         "count": 1, "indices": { "bufferView": indices, "componentType": 5121 }, "values": { "bufferView": values } } }));
-    made.sampler(0, "translation", json!({ "input": input, "output": output }));
-    let imported = made.read();
+    builder.sampler(0, "translation", json!({ "input": input, "output": output }));
+    let imported = builder.read();
     let clip = only(&imported);
     assert_eq!((clip.fps(), clip.frames()), (30.0, 7));
     assert_eq!(
@@ -256,7 +262,7 @@ fn small_numbers_sparse_ones_and_strides_are_read() {
 }
 
 #[test]
-fn the_skeleton_is_what_the_skin_says_and_what_moves_above() {
+fn skeleton_with_a_skin_includes_moving_nodes_above() {
     // World > Mover (moves) > Armature > {Hips > Chest > Head, Mesh}, and a lamp beside it. `Chest`
     // is in no skin.
     let nodes = json!([
@@ -269,11 +275,11 @@ fn the_skeleton_is_what_the_skin_says_and_what_moves_above() {
         { "name": "Mesh", "mesh": 0, "skin": 0 },
         { "name": "Lamp", "translation": [0, 300, 0] }
     ]);
-    let mut made = Made::new(&nodes, &[5, 3]);
-    made.root["meshes"] = json!([{ "primitives": [{ "attributes": {} }] }]);
-    made.channel(1, "translation", "LINEAR", &[0.0, 1.0], &[0.0, 0.0, 0.0, 100.0, 0.0, 0.0]);
-    made.channel(7, "translation", "LINEAR", &[0.0, 1.0], &[0.0; 6]);
-    let imported = made.read();
+    let mut builder = GltfBuilder::new(&nodes, &[5, 3]);
+    builder.root["meshes"] = json!([{ "primitives": [{ "attributes": {} }] }]);
+    builder.channel(1, "translation", "LINEAR", &[0.0, 1.0], &[0.0, 0.0, 0.0, 100.0, 0.0, 0.0]);
+    builder.channel(7, "translation", "LINEAR", &[0.0, 1.0], &[0.0; 6]);
+    let imported = builder.read();
     let clip = only(&imported);
     let joints: Vec<_> =
         clip.skeleton().joints().iter().map(|joint| (joint.name.as_str(), joint.parent)).collect();
@@ -292,35 +298,35 @@ fn the_skeleton_is_what_the_skin_says_and_what_moves_above() {
         top(0).distance(Vec3::new(0.0, 1.6, 0.0)) < 1e-6
             && top(30).distance(Vec3::new(1.0, 1.6, 0.0)) < 1e-6
     );
-    // At rest nothing is turned, whatever the nodes are.
+    // At rest, no joint is rotated, whatever the nodes are.
     assert!(clip.rotations(0).iter().all(|q| quat::angle_between(*q, Quat::IDENTITY) < 1e-6));
     assert!(clip.skeleton().rest_positions()[4].distance(Vec3::Y * 1.6) < 1e-6);
 }
 
 #[test]
-fn several_characters_and_animations_are_several_clips() {
-    let mut made = Made::new(
+fn characters_and_animations_each_give_a_clip() {
+    let mut builder = GltfBuilder::new(
         &json!([{ "name": "A", "children": [1] }, { "name": "A2", "translation": [0, 1, 0] }, { "name": "B", "children": [3] }, { "name": "B2", "translation": [0, 1, 0] }]),
         &[],
     );
-    made.root["skins"] = json!([{ "joints": [0, 1] }, { "joints": [1] }, { "joints": [2, 3] }]);
-    made.channel(0, "rotation", "LINEAR", &[0.0, 1.0], &[about_z(0.0), about_z(1.0)].concat());
-    let first = made.root["animations"][0].clone();
-    made.root["animations"] =
+    builder.root["skins"] = json!([{ "joints": [0, 1] }, { "joints": [1] }, { "joints": [2, 3] }]);
+    builder.channel(0, "rotation", "LINEAR", &[0.0, 1.0], &[about_z(0.0), about_z(1.0)].concat());
+    let first = builder.root["animations"][0].clone();
+    builder.root["animations"] =
         json!([first, first, { "name": "unused", "channels": [], "samplers": [] }]);
-    made.root["animations"][0]["name"] = json!("walk");
-    let imported = made.read();
+    builder.root["animations"][0]["name"] = json!("walk");
+    let imported = builder.read();
     let clips: Vec<_> = imported
         .clips
         .iter()
         .map(|found| (found.clip.name(), found.clip.skeleton().len(), found.clip.frames()))
         .collect();
-    assert_eq!(clips, [("walk (A)", 2, 31), ("made 2 (A)", 2, 31), ("made (B)", 2, 1)]);
+    assert_eq!(clips, [("walk (A)", 2, 31), ("builder 2 (A)", 2, 31), ("builder (B)", 2, 1)]);
     assert_eq!(sentences(&imported), ["the file holds a skeleton and no motion"]);
 }
 
 #[test]
-fn without_a_skin_the_moving_nodes_are_the_skeleton() {
+fn skeleton_without_a_skin_is_the_moving_nodes() {
     let nodes = json!([
         { "name": "Scene", "children": [1, 5], "translation": [0, 0, 1] },
         { "name": "Hips", "children": [2, 3, 6], "translation": [0, 1, 0] },
@@ -330,10 +336,10 @@ fn without_a_skin_the_moving_nodes_are_the_skeleton() {
         { "name": "Camera", "camera": 0 },
         { "name": "Skirt", "mesh": 0 }
     ]);
-    let mut made = Made::new(&nodes, &[]);
-    made.channel(1, "translation", "LINEAR", &[0.0, 1.0], &[0.0, 1.0, 0.0, 0.0, 1.0, 2.0]);
-    made.channel(3, "rotation", "LINEAR", &[0.0, 1.0], &[about_z(0.0), about_z(1.0)].concat());
-    let imported = made.read();
+    let mut builder = GltfBuilder::new(&nodes, &[]);
+    builder.channel(1, "translation", "LINEAR", &[0.0, 1.0], &[0.0, 1.0, 0.0, 0.0, 1.0, 2.0]);
+    builder.channel(3, "rotation", "LINEAR", &[0.0, 1.0], &[about_z(0.0), about_z(1.0)].concat());
+    let imported = builder.read();
     let clip = only(&imported);
     let joints: Vec<_> = clip.skeleton().joints().iter().map(|joint| joint.name.as_str()).collect();
     assert_eq!(joints, ["Hips", "Leg", "Spine"]);
@@ -347,32 +353,32 @@ fn without_a_skin_the_moving_nodes_are_the_skeleton() {
 }
 
 #[test]
-fn oddities_are_told() {
+fn oddities_of_a_file_give_warnings() {
     let nodes = json!([{ "name": "Hips", "children": [1], "scale": [1, 2, 1] }, { "name": "Chest", "children": [2], "translation": [0, 0.5, 0] }, { "translation": [0, 0.5, 0] }]);
-    let mut made = Made::new(&nodes, &[0, 1]);
+    let mut builder = GltfBuilder::new(&nodes, &[0, 1]);
     let times = [0.0, 0.0123, 0.5171, 0.9];
-    made.channel(
+    builder.channel(
         0,
         "translation",
         "LINEAR",
         &times,
         &[0.0, 1.0, 0.0, f32::NAN, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0, 1.0, 0.0],
     );
-    made.channel(
+    builder.channel(
         0,
         "scale",
         "LINEAR",
         &times,
         &[1.0, 2.0, 1.0, 1.0, 2.0, 1.0, 1.0, 2.0, 1.0, 1.0, 2.0, 1.0],
     );
-    made.channel(
+    builder.channel(
         1,
         "scale",
         "STEP",
         &times,
         &[1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 3.0, 1.0, 1.0, 1.0, 1.0],
     );
-    let imported = made.read();
+    let imported = builder.read();
     assert_eq!(
         sentences(&imported),
         [
@@ -387,13 +393,14 @@ fn oddities_are_told() {
         Vec3::Y,
         "as tall as the scale makes it"
     );
-    // Not every exporter knows that lengths are metres.
-    let mut made = Made::new(
+    // A file in centimetres, against the specification.
+    let mut builder = GltfBuilder::new(
         &json!([{ "name": "Hips", "children": [1], "translation": [0, 90, 0] }, { "name": "Head", "translation": [0, 85, 0] }, { "name": "Foot", "translation": [0, -88, 0] }]),
         &[0, 1, 2],
     );
-    made.root["nodes"][0]["children"] = json!([1, 2]);
-    let imported = read("tall.gltf", &made.text(), &|_| None, &ImportOptions::default()).unwrap();
+    builder.root["nodes"][0]["children"] = json!([1, 2]);
+    let imported =
+        read("tall.gltf", &builder.text(), &|_| None, &ImportOptions::default()).unwrap();
     assert_eq!(
         sentences(&imported),
         [
@@ -405,26 +412,26 @@ fn oddities_are_told() {
 }
 
 #[test]
-fn buffers_are_found_beside_the_file_or_missed_by_name() {
-    let mut made = Made::new(&two_bones(), &[0, 1]);
-    made.channel(1, "rotation", "LINEAR", &[0.0, 1.0], &[about_z(0.0), about_z(1.0)].concat());
-    let mut root = made.root.clone();
-    root["buffers"] = json!([{ "byteLength": made.bytes.len(), "uri": "my%20walk.bin" }]);
+fn buffers_are_found_beside_the_file_or_refused_by_name() {
+    let mut builder = GltfBuilder::new(&two_bones(), &[0, 1]);
+    builder.channel(1, "rotation", "LINEAR", &[0.0, 1.0], &[about_z(0.0), about_z(1.0)].concat());
+    let mut root = builder.root.clone();
+    root["buffers"] = json!([{ "byteLength": builder.bytes.len(), "uri": "my%20walk.bin" }]);
     let text = root.to_string();
-    let bytes: Arc<[u8]> = made.bytes.clone().into();
+    let bytes: Arc<[u8]> = builder.bytes.clone().into();
     let beside = |name: &str| (name == "my walk.bin").then(|| Arc::clone(&bytes));
     let imported = read("a.gltf", text.as_bytes(), &beside, &ImportOptions::default()).unwrap();
     assert_eq!(only(&imported).frames(), 31);
     let error = read("a.gltf", text.as_bytes(), &|_| None, &ImportOptions::default()).unwrap_err();
     assert!(error.to_string().contains("found no file `my%20walk.bin` beside it"), "{error}");
     assert!(error.hint.is_some());
-    let short: Arc<[u8]> = made.bytes[..30].into();
+    let short: Arc<[u8]> = builder.bytes[..30].into();
     let error =
         read("a.gltf", text.as_bytes(), &|_| Some(Arc::clone(&short)), &ImportOptions::default())
             .unwrap_err();
     assert!(error.to_string().contains("expected all bytes of the animation"), "{error}");
-    // A buffer of images alone is not missed.
-    root["buffers"] = json!([{ "byteLength": made.bytes.len(), "uri": "walk.bin" }, { "byteLength": 9, "uri": "images.bin" }]);
+    // A missing buffer of images alone is no error.
+    root["buffers"] = json!([{ "byteLength": builder.bytes.len(), "uri": "walk.bin" }, { "byteLength": 9, "uri": "images.bin" }]);
     let beside = |name: &str| (name == "walk.bin").then(|| Arc::clone(&bytes));
     assert!(
         read("a.gltf", root.to_string().as_bytes(), &beside, &ImportOptions::default()).is_ok()
@@ -432,10 +439,10 @@ fn buffers_are_found_beside_the_file_or_missed_by_name() {
 }
 
 #[test]
-fn what_is_no_gltf_is_refused_with_its_place() {
+fn invalid_gltf_is_refused_with_its_place() {
     let say = |text: &str| open(text.as_bytes()).unwrap_err().to_string();
     assert!(
-        say("{\n \"asset\": {]").starts_with("dir/made.gltf:2:12: found JSON that is no glTF"),
+        say("{\n \"asset\": {]").starts_with("dir/builder.gltf:2:12: found JSON that is no glTF"),
         "{}",
         say("{\n \"asset\": {]")
     );
@@ -471,14 +478,14 @@ fn what_is_no_gltf_is_refused_with_its_place() {
 }
 
 #[test]
-fn keys_that_cannot_be_are_refused() {
+fn invalid_keys_are_refused() {
     let say = |times: &[f32], values: usize, stride: Option<u32>| {
-        let mut made = Made::new(&two_bones(), &[0, 1]);
-        made.channel(1, "rotation", "LINEAR", times, &about_z(0.0).repeat(values));
+        let mut builder = GltfBuilder::new(&two_bones(), &[0, 1]);
+        builder.channel(1, "rotation", "LINEAR", times, &about_z(0.0).repeat(values));
         if let Some(stride) = stride {
-            made.root["bufferViews"][1]["byteStride"] = json!(stride);
+            builder.root["bufferViews"][1]["byteStride"] = json!(stride);
         }
-        open(&made.text()).map_or_else(|error| error.to_string(), |_| "read".to_owned())
+        open(&builder.text()).map_or_else(|error| error.to_string(), |_| "read".to_owned())
     };
     assert_eq!(say(&[0.0, 1.0], 2, None), "read");
     assert!(say(&[1.0, 0.0], 2, None).contains("expected rising times"));
@@ -490,38 +497,39 @@ fn keys_that_cannot_be_are_refused() {
 }
 
 #[test]
-fn channels_that_move_no_node_are_passed_over() {
-    let mut made = Made::new(&two_bones(), &[0, 1]);
-    made.channel(1, "rotation", "LINEAR", &[0.0, 1.0], &[about_z(0.0), about_z(1.0)].concat());
+fn channels_without_a_node_are_skipped() {
+    let mut builder = GltfBuilder::new(&two_bones(), &[0, 1]);
+    builder.channel(1, "rotation", "LINEAR", &[0.0, 1.0], &[about_z(0.0), about_z(1.0)].concat());
     let pointer = json!({ "sampler": 0, "target": { "path": "pointer", "extensions": { "KHR_animation_pointer": { "pointer": "/materials/0" } } } });
-    made.root["animations"][0]["channels"].as_array_mut().unwrap().push(pointer);
-    made.root["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
-    assert_eq!(only(&made.read()).frames(), 31);
+    builder.root["animations"][0]["channels"].as_array_mut().unwrap().push(pointer);
+    builder.root["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
+    assert_eq!(only(&builder.read()).frames(), 31);
 }
 
 #[test]
-fn a_few_bytes_cannot_ask_for_all_memory() {
-    let refused = |made: &Made| open(&made.text()).unwrap_err().to_string();
-    let mut made = Made::new(&two_bones(), &[0, 1]);
-    made.channel(1, "rotation", "LINEAR", &[0.0, 4e9], &[about_z(0.0), about_z(1.0)].concat());
-    assert!(refused(&made).contains("more motion than fits"), "{}", refused(&made));
+fn small_files_cannot_claim_much_memory() {
+    let refused = |builder: &GltfBuilder| open(&builder.text()).unwrap_err().to_string();
+    let mut builder = GltfBuilder::new(&two_bones(), &[0, 1]);
+    builder.channel(1, "rotation", "LINEAR", &[0.0, 4e9], &[about_z(0.0), about_z(1.0)].concat());
+    assert!(refused(&builder).contains("more motion than fits"), "{}", refused(&builder));
     for accessor in [
         json!({ "componentType": 5126, "count": 4_000_000_000_u64, "type": "SCALAR" }),
         json!({ "bufferView": 0, "componentType": 5126, "count": 4_000_000_000_u64, "type": "SCALAR" }),
         json!({ "bufferView": 0, "componentType": 5126, "count": u64::MAX, "type": "SCALAR" }),
     ] {
-        let mut made = Made::new(&two_bones(), &[0, 1]);
-        let view = made.view(&[0; 64]);
-        let input = made.accessor(accessor);
-        made.sampler(1, "rotation", json!({ "input": input, "output": input }));
-        assert!(open(&made.text()).is_err());
-        // Without a step from one to the next, they would all fit.
-        made.root["bufferViews"][view]["byteStride"] = json!(0);
-        assert!(open(&made.text()).is_err());
+        let mut builder = GltfBuilder::new(&two_bones(), &[0, 1]);
+        let view = builder.view(&[0; 64]);
+        let input = builder.accessor(accessor);
+        builder.sampler(1, "rotation", json!({ "input": input, "output": input }));
+        assert!(open(&builder.text()).is_err());
+        // With a stride of zero they would all fit.
+        builder.root["bufferViews"][view]["byteStride"] = json!(0);
+        assert!(open(&builder.text()).is_err());
     }
 }
 
-/// A tree of nodes: for each its parent among those before it, its translation, rotation and scale.
+/// A tree of nodes: for each, its parent among those before it, its translation, rotation and
+/// scale.
 type Tree = Vec<(prop::sample::Index, [f32; 3], [f32; 3], f32)>;
 
 fn tree() -> impl Strategy<Value = Tree> {
@@ -541,30 +549,31 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(120))]
 
     #[test]
-    fn joints_are_where_the_matrices_of_the_nodes_put_them(tree in tree(), joints in prop::collection::btree_set(0usize..9, 1..6), keys in prop::collection::vec((0usize..9, [-2.0f32..2.0, -2.0f32..2.0, -2.0f32..2.0], any::<bool>()), 1..6)) {
+    fn joint_positions_equal_node_matrices(tree in tree(), joints in prop::collection::btree_set(0usize..9, 1..6), keys in prop::collection::vec((0usize..9, [-2.0f32..2.0, -2.0f32..2.0, -2.0f32..2.0], any::<bool>()), 1..6)) {
         let turn = |v: [f32; 3]| quat::exp(Vec3::from_array(v));
         let parent = |node: usize| (node > 0).then(|| tree[node].0.index(node));
         let nodes: Vec<Value> = tree.iter().enumerate().map(|(node, (_, place, angles, scale))| {
             let children: Vec<usize> = (node + 1..tree.len()).filter(|&child| parent(child) == Some(node)).collect();
-            let mut made = json!({ "name": format!("n{node}"), "translation": place, "rotation": turn(*angles).to_array(), "scale": vec![scale; 3] });
+            let mut builder = json!({ "name": format!("n{node}"), "translation": place, "rotation": turn(*angles).to_array(), "scale": vec![scale; 3] });
             if !children.is_empty() {
-                made["children"] = json!(children);
+                builder["children"] = json!(children);
             }
-            made
+            builder
         }).collect();
         let joints: Vec<usize> = joints.into_iter().filter(|&joint| joint < tree.len()).collect();
         prop_assume!(!joints.is_empty());
-        let mut made = Made::new(&json!(nodes), &joints);
-        // From rest to a key one frame later; the last channel of a property counts.
+        let mut builder = GltfBuilder::new(&json!(nodes), &joints);
+        // From rest to a key one frame later; of several channels for one property, the last one
+        // counts.
         let mut moved: Vec<([f32; 3], Quat)> = tree.iter().map(|(_, place, angles, _)| (*place, turn(*angles))).collect();
         let at_rest = moved.clone();
         for &(node, to, turns) in keys.iter().filter(|key| key.0 < tree.len()) {
             if turns {
                 moved[node].1 = turn(to);
-                made.channel(node, "rotation", "LINEAR", &[0.0, 1.0 / 24.0], &[at_rest[node].1.to_array(), turn(to).to_array()].concat());
+                builder.channel(node, "rotation", "LINEAR", &[0.0, 1.0 / 24.0], &[at_rest[node].1.to_array(), turn(to).to_array()].concat());
             } else {
                 moved[node].0 = to;
-                made.channel(node, "translation", "LINEAR", &[0.0, 1.0 / 24.0], &[at_rest[node].0, to].concat());
+                builder.channel(node, "translation", "LINEAR", &[0.0, 1.0 / 24.0], &[at_rest[node].0, to].concat());
             }
         }
         let world = |poses: &[([f32; 3], Quat)]| {
@@ -575,7 +584,7 @@ proptest! {
             }
             all
         };
-        let imported = made.read();
+        let imported = builder.read();
         for found in &imported.clips {
             let clip = &found.clip;
             for (frame, matrices) in [world(&at_rest), world(&moved)].iter().enumerate().take(clip.frames()) {
@@ -596,12 +605,12 @@ proptest! {
     }
 
     #[test]
-    fn spoilt_files_are_read_or_refused(edits in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0u8..4), 1..10)) {
+    fn damaged_files_are_read_or_refused(edits in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0u8..4), 1..10)) {
         let clip = wander(&fixtures::cmu_bvh(), 4, 9);
         let mut bytes = by_another_program(write_glb(&clip, &GlbOptions::default()).unwrap());
         let json = 20 + bytes[20..].windows(4).position(|w| w == b"BIN\0").unwrap();
         for (at, value, kind) in edits {
-            // Mostly in the JSON, and there mostly its digits.
+            // Mostly in the JSON, and there mostly in its digits.
             let at = at.index(if kind == 0 { bytes.len() } else { json });
             match kind {
                 1 | 2 if bytes[at].is_ascii_digit() => bytes[at] = b'0' + value % 10,

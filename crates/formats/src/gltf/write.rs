@@ -9,55 +9,56 @@ use serde_json::{Value, json};
 use std::borrow::Cow;
 use std::sync::Arc;
 
-/// How the name of the program that wrote a file begins, where that was Segue.
+/// The beginning of the generator's name in files that Segue wrote.
 pub(super) const GENERATOR: &str = "Segue ";
-/// The name in a file of the mesh that Segue generates around a skeleton. A reader that finds it can
-/// leave the mesh out, because it generates the same one.
+/// The name of the mesh that Segue generates around a skeleton. A reader that finds it can leave
+/// the mesh out, because it generates the same one.
 pub(super) const MADE_BODY: &str = "Body";
-/// The name in a file of a character's mesh.
+/// The name of a character's own mesh.
 const CHARACTER: &str = "Character";
-/// What an index of 16 bits can tell apart.
+/// The number of joints that 16-bit indices can address.
 const MAX_JOINTS: usize = 1 << 16;
-/// The colour of a body that has none, linear.
+/// The colour of a body without one, linear.
 const CLAY: [f32; 4] = [0.7, 0.7, 0.7, 1.0];
 
-/// How to write a `.glb` file.
+/// Options of writing a `.glb` file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct GlbOptions {
-    /// Frames per second; the clip's own where `None` or no rate that [`resample`] knows.
+    /// Frames per second; the clip's own where `None` or not accepted by [`resample`].
     pub fps: Option<f64>,
-    /// Whether the skeleton wears the smooth body of [`SkinnedMesh::around_clip`] instead of simple
+    /// Whether the file contains the smooth body of [`SkinnedMesh::around_clip`] instead of simple
     /// bones: about half a megabyte.
     #[serde(default)]
     pub smooth: bool,
 }
 
-/// Why a clip is no `.glb` file.
+/// The reason why a clip cannot be written as a `.glb` file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error, segue_text::ToMessage)]
 pub enum GlbError {
-    /// The format counts bytes with 32 bits.
+    /// The format stores sizes in 32 bits.
     #[error(
         "{0} bytes are more than the 4 GiB that a .glb file can hold: cut the motion into parts"
     )]
     TooLarge(u64),
-    /// The format counts the joints of a skin with 16 bits.
+    /// The format stores joint indices of a skin in 16 bits.
     #[error("{0} joints are more than the 65,536 that a .glb file can hold")]
     TooManyJoints(usize),
 }
 
 /// Writes a clip as a `.glb` file: a node for each joint and each end site (`…_end`), a skin over
 /// all joints with a body, and an animation with the rotations of all joints and the translations
-/// of the root and of joints that move. Joints that the clip's file has above the one that carries
-/// the body are there again ([`Clip::unfolded`]).
+/// of the root and of joints that move. Joints that the clip's source has above the one that
+/// carries the body are written again ([`Clip::unfolded`]).
 ///
-/// At rest joints have no rotation and the root stands at its offset. Metres, +Y up. The same clip
+/// At rest, joints have no rotation and the root is at its offset. Metres, +Y up. The same clip
 /// gives the same bytes. Read back, positions (metres) and rotations (radians) are the same to
 /// 1e-5.
 ///
 /// # Errors
 /// [`GlbError`] when the clip is too large for the format.
 pub fn write_glb(clip: &Clip, options: &GlbOptions) -> Result<Vec<u8>, GlbError> {
-    // The body is made around the joints that carry it, not around what the file has above them.
+    // The body is generated around the joints that carry it, not around those above them in the
+    // file.
     let skeleton = clip.skeleton();
     if skeleton.len() > MAX_JOINTS {
         return Err(GlbError::TooManyJoints(skeleton.len()));
@@ -72,7 +73,7 @@ pub fn write_glb(clip: &Clip, options: &GlbOptions) -> Result<Vec<u8>, GlbError>
 }
 
 /// Writes a motion of a character as a `.glb` file, as [`write_glb`] does, with the character's own
-/// mesh: `clip` is one of the skeleton that `mesh` is bound to. Each colour of the mesh is a
+/// mesh. `clip` is on the skeleton that `mesh` is bound to. Each colour of the mesh becomes a
 /// material.
 ///
 /// # Errors
@@ -140,13 +141,13 @@ fn write_with(
     file.finish(root)
 }
 
-/// Where the joints are at rest, with the root at its offset, metres.
+/// Returns the positions of the joints at rest, with the root at its offset, metres.
 fn standing_rest(skeleton: &Skeleton) -> Vec<Vec3> {
     let root = skeleton.joints().first().map_or(Vec3::ZERO, |root| root.offset);
     skeleton.rest_positions().into_iter().map(|position| position + root).collect()
 }
 
-/// A node for each joint, at its index, then one for each end site.
+/// Returns a node for each joint, at the joint's index, then one for each end site.
 fn nodes(skeleton: &Skeleton) -> Vec<Value> {
     let joints = skeleton.joints();
     let mut children: Vec<Vec<usize>> = vec![Vec::new(); joints.len()];
@@ -173,8 +174,8 @@ fn nodes(skeleton: &Skeleton) -> Vec<Value> {
     joints.iter().zip(children).map(node).chain(ends).collect()
 }
 
-/// The parts of a mesh that have one colour (linear) each, in the order in which the colours come
-/// up. A triangle has the colour of its first corner.
+/// Splits a mesh into parts of one colour (linear) each, in the order in which the colours occur. A
+/// triangle has the colour of its first corner.
 fn parts(mesh: &SkinnedMesh) -> Vec<(Cow<'_, SkinnedMesh>, [f32; 4])> {
     let color_of = |triangle: &[u32; 3]| {
         mesh.colors.get(triangle[0] as usize).map(|color| color.map(f32::to_bits))
@@ -206,7 +207,7 @@ fn parts(mesh: &SkinnedMesh) -> Vec<(Cow<'_, SkinnedMesh>, [f32; 4])> {
     parts.map(|(triangles, color)| (Cow::Owned(part(mesh, &triangles)), linear(color))).collect()
 }
 
-/// The vertices of some triangles, in their order.
+/// Returns a mesh of some triangles, with their vertices in order.
 fn part(mesh: &SkinnedMesh, triangles: &[[u32; 3]]) -> SkinnedMesh {
     let mut vertices: Vec<u32> = triangles.as_flattened().to_vec();
     vertices.sort_unstable();
@@ -227,13 +228,13 @@ fn picked<T: Copy + Default>(values: &[T], vertices: &[u32]) -> Vec<T> {
     vertices.iter().map(value).collect()
 }
 
-/// A part of a colour as written in a palette, linear (IEC 61966-2-1).
+/// Converts a channel of an sRGB colour to linear (IEC 61966-2-1).
 fn decoded(encoded: f32) -> f32 {
     if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }
 
-/// Clay for a body that was made; for a character, whose surfaces may be open, the colour from both
-/// sides.
+/// Returns a material: clay for a generated body; for a character, whose surfaces may be open, the
+/// colour on both sides.
 fn material(color: &[f32; 4], name: &str, index: usize) -> Value {
     let surface =
         json!({ "baseColorFactor": color, "metallicFactor": 0.0, "roughnessFactor": 0.8 });
@@ -252,7 +253,7 @@ fn primitive(file: &mut File, mesh: &SkinnedMesh, joints: usize, material: usize
     let normal = file.floats(&vectors(&mesh.normals), "VEC3", None);
     let count = mesh.positions.len();
     let weights: Vec<[u8; 4]> = mesh.weights.iter().map(bytes_of).collect();
-    // Joints without weight are joint 0, as the format wants it.
+    // Joints without weight must be joint 0 in the format.
     let followed = mesh.joints.iter().zip(&weights).flat_map(|(joints, weights)| {
         let pairs = joints.iter().zip(weights);
         pairs.map(|(&joint, &weight)| if weight > 0 { joint } else { 0 })
@@ -291,7 +292,7 @@ fn primitive(file: &mut File, mesh: &SkinnedMesh, joints: usize, material: usize
     })
 }
 
-/// Weights as parts of 255, of which there are 255 exactly.
+/// Quantises weights to bytes whose sum is exactly 255.
 fn bytes_of(weights: &[f32; 4]) -> [u8; 4] {
     let mut bytes = weights.map(|weight| (weight * 255.0).round() as u8);
     let [first, rest @ ..] = &mut bytes;
@@ -303,8 +304,7 @@ fn animation(file: &mut File, clip: &Clip) -> Value {
     let mut times: Vec<f32> = Vec::with_capacity(clip.frames());
     for frame in 0..clip.frames() {
         let time = clip.time_of(frame) as f32;
-        // Times must rise, and late in a very long clip single precision does not tell frames
-        // apart.
+        // Times must increase; late in a very long clip, single precision cannot tell frames apart.
         times.push(times.last().map_or(time, |last| time.max(last.next_up())));
     }
     let ends = (times.first().copied().unwrap_or(0.0), times.last().copied().unwrap_or(0.0));
@@ -328,7 +328,7 @@ fn animation(file: &mut File, clip: &Clip) -> Value {
     json!({ "name": clip.name(), "channels": channels, "samplers": samplers })
 }
 
-/// A quaternion as near to unit length as single precision allows.
+/// Returns a quaternion as near to unit length as single precision allows.
 fn unit(q: Quat) -> Quat {
     let q = q.as_dquat();
     let length = q.length();
@@ -344,8 +344,8 @@ const UNSIGNED_SHORT: u32 = 5123;
 const UNSIGNED_INT: u32 = 5125;
 const FLOAT: u32 = 5126;
 
-/// A file that grows: its binary part, and what describes that. Each accessor has a view of its
-/// own, of the same index.
+/// A file under construction: its binary part, and the JSON that describes it. Each accessor has a
+/// view of its own with the same index.
 #[derive(Default)]
 struct File {
     binary: Vec<u8>,
@@ -354,7 +354,7 @@ struct File {
 }
 
 impl File {
-    /// Adds numbers, and gives the index of their accessor.
+    /// Adds numbers, and returns the index of their accessor.
     fn floats(&mut self, values: &[f32], kind: &str, bounds: Option<(&[f32], &[f32])>) -> usize {
         let width = match kind {
             "SCALAR" => 1,
@@ -372,7 +372,7 @@ impl File {
         self.accessor(&bytes, accessor)
     }
 
-    /// Adds bytes; what comes next begins at a multiple of four.
+    /// Adds bytes, padded to a multiple of four.
     fn accessor(&mut self, bytes: &[u8], mut accessor: Value) -> usize {
         let index = self.accessors.len();
         accessor["bufferView"] = json!(index);
@@ -385,7 +385,7 @@ impl File {
         index
     }
 
-    /// The whole file: header, JSON and binary part, each of a length that is a multiple of four.
+    /// Returns the whole file: header, JSON and binary part, each padded to a multiple of four.
     fn finish(self, mut root: Value) -> Result<Vec<u8>, GlbError> {
         root["accessors"] = Value::Array(self.accessors);
         root["bufferViews"] = Value::Array(self.views);

@@ -1,12 +1,12 @@
-//! No file brings the readers down, or takes longer than its length.
+//! Damaged files: no file makes the readers panic, or takes more than linear time.
 
 use super::{ASF, amc, skeleton_of};
 use proptest::prelude::*;
 use segue_formats::ImportOptions;
 use segue_formats::acclaim::{self, AcclaimSkeleton, best_skeleton, read_motion};
 
-/// Bytes put in, taken out, doubled and swapped.
-fn spoil(bytes: &mut Vec<u8>, edits: &[(prop::sample::Index, u8, u8, prop::sample::Index)]) {
+/// Inserts, removes, doubles and swaps bytes.
+fn damage(bytes: &mut Vec<u8>, edits: &[(prop::sample::Index, u8, u8, prop::sample::Index)]) {
     const PIECES: [&[u8]; 16] = [
         b"begin\n",
         b"end\n",
@@ -57,10 +57,10 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(1500))]
 
     #[test]
-    fn spoilt_files_are_read_or_refused(of_skeleton in edits(), of_motion in edits()) {
+    fn damaged_files_are_read_or_refused(of_skeleton in edits(), of_motion in edits()) {
         let (mut asf, mut motion) = (ASF.as_bytes().to_vec(), amc(4).into_bytes());
-        spoil(&mut asf, &of_skeleton);
-        spoil(&mut motion, &of_motion);
+        damage(&mut asf, &of_skeleton);
+        damage(&mut motion, &of_motion);
         let plain = skeleton_of(ASF).unwrap();
         let spoilt = skeleton_of(&asf);
         let skeletons: Vec<(&str, &AcclaimSkeleton)> = [("a.asf", Some(&plain)), ("b.asf", spoilt.as_ref().ok())]
@@ -83,7 +83,7 @@ proptest! {
 }
 
 #[test]
-fn long_runs_of_anything_take_no_longer_than_their_length() {
+fn long_runs_of_anything_are_read_in_linear_time() {
     let skeleton = skeleton_of(ASF).unwrap();
     let big = 500_000;
     let start = std::time::Instant::now();

@@ -1,5 +1,5 @@
-//! ASF and AMC: what real files do, one test for each kind of oddity; the mathematics against the
-//! slow, obvious one; and captured motion, which is the same as the BVH of the same take.
+//! ASF and AMC files: oddities of real files, one test for each kind; the mathematics against a
+//! plain implementation; and captured motion, compared with the BVH of the same take.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests: what fails here fails the test")]
 
@@ -14,7 +14,7 @@ use segue_formats::acclaim::{AcclaimSkeleton, read_motion, read_skeleton};
 use segue_formats::{ImportError, ImportOptions, Imported};
 use segue_motion::clip::Clip;
 
-/// The warning that every motion brings along.
+/// The warning of every motion.
 const NO_RATE: &str =
     "the format has no frame rate; 120 frames per second are taken, it can be set by hand";
 
@@ -106,7 +106,8 @@ fn read_with(
     read_motion("take.amc", amc.as_ref(), &skeleton_of(asf)?, options)
 }
 
-/// The clip of two files that must be readable, and its warnings but for the missing frame rate.
+/// Returns the clip of two files that must be readable, and its warnings except the missing frame
+/// rate.
 fn clip_of(asf: impl AsRef<[u8]>, amc: impl AsRef<[u8]>) -> (Clip, Vec<String>) {
     let mut imported =
         read_with(asf, amc, &ImportOptions::default()).unwrap_or_else(|error| panic!("{error}"));

@@ -1,4 +1,4 @@
-//! How bones turn and move, against the definition with matrices.
+//! Rotations and translations of bones, compared with the definition by matrices.
 
 use super::read_with;
 use glam::{DMat3, DVec3};
@@ -61,7 +61,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
 
     #[test]
-    fn bones_turn_as_the_definition_says(
+    fn bones_equal_the_definition(
         bones in prop::collection::vec(bone(), 1..6),
         root_dofs in Just((0..6_usize).collect::<Vec<_>>()).prop_shuffle(),
         root_order in 0..6_usize,
@@ -69,7 +69,7 @@ proptest! {
         orientation in prop::array::uniform3(-180.0..180.0_f64),
         values in prop::collection::vec(-90.0..90.0_f64, 48),
     ) {
-        // Child of any bone before it; the root is 0.
+        // Each bone is a child of any bone before it; the root is 0.
         let bones: Vec<Bone> = bones.into_iter().enumerate().map(|(index, (parent, bone))| Bone { parent: parent.index(index + 1), ..bone }).collect();
         let name = |index: usize| if index == 0 { "root".to_owned() } else { format!("b{index}") };
         let order: Vec<&str> = root_dofs.iter().map(|&dof| DOFS[dof]).collect();
@@ -116,7 +116,7 @@ proptest! {
         let pose = clip.world_pose(0);
         for (index, (rotation, start, end)) in world.iter().enumerate() {
             let Some(joint) = clip.skeleton().find(&name(index)) else {
-                // FoldedChain the bone that carries the body: folded into that.
+                // The joints above the bone that carries the body were folded into it.
                 let above = clip.skeleton().folded_chain().unwrap();
                 prop_assert!(above.joints().any(|joint| joint.name == name(index)));
                 continue;

@@ -1,5 +1,5 @@
-//! Captured motion of the CMU database: the same as the BVH of the same take, as tall as people, on
-//! the ground.
+//! Captured motion of the CMU database: equal to the BVH of the same take, of plausible height, and
+//! on the ground.
 
 use super::common::{points, shared_data};
 use super::{NO_RATE, skeleton_of};
@@ -20,8 +20,8 @@ fn real_motion(path: &Path, skeleton: &AcclaimSkeleton) -> Imported {
         .unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Joints of the conversion to BVH, those of the original that stand at the same place, and how far
-/// the conversion moved them, file units: its `Neck` and shoulders have no offset where the
+/// Joints of the conversion to BVH, those of the original at the same place, and the distance by
+/// which the conversion moved them, file units: its `Neck` and shoulders have no offset where the
 /// database has a bone.
 const SAME: [(&str, &str, f32); 16] = [
     ("Hips", "root", 0.0),
@@ -43,7 +43,7 @@ const SAME: [(&str, &str, f32); 16] = [
 ];
 
 #[test]
-fn the_same_take_as_bvh_and_as_amc_is_the_same_motion() {
+fn captured_take_as_amc_equals_its_bvh() {
     let Some(data) = shared_data() else { return };
     let ours =
         real_motion(&data.join("cmu/01_01.amc"), &real_skeleton(&data.join("cmu/01_01.asf")))
@@ -71,7 +71,7 @@ fn the_same_take_as_bvh_and_as_amc_is_the_same_motion() {
 }
 
 #[test]
-fn people_are_as_tall_as_people_stand_on_the_ground_and_have_every_role() {
+fn captured_people_have_plausible_height_ground_contact_and_roles() {
     let Some(data) = shared_data() else { return };
     let (first, sixteenth) =
         (real_skeleton(&data.join("cmu/01_01.asf")), real_skeleton(&data.join("cmu/16/16.asf")));
@@ -113,11 +113,11 @@ fn people_are_as_tall_as_people_stand_on_the_ground_and_have_every_role() {
 }
 
 #[test]
-fn legs_of_another_length_are_told() {
+fn legs_of_another_length_give_a_warning() {
     let Some(data) = shared_data() else { return };
     let text = std::fs::read_to_string(data.join("cmu/16/16.asf")).unwrap();
     let motion = std::fs::read(data.join("cmu/16/16_15.amc")).unwrap();
-    let said = |text: &str| {
+    let warning_of = |text: &str| {
         let skeleton = skeleton_of(text).unwrap();
         let imported =
             read_motion("16_15.amc", &motion, &skeleton, &ImportOptions::default()).unwrap();
@@ -126,13 +126,13 @@ fn legs_of_another_length_are_told() {
             .into_iter()
             .find(|warning| matches!(warning.kind, WarningKind::OffGround { .. }))
     };
-    assert_eq!(said(&text), None);
+    assert_eq!(warning_of(&text), None);
     // Of the four long bones of the legs the first digit is 7.
-    let longer = said(&text.replace("length 7.", "length 9.")).unwrap().to_string();
+    let longer = warning_of(&text.replace("length 7.", "length 9.")).unwrap().to_string();
     assert!(
         longer.contains("cm below the ground; the skeleton may be that of another person"),
         "{longer}"
     );
-    let shorter = said(&text.replace("length 7.", "length 4.")).unwrap().to_string();
+    let shorter = warning_of(&text.replace("length 7.", "length 4.")).unwrap().to_string();
     assert!(shorter.contains("cm above the ground"), "{shorter}");
 }

@@ -1,4 +1,4 @@
-//! What real files do, one test for each kind of oddity.
+//! Oddities of real ASF and AMC files, one test for each kind.
 
 use super::{ASF, amc, clip_of, frame, read_with, skeleton_of};
 use glam::Vec3;
@@ -7,8 +7,8 @@ use segue_formats::acclaim::{
 };
 use segue_formats::{ImportOptions, import};
 
-/// Asserts that two files say the same as [`ASF`] and [`amc`] with three frames, and returns their
-/// warnings.
+/// Asserts that two files have the content of [`ASF`] and [`amc`] with three frames, and returns
+/// their warnings.
 fn same(asf: impl AsRef<[u8]>, motion: impl AsRef<[u8]>) -> Vec<String> {
     let (clip, warnings) = clip_of(&asf, &motion);
     let (plain, none) = clip_of(ASF, amc(3));
@@ -29,14 +29,14 @@ fn refused(asf: &str, motion: &str) -> String {
     read_with(asf, motion, &ImportOptions::default()).unwrap_err().to_string()
 }
 
-/// [`str::replace`] that must find something.
+/// Replaces text as [`str::replace`] does, and asserts that there was any.
 fn with(text: &str, from: &str, to: &str) -> String {
     assert!(text.contains(from), "{from}");
     text.replace(from, to)
 }
 
 #[test]
-fn the_plain_files_are_read() {
+fn plain_files_are_read() {
     let (clip, _) = clip_of(ASF, amc(3));
     let joints = clip.skeleton().joints();
     let names: Vec<&str> = joints.iter().map(|joint| joint.name.as_str()).collect();
@@ -47,7 +47,7 @@ fn the_plain_files_are_read() {
     );
     assert_eq!((clip.name(), clip.frames(), clip.fps()), ("take", 3, 120.0));
     assert_eq!(clip.provenance().metres_per_unit, 0.01);
-    // A bone is a joint where it starts, and its direction has no length of its own.
+    // A bone is a joint at its start, and its direction has no length.
     assert_eq!((joints[1].offset, joints[3].offset), (Vec3::ZERO, Vec3::ZERO));
     assert!(joints[4].offset.distance(Vec3::Y * 0.6) < 1e-6);
     assert!(joints[4].end_site.unwrap().distance(Vec3::Y * 0.2) < 1e-6);
@@ -55,7 +55,7 @@ fn the_plain_files_are_read() {
 }
 
 #[test]
-fn comments_line_ends_commas_and_parentheses() {
+fn comments_and_separators_of_any_kind_are_read() {
     let text = amc(3);
     assert_eq!(same_motion(text.replace('\n', "\r\n")), [""; 0]);
     assert_eq!(same_motion(text.replace('\n', " # x\r \t\n\n")), [""; 0]);
@@ -78,8 +78,8 @@ fn comments_line_ends_commas_and_parentheses() {
 }
 
 #[test]
-fn units_of_length() {
-    // Nothing of use in the file: the size of a person tells.
+fn units_of_length_are_used_if_plausible() {
+    // Units that say nothing: the height of the body decides.
     for units in [
         "",
         ":units\n mass 1\n",
@@ -91,8 +91,8 @@ fn units_of_length() {
         let text = with(ASF, ":units\n  mass 1.0\n  length 1.0\n  angle deg\n", units);
         same_skeleton(text);
     }
-    // The unit in the file is used where it gives the height of a person: 160 units of 1/2.54 inch
-    // are 1.6 m, and 160 units of 1/2 inch are 2.03 m.
+    // The unit of the file is used if it gives the height of a person: 160 units of 1/2.54 inch are
+    // 1.6 m, and 160 units of 1/2 inch are 2.03 m.
     for (length, metres) in [("2.54", 0.01), ("2.0", 0.0127), ("0.1", 0.01)] {
         let (clip, warnings) =
             clip_of(with(ASF, "length 1.0", &format!("length {length}")), amc(1));
@@ -108,7 +108,7 @@ fn units_of_length() {
 }
 
 #[test]
-fn units_of_angle() {
+fn units_of_angle_are_used() {
     let numbers = |text: &str| {
         let mut out = String::new();
         for line in text.lines() {
@@ -160,7 +160,7 @@ fn bones_missing_from_a_frame_hold_their_pose() {
     assert_eq!(warnings, ["1 frame (line 8) without some of the bones; their pose was held"]);
     assert_eq!(clip.rotations(1)[1..3], clip.rotations(0)[1..3]);
     assert_eq!(clip.rotations(2), clip_of(ASF, amc(3)).0.rotations(2));
-    // Bones that never come rest.
+    // Bones that never have values stay at rest.
     let (clip, warnings) = clip_of(ASF, text.replace("shin 11.5\n", ""));
     assert_eq!(
         warnings,
@@ -170,7 +170,7 @@ fn bones_missing_from_a_frame_hold_their_pose() {
 }
 
 #[test]
-fn fields_in_any_order_and_limits_of_any_kind() {
+fn fields_in_any_order_are_read() {
     same_skeleton(with(
         ASF,
         "    name thigh\n    direction 0.1 -0.9 0\n    length 40\n    axis 10 20 30 XYZ\n    dof rx ry rz\n",
@@ -180,14 +180,14 @@ fn fields_in_any_order_and_limits_of_any_kind() {
     same_skeleton(with(ASF, "    limits (-10.0 170.0)\n", "    limits (-inf +inf) (x y)\n"));
     same_skeleton(with(ASF, "  order TX TY TZ RX RY RZ\n  axis XYZ\n", ""));
     same_skeleton(with(ASF, "    id 2\n", "    id x2 y\n"));
-    // Sections in any order, and others that nobody knows.
+    // Sections in any order, and unknown ones.
     let (head, bones) = ASF.split_once(":bonedata").unwrap();
     let (bones, tree) = bones.split_once(":hierarchy").unwrap();
     same_skeleton(format!(":hierarchy{tree}:bonedata{bones}:skin\n a b c\n{head}"));
 }
 
 #[test]
-fn frames_are_number_lines_whatever_the_number() {
+fn frames_are_separated_by_any_number() {
     let text = amc(3);
     assert_eq!(
         same_motion(with(
@@ -213,12 +213,12 @@ fn frames_are_number_lines_whatever_the_number() {
 }
 
 #[test]
-fn numbers_in_every_spelling() {
+fn numbers_in_every_spelling_are_read() {
     assert_eq!(same_motion(with(&amc(3), "5.5 6.5", "+5.5 .65e1")), [""; 0]);
 }
 
 #[test]
-fn values_that_are_none_are_held() {
+fn values_not_finite_are_held() {
     let many = amc(60);
     let (clip, warnings) = clip_of(ASF, with(&many, "\n30\nroot 30.5", "\n30\nroot nan"));
     assert_eq!(warnings, ["1 value without a number (line 150); the last good value was held"]);
@@ -235,7 +235,7 @@ fn values_that_are_none_are_held() {
 }
 
 #[test]
-fn the_skeleton_of_another_subject() {
+fn skeleton_of_another_subject_gives_warnings() {
     // Names that one of the two does not have.
     let renamed = with(&amc(3), "shin", "calf");
     let (clip, warnings) = clip_of(ASF, renamed);
@@ -256,7 +256,7 @@ fn the_skeleton_of_another_subject() {
         ]
     );
     assert_eq!(clip.rotations(0)[3], glam::Quat::IDENTITY);
-    // Nothing that fits.
+    // No bone in common.
     let other = ASF.replace("thigh", "a").replace("shin", "b").replace("spine", "c");
     let error = read_with(
         with(&other, "order TX TY TZ RX RY RZ", "order TX TY TZ"),
@@ -272,7 +272,7 @@ fn the_skeleton_of_another_subject() {
 }
 
 #[test]
-fn a_motion_without_its_skeleton_asks_for_it_and_a_skeleton_alone_can_be_seen() {
+fn motion_without_its_skeleton_is_refused() {
     let options = ImportOptions::default();
     let error = import("walk.amc", amc(2).as_bytes(), &options).unwrap_err();
     assert_eq!(
@@ -289,7 +289,7 @@ fn a_motion_without_its_skeleton_asks_for_it_and_a_skeleton_alone_can_be_seen() 
 }
 
 #[test]
-fn a_file_that_is_cut_off_loses_its_last_frame() {
+fn truncated_file_loses_its_last_frame() {
     let text = amc(3);
     let plain = clip_of(ASF, &text).0;
     let last = text.rfind("3\nroot").unwrap();
@@ -297,8 +297,8 @@ fn a_file_that_is_cut_off_loses_its_last_frame() {
         let cut = &text[..end];
         let (clip, warnings) = clip_of(ASF, cut);
         let whole = clip.frames() == 3;
-        // A file cut at the end of a line lacks some bones of its last frame; one cut after a digit
-        // may lack the rest of a number.
+        // A file truncated at the end of a line lacks some bones of its last frame; one truncated
+        // after a digit may lack the rest of a number.
         let told = warnings.iter().any(|text| {
             text.contains("dropped") || text.contains("held") || text.contains("left out")
         });
@@ -315,7 +315,7 @@ fn a_file_that_is_cut_off_loses_its_last_frame() {
 }
 
 #[test]
-fn broken_motions_are_refused_where_they_break() {
+fn motions_with_faults_are_refused_with_their_place() {
     let text = amc(3);
     let cases = [
         (
@@ -343,7 +343,7 @@ fn broken_motions_are_refused_where_they_break() {
 }
 
 #[test]
-fn broken_skeletons_are_refused_where_they_break() {
+fn skeletons_with_faults_are_refused_with_their_place() {
     let error = |asf: &str| skeleton_of(asf).unwrap_err().to_string();
     let bone = |name: &str| format!("begin name {name} end\n");
     let tree = |bones: &[&str], lines: &str| {
@@ -418,7 +418,7 @@ fn broken_skeletons_are_refused_where_they_break() {
             "1 bone (line 4) not below the root, such as `b`; left out"
         ]
     );
-    // Deep, but not too deep.
+    // Deep, but within the limit.
     let chain = |depth: usize| {
         let names: Vec<String> = (0..depth).map(|i| format!("b{i}")).collect();
         let lines: Vec<String> = std::iter::once("root")
@@ -439,7 +439,7 @@ fn broken_skeletons_are_refused_where_they_break() {
 }
 
 #[test]
-fn which_skeleton_a_motion_belongs_to() {
+fn best_skeleton_prefers_names_and_bones() {
     let plain = skeleton_of(ASF).unwrap();
     let other = skeleton_of(ASF.replace("shin", "calf")).unwrap();
     let foreign =
@@ -462,7 +462,7 @@ fn which_skeleton_a_motion_belongs_to() {
 }
 
 #[test]
-fn reading_can_be_watched_and_stopped() {
+fn reading_reports_progress_and_stops() {
     let text = amc(12_000);
     let skeleton = skeleton_of(ASF).unwrap();
     let mut seen = vec![];

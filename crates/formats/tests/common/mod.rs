@@ -1,4 +1,4 @@
-//! What the tests of file formats share.
+//! Helpers of the tests of file formats.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests: what fails here fails the test")]
 #![allow(dead_code, reason = "every test binary uses a part of it")]
@@ -11,7 +11,7 @@ use segue_motion::clip::Clip;
 use segue_motion::skeleton::WorldPose;
 use std::path::{Path, PathBuf};
 
-/// The folder of motion data for trials, where this machine has it.
+/// Returns the folder of captured motion, if this machine has it.
 pub fn shared_data() -> Option<PathBuf> {
     let beside = Path::new(env!("CARGO_MANIFEST_DIR"))
         .ancestors()
@@ -28,14 +28,14 @@ pub fn shared_data() -> Option<PathBuf> {
     found
 }
 
-/// The takes of subject 16 of the CMU database, where this machine has them.
+/// Returns the folder with the takes of subject 16 of the CMU database, if this machine has them.
 pub fn subject_16() -> Option<PathBuf> {
     shared_data().map(|data| data.join("cmu/16")).filter(|folder| folder.is_dir())
 }
 
-/// Those of subject 16's takes whose names end like this, with their names; none where they are not
-/// there.
-pub fn captured(wanted: &[&'static str]) -> Vec<(&'static str, Clip)> {
+/// Returns the takes of subject 16 whose names have these endings, with their names; empty if they
+/// are not there.
+pub fn captured(endings: &[&'static str]) -> Vec<(&'static str, Clip)> {
     let Some(folder) = subject_16() else {
         return vec![];
     };
@@ -46,10 +46,10 @@ pub fn captured(wanted: &[&'static str]) -> Vec<(&'static str, Clip)> {
         let mut read = read_motion(name, &bytes, &skeleton, &ImportOptions::default()).unwrap();
         (name, read.clips.remove(0).clip)
     };
-    wanted.iter().map(take).collect()
+    endings.iter().map(take).collect()
 }
 
-/// The BVH files of a folder, sorted by name.
+/// Returns the BVH files of a folder, sorted by name.
 pub fn bvh_files(folder: &std::path::Path) -> Vec<(String, Vec<u8>)> {
     let entries = std::fs::read_dir(folder).unwrap();
     let mut paths: Vec<PathBuf> = entries
@@ -65,14 +65,14 @@ pub fn read(text: impl AsRef<[u8]>) -> Result<Imported, ImportError> {
     import("test.bvh", text.as_ref(), &ImportOptions::default())
 }
 
-/// The only clip of a file that must be readable.
+/// Returns the only clip of a file that must be readable, and its warnings.
 pub fn one(text: impl AsRef<[u8]>) -> (ImportedClip, Vec<String>) {
     let mut imported = read(text).unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(imported.clips.len(), 1);
     (imported.clips.remove(0), imported.warnings.iter().map(ToString::to_string).collect())
 }
 
-/// Joints and end sites in the world.
+/// Returns joints and end sites in the world.
 pub fn points(clip: &Clip, frame: usize) -> Vec<Vec3> {
     let world: WorldPose = clip.world_pose(frame);
     let ends = clip
@@ -85,7 +85,7 @@ pub fn points(clip: &Clip, frame: usize) -> Vec<Vec3> {
     world.positions.iter().copied().chain(ends).collect()
 }
 
-/// The HIERARCHY of a chain of three joints, 1.64 m tall in centimetres: 6 + 3 + 3 channels. 20
+/// The HIERARCHY of a chain of three joints, 1.64 m tall in centimetres: 6 + 3 + 3 channels, 20
 /// lines.
 pub const CHAIN: &str = "HIERARCHY
 ROOT Pelvis
@@ -109,7 +109,7 @@ ROOT Pelvis
 }
 ";
 
-/// A row for [`CHAIN`].
+/// Returns a row for [`CHAIN`].
 pub fn row(frame: usize) -> String {
     let f = frame as f64;
     format!(
@@ -120,7 +120,7 @@ pub fn row(frame: usize) -> String {
     )
 }
 
-/// [`CHAIN`] with so many rows.
+/// Returns [`CHAIN`] with a number of rows.
 pub fn chain(frames: usize) -> String {
     let rows: String = (0..frames).map(|frame| row(frame) + "\n").collect();
     format!("{CHAIN}MOTION\nFrames: {frames}\nFrame Time: 0.01\n{rows}")

@@ -1,10 +1,10 @@
-//! Meshes with a skin, made here and spoilt here.
+//! Tests of meshes with a skin, built and damaged here.
 
 use super::*;
 use segue_motion::skeleton::Roles;
 use segue_motion::skin::{SkinnedMesh, linear_blend};
 
-/// What every mesh that was read must be.
+/// Checks the invariants of a mesh that was read.
 pub(super) fn check(mesh: &SkinnedMesh, joints: usize) {
     let count = mesh.positions.len();
     assert_eq!(
@@ -27,17 +27,17 @@ pub(super) fn check(mesh: &SkinnedMesh, joints: usize) {
     }
 }
 
-/// A square of two triangles on two bones, `Hips` at 1 m and `Chest` 0.5 m above: its lower edge
-/// follows the hips, its upper one both.
-fn square() -> Made {
-    let mut made = Made::new(&two_bones(), &[0, 1]);
+/// Returns a square of two triangles on two bones, `Hips` at 1 m and `Chest` 0.5 m above: its lower
+/// edge follows the hips, its upper one both.
+fn square() -> GltfBuilder {
+    let mut builder = GltfBuilder::new(&two_bones(), &[0, 1]);
     let positions =
-        made.floats("VEC3", 3, &[-0.1, 1.0, 0.0, 0.1, 1.0, 0.0, 0.1, 1.5, 0.0, -0.1, 1.5, 0.0]);
+        builder.floats("VEC3", 3, &[-0.1, 1.0, 0.0, 0.1, 1.0, 0.0, 0.1, 1.5, 0.0, -0.1, 1.5, 0.0]);
     let bytes: Vec<u8> = [[0, 9, 9, 9], [0, 9, 9, 9], [0, 1, 0, 0], [0, 1, 0, 0]].concat();
-    let view = made.view(&bytes);
-    let joints = made
+    let view = builder.view(&bytes);
+    let joints = builder
         .accessor(json!({ "bufferView": view, "componentType": 5121, "count": 4, "type": "VEC4" }));
-    let weights = made.floats(
+    let weights = builder.floats(
         "VEC4",
         4,
         &[
@@ -48,25 +48,25 @@ fn square() -> Made {
         ]
         .concat(),
     );
-    let view = made.view(&[0u16, 1, 2, 0, 2, 3].map(u16::to_le_bytes).concat());
-    let indices = made.accessor(
+    let view = builder.view(&[0u16, 1, 2, 0, 2, 3].map(u16::to_le_bytes).concat());
+    let indices = builder.accessor(
         json!({ "bufferView": view, "componentType": 5123, "count": 6, "type": "SCALAR" }),
     );
-    // A bind pose at 1 and 1.5 m, as the nodes rest.
+    // The bind pose at 1 and 1.5 m, that of the nodes at rest.
     let matrix = |y: f32| {
         DMat4::from_translation(DVec3::new(0.0, -f64::from(y), 0.0)).as_mat4().to_cols_array()
     };
-    let matrices = made.floats("MAT4", 16, &[matrix(1.0), matrix(1.5)].concat());
-    made.root["skins"][0]["inverseBindMatrices"] = json!(matrices);
-    made.root["meshes"] = json!([{ "primitives": [{
+    let matrices = builder.floats("MAT4", 16, &[matrix(1.0), matrix(1.5)].concat());
+    builder.root["skins"][0]["inverseBindMatrices"] = json!(matrices);
+    builder.root["meshes"] = json!([{ "primitives": [{
         "attributes": { "POSITION": positions, "JOINTS_0": joints, "WEIGHTS_0": weights }, "indices": indices, "material": 0 }] }]);
-    made.root["materials"] =
+    builder.root["materials"] =
         json!([{ "pbrMetallicRoughness": { "baseColorFactor": [1.0, 0.0, 0.5, 1.0] } }]);
-    made.root["nodes"]
+    builder.root["nodes"]
         .as_array_mut()
         .unwrap()
         .push(json!({ "name": "Skin", "mesh": 0, "skin": 0 }));
-    made
+    builder
 }
 
 fn mesh_of(imported: &Imported) -> &SkinnedMesh {
@@ -77,7 +77,7 @@ fn mesh_of(imported: &Imported) -> &SkinnedMesh {
 }
 
 #[test]
-fn a_mesh_comes_with_its_skin_colour_and_computed_normals() {
+fn mesh_has_its_colour_and_computed_normals() {
     let imported = square().read();
     let mesh = mesh_of(&imported);
     assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
@@ -94,9 +94,9 @@ fn a_mesh_comes_with_its_skin_colour_and_computed_normals() {
 }
 
 #[test]
-fn the_mesh_follows_the_clip_as_the_format_says() {
-    let mut made = square();
-    // Mesh and bones in centimetres of another pose: the bind matrices scale by 2, turn, and
+fn mesh_deforms_as_specified() {
+    let mut builder = square();
+    // Mesh and bones in centimetres in another pose: the bind matrices scale by 2, rotate, and
     // stretch one axis.
     let bind = |y: f64| {
         DMat4::from_rotation_z(0.3)
@@ -105,9 +105,9 @@ fn the_mesh_follows_the_clip_as_the_format_says() {
     };
     let matrices = [bind(1.0), bind(1.5)];
     let values: Vec<f32> = matrices.iter().flat_map(|m| m.as_mat4().to_cols_array()).collect();
-    made.root["skins"][0]["inverseBindMatrices"] = json!(made.floats("MAT4", 16, &values));
-    made.channel(1, "rotation", "LINEAR", &[0.0, 1.0], &[about_z(0.0), about_z(1.2)].concat());
-    let imported = made.read();
+    builder.root["skins"][0]["inverseBindMatrices"] = json!(builder.floats("MAT4", 16, &values));
+    builder.channel(1, "rotation", "LINEAR", &[0.0, 1.0], &[about_z(0.0), about_z(1.2)].concat());
+    let imported = builder.read();
     let mesh = mesh_of(&imported);
     let clip = &imported.clips[0].clip;
     let (mut transforms, mut positions, mut normals) = (vec![], vec![], vec![]);
@@ -119,8 +119,8 @@ fn the_mesh_follows_the_clip_as_the_format_says() {
         let vertex = DVec3::new(0.1, 1.5, 0.0);
         let expected = (hips * matrices[0]).transform_point3(vertex) * 0.25
             + (chest * matrices[1]).transform_point3(vertex) * 0.75;
-        // Bound anew at rest, a vertex that two joints share follows them a little differently: not
-        // at all at rest.
+        // Bound again at rest, a vertex that two joints share moves slightly differently with them,
+        // except at rest.
         let slack = if angle == 0.0 { 1e-6 } else { 0.2 };
         assert!(positions[2].distance(expected.as_vec3()) < slack, "{} {expected}", positions[2]);
         let lower = (hips * matrices[0]).transform_point3(DVec3::new(-0.1, 1.0, 0.0));
@@ -129,30 +129,30 @@ fn the_mesh_follows_the_clip_as_the_format_says() {
 }
 
 #[test]
-fn strips_and_fans_meshes_without_indices_and_sparse_ones_are_read() {
-    let triangles = |mode: u32, change: &dyn Fn(&mut Made)| {
-        let mut made = square();
-        made.root["meshes"][0]["primitives"][0]["mode"] = json!(mode);
-        let primitive = made.root["meshes"][0]["primitives"][0].as_object_mut().unwrap();
+fn mesh_of_every_layout_is_read() {
+    let triangles = |mode: u32, change: &dyn Fn(&mut GltfBuilder)| {
+        let mut builder = square();
+        builder.root["meshes"][0]["primitives"][0]["mode"] = json!(mode);
+        let primitive = builder.root["meshes"][0]["primitives"][0].as_object_mut().unwrap();
         primitive.remove("indices");
-        change(&mut made);
-        mesh_of(&made.read()).triangles.clone()
+        change(&mut builder);
+        mesh_of(&builder.read()).triangles.clone()
     };
     assert_eq!(triangles(4, &|_| ()), [[0, 1, 2]]);
     assert_eq!(triangles(5, &|_| ()), [[0, 1, 2], [2, 1, 3]]);
     assert_eq!(triangles(6, &|_| ()), [[0, 1, 2], [0, 2, 3]]);
-    // Positions where one of zeros is replaced, and bytes as weights.
-    let mut made = square();
-    let index = made.view(&[2, 0, 0, 0]);
-    let value = made.view(&[7.0f32, 8.0, 9.0].map(f32::to_le_bytes).concat());
-    let sparse = made.accessor(json!({ "componentType": 5126, "count": 4, "type": "VEC3", "sparse": {
+    // Positions of which one is replaced by zeros, and weights as bytes.
+    let mut builder = square();
+    let index = builder.view(&[2, 0, 0, 0]);
+    let value = builder.view(&[7.0f32, 8.0, 9.0].map(f32::to_le_bytes).concat());
+    let sparse = builder.accessor(json!({ "componentType": 5126, "count": 4, "type": "VEC3", "sparse": {
         "count": 1, "indices": { "bufferView": index, "componentType": 5121 }, "values": { "bufferView": value } } }));
-    let weights = made.view(&[255u8, 0, 0, 0].repeat(4));
-    let weights = made.accessor(json!({ "bufferView": weights, "componentType": 5121, "normalized": true, "count": 4, "type": "VEC4" }));
-    let attributes = &mut made.root["meshes"][0]["primitives"][0]["attributes"];
+    let weights = builder.view(&[255u8, 0, 0, 0].repeat(4));
+    let weights = builder.accessor(json!({ "bufferView": weights, "componentType": 5121, "normalized": true, "count": 4, "type": "VEC4" }));
+    let attributes = &mut builder.root["meshes"][0]["primitives"][0]["attributes"];
     attributes["POSITION"] = json!(sparse);
     attributes["WEIGHTS_0"] = json!(weights);
-    let imported = made.read();
+    let imported = builder.read();
     let mesh = mesh_of(&imported);
     assert_eq!(
         (mesh.positions[2], mesh.weights[2]),
@@ -161,12 +161,13 @@ fn strips_and_fans_meshes_without_indices_and_sparse_ones_are_read() {
 }
 
 #[test]
-fn what_is_not_read_of_a_mesh_is_told() {
-    let mut made = square();
-    made.root["meshes"][0]["primitives"][0]["targets"] = json!([{}]);
-    made.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = json!({ "index": 0 });
+fn mesh_parts_that_are_ignored_give_warnings() {
+    let mut builder = square();
+    builder.root["meshes"][0]["primitives"][0]["targets"] = json!([{}]);
+    builder.root["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] =
+        json!({ "index": 0 });
     assert_eq!(
-        sentences(&made.read()),
+        sentences(&builder.read()),
         [
             "1 surface with morph targets; they keep their shape",
             "1 texture left out; the plain colour was taken",
@@ -176,19 +177,19 @@ fn what_is_not_read_of_a_mesh_is_told() {
 }
 
 #[test]
-fn hostile_meshes_are_left_out_and_the_motion_stays() {
-    let spoilt = |change: &dyn Fn(&mut Made)| {
-        let mut made = square();
-        change(&mut made);
-        made.read()
+fn invalid_meshes_are_left_out_and_the_motion_is_kept() {
+    let spoilt = |change: &dyn Fn(&mut GltfBuilder)| {
+        let mut builder = square();
+        change(&mut builder);
+        builder.read()
     };
-    let primitive = |made: &Made, key: &str| {
-        made.root["meshes"][0]["primitives"][0]["attributes"][key].as_u64().unwrap() as usize
+    let primitive = |builder: &GltfBuilder, key: &str| {
+        builder.root["meshes"][0]["primitives"][0]["attributes"][key].as_u64().unwrap() as usize
     };
     let count = |key: &'static str, count: u64| {
-        spoilt(&move |made| {
-            let at = primitive(made, key);
-            made.root["accessors"][at]["count"] = json!(count);
+        spoilt(&move |builder| {
+            let at = primitive(builder, key);
+            builder.root["accessors"][at]["count"] = json!(count);
         })
     };
     let left_out: [(&str, Imported); 7] = [
@@ -197,33 +198,33 @@ fn hostile_meshes_are_left_out_and_the_motion_stays() {
         ("too few weights", count("WEIGHTS_0", 2)),
         (
             "4 billion zeros",
-            spoilt(&|made| {
-                let at = primitive(made, "POSITION");
-                made.root["accessors"][at] =
+            spoilt(&|builder| {
+                let at = primitive(builder, "POSITION");
+                builder.root["accessors"][at] =
                     json!({ "componentType": 5126, "count": 2_000_000u32, "type": "VEC3" });
             }),
         ),
         (
             "indices out of range",
-            spoilt(&|made| {
-                let view = made.view(&[0u16, 1, 77].map(u16::to_le_bytes).concat());
-                let at = made.accessor(json!({ "bufferView": view, "componentType": 5123, "count": 3, "type": "SCALAR" }));
-                made.root["meshes"][0]["primitives"][0]["indices"] = json!(at);
+            spoilt(&|builder| {
+                let view = builder.view(&[0u16, 1, 77].map(u16::to_le_bytes).concat());
+                let at = builder.accessor(json!({ "bufferView": view, "componentType": 5123, "count": 3, "type": "SCALAR" }));
+                builder.root["meshes"][0]["primitives"][0]["indices"] = json!(at);
             }),
         ),
         (
             "joints out of range",
-            spoilt(&|made| {
-                let view = made.view(&[200u8; 16]);
-                let at = made.accessor(json!({ "bufferView": view, "componentType": 5121, "count": 4, "type": "VEC4" }));
-                made.root["meshes"][0]["primitives"][0]["attributes"]["JOINTS_0"] = json!(at);
+            spoilt(&|builder| {
+                let view = builder.view(&[200u8; 16]);
+                let at = builder.accessor(json!({ "bufferView": view, "componentType": 5121, "count": 4, "type": "VEC4" }));
+                builder.root["meshes"][0]["primitives"][0]["attributes"]["JOINTS_0"] = json!(at);
             }),
         ),
         (
             "too few bind matrices",
-            spoilt(&|made| {
-                let at = made.floats("MAT4", 16, &[0.0; 16]);
-                made.root["skins"][0]["inverseBindMatrices"] = json!(at);
+            spoilt(&|builder| {
+                let at = builder.floats("MAT4", 16, &[0.0; 16]);
+                builder.root["skins"][0]["inverseBindMatrices"] = json!(at);
             }),
         ),
     ];
@@ -236,26 +237,26 @@ fn hostile_meshes_are_left_out_and_the_motion_stays() {
             "{name}: {told:?}"
         );
     }
-    // Numbers that are none: a weight counts nothing, a triangle with such a corner is left out, a
-    // normal is computed.
-    let nan = spoilt(&|made| {
-        let weights = made.floats("VEC4", 4, &[f32::NAN; 16]);
-        made.root["meshes"][0]["primitives"][0]["attributes"]["WEIGHTS_0"] = json!(weights);
+    // Values that are not finite: such a weight is ignored, a triangle with such a corner is left
+    // out, and such a normal is computed.
+    let nan = spoilt(&|builder| {
+        let weights = builder.floats("VEC4", 4, &[f32::NAN; 16]);
+        builder.root["meshes"][0]["primitives"][0]["attributes"]["WEIGHTS_0"] = json!(weights);
     });
     assert!(nan.clips[0].mesh.is_none());
-    let nan = spoilt(&|made| {
+    let nan = spoilt(&|builder| {
         let (mut places, mut weights) = ([0.0; 12], [0.0; 16]);
         (places[0], places[4], places[6], weights[0], weights[4], weights[5]) =
             (f32::NAN, 1.0, 1.0, 1.0, 1.0, f32::INFINITY);
         let attributes = [
-            ("POSITION", made.floats("VEC3", 3, &places)),
-            ("WEIGHTS_0", made.floats("VEC4", 4, &weights)),
-            ("NORMAL", made.floats("VEC3", 3, &[f32::NAN; 12])),
+            ("POSITION", builder.floats("VEC3", 3, &places)),
+            ("WEIGHTS_0", builder.floats("VEC4", 4, &weights)),
+            ("NORMAL", builder.floats("VEC3", 3, &[f32::NAN; 12])),
         ];
         for (key, at) in attributes {
-            made.root["meshes"][0]["primitives"][0]["attributes"][key] = json!(at);
+            builder.root["meshes"][0]["primitives"][0]["attributes"][key] = json!(at);
         }
-        let primitive = made.root["meshes"][0]["primitives"][0].as_object_mut().unwrap();
+        let primitive = builder.root["meshes"][0]["primitives"][0].as_object_mut().unwrap();
         primitive.remove("indices");
         primitive.insert("mode".into(), json!(5));
     });
@@ -264,11 +265,11 @@ fn hostile_meshes_are_left_out_and_the_motion_stays() {
 }
 
 #[test]
-fn our_own_body_comes_back_when_another_program_wrote_it() {
+fn generated_body_written_by_another_program_is_read() {
     let clip = wander(&fixtures::cmu_bvh(), 3, 2);
     let options = GlbOptions { smooth: true, ..GlbOptions::default() };
     let bytes = write_glb(&clip, &options).unwrap();
-    // Segue makes that body itself.
+    // Segue generates that body itself.
     assert!(
         read("x.glb", &bytes, &|_| None, &ImportOptions::default()).unwrap().clips[0]
             .mesh
@@ -278,13 +279,13 @@ fn our_own_body_comes_back_when_another_program_wrote_it() {
         read("x.glb", &by_another_program(bytes), &|_| None, &ImportOptions::default()).unwrap();
     let mesh = mesh_of(&imported);
     let skeleton = clip.skeleton();
-    let made = SkinnedMesh::around(skeleton, &Roles::detect(skeleton), 1.0);
+    let builder = SkinnedMesh::around(skeleton, &Roles::detect(skeleton), 1.0);
     assert_eq!(
         (mesh.triangles.len(), mesh.positions.len()),
-        (made.triangles.len(), made.positions.len())
+        (builder.triangles.len(), builder.positions.len())
     );
-    // Bound at rest instead of where it was made; the motion is the same, but for weights in parts
-    // of 255 and what limbs share.
+    // Bound at rest instead of where it was generated; the motion is the same, except for weights
+    // in steps of 1/255 and vertices that limbs share.
     let (mut transforms, mut read_back, mut direct, mut normals) = (vec![], vec![], vec![], vec![]);
     let rest = segue_motion::skeleton::world_pose(
         skeleton,
@@ -293,8 +294,8 @@ fn our_own_body_comes_back_when_another_program_wrote_it() {
             ..Default::default()
         },
     );
-    made.joint_transforms(&rest, &mut transforms);
-    linear_blend(&made, &transforms, &mut direct, &mut normals);
+    builder.joint_transforms(&rest, &mut transforms);
+    linear_blend(&builder, &transforms, &mut direct, &mut normals);
     read_back.clone_from(&mesh.positions);
     for (a, b) in read_back.iter().zip(&direct) {
         assert!(a.distance(*b) < 5e-3, "{a} {b}");
