@@ -27,19 +27,18 @@ const BELOW: &str = "math skeleton clip synth registration transition gait blend
 
 /// The folders of the app, and the worker that reads files, which uses none of them; what they may
 /// name of the app and of the workspace's crates.
-const APP: [(&str, &str); 8] = [
-    ("scene", "segue_motion segue_session"),
-    ("render", "scene segue_motion"),
-    ("ui", "scene segue_motion segue_formats segue_session"),
-    ("platform", "scene segue_motion segue_formats segue_session"),
-    ("app", "scene render ui platform segue_motion segue_formats segue_session"),
+const APP: [(&str, &str); 7] = [
+    ("render", "segue_scene segue_motion"),
+    ("ui", "segue_scene segue_motion segue_formats segue_session"),
+    ("platform", "segue_formats segue_session"),
+    ("app", "render ui platform segue_scene segue_motion segue_formats segue_session"),
     ("web_api", "app platform segue_session"),
     ("main", "app platform render ui"),
     ("bin", "segue_session"),
 ];
 
 /// The crates of the workspace that are libraries.
-const CRATES: [&str; 3] = ["segue_motion", "segue_formats", "segue_session"];
+const CRATES: [&str; 4] = ["segue_motion", "segue_formats", "segue_session", "segue_scene"];
 
 /// What the libraries never use: screens, the browser, files, clock and threads.
 const OUTSIDE: [&str; 12] = [
@@ -159,11 +158,11 @@ fn a_violation_is_seen() {
         ["crates/motion/src/blend/mod.rs:1: `blend` names `path`"]
     );
     assert_eq!(
-        found("src/scene/rig.rs", "use super::super::ui;"),
-        ["src/scene/rig.rs:1: `super` leaves `scene`"]
+        found("src/render/light.rs", "use super::super::ui;"),
+        ["src/render/light.rs:1: `super` leaves `render`"]
     );
     assert_eq!(
-        found("src/render/frame.rs", "use segue_session::Session;\nuse segue::scene::Pane;"),
+        found("src/render/frame.rs", "use segue_session::Session;\nuse segue_scene::Pane;"),
         ["src/render/frame.rs:1: `render` names `segue_session`"]
     );
     assert_eq!(
@@ -174,7 +173,10 @@ fn a_violation_is_seen() {
     // Comments and tests may name what they like, but what comes after the tests is code again.
     let tested =
         "// crate::ui\n#[cfg(test)]\nmod tests {\n    use crate::ui;\n}\nuse crate::app;\n";
-    assert_eq!(found("src/scene/rig.rs", tested), ["src/scene/rig.rs:6: `scene` names `app`"]);
+    assert_eq!(
+        found("src/render/light.rs", tested),
+        ["src/render/light.rs:6: `render` names `app`"]
+    );
 
     let code = "fn f() {\n    g().unwrap();\n}\n#[cfg(test)]\nmod tests {\n    fn f() {\n        g().unwrap();\n    }\n}\n";
     assert_eq!(unwraps(Path::new("src/a.rs"), code), ["src/a.rs:2: `unwrap` outside of tests"]);
@@ -387,14 +389,12 @@ fn violations(path: &Path, text: &str) -> Vec<String> {
         }
         let allowed = row.map_or("", |(_, allowed)| allowed);
         let is_allowed = |name: &str| name == own || allowed.split(' ').any(|other| other == name);
-        for root in ["crate", "segue"] {
-            for at in places(&code, root) {
-                let Some(rest) = code[at + root.len()..].strip_prefix("::") else {
-                    continue;
-                };
-                for name in heads(rest).into_iter().filter(|name| !is_allowed(name)) {
-                    tell(at, format!("`{own}` names `{name}`"));
-                }
+        for at in places(&code, "crate") {
+            let Some(rest) = code[at + "crate".len()..].strip_prefix("::") else {
+                continue;
+            };
+            for name in heads(rest).into_iter().filter(|name| !is_allowed(name)) {
+                tell(at, format!("`{own}` names `{name}`"));
             }
         }
         for name in CRATES.into_iter().filter(|name| in_app && !is_allowed(name)) {

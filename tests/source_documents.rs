@@ -10,12 +10,12 @@ mod common;
 
 use glam::{DVec2, Vec3};
 use petgraph::visit::EdgeRef;
-use segue::scene::{Colors, Director, Look, Viewport};
 use segue_motion::blend::WeightLaw;
 use segue_motion::clip::Motion;
 use segue_motion::graph::{Construction, MotionGraph};
 use segue_motion::math::{Planar, quat, spring};
 use segue_motion::path::SplineEnds;
+use segue_scene::{Colors, Director, Look, Viewport};
 use segue_session::{Command, CycleMade, Key, Level, Outcome, Pane, Session, Slot, Value, Walk};
 use std::sync::Arc;
 

@@ -7,11 +7,11 @@ use super::link_query;
 use crate::platform::{self, FileBytes};
 use eframe::wgpu::Backend;
 use glam::{Quat, Vec3};
-use segue::scene::pose_at;
 use segue_motion::clip::Motion;
 use segue_motion::math::Planar;
 use segue_motion::metrics::{Better, Metric};
 use segue_motion::skeleton::Side;
+use segue_scene::pose_at;
 use segue_session::export::{
     ExportBody, ExportFormat, ExportOptions, export, file_name, plotted_of_clip, plotted_of_result,
 };

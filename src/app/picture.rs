@@ -5,7 +5,7 @@ use crate::render;
 use crate::ui::theme::Palette;
 use eframe::egui::layers::ShapeIdx;
 use eframe::egui::{Color32, Painter, Rect, Shape, Ui};
-use segue::scene::{Camera, Color, Colors, Director, Look, PathMarks, Viewport};
+use segue_scene::{Camera, Color, Colors, Director, Look, PathMarks, Viewport};
 use segue_session::Session;
 
 /// The one stage of the page.

@@ -4,7 +4,7 @@ use eframe::egui_wgpu::{
     Callback, CallbackResources, CallbackTrait, RenderState, ScreenDescriptor,
 };
 use eframe::wgpu;
-use segue::scene::Stage;
+use segue_scene::Stage;
 use std::sync::Arc;
 use std::time::Duration;
 

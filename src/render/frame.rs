@@ -4,10 +4,10 @@
 use super::light::{self, LightBox, MAP_SIZE};
 use super::renderer::Quality;
 use glam::Vec4;
-use segue::scene::{
+use segue_motion::skin::SkinnedMesh;
+use segue_scene::{
     Color, Figure, Layer, Lens, Limb, Look, Pane, Ring, Skin, Skinning, Stage, Stroke, Viewport,
 };
-use segue_motion::skin::SkinnedMesh;
 use std::ops::Range;
 use std::sync::Arc;
 

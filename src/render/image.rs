@@ -3,7 +3,7 @@
 use super::StageRenderer;
 use eframe::wgpu;
 use flate2::{Compression, Crc, write::ZlibEncoder};
-use segue::scene::Stage;
+use segue_scene::Stage;
 use std::io::Write as _;
 use std::sync::mpsc;
 use std::time::Duration;

@@ -4,7 +4,7 @@
 use super::pipelines::Pipelines;
 use eframe::wgpu;
 use glam::{Vec2, Vec3};
-use segue::scene::{Figure, Pane, Viewport};
+use segue_scene::{Figure, Pane, Viewport};
 
 /// Width and height of the map of all panes, texels.
 pub(super) const MAP_SIZE: u32 = 2048;
@@ -150,7 +150,7 @@ impl LightMap {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use segue::scene::Limb;
+    use segue_scene::Limb;
 
     fn pane(centers: &[Vec3]) -> Pane {
         let limbs: Vec<Limb> = centers

@@ -5,7 +5,7 @@ use super::pipelines::{Brush, Pipelines};
 use super::skins::{JointTexture, SkinStore};
 use super::targets::{COLOR_FORMAT, DEPTH_FORMAT, Targets};
 use eframe::wgpu;
-use segue::scene::Stage;
+use segue_scene::Stage;
 use std::borrow::Cow;
 use std::cell::Cell;
 

@@ -29,7 +29,7 @@ pub(crate) use text::{HOST_READS, LINK_COPIED, REPORT_COPIED, TABLE_COPIED};
 pub(crate) use timeline_panel::CurveCache;
 
 use eframe::egui::{self, Frame, Margin, Panel, ScrollArea, Stroke, Ui};
-use segue::scene::Look;
+use segue_scene::Look;
 use segue_session::choices;
 use segue_session::{Key, Session};
 use state::Layout;

@@ -13,8 +13,8 @@ use super::state::{Filming, Layout, UiState};
 use super::text;
 use super::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{self, Align2, Frame, Rect, Response, Sense, Ui, UiBuilder, Vec2, pos2, vec2};
-use segue::scene::{camera_of, resting_point, shown_size};
 use segue_motion::metrics::Better;
+use segue_scene::{camera_of, resting_point, shown_size};
 use segue_session::choices;
 use segue_session::{CycleMade, Key, Kind, Pane, Session, Value};
 use segue_text::ToMessage;
@@ -556,7 +556,7 @@ pub(super) fn framing(
     let first = outcomes().next().filter(|_| low.is_finite())?;
     let motion = &first.outcome.motion;
     let height = motion.roles().body_height(motion.clip().skeleton());
-    let mut bounds = segue::scene::Bounds::default();
+    let mut bounds = segue_scene::Bounds::default();
     bounds.include(low - glam::Vec3::new(0.4, 0.0, 0.4));
     bounds.include(high + glam::Vec3::new(0.4, height, 0.4));
     let mut params = session.params().clone();

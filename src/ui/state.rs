@@ -6,8 +6,8 @@ use super::labs::path::hand::PathHand;
 use super::language::Language;
 use eframe::egui::Rect;
 use glam::DVec2;
-use segue::scene::{Camera, PathMarks};
 use segue_motion::graph::Place;
+use segue_scene::{Camera, PathMarks};
 use segue_session::export::ExportOptions;
 use segue_session::{Session, Storing};
 

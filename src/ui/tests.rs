@@ -9,8 +9,8 @@ use egui_kittest::{
     Harness,
     kittest::{NodeT as _, Queryable as _},
 };
-use segue::scene::{Colors, Director, Look, Viewport};
 use segue_formats::{FileKind, ImportOptions};
+use segue_scene::{Colors, Director, Look, Viewport};
 use segue_session::choices;
 use segue_session::choices::{Mistake, Selected as _};
 use segue_session::export::{ExportFormat, ExportOptions, export};

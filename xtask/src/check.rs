@@ -17,8 +17,14 @@ const PARTS: [(&str, Part); 6] = [
 ];
 
 /// The crates below the app.
-const LIBRARIES: [&str; 5] =
-    ["segue-text", "segue-text-derive", "segue-motion", "segue-formats", "segue-session"];
+const LIBRARIES: [&str; 6] = [
+    "segue-text",
+    "segue-text-derive",
+    "segue-motion",
+    "segue-formats",
+    "segue-session",
+    "segue-scene",
+];
 
 type Part = fn(&mut Report);
 
@@ -41,12 +47,7 @@ fn lint(report: &mut Report) {
     report.run("clippy", clippy(&["--workspace", "--all-targets", "--features=ui-tests"]));
     report.step("clippy, web", || {
         tools::ensure_wasm_target()?;
-        shell::run(&mut clippy(&[
-            "--target=wasm32-unknown-unknown",
-            "--bin=segue",
-            "--bin=reader",
-            "--lib",
-        ]))
+        shell::run(&mut clippy(&["--target=wasm32-unknown-unknown", "--bin=segue", "--bin=reader"]))
     });
 }
 
@@ -60,7 +61,7 @@ fn core(report: &mut Report) {
     for library in LIBRARIES {
         report.run(library, cargo(&["test", "--quiet", "--locked", "--package", library]));
     }
-    // The tests across the crates, and the draw list: all of the app that needs no UI.
+    // The tests across the crates: they need no UI.
     report.run(
         "tests without the UI",
         cargo(&["test", "--quiet", "--locked", "--package=segue", "--no-default-features"]),
@@ -87,7 +88,6 @@ fn oracles(report: &mut Report) {
 fn app(report: &mut Report) {
     report.step("tests, whole app", || {
         tools::software_vulkan()?;
-        // The library's own tests have run without the app.
         shell::run(&mut cargo(&[
             "test",
             "--locked",

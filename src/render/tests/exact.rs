@@ -6,7 +6,7 @@ use crate::render::image::read_texture;
 use crate::render::{Quality, render_to_image};
 use eframe::wgpu;
 use glam::Vec3;
-use segue::scene::{Camera, Lens, Look, Pane, Stage, Viewport, rgb};
+use segue_scene::{Camera, Lens, Look, Pane, Stage, Viewport, rgb};
 use std::time::Instant;
 
 /// Draws without a graphics card what moves, and then what stands still.
@@ -92,11 +92,10 @@ fn a_ghost_shows_only_its_front_and_is_hidden_by_the_solid_before_it() {
     let viewport = Viewport { x: 0, y: 0, width: 64, height: 64 };
     let mut look = Look::DARK;
     look.edge[3] = 0.0;
-    let mut middle = |limbs: Vec<segue::scene::Limb>,
-                      figures: &[(std::ops::Range<usize>, bool)]| {
+    let mut middle = |limbs: Vec<segue_scene::Limb>, figures: &[(std::ops::Range<usize>, bool)]| {
         let figures = figures
             .iter()
-            .map(|(limbs, ghost)| segue::scene::Figure {
+            .map(|(limbs, ghost)| segue_scene::Figure {
                 limbs: limbs.clone(),
                 ghost: *ghost,
                 skin: None,
@@ -166,7 +165,7 @@ fn a_ball_is_round_and_as_large_as_the_camera_says() {
     (look.edge[3], look.grid[3], look.floor) = (0.0, 0.0, look.background_top);
     look.background_bottom = look.background_top;
     let radius = 1.0;
-    let ball = segue::scene::Limb {
+    let ball = segue_scene::Limb {
         a: camera.target,
         b: camera.target,
         radius_a: radius,
@@ -175,7 +174,7 @@ fn a_ball_is_round_and_as_large_as_the_camera_says() {
         flatness: 1.0,
         color: [1.0; 4],
     };
-    let figures = vec![segue::scene::Figure { limbs: 0..1, ghost: false, skin: None, shadow: 0.0 }];
+    let figures = vec![segue_scene::Figure { limbs: 0..1, ghost: false, skin: None, shadow: 0.0 }];
     let stage = Stage {
         panes: vec![Pane { viewport, camera, limbs: vec![ball], figures, ..Pane::default() }],
         look,

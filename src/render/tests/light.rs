@@ -3,7 +3,7 @@
 use super::{ball, colors, gpu, staged};
 use crate::render::render_to_image;
 use glam::Vec3;
-use segue::scene::{Camera, Director, Figure, Lens, Limb, Look, Pane, Stage, Viewport};
+use segue_scene::{Camera, Director, Figure, Lens, Limb, Look, Pane, Stage, Viewport};
 use segue_session::{Command, Session};
 
 /// Balls seen from straight above, 1 cm to the pixel, x to the right and z downwards, the origin in

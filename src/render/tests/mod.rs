@@ -11,14 +11,14 @@ mod skins;
 use super::{Image, Quality, StageRenderer, render_to_image};
 use eframe::wgpu;
 use glam::Vec3;
-use segue::scene::{
-    Body, Camera, Color, Colors, Director, Layer, Limb, Look, Pane, Stage, Viewport, rgb,
-    with_alpha,
-};
 use segue_motion::clip::Clip;
 use segue_motion::math::Planar;
 use segue_motion::skeleton::Roles;
 use segue_motion::synth::{Action, Params, synthesize};
+use segue_scene::{
+    Body, Camera, Color, Colors, Director, Layer, Limb, Look, Pane, Stage, Viewport, rgb,
+    with_alpha,
+};
 use segue_session::Session;
 use std::path::PathBuf;
 use std::sync::Arc;

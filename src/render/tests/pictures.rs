@@ -2,11 +2,11 @@
 
 use super::{actors, blend_pane, gpu, stage};
 use glam::Vec3;
-use segue::scene::{
-    Body, Bounds, Camera, Layer, Look, Pane, Ring, Stage, Viewport, rgb, with_alpha,
-};
 use segue_motion::math::Planar;
 use segue_motion::skeleton::{Joint, Roles, Skeleton, world_pose};
+use segue_scene::{
+    Body, Bounds, Camera, Layer, Look, Pane, Ring, Stage, Viewport, rgb, with_alpha,
+};
 
 #[test]
 fn three_panes_in_both_themes_and_on_a_phone() {

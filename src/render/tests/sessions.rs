@@ -1,8 +1,8 @@
 //! What a session puts on the stage, to be looked at.
 
 use super::{colors, gpu, staged};
-use segue::scene::{Colors, Director, Look, PathMarks, Viewport};
 use segue_motion::path::{PathEdit, Pins};
+use segue_scene::{Colors, Director, Look, PathMarks, Viewport};
 use segue_session::{Command, Key, Session, Value};
 use std::sync::Arc;
 

@@ -3,8 +3,8 @@
 use super::{colors, gpu, staged};
 use crate::render::{Quality, frame::Frame, render_to_image};
 use glam::{Quat, Vec3};
-use segue::scene::{Camera, Director, Figure, Lens, Look, Pane, Skin, Skinning, Stage, Viewport};
 use segue_motion::skin::{RigidTransform, SkinnedMesh, dual_quaternion, linear_blend};
+use segue_scene::{Camera, Director, Figure, Lens, Look, Pane, Skin, Skinning, Stage, Viewport};
 use segue_session::{Command, Session};
 use std::sync::Arc;
 use std::time::Instant;

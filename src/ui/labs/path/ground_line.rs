@@ -3,7 +3,7 @@
 use crate::ui::state::UiState;
 use eframe::egui::{CursorIcon, InputState, PointerButton, Pos2, Rect, Response, Ui, vec2};
 use glam::DVec2;
-use segue::scene::Camera;
+use segue_scene::Camera;
 
 /// Drawn points are at least this far apart, metres.
 const STEP_M: f64 = 0.02;

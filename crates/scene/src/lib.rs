@@ -25,7 +25,7 @@
 //!
 //! ```
 //! use glam::{Vec2, Vec3};
-//! use segue::scene::{Body, Bounds, Pane, Viewport, rgb};
+//! use segue_scene::{Body, Bounds, Pane, Viewport, rgb};
 //! use segue_motion::synth::{Action, Params, synthesize};
 //!
 //! let walk = synthesize(&Params::new(Action::Walk))?.clip;

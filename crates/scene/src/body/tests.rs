@@ -1,5 +1,5 @@
 use super::*;
-use crate::scene::{Pane, rgb};
+use crate::{Pane, rgb};
 use glam::{Quat, Vec3};
 use segue_motion::skeleton::{Joint, Pose, Role, world_pose};
 use segue_motion::skin::RigidTransform;

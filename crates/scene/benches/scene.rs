@@ -2,10 +2,10 @@
 //! graphics card is told.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use segue::scene::{Colors, Director, Look, Viewport};
 use segue_motion::skeleton::Roles;
 use segue_motion::skin::{Sculptor, SkinnedMesh};
 use segue_motion::synth::humanoid;
+use segue_scene::{Colors, Director, Look, Viewport};
 use segue_session::{Command, Session};
 use std::hint::black_box;
 

@@ -192,7 +192,7 @@ impl Wardrobe {
 
 #[cfg(test)]
 mod tests {
-    use crate::scene::{Colors, Director, Look, Viewport};
+    use crate::{Colors, Director, Look, Viewport};
     use segue_session::{Command, Key, Session, Value};
 
     /// Half the width of the waist of the skin that is worn; none where limbs are.
