@@ -429,12 +429,8 @@ impl Segue {
         // Only now: what a slider has just changed is in this picture, not in the next.
         let theme = ui::stage_theme(&self.session, ui::theme::theme_of(ui));
         let look = ui::stage_look(&self.session, theme);
-        self.picture.mark_joint(self.panels.joints_open);
-        self.picture.show_pair(self.panels.hovered_pair);
-        self.picture.mark_path(self.panels.path_marks(&self.session));
-        self.picture.show_jump(self.panels.hovered_jump);
-        self.picture.show_candidate(self.panels.drive.ghost(&self.session));
-        self.picture.finish(frame, &self.session, theme.palette(), look, ui);
+        let highlights = self.panels.highlights(&self.session);
+        self.picture.finish(frame, &self.session, (theme.palette(), look), highlights, ui);
         if self.session.revision() != before {
             ui.ctx().request_repaint();
         }

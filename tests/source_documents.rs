@@ -15,7 +15,7 @@ use segue_motion::clip::Motion;
 use segue_motion::graph::{Construction, MotionGraph};
 use segue_motion::math::{Planar, quat, spring};
 use segue_motion::path::SplineEnds;
-use segue_scene::{Colors, Director, Look, Viewport};
+use segue_scene::{Director, StageOptions, Viewport};
 use segue_session::{Command, CycleMade, Key, Level, Outcome, Pane, Session, Slot, Value, Walk};
 use std::sync::Arc;
 
@@ -417,14 +417,9 @@ fn the_camera_stays_with_any_character_that_plays_along() {
             Some(other) => session.company()[other].motion.clone().expect("it is there"),
             None => outcome(&session, 0).motion.clone(),
         };
-        let stage = Director::default().stage(
-            &session,
-            &[(0, Viewport::default())],
-            1.0,
-            Look::DARK,
-            &Colors::default(),
-            0.0,
-        );
+        let panes = [(0, Viewport::default())];
+        let options = StageOptions { panes: &panes, ..StageOptions::default() };
+        let stage = Director::default().stage(&session, &options, 0.0);
         let (focus, stands) = (stage.panes[0].focus, followed.standing_at(2.0).origin());
         assert!(focus.distance(stands) < 0.2, "{follow}: {focus} {stands}");
     }

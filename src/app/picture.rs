@@ -5,7 +5,7 @@ use crate::render;
 use crate::ui::theme::Palette;
 use eframe::egui::layers::ShapeIdx;
 use eframe::egui::{Color32, Painter, Rect, Shape, Ui};
-use segue_scene::{Camera, Color, Colors, Director, Look, PathMarks, Viewport};
+use segue_scene::{Camera, Color, Colors, Director, Highlights, Look, StageOptions, Viewport};
 use segue_session::Session;
 
 /// The one stage of the page.
@@ -45,35 +45,9 @@ impl Place {
 }
 
 impl Picture {
-    /// Whether the chosen joint is marked in what is drawn from now on.
-    pub(crate) fn mark_joint(&mut self, on: bool) {
-        self.director.mark_joint(on);
-    }
-
-    /// The pair of frames that is shown in place of the result from now on.
-    pub(crate) fn show_pair(&mut self, frames: Option<[f64; 2]>) {
-        self.director.show_pair(frames);
-    }
-
-    /// What the hand does with a path, in what is drawn from now on.
-    pub(crate) fn mark_path(&mut self, marks: PathMarks) {
-        self.director.mark_path(marks);
-    }
-
-    /// The frame that is shown as a ghost beside the driven character, in what is drawn from now
-    /// on.
-    pub(crate) fn show_candidate(&mut self, place: Option<segue_motion::matching::Place>) {
-        self.director.show_candidate(place);
-    }
-
     /// The cameras of so many panes, as they were drawn last.
     pub(crate) fn cameras(&self, panes: usize) -> Vec<Option<Camera>> {
         (0..panes).map(|pane| self.director.camera(pane).copied()).collect()
-    }
-
-    /// The transition whose windows are shown in place of the result from now on.
-    pub(crate) fn show_jump(&mut self, ends: Option<[segue_motion::graph::Place; 2]>) {
-        self.director.show_jump(ends);
     }
 
     /// Draws the session's present state into the place that was kept.
@@ -81,8 +55,8 @@ impl Picture {
         &mut self,
         place: Place,
         session: &Session,
-        palette: &Palette,
-        look: Look,
+        (palette, look): (&Palette, Look),
+        highlights: Highlights,
         ui: &Ui,
     ) {
         let now_ms = now_ms();
@@ -94,11 +68,14 @@ impl Picture {
         };
         let scale = ui.ctx().pixels_per_point();
         let size = render::stage_pixels(ui.ctx(), rect);
-        let shown: Vec<(usize, Viewport)> = panes
+        let panes: Vec<(usize, Viewport)> = panes
             .into_iter()
             .map(|(pane, place)| (pane, within(rect, place, size, scale)))
             .collect();
-        let stage = self.director.stage(session, &shown, scale, look, &colors_of(palette), dt_secs);
+        let colors = colors_of(palette);
+        let options =
+            StageOptions { panes: &panes, pixels_per_point: scale, look, colors, highlights };
+        let stage = self.director.stage(session, &options, dt_secs);
         painter.set(index, render::paint_callback(STAGE, rect, stage, ui.ctx()));
     }
 

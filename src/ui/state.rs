@@ -7,7 +7,7 @@ use super::language::Language;
 use eframe::egui::Rect;
 use glam::DVec2;
 use segue_motion::graph::Place;
-use segue_scene::{Camera, PathMarks};
+use segue_scene::{Camera, Highlights, PathMarks};
 use segue_session::export::ExportOptions;
 use segue_session::{Session, Storing};
 
@@ -160,8 +160,19 @@ impl Default for UiState {
 }
 
 impl UiState {
-    /// What is to be seen on the stage of the hand that works on it.
-    pub(crate) fn path_marks(&self, session: &Session) -> PathMarks {
+    /// Returns what the pointer highlights on the stage.
+    pub(crate) fn highlights(&self, session: &Session) -> Highlights {
+        Highlights {
+            joint: self.joints_open,
+            pair: self.hovered_pair,
+            jump: self.hovered_jump,
+            candidate: self.drive.ghost(session),
+            path: self.path_marks(session),
+        }
+    }
+
+    /// Returns what is pointed at, held and drawn of a path.
+    fn path_marks(&self, session: &Session) -> PathMarks {
         let is_open = labs::path::is_open(session);
         let drawn = self.drawing.clone().unwrap_or_default();
         PathMarks {

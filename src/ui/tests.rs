@@ -10,7 +10,7 @@ use egui_kittest::{
     kittest::{NodeT as _, Queryable as _},
 };
 use segue_formats::{FileKind, ImportOptions};
-use segue_scene::{Colors, Director, Look, Viewport};
+use segue_scene::{Director, Look, StageOptions, Viewport};
 use segue_session::choices;
 use segue_session::choices::{Mistake, Selected as _};
 use segue_session::export::{ExportFormat, ExportOptions, export};
@@ -60,8 +60,9 @@ impl Page {
         };
         let shown: Vec<(usize, Viewport)> =
             places.iter().map(|&(pane, rect)| (pane, viewport(rect))).collect();
-        self.director.mark_path(self.state.path_marks(&self.session));
-        self.director.stage(&self.session, &shown, 1.0, Look::DARK, &Colors::default(), 10.0);
+        let highlights = self.state.highlights(&self.session);
+        let options = StageOptions { panes: &shown, highlights, ..StageOptions::default() };
+        self.director.stage(&self.session, &options, 10.0);
         let panes = self.session.panes().len();
         self.state.cameras = (0..panes).map(|pane| self.director.camera(pane).copied()).collect();
     }

@@ -5,13 +5,13 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use segue_motion::skeleton::Roles;
 use segue_motion::skin::{Sculptor, SkinnedMesh};
 use segue_motion::synth::humanoid;
-use segue_scene::{Colors, Director, Look, Viewport};
+use segue_scene::{Director, StageOptions, Viewport};
 use segue_session::{Command, Session};
 use std::hint::black_box;
 
 fn frame(c: &mut Criterion) {
-    let colors = Colors::default();
-    let shown = [(0, Viewport { width: 1440, height: 900, ..Viewport::default() })];
+    let panes = [(0, Viewport { width: 1440, height: 900, ..Viewport::default() })];
+    let options = StageOptions { panes: &panes, ..StageOptions::default() };
     for count in [1, 100] {
         let mut session = Session::new();
         session
@@ -22,12 +22,10 @@ fn frame(c: &mut Criterion) {
             session.tick(1.0 / 60.0);
         }
         let mut director = Director::default();
-        director.stage(&session, &shown, 1.0, Look::DARK, &colors, 0.0);
+        director.stage(&session, &options, 0.0);
         while director.work() {}
         c.bench_function(&format!("scene of {count} characters"), |bench| {
-            bench.iter(|| {
-                director.stage(black_box(&session), &shown, 1.0, Look::DARK, &colors, 1.0 / 60.0)
-            });
+            bench.iter(|| director.stage(black_box(&session), &options, 1.0 / 60.0));
         });
     }
 }

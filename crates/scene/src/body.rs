@@ -4,15 +4,15 @@
 #[cfg(test)]
 mod tests;
 
-use super::{Color, Limb};
+use crate::{Color, Limb};
 use segue_motion::skeleton::{Roles, Skeleton, WorldPose, canonical_stance};
 use segue_motion::skin::shapes::{PlacedShape, Shape, limb_shapes};
 use segue_motion::skin::{Character, Drive, SkinnedMesh};
 use std::borrow::Cow;
 use std::sync::Arc;
 
-/// Where two limbs meet in the same ball, the second one's becomes a little smaller, lest both
-/// surfaces flicker through each other.
+/// Makes the second ball a little smaller where two limbs meet in the same ball, so that their
+/// surfaces do not flicker through each other.
 fn set_balls_apart(shapes: &mut [Shape]) {
     for index in 1..shapes.len() {
         let (before, rest) = shapes.split_at_mut(index);
@@ -34,20 +34,20 @@ fn set_balls_apart(shapes: &mut [Shape]) {
 pub struct Body {
     shapes: Vec<Shape>,
     skin: Option<Arc<SkinnedMesh>>,
-    led: Option<Led>,
+    retargeting: Option<Retargeting>,
     size: Option<f32>,
 }
 
-/// How a body is moved by poses of a skeleton that is not its own.
+/// How poses of another skeleton move a body.
 #[derive(Clone, Debug)]
-struct Led {
+struct Retargeting {
     drive: Drive,
     /// The skeleton of the body itself, and what its joints are for.
     skeleton: Arc<Skeleton>,
     roles: Roles,
     /// The joint that each joint of the other skeleton drives, else the one that its parent does.
     joints_of: Vec<usize>,
-    /// For each of its joints the joint of the other skeleton whose colour it wears.
+    /// For each of its joints the joint of the other skeleton that gives it its colour.
     colors_of: Vec<usize>,
 }
 
@@ -75,13 +75,18 @@ impl Body {
         // The renderer lets only the first few of a body shade the others: the big ones come first.
         shapes.sort_by(|x, y| y.weight(&rest).total_cmp(&x.weight(&rest)));
         let shapes = shapes.into_iter().map(|shape| shape.in_axes_of(&stance)).collect();
-        Self { shapes, skin: None, led: None, size: None }
+        Self { shapes, skin: None, retargeting: None, size: None }
     }
 
-    /// The body of a character that poses of another skeleton, with those roles, move through
-    /// `drive`.
+    /// Makes the body of a character that poses of another skeleton, `source` with those roles,
+    /// move through `drive`.
     #[must_use]
-    pub fn led(character: &Character, drive: Drive, source: &Skeleton, roles: &Roles) -> Self {
+    pub fn retargeted(
+        character: &Character,
+        drive: Drive,
+        source: &Skeleton,
+        roles: &Roles,
+    ) -> Self {
         let skeleton = &character.skeleton;
         // Parents come first.
         let mut joints_of: Vec<usize> = Vec::with_capacity(source.len());
@@ -89,7 +94,7 @@ impl Body {
             let above = source.parent(joint).and_then(|parent| joints_of.get(parent).copied());
             joints_of.push(drive.joint_driven_by(joint).or(above).unwrap_or(0));
         }
-        // Joints without a namesake go with the one that they hang on; parents come first.
+        // Joints without a namesake take the colour of their parent; parents come first.
         let mut colors_of = vec![0; skeleton.len()];
         for joint in 0..skeleton.len() {
             let namesake = character.roles.role_of(joint).and_then(|role| roles.get(role));
@@ -99,7 +104,7 @@ impl Body {
             }
         }
         Self {
-            led: Some(Led {
+            retargeting: Some(Retargeting {
                 drive,
                 skeleton: Arc::clone(skeleton),
                 roles: character.roles.clone(),
@@ -110,62 +115,62 @@ impl Body {
         }
     }
 
-    /// The pose of the body's own skeleton for a pose of the one that moves it, written to `out`;
-    /// `None` where both are the same.
-    pub(super) fn led_pose<'a>(
+    /// Writes the pose of the body's own skeleton for a pose of the one that moves it to `out`, and
+    /// returns it; `None` where both are the same.
+    pub(crate) fn retargeted_pose<'a>(
         &self,
         pose: &WorldPose,
         out: &'a mut WorldPose,
     ) -> Option<&'a WorldPose> {
-        let led = self.led.as_ref()?;
-        led.drive.pose(pose, out);
+        self.retargeting.as_ref()?.drive.pose(pose, out);
         Some(out)
     }
 
-    /// The pose of the figure that is seen for a pose of the skeleton that moves the body.
-    pub(super) fn seen_pose<'a>(&self, pose: &'a WorldPose) -> Cow<'a, WorldPose> {
-        let mut led = WorldPose::default();
-        if self.led_pose(pose, &mut led).is_some() {
-            return Cow::Owned(led);
+    /// Returns the pose of the drawn figure for a pose of the skeleton that moves the body.
+    pub(crate) fn drawn_pose<'a>(&self, pose: &'a WorldPose) -> Cow<'a, WorldPose> {
+        let mut own = WorldPose::default();
+        if self.retargeted_pose(pose, &mut own).is_some() {
+            return Cow::Owned(own);
         }
         Cow::Borrowed(pose)
     }
 
-    /// The body as one that is by itself so many times as large as it is drawn.
+    /// Returns the body as one that is by itself `size` times as large as it is drawn.
     #[must_use]
     pub fn of_size(mut self, size: f32) -> Self {
         self.size = Some(size);
         self
     }
 
-    /// How many times as large the body is by itself as it is drawn.
+    /// Returns how many times as large as it is drawn the body is by itself.
     #[must_use]
     pub fn size(&self) -> f32 {
         self.size.unwrap_or(1.0)
     }
 
-    /// The skeleton of the figure that is seen, and what its joints are for: its own where another
+    /// Returns the skeleton of the drawn figure, and the roles of its joints: its own where another
     /// skeleton moves the body.
-    pub(super) fn seen<'a>(
+    pub(crate) fn drawn_rig<'a>(
         &'a self,
         moving: (&'a Skeleton, &'a Roles),
     ) -> (&'a Skeleton, &'a Roles) {
-        self.led.as_ref().map_or(moving, |led| (&led.skeleton, &led.roles))
+        self.retargeting.as_ref().map_or(moving, |own| (&own.skeleton, &own.roles))
     }
 
-    /// The joint of the figure that is seen for one of the skeleton that moves the body.
-    pub(super) fn seen_joint(&self, joint: usize) -> usize {
-        let led = self.led.as_ref().and_then(|led| led.joints_of.get(joint));
-        led.copied().unwrap_or(joint)
+    /// Returns the joint of the drawn figure for one of the skeleton that moves the body.
+    pub(crate) fn drawn_joint(&self, joint: usize) -> usize {
+        let own = self.retargeting.as_ref().and_then(|own| own.joints_of.get(joint));
+        own.copied().unwrap_or(joint)
     }
 
-    /// The joint of the skeleton that moves the body whose colour one of its own joints wears.
-    pub(super) fn color_joint(&self, joint: usize) -> usize {
-        let led = self.led.as_ref().and_then(|led| led.colors_of.get(joint));
-        led.copied().unwrap_or(joint)
+    /// Returns the joint of the skeleton that moves the body which gives one of the body's own
+    /// joints its colour.
+    pub(crate) fn color_joint(&self, joint: usize) -> usize {
+        let moving = self.retargeting.as_ref().and_then(|own| own.colors_of.get(joint));
+        moving.copied().unwrap_or(joint)
     }
 
-    /// The body with girths so many times as wide.
+    /// Returns the body with girths `girth` times as wide.
     #[must_use]
     pub fn with_girth(mut self, girth: f32) -> Self {
         for shape in &mut self.shapes {
@@ -175,20 +180,20 @@ impl Body {
         self
     }
 
-    /// The body in a skin: it is seen in place of the limbs, which go on to shade the ground. The
-    /// mesh is one of the same skeleton.
+    /// Returns the body with a skin, which is seen in place of the limbs; those still shade the
+    /// ground. The mesh must be one of the same skeleton.
     #[must_use]
     pub fn with_skin(self, mesh: Arc<SkinnedMesh>) -> Self {
         Self { skin: Some(mesh), ..self }
     }
 
-    /// The mesh over the limbs.
+    /// Returns the mesh over the limbs.
     #[must_use]
     pub fn skin(&self) -> Option<&Arc<SkinnedMesh>> {
         self.skin.as_ref()
     }
 
-    /// The number of limbs that [`Body::limbs`] adds at most.
+    /// Returns the number of limbs that [`Body::limbs`] adds at most.
     #[must_use]
     pub fn limb_count(&self) -> usize {
         self.shapes.len()
@@ -199,7 +204,7 @@ impl Body {
         self.colored_limbs(pose, |_| color, out);
     }
 
-    /// Likewise, each limb in the colour of the joint that moves it.
+    /// Appends the limbs of the body in a pose, each in the colour of the joint that moves it.
     pub fn colored_limbs(
         &self,
         pose: &WorldPose,

@@ -1,3 +1,5 @@
+//! Boxes around what is to be seen.
+
 use glam::Vec3;
 use segue_motion::skeleton::WorldPose;
 

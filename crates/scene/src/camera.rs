@@ -1,4 +1,6 @@
-use super::Bounds;
+//! The orbit camera.
+
+use crate::Bounds;
 use glam::camera::rh::{proj::directx, view::look_to_mat4};
 use glam::{Mat4, Vec2, Vec3};
 use std::f32::consts::{FRAC_PI_2, PI};

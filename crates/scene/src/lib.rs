@@ -63,25 +63,38 @@
 //! No meshes of its own: limbs are rounded cones. No light and no shadows are computed here: a
 //! [`Figure`] only says how strongly it darkens the ground.
 
+mod annotations;
 mod body;
+mod body_cache;
 mod bounds;
-mod build;
 mod camera;
-mod dress;
-mod drive;
-mod path;
-mod rig;
+mod camera_rig;
 #[cfg(test)]
-mod shown_tests;
+mod character_tests;
+mod color;
+mod director;
+mod extra_characters;
+mod framing;
+mod ground_path;
+mod labs;
+mod look;
+mod pane;
+mod posing;
+mod primitives;
+mod result;
+mod sources;
 mod stage;
 
 pub use body::Body;
 pub use bounds::Bounds;
-pub use build::{Colors, Director, camera_of, pose_at, resting_point, shown_size};
 pub use camera::{Camera, Lens, Ray};
-pub use path::PathMarks;
-pub use rig::CameraRig;
-pub use stage::{
-    Color, Figure, Layer, Limb, Look, Pane, Ring, Skin, Skinning, Stage, Stroke, Viewport, rgb,
-    with_alpha,
-};
+pub use camera_rig::CameraRig;
+pub use color::{Color, Colors, rgb, with_alpha};
+pub use director::{Director, Highlights, StageOptions};
+pub use framing::{camera_of, resting_point, shown_size};
+pub use labs::path::PathMarks;
+pub use look::Look;
+pub use pane::Pane;
+pub use posing::pose_at;
+pub use primitives::{Figure, Layer, Limb, Ring, Skin, Skinning, Stroke};
+pub use stage::{Stage, Viewport};

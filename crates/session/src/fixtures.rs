@@ -64,7 +64,7 @@ pub(crate) fn made_bvh(seed: f64) -> Arc<[u8]> {
             (Key::Seed, Value::Number(seed)),
         ]))
         .unwrap();
-    let clip = Arc::clone(&session.main_outcome().unwrap().motion.clip());
+    let clip = Arc::clone(session.main_outcome().unwrap().motion.clip());
     segue_formats::bvh::write(&clip, &segue_formats::bvh::WriteOptions::default())
         .into_bytes()
         .into()

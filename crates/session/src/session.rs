@@ -636,7 +636,7 @@ impl Session {
             self.read_again(file, None);
             return Ok(());
         }
-        let corrected = Arc::new(Motion::clone(&motion).with_corrected_roles(&roles));
+        let corrected = Arc::new(Motion::clone(motion).with_corrected_roles(&roles));
         self.document.change_entry(id, |entry| {
             entry.motion = Some(corrected);
             entry.roles_by_hand = Some(roles);
@@ -715,7 +715,7 @@ fn to_step(value: f64, step: f64) -> f64 {
 
 fn clip_info(entry: &Entry) -> ClipInfo {
     let motion = entry.motion.as_deref();
-    let clip = motion.map(|motion| motion.clip());
+    let clip = motion.map(segue_motion::clip::Motion::clip);
     ClipInfo {
         id: entry.id.clone(),
         name: entry.name.clone(),

@@ -1,6 +1,6 @@
 //! The main light and its shadow.
 
-use super::{ball, colors, gpu, staged};
+use super::{ball, colors, gpu, options, staged};
 use crate::render::render_to_image;
 use glam::Vec3;
 use segue_scene::{Camera, Director, Figure, Lens, Limb, Look, Pane, Stage, Viewport};
@@ -126,8 +126,12 @@ fn a_figure_on_all_stages() {
             let mut session = Session::new();
             session.apply(Command::OpenLink(link.into())).unwrap();
             while session.work() {}
-            let stage =
-                staged(&mut Director::default(), &session, &shown, 1.0, look, &colors(theme), 0.0);
+            let stage = staged(
+                &mut Director::default(),
+                &session,
+                &options(&shown, look, &colors(theme)),
+                0.0,
+            );
             let image = gpu.draw(&format!("stage-{name}-{scene}"), &stage, size);
             if name == "paper" {
                 // White stays white to the corner.
@@ -152,7 +156,8 @@ fn a_lecture_hall_sees_a_foot_that_slides() {
     let colors = colors(1);
     let mut slides = |secs: f64| {
         session.apply(Command::Seek(secs)).unwrap();
-        let stage = staged(&mut Director::default(), &session, &shown, 1.0, look, &colors, 0.0);
+        let stage =
+            staged(&mut Director::default(), &session, &options(&shown, look, &colors), 0.0);
         let ring = stage.panes[0].rings.iter().find(|ring| ring.color == colors.bad)?;
         // It is heavier than that of a foot that stands.
         assert!(ring.fill > 0.2 && ring.width > 0.02);

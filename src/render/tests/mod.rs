@@ -16,8 +16,8 @@ use segue_motion::math::Planar;
 use segue_motion::skeleton::Roles;
 use segue_motion::synth::{Action, Params, synthesize};
 use segue_scene::{
-    Body, Camera, Color, Colors, Director, Layer, Limb, Look, Pane, Stage, Viewport, rgb,
-    with_alpha,
+    Body, Camera, Color, Colors, Director, Layer, Limb, Look, Pane, Stage, StageOptions, Viewport,
+    rgb, with_alpha,
 };
 use segue_session::Session;
 use std::path::PathBuf;
@@ -37,22 +37,24 @@ fn ball(center: Vec3, radius: f32, color: Color) -> Limb {
     }
 }
 
-/// The stage of a session, with every skin made that is worn on it.
+/// Returns the options of a stage with one pixel per point.
+fn options<'a>(panes: &'a [(usize, Viewport)], look: Look, colors: &Colors) -> StageOptions<'a> {
+    StageOptions { panes, look, colors: *colors, ..StageOptions::default() }
+}
+
+/// Returns the stage of a session, with every skin that is on it built.
 fn staged(
     director: &mut Director,
     session: &Session,
-    shown: &[(usize, Viewport)],
-    pixels_per_point: f32,
-    look: Look,
-    colors: &Colors,
+    options: &StageOptions<'_>,
     dt_secs: f32,
 ) -> Arc<Stage> {
-    let stage = director.stage(session, shown, pixels_per_point, look, colors, dt_secs);
+    let stage = director.stage(session, options, dt_secs);
     if !director.is_at_work() {
         return stage;
     }
     while director.work() {}
-    director.stage(session, shown, pixels_per_point, look, colors, 0.0)
+    director.stage(session, options, 0.0)
 }
 
 /// The colours of the dark theme, or of the light one.

@@ -1,8 +1,8 @@
 //! What a session puts on the stage, to be looked at.
 
-use super::{colors, gpu, staged};
+use super::{colors, gpu, options, staged};
 use segue_motion::path::{PathEdit, Pins};
-use segue_scene::{Colors, Director, Look, PathMarks, Viewport};
+use segue_scene::{Colors, Director, Highlights, Look, PathMarks, StageOptions, Viewport};
 use segue_session::{Command, Key, Session, Value};
 use std::sync::Arc;
 
@@ -17,8 +17,9 @@ fn the_chosen_joint_is_marked_over_the_body() {
         session.apply(Command::OpenLink(link)).unwrap();
         let mut director = Director::default();
         let mut accent = |marked: bool| {
-            director.mark_joint(marked);
-            let stage = staged(&mut director, &session, &shown, 1.0, look, &colors(theme), 0.0);
+            let highlights = Highlights { joint: marked, ..Highlights::default() };
+            let options = StageOptions { highlights, ..options(&shown, look, &colors(theme)) };
+            let stage = staged(&mut director, &session, &options, 0.0);
             let image = gpu.draw(&format!("joint-{theme}-{marked}"), &stage, size);
             let green = |p: &&[u8]| i32::from(p[1]) - i32::from(p[0]) > 60;
             image.rgba.chunks_exact(4).filter(green).count()
@@ -57,7 +58,8 @@ fn a_layered_body_shows_whose_limbs_are_whose() {
             let panes = session.panes().len() as u32;
             let shown: Vec<(usize, Viewport)> =
                 Viewport::columns(size[0], size[1], panes, 1).enumerate().collect();
-            let stage = staged(&mut Director::default(), &session, &shown, 1.0, look, &colors, 0.0);
+            let stage =
+                staged(&mut Director::default(), &session, &options(&shown, look, &colors), 0.0);
             let image = gpu.draw(&format!("{name}-{theme}"), &stage, size);
             let is_blue = |p: &&[u8]| i32::from(p[2]) - i32::from(p[0]) > 40;
             blue.push(image.rgba.chunks_exact(4).filter(is_blue).count());
@@ -86,9 +88,9 @@ fn registered_clips_walk_beside_the_result_and_a_pair_stands_in_its_place() {
         let panes = session.panes().len() as u32;
         let shown: Vec<(usize, Viewport)> =
             Viewport::columns(size[0], size[1], panes, 1).enumerate().collect();
-        let mut director = Director::default();
-        director.show_pair(pair);
-        let stage = staged(&mut director, &session, &shown, 1.0, look, &colors, 0.0);
+        let highlights = Highlights { pair, ..Highlights::default() };
+        let options = StageOptions { highlights, ..options(&shown, look, &colors) };
+        let stage = staged(&mut Director::default(), &session, &options, 0.0);
         let ghosts = stage.panes[0].figures.iter().filter(|figure| figure.ghost).count();
         let bodies = stage.panes[0].figures.len() - ghosts;
         assert_eq!((ghosts, bodies), (2, usize::from(pair.is_none())), "{name}");
@@ -123,14 +125,16 @@ fn a_path_lies_on_the_stage_with_its_points_and_those_who_play_along() {
                 assert!(!session.main_outcome().unwrap().path().unwrap().hard_turns.is_empty());
             }
             let viewport = Viewport { x: 0, y: 0, width: size[0], height: size[1] };
-            let mut director = Director::default();
-            director.mark_path(PathMarks {
+            let path = PathMarks {
                 handles: true,
                 chosen: Some(4),
                 hovered: Some(2),
                 ..PathMarks::default()
-            });
-            let stage = staged(&mut director, &session, &[(0, viewport)], 1.0, look, &colors, 0.0);
+            };
+            let shown = [(0, viewport)];
+            let highlights = Highlights { path, ..Highlights::default() };
+            let options = StageOptions { highlights, ..options(&shown, look, &colors) };
+            let stage = staged(&mut Director::default(), &session, &options, 0.0);
             let bodies = if name == "path-fitted" { 1 } else { 3 };
             assert_eq!(stage.panes[0].figures.len(), bodies, "{name}");
             gpu.draw(&format!("{name}-{theme}"), &stage, size);
@@ -157,11 +161,11 @@ fn a_driven_character_has_its_ways_on_the_ground_a_ghost_and_a_crowd() {
             let outcome = Arc::clone(session.main_outcome().unwrap());
             let driven = outcome.driven().unwrap();
             let moment = driven.at(session.now_secs()).unwrap();
-            let mut director = Director::default();
-            director
-                .show_candidate(moment.search.as_ref().map(|search| search.candidates[1].place));
-            let viewport = Viewport { x: 0, y: 0, width: size[0], height: size[1] };
-            let stage = staged(&mut director, &session, &[(0, viewport)], 1.0, look, &colors, 0.0);
+            let candidate = moment.search.as_ref().map(|search| search.candidates[1].place);
+            let shown = [(0, Viewport { x: 0, y: 0, width: size[0], height: size[1] })];
+            let highlights = Highlights { candidate, ..Highlights::default() };
+            let options = StageOptions { highlights, ..options(&shown, look, &colors) };
+            let stage = staged(&mut Director::default(), &session, &options, 0.0);
             assert_eq!(stage.panes[0].figures.len(), bodies, "{name}");
             let ring = stage.panes[0].rings.iter().any(|ring| ring.color[..3] == colors.a[..3]);
             assert!(ring, "the simulation object");

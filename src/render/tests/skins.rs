@@ -1,6 +1,6 @@
 //! Bodies in skins.
 
-use super::{colors, gpu, staged};
+use super::{colors, gpu, options, staged};
 use crate::render::{Quality, frame::Frame, render_to_image};
 use glam::{Quat, Vec3};
 use segue_motion::skin::{RigidTransform, SkinnedMesh, dual_quaternion, linear_blend};
@@ -158,7 +158,7 @@ fn a_twisted_forearm_in_both_ways_of_skinning() {
     let shown: Vec<(usize, Viewport)> =
         Viewport::columns(size[0], size[1], 2, 1).enumerate().collect();
     let stage =
-        staged(&mut Director::default(), &session, &shown, 1.0, Look::DARK, &colors(0), 0.0);
+        staged(&mut Director::default(), &session, &options(&shown, Look::DARK, &colors(0)), 0.0);
     assert_eq!(
         stage.panes.iter().map(|pane| pane.skinning).collect::<Vec<_>>(),
         [Skinning::Dual, Skinning::Linear]
@@ -182,10 +182,7 @@ fn statures() {
         let stage = staged(
             &mut Director::default(),
             &session,
-            &[(0, viewport)],
-            1.0,
-            Look::LIGHT,
-            &colors(1),
+            &options(&[(0, viewport)], Look::LIGHT, &colors(1)),
             0.0,
         );
         // The world about a figure of 60 % is shown smaller by as much: from so much farther off,
@@ -218,7 +215,7 @@ fn a_hundred_characters() {
     for round in 0..=ROUNDS {
         let start = Instant::now();
         let stage =
-            staged(&mut director, &session, &shown, 1.0, Look::DARK, &colors(0), 1.0 / 60.0);
+            staged(&mut director, &session, &options(&shown, Look::DARK, &colors(0)), 1.0 / 60.0);
         let made = Instant::now();
         frame.build(&stage, size, size, Quality::Full);
         let built = Instant::now();
@@ -245,7 +242,7 @@ fn a_hundred_characters() {
         each(build),
         each(encode)
     );
-    let stage = staged(&mut director, &session, &shown, 1.0, Look::DARK, &colors(0), 0.0);
+    let stage = staged(&mut director, &session, &options(&shown, Look::DARK, &colors(0)), 0.0);
     gpu.draw("crowd", &stage, size);
 }
 
@@ -260,7 +257,7 @@ fn time_in_software() {
             session(&format!("lab=blend&a=walk&b=run&compare=blend_window:30,15,10&look={look}"));
         let mut director = Director::default();
         let made = Instant::now();
-        staged(&mut director, &session, &shown, 1.0, Look::DARK, &colors(0), 0.1);
+        staged(&mut director, &session, &options(&shown, Look::DARK, &colors(0)), 0.1);
         eprintln!("{look}: made in {:.1} ms", made.elapsed().as_secs_f64() * 1e3);
         for quality in [Quality::Plain, Quality::Full] {
             gpu.renderer.set_quality(quality);
@@ -268,7 +265,7 @@ fn time_in_software() {
             for round in 0..5 {
                 session.apply(Command::Seek(1.0 + 0.1 * f64::from(round))).unwrap();
                 let stage =
-                    staged(&mut director, &session, &shown, 1.0, Look::DARK, &colors(0), 0.1);
+                    staged(&mut director, &session, &options(&shown, Look::DARK, &colors(0)), 0.1);
                 let start = Instant::now();
                 let mut encoder = gpu
                     .device

@@ -207,7 +207,7 @@ fn degenerate_skeletons_have_a_body_too() {
 }
 
 #[test]
-fn a_character_is_led_by_another_skeleton_and_wears_its_colours() {
+fn retargeted_character_follows_another_skeleton_and_takes_its_colours() {
     let walk = synthesize(&Params::new(Action::Walk)).unwrap().clip;
     let roles = Roles::detect(walk.skeleton());
     let skeleton = Arc::new(adult());
@@ -220,7 +220,7 @@ fn a_character_is_led_by_another_skeleton_and_wears_its_colours() {
         skeleton,
     };
     let drive = Drive::new(&walk, &roles, &character).unwrap();
-    let body = Body::led(&character, drive, walk.skeleton(), &roles);
+    let body = Body::retargeted(&character, drive, walk.skeleton(), &roles);
     for role in [Role::LeftHand, Role::RightFoot, Role::Head] {
         let own = character.roles.get(role).unwrap();
         assert_eq!(Some(body.color_joint(own)), roles.get(role), "{role:?}");

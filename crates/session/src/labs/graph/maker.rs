@@ -321,20 +321,17 @@ impl Maker {
                 let Some(lock) = self.wanted.foot_lock else {
                     return Ok(self.unseen(motion, None));
                 };
-                match locking(
+                if let Some(locking) = locking(
                     Arc::clone(motion.clip()),
                     motion.roles(),
                     motion.contacts(),
                     motion.ground_m(),
                     lock,
                 )? {
-                    Some(locking) => {
-                        Ok(Err(Publishing::Locking(Box::new(locking), Box::new(motion))))
-                    }
-                    None => {
-                        let free = Arc::clone(motion.clip());
-                        Ok(self.unseen(motion, Some(free)))
-                    }
+                    Ok(Err(Publishing::Locking(Box::new(locking), Box::new(motion))))
+                } else {
+                    let free = Arc::clone(motion.clip());
+                    Ok(self.unseen(motion, Some(free)))
                 }
             }
             Publishing::Locking(mut locking, motion) => {

@@ -1,4 +1,6 @@
-use super::Camera;
+//! A camera that moves smoothly.
+
+use crate::Camera;
 use glam::Vec3;
 use segue_motion::math::spring;
 use std::f32::consts::PI;

@@ -1,100 +1,106 @@
 //! The bodies of skeletons: made when first seen, kept as long as the skeleton is. A skin takes a
-//! while: until it is there, limbs are worn.
+//! while to build: until it is there, the body consists of limbs.
 
-use super::Body;
-use segue_motion::clip::{Motion, reference_pose};
+use crate::Body;
+use segue_motion::clip::Motion;
+use segue_motion::clip::reference_pose;
 use segue_motion::skeleton::{Roles, Skeleton, WorldPose};
 use segue_motion::skin::{Character, Drive, Sculptor, Sculpture, SkinnedMesh};
 use segue_session::choices;
 use segue_session::{Key, Params, Session};
 use std::sync::{Arc, Weak};
 
-/// So many skeletons' skins are kept, whether they are worn or not.
-const MOST_KEPT: usize = 16;
+/// Skins that are kept, at most, whether they are shown or not.
+const MAX_SKINS: usize = 16;
 
-/// A character that is by itself smaller or larger beside its motion is none of a size that anybody
-/// could look at.
+/// Smallest and largest size of a character in relation to its motion: beyond them nothing could be
+/// seen.
 const SIZES: (f32, f32) = (0.02, 50.0);
 
-/// What bodies look like for now, and those that were made so.
+/// The bodies in the present style.
 #[derive(Debug, Default)]
-pub(super) struct Wardrobe {
-    cut: Cut,
+pub(crate) struct BodyCache {
+    style: BodyStyle,
     character: Option<Character>,
     /// The character in the sizes that it is drawn in, each with how many times as large it is
     /// itself.
     sizes: Vec<(f32, Character)>,
     bodies: Vec<(Weak<Skeleton>, Roles, Arc<Body>)>,
     /// One for all skeletons that are equal, so that they are drawn together; the oldest first.
-    tailored: Vec<Tailored>,
+    skins: Vec<CachedSkin>,
 }
 
 /// The skin of a skeleton.
 #[derive(Debug)]
-struct Tailored {
+struct CachedSkin {
     skeleton: Arc<Skeleton>,
     roles: Roles,
-    state: State,
-    /// As it is worn for now.
+    state: SkinState,
+    /// The skin with the present girth.
     mesh: Option<Arc<SkinnedMesh>>,
 }
 
+/// How far the building of a skin is.
 #[derive(Debug)]
-enum State {
-    Begun(Box<Sculptor>),
-    Done(Box<Sculpture>),
+enum SkinState {
+    Building(Box<Sculptor>),
+    Built(Box<Sculpture>),
 }
 
+/// How bodies look that are made around bones.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Cut {
+struct BodyStyle {
+    /// Whether they have a skin.
     skin: bool,
+    /// Their girth, as a multiple of the average.
     girth: f32,
 }
 
-/// Whether bodies have a skin.
+/// Returns whether bodies have a skin.
 fn shows_skin(params: &Params) -> bool {
     params.choice::<choices::Look>() != choices::Look::Limbs
 }
 
-/// The character that is shown in place of bodies made around bones.
-pub(super) fn worn_character(session: &Session) -> Option<Character> {
+/// Returns the character that is shown in place of bodies made around bones.
+pub(crate) fn shown_character(session: &Session) -> Option<Character> {
     session.character().filter(|_| shows_skin(session.params()))
 }
 
-/// How many times as large a character is by itself as the motion that moves it; `None` where it
-/// cannot.
-pub(super) fn size_beside(character: &Character, motion: &Motion) -> Option<f32> {
+/// Returns how many times as large as the motion a character is by itself; `None` where the motion
+/// cannot move it.
+pub(crate) fn size_beside(character: &Character, motion: &Motion) -> Option<f32> {
     let size = character.size_beside(motion.clip().skeleton(), motion.roles())?;
     Some(size.clamp(SIZES.0, SIZES.1))
 }
 
-impl Wardrobe {
-    /// Chooses what is worn from now on, and lets go of what nobody wears any longer.
-    pub(super) fn choose(&mut self, session: &Session) {
+impl BodyCache {
+    /// Applies the session's present look, and drops the bodies of skeletons that are gone.
+    pub(crate) fn update(&mut self, session: &Session) {
         let params = session.params();
-        let cut = Cut { skin: shows_skin(params), girth: params.number(Key::FigureBuild) as f32 };
-        let character = worn_character(session);
+        let style =
+            BodyStyle { skin: shows_skin(params), girth: params.number(Key::FigureBuild) as f32 };
+        let character = shown_character(session);
         let same = match (&character, &self.character) {
             (Some(new), Some(old)) => {
                 Arc::ptr_eq(&new.mesh, &old.mesh) && Arc::ptr_eq(&new.skeleton, &old.skeleton)
             }
             (new, old) => new.is_none() && old.is_none(),
         };
-        if cut != self.cut || !same {
+        if style != self.style || !same {
             self.bodies.clear();
-            for tailored in &mut self.tailored {
-                tailored.mesh = None;
+            for skin in &mut self.skins {
+                skin.mesh = None;
             }
         }
         if !same {
             self.sizes = character.iter().map(|character| (1.0, character.clone())).collect();
         }
-        (self.cut, self.character) = (cut, character);
+        (self.style, self.character) = (style, character);
         self.bodies.retain(|(skeleton, ..)| skeleton.strong_count() > 0);
     }
 
-    /// The body of a motion's skeleton.
-    pub(super) fn body(&mut self, motion: &Motion) -> Arc<Body> {
+    /// Returns the body of a motion's skeleton, and makes it where it is new.
+    pub(crate) fn body(&mut self, motion: &Motion) -> Arc<Body> {
         let skeleton = motion.clip().skeleton();
         let known = |(known, roles, _): &&(Weak<Skeleton>, Roles, Arc<Body>)| {
             known.as_ptr() == Arc::as_ptr(skeleton) && roles == motion.roles()
@@ -102,15 +108,16 @@ impl Wardrobe {
         if let Some((.., body)) = self.bodies.iter().find(known) {
             return Arc::clone(body);
         }
-        let body = Arc::new(self.led(motion).unwrap_or_else(|| self.made(motion)));
+        let body = self.retargeted_character(motion);
+        let body = Arc::new(body.unwrap_or_else(|| self.procedural_body(motion)));
         self.bodies.push((Arc::downgrade(skeleton), motion.roles().clone(), Arc::clone(&body)));
         body
     }
 
-    /// The character in place of a body, where there is one that can be moved so. It is drawn in
+    /// Makes a body of the character, where there is one that the motion can move. It is drawn in
     /// the size of the motion, so that it stands where all else of the motion is drawn; the world
     /// is shown smaller by as much.
-    fn led(&mut self, motion: &Motion) -> Option<Body> {
+    fn retargeted_character(&mut self, motion: &Motion) -> Option<Body> {
         let skeleton = motion.clip().skeleton();
         let character = self.character.as_ref()?;
         let size = size_beside(character, motion)?;
@@ -121,69 +128,69 @@ impl Wardrobe {
             self.sizes.push((size, sized.clone()));
         }
         let drive = Drive::new(motion.clip(), motion.roles(), &sized)?;
-        Some(Body::led(&sized, drive, skeleton, motion.roles()).of_size(size))
+        Some(Body::retargeted(&sized, drive, skeleton, motion.roles()).of_size(size))
     }
 
-    /// A body about the bones.
-    fn made(&mut self, motion: &Motion) -> Body {
-        let Cut { skin, girth } = self.cut;
+    /// Makes a body around the bones.
+    fn procedural_body(&mut self, motion: &Motion) -> Body {
+        let BodyStyle { skin, girth } = self.style;
         let skeleton = motion.clip().skeleton();
         let reference = reference_pose(motion.clip(), motion.roles());
         let body = Body::standing(skeleton, Some(motion.roles()), &reference).with_girth(girth);
-        match skin.then(|| self.mesh(skeleton, motion.roles(), &reference)).flatten() {
+        match skin.then(|| self.skin(skeleton, motion.roles(), &reference)).flatten() {
             Some(mesh) => body.with_skin(mesh),
             None => body,
         }
     }
 
-    /// The skin of a skeleton, where it is there already; else it is begun.
-    fn mesh(
+    /// Returns the skin of a skeleton; `None` while it is being built, which the first call begins.
+    fn skin(
         &mut self,
         skeleton: &Arc<Skeleton>,
         roles: &Roles,
         reference: &WorldPose,
     ) -> Option<Arc<SkinnedMesh>> {
-        let girth = self.cut.girth;
-        let fits = |known: &&mut Tailored| {
+        let girth = self.style.girth;
+        let fits = |known: &&mut CachedSkin| {
             known.roles == *roles
                 && (Arc::ptr_eq(&known.skeleton, skeleton) || known.skeleton == *skeleton)
         };
-        if let Some(known) = self.tailored.iter_mut().find(fits) {
-            let State::Done(sculpture) = &known.state else {
+        if let Some(known) = self.skins.iter_mut().find(fits) {
+            let SkinState::Built(sculpture) = &known.state else {
                 return None;
             };
             let mesh = known.mesh.get_or_insert_with(|| Arc::new(sculpture.with_girth(girth)));
             return Some(Arc::clone(mesh));
         }
-        if self.tailored.len() >= MOST_KEPT {
-            self.tailored.remove(0);
+        if self.skins.len() >= MAX_SKINS {
+            self.skins.remove(0);
         }
-        self.tailored.push(Tailored {
+        self.skins.push(CachedSkin {
             skeleton: Arc::clone(skeleton),
             roles: roles.clone(),
-            state: State::Begun(Box::new(Sculptor::new(skeleton, roles, reference))),
+            state: SkinState::Building(Box::new(Sculptor::new(skeleton, roles, reference))),
             mesh: None,
         });
         None
     }
 
-    /// Whether a skin is in the making.
-    pub(super) fn is_at_work(&self) -> bool {
-        self.tailored.iter().any(|tailored| matches!(tailored.state, State::Begun(_)))
+    /// Returns whether a skin is being built.
+    pub(crate) fn is_at_work(&self) -> bool {
+        self.skins.iter().any(|skin| matches!(skin.state, SkinState::Building(_)))
     }
 
-    /// Makes a little more of a skin that is in the making. `true` while one is.
-    pub(super) fn work(&mut self) -> bool {
-        let begun = self.tailored.iter_mut().find_map(|tailored| match &mut tailored.state {
-            State::Begun(sculptor) => Some((sculptor.advance(), &mut tailored.state)),
-            State::Done(_) => None,
+    /// Advances the building of a skin by one step. Returns whether there was one to build.
+    pub(crate) fn work(&mut self) -> bool {
+        let building = self.skins.iter_mut().find_map(|skin| match &mut skin.state {
+            SkinState::Building(sculptor) => Some((sculptor.advance(), &mut skin.state)),
+            SkinState::Built(_) => None,
         });
-        let Some((sculpture, state)) = begun else {
+        let Some((sculpture, state)) = building else {
             return false;
         };
         if let Some(sculpture) = sculpture {
-            *state = State::Done(Box::new(sculpture));
-            // Whoever wears limbs for the time being is dressed anew.
+            *state = SkinState::Built(Box::new(sculpture));
+            // Bodies that had limbs in the meantime get the skin.
             self.bodies.clear();
         }
         true
@@ -192,19 +199,14 @@ impl Wardrobe {
 
 #[cfg(test)]
 mod tests {
-    use crate::{Colors, Director, Look, Viewport};
+    use crate::{Director, StageOptions, Viewport};
     use segue_session::{Command, Key, Session, Value};
 
-    /// Half the width of the waist of the skin that is worn; none where limbs are.
+    /// Returns half the width of the waist of the skin; none while the body consists of limbs.
     fn width(director: &mut Director, session: &Session) -> Option<f32> {
-        let stage = director.stage(
-            session,
-            &[(0, Viewport::default())],
-            1.0,
-            Look::DARK,
-            &Colors::default(),
-            0.0,
-        );
+        let panes = [(0, Viewport::default())];
+        let options = StageOptions { panes: &panes, ..StageOptions::default() };
+        let stage = director.stage(session, &options, 0.0);
         let skin = stage.panes[0].figures.first()?.skin.as_ref()?;
         let waist =
             skin.mesh.positions.iter().filter(|p| (0.05..0.2).contains(&p.y) && p.x.abs() < 0.4);
@@ -212,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn limbs_are_worn_until_the_skin_is_made_and_any_girth_at_once() {
+    fn body_before_its_skin_is_built_has_limbs_and_then_takes_any_girth_at_once() {
         let mut session = Session::new();
         while session.work() {}
         let mut director = Director::default();

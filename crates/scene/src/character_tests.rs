@@ -1,6 +1,8 @@
-//! Whatever is drawn belongs to the figure that is shown.
+//! Tests that everything drawn lies at the figure that is shown, for characters of any size.
 
-use super::{Colors, Director, Layer, Look, Pane, Viewport, pose_at, shown_size};
+use crate::{
+    Director, Highlights, Layer, Pane, PathMarks, StageOptions, Viewport, pose_at, shown_size,
+};
 use glam::{Vec3, Vec3Swizzles};
 use segue_formats::gltf::{GlbOptions, write_glb};
 use segue_formats::{ImportOptions, import};
@@ -38,10 +40,15 @@ fn session(link: &str, size: f32) -> Session {
     session
 }
 
-fn staged(director: &mut Director, session: &Session) -> Pane {
-    let viewport = Viewport { x: 0, y: 0, width: 640, height: 480 };
-    let stage =
-        director.stage(session, &[(0, viewport)], 1.0, Look::DARK, &Colors::default(), 20.0);
+fn staged(session: &Session) -> Pane {
+    staged_by(&mut Director::default(), session, Highlights::default())
+}
+
+/// Returns the pane that a director shows, with highlights.
+fn staged_by(director: &mut Director, session: &Session, highlights: Highlights) -> Pane {
+    let panes = [(0, Viewport { x: 0, y: 0, width: 640, height: 480 })];
+    let options = StageOptions { panes: &panes, highlights, ..StageOptions::default() };
+    let stage = director.stage(session, &options, 20.0);
     let size = shown_size(session, &session.main_outcome().unwrap().motion);
     assert!((stage.grid_metres * size - 1.0).abs() < 1e-4);
     stage.panes[0].clone()
@@ -81,8 +88,7 @@ fn assert_drawn_together(session: &mut Session, size: f32, what: &str) {
         set(session, Key::Time, Value::Number(secs));
         let motion = Arc::clone(session.main_outcome().unwrap());
         let motion = &motion.motion;
-        let mut director = Director::default();
-        let pane = staged(&mut director, session);
+        let pane = staged(session);
         let shown = session.panes()[0].shown_at(session.now_secs()).unwrap();
         let world = pose_at(motion, shown.secs, &shown.place).unwrap();
         let hips = drawn(&pane, &character, Role::Hips);
@@ -148,12 +154,13 @@ fn handles_of_the_path_lie_along_the_way_of_the_character() {
     let mut session = session("lab=path&a=walk&camera_distance=4&follow_half_life=0&trail=on", 1.6);
     let character = session.character().unwrap();
     let mut director = Director::default();
-    director.mark_path(super::PathMarks { handles: true, ..super::PathMarks::default() });
+    let path = PathMarks { handles: true, ..PathMarks::default() };
+    let highlights = Highlights { path, ..Highlights::default() };
     let mut farthest = 0.0f32;
     for step in 0..=4 {
         let secs = session.main_outcome().unwrap().duration_secs() * f64::from(step) / 4.0;
         set(&mut session, Key::Time, Value::Number(secs));
-        let pane = staged(&mut director, &session);
+        let pane = staged_by(&mut director, &session, highlights.clone());
         let hips = drawn(&pane, &character, Role::Hips);
         let dots = pane.strokes.iter().filter(|stroke| stroke.layer == Layer::Over);
         let nearest =
@@ -222,7 +229,7 @@ fn an_exported_character_is_the_one_on_the_stage() {
         let mut farthest = 0.0f32;
         for frame in 0..motion.clip().frames() {
             set(&mut session, Key::Time, Value::Number(motion.clip().time_of(frame)));
-            let pane = staged(&mut director, &session);
+            let pane = staged_by(&mut director, &session, Highlights::default());
             let skin = pane.figures[0].skin.as_ref().unwrap();
             // A link keeps the time to the millisecond.
             let pose = back.clip.sample(session.now_secs(), Interpolation::Linear).unwrap();

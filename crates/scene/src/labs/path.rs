@@ -1,12 +1,12 @@
-//! The Path lab on the stage: the way as it was, the path that was fitted to it, the path as it is
+//! The Path lab: the way as it was, the path that was fitted to it, the path as it is
 //! now, and its control points.
 
-use super::{Color, Colors, Layer, Look, Pane, with_alpha};
+use crate::{Color, Colors, Layer, Look, Pane, with_alpha};
 use glam::{DVec2, Vec3};
 use segue_motion::path::{Road, Waypoint};
 use segue_session::OnPath;
 
-/// What the hand does with the path.
+/// What is pointed at, held and drawn of a path.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PathMarks {
     /// Whether control points are to be seen.
@@ -27,20 +27,20 @@ pub struct PathMarks {
 const POINTS: usize = 24;
 /// Time between two of the lines that show what the fit leaves over, seconds.
 const RESIDUAL_SECS: f64 = 0.1;
-/// At most so many of them are drawn.
-const RESIDUALS: usize = 400;
-/// Heights above the ground in which lines lie over each other, metres.
+/// Lines that show what the fit leaves over, at most.
+const MAX_RESIDUALS: usize = 400;
+/// Height above the ground of the original way, metres; the other lines lie above it.
 const LOWEST: f32 = 0.003;
-/// Likewise.
+/// Height above the ground of the fitted path, metres.
 const MIDDLE: f32 = 0.005;
-/// Likewise.
+/// Height above the ground of the edited path, metres.
 const HIGHEST: f32 = 0.007;
 /// Radius of a control point, points.
 const HANDLE: f32 = 6.0;
 
 /// Adds everything to a pane whose camera is set later; control points are lines on the ground
 /// plane over everything.
-pub(super) fn add_path(
+pub(crate) fn add_path(
     path: &OnPath,
     marks: &PathMarks,
     look: &Look,
@@ -72,12 +72,12 @@ pub(super) fn add_path(
 }
 
 /// Adds the line that is being drawn by hand.
-pub(super) fn add_drawn(marks: &PathMarks, colors: &Colors, pane: &mut Pane) {
+pub(crate) fn add_drawn(marks: &PathMarks, colors: &Colors, pane: &mut Pane) {
     let drawn = marks.drawn.iter().map(|&point| (on_ground(point, HIGHEST), colors.result));
     pane.add_path(drawn, 3.0, Layer::Over);
 }
 
-/// The way of the hips in A's colour, the path fitted to it, and short lines between: what is
+/// Adds the way of the hips in A's colour, the path fitted to it, and short lines between: what is
 /// carried along.
 fn add_original(path: &OnPath, colors: &Colors, pane: &mut Pane) {
     let (motion, places) = (path.fitted.motion(), path.fitted.places());
@@ -96,7 +96,7 @@ fn add_original(path: &OnPath, colors: &Colors, pane: &mut Pane) {
         pane.add_dashed_path(fitted, with_alpha(colors.a, 0.8), 0.08, 1.5, Layer::Ground);
     }
     let apart = (motion.clip().fps() * RESIDUAL_SECS)
-        .max(places.len() as f64 / RESIDUALS as f64)
+        .max(places.len() as f64 / MAX_RESIDUALS as f64)
         .max(1.0) as usize;
     for (place, character) in places.iter().zip(way).step_by(apart) {
         let from = on_ground(place.frame.shift, LOWEST);
@@ -110,7 +110,7 @@ fn add_original(path: &OnPath, colors: &Colors, pane: &mut Pane) {
     }
 }
 
-/// The path as it is now; where it turns too hard, in the colour of a warning.
+/// Adds the path as it is now; where it turns too hard, in the colour of a warning.
 fn add_edited(path: &OnPath, colors: &Colors, pane: &mut Pane) {
     let places = curve(&path.road);
     pane.add_path(
@@ -145,12 +145,13 @@ fn add_edited(path: &OnPath, colors: &Colors, pane: &mut Pane) {
     }
 }
 
-/// What stands out from the ground.
+/// Returns a colour that stands out from the ground.
 fn contrast(look: &Look) -> Color {
     let is_light = look.background_top[1] > 0.5;
     with_alpha(if is_light { look.edge } else { look.clay }, 1.0)
 }
 
+/// Returns places along a road, evenly.
 fn curve(road: &Road) -> Vec<Waypoint> {
     road.evenly(road.spline().points().len() * POINTS)
 }
@@ -159,7 +160,7 @@ fn on_ground(point: DVec2, height: f32) -> Vec3 {
     Vec3::new(point.x as f32, height, point.y as f32)
 }
 
-/// A line so short that only its round ends are seen.
+/// Adds a dot: a line so short that only its round ends are seen.
 fn add_dot(point: DVec2, radius: f32, color: Color, pane: &mut Pane) {
     let at = on_ground(point, HIGHEST);
     pane.add_line(at, at + Vec3::X * 1e-4, color, 2.0 * radius, Layer::Over);

@@ -1,0 +1,140 @@
+//! Marks on a figure: bones, axes, contacts, the chosen joint and its trail.
+
+use crate::director::{DrawContext, Shown};
+use crate::{Body, Color, Colors, Layer, Lens, Pane, pose_at, with_alpha};
+use glam::Vec3;
+use segue_motion::clip::Motion;
+use segue_motion::skeleton::{Role, Side, WorldPose};
+use segue_session::{Key, joint_of};
+
+/// A planted foot that moves faster than this slides.
+const SLIDE_MPS: f32 = 0.08;
+/// Radius of the ring around the chosen joint, as a share of the distance that it is seen from: it
+/// is of one size wherever the camera stands.
+const MARK_RADIUS: f32 = 0.011;
+
+/// Marks the chosen joint of a result. The pane has its camera by now.
+pub(crate) fn add_joint_mark(shown: &Shown<'_>, context: &mut DrawContext<'_>, pane: &mut Pane) {
+    let motion = &shown.outcome.motion;
+    let Some(joint) = joint_of(motion, context.params.text(Key::Joint)) else {
+        return;
+    };
+    let body = context.bodies.body(motion);
+    if let Some(&at) = body.drawn_pose(&shown.world).positions.get(body.drawn_joint(joint)) {
+        add_mark(at, context.colors.result, context.look.edge, pane);
+    }
+}
+
+/// Adds the way of a joint of the figure, a second before and behind the present.
+pub(crate) fn add_joint_trail(
+    shown: &Shown<'_>,
+    body: &Body,
+    joint: usize,
+    color: Color,
+    pane: &mut Pane,
+) {
+    /// How much of the way is shown, before and after the present.
+    const REACH_SECS: f64 = 1.0;
+    const STEPS: i32 = 60;
+    let motion = &shown.outcome.motion;
+    let joint = body.drawn_joint(joint);
+    let points = (-STEPS..=STEPS).filter_map(|step| {
+        let part = f64::from(step) / f64::from(STEPS);
+        let at = shown.now + part * REACH_SECS;
+        let inside = (0.0..=motion.clip().duration_secs()).contains(&at);
+        let world = inside.then(|| pose_at(motion, at, &shown.place)).flatten()?;
+        let position = *body.drawn_pose(&world).positions.get(joint)?;
+        Some((position, with_alpha(color, 1.0 - 0.85 * part.abs() as f32)))
+    });
+    pane.add_path(points, 1.75, Layer::Space);
+}
+
+/// Adds a dot in a ring over everything, turned to the camera, both with an edge that sets them off
+/// from the body.
+fn add_mark(at: Vec3, color: Color, edge: Color, pane: &mut Pane) {
+    const CORNERS: u16 = 28;
+    let [right, up, _] = pane.camera.axes();
+    let seen_from = match pane.camera.lens {
+        Lens::Perspective => (at - pane.camera.eye()).length(),
+        Lens::Orthographic => pane.camera.distance,
+    };
+    let radius = MARK_RADIUS * seen_from;
+    let corner = |index: u16| {
+        let angle = std::f32::consts::TAU * f32::from(index) / f32::from(CORNERS);
+        at + (right * angle.cos() + up * angle.sin()) * radius
+    };
+    for (color, wider) in [(edge, 1.5), (color, 0.0)] {
+        // The dot is a line so short that only its round ends are seen.
+        pane.add_line(at, at + right * (radius * 1e-3), color, 4.5 + wider, Layer::Over);
+        pane.add_path((0..=CORNERS).map(|index| (corner(index), color)), 2.0 + wider, Layer::Over);
+    }
+}
+
+/// Adds the bones of the figure that a pose of `motion` moves.
+pub(crate) fn add_bones(
+    body: &Body,
+    motion: &Motion,
+    world: &WorldPose,
+    color: Color,
+    pane: &mut Pane,
+) {
+    let (skeleton, _) = body.drawn_rig((motion.clip().skeleton(), motion.roles()));
+    let world = body.drawn_pose(world);
+    for (index, joint) in skeleton.joints().iter().enumerate() {
+        if let Some(parent) = joint.parent {
+            pane.add_line(world.positions[parent], world.positions[index], color, 2.0, Layer::Over);
+        }
+        if let Some(end) = joint.end_site {
+            pane.add_line(
+                world.positions[index],
+                world.point(index, end),
+                with_alpha(color, 0.6),
+                2.0,
+                Layer::Over,
+            );
+        }
+    }
+}
+
+/// Adds the three axes of every joint.
+pub(crate) fn add_axes(world: &WorldPose, colors: &Colors, pane: &mut Pane) {
+    const LENGTH_M: f32 = 0.07;
+    for (&position, &rotation) in world.positions.iter().zip(&world.rotations) {
+        for (axis, color) in [(Vec3::X, colors.bad), (Vec3::Y, colors.result), (Vec3::Z, colors.b)]
+        {
+            pane.add_line(position, position + rotation * axis * LENGTH_M, color, 1.5, Layer::Over);
+        }
+    }
+}
+
+/// Adds a ring under each planted foot of the figure, red where it slides.
+pub(crate) fn add_contacts(shown: &Shown<'_>, body: &Body, colors: &Colors, pane: &mut Pane) {
+    let (motion, now) = (&shown.outcome.motion, shown.now);
+    let frame = segue_session::frame_at(motion, now);
+    let dt = motion.clip().dt_secs();
+    if !Side::BOTH.iter().any(|&side| motion.contacts().planted(side, frame)) {
+        return;
+    }
+    let (_, roles) = body.drawn_rig((motion.clip().skeleton(), motion.roles()));
+    let world = body.drawn_pose(&shown.world);
+    let earlier = pose_at(motion, now - f64::from(dt), &shown.place);
+    let earlier = earlier.as_ref().map(|earlier| body.drawn_pose(earlier));
+    for side in Side::BOTH {
+        if !motion.contacts().planted(side, frame) {
+            continue;
+        }
+        let Some(foot) = roles.get(Role::foot(side)) else {
+            continue;
+        };
+        let joint = roles.get(Role::toe(side)).unwrap_or(foot);
+        let (Some(&toe), Some(&ankle)) = (world.positions.get(joint), world.positions.get(foot))
+        else {
+            continue;
+        };
+        let before =
+            earlier.as_ref().and_then(|world| world.positions.get(joint).copied()).unwrap_or(toe);
+        let slides = (toe - before).with_y(0.0).length() / dt > SLIDE_MPS;
+        let middle = toe.lerp(ankle, 0.35).with_y(0.0);
+        pane.add_contact(middle, if slides { colors.bad } else { colors.result }, slides);
+    }
+}

@@ -1,0 +1,56 @@
+//! Colours, and those that the theme gives to the parts of a motion.
+
+/// Red, green, blue, alpha, each 0–1; sRGB-encoded as in a palette, alpha straight.
+pub type Color = [f32; 4];
+
+/// An opaque colour from its hexadecimal form: `rgb(0x0f1115)`.
+#[must_use]
+pub const fn rgb(hex: u32) -> Color {
+    [
+        (hex >> 16 & 0xff) as f32 / 255.0,
+        (hex >> 8 & 0xff) as f32 / 255.0,
+        (hex & 0xff) as f32 / 255.0,
+        1.0,
+    ]
+}
+
+/// The colour with another alpha.
+#[must_use]
+pub const fn with_alpha(color: Color, alpha: f32) -> Color {
+    [color[0], color[1], color[2], alpha]
+}
+
+/// An opaque colour between two.
+pub(crate) fn mixed(from: Color, to: Color, share: f32) -> Color {
+    let between = |channel: usize| from[channel] + (to[channel] - from[channel]) * share;
+    [between(0), between(1), between(2), 1.0]
+}
+
+/// The colours of what is made from A, from B, and from both, in the theme of the page.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Colors {
+    /// A's ghost and path.
+    pub a: Color,
+    /// B's ghost and path.
+    pub b: Color,
+    /// The result's path, and the ring of a planted foot.
+    pub result: Color,
+    /// The ring of a foot that slides.
+    pub bad: Color,
+    /// Where a path turns faster than the motion on it can.
+    pub warning: Color,
+    /// Those who play along, each with its ghost and path.
+    pub others: [Color; 4],
+    /// How much a ghost covers, 0 to 1.
+    pub ghost_alpha: f32,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hex_is_exact() {
+        assert_eq!(rgb(0x0f_11_15), [15.0 / 255.0, 17.0 / 255.0, 21.0 / 255.0, 1.0]);
+    }
+}

@@ -1,0 +1,248 @@
+//! From the session to the stage, frame after frame.
+
+mod cameras;
+
+use crate::body_cache::BodyCache;
+use crate::framing::{figure_height, resting_place, resting_point};
+use crate::labs::path::PathMarks;
+use crate::{
+    Camera, CameraRig, Color, Colors, Look, Pane, Skinning, Stage, Viewport, annotations,
+    extra_characters, labs, pose_at, result, sources, with_alpha,
+};
+use segue_motion::clip::Motion;
+use segue_motion::graph;
+use segue_motion::matching;
+use segue_motion::math::Planar;
+use segue_motion::skeleton::WorldPose;
+use segue_session::choices;
+use segue_session::{Key, Outcome, Params, Session};
+use std::sync::Arc;
+
+/// How a session is shown: where its panes lie, in which colours, and what is highlighted.
+#[derive(Clone, Debug)]
+pub struct StageOptions<'a> {
+    /// The panes that are shown: index in the session, and place in physical pixels.
+    pub panes: &'a [(usize, Viewport)],
+    /// Physical pixels per point: widths of lines are in points.
+    pub pixels_per_point: f32,
+    /// Colours and light of the empty stage.
+    pub look: Look,
+    /// Colours of the motions.
+    pub colors: Colors,
+    /// What the pointer highlights.
+    pub highlights: Highlights,
+}
+
+impl Default for StageOptions<'_> {
+    fn default() -> Self {
+        Self {
+            panes: &[],
+            pixels_per_point: 1.0,
+            look: Look::DARK,
+            colors: Colors::default(),
+            highlights: Highlights::default(),
+        }
+    }
+}
+
+/// What the pointer highlights on the stage, or shows there in place of the result.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Highlights {
+    /// Whether the chosen joint is marked.
+    pub joint: bool,
+    /// The pair of frames of A and B (at A's rate) that is shown, aligned, in place of the result.
+    pub pair: Option<[f64; 2]>,
+    /// The transition whose windows are shown, laid on each other, in place of the result.
+    pub jump: Option<[graph::Place; 2]>,
+    /// The frame that is shown as a ghost where the driven character stands.
+    pub candidate: Option<matching::Place>,
+    /// What is done with a path.
+    pub path: PathMarks,
+}
+
+/// Makes the stage from the session, and keeps what goes on from frame to frame: cameras on their
+/// way, and the bodies of skeletons.
+#[derive(Debug, Default)]
+pub struct Director {
+    stage: Arc<Stage>,
+    rigs: Vec<CameraRig>,
+    bodies: BodyCache,
+}
+
+impl Director {
+    /// Returns everything that is to be seen now. `dt_secs` moves the cameras on.
+    pub fn stage(
+        &mut self,
+        session: &Session,
+        options: &StageOptions<'_>,
+        dt_secs: f32,
+    ) -> Arc<Stage> {
+        let now = session.now_secs();
+        // Taken out, so that memory is kept where the last stage is not drawn any longer.
+        let mut panes = std::mem::take(&mut Arc::make_mut(&mut self.stage).panes);
+        panes.resize_with(options.panes.len(), Pane::default);
+        self.rigs.resize_with(session.panes().len(), CameraRig::default);
+        self.bodies.update(session);
+        let mut context = DrawContext {
+            session,
+            params: session.params(),
+            look: &options.look,
+            colors: &options.colors,
+            highlights: &options.highlights,
+            bodies: &mut self.bodies,
+        };
+        let first =
+            options.panes.iter().find_map(|&(index, _)| session.panes().get(index)?.shown_at(now));
+        let size = first.map_or(1.0, |shown| context.bodies.body(&shown.outcome.motion).size());
+        let shown_size = size * figure_height(context.params);
+        for (pane, &(index, viewport)) in panes.iter_mut().zip(options.panes) {
+            pane.clear();
+            pane.viewport = viewport;
+            pane.skinning = skinning_of(session, index);
+            let Some(source) = session.panes().get(index) else {
+                continue;
+            };
+            let shown = source.shown_at(now);
+            let (shown, followed, rest) = if let Some(shown) = shown {
+                let Some(shown) = Shown::new(shown) else {
+                    continue;
+                };
+                add_contents(index, &shown, &mut context, pane);
+                let followed = cameras::followed_point(&shown, &mut context);
+                let rest = resting_point(shown.outcome, &shown.place);
+                (Some(shown), followed, rest)
+            } else {
+                sources::add_stand_ins(source, now, &mut context, pane);
+                let Some(first) = source.sources.first() else {
+                    continue;
+                };
+                (None, None, resting_place(&first.motion, &first.world_from_clip))
+            };
+            if let Some(rig) = self.rigs.get_mut(index) {
+                let aim = cameras::Aim { followed, rest, shown_size };
+                cameras::aim(rig, &aim, &context, dt_secs, pane);
+            }
+            if let Some(shown) = shown.filter(|_| options.highlights.joint) {
+                annotations::add_joint_mark(&shown, &mut context, pane);
+            }
+        }
+        let stage = Arc::make_mut(&mut self.stage);
+        stage.panes = panes;
+        stage.look = options.look;
+        stage.pixels_per_point = options.pixels_per_point;
+        stage.grid_metres = shown_size.recip();
+        Arc::clone(&self.stage)
+    }
+
+    /// Does a millisecond or two of what takes longer than a frame: the skins of skeletons that
+    /// were seen. Until a skin is there, a body consists of limbs. Returns whether more is left.
+    pub fn work(&mut self) -> bool {
+        self.bodies.work()
+    }
+
+    /// Returns whether a skin that will be seen is being made.
+    #[must_use]
+    pub fn is_at_work(&self) -> bool {
+        self.bodies.is_at_work()
+    }
+
+    /// Returns whether a camera is still on its way, so that another frame is needed.
+    #[must_use]
+    pub fn is_moving(&self) -> bool {
+        self.rigs.iter().any(|rig| !rig.is_still())
+    }
+
+    /// Returns the camera of a pane, as it was drawn last.
+    #[must_use]
+    pub fn camera(&self, pane: usize) -> Option<&Camera> {
+        self.rigs.get(pane).map(CameraRig::camera)
+    }
+}
+
+/// Everything that the contents of a pane are made from.
+pub(crate) struct DrawContext<'a> {
+    pub(crate) session: &'a Session,
+    pub(crate) params: &'a Params,
+    pub(crate) look: &'a Look,
+    pub(crate) colors: &'a Colors,
+    pub(crate) highlights: &'a Highlights,
+    pub(crate) bodies: &'a mut BodyCache,
+}
+
+/// A result as it is shown now.
+pub(crate) struct Shown<'a> {
+    pub(crate) outcome: &'a Outcome,
+    /// The time in its motion, seconds.
+    pub(crate) now: f64,
+    /// Where the motion lies in the world.
+    pub(crate) place: Planar,
+    /// The pose.
+    pub(crate) world: WorldPose,
+}
+
+impl<'a> Shown<'a> {
+    /// Poses a result; `None` where its motion has no pose.
+    fn new(shown: segue_session::Shown<'a>) -> Option<Self> {
+        let segue_session::Shown { outcome, secs: now, place } = shown;
+        Some(Self { outcome, now, place, world: pose_at(&outcome.motion, now, &place)? })
+    }
+
+    /// Returns where the result stands now.
+    pub(crate) fn standing(&self) -> Planar {
+        self.place.after(&self.outcome.motion.standing_at(self.now))
+    }
+}
+
+impl DrawContext<'_> {
+    /// Adds the ghost of a motion at a time, where the motion lies at `world_from_clip`.
+    pub(crate) fn add_ghost(
+        &mut self,
+        motion: &Motion,
+        secs: f64,
+        world_from_clip: &Planar,
+        color: Color,
+        pane: &mut Pane,
+    ) {
+        if let Some(world) = pose_at(motion, secs, world_from_clip) {
+            pane.add_ghost(&self.bodies.body(motion), &world, color);
+        }
+    }
+
+    /// Returns the colour of a ghost that stands alone: clearer than beside a result.
+    pub(crate) fn lone_ghost(&self, color: Color, clear: f32) -> Color {
+        /// How many times as much as a ghost beside a result it covers.
+        const ALPHA: f32 = 1.8;
+        with_alpha(color, (ALPHA * clear * self.colors.ghost_alpha).min(0.9))
+    }
+}
+
+/// Adds everything that a pane shows of a result and around it.
+fn add_contents(index: usize, shown: &Shown<'_>, context: &mut DrawContext<'_>, pane: &mut Pane) {
+    let Highlights { pair, jump, .. } = *context.highlights;
+    let pair = pair.zip(context.session.distance_map());
+    let jump = jump.zip(context.session.graph_built());
+    match (pair, jump) {
+        (Some((frames, map)), _) => labs::register::add_pair(shown, frames, map, context, pane),
+        (None, Some((ends, built))) => labs::graph::add_jump(shown, ends, built, context, pane),
+        (None, None) => result::add_result(shown, context, pane),
+    }
+    extra_characters::add_extra_characters(context, pane);
+    labs::graph::add_asked_path(context, pane);
+    labs::path::add_drawn(&context.highlights.path, context.colors, pane);
+    if index == 0 {
+        labs::match_::add_crowd(shown, context, pane);
+    }
+}
+
+/// Returns how the skins of a pane follow their joints: the pane's own way where that is compared,
+/// else the parameters'.
+fn skinning_of(session: &Session, pane: usize) -> Skinning {
+    let compared = session.panes().get(pane).and_then(|pane| match &pane.variant {
+        Some((Key::Skinning, value)) => value.choice(),
+        _ => None,
+    });
+    match compared.unwrap_or(session.params().choice()) {
+        choices::Skinning::Linear => Skinning::Linear,
+        choices::Skinning::Dual => Skinning::Dual,
+    }
+}

@@ -1,0 +1,7 @@
+//! What single labs show beside a result.
+
+pub(crate) mod graph;
+pub(crate) mod layers;
+pub(crate) mod match_;
+pub(crate) mod path;
+pub(crate) mod register;

@@ -1,0 +1,68 @@
+//! The clips that a result is made of, as ghosts.
+
+use crate::director::{DrawContext, Shown};
+use crate::{Color, Colors, Pane, labs, with_alpha};
+use segue_session::Slot;
+
+/// A ghost fades in before the transition and out behind it, over this long.
+pub(crate) const GHOST_FADE_SECS: f64 = 0.3;
+
+/// Adds both sources around the transition, as far as they differ from the result: A appears as its
+/// weight falls, B vanishes as its weight rises.
+pub(crate) fn add_sources(shown: &Shown<'_>, context: &mut DrawContext<'_>, pane: &mut Pane) {
+    let Shown { outcome, now, place, .. } = shown;
+    let ghost_alpha = context.colors.ghost_alpha;
+    if let Some(walk) = outcome.walk().filter(|walk| !walk.is_jump) {
+        labs::graph::add_walk_sources(shown, walk, context, pane);
+        return;
+    }
+    if outcome.registered().is_some() {
+        labs::register::add_sources_beside(shown, context, pane);
+        return;
+    }
+    let Some(transition) = outcome.transition else {
+        return;
+    };
+    let length = transition.end_secs - transition.start_secs;
+    let inside = ((now - transition.start_secs) / length.max(1e-6)).clamp(0.0, 1.0);
+    let before = ((transition.start_secs - now) / GHOST_FADE_SECS).max(0.0);
+    let behind = ((now - transition.end_secs) / GHOST_FADE_SECS).max(0.0);
+    for source in &outcome.sources {
+        let at = now - source.starts_at_secs;
+        let share = match source.slot {
+            Slot::A => inside * (1.0 - behind),
+            Slot::B => (1.0 - inside) * (1.0 - before),
+        };
+        // Half of the way there a ghost is as clear as it gets: only where it lies on the result it
+        // must not be seen.
+        let share = (2.0 * share).clamp(0.0, 1.0) as f32;
+        if share < 0.02 || !(0.0..=source.motion.clip().duration_secs()).contains(&at) {
+            continue;
+        }
+        let color = with_alpha(slot_color(source.slot, context.colors), ghost_alpha * share);
+        context.add_ghost(&source.motion, at, &place.after(&source.world_from_clip), color, pane);
+    }
+}
+
+/// Adds the clips that a result could not be made of, in its place.
+pub(crate) fn add_stand_ins(
+    refused: &segue_session::Pane,
+    now: f64,
+    context: &mut DrawContext<'_>,
+    pane: &mut Pane,
+) {
+    for source in &refused.sources {
+        let color = slot_color(source.slot, context.colors);
+        let color = with_alpha(color, context.colors.ghost_alpha);
+        let at = now.min(source.motion.clip().duration_secs());
+        context.add_ghost(&source.motion, at, &source.world_from_clip, color, pane);
+    }
+}
+
+/// Returns the colour of a slot.
+pub(crate) fn slot_color(slot: Slot, colors: &Colors) -> Color {
+    match slot {
+        Slot::A => colors.a,
+        Slot::B => colors.b,
+    }
+}
