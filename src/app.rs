@@ -26,7 +26,9 @@ use picture::Picture;
 #[cfg(target_arch = "wasm32")]
 use segue_session::Storing;
 use segue_session::export::file_name;
-use segue_session::{Command, CommandError, Key, Lesson, Level, Session, Value, link};
+use segue_session::{
+    Command, CommandError, Key, Lesson, Level, PlaybackCommand, Session, Value, link,
+};
 use segue_text::{ToMessage, msg};
 use speech::{Speech, Spoken};
 use std::cell::{Cell, RefCell};
@@ -193,7 +195,7 @@ impl Segue {
         let now_ms = platform::now_ms();
         Self {
             session: if platform::READS_ELSEWHERE {
-                Session::that_has_files_read()
+                Session::with_external_reader()
             } else {
                 Session::new()
             },
@@ -275,7 +277,7 @@ impl Segue {
     /// hand.
     fn begin(&mut self) {
         if platform::prefers_stillness() && self.session.params().is_on(Key::Play) {
-            self.obey(Command::TogglePlay);
+            self.obey(Command::Playback(PlaybackCommand::TogglePlay));
         }
     }
 
@@ -399,7 +401,7 @@ impl Segue {
         self.panels.cameras = self.picture.cameras(self.session.panes().len());
         self.panels.language =
             self.speech.tend(&self.session, &mut self.window.spoken, &self.inbox, ui.ctx());
-        self.session.read_lessons_in(self.panels.language.tag());
+        self.session.set_lesson_language(self.panels.language.tag());
         self.panels.fetching = self.downloads.under_way().collect();
         self.panels.stored = self.keeper.progress();
         if self.session.is_driven() {

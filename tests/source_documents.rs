@@ -414,7 +414,7 @@ fn the_camera_stays_with_any_character_that_plays_along() {
     ] {
         let session = opened(&format!("{link}{follow}"));
         let followed = match other {
-            Some(other) => session.company()[other].motion.clone().expect("it is there"),
+            Some(other) => session.extra_characters()[other].motion.clone().expect("it is there"),
             None => outcome(&session, 0).motion.clone(),
         };
         let panes = [(0, Viewport::default())];

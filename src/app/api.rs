@@ -18,8 +18,8 @@ use segue_session::export::{
 use segue_session::outside;
 use segue_session::reading::Content;
 use segue_session::{
-    ClipInfo, Command, CommandError, Key, Kind, Loaded, Made, PARAMS, Pane, Param, ReportFacts,
-    Value, check_graph_clips, file_stem, frame_at, report,
+    ClipInfo, Command, CommandError, FileCommand, Key, Kind, Loaded, Made, PARAMS, Pane, Param,
+    PlaybackCommand, ReportFacts, Value, check_graph_clips, file_stem, frame_at, report,
 };
 use serde::Serialize;
 use serde_json::{Map, Value as Json};
@@ -255,7 +255,7 @@ impl Segue {
             .into_iter()
             .find(|job| job.kind.name() == name && job.task.is_some());
         if let Some(task) = reading.and_then(|job| job.task) {
-            self.obey(Command::StopReading(task));
+            self.obey(Command::File(FileCommand::StopReading(task)));
         } else if self.downloads.under_way().any(|(fetched, _)| fetched == name)
             || self.downloads.lessons_under_way().any(|lesson| lesson == name)
         {
@@ -289,7 +289,8 @@ impl Segue {
         if self.session.params().is_on(Key::Play) == on {
             return Ok(());
         }
-        self.apply(Command::TogglePlay).map_err(|error| error.to_string())
+        self.apply(Command::Playback(PlaybackCommand::TogglePlay))
+            .map_err(|error| error.to_string())
     }
 
     /// Moves the playhead.
@@ -297,7 +298,8 @@ impl Segue {
         if !secs.is_finite() {
             return Err(format!("seek: found {secs}, expected seconds"));
         }
-        self.apply(Command::Seek(secs)).map_err(|error| error.to_string())
+        self.apply(Command::Playback(PlaybackCommand::Seek(secs)))
+            .map_err(|error| error.to_string())
     }
 
     /// The playhead, seconds.

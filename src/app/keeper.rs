@@ -322,7 +322,7 @@ fn files_of(session: &Session, vault: &Vault) -> StoredFiles {
 mod tests {
     use super::*;
     use crate::platform::FileBytes;
-    use segue_session::{Command, Key, Slot, Value};
+    use segue_session::{Command, Key, PlaybackCommand, Slot, Value};
     use std::sync::Arc;
 
     const STANDING: &str = "HIERARCHY ROOT Hips { OFFSET 0 1 0 CHANNELS 1 Yrotation End Site { OFFSET 0 0.7 0 } } MOTION Frames: 2 Frame Time: .1\n1\n2";
@@ -382,7 +382,7 @@ mod tests {
     fn who_wants_little_motion_gets_the_work_back_from_a_slow_storage() {
         let (mut keeper, mut session) = keeper("");
         keeper.wait(&mut session, &mut Vault::default(), 1151.0);
-        session.apply(Command::TogglePlay).unwrap();
+        session.apply(Command::Playback(PlaybackCommand::TogglePlay)).unwrap();
         keeper.has_begun(&session);
         keeper.arrived(&mut session, &mut Vault::default(), Some(stored("blend_window=24")));
         assert_eq!(session.query(), "blend_window=24");

@@ -13,7 +13,8 @@ use segue_formats::ImportOptions;
 use segue_motion::clip::{Motion, UpAxis, ground_speed};
 use segue_motion::skeleton::{Channel, Role, Skeleton};
 use segue_session::{
-    Command, Entry, Key, Origin, Session, SourceFile, Value, format_number, joint_of, word_of_joint,
+    Command, Entry, FileCommand, Key, Origin, Session, SourceFile, Value, format_number, joint_of,
+    word_of_joint,
 };
 use segue_text::ToMessage;
 
@@ -105,8 +106,9 @@ fn overrides_ui(
     ui: &mut Ui,
 ) {
     let options = file.options;
-    let mut reread =
-        |options: ImportOptions| out.commands.push(Command::Reimport(entry.id.clone(), options));
+    let mut reread = |options: ImportOptions| {
+        out.commands.push(Command::File(FileCommand::Reimport(entry.id.clone(), options)))
+    };
     let provenance = motion.clip().provenance();
 
     let known =
@@ -218,7 +220,11 @@ fn roles_ui(entry: &Entry, motion: &Motion, out: &mut Out, ui: &mut Ui) {
     for role in Role::ALL {
         if let Some(joint) = kit::choice_row_ui(role.name(), motion.roles().get(role), &options, ui)
         {
-            out.commands.push(Command::CorrectRole(entry.id.clone(), role, joint));
+            out.commands.push(Command::File(FileCommand::CorrectRole(
+                entry.id.clone(),
+                role,
+                joint,
+            )));
         }
     }
 }

@@ -13,7 +13,7 @@ use super::text;
 use super::theme::theme_of;
 use eframe::egui::{Event, Id, Key as Keyboard, Memory, Modifiers, Popup, Ui};
 use segue_session::choices::{Camera, Follow, Look};
-use segue_session::{Command, Key, Kind, Session, Value};
+use segue_session::{Command, Key, Kind, PlaybackCommand, Session, Value};
 
 /// Something that a button, a line of a menu or a key asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -274,12 +274,14 @@ impl UiCommand {
         let Target { session, state, out, ui } = target;
         let params = session.params();
         match self {
-            Self::TogglePlay => out.commands.push(Command::TogglePlay),
-            Self::StepBack => out.commands.push(Command::Step(-1)),
-            Self::StepOn => out.commands.push(Command::Step(1)),
-            Self::TenBack => out.commands.push(Command::Step(-10)),
-            Self::TenOn => out.commands.push(Command::Step(10)),
-            Self::ToBeginning => out.commands.push(Command::Seek(session.span().start)),
+            Self::TogglePlay => out.commands.push(Command::Playback(PlaybackCommand::TogglePlay)),
+            Self::StepBack => out.commands.push(Command::Playback(PlaybackCommand::Step(-1))),
+            Self::StepOn => out.commands.push(Command::Playback(PlaybackCommand::Step(1))),
+            Self::TenBack => out.commands.push(Command::Playback(PlaybackCommand::Step(-10))),
+            Self::TenOn => out.commands.push(Command::Playback(PlaybackCommand::Step(10))),
+            Self::ToBeginning => {
+                out.commands.push(Command::Playback(PlaybackCommand::Seek(session.span().start)))
+            }
             Self::Mark(key) => out.set_once(key, Value::Number(session.now_secs())),
             Self::ClearMark(key) => out.commands.push(Command::Reset(key)),
             Self::Slower | Self::Faster => {

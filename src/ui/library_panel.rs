@@ -10,7 +10,7 @@ use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{self, Frame, Id, Key as Keyboard, Margin, Panel, RichText, ScrollArea, Ui};
 use segue_session::export::{ExportFormat, ExportOptions};
-use segue_session::{Command, Entry, Key, Origin, Session, Slot};
+use segue_session::{Command, Entry, FileCommand, Key, Origin, Session, Slot};
 
 /// The share of the memory from which on it is shown how much is in use.
 const MEMORY_SHOWN_FROM: f32 = 0.25;
@@ -86,7 +86,7 @@ pub(crate) fn drop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
         let megabytes = size as f64 / 1e6;
         let detail = format!("{:.0} of {megabytes:.0} MB", job.progress * megabytes);
         if kit::progress_row_ui(job.kind.name(), Some(job.progress as f32), &detail, ui) {
-            out.commands.push(Command::StopReading(task));
+            out.commands.push(Command::File(FileCommand::StopReading(task)));
         }
     }
     if let Some((come, asked)) = session.samples_progress() {
@@ -113,7 +113,7 @@ fn samples_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     for set in Session::sample_sets() {
         let item = MenuItem { text: set.label, icon: Some(Icon::Download), ..MenuItem::default() };
         if kit::menu_item_ui(item, ui).clicked() {
-            out.commands.push(Command::LoadSamples(set));
+            out.commands.push(Command::File(FileCommand::LoadSamples(set)));
         }
     }
     for sample in Session::samples() {

@@ -9,7 +9,7 @@ use super::state::UiState;
 use super::text;
 use super::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{self, Align2, Grid, RichText, Stroke, StrokeKind, Ui};
-use segue_session::{Command, Level, Session};
+use segue_session::{Command, FileCommand, Level, Session};
 
 /// All of them.
 pub(crate) fn overlays_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
@@ -47,7 +47,7 @@ fn notices_ui(session: &Session, state: &UiState, out: &mut Out, ui: &mut Ui) {
         && let Some(notice) = list.get(index)
     {
         out.commands.push(match event {
-            NoticeEvent::Acted => Command::Mend(notice.id),
+            NoticeEvent::Acted => Command::File(FileCommand::Mend(notice.id)),
             NoticeEvent::Dismissed => Command::Dismiss(notice.id),
         });
     }

@@ -542,7 +542,8 @@ pub(super) fn framing(
         let frames = shown.outcome.motion.ground_frames();
         frames.iter().map(move |frame| shown.place.after(frame).origin())
     });
-    let company = session.company().iter().filter_map(|companion| companion.motion.as_ref().ok());
+    let company =
+        session.extra_characters().iter().filter_map(|companion| companion.motion.as_ref().ok());
     let company = company
         .flat_map(|motion| motion.ground_frames().iter().map(segue_motion::math::Planar::origin));
     let paths = session.panes().iter().filter_map(|pane| path_of(session, pane));

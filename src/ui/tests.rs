@@ -16,7 +16,8 @@ use segue_session::choices::{Mistake, Selected as _};
 use segue_session::export::{ExportFormat, ExportOptions, export};
 use segue_session::reading::Content;
 use segue_session::{
-    Command, Entry, Kind, Level, Origin, Outcome, PageMemory, Slot, SourceFile, Storing, Value,
+    Command, Entry, FileCommand, Kind, Level, Origin, Outcome, PageMemory, Slot, SourceFile,
+    Storing, Value,
 };
 use std::fmt::Write as _;
 use std::sync::Arc;
@@ -285,7 +286,7 @@ fn what_is_said_by_hand_reads_the_file_again() {
         press(row, &mut harness);
         press(item, &mut harness);
         match harness.state_mut().out.commands.pop() {
-            Some(Command::Reimport(_, options)) => options,
+            Some(Command::File(FileCommand::Reimport(_, options))) => options,
             other => panic!("{row}: {other:?}"),
         }
     };
@@ -295,7 +296,7 @@ fn what_is_said_by_hand_reads_the_file_again() {
     press("Leave out the T-pose", &mut harness);
     let command = harness.state_mut().out.commands.pop();
     assert!(
-        matches!(command, Some(Command::Reimport(_, options)) if !options.drop_t_pose),
+        matches!(command, Some(Command::File(FileCommand::Reimport(_, options))) if !options.drop_t_pose),
         "{command:?}"
     );
     // A rate that is in no list is typed.
@@ -307,7 +308,7 @@ fn what_is_said_by_hand_reads_the_file_again() {
     harness.run();
     let command = harness.state_mut().out.commands.pop();
     assert!(
-        matches!(command, Some(Command::Reimport(_, options)) if options.fps == Some(50.0)),
+        matches!(command, Some(Command::File(FileCommand::Reimport(_, options))) if options.fps == Some(50.0)),
         "{command:?}"
     );
 }
@@ -883,5 +884,8 @@ fn notice_offers_to_mend_a_clip() {
     let mut harness = harness(DESK, DARK, page);
     press(text::MEND, &mut harness);
     let commands = &harness.state().out.commands;
-    assert!(matches!(commands.as_slice(), [.., Command::Mend(_)]), "{commands:?}");
+    assert!(
+        matches!(commands.as_slice(), [.., Command::File(FileCommand::Mend(_))]),
+        "{commands:?}"
+    );
 }

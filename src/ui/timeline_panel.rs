@@ -14,8 +14,8 @@ use segue_motion::clip::{Motion, joint_curve};
 use segue_motion::skeleton::{Role, Side};
 use segue_session::choices;
 use segue_session::{
-    Command, CycleMade, Key, Kind, Outcome, Pane, Registered, Session, Slot, Source, Value,
-    curve_kind, frame_at, joint_of,
+    Command, CycleMade, Key, Kind, Outcome, Pane, PlaybackCommand, Registered, Session, Slot,
+    Source, Value, curve_kind, frame_at, joint_of,
 };
 use std::sync::Arc;
 
@@ -179,7 +179,9 @@ fn timeline_event(event: TimelineEvent, session: &Session, outcome: &Outcome, ou
         TimelineEvent::SetOut(secs) if at_end(session.duration_secs(), secs) => {
             out.set(Key::Out, Value::Auto);
         }
-        TimelineEvent::Seek(secs) => out.commands.push(Command::Seek(secs)),
+        TimelineEvent::Seek(secs) => {
+            out.commands.push(Command::Playback(PlaybackCommand::Seek(secs)))
+        }
         TimelineEvent::ScrubStarted => out.set(Key::Play, Value::Switch(false)),
         TimelineEvent::SetIn(secs) => out.set(Key::In, Value::Number(secs)),
         TimelineEvent::SetOut(secs) => out.set(Key::Out, Value::Number(secs)),

@@ -4,7 +4,7 @@ use super::kit::{self, Transport, TransportEvent};
 use super::out::Out;
 use super::state::Layout;
 use eframe::egui::{Response, Ui};
-use segue_session::{Command, Key, Session, Value};
+use segue_session::{Command, Key, PlaybackCommand, Session, Value};
 
 /// Where the playhead is.
 #[derive(Clone, Copy, Debug)]
@@ -36,10 +36,14 @@ pub(super) fn transport_row_ui(
     };
     let row = ui.horizontal(|ui| kit::transport_ui(&transport, ui));
     match row.inner {
-        Some(TransportEvent::SetPlaying(_)) => out.commands.push(Command::TogglePlay),
+        Some(TransportEvent::SetPlaying(_)) => {
+            out.commands.push(Command::Playback(PlaybackCommand::TogglePlay))
+        }
         Some(TransportEvent::SetRepeat(on)) => out.set_once(Key::Loop, Value::Switch(on)),
         Some(TransportEvent::SetSpeed(speed)) => out.set_once(Key::Rate, Value::Number(speed)),
-        Some(TransportEvent::Step(frames)) => out.commands.push(Command::Step(frames.into())),
+        Some(TransportEvent::Step(frames)) => {
+            out.commands.push(Command::Playback(PlaybackCommand::Step(frames.into())))
+        }
         None => {}
     }
     row.response

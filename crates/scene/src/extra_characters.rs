@@ -17,7 +17,7 @@ const COLOR_SHARE: f32 = 0.55;
 /// Adds the extra characters, each on its way.
 pub(crate) fn add_extra_characters(context: &mut DrawContext<'_>, pane: &mut Pane) {
     let (session, colors) = (context.session, context.colors);
-    for (index, character) in session.company().iter().enumerate() {
+    for (index, character) in session.extra_characters().iter().enumerate() {
         let Ok(motion) = &character.motion else {
             continue;
         };

@@ -1,10 +1,10 @@
 use super::labs::Slot;
 use super::lesson::Source;
 use super::outside::short;
+use super::pane::NoResult;
 use super::params::{Key, Value, ValueError};
 use super::reading::ReadTask;
 use super::samples::{Sample, SampleSet};
-use super::session::NoResult;
 use segue_formats::{ImportError, ImportOptions};
 use segue_motion::matching::Control;
 use segue_motion::skeleton::Role;
@@ -23,33 +23,20 @@ pub enum Command {
     OpenLink(String),
     /// Puts a clip into a slot.
     Assign(Slot, String),
-    /// Loads all takes of a bundled set into the library.
-    LoadSamples(&'static SampleSet),
     /// Takes a clip out of the library.
     Remove(String),
     /// Gives a clip another name.
     Rename(String, String),
-    /// Says by hand which joint of a clip has a role.
-    CorrectRole(String, Role, Option<usize>),
-    /// Reads a clip's file again with other options.
-    Reimport(String, ImportOptions),
     /// Puts the result of a pane, counted from 0, into the library.
     Keep(usize),
-    /// Changes who plays along in the Path lab.
-    Company(CompanyChange),
-    /// What the character of the Match lab is asked for from now on.
-    Steer(Control),
-    /// The character of the Match lab stands at the origin again, and nothing of what it was asked
-    /// for is remembered.
-    RestartDrive,
-    /// Plays what the character was asked for again: it becomes the parameter `drive`.
-    ReplayDrive,
-    /// Moves the playhead, seconds.
-    Seek(f64),
-    /// Moves the playhead by whole frames and pauses.
-    Step(i64),
-    /// Plays or pauses.
-    TogglePlay,
+    /// Changes the library's files.
+    File(FileCommand),
+    /// Moves the playhead, plays or pauses.
+    Playback(PlaybackCommand),
+    /// Drives the characters of the Match lab.
+    Drive(DriveCommand),
+    /// Changes the clips that play beside the result.
+    ExtraCharacters(ExtraCharacterCommand),
     /// Opens several values of a parameter side by side: of a number the full, half and a third, of
     /// a choice those there are.
     Compare(Key),
@@ -62,26 +49,58 @@ pub enum Command {
     Redo,
     /// Takes a message away.
     Dismiss(u64),
-    /// Reads the clips better that a message offers to mend, as one step, and takes the message
-    /// away.
-    Mend(u64),
     /// Gives up making the graph and the walk that are under way, or goes on with them.
     StopGraph(bool),
-    /// Gives up reading a file, by the number of its task.
-    StopReading(u64),
 }
 
-/// Who plays along on the stage of the Path lab: by their place in the list, counted from 0.
+/// A change of the clips that play beside the result, by their place in the list, counted from 0.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum CompanyChange {
-    /// A clip of the library joins.
-    Join(String),
-    /// The result of a pane joins, and is kept in the library; another path can be made then.
-    JoinResult(usize),
-    /// Changes places with what is being edited.
+pub enum ExtraCharacterCommand {
+    /// Adds a clip of the library.
+    Add(String),
+    /// Adds the result of a pane, and keeps it in the library; another path can be made then.
+    AddResult(usize),
+    /// Exchanges a clip with the one that is being edited.
     Edit(usize),
-    /// Leaves the stage; in the library it stays.
-    Leave(usize),
+    /// Removes a clip from the stage; it stays in the library.
+    Remove(usize),
+}
+
+/// A change of the playhead.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PlaybackCommand {
+    /// Moves the playhead, seconds.
+    Seek(f64),
+    /// Moves the playhead by whole frames and pauses.
+    Step(i64),
+    /// Plays or pauses.
+    TogglePlay,
+}
+
+/// A change of the characters that the user drives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DriveCommand {
+    /// Changes the input from now on.
+    Steer(Control),
+    /// Puts the characters at the origin again, and forgets the recorded input.
+    Restart,
+    /// Plays the recorded input again: it becomes the parameter `drive`.
+    Replay,
+}
+
+/// A change of the library's files.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FileCommand {
+    /// Loads all takes of a bundled set into the library.
+    LoadSamples(&'static SampleSet),
+    /// Corrects by hand which joint of a clip has a role.
+    CorrectRole(String, Role, Option<usize>),
+    /// Reads a clip's file again with other options.
+    Reimport(String, ImportOptions),
+    /// Reads the clips better that a notice offers to mend, as one step, and takes the notice away.
+    Mend(u64),
+    /// Gives up reading a file, by the number of its task.
+    StopReading(u64),
 }
 
 /// Why a command could not be carried out. Nothing is changed then.
@@ -124,4 +143,21 @@ pub enum Request {
         /// The key of a file outside that nobody else needs.
         forget: Option<String>,
     },
+}
+
+macro_rules! from_part {
+    ($($part:ident $variant:ident)*) => {$(
+        impl From<$part> for Command {
+            fn from(command: $part) -> Self {
+                Self::$variant(command)
+            }
+        }
+    )*};
+}
+
+from_part! {
+    FileCommand File
+    PlaybackCommand Playback
+    DriveCommand Drive
+    ExtraCharacterCommand ExtraCharacters
 }

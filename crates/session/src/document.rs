@@ -3,17 +3,16 @@
 mod clips;
 mod edits;
 mod history;
+mod places;
 mod slots;
 
+use crate::built_in::preset_entries;
 use crate::compare::Compare;
 use crate::labs::Slot;
 use crate::library::{Entry, Library};
 use crate::params::{Key, Mark, Params, Value, ValueError};
-pub(crate) use clips::built_in_entries;
-use clips::preset_entries;
 use history::History;
-pub(crate) use slots::Arrival;
-use slots::forget_places;
+use places::forget_places;
 use std::sync::Arc;
 
 /// The state that a link and undo bring back, and the steps between its versions.
@@ -21,7 +20,7 @@ use std::sync::Arc;
 pub(crate) struct Document {
     pub(crate) params: Params,
     pub(crate) library: Library,
-    pub(crate) history: History,
+    history: History,
     /// Grows with every change of library content.
     pub(crate) library_revision: u64,
     /// Whether A and B were named together with the addresses of the link, or since.
@@ -82,6 +81,26 @@ impl Document {
     /// Forgets all steps of undo and redo.
     pub(crate) fn forget_steps(&mut self) {
         self.history = History::default();
+    }
+
+    /// Adds clips to every step that lacks them: undo does not remove them.
+    pub(crate) fn add_to_steps(&mut self, entries: &[Arc<Entry>]) {
+        self.history.add_to_all(entries);
+    }
+
+    /// Drops the motions of files that only steps of undo hold. Returns whether there were any.
+    pub(crate) fn drop_motions_of_steps(&mut self) -> bool {
+        self.history.drop_motions_outside(&self.library)
+    }
+
+    /// Returns whether there is a step to take back.
+    pub(crate) fn can_undo(&self) -> bool {
+        self.history.can_undo()
+    }
+
+    /// Returns whether there is a step to do again.
+    pub(crate) fn can_redo(&self) -> bool {
+        self.history.can_redo()
     }
 
     /// Ends a gesture: the next change is a step of its own.

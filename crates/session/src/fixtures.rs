@@ -1,7 +1,9 @@
 //! Shared by the tests that drive a session by commands: the names that they use, small files, and
 //! the work around a session.
 
-pub(crate) use crate::command::{Command, CommandError, Request};
+pub(crate) use crate::command::{
+    Command, CommandError, DriveCommand, FileCommand, PlaybackCommand, Request,
+};
 
 pub(crate) use crate::labs::{Outcome, Slot};
 pub(crate) use crate::library::{Entry, Origin};

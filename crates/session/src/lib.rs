@@ -63,12 +63,17 @@
 //! keep. A link carries parameters, not data: it names a file, with the first digits of its
 //! SHA-256, and who opens the link must have that file.
 
+mod built_in;
 pub mod choices;
+mod clip_info;
+mod clip_resolver;
 mod clip_sets;
 mod command;
 mod compare;
 mod document;
 pub mod export;
+mod extra_characters;
+mod files;
 #[cfg(test)]
 mod fixtures;
 mod labs;
@@ -81,18 +86,26 @@ mod motion;
 mod notice;
 mod numbers;
 pub mod outside;
+mod pane;
+mod panes;
 mod params;
+mod playback;
 pub mod reading;
 mod report;
 mod samples;
 mod saved;
 mod session;
-pub mod transport;
 
 pub use choices::{LabId, Selected};
+pub use clip_info::ClipInfo;
 pub use clip_sets::ClipSet;
-pub use command::{Command, CommandError, CompanyChange, Request};
+pub use command::{
+    Command, CommandError, DriveCommand, ExtraCharacterCommand, FileCommand, PlaybackCommand,
+    Request,
+};
 pub use compare::{Compare, MAX_PANES};
+pub use extra_characters::ExtraCharacter;
+pub use files::{Job, Loaded};
 pub use labs::LabError;
 pub use labs::{
     At, Built, Cast, Distances, Field, Passed, Trace, Walk, WalkGhost, check_graph_clips, graph_of,
@@ -108,18 +121,19 @@ pub use labs::{
 pub use labs::{HandTag, own_words, write_tags};
 pub use labs::{JobKind, file_stem, write_ids};
 pub use labs::{MOST_ALSO, weight_curve, write_also, write_pairs};
+pub use lesson::{Lesson, LessonPage};
 pub use library::{Entry, Library, Origin, SourceFile, file_id, split_reference};
 pub use memory::{MemoryUse, PageMemory};
 pub use motion::{curve_kind, foot_options, frame_at, joint_of, word_of_joint};
 pub use notice::{Level, Notice, Notices};
 pub use numbers::{NumberRow, NumberTable, digits};
+pub use pane::{Made, NoResult, Pane, Shown};
 pub use params::{
     Choice, Group, Key, Kind, Mark, PARAMS, Param, Params, Value, ValueError, decimals_of,
     format_number,
 };
+pub use playback::Span;
 pub use report::{ReportFacts, report};
 pub use samples::{SAMPLES_CREDIT, Sample, SampleSet};
 pub use saved::{Saved, SavedEntry, Storing};
-pub use session::{
-    ClipInfo, Companion, Job, Lesson, LessonPage, Loaded, Made, NoResult, Pane, Session, Shown,
-};
+pub use session::Session;

@@ -10,6 +10,15 @@ use segue_motion::skin::{Character, SkinnedMesh};
 use segue_text::Message;
 use std::sync::Arc;
 
+/// How a file has arrived.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Arrival {
+    /// The user dropped or opened it, or the page's API handed it over.
+    ByHand,
+    /// It was fetched from an address in the link.
+    ByLink,
+}
+
 /// Where a clip comes from.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Origin {

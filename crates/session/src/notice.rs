@@ -26,7 +26,7 @@ pub struct Notice {
     /// What it is about, in a word: a file, a key. Where a row has no room for more, this stands
     /// for it.
     pub about: String,
-    /// Ids of the clips that can be read better: [`Command::Mend`](super::Command::Mend) does it.
+    /// Ids of the clips that can be read better: [`FileCommand::Mend`](super::FileCommand::Mend) does it.
     pub mends: Vec<String>,
     /// The clip that it asks for.
     awaits: Option<String>,

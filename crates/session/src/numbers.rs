@@ -1,7 +1,8 @@
 //! The numbers of all panes side by side.
 
 use super::outside::markdown;
-use super::session::{Pane, Session};
+use super::pane::Pane;
+use super::session::Session;
 use segue_formats::csv;
 use segue_motion::metrics::{Better, Metric};
 use std::fmt::Write as _;

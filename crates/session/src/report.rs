@@ -4,8 +4,9 @@ use super::labs::{recipe_ingredients, recipe_params};
 use super::library::{Entry, Origin};
 use super::numbers::NumberTable;
 use super::outside::{markdown, markdown_code, markdown_sentence};
+use super::pane::NoResult;
 use super::params::{Key, Kind, Value, format_number};
-use super::session::{NoResult, Session};
+use super::session::Session;
 use std::fmt::Write as _;
 
 /// What a report says beyond the document.

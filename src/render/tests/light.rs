@@ -4,7 +4,7 @@ use super::{ball, colors, gpu, options, staged};
 use crate::render::render_to_image;
 use glam::Vec3;
 use segue_scene::{Camera, Director, Figure, Lens, Limb, Look, Pane, Stage, Viewport};
-use segue_session::{Command, Session};
+use segue_session::{Command, PlaybackCommand, Session};
 
 /// Balls seen from straight above, 1 cm to the pixel, x to the right and z downwards, the origin in
 /// the middle.
@@ -155,7 +155,7 @@ fn a_lecture_hall_sees_a_foot_that_slides() {
     look.edge_width *= 1.25;
     let colors = colors(1);
     let mut slides = |secs: f64| {
-        session.apply(Command::Seek(secs)).unwrap();
+        session.apply(Command::Playback(PlaybackCommand::Seek(secs))).unwrap();
         let stage =
             staged(&mut Director::default(), &session, &options(&shown, look, &colors), 0.0);
         let ring = stage.panes[0].rings.iter().find(|ring| ring.color == colors.bad)?;

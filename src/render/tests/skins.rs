@@ -5,7 +5,7 @@ use crate::render::{Quality, frame::Frame, render_to_image};
 use glam::{Quat, Vec3};
 use segue_motion::skin::{RigidTransform, SkinnedMesh, dual_quaternion, linear_blend};
 use segue_scene::{Camera, Director, Figure, Lens, Look, Pane, Skin, Skinning, Stage, Viewport};
-use segue_session::{Command, Session};
+use segue_session::{Command, PlaybackCommand, Session};
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -263,7 +263,9 @@ fn time_in_software() {
             gpu.renderer.set_quality(quality);
             let mut secs = Vec::new();
             for round in 0..5 {
-                session.apply(Command::Seek(1.0 + 0.1 * f64::from(round))).unwrap();
+                session
+                    .apply(Command::Playback(PlaybackCommand::Seek(1.0 + 0.1 * f64::from(round))))
+                    .unwrap();
                 let stage =
                     staged(&mut director, &session, &options(&shown, Look::DARK, &colors(0)), 0.1);
                 let start = Instant::now();

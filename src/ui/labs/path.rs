@@ -18,7 +18,7 @@ use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Rect, RichText, Ui, UiBuilder, pos2, vec2};
 use segue_motion::path::PathEdit;
-use segue_session::{Command, CompanyChange, Key, LabId, OnPath, Session, Slot, Value};
+use segue_session::{Command, ExtraCharacterCommand, Key, LabId, OnPath, Session, Slot, Value};
 use segue_text::ToMessage;
 
 /// The lab's part of the page.
@@ -235,7 +235,7 @@ fn company_ui(
 ) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     ui.label(RichText::new(tr(text::COMPANY, ui)).font(theme.font(Type::Strong)));
-    for (place, companion) in session.company().iter().enumerate() {
+    for (place, companion) in session.extra_characters().iter().enumerate() {
         ui.push_id(("companion", place), |ui| {
             let row = kit::paint::full_width(theme.row_height(), ui);
             let color = palette.others[place % palette.others.len()];
@@ -264,11 +264,13 @@ fn company_ui(
                     let edit = text::edit_companion(&companion.name);
                     if kit::icon_button_ui(Icon::Swap, &edit, ui).clicked() {
                         state.path.chosen = None;
-                        out.commands.push(Command::Company(CompanyChange::Edit(place)));
+                        out.commands
+                            .push(Command::ExtraCharacters(ExtraCharacterCommand::Edit(place)));
                     }
                     let leave = text::companion_leaves(&companion.name);
                     if kit::icon_button_ui(Icon::Close, &leave, ui).clicked() {
-                        out.commands.push(Command::Company(CompanyChange::Leave(place)));
+                        out.commands
+                            .push(Command::ExtraCharacters(ExtraCharacterCommand::Remove(place)));
                     }
                 });
             });
@@ -279,7 +281,8 @@ fn company_ui(
     }
     let button = Button::new(text::JOIN).icon(Icon::Plus).hint(text::JOIN_HELP);
     if has_result && kit::button_ui(button, ui).clicked() {
-        out.commands.push(Command::Company(CompanyChange::JoinResult(state.saved_pane)));
+        out.commands
+            .push(Command::ExtraCharacters(ExtraCharacterCommand::AddResult(state.saved_pane)));
     }
     let entries = session.library().entries();
     let clips = entries.iter().enumerate().map(|(index, entry)| (index, entry.name.as_str()));
@@ -287,7 +290,7 @@ fn company_ui(
         std::iter::once((usize::MAX, text::CHOOSE_CLIP)).chain(clips).collect();
     let picked = kit::choice_row_ui(text::JOIN_CLIP, usize::MAX, &options, ui);
     if let Some(entry) = picked.and_then(|index| entries.get(index)) {
-        out.commands.push(Command::Company(CompanyChange::Join(entry.id.clone())));
+        out.commands.push(Command::ExtraCharacters(ExtraCharacterCommand::Add(entry.id.clone())));
     }
     kit::note_ui(text::COMPANY_HELP, palette.muted, ui);
 }

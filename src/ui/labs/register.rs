@@ -20,8 +20,8 @@ use segue_motion::skeleton::Side;
 use segue_session::JobKind;
 use segue_session::choices::{self, WarpMode};
 use segue_session::{
-    Command, DistanceMap, Key, MOST_ALSO, Registered, Session, Slot, Value, weight_curve,
-    write_also, write_pairs,
+    Command, DistanceMap, Key, MOST_ALSO, PlaybackCommand, Registered, Session, Slot, Value,
+    weight_curve, write_also, write_pairs,
 };
 use segue_text::ToMessage;
 use std::sync::Arc;
@@ -314,7 +314,7 @@ fn map_event(
         HeatMapEvent::Seek(at) => {
             if let Some(secs) = registered.and_then(|registered| registered.secs_near(frames(at))) {
                 out.set(Key::Play, Value::Switch(false));
-                out.commands.push(Command::Seek(secs));
+                out.commands.push(Command::Playback(PlaybackCommand::Seek(secs)));
             }
         }
         HeatMapEvent::Pin { from, to } => {

@@ -3,7 +3,7 @@
 use super::*;
 use eframe::egui::{Event, Modifiers};
 use segue_motion::matching::Control;
-use segue_session::Driven;
+use segue_session::{DriveCommand, Driven, PlaybackCommand};
 
 /// A database that is built in a moment.
 const SMALL: &str =
@@ -56,7 +56,8 @@ fn keys_drive_away_from_the_camera_and_are_let_go() {
     step(vec![Event::ModifiersChanged(Modifiers::NONE)], &mut harness);
     harness.key_up(Keyboard::ArrowUp);
     play(2, &mut harness);
-    let stepped = |command: &Command| matches!(command, Command::Step(_));
+    let stepped =
+        |command: &Command| matches!(command, Command::Playback(PlaybackCommand::Step(_)));
     assert!(!harness.state().out.commands.iter().any(stepped));
     // Q strafes: it faces where the camera looks, wherever it goes.
     harness.key_press(Keyboard::Q);
@@ -186,7 +187,7 @@ fn the_lab_has_room_on_every_page() {
         harness
             .state_mut()
             .session
-            .apply(Command::Steer(walk))
+            .apply(Command::Drive(DriveCommand::Steer(walk)))
             .expect("a page as the tests need it");
         for _ in 0..150 {
             harness.state_mut().session.tick(1.0 / 60.0);

@@ -127,7 +127,7 @@ fn lessons_look_well_everywhere() {
         for (language, tag) in [("en", ""), ("zh", "zh-Hant")] {
             let mut page = page("lab=blend");
             if !tag.is_empty() {
-                page.session.read_lessons_in("zh-Hant");
+                page.session.set_lesson_language("zh-Hant");
             }
             let named = link.split('&').next().unwrap_or_default();
             for link in [named, link] {

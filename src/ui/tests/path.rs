@@ -242,7 +242,7 @@ fn buttons_edit_the_whole_path_and_reset_brings_it_back() {
     press(text::ADD_POINT, &mut harness);
     assert_eq!(points(&harness).len(), 9);
     press(text::JOIN, &mut harness);
-    assert_eq!(harness.state().session.company().len(), 1);
+    assert_eq!(harness.state().session.extra_characters().len(), 1);
     picture("path-company-dark", &mut harness);
 }
 

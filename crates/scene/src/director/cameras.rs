@@ -81,7 +81,7 @@ pub(super) fn followed_point(shown: &Shown<'_>, context: &mut DrawContext<'_>) -
     let source = outcome.sources.iter().find(|source| Some(source.slot) == wanted);
     let other = (params.choice::<Follow>() == Follow::Other).then(|| {
         let place = (params.number(Key::FollowOther) as usize).saturating_sub(1);
-        session.company().get(place)?.motion.as_ref().ok()
+        session.extra_characters().get(place)?.motion.as_ref().ok()
     });
     let source_pose;
     let (motion, world) = match source {

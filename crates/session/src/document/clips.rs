@@ -1,28 +1,12 @@
 //! Clips that parameters name: found in the library, or brought into it by their id.
 
 use super::Document;
+use crate::built_in::{built_in_entries, sample_entry};
 use crate::labs::{lab, read_also, recipe_name, recipe_params};
 use crate::library::{Entry, Origin};
 use crate::params::{Key, Kind, Value};
-use crate::samples::{self, Sample};
+use crate::samples;
 use segue_formats::FileKind;
-use segue_motion::synth;
-
-/// Returns the entries of the presets, which the library holds at first.
-pub(super) fn preset_entries() -> impl Iterator<Item = Entry> {
-    synth::presets().into_iter().map(|preset| Entry::new(preset.id, preset.title, Origin::Preset))
-}
-
-/// Returns the entries of all that comes with Segue: the presets, and the bundled takes, which join
-/// the library when they are asked for.
-pub(crate) fn built_in_entries() -> impl Iterator<Item = Entry> {
-    preset_entries().chain(samples::all().map(sample_entry))
-}
-
-/// Returns the entry of a bundled take without its motion.
-fn sample_entry(sample: &'static Sample) -> Entry {
-    Entry::new(sample.id, sample.label, Origin::Sample(sample))
-}
 
 impl Document {
     /// Returns the clips that are compared with each other.

@@ -1,7 +1,7 @@
 //! Changes of the library's clips by hand.
 
 use super::Document;
-use super::slots::forget_places;
+use super::places::forget_places;
 use crate::LabId;
 use crate::Selected;
 use crate::command::CommandError;

@@ -14,7 +14,7 @@ struct State {
 
 /// The steps that can be taken back, and those that were.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct History {
+pub(super) struct History {
     past: Vec<State>,
     future: Vec<State>,
     /// The parameter that the last step changed, while its slider is still held: more of the same
@@ -28,7 +28,7 @@ const MOST_STEPS: usize = 200;
 impl History {
     /// Remembers the state before a change. With `key`, changes of one parameter in one gesture are
     /// one step.
-    pub(crate) fn before_change(&mut self, params: &Params, library: &Library, key: Option<Key>) {
+    pub(super) fn before_change(&mut self, params: &Params, library: &Library, key: Option<Key>) {
         if key.is_some() && self.open == key {
             return;
         }
@@ -41,12 +41,12 @@ impl History {
     }
 
     /// Ends a gesture: the next change is a step of its own.
-    pub(crate) fn settle(&mut self) {
+    pub(super) fn settle(&mut self) {
         self.open = None;
     }
 
     /// Adds clips to every state that lacks them: they were there all along, and only came late.
-    pub(crate) fn add_to_all(&mut self, entries: &[Arc<Entry>]) {
+    pub(super) fn add_to_all(&mut self, entries: &[Arc<Entry>]) {
         for state in self.past.iter_mut().chain(&mut self.future) {
             for entry in entries
                 .iter()
@@ -61,7 +61,7 @@ impl History {
 
     /// Lets go of the motions of files that `library` does not hold; says whether there were any.
     /// They are read again when a step brings them back.
-    pub(crate) fn let_go_of_motions_outside(&mut self, library: &Library) -> bool {
+    pub(super) fn drop_motions_outside(&mut self, library: &Library) -> bool {
         let held: BTreeSet<_> = library
             .entries()
             .iter()
@@ -88,21 +88,21 @@ impl History {
         any
     }
 
-    pub(crate) fn can_undo(&self) -> bool {
+    pub(super) fn can_undo(&self) -> bool {
         !self.past.is_empty()
     }
 
-    pub(crate) fn can_redo(&self) -> bool {
+    pub(super) fn can_redo(&self) -> bool {
         !self.future.is_empty()
     }
 
     /// Swaps the present for the state before the last step; says whether there was one.
-    pub(crate) fn undo(&mut self, params: &mut Params, library: &mut Library) -> bool {
+    pub(super) fn undo(&mut self, params: &mut Params, library: &mut Library) -> bool {
         Self::swap(&mut self.past, &mut self.future, &mut self.open, params, library)
     }
 
     /// Swaps the present for the state that was last taken back.
-    pub(crate) fn redo(&mut self, params: &mut Params, library: &mut Library) -> bool {
+    pub(super) fn redo(&mut self, params: &mut Params, library: &mut Library) -> bool {
         Self::swap(&mut self.future, &mut self.past, &mut self.open, params, library)
     }
 

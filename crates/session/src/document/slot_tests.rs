@@ -45,14 +45,14 @@ fn a_fetched_file_takes_what_the_link_does_not_name() {
     assert_eq!(ids(&session), [&id, "run"]);
     // A large one that is read elsewhere, likewise.
     // Where files are read elsewhere, likewise.
-    let mut session = Session::that_has_files_read();
+    let mut session = Session::with_external_reader();
     session.apply(Command::OpenLink("src=https://example.org/x.bvh&a=walk&b=run".into())).unwrap();
     session.load_fetched("x.bvh", made_bvh(1.0)).unwrap();
     serve(&mut session);
     assert!(files(&session).len() == 1 && ids(&session) == ["walk", "run"]);
     // And a motion whose skeleton comes behind it.
     for (link, wanted) in [("a=walk", ["walk", "01_02"]), ("lab=view&a=walk", ["walk", "01_02"])] {
-        for mut session in [Session::new(), Session::that_has_files_read()] {
+        for mut session in [Session::new(), Session::with_external_reader()] {
             session.apply(Command::OpenLink(format!("src=https://example.org/x&{link}"))).unwrap();
             for (name, text) in [("01_02.amc", AMC), ("01.asf", ASF)] {
                 session.load_fetched(name, bytes(text)).unwrap();
@@ -122,8 +122,10 @@ fn a_file_that_comes_again_leaves_what_was_said_of_it() {
     let bytes = made_bvh(1.0);
     let id = session.load("x.bvh", Arc::clone(&bytes)).unwrap().ids.remove(0);
     let options = ImportOptions { fps: Some(60.0), ..ImportOptions::default() };
-    session.apply(Command::Reimport(id.clone(), options)).unwrap();
-    session.apply(Command::CorrectRole(id.clone(), Role::Head, Some(1))).unwrap();
+    session.apply(Command::File(FileCommand::Reimport(id.clone(), options))).unwrap();
+    session
+        .apply(Command::File(FileCommand::CorrectRole(id.clone(), Role::Head, Some(1))))
+        .unwrap();
     session.apply(Command::Rename(id.clone(), "my walk".into())).unwrap();
     let before = Arc::clone(session.library().get(&id).unwrap());
     session.load("x.bvh", Arc::clone(&bytes)).unwrap();

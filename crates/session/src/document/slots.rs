@@ -1,19 +1,11 @@
 //! What A and B hold: chosen by hand or by a link, or brought by a file.
 
 use super::Document;
+use super::places::forget_places;
 use crate::command::CommandError;
 use crate::labs::{Slot, lab};
-use crate::library::{Entry, Origin};
-use crate::params::{Key, Mark, PARAMS, Params, Value};
-
-/// How a file has arrived.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Arrival {
-    /// The user dropped or opened it, or the page's API handed it over.
-    ByHand,
-    /// It was fetched from an address in the link.
-    ByLink,
-}
+use crate::library::{Arrival, Entry, Origin};
+use crate::params::{Key, Value};
 
 impl Document {
     /// Returns the id of a clip that may be put into a slot: one of the library, or a built-in one
@@ -91,23 +83,4 @@ impl Document {
 /// Returns whether a clip comes with Segue.
 fn is_built_in(entry: &Entry) -> bool {
     matches!(entry.origin, Origin::Preset | Origin::Sample(_))
-}
-
-/// Sets back the parameters that are places in a slot's clip, but for those `given` for the clip
-/// that is there now: they mean nothing in another clip. Returns the parameters that have changed.
-pub(super) fn forget_places(params: &mut Params, slot: Slot, given: &[Key]) -> Vec<Key> {
-    let mark = match slot {
-        Slot::A => Mark::PlaceInA,
-        Slot::B => Mark::PlaceInB,
-    };
-    let places = PARAMS.iter().filter(|param| param.has(mark)).map(|param| param.key);
-    let mut changed = Vec::new();
-    for key in places.filter(|key| !given.contains(key)) {
-        let result = params.set(key, key.param().default_value());
-        debug_assert!(result.is_ok(), "defaults fit: {result:?}");
-        if result == Ok(true) {
-            changed.push(key);
-        }
-    }
-    changed
 }

@@ -119,8 +119,8 @@ pub(crate) trait Lab: Sync {
 /// What a lab may show beside its result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Beside {
-    /// Clips that play along.
-    Company,
+    /// Clips that play beside the result.
+    ExtraCharacters,
     /// The graph that a walk goes through.
     Graph,
     /// The distances between the frames of two clips.

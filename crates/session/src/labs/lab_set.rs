@@ -12,6 +12,7 @@ use super::register::Registrars;
 use super::speed::GaitFinder;
 use super::view::Viewer;
 use crate::labs::LabError;
+use crate::motion::FeetReader;
 use crate::params::{Key, Params};
 use segue_motion::clip::Motion;
 use segue_motion::matching::Database;
@@ -110,6 +111,8 @@ pub(crate) struct LabSet {
     pub(super) viewer: Viewer,
     pub(super) driver: Driver,
     pub(crate) gauge: Gauge,
+    /// Clips whose feet are read otherwise than usual.
+    pub(crate) feet: FeetReader,
 }
 
 impl LabSet {

@@ -11,16 +11,16 @@ use crate::params::{Key, Params, Value};
 mod crowd;
 mod driver;
 mod live;
+mod live_drive;
 mod settings;
 mod tagging;
 mod trace;
 
-pub(crate) use crowd::Crowd;
 pub(crate) use driver::{Driver, Source};
-pub(crate) use live::Live;
+pub(crate) use live_drive::{DrivenPane, LiveDrive};
 #[cfg(test)]
 pub(crate) use settings::options_of;
-pub(crate) use settings::{options_in, recording_of};
+use settings::{options_in, recording_of};
 pub use tagging::{HandTag, own_words, write_tags};
 pub(crate) use tagging::{filter_of, read_tags};
 pub use trace::{DriveMoment, Driven};

@@ -62,7 +62,7 @@ impl Lab for PathLab {
     }
 
     fn has(&self, beside: Beside) -> bool {
-        beside == Beside::Company
+        beside == Beside::ExtraCharacters
     }
 
     fn inputs(
@@ -435,7 +435,7 @@ impl LabInputs for PathInputs {
 ///
 /// # Errors
 /// [`ValueError`] of an id that says what no parameter can be.
-pub(crate) fn take_up(params: &mut Params, id: &str) -> Result<(), ValueError> {
+pub(crate) fn edit_as_path(params: &mut Params, id: &str) -> Result<(), ValueError> {
     let made = recipe_params(id).filter(|made| made.lab() == LabId::Path);
     for key in recipe_ingredients(LabId::Path) {
         let value = match (&made, key) {

@@ -13,14 +13,18 @@ mod page;
 mod parse;
 mod prose;
 mod shelf;
+mod state;
 
 pub use address::host_of;
 pub use page::{Block, Page, Span, Target, Try};
 pub use parse::{LessonError, MOST_BYTES, parse};
 pub use shelf::{CONTENTS, LESSONS, Source, file_name, source_of};
-pub(super) use shelf::{Shelf, Text};
+pub use state::{Lesson, LessonPage};
+pub(super) use state::{LessonState, NewParams, would_set_up};
 
 #[cfg(test)]
 mod dialect_tests;
+#[cfg(test)]
+mod state_tests;
 #[cfg(test)]
 mod tests;

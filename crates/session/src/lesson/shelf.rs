@@ -1,10 +1,7 @@
-//! Which lessons there are, where their texts are, and which texts are here.
+//! Which lessons there are, and where their texts are.
 
-use super::page::Page;
 use crate::outside::short;
 use segue_text::{Message, msg};
-use std::collections::BTreeMap;
-use std::sync::Arc;
 
 /// The lessons that come with Segue, in their order.
 pub const LESSONS: [&str; 14] = [
@@ -73,43 +70,5 @@ pub fn source_of(lesson: &str, lang: &str) -> Result<(Source, usize), Message> {
             contents = CONTENTS.to_owned(),
             lessons = LESSONS.map(str::to_owned).to_vec()
         )),
-    }
-}
-
-/// A text that was asked for.
-#[derive(Clone, Debug)]
-pub(crate) enum Text {
-    /// It is under way.
-    Asked,
-    /// It is here.
-    Here(Arc<[Page]>),
-    /// It did not come, or is no lesson: why.
-    Failed(Message),
-}
-
-/// The texts that were asked for, by where they are.
-#[derive(Clone, Debug)]
-pub(crate) struct Shelf {
-    /// The folder of the lessons that come with Segue.
-    pub(crate) language: &'static str,
-    /// See the type.
-    pub(crate) texts: BTreeMap<Source, Text>,
-    /// The lesson that is to set the document up once its text is here.
-    pub(crate) to_set_up: Option<String>,
-}
-
-impl Default for Shelf {
-    fn default() -> Self {
-        Self { language: "en", texts: BTreeMap::new(), to_set_up: None }
-    }
-}
-
-impl Shelf {
-    /// The pages of a text that is here.
-    pub(crate) fn pages(&self, source: &Source) -> Option<&Arc<[Page]>> {
-        match self.texts.get(source)? {
-            Text::Here(pages) => Some(pages),
-            Text::Asked | Text::Failed(_) => None,
-        }
     }
 }

@@ -61,10 +61,10 @@ fn every_lab_has_the_same_numbers_first_and_a_clean_result_shows_nothing() {
         let mut session = opened(link);
         if session.is_driven() {
             session
-                .apply(Command::Steer(segue_motion::matching::Control::new(
+                .apply(Command::Drive(DriveCommand::Steer(segue_motion::matching::Control::new(
                     glam::DVec2::new(0.0, 1.2),
                     None,
-                )))
+                ))))
                 .unwrap();
             for _ in 0..90 {
                 session.tick(1.0 / 60.0);

@@ -236,7 +236,9 @@ fn stands_for_nothing(link: &str, bad: &Change, part: &str) {
         "{state}"
     );
     let kept = session.library().entries().len();
-    for command in [Command::Keep(0), Command::Company(crate::CompanyChange::JoinResult(0))] {
+    for command in
+        [Command::Keep(0), Command::ExtraCharacters(crate::ExtraCharacterCommand::AddResult(0))]
+    {
         assert_eq!(session.apply(command), Err(CommandError::NoResult(refused.clone())), "{state}");
     }
     assert_eq!((session.library().entries().len(), session.query()), (kept, state.clone()));

@@ -1,9 +1,9 @@
 //! The session, by commands: undo, links, files, results that are kept, and the simpler labs.
 
 use crate::JobKind;
+use crate::Span;
 use crate::fixtures::*;
 use crate::reading::{Content, LARGE_BYTES, read};
-use crate::transport::Span;
 use glam::Quat;
 use segue_motion::clip::Clip;
 use segue_motion::metrics::foot_slide_cm;
@@ -81,7 +81,7 @@ fn a_drag_is_one_step_of_undo() {
 fn undo_leaves_the_playhead_and_the_camera_alone() {
     let mut session = Session::new();
     blend_window(&mut session, 20.0);
-    session.apply(Command::Seek(1.0)).unwrap();
+    session.apply(Command::Playback(PlaybackCommand::Seek(1.0))).unwrap();
     session.apply(Command::Set(vec![(Key::CameraYaw, Value::Number(5.0))])).unwrap();
     session.apply(Command::Undo).unwrap();
     assert_eq!((session.now_secs(), session.params().number(Key::CameraYaw)), (1.0, 5.0));
@@ -146,11 +146,11 @@ fn the_playhead_goes_round_in_the_span_between_the_marks() {
         assert!(session.tick(0.03));
         assert!((1.0..=2.0).contains(&session.now_secs()));
     }
-    session.apply(Command::TogglePlay).unwrap();
+    session.apply(Command::Playback(PlaybackCommand::TogglePlay)).unwrap();
     let now = session.now_secs();
     assert!(!session.tick(0.5));
     assert_eq!(session.now_secs(), now);
-    session.apply(Command::Step(1)).unwrap();
+    session.apply(Command::Playback(PlaybackCommand::Step(1))).unwrap();
     assert!((session.now_secs() - now - 1.0 / 60.0).abs() < 0.02);
 }
 
@@ -421,11 +421,11 @@ fn a_large_file_is_read_elsewhere_and_then_joins_the_library() {
 
     // Its roles are corrected by reading it again, elsewhere too.
     session
-        .apply(Command::CorrectRole(
+        .apply(Command::File(FileCommand::CorrectRole(
             loaded.ids[0].clone(),
             segue_motion::skeleton::Role::Head,
             Some(1),
-        ))
+        )))
         .unwrap();
     let again = asked(&mut session);
     assert_eq!(again.content, Content::Outside(sha256));
@@ -460,7 +460,7 @@ fn reading_can_be_given_up() {
     let clips = session.clip_infos();
     let task =
         session.begin_reading("long.bvh", Content::Outside("file 1".into()), LARGE_BYTES + 1);
-    session.apply(Command::StopReading(task)).unwrap();
+    session.apply(Command::File(FileCommand::StopReading(task))).unwrap();
     let stop = Request::StopReading { task, forget: Some("file 1".into()) };
     assert!(session.take_requests().contains(&stop));
     assert!(session.finish_reading(task, Err("stopped".into())).is_none());
@@ -731,7 +731,7 @@ fn a_stored_file_that_cannot_be_read_is_not_read_again_and_again() {
     );
 
     let (mut session, task) = with_stored_large_file();
-    session.apply(Command::StopReading(task.id)).unwrap();
+    session.apply(Command::File(FileCommand::StopReading(task.id))).unwrap();
     blend_window(&mut session, 20.0);
     assert_eq!(reads(&mut session), 0);
     assert!(
@@ -742,7 +742,9 @@ fn a_stored_file_that_cannot_be_read_is_not_read_again_and_again() {
     );
     // Asked for by hand it is read once more.
     let id = session.slot(Slot::A).unwrap().id.clone();
-    session.apply(Command::Reimport(id, segue_formats::ImportOptions::default())).unwrap();
+    session
+        .apply(Command::File(FileCommand::Reimport(id, segue_formats::ImportOptions::default())))
+        .unwrap();
     assert_eq!(reads(&mut session), 1);
 }
 

@@ -16,7 +16,9 @@ use crate::ui::state::UiState;
 use crate::ui::text;
 use glam::DVec2;
 use segue_motion::graph::Place;
-use segue_session::{Built, Command, Key, Session, Value, Walk, write_jump, write_path};
+use segue_session::{
+    Built, Command, Key, PlaybackCommand, Session, Value, Walk, write_jump, write_path,
+};
 
 /// The lab's part of the page.
 pub(super) const LAB: LabUi = LabUi {
@@ -44,7 +46,7 @@ fn title(shown: &Shown<'_>) -> Title {
 fn take_line(points: &[DVec2], _: &Session, _: &mut UiState, out: &mut Out) {
     if points.len() > 1 {
         out.set_once(Key::WalkPath, Value::Text(write_path(points)));
-        out.commands.push(Command::Seek(0.0));
+        out.commands.push(Command::Playback(PlaybackCommand::Seek(0.0)));
     }
 }
 
@@ -60,7 +62,7 @@ fn open_jump([leave, enter]: [Place; 2], session: &Session, state: &mut UiState,
         state.walk_secs = session.now_secs();
     }
     out.set_once(Key::Jump, Value::Text(write_jump(leave, enter)));
-    out.commands.push(Command::Seek(0.0));
+    out.commands.push(Command::Playback(PlaybackCommand::Seek(0.0)));
     out.set(Key::Play, Value::Switch(true));
 }
 

@@ -10,7 +10,7 @@ use crate::ui::theme::{palette_of, space};
 use crate::ui::transport_row::{Playhead, transport_row_ui};
 use eframe::egui::Ui;
 use segue_motion::graph::Place;
-use segue_session::{Command, Key, Session, Value, Walk, frame_at};
+use segue_session::{Command, Key, PlaybackCommand, Session, Value, Walk, frame_at};
 use std::sync::Arc;
 
 /// More seams than these are no marks any more.
@@ -68,7 +68,9 @@ fn time_ui(session: &Session, walk: &Walk, out: &mut Out, ui: &mut Ui) {
     };
     for event in kit::timeline_ui(&timeline, ui) {
         match event {
-            TimelineEvent::Seek(secs) => out.commands.push(Command::Seek(secs)),
+            TimelineEvent::Seek(secs) => {
+                out.commands.push(Command::Playback(PlaybackCommand::Seek(secs)))
+            }
             TimelineEvent::ScrubStarted => out.set(Key::Play, Value::Switch(false)),
             TimelineEvent::SetIn(secs) => out.set(Key::In, Value::Number(secs)),
             TimelineEvent::SetOut(secs) => out.set(Key::Out, Value::Number(secs)),

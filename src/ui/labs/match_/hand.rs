@@ -9,7 +9,7 @@ use crate::ui::theme::{space, theme_of};
 use eframe::egui::{Context, Key as Keyboard, Rect, Ui, UiBuilder, Vec2, pos2, vec2};
 use glam::DVec2;
 use segue_motion::matching::{Control, Place};
-use segue_session::{Command, Key, Session, Value};
+use segue_session::{Command, DriveCommand, Key, Session, Value};
 
 /// What a gamepad asks for: sticks from -1 to 1, to the right and up.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -119,7 +119,7 @@ pub(crate) fn steer(session: &Session, state: &mut UiState, out: &mut Out, ctx: 
     let control = Control::new(velocity, strafes.then(|| ahead.x.atan2(ahead.y)));
     state.drive.pushed = push;
     if control != session.control() {
-        out.commands.push(Command::Steer(control));
+        out.commands.push(Command::Drive(DriveCommand::Steer(control)));
     }
     let look = live(Vec2::from(pad.look));
     if look != Vec2::ZERO {

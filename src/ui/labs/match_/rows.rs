@@ -14,7 +14,7 @@ use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{RichText, Ui, vec2};
 use segue_motion::matching::RATE;
 use segue_session::choices;
-use segue_session::{Command, Key, Selected, Session, Value, write_ids};
+use segue_session::{Command, DriveCommand, Key, Selected, Session, Value, write_ids};
 use segue_text::ToMessage;
 
 /// All rows of the lab.
@@ -92,12 +92,12 @@ fn input_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
             ui.spacing_mut().item_spacing = vec2(space::XS, space::XS);
             let replay = Button::new(text::REPLAY).icon(Icon::Loop).hint(text::REPLAY_HELP);
             if kit::button_ui(replay, ui).clicked() {
-                out.commands.push(Command::ReplayDrive);
+                out.commands.push(Command::Drive(DriveCommand::Replay));
             }
             if kit::button_ui(Button::new(text::START_OVER).hint(text::START_OVER_HELP), ui)
                 .clicked()
             {
-                out.commands.push(Command::RestartDrive);
+                out.commands.push(Command::Drive(DriveCommand::Restart));
             }
         });
     } else if session.params().choice::<choices::Scenario>() != choices::Scenario::Own

@@ -11,7 +11,7 @@ use crate::ui::theme::{Palette, palette_of, space, theme_of};
 use crate::ui::transport_row::{Playhead, transport_row_ui};
 use eframe::egui::{Color32, Ui};
 use segue_motion::matching::{Database, Place, RATE, Tag};
-use segue_session::{Command, Driven, Key, Outcome, Session, Value};
+use segue_session::{Command, Driven, Key, Outcome, PlaybackCommand, Session, Value};
 
 /// A jump is seen for so long, seconds.
 const JUMP_SECS: f64 = 0.8;
@@ -114,7 +114,9 @@ fn time_ui(session: &Session, outcome: &Outcome, driven: &Driven, out: &mut Out,
     for event in kit::timeline_ui(&timeline, ui) {
         match event {
             _ if driven.is_live => {}
-            TimelineEvent::Seek(secs) => out.commands.push(Command::Seek(secs)),
+            TimelineEvent::Seek(secs) => {
+                out.commands.push(Command::Playback(PlaybackCommand::Seek(secs)))
+            }
             TimelineEvent::ScrubStarted => out.set(Key::Play, Value::Switch(false)),
             TimelineEvent::SetIn(secs) => out.set(Key::In, Value::Number(secs)),
             TimelineEvent::SetOut(secs) => out.set(Key::Out, Value::Number(secs)),

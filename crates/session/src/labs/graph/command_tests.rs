@@ -294,7 +294,7 @@ fn held_feet_stay_where_they_are_while_the_walk_grows() {
     let free = opened(SMALL);
     assert_eq!(way(&before), way(walk(&free)), "the same walk");
     assert_ne!(before.motion.clip(), walk(&free).motion.clip());
-    session.apply(Command::Seek(15.0)).unwrap();
+    session.apply(Command::Playback(PlaybackCommand::Seek(15.0))).unwrap();
     while session.work() {}
     let after = walk(&session);
     assert!(after.motion.clip().frames() > before.motion.clip().frames());
@@ -551,7 +551,7 @@ fn a_walk_that_goes_like_another_does_not_hang_on_what_was_shown_of_it() {
     while late.work() {}
     // Or the walk that goes like it gets long.
     let mut long = opened(&format!("{small}&compare={compare}"));
-    long.apply(Command::Seek(70.0)).unwrap();
+    long.apply(Command::Playback(PlaybackCommand::Seek(70.0))).unwrap();
     while long.work() {}
     for pane in 1..3 {
         let wanted = way(walk_of(&fresh, pane));

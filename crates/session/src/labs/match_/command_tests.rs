@@ -26,7 +26,9 @@ fn driven(session: &Session) -> &Driven {
 }
 
 fn ask(session: &mut Session, x: f64, z: f64) {
-    session.apply(Command::Steer(Control::new(DVec2::new(x, z), None))).unwrap();
+    session
+        .apply(Command::Drive(DriveCommand::Steer(Control::new(DVec2::new(x, z), None))))
+        .unwrap();
 }
 
 #[test]
@@ -66,7 +68,7 @@ fn what_is_driven_is_written_down_and_played_again_exactly() {
     assert!(session.recording().ticks().abs_diff(210) <= 1, "{}", session.recording().ticks());
     assert!(driven(&session).moments.last().unwrap().root.shift.distance(rest.shift) > 1.5);
     let ticks = session.recording().ticks();
-    session.apply(Command::ReplayDrive).unwrap();
+    session.apply(Command::Drive(DriveCommand::Replay)).unwrap();
     while session.work() {}
     assert!(!session.is_driven());
     let replay = Arc::clone(session.main_outcome().unwrap().motion.clip());
@@ -110,14 +112,14 @@ fn time_of_any_rate_makes_whole_ticks_and_a_pause_stands() {
         session.recording().ticks() > ticks || session.now_secs() > shown,
         "smooth between two ticks"
     );
-    session.apply(Command::TogglePlay).unwrap();
+    session.apply(Command::Playback(PlaybackCommand::TogglePlay)).unwrap();
     let now = (session.recording().ticks(), session.now_secs());
     assert!(!session.tick(0.5));
     assert_eq!((session.recording().ticks(), session.now_secs()), now);
-    session.apply(Command::Step(3)).unwrap();
+    session.apply(Command::Playback(PlaybackCommand::Step(3))).unwrap();
     assert_eq!(session.recording().ticks(), now.0 + 3);
     // A page that slept does not run for hours.
-    session.apply(Command::TogglePlay).unwrap();
+    session.apply(Command::Playback(PlaybackCommand::TogglePlay)).unwrap();
     session.tick(3600.0);
     assert!(session.recording().ticks() < now.0 + 3 + RATE);
 }
@@ -131,7 +133,7 @@ fn whoever_pushes_the_stick_lets_time_run() {
     let ticks = session.recording().ticks();
     assert!(ticks > 10);
     // Paused with the stick held, it stays so until it is pushed anew.
-    session.apply(Command::TogglePlay).unwrap();
+    session.apply(Command::Playback(PlaybackCommand::TogglePlay)).unwrap();
     ask(&mut session, 0.5, 1.4);
     assert!(!session.params().is_on(Key::Play) && session.recording().ticks() == ticks);
     ask(&mut session, 0.0, 0.0);
@@ -313,7 +315,10 @@ fn what_cannot_be_done_is_a_sentence() {
         assert!(session.jobs().is_empty());
     }
     let mut session = open(SMALL);
-    assert!(matches!(session.apply(Command::ReplayDrive), Err(CommandError::NotPossible(_))));
+    assert!(matches!(
+        session.apply(Command::Drive(DriveCommand::Replay)),
+        Err(CommandError::NotPossible(_))
+    ));
     // A controller of the core stands where this one stands.
     let core = Controller::new(
         Arc::clone(&driven(&session).database),

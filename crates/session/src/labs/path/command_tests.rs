@@ -2,7 +2,7 @@
 
 use crate::JobKind;
 use crate::fixtures::*;
-use crate::{CompanyChange, OnPath};
+use crate::{ExtraCharacterCommand, OnPath};
 use glam::DVec2;
 use segue_motion::path::{GroundSpline, PathEdit, Pins};
 
@@ -170,52 +170,55 @@ fn characters_on_paths_of_their_own_play_together_from_a_link() {
     set(&mut session, Key::Path, value);
     session.apply(Command::Settle).unwrap();
     let first = session.params().text(Key::Path).to_owned();
-    session.apply(Command::Company(CompanyChange::JoinResult(0))).unwrap();
+    session.apply(Command::ExtraCharacters(ExtraCharacterCommand::AddResult(0))).unwrap();
     let id = format!("path(a:walk,path:{first})");
-    assert_eq!(session.company()[0].id, id);
+    assert_eq!(session.extra_characters()[0].id, id);
     assert!(session.library().find(&id).is_some(), "kept, too");
-    session.apply(Command::Company(CompanyChange::Join("run".into()))).unwrap();
+    session.apply(Command::ExtraCharacters(ExtraCharacterCommand::Add("run".into()))).unwrap();
     let value = moved(&session, 2, DVec2::new(-0.8, 0.0));
     set(&mut session, Key::Path, value);
     session.apply(Command::Settle).unwrap();
 
     let other = open(&session.query());
-    let names =
-        |session: &Session| session.company().iter().map(|one| one.id.clone()).collect::<Vec<_>>();
+    let names = |session: &Session| {
+        session.extra_characters().iter().map(|one| one.id.clone()).collect::<Vec<_>>()
+    };
     assert_eq!(names(&other), [id.clone(), "run".to_owned()]);
-    for (one, two) in session.company().iter().zip(other.company()) {
+    for (one, two) in session.extra_characters().iter().zip(other.extra_characters()) {
         let [one, two] =
             [one, two].map(|companion| Arc::clone(companion.motion.as_ref().unwrap().clip()));
         assert_eq!(one.root_translations(), two.root_translations());
     }
-    assert!(other.duration_secs() >= other.company()[1].duration_secs().unwrap());
+    assert!(other.duration_secs() >= other.extra_characters()[1].duration_secs().unwrap());
 
     // The first one is edited again, and the present one waits in its place.
     let second = session.params().text(Key::Path).to_owned();
-    session.apply(Command::Company(CompanyChange::Edit(0))).unwrap();
+    session.apply(Command::ExtraCharacters(ExtraCharacterCommand::Edit(0))).unwrap();
     assert_eq!(session.params().text(Key::Path), first);
     assert_eq!(names(&session), [format!("path(a:walk,path:{second})"), "run".to_owned()]);
-    session.apply(Command::Company(CompanyChange::Leave(1))).unwrap();
-    assert_eq!(session.company().len(), 1);
+    session.apply(Command::ExtraCharacters(ExtraCharacterCommand::Remove(1))).unwrap();
+    assert_eq!(session.extra_characters().len(), 1);
     // Who is thrown out of the library leaves the stage, and comes back with undo.
     session.apply(Command::Remove(names(&session)[0].clone())).unwrap();
-    assert!(session.company().is_empty());
+    assert!(session.extra_characters().is_empty());
     session.apply(Command::Undo).unwrap();
-    assert_eq!(session.company().len(), 1);
+    assert_eq!(session.extra_characters().len(), 1);
     for _ in 0..6 {
         session.apply(Command::Undo).unwrap();
     }
     assert_eq!(session.query(), alone);
     // In another lab nobody plays along.
     let elsewhere = open(&format!("lab=view&others={id}"));
-    assert!(elsewhere.company().is_empty());
+    assert!(elsewhere.extra_characters().is_empty());
 }
 
 #[test]
 fn whoever_is_not_here_is_named() {
     let session = open("lab=path&a=walk&others=somebody~0123456789ab,walk");
-    assert!(session.company()[0].motion.as_ref().unwrap_err().to_string().contains("somebody"));
-    assert!(session.company()[1].motion.is_ok());
+    assert!(
+        session.extra_characters()[0].motion.as_ref().unwrap_err().to_string().contains("somebody")
+    );
+    assert!(session.extra_characters()[1].motion.is_ok());
 }
 
 #[test]
@@ -302,10 +305,10 @@ fn the_feet_of_a_long_walk_are_planted_when_the_hand_rests() {
     // Who keeps it before that keeps what will come of it.
     let value = moved(&session, 3, DVec2::new(0.8, 0.3));
     set(&mut session, Key::Path, value);
-    session.apply(Command::Company(CompanyChange::JoinResult(0))).unwrap();
-    assert!(session.company()[0].motion.is_err());
+    session.apply(Command::ExtraCharacters(ExtraCharacterCommand::AddResult(0))).unwrap();
+    assert!(session.extra_characters()[0].motion.is_err());
     while session.work() {}
-    let kept = session.company()[0].motion.as_ref().unwrap();
+    let kept = session.extra_characters()[0].motion.as_ref().unwrap();
     assert_eq!(
         kept.clip().rotations(300),
         session.main_outcome().unwrap().motion.clip().rotations(300)

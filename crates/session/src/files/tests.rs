@@ -1,6 +1,6 @@
 //! Files that lean on others: motions and their skeletons, archives.
 
-use super::loading::MOST_FAILURES;
+use super::messages::MAX_NAMED;
 use crate::Notice;
 use crate::fixtures::*;
 use crate::reading::Content;
@@ -95,7 +95,7 @@ fn files_that_are_read_elsewhere_give_what_those_give_that_are_read_at_once() {
         &[("walk.bvh.gz", packed), ("broken.bvh", bytes("HIERARCHY ROOT"))],
     ];
     for files in dropped {
-        let (mut at_once, mut elsewhere) = (Session::new(), Session::that_has_files_read());
+        let (mut at_once, mut elsewhere) = (Session::new(), Session::with_external_reader());
         for (name, bytes) in files {
             at_once.load(name, Arc::clone(bytes)).ok();
             assert_eq!(
@@ -111,13 +111,13 @@ fn files_that_are_read_elsewhere_give_what_those_give_that_are_read_at_once() {
         assert!(elsewhere.jobs().iter().all(|job| job.task.is_none()));
 
         // After a reload, and read with other options.
-        let mut restored = Session::that_has_files_read();
+        let mut restored = Session::with_external_reader();
         restored.restore(&elsewhere.saved(), stored(&at_once), None);
         serve(&mut restored);
         assert_eq!(shown(&restored), shown(&at_once));
         let id = restored.clip_infos().into_iter().find(|info| info.sha256.is_some()).unwrap().id;
         let options = segue_formats::ImportOptions { fps: Some(60.0), ..Default::default() };
-        restored.apply(Command::Reimport(id.clone(), options)).unwrap();
+        restored.apply(Command::File(FileCommand::Reimport(id.clone(), options))).unwrap();
         serve(&mut restored);
         assert_eq!(restored.clip_infos().into_iter().find(|info| info.id == id).unwrap().fps, 60.0);
     }
@@ -126,7 +126,7 @@ fn files_that_are_read_elsewhere_give_what_those_give_that_are_read_at_once() {
 #[test]
 fn a_bundled_take_that_cannot_be_read_is_asked_for_again_with_the_next_command_only() {
     let sample = &Session::samples()[2];
-    let mut session = Session::that_has_files_read();
+    let mut session = Session::with_external_reader();
     session.apply(Command::Assign(Slot::A, sample.id.into())).unwrap();
     assert!(session.take_requests().contains(&Request::Sample(sample)));
     session.load_sample(sample, b"").unwrap();
@@ -148,14 +148,14 @@ fn a_bundled_take_that_cannot_be_read_is_asked_for_again_with_the_next_command_o
 
 #[test]
 fn what_was_read_stays_read_when_a_step_is_taken_back() {
-    let mut session = Session::that_has_files_read();
+    let mut session = Session::with_external_reader();
     session.load("walk.bvh", bytes(BVH)).unwrap();
     session.load("01.asf", bytes(ASF)).unwrap();
     session.load("01_02.amc", bytes(AMC)).unwrap();
     serve(&mut session);
     let unread =
         |session: &Session| files(session).iter().filter(|(.., frames)| *frames == 0).count();
-    let (mut before, mut late) = (Session::that_has_files_read(), Session::that_has_files_read());
+    let (mut before, mut late) = (Session::with_external_reader(), Session::with_external_reader());
     before.restore(&session.saved(), stored(&session), None);
     // Something is changed while they are read, or before they come.
     let change = |session: &mut Session| {
@@ -177,7 +177,7 @@ fn what_was_read_stays_read_when_a_step_is_taken_back() {
 
 #[test]
 fn how_a_file_is_read_can_be_changed_while_it_is_read() {
-    let mut session = Session::that_has_files_read();
+    let mut session = Session::with_external_reader();
     session.load("walk.bvh", bytes(BVH)).unwrap();
     serve(&mut session);
     let id = session.clip_infos().into_iter().find(|info| info.sha256.is_some()).unwrap().id;
@@ -190,7 +190,7 @@ fn how_a_file_is_read_can_be_changed_while_it_is_read() {
     };
     let reimport = |session: &mut Session, fps: Option<f64>, metres_per_unit: Option<f64>| {
         let options = segue_formats::ImportOptions { metres_per_unit, fps, ..options_of(session) };
-        session.apply(Command::Reimport(id.clone(), options)).unwrap();
+        session.apply(Command::File(FileCommand::Reimport(id.clone(), options))).unwrap();
     };
     reimport(&mut session, Some(60.0), None);
     reimport(&mut session, Some(60.0), Some(0.5));
@@ -219,7 +219,7 @@ fn a_bundled_take_is_read_elsewhere_without_a_word() {
         sample.file
     ))
     .unwrap();
-    let mut session = Session::that_has_files_read();
+    let mut session = Session::with_external_reader();
     session.apply(Command::Assign(Slot::A, sample.id.into())).unwrap();
     let asks = |session: &mut Session| session.take_requests().contains(&Request::Sample(sample));
     assert!(asks(&mut session));
@@ -245,7 +245,7 @@ fn a_bundled_take_is_read_elsewhere_without_a_word() {
 fn a_motion_has_the_skeleton_of_its_name() {
     let of_16 = ASF.replace("length 85", "length 95");
     for ahead in [true, false] {
-        for mut session in [Session::new(), Session::that_has_files_read()] {
+        for mut session in [Session::new(), Session::with_external_reader()] {
             let mut come = |files: &[(&str, &str)]| {
                 for (name, text) in files {
                     session.load(name, bytes(text)).unwrap();
@@ -286,7 +286,7 @@ fn a_motion_has_the_skeleton_of_its_name() {
 #[test]
 fn what_waits_for_its_other_half_says_so_until_that_has_come() {
     for files in [[("01_02.amc", AMC), ("01.asf", ASF)], [("01.asf", ASF), ("01_02.amc", AMC)]] {
-        for mut session in [Session::new(), Session::that_has_files_read()] {
+        for mut session in [Session::new(), Session::with_external_reader()] {
             session.load(files[0].0, bytes(files[0].1)).unwrap();
             serve(&mut session);
             assert_eq!(told(&session, Level::Warning), 1);
@@ -317,7 +317,7 @@ fn a_skeleton_serves_all_its_motions() {
     restored.restore(&saved, stored(&session), None);
     assert_eq!(files(&restored), files(&session));
     let options = segue_formats::ImportOptions { fps: Some(60.0), ..Default::default() };
-    restored.apply(Command::Reimport(id.clone(), options)).unwrap();
+    restored.apply(Command::File(FileCommand::Reimport(id.clone(), options))).unwrap();
     let info = restored.clip_infos().into_iter().find(|info| info.id == id).unwrap();
     assert_eq!((info.frames, info.fps), (2, 60.0));
 }
@@ -581,9 +581,9 @@ fn files_of_an_archive_that_cannot_be_read_are_counted_before_they_are_told() {
     let loaded = session.load("many.zip", Arc::from(zip(&files))).unwrap();
     let errors: Vec<String> =
         session.notices().errors_since(0).iter().map(|notice| notice.text.to_string()).collect();
-    assert_eq!(errors.len(), MOST_FAILURES + 1, "{errors:#?}");
+    assert_eq!(errors.len(), MAX_NAMED + 1, "{errors:#?}");
     assert_eq!(
-        errors[MOST_FAILURES],
+        errors[MAX_NAMED],
         "197 more did not work: many.zip/003.bvh, many.zip/004.bvh, many.zip/005.bvh, …."
     );
     assert_eq!(loaded.warnings.len(), 200, "whoever loads it by the API is told of each");
@@ -686,7 +686,7 @@ fn clip_in_a_wrong_unit_or_with_a_wild_row_is_mended_by_what_its_notice_offers()
         );
         let notice = offer(&session);
         assert_eq!(notice.mends, loaded.ids);
-        session.apply(Command::Mend(notice.id)).unwrap();
+        session.apply(Command::File(FileCommand::Mend(notice.id))).unwrap();
         assert!(session.notices().list().iter().all(|left| left.id != notice.id));
         let height = height_metres(&session, &loaded.ids[0]);
         assert!((0.9..2.5).contains(&height), "{part}: {height} m");
@@ -727,9 +727,9 @@ fn several_absurd_clips_are_mended_at_once_whether_they_come_packed_or_one_by_on
         let (tiny, wild) = (ids_named(&session, "tiny"), ids_named(&session, "wild"));
         session.apply(Command::Remove(ids_named(&session, "huge"))).unwrap();
         let by_hand = ImportOptions { metres_per_unit: Some(150.0), ..ImportOptions::default() };
-        session.apply(Command::Reimport(tiny.clone(), by_hand)).unwrap();
+        session.apply(Command::File(FileCommand::Reimport(tiny.clone(), by_hand))).unwrap();
         let tall = height_metres(&session, &tiny);
-        session.apply(Command::Mend(notice.id)).unwrap();
+        session.apply(Command::File(FileCommand::Mend(notice.id))).unwrap();
         assert_eq!(height_metres(&session, &tiny), tall);
         assert!(longest_step_metres(&session, &wild) < 0.2);
         // Mending, setting by hand and taking away are a step each.
@@ -755,7 +755,7 @@ fn mending_several_clips_is_one_step_for_undo() {
     let ids = [ids_named(&session, "tiny"), ids_named(&session, "huge")];
     let heights = |session: &Session| ids.each_ref().map(|id| height_metres(session, id));
     let before = heights(&session);
-    session.apply(Command::Mend(offer(&session).id)).unwrap();
+    session.apply(Command::File(FileCommand::Mend(offer(&session).id))).unwrap();
     assert!(heights(&session).iter().all(|height| (0.9..2.5).contains(height)), "{before:?}");
     session.apply(Command::Undo).unwrap();
     settle(&mut session);

@@ -47,7 +47,7 @@ fn here(session: &Session) -> (usize, usize) {
 }
 
 fn load() -> Command {
-    Command::LoadSamples(set())
+    Command::File(FileCommand::LoadSamples(set()))
 }
 
 #[test]

@@ -162,7 +162,7 @@ fn a_speed_that_is_set_at_once_is_taken_on_little_by_little() {
                 && distance(&at, &at_after) < 1e-3
                 && (height - height_after).abs() < 1e-3
         );
-        assert!(session.panes()[0].glide.is_some());
+        assert!(session.panes()[0].ramp.is_some());
         let (mut last, mut most, mut fastest) = (after, 0.0f32, 0.0f64);
         let mut here = at_after;
         for _ in 0..90 {
@@ -172,7 +172,7 @@ fn a_speed_that_is_set_at_once_is_taken_on_little_by_little() {
             fastest = fastest.max(distance(&here, &place) / dt);
             (last, here) = (pose, place);
         }
-        assert!(session.panes()[0].glide.is_none(), "it has arrived");
+        assert!(session.panes()[0].ramp.is_none(), "it has arrived");
         let most_of_both = own.max(usual(&mut session));
         assert!(
             most < 1.5 * most_of_both && fastest < 1.5 * 3.5,
@@ -180,8 +180,8 @@ fn a_speed_that_is_set_at_once_is_taken_on_little_by_little() {
         );
         // A picture that stands shows at once what was asked for.
         set(&mut session, Key::Speed, from);
-        session.apply(Command::TogglePlay).unwrap();
-        assert!(session.tick(dt) && !session.tick(dt) && session.panes()[0].glide.is_none());
+        session.apply(Command::Playback(PlaybackCommand::TogglePlay)).unwrap();
+        assert!(session.tick(dt) && !session.tick(dt) && session.panes()[0].ramp.is_none());
     }
 }
 
@@ -192,7 +192,7 @@ fn other_phases_would_jump() {
     session.tick(1.3);
     let (before, ..) = shown(&session);
     let half = session.now_secs() + 0.5 * cycle(&session).secs;
-    session.apply(Command::Seek(half)).unwrap();
+    session.apply(Command::Playback(PlaybackCommand::Seek(half))).unwrap();
     let (after, ..) = shown(&session);
     assert!(turned(&before, &after) > 20.0);
 }
@@ -224,7 +224,7 @@ fn a_loop_goes_round_a_hundred_times_without_drift() {
         // The same phase in every cycle, a hundred of them, however often the timeline begins
         // again.
         let begin = 0.3 * secs;
-        session.apply(Command::Seek(begin)).unwrap();
+        session.apply(Command::Playback(PlaybackCommand::Seek(begin))).unwrap();
         let (first, height, mut at) = shown_at(&session, begin);
         let mut steps: Vec<Planar> = Vec::new();
         for round in 1..=100 {
@@ -233,7 +233,7 @@ fn a_loop_goes_round_a_hundred_times_without_drift() {
             // the cycle.
             let now = begin + (round % cycles) as f64 * secs;
             assert!((session.now_secs() - now).abs() < 0.1, "{round}");
-            session.apply(Command::Seek(now)).unwrap();
+            session.apply(Command::Playback(PlaybackCommand::Seek(now))).unwrap();
             let (pose, height_now, here) = shown_at(&session, now);
             assert!(
                 turned(&first, &pose).to_radians() < 1e-4 && (height_now - height).abs() < 1e-4,

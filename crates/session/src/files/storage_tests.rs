@@ -32,7 +32,9 @@ fn roles_that_were_corrected_by_hand_survive_for_every_kind_of_clip() {
     settle(&mut session);
     let ids = [file.as_str(), "run(turn_rate:20)", "idle", sample.id];
     for id in ids {
-        session.apply(Command::CorrectRole(id.into(), Role::Head, Some(1))).unwrap();
+        session
+            .apply(Command::File(FileCommand::CorrectRole(id.into(), Role::Head, Some(1))))
+            .unwrap();
     }
     let mut restored = reloaded(&session, &bytes);
     restored.load_sample(sample, &packed).unwrap();
@@ -67,7 +69,9 @@ fn what_comes_late_leaves_the_clips_that_are_in_use() {
 fn roles_for_joints_that_are_not_there_are_left_alone() {
     let mut session = Session::new();
     settle(&mut session);
-    session.apply(Command::CorrectRole("idle".into(), Role::Head, Some(1))).unwrap();
+    session
+        .apply(Command::File(FileCommand::CorrectRole("idle".into(), Role::Head, Some(1))))
+        .unwrap();
     let mut saved = session.saved();
     let entry = saved.entries.iter_mut().find(|entry| entry.id == "idle").unwrap();
     entry.roles.as_mut().unwrap().set(Role::Head, Some(10_000));

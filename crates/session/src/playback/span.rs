@@ -1,4 +1,4 @@
-//! Where the playhead stands and how it moves.
+//! The part of a result that plays.
 
 /// The part of a result that plays.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -147,7 +147,7 @@ fn a_link_to_another_lesson_opens_it() {
     session.apply(Command::Try("lesson=half_life".into())).unwrap();
     assert_eq!(session.params().text(Key::Lesson), "half_life");
     assert_eq!(deliver(&mut session), [Source::BuiltIn("en/04-half_life.md".to_owned())]);
-    session.read_lessons_in("zh-Hant");
+    session.set_lesson_language("zh-Hant");
     assert!(matches!(session.lesson(), Some(Lesson::Waiting)));
     assert_eq!(deliver(&mut session), [Source::BuiltIn("zh-Hant/04-half_life.md".to_owned())]);
     let Some(Lesson::Page(page)) = session.lesson() else { panic!() };

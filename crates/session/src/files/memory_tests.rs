@@ -76,7 +76,7 @@ fn motion_of_the_library_stays_however_scarce_memory_is() {
 
 #[test]
 fn a_large_file_that_was_fetched_joins_as_a_small_one_does() {
-    let mut session = Session::that_has_files_read();
+    let mut session = Session::with_external_reader();
     session.apply(Command::OpenLink("lab=blend&a=idle&b=run".into())).unwrap();
     let came = |session: &mut Session, fetched: bool| {
         let content = Content::Outside("file 1".into());

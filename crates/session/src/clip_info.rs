@@ -1,0 +1,45 @@
+//! Clips as the page's API has them.
+
+use crate::library::Entry;
+
+/// A clip as the page's API has it.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct ClipInfo {
+    /// Its name in links.
+    pub id: String,
+    /// Its name on screen.
+    pub name: String,
+    /// `bvh`, `amc`, `asf`, `gltf` or `synth`.
+    pub format: &'static str,
+    /// Number of joints; 0 while it is not loaded.
+    pub joints: usize,
+    /// Number of frames.
+    pub frames: usize,
+    /// Frames per second.
+    pub fps: f64,
+    /// Seconds.
+    pub duration: f64,
+    /// Standing height in metres.
+    pub height: f32,
+    /// SHA-256 of the file, hexadecimal; `null` without a file.
+    pub sha256: Option<String>,
+}
+
+impl ClipInfo {
+    pub(crate) fn of(entry: &Entry) -> Self {
+        let motion = entry.motion.as_deref();
+        let clip = motion.map(segue_motion::clip::Motion::clip);
+        Self {
+            id: entry.id.clone(),
+            name: entry.name.clone(),
+            format: entry.format(),
+            joints: clip.map_or(0, |clip| clip.skeleton().len()),
+            frames: clip.map_or(0, |clip| clip.frames()),
+            fps: clip.map_or(0.0, |clip| clip.fps()),
+            duration: clip.map_or(0.0, |clip| clip.duration_secs()),
+            height: motion
+                .map_or(0.0, |motion| motion.roles().body_height(motion.clip().skeleton())),
+            sha256: entry.sha256().map(str::to_owned),
+        }
+    }
+}

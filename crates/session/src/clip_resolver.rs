@@ -1,0 +1,206 @@
+//! Where labs get their clips: from the library, made, made again by their recipe, or asked for.
+
+use crate::compare::Compare;
+use crate::document::Document;
+use crate::files::FileIntake;
+use crate::labs::{Answer, Inputs, LabClips, LabError, LabSet, MoreClip};
+use crate::labs::{lab, preset_motion, recipe_name, recipe_params};
+use crate::library::{Entry, Origin, split_reference};
+use crate::motion::foot_options;
+use crate::outside;
+use crate::params::{Key, Params, Value};
+use segue_motion::clip::Motion;
+use std::sync::Arc;
+
+/// The parts of a session that bring in the clips of labs, and run them.
+pub(crate) struct ClipResolver<'a> {
+    pub(crate) document: &'a mut Document,
+    pub(crate) files: &'a mut FileIntake,
+    pub(crate) labs: &'a mut LabSet,
+}
+
+impl ClipResolver<'_> {
+    /// Makes one built-in clip that was not needed yet, so that the library can describe it. Returns
+    /// `false` when all are made.
+    pub(crate) fn make_next(&mut self) -> bool {
+        // What another lab made takes its time, and is made when it is used.
+        let is_quick = |entry: &Entry| match entry.origin {
+            Origin::Preset => true,
+            Origin::Made => {
+                recipe_params(&entry.id).is_some_and(|params| lab::of(params.lab()).is_synthetic())
+            }
+            _ => false,
+        };
+        let unmade = |entry: &&Arc<Entry>| entry.motion.is_none() && is_quick(entry);
+        let next =
+            self.document.library.entries().iter().find(unmade).map(|entry| entry.id.clone());
+        next.is_some_and(|id| self.motion(&id).is_ok())
+    }
+
+    /// Returns the motion of a clip with its feet read as the parameters ask for.
+    fn motion_with_feet(
+        &mut self,
+        reference: &str,
+        params: &Params,
+    ) -> Result<Arc<Motion>, LabError> {
+        let motion = self.motion(reference)?;
+        Ok(self.labs.feet.read(&motion, foot_options(params)))
+    }
+
+    /// Returns the motion of a clip. Makes it or asks for it where it is not there yet.
+    ///
+    /// # Errors
+    /// Says why there is none, or none yet.
+    pub(crate) fn motion(&mut self, reference: &str) -> Result<Arc<Motion>, LabError> {
+        let Some(entry) = self.document.library.find(reference) else {
+            return Err(LabError::MissingClip {
+                name: outside::short(split_reference(reference).0),
+            });
+        };
+        if let Some(motion) = &entry.motion {
+            return Ok(Arc::clone(motion));
+        }
+        let id = entry.id.clone();
+        let motion = match &entry.origin {
+            Origin::Sample(sample) => {
+                let sample = *sample;
+                self.files.ask_for_sample(self.document, sample);
+                let failed = self.document.library.get(&id).and_then(|entry| entry.unread.clone());
+                return Err(
+                    failed.map_or(LabError::Loading { name: sample.label }, LabError::Unread)
+                );
+            }
+            Origin::Preset => Arc::new(preset_motion(&id)?),
+            Origin::Made => {
+                let params = recipe_params(&id)
+                    .ok_or_else(|| LabError::NoRecipe { id: outside::short(&id) })?;
+                self.make_again(&params)?
+            }
+            Origin::File(file) if entry.awaits_skeleton() => {
+                return Err(LabError::AwaitsSkeleton { file: file.name.clone() });
+            }
+            Origin::File(_) if entry.unread.is_some() => {
+                return Err(LabError::Unread(entry.unread.clone().unwrap_or_default()));
+            }
+            Origin::File(file) => {
+                let file = file.clone();
+                if !self.files.read_anew(self.document, &file, None)? {
+                    return Err(LabError::Reading { file: file.name.clone() });
+                }
+                let motion = self.document.library.find(&id).and_then(|entry| entry.motion.clone());
+                return motion.ok_or_else(|| LabError::NoSuchClip { file: file.name.clone() });
+            }
+        };
+        let by_hand = self.document.library.get(&id).and_then(|entry| entry.roles_by_hand.clone());
+        let motion = if let Some(roles) = &by_hand {
+            Arc::new(Arc::unwrap_or_clone(motion).with_corrected_roles(roles))
+        } else {
+            motion
+        };
+        self.document.library.change(&id, |entry| entry.motion = Some(Arc::clone(&motion)));
+        Ok(motion)
+    }
+
+    /// Returns the motions of several clips with their feet read as the parameters ask for.
+    fn motions_with_feet(
+        &mut self,
+        ids: &[String],
+        params: &Params,
+    ) -> Result<Vec<Arc<Motion>>, LabError> {
+        let motions = self.motions(ids)?;
+        let reading = foot_options(params);
+        Ok(motions.iter().map(|motion| self.labs.feet.read(motion, reading)).collect())
+    }
+
+    /// Returns the motions of several clips. Makes or asks for all that are not there yet before it
+    /// fails with the first that is missing.
+    fn motions(&mut self, ids: &[String]) -> Result<Vec<Arc<Motion>>, LabError> {
+        let motion = |id: &String| {
+            self.document.bring(id);
+            self.motion(id)
+        };
+        let motions: Vec<_> = ids.iter().map(motion).collect();
+        motions.into_iter().collect()
+    }
+
+    /// Makes a result again from its recipe: its clips may have to be made themselves, or loaded.
+    fn make_again(&mut self, params: &Params) -> Result<Arc<Motion>, LabError> {
+        for key in [Key::A, Key::B] {
+            let reference = params.text(key).to_owned();
+            let _was_gone = self.document.bring_back(&reference) || self.document.bring(&reference);
+        }
+        self.labs.grapher.guide_by(None);
+        match self.answer(params, None, widest_window(params, None)) {
+            Answer::Made { outcome, is_draft: false, .. } => Ok(Arc::clone(&outcome.motion)),
+            Answer::Refused(problem) => Err(problem),
+            _ => Err(LabError::BeingMade { name: recipe_name(params) }),
+        }
+    }
+
+    /// Returns the clips that the lab of the parameters makes its result from. Asks for all of them
+    /// before it fails with the first that is missing: files are fetched together.
+    pub(crate) fn lab_clips(&mut self, params: &Params) -> Result<LabClips, LabError> {
+        let lab = lab::of(params.lab());
+        let slots: Vec<_> = (lab.slots().iter())
+            .map(|slot| self.motion_with_feet(params.text(slot.key()), params))
+            .collect();
+        let ids = lab.more_clips(params)?;
+        let motions =
+            if lab.has_feet() { self.motions_with_feet(&ids, params) } else { self.motions(&ids) };
+        let slots = slots.into_iter().collect::<Result<_, _>>()?;
+        let more = ids.into_iter().zip(motions?).map(|(id, motion)| MoreClip {
+            name: self
+                .document
+                .library
+                .find(&id)
+                .map_or_else(|| id.clone(), |entry| entry.name.clone()),
+            id,
+            motion,
+        });
+        Ok(LabClips { slots, more: more.collect() })
+    }
+
+    /// Returns what a pane's result depends on; `None` while that is still being computed.
+    fn inputs(&mut self, params: &Params, match_window: usize) -> Result<Option<Inputs>, LabError> {
+        let clips = self.lab_clips(params)?;
+        lab::of(params.lab()).inputs(self.labs, clips, params, match_window)
+    }
+
+    /// Returns the answer to the parameters of a pane; `shown` is what its present result was made
+    /// from.
+    pub(crate) fn answer(
+        &mut self,
+        params: &Params,
+        shown: Option<&Inputs>,
+        match_window: usize,
+    ) -> Answer {
+        match self.inputs(params, match_window) {
+            Ok(None) => Answer::Awaited,
+            Ok(Some(inputs)) if shown == Some(&inputs) => {
+                Answer::Same { is_draft: inputs.is_draft() }
+            }
+            Ok(Some(inputs)) => match inputs.run() {
+                Ok(outcome) => Answer::Made {
+                    outcome: Arc::new(outcome),
+                    is_draft: inputs.is_draft(),
+                    inputs: Some(inputs),
+                },
+                Err(problem) => Answer::Refused(problem),
+            },
+            Err(problem) => Answer::Refused(problem),
+        }
+    }
+}
+
+/// Returns the window of the automatic match, in frames: one for all panes, so that they differ in
+/// the compared value alone.
+pub(crate) fn widest_window(params: &Params, compare: Option<&Compare>) -> usize {
+    let windows = compare
+        .filter(|compare| compare.key == Key::BlendWindow)
+        .map(|compare| compare.values.as_slice());
+    let widest = windows.unwrap_or(&[]).iter().fold(0.0, |widest: f64, value| match value {
+        Value::Number(frames) => widest.max(*frames),
+        _ => widest,
+    });
+    if widest > 0.0 { widest as usize } else { params.number(Key::BlendWindow) as usize }
+}

@@ -1,0 +1,23 @@
+//! Parameters that are places in a clip: they mean nothing in another one.
+
+use crate::labs::Slot;
+use crate::params::{Key, Mark, PARAMS, Params};
+
+/// Sets back the parameters that are places in a slot's clip, but for those `given` for the clip
+/// that is there now: they mean nothing in another clip. Returns the parameters that have changed.
+pub(super) fn forget_places(params: &mut Params, slot: Slot, given: &[Key]) -> Vec<Key> {
+    let mark = match slot {
+        Slot::A => Mark::PlaceInA,
+        Slot::B => Mark::PlaceInB,
+    };
+    let places = PARAMS.iter().filter(|param| param.has(mark)).map(|param| param.key);
+    let mut changed = Vec::new();
+    for key in places.filter(|key| !given.contains(key)) {
+        let result = params.set(key, key.param().default_value());
+        debug_assert!(result.is_ok(), "defaults fit: {result:?}");
+        if result == Ok(true) {
+            changed.push(key);
+        }
+    }
+    changed
+}

@@ -1,0 +1,136 @@
+//! Clips that play beside the result on the stage, most of them motions on paths of their own.
+
+use crate::clip_resolver::ClipResolver;
+use crate::command::{CommandError, ExtraCharacterCommand};
+use crate::document::Document;
+use crate::labs::LabError;
+use crate::labs::lab::{self, Beside};
+use crate::labs::{edit_as_path, read_ids, recipe_id, recipe_name, write_ids};
+use crate::library::{Entry, Origin, split_reference};
+use crate::panes::Panes;
+use crate::params::{Key, Value};
+use segue_motion::clip::Motion;
+use std::sync::Arc;
+
+/// The most extra characters.
+const MAX_CHARACTERS: usize = 6;
+
+/// A clip that plays beside the result.
+#[derive(Clone, Debug)]
+pub struct ExtraCharacter {
+    /// The id of the clip, as the link has it.
+    pub id: String,
+    /// The clip's name on screen.
+    pub name: String,
+    /// The motion, or why there is none.
+    pub motion: Result<Arc<Motion>, LabError>,
+}
+
+impl ExtraCharacter {
+    /// Returns the duration of the motion, seconds; `None` where there is none.
+    #[must_use]
+    pub fn duration_secs(&self) -> Option<f64> {
+        self.motion.as_ref().ok().map(|motion| motion.clip().duration_secs())
+    }
+}
+
+/// The clips that play beside the result.
+#[derive(Debug, Default)]
+pub(crate) struct ExtraCharacters {
+    /// In the order of the parameter's list; none in other labs.
+    pub(crate) list: Vec<ExtraCharacter>,
+}
+
+impl ExtraCharacters {
+    /// Returns the duration of the longest motion, seconds.
+    pub(crate) fn duration_secs(&self) -> f64 {
+        self.list.iter().filter_map(ExtraCharacter::duration_secs).fold(0.0, f64::max)
+    }
+
+    /// Finds or makes the clips in the list.
+    pub(crate) fn refresh(&mut self, clips: &mut ClipResolver<'_>) {
+        self.list.clear();
+        if !lab::of(clips.document.params.lab()).has(Beside::ExtraCharacters) {
+            return;
+        }
+        for id in ids(clips.document).into_iter().take(MAX_CHARACTERS) {
+            clips.document.bring(&id);
+            let motion = clips.motion(&id);
+            let entry = clips.document.library.find(&id);
+            let name =
+                entry.map_or_else(|| split_reference(&id).0.to_owned(), |entry| entry.name.clone());
+            self.list.push(ExtraCharacter { id, name, motion });
+        }
+    }
+}
+
+/// Returns the ids in the list.
+fn ids(document: &Document) -> Vec<String> {
+    read_ids(document.params.text(Key::Others)).unwrap_or_default()
+}
+
+/// Carries out a command as one step for undo.
+pub(crate) fn apply(
+    command: ExtraCharacterCommand,
+    document: &mut Document,
+    panes: &Panes,
+) -> Result<(), CommandError> {
+    let mut ids = ids(document);
+    let nobody = CommandError::NotPossible("nobody is in this place of the list");
+    let mut params = document.params.clone();
+    match command {
+        ExtraCharacterCommand::Add(_) | ExtraCharacterCommand::AddResult(_)
+            if ids.len() >= MAX_CHARACTERS =>
+        {
+            return Err(CommandError::NotPossible("the stage is full: six play along already"));
+        }
+        ExtraCharacterCommand::Add(id) => {
+            let id = document.clip(&id)?.id.clone();
+            document.remember(None);
+            ids.push(id);
+        }
+        ExtraCharacterCommand::AddResult(pane) => {
+            let entry = result_entry(panes, pane)?;
+            document.remember(None);
+            ids.push(put(document, entry));
+        }
+        ExtraCharacterCommand::Edit(place) => {
+            let id = ids.get(place).cloned().ok_or(nobody)?;
+            let entry = result_entry(panes, 0)?;
+            edit_as_path(&mut params, &id)?;
+            document.remember(None);
+            ids[place] = put(document, entry);
+        }
+        ExtraCharacterCommand::Remove(place) => {
+            if place >= ids.len() {
+                return Err(nobody);
+            }
+            document.remember(None);
+            ids.remove(place);
+        }
+    }
+    params.set(Key::Others, Value::Text(write_ids(&ids)))?;
+    document.params = params;
+    Ok(())
+}
+
+/// Returns the result of a pane as an entry of the library.
+fn result_entry(panes: &Panes, pane: usize) -> Result<Entry, CommandError> {
+    let made = panes.get(pane)?.recipe()?;
+    let id = recipe_id(made.params, made.outcome, [1.0; 2])
+        .ok_or(CommandError::NotPossible("there is no result to put on the stage"))?;
+    Ok(Entry {
+        motion: (!made.outcome.awaits_feet()).then(|| Arc::clone(&made.outcome.motion)),
+        ..Entry::new(id, recipe_name(made.params), Origin::Made)
+    })
+}
+
+/// Puts an entry into the library, if it is not there. Returns its id.
+fn put(document: &mut Document, entry: Entry) -> String {
+    let id = entry.id.clone();
+    if document.library.find(&id).is_none() {
+        document.library.put(entry);
+        document.library_revision += 1;
+    }
+    id
+}

@@ -1,0 +1,298 @@
+//! Clips of files that were read, into the library.
+
+use super::intake::{FileIntake, Loaded};
+use super::mends::{mend_of, offer_mends};
+use super::messages::{in_the_library, tell_all_unread, tell_unread};
+use super::setup::misses_skeleton;
+use super::skeletons::drop_used_skeletons;
+use crate::document::Document;
+use crate::library::{Arrival, Entry, Origin, SourceFile, file_id, file_stem};
+use crate::notice::{Level, Notices};
+use crate::outside;
+use crate::params::{Key, Value};
+use crate::reading::{Content, ReadFile, ReadReport, ReadSetup};
+use segue_formats::{FileKind, ImportError, ImportOptions};
+use segue_text::{Message, ToMessage, msg};
+use std::sync::Arc;
+
+/// The most remarks on files that one notice holds.
+const MAX_REMARKS: usize = 6;
+
+impl FileIntake {
+    /// Puts the clips of a report into the library, as a step for undo.
+    pub(super) fn admit(
+        &mut self,
+        document: &mut Document,
+        notices: &mut Notices,
+        report: ReadReport,
+        content: &Content,
+        setup: &ReadSetup,
+        arrival: Arrival,
+    ) -> Result<Loaded, ImportError> {
+        // Of several files some may be good; one alone fails as a whole.
+        if let [ReadFile { result: Err(error), .. }] = report.files.as_slice() {
+            let error = error.clone();
+            tell_unread(notices, &error);
+            return Err(error);
+        }
+        document.remember(None);
+        let mut loaded = Loaded::default();
+        let (mut names, mut t_poses, mut failures) = (Vec::new(), 0, Vec::new());
+        let brings_skeleton = |file: &ReadFile| {
+            file.kind == FileKind::Asf
+                || file.result.as_ref().is_ok_and(|read| read.companion.is_some())
+        };
+        let skeleton_arrived = report.files.iter().any(brings_skeleton)
+            || misses_skeleton(&document.library, &report, setup);
+        for file in report.files {
+            let name = file.name.clone();
+            match file_entries(file, content, &setup.options) {
+                Ok((entries, warnings)) => {
+                    names.push(name);
+                    let has_t_pose = |entry: &Entry| {
+                        entry.about.as_ref().is_some_and(|about| about.t_pose_first_row)
+                    };
+                    t_poses += usize::from(entries.iter().any(has_t_pose));
+                    loaded.warnings.extend(warnings);
+                    let first = entries.iter().find(|entry| entry.mesh.is_some());
+                    if first
+                        .and_then(Entry::character)
+                        .is_some_and(|character| !character.has_limbs())
+                    {
+                        loaded.warnings.push(
+                            "its figure has no limbs that are known: only its own clips move it"
+                                .into(),
+                        );
+                    }
+                    if let Some(first) =
+                        first.filter(|entry| takes_character(document, entry, arrival))
+                    {
+                        document.set_unchecked(Key::Character, Value::Text(first.id.clone()));
+                    }
+                    for entry in entries {
+                        loaded.ids.push(entry.id.clone());
+                        self.join(document, notices, entry, arrival);
+                    }
+                }
+                Err(error) => failures.push(error),
+            }
+        }
+        loaded.warnings.extend(report.notes);
+        tell_all_unread(notices, &failures);
+        if skeleton_arrived {
+            self.read_waiting(document, notices, arrival);
+            drop_used_skeletons(&mut document.library);
+        }
+        document.settle();
+        document.library_revision += 1;
+        if !names.is_empty() {
+            let mut told: Vec<Message> = in_the_library(&names).into_iter().collect();
+            let mut more = 0;
+            for warning in loaded.warnings.iter().map(ToMessage::to_sentence) {
+                if told.contains(&warning) {
+                    continue;
+                }
+                if told.len() > MAX_REMARKS {
+                    more += 1;
+                } else {
+                    told.push(warning);
+                }
+            }
+            if more > 0 {
+                told.push(msg!("{more} more remarks stand with the clips."));
+            }
+            let text = Message::joined(told, " ");
+            // A T-pose in front is how the takes of whole databases come: good to know, and nothing
+            // to do about it.
+            let is_odd = loaded.warnings.len() > t_poses;
+            let mends: Vec<String> = loaded
+                .ids
+                .iter()
+                .filter(|id| mend_of(&document.library, id).is_some())
+                .cloned()
+                .collect();
+            match loaded.ids.as_slice() {
+                // Until its other half comes.
+                [id] if is_odd && document.is_half(id) => notices.miss(id, text),
+                // A skeleton that was waited for: it has its motion.
+                [id] if document.library.get(id).is_none() => {
+                    if let Some(text) = in_the_library(&names) {
+                        notices.say(Level::Info, text);
+                    }
+                }
+                _ if !mends.is_empty() => offer_mends(&document.library, notices, text, mends),
+                _ => notices.say(if is_odd { Level::Warning } else { Level::Info }, text),
+            }
+        } else if !loaded.warnings.is_empty() {
+            // What holds for the archive holds though nothing in it can be read.
+            let told: Vec<Message> = loaded.warnings.iter().map(ToMessage::to_sentence).collect();
+            notices.say(Level::Warning, Message::joined(told, " "));
+        }
+        // Listeners are told of each.
+        loaded.warnings.extend(failures.iter().map(ToMessage::to_message));
+        Ok(loaded)
+    }
+
+    /// Adds a clip. Where the library has it already, keeps what was set by hand.
+    fn join(
+        &mut self,
+        document: &mut Document,
+        notices: &mut Notices,
+        entry: Entry,
+        arrival: Arrival,
+    ) {
+        let id = entry.id.clone();
+        let known = document.library.get(&id).cloned();
+        match &known {
+            Some(known) => self.join_again(document, notices, known, entry),
+            None => document.library.put(entry),
+        }
+        // A skeleton alone plays nothing, nor does a character that comes without a motion of its
+        // own; a motion that waits for one may come into its place when it can be read.
+        let plays = document.library.get(&id).is_some_and(|entry| {
+            entry
+                .motion
+                .as_ref()
+                .is_some_and(|motion| motion.clip().frames() > usize::from(entry.mesh.is_some()))
+        });
+        // What the link fetches once more, after a reload, has the place that it was given then, or
+        // none.
+        if plays && (known.is_none() || arrival == Arrival::ByHand) {
+            document.offer(&id, arrival);
+        }
+    }
+
+    /// Adds a clip that the library has already.
+    fn join_again(
+        &mut self,
+        document: &mut Document,
+        notices: &mut Notices,
+        known: &Entry,
+        entry: Entry,
+    ) {
+        let (Origin::File(had), Origin::File(has)) = (&known.origin, &entry.origin) else {
+            return;
+        };
+        if known.motion.is_some() && (has.companion.is_none() || has.companion == had.companion) {
+            return;
+        }
+        let is_read_as_said = had.options == has.options && known.roles_by_hand.is_none();
+        let file = SourceFile { options: had.options, ..has.clone() };
+        document.library.put(Entry {
+            name: known.name.clone(),
+            roles_by_hand: known.roles_by_hand.clone(),
+            origin: Origin::File(file.clone()),
+            ..entry
+        });
+        if is_read_as_said {
+            return;
+        }
+        if let Err(error) = self.read_anew(document, &file, None) {
+            tell_unread(notices, &error);
+        }
+    }
+}
+
+/// Returns whether a file with a skin becomes the character. One that the link fetches does not
+/// where it was here before, or the link names another.
+fn takes_character(document: &Document, entry: &Entry, arrival: Arrival) -> bool {
+    let is_free = document.params.text(Key::Character).is_empty();
+    // A figure that only its own clips move is no character for the others.
+    let replaces = entry.character().is_some_and(|character| character.has_limbs());
+    match arrival {
+        Arrival::ByHand => is_free || replaces,
+        Arrival::ByLink => is_free && document.library.get(&entry.id).is_none(),
+    }
+}
+
+/// Gives the clips that are in the library the content of a new report. Leaves out those that are to
+/// be read with other options by now.
+pub(super) fn refill(
+    document: &mut Document,
+    report: ReadReport,
+    options: &ImportOptions,
+) -> Result<Loaded, ImportError> {
+    let mut loaded = Loaded::default();
+    for file in report.files {
+        // Where the bytes are is known: the entries say it.
+        let (entries, warnings) = file_entries(file, &Content::Here(Arc::from([])), options)?;
+        loaded.warnings.extend(warnings);
+        for new in entries {
+            document.library.change(&new.id, |entry| {
+                let (Origin::File(file), Origin::File(new_file)) = (&mut entry.origin, new.origin)
+                else {
+                    return;
+                };
+                if file.options != *options {
+                    return;
+                }
+                file.companion = new_file.companion;
+                // A motion whose skeleton was not found keeps waiting.
+                entry.motion = new.motion;
+                entry.mesh = new.mesh;
+                entry.about = new.about;
+                entry.warnings = new.warnings;
+            });
+            loaded.ids.push(new.id);
+        }
+    }
+    document.library_revision += 1;
+    Ok(loaded)
+}
+
+/// Returns an entry for every clip of a file, and the file's warnings. `content` is the file's, unless it
+/// arrival out of an archive.
+fn file_entries(
+    file: ReadFile,
+    content: &Content,
+    options: &ImportOptions,
+) -> Result<(Vec<Entry>, Vec<Message>), ImportError> {
+    let read = file.result?;
+    let source = SourceFile {
+        name: file.name,
+        sha256: file.sha256,
+        size: file.size,
+        kind: file.kind,
+        content: file
+            .unpacked
+            .map_or_else(|| content.clone(), |bytes| Content::Here(Arc::from(bytes))),
+        companion: read.companion,
+        index: 0,
+        options: *options,
+    };
+    let mut warnings = read.warnings;
+    if read.awaits_skeleton {
+        warnings.push(msg!(
+            "{name} waits for its skeleton: drop the .asf file that belongs to it.",
+            name = source.name
+        ));
+        let id = file_id(&source.name, &source.sha256, 0);
+        let entry = Entry {
+            warnings: warnings.clone(),
+            ..Entry::new(id, outside::clip_name(file_stem(&source.name)), Origin::File(source))
+        };
+        return Ok((vec![entry], warnings));
+    }
+    let entries = read.clips.into_iter().enumerate().map(|(index, clip)| {
+        let source = SourceFile { index, ..source.clone() };
+        Entry {
+            motion: Some(Arc::new(clip.motion)),
+            mesh: clip.mesh,
+            about: Some(clip.about),
+            warnings: warnings.clone(),
+            ..Entry::new(
+                file_id(&source.name, &source.sha256, index),
+                String::new(),
+                Origin::File(source),
+            )
+        }
+    });
+    let named = entries.map(|mut entry| {
+        entry.name = entry
+            .motion
+            .as_ref()
+            .map_or_else(String::new, |motion| outside::clip_name(motion.clip().name()));
+        entry
+    });
+    Ok((named.collect(), warnings))
+}

@@ -1,0 +1,253 @@
+//! The files that are on their way into the library.
+
+use super::setup::setup_for_new;
+use crate::command::{CommandError, FileCommand, Request};
+use crate::document::Document;
+use crate::library::{Arrival, Library};
+use crate::memory::{Memory, MemoryUse, PageMemory, expected_bytes, library_bytes, refusal};
+use crate::notice::{Level, Notices};
+use crate::outside;
+use crate::reading::{Content, LARGE_BYTES, ReadSetup, ReadTask, Reads};
+use crate::samples::Sample;
+use segue_formats::ImportError;
+use segue_text::{Message, msg};
+use std::sync::Arc;
+
+/// The most addresses of files that a link may name.
+const MAX_SOURCES: usize = 16;
+
+/// The content of a file that was read.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Loaded {
+    /// The ids of its clips.
+    pub ids: Vec<String>,
+    /// Oddities in it, one sentence each.
+    pub warnings: Vec<Message>,
+}
+
+/// A file that is being read elsewhere.
+#[derive(Debug)]
+pub(super) struct Reading {
+    pub(super) task: ReadTask,
+    /// Bytes that are read.
+    pub(super) done: u64,
+    pub(super) purpose: Purpose,
+}
+
+/// The use of a file that is being read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Purpose {
+    /// Its clips join the library.
+    New(Arrival),
+    /// Its clips are in the library and get their motion. Those that waited for a skeleton, which
+    /// has arrived in this way, are offered A and B.
+    Again(Option<Arrival>),
+    /// It is the motion of a bundled take.
+    Sample(&'static Sample),
+}
+
+impl Reading {
+    pub(super) fn is_small(&self) -> bool {
+        self.task.size <= LARGE_BYTES || matches!(self.purpose, Purpose::Sample(_))
+    }
+
+    pub(super) fn is_new(&self) -> bool {
+        matches!(self.purpose, Purpose::New(_))
+    }
+}
+
+/// The bundled takes that were asked for and have not arrived.
+#[derive(Debug, Default)]
+pub(super) struct AwaitedSamples {
+    pub(super) samples: Vec<&'static Sample>,
+    /// How many were asked for since none was awaited.
+    pub(super) asked: usize,
+    /// Those that failed, and are not asked for again before the next command.
+    pub(super) failed: Vec<&'static Sample>,
+}
+
+/// The files that are being read, and what is asked of the app for them.
+#[derive(Debug)]
+pub(crate) struct FileIntake {
+    /// The function that reads small files at once; `None` where all files are read elsewhere.
+    pub(super) reads: Option<Reads>,
+    pub(super) reading: Vec<Reading>,
+    /// The number of tasks so far.
+    tasks: u64,
+    pub(super) requests: Vec<Request>,
+    pub(super) samples: AwaitedSamples,
+    /// The page's memory, where that has an end.
+    memory: Option<Memory>,
+    /// The library revision at which the motions outside of the library were dropped last.
+    dropped_at: Option<u64>,
+}
+
+impl FileIntake {
+    pub(crate) fn new(reads: Option<Reads>) -> Self {
+        Self {
+            reads,
+            reading: Vec::new(),
+            tasks: 0,
+            requests: Vec::new(),
+            samples: AwaitedSamples::default(),
+            memory: None,
+            dropped_at: None,
+        }
+    }
+
+    /// Returns what is asked of the app since the last call.
+    pub(crate) fn take_requests(&mut self) -> Vec<Request> {
+        std::mem::take(&mut self.requests)
+    }
+
+    /// Carries out a command.
+    ///
+    /// # Errors
+    /// [`CommandError`] says what does not fit; the document is then as it was.
+    pub(crate) fn apply(
+        &mut self,
+        command: FileCommand,
+        document: &mut Document,
+        notices: &mut Notices,
+    ) -> Result<(), CommandError> {
+        match command {
+            FileCommand::LoadSamples(set) => self.load_samples(document, notices, set),
+            FileCommand::CorrectRole(id, role, joint) => {
+                self.correct_role(document, &id, role, joint)?;
+            }
+            FileCommand::Reimport(id, options) => self.reimport(document, &id, &options)?,
+            FileCommand::Mend(notice) => self.mend(document, notices, notice),
+            FileCommand::StopReading(task) => self.stop_reading(document, task),
+        }
+        Ok(())
+    }
+
+    /// Asks for the files at addresses that a link names.
+    pub(crate) fn fetch(&mut self, addresses: Vec<String>, notices: &mut Notices) {
+        if addresses.len() > MAX_SOURCES {
+            notices.say(
+                Level::Warning,
+                msg!(
+                    "The link names {count} files; the first {MAX_SOURCES} are loaded.",
+                    count = addresses.len()
+                ),
+            );
+        }
+        for address in addresses.into_iter().take(MAX_SOURCES) {
+            if address.starts_with("https://") || address.starts_with("http://") {
+                self.requests.push(Request::Fetch(address));
+            } else {
+                notices.say(
+                    Level::Error,
+                    msg!(
+                        "src: found `{address}`, expected an address that starts with https://.",
+                        address = outside::short(&address)
+                    ),
+                );
+            }
+        }
+    }
+
+    /// Reads a file and puts its clips into the library: at once, or, where it is large or all
+    /// files are read elsewhere, by a task. Nothing is loaded yet then.
+    ///
+    /// # Errors
+    /// [`ImportError`] where the file cannot be read; nothing already loaded changes.
+    pub(crate) fn load(
+        &mut self,
+        document: &mut Document,
+        notices: &mut Notices,
+        name: &str,
+        bytes: Arc<[u8]>,
+        arrival: Arrival,
+    ) -> Result<Loaded, ImportError> {
+        let (name, setup, size) =
+            (&outside::file_name(name), setup_for_new(&document.library), bytes.len() as u64);
+        let Some(read) = self.reads.filter(|_| size <= LARGE_BYTES) else {
+            self.begin(name, Content::Here(bytes), size, setup, Purpose::New(arrival));
+            return Ok(Loaded::default());
+        };
+        let report = read(name, &bytes, &setup, &mut |_| true).unwrap_or_default();
+        self.admit(document, notices, report, &Content::Here(bytes), &setup, arrival)
+    }
+
+    /// Asks for a file to be read elsewhere and put into the library then. Returns the task's
+    /// number.
+    pub(crate) fn begin_reading(
+        &mut self,
+        library: &Library,
+        name: &str,
+        content: Content,
+        size: u64,
+        arrival: Arrival,
+    ) -> u64 {
+        self.begin(name, content, size, setup_for_new(library), Purpose::New(arrival))
+    }
+
+    /// Takes in what the page says of its memory. Once more than half of it is taken, drops the
+    /// motions that only steps of undo hold: they are read again when a step brings them back.
+    /// Returns whether there were any.
+    pub(crate) fn note_memory(&mut self, page: PageMemory, document: &mut Document) -> bool {
+        let memory = Memory::follow(self.memory, page, library_bytes(&document.library));
+        self.memory = Some(memory);
+        // Once for every change: there may be many steps of many clips.
+        let revision = document.library_revision;
+        memory.is_scarce()
+            && self.dropped_at.replace(revision) != Some(revision)
+            && document.drop_motions_of_steps()
+    }
+
+    /// Returns how much memory is in use; `None` where it has no end.
+    pub(crate) fn memory(&self) -> Option<MemoryUse> {
+        self.memory.as_ref().map(Memory::in_use)
+    }
+
+    /// Returns how much memory a task's file is expected to need, bytes, where that is more than is
+    /// left.
+    pub(crate) fn memory_lacking_for(&self, task: &ReadTask) -> Option<u64> {
+        let needed = expected_bytes(&task.name, task.size);
+        self.memory().is_some_and(|memory| needed > memory.left()).then_some(needed)
+    }
+
+    /// Ends a task because there is no memory for the `needed` bytes of its clips. Returns `None`
+    /// where the task was given up already.
+    pub(crate) fn refuse_for_memory(
+        &mut self,
+        document: &mut Document,
+        notices: &mut Notices,
+        task: u64,
+        needed: u64,
+    ) -> Option<Message> {
+        let (name, size) = self.file_of_task(task)?;
+        let memory = self.memory().unwrap_or(MemoryUse { used: 0, limit: 0 });
+        let text = refusal(name, size, needed, memory, &document.library);
+        self.fail_reading(document, notices, task, text.clone(), text)
+    }
+
+    /// Has a file read elsewhere. Returns the task's number.
+    pub(super) fn begin(
+        &mut self,
+        name: &str,
+        content: Content,
+        size: u64,
+        setup: ReadSetup,
+        purpose: Purpose,
+    ) -> u64 {
+        self.tasks += 1;
+        let task =
+            ReadTask { id: self.tasks, name: outside::file_name(name), content, size, setup };
+        self.ask(task, purpose);
+        self.tasks
+    }
+
+    pub(super) fn ask(&mut self, task: ReadTask, purpose: Purpose) {
+        self.requests.push(Request::Read(task.clone()));
+        self.reading.push(Reading { task, done: 0, purpose });
+    }
+
+    /// Returns the name and the size of the file that a task reads, bytes.
+    pub(super) fn file_of_task(&self, task: u64) -> Option<(&str, u64)> {
+        let reading = self.reading.iter().find(|reading| reading.task.id == task)?;
+        Some((&reading.task.name, reading.task.size))
+    }
+}

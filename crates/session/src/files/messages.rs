@@ -1,0 +1,39 @@
+//! Notices of files that were read, and of those that were not.
+
+use crate::notice::{Level, Notices};
+use segue_formats::ImportError;
+use segue_text::{Message, ToMessage, msg};
+
+/// The most files that one notice names.
+pub(crate) const MAX_NAMED: usize = 3;
+
+/// Tells why a file was not read.
+pub(super) fn tell_unread(notices: &mut Notices, error: &ImportError) {
+    notices.say_of(Level::Error, &error.file, error.to_message());
+}
+
+/// Tells why the files of an archive were not read: of each of the first ones, and how many more
+/// there are.
+pub(super) fn tell_all_unread(notices: &mut Notices, errors: &[ImportError]) {
+    let (first, rest) = errors.split_at_checked(MAX_NAMED).unwrap_or((errors, &[]));
+    for error in first {
+        tell_unread(notices, error);
+    }
+    if !rest.is_empty() {
+        let mut named: Vec<String> =
+            rest.iter().take(MAX_NAMED).map(|error| error.file.clone()).collect();
+        if rest.len() > named.len() {
+            named.push("…".to_owned());
+        }
+        notices.say(Level::Error, msg!("{count} more did not work: {named}.", count = rest.len()));
+    }
+}
+
+/// Returns "walk.bvh is in the library."; `None` without a name.
+pub(super) fn in_the_library(names: &[String]) -> Option<Message> {
+    match names {
+        [] => None,
+        [name] => Some(msg!("{name} is in the library.")),
+        several => Some(msg!("{count} files are in the library.", count = several.len())),
+    }
+}

@@ -1,0 +1,133 @@
+//! Files of the library that are read again: with other options, with other roles, or mended.
+
+use super::admission::refill;
+use super::intake::FileIntake;
+use super::mends::mend_of;
+use super::setup::setup_of;
+use crate::command::CommandError;
+use crate::document::Document;
+use crate::library::{Arrival, Origin, SourceFile};
+use crate::notice::{Level, Notices};
+use crate::reading::Content;
+use segue_formats::{ImportError, ImportOptions};
+use segue_motion::clip::Motion;
+use segue_motion::skeleton::Role;
+use segue_text::ToMessage;
+use std::sync::Arc;
+
+impl FileIntake {
+    /// Reads a file of the library again, as its entries say: at once, or elsewhere. Returns
+    /// whether it was read. An error changes nothing.
+    pub(crate) fn read_anew(
+        &mut self,
+        document: &mut Document,
+        file: &SourceFile,
+        arrival: Option<Arrival>,
+    ) -> Result<bool, ImportError> {
+        let (Content::Here(bytes), Some(read)) =
+            (&file.content, self.reads.filter(|_| !file.is_large()))
+        else {
+            self.read_again(document, file.clone(), arrival);
+            return Ok(false);
+        };
+        let setup = setup_of(&document.library, file);
+        let report = read(&file.name, bytes, &setup, &mut |_| true).unwrap_or_default();
+        refill(document, report, &file.options).map(|_| true)
+    }
+
+    /// Reads a clip's file again with other options, as a step for undo.
+    pub(crate) fn reimport(
+        &mut self,
+        document: &mut Document,
+        id: &str,
+        options: &ImportOptions,
+    ) -> Result<(), CommandError> {
+        let library = document.library.clone();
+        self.reread(document, id, options)?;
+        document.remember_library(&library);
+        Ok(())
+    }
+
+    /// Reads a clip's file again with other options. An error changes nothing.
+    fn reread(
+        &mut self,
+        document: &mut Document,
+        id: &str,
+        options: &ImportOptions,
+    ) -> Result<(), CommandError> {
+        let entry = Arc::clone(document.clip(id)?);
+        let Origin::File(file) = &entry.origin else {
+            return Err(CommandError::NotPossible(
+                "only a clip that came from a file can be read again",
+            ));
+        };
+        let file = SourceFile { options: *options, ..file.clone() };
+        let library = document.library.clone();
+        // Noted at once, wherever the file is read: further options add to these, and undo keeps
+        // the report from being taken in.
+        for entry in library.entries().iter().filter(|entry| entry.sha256() == Some(&file.sha256)) {
+            document.library.change(&entry.id, |entry| {
+                if let Origin::File(file) = &mut entry.origin {
+                    file.options = *options;
+                }
+            });
+        }
+        if let Err(error) = self.read_anew(document, &file, None) {
+            document.library = library;
+            return Err(error.into());
+        }
+        Ok(())
+    }
+
+    /// Reads the clips again that a notice offers to mend, as one step for undo. Tells of those that
+    /// cannot be read; they stay as they are.
+    pub(crate) fn mend(&mut self, document: &mut Document, notices: &mut Notices, notice: u64) {
+        let found = notices.list().iter().find(|found| found.id == notice);
+        let clips = found.map(|found| found.mends.clone()).unwrap_or_default();
+        let library = document.library.clone();
+        for (id, options) in clips
+            .iter()
+            .filter_map(|id| Some((id, mend_of(&document.library, id)?)))
+            .collect::<Vec<_>>()
+        {
+            if let Err(error) = self.reread(document, id, &options) {
+                notices.say(Level::Error, error.to_message());
+            }
+        }
+        document.remember_library(&library);
+        notices.dismiss(notice);
+    }
+
+    /// Corrects the role of a joint by hand. A file that is large, or is being read, is read again
+    /// with it.
+    pub(crate) fn correct_role(
+        &mut self,
+        document: &mut Document,
+        id: &str,
+        role: Role,
+        joint: Option<usize>,
+    ) -> Result<(), CommandError> {
+        let entry = document.clip(id)?;
+        let motion =
+            entry.motion.as_ref().ok_or(CommandError::NotPossible("the clip is not loaded yet"))?;
+        if joint.is_some_and(|joint| joint >= motion.clip().skeleton().len()) {
+            return Err(CommandError::NotPossible("the skeleton has no such joint"));
+        }
+        let mut roles = motion.roles().clone();
+        roles.set(role, joint);
+        let file = match &entry.origin {
+            Origin::File(file) if file.is_large() || self.is_read_again(file) => Some(file.clone()),
+            _ => None,
+        };
+        if let Some(file) = file {
+            document.change_entry(id, |entry| entry.roles_by_hand = Some(roles))?;
+            self.read_again(document, file, None);
+            return Ok(());
+        }
+        let corrected = Arc::new(Motion::clone(motion).with_corrected_roles(&roles));
+        document.change_entry(id, |entry| {
+            entry.motion = Some(corrected);
+            entry.roles_by_hand = Some(roles);
+        })
+    }
+}

@@ -1,0 +1,68 @@
+//! How files are to be read, by what the library knows: options, roles, and skeleton files.
+
+use crate::library::{Library, Origin, SourceFile};
+use crate::reading::{Companion, Content, ReadFile, ReadReport, ReadSetup};
+use segue_formats::FileKind;
+use segue_motion::skeleton::Roles;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Returns how a file of the library is to be read, as its entries say.
+pub(super) fn setup_of(library: &Library, file: &SourceFile) -> ReadSetup {
+    ReadSetup {
+        options: file.options,
+        roles: roles_by_hand(library, file),
+        companions: match &file.companion {
+            Some(companion) => vec![companion.clone()],
+            None if file.kind == FileKind::Amc => companions(library),
+            None => Vec::new(),
+        },
+        sha256: Some(file.sha256.clone()),
+    }
+}
+
+/// Returns how a new file is to be read.
+pub(super) fn setup_for_new(library: &Library) -> ReadSetup {
+    ReadSetup { companions: companions(library), ..ReadSetup::default() }
+}
+
+/// Returns the roles that were corrected by hand, by the index of the clip in its file.
+fn roles_by_hand(library: &Library, file: &SourceFile) -> BTreeMap<usize, Roles> {
+    let entries = library.entries().iter().filter_map(|entry| match &entry.origin {
+        Origin::File(own) if own.sha256 == file.sha256 => {
+            Some((own.index, entry.roles_by_hand.clone()?))
+        }
+        _ => None,
+    });
+    entries.collect()
+}
+
+/// Returns the skeleton files that there are: those in the library, and those that its motions were
+/// read with.
+pub(super) fn companions(library: &Library) -> Vec<Companion> {
+    let mut all: Vec<Companion> = Vec::new();
+    for entry in library.entries() {
+        let Origin::File(file) = &entry.origin else {
+            continue;
+        };
+        let found = match (&file.companion, &file.content) {
+            (Some(companion), _) => companion.clone(),
+            (None, Content::Here(bytes)) if file.kind == FileKind::Asf => Companion {
+                name: file.name.clone(),
+                sha256: file.sha256.clone(),
+                bytes: Arc::clone(bytes),
+            },
+            _ => continue,
+        };
+        if all.iter().all(|known| known.sha256 != found.sha256) {
+            all.push(found);
+        }
+    }
+    all
+}
+
+/// Returns whether a motion needs a skeleton file, and one has arrived since it was read.
+pub(super) fn misses_skeleton(library: &Library, report: &ReadReport, setup: &ReadSetup) -> bool {
+    let needs_skeleton = |file: &ReadFile| file.kind == FileKind::Amc;
+    report.files.iter().any(needs_skeleton) && companions(library) != setup.companions
+}

@@ -1,0 +1,83 @@
+//! Motions without their skeleton, and skeletons without a motion (ASF and AMC).
+
+use super::intake::FileIntake;
+use super::messages::tell_unread;
+use super::setup::companions;
+use crate::document::Document;
+use crate::library::{Arrival, Library, Origin, SourceFile};
+use crate::notice::Notices;
+use crate::reading::Companion;
+use segue_formats::{FileKind, acclaim};
+use segue_text::{Message, ToMessage};
+
+impl FileIntake {
+    /// Reads the motions that waited for a skeleton, now that one has arrived.
+    pub(super) fn read_waiting(
+        &mut self,
+        document: &mut Document,
+        notices: &mut Notices,
+        arrival: Arrival,
+    ) {
+        let (entries, skeletons) =
+            (document.library.entries().to_vec(), companions(&document.library));
+        let is_named = |file: &SourceFile, skeleton: &Companion| {
+            acclaim::goes_by_name(&file.name, &skeleton.name)
+        };
+        for entry in &entries {
+            let Origin::File(file) = &entry.origin else {
+                continue;
+            };
+            let awaits = entry.awaits_skeleton();
+            // A motion that was read with another subject's skeleton has its own now.
+            let has_other = (file.companion.as_ref()).is_some_and(|had| {
+                !is_named(file, had) && skeletons.iter().any(|skeleton| is_named(file, skeleton))
+            });
+            if !(awaits || has_other) {
+                continue;
+            }
+            let file = SourceFile { companion: None, ..file.clone() };
+            match self.read_anew(document, &file, awaits.then_some(arrival)) {
+                Ok(true) if awaits => {
+                    offer_moving(document, &entry.id, arrival);
+                    tell_misfit(&document.library, notices, &entry.id);
+                }
+                Ok(_) => {}
+                Err(error) => tell_unread(notices, &error),
+            }
+        }
+    }
+}
+
+/// Tells why a motion still waits though a skeleton has arrived.
+fn tell_misfit(library: &Library, notices: &mut Notices, id: &str) {
+    if let Some(entry) = library.get(id).filter(|entry| entry.awaits_skeleton()) {
+        let told: Vec<Message> = entry.warnings.iter().map(ToMessage::to_sentence).collect();
+        notices.miss(id, Message::joined(told, " "));
+    }
+}
+
+/// Offers a slot to a clip that waited for its skeleton, if it has a motion by now.
+pub(super) fn offer_moving(document: &mut Document, id: &str, arrival: Arrival) {
+    if document.library.find(id).is_some_and(|entry| entry.motion.is_some()) {
+        document.offer(id, arrival);
+    }
+}
+
+/// Removes the skeletons that have a motion by now: they need no row of their own.
+pub(super) fn drop_used_skeletons(library: &mut Library) {
+    let entries = library.entries().to_vec();
+    let used = |sha256: &str| {
+        entries.iter().any(|entry| match &entry.origin {
+            Origin::File(file) => {
+                file.companion.as_ref().is_some_and(|companion| companion.sha256 == sha256)
+            }
+            _ => false,
+        })
+    };
+    for entry in &entries {
+        if matches!(&entry.origin, Origin::File(file) if file.kind == FileKind::Asf && used(&file.sha256))
+        {
+            library.remove(&entry.id);
+        }
+    }
+}

@@ -1,0 +1,236 @@
+//! Files that are read elsewhere: followed, finished or given up.
+
+use super::admission::refill;
+use super::intake::{FileIntake, Loaded, Purpose, Reading};
+use super::messages::tell_unread;
+use super::setup::{misses_skeleton, setup_for_new, setup_of};
+use super::skeletons::{drop_used_skeletons, offer_moving};
+use crate::command::Request;
+use crate::document::Document;
+use crate::labs::JobKind;
+use crate::library::{Arrival, Library, SourceFile};
+use crate::notice::{Level, Notices};
+use crate::reading::{Content, ReadReport, ReadTask};
+use segue_text::{Message, ToMessage, msg};
+
+/// Work that takes longer than a frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Job {
+    /// The number by which it can be stopped; `None` where it ends soon by itself.
+    pub task: Option<u64>,
+    /// Its kind.
+    pub kind: JobKind,
+    /// The share that is done, 0 to 1.
+    pub progress: f64,
+    /// The size of the file that is read, bytes.
+    pub size: Option<u64>,
+}
+
+impl FileIntake {
+    /// Has a file of the library read again elsewhere, as its entries say, unless that is under
+    /// way. [`Purpose::Again`] has the meaning of `arrival`.
+    pub(crate) fn read_again(
+        &mut self,
+        document: &mut Document,
+        file: SourceFile,
+        arrival: Option<Arrival>,
+    ) {
+        let setup = setup_of(&document.library, &file);
+        let same = |reading: &Reading| {
+            reading.task.setup == setup
+                && reading.task.name == file.name
+                && reading.task.content == file.content
+        };
+        if !self.reading.iter().any(same) {
+            mark_unread(&mut document.library, &file.sha256, None);
+            self.begin(&file.name, file.content, file.size, setup, Purpose::Again(arrival));
+        }
+    }
+
+    /// Returns whether a file of the library is being read again.
+    pub(crate) fn is_read_again(&self, file: &SourceFile) -> bool {
+        let sha256 = Some(file.sha256.as_str());
+        self.reading.iter().any(|reading| reading.task.setup.sha256.as_deref() == sha256)
+    }
+
+    /// Notes how many bytes of a task's file are read.
+    pub(crate) fn progress_reading(&mut self, task: u64, done: u64) {
+        if let Some(reading) = self.reading.iter_mut().find(|reading| reading.task.id == task) {
+            reading.done = done;
+        }
+    }
+
+    /// Returns the key of the file that a task reads, where its bytes lie outside.
+    pub(crate) fn reading_key(&self, task: u64) -> Option<&str> {
+        let reading = self.reading.iter().find(|reading| reading.task.id == task)?;
+        match &reading.task.content {
+            Content::Outside(key) => Some(key),
+            Content::Here(_) => None,
+        }
+    }
+
+    /// Takes in the report of a file, or the reason why there is none. Returns `None` where the
+    /// task was given up, and where the file has to be read again.
+    pub(crate) fn finish_reading(
+        &mut self,
+        document: &mut Document,
+        notices: &mut Notices,
+        task: u64,
+        report: Result<ReadReport, Message>,
+    ) -> Option<Result<Loaded, Message>> {
+        let report = match report {
+            Ok(report) => report,
+            Err(reason) => {
+                let (name, _) = self.file_of_task(task)?;
+                let name = name.to_owned();
+                let text = msg!("{name} could not be read: {reason}.");
+                return self.fail_reading(document, notices, task, reason, text).map(Err);
+            }
+        };
+        let Reading { task, purpose, .. } = self.end_task(task)?;
+        // A file outside is from now on known by its content.
+        let content = match (task.content.clone(), report.files.as_slice()) {
+            (Content::Outside(_), [file]) if report.is_one_file() => {
+                Content::Outside(file.sha256.clone())
+            }
+            (content, _) => content,
+        };
+        let loaded = match purpose {
+            Purpose::Again(arrival) => {
+                let waiting: Vec<String> = (document.library.entries().iter())
+                    .filter(|entry| entry.awaits_skeleton())
+                    .map(|entry| entry.id.clone())
+                    .collect();
+                let refilled = refill(document, report, &task.setup.options);
+                if let Err(error) = &refilled {
+                    mark_unread(
+                        &mut document.library,
+                        task.setup.sha256.as_deref().unwrap_or_default(),
+                        Some(&error.to_message()),
+                    );
+                    tell_unread(notices, error);
+                }
+                if let Some(arrival) = arrival {
+                    for id in &waiting {
+                        offer_moving(document, id, arrival);
+                    }
+                }
+                drop_used_skeletons(&mut document.library);
+                refilled
+            }
+            // Its skeleton was dropped with it, and has come meanwhile. What came out of an archive
+            // is read again from there.
+            Purpose::New(_)
+                if report.is_one_file()
+                    && misses_skeleton(&document.library, &report, &task.setup) =>
+            {
+                let setup = setup_for_new(&document.library);
+                self.ask(ReadTask { content, setup, ..task }, purpose);
+                return None;
+            }
+            Purpose::New(arrival) => {
+                self.admit(document, notices, report, &content, &task.setup, arrival)
+            }
+            Purpose::Sample(sample) => {
+                self.take_sample(document, notices, sample, report).map(|()| Loaded::default())
+            }
+        };
+        Some(loaded.map_err(|error| error.to_message()))
+    }
+
+    /// Ends a task whose file is not read, for the returned reason; `text` is the notice. Returns
+    /// `None` where the task was given up already.
+    pub(crate) fn fail_reading(
+        &mut self,
+        document: &mut Document,
+        notices: &mut Notices,
+        task: u64,
+        reason: Message,
+        text: Message,
+    ) -> Option<Message> {
+        let Reading { task, purpose, .. } = self.end_task(task)?;
+        if let Purpose::Sample(sample) = purpose {
+            // Asked for at once, it would fail again and again: the next command asks for it.
+            self.fail_sample(document, notices, sample, reason.clone());
+            return Some(reason);
+        }
+        if let Purpose::Again(_) = purpose {
+            mark_unread(
+                &mut document.library,
+                task.setup.sha256.as_deref().unwrap_or_default(),
+                Some(&text),
+            );
+        }
+        notices.say_of(Level::Error, &task.name, text);
+        Some(reason)
+    }
+
+    fn end_task(&mut self, task: u64) -> Option<Reading> {
+        let at = self.reading.iter().position(|reading| reading.task.id == task)?;
+        Some(self.reading.remove(at))
+    }
+
+    /// Returns whether a task is under way.
+    pub(crate) fn is_reading(&self, task: u64) -> bool {
+        self.reading.iter().any(|reading| reading.task.id == task)
+    }
+
+    /// Returns whether files are being read that are not in the library yet.
+    pub(crate) fn is_reading_new(&self) -> bool {
+        self.reading.iter().any(Reading::is_new)
+    }
+
+    /// Returns whether a task reads a file that is not in the library yet.
+    pub(crate) fn brings_clips(&self, task: u64) -> bool {
+        self.reading.iter().any(|reading| reading.task.id == task && reading.is_new())
+    }
+
+    /// Returns whether a file is being read that takes a moment, and so has no progress bar.
+    pub(crate) fn is_reading_small(&self) -> bool {
+        self.reading.iter().any(Reading::is_small)
+    }
+
+    /// Returns whether any file is being read.
+    pub(crate) fn is_reading_any(&self) -> bool {
+        !self.reading.is_empty()
+    }
+
+    /// Gives up a task.
+    pub(crate) fn stop_reading(&mut self, document: &mut Document, task: u64) {
+        let forget = self.reading_key(task).map(str::to_owned);
+        let Some(at) = self.reading.iter().position(|reading| reading.task.id == task) else {
+            return;
+        };
+        let Reading { task, purpose, .. } = self.reading.remove(at);
+        let again = matches!(purpose, Purpose::Again(_));
+        if again {
+            let text = msg!("Reading {name} was stopped: drop the file again.", name = task.name);
+            mark_unread(
+                &mut document.library,
+                task.setup.sha256.as_deref().unwrap_or_default(),
+                Some(&text),
+            );
+        }
+        self.requests
+            .push(Request::StopReading { task: task.id, forget: forget.filter(|_| !again) });
+    }
+
+    /// Returns the large files that are being read.
+    pub(crate) fn jobs(&self) -> impl Iterator<Item = Job> + '_ {
+        let files = self.reading.iter().filter(|reading| !reading.is_small());
+        files.map(|Reading { task, done, .. }| Job {
+            task: Some(task.id),
+            kind: JobKind::Reading(task.name.clone()),
+            progress: *done as f64 / task.size.max(1) as f64,
+            size: Some(task.size),
+        })
+    }
+}
+
+/// Notes with the clips of a file why they have no motion, so that it is not read over and over.
+fn mark_unread(library: &mut Library, sha256: &str, why: Option<&Message>) {
+    let entries = library.entries().to_vec();
+    for entry in entries.iter().filter(|entry| entry.sha256() == Some(sha256)) {
+        library.change(&entry.id, |entry| entry.unread = why.cloned());
+    }
+}

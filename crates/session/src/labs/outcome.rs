@@ -1,0 +1,317 @@
+//! The result of a lab: a motion, and what is known about it.
+
+use super::graph::Walk;
+use super::layers::LayerFacts;
+use super::match_::Driven;
+use super::path::OnPath;
+use super::register::Registered;
+use crate::params::Key;
+use segue_motion::clip::{Clip, Motion};
+use segue_motion::gait::GaitFacts;
+use segue_motion::math::Planar;
+use segue_motion::metrics::{Metric, MotionTrace, ResultMetrics};
+use std::sync::Arc;
+
+/// The two places that a clip can take.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Slot {
+    /// What plays first; warm.
+    A,
+    /// What follows; cool.
+    B,
+}
+
+impl Slot {
+    /// The letter on screen.
+    #[must_use]
+    pub const fn label(self) -> &'static str {
+        match self {
+            Self::A => "A",
+            Self::B => "B",
+        }
+    }
+
+    /// The parameter that says which clip is in it.
+    #[must_use]
+    pub const fn key(self) -> Key {
+        match self {
+            Self::A => Key::A,
+            Self::B => Key::B,
+        }
+    }
+}
+
+/// A clip that a result was made from, as it lies in the result's time and world.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// Its slot.
+    pub slot: Slot,
+    /// The clip as it is in the library, on its own skeleton.
+    pub motion: Arc<Motion>,
+    /// The time in the result at which its first frame plays, seconds; negative when it is entered
+    /// later than there.
+    pub starts_at_secs: f64,
+    /// Where it lies on the result's ground.
+    pub world_from_clip: Planar,
+}
+
+impl Source {
+    pub(crate) fn new(
+        slot: Slot,
+        motion: &Arc<Motion>,
+        starts_at_secs: f64,
+        world_from_clip: Planar,
+    ) -> Self {
+        Self { slot, motion: Arc::clone(motion), starts_at_secs, world_from_clip }
+    }
+}
+
+/// Where one clip goes over into the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transition {
+    /// First time of the window in the result, seconds.
+    pub start_secs: f64,
+    /// Last time of the window in the result, seconds.
+    pub end_secs: f64,
+    /// Where A is left, seconds in A.
+    pub leave_a_secs: f64,
+    /// Where B is entered, seconds in B.
+    pub enter_b_secs: f64,
+    /// The window's length in frames of the result.
+    pub window_frames: usize,
+    /// How far apart the two windows are after the best alignment: root mean square per joint,
+    /// centimetres at a body height of 1.75 m.
+    pub distance_cm: f32,
+    /// How the place was searched for; `None` where no search for the best match found it.
+    pub search: Option<MatchSearch>,
+}
+
+/// How the frames at which A is left and B is entered were compared.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MatchSearch {
+    /// Whether single poses were compared, and not windows.
+    pub by_pose: bool,
+    /// Frames of the windows.
+    pub window_frames: usize,
+    /// The windows are shorter than asked for: behind a frame set by hand no more is left of its
+    /// clip.
+    pub is_shortened: bool,
+    /// A clip is too short for its half to hold a window behind it: all of it was searched.
+    pub is_widened: bool,
+    /// The last times at which A can be left and B entered, seconds in each: a dissolve needs its
+    /// window behind both.
+    pub latest_secs: [f64; 2],
+}
+
+/// How B came onto a skeleton that is not its own.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Retargeted {
+    /// The joints of A's skeleton that nothing of B moves, by name, parents first: they keep their
+    /// rest pose.
+    pub unmatched: Vec<String>,
+}
+
+/// What a result goes round in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cycle {
+    /// How long one takes, seconds: a whole number of frames. The result is a whole number of
+    /// cycles long, and its last frame has the pose of its first.
+    pub secs: f64,
+    /// What it was made of.
+    pub made: CycleMade,
+}
+
+/// How a [`Cycle`] came to be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum CycleMade {
+    /// Two gaits at a speed.
+    Gait {
+        /// What goes with the speed that was made.
+        facts: GaitFacts,
+        /// The speed that was asked for, metres per second.
+        asked_mps: f64,
+        /// How fast A and B go in the cycles that were taken of them, metres per second.
+        clips_mps: [f64; 2],
+        /// Where these cycles begin and end, seconds in A and in B. A clip that is closed by its
+        /// own ends may end before its cycle does.
+        cuts_secs: [[f64; 2]; 2],
+    },
+    /// A part of A whose ends were brought together.
+    Cut {
+        /// Where it begins, seconds in A.
+        from_secs: f64,
+        /// Where it is over, seconds in A.
+        to_secs: f64,
+        /// How far apart the bodies at both ends are: root mean square per joint, centimetres at a
+        /// body height of 1.75 m.
+        distance_cm: f64,
+    },
+}
+
+/// A result: a motion, and what is known about how it came to be.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// What plays.
+    pub motion: Arc<Motion>,
+    /// What it was made from; empty when it is a clip of the library itself.
+    pub sources: Vec<Source>,
+    /// Where the transition is; `None` where there is none.
+    pub transition: Option<Transition>,
+    /// What it goes round in; `None` for what has an end.
+    pub cycle: Option<Cycle>,
+    /// How B came onto the skeleton of A; `None` where both have the same one.
+    pub retargeted: Option<Arc<Retargeted>>,
+    /// What only its lab can say of it.
+    pub facts: LabFacts,
+    /// The artefacts, as numbers: those that every lab has, and its own behind them.
+    pub metrics: Vec<Metric>,
+    /// The clips that it is made of, on its skeleton: only what exceeds them is an artefact. None
+    /// for a clip as it is.
+    pub(crate) beside: Vec<Arc<Clip>>,
+    /// What is measured for the numbers that every lab has.
+    pub(crate) measured: Measured,
+    /// Those numbers are known.
+    pub(crate) is_measured: bool,
+}
+
+/// What one lab alone knows of its results.
+#[derive(Clone, Debug)]
+pub enum LabFacts {
+    /// Nothing beside what every result has.
+    None,
+    /// What of a layered motion is a layer.
+    Layer(Arc<LayerFacts>),
+    /// Which frames of registered clips a motion is made of.
+    Registered(Arc<Registered>),
+    /// The path that a motion goes on.
+    Path(Arc<OnPath>),
+    /// The walk through a graph that a motion is.
+    Walk(Arc<Walk>),
+    /// How a motion was driven.
+    Driven(Arc<Driven>),
+}
+
+macro_rules! fact {
+    ($(#[$doc:meta])* $name:ident, $variant:ident, $fact:ty) => {
+        $(#[$doc])*
+        #[must_use]
+        pub fn $name(&self) -> Option<&Arc<$fact>> {
+            match &self.facts {
+                LabFacts::$variant(fact) => Some(fact),
+                _ => None,
+            }
+        }
+    };
+}
+
+/// What the artefact numbers of a result are measured of.
+#[derive(Clone, Debug, Default)]
+pub(crate) enum Measured {
+    /// Its motion.
+    #[default]
+    Motion,
+    /// A clip that is shown elsewhere, or without its way over the ground.
+    Clip(Arc<Clip>),
+    /// What was taken of it while it was made.
+    Trace(Arc<MotionTrace>),
+}
+
+impl Outcome {
+    /// A result that is one clip as it is.
+    pub(crate) fn plain(motion: Arc<Motion>) -> Self {
+        Self {
+            motion,
+            sources: Vec::new(),
+            transition: None,
+            cycle: None,
+            retargeted: None,
+            facts: LabFacts::None,
+            metrics: Vec::new(),
+            beside: Vec::new(),
+            measured: Measured::Motion,
+            is_measured: false,
+        }
+    }
+
+    fact! {
+        /// Returns what of it is a layer; `None` where there is none.
+        layer, Layer, LayerFacts
+    }
+    fact! {
+        /// Returns which frames of A and B it is made of; `None` where they were not registered.
+        registered, Registered, Registered
+    }
+    fact! {
+        /// Returns the path that it goes on; `None` where it was not edited.
+        path, Path, OnPath
+    }
+    fact! {
+        /// Returns the walk that it is; `None` where it is none.
+        walk, Walk, Walk
+    }
+    fact! {
+        /// Returns how it was driven; `None` where it was not.
+        driven, Driven, Driven
+    }
+
+    /// Whether there is a place for the numbers that every lab has, and not yet their values.
+    pub(crate) fn awaits_numbers(&self) -> bool {
+        let common = ResultMetrics::default().list();
+        !self.is_measured
+            && self.metrics.iter().zip(&common).filter(|(own, common)| own.id == common.id).count()
+                == common.len()
+    }
+
+    /// Puts the numbers that every lab has before its own; without a value where they are not known
+    /// yet.
+    pub(crate) fn take_numbers(&mut self, found: Option<ResultMetrics>) {
+        let common = found.unwrap_or_default().list();
+        self.metrics.retain(|metric| common.iter().all(|other| other.id != metric.id));
+        self.metrics.splice(..0, common);
+        self.is_measured = found.is_some();
+    }
+
+    /// Its feet are to be planted, and are not yet.
+    pub(crate) fn awaits_feet(&self) -> bool {
+        self.path().is_some_and(|path| path.awaits_feet)
+    }
+
+    /// Seconds from the first frame to the last.
+    #[must_use]
+    pub fn duration_secs(&self) -> f64 {
+        self.motion.clip().duration_secs()
+    }
+
+    /// Which time of a source goes into the result at a time of the result, and where the source
+    /// lies then, standing where the result stands. `None` where there is none of it, and where the
+    /// sources are not registered: they simply play on.
+    #[must_use]
+    pub fn source_at(&self, source: &Source, secs: f64) -> Option<(f64, Planar)> {
+        let beat = self.registered()?.beat_at(secs)?;
+        let at = beat.frames[usize::from(source.slot == Slot::B)] / self.motion.clip().fps();
+        let inside = at >= 0.0 && at <= source.motion.clip().duration_secs();
+        inside.then(|| {
+            let stands = source.motion.standing_at(at);
+            (at, self.motion.standing_at(secs).after(&stands.inverse()))
+        })
+    }
+
+    /// Where the character of a result that goes round stands at a time beyond its end: the time in
+    /// its motion, and where that then lies. A result that has an end stays as it is.
+    pub(crate) fn around(&self, secs: f64) -> (f64, Planar) {
+        let duration = self.duration_secs();
+        if self.cycle.is_none() || duration <= 0.0 || secs.is_nan() || secs <= duration {
+            return (secs, Planar::IDENTITY);
+        }
+        let rounds = (secs / duration).floor();
+        let step = self.step(0.0, duration);
+        let place = (0..rounds as usize).fold(Planar::IDENTITY, |place, _| place.after(&step));
+        (secs - rounds * duration, place)
+    }
+
+    /// What brings the character from where it stands at one time of the motion to where it stands
+    /// at another.
+    pub(crate) fn step(&self, from_secs: f64, to_secs: f64) -> Planar {
+        self.motion.standing_at(to_secs).after(&self.motion.standing_at(from_secs).inverse())
+    }
+}

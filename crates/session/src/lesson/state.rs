@@ -1,0 +1,284 @@
+//! The lesson that is open: its text is asked for when it is needed, and its links set parameters.
+
+use super::page::Page;
+use super::parse::{LessonError, parse};
+use super::shelf::{CONTENTS, LESSONS, Source, source_of};
+use crate::link::{self, Link};
+use crate::params::{Group, Key, Mark, PARAMS, Param, Params};
+use segue_text::{Message, msg};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// The content of the panel of lessons.
+#[derive(Clone, Debug)]
+pub enum Lesson<'a> {
+    /// The list of the lessons that come with Segue; see [`Page::entries`].
+    Contents(&'a Page),
+    /// A page.
+    Page(LessonPage<'a>),
+    /// A text is under way.
+    Waiting,
+    /// There is no such text: why.
+    Failed(Message),
+}
+
+/// The page of a lesson that is open.
+#[derive(Clone, Debug)]
+pub struct LessonPage<'a> {
+    /// Its content.
+    pub page: &'a Page,
+    /// Its place, counted from 1: among the lessons that come with Segue, or among the pages of a
+    /// teacher's own.
+    pub number: usize,
+    /// How many there are.
+    pub of: usize,
+    /// The value of the parameter `lesson` for the page before.
+    pub previous: Option<String>,
+    /// The value of the parameter `lesson` for the page behind.
+    pub next: Option<String>,
+}
+
+/// A text that was asked for.
+#[derive(Clone, Debug)]
+enum Text {
+    /// It is under way.
+    Awaited,
+    /// It is here.
+    Here(Arc<[Page]>),
+    /// It did not arrive, or is no lesson: why.
+    Failed(Message),
+}
+
+/// The texts of lessons that were asked for, and the lesson that is about to be set up.
+#[derive(Clone, Debug)]
+pub(crate) struct LessonState {
+    /// The folder of the lessons that come with Segue.
+    language: &'static str,
+    texts: BTreeMap<Source, Text>,
+    /// The lesson whose page sets the parameters once its text is here.
+    to_set_up: Option<String>,
+    requests: Vec<Source>,
+}
+
+/// Parameters to be taken over, as those of a link that names some of them.
+#[derive(Debug)]
+pub(crate) struct NewParams {
+    pub(crate) params: Params,
+    pub(crate) named: Vec<Key>,
+    /// What is wrong with the link.
+    pub(crate) problems: Vec<Message>,
+}
+
+impl Default for LessonState {
+    fn default() -> Self {
+        Self { language: "en", texts: BTreeMap::new(), to_set_up: None, requests: Vec::new() }
+    }
+}
+
+impl LessonState {
+    /// Returns the lesson that is open; `None` where none is.
+    pub(crate) fn lesson(&self, params: &Params) -> Option<Lesson<'_>> {
+        let name = params.text(Key::Lesson);
+        if name.is_empty() {
+            return None;
+        }
+        let (source, index) = match source_of(name, self.language) {
+            Ok(found) => found,
+            Err(problem) => return Some(Lesson::Failed(problem)),
+        };
+        let pages = match self.texts.get(&source) {
+            Some(Text::Here(pages)) => pages,
+            Some(Text::Failed(problem)) => return Some(Lesson::Failed(problem.clone())),
+            Some(Text::Awaited) | None => return Some(Lesson::Waiting),
+        };
+        let Some(page) = pages.get(index) else {
+            let found = index + 1;
+            return Some(Lesson::Failed(msg!(
+                "lesson: found page {found}, expected 1 to {last}.",
+                last = pages.len()
+            )));
+        };
+        if name == CONTENTS {
+            return Some(Lesson::Contents(page));
+        }
+        let page = match source {
+            Source::BuiltIn(_) => {
+                let at = LESSONS.iter().position(|lesson| *lesson == name).unwrap_or_default();
+                let named = |at: Option<usize>| {
+                    at.and_then(|at| LESSONS.get(at)).map(|name| (*name).to_owned())
+                };
+                LessonPage {
+                    page,
+                    number: at + 1,
+                    of: LESSONS.len(),
+                    previous: named(at.checked_sub(1)),
+                    next: named(Some(at + 1)),
+                }
+            }
+            Source::Web(address) => LessonPage {
+                page,
+                number: index + 1,
+                of: pages.len(),
+                previous: (index > 0).then(|| format!("{address}#{index}")),
+                next: (index + 1 < pages.len()).then(|| format!("{address}#{}", index + 2)),
+            },
+        };
+        Some(Lesson::Page(page))
+    }
+
+    /// Returns whether the parameters are those that a link of the open page sets. Camera and time
+    /// do not matter.
+    pub(crate) fn is_tried(&self, params: &Params, query: &str) -> bool {
+        let Some(page) = self.page(params) else {
+            return false;
+        };
+        let links =
+            [page.state.as_ref().map_or("", |state| state.query.as_str()), query].map(link::read);
+        let wanted = laid_over(params, &links, false);
+        let named = |key: Key| links.iter().any(|link| names(link, key));
+        let counts = |param: &&Param| {
+            is_of_page_state(param) || (param.group == Group::Stage && named(param.key))
+        };
+        PARAMS.iter().filter(counts).all(|param| wanted.get(param.key) == params.get(param.key))
+    }
+
+    /// Takes in the text of a lesson, or why it did not arrive. Keeps a text that is not shown.
+    pub(crate) fn finish(&mut self, source: &Source, text: Result<&[u8], Message>) {
+        let read = text.and_then(|bytes| parse(bytes).map_err(|error| unread(source, &error)));
+        let text = match read {
+            Ok(pages) => Text::Here(Arc::from(pages)),
+            Err(problem) => Text::Failed(problem),
+        };
+        self.texts.insert(source.clone(), text);
+    }
+
+    /// Chooses the folder of the lessons that come with Segue, `en` or `zh-Hant`. Returns whether
+    /// it is another one.
+    pub(crate) fn set_language(&mut self, language: &'static str) -> bool {
+        std::mem::replace(&mut self.language, language) != language
+    }
+
+    /// Returns the page that is open.
+    fn page(&self, params: &Params) -> Option<&Page> {
+        let (source, index) = source_of(params.text(Key::Lesson), self.language).ok()?;
+        self.pages(&source)?.get(index)
+    }
+
+    /// Returns the pages of a text that is here.
+    fn pages(&self, source: &Source) -> Option<&Arc<[Page]>> {
+        match self.texts.get(source)? {
+            Text::Here(pages) => Some(pages),
+            Text::Awaited | Text::Failed(_) => None,
+        }
+    }
+
+    /// Asks for the text of the open lesson, where it was not asked for yet.
+    pub(crate) fn ask_for_text(&mut self, params: &Params) {
+        let name = params.text(Key::Lesson);
+        if name.is_empty() {
+            return;
+        }
+        let Ok((source, _)) = source_of(name, self.language) else {
+            return;
+        };
+        if !self.texts.contains_key(&source) {
+            self.texts.insert(source.clone(), Text::Awaited);
+            self.requests.push(source);
+        }
+    }
+
+    /// Returns the texts that were asked for since the last call.
+    pub(crate) fn take_requests(&mut self) -> Vec<Source> {
+        std::mem::take(&mut self.requests)
+    }
+
+    /// Notes that values were set together. A lesson that is opened alone sets the parameters, at
+    /// once or when its text is here: [`Self::set_up`]. With other values it is read beside what
+    /// they show.
+    pub(crate) fn note_set(&mut self, params: &Params, keys: impl IntoIterator<Item = Key>) {
+        // Texts that failed are asked for again.
+        self.texts.retain(|_, text| !matches!(text, Text::Failed(_)));
+        let is_alone = keys.into_iter().all(is_about_the_reader);
+        let lesson = params.text(Key::Lesson);
+        self.to_set_up = (is_alone && !lesson.is_empty()).then(|| lesson.to_owned());
+    }
+
+    /// Returns the parameters of the open page, if they are about to be set and its text is here.
+    pub(crate) fn set_up(&mut self, params: &Params) -> Option<NewParams> {
+        if self.to_set_up.as_deref() != Some(params.text(Key::Lesson)) {
+            self.to_set_up = None;
+            return None;
+        }
+        let state = self.page(params)?.state.as_ref().map(|state| link::read(&state.query));
+        self.to_set_up = None;
+        let state = state?;
+        Some(NewParams {
+            params: laid_over(params, std::slice::from_ref(&state), true),
+            named: state.values.iter().map(|(key, _)| *key).collect(),
+            problems: state.problems,
+        })
+    }
+
+    /// Returns the parameters that a link of the open page asks for; `None` where no lesson is open.
+    pub(crate) fn tried(&self, params: &Params, link: Link) -> Option<NewParams> {
+        let page = self.page(params)?;
+        let state = link::read(page.state.as_ref().map_or("", |state| state.query.as_str()));
+        let problems = link.problems.clone();
+        let links = [state, link];
+        Some(NewParams {
+            params: laid_over(params, &links, false),
+            named: links.iter().flat_map(|link| &link.values).map(|(key, _)| *key).collect(),
+            problems,
+        })
+    }
+}
+
+/// Returns whether a link that names only the parameters with another value than the default would
+/// have the open lesson set the parameters.
+pub(crate) fn would_set_up(params: &Params) -> bool {
+    let mut changed = params.changed().map(|(param, _)| param.key);
+    !params.text(Key::Lesson).is_empty() && changed.all(is_about_the_reader)
+}
+
+/// Returns the parameters when links are laid over each other, and over the defaults of all that
+/// makes a result. Parameters about the reader stay as they are, as do A and B where no link names
+/// them; stage, camera and time too, unless the page is `new`.
+fn laid_over(present: &Params, links: &[Link], new: bool) -> Params {
+    let mut params = present.clone();
+    let defaults = Params::default();
+    let starts_anew =
+        |param: &&Param| is_of_page_state(param) || (new && param.group != Group::Page);
+    for param in PARAMS.iter().filter(starts_anew) {
+        if !matches!(param.key, Key::A | Key::B) {
+            params.copy_from(&defaults, param.key);
+        }
+    }
+    for (key, value) in links.iter().flat_map(|link| &link.values) {
+        if !is_about_the_reader(*key) || *key == Key::Src {
+            let result = params.set(*key, value.clone());
+            debug_assert!(result.is_ok(), "links hold checked values: {result:?}");
+        }
+    }
+    params
+}
+
+/// Returns the message on a file that is no lesson.
+fn unread(source: &Source, error: &LessonError) -> Message {
+    let (Source::BuiltIn(name) | Source::Web(name)) = source;
+    msg!("{name} is no lesson: {error}.")
+}
+
+/// Returns whether a link of a lesson sets a parameter even where it does not name it: it makes the
+/// result.
+fn is_of_page_state(param: &Param) -> bool {
+    param.group.is_of_lab() || param.has(Mark::State)
+}
+
+/// Returns whether a parameter is about the reader, and not the stage: no lesson changes it.
+fn is_about_the_reader(key: Key) -> bool {
+    key.param().group == Group::Page && !is_of_page_state(key.param())
+}
+
+fn names(link: &Link, key: Key) -> bool {
+    link.values.iter().any(|(named, _)| *named == key)
+}

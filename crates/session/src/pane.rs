@@ -1,0 +1,217 @@
+//! A pane of the stage: a result, and what it is to the present parameters.
+
+use crate::labs::{Answer, Gauge, Inputs, LabError, Outcome, Source};
+use crate::params::{Key, Params, Value};
+use crate::playback::{SpeedRamp, cycle_durations};
+use segue_motion::math::Planar;
+use segue_text::ToMessage;
+use std::sync::Arc;
+
+/// One pane of the stage: a result under one value of the compared parameter.
+///
+/// While a result is computed, an older one may stay on the stage. Clips, files, numbers and reports
+/// are made of [`Pane::result`], and never of what is on the stage.
+#[derive(Clone, Debug, Default)]
+pub struct Pane {
+    /// The compared parameter and this pane's value; `None` when there is nothing to compare.
+    pub variant: Option<(Key, Value)>,
+    /// The result on the stage: the present one, or, while that is computed, an earlier one
+    /// ([`Pane::is_outdated`]). Always `None` beside a [`problem`](Self::problem).
+    pub outcome: Option<Arc<Outcome>>,
+    /// Why the result cannot be made, and what to do.
+    pub problem: Option<LabError>,
+    /// The clips that the result would have been made of, as they lie on the stage in its place.
+    /// Empty where there is no problem.
+    pub sources: Vec<Source>,
+    /// The parameters that `outcome` was made from.
+    made_from: Option<Arc<Params>>,
+    standing: Standing,
+    pub(crate) inputs: Option<Inputs>,
+    /// Where a result that loops has got to: it lies there in the world that is shown.
+    pub(crate) place: Planar,
+    /// A gait that has not reached the speed of the result yet.
+    pub(crate) ramp: Option<SpeedRamp>,
+}
+
+/// How the outcome of a pane relates to the present parameters.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Standing {
+    /// It is of earlier parameters; the result of the present ones is being computed.
+    #[default]
+    Earlier,
+    /// It is of the present parameters, and not finished: its place is not found yet, or its feet
+    /// are not planted.
+    Draft,
+    /// It is the result.
+    Finished,
+}
+
+impl Standing {
+    fn of(is_draft: bool) -> Self {
+        if is_draft { Self::Draft } else { Self::Finished }
+    }
+}
+
+/// A result, and the parameters that it was made from.
+#[derive(Clone, Copy, Debug)]
+pub struct Made<'a> {
+    /// The result.
+    pub outcome: &'a Arc<Outcome>,
+    /// The parameters under which it is made again.
+    pub params: &'a Params,
+}
+
+/// Why a pane has no result to hand on.
+#[derive(Clone, Debug, PartialEq, thiserror::Error, ToMessage)]
+pub enum NoResult {
+    /// It cannot be made, for that reason.
+    #[error("{problem}", problem = .0.to_sentence())]
+    Refused(LabError),
+    /// It is not there yet.
+    #[error("the result is still being computed")]
+    Awaited,
+}
+
+/// The content of a pane at some time.
+#[derive(Clone, Copy, Debug)]
+pub struct Shown<'a> {
+    /// The pane's result; a gait on its way to it, where the speed has just been changed.
+    pub outcome: &'a Arc<Outcome>,
+    /// The time in its motion, seconds.
+    pub secs: f64,
+    /// Where the motion lies in the world that is shown.
+    pub place: Planar,
+}
+
+impl Pane {
+    /// Returns the result of the present parameters, to be kept, saved, measured or described.
+    ///
+    /// # Errors
+    /// [`NoResult`] where it cannot be made, and while it is computed: the stage shows a result of
+    /// earlier parameters then, or a draft.
+    pub fn result(&self) -> Result<Made<'_>, NoResult> {
+        if let Some(problem) = &self.problem {
+            return Err(NoResult::Refused(problem.clone()));
+        }
+        self.made().filter(|_| self.standing == Standing::Finished).ok_or(NoResult::Awaited)
+    }
+
+    /// Returns the result for uses that make it again from its parameters. As [`Pane::result`], but
+    /// its feet may still have to be planted.
+    pub(crate) fn recipe(&self) -> Result<Made<'_>, NoResult> {
+        let drafted = self
+            .made()
+            .filter(|made| self.standing == Standing::Draft && made.outcome.awaits_feet());
+        drafted.map_or_else(|| self.result(), Ok)
+    }
+
+    /// Returns what is on the stage, and what it was made from.
+    fn made(&self) -> Option<Made<'_>> {
+        let (outcome, params) = (self.outcome.as_ref()?, self.made_from.as_deref()?);
+        Some(Made { outcome, params })
+    }
+
+    /// Returns the parameters that the result on the stage was made from; `None` where there is none.
+    #[must_use]
+    pub fn made_from(&self) -> Option<&Params> {
+        self.made().map(|made| made.params)
+    }
+
+    /// Returns the compared parameter and its value in the result on the stage; without one, its
+    /// value in the present parameters.
+    #[must_use]
+    pub fn compared(&self) -> Option<(Key, &Value)> {
+        let (key, value) = self.variant.as_ref()?;
+        Some((*key, self.made_from().map_or(value, |from| from.get(*key))))
+    }
+
+    /// Returns whether the result on the stage is of earlier parameters: that of the present ones is
+    /// being computed.
+    #[must_use]
+    pub fn is_outdated(&self) -> bool {
+        self.outcome.is_some() && self.standing == Standing::Earlier
+    }
+
+    /// Takes the answer to what `params` ask for. Where there can be no result, an earlier one goes.
+    pub(crate) fn take(&mut self, answer: Answer, params: &Arc<Params>) {
+        self.problem = None;
+        self.sources.clear();
+        match answer {
+            Answer::Made { outcome, is_draft, inputs } => {
+                self.outcome = Some(outcome);
+                self.inputs = inputs;
+                self.made_from = Some(Arc::clone(params));
+                self.standing = Standing::of(is_draft);
+            }
+            Answer::Same { is_draft } => {
+                self.made_from = Some(Arc::clone(params));
+                self.standing = Standing::of(is_draft);
+            }
+            Answer::Awaited => {
+                self.standing = Standing::Earlier;
+                // An earlier result stays until there is a newer one, but for that of another lab.
+                if self.made_from().is_some_and(|from| from.get(Key::Lab) != params.get(Key::Lab)) {
+                    self.clear();
+                }
+            }
+            Answer::Refused(problem) => {
+                self.clear();
+                self.problem = Some(problem);
+            }
+        }
+    }
+
+    /// Puts the metrics that every lab has first in the list of a new result. Until they are measured
+    /// it is a draft.
+    pub(crate) fn measure(&mut self, gauge: &mut Gauge) {
+        let Some(outcome) = self.outcome.as_mut().filter(|_| self.standing != Standing::Earlier)
+        else {
+            return;
+        };
+        if outcome.is_measured {
+            return;
+        }
+        let found = gauge.numbers(outcome);
+        if found.is_none() {
+            self.standing = Standing::Draft;
+        }
+        if found.is_some() || !outcome.awaits_numbers() {
+            Arc::make_mut(outcome).take_numbers(found);
+        }
+    }
+
+    /// Shows a driven character a moment later.
+    pub(crate) fn show_next(&mut self, outcome: Outcome) {
+        self.outcome = Some(Arc::new(outcome));
+    }
+
+    /// Returns the parameters with the pane's own value of the compared one.
+    pub(crate) fn params_in(&self, params: &Params) -> Params {
+        let mut params = params.clone();
+        if let Some((key, value)) = &self.variant {
+            let result = params.set(*key, value.clone());
+            debug_assert!(result.is_ok(), "compare holds checked values: {result:?}");
+        }
+        params
+    }
+
+    fn clear(&mut self) {
+        (self.outcome, self.made_from, self.inputs, self.ramp) = (None, None, None, None);
+        self.place = Planar::IDENTITY;
+        self.standing = Standing::Earlier;
+    }
+
+    /// Returns what is shown at a time of the timeline; `None` while there is no result. A result
+    /// that loops and is shorter than the timeline begins again, and walks on from where it is.
+    #[must_use]
+    pub fn shown_at(&self, secs: f64) -> Option<Shown<'_>> {
+        let own = self.outcome.as_ref()?;
+        let on_ramp = self.ramp.as_ref().and_then(|ramp| {
+            let [own_secs, ramp_secs] = cycle_durations(own, &ramp.outcome)?;
+            Some((&ramp.outcome, secs / own_secs * ramp_secs))
+        });
+        let (outcome, secs) = on_ramp.unwrap_or((own, secs));
+        let (secs, place) = outcome.around(secs);
+        Some(Shown { outcome, secs, place: self.place.after(&place) })
+    }
+}

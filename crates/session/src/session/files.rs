@@ -1,0 +1,197 @@
+//! Files that come into the library, and the memory that they need.
+
+use super::Session;
+use crate::files::Loaded;
+use crate::library::Arrival;
+use crate::memory::{MemoryUse, PageMemory};
+use crate::motion::FeetReader;
+use crate::reading::{Content, ReadReport, ReadTask};
+use crate::samples::{SETS, SINGLES, Sample, SampleSet};
+use segue_formats::ImportError;
+use segue_text::Message;
+use std::sync::Arc;
+
+impl Session {
+    /// Reads one file, exactly as if it were dropped on the page: its clips join the library, and
+    /// the first ones take the places of built-in clips in A and B. It is read at once, unless it
+    /// is larger than [`LARGE_BYTES`](crate::reading::LARGE_BYTES) or the session has all files
+    /// read elsewhere: then it is asked for with [`Request::Read`](crate::Request::Read), nothing
+    /// is loaded yet, and an error is told when it was read.
+    ///
+    /// # Errors
+    /// [`ImportError`] with name, line, column, found and expected; nothing already loaded changes.
+    pub fn load(&mut self, name: &str, bytes: Arc<[u8]>) -> Result<Loaded, ImportError> {
+        self.load_arriving(name, bytes, Arrival::ByHand)
+    }
+
+    /// Reads a file that was fetched from an address in the link: as [`Session::load`], but where
+    /// the link names a clip for a slot, that one stays, and a file that is in the library already
+    /// takes no slot.
+    ///
+    /// # Errors
+    /// As [`Session::load`].
+    pub fn load_fetched(&mut self, name: &str, bytes: Arc<[u8]>) -> Result<Loaded, ImportError> {
+        self.load_arriving(name, bytes, Arrival::ByLink)
+    }
+
+    fn load_arriving(
+        &mut self,
+        name: &str,
+        bytes: Arc<[u8]>,
+        arrival: Arrival,
+    ) -> Result<Loaded, ImportError> {
+        let (document, notices) = (&mut self.document, &mut self.notices);
+        let loaded = self.files.load(document, notices, name, bytes, arrival);
+        self.refresh();
+        loaded
+    }
+
+    /// Asks for a file to be read elsewhere ([`Request::Read`](crate::Request::Read)) and joined to
+    /// the library then, as by [`Session::load`]. Returns the task's number.
+    pub fn begin_reading(&mut self, name: &str, content: Content, size: u64) -> u64 {
+        self.revision += 1;
+        self.files.begin_reading(&self.document.library, name, content, size, Arrival::ByHand)
+    }
+
+    /// As [`Session::begin_reading`], for a file that was fetched: its clips join the library as by
+    /// [`Session::load_fetched`].
+    pub fn begin_reading_fetched(&mut self, name: &str, content: Content, size: u64) -> u64 {
+        self.revision += 1;
+        self.files.begin_reading(&self.document.library, name, content, size, Arrival::ByLink)
+    }
+
+    /// Notes how many bytes of a task's file are read.
+    pub fn progress_reading(&mut self, task: u64, done: u64) {
+        self.files.progress_reading(task, done);
+        self.revision += 1;
+    }
+
+    /// Returns the key of the file that a task reads, where its bytes lie outside.
+    #[must_use]
+    pub fn reading_key(&self, task: u64) -> Option<&str> {
+        self.files.reading_key(task)
+    }
+
+    /// Takes in the report of a file, or the reason why there is none. Returns `None` where the
+    /// task was given up, and where the file has to be read again.
+    pub fn finish_reading(
+        &mut self,
+        task: u64,
+        report: Result<ReadReport, Message>,
+    ) -> Option<Result<Loaded, Message>> {
+        let (document, notices) = (&mut self.document, &mut self.notices);
+        let finished = self.files.finish_reading(document, notices, task, report);
+        self.refresh();
+        finished
+    }
+
+    /// Returns whether a task is under way.
+    #[must_use]
+    pub fn is_reading(&self, task: u64) -> bool {
+        self.files.is_reading(task)
+    }
+
+    /// Returns whether files are being read that are not in the library yet.
+    #[must_use]
+    pub fn is_reading_new(&self) -> bool {
+        self.files.is_reading_new()
+    }
+
+    /// Returns whether a task reads a file that is not in the library yet.
+    #[must_use]
+    pub fn brings_clips(&self, task: u64) -> bool {
+        self.files.brings_clips(task)
+    }
+
+    /// Returns whether a file is being read that takes a moment, and so has no progress bar.
+    #[must_use]
+    pub fn is_reading_small(&self) -> bool {
+        self.files.is_reading_small()
+    }
+
+    /// Returns whether any file is being read.
+    #[must_use]
+    pub fn is_reading_any(&self) -> bool {
+        self.files.is_reading_any()
+    }
+
+    /// Returns the bundled takes that belong to no set.
+    #[must_use]
+    pub fn samples() -> &'static [Sample] {
+        &SINGLES
+    }
+
+    /// Returns the sets of bundled takes.
+    #[must_use]
+    pub fn sample_sets() -> &'static [SampleSet] {
+        &SETS
+    }
+
+    /// Returns the bundled takes that were asked for and have not arrived.
+    #[must_use]
+    pub fn awaited_samples(&self) -> &[&'static Sample] {
+        self.files.awaited_samples()
+    }
+
+    /// Returns how many of the takes that were asked for together have arrived, and how many these
+    /// are; `None` while none is awaited.
+    #[must_use]
+    pub fn samples_progress(&self) -> Option<(usize, usize)> {
+        self.files.samples_progress()
+    }
+
+    /// Takes in a bundled take that was asked for with
+    /// [`Request::Sample`](crate::Request::Sample); `packed` is its gzip file. Where files are read
+    /// elsewhere, it is not there yet.
+    ///
+    /// # Errors
+    /// [`ImportError`] when it is damaged; where it is read elsewhere, that is told when it was
+    /// read.
+    pub fn load_sample(
+        &mut self,
+        sample: &'static Sample,
+        packed: &[u8],
+    ) -> Result<(), ImportError> {
+        let (document, notices) = (&mut self.document, &mut self.notices);
+        let loaded = self.files.load_sample(document, notices, sample, packed);
+        self.refresh();
+        loaded
+    }
+
+    /// Notes why a bundled take that was asked for has not arrived. The next command that needs it
+    /// asks for it again.
+    pub fn fail_sample(&mut self, sample: &'static Sample, reason: impl Into<Message>) {
+        self.files.fail_sample(&mut self.document, &mut self.notices, sample, reason);
+        self.refresh();
+    }
+
+    /// Takes in what the page says of its memory. Once more than half of it is taken, drops the
+    /// motions that only steps of undo hold: they are read again when a step brings them back.
+    pub fn note_memory(&mut self, page: PageMemory) {
+        if self.files.note_memory(page, &mut self.document) {
+            self.labs.feet = FeetReader::default();
+        }
+    }
+
+    /// Returns how much memory is in use; `None` where it has no end.
+    #[must_use]
+    pub fn memory(&self) -> Option<MemoryUse> {
+        self.files.memory()
+    }
+
+    /// Returns how much memory a task's file is expected to need, bytes, where that is more than is
+    /// left.
+    #[must_use]
+    pub fn memory_lacking_for(&self, task: &ReadTask) -> Option<u64> {
+        self.files.memory_lacking_for(task)
+    }
+
+    /// Ends a task because there is no memory for the `needed` bytes of its clips. Returns `None`
+    /// where the task was given up already.
+    pub fn refuse_for_memory(&mut self, task: u64, needed: u64) -> Option<Result<Loaded, Message>> {
+        let (document, notices) = (&mut self.document, &mut self.notices);
+        let reason = self.files.refuse_for_memory(document, notices, task, needed)?;
+        self.refresh();
+        Some(Err(reason))
+    }
+}

@@ -1,0 +1,75 @@
+//! The lesson that is open.
+
+use super::Session;
+use crate::command::CommandError;
+use crate::lesson::{Lesson, Source};
+use crate::link;
+use crate::params::Key;
+use crate::playback;
+use segue_text::Message;
+
+impl Session {
+    /// Returns the lesson that is open; `None` where none is.
+    #[must_use]
+    pub fn lesson(&self) -> Option<Lesson<'_>> {
+        self.lessons.lesson(&self.document.params)
+    }
+
+    /// Returns whether the parameters are those that a link of the open page sets. Camera and time
+    /// do not matter.
+    #[must_use]
+    pub fn is_tried(&self, query: &str) -> bool {
+        self.lessons.is_tried(&self.document.params, query)
+    }
+
+    /// Takes in the text of a lesson, or why it did not arrive. Keeps a text that is not shown.
+    pub fn finish_lesson(&mut self, source: &Source, text: Result<&[u8], Message>) {
+        self.lessons.finish(source, text);
+        if self.set_up_lesson() {
+            self.refresh();
+            playback::restart(&mut self.panes.list);
+        }
+        self.revision += 1;
+    }
+
+    /// Chooses the language of the lessons that come with Segue, by their folder: `en` or
+    /// `zh-Hant`.
+    pub fn set_lesson_language(&mut self, language: &'static str) {
+        if self.lessons.set_language(language) {
+            self.lessons.ask_for_text(&self.document.params);
+            self.revision += 1;
+        }
+    }
+
+    /// Notes that parameters were set together, the open lesson among them perhaps: opened alone,
+    /// it sets the parameters.
+    pub(super) fn note_lesson(&mut self, named: &[Key]) {
+        self.lessons.note_set(&self.document.params, named.iter().copied());
+        self.set_up_lesson();
+    }
+
+    /// Sets the parameters as the open page says, if they are about to be set and its text is here.
+    /// Returns whether it did.
+    fn set_up_lesson(&mut self) -> bool {
+        let new = self.lessons.set_up(&self.document.params);
+        new.map(|new| self.replace_params(new)).is_some()
+    }
+
+    /// Opens a link of the open page, as one step for undo.
+    pub(super) fn try_link(&mut self, query: &str) -> Result<(), CommandError> {
+        let link = link::read(query);
+        if let Some(lesson) = link.values.iter().find(|(key, _)| *key == Key::Lesson) {
+            if self.document.params.get(Key::Lesson) == &lesson.1 {
+                // It is open already: a text that failed is asked for again.
+                self.document.remember(None);
+                self.note_lesson(&[Key::Lesson]);
+            }
+            return self.set_as_step(vec![lesson.clone()]);
+        }
+        let new = (self.lessons.tried(&self.document.params, link))
+            .ok_or(CommandError::NotPossible("no lesson is open"))?;
+        self.document.remember(None);
+        self.replace_params(new);
+        Ok(())
+    }
+}

@@ -1,0 +1,227 @@
+//! What panels, the page's API and pictures ask of a session.
+
+use super::Session;
+use crate::Selected;
+use crate::clip_info::ClipInfo;
+use crate::compare::Compare;
+use crate::labs::lab::{self, Beside};
+use crate::labs::{CycleMade, DistanceMap, Slot};
+use crate::labs::{
+    is_as_it_is, made_motion_has, middle_mps, range_of, read_pins, read_weights, synth_action,
+};
+use crate::lesson::would_set_up;
+use crate::library::{Entry, split_reference};
+use crate::link;
+use crate::pane::Pane;
+use crate::params::{Key, Kind, Value};
+use segue_motion::clip::Motion;
+use segue_motion::skin::Character;
+use segue_motion::synth;
+use std::sync::Arc;
+
+impl Session {
+    /// Returns the query string that restores this state, without `?`.
+    #[must_use]
+    pub fn query(&self) -> String {
+        let params = &self.document.params;
+        let query = link::write(params);
+        if would_set_up(params) {
+            // The lab, which is named only where it is not the first one, says that there is a
+            // state besides.
+            format!("{query}&{}={}", Key::Lab.param().name, params.lab().word())
+        } else {
+            query
+        }
+    }
+
+    /// Returns the comparison that is open.
+    #[must_use]
+    pub fn compare(&self) -> Option<Compare> {
+        self.document.compare()
+    }
+
+    /// Returns the clip in a slot.
+    #[must_use]
+    pub fn slot(&self, slot: Slot) -> Option<&Arc<Entry>> {
+        self.document.slot(slot)
+    }
+
+    /// Returns whether the clip in a slot is part of what the lab shows.
+    #[must_use]
+    pub fn uses(&self, slot: Slot) -> bool {
+        lab::of(self.document.params.lab()).slots().contains(&slot)
+    }
+
+    /// Returns whether the link that was opened names this parameter, be it with its default.
+    #[must_use]
+    pub fn names(&self, key: Key) -> bool {
+        self.document.link_names(key)
+    }
+
+    /// Returns the id of a clip that a parameter may name: one of the library, or a bundled take,
+    /// which joins the library when it is named.
+    #[must_use]
+    pub fn nameable(&self, reference: &str) -> Option<String> {
+        self.document.nameable(reference)
+    }
+
+    /// Returns what the panes have of a choice: the values that are compared, or the one that is
+    /// set.
+    #[must_use]
+    pub fn choices<C: Selected>(&self) -> Vec<C> {
+        match self.compare().filter(|compare| compare.key == C::KEY) {
+            Some(compare) => compare.values.iter().filter_map(Value::choice).collect(),
+            None => vec![self.document.params.choice()],
+        }
+    }
+
+    /// Returns the name of the difference of a pane to the others: the value with its unit, or the
+    /// clip's name. `None` where there is nothing to compare.
+    #[must_use]
+    pub fn variant_name(&self, pane: &Pane) -> Option<String> {
+        let (key, value) = pane.compared()?;
+        let param = key.param();
+        Some(match (param.kind, value) {
+            (Kind::Clip, Value::Text(id)) => self
+                .document
+                .library
+                .find(id)
+                .map_or_else(|| split_reference(id).0.to_owned(), |entry| entry.name.clone()),
+            _ => format!("{} {}", param.spoken(value), param.unit).trim_end().to_owned(),
+        })
+    }
+
+    /// Returns the character that moves in place of bodies made around bones: that of the clip that
+    /// the parameter `character` names.
+    #[must_use]
+    pub fn character(&self) -> Option<Character> {
+        self.document.library.find(self.document.params.text(Key::Character))?.character()
+    }
+
+    /// Returns why the motion on the stage cannot move the chosen character, in a sentence. `None`
+    /// where it can, or none is chosen.
+    #[must_use]
+    pub fn character_note(&self) -> Option<String> {
+        let entry = self.document.library.find(self.document.params.text(Key::Character))?;
+        let character = entry.character()?;
+        let shown = self.panes.list.iter().filter_map(|pane| pane.outcome.as_ref());
+        let mut motions = shown.map(|outcome| &outcome.motion);
+        let moves =
+            |motion: &Arc<Motion>| character.is_moved_by(motion.clip().skeleton(), motion.roles());
+        let is_left_out = motions.any(|motion| !moves(motion));
+        is_left_out.then(|| {
+            format!(
+                "{} cannot be moved by this clip: they have no limbs in common. The clip has a body of its own.",
+                entry.name
+            )
+        })
+    }
+
+    /// Returns the value that Segue chose for a parameter that is left to it.
+    #[must_use]
+    pub fn automatic_value(&self, key: Key) -> Option<f64> {
+        let outcome = self.main_outcome()?;
+        let (transition, made) = (outcome.transition, outcome.cycle.map(|cycle| cycle.made));
+        match (key, made) {
+            (Key::Speed, Some(CycleMade::Gait { clips_mps, .. })) => {
+                return Some(middle_mps(clips_mps));
+            }
+            (Key::LoopFrom, Some(CycleMade::Cut { from_secs, .. })) => return Some(from_secs),
+            (Key::LoopTo, Some(CycleMade::Cut { to_secs, .. })) => return Some(to_secs),
+            _ => {}
+        }
+        match key {
+            Key::LeaveA => transition.map(|t| t.leave_a_secs),
+            Key::EnterB => transition.map(|t| t.enter_b_secs),
+            Key::MixFrameA => self.frame_in(Slot::A, transition?.leave_a_secs),
+            Key::MixFrameB => self.frame_in(Slot::B, transition?.enter_b_secs),
+            Key::GaitSpeed => {
+                Some(f64::from(synth::Params::new(synth_action(&self.document.params)).speed_mps))
+            }
+            Key::WarpFrom => Some(outcome.registered()?.part_secs[0]),
+            Key::WarpTo => Some(outcome.registered()?.part_secs[1]),
+            Key::WarpSmoothing => Some((0.1 * outcome.motion.clip().fps()).round()),
+            Key::Ground => Some(f64::from(outcome.motion.ground_m()) * 100.0),
+            Key::PlaceX => Some(to_step(outcome.motion.standing_at(0.0).shift.x, 0.01)),
+            Key::PlaceZ => Some(to_step(outcome.motion.standing_at(0.0).shift.y, 0.01)),
+            Key::PlaceHeading => {
+                Some(to_step(outcome.motion.standing_at(0.0).yaw.to_degrees(), 0.1))
+            }
+            Key::In => Some(0.0),
+            Key::Out => Some(self.duration_secs()),
+            _ => None,
+        }
+    }
+
+    /// Returns the frame of a slot's clip at a time, at its own rate.
+    fn frame_in(&self, slot: Slot, secs: f64) -> Option<f64> {
+        let motion = self.slot(slot)?.motion.as_ref()?;
+        Some((secs * motion.clip().fps()).round())
+    }
+
+    /// Returns whether the open lab shows a clip, and changes it: its feet are held, it is moved, or
+    /// in place.
+    #[must_use]
+    pub fn view_is_changed(&self) -> bool {
+        lab::of(self.document.params.lab()).shows_clip() && !is_as_it_is(&self.document.params)
+    }
+
+    /// Returns the distances between the frames of two clips: those of the first pane, or newer ones
+    /// without a result.
+    #[must_use]
+    pub fn distance_map(&self) -> Option<&Arc<DistanceMap>> {
+        if !lab::of(self.document.params.lab()).has(Beside::DistanceMap) {
+            return None;
+        }
+        let pane = self.panes.list.first()?;
+        let shown = pane.outcome.as_ref().and_then(|outcome| outcome.registered());
+        let shown = shown.map(|registered| &registered.map);
+        shown.or_else(|| self.labs.registrars.last_map())
+    }
+
+    /// Returns the pairs of frames of A and B, at A's rate, that must meet; none where they cannot be
+    /// read.
+    #[must_use]
+    pub fn pins(&self) -> Vec<(usize, usize)> {
+        read_pins(self.document.params.text(Key::Pins)).unwrap_or_default()
+    }
+
+    /// Returns the weight of B over the course of a registered blend, in per cent of both; empty
+    /// where it stays the same, or cannot be read.
+    #[must_use]
+    pub fn weight_keys(&self) -> Vec<(usize, usize)> {
+        read_weights(self.document.params.text(Key::WarpCurve)).unwrap_or_default()
+    }
+
+    /// Returns the further clips of a registered blend, with their weights; none where they cannot
+    /// be read.
+    #[must_use]
+    pub fn also_blended(&self) -> Vec<(String, f64)> {
+        self.document.also_blended()
+    }
+
+    /// Returns whether the motion to be synthesised has a parameter: a standing one has no speed.
+    #[must_use]
+    pub fn made_motion_has(&self, key: Key) -> bool {
+        made_motion_has(&self.document.params, key)
+    }
+
+    /// Returns the part of a number's range that can be used now, where that is less than in the
+    /// table: speeds and durations of a synthesised motion.
+    #[must_use]
+    pub fn range_of(&self, key: Key) -> Option<(f64, f64)> {
+        range_of(&self.document.params, key)
+    }
+
+    /// Returns the clips as the page's API has them. A clip that was not made or loaded yet has no
+    /// frames.
+    #[must_use]
+    pub fn clip_infos(&self) -> Vec<ClipInfo> {
+        self.document.library.entries().iter().map(|entry| ClipInfo::of(entry)).collect()
+    }
+}
+
+/// Rounds a value to whole steps; never the zero below zero.
+fn to_step(value: f64, step: f64) -> f64 {
+    (value / step).round() * step + 0.0
+}
