@@ -5,7 +5,8 @@
 #![expect(clippy::print_stdout, reason = "the numbers are the example's output")]
 
 use segue_formats::bvh;
-use segue_motion::blend::{DissolveOptions, Source, dissolve};
+use segue_motion::blend::{DissolveOptions, dissolve};
+use segue_motion::clip::Motion;
 use segue_motion::metrics::{MotionTrace, ResultMetrics};
 use segue_motion::registration::{SearchOptions, best_transition, limb_weights};
 use segue_motion::skeleton::Roles;
@@ -29,7 +30,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("leave the walk at frame {}, enter the run at frame {}", best.leave, best.enter);
 
     // The velocity jump of a cut, and of the dissolve, beyond what the clips themselves do.
-    let (a, b) = (Source::new(Arc::clone(&walk), &roles), Source::new(Arc::clone(&run), &roles));
+    let (a, b) = (
+        Motion::with_roles(Arc::clone(&walk), &roles),
+        Motion::with_roles(Arc::clone(&run), &roles),
+    );
     let traces = [&walk, &run].map(|clip| MotionTrace::new(clip, &roles));
     for window in [0, WINDOW] {
         let options = DissolveOptions { window, ..DissolveOptions::default() };

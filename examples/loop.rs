@@ -5,8 +5,7 @@
 #![expect(clippy::print_stdout, reason = "the numbers are the example's output")]
 
 use segue_formats::bvh;
-use segue_motion::blend::Source;
-use segue_motion::clip::{ContactOptions, Contacts};
+use segue_motion::clip::{ContactOptions, Contacts, Motion};
 use segue_motion::skeleton::Roles;
 use segue_motion::synth::{Action, Params, synthesize};
 use segue_motion::transition::{CycleSearch, LoopOptions, close_loop, find_cycle};
@@ -19,7 +18,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let roles = Roles::detect(walk.skeleton());
     let contacts = Contacts::detect(&walk, &roles, &ContactOptions::default());
     let height = f64::from(roles.body_height(walk.skeleton()));
-    let source = Source::new(Arc::clone(&walk), &roles);
+    let source = Motion::with_roles(Arc::clone(&walk), &roles);
 
     // Two frames whose surroundings look alike are the ends of the cycle.
     let found = find_cycle(&source, &contacts, height, &CycleSearch::new(walk.fps()))?;

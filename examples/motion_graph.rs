@@ -5,7 +5,7 @@
 #![expect(clippy::print_stdout, reason = "the numbers are the example's output")]
 
 use segue_formats::bvh;
-use segue_motion::blend::Source;
+use segue_motion::clip::Motion;
 use segue_motion::graph::{AllPairs, Candidates, Choices, FrameSet, GraphOptions, MotionGraph};
 use segue_motion::graph::{StitchOptions, Stitcher, Walker, WeightOptions, assembled};
 use segue_motion::metrics::{MotionTrace, ResultMetrics};
@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let roles = Roles::detect(skeleton);
     let height = f64::from(roles.body_height(skeleton));
     let sources =
-        clips.iter().map(|clip| Arc::new(Source::new(Arc::clone(clip), &roles))).collect();
+        clips.iter().map(|clip| Arc::new(Motion::with_roles(Arc::clone(clip), &roles))).collect();
     let set = Arc::new(FrameSet::new(sources, height)?);
 
     // The distance of every window of frames to every other one; its minima are the transitions.

@@ -6,7 +6,8 @@
 #![expect(clippy::print_stdout, reason = "the numbers are the example's output")]
 
 use segue_formats::bvh;
-use segue_motion::blend::{Source, WeightLaw};
+use segue_motion::blend::WeightLaw;
+use segue_motion::clip::Motion;
 use segue_motion::math::Decay;
 use segue_motion::metrics::{MotionTrace, ResultMetrics};
 use segue_motion::skeleton::Roles;
@@ -19,7 +20,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let walk = Arc::new(synthesize(&Params::new(Action::Walk))?.clip);
     let run = Arc::new(synthesize(&Params::new(Action::Run))?.clip);
     let roles = Roles::detect(walk.skeleton());
-    let (a, b) = (Source::new(Arc::clone(&walk), &roles), Source::new(Arc::clone(&run), &roles));
+    let (a, b) = (
+        Motion::with_roles(Arc::clone(&walk), &roles),
+        Motion::with_roles(Arc::clone(&run), &roles),
+    );
     let traces = [&walk, &run].map(|clip| MotionTrace::new(clip, &roles));
 
     let spring =

@@ -9,8 +9,7 @@ mod common;
 
 use common::{bvh_files, captured, shared_data};
 use segue_formats::{ImportOptions, import};
-use segue_motion::blend::Source;
-use segue_motion::clip::{Clip, ContactOptions, Contacts, character_frames};
+use segue_motion::clip::{Clip, ContactOptions, Contacts, Motion, character_frames};
 use segue_motion::registration::{REFERENCE_HEIGHT_M, distances_directly, limb_weights};
 use segue_motion::skeleton::{Roles, Side};
 use segue_motion::synth::{Action, Params, synthesize};
@@ -102,7 +101,7 @@ fn automatic_cycles_are_as_good_as_those_of_an_exhaustive_search() {
         let roles = Roles::detect(clip.skeleton());
         let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
         let height = f64::from(roles.body_height(clip.skeleton()));
-        let source = Source::new(Arc::clone(&clip), &roles);
+        let source = Motion::with_roles(Arc::clone(&clip), &roles);
         let search = CycleSearch::new(clip.fps());
         if clip.duration_secs() <= search.min_secs {
             continue;

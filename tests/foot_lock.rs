@@ -5,8 +5,8 @@
 mod common;
 
 use common::captured;
-use segue_motion::blend::{Concatenation, Source};
-use segue_motion::clip::{Clip, ContactOptions, Contacts};
+use segue_motion::blend::Concatenation;
+use segue_motion::clip::{Clip, ContactOptions, Contacts, Motion};
 use segue_motion::math::{Decay, quat};
 use segue_motion::metrics::{Profile, Subject, TransitionMetrics};
 use segue_motion::registration::{PoseSearch, PoseWeights, SearchOptions, limb_weights};
@@ -27,7 +27,7 @@ impl Take {
     fn new(name: &str, clip: Clip) -> Self {
         let roles = Roles::detect(clip.skeleton());
         let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
-        let source = Arc::new(Source::new(Arc::new(clip), &roles));
+        let source = Arc::new(Motion::with_roles(clip, &roles));
         Self { name: name.to_owned(), profile: Profile::new(source, &roles, contacts), roles }
     }
 
@@ -45,9 +45,13 @@ fn joined(a: &Take, b: &Take) -> (Concatenation, usize) {
     let weights = limb_weights(a.clip().skeleton());
     let height = f64::from(a.roles.body_height(a.clip().skeleton()));
     let (from, to) = (a.profile.source(), b.profile.source());
-    let mut search =
-        PoseSearch::new((from.clip(), from.frames()), (to.clip(), to.frames()), &weights, height)
-            .expect("one rig");
+    let mut search = PoseSearch::new(
+        (from.clip(), from.ground_frames()),
+        (to.clip(), to.ground_frames()),
+        &weights,
+        height,
+    )
+    .expect("one rig");
     search.advance(usize::MAX);
     let found = search.best(PoseWeights::default(), &SearchOptions::new(40)).expect("windows fit");
     let spring = Inertialization::Offset(Decay::Spring { half_life_secs: 0.15 });

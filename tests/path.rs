@@ -8,8 +8,7 @@ use common::shared_data;
 use glam::DVec2;
 use proptest::prelude::*;
 use segue_formats::{ImportOptions, import};
-use segue_motion::blend::Source;
-use segue_motion::clip::{Clip, ContactOptions, Contacts};
+use segue_motion::clip::{Clip, ContactOptions, Contacts, Motion};
 use segue_motion::math::{Planar, quat};
 use segue_motion::metrics::MotionTrace;
 use segue_motion::path::{
@@ -25,16 +24,16 @@ use std::sync::Arc;
 const TIMINGS: [Timing; 3] = [Timing::Metres, Timing::Speed, Timing::Duration];
 const FREE: Pins = Pins { start: false, end: false };
 
-fn source(clip: Clip) -> (Arc<Source>, Roles) {
+fn source(clip: Clip) -> (Arc<Motion>, Roles) {
     let roles = Roles::detect(clip.skeleton());
-    (Arc::new(Source::new(Arc::new(clip), &roles)), roles)
+    (Arc::new(Motion::with_roles(clip, &roles)), roles)
 }
 
-fn made(params: &Params) -> (Arc<Source>, Roles) {
+fn made(params: &Params) -> (Arc<Motion>, Roles) {
     source(synthesize(params).expect("it can be made").clip)
 }
 
-fn walk() -> (Arc<Source>, Roles) {
+fn walk() -> (Arc<Motion>, Roles) {
     made(&Params { duration_secs: 6.0, ..Params::new(Action::Walk) })
 }
 
@@ -260,7 +259,8 @@ fn the_body_faces_as_before_where_it_shall() {
     let out = carry(&path, &edited, &options).unwrap();
     let turned = carry(&path, &edited, &CarryOptions::default()).unwrap();
     let clip = path.source().clip();
-    let place = |clip: &Clip| Source::new(Arc::new(clip.clone()), &roles).frames().to_vec();
+    let place =
+        |clip: &Clip| Motion::with_roles(Arc::new(clip.clone()), &roles).ground_frames().to_vec();
     for ((held, turned), frame) in place(&out.clip).iter().zip(place(&turned.clip)).zip(0..) {
         assert!(quat::angle_between(out.clip.rotations(frame)[0], clip.rotations(frame)[0]) < 1e-3);
         assert!(held.shift.distance(turned.shift) < 1e-4, "{frame}");
@@ -274,11 +274,12 @@ fn the_offset_from_the_path_stays_in_the_world_where_it_shall() {
         let options =
             CarryOptions { orientation, offset: Offset::World, ..CarryOptions::default() };
         let out = carry(&path, &edited, &options).unwrap();
-        let stands = Source::new(Arc::new(out.clip.clone()), &roles).frames().to_vec();
+        let stands =
+            Motion::with_roles(Arc::new(out.clip.clone()), &roles).ground_frames().to_vec();
         let rows = stands
             .iter()
             .zip(&out.characters)
-            .zip(path.source().frames())
+            .zip(path.source().ground_frames())
             .zip(&out.places)
             .zip(path.places());
         for ((((found, told), stood), place), old) in rows {
@@ -432,13 +433,13 @@ fn behind_the_end_of_a_shorter_path_a_motion_goes_on_as_it_did() {
     assert!(behind.len() > 10, "{}", behind.len());
     for pair in behind.windows(2) {
         let step = |frames: &[Planar]| frames[pair[0]].inverse().after(&frames[pair[1]]);
-        let (was, is) = (step(source.frames()), step(&carried.characters));
+        let (was, is) = (step(source.ground_frames()), step(&carried.characters));
         assert!((was.yaw - is.yaw).abs() < 1e-9, "{pair:?}: {was:?} {is:?}");
         assert!(was.shift.distance(is.shift) < 1e-9, "{pair:?}: {was:?} {is:?}");
     }
     // It does not leap at the end.
     let step = |frames: &[Planar]| frames[behind[0] - 1].inverse().after(&frames[behind[0]]);
-    let (was, is) = (step(source.frames()), step(&carried.characters));
+    let (was, is) = (step(source.ground_frames()), step(&carried.characters));
     assert!(
         (was.yaw - is.yaw).abs() < 0.05 && was.shift.distance(is.shift) < 0.002,
         "{was:?} {is:?}"

@@ -6,10 +6,10 @@ mod common;
 use common::captured;
 use glam::Vec3;
 use segue_motion::blend::{
-    DissolveOptions, FrameMix, Partner, Source, WeightCurve, WeightLaw, dissolve, registered_blend,
+    DissolveOptions, FrameMix, Partner, WeightCurve, WeightLaw, dissolve, registered_blend,
     registered_join,
 };
-use segue_motion::clip::{Clip, ContactOptions, Contacts, Interpolation};
+use segue_motion::clip::{Clip, ContactOptions, Contacts, Interpolation, Motion};
 use segue_motion::registration::{
     PairTerms, PathEnd, Registration, RegistrationOptions, limb_weights,
 };
@@ -18,7 +18,7 @@ use std::sync::Arc;
 
 struct Take {
     name: String,
-    source: Source,
+    source: Motion,
     roles: Roles,
     contacts: Contacts,
 }
@@ -27,7 +27,7 @@ impl Take {
     fn new(name: &str, clip: Clip) -> Self {
         let roles = Roles::detect(clip.skeleton());
         let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
-        Self { name: name.to_owned(), source: Source::new(Arc::new(clip), &roles), roles, contacts }
+        Self { name: name.to_owned(), source: Motion::with_roles(clip, &roles), roles, contacts }
     }
 
     fn clip(&self) -> &Arc<Clip> {

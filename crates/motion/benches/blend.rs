@@ -8,8 +8,8 @@ mod common;
 use common::skeleton;
 use criterion::{Criterion, criterion_group, criterion_main};
 use glam::{Quat, Vec3};
-use segue_motion::blend::{DissolveOptions, RootBlend, Source, dissolve};
-use segue_motion::clip::{Clip, ContactOptions, Contacts};
+use segue_motion::blend::{DissolveOptions, RootBlend, dissolve};
+use segue_motion::clip::{Clip, ContactOptions, Contacts, Motion};
 use segue_motion::metrics::{Profile, Subject, TransitionMetrics};
 use segue_motion::registration::{SearchOptions, TransitionSearch, limb_weights};
 use segue_motion::skeleton::{Roles, Skeleton};
@@ -71,7 +71,7 @@ fn blending(c: &mut Criterion) {
     let skeleton = skeleton();
     let (a, b) = (clip(&skeleton, 5.0, 1.2), clip(&skeleton, 6.5, 2.0));
     let roles = Roles::detect(&skeleton);
-    let (a, b) = (Source::new(a, &roles), Source::new(b, &roles));
+    let (a, b) = (Motion::with_roles(a, &roles), Motion::with_roles(b, &roles));
     for root in [RootBlend::Velocity, RootBlend::World] {
         let options = DissolveOptions { window: 120, root, ..DissolveOptions::default() };
         c.bench_function(&format!("dissolve, 120 frames, {root:?}"), |bench| {
@@ -89,7 +89,7 @@ fn measuring(c: &mut Criterion) {
             .clip;
         let roles = Roles::detect(clip.skeleton());
         let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
-        (Profile::new(Arc::new(Source::new(Arc::new(clip), &roles)), &roles, contacts), roles)
+        (Profile::new(Arc::new(Motion::with_roles(clip, &roles)), &roles, contacts), roles)
     });
     let ((a, roles), (b, _)) = (walk, run);
     for window in [30, 120] {

@@ -1,8 +1,8 @@
 //! What happens while a hand drags a speed, a weight, or the switch of the foot lock: 600 frames.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use segue_motion::blend::{LayerOptions, Source, layer};
-use segue_motion::clip::{ContactOptions, Contacts};
+use segue_motion::blend::{LayerOptions, layer};
+use segue_motion::clip::{ContactOptions, Contacts, Motion};
 use segue_motion::gait::{GaitCycle, SpeedBlend, SpeedOptions, SpeedPlayer};
 use segue_motion::skeleton::Roles;
 use segue_motion::synth::Action;
@@ -31,7 +31,7 @@ fn living(c: &mut Criterion) {
             layer(black_box(&walk), &roles, &run, &LayerOptions::default()).expect("one skeleton")
         });
     });
-    let sources = [walk, run].map(|clip| Source::new(Arc::new(clip), &roles));
+    let sources = [walk, run].map(|clip| Motion::with_roles(clip, &roles));
     let cycles = [0, 1].map(|gait: usize| {
         GaitCycle::find(&sources[gait], &roles, &contacts[gait]).expect("whole cycles")
     });

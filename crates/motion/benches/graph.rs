@@ -7,8 +7,7 @@ mod common;
 use common::skeleton;
 use criterion::{Criterion, criterion_group, criterion_main};
 use glam::{Quat, Vec3};
-use segue_motion::blend::Source;
-use segue_motion::clip::Clip;
+use segue_motion::clip::{Clip, Motion};
 use segue_motion::graph::{
     AllPairs, CandidateStream, Candidates, FrameSet, GraphOptions, MotionGraph,
 };
@@ -37,7 +36,7 @@ fn set(frames: usize) -> Arc<FrameSet> {
     }
     let clip =
         Clip::new("bench", Arc::clone(&skeleton), FPS, rotations, roots).expect("lengths fit");
-    let source = Arc::new(Source::new(Arc::new(clip), &Roles::detect(&skeleton)));
+    let source = Arc::new(Motion::with_roles(clip, &Roles::detect(&skeleton)));
     Arc::new(FrameSet::new(vec![source], 1.75).expect("one clip"))
 }
 

@@ -3,8 +3,7 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use glam::DVec2;
-use segue_motion::blend::Source;
-use segue_motion::clip::{ContactOptions, Contacts};
+use segue_motion::clip::{ContactOptions, Contacts, Motion};
 use segue_motion::path::{
     CarryOptions, FitOptions, FittedPath, MotionOptions, PathEdit, PathEditor, Pins, Road, Timing,
     carry,
@@ -25,7 +24,7 @@ fn dragging(c: &mut Criterion) {
     let roles = Roles::detect(clip.skeleton());
     let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
     let size = format!("{} frames, {} joints", clip.frames(), clip.skeleton().len());
-    let source = Arc::new(Source::new(clip, &roles));
+    let source = Arc::new(Motion::with_roles(clip, &roles));
     let fit = FitOptions { control_points: 24, ..FitOptions::default() };
     c.bench_function(&format!("fit, {size}"), |bench| {
         bench.iter(|| {

@@ -3,8 +3,7 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use glam::{Quat, Vec3};
-use segue_motion::blend::Source;
-use segue_motion::clip::Clip;
+use segue_motion::clip::{Clip, Motion};
 use segue_motion::math::Decay;
 use segue_motion::registration::{PoseSearch, PoseWeights, SearchOptions, limb_weights};
 use segue_motion::skeleton::{Joint, Roles, Skeleton};
@@ -18,7 +17,7 @@ const FRAMES: usize = 3_000;
 const FPS: f64 = 120.0;
 
 /// A chain of 31 joints, as many as the CMU skeleton has.
-fn source(cadence: f32, speed: f32) -> Source {
+fn source(cadence: f32, speed: f32) -> Motion {
     let joint = |index: usize| Joint {
         name: format!("Joint{index}"),
         parent: index.checked_sub(1),
@@ -38,7 +37,7 @@ fn source(cadence: f32, speed: f32) -> Source {
     }
     let clip =
         Clip::new("bench", Arc::clone(&skeleton), FPS, rotations, roots).expect("lengths fit");
-    Source::new(Arc::new(clip), &Roles::detect(&skeleton))
+    Motion::with_roles(clip, &Roles::detect(&skeleton))
 }
 
 fn joining(c: &mut Criterion) {
@@ -72,8 +71,13 @@ fn searching(c: &mut Criterion) {
     let (a, b) = (source(5.0, 1.2), source(6.5, 2.0));
     let weights = limb_weights(a.clip().skeleton());
     let prepared = || {
-        PoseSearch::new((a.clip(), a.frames()), (b.clip(), b.frames()), &weights, 1.75)
-            .expect("the clips fit")
+        PoseSearch::new(
+            (a.clip(), a.ground_frames()),
+            (b.clip(), b.ground_frames()),
+            &weights,
+            1.75,
+        )
+        .expect("the clips fit")
     };
     let mut slow = c.benchmark_group("pose search");
     slow.sample_size(10);

@@ -14,8 +14,8 @@
 //! file is needed.
 //!
 //! ```
-//! use segue_motion::blend::{Concatenation, DissolveOptions, Source, dissolve};
-//! use segue_motion::clip::{Clip, ContactOptions, Contacts};
+//! use segue_motion::blend::{Concatenation, DissolveOptions, dissolve};
+//! use segue_motion::clip::{Clip, ContactOptions, Contacts, Motion};
 //! use segue_motion::metrics::{Profile, Subject, TransitionMetrics};
 //! use segue_motion::registration::{SearchOptions, best_transition, limb_weights};
 //! use segue_motion::skeleton::Roles;
@@ -34,7 +34,7 @@
 //! // Blend, and for comparison cut.
 //! let profile = |clip: &Arc<Clip>| {
 //!     let contacts = Contacts::detect(clip, &roles, &ContactOptions::default());
-//!     Profile::new(Arc::new(Source::new(Arc::clone(clip), &roles)), &roles, contacts)
+//!     Profile::new(Arc::new(Motion::with_roles(Arc::clone(clip), &roles)), &roles, contacts)
 //! };
 //! let (a, b) = (profile(&walk), profile(&run));
 //! let blended = |window| {

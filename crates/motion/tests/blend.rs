@@ -1,7 +1,7 @@
 //! From two clips to a transition and its numbers, as a person would: all pairs of made motions.
 
-use segue_motion::blend::{DissolveOptions, RootBlend, Source, dissolve};
-use segue_motion::clip::{ContactOptions, Contacts};
+use segue_motion::blend::{DissolveOptions, RootBlend, dissolve};
+use segue_motion::clip::{ContactOptions, Contacts, Motion};
 use segue_motion::metrics::{Profile, Subject, TransitionMetrics};
 use segue_motion::registration::{SearchOptions, best_transition, limb_weights};
 use segue_motion::skeleton::Roles;
@@ -16,7 +16,7 @@ fn profiles() -> Vec<(&'static str, Profile)> {
             synthesize(&Params { fps: 60.0, ..preset.params }).expect("a preset can be made").clip;
         let roles = Roles::detect(clip.skeleton());
         let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
-        (preset.id, Profile::new(Arc::new(Source::new(Arc::new(clip), &roles)), &roles, contacts))
+        (preset.id, Profile::new(Arc::new(Motion::with_roles(clip, &roles)), &roles, contacts))
     });
     made.collect()
 }

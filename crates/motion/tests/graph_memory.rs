@@ -4,8 +4,7 @@
 
 use glam::{Quat, Vec3};
 use peak_alloc::PeakAlloc;
-use segue_motion::blend::Source;
-use segue_motion::clip::Clip;
+use segue_motion::clip::{Clip, Motion};
 use segue_motion::graph::{Candidate, CandidateStream, FrameSet, GraphOptions, Place};
 use segue_motion::skeleton::{Joint, Roles, Skeleton};
 use std::sync::Arc;
@@ -58,7 +57,7 @@ fn clips() -> Arc<FrameSet> {
         }
         let clip = Clip::new(format!("clip {clip}"), Arc::clone(&skeleton), 60.0, rotations, roots)
             .expect("lengths fit");
-        Arc::new(Source::new(Arc::new(clip), &roles))
+        Arc::new(Motion::with_roles(clip, &roles))
     });
     Arc::new(FrameSet::new(sources.collect(), 1.75).expect("clips of one skeleton"))
 }

@@ -1,7 +1,7 @@
 //! Every method on every pair of made motions, with its numbers: what a shoot-out shows.
 
-use segue_motion::blend::{Concatenation, RootBlend, Source, WeightLaw};
-use segue_motion::clip::{ContactOptions, Contacts};
+use segue_motion::blend::{Concatenation, RootBlend, WeightLaw};
+use segue_motion::clip::{ContactOptions, Contacts, Motion};
 use segue_motion::math::Decay;
 use segue_motion::metrics::{Profile, Subject, TransitionMetrics};
 use segue_motion::registration::{PoseSearch, PoseWeights, SearchOptions, limb_weights};
@@ -16,7 +16,7 @@ fn profiles() -> Vec<(&'static str, Profile, Roles)> {
             synthesize(&Params { fps: 60.0, ..preset.params }).expect("a preset can be made").clip;
         let roles = Roles::detect(clip.skeleton());
         let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
-        let source = Arc::new(Source::new(Arc::new(clip), &roles));
+        let source = Arc::new(Motion::with_roles(clip, &roles));
         (preset.id, Profile::new(source, &roles, contacts), roles)
     });
     made.collect()
@@ -70,8 +70,8 @@ fn every_method_joins_every_pair_and_its_numbers_can_be_compared() {
             let height = f64::from(roles.body_height(from.skeleton()));
             let weights = limb_weights(from.skeleton());
             let mut search = PoseSearch::new(
-                (from, a.source().frames()),
-                (to, b.source().frames()),
+                (from, a.source().ground_frames()),
+                (to, b.source().ground_frames()),
                 &weights,
                 height,
             )

@@ -2,10 +2,10 @@
 
 use super::assembly::{Assembly, moving_joints, translation_of};
 use super::{BlendError, Concatenation, WeightLaw, align_facing, align_onto};
-use crate::clip::{Clip, character_frames};
+use crate::clip::{Clip, Motion};
 use crate::math::{Planar, quat, unwrap_near, wrap_angle};
 use crate::registration::limb_weights;
-use crate::skeleton::{Roles, Skeleton};
+use crate::skeleton::Skeleton;
 use glam::{DVec2, Quat, Vec3};
 use std::sync::Arc;
 
@@ -65,68 +65,6 @@ impl Default for DissolveOptions {
     }
 }
 
-/// A clip with measurements that every blend needs, made once.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Source {
-    clip: Arc<Clip>,
-    frames: Vec<Planar>,
-    weights: Vec<f64>,
-}
-
-impl Source {
-    /// Measures the ground frames of a clip. O(frames × joints).
-    #[must_use]
-    pub fn new(clip: Arc<Clip>, roles: &Roles) -> Self {
-        let frames = character_frames(&clip, roles);
-        Self::with_frames(clip, frames)
-    }
-
-    /// Returns the source of a clip whose ground frames ([`character_frames`]) are known.
-    #[must_use]
-    pub fn with_frames(clip: Arc<Clip>, frames: Vec<Planar>) -> Self {
-        let weights = limb_weights(clip.skeleton());
-        Self { clip, frames, weights }
-    }
-
-    /// Returns the same motion elsewhere on the ground ([`Clip::transformed`]).
-    #[must_use]
-    pub fn moved(&self, world_from_clip: &Planar) -> Self {
-        Self {
-            clip: Arc::new(self.clip.transformed(world_from_clip)),
-            frames: self.frames.iter().map(|frame| world_from_clip.after(frame)).collect(),
-            weights: self.weights.clone(),
-        }
-    }
-
-    /// Returns the source of another motion of the same skeleton, whose ground frames are known.
-    #[must_use]
-    pub(crate) fn with_motion(&self, clip: Clip, frames: Vec<Planar>) -> Self {
-        Self { clip: Arc::new(clip), frames, weights: self.weights.clone() }
-    }
-
-    /// Returns the clip.
-    #[must_use]
-    pub fn clip(&self) -> &Arc<Clip> {
-        &self.clip
-    }
-
-    /// Returns the ground frames, `world_from_character`, one per frame.
-    #[must_use]
-    pub fn frames(&self) -> &[Planar] {
-        &self.frames
-    }
-
-    /// Returns the step of the character into `frame`, in its own frame at the frame before; for
-    /// frame 0 the step that follows it.
-    pub(crate) fn step_into(&self, frame: usize) -> Planar {
-        let frame = frame.max(1);
-        match (self.frames.get(frame - 1), self.frames.get(frame)) {
-            (Some(before), Some(here)) => before.inverse().after(here),
-            _ => Planar::IDENTITY,
-        }
-    }
-}
-
 /// Dissolves from clip A to clip B: frame `leave` of A and frame `enter` of B are the first of
 /// `options.window` overlapping frames.
 ///
@@ -142,16 +80,16 @@ impl Source {
 /// [`BlendError`] when the clips have different skeletons or frame rates (retarget or resample
 /// first), or a window crosses the end of its clip.
 pub fn dissolve(
-    a: &Source,
+    a: &Motion,
     leave: usize,
-    b: &Source,
+    b: &Motion,
     enter: usize,
     options: &DissolveOptions,
 ) -> Result<Concatenation, BlendError> {
     let window = if options.window < 2 { 0 } else { options.window };
     check(a, leave, b, enter, window)?;
     // A cut right after A's last frame is aligned by that frame.
-    let meets = leave.min(a.clip.frames().saturating_sub(1));
+    let meets = leave.min(a.clip().frames().saturating_sub(1));
     let aligned_b = if options.align {
         alignment_of(a, meets, b, enter, window, options.align_by)?
     } else {
@@ -165,13 +103,13 @@ pub fn dissolve(
     let (b_during, world_from_b) = if by_velocity {
         let during: Vec<Planar> = frames_during
             .iter()
-            .zip(&b.frames[enter..])
+            .zip(&b.ground_frames()[enter..])
             .map(|(here, in_b)| here.after(&in_b.inverse()))
             .collect();
         let end = during
             .last()
             .copied()
-            .unwrap_or_else(|| blend.start().after(&b.frames[enter].inverse()));
+            .unwrap_or_else(|| blend.start().after(&b.ground_frames()[enter].inverse()));
         (during, end)
     } else {
         (vec![aligned_b; window], aligned_b)
@@ -182,9 +120,10 @@ pub fn dissolve(
         Placing::World(aligned_b, &turns)
     };
     let clip = blend.clip(&placing, &world_from_b)?;
-    let mut frames = a.frames[..leave].to_vec();
+    let mut frames = a.ground_frames()[..leave].to_vec();
     frames.extend(frames_during);
-    frames.extend(b.frames[enter + window..].iter().map(|frame| world_from_b.after(frame)));
+    frames
+        .extend(b.ground_frames()[enter + window..].iter().map(|frame| world_from_b.after(frame)));
     Ok(Concatenation {
         clip,
         transition: leave..leave + window,
@@ -199,32 +138,34 @@ pub fn dissolve(
 /// Returns the transform that aligns B with A by the windows or by their first frames:
 /// `a_world_from_b_world`.
 pub(crate) fn alignment_of(
-    a: &Source,
+    a: &Motion,
     frame_a: usize,
-    b: &Source,
+    b: &Motion,
     frame_b: usize,
     window: usize,
     by: AlignBy,
 ) -> Result<Planar, BlendError> {
     if by == AlignBy::FirstPose {
-        return Ok(align_facing(&a.frames[frame_a], &b.frames[frame_b]));
+        return Ok(align_facing(&a.ground_frames()[frame_a], &b.ground_frames()[frame_b]));
     }
-    let facing = a.frames[frame_a].yaw - b.frames[frame_b].yaw;
-    Ok(align_onto(&a.clip, frame_a, &b.clip, frame_b, window.max(1), &a.weights, facing)?.transform)
+    let facing = a.ground_frames()[frame_a].yaw - b.ground_frames()[frame_b].yaw;
+    let weights = limb_weights(a.clip().skeleton());
+    let window = window.max(1);
+    Ok(align_onto(a.clip(), frame_a, b.clip(), frame_b, window, &weights, facing)?.transform)
 }
 
 /// Checks that B can follow A with this overlap.
 pub(crate) fn check(
-    a: &Source,
+    a: &Motion,
     leave: usize,
-    b: &Source,
+    b: &Motion,
     enter: usize,
     window: usize,
 ) -> Result<(), BlendError> {
     check_bodies(a, b)?;
     // B must have at least one frame; A may end right before a cut.
     for (which, clip, at, window) in
-        [("outgoing", &a.clip, leave, window), ("incoming", &b.clip, enter, window.max(1))]
+        [("outgoing", a.clip(), leave, window), ("incoming", b.clip(), enter, window.max(1))]
     {
         let frames = clip.frames();
         if frames == 0 || at > frames || frames - at < window {
@@ -235,10 +176,10 @@ pub(crate) fn check(
 }
 
 /// Checks that the clips have the same skeleton and frame rate.
-pub(super) fn check_bodies(a: &Source, b: &Source) -> Result<(), BlendError> {
-    let (a_fps, b_fps) = (a.clip.fps(), b.clip.fps());
-    if !same_body(a.clip.skeleton(), b.clip.skeleton()) {
-        return Err(BlendError::Skeletons { a: a.clip.name().into(), b: b.clip.name().into() });
+pub(super) fn check_bodies(a: &Motion, b: &Motion) -> Result<(), BlendError> {
+    let (a_fps, b_fps) = (a.clip().fps(), b.clip().fps());
+    if !same_body(a.clip().skeleton(), b.clip().skeleton()) {
+        return Err(BlendError::Skeletons { a: a.clip().name().into(), b: b.clip().name().into() });
     }
     if (a_fps - b_fps).abs() > 1e-4 * a_fps {
         return Err(BlendError::FrameRates { a_fps, b_fps });
@@ -260,9 +201,9 @@ fn same_body(a: &Arc<Skeleton>, b: &Arc<Skeleton>) -> bool {
 }
 
 struct Blend<'a> {
-    a: &'a Source,
+    a: &'a Motion,
     leave: usize,
-    b: &'a Source,
+    b: &'a Motion,
     enter: usize,
     window: usize,
     law: WeightLaw,
@@ -286,20 +227,20 @@ impl Blend<'_> {
     /// frame after a cut.
     fn start(&self) -> Planar {
         match self.leave.checked_sub(1) {
-            Some(last) => self.a.frames[last].after(&self.b.step_into(self.enter)),
-            None => self.a.frames[0],
+            Some(last) => self.a.ground_frames()[last].after(&self.b.step_into(self.enter)),
+            None => self.a.ground_frames()[0],
         }
     }
 
     /// Returns the ground frames in the window: steps blended in the character's frame, integrated
     /// from A's last frame before it.
     fn integrated(&self) -> Vec<Planar> {
-        let mut here = self.leave.checked_sub(1).map(|last| self.a.frames[last]);
+        let mut here = self.leave.checked_sub(1).map(|last| self.a.ground_frames()[last]);
         (0..self.window)
             .map(|p| {
                 let next = match here {
                     // The window starts with A's first frame.
-                    None => self.a.frames[0],
+                    None => self.a.ground_frames()[0],
                     Some(here) => {
                         let (a, b) =
                             (self.a.step_into(self.leave + p), self.b.step_into(self.enter + p));
@@ -323,8 +264,8 @@ impl Blend<'_> {
     /// the first frame, B could be turned the long way round where its weight is greatest.
     fn turns(&self, world_from_b: &Planar) -> Vec<f64> {
         let turn = |p: usize, near: f64| {
-            let yaw = world_from_b.yaw + self.b.frames[self.enter + p].yaw
-                - self.a.frames[self.leave + p].yaw;
+            let yaw = world_from_b.yaw + self.b.ground_frames()[self.enter + p].yaw
+                - self.a.ground_frames()[self.leave + p].yaw;
             unwrap_near(yaw, near)
         };
         let mut turns = vec![0.0; self.window];
@@ -338,7 +279,7 @@ impl Blend<'_> {
     /// changes, so that each joint turns by the shorter way in the middle of the window and the
     /// same way round in all other frames.
     fn sides(&self, placing: &Placing<'_>) -> Vec<bool> {
-        let joints = self.a.clip.skeleton().len();
+        let joints = self.a.clip().skeleton().len();
         let mut flips = vec![false; self.window * joints];
         let mut known: Vec<Quat> = vec![Quat::IDENTITY; self.window * joints];
         for (p, before) in from_the_middle(self.window) {
@@ -346,8 +287,8 @@ impl Blend<'_> {
                 let (b, a) = match joint {
                     0 => self.root_rotations(p, placing),
                     _ => (
-                        self.b.clip.rotations(self.enter + p)[joint],
-                        self.a.clip.rotations(self.leave + p)[joint],
+                        self.b.clip().rotations(self.enter + p)[joint],
+                        self.a.clip().rotations(self.leave + p)[joint],
                     ),
                 };
                 let between = b.conjugate() * a;
@@ -365,17 +306,18 @@ impl Blend<'_> {
         let (fa, fb) = (self.leave + p, self.enter + p);
         let (a_from, b_from) = self.blend_frames(p, placing);
         (
-            b_from.rotation() * self.b.clip.rotations(fb)[0],
-            a_from.rotation() * self.a.clip.rotations(fa)[0],
+            b_from.rotation() * self.b.clip().rotations(fb)[0],
+            a_from.rotation() * self.a.clip().rotations(fa)[0],
         )
     }
 
     /// Returns the transforms of A and B to the frame in which they are blended in frame `p`.
     fn blend_frames(&self, p: usize, placing: &Placing<'_>) -> (Planar, Planar) {
         match placing {
-            Placing::Character(_) => {
-                (self.a.frames[self.leave + p].inverse(), self.b.frames[self.enter + p].inverse())
-            }
+            Placing::Character(_) => (
+                self.a.ground_frames()[self.leave + p].inverse(),
+                self.b.ground_frames()[self.enter + p].inverse(),
+            ),
             Placing::World(world_from_b, _) => (Planar::IDENTITY, *world_from_b),
         }
     }
@@ -385,8 +327,8 @@ impl Blend<'_> {
         let in_window = turns.iter().enumerate();
         in_window
             .map(|(p, turn)| {
-                let a = &self.a.frames[self.leave + p];
-                let b = world_from_b.after(&self.b.frames[self.enter + p]);
+                let a = &self.a.ground_frames()[self.leave + p];
+                let b = world_from_b.after(&self.b.ground_frames()[self.enter + p]);
                 mixed(a, &b, *turn, self.weight(p as f64))
             })
             .collect()
@@ -397,8 +339,8 @@ impl Blend<'_> {
     fn root(&self, p: usize, placing: &Placing<'_>, flip: bool) -> (f32, Vec3, Quat) {
         let weight = self.weight(p as f64) as f32;
         let (a_from, b_from) = self.blend_frames(p, placing);
-        let a = a_from.apply(self.a.clip.root_translations()[self.leave + p]);
-        let b = b_from.apply(self.b.clip.root_translations()[self.enter + p]);
+        let a = a_from.apply(self.a.clip().root_translations()[self.leave + p]);
+        let b = b_from.apply(self.b.clip().root_translations()[self.enter + p]);
         let translation = b.lerp(a, weight);
         let (b_rotation, a_rotation) = self.root_rotations(p, placing);
         let a_rotation = match placing {
@@ -421,7 +363,7 @@ impl Blend<'_> {
     }
 
     fn clip(&self, placing: &Placing<'_>, world_from_b: &Planar) -> Result<Clip, BlendError> {
-        let (a, b) = (&self.a.clip, &self.b.clip);
+        let (a, b) = (self.a.clip(), self.b.clip());
         let after = self.enter + self.window;
         let mut made = Assembly::new(a, b, self.leave + self.window + (b.frames() - after));
         made.play(a, 0..self.leave);

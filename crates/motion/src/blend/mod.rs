@@ -31,7 +31,8 @@
 //! # Example
 //!
 //! ```
-//! use segue_motion::blend::{BodyPart, DissolveOptions, LayerOptions, Source, dissolve, layer};
+//! use segue_motion::clip::Motion;
+//! use segue_motion::blend::{BodyPart, DissolveOptions, LayerOptions, dissolve, layer};
 //! use segue_motion::registration::{SearchOptions, best_transition, limb_weights};
 //! use segue_motion::skeleton::{Role, Roles};
 //! use segue_motion::synth::{Action, Params, synthesize};
@@ -46,7 +47,7 @@
 //! let height = f64::from(roles.body_height(walk.skeleton()));
 //! let found = best_transition(&walk, &run, &weights, height, &SearchOptions::new(30))?;
 //!
-//! let (a, b) = (Source::new(Arc::clone(&walk), &roles), Source::new(Arc::clone(&run), &roles));
+//! let (a, b) = (Motion::with_roles(Arc::clone(&walk), &roles), Motion::with_roles(Arc::clone(&run), &roles));
 //! let options = DissolveOptions { window: 30, ..DissolveOptions::default() };
 //! let out = dissolve(&a, found.leave, &b, found.enter, &options)?;
 //! assert_eq!(out.clip.pose(found.leave - 1), walk.pose(found.leave - 1));
@@ -97,7 +98,7 @@ mod weight_curve;
 
 pub(crate) use assembly::{Assembly, moving_joints, moving_joints_of, translation_of};
 pub use concatenation::Concatenation;
-pub use dissolve::{AlignBy, DissolveOptions, RootBlend, Source, dissolve};
+pub use dissolve::{AlignBy, DissolveOptions, RootBlend, dissolve};
 pub(crate) use dissolve::{alignment_of, check};
 pub use layers::{LayerError, LayerMode, LayerOptions, LayerTime, Reference, layer, layer_timed};
 pub use mask::{BodyPart, mask};

@@ -2,8 +2,8 @@
 
 use super::assembly::{Assembly, moving_joints_of, translation_of};
 use super::dissolve::check_bodies;
-use super::{BlendError, Concatenation, Source, WeightCurve, WeightLaw};
-use crate::clip::{Clip, Contacts, Interpolation};
+use super::{BlendError, Concatenation, WeightCurve, WeightLaw};
+use crate::clip::{Clip, Contacts, Interpolation, Motion};
 use crate::math::{Planar, quat, wrap_angle};
 use crate::registration::Registration;
 use crate::skeleton::{Pose, Side};
@@ -13,7 +13,7 @@ use glam::{DVec2, Quat, Vec3};
 #[derive(Clone, Copy, Debug)]
 pub struct Partner<'a> {
     /// The clip.
-    pub source: &'a Source,
+    pub source: &'a Motion,
     /// Its registration to the reference.
     pub registration: &'a Registration,
     /// Its weight over the course of the blend. The reference has the rest up to 1; partners whose
@@ -63,7 +63,7 @@ pub struct RegisteredJoin {
 /// [`BlendError`] when clips have different skeletons or frame rates, or the registered parts have
 /// less than two frames in common.
 pub fn registered_blend(
-    reference: &Source,
+    reference: &Motion,
     partners: &[Partner<'_>],
 ) -> Result<RegisteredBlend, BlendError> {
     let blend = Blend::new(reference, partners)?;
@@ -85,8 +85,8 @@ pub fn registered_blend(
 /// [`BlendError`] as for [`registered_blend`]; also [`BlendError::Apart`] when fewer than two
 /// frames of either clip lie between `leave` and `arrive`.
 pub fn registered_join(
-    a: &Source,
-    b: &Source,
+    a: &Motion,
+    b: &Motion,
     registration: &Registration,
     leave: usize,
     arrive: usize,
@@ -122,13 +122,15 @@ pub fn registered_join(
     let b_during: Vec<Planar> = (during.iter().zip(&frames))
         .map(|(mix, frame)| frame.after(&character_at(b, mix.frames[1]).inverse()))
         .collect();
-    let world_from_b = frames.last().ok_or_else(apart)?.after(&b.frames()[enter_end].inverse());
+    let world_from_b =
+        frames.last().ok_or_else(apart)?.after(&b.ground_frames()[enter_end].inverse());
     made.play_moved(b.clip(), enter_end + 1..b.clip().frames(), &world_from_b);
     let clip = made.finish(format!("{} → {}", a.clip().name(), b.clip().name()))?;
     let half = during.iter().position(|mix| mix.weights[1] >= 0.5).unwrap_or(during.len());
-    let mut all_frames = a.frames()[..leave].to_vec();
+    let mut all_frames = a.ground_frames()[..leave].to_vec();
     all_frames.extend(frames);
-    all_frames.extend(b.frames()[enter_end + 1..].iter().map(|frame| world_from_b.after(frame)));
+    all_frames
+        .extend(b.ground_frames()[enter_end + 1..].iter().map(|frame| world_from_b.after(frame)));
     Ok(RegisteredJoin {
         joined: Concatenation {
             clip,
@@ -181,27 +183,27 @@ fn contacts_of(mixes: &[FrameMix], of: &[&Contacts]) -> Contacts {
 }
 
 struct Blend<'a> {
-    reference: &'a Source,
+    reference: &'a Motion,
     partners: &'a [Partner<'a>],
     /// The law of the reference's weight, in place of the first partner's curve.
     law: Option<WeightLaw>,
 }
 
 impl<'a> Blend<'a> {
-    fn new(reference: &'a Source, partners: &'a [Partner<'a>]) -> Result<Self, BlendError> {
+    fn new(reference: &'a Motion, partners: &'a [Partner<'a>]) -> Result<Self, BlendError> {
         for partner in partners {
             check_bodies(reference, partner.source)?;
         }
         Ok(Self { reference, partners, law: None })
     }
 
-    fn sources(&self) -> impl Iterator<Item = &'a Source> + '_ {
+    fn sources(&self) -> impl Iterator<Item = &'a Motion> + '_ {
         std::iter::once(self.reference).chain(self.partners.iter().map(|partner| partner.source))
     }
 
     /// Returns the frames of the reference at which all clips are registered.
     fn span(&self) -> Result<(f64, f64), BlendError> {
-        let last = |source: &Source| source.clip().frames() as f64 - 1.0;
+        let last = |source: &Motion| source.clip().frames() as f64 - 1.0;
         let mut span = (0.0_f64, last(self.reference));
         for partner in self.partners {
             let warp = partner.registration.warp();
@@ -435,8 +437,8 @@ impl Mean {
 }
 
 /// Returns the ground frame at a time that may lie between two frames.
-fn character_at(source: &Source, frame: f64) -> Planar {
-    let frames = source.frames();
+fn character_at(source: &Motion, frame: f64) -> Planar {
+    let frames = source.ground_frames();
     let last = frames.len().saturating_sub(1);
     let at = frame.max(0.0).min(last as f64);
     let (before, next) = (at.floor() as usize, (at.floor() as usize + 1).min(last));

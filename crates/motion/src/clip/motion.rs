@@ -121,6 +121,24 @@ impl Motion {
             .with_seams(self.seams.clone())
     }
 
+    /// Returns the motion of another clip of the same skeleton, whose ground frames are known.
+    #[must_use]
+    pub(crate) fn same_body(&self, clip: Clip, ground_frames: Vec<Planar>) -> Self {
+        Self::with_ground_frames(clip, &self.roles, ground_frames).with_feet(self.feet)
+    }
+
+    /// Returns the same motion elsewhere on the ground ([`Clip::transformed`]).
+    #[must_use]
+    pub fn moved(&self, world_from_clip: &Planar) -> Self {
+        let frames = self.ground_frames.iter().map(|frame| world_from_clip.after(frame)).collect();
+        Self {
+            contacts: self.contacts.clone(),
+            ground_m: self.ground_m.clone(),
+            seams: self.seams.clone(),
+            ..self.same_body(self.clip.transformed(world_from_clip), frames)
+        }
+    }
+
     /// Returns the same motion with corrected roles. Roles that name joints that the skeleton does
     /// not have, as those of another version of the clip may, are ignored.
     #[must_use]
@@ -228,6 +246,16 @@ impl Motion {
         Planar {
             yaw: wrap_angle(here.yaw + wrap_angle(next.yaw - here.yaw) * at.fract()),
             shift: here.shift.lerp(next.shift, at.fract()),
+        }
+    }
+
+    /// Returns the step of the character into `frame`, in its own frame at the frame before; for
+    /// frame 0 the step that follows it.
+    pub(crate) fn step_into(&self, frame: usize) -> Planar {
+        let frame = frame.max(1);
+        match (self.ground_frames.get(frame - 1), self.ground_frames.get(frame)) {
+            (Some(before), Some(here)) => before.inverse().after(here),
+            _ => Planar::IDENTITY,
         }
     }
 }

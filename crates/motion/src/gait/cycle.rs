@@ -2,8 +2,7 @@
 
 use super::GaitError;
 use super::phase::Events;
-use crate::blend::Source;
-use crate::clip::{ContactOptions, Contacts, ground_speed};
+use crate::clip::{ContactOptions, Contacts, Motion, ground_speed};
 use crate::math::{quat, stats};
 use crate::skeleton::{Roles, Side};
 use crate::transition::{CycleSearch, Loop, LoopOptions, WholeCycle, close_loop, find_cycle};
@@ -42,7 +41,7 @@ impl GaitCycle {
     /// # Errors
     /// [`GaitError::NoFeet`] and [`GaitError::NoCycle`] when no cycle is found, [`GaitError::Loop`]
     /// when it cannot be closed.
-    pub fn find(source: &Source, roles: &Roles, contacts: &Contacts) -> Result<Self, GaitError> {
+    pub fn find(source: &Motion, roles: &Roles, contacts: &Contacts) -> Result<Self, GaitError> {
         let mut candidates = candidates(source, contacts);
         if candidates.iter().any(|candidate| candidate.range.start > 0) {
             candidates.retain(|candidate| candidate.range.start > 0);
@@ -87,7 +86,7 @@ impl GaitCycle {
 
     /// Returns the cycle of a clip that does not contain one from strike to strike.
     fn closed_by_its_ends(
-        source: &Source,
+        source: &Motion,
         roles: &Roles,
         contacts: &Contacts,
     ) -> Result<Self, GaitError> {
@@ -193,7 +192,7 @@ struct Candidate {
     events: Events,
 }
 
-fn candidates(source: &Source, contacts: &Contacts) -> Vec<Candidate> {
+fn candidates(source: &Motion, contacts: &Contacts) -> Vec<Candidate> {
     let fps = source.clip().fps();
     let last = source.clip().frames().min(contacts.frames());
     let (left, right) = (contacts.intervals(Side::Left), contacts.intervals(Side::Right));
@@ -222,9 +221,11 @@ fn candidates(source: &Source, contacts: &Contacts) -> Vec<Candidate> {
 impl Candidate {
     /// Returns duration and speed (logarithms), and the phases of the events: the measures of
     /// regularity.
-    fn measures(&self, source: &Source) -> [f32; 5] {
-        let speed =
-            ground_speed(&source.frames()[self.range.start..=self.range.end], source.clip().fps());
+    fn measures(&self, source: &Motion) -> [f32; 5] {
+        let speed = ground_speed(
+            &source.ground_frames()[self.range.start..=self.range.end],
+            source.clip().fps(),
+        );
         [
             (self.range.len() as f32).ln(),
             speed.max(1e-3).ln(),
@@ -235,8 +236,8 @@ impl Candidate {
     }
 
     /// Returns the root mean square of the angles between the poses at both ends, radians.
-    fn gap(&self, source: &Source) -> f32 {
-        let (clip, frames) = (source.clip(), source.frames());
+    fn gap(&self, source: &Motion) -> f32 {
+        let (clip, frames) = (source.clip(), source.ground_frames());
         let ends = [self.range.start, self.range.end].map(|frame| {
             let mut rotations = clip.rotations(frame).to_vec();
             if let Some(root) = rotations.first_mut() {

@@ -23,8 +23,7 @@
 //! # Example
 //!
 //! ```
-//! use segue_motion::blend::Source;
-//! use segue_motion::clip::{ContactOptions, Contacts, character_frames, ground_speed};
+//! use segue_motion::clip::{ContactOptions, Contacts, Motion, character_frames, ground_speed};
 //! use segue_motion::gait::{GaitCycle, SpeedBlend, SpeedOptions};
 //! use segue_motion::skeleton::Roles;
 //! use segue_motion::synth::{Action, Params, synthesize};
@@ -36,7 +35,7 @@
 //!     let clip = Arc::new(synthesize(&Params::new(action))?.clip);
 //!     roles = Roles::detect(clip.skeleton());
 //!     let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
-//!     cycles.push(GaitCycle::find(&Source::new(clip, &roles), &roles, &contacts)?);
+//!     cycles.push(GaitCycle::find(&Motion::with_roles(clip, &roles), &roles, &contacts)?);
 //! }
 //! let blend = SpeedBlend::new(&cycles[0], &cycles[1], &roles, &SpeedOptions::default())?;
 //! let jog = blend.cycle_at(2.5)?;

@@ -209,7 +209,7 @@ impl AllPairs {
         let facing = |place: Place| {
             let source = self.set.clip(place.clip);
             source
-                .and_then(|source| source.frames().get(place.frame))
+                .and_then(|source| source.ground_frames().get(place.frame))
                 .map_or(0.0, |frame| frame.yaw)
         };
         let fallback = facing(first) - facing(second);

@@ -243,8 +243,8 @@ fn first_place(graph: &MotionGraph, start: NodeIndex, path: &GroundPath) -> Plan
     let ahead = path.at(0.5_f64.min(path.length())) - path.at(0.0);
     let world = Planar::new(ahead.x.atan2(ahead.y), path.at(0.0).x, path.at(0.0).y);
     let stretch = graph.graph().node_weight(start);
-    let frame =
-        stretch.and_then(|stretch| graph.set().clip(stretch.clip)?.frames().get(stretch.start));
+    let frame = stretch
+        .and_then(|stretch| graph.set().clip(stretch.clip)?.ground_frames().get(stretch.start));
     frame.map_or(world, |frame| world.after(&frame.inverse()))
 }
 
@@ -404,7 +404,7 @@ impl Ground<'_> {
         let mut frame = frames.start;
         while frame < frames.end {
             let count = FRAMES_PER_SAMPLE.min(frames.end - frame);
-            if let Some(at) = source.frames().get(frame) {
+            if let Some(at) = source.ground_frames().get(frame) {
                 let at = state.world.apply_ground(at.shift);
                 state.along += state.last.map_or(0.0, |last| last.distance(at));
                 let square = at.distance_squared(self.path.at(state.along));

@@ -1,8 +1,8 @@
 //! The frames of several clips.
 
 use super::GraphError;
-use crate::blend::{Source, check};
-use crate::clip::{JoltScan, jolts};
+use crate::blend::check;
+use crate::clip::{JoltScan, Motion, jolts};
 use crate::registration::{DistanceMatrix, limb_weights};
 use std::sync::{Arc, OnceLock};
 
@@ -19,7 +19,7 @@ pub struct Place {
 /// one clip into the next.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrameSet {
-    clips: Vec<Arc<Source>>,
+    clips: Vec<Arc<Motion>>,
     /// The number of each clip's first frame; then the number of all frames.
     starts: Vec<usize>,
     weights: Vec<f64>,
@@ -36,7 +36,7 @@ impl FrameSet {
     /// # Errors
     /// [`GraphError::NoClips`], or [`GraphError::Blend`] when a clip has another skeleton or frame
     /// rate, or no frames; [`GraphError::Setting`] for a height out of range.
-    pub fn new(clips: Vec<Arc<Source>>, body_height: f64) -> Result<Self, GraphError> {
+    pub fn new(clips: Vec<Arc<Motion>>, body_height: f64) -> Result<Self, GraphError> {
         let first = clips.first().ok_or(GraphError::NoClips)?;
         for clip in &clips {
             check(first, 0, clip, 0, 0)?;
@@ -67,13 +67,13 @@ impl FrameSet {
 
     /// Returns the clips.
     #[must_use]
-    pub fn clips(&self) -> &[Arc<Source>] {
+    pub fn clips(&self) -> &[Arc<Motion>] {
         &self.clips
     }
 
     /// Returns one clip.
     #[must_use]
-    pub fn clip(&self, clip: usize) -> Option<&Arc<Source>> {
+    pub fn clip(&self, clip: usize) -> Option<&Arc<Motion>> {
         self.clips.get(clip)
     }
 

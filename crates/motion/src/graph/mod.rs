@@ -32,7 +32,7 @@
 //! # Example
 //!
 //! ```
-//! use segue_motion::blend::Source;
+//! use segue_motion::clip::Motion;
 //! use segue_motion::graph::{AllPairs, Candidates, Choices, FrameSet, GraphOptions, MotionGraph};
 //! use segue_motion::graph::{StitchOptions, Stitcher, Walker, WeightOptions};
 //! use segue_motion::skeleton::Roles;
@@ -43,7 +43,7 @@
 //! let (walk, run) = (Arc::new(walk?.clip), Arc::new(run?.clip));
 //! let roles = Roles::detect(walk.skeleton());
 //! let height = f64::from(roles.body_height(walk.skeleton()));
-//! let sources = [walk, run].map(|clip| Arc::new(Source::new(clip, &roles)));
+//! let sources = [walk, run].map(|clip| Arc::new(Motion::with_roles(clip, &roles)));
 //! let set = Arc::new(FrameSet::new(sources.to_vec(), height)?);
 //!
 //! let mut all = AllPairs::new(Arc::clone(&set))?;

@@ -1,8 +1,8 @@
 //! The motion of walks, stitched from clips.
 
 use super::{FrameSet, GraphError, Jump, MotionGraph, Place, Stay};
-use crate::blend::{AlignBy, Assembly, RootBlend, Source, WeightLaw, alignment_of};
-use crate::clip::Clip;
+use crate::blend::{AlignBy, Assembly, RootBlend, WeightLaw, alignment_of};
+use crate::clip::{Clip, Motion};
 use crate::math::{Decay, Planar, wrap_angle};
 use crate::transition::{
     Inertialization, Method, Mistake, TransitionOptions, concatenate, concatenate_mistaken,
@@ -121,7 +121,7 @@ pub struct Stitcher {
 /// What has played of the last piece, and what would have played on.
 #[derive(Clone, Debug)]
 struct Tail {
-    source: Source,
+    source: Motion,
     /// The first of its frames that has not been given out.
     leave: usize,
     world_from_here: Planar,
@@ -182,7 +182,7 @@ impl Stitcher {
         let piece = WalkPiece {
             clip: made.clip().crop(entered..leave)?.with_name(name),
             world_from_piece,
-            frames: made.frames().get(entered..leave).unwrap_or_default().to_vec(),
+            frames: made.ground_frames().get(entered..leave).unwrap_or_default().to_vec(),
             start: self.made,
             stay: *stay,
             seam,
@@ -190,7 +190,7 @@ impl Stitcher {
         let tail = part(&made, kept..made.clip().frames())?;
         let renamed = tail.clip().as_ref().clone().with_name(name);
         self.playing = Some(Tail {
-            source: tail.with_motion(renamed, tail.frames().to_vec()),
+            source: tail.same_body(renamed, tail.ground_frames().to_vec()),
             leave: leave - kept,
             world_from_here: world_from_piece,
             place: Place { clip: stay.clip, frame: stay.to },
@@ -208,7 +208,7 @@ impl Stitcher {
     pub(super) fn placing(&self, jump: &Jump) -> Result<Planar, GraphError> {
         let secs = |secs: f64| (secs * self.set.fps()).round() as usize;
         let source = |place: Place| self.set.clip(place.clip).ok_or(GraphError::NoClips);
-        let around = |place: Place, past: usize| -> Result<(Source, usize), GraphError> {
+        let around = |place: Place, past: usize| -> Result<(Motion, usize), GraphError> {
             let source = source(place)?;
             let from = place.frame.saturating_sub(past);
             let until = (place.frame + secs(AHEAD_SECS)).min(source.clip().frames());
@@ -227,7 +227,7 @@ impl Stitcher {
         self.playing.as_ref().map(|tail| tail.place)
     }
 
-    fn joined(&self, tail: &Tail, incoming: &Source, enter: usize) -> Result<Joined, GraphError> {
+    fn joined(&self, tail: &Tail, incoming: &Motion, enter: usize) -> Result<Joined, GraphError> {
         let (a, leave) = (&tail.source, tail.leave);
         let options = TransitionOptions {
             align_by: self.options.align_by,
@@ -268,7 +268,7 @@ impl Stitcher {
         let back = tail_from_piece.inverse();
         let frames = made.frames.iter().map(|frame| back.after(frame)).collect();
         Ok(Joined {
-            source: incoming.with_motion(made.clip.transformed(&back), frames),
+            source: incoming.same_body(made.clip.transformed(&back), frames),
             tail_from_piece,
             frames: made.transition.len(),
             handover: made.handover.saturating_sub(leave),
@@ -278,7 +278,7 @@ impl Stitcher {
 
 struct Joined {
     /// The tail and the incoming clip, where the latter was recorded.
-    source: Source,
+    source: Motion,
     tail_from_piece: Planar,
     frames: usize,
     handover: usize,
@@ -286,9 +286,9 @@ struct Joined {
 
 /// Where the incoming clip comes to lie if only its first frame is turned: in the right place, and
 /// in the direction in which it was recorded.
-fn first_frame_only(tail: &Tail, incoming: &Source, enter: usize) -> Planar {
+fn first_frame_only(tail: &Tail, incoming: &Motion, enter: usize) -> Planar {
     let (Some(here), Some(there)) =
-        (tail.source.frames().get(tail.leave), incoming.frames().get(enter))
+        (tail.source.ground_frames().get(tail.leave), incoming.ground_frames().get(enter))
     else {
         return Planar::IDENTITY;
     };
@@ -300,23 +300,26 @@ fn first_frame_only(tail: &Tail, incoming: &Source, enter: usize) -> Planar {
 /// The incoming clip with the transform on its frames up to the one where it is entered, and where
 /// it was recorded from the next one on.
 fn first_frame_then_recorded(
-    incoming: &Source,
+    incoming: &Motion,
     enter: usize,
     transform: &Planar,
     recorded: &Planar,
-) -> Source {
+) -> Motion {
     let place = |frame: usize| if frame <= enter { transform } else { recorded };
     let clip = incoming.clip();
-    let frames =
-        incoming.frames().iter().enumerate().map(|(frame, stands)| place(frame).after(stands));
+    let frames = incoming
+        .ground_frames()
+        .iter()
+        .enumerate()
+        .map(|(frame, stands)| place(frame).after(stands));
     let moves: Vec<Planar> = (0..clip.frames()).map(|frame| *place(frame)).collect();
-    incoming.with_motion(clip.transformed_by_frame(&moves), frames.collect())
+    incoming.same_body(clip.transformed_by_frame(&moves), frames.collect())
 }
 
 /// Some frames of a clip, with what is known of it.
-fn part(source: &Source, frames: Range<usize>) -> Result<Source, GraphError> {
+fn part(source: &Motion, frames: Range<usize>) -> Result<Motion, GraphError> {
     let clip = source.clip().crop(frames.clone())?;
-    Ok(source.with_motion(clip, source.frames().get(frames).unwrap_or_default().to_vec()))
+    Ok(source.same_body(clip, source.ground_frames().get(frames).unwrap_or_default().to_vec()))
 }
 
 /// The pieces as one clip in the walk's world, and where the character stands in each frame. `None`

@@ -128,7 +128,7 @@ impl CandidateStream {
         overview.take(a, b, &distances);
         let align = |leave: Place, enter: Place| {
             let [p, q] = [leave, enter].map(|place| {
-                set.clip(place.clip).and_then(|source| source.frames().get(place.frame))
+                set.clip(place.clip).and_then(|source| source.ground_frames().get(place.frame))
             });
             let fallback = p.zip(q).map_or(0.0, |(p, q)| p.yaw - q.yaw);
             Ok(terms.alignment(leave.frame, enter.frame, window, fallback)?.transform)

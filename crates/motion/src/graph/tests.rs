@@ -1,9 +1,9 @@
 //! Tests of motion graphs.
 
 use super::*;
-use crate::blend::{Source, align_onto};
+use crate::blend::align_onto;
 use crate::clip::fixtures::{points_clip, points_skeleton};
-use crate::clip::{ContactOptions, Contacts};
+use crate::clip::{ContactOptions, Contacts, Motion};
 use crate::math::Planar;
 use crate::registration::fixtures::Walk;
 use crate::registration::rms_cm;
@@ -21,7 +21,7 @@ fn set_of(walks: &[Walk]) -> Arc<FrameSet> {
     let sources = walks.iter().map(|walk| {
         let clip = Arc::new(walk.clip());
         let roles = Roles::detect(clip.skeleton());
-        Arc::new(Source::new(clip, &roles))
+        Arc::new(Motion::with_roles(clip, &roles))
     });
     Arc::new(FrameSet::new(sources.collect(), HEIGHT).unwrap())
 }
@@ -105,7 +105,7 @@ fn frames_are_numbered_through() {
     let sources = [Walk::default(), faster].map(|walk| {
         let clip = Arc::new(walk.clip());
         let roles = Roles::detect(clip.skeleton());
-        Arc::new(Source::new(clip, &roles))
+        Arc::new(Motion::with_roles(clip, &roles))
     });
     assert!(matches!(FrameSet::new(sources.to_vec(), HEIGHT), Err(GraphError::Blend(_))));
     assert!(matches!(
@@ -926,7 +926,7 @@ fn a_clip_whose_first_frame_alone_is_moved_goes_back_to_where_it_was_recorded() 
         let recorded = graph.set().clip(piece.stay.clip).unwrap();
         for frame in (piece.seam.map_or(0, |seam| seam.frames)..piece.clip.frames()).step_by(7) {
             let stands = piece.world_from_piece.after(&piece.frames[frame]);
-            let stood = recorded.frames()[piece.stay.from + frame];
+            let stood = recorded.ground_frames()[piece.stay.from + frame];
             assert!(
                 stands.shift.distance(stood.shift) < 1e-4 && (stands.yaw - stood.yaw).abs() < 1e-4
             );
@@ -1004,7 +1004,7 @@ fn graph_and_walk_are_those_of_numpy() {
     let skeleton = points_skeleton(4);
     let sources = golden.clips.iter().map(|frames| {
         let clip = points_clip(&skeleton, 60.0, frames);
-        Arc::new(Source::new(Arc::new(clip), &Roles::detect(&skeleton)))
+        Arc::new(Motion::with_roles(clip, &Roles::detect(&skeleton)))
     });
     let set = Arc::new(FrameSet::new(sources.collect(), golden.height).unwrap());
     let options = GraphOptions {

@@ -1,8 +1,7 @@
 //! Clips that are cycles, and their repetition.
 
 use super::features::RATE;
-use crate::blend::Source;
-use crate::clip::{Clip, Interpolation};
+use crate::clip::{Clip, Interpolation, Motion};
 use crate::gait::events_of;
 use crate::math::Planar;
 use crate::skeleton::Roles;
@@ -21,7 +20,7 @@ const MAX_STRIDE_GAP_SHARE: f64 = 0.35;
 /// A cycle is a clip whose end leads into its beginning ([`WholeCycle`]): any clip whose ends
 /// nearly meet, and a single stride, with one stance of each foot, whose ends are near each other.
 pub(super) fn closed(clip: &Arc<Clip>, roles: &Roles) -> Option<Loop> {
-    let source = Source::new(Arc::clone(clip), roles);
+    let source = Motion::with_roles(Arc::clone(clip), roles);
     let whole = WholeCycle::of(&source).filter(|whole| whole.gap_share <= MAX_STRIDE_GAP_SHARE)?;
     let looped = whole.close(&LoopOptions::default()).ok()?;
     let meets = whole.added_frames <= 1 && whole.gap_share <= MAX_GAP_SHARE;

@@ -2,8 +2,7 @@
 
 use super::search::{Question, scan};
 use super::*;
-use crate::blend::Source;
-use crate::clip::{Clip, ContactOptions, Contacts, Interpolation, resample};
+use crate::clip::{Clip, ContactOptions, Contacts, Interpolation, Motion, resample};
 use crate::gait::GaitCycle;
 use crate::math::{Decay, Planar, wrap_angle};
 use crate::skeleton::{Joint, Roles, Skeleton};
@@ -388,7 +387,7 @@ fn one_stride(action: Action, fps: f32, turn_rate_dps: f32) -> MatchClip {
     let roles = Roles::detect(clip.skeleton());
     let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
     let cycle =
-        GaitCycle::find(&Source::new(Arc::clone(&clip), &roles), &roles, &contacts).unwrap();
+        GaitCycle::find(&Motion::with_roles(Arc::clone(&clip), &roles), &roles, &contacts).unwrap();
     MatchClip::new(Arc::new(clip.crop(cycle.range()).unwrap()), roles)
 }
 

@@ -53,8 +53,8 @@
 //! The same transition, correct and with a well-known mistake: `atan` in place of `atan2`.
 //!
 //! ```
-//! use segue_motion::blend::{Concatenation, Source};
-//! use segue_motion::clip::{Clip, ContactOptions, Contacts};
+//! use segue_motion::blend::Concatenation;
+//! use segue_motion::clip::{Clip, ContactOptions, Contacts, Motion};
 //! use segue_motion::metrics::{Profile, Subject, TransitionMetrics};
 //! use segue_motion::skeleton::Roles;
 //! use segue_motion::synth::{Action, Params, synthesize};
@@ -66,7 +66,7 @@
 //! let roles = Roles::detect(walk.skeleton());
 //! let profile = |clip: &Arc<Clip>| {
 //!     let contacts = Contacts::detect(clip, &roles, &ContactOptions::default());
-//!     Profile::new(Arc::new(Source::new(Arc::clone(clip), &roles)), &roles, contacts)
+//!     Profile::new(Arc::new(Motion::with_roles(Arc::clone(clip), &roles)), &roles, contacts)
 //! };
 //! let (a, b) = (profile(&walk), profile(&run));
 //! let spin_deg = |out: &Concatenation| {

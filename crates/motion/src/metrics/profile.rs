@@ -1,7 +1,6 @@
 //! Profiles of source clips, against which transitions are measured.
 
-use crate::blend::Source;
-use crate::clip::{Clip, Contacts, stillest_step, turn_change};
+use crate::clip::{Clip, Contacts, Motion, stillest_step, turn_change};
 use crate::math::{quat, stats};
 use crate::skeleton::{Roles, Side, WorldPose};
 use glam::{Quat, Vec3};
@@ -15,7 +14,7 @@ const SAMPLES: usize = 1_000;
 /// its feet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Profile {
-    pub(super) source: Arc<Source>,
+    pub(super) source: Arc<Motion>,
     pub(super) contacts: Contacts,
     /// Per side and frame: the distance that the stillest point of the foot moves over the ground
     /// in the step into that frame, metres.
@@ -33,11 +32,11 @@ impl Profile {
     /// Measures a clip. `contacts` are those of the same clip ([`Contacts::detect`]). O(frames ×
     /// joints).
     #[must_use]
-    pub fn new(source: Arc<Source>, roles: &Roles, contacts: Contacts) -> Self {
+    pub fn new(source: Arc<Motion>, roles: &Roles, contacts: Contacts) -> Self {
         let clip = source.clip();
         let (usual_turn, usual_change) = usual_turns(clip);
         let steps: Vec<f32> = source
-            .frames()
+            .ground_frames()
             .windows(2)
             .map(|pair| pair[0].shift.distance(pair[1].shift) as f32)
             .collect();
@@ -48,7 +47,7 @@ impl Profile {
 
     /// Returns the clip with its ground frames.
     #[must_use]
-    pub fn source(&self) -> &Arc<Source> {
+    pub fn source(&self) -> &Arc<Motion> {
         &self.source
     }
 

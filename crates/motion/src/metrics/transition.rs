@@ -146,14 +146,14 @@ impl Subject<'_> {
     /// Returns the frame of B that corresponds to `frame` of the result.
     fn in_b(&self, frame: usize) -> Option<usize> {
         let frame = self.enter.saturating_add(frame).checked_sub(self.start)?;
-        (frame < self.b.source.frames().len()).then_some(frame)
+        (frame < self.b.source.ground_frames().len()).then_some(frame)
     }
 
     /// Returns the steps of A and B, in the characters' own frames, that correspond to the step
     /// into `frame` of the result. After its end clip A continues with its last step: an
     /// inertialization may leave it there.
     fn source_steps(&self, frame: usize) -> [Option<Planar>; 2] {
-        let last = self.a.source.frames().len().checked_sub(1);
+        let last = self.a.source.ground_frames().len().checked_sub(1);
         let a = last.map(|last| self.a.source.step_into(frame.min(last)));
         [a, self.in_b(frame).map(|frame| self.b.source.step_into(frame))]
     }

@@ -2,7 +2,7 @@
 
 use super::fit::{FitOptions, chord_parameters, extent, fit_spline};
 use super::{PathEditError, Road};
-use crate::blend::Source;
+use crate::clip::Motion;
 use crate::math::{Planar, wrap_angle};
 use glam::DVec2;
 use std::sync::Arc;
@@ -16,7 +16,7 @@ const STANDS_M: f64 = 0.2;
 /// A motion, the path that was fitted to its trajectory, and the position of each frame on it.
 #[derive(Clone, Debug)]
 pub struct FittedPath {
-    source: Arc<Source>,
+    source: Arc<Motion>,
     road: Road,
     parameters: Vec<f64>,
     places: Vec<super::Waypoint>,
@@ -43,9 +43,9 @@ impl FittedPath {
     /// # Errors
     /// [`PathEditError`] for options out of range, fewer than two frames, and a motion that stays
     /// within 20 cm.
-    pub fn new(source: Arc<Source>, options: &FitOptions) -> Result<Self, PathEditError> {
+    pub fn new(source: Arc<Motion>, options: &FitOptions) -> Result<Self, PathEditError> {
         options.validate()?;
-        let way: Vec<DVec2> = source.frames().iter().map(|frame| frame.shift).collect();
+        let way: Vec<DVec2> = source.ground_frames().iter().map(|frame| frame.shift).collect();
         if way.len() != source.clip().frames() {
             return Err(PathEditError::Parameters);
         }
@@ -65,7 +65,7 @@ impl FittedPath {
 
     /// Returns the motion.
     #[must_use]
-    pub fn source(&self) -> &Arc<Source> {
+    pub fn source(&self) -> &Arc<Motion> {
         &self.source
     }
 
@@ -90,7 +90,7 @@ impl FittedPath {
     /// Returns the residual of every frame, `path_from_character`: metres to the left of the path
     /// (x) and along it (z), and the yaw against its direction.
     pub fn residuals(&self) -> impl Iterator<Item = Planar> + '_ {
-        let frames = self.places.iter().zip(self.source.frames());
+        let frames = self.places.iter().zip(self.source.ground_frames());
         frames.map(|(place, character)| place.frame.inverse().after(character))
     }
 
@@ -122,7 +122,7 @@ impl FittedPath {
 
     /// Returns the ground frame at a fractional frame.
     pub(super) fn character(&self, frame: f64) -> Planar {
-        let frames = self.source.frames();
+        let frames = self.source.ground_frames();
         let (index, part) = self.between(frame);
         let (from, to) = (frames[index], frames[(index + 1).min(frames.len() - 1)]);
         let shift = from.shift.lerp(to.shift, part);

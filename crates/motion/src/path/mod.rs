@@ -24,8 +24,7 @@
 //!
 //! ```
 //! use glam::DVec2;
-//! use segue_motion::blend::Source;
-//! use segue_motion::clip::Clip;
+//! use segue_motion::clip::{Clip, Motion};
 //! use segue_motion::path::{CarryOptions, FitOptions, FittedPath, PathEdit, Pins, Road, carry};
 //! use segue_motion::skeleton::Roles;
 //! use segue_motion::synth::{Action, Params, synthesize};
@@ -34,7 +33,7 @@
 //! let walk = Arc::new(synthesize(&Params::new(Action::Walk))?.clip);
 //! let roles = Roles::detect(walk.skeleton());
 //! let fit = FitOptions { control_points: 6, ..FitOptions::default() };
-//! let path = FittedPath::new(Arc::new(Source::new(Arc::clone(&walk), &roles)), &fit)?;
+//! let path = FittedPath::new(Arc::new(Motion::with_roles(Arc::clone(&walk), &roles)), &fit)?;
 //! assert!(path.error().rms_cm < 5.0);
 //!
 //! // On its own path the walk is itself.

@@ -3,9 +3,10 @@
 use super::moving::View;
 use super::{Inertialization, Inertializer, MovingPose};
 use crate::blend::{
-    AlignBy, Assembly, BlendError, Concatenation, DissolveOptions, RootBlend, Source, WeightLaw,
+    AlignBy, Assembly, BlendError, Concatenation, DissolveOptions, RootBlend, WeightLaw,
     alignment_of, check, dissolve, moving_joints,
 };
+use crate::clip::Motion;
 use crate::math::{Planar, quat, unwrap_near, wrap_angle};
 use glam::Vec3;
 
@@ -75,9 +76,9 @@ impl TransitionOptions {
 /// first), B has no such frame, a window crosses the end of its clip, or a duration is out of
 /// range.
 pub fn concatenate(
-    a: &Source,
+    a: &Motion,
     leave: usize,
-    b: &Source,
+    b: &Motion,
     enter: usize,
     options: &TransitionOptions,
 ) -> Result<Concatenation, BlendError> {
@@ -96,9 +97,9 @@ pub fn concatenate(
 /// Inertializes A into B. `seen` may change the two poses, given the frame rate, before their
 /// differences are taken.
 pub(super) fn inertialize(
-    a: &Source,
+    a: &Motion,
     leave: usize,
-    b: &Source,
+    b: &Motion,
     enter: usize,
     how: Inertialization,
     options: &TransitionOptions,
@@ -127,8 +128,8 @@ pub(super) fn inertialize(
     if !by_velocity {
         old_pose.translations.push(unwrapped.of_a);
         new_pose.translations.push(unwrapped.of_b);
-        let velocity = |source: &Source, world: Planar, frame: usize, stands: &Planar| {
-            let step = source.step_into(frame.min(source.frames().len().saturating_sub(1)));
+        let velocity = |source: &Motion, world: Planar, frame: usize, stands: &Planar| {
+            let step = source.step_into(frame.min(source.ground_frames().len().saturating_sub(1)));
             let next = stands.after(&step);
             let (here, there) = (world.after(stands), world.after(&next));
             let shift = (there.shift - here.shift) * source.clip().fps();
@@ -156,7 +157,7 @@ pub(super) fn inertialize(
     let window = frames_in(how.secs_until(0.01)).min(settling);
     let mut made = Assembly::new(from, to, leave + rest);
     made.play(from, 0..leave);
-    let mut frames = a.frames()[..leave].to_vec();
+    let mut frames = a.ground_frames()[..leave].to_vec();
     frames.reserve(rest);
     let mut b_during = Vec::with_capacity(window);
     let (mut here, mut world_from_b) = (a_stands, aligned_b);
@@ -168,11 +169,11 @@ pub(super) fn inertialize(
         if by_velocity {
             inertia.apply(&mut rotations, &mut translations);
             here = here.after(&inertia.step(&b.step_into(frame), fps.recip()));
-            world_from_b = here.after(&b.frames()[frame].inverse());
+            world_from_b = here.after(&b.ground_frames()[frame].inverse());
             translations[0] = here.apply(translations[0]);
             rotations[0] = quat::renormalize(here.rotation() * rotations[0]);
         } else {
-            translations.push(unwrapped.follow(&aligned_b.after(&b.frames()[frame])));
+            translations.push(unwrapped.follow(&aligned_b.after(&b.ground_frames()[frame])));
             inertia.apply(&mut rotations, &mut translations);
             here = translations.pop().map_or(here, UnwrappedFrames::frame);
         }
@@ -183,7 +184,9 @@ pub(super) fn inertialize(
         made.push(translations[0], &rotations, &translations[1..]);
     }
     made.play_moved(to, enter + settling..to.frames(), &world_from_b);
-    frames.extend(b.frames()[enter + settling..].iter().map(|frame| world_from_b.after(frame)));
+    frames.extend(
+        b.ground_frames()[enter + settling..].iter().map(|frame| world_from_b.after(frame)),
+    );
     let half = frames_in(how.secs_until(0.5)).min(window);
     Ok(Concatenation {
         clip: made.finish(format!("{} → {}", from.name(), to.name()))?,
@@ -203,13 +206,13 @@ pub(super) fn inertialize(
 /// way round.
 fn shared_turn(
     carried: f32,
-    (a, leave): (&Source, usize),
-    (b, enter): (&Source, usize),
+    (a, leave): (&Motion, usize),
+    (b, enter): (&Motion, usize),
     how: Inertialization,
     steps: usize,
 ) -> f32 {
     let fps = b.clip().fps();
-    let frames_of_a = a.frames().len();
+    let frames_of_a = a.ground_frames().len();
     let (mut between, mut weights) = (0.0, 0.0);
     for p in 0..steps {
         let weight = how.remaining((p as f64 + 0.5) / fps);
@@ -219,7 +222,7 @@ fn shared_turn(
         } else {
             (2 * frames_of_a).saturating_sub(leave + p + 1)
         };
-        let turn = |source: &Source, frame: usize| wrap_angle(source.step_into(frame).yaw);
+        let turn = |source: &Motion, frame: usize| wrap_angle(source.step_into(frame).yaw);
         between += weight * (turn(a, in_a) - turn(b, enter + p));
         weights += weight;
     }

@@ -1,8 +1,7 @@
 //! The search for the ends of a cycle in a clip.
 
 use super::LoopError;
-use crate::blend::Source;
-use crate::clip::{Clip, Contacts};
+use crate::clip::{Clip, Contacts, Motion};
 use crate::registration::{PairTerms, REFERENCE_HEIGHT_M, limb_weights};
 use crate::skeleton::Side;
 use std::ops::Range;
@@ -80,7 +79,7 @@ const CANDIDATES: usize = 16;
 /// [`LoopError::TooShort`] when no cycle of the shortest duration fits, into the clip or to a given
 /// end; [`LoopError::Registration`] when positions are not finite.
 pub fn find_cycle(
-    source: &Source,
+    source: &Motion,
     contacts: &Contacts,
     body_height: f64,
     search: &CycleSearch,
@@ -155,7 +154,7 @@ impl Candidate {
 
 struct CycleFinder<'a> {
     clip: &'a Clip,
-    source: &'a Source,
+    source: &'a Motion,
     contacts: &'a Contacts,
     /// The frames in which a foot touches down, in order.
     touchdowns: Vec<usize>,
@@ -212,7 +211,8 @@ impl CycleFinder<'_> {
     fn drags_in(&self, place: &Candidate) -> bool {
         let stays =
             |side| (place.start..=place.end).all(|frame| self.contacts.planted(side, frame));
-        let [from, to] = [place.start, place.end].map(|frame| self.source.frames()[frame].shift);
+        let [from, to] =
+            [place.start, place.end].map(|frame| self.source.ground_frames()[frame].shift);
         from.distance(to) * self.cm > MIN_DRAG_CM && Side::BOTH.into_iter().any(stays)
     }
 
@@ -320,7 +320,7 @@ mod tests {
         let roles = Roles::detect(clip.skeleton());
         let contacts = Contacts::detect(clip, &roles, &ContactOptions::default());
         let height = f64::from(roles.body_height(clip.skeleton()));
-        find_cycle(&Source::new(Arc::clone(clip), &roles), &contacts, height, search)
+        find_cycle(&Motion::with_roles(Arc::clone(clip), &roles), &contacts, height, search)
     }
 
     #[test]
@@ -353,7 +353,7 @@ mod tests {
             let gap = (phase(cut.cycle.start) - phase(cut.cycle.end)).abs();
             assert!(gap.min(1.0 - gap) < 0.02, "{action:?} {cut:?} {gap}");
             assert!(cut.phase_gap.unwrap() < 0.05 && cut.rms_cm < 1.0, "{cut:?}");
-            let source = Source::new(Arc::clone(&clip), &Roles::detect(clip.skeleton()));
+            let source = Motion::with_roles(Arc::clone(&clip), &Roles::detect(clip.skeleton()));
             let made = close_loop(&source, cut.cycle, &LoopOptions::default()).unwrap();
             assert!(
                 made.seam.turn_deg < 1e-3 && made.before.turn_deg < 10.0,
@@ -370,7 +370,7 @@ mod tests {
         let clip = Arc::new(Walk { frames: 400, cadence: 1.0, ..Walk::default() }.clip());
         let roles = Roles::detect(clip.skeleton());
         let height = f64::from(roles.body_height(clip.skeleton()));
-        let source = Source::new(Arc::clone(&clip), &roles);
+        let source = Motion::with_roles(Arc::clone(&clip), &roles);
         // The left foot steps all the time, the right one stands in the first half.
         let left = (0..400).map(|frame| frame % 60 < 36).collect();
         let right = (0..400).map(|frame| frame < 200 || (frame + 30) % 60 < 36).collect();

@@ -2,8 +2,8 @@
 
 use super::moving::{View, travel, with_travel};
 use super::{LoopCurve, LoopMethod, MovingPose};
-use crate::blend::{Assembly, MAX_SECS, Source, moving_joints};
-use crate::clip::{Clip, ClipError};
+use crate::blend::{Assembly, MAX_SECS, moving_joints};
+use crate::clip::{Clip, ClipError, Motion};
 use crate::math::{Planar, Response, quat};
 use glam::{Quat, Vec3};
 use std::ops::Range;
@@ -151,7 +151,7 @@ pub fn repeat_clip(clip: &Clip, cycle: &Planar, times: usize) -> Result<Clip, Cl
 /// [`LoopError`] when the cycle has fewer than two frames or is not inside the clip, or the
 /// half-life is out of range.
 pub fn close_loop(
-    source: &Source,
+    source: &Motion,
     cycle: Range<usize>,
     options: &LoopOptions,
 ) -> Result<Loop, LoopError> {
@@ -204,7 +204,7 @@ pub fn close_loop(
 
     let mut made = Assembly::new(clip, clip, cycle.len());
     let (mut rotations, mut translations) = (Vec::new(), Vec::new());
-    let mut here = source.frames()[cycle.start];
+    let mut here = source.ground_frames()[cycle.start];
     let mut frames = Vec::with_capacity(cycle.len());
     for (index, frame) in cycle.clone().enumerate() {
         let now = curve.at(index as f64 * dt_secs);
@@ -222,7 +222,7 @@ pub fn close_loop(
         let middle = curve.at((index as f64 + 0.5) * dt_secs).of_vec3(travels, Vec3::ZERO).0;
         here = here.after(&with_travel(&source.step_into(frame + 1), middle, dt_secs));
     }
-    let start = source.frames()[cycle.start];
+    let start = source.ground_frames()[cycle.start];
     Ok(Loop {
         clip: made.finish(clip.name().to_owned())?,
         cycle: here.after(&start.inverse()),
@@ -349,7 +349,9 @@ impl View<'_> {
             {
                 *velocity += (to - from) * rate;
             }
-            let step = self.source.frames()[frame].inverse().after(&self.source.frames()[other]);
+            let step = self.source.ground_frames()[frame]
+                .inverse()
+                .after(&self.source.ground_frames()[other]);
             pose.travel += travel(&step, fps) * weight;
         }
         // Both ends are at the same phase of the stride, so that no difference is sway.

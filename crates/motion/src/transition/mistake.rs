@@ -7,10 +7,8 @@
 use super::concatenate::inertialize;
 use super::moving::{MovingPose, View};
 use super::{Inertialization, Method, TransitionOptions, concatenate};
-use crate::blend::{
-    BlendError, Concatenation, RootBlend, Source, WeightLaw, align_facing, alignment_of,
-};
-use crate::clip::Clip;
+use crate::blend::{BlendError, Concatenation, RootBlend, WeightLaw, align_facing, alignment_of};
+use crate::clip::{Clip, Motion};
 use crate::math::{Decay, Planar, quat, spring, wrap_angle};
 use crate::registration::limb_weights;
 use glam::{DVec2, EulerRot, Quat, Vec3};
@@ -84,9 +82,9 @@ impl Mistake {
 /// # Errors
 /// The same as for [`concatenate`].
 pub fn concatenate_mistaken(
-    a: &Source,
+    a: &Motion,
     leave: usize,
-    b: &Source,
+    b: &Motion,
     enter: usize,
     options: &TransitionOptions,
     mistake: Mistake,
@@ -184,9 +182,9 @@ fn angles(q: Quat) -> Vec3 {
 
 /// A transition whose joints are mixed in another way.
 struct Mixing<'a> {
-    a: &'a Source,
+    a: &'a Motion,
     leave: usize,
-    b: &'a Source,
+    b: &'a Motion,
     enter: usize,
     options: &'a TransitionOptions,
     mix: Mix,
@@ -196,9 +194,9 @@ struct Mixing<'a> {
 
 impl<'a> Mixing<'a> {
     fn new(
-        a: &'a Source,
+        a: &'a Motion,
         leave: usize,
-        b: &'a Source,
+        b: &'a Motion,
         enter: usize,
         options: &'a TransitionOptions,
         mix: Mix,
@@ -214,7 +212,7 @@ impl<'a> Mixing<'a> {
         }
     }
 
-    fn view(&self, source: &'a Source, fixed: Planar) -> View<'a> {
+    fn view(&self, source: &'a Motion, fixed: Planar) -> View<'a> {
         View { source, moving: &[], fixed: (!self.in_character).then_some(fixed) }
     }
 
@@ -317,9 +315,9 @@ fn rebuilt(clip: &Clip, rotations: Vec<Quat>, roots: Vec<Vec3>) -> Result<Clip, 
 
 /// Aligns B with A by a wrong transform, and makes the transition without further alignment.
 fn with_wrong_alignment(
-    a: &Source,
+    a: &Motion,
     leave: usize,
-    b: &Source,
+    b: &Motion,
     enter: usize,
     options: &TransitionOptions,
     mistake: Mistake,
@@ -365,9 +363,9 @@ fn by_degrees(yaw: f64) -> f64 {
 }
 
 /// Returns the ground frame of a character whose facing is the projection of its root's Y axis.
-fn standing_by_y(source: &Source, frame: usize) -> Planar {
+fn standing_by_y(source: &Motion, frame: usize) -> Planar {
     let axis = source.clip().rotations(frame).first().map_or(Vec3::Y, |root| *root * Vec3::Y);
-    Planar { yaw: f64::from(axis.x).atan2(axis.z.into()), ..source.frames()[frame] }
+    Planar { yaw: f64::from(axis.x).atan2(axis.z.into()), ..source.ground_frames()[frame] }
 }
 
 /// Returns the alignment of a program that gets the yaw wrong: the correct one, with the point

@@ -33,8 +33,7 @@
 //! # Example
 //!
 //! ```
-//! use segue_motion::blend::Source;
-//! use segue_motion::clip::Clip;
+//! use segue_motion::clip::{Clip, Motion};
 //! use segue_motion::math::Decay;
 //! use segue_motion::skeleton::Roles;
 //! use segue_motion::synth::{Action, Params, synthesize};
@@ -45,7 +44,7 @@
 //! let [walk, run] = [Action::Walk, Action::Run].map(|action| synthesize(&Params::new(action)));
 //! let (walk, run) = (Arc::new(walk?.clip), Arc::new(run?.clip));
 //! let roles = Roles::detect(walk.skeleton());
-//! let (a, b) = (Source::new(walk, &roles), Source::new(run, &roles));
+//! let (a, b) = (Motion::with_roles(walk, &roles), Motion::with_roles(run, &roles));
 //!
 //! // The largest turn of a joint from the last frame of A to the next one.
 //! let spring = Inertialization::Offset(Decay::Spring { half_life_secs: 0.15 });

@@ -1,6 +1,7 @@
 //! Poses with velocities, in the character's frame.
 
-use crate::blend::{Source, translation_of};
+use crate::blend::translation_of;
+use crate::clip::Motion;
 use crate::math::{Planar, quat, wrap_angle};
 use glam::{Quat, Vec3};
 
@@ -30,7 +31,7 @@ const STRIDE_SECS: f64 = 1.0;
 
 /// A view of a clip's frames relative to the ground frame of the character, or to a fixed frame.
 pub(super) struct View<'a> {
-    pub(super) source: &'a Source,
+    pub(super) source: &'a Motion,
     /// The joints other than the root that have translations.
     pub(super) moving: &'a [usize],
     /// The fixed frame of reference (`here_from_clip`) of poses; `None` for the character's.
@@ -39,7 +40,7 @@ pub(super) struct View<'a> {
 
 impl View<'_> {
     fn here_from_clip(&self, frame: usize) -> Planar {
-        self.fixed.unwrap_or_else(|| self.source.frames()[frame].inverse())
+        self.fixed.unwrap_or_else(|| self.source.ground_frames()[frame].inverse())
     }
 
     /// Computes rotations and translations of a frame into reusable buffers.
@@ -75,7 +76,7 @@ impl View<'_> {
     /// difference.
     pub(super) fn before(&self, frame: usize) -> (MovingPose, Planar) {
         let clip = self.source.clip();
-        let (fps, frames) = (clip.fps() as f32, self.source.frames());
+        let (fps, frames) = (clip.fps() as f32, self.source.ground_frames());
         let last = clip.frames().saturating_sub(1);
         // The step that represents the one into `frame`.
         let (from, to) = if last == 0 {
@@ -153,13 +154,13 @@ mod tests {
     use crate::skeleton::Roles;
     use std::sync::Arc;
 
-    fn source_of(walk: &Walk) -> Source {
+    fn source_of(walk: &Walk) -> Motion {
         let clip = walk.clip();
         let roles = Roles::detect(clip.skeleton());
-        Source::new(Arc::new(clip), &roles)
+        Motion::with_roles(clip, &roles)
     }
 
-    fn free(source: &Source) -> View<'_> {
+    fn free(source: &Motion) -> View<'_> {
         View { source, moving: &[], fixed: None }
     }
 
@@ -193,9 +194,12 @@ mod tests {
                     (pose.translations[0] + pose.velocities[0] * dt).distance(translations[0])
                         < 1e-5
                 );
-                assert!(stepped.shift.distance(source.frames()[at].shift) < 1e-5, "{frame}");
+                assert!(stepped.shift.distance(source.ground_frames()[at].shift) < 1e-5, "{frame}");
             } else {
-                assert_eq!((&pose.rotations, standing), (&view.pose(39).0, source.frames()[39]));
+                assert_eq!(
+                    (&pose.rotations, standing),
+                    (&view.pose(39).0, source.ground_frames()[39])
+                );
                 let arm = quat::log(clip.rotations(39)[3] * clip.rotations(38)[3].conjugate()) / dt;
                 assert!((pose.angular_velocities[3] - arm).length() < 1e-4);
             }

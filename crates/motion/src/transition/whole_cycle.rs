@@ -2,7 +2,8 @@
 
 use super::moving::{View, travel, with_travel};
 use super::{Loop, LoopError, LoopOptions, close_loop};
-use crate::blend::{Assembly, Source, moving_joints};
+use crate::blend::{Assembly, moving_joints};
+use crate::clip::Motion;
 use crate::math::quat;
 use crate::registration::limb_weights;
 use crate::skeleton::WorldPose;
@@ -20,7 +21,7 @@ use std::ops::Range;
 /// to the first frame's. The remaining difference between the ends is left to [`close_loop`].
 #[derive(Clone, Debug)]
 pub struct WholeCycle {
-    source: Source,
+    source: Motion,
     /// The frames that play; the end corresponds to the first frame. It lies after the clip's last
     /// frame where frames were added.
     pub frames: Range<usize>,
@@ -59,7 +60,7 @@ impl WholeCycle {
     /// faster at one end than at the other, as a start or a stop; or one that rests at an end, as a
     /// turn on the spot.
     #[must_use]
-    pub fn of(source: &Source) -> Option<Self> {
+    pub fn of(source: &Motion) -> Option<Self> {
         let clip = source.clip();
         let (frames, fps) = (clip.frames(), clip.fps());
         if frames < 8 {
@@ -74,7 +75,7 @@ impl WholeCycle {
         let mut world = WorldPose::default();
         let mut cloud = |frame: usize| -> Vec<Vec3> {
             clip.world_pose_into(frame, &mut world);
-            let here = source.frames()[frame].inverse();
+            let here = source.ground_frames()[frame].inverse();
             world.positions.iter().map(|&position| here.apply(position)).collect()
         };
         let [first, second, before, end] = [0, reach, last - reach, last].map(&mut cloud);
@@ -146,8 +147,8 @@ impl WholeCycle {
 
 /// Returns whether the body is about as fast at the end as at the beginning, each over `reach`
 /// frames.
-fn keeps_its_speed(source: &Source, reach: usize) -> bool {
-    let stands = source.frames();
+fn keeps_its_speed(source: &Motion, reach: usize) -> bool {
+    let stands = source.ground_frames();
     let fps = source.clip().fps();
     let last = stands.len() - 1;
     let velocity = |from: usize, to: usize| {
@@ -160,7 +161,7 @@ fn keeps_its_speed(source: &Source, reach: usize) -> bool {
 
 /// Extrapolates a clip after its end until it moves as at its beginning: `added_frames`, and one
 /// more to give the velocity there. `None` when the result is not a valid clip.
-fn with_added_frames(source: &Source, added_frames: usize) -> Option<Source> {
+fn with_added_frames(source: &Motion, added_frames: usize) -> Option<Motion> {
     let clip = source.clip();
     let (frames, fps) = (clip.frames(), clip.fps());
     let last = frames - 1;
@@ -185,7 +186,7 @@ fn with_added_frames(source: &Source, added_frames: usize) -> Option<Source> {
 
     let mut made_clip = Assembly::new(clip, clip, frames + added_frames + 1);
     made_clip.play(clip, 0..frames);
-    let mut stands = source.frames().to_vec();
+    let mut stands = source.ground_frames().to_vec();
     let mut here = *stands.last()?;
     for frame in 1..=added_frames + 1 {
         let at = frame as f32;
@@ -207,7 +208,7 @@ fn with_added_frames(source: &Source, added_frames: usize) -> Option<Source> {
         stands.push(here);
     }
     let extended = made_clip.finish(clip.name().to_owned()).ok()?;
-    Some(source.with_motion(extended, stands))
+    Some(source.same_body(extended, stands))
 }
 
 #[cfg(test)]
@@ -217,14 +218,14 @@ mod tests {
     use crate::skeleton::Roles;
     use std::sync::Arc;
 
-    fn source_of(walk: &Walk) -> Source {
+    fn source_of(walk: &Walk) -> Motion {
         let clip = walk.clip();
         let roles = Roles::detect(clip.skeleton());
-        Source::new(Arc::new(clip), &roles)
+        Motion::with_roles(clip, &roles)
     }
 
     /// Returns a walk whose stride takes 60 frames, cut to `frames`.
-    fn walk(frames: usize, turning: f32) -> Source {
+    fn walk(frames: usize, turning: f32) -> Motion {
         source_of(&Walk { frames, cadence: 1.0, turning, phase: 0.15, ..Walk::default() })
     }
 
@@ -240,7 +241,7 @@ mod tests {
             let looped = cycle.close(&LoopOptions::default()).unwrap();
             assert!(looped.seam.turn_deg < 1e-3 && looped.seam.turn_dps < 0.1, "{:?}", looped.seam);
             // The cycle follows the walk, after three rounds as well.
-            let round = whole.frames()[0].inverse().after(&whole.frames()[60]);
+            let round = whole.ground_frames()[0].inverse().after(&whole.ground_frames()[60]);
             let found = looped.frames[0].inverse().after(&looped.cycle.after(&looped.frames[0]));
             let off = found.shift.distance(round.shift) / round.shift.length();
             assert!(
@@ -254,7 +255,7 @@ mod tests {
     fn whole_cycle_adds_the_frames_of_the_walk() {
         let (whole, cut) = (walk(61, 0.0), walk(54, 0.0));
         let cycle = WholeCycle::of(&cut).unwrap();
-        let positions = |source: &Source, frame: usize| source.clip().world_pose(frame).positions;
+        let positions = |source: &Motion, frame: usize| source.clip().world_pose(frame).positions;
         for frame in 54..59 {
             let apart = positions(&whole, frame)
                 .iter()
@@ -271,7 +272,7 @@ mod tests {
         for action in [Action::Spin, Action::Start, Action::Stop, Action::Jump] {
             let clip = synthesize(&Params::new(action)).unwrap().clip;
             let roles = Roles::detect(clip.skeleton());
-            assert!(WholeCycle::of(&Source::new(Arc::new(clip), &roles)).is_none(), "{action:?}");
+            assert!(WholeCycle::of(&Motion::with_roles(clip, &roles)).is_none(), "{action:?}");
         }
     }
 

@@ -459,7 +459,7 @@ impl LabInputs for BlendInputs {
     fn run(&self) -> Result<Outcome, LabError> {
         let Self { pair, place, options, mistake, foot_lock } = self;
         let [a, b] = &pair.profiles;
-        let (from, to) = (a.source(), b.source());
+        let (from, to) = (&*pair.a, &*pair.incoming);
         let made = match *mistake {
             Some(mistake) => {
                 concatenate_mistaken(from, place.leave, to, place.enter, options, mistake)

@@ -1,7 +1,7 @@
 use super::feet::{Lock, slide, slide_before, with_feet};
 use super::lab::{Inputs, Lab, LabInputs};
 use super::lab_set::{LabClips, LabSet};
-use super::pair::{Pair, source_of};
+use super::pair::Pair;
 use super::{LabFacts, Outcome, Slot, Source};
 use crate::LabId;
 use crate::choices;
@@ -183,14 +183,13 @@ impl Layerer {
         let shown = layer_timed(a, roles, &reading.over, &whole, &reading.times)?;
         let shown =
             Arc::new(Motion::with_roles(shown.with_name(b.name()), roles).with_feet(pair.b.feet()));
-        let source = source_of(&shown);
         Ok(Timed {
             pair: Arc::clone(pair),
             wanted,
             reading,
             fit,
             has_no_steps: wanted_fit == choices::LayerFit::Step && fit != LayerFit::InStep,
-            profile: Profile::new(Arc::new(source), roles, shown.contacts().clone()),
+            profile: Profile::new(Arc::clone(&shown), roles, shown.contacts().clone()),
             shown,
         })
     }
@@ -203,19 +202,18 @@ impl Layerer {
         {
             return reading.clone();
         }
-        let reading = GaitCycle::find(
-            pair.profiles[1].source(),
-            pair.incoming.roles(),
-            pair.incoming.contacts(),
-        )
-        .ok()
-        .and_then(|cycle| {
-            let phases = strike_phases(pair.a.contacts(), cycle.events().right_strike)?;
-            Some(Reading {
-                over: once_more(cycle.looped())?,
-                times: Arc::new(phases.into_iter().map(|phase| phase * cycle.secs()).collect()),
-            })
-        });
+        let reading =
+            GaitCycle::find(&pair.incoming, pair.incoming.roles(), pair.incoming.contacts())
+                .ok()
+                .and_then(|cycle| {
+                    let phases = strike_phases(pair.a.contacts(), cycle.events().right_strike)?;
+                    Some(Reading {
+                        over: once_more(cycle.looped())?,
+                        times: Arc::new(
+                            phases.into_iter().map(|phase| phase * cycle.secs()).collect(),
+                        ),
+                    })
+                });
         self.in_step = Some((Arc::clone(pair), reading.clone()));
         reading
     }
@@ -223,7 +221,7 @@ impl Layerer {
 
 /// All of B as a cycle.
 fn closed(pair: &Pair) -> Option<Arc<Clip>> {
-    let source = pair.profiles[1].source();
+    let source = &pair.incoming;
     let last = source.clip().frames().checked_sub(1)?;
     once_more(&close_loop(source, 0..last, &LoopOptions::default()).ok()?)
 }

@@ -3,14 +3,12 @@
 use super::feet::Lock;
 use super::lab::{Inputs, Lab, LabInputs};
 use super::lab_set::{LabClips, LabSet};
-use super::pair::source_of;
 use super::rounds::{Rounds, repeated, rounds};
 use super::{Cycle, CycleMade, Outcome, Slot, Source};
 use crate::LabId;
 use crate::choices;
 use crate::labs::LabError;
 use crate::params::{Key, Params};
-use segue_motion::blend;
 use segue_motion::clip::Motion;
 use segue_motion::math::Planar;
 use segue_motion::metrics::Metric;
@@ -87,7 +85,6 @@ impl PartialEq for LoopInputs {
 #[derive(Debug)]
 struct Found {
     motion: Arc<Motion>,
-    source: blend::Source,
     /// The ends that the user named.
     given: [Option<usize>; 2],
     cut: CutPoints,
@@ -133,12 +130,11 @@ impl CycleFinder {
         {
             return Ok(Arc::clone(found));
         }
-        let source = source_of(motion);
         let search =
             CycleSearch { start: given[0], end: given[1], ..CycleSearch::new(motion.clip().fps()) };
         let body_height = motion.roles().body_height(motion.clip().skeleton());
-        let cut = find_cycle(&source, motion.contacts(), body_height.into(), &search)?;
-        let found = Arc::new(Found { motion: Arc::clone(motion), source, given, cut });
+        let cut = find_cycle(motion, motion.contacts(), body_height.into(), &search)?;
+        let found = Arc::new(Found { motion: Arc::clone(motion), given, cut });
         self.known = Some(Arc::clone(&found));
         Ok(found)
     }
@@ -162,8 +158,8 @@ fn options(params: &Params) -> LoopOptions {
 
 impl LabInputs for LoopInputs {
     fn run(&self) -> Result<Outcome, LabError> {
-        let Found { motion, source, cut, .. } = &*self.found;
-        let looped = close_loop(source, cut.cycle.clone(), &self.options)?;
+        let Found { motion, cut, .. } = &*self.found;
+        let looped = close_loop(motion, cut.cycle.clone(), &self.options)?;
         let (fps, frames) = (looped.clip.fps(), cut.cycle.len());
         // One more, of which the first frame is the one behind the last.
         let three = looped.repeat(4).and_then(|clip| clip.crop(0..3 * frames + 1));

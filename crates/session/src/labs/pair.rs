@@ -1,6 +1,5 @@
 use super::Retargeted;
 use crate::labs::LabError;
-use segue_motion::blend;
 use segue_motion::clip::{Clip, Interpolation, Motion, resample, retarget_onto};
 use segue_motion::metrics::Profile;
 use segue_motion::skeleton::Retargeting;
@@ -34,7 +33,7 @@ impl Pair {
     fn new(a: &Arc<Motion>, b: &Arc<Motion>) -> Result<Self, LabError> {
         let (incoming, retargeted) = fitted(a, b)?;
         let profiles = [a, &incoming].map(|motion| {
-            Profile::new(Arc::new(source_of(motion)), motion.roles(), motion.contacts().clone())
+            Profile::new(Arc::clone(motion), motion.roles(), motion.contacts().clone())
         });
         Ok(Self { a: Arc::clone(a), b: Arc::clone(b), incoming, profiles, retargeted })
     }
@@ -64,11 +63,6 @@ pub(super) fn fitted(
     let seams = b.seams_at(|frame| (frame as f64 * rate / rate_b).round() as usize);
     let motion = Motion::with_roles(clip, &roles).with_feet(b.feet()).with_seams(seams);
     Ok((Arc::new(motion), retargeted))
-}
-
-/// A motion as what is blended.
-pub(super) fn source_of(motion: &Motion) -> blend::Source {
-    blend::Source::with_frames(Arc::clone(motion.clip()), motion.ground_frames().to_vec())
 }
 
 impl Retargeted {

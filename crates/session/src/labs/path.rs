@@ -4,7 +4,6 @@ use super::feet::{Lock, locking, slide, slide_before};
 use super::kept::{read_ids, recipe_ingredients, recipe_params, write_ids};
 use super::lab::{Beside, Inputs, Lab, LabInputs};
 use super::lab_set::{JobKind, LabClips, LabSet, Sliced};
-use super::pair::source_of;
 use super::{LabFacts, Outcome, Slot, Source};
 use crate::LabId;
 use crate::choices;
@@ -89,8 +88,7 @@ pub struct FittedMotion {
 
 impl FittedMotion {
     fn new(motion: &Arc<Motion>, options: FitOptions) -> Result<Self, LabError> {
-        let source = source_of(motion);
-        let path = FittedPath::new(Arc::new(source), &options)?;
+        let path = FittedPath::new(Arc::clone(motion), &options)?;
         let off = path.residuals().map(|residual| residual.shift.length() * 100.0);
         Ok(Self {
             motion: Arc::clone(motion),

@@ -267,8 +267,8 @@ fn beat(mix: &FrameMix) -> Beat {
 }
 
 impl RegisterInputs {
-    fn sources(&self) -> [&blend::Source; 2] {
-        [0, 1].map(|clip| &**self.pair.profiles[clip].source())
+    fn sources(&self) -> [&Motion; 2] {
+        [&self.pair.a, &self.pair.incoming]
     }
 
     /// Of A and of B.
@@ -292,7 +292,7 @@ impl RegisterInputs {
         let weights: Vec<WeightCurve> =
             self.also.iter().map(|also| WeightCurve::constant(also.weight)).collect();
         let also = self.also.iter().zip(&weights).map(|(also, weight)| Partner {
-            source: also.pair.profiles[1].source(),
+            source: &also.pair.incoming,
             registration: also.found.way(self.is_plain),
             weight,
         });

@@ -4,7 +4,6 @@
 use super::feet::{Lock, locking, slide, slide_before};
 use super::lab::{Inputs, Lab, LabInputs};
 use super::lab_set::{JobKind, LabClips, LabSet, Sliced};
-use super::pair::source_of;
 use super::{Measured, Outcome, Slot};
 use crate::LabId;
 use crate::choices;
@@ -148,8 +147,7 @@ impl Ground {
             RootMotion::World => vec![Planar::IDENTITY; frames.len()],
             RootMotion::InPlace => take_in_place(frames, true),
             RootMotion::Residual => {
-                let source = source_of(motion);
-                let path = FittedPath::new(Arc::new(source), &FitOptions::default())?;
+                let path = FittedPath::new(Arc::clone(motion), &FitOptions::default())?;
                 path.places().iter().map(|place| place.frame.inverse()).collect()
             }
         };

@@ -3,17 +3,15 @@
 use super::*;
 use crate::clip::JointTranslations;
 use crate::registration::fixtures::{Walk, body};
-use crate::skeleton::Joint;
+use crate::skeleton::{Joint, Roles};
 use proptest::prelude::*;
 use std::f32::consts::PI;
 
-fn source(walk: Walk) -> Source {
-    let clip = walk.clip();
-    let roles = Roles::detect(clip.skeleton());
-    Source::new(Arc::new(clip), &roles)
+fn source(walk: Walk) -> Motion {
+    Motion::analyze(walk.clip())
 }
 
-fn two_walks() -> (Source, Source) {
+fn two_walks() -> (Motion, Motion) {
     let a = source(Walk { frames: 100, ..Walk::default() });
     let b = source(Walk {
         frames: 80,
@@ -55,8 +53,7 @@ proptest! {
     #[test]
     fn dissolve_does_not_depend_on_the_position_of_b(yaw in -3.0f64..3.0, x in -9.0f64..9.0, z in -9.0f64..9.0, (law, root) in laws()) {
         let (a, b) = two_walks();
-        let roles = Roles::detect(b.clip().skeleton());
-        let moved = Source::new(Arc::new(b.clip().transformed(&Planar::new(yaw, x, z))), &roles);
+        let moved = Motion::with_roles(b.clip().transformed(&Planar::new(yaw, x, z)), b.roles());
         let options = DissolveOptions { window: 20, law, root, ..DissolveOptions::default() };
         let (here, there) = (dissolve(&a, 50, &b, 10, &options).unwrap(), dissolve(&a, 50, &moved, 10, &options).unwrap());
         let worst = worst_distance(&here.clip, &there.clip);
@@ -100,15 +97,15 @@ struct Case {
     leave: usize,
     enter: usize,
     window: usize,
-    a: Motion,
-    b: Motion,
-    during: Motion,
+    a: GoldenMotion,
+    b: GoldenMotion,
+    during: GoldenMotion,
     last_root: Vec3,
     last_rotation: Quat,
 }
 
 #[derive(serde::Deserialize)]
-struct Motion {
+struct GoldenMotion {
     roots: Vec<Vec3>,
     rotations: Vec<[Quat; 2]>,
 }
@@ -127,7 +124,7 @@ fn dissolve_agrees_with_numpy() {
     let skeleton = Arc::new(
         Skeleton::new(vec![joint(None, Vec3::ZERO), joint(Some(0), golden.offset)]).unwrap(),
     );
-    let source = |motion: &Motion| {
+    let source = |motion: &GoldenMotion| {
         let clip = Clip::new(
             "golden",
             Arc::clone(&skeleton),
@@ -136,7 +133,7 @@ fn dissolve_agrees_with_numpy() {
             motion.roots.clone(),
         )
         .unwrap();
-        Source::new(Arc::new(clip), &Roles::default())
+        Motion::with_roles(clip, &Roles::default())
     };
     assert_eq!(golden.cases.len(), 6);
     for case in &golden.cases {
@@ -173,8 +170,8 @@ fn dissolve_of_straight_walks_by_velocity_is_straight() {
         dissolve(&a, 50, &b, 10, &DissolveOptions { window: 30, ..DissolveOptions::default() })
             .unwrap();
     // The body sways about its heading by as much as the sources, and A's heading continues.
-    let sway = |s: &Source, heading: f64| {
-        s.frames().iter().map(|f| wrap_angle(f.yaw - heading).abs()).fold(0.0, f64::max)
+    let sway = |s: &Motion, heading: f64| {
+        s.ground_frames().iter().map(|f| wrap_angle(f.yaw - heading).abs()).fold(0.0, f64::max)
     };
     let most = sway(&a, 0.0).max(sway(&b, 2.5)) * 2.0 + 0.02;
     for frame in &out.frames {
@@ -258,7 +255,7 @@ fn dissolve_as_a_cut_continues_with_the_step_of_b() {
         dissolve(&a, 50, &b, 10, &DissolveOptions { window: 0, ..DissolveOptions::default() })
             .unwrap();
     let step = out.frames[49].inverse().after(&out.frames[50]);
-    let own = b.frames()[9].inverse().after(&b.frames()[10]);
+    let own = b.ground_frames()[9].inverse().after(&b.ground_frames()[10]);
     assert!(
         (step.shift - own.shift).length() < 1e-9 && wrap_angle(step.yaw - own.yaw).abs() < 1e-9
     );
@@ -270,7 +267,7 @@ fn dissolve_blends_joint_translations() {
     let roles = Roles::detect(clip.skeleton());
     let tracked = |joint: usize, at: Vec3| {
         let track = JointTranslations { joint, values: vec![at; 30] };
-        Source::new(Arc::new(clip.clone().with_translations(vec![track]).unwrap()), &roles)
+        Motion::with_roles(Arc::new(clip.clone().with_translations(vec![track]).unwrap()), &roles)
     };
     let (a, b) = (tracked(2, Vec3::X), tracked(4, Vec3::Z));
     let out = dissolve(
@@ -325,15 +322,15 @@ fn dissolve_of_incompatible_clips_is_refused() {
         vec![Vec3::ZERO; 50],
     )
     .unwrap();
-    let other = Source::new(Arc::new(other), &Roles::default());
+    let other = Motion::with_roles(other, &Roles::default());
     assert!(matches!(dissolve(&a, 0, &other, 0, &options), Err(BlendError::Skeletons { .. })));
-    let empty = Source::new(Arc::new(a.clip().crop(0..0).unwrap()), &Roles::default());
+    let empty = Motion::with_roles(Arc::new(a.clip().crop(0..0).unwrap()), &Roles::default());
     assert!(dissolve(&empty, 0, &b, 0, &cut).is_err() && dissolve(&b, 0, &empty, 0, &cut).is_err());
 }
 
 /// Returns a character that stands in place and sways about a heading, with its left arm turning
 /// about its bone in the same way.
-fn swaying(heading: f32, phase: f32, arm: f32) -> Source {
+fn swaying(heading: f32, phase: f32, arm: f32) -> Motion {
     let still = Walk { frames: 90, speed: 0.0, cadence: 0.0, swing: 0.0, ..Walk::default() };
     let clip = still.clip();
     let joints = clip.skeleton().len();
@@ -348,7 +345,7 @@ fn swaying(heading: f32, phase: f32, arm: f32) -> Source {
     let swaying =
         Clip::new("swaying", Arc::clone(clip.skeleton()), clip.fps(), rotations, roots).unwrap();
     let roles = Roles::detect(swaying.skeleton());
-    Source::new(Arc::new(swaying), &roles)
+    Motion::with_roles(swaying, &roles)
 }
 
 #[test]
@@ -398,7 +395,7 @@ fn dissolve_aligned_by_first_pose_ignores_the_window() {
         ..DissolveOptions::default()
     };
     let out = dissolve(&a, 40, &b, 12, &options).unwrap();
-    let (stands, wanted) = (out.aligned_b.after(&b.frames()[12]), a.frames()[40]);
+    let (stands, wanted) = (out.aligned_b.after(&b.ground_frames()[12]), a.ground_frames()[40]);
     assert!(
         stands.shift.distance(wanted.shift) < 1e-9
             && wrap_angle(stands.yaw - wanted.yaw).abs() < 1e-9

@@ -6,13 +6,13 @@ use crate::registration::{PairTerms, RegistrationOptions, limb_weights};
 use crate::skeleton::Roles;
 use std::sync::Arc;
 
-fn source(walk: Walk) -> Source {
+fn source(walk: Walk) -> Motion {
     let clip = walk.clip();
     let roles = Roles::detect(clip.skeleton());
-    Source::new(Arc::new(clip), &roles)
+    Motion::with_roles(clip, &roles)
 }
 
-fn register(a: &Source, b: &Source) -> Registration {
+fn register(a: &Motion, b: &Motion) -> Registration {
     let (a, b) = (a.clip(), b.clip());
     let mut terms =
         PairTerms::new(a, 0..a.frames(), b, 0..b.frames(), &limb_weights(a.skeleton()), 1).unwrap();
@@ -22,7 +22,7 @@ fn register(a: &Source, b: &Source) -> Registration {
 }
 
 /// Returns three walks of different stride, speed and curvature.
-fn walks() -> [Source; 3] {
+fn walks() -> [Motion; 3] {
     let brisk = Walk {
         frames: 240,
         cadence: 1.1,
@@ -145,7 +145,7 @@ fn registered_join_is_all_a_then_all_b() {
         );
     }
     assert!(transition.contains(&join.joined.handover));
-    let contacts = |source: &Source| {
+    let contacts = |source: &Motion| {
         let flags: Vec<bool> = (0..source.clip().frames()).map(|frame| frame % 40 < 20).collect();
         Contacts::from_flags([flags.clone(), flags])
     };

@@ -1,8 +1,9 @@
 //! Tests of gait cycles and of blending by speed.
 
 use super::*;
-use crate::blend::Source;
-use crate::clip::{ContactOptions, character_frames, ground_speed, resample, stillest_step};
+use crate::clip::{
+    ContactOptions, Motion, character_frames, ground_speed, resample, stillest_step,
+};
 use crate::registration::fixtures::Walk;
 use crate::synth::{Action, Params, synthesize};
 use crate::transition::{FootLockOptions, foot_lock};
@@ -12,7 +13,7 @@ use std::sync::Arc;
 fn find_cycle(clip: Clip) -> Result<(GaitCycle, Roles), GaitError> {
     let roles = Roles::detect(clip.skeleton());
     let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
-    Ok((GaitCycle::find(&Source::new(Arc::new(clip), &roles), &roles, &contacts)?, roles))
+    Ok((GaitCycle::find(&Motion::with_roles(clip, &roles), &roles, &contacts)?, roles))
 }
 
 fn cycle(action: Action) -> (GaitCycle, Roles) {

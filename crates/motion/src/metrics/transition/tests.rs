@@ -1,8 +1,8 @@
 //! Tests of the metrics of transitions.
 
 use super::*;
-use crate::blend::{Concatenation, DissolveOptions, RootBlend, Source, WeightLaw, dissolve};
-use crate::clip::{ContactOptions, Contacts};
+use crate::blend::{Concatenation, DissolveOptions, RootBlend, WeightLaw, dissolve};
+use crate::clip::{ContactOptions, Contacts, Motion};
 use crate::registration::fixtures::Walk;
 use crate::synth::{Action, Params, synthesize};
 use glam::Quat;
@@ -34,7 +34,7 @@ fn edited(clip: &Clip, edit: impl Fn(usize, &mut [Quat], &mut Vec3)) -> Clip {
 fn profile(clip: &Clip) -> Profile {
     let roles = Roles::detect(clip.skeleton());
     let contacts = Contacts::detect(clip, &roles, &ContactOptions::default());
-    Profile::new(Arc::new(Source::new(Arc::new(clip.clone()), &roles)), &roles, contacts)
+    Profile::new(Arc::new(Motion::with_roles(Arc::new(clip.clone()), &roles)), &roles, contacts)
 }
 
 fn measure(

@@ -1,8 +1,7 @@
 //! Tests of transitions by all methods.
 
 use super::*;
-use crate::blend::Source;
-use crate::clip::{Clip, Interpolation, JointTranslations, resample};
+use crate::clip::{Clip, Interpolation, JointTranslations, Motion, resample};
 use crate::math::Decay;
 use crate::registration::fixtures::Walk;
 use crate::skeleton::Roles;
@@ -20,16 +19,16 @@ const KINDS: [Inertialization; 4] = [
 const ROOT_OPTIONS: [(bool, RootBlend); 3] =
     [(true, RootBlend::Velocity), (true, RootBlend::World), (false, RootBlend::Velocity)];
 
-fn source_of(clip: Clip) -> Source {
+fn source_of(clip: Clip) -> Motion {
     let roles = Roles::detect(clip.skeleton());
-    Source::new(Arc::new(clip), &roles)
+    Motion::with_roles(clip, &roles)
 }
 
-fn source(walk: Walk) -> Source {
+fn source(walk: Walk) -> Motion {
     source_of(walk.clip())
 }
 
-fn two_walks() -> (Source, Source) {
+fn two_walks() -> (Motion, Motion) {
     let a = source(Walk { frames: 120, turning: 0.4, ..Walk::default() });
     let b = source(Walk {
         frames: 260,
@@ -45,9 +44,9 @@ fn two_walks() -> (Source, Source) {
 }
 
 fn made(
-    a: &Source,
+    a: &Motion,
     leave: usize,
-    b: &Source,
+    b: &Motion,
     enter: usize,
     how: Inertialization,
     (align, root): (bool, RootBlend),

@@ -15,23 +15,23 @@ const METHODS: [LoopMethod; 4] = [
     LoopMethod::Classic { half_life_secs: 0.2 },
 ];
 
-fn source_of(clip: Clip) -> Source {
+fn source_of(clip: Clip) -> Motion {
     let roles = Roles::detect(clip.skeleton());
-    Source::new(Arc::new(clip), &roles)
+    Motion::with_roles(clip, &roles)
 }
 
 /// Returns a walk; a stride is 66.7 frames.
-fn walk(frames: usize, turning: f32) -> Source {
+fn walk(frames: usize, turning: f32) -> Motion {
     source_of(Walk { frames, turning, heading: 1.0, start: (3.0, -4.0), ..Walk::default() }.clip())
 }
 
-fn closed(source: &Source, cycle: Range<usize>, method: LoopMethod, ratio: f64) -> Loop {
+fn closed(source: &Motion, cycle: Range<usize>, method: LoopMethod, ratio: f64) -> Loop {
     close_loop(source, cycle, &LoopOptions { method, ratio }).unwrap()
 }
 
 /// Returns the visible seam: joint angles between the last frame of a cycle and the first of the
 /// next, minus those of the clip's own step.
-fn seam_of_frames(source: &Source, cycle: Range<usize>, made: &Loop) -> f32 {
+fn seam_of_frames(source: &Motion, cycle: Range<usize>, made: &Loop) -> f32 {
     let twice = made.repeat(2).unwrap();
     let n = made.clip.frames();
     let own = source.clip();

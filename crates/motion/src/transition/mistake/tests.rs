@@ -36,7 +36,7 @@ fn walk_and_run() -> Pair {
     let roles = Roles::detect(walk.skeleton());
     let profile = |clip: &Arc<Clip>| {
         let contacts = Contacts::detect(clip, &roles, &ContactOptions::default());
-        Profile::new(Arc::new(Source::new(Arc::clone(clip), &roles)), &roles, contacts)
+        Profile::new(Arc::new(Motion::with_roles(Arc::clone(clip), &roles)), &roles, contacts)
     };
     Pair { a: profile(&walk), b: profile(&run), roles }
 }
@@ -116,8 +116,8 @@ fn mistaken_alignment_spins_jumps_or_slides() {
         let wrong = pair.made(method, ROOT_OPTIONS[0], Some(Mistake::WrongFacingAxis));
         let (a, b) = (pair.a.source(), pair.b.source());
         // The first frame is aligned by the projections of the Y axes.
-        let stands = wrong.aligned_b.after(&b.frames()[ENTER]);
-        assert!(stands.shift.distance(a.frames()[LEAVE].shift) < 1e-6);
+        let stands = wrong.aligned_b.after(&b.ground_frames()[ENTER]);
+        assert!(stands.shift.distance(a.ground_frames()[LEAVE].shift) < 1e-6);
         let shadow = |root: Quat| {
             let axis = root * Vec3::Y;
             f64::from(axis.x).atan2(axis.z.into())
@@ -168,7 +168,7 @@ fn mistaken_velocities_stop_the_motion() {
             && way(&right, LEAVE - 1, end - 1).length() > 0.4
     );
     assert!(way(&wrong, end, last).distance(way(&right, end, last)) < 1e-3);
-    let b_stands = wrong.world_from_b.after(&pair.b.source().frames()[ENTER + last - LEAVE]);
+    let b_stands = wrong.world_from_b.after(&pair.b.source().ground_frames()[ENTER + last - LEAVE]);
     assert!(b_stands.shift.distance(wrong.frames[last].shift) < 1e-3);
 }
 

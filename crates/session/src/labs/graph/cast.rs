@@ -1,6 +1,5 @@
 use crate::labs::LabError;
 use crate::labs::Retargeted;
-use crate::labs::pair::source_of;
 use segue_motion::clip::Motion;
 use segue_motion::graph::{FrameSet, JoltSearch, WalkProfile};
 use std::sync::Arc;
@@ -28,8 +27,7 @@ impl Cast {
         let (motions, retargeted): (Vec<_>, Vec<_>) = fitted.into_iter().unzip();
         let first = motions.first().ok_or(LabError::NoGraphClips)?;
         let height = f64::from(first.roles().body_height(first.clip().skeleton()));
-        let sources = motions.iter().map(|motion| Arc::new(source_of(motion))).collect();
-        let set = Arc::new(FrameSet::new(sources, height)?);
+        let set = Arc::new(FrameSet::new(motions.clone(), height)?);
         let contacts = motions.iter().map(|motion| motion.contacts().clone()).collect();
         let profile = WalkProfile::begun(Arc::clone(&set), first.roles(), contacts);
         Ok(Self { names, motions, retargeted, set, profile, jolts: JoltSearch::default() })
