@@ -1,12 +1,12 @@
-//! What the crates cannot say by themselves: the order of the folders inside `segue-motion` and the
-//! app, what the libraries never use, and that nothing unfinished passes. Read from the text of the
-//! sources, so that a violation is reported with its line.
+//! Rules that the crates cannot enforce: the order of the folders inside `segue-motion` and the
+//! app, things that the libraries never use, and that nothing unfinished is merged. They are
+//! checked on the text of the sources, so that a violation is reported with its line.
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The folders of `segue-motion`, each with those that its code may name beside itself.
+/// The folders of `segue-motion`, each with the others that its code may use.
 const MOTION: [(&str, &str); 13] = [
     ("math", ""),
     ("skeleton", "math"),
@@ -25,8 +25,8 @@ const MOTION: [(&str, &str); 13] = [
 
 const BELOW: &str = "math skeleton clip synth registration transition gait blend metrics";
 
-/// The folders of the app, and the worker that reads files, which uses none of them; what they may
-/// name of the app and of the workspace's crates.
+/// The folders of the app, and the worker that reads files, with the folders and crates that each
+/// may use.
 const APP: [(&str, &str); 7] = [
     ("render", "segue_scene segue_motion"),
     ("ui", "segue_scene segue_motion segue_formats segue_session"),
@@ -40,7 +40,7 @@ const APP: [(&str, &str); 7] = [
 /// The crates of the workspace that are libraries.
 const CRATES: [&str; 4] = ["segue_motion", "segue_formats", "segue_session", "segue_scene"];
 
-/// What the libraries never use: screens, the browser, files, clock and threads.
+/// Names that the libraries never use: screens, the browser, files, clock and threads.
 const OUTSIDE: [&str; 12] = [
     "egui",
     "eframe",
@@ -56,7 +56,7 @@ const OUTSIDE: [&str; 12] = [
     "std::time::SystemTime",
 ];
 
-/// Marks of what is unfinished; in halves, so that this file does not hold them.
+/// Marks of unfinished code, in halves so that this file does not contain them.
 const UNFINISHED: [&str; 4] = [
     concat!("#[ign", "ore"),
     concat!("to", "do!"),
@@ -65,21 +65,21 @@ const UNFINISHED: [&str; 4] = [
 ];
 
 #[test]
-fn arrows_go_one_way() {
+fn dependencies_follow_the_order_of_folders() {
     let sources: Vec<_> = ["src", "crates"].into_iter().flat_map(sources).collect();
     let tests = test_modules(&sources);
-    let mut slips = Vec::new();
+    let mut violations_found = Vec::new();
     for (path, text) in
         sources.iter().filter(|(path, _)| is_production(path) && !is_test_file(path, &tests))
     {
-        slips.extend(violations(path, text));
+        violations_found.extend(violations(path, text));
     }
     assert!(sources.len() > 100, "only {} sources found", sources.len());
-    assert!(slips.is_empty(), "\n{}", slips.join("\n"));
+    assert!(violations_found.is_empty(), "\n{}", violations_found.join("\n"));
 }
 
-/// Where labs have names: their own files, the list of choices, the table of parameters whose rows
-/// belong to them.
+/// The places that may name labs: their own files, the list of choices, and the table of
+/// parameters, whose rows belong to them.
 const NAMES_LABS: [&str; 6] = [
     "crates/session/src/labs.rs",
     "crates/session/src/labs/",
@@ -90,10 +90,10 @@ const NAMES_LABS: [&str; 6] = [
 ];
 
 #[test]
-fn no_other_file_names_a_lab() {
+fn labs_are_named_in_their_own_files_only() {
     let sources: Vec<_> = ["src", "crates"].into_iter().flat_map(sources).collect();
     let tests = test_modules(&sources);
-    let mut slips = Vec::new();
+    let mut violations_found = Vec::new();
     let mut known = 0;
     for (path, text) in
         sources.iter().filter(|(path, _)| is_production(path) && !is_test_file(path, &tests))
@@ -102,15 +102,15 @@ fn no_other_file_names_a_lab() {
         if NAMES_LABS.iter().any(|own| path.to_string_lossy().starts_with(own)) {
             known += found.len();
         } else {
-            slips.extend(found);
+            violations_found.extend(found);
         }
     }
     assert!(known > 20, "only {known} names found where labs are");
-    assert!(slips.is_empty(), "\n{}", slips.join("\n"));
+    assert!(violations_found.is_empty(), "\n{}", violations_found.join("\n"));
 }
 
 #[test]
-fn nothing_is_left_unfinished() {
+fn sources_contain_nothing_unfinished() {
     let sources: Vec<_> = [
         "src",
         "crates",
@@ -125,18 +125,18 @@ fn nothing_is_left_unfinished() {
     .flat_map(sources)
     .collect();
     let tests = test_modules(&sources);
-    let mut slips = Vec::new();
+    let mut violations_found = Vec::new();
     for (path, text) in &sources {
-        slips.extend(unfinished(path, text));
+        violations_found.extend(unfinished(path, text));
         if is_production(path) && !is_test_file(path, &tests) {
-            slips.extend(unwraps(path, text));
+            violations_found.extend(unwraps(path, text));
         }
     }
-    assert!(slips.is_empty(), "\n{}", slips.join("\n"));
+    assert!(violations_found.is_empty(), "\n{}", violations_found.join("\n"));
 }
 
 #[test]
-fn a_violation_is_seen() {
+fn violations_are_reported() {
     let found = |path: &str, text: &str| violations(Path::new(path), text);
     assert_eq!(
         found("crates/motion/src/clip/storage.rs", "use crate::math::quat;\nuse super::Clip;\n"),
@@ -170,7 +170,7 @@ fn a_violation_is_seen() {
         ["crates/session/src/link.rs:1: a library names `egui`"]
     );
     assert_eq!(found("src/attic/old.rs", ""), ["src/attic/old.rs:1: `attic` has no row here"]);
-    // Comments and tests may name what they like, but what comes after the tests is code again.
+    // Comments and tests may use any name, but after the tests comes code again.
     let tested =
         "// crate::ui\n#[cfg(test)]\nmod tests {\n    use crate::ui;\n}\nuse crate::app;\n";
     assert_eq!(
@@ -200,7 +200,7 @@ fn a_violation_is_seen() {
     assert!(!is_test_file(Path::new("crates/motion/src/skeleton/tree.rs"), &tests));
 }
 
-/// The Rust files below a folder of the repository, by their paths in it.
+/// Returns the Rust files below a folder of the repository, by their paths in it.
 fn sources(folder: &str) -> Vec<(PathBuf, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut open = vec![root.join(folder)];
@@ -220,7 +220,7 @@ fn sources(folder: &str) -> Vec<(PathBuf, String)> {
     found
 }
 
-/// Whether a file belongs to a crate's `src`, not to its tests, benches or examples.
+/// Returns whether a file belongs to a crate's `src`, not to its tests, benches or examples.
 fn is_production(path: &Path) -> bool {
     path.starts_with("src") || path.iter().nth(2).is_some_and(|folder| folder == "src")
 }
@@ -246,7 +246,7 @@ fn located(path: &Path) -> Vec<String> {
     std::iter::once(folder).chain(modules(path)).collect()
 }
 
-/// The modules in files of their own that are compiled for tests only.
+/// Returns the modules in files of their own that are compiled for tests only.
 fn test_modules(sources: &[(PathBuf, String)]) -> BTreeSet<Vec<String>> {
     let mut found = BTreeSet::new();
     for (path, text) in sources {
@@ -293,18 +293,18 @@ fn is_for_tests(line: &str) -> bool {
         .any(|start| line.starts_with(start))
 }
 
-/// Whether a line begins or continues an attribute. `is_open` says whether the attribute goes on in
-/// the next line.
+/// Returns whether a line begins or continues an attribute. `is_open` says whether the attribute
+/// continues on the next line.
 fn continues_attribute(line: &str, is_open: &mut bool) -> bool {
     let belongs = *is_open || line.starts_with("#[");
     *is_open = belongs && !line.trim_end().ends_with(']');
     belongs
 }
 
-/// The text without comments and without items for tests; its lines stay where they are.
+/// Returns the text without comments and without items for tests; its line numbers stay the same.
 fn code(text: &str) -> String {
     let mut code = String::new();
-    // The line that ends the item for tests, once that is open.
+    // The line that ends the open item for tests.
     let mut end: Option<String> = None;
     let mut for_tests = false;
     let mut in_attribute = false;
@@ -331,7 +331,7 @@ fn code(text: &str) -> String {
     code
 }
 
-/// Where `word` stands in `code` as a whole word.
+/// Returns the positions of `word` in `code` as a whole word.
 fn places<'a>(code: &'a str, word: &'a str) -> impl Iterator<Item = usize> + 'a {
     let is_name = |c: char| c.is_alphanumeric() || c == '_';
     code.match_indices(word).map(|(at, _)| at).filter(move |at| {
@@ -341,7 +341,7 @@ fn places<'a>(code: &'a str, word: &'a str) -> impl Iterator<Item = usize> + 'a 
     })
 }
 
-/// The first names of a path that goes on with `rest`: one name, or those of a group.
+/// Returns the first names of a path that continues with `rest`: one name, or those of a group.
 fn heads(rest: &str) -> Vec<&str> {
     let name =
         |text: &'_ str| text.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(text.len());
@@ -367,7 +367,7 @@ fn heads(rest: &str) -> Vec<&str> {
     names
 }
 
-/// Returns what one source names against the order, a sentence each.
+/// Returns the uses in a source that violate the order, a sentence each.
 fn violations(path: &Path, text: &str) -> Vec<String> {
     let code = code(text);
     let modules = modules(path);
@@ -418,14 +418,14 @@ fn violations(path: &Path, text: &str) -> Vec<String> {
     found.into_iter().map(|(_, slip)| slip).collect()
 }
 
-/// Returns where a source names a lab, a sentence each.
+/// Returns the places where a source names a lab, a sentence each.
 fn named_labs(path: &Path, text: &str) -> Vec<String> {
     let code = code(text);
     let found = places(&code, "LabId").filter(|at| {
         let rest = code[at + "LabId".len()..].strip_prefix("::");
         rest.is_some_and(|rest| rest.starts_with(|c: char| c.is_uppercase() || c == '{'))
     });
-    // `LabId::ALL` and other constants name no lab.
+    // `LabId::ALL` and other constants do not name a lab.
     let is_lab = |at: &usize| {
         let rest = &code[at + "LabId::".len()..];
         rest.chars().nth(1).is_none_or(|c| !c.is_uppercase())

@@ -1,5 +1,5 @@
-//! Artefacts of captured takes, and of takes that were spoiled on purpose, against an independent
-//! implementation (`tests/oracles/artefacts.py`).
+//! Artefact metrics of captured takes, and of takes that were damaged on purpose, compared with an
+//! independent implementation (`tests/oracles/artefacts.py`).
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests: what fails here fails the test")]
 
@@ -49,7 +49,7 @@ fn take(name: &str) -> Clip {
     import(&file, &bytes, &ImportOptions::default()).unwrap().clips.remove(0).clip
 }
 
-/// A clip with each frame changed.
+/// Returns a clip with a change applied to each frame.
 fn altered(clip: &Clip, change: impl Fn(usize, &mut [Quat], &mut Vec3)) -> Clip {
     let (mut rotations, mut roots) = (Vec::new(), Vec::new());
     for frame in 0..clip.frames() {
@@ -96,7 +96,7 @@ fn changed(clip: &Clip, how: &Change) -> Clip {
 }
 
 #[test]
-fn takes_and_artefacts_measure_as_the_oracle_has_it() {
+fn artefacts_of_takes_equal_the_oracle() {
     let cases: Vec<Case> = serde_json::from_str(include_str!("oracles/artefacts.json")).unwrap();
     assert!(cases.len() > 10);
     let close = |a: f64, b: f64| (a - b).abs() <= 0.01 * b.abs() + 1e-3;
@@ -134,8 +134,8 @@ fn takes_and_artefacts_measure_as_the_oracle_has_it() {
 }
 
 #[test]
-fn a_part_of_a_take_does_nothing_that_the_take_does_not() {
-    // Its one glitch is faster than twice what a step in a thousand is, and yet its own.
+fn artefacts_of_a_part_of_its_source_are_none() {
+    // Its one glitch is faster than twice the 99.9th percentile, and yet its own.
     let clip = take("01_01");
     let roles = Roles::detect(clip.skeleton());
     let whole = MotionTrace::new(&clip, &roles);

@@ -1,4 +1,4 @@
-//! Pictures of the bodies made around skeletons, written to the folder that `SEGUE_GALLERY` names.
+//! Pictures of generated bodies, written to the folder in the variable `SEGUE_GALLERY`.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests: what fails here fails the test")]
 
@@ -13,7 +13,7 @@ use segue_motion::synth::{Action, Params, synthesize};
 use std::io::Write as _;
 use std::path::PathBuf;
 
-/// A picture with depth, grey clay on white.
+/// A grey picture with a depth buffer on white.
 struct Canvas {
     width: usize,
     height: usize,
@@ -21,8 +21,8 @@ struct Canvas {
     pixels: Vec<u8>,
 }
 
-/// From where a mesh is seen: turned by `yaw` about the vertical through `middle`, which comes to
-/// the pixel `center`; `scale` in pixels per metre.
+/// A view of a mesh: rotated by `yaw` about the vertical through `middle`, which is at the pixel
+/// `center`; `scale` in pixels per metre.
 struct View {
     yaw: f32,
     middle: Vec3,
@@ -40,7 +40,7 @@ impl Canvas {
         }
     }
 
-    /// Draws a mesh whose vertices are `positions` and `normals`, as `view` sees it.
+    /// Draws a mesh with vertices `positions` and `normals` from a view.
     fn draw(&mut self, positions: &[Vec3], normals: &[Vec3], triangles: &[[u32; 3]], view: &View) {
         let View { yaw, middle, center, scale } = *view;
         let turn = Quat::from_rotation_x(0.12) * Quat::from_rotation_y(yaw);
@@ -120,7 +120,7 @@ fn folder() -> Option<PathBuf> {
     std::env::var_os("SEGUE_GALLERY").map(PathBuf::from)
 }
 
-/// The mesh in each of the poses, from the front, the side and three quarters.
+/// Writes a picture of the mesh in each of the poses, from the front, the side and three quarters.
 fn picture(name: &str, mesh: &SkinnedMesh, poses: &[WorldPose]) {
     let Some(folder) = folder() else { return };
     let (cell, views) = ([420.0, 560.0], [0.0f32, -0.8, -std::f32::consts::FRAC_PI_2, 2.6]);
@@ -146,7 +146,7 @@ fn picture(name: &str, mesh: &SkinnedMesh, poses: &[WorldPose]) {
     std::fs::write(folder.join(format!("{name}.png")), canvas.png()).unwrap();
 }
 
-/// The pose in which the mesh was made.
+/// Returns the pose in which the mesh was generated.
 fn bind_pose(mesh: &SkinnedMesh) -> WorldPose {
     let bind: Vec<_> = mesh.bind.iter().map(|joint_from_bind| joint_from_bind.inverse()).collect();
     WorldPose {
@@ -163,7 +163,7 @@ fn rest_pose(skeleton: &Skeleton) -> WorldPose {
 }
 
 #[test]
-fn the_humanoid_stands_walks_and_runs() {
+fn gallery_of_the_humanoid_is_drawn() {
     let mut poses = Vec::new();
     let mut skeleton = None;
     for (action, secs) in [(Action::Walk, 1.0), (Action::Run, 1.1)] {
@@ -188,8 +188,8 @@ fn the_humanoid_stands_walks_and_runs() {
     picture("humanoid", &mesh, &poses);
 }
 
-/// Four legs, standing still, with joint axes that are turned by constants: its rest pose means
-/// nothing.
+/// Returns a four-legged skeleton standing still, with joint axes rotated by constants, so that its
+/// rest pose is meaningless.
 fn dog() -> Clip {
     let bones: [(&str, Option<usize>, [f32; 3]); 16] = [
         ("Pelvis", None, [0.0, 0.6, -0.3]),
@@ -233,7 +233,7 @@ fn dog() -> Clip {
 }
 
 #[test]
-fn the_takes_of_others_have_bodies_too() {
+fn gallery_of_captured_skeletons_is_drawn() {
     let Some(data) =
         std::env::var_os("SEGUE_SHARED").map(PathBuf::from).filter(|_| folder().is_some())
     else {

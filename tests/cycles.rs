@@ -1,6 +1,6 @@
-//! Cycles of walks and runs: those that are found in a clip, against an exhaustive search, and
-//! clips that are one cycle by themselves. On made motion everywhere, and on captured motion where
-//! this machine has it.
+//! Cycles of walks and runs: those found in a clip, compared with an exhaustive search, and clips
+//! that are a single cycle. On synthesised motion everywhere, and on captured motion if this
+//! machine has it.
 
 #![expect(clippy::unwrap_used, reason = "what fails here fails the test")]
 
@@ -17,7 +17,7 @@ use segue_motion::transition::{CycleSearch, LoopOptions, close_loop, find_cycle}
 use segue_session::{Command, Session};
 use std::sync::Arc;
 
-/// Made walks and runs of several speeds, along lines and curves, and captured ones.
+/// Returns synthesised walks and runs of several speeds, along lines and curves, and captured ones.
 fn gaits() -> Vec<(String, Clip)> {
     let mut all = Vec::new();
     for (action, speed_mps, turn_rate_dps, fps) in [
@@ -57,9 +57,10 @@ fn gaits() -> Vec<(String, Clip)> {
     all
 }
 
-/// The least distance of any two windows that are a cycle apart, centimetres on the reference body,
-/// with the slow distance: no grid, no refinement. As in the search, a foot comes down in a cycle
-/// if one does anywhere, and the whole clip is compared by its ends alone.
+/// Returns the least distance of any two windows that are a cycle apart, centimetres on the
+/// reference body, by the slow distance without grid or refinement. As in the search, a foot must
+/// strike within the cycle if one strikes anywhere, and the whole clip is compared by its ends
+/// alone.
 fn least_cm(clip: &Clip, contacts: &Contacts, body_height: f64, search: &CycleSearch) -> f64 {
     let (frames, fps) = (clip.frames(), clip.fps());
     let weights = limb_weights(clip.skeleton());
@@ -94,7 +95,7 @@ fn least_cm(clip: &Clip, contacts: &Contacts, body_height: f64, search: &CycleSe
 }
 
 #[test]
-fn automatic_cycles_are_as_good_as_those_of_an_exhaustive_search() {
+fn automatic_cycles_equal_the_exhaustive_search() {
     let mut compared = 0;
     for (name, clip) in gaits() {
         let clip = Arc::new(clip);
@@ -118,17 +119,16 @@ fn automatic_cycles_are_as_good_as_those_of_an_exhaustive_search() {
             looped.before.turn_deg,
             found.phase_gap
         );
-        // Half a millimetre is what the fast distance may be off by where windows are all but
-        // equal.
+        // The fast distance may be wrong by half a millimetre for nearly equal windows.
         assert!(found.rms_cm <= 1.1 * least + 0.05, "{name}: {} {least}", found.rms_cm);
         compared += 1;
     }
     assert!(compared >= 7);
 }
 
-/// GAMES-105 hands out one cycle of a walk at 100 frames per second and one of a run at 60.
+/// GAMES-105 provides one cycle of a walk at 100 frames per second and one of a run at 60.
 #[test]
-fn a_course_s_own_pair_of_single_cycles_blends_to_a_speed() {
+fn single_cycles_of_a_course_blend_to_a_speed() {
     let Some(data) = shared_data() else { return };
     let mut session = Session::new();
     let [walk, run] = ["walk_forward.bvh", "run_forward.bvh"].map(|name| {

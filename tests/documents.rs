@@ -1,5 +1,5 @@
-//! The documents agree with the project: the table of parameters in `docs/parameters.md` is the
-//! program's (`cargo xtask docs` writes it), links lead somewhere, and files that a text names
+//! The documents agree with the project: the table of parameters in `docs/parameters.md` is
+//! generated from the program (`cargo xtask docs`), links have targets, and files that a text names
 //! exist.
 
 use segue_session::{Kind, PARAMS, Param};

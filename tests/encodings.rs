@@ -1,5 +1,5 @@
-//! A result depends on the motion, not on how a file writes it down: every lab gives the same for
-//! one motion in ten files.
+//! A result depends on the motion, not on its encoding in a file: every lab gives the same result
+//! for one motion in ten files.
 
 #[path = "../crates/formats/tests/common/mod.rs"]
 mod common;
@@ -25,14 +25,14 @@ struct Subject {
 fn made(name: &'static str, height_m: f32, a: Action, b: Action) -> Subject {
     let make = |action| {
         let params = Params { height_m, ..Params::new(action) };
-        unrepeated(&synthesize(&params).expect("a motion").clip)
+        with_tremor(&synthesize(&params).expect("a motion").clip)
     };
     Subject { name, a: make(a), b: make(b) }
 }
 
-/// The motion with a tremor that never repeats: made gaits are periodic to the last bit, and of two
-/// places that are equally good either may be taken.
-fn unrepeated(clip: &Clip) -> Clip {
+/// Returns the motion with a tremor that never repeats: synthesised gaits are periodic to the last
+/// bit, and either of two equally good places may be found.
+fn with_tremor(clip: &Clip) -> Clip {
     let poses = (0..clip.frames()).map(|frame| {
         let mut pose = clip.pose(frame);
         let t = frame as f32 / clip.fps() as f32;
@@ -46,7 +46,7 @@ fn unrepeated(clip: &Clip) -> Clip {
         .expect("poses of one skeleton")
 }
 
-/// Captured motion, where this machine has it, at 60 frames per second.
+/// Returns captured motion at 60 frames per second, if this machine has it.
 fn captured() -> Vec<Subject> {
     let mut takes = common::captured(&["15", "35"]).into_iter();
     let (Some((_, a)), Some((_, b))) = (takes.next(), takes.next()) else {
@@ -56,9 +56,9 @@ fn captured() -> Vec<Subject> {
     vec![Subject { name: "CMU 16", a: slower(a), b: slower(b) }]
 }
 
-/// The labs with their methods, as links; the last column is how far results may be apart, metres.
-/// Without mirrored copies: which twist about a bone is the mirror image of which is said by the
-/// rest pose alone, and where joints' axes are turned there is none.
+/// The labs with their methods, as links; the last column is the tolerance for results, metres.
+/// Without mirrored copies: the mirror image of a twist about a bone depends on the rest pose,
+/// which has no meaning where the joints' axes are rotated.
 const LABS: [(&str, f32); 23] = [
     ("lab=view", 0.001),
     ("lab=blend", 0.001),
@@ -85,7 +85,7 @@ const LABS: [(&str, f32); 23] = [
     ("lab=in_place&root_way=put_back", 0.005),
 ];
 
-/// The clips of a session that has two files loaded.
+/// Returns a session with two files loaded, and their clips.
 fn loaded(files: [&str; 2]) -> (Session, [String; 2]) {
     let mut session = Session::new();
     let ids = [("first.bvh", files[0]), ("second.bvh", files[1])].map(|(name, text)| {
@@ -95,7 +95,7 @@ fn loaded(files: [&str; 2]) -> (Session, [String; 2]) {
     (session, ids)
 }
 
-/// The result of a lab; what it says where there is none.
+/// Returns the result of a lab, or the reason why there is none.
 fn result(session: &mut Session, [a, b]: &[String; 2], lab: &str) -> Result<Arc<Outcome>, String> {
     let link = format!("{lab}&a={a}&b={b}&clips={a},{b}&match_clips={a},{b}&play=off");
     session.apply(Command::OpenLink(link)).expect("a link is never refused");
@@ -108,7 +108,7 @@ fn result(session: &mut Session, [a, b]: &[String; 2], lab: &str) -> Result<Arc<
     }
 }
 
-/// Where the joints are in the character's frame, by name, frame by frame.
+/// Returns the positions of the joints in the character's frame, by name, frame by frame.
 fn seen_from_character(outcome: &Outcome) -> BTreeMap<String, Vec<Vec3>> {
     let clip = outcome.motion.clip();
     let mut joints: BTreeMap<String, Vec<Vec3>> = BTreeMap::new();
@@ -121,8 +121,8 @@ fn seen_from_character(outcome: &Outcome) -> BTreeMap<String, Vec<Vec3>> {
     joints
 }
 
-/// The largest distance of a joint between two results.
-fn apart(one: &Outcome, other: &Outcome) -> Result<f32, String> {
+/// Returns the largest distance of a joint between two results.
+fn largest_distance(one: &Outcome, other: &Outcome) -> Result<f32, String> {
     let (one, other) = (seen_from_character(one), seen_from_character(other));
     let mut largest = 0.0_f32;
     for (name, positions) in &one {
@@ -137,7 +137,7 @@ fn apart(one: &Outcome, other: &Outcome) -> Result<f32, String> {
     Ok(largest)
 }
 
-/// Runs every lab on every way to write the subject down; returns what differs.
+/// Runs every lab on every encoding of the subject; returns the differences.
 fn differences(subject: &Subject) -> Vec<String> {
     let first = encodings(&subject.a);
     let second = encodings(&subject.b);
@@ -156,17 +156,17 @@ fn differences(subject: &Subject) -> Vec<String> {
             let (mut session, ids) = loaded([a, b]);
             for ((lab, bound), plain) in LABS.iter().zip(&plain) {
                 let made = result(&mut session, &ids, lab);
-                let apart = match (plain, made) {
-                    (Ok(plain), Ok(made)) => apart(plain, &made),
+                let largest_distance = match (plain, made) {
+                    (Ok(plain), Ok(made)) => largest_distance(plain, &made),
                     (_, Err(said)) => Err(said),
                     (Err(said), _) => Err(said.clone()),
                 };
-                match apart {
-                    Ok(apart) if apart <= *bound => {}
-                    Ok(apart) => wrong.push(format!(
+                match largest_distance {
+                    Ok(largest_distance) if largest_distance <= *bound => {}
+                    Ok(largest_distance) => wrong.push(format!(
                         "{}, {name}{placing}: {lab}: {:.1} mm",
                         subject.name,
-                        1000.0 * apart
+                        1000.0 * largest_distance
                     )),
                     Err(said) => {
                         wrong.push(format!("{}, {name}{placing}: {lab}: {said}", subject.name));
@@ -179,10 +179,10 @@ fn differences(subject: &Subject) -> Vec<String> {
 }
 
 #[test]
-fn files_of_one_motion_hold_the_same_joints() {
+fn encodings_of_one_motion_have_the_same_joints() {
     let subject = made("walk", 1.75, Action::Walk, Action::Run);
     let wanted = subject.a.world_positions(0..subject.a.frames());
-    // Left behind, to be held against what other programs make of one motion.
+    // Kept for comparisons with other programs.
     let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("encodings");
     std::fs::create_dir_all(&folder).expect("a folder");
     for (name, text) in encodings(&subject.a) {
@@ -198,19 +198,19 @@ fn files_of_one_motion_hold_the_same_joints() {
 }
 
 #[test]
-fn every_lab_gives_the_same_for_a_made_walk_and_run() {
+fn labs_give_the_same_for_encodings_of_a_walk_and_run() {
     let wrong = differences(&made("grown-up", 1.75, Action::Walk, Action::Run));
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 #[test]
-fn every_lab_gives_the_same_for_a_child() {
+fn labs_give_the_same_for_encodings_of_a_child() {
     let wrong = differences(&made("child", 1.2, Action::Walk, Action::Run));
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 #[test]
-fn every_lab_gives_the_same_for_captured_motion() {
+fn labs_give_the_same_for_encodings_of_captured_motion() {
     let wrong: Vec<String> = captured().iter().flat_map(differences).collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }

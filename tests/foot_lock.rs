@@ -1,5 +1,5 @@
-//! Feet that slide in a transition are planted: on captured motion, where this machine has it, and
-//! on made motion everywhere.
+//! The foot lock in transitions: on captured motion if this machine has it, and on synthesised
+//! motion everywhere.
 
 #[path = "../crates/formats/tests/common/mod.rs"]
 mod common;
@@ -36,7 +36,7 @@ impl Take {
     }
 }
 
-/// Takes of subject 16 of the CMU database; none where the data is not there.
+/// Returns takes of subject 16 of the CMU database; empty if the data is missing.
 fn takes(wanted: &[&'static str]) -> Vec<Take> {
     captured(wanted).into_iter().map(|(name, clip)| Take::new(name, clip)).collect()
 }
@@ -82,7 +82,7 @@ fn measured(
     })
 }
 
-/// The largest angular velocity of a knee, degrees per second.
+/// Returns the largest angular velocity of a knee, degrees per second.
 fn fastest_knee(clip: &Clip, roles: &Roles) -> f32 {
     let knees = Side::BOTH.map(|side| roles.get(Role::shin(side)).expect("legs have knees"));
     let step = |frame: usize, knee: usize| {
@@ -92,7 +92,8 @@ fn fastest_knee(clip: &Clip, roles: &Roles) -> f32 {
     steps.fold(0.0, f32::max).to_degrees() * clip.fps() as f32
 }
 
-/// Skate before and after, centimetres, and the fastest knee before and after, degrees per second.
+/// Returns foot skating before and after, centimetres, and the fastest knee before and after,
+/// degrees per second.
 fn locked(a: &Take, b: &Take) -> ([f64; 2], [f32; 2]) {
     let (out, enter) = joined(a, b);
     let contacts = Contacts::joined(
@@ -115,7 +116,7 @@ fn locked(a: &Take, b: &Take) -> ([f64; 2], [f32; 2]) {
 }
 
 #[test]
-fn walk_to_run_of_cmu_16_loses_nine_tenths_of_its_skate_and_no_knee_pops() {
+fn walk_to_run_with_the_foot_lock_loses_nine_tenths_of_its_skating() {
     for pair in takes(&["15", "35"]).chunks_exact(2) {
         let (skate, knees) = locked(&pair[0], &pair[1]);
         assert!(skate[0] > 0.5 && skate[1] <= 0.1 * skate[0], "{skate:?}");
@@ -124,7 +125,7 @@ fn walk_to_run_of_cmu_16_loses_nine_tenths_of_its_skate_and_no_knee_pops() {
 }
 
 #[test]
-fn made_walks_and_runs_lose_their_skate_too() {
+fn synthesised_walks_and_runs_with_the_foot_lock_lose_their_skating() {
     let [walk, run] = [Action::Walk, Action::Run].map(|action| {
         let made = synthesize(&Params::new(action)).expect("defaults can be made");
         Take::new(made.clip.name(), made.clip.clone())
@@ -136,10 +137,10 @@ fn made_walks_and_runs_lose_their_skate_too() {
     }
 }
 
-/// Automatic frames, whatever pair: the feet of most transitions stand, and hardly a knee is
-/// hurried.
+/// With automatic frames, for any pair, the feet of most transitions stand, and hardly any knee
+/// moves faster.
 #[test]
-fn pairs_of_cmu_16_stand_still() {
+fn captured_pairs_with_the_foot_lock_stand_still() {
     let takes = takes(&["05", "11", "15", "17", "22", "35", "43", "55"]);
     let (mut skates, mut hurried) = (vec![], 0);
     for a in &takes {

@@ -1,5 +1,5 @@
-//! The lessons that come with Segue: what they consist of, that their links do what they say, and
-//! that their numbers are those of the program.
+//! The bundled lessons: they are complete, their links do what they say, and their numbers are
+//! those of the program.
 
 mod bundled;
 
@@ -35,7 +35,7 @@ fn queries(page: &Page) -> Vec<String> {
 }
 
 #[test]
-fn every_lesson_has_its_parts_in_both_languages() {
+fn lessons_have_all_parts_in_both_languages() {
     for lesson in LESSONS {
         let pages = LANGUAGES.map(|language| page(language, lesson));
         for page in &pages {
@@ -53,7 +53,7 @@ fn every_lesson_has_its_parts_in_both_languages() {
 }
 
 #[test]
-fn the_list_is_that_of_the_files() {
+fn lessons_are_listed_completely() {
     for language in LANGUAGES {
         let files: BTreeSet<String> = std::fs::read_dir(folder(language))
             .expect("the folder of the lessons")
@@ -76,8 +76,8 @@ fn the_list_is_that_of_the_files() {
     }
 }
 
-/// A session with a lesson open and one of its links tried, the bundled takes that it names there,
-/// all work done.
+/// Returns a session with a lesson open and one of its links tried, with the bundled takes that the
+/// lesson names, and all work done.
 fn tried(lesson: &str, query: &str) -> Session {
     let mut session = Session::new();
     session.apply(Command::OpenLink(format!("lesson={lesson}"))).expect("a link is never refused");
@@ -93,7 +93,7 @@ fn tried(lesson: &str, query: &str) -> Session {
 const CRASHES: [&str; 2] = ["", "blend_window=30"];
 
 #[test]
-fn every_link_is_understood_and_gives_what_it_promises() {
+fn links_of_lessons_give_results() {
     let (mut checked, mut wrong) = (0, Vec::new());
     for lesson in LESSONS {
         let page = page("en", lesson);
@@ -131,12 +131,11 @@ fn every_link_is_understood_and_gives_what_it_promises() {
     assert_eq!(checked, QUOTED.len(), "numbers of links that no lesson has");
 }
 
-/// Where a number of a pane lies: the pane, the number's id, at least, at most.
+/// The bounds of a number: the pane, the number's id, the least and the greatest value.
 type Bounds = (usize, &'static str, f64, f64);
 
-/// The lessons about labs that can work with captured motion, and what some numbers may be there:
-/// the pane, the id, the least and the most. The bounds are those of a result that a person would
-/// take for right; what exactly it is changes with the program.
+/// The lessons about labs that work with captured motion, and bounds of some of their numbers. The
+/// bounds are those of a plausible result; the exact values change with the program.
 const REAL: &[(&str, &[Bounds])] = &[
     (
         "loops",
@@ -159,7 +158,8 @@ const REAL: &[(&str, &[Bounds])] = &[
     ("motion_matching", &[(0, "match_error", 0.0, 30.0), (0, "match_seams", 5.0, 200.0)]),
 ];
 
-/// What is wrong with the numbers of captured motion. Every number that there is is a number.
+/// Returns the violations of the bounds of captured motion. Every number that exists must be
+/// finite.
 fn check_bounds(what: &str, session: &Session, bounds: &[(usize, &str, f64, f64)]) -> Vec<String> {
     let mut wrong = Vec::new();
     for (index, pane) in session.panes().iter().enumerate() {
@@ -194,7 +194,7 @@ fn check_bounds(what: &str, session: &Session, bounds: &[(usize, &str, f64, f64)
 }
 
 #[test]
-fn links_to_captured_motion_give_results_with_sane_numbers() {
+fn links_to_captured_motion_have_plausible_numbers() {
     let mut wrong = Vec::new();
     for (lesson, bounds) in REAL {
         let real = LANGUAGES.map(|language| {
@@ -209,7 +209,7 @@ fn links_to_captured_motion_give_results_with_sane_numbers() {
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
 }
 
-/// The links to captured motion in `docs/labs.md`, by what they begin with.
+/// The links to captured motion in `docs/labs.md`, by their beginnings.
 const LAB_LINKS: &[(&str, &[Bounds])] = &[
     (
         "lab=speed",
@@ -226,7 +226,7 @@ const LAB_LINKS: &[(&str, &[Bounds])] = &[
 ];
 
 #[test]
-fn links_of_the_labs_document_give_results_with_sane_numbers() {
+fn links_of_the_labs_document_have_plausible_numbers() {
     let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/labs.md"))
         .expect("the document");
     let links: Vec<&str> = (text.split("<code>?").skip(1))
@@ -255,8 +255,8 @@ fn links_of_the_labs_document_give_results_with_sane_numbers() {
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
 }
 
-/// What a lesson says of a number: the lesson, the link, the pane, the number's id, and the words
-/// in both languages.
+/// Numbers that lessons quote: the lesson, the link, the pane, the number's id, and the words in
+/// both languages.
 const QUOTED: &[(&str, &str, usize, &str, &str)] = &[
     ("alignment", "align=off", 0, "spin_deg", "23°"),
     ("alignment", "align=off", 0, "foot_slide_cm", "153 cm"),
@@ -361,16 +361,16 @@ const QUOTED: &[(&str, &str, usize, &str, &str)] = &[
     ("foot_skate", "leave_a=auto&enter_b=auto&foot_lock=on", 0, "foot_slide_cm", "0.0 cm"),
 ];
 
-/// Whether words such as `3.7 cm` are what a value is rounded to.
+/// Returns whether words such as `3.7 cm` are the rounded value.
 fn is_rounded(words: &str, value: f64) -> bool {
     let digits: String = words.chars().take_while(|c| c.is_ascii_digit() || *c == '.').collect();
     let decimals = digits.split_once('.').map_or(0, |(_, after)| after.len());
-    // Halves may go either way: the last bits differ between machines.
+    // Halves may be rounded either way: the last bits differ between machines.
     let unit = 10f64.powi(-(decimals as i32));
     digits.parse::<f64>().is_ok_and(|quoted| (quoted - value).abs() <= 0.51 * unit)
 }
 
-/// How many numbers the lesson says of a state; what it says wrongly is added to `wrong`.
+/// Returns how many numbers the lesson quotes for a state; wrong ones are added to `wrong`.
 fn check_numbers(lesson: &str, query: &str, session: &Session, wrong: &mut Vec<String>) -> usize {
     let said = QUOTED.iter().filter(|quoted| (quoted.0, quoted.1) == (lesson, query));
     said.map(|&(_, _, pane, id, words)| {
@@ -390,7 +390,7 @@ fn check_numbers(lesson: &str, query: &str, session: &Session, wrong: &mut Vec<S
 }
 
 #[test]
-fn graphs_have_as_many_transitions_as_the_lessons_say() {
+fn graphs_of_lessons_have_the_quoted_transitions() {
     let cases = [
         ("distance_matrix", "", 0, "638", 74.0),
         ("distance_matrix", "edge_threshold=4", 0, "136", 51.0),

@@ -1,11 +1,11 @@
-//! Links that stand somewhere stay valid: every one in the documents, lessons and tests is read, and
-//! written again as it was.
+//! Published links stay valid: every one in the documents, lessons and tests is read, and written
+//! again unchanged.
 
 use segue_session::{Key, Kind, Params, link};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Where links stand; in the first three none may be refused.
+/// The places of links; in the first three none may be refused.
 const PLACES: [&str; 9] = [
     "README.md",
     "docs",
@@ -19,7 +19,7 @@ const PLACES: [&str; 9] = [
 ];
 const DOCUMENTS: usize = 3;
 
-/// The text files at or below a path.
+/// Returns the text files at or below a path.
 fn files(path: PathBuf) -> Vec<PathBuf> {
     if !path.is_dir() {
         let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
@@ -29,7 +29,7 @@ fn files(path: PathBuf) -> Vec<PathBuf> {
     entries.flat_map(|entry| files(entry.expect("an entry").path())).collect()
 }
 
-/// The links in a text, without `?`: what begins with a parameter's name and `=`, up to what ends an
+/// Returns the links in a text, without `?`: from a parameter's name and `=` to the end of an
 /// address or a literal.
 fn links(text: &str) -> Vec<&str> {
     let ends = |letter: char| letter.is_whitespace() || "\"`<>'|{}\\".contains(letter);
@@ -44,7 +44,7 @@ fn links(text: &str) -> Vec<&str> {
     parts.filter(is_link).collect()
 }
 
-/// The text up to the bracket that closes what was opened before it.
+/// Returns the text up to the closing bracket of one that was opened before it.
 fn closed(text: &str) -> &str {
     let mut depth = 0_i32;
     let end = text.char_indices().find(|(_, letter)| {
@@ -54,8 +54,7 @@ fn closed(text: &str) -> &str {
     end.map_or(text, |(at, _)| &text[..at])
 }
 
-/// What is wrong with a link: its values are written otherwise than they stand there, or read
-/// otherwise again.
+/// Returns the change if a link's values are written or read differently than they are.
 fn changed(query: &str) -> Option<String> {
     let read = link::read(query);
     let mut params = Params::default();
@@ -67,12 +66,12 @@ fn changed(query: &str) -> Option<String> {
     for (key, value) in link::read(&written).values {
         again.set(key, value).expect("links hold checked values");
     }
-    // While time runs, the playhead is left out.
+    // The playhead is excluded, because it moves.
     again.set(Key::Time, params.get(Key::Time).clone()).expect("a time");
     if again != params {
         return Some(format!("`{query}` is written as `{written}`, which is another state"));
     }
-    // Numbers and switches have several forms; all else has the one that stands there.
+    // Numbers and switches have several forms; all other values have one.
     let pairs = form_urlencoded::parse(query.as_bytes());
     let other = pairs.into_iter().find(|(name, text)| {
         let param = Key::from_name(name).map(Key::param);
@@ -85,7 +84,7 @@ fn changed(query: &str) -> Option<String> {
 }
 
 #[test]
-fn every_link_is_written_again_as_it_was() {
+fn links_are_written_unchanged() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut wrong = Vec::new();
     let mut count = 0;

@@ -1,5 +1,4 @@
-//! Paths of motions, edited: on made motion everywhere, and on captured motion where this machine
-//! has it.
+//! Path editing: on synthesised motion everywhere, and on captured motion if this machine has it.
 
 #[path = "../crates/formats/tests/common/mod.rs"]
 mod common;
@@ -54,8 +53,8 @@ fn every_option() -> impl Iterator<Item = CarryOptions> {
     TIMINGS.into_iter().flat_map(of)
 }
 
-/// The largest distance between joints, metres, and the largest angle between rotations of joints,
-/// radians.
+/// Returns the largest distance between joints, metres, and the largest angle between rotations of
+/// joints, radians.
 fn difference(a: &Clip, b: &Clip) -> (f32, f32) {
     assert_eq!(a.frames(), b.frames());
     let (mut far, mut turned) = (0.0f32, 0.0f32);
@@ -109,7 +108,7 @@ fn assert_same(path: &FittedPath, what: &str) {
 }
 
 #[test]
-fn a_path_that_is_not_edited_gives_the_motion_back() {
+fn path_without_edits_keeps_the_motion() {
     let mut stood = vec![];
     for preset in presets() {
         let (source, _) = made(&preset.params);
@@ -135,7 +134,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
 
     #[test]
-    fn control_points_that_move_rigidly_move_the_motion_rigidly(
+    fn path_moved_rigidly_moves_the_motion_rigidly(
         yaw in -3.0f64..3.0, x in -20.0f64..20.0, z in -20.0f64..20.0, preset in 0usize..7, control_points in 4usize..20
     ) {
         let (source, _) = made(&presets()[preset].params);
@@ -151,10 +150,10 @@ proptest! {
         }
     }
 
-    /// Whatever is done to the path: in every frame the body is the one of the original, moved over
-    /// the ground; and the same is made twice.
+    /// Whatever the path, in every frame the body is that of the original moved over the ground;
+    /// and the result is deterministic.
     #[test]
-    fn joints_keep_their_distances(points in prop::collection::vec((-3.0f64..3.0, -3.0f64..3.0), 4..10), closed: bool) {
+    fn path_of_any_shape_keeps_the_body(points in prop::collection::vec((-3.0f64..3.0, -3.0f64..3.0), 4..10), closed: bool) {
         let (source, _) = walk();
         let path = FittedPath::new(source, &options(6)).unwrap();
         let mut spline = GroundSpline::uniform(points.into_iter().map(DVec2::from).collect()).unwrap();
@@ -177,7 +176,7 @@ proptest! {
     }
 }
 
-/// A walk, its path, and the path with its middle dragged sideways.
+/// Returns a walk, its path, and the path with its middle dragged sideways.
 fn bow(by: f64) -> (FittedPath, Roles, Road) {
     let (source, roles) = walk();
     let path = FittedPath::new(source, &options(8)).expect("a walk goes somewhere");
@@ -187,10 +186,10 @@ fn bow(by: f64) -> (FittedPath, Roles, Road) {
     (path, roles, Road::new(edited).expect("it has a length"))
 }
 
-/// Beside the fast way stands the slow one: lengths by many chords, frames by small steps along the
-/// path.
+/// The slow implementation beside the fast one: lengths by many chords, frames by small steps along
+/// the path.
 #[test]
-fn metres_are_kept() {
+fn timing_by_metres_keeps_distances() {
     let (path, _, edited) = bow(1.0);
     let out = carry(&path, &edited, &CarryOptions::default()).unwrap();
     let samples = 200_000;
@@ -225,7 +224,7 @@ fn metres_are_kept() {
 }
 
 #[test]
-fn speed_or_duration_are_kept() {
+fn timing_keeps_speed_or_duration() {
     let (path, _, edited) = bow(3.0);
     assert!(edited.length_m() > 1.1 * path.road().length_m());
     let with = |timing| {
@@ -238,7 +237,7 @@ fn speed_or_duration_are_kept() {
     assert_eq!(duration.clip.frames(), path.source().clip().frames());
     let grown = speed.clip.frames() as f64 / duration.clip.frames() as f64;
     assert!((grown - edited.length_m() / path.road().length_m()).abs() < 0.02, "{grown}");
-    // Step by step as fast as the original at the same moment.
+    // Frame by frame as fast as the original at the same moment.
     let fps = speed.clip.fps();
     for frame in 1..speed.clip.frames() {
         let own = (speed.places[frame].along_m - speed.places[frame - 1].along_m) * fps;
@@ -246,14 +245,14 @@ fn speed_or_duration_are_kept() {
         let original = (path.places()[at + 1].along_m - path.places()[at].along_m) * fps;
         assert!((own - original).abs() < 0.1, "{frame}: {own} {original}");
     }
-    // What lies away from the dragged point is not touched.
+    // Far from the dragged point nothing changes.
     let (far, turned) =
         difference(&duration.clip.crop(0..30).unwrap(), &path.source().clip().crop(0..30).unwrap());
     assert!(far < 1e-4 && turned < 1e-4, "{far} {turned}");
 }
 
 #[test]
-fn the_body_faces_as_before_where_it_shall() {
+fn facing_is_kept_on_request() {
     let (path, roles, edited) = bow(2.0);
     let options = CarryOptions { orientation: Orientation::World, ..CarryOptions::default() };
     let out = carry(&path, &edited, &options).unwrap();
@@ -268,7 +267,7 @@ fn the_body_faces_as_before_where_it_shall() {
 }
 
 #[test]
-fn the_offset_from_the_path_stays_in_the_world_where_it_shall() {
+fn offset_stays_in_the_world_on_request() {
     let (path, roles, edited) = bow(2.0);
     for orientation in [Orientation::Path, Orientation::World] {
         let options =
@@ -291,7 +290,7 @@ fn the_offset_from_the_path_stays_in_the_world_where_it_shall() {
 }
 
 #[test]
-fn unclamped_control_points_make_the_same_path() {
+fn path_with_unclamped_ends_is_the_same() {
     for count in [4, 5, 9] {
         let with = |ends| {
             let (source, _) = made(&Params {
@@ -308,16 +307,16 @@ fn unclamped_control_points_make_the_same_path() {
             let u = f64::from(k) / 100.0;
             assert!(clamped.position(u).distance(uniform.position(u)) < 1e-9);
         }
-        // The matrix of a uniform piece: the path begins in (P0 + 4 P1 + P2)/6, and leaves there
-        // along P2 - P0.
+        // The matrix of a uniform piece: the path begins in (P0 + 4 P1 + P2)/6, in the direction P2
+        // - P0.
         let (p, end) = (uniform.points(), uniform.points().len() - 1);
         let mean = |a: DVec2, b: DVec2, c: DVec2| (a + b * 4.0 + c) / 6.0;
         assert!(mean(p[0], p[1], p[2]).distance(uniform.position(0.0)) < 1e-9);
         assert!(mean(p[end], p[end - 1], p[end - 2]).distance(uniform.position(1.0)) < 1e-9);
         let way = p[2] - p[0];
         assert!((way.x.atan2(way.y) - uniform.heading(0.0)).abs() < 1e-9);
-        // The first point moves the path where its share is 1/6 at most; clamped it takes the start
-        // along.
+        // The first point moves the path by at most 1/6 of its own motion; clamped, it moves the
+        // start as well.
         let by = DVec2::new(0.6, 0.0);
         let start = |spline: &GroundSpline, pins: Pins| {
             let to = spline.points()[0] + by;
@@ -328,7 +327,7 @@ fn unclamped_control_points_make_the_same_path() {
         assert!(start(&clamped, FREE).unwrap().distance(by) < 1e-9);
         let pinned = Pins { start: true, ..FREE };
         assert_eq!(start(&uniform, pinned), Err(PathEditError::Pinned));
-        // Everything else that is done to it is done to the curve.
+        // All other operations apply to the curve.
         for edit in [
             PathEdit::Insert { at: 0.4 },
             PathEdit::Rotate { radians: 0.5 },
@@ -346,7 +345,7 @@ fn unclamped_control_points_make_the_same_path() {
 }
 
 #[test]
-fn feet_stand_again() {
+fn foot_lock_on_an_edited_path_plants_the_feet() {
     let lock = Some(FootLockOptions::default());
     let mut checked = 0;
     let made =
@@ -356,7 +355,7 @@ fn feet_stand_again() {
         let contacts = Contacts::detect(source.clip(), &roles, &ContactOptions::default());
         let path = FittedPath::new(source, &options(6)).unwrap();
         let spline = path.road().spline();
-        // Square to the way from end to end.
+        // At right angles to the line between the ends.
         let way = spline.points()[5] - spline.points()[0];
         let to =
             spline.points()[3] + way.perp().normalize_or_zero() * 0.15 * path.road().length_m();
@@ -371,8 +370,8 @@ fn feet_stand_again() {
             let (Some(carried), Some(locked)) = (out.slide_cm.carried, out.slide_cm.locked) else {
                 continue;
             };
-            // This one goes there and back: where it turns round, six control points are no path,
-            // and no foot can be held.
+            // This one goes there and back: where it turns round, six control points do not make a
+            // path, and no foot can be locked.
             let limit =
                 if name.ends_with("01_01.bvh") { carried } else { (0.25 * carried).max(0.5) };
             assert!(locked <= limit, "{name} {timing:?}: {carried} → {locked} cm");
@@ -383,7 +382,7 @@ fn feet_stand_again() {
 }
 
 #[test]
-fn standing_feet_do_not_turn_with_a_bent_path() {
+fn foot_lock_on_a_bent_path_keeps_the_yaw_of_feet() {
     for params in [
         Params { height_m: 1.9, seed: 632, ..Params::new(Action::Jump) },
         Params::new(Action::Walk),
@@ -411,8 +410,8 @@ fn standing_feet_do_not_turn_with_a_bent_path() {
 }
 
 #[test]
-fn behind_the_end_of_a_shorter_path_a_motion_goes_on_as_it_did() {
-    // This path hooks at its end by 3° a frame, since the hips sway.
+fn motion_beyond_the_end_of_a_path_continues() {
+    // The hips sway, so this path turns at its end by 3° per frame.
     let mut params = Params {
         speed_mps: 0.65,
         turn_rate_dps: -8.0,
@@ -437,7 +436,7 @@ fn behind_the_end_of_a_shorter_path_a_motion_goes_on_as_it_did() {
         assert!((was.yaw - is.yaw).abs() < 1e-9, "{pair:?}: {was:?} {is:?}");
         assert!(was.shift.distance(is.shift) < 1e-9, "{pair:?}: {was:?} {is:?}");
     }
-    // It does not leap at the end.
+    // No jump at the end.
     let step = |frames: &[Planar]| frames[behind[0] - 1].inverse().after(&frames[behind[0]]);
     let (was, is) = (step(source.ground_frames()), step(&carried.characters));
     assert!(
@@ -447,7 +446,7 @@ fn behind_the_end_of_a_shorter_path_a_motion_goes_on_as_it_did() {
 }
 
 #[test]
-fn turns_that_are_too_sharp_are_told() {
+fn path_with_sharp_turns_reports_them() {
     let (path, _, gentle) = bow(0.2);
     let out = carry(&path, &gentle, &CarryOptions::default()).unwrap();
     assert_eq!(hard_turns(&path, &out), []);
@@ -462,7 +461,7 @@ fn turns_that_are_too_sharp_are_told() {
 }
 
 #[test]
-fn degenerate_ways_work_or_say_why_not() {
+fn path_of_a_degenerate_motion_works_or_is_refused() {
     let (idle, _) = made(&Params::new(Action::Idle));
     let error = FittedPath::new(idle, &FitOptions::default()).unwrap_err();
     assert!(error.to_string().contains("no path to edit"), "{error}");
@@ -477,13 +476,13 @@ fn degenerate_ways_work_or_say_why_not() {
     // A fifth of a second, with more control points than frames.
     let (short, _) = source(source_of_walk.clip().crop(0..12).unwrap());
     assert_same(&FittedPath::new(short, &options(16)).unwrap(), "short");
-    // More than a whole circle, over its own beginning.
+    // More than a full circle, beyond its own beginning.
     let round = Params { duration_secs: 9.0, turn_rate_dps: 60.0, ..Params::new(Action::Walk) };
     let (round, _) = made(&round);
     let path = FittedPath::new(round, &options(12)).unwrap();
     assert_same(&path, "round");
     assert!(path.error().most_cm < 20.0, "{:?}", path.error());
-    // A walk on a loop goes round and round.
+    // A walk on a closed path continues around it.
     let (path, _, _) = bow(0.0);
     let ring = path.road().spline().edited(&PathEdit::Scale { factor: 0.4 }, FREE).unwrap();
     let ring = Road::new(ring.edited(&PathEdit::Close, FREE).unwrap()).unwrap();

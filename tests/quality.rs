@@ -1,5 +1,5 @@
-//! Every lab on motions that nobody chose: synthesised ones everywhere, captured ones where this
-//! machine has them. `cargo xtask quality` does so for any folder, and prints the numbers.
+//! Every lab on randomly drawn motions: synthesised ones everywhere, captured ones if this machine
+//! has them. `cargo xtask quality` does the same for any folder, and prints the numbers.
 
 #[path = "../crates/formats/tests/common/mod.rs"]
 mod common;
@@ -8,13 +8,13 @@ mod trials;
 
 use segue_session::{Command, write_ids};
 use trials::folder::{Motions, encoded};
-use trials::trial::{Came, Drawn, Numbers, Trial, try_all};
+use trials::trial::{Draw, Numbers, Trial, TrialResult, try_all};
 
 /// Labs whose results on close pairs, and on sets of takes, have no artefact of their own.
 const SMOOTH: [&str; 7] = ["blend", "transition", "speed", "loop", "layers", "register", "match"];
 
-/// What holds for all results; how many there are.
-fn what_holds_everywhere(trials: &[Trial]) -> usize {
+/// Asserts what holds for all results; returns their number.
+fn assert_invariants(trials: &[Trial]) -> usize {
     let mut made = 0;
     for trial in trials {
         let faults = trial.faults();
@@ -24,18 +24,18 @@ fn what_holds_everywhere(trials: &[Trial]) -> usize {
             &["panic", "not finite", "refused without a word"]
         };
         assert!(!faults.iter().any(|fault| asked.contains(fault)), "{faults:?}: {trial:#?}");
-        made += usize::from(matches!(trial.came, Came::Made(_)));
+        made += usize::from(matches!(trial.result, TrialResult::Made(_)));
     }
     made
 }
 
-/// The mean skating of a lab's results, without and with planted feet, cm/s.
+/// Returns the mean foot skating of a lab's results, without and with the foot lock, cm/s.
 fn skating(trials: &[Trial], lab: &str) -> [f64; 2] {
     [false, true].map(|locked| {
         let own = trials.iter().filter(|trial| trial.lab == lab && trial.locked == locked);
         let values: Vec<f64> = own
-            .filter_map(|trial| match &trial.came {
-                Came::Made(numbers) => numbers.skating,
+            .filter_map(|trial| match &trial.result {
+                TrialResult::Made(numbers) => numbers.skating,
                 _ => None,
             })
             .collect();
@@ -45,7 +45,7 @@ fn skating(trials: &[Trial], lab: &str) -> [f64; 2] {
 }
 
 #[test]
-fn skating_is_a_fault_where_it_can_be_seen() {
+fn skating_below_visibility_is_no_fault() {
     let faults = |skating: f64, source_skating: f64| {
         let numbers = Numbers {
             skating: Some(skating),
@@ -55,17 +55,17 @@ fn skating_is_a_fault_where_it_can_be_seen() {
         let trial = Trial {
             lab: "blend",
             method: String::new(),
-            drawn: Drawn::SameRig,
+            draw: Draw::SameRig,
             takes: Vec::new(),
             link: String::new(),
             locked: true,
             bound: true,
             secs: 0.0,
-            came: Came::Made(Box::new(numbers)),
+            result: TrialResult::Made(Box::new(numbers)),
         };
         trial.faults()
     };
-    // Feet that stand: a share of next to nothing says nothing.
+    // Feet that stand: the ratio of two tiny numbers means nothing.
     assert!(faults(0.07, 0.06).is_empty() && faults(0.01, 0.0).is_empty());
     assert_eq!(faults(0.64, 0.05), ["skating"]);
     assert!(faults(10.4, 10.0).is_empty());
@@ -73,25 +73,25 @@ fn skating_is_a_fault_where_it_can_be_seen() {
 }
 
 #[test]
-fn synthesised_motions_have_no_artefacts_in_any_lab() {
+fn labs_on_synthesised_motions_have_no_artefacts() {
     let motions = Motions::synthesised(20, 3);
     assert!(motions.refused.is_empty() && motions.panics.is_empty(), "{motions:?}");
     let trials = try_all(&motions, 2, 5);
-    let made = what_holds_everywhere(&trials);
+    let made = assert_invariants(&trials);
     assert!(made > 200 && made * 10 > trials.len() * 8, "{made} of {}", trials.len());
     let [free, locked] = skating(&trials, "match");
     assert!(locked < free, "{free} {locked}");
 }
 
 #[test]
-fn captured_motions_have_no_artefacts_in_any_lab() {
+fn labs_on_captured_motions_have_no_artefacts() {
     let Some(folder) = common::subject_16() else {
         return;
     };
     let motions = Motions::of_folder(&folder).expect("the folder can be read");
     assert!(motions.takes.len() >= 15 && motions.refused.is_empty(), "{:?}", motions.refused);
     let trials = try_all(&motions, 3, 2);
-    assert!(what_holds_everywhere(&trials) > 150);
+    assert!(assert_invariants(&trials) > 150);
     for lab in ["blend", "transition", "match"] {
         let [free, locked] = skating(&trials, lab);
         assert!(locked < 0.9 * free, "{lab}: {free} {locked}");
@@ -99,7 +99,7 @@ fn captured_motions_have_no_artefacts_in_any_lab() {
 }
 
 #[test]
-fn a_long_walk_through_captured_motion_neither_spins_nor_flashes() {
+fn walk_through_captured_motion_has_no_spins_and_flashes() {
     let Some(folder) = common::subject_16() else {
         return;
     };

@@ -1,4 +1,4 @@
-//! Roles, mirror images, other skeletons and contacts on real captures. Passes without the files,
+//! Roles, mirroring, retargeting and contacts on captured motion. The tests pass without the files,
 //! which are not part of the project.
 
 #[path = "../crates/formats/tests/common/mod.rs"]
@@ -35,7 +35,7 @@ const GAMES: [&str; 6] = [
 const CMU: [&str; 2] = ["cmu/01_01.bvh", "cmu/run.bvh"];
 
 #[test]
-fn all_roles_are_found_by_name_and_shape_agrees() {
+fn roles_by_name_and_by_shape_agree() {
     for (clip, roles) in clips(&[&GAMES[..], &CMU, &["cmu/pirouette.bvh"]].concat()) {
         // One of the rigs has no toes.
         let wanted: &[Role] =
@@ -55,7 +55,7 @@ fn all_roles_are_found_by_name_and_shape_agrees() {
 }
 
 #[test]
-fn clips_of_one_rig_move_to_each_other_and_back_without_loss() {
+fn retargeting_between_equal_rigs_is_lossless() {
     let clips = clips(&GAMES);
     for (clip, roles) in &clips {
         for (other, other_roles) in &clips {
@@ -77,7 +77,7 @@ fn clips_of_one_rig_move_to_each_other_and_back_without_loss() {
 }
 
 #[test]
-fn mirrored_twice_is_the_original() {
+fn mirror_applied_twice_is_the_original() {
     for (clip, roles) in clips(&[&GAMES[..], &CMU].concat()) {
         let once = mirror(&clip, &roles).unwrap();
         let twice = mirror(&once, &roles).unwrap();
@@ -92,7 +92,7 @@ fn mirrored_twice_is_the_original() {
         for (a, b) in
             character_frames(&clip, &roles).iter().zip(character_frames(&once, &roles)).step_by(5)
         {
-            // Rigs are a little uneven; the facing is that of the mirror to within a degree.
+            // Rigs are slightly asymmetric; the facing is mirrored to within a degree.
             assert!(
                 (a.forward().z - b.forward().z).abs() < 0.02
                     && (a.forward().x + b.forward().x).abs() < 0.02,
@@ -103,10 +103,10 @@ fn mirrored_twice_is_the_original() {
     }
 }
 
-/// Measured: a walk at 1.2 m/s stands on each foot for 0.6 to 0.75 s, a sprint at 5.7 m/s for less
-/// than 0.1 s, twice on each foot.
+/// Measured: in a walk at 1.2 m/s a stance lasts 0.6 to 0.75 s, in a sprint at 5.7 m/s less than
+/// 0.1 s, two for each foot.
 #[test]
-fn gaits_have_the_contacts_of_their_speed() {
+fn contacts_of_gaits_match_their_speed() {
     for (clip, roles) in clips(&["games105/walkF.bvh", "cmu/run.bvh", "games105/idle.bvh"]) {
         let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
         let speed = ground_speed(&character_frames(&clip, &roles), clip.fps());

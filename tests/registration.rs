@@ -1,4 +1,4 @@
-//! Registered blends of captured walks against plain ones, where this machine has the data.
+//! Registered blends of captured walks compared with plain ones, if this machine has the data.
 
 #[path = "../crates/formats/tests/common/mod.rs"]
 mod common;
@@ -35,7 +35,7 @@ impl Take {
     }
 }
 
-/// Takes of subject 16 of the CMU database; none where the data is not there.
+/// Returns takes of subject 16 of the CMU database; empty if the data is missing.
 fn takes(wanted: &[&'static str]) -> Vec<Take> {
     captured(wanted).into_iter().map(|(name, clip)| Take::new(name, clip)).collect()
 }
@@ -59,7 +59,7 @@ fn register(a: &Take, b: &Take) -> Registration {
     Registration::new(&terms, &matrix, &options).expect("walks can be registered")
 }
 
-/// The points of a foot at a frame that may lie between two.
+/// Returns the points of a foot at a frame that may be between two.
 fn foot(clip: &Clip, roles: &Roles, side: Side, frame: f64) -> Vec<Vec3> {
     let pose = clip.sample(frame / clip.fps(), Interpolation::Linear).expect("a clip with frames");
     let world = world_pose(clip.skeleton(), &pose);
@@ -67,15 +67,15 @@ fn foot(clip: &Clip, roles: &Roles, side: Side, frame: f64) -> Vec<Vec3> {
     points.iter().map(|&(joint, point)| world.point(joint, point)).collect()
 }
 
-/// The step over the ground of the point that moves least.
+/// Returns the step over the ground of the point that moves least.
 fn stillest(before: &[Vec3], now: &[Vec3]) -> Vec3 {
     let steps = before.iter().zip(now).map(|(a, b)| Vec3::new(b.x - a.x, 0.0, b.z - a.z));
     steps.min_by(|a, b| a.length().total_cmp(&b.length())).unwrap_or_default()
 }
 
-/// How far feet slide that stand where more than half of the weight is, beyond what they slide in
-/// the heavier clip: the mean over all stances, centimetres. Frame `start` of `result` is made of
-/// the first instant.
+/// Returns the distance that planted feet slide with more than half of the weight, beyond their
+/// slide in the heavier clip: the mean over all stances, centimetres. Frame `start` of `result` is
+/// made from the first mix.
 fn skate_cm(result: &Clip, start: usize, mixes: &[FrameMix], takes: [&Take; 2]) -> f64 {
     let mut stances: Vec<f32> = vec![];
     for side in Side::BOTH {
@@ -106,7 +106,7 @@ fn skate_cm(result: &Clip, start: usize, mixes: &[FrameMix], takes: [&Take; 2]) 
     100.0 * f64::from(stances.iter().sum::<f32>()) / stances.len().max(1) as f64
 }
 
-/// Both clips frame by frame, side by side.
+/// Returns both clips frame by frame, side by side.
 fn in_lockstep(
     leave: usize,
     enter: usize,
@@ -121,7 +121,7 @@ fn in_lockstep(
 }
 
 #[test]
-fn registered_walks_of_cmu_16_skate_half_as_much_as_dissolved_ones() {
+fn registered_walks_slide_half_as_much_as_dissolved_ones() {
     let takes = takes(&["11", "13", "15", "16", "22", "33"]);
     let mut sums = [0.0; 3];
     for a in &takes {
@@ -155,7 +155,7 @@ fn registered_walks_of_cmu_16_skate_half_as_much_as_dissolved_ones() {
             let partner = Partner { source: &b.source, registration: &registration, weight: &half };
             let blend = registered_blend(&a.source, &[partner]).expect("registered");
             let halfway = skate_cm(&blend.clip, 0, &blend.mixes, [a, b]);
-            // Below 2 cm nobody sees a difference.
+            // Differences below 2 cm are not visible.
             assert!(
                 plain < 2.0 || registered <= 0.5 * plain,
                 "{} → {}: {registered} of {plain} cm",

@@ -1,5 +1,5 @@
-//! The bundled takes of one actor: what their files hold, and that it is what the database's own
-//! files hold, where this machine has those.
+//! The bundled takes of one actor: the content of their files, compared with the database's own
+//! files if this machine has them.
 
 mod bundled;
 #[path = "../crates/formats/tests/common/mod.rs"]
@@ -12,11 +12,11 @@ use segue_motion::skeleton::{Roles, Side, WorldPose};
 use segue_session::{Sample, Session};
 use sha2::{Digest as _, Sha256};
 
-/// What all takes of the set may weigh together, bytes.
-const MOST_BYTES: usize = 1_500_000;
-/// How far a joint may be from where the original has it, metres.
+/// The greatest size of all takes of the set together, bytes.
+const MAX_BYTES: usize = 1_500_000;
+/// The tolerance for positions of joints, metres.
 const CLOSE_M: f32 = 0.001;
-/// Frames of an original from one that was kept to the next.
+/// The number of original frames from one that was kept to the next.
 const STRIDE: usize = 2;
 
 fn set() -> &'static [Sample] {
@@ -40,11 +40,11 @@ fn clip_of(sample: &Sample) -> Clip {
 }
 
 #[test]
-fn the_set_is_small_and_of_one_skeleton() {
+fn takes_are_small_and_share_a_skeleton() {
     let clips: Vec<Clip> = set().iter().map(clip_of).collect();
     let bytes: usize = set().iter().map(|sample| unpacked(sample).0).sum();
     println!("{} takes, {bytes} bytes", clips.len());
-    assert!(bytes <= MOST_BYTES, "{bytes} bytes");
+    assert!(bytes <= MAX_BYTES, "{bytes} bytes");
     for (clip, sample) in clips.iter().zip(set()) {
         assert_eq!(clip.skeleton(), clips[0].skeleton(), "{}: another skeleton", sample.id);
         assert!((clip.fps() - 60.0).abs() < 1e-9 && clip.duration_secs() > 1.0, "{}", sample.id);
@@ -53,10 +53,10 @@ fn the_set_is_small_and_of_one_skeleton() {
     }
 }
 
-/// The line of a take in `assets/samples/README.md`: frames, frames per second, SHA-256 of what its
-/// file unpacks to.
+/// The line of a take in `assets/samples/README.md`: frames, frames per second, SHA-256 of the
+/// unpacked file.
 #[test]
-fn every_bundled_file_is_told_of_and_is_as_told() {
+fn takes_are_documented_correctly() {
     let readme =
         std::fs::read_to_string(bundled::folder().join("README.md")).expect("the samples' README");
     let files = std::fs::read_dir(bundled::folder()).expect("the samples");
@@ -100,7 +100,7 @@ fn every_bundled_file_is_told_of_and_is_as_told() {
     assert_eq!(packed, Session::samples().len() + set().len(), "a file that nobody can ask for");
 }
 
-/// The frame of the original at which a take begins: the one where its first pose is.
+/// Returns the frame of the original at which a take begins: the one with its first pose.
 fn first_frame(take: &Clip, original: &Clip) -> usize {
     let wanted = take.world_pose(0);
     let apart = |frame: &usize| farthest(&original.world_pose(*frame), &wanted);
@@ -112,7 +112,7 @@ fn farthest(a: &WorldPose, b: &WorldPose) -> f32 {
     apart.fold(0.0, f32::max)
 }
 
-/// Where the feet stand, and the speed over the ground in metres per second.
+/// Returns the contacts of the feet, and the speed over the ground in metres per second.
 fn gait(clip: &Clip) -> (Contacts, f64) {
     let roles = Roles::detect(clip.skeleton());
     let contacts = Contacts::detect(clip, &roles, &ContactOptions::default());
@@ -121,7 +121,7 @@ fn gait(clip: &Clip) -> (Contacts, f64) {
 }
 
 #[test]
-fn takes_agree_with_the_files_of_the_database() {
+fn takes_equal_the_files_of_the_database() {
     for sample in set() {
         let number: &'static str =
             sample.file.trim_start_matches("16_").trim_end_matches(".bvh.gz");
@@ -155,7 +155,7 @@ fn takes_agree_with_the_files_of_the_database() {
                 (speed - speed_then).abs() < 0.01 * speed_then,
                 "{name}: {speed} m/s, {speed_then} m/s"
             );
-            // Where a stance begins and ends is known to about a frame.
+            // The beginning and end of a stance are known to about a frame.
             assert!(agreed.iter().all(|share| *share > 0.93), "{name}: {agreed:?}");
         }
     }

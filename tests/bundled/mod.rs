@@ -1,4 +1,4 @@
-//! The bundled takes, as the page hands them to a session.
+//! Loading of the bundled takes into a session, as the page does it.
 
 #![expect(clippy::unwrap_used, reason = "helpers of tests: what fails here fails the test")]
 #![allow(dead_code, reason = "every test binary uses a part of it")]
@@ -7,12 +7,12 @@
 use segue_session::{Request, Session};
 use std::path::{Path, PathBuf};
 
-/// Where they lie.
+/// Returns the folder of the takes.
 pub fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/samples")
 }
 
-/// Hands over every take that is asked for, and does all work. Returns the ids of the takes.
+/// Loads every requested take, and does all work. Returns the ids of the takes.
 pub fn settle(session: &mut Session) -> Vec<&'static str> {
     let mut handed = Vec::new();
     loop {

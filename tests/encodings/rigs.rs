@@ -1,5 +1,5 @@
-//! One motion, many files: the same joints at the same places in the world, written as rigs of
-//! other kinds.
+//! Encodings of one motion in many files: the same joints at the same world positions, written as
+//! rigs of different kinds.
 
 #![allow(unreachable_pub, reason = "a module of a test binary")]
 
@@ -11,10 +11,10 @@ use segue_motion::skeleton::{Channel, Joint, Role, Roles, Side, Skeleton, WorldP
 use std::f32::consts::FRAC_PI_2;
 use std::sync::Arc;
 
-/// What a rig has above the body in every frame: where it is, and how it is turned.
+/// The position and rotation of a rig's joint above the body, for each frame.
 type Above = Vec<(Vec3, Quat)>;
 
-/// The motion as files of ten kinds, by name. The first joint of `clip` carries the body.
+/// Returns the motion as files of ten kinds, by name. The first joint of `clip` carries the body.
 pub fn encodings(clip: &Clip) -> Vec<(&'static str, String)> {
     let frames = clip.frames();
     let plain = |options: &WriteOptions| write(&bare(clip), options);
@@ -48,7 +48,7 @@ fn rebuilt(
     made.with_translations(tracks).expect("translations that fit")
 }
 
-/// The joints without the channels of the file that they came from.
+/// Returns the joints without the channels of their source file.
 fn bare_joints(clip: &Clip) -> Vec<Joint> {
     let joints = clip.skeleton().joints().iter();
     joints.map(|joint| Joint { channels: vec![], ..joint.clone() }).collect()
@@ -63,7 +63,7 @@ fn bare(clip: &Clip) -> Clip {
     rebuilt(clip, bare_joints(clip), all_rotations(clip), roots, tracks)
 }
 
-/// The body below a root of its own.
+/// Returns the body below a root of its own.
 fn hung(clip: &Clip, above: &Above) -> Clip {
     let mut joints = vec![Joint {
         name: "Reference".into(),
@@ -97,8 +97,8 @@ fn hung(clip: &Clip, above: &Above) -> Clip {
     rebuilt(clip, joints, rotations, roots, tracks.collect())
 }
 
-/// Below the body on the ground, heading where the hips head, the mean of 15 frames: as game
-/// engines have it.
+/// Returns the position below the body on the ground, with the mean heading of the hips over 15
+/// frames: the root of game engines.
 fn on_the_ground(clip: &Clip) -> Above {
     let roles = Roles::detect(clip.skeleton());
     let [left, right] = Side::BOTH.map(|side| roles.get(Role::thigh(side)).expect("a leg"));
@@ -127,8 +127,8 @@ fn on_the_ground(clip: &Clip) -> Above {
     (0..clip.frames()).map(place).collect()
 }
 
-/// Every joint's axes turned by a constant of its own, as in files whose bones lie along X: the
-/// rest pose means nothing.
+/// Returns the clip with each joint's axes rotated by a constant, as in files whose bones point
+/// along X: the rest pose is meaningless.
 fn with_turned_frames(clip: &Clip) -> Clip {
     let mut state = 7_u64;
     let mut random = || {
@@ -165,7 +165,7 @@ fn with_turned_frames(clip: &Clip) -> Clip {
     rebuilt(clip, joints, rotations, clip.root_translations().to_vec(), tracks)
 }
 
-/// Position channels on every joint, as some exporters write them.
+/// Returns the clip with position channels on every joint, as some exporters write them.
 fn with_all_positions(clip: &Clip) -> Clip {
     use Channel::{XPosition, XRotation, YPosition, YRotation, ZPosition, ZRotation};
     let mut joints = bare_joints(clip);
@@ -176,7 +176,8 @@ fn with_all_positions(clip: &Clip) -> Clip {
     rebuilt(clip, joints, all_rotations(clip), roots, tracks)
 }
 
-/// The world turned so that +Z is up, the rest pose as it was: only the root's numbers tell.
+/// Returns the world rotated so that +Z is up, with the same rest pose: only the root's values show
+/// it.
 fn z_up(clip: &Clip) -> Clip {
     let turn = Quat::from_rotation_x(FRAC_PI_2);
     let mut rotations = all_rotations(clip);
@@ -187,7 +188,7 @@ fn z_up(clip: &Clip) -> Clip {
     rebuilt(clip, bare_joints(clip), rotations, roots, clip.translations().to_vec())
 }
 
-/// The motion elsewhere in the world, facing elsewhere.
+/// Returns the motion at another place in the world, with another facing.
 pub fn placed(clip: &Clip) -> Clip {
     clip.transformed(&Planar::new(170_f64.to_radians(), 5.0, -3.0))
 }
