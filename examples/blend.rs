@@ -14,7 +14,7 @@ use segue_motion::synth::{Action, Params, synthesize};
 use std::error::Error;
 use std::sync::Arc;
 
-/// Frames in which both clips play.
+/// The number of frames in which both clips play.
 const WINDOW: usize = 30;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -22,8 +22,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let run = Arc::new(synthesize(&Params::new(Action::Run))?.clip);
     let roles = Roles::detect(walk.skeleton());
 
-    // Which window of the walk is most like a window of the run, after the best alignment on the
-    // ground?
+    // The window of the walk that is most like a window of the run, after the best alignment on the
+    // ground.
     let weights = limb_weights(walk.skeleton());
     let height = f64::from(roles.body_height(walk.skeleton()));
     let best = best_transition(&walk, &run, &weights, height, &SearchOptions::new(WINDOW))?;

@@ -25,7 +25,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let secs = found.cycle.len() as f64 / walk.fps();
     println!("cycle: frames {} to {}, {secs:.2} s", found.cycle.start, found.cycle.end);
 
-    // What is left between both ends is spread over the cycle.
+    // The remaining difference between both ends is spread over the cycle.
     let cycle = close_loop(&source, found.cycle, &LoopOptions::default())?;
     println!(
         "largest turn between the ends: {:.2} ° before, {:.5} ° after",

@@ -13,13 +13,13 @@ use std::error::Error;
 use std::sync::Arc;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    // Features of every frame: where the feet and the hips are, how they move, and where the next
-    // second leads.
+    // Features of every frame: positions and velocities of feet and hips, and the trajectory of the
+    // next second.
     let database = Arc::new(Database::new(made_clips(1.75)?, &DatabaseOptions::default())?);
     println!("{} frames in {} motions", database.frames(), database.motions().len());
 
-    // The recorded stick is the input of every frame; ten times a second the best frame is searched
-    // for.
+    // The recorded stick is the input of every frame; the best frame is searched for ten times a
+    // second.
     let recording = Scenario::FigureEight.recording();
     let driven = drive(&database, ControllerOptions::default(), &recording)?;
     let metrics = driven.metrics(&database);

@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let map = JointMap::between(&child, &child_roles, walk.skeleton(), &roles);
     println!("{} of {} joints have a counterpart", map.count(), child.len());
 
-    // Angles are taken over, lengths in proportion to the legs.
+    // Angles are kept, lengths scale with the legs.
     let result = retarget(&walk, &roles, &child, &child_roles)?;
     print_gait("source", &walk, &roles);
     print_gait("result", &result, &child_roles);
@@ -38,8 +38,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Prints the height of a body, its speed over the ground, and how far its planted feet slide at
-/// most.
+/// Prints the height of a body, its speed over the ground, and the greatest slide of its planted
+/// feet.
 fn print_gait(name: &str, clip: &Clip, roles: &Roles) {
     let height = roles.body_height(clip.skeleton());
     let speed = ground_speed(&character_frames(clip, roles), clip.fps());

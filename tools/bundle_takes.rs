@@ -1,5 +1,5 @@
-//! Makes the bundled takes of the CMU database's subject 16: reads ASF and AMC from the folder that
-//! is named, keeps every second frame, and writes BVH packed with gzip into `assets/samples`.
+//! Makes the bundled takes of the CMU database's subject 16: reads ASF and AMC from the given
+//! folder, keeps every second frame, and writes BVH packed with gzip into `assets/samples`.
 //!
 //! `cargo run --release --package segue-tools --bin bundle_takes -- FOLDER`
 
@@ -17,8 +17,8 @@ use std::fs;
 use std::io::Write as _;
 use std::path::Path;
 
-/// The takes, each with the frame that it begins with. In the first two frames of `16_15` the left
-/// arm was not solved.
+/// The takes, each with its first frame. In the first two frames of `16_15` the left arm was not
+/// solved.
 const TAKES: [(&str, usize); 9] = [
     ("16_15", 2),
     ("16_22", 0),
@@ -31,11 +31,11 @@ const TAKES: [(&str, usize); 9] = [
     ("16_57", 0),
 ];
 
-/// Frames from one that is kept to the next.
+/// The number of frames from one that is kept to the next.
 const STRIDE: usize = 2;
 
-/// Digits behind the point: hundredths of a degree and of a centimetre. A hand is off by less than
-/// half a millimetre then.
+/// Digits after the point: hundredths of a degree and of a centimetre, with which a hand deviates
+/// by less than half a millimetre.
 const DECIMALS: usize = 2;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -65,8 +65,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Centimetres and Y up, as most programs take a BVH file to be. With one order for all, every take
-/// has the same skeleton, whatever stands still in it.
+/// Centimetres and Y up, as most programs assume for BVH files. With one rotation order for all,
+/// every take has the same skeleton.
 const WRITE: bvh::WriteOptions = bvh::WriteOptions {
     metres_per_unit: Some(0.01),
     up: None,
@@ -81,7 +81,7 @@ fn every_second_frame(clip: &Clip, first: usize) -> Result<Clip, Box<dyn Error>>
         .with_provenance(clip.provenance()))
 }
 
-/// The numbers of the motion with fewer digits; the skeleton keeps all of its own.
+/// Returns the text with fewer digits in the motion; the skeleton keeps all of its digits.
 fn rounded(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     let mut is_row = false;

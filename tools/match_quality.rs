@@ -1,5 +1,5 @@
-//! How well a character follows recorded input with the synthesiser's motions and default options:
-//! every scenario, measured. Prints a table in Markdown. `cargo xtask match-quality` runs it.
+//! Measures how well a character follows recorded input with the synthesised motions and default
+//! options, for every scenario. Prints a table in Markdown. `cargo xtask match-quality` runs it.
 
 #![expect(clippy::print_stdout, reason = "the table is what it is for")]
 

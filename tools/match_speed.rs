@@ -1,12 +1,12 @@
-//! How long a search of motion matching takes, at the median and at the 99th percentile: 27
+//! Measures the time of a search in motion matching, at the median and at the 99th percentile: 27
 //! dimensions; 5,000, 50,000 and 500,000 frames; queries from a recorded drive and from noise; by
-//! four methods. `cargo xtask match-speed` runs it and prints a table in Markdown;
-//! `node tests/browser/search.mjs` does the same in Chromium, where the page keeps the time.
+//! four methods. `cargo xtask match-speed` runs it and prints a table in Markdown; `node
+//! tests/browser/search.mjs` does the same in Chromium, where the page measures the time.
 
 #[path = "../crates/motion/benches/common/search.rs"]
 mod search;
 
-/// Slow methods are asked so many queries only where there are many frames.
+/// The number of queries for slow methods with many frames.
 #[cfg(not(target_arch = "wasm32"))]
 const FEW: usize = 200;
 
@@ -27,8 +27,7 @@ fn main() {
                 let all = trial.queries(kind);
                 let queries = if method == Method::Boxes { all } else { all.min(FEW) };
                 let mut times = vec![Duration::MAX; queries];
-                // Of each query the fastest of three passes over all of them: what else the machine
-                // does is not counted.
+                // The fastest of three passes for each query, to exclude other work of the machine.
                 for _ in 0..3 {
                     for (query, time) in times.iter_mut().enumerate() {
                         let start = Instant::now();
@@ -61,39 +60,39 @@ mod page {
     use super::search::{Kind, Method, Trial};
     use wasm_bindgen::prelude::wasm_bindgen;
 
-    /// What the page asks.
+    /// The searches that the page runs.
     #[wasm_bindgen]
     pub struct SearchTrial(Trial);
 
     #[wasm_bindgen]
     impl SearchTrial {
-        /// With about so many frames.
+        /// Returns the searches over about `frames` frames.
         #[wasm_bindgen(constructor)]
         pub fn new(frames: usize) -> Self {
             Self(Trial::new(frames))
         }
 
-        /// Frames that can be found.
+        /// Returns the number of frames that can be found.
         pub fn frames(&self) -> usize {
             self.0.frames()
         }
 
-        /// What the kinds of queries are called.
+        /// Returns the names of the kinds of queries.
         pub fn kinds(&self) -> Vec<String> {
             Kind::ALL.map(|kind| kind.name().to_owned()).into()
         }
 
-        /// What the methods are called; the first is Segue's.
+        /// Returns the names of the methods; the first is Segue's.
         pub fn methods(&self) -> Vec<String> {
             Method::ALL.map(|method| method.name().to_owned()).into()
         }
 
-        /// Queries of a kind, by its number.
+        /// Returns the number of queries of a kind, by the kind's number.
         pub fn queries(&self, kind: usize) -> usize {
             self.0.queries(Kind::ALL[kind])
         }
 
-        /// The cost of the best frame by a method, by its number.
+        /// Returns the cost of the best frame by a method, by the method's number.
         pub fn search(&self, method: usize, kind: usize, query: usize) -> f32 {
             self.0.search(Method::ALL[method], Kind::ALL[kind], query).0
         }

@@ -1,5 +1,5 @@
-//! ASF and AMC: any two texts, divided by a NUL byte, are read or refused, in bounded memory; an
-//! AMC that was read is normal motion.
+//! ASF and AMC: any two texts, separated by a NUL byte, are read or refused in bounded memory, and
+//! an AMC that was read is a valid motion.
 
 #![no_main]
 

@@ -1,5 +1,5 @@
-//! BVH: any bytes are read or refused, in bounded memory; the fast way of reading a row agrees with
-//! the slow one; and what was read can be written and read again.
+//! BVH: any bytes are read or refused in bounded memory, the fast reader of a row agrees with the
+//! slow one, and a file that was read can be written and read again.
 
 #![no_main]
 
@@ -24,8 +24,8 @@ fuzz_target!(|bytes: &[u8]| {
     }
 });
 
-/// The same file with a vertical tab before each line end: white space like any other, but no row
-/// is plain then.
+/// Returns the same file with a vertical tab before each line end: white space as well, but no row
+/// takes the fast path.
 fn slowed(bytes: &[u8]) -> Option<Vec<u8>> {
     // UTF-16 has two bytes for each.
     let is_utf16 = bytes.iter().take(4).any(|b| matches!(b, 0 | 0xfe | 0xff));

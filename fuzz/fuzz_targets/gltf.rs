@@ -1,6 +1,6 @@
-//! glTF: any bytes are read or refused, in bounded memory; what was read is normal motion, can be
-//! written and read again; and a mesh that came along is whole. Of a text, what stands behind the
-//! first NUL byte is the file beside it.
+//! glTF: any bytes are read or refused in bounded memory; a file that was read is a valid motion
+//! with a consistent mesh, and can be written and read again. In a text, the bytes after the first
+//! NUL are the file beside it.
 
 #![no_main]
 
@@ -61,7 +61,7 @@ fn is_whole(mesh: &SkinnedMesh, clip: &Clip) {
     assert!(mesh.weights.iter().all(is_one));
 }
 
-/// What cannot be written is refused; what is written is read as one clip of as many frames.
+/// Checks that a clip is refused by the writer, or read again as one clip of as many frames.
 fn comes_back(clip: &Clip, mesh: Option<&SkinnedMesh>) {
     let options = GlbOptions::default();
     let written = match mesh {

@@ -1,5 +1,4 @@
-//! Lessons: any bytes are pages or refused, and what can be pressed in them leads to a state or to
-//! the web.
+//! Lessons: any bytes are pages or refused, and all links in them lead to a state or to the web.
 
 #![no_main]
 

@@ -1,5 +1,5 @@
-//! The link: any query string is taken over as far as it makes sense, and the document's own link
-//! opens the same document.
+//! Links: any query string is applied as far as it is valid, and the document's own link opens the
+//! same document.
 
 #![no_main]
 
@@ -8,8 +8,8 @@ use segue_session::{Command, Session};
 use std::cell::RefCell;
 
 thread_local! {
-    /// Made once, since making its clips takes longer than thousands of links; a link resets
-    /// whatever it does not name.
+    /// Created once, since making its clips takes longer than thousands of links; a link resets
+    /// everything that it does not name.
     static SESSION: RefCell<Session> = RefCell::new(Session::new());
 }
 

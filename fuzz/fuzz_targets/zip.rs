@@ -1,4 +1,4 @@
-//! Zip archives: any bytes are unpacked or refused, and no more comes out than the limit allows.
+//! Zip archives: any bytes are unpacked or refused, with no more output than the limit.
 
 #![no_main]
 

@@ -1,5 +1,5 @@
-//! How good every lab's results are on any motion: pairs and sets of takes drawn from a folder or
-//! from the synthesiser, every lab and every method of it, measured beside the sources. Prints
+//! Measures the quality of every lab's results on any motion: pairs and sets of takes drawn from a
+//! folder or from the synthesiser, every lab and every method, compared with the sources. Prints
 //! tables in Markdown. `cargo xtask quality` runs it.
 
 #![expect(clippy::print_stdout, reason = "the tables are what it is for")]

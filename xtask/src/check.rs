@@ -1,4 +1,4 @@
-//! `cargo xtask test`: everything that must pass, part by part.
+//! `cargo xtask test`: all checks that must pass, part by part.
 
 use std::process::Command;
 use std::time::{Duration, Instant};
@@ -56,8 +56,8 @@ fn clippy(what: &[&str]) -> Command {
 }
 
 fn core(report: &mut Report) {
-    // Crate by crate, as somebody who works on one of them would: this also shows that each needs
-    // no more than it names.
+    // Crate by crate, as one does when working on one of them: this also shows that each has all
+    // dependencies that it needs.
     for library in LIBRARIES {
         report.run(library, cargo(&["test", "--quiet", "--locked", "--package", library]));
     }
@@ -111,8 +111,8 @@ fn browser(report: &mut Report) {
         let server = server::Server::bind(0, dist::folder())?;
         let address = server.address();
         std::thread::spawn(move || server.run());
-        // One file after the other: each starts browsers that draw in software, and those take all
-        // the cores there are.
+        // One file after the other: each starts browsers that draw in software, and those use all
+        // cores.
         let mut node = command("node", &["--test", "--test-reporter=spec", "--test-concurrency=1"]);
         node.current_dir(root().join("tests/browser"))
             .env("SEGUE_URL", address)
@@ -121,7 +121,7 @@ fn browser(report: &mut Report) {
     });
 }
 
-/// What ran, how it ended, how long it took.
+/// A record of the steps: their results and durations.
 #[derive(Default)]
 struct Report {
     rows: Vec<(&'static str, Result<()>, Duration)>,
@@ -132,7 +132,7 @@ impl Report {
         self.step(name, || shell::run(&mut command));
     }
 
-    /// Does one step. A failure is kept for the end, so that one run tells all there is to mend.
+    /// Does one step. A failure is reported at the end, so that one run lists all of them.
     fn step(&mut self, name: &'static str, work: impl FnOnce() -> Result<()>) {
         println!("\n══ {name}");
         let start = Instant::now();

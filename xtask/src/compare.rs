@@ -1,4 +1,4 @@
-//! The page that `cargo xtask serve` makes beside the one that Trunk makes of the same sources.
+//! Comparison of the pages that `cargo xtask serve` and Trunk build from the same sources.
 
 use std::fs;
 use std::path::Path;
@@ -6,8 +6,8 @@ use std::path::Path;
 use crate::shell::{Result, command, fail, run, target};
 use crate::{dist, seal, tools};
 
-/// Compares `dist/`, as it was built, with Trunk's page where Trunk is installed; else says that it
-/// was not compared.
+/// Compares `dist/`, as it was built, with Trunk's page if Trunk is installed; otherwise reports
+/// that it was not compared.
 pub fn with_trunk() -> Result<()> {
     if let Err(reason) = tools::trunk() {
         println!("not compared: {reason}");
@@ -24,7 +24,7 @@ pub fn with_trunk() -> Result<()> {
     fail(format!("{} has another {}", other.display(), differences.join(", ")))
 }
 
-/// Path and content, both without the hashes in names.
+/// A path and a content, both without the hashes in names.
 type File = (String, Vec<u8>);
 
 fn files(folder: &Path) -> Result<Vec<File>> {
@@ -39,7 +39,7 @@ fn files(folder: &Path) -> Result<Vec<File>> {
     Ok(files)
 }
 
-/// The paths of what is in one of the two only, or differs.
+/// Returns the paths that only one of the two has, or that differ.
 fn differences(one: &[File], other: &[File]) -> Vec<String> {
     let beyond = |one: &[File], other: &[File]| -> Vec<String> {
         let lone = one.iter().filter(|file| !other.contains(file));
@@ -51,8 +51,8 @@ fn differences(one: &[File], other: &[File]) -> Vec<String> {
     names
 }
 
-/// Writes `#` for each run of twelve to sixteen hexadecimal digits, which is how both write a hash;
-/// Trunk leaves zeros in front out.
+/// Replaces each run of twelve to sixteen hexadecimal digits by `#`: both write hashes in this way,
+/// and Trunk omits leading zeros.
 fn without_hashes(text: &str) -> String {
     let is_digit = |byte: &u8| matches!(byte, b'0'..=b'9' | b'a'..=b'f');
     let mut plain = String::new();
@@ -75,7 +75,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn file_differs_by_name_or_content_but_not_by_hash() {
+    fn differences_ignore_hashes() {
         let page = |hash: &str, text: &str| -> Vec<File> {
             let name = without_hashes(&format!("app-{hash}.js"));
             vec![(name, without_hashes(&format!("{text} app-{hash}.js")).into_bytes())]

@@ -18,7 +18,7 @@ pub fn folder() -> PathBuf {
     root().join("dist")
 }
 
-/// Builds the page into `dist/`, and installs first what that needs.
+/// Builds the page into `dist/`, after installing what that needs.
 pub fn build(profile: Profile) -> Result<()> {
     tools::ensure_wasm_target()?;
     let name = match profile {
@@ -30,7 +30,7 @@ pub fn build(profile: Profile) -> Result<()> {
             "building the page in {name} mode (about 6 minutes on 2 cores the first time, seconds when little has changed)"
         ),
         || {
-            // The app ends in one long link on one core: the other builds the tool meanwhile.
+            // The app ends in one long link on one core: the other core builds the tool meanwhile.
             progress::run(vec![
                 Build { name: "Segue for the web", cargo: app(profile) },
                 Build { name: "its JavaScript's writer", cargo: bindgen() },
@@ -59,7 +59,7 @@ fn bindgen() -> Command {
     cargo(&["build", "--locked", "--package=segue-bindgen"])
 }
 
-/// Writes `dist/` anew from what has been compiled.
+/// Writes `dist/` from what has been compiled.
 fn assemble(profile: Profile) -> Result<()> {
     let compiled = target().join("wasm32-unknown-unknown").join(match profile {
         Profile::Release => "release",
@@ -67,7 +67,7 @@ fn assemble(profile: Profile) -> Result<()> {
     });
     let tool =
         target().join("debug").join(format!("segue-bindgen{}", std::env::consts::EXE_SUFFIX));
-    // Made beside it, so that a build that fails leaves the page that was there.
+    // Built beside it, so that a failed build leaves the old page.
     let made = root().join("dist.part");
     let _ = fs::remove_dir_all(&made);
     page::make(
@@ -84,7 +84,7 @@ fn assemble(profile: Profile) -> Result<()> {
     Ok(fs::rename(made, folder())?)
 }
 
-/// Writes `.br` and `.gz` beside every file in `dist/` that gets smaller by it.
+/// Writes `.br` and `.gz` beside every file in `dist/` that becomes smaller.
 pub fn precompress() -> Result<()> {
     if !on_path("node") {
         return fail(

@@ -1,5 +1,5 @@
-//! `cargo xtask fuzz`: feeds readers with bytes, and the page with all that it takes, until one of
-//! them breaks, or time is up.
+//! `cargo xtask fuzz`: runs random input through the readers and the page until one of them fails,
+//! or time is up.
 
 use std::fs;
 
@@ -7,9 +7,9 @@ use crate::server::Server;
 use crate::shell::{Result, command, fail, on_path, output, root, run, step};
 use crate::{dist, tools};
 
-/// The target that is no reader of bytes: the whole page, in a browser (tests/browser/fuzz.mjs).
+/// The target that fuzzes the whole page in a browser (tests/browser/fuzz.mjs).
 const PAGE: &str = "page";
-/// How long each target runs unless told.
+/// The default duration of each target.
 const MINUTES: u32 = 20;
 
 pub fn run_targets(args: &[&str]) -> Result<()> {
@@ -62,8 +62,7 @@ fn fuzz_page(minutes: u32, seed: u32) -> Result<()> {
 }
 
 fn fuzz(target: &str, minutes: u32) -> Result<()> {
-    // The first folder takes what the fuzzer finds on its way, the second one holds where it
-    // starts.
+    // The fuzzer writes its findings to the first folder, and reads seeds from the second.
     let found = format!("fuzz/corpus/{target}");
     let seeds = format!("fuzz/corpus-seeds/{target}");
     fs::create_dir_all(root().join(&found))?;
@@ -71,17 +70,17 @@ fn fuzz(target: &str, minutes: u32) -> Result<()> {
         "rustup",
         &["run", "nightly", "cargo", "fuzz", "run", target, &found, &seeds, "--"],
     );
-    // A link is short; a file of a few rows shows all there is. Ten seconds for either are a
+    // A link is short, and a file of a few rows is sufficient. Ten seconds for either are a
     // finding.
     let length = if target == "url" { 600 } else { 8192 };
     fuzz.arg(format!("-max_total_time={}", minutes * 60)).arg(format!("-max_len={length}"));
     fuzz.args(["-timeout=10", "-rss_limit_mb=2048", "-print_final_stats=1"]);
-    // This command's own cargo and its pinned compiler are not for the nightly one.
+    // The variables of this cargo and its pinned compiler must not reach the nightly one.
     fuzz.env_remove("RUSTUP_TOOLCHAIN").env_remove("CARGO");
     run(&mut fuzz)
 }
 
-/// The targets by name.
+/// Returns the targets by name.
 fn targets() -> Result<Vec<String>> {
     let mut names = Vec::new();
     for entry in fs::read_dir(root().join("fuzz/fuzz_targets"))? {
@@ -93,7 +92,7 @@ fn targets() -> Result<Vec<String>> {
     Ok(names)
 }
 
-/// Finds or installs what is needed: sanitizers are a matter of the nightly compiler.
+/// Finds or installs the nightly compiler, which sanitizers need.
 fn nightly() -> Result<()> {
     if output("rustup", &["run", "nightly", "rustc", "--version"]).is_none() {
         step("installing a nightly compiler (about a minute)", || {

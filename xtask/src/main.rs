@@ -90,8 +90,8 @@ fn main() -> ExitCode {
     }
 }
 
-/// Writes the table of parameters by the test that compares it with the program's: xtask does not
-/// depend on the library.
+/// Writes the table of parameters by running the test that compares it with the program: xtask does
+/// not depend on the library.
 fn docs() -> Result<()> {
     let mut test = shell::cargo(&[
         "test",

@@ -1,6 +1,6 @@
-//! The page's folder, made of web/index.html as Trunk makes it: what the page's `data-trunk` links
-//! name goes into the folder, and Trunk.toml says how the app is started. Both files are read here,
-//! so that `trunk serve` and `cargo xtask serve` make the same page.
+//! The page's folder, built from web/index.html as Trunk builds it: files that the page's
+//! `data-trunk` links name are copied, and Trunk.toml determines how the app starts. Both files are
+//! read here, so that `trunk serve` and `cargo xtask serve` build the same page.
 
 use std::fs;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 
 use crate::shell::{Result, fail};
 
-/// Makes the folder of the page `html`, which has what it names beside it. `bindgen` writes the
-/// JavaScript and the WebAssembly of the binary that it is given into a folder.
+/// Builds the folder of the page `html`, whose files are beside it. `bindgen` writes the JavaScript
+/// and the WebAssembly of a binary into a folder.
 pub fn make(
     html: &Path,
     trunk: &str,
@@ -88,7 +88,7 @@ impl<'a> Link<'a> {
     }
 }
 
-/// The names of the app's two files, which change with what is in them.
+/// The names of the app's two files, which change with their content.
 struct App {
     js: String,
     wasm: String,
@@ -114,7 +114,7 @@ impl App {
     }
 }
 
-/// A text of Trunk.toml, in quotes or, over several lines, in three apostrophes.
+/// Returns a string of Trunk.toml, in quotes or, over several lines, in three apostrophes.
 fn setting(trunk: &str, key: &str) -> Result<String> {
     let rest = trunk.split_once(&format!("\n{key} = ")).map_or("", |(_, rest)| rest);
     let value = ["'''", "\""].into_iter().find_map(|quote| {
@@ -150,7 +150,7 @@ mod tests {
     const TRUNK: &str = "[build]\npublic_url = \"./\"\npattern_script = '''<script src=\"{base}{js}\"></script>'''\n\
                          pattern_preload = '''<link href=\"{base}{wasm}\">\n'''\n";
 
-    /// Makes the page of these links out of a folder of its own; gives its HTML and its files.
+    /// Builds the page of these links in a folder of its own; returns its HTML and its files.
     fn made(name: &str, links: &str) -> Result<(String, Vec<String>)> {
         let sources =
             std::env::temp_dir().join(format!("segue-page-{}-{name}", std::process::id()));
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn links_for_trunk_become_what_they_name() {
+    fn make_replaces_links_for_trunk() {
         let (html, files) = made(
             "all",
             "<link data-trunk rel=\"css\" href=\"page.css\" data-integrity=\"none\">\
@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn link_that_only_trunk_knows_is_refused() {
+    fn make_with_an_unknown_link_is_refused() {
         let error = made("sass", "<link data-trunk rel=\"sass\" href=\"page.scss\">").unwrap_err();
         assert!(error.to_string().contains("rel=\"sass\""), "{error}");
     }

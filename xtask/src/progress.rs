@@ -1,4 +1,4 @@
-//! Compilations side by side, with one line on the terminal that always says how far they are.
+//! Parallel compilations with a progress line on the terminal.
 
 use std::io::{IsTerminal as _, Read, Write as _};
 use std::process::{Child, Command, Stdio};
@@ -8,21 +8,21 @@ use std::time::{Duration, Instant};
 
 use crate::shell::{Result, fail};
 
-/// How often the line is drawn anew on a terminal.
+/// The interval of redrawing the line on a terminal.
 const REDRAW: Duration = Duration::from_millis(500);
-/// How often a line is printed where output goes into a file or a log.
+/// The interval of printing the line to a file or a log.
 const REPRINT: Duration = Duration::from_secs(15);
-/// How much of the names of what is being compiled is shown.
+/// The width for the names of the crates being compiled.
 const MAX_COLUMNS: usize = 48;
 
-/// A call of cargo, and what it compiles in words.
+/// A call of cargo, and a description of what it compiles.
 pub struct Build {
     pub name: &'static str,
     pub cargo: Command,
 }
 
-/// Runs the compilations at once and waits for all of them. What the compiler says is passed on;
-/// the first that fails is named in the error.
+/// Runs the compilations in parallel and waits for all of them. Messages of the compiler are passed
+/// on; the error names the first failure.
 pub fn run(builds: Vec<Build>) -> Result<()> {
     let screen = Screen { start: Instant::now(), is_terminal: std::io::stdout().is_terminal() };
     let mut running = Vec::new();
@@ -67,7 +67,7 @@ pub fn run(builds: Vec<Build>) -> Result<()> {
     }
 }
 
-/// Whether the process has succeeded; `None` while it runs.
+/// Returns whether the process has succeeded; `None` while it runs.
 fn ended(child: &mut Child) -> Option<bool> {
     match child.try_wait() {
         Ok(None) => None,
@@ -76,8 +76,8 @@ fn ended(child: &mut Child) -> Option<bool> {
     }
 }
 
-/// Reads what cargo writes until it ends: its progress bar into `state`, all that is not one of its
-/// own status lines on to the terminal.
+/// Reads cargo's output until it ends: its progress bar goes into `state`, everything but its own
+/// status lines to the terminal.
 fn follow(mut output: impl Read, state: &Mutex<String>, screen: &Screen) {
     let mut line = Vec::new();
     let mut block = [0; 4096];
@@ -102,14 +102,14 @@ fn follow(mut output: impl Read, state: &Mutex<String>, screen: &Screen) {
     }
 }
 
-/// What a line of cargo's is.
+/// The kind of a line of cargo's output.
 #[derive(Debug, PartialEq)]
 enum Line {
-    /// How much is done, and what is being compiled: "212/420 wgpu-core, naga".
+    /// The progress: "212/420 wgpu-core, naga".
     Progress(String),
-    /// That one crate has begun or that all are done: the progress has it.
+    /// The start of one crate, or the end of all, which the progress includes.
     Status,
-    /// From the compiler, or a failure.
+    /// A message of the compiler, or a failure.
     Message,
 }
 
@@ -136,7 +136,7 @@ impl Line {
     }
 }
 
-/// Takes out the escape sequences of colours and of erased lines.
+/// Removes the escape sequences of colours and of erased lines.
 fn without_colors(text: &str) -> String {
     let mut plain = String::new();
     let mut chars = text.chars();
@@ -199,7 +199,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn progress_bar_of_cargo_gives_count_and_names() {
+    fn line_of_a_progress_bar_gives_count_and_names() {
         for line in [
             "    Building [====>   ] 57/67: wasmparser, itoa        ",
             "\u{1b}[1m\u{1b}[96m    Building\u{1b}[0m [====>   ] 57/67: wasmparser, itoa \u{1b}[K",
@@ -209,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn message_of_the_compiler_is_passed_on() {
+    fn line_of_the_compiler_is_a_message() {
         for line in
             ["error[E0308]: mismatched types", "  --> src/main.rs:3:4", "3 | let x: u8 = 1;"]
         {

@@ -1,12 +1,12 @@
-//! `cargo xtask quality`, `match-quality` and `match-speed`: every lab on any motion, characters
-//! driven by recorded input, and searches, measured.
+//! `cargo xtask quality`, `match-quality` and `match-speed`: measurements of every lab on any
+//! motion, of characters driven by recorded input, and of searches.
 
 use std::path::PathBuf;
 use std::process::Command;
 
 use crate::shell::{Result, cargo, fail, root, run};
 
-/// Those of `quality` that name a file or a folder.
+/// The options of `quality` that name a file or a folder.
 const PATHS: [&str; 2] = ["--data", "--json"];
 
 pub fn try_labs(args: &[&str]) -> Result<()> {
@@ -15,7 +15,8 @@ pub fn try_labs(args: &[&str]) -> Result<()> {
     let mut words = args.iter();
     while let Some(word) = words.next() {
         match words.next() {
-            // The program runs in the repository's root, the path was named from here.
+            // The program runs in the repository's root, but the path is relative to the current
+            // folder.
             Some(path) if PATHS.contains(word) => tool.arg(word).arg(std::path::absolute(path)?),
             Some(value) => tool.arg(word).arg(value),
             None => return fail(format!("{word} is followed by a value")),
@@ -57,7 +58,7 @@ fn tool(name: &str, profile: &str) -> Command {
     ])
 }
 
-/// Where the tests look for captured motion, too.
+/// Returns the folder where the tests also look for captured motion.
 fn usual_folder() -> Result<PathBuf> {
     let places = [
         std::env::var_os("SEGUE_SHARED").map(PathBuf::from),

@@ -1,5 +1,5 @@
-//! The last step of a build: what belongs together is named so that it can never be mixed, the page
-//! gets its policy, and the service worker learns what there is.
+//! The last step of a build: files that belong together get names that rule out mixing versions,
+//! the page gets its policy, and the service worker its list of files.
 //!
 //! `cargo xtask serve` ends with it, and Trunk calls it as a hook (Trunk.toml), so that both make the
 //! same folder.
@@ -10,17 +10,16 @@ use std::path::{Path, PathBuf};
 
 use crate::shell::{Result, fail};
 
-/// What is fetched when somebody asks for it, and kept from then on.
+/// Folders whose files are fetched on request, and cached from then on.
 const LATER: [&str; 3] = ["samples/", "lessons/", "lang/"];
-/// What the page may do, as a Content-Security-Policy: run the scripts and the WebAssembly that lie
-/// beside it and nothing else, and fetch from anywhere, for `src=` and lessons. Pictures and films
-/// that it has made itself (`blob:`) may be shown in it. Who may frame it only a header of the host
-/// can say.
+/// The page's Content-Security-Policy: it may run the scripts and the WebAssembly beside it and
+/// nothing else, and fetch from anywhere, for `src=` and lessons. Pictures and films of its own
+/// (`blob:`) may be shown. Only a header of the host can say who may frame it.
 const POLICY: &str = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; style-src 'self'; img-src 'self' data: blob:; \
                       media-src blob:; manifest-src 'self'; connect-src 'self' https: http:; base-uri 'none'; form-action 'none'";
-/// Where the policy goes: before everything that it is about.
+/// The place of the policy: before everything that it applies to.
 const POLICY_PLACE: &str = "<meta charset=\"utf-8\">";
-/// The two that everything else is reached from: their names stay.
+/// The two files from which all others are reached: their names stay the same.
 const PAGE: &str = "index.html";
 const WORKER: &str = "sw.js";
 
@@ -31,8 +30,8 @@ pub fn run() -> Result<()> {
             "`seal` is called by Trunk, after a build: TRUNK_STAGING_DIR names the folder",
         );
     };
-    // While one works on the page, a worker that keeps old pages is in the way, and so is a policy
-    // without the script with which Trunk reloads it.
+    // During development, a worker that caches old pages is in the way, and so is a policy without
+    // the script with which Trunk reloads the page.
     let is_release = std::env::var("TRUNK_PROFILE").is_ok_and(|profile| profile == "release");
     seal(Path::new(&folder), is_release)
 }
@@ -72,8 +71,8 @@ pub fn seal(folder: &Path, is_release: bool) -> Result<()> {
     Ok(fs::write(worker, script)?)
 }
 
-/// Puts the page's own scripts into a folder that is named after what they say: a browser that
-/// keeps them never gives an old one to a new page.
+/// Moves the page's own scripts into a folder named by their content: a browser that caches them
+/// never combines an old one with a new page.
 fn rename_scripts(folder: &Path) -> Result<()> {
     let scripts: Vec<String> =
         files_of(folder)?.into_iter().filter(|file| file.starts_with("js/")).collect();
@@ -97,7 +96,7 @@ fn write_policy(folder: &Path) -> Result<()> {
     Ok(fs::write(&page, format!("{before}{POLICY_PLACE}\n  {policy}{after}"))?)
 }
 
-/// All files, by their paths in the folder, in order.
+/// Returns all files by their paths in the folder, sorted.
 pub fn files_of(folder: &Path) -> Result<Vec<String>> {
     fn collect(folder: &Path, prefix: &str, files: &mut Vec<String>) -> Result<()> {
         let mut entries: Vec<PathBuf> = fs::read_dir(folder)?
@@ -119,7 +118,7 @@ pub fn files_of(folder: &Path) -> Result<Vec<String>> {
     Ok(files)
 }
 
-/// Changes with every name and every byte.
+/// Returns a hash of all names and contents.
 fn hash_of(folder: &Path, files: &[String]) -> Result<String> {
     let mut hasher = DefaultHasher::new();
     for file in files {
@@ -157,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn what_changes_gets_another_name() {
+    fn seal_renames_files_that_changed() {
         let read = |name: &str, boot: &str| {
             let folder = folder(name, boot);
             seal(&folder, true).unwrap();
@@ -192,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn while_one_works_on_it_nothing_is_kept() {
+    fn seal_in_development_caches_nothing() {
         let folder = folder("dev", "1");
         seal(&folder, false).unwrap();
         assert!(!folder.join(WORKER).exists());

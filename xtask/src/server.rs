@@ -1,4 +1,4 @@
-//! A static file server for this machine alone: what `serve` shows and what the browser tests load.
+//! A static file server for this machine, for `serve` and the browser tests.
 
 use std::fs;
 use std::io::{self, BufRead, BufReader, Write};
@@ -15,7 +15,7 @@ pub struct Server {
 }
 
 impl Server {
-    /// Takes the port (0: any free one) on 127.0.0.1.
+    /// Binds to the port (0: any free one) on 127.0.0.1.
     pub fn bind(port: u16, folder: PathBuf) -> Result<Self> {
         if !folder.join("index.html").is_file() {
             return fail(format!("{} holds no index.html: build first", folder.display()));
@@ -33,13 +33,13 @@ impl Server {
         format!("http://127.0.0.1:{port}/")
     }
 
-    /// Answers until the process ends, each connection on a thread of its own.
+    /// Serves until the process ends, each connection on a thread of its own.
     pub fn run(self) -> Result<()> {
         for stream in self.listener.incoming() {
             let Ok(stream) = stream else { continue };
             let folder = Arc::clone(&self.folder);
             std::thread::spawn(move || {
-                // A browser that goes away in the middle is no news.
+                // A browser that disconnects early is not an error.
                 let _ = converse(stream, &folder);
             });
         }
@@ -47,7 +47,7 @@ impl Server {
     }
 }
 
-/// One connection, with as many requests as the browser sends on it.
+/// Serves one connection, with any number of requests.
 fn converse(stream: TcpStream, folder: &Path) -> io::Result<()> {
     stream.set_read_timeout(Some(Duration::from_secs(60)))?;
     stream.set_nodelay(true)?;
@@ -140,7 +140,7 @@ fn respond(request: &Request, folder: &Path) -> Response {
     let Some(file) = resolve(&request.path, folder) else {
         return Response::text("404 Not Found");
     };
-    // What was precompressed is served so, as a host in the open would.
+    // Compressed files are served as by a public host.
     let packed = [("br", "br"), ("gz", "gzip")]
         .into_iter()
         .filter(|(_, encoding)| request.accepts(encoding))
@@ -156,8 +156,8 @@ fn respond(request: &Request, folder: &Path) -> Response {
     let mut headers = vec![
         ("Content-Type", media_type(&file).to_owned()),
         ("ETag", tag.clone()),
-        // The browser may keep it but asks each time: a rebuild shows at once, and compiled code is
-        // kept for the rest.
+        // The browser may cache it but must revalidate: a rebuild shows at once, and compiled code
+        // stays cached.
         ("Cache-Control", "no-cache".to_owned()),
         ("Vary", "Accept-Encoding".to_owned()),
     ];
@@ -171,7 +171,7 @@ fn respond(request: &Request, folder: &Path) -> Response {
     }
 }
 
-/// The file that a request's path names inside the folder, and nothing outside it.
+/// Returns the file of a request's path inside the folder, and nothing outside it.
 fn resolve(request: &str, folder: &Path) -> Option<PathBuf> {
     let path = request.split(['?', '#']).next()?;
     let path = percent_decoded(path)?;
@@ -200,7 +200,7 @@ fn percent_decoded(text: &str) -> Option<String> {
     String::from_utf8(bytes).ok()
 }
 
-/// Changes whenever the file does.
+/// Returns an entity tag that changes whenever the file does.
 fn tag(path: &Path) -> String {
     let Ok(meta) = fs::metadata(path) else {
         return String::new();
@@ -235,7 +235,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_outside_the_folder_is_served() {
+    fn resolve_stays_inside_the_folder() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
         assert!(resolve("/main.rs", &folder).is_some());
         assert!(resolve("/main.rs?lab=blend", &folder).is_some());
@@ -247,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn an_encoding_is_accepted_by_its_whole_name() {
+    fn accepts_matches_whole_names() {
         let request = Request { accepts: "gzip;q=0.8, br".to_owned(), ..Request::default() };
         assert!(request.accepts("gzip") && request.accepts("br"));
         assert!(!request.accepts("b"));

@@ -1,4 +1,4 @@
-//! Running other programs, and saying so.
+//! Running of other programs, with messages.
 
 use std::ffi::OsStr;
 use std::fmt::Display;
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
-/// What went wrong, in words for the person at the terminal.
+/// An error in words for the person at the terminal.
 pub type Error = Box<dyn std::error::Error + Send + Sync>;
 pub type Result<T> = std::result::Result<T, Error>;
 
@@ -14,12 +14,12 @@ pub fn fail<T>(reason: impl Into<String>) -> Result<T> {
     Err(reason.into().into())
 }
 
-/// The repository this xtask was built in.
+/// Returns the repository in which this xtask was built.
 pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("xtask lies in the repository")
 }
 
-/// Where cargo puts what it builds.
+/// Returns cargo's target folder.
 pub fn target() -> PathBuf {
     match std::env::var_os("CARGO_TARGET_DIR") {
         Some(folder) => root().join(folder),
@@ -27,19 +27,19 @@ pub fn target() -> PathBuf {
     }
 }
 
-/// A command that will run in the repository's root.
+/// Returns a command that runs in the repository's root.
 pub fn command(program: impl AsRef<OsStr>, args: &[&str]) -> Command {
     let mut command = Command::new(program);
     command.args(args).current_dir(root()).stdin(Stdio::null());
     command
 }
 
-/// The cargo that runs this xtask, so that a toolchain chosen for one holds for the other.
+/// Returns the cargo that runs this xtask, so that a toolchain chosen for one applies to the other.
 pub fn cargo(args: &[&str]) -> Command {
     command(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()), args)
 }
 
-/// Runs to the end; anything but success is an error that shows the command.
+/// Runs a command to the end; anything but success is an error that shows the command.
 pub fn run(command: &mut Command) -> Result<()> {
     match command.status() {
         Ok(status) if status.success() => Ok(()),
@@ -48,13 +48,13 @@ pub fn run(command: &mut Command) -> Result<()> {
     }
 }
 
-/// What a command prints, or `None` if it is missing or fails.
+/// Returns the output of a command, or `None` if it is missing or fails.
 pub fn output(program: impl AsRef<OsStr>, args: &[&str]) -> Option<String> {
     let output = command(program, args).stderr(Stdio::null()).output().ok()?;
     output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
 }
 
-/// Whether a program of this name lies on the path.
+/// Returns whether a program of this name is on the path.
 pub fn on_path(program: &str) -> bool {
     let path = std::env::var_os("PATH").unwrap_or_default();
     std::env::split_paths(&path).any(|folder| {
@@ -62,7 +62,7 @@ pub fn on_path(program: &str) -> bool {
     })
 }
 
-/// Announces a step, does it, and says how long it took.
+/// Announces a step, does it, and prints its duration.
 pub fn step<T>(what: impl Display, work: impl FnOnce() -> Result<T>) -> Result<T> {
     println!("▸ {what}");
     let start = Instant::now();

@@ -1,15 +1,15 @@
-//! The tools beyond Rust itself: found, or installed.
+//! Detection and installation of tools beyond Rust itself.
 
 use std::fs;
 use std::path::PathBuf;
 
 use crate::shell::{Result, command, fail, on_path, output, root, run, step, target};
 
-/// The Trunk that Trunk.toml was written for; others write other start scripts.
+/// The version of Trunk for which Trunk.toml was written; others write other start scripts.
 const TRUNK: &str = "0.21.14";
 const WASM_TARGET: &str = "wasm32-unknown-unknown";
 
-/// Trunk and wasm-bindgen in the versions that make this page, or why the two are not here. Only
+/// Checks that Trunk and wasm-bindgen are installed in the versions that build this page. Only
 /// `trunk serve` needs them.
 pub fn trunk() -> std::result::Result<(), String> {
     for (program, version) in [("trunk", TRUNK.to_owned()), ("wasm-bindgen", wasm_bindgen()?)] {
@@ -32,7 +32,7 @@ pub fn ensure_wasm_target() -> Result<()> {
     })
 }
 
-/// Finds or installs what the pictures of the UI need: a Vulkan that draws without a graphics card.
+/// Finds or installs a software Vulkan driver, which the pictures of the UI need.
 pub fn software_vulkan() -> Result<()> {
     let any = |folder: &str| fs::read_dir(folder).is_ok_and(|mut entries| entries.next().is_some());
     if !cfg!(target_os = "linux") || any("/usr/share/vulkan/icd.d") || any("/etc/vulkan/icd.d") {
@@ -41,7 +41,7 @@ pub fn software_vulkan() -> Result<()> {
     apt(&["mesa-vulkan-drivers", "libvulkan1"])
 }
 
-/// Finds or installs a browser, and gives its path.
+/// Finds or installs a browser, and returns its path.
 pub fn chromium() -> Result<String> {
     const NAMES: [&str; 4] =
         ["chromium", "chromium-browser", "google-chrome-stable", "google-chrome"];
@@ -59,7 +59,7 @@ pub fn chromium() -> Result<String> {
     }
 }
 
-/// Finds or installs what the browser tests import.
+/// Finds or installs the packages of the browser tests.
 pub fn browser_packages() -> Result<()> {
     let folder = root().join("tests/browser");
     let written =
@@ -72,17 +72,16 @@ pub fn browser_packages() -> Result<()> {
     })
 }
 
-/// Finds or installs one Python package, with its exact version, and gives the path of the Python
-/// that has it.
+/// Finds or installs a Python package of an exact version, and returns the path of the Python that
+/// has it.
 pub fn python(package: &str) -> Result<PathBuf> {
     let folder = target().join("python").join(package);
     let bin = folder.join(if cfg!(windows) { "Scripts" } else { "bin" });
     let python = bin.join("python");
-    // Written last, so that half an installation is made again.
+    // Written last, so that an incomplete installation is repeated.
     let done = folder.join("installed");
     if !done.exists() {
-        // Debian has the module apart from Python, and without it half of `venv` still seems to
-        // work.
+        // Debian packages the module separately, and without it half of `venv` still seems to work.
         if output("python3", &["-c", "import ensurepip, venv"]).is_none() {
             apt(&["python3", "python3-venv"])?;
         }
@@ -99,13 +98,13 @@ pub fn python(package: &str) -> Result<PathBuf> {
 }
 
 fn has_wasm_target() -> bool {
-    // Asked of rustc and not of rustup, so that a standard library that came another way counts
-    // too.
+    // Asks rustc instead of rustup, so that a standard library from another source is found as
+    // well.
     output("rustc", &["--print", "target-libdir", "--target", WASM_TARGET])
         .is_some_and(|folder| PathBuf::from(folder).is_dir())
 }
 
-/// The version of wasm-bindgen in Cargo.lock.
+/// Returns the version of wasm-bindgen in Cargo.lock.
 fn wasm_bindgen() -> std::result::Result<String, String> {
     let lock = fs::read_to_string(root().join("Cargo.lock")).map_err(|error| error.to_string())?;
     let entry = lock.split_once("name = \"wasm-bindgen\"\nversion = \"");
@@ -128,7 +127,7 @@ fn apt(packages: &[&str]) -> Result<()> {
                 .env("DEBIAN_FRONTEND", "noninteractive")
                 .stdout(std::process::Stdio::null()))
         };
-        // Without lists of packages, or with old ones, the first try fails.
+        // Without package lists, or with old ones, the first attempt fails.
         install().or_else(|_| {
             run(command("apt-get", &["update"]).stdout(std::process::Stdio::null()))?;
             install()

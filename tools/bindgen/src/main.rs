@@ -1,8 +1,8 @@
-//! Writes what a browser needs to run a compiled WebAssembly module, as
-//! `wasm-bindgen --target web --no-typescript` does: `segue-bindgen MODULE.wasm FOLDER`.
+//! Generates the JavaScript for a compiled WebAssembly module, as `wasm-bindgen --target web
+//! --no-typescript` does: `segue-bindgen MODULE.wasm FOLDER`.
 //!
-//! `cargo xtask serve` runs it. The library behind `wasm-bindgen-cli` builds in a tenth of the
-//! time that the program with its test runner and its command line takes.
+//! `cargo xtask serve` runs it. The library behind `wasm-bindgen-cli` builds in a tenth of the time
+//! of the program with its test runner and command line.
 
 use std::process::ExitCode;
 

@@ -1,6 +1,6 @@
-//! The motions that are put to the test: those of a folder, or synthesised ones.
+//! The motions under test: those of a folder, or synthesised ones.
 
-use super::guard::{guarded, shared_out};
+use super::guard::{guarded, parallel_map};
 use segue_formats::archive::{self, ArchiveLimits};
 use segue_formats::{FileKind, ImportOptions, kind_of};
 use segue_motion::skeleton::Skeleton;
@@ -12,13 +12,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// A motion file that can be read whenever it is needed.
+/// A motion file that is read on demand.
 #[derive(Debug)]
 pub struct MotionFile {
-    /// Its path below the folder.
+    /// The path below the folder.
     pub path: String,
     content: FileContent,
-    /// The skeleton files beside it; of an AMC alone.
+    /// The skeleton files beside it; for an AMC only.
     skeletons: Vec<Companion>,
 }
 
@@ -28,37 +28,37 @@ enum FileContent {
     Unpacked(Arc<[u8]>),
 }
 
-/// A clip to be put to the test.
+/// A clip under test.
 #[derive(Debug)]
 pub struct Take {
-    /// Its name in tables.
+    /// The name in tables.
     pub name: String,
-    /// The number of its rig: takes with equal skeletons have the same.
+    /// The number of its rig: takes with equal skeletons share it.
     pub rig: usize,
-    from: TakeFrom,
+    from: TakeSource,
 }
 
 #[derive(Debug)]
-enum TakeFrom {
-    /// The number of the file, and that of the clip in it.
+enum TakeSource {
+    /// The index of the file, and that of the clip in it.
     File(usize, usize),
-    /// The id of a clip that any session makes.
+    /// The id of a clip that every session can synthesise.
     Made(String),
 }
 
-/// All that is put to the test.
+/// All motions under test.
 #[derive(Debug, Default)]
 pub struct Motions {
     files: Vec<MotionFile>,
-    /// The takes, in the order of their names.
+    /// The takes, sorted by name.
     pub takes: Vec<Take>,
-    /// Files that gave no take: the path, and the sentence.
+    /// Files without takes: the path, and the error.
     pub refused: Vec<(String, String)>,
-    /// Files whose reading panicked, and where.
+    /// Files whose reading panicked, and the place of the panic.
     pub panics: Vec<(String, String)>,
 }
 
-/// The name without its folders.
+/// Returns the name without folders.
 fn file_name(path: &str) -> &str {
     path.rsplit('/').next().unwrap_or(path)
 }
@@ -67,8 +67,8 @@ fn folder_of(path: &str) -> &str {
     path.rsplit_once('/').map_or("", |(folder, _)| folder)
 }
 
-/// Every file below a folder, in the order of their paths. Folders that are links are not followed:
-/// they may lead around.
+/// Returns every file below a folder, sorted by path. Links to folders are not followed, because
+/// they may form cycles.
 fn files_below(folder: &Path) -> Result<Vec<PathBuf>, String> {
     let at = |path: &Path, error: &std::io::Error| format!("{}: {error}", path.display());
     let (mut folders, mut files) = (vec![folder.to_owned()], Vec::new());
@@ -88,10 +88,11 @@ fn files_below(folder: &Path) -> Result<Vec<PathBuf>, String> {
 }
 
 impl Motions {
-    /// All motion files below a folder: BVH, AMC beside their ASF, GLB, and zip archives of these.
+    /// Returns all motion files below a folder: BVH, AMC beside their ASF, GLB, and zip archives of
+    /// these.
     ///
     /// # Errors
-    /// A sentence when the folder cannot be read.
+    /// A sentence if the folder cannot be read.
     pub fn of_folder(folder: &Path) -> Result<Self, String> {
         let mut motions = Self::default();
         let mut skeletons: BTreeMap<String, Vec<Companion>> = BTreeMap::new();
@@ -154,7 +155,7 @@ impl Motions {
     #[must_use]
     pub fn synthesised(count: usize, seed: u64) -> Self {
         let mut motions = Self::default();
-        let mut chance = Chance::new(seed);
+        let mut chance = Random::new(seed);
         let mut session = Session::new();
         let mut rigs: Vec<Arc<Skeleton>> = Vec::new();
         for number in 0..count {
@@ -164,7 +165,7 @@ impl Motions {
                 Ok(Ok(skeleton)) => motions.takes.push(Take {
                     name: id.clone(),
                     rig: rig_of(&mut rigs, &skeleton),
-                    from: TakeFrom::Made(id),
+                    from: TakeSource::Made(id),
                 }),
                 Ok(Err(sentence)) => motions.refused.push((id, sentence)),
                 Err(place) => motions.panics.push((id, place)),
@@ -175,7 +176,7 @@ impl Motions {
 
     fn read_all(&mut self) {
         let files = &self.files;
-        let read = shared_out(files.len(), |index| guarded(|| files[index].skeletons_of_clips()));
+        let read = parallel_map(files.len(), |index| guarded(|| files[index].skeletons_of_clips()));
         let mut rigs: Vec<Arc<Skeleton>> = Vec::new();
         for (index, (file, found)) in self.files.iter().zip(read).enumerate() {
             match found {
@@ -190,7 +191,7 @@ impl Motions {
                         self.takes.push(Take {
                             name: format!("{}{number}", file.path),
                             rig: rig_of(&mut rigs, skeleton),
-                            from: TakeFrom::File(index, clip),
+                            from: TakeSource::File(index, clip),
                         });
                     }
                 }
@@ -200,10 +201,10 @@ impl Motions {
         }
     }
 
-    /// A session with these takes in its library, and what links call them there.
+    /// Returns a session with these takes in its library, and their ids in links.
     ///
     /// # Errors
-    /// A sentence when one is no longer what it was.
+    /// A sentence if a file has changed.
     pub fn open(&self, takes: &[usize]) -> Result<(Session, Vec<String>), String> {
         let mut session = Session::new();
         session
@@ -213,8 +214,8 @@ impl Motions {
         let (mut loaded, mut ids) = (BTreeMap::new(), Vec::new());
         for &take in takes {
             match &self.takes[take].from {
-                TakeFrom::Made(id) => ids.push(id.clone()),
-                TakeFrom::File(file, clip) => {
+                TakeSource::Made(id) => ids.push(id.clone()),
+                TakeSource::File(file, clip) => {
                     if !loaded.contains_key(file) {
                         loaded.insert(*file, self.files[*file].load(&mut session)?);
                     }
@@ -253,7 +254,7 @@ impl MotionFile {
         Ok(clips)
     }
 
-    /// As if it were dropped on the page; the ids of its clips.
+    /// Loads the file as if it were dropped on the page; returns the ids of its clips.
     fn load(&self, session: &mut Session) -> Result<Vec<String>, String> {
         for skeleton in &self.skeletons {
             loaded(session, &skeleton.name, &skeleton.bytes)?;
@@ -264,7 +265,7 @@ impl MotionFile {
 
 fn loaded(session: &mut Session, name: &str, bytes: &Arc<[u8]>) -> Result<Vec<String>, String> {
     let mut ids = session.load(name, Arc::clone(bytes)).map_err(|error| error.to_string())?.ids;
-    // A large file is to be read elsewhere, which is here.
+    // Large files are read by the caller.
     for request in session.take_requests() {
         if let Request::Read(task) = request {
             let report = read(&task.name, bytes, &task.setup, &mut |_| true)
@@ -284,7 +285,7 @@ fn rig_of(rigs: &mut Vec<Arc<Skeleton>>, skeleton: &Arc<Skeleton>) -> usize {
     })
 }
 
-/// The skeleton of what a link shows.
+/// Returns the skeleton of the clip that a link shows.
 fn opened(session: &mut Session, link: &str) -> Result<Arc<Skeleton>, String> {
     session.apply(Command::OpenLink(link.to_owned())).map_err(|error| error.to_string())?;
     let pane = &session.panes()[0];
@@ -294,15 +295,15 @@ fn opened(session: &mut Session, link: &str) -> Result<Arc<Skeleton>, String> {
     }
 }
 
-/// An id as a link writes it.
+/// Encodes an id for a link.
 #[must_use]
 pub fn encoded(id: &str) -> String {
     form_urlencoded::byte_serialize(id.as_bytes()).collect()
 }
 
-/// The id of a clip that any session makes: five walks, three runs, and one each of the rest in
+/// Returns the id of a synthesised clip: five walks, three runs, and two of the other actions in
 /// ten.
-fn made_id(chance: &mut Chance, number: usize) -> String {
+fn made_id(chance: &mut Random, number: usize) -> String {
     let height = ["1.6", "1.75", "1.9"][chance.below(3)];
     let seed = chance.below(1000);
     let secs = 3 + chance.below(6);
@@ -327,19 +328,19 @@ fn made_id(chance: &mut Chance, number: usize) -> String {
     }
 }
 
-/// Numbers by chance, the same for the same seed everywhere (Steele, Lea, Flood 2014, "Fast
-/// Splittable Pseudorandom Number Generators").
+/// Pseudorandom numbers, the same for the same seed on every machine (Steele, Lea, Flood 2014,
+/// "Fast Splittable Pseudorandom Number Generators").
 #[derive(Debug)]
-pub struct Chance(u64);
+pub struct Random(u64);
 
-impl Chance {
-    /// From a seed.
+impl Random {
+    /// Returns a generator with a seed.
     #[must_use]
     pub fn new(seed: u64) -> Self {
         Self(seed)
     }
 
-    /// A number below a limit; 0 for the limit 0.
+    /// Returns a number below a limit; 0 for the limit 0.
     pub fn below(&mut self, limit: usize) -> usize {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut mixed = self.0;

@@ -1,4 +1,4 @@
-//! Panics become places, and work is shared out to threads.
+//! Recovery from panics, and distribution of work to threads.
 
 use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -10,7 +10,7 @@ thread_local! {
     static LAST_PANIC: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
-/// From here on a panic is written down, and nothing is printed.
+/// Records panics from now on instead of printing them.
 pub fn keep_panics() {
     std::panic::set_hook(Box::new(|info| {
         let place = info.location().map(ToString::to_string).unwrap_or_default();
@@ -25,9 +25,9 @@ pub fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     catch_unwind(AssertUnwindSafe(work)).map_err(|_| LAST_PANIC.with(|last| last.borrow().clone()))
 }
 
-/// The results for all numbers below `count`, in their order, worked out by as many threads as the
-/// machine has.
-pub fn shared_out<T: Send>(count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
+/// Returns the results for all numbers below `count`, in order, computed by as many threads as the
+/// machine has cores.
+pub fn parallel_map<T: Send>(count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
     let next = AtomicUsize::new(0);
     let results: Vec<Mutex<Option<T>>> = (0..count).map(|_| Mutex::new(None)).collect();
     let threads = thread::available_parallelism().map_or(1, usize::from).min(count.max(1));

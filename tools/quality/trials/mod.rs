@@ -1,5 +1,5 @@
-//! Takes from a folder or from the synthesiser, tried in every lab and measured. Shared with the
-//! test of the same name.
+//! Trials of takes from a folder or from the synthesiser in every lab, with measurements. Shared
+//! with the test of the same name.
 
 #![allow(
     dead_code,

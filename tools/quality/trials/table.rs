@@ -1,21 +1,21 @@
 //! The outcomes of the trials, in Markdown and as JSON.
 
 use super::folder::Motions;
-use super::trial::{Came, Drawn, Numbers, Trial, median};
+use super::trial::{Draw, Numbers, Trial, TrialResult, median};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-/// Rows of the list of faults.
+/// The greatest number of rows in the list of faults.
 const MAX_FAULTS: usize = 60;
 
-/// The tables.
+/// Returns the tables in Markdown.
 #[must_use]
 pub fn markdown(motions: &Motions, trials: &[Trial]) -> String {
     let mut out = String::new();
-    for drawn in [Drawn::SameRig, Drawn::OtherRigs, Drawn::Set] {
-        let own: Vec<&Trial> = trials.iter().filter(|trial| trial.drawn == drawn).collect();
+    for draw in [Draw::SameRig, Draw::OtherRigs, Draw::Set] {
+        let own: Vec<&Trial> = trials.iter().filter(|trial| trial.draw == draw).collect();
         if !own.is_empty() {
-            write_methods(&mut out, drawn, &own);
+            write_methods(&mut out, draw, &own);
         }
     }
     write_refusals(&mut out, motions, trials);
@@ -23,15 +23,15 @@ pub fn markdown(motions: &Motions, trials: &[Trial]) -> String {
     out
 }
 
-/// Writing to a string cannot fail.
+/// Writes a line; writing to a string cannot fail.
 macro_rules! line {
     ($out:expr, $($part:tt)*) => {
         writeln!($out, $($part)*).ok();
     };
 }
 
-fn write_methods(out: &mut String, drawn: Drawn, trials: &[&Trial]) {
-    line!(out, "### {}\n", drawn.title());
+fn write_methods(out: &mut String, draw: Draw, trials: &[&Trial]) {
+    line!(out, "### {}\n", draw.title());
     line!(
         out,
         "Skating in cm/s and the median slide of a stance in cm are means over the results: free / feet planted / the sources. Flashes and root jumps: all, \
@@ -52,7 +52,8 @@ fn write_methods(out: &mut String, drawn: Drawn, trials: &[&Trial]) {
     for (lab, method) in methods {
         let own: Vec<&&Trial> =
             (trials.iter()).filter(|trial| trial.lab == lab && trial.method == method).collect();
-        let count = |is: fn(&Came) -> bool| own.iter().filter(|trial| is(&trial.came)).count();
+        let count =
+            |is: fn(&TrialResult) -> bool| own.iter().filter(|trial| is(&trial.result)).count();
         let made: Vec<(bool, &Numbers)> =
             own.iter().filter_map(|trial| Some((trial.locked, numbers(trial)?))).collect();
         let sum =
@@ -87,8 +88,8 @@ fn write_methods(out: &mut String, drawn: Drawn, trials: &[&Trial]) {
             out,
             "| {lab}, {method} | {} | {} | {} | {} | {} | {} ({}) | {} ({}) | {} | {} | {bound}, {broken} | {} |",
             made.len(),
-            count(|came| matches!(came, Came::Refused(_) | Came::Silent)),
-            count(|came| matches!(came, Came::Panicked(_))),
+            count(|result| matches!(result, TrialResult::Refused(_) | TrialResult::Silent)),
+            count(|result| matches!(result, TrialResult::Panicked(_))),
             sum(|numbers| usize::from(numbers.not_finite)),
             sum(|numbers| numbers.spins),
             sum(|numbers| numbers.flashes),
@@ -108,13 +109,13 @@ fn write_methods(out: &mut String, drawn: Drawn, trials: &[&Trial]) {
 }
 
 fn numbers(trial: &Trial) -> Option<&Numbers> {
-    match &trial.came {
-        Came::Made(numbers) => Some(numbers),
+    match &trial.result {
+        TrialResult::Made(numbers) => Some(numbers),
         _ => None,
     }
 }
 
-/// A sentence without what is different in each: names of takes and numbers.
+/// Returns a sentence without what varies: names of takes and numbers.
 fn general(sentence: &str, names: &[String]) -> String {
     let mut general = sentence.to_owned();
     for name in names {
@@ -148,11 +149,11 @@ fn write_refusals(out: &mut String, motions: &Motions, trials: &[Trial]) {
             1;
     }
     for trial in trials {
-        let sentence = match &trial.came {
-            Came::Made(_) => continue,
-            Came::Refused(sentence) => general(sentence, &trial.takes),
-            Came::Silent => "NO WORD".to_owned(),
-            Came::Panicked(place) => format!("PANIC {place}"),
+        let sentence = match &trial.result {
+            TrialResult::Made(_) => continue,
+            TrialResult::Refused(sentence) => general(sentence, &trial.takes),
+            TrialResult::Silent => "NO WORD".to_owned(),
+            TrialResult::Panicked(place) => format!("PANIC {place}"),
         };
         *sentences.entry((trial.lab.to_owned(), sentence)).or_default() += 1;
     }
@@ -202,7 +203,7 @@ fn write_faults(out: &mut String, trials: &[Trial]) {
     }
 }
 
-/// Everything, for a program.
+/// Returns all results as JSON.
 #[must_use]
 pub fn json(motions: &Motions, trials: &[Trial]) -> serde_json::Value {
     let faults: Vec<Vec<&str>> = trials.iter().map(Trial::faults).collect();

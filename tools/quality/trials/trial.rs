@@ -1,8 +1,8 @@
-//! Every lab and every method of it, tried on a pair or on a set of takes by links, as a user opens
+//! Trials of every lab and every method on a pair or a set of takes, opened by links as users open
 //! them.
 
-use super::folder::{Chance, Motions, encoded};
-use super::guard::{guarded, shared_out};
+use super::folder::{Motions, Random, encoded};
+use super::guard::{guarded, parallel_map};
 use segue_motion::clip::{Clip, Motion, mirror};
 use segue_motion::math::stats;
 use segue_motion::metrics::{Artefacts, MotionTrace};
@@ -11,21 +11,22 @@ use segue_session::{Command, CycleMade, Outcome, Session, write_ids};
 use std::sync::Arc;
 use std::time::Instant;
 
-/// The windows of a close pair are at most so far apart, centimetres: from A to B no more is asked
-/// than what a good transition does.
+/// The greatest distance of the windows of a close pair, centimetres: a transition between them
+/// should be smooth.
 const CLOSE_CM: f32 = 12.0;
-/// Skating is more than another one's by more than this share: so near do two meters that measure
-/// it agree.
+/// The ratio above which foot skating counts as more than another clip's: two measurements agree to
+/// within this ratio.
 const SAME_SKATING: f64 = 1.05;
-/// A difference below this is no skating, cm/s: clips that stand have next to none, and a
-/// millimetre a second is not seen.
+/// The least difference in foot skating that counts, cm/s: standing clips have next to none, and a
+/// millimetre per second is not visible.
 const MIN_SKATING_CMPS: f64 = 0.1;
-/// Trials that take longer are given up, seconds.
+/// The time limit of a trial, seconds.
 const MAX_SECS: f64 = 120.0;
-/// An edited path bulges out by this share of its length, and by no more than so many metres.
+/// The sideways displacement of an edited path, as a share of its length, and at most this many
+/// metres.
 const BULGE: f64 = 0.05;
 const MAX_BULGE_M: f64 = 1.0;
-/// Takes in a set.
+/// The number of takes in a set.
 const SET: usize = 4;
 
 const WEIGHT_LAWS: [&str; 3] = ["smooth", "linear", "smoother"];
@@ -40,9 +41,9 @@ const WALKS: [&str; 2] = ["dissolve", "inertialize"];
 const SCENARIOS: [&str; 7] = ["straight", "left", "right", "spin", "start_stop", "run", "eight"];
 const JUMPS: [&str; 2] = ["inertialize", "dead"];
 
-/// Why takes are drawn together.
+/// The kind of a draw of takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Drawn {
+pub enum Draw {
     /// Two takes of one rig.
     SameRig,
     /// Two takes of two rigs.
@@ -51,8 +52,8 @@ pub enum Drawn {
     Set,
 }
 
-impl Drawn {
-    /// The heading of its table.
+impl Draw {
+    /// Returns the heading of its table.
     #[must_use]
     pub const fn title(self) -> &'static str {
         match self {
@@ -63,87 +64,87 @@ impl Drawn {
     }
 }
 
-/// One way to use a lab.
+/// A use of a lab with one method.
 #[derive(Clone, Debug)]
-struct Way {
+struct LabUse {
     lab: &'static str,
     method: String,
-    /// The link's parameters besides the takes.
+    /// The parameters of the link besides the takes.
     query: String,
-    /// The parameter that plants feet.
+    /// The parameter of the foot lock.
     lock: &'static str,
     of: Of,
-    /// It jumps by intent: it is measured, and nothing is asked of it.
+    /// Whether it jumps intentionally: it is measured without bounds.
     jumps: bool,
 }
 
-/// Which takes a way uses.
+/// The takes that a use takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Of {
     /// A and B.
     Both,
     /// A.
     First,
-    /// All, in the list of that parameter.
+    /// All, in the list parameter of this name.
     All(&'static str),
 }
 
-/// A result, or why there is none.
+/// The result of one use of a lab on some takes.
 #[derive(Debug, serde::Serialize)]
 pub struct Trial {
     /// The lab's name in links.
     pub lab: &'static str,
-    /// The method's.
+    /// The name of the method.
     pub method: String,
-    /// Which table it belongs to.
+    /// The table of the trial.
     #[serde(skip)]
-    pub drawn: Drawn,
+    pub draw: Draw,
     /// The takes.
     pub takes: Vec<String>,
-    /// The link that opens it again where the takes are in the library.
+    /// The link, which opens the result if the takes are in the library.
     pub link: String,
-    /// Feet are planted.
+    /// Whether feet are locked.
     pub locked: bool,
-    /// It is held to the bounds.
+    /// Whether the bounds apply.
     pub bound: bool,
-    /// How long it took, seconds.
+    /// The duration, seconds.
     pub secs: f64,
-    /// Its outcome.
-    pub came: Came,
+    /// The result.
+    pub result: TrialResult,
 }
 
-/// The outcome of a trial.
+/// The result of a trial.
 #[derive(Debug, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Came {
-    /// A motion.
+pub enum TrialResult {
+    /// A motion with its measurements.
     Made(Box<Numbers>),
-    /// No motion, and a sentence that says why.
+    /// No motion, with a sentence that says why.
     Refused(String),
-    /// No motion, and no word.
+    /// No motion, and no message.
     Silent,
-    /// The words and the place of a panic.
+    /// A panic with its message and place.
     Panicked(String),
 }
 
-/// A result beside its sources.
+/// Measurements of a result compared with its sources.
 #[derive(Clone, Debug, Default, serde::Serialize)]
 pub struct Numbers {
-    /// Something in it is not a number.
+    /// Whether anything in it is not finite.
     pub not_finite: bool,
-    /// As [`Artefacts`] has them.
+    /// Counts as in [`Artefacts`].
     pub spins: usize,
     pub flashes: usize,
     pub new_flashes: usize,
     pub root_jumps: usize,
     pub new_root_jumps: usize,
-    /// Where the first flash is that no source has: frame, joint, and how many times the sources'
-    /// 99.9th percentile.
+    /// The first flash that no source has: frame, joint, and the ratio to the sources' 99.9th
+    /// percentile.
     pub first_flash: Option<(usize, String, f64)>,
-    /// Skating of the result, and of the worst source, cm/s.
+    /// Foot skating of the result, and of the worst source, cm/s.
     pub skating: Option<f64>,
     pub source_skating: Option<f64>,
-    /// The median slide of a stance of the result, and of the sources, cm.
+    /// The median foot slide of a stance in the result, and in the sources, cm.
     pub stance_cm: Option<f64>,
     pub source_stance_cm: Option<f64>,
 }
@@ -158,11 +159,11 @@ impl Trial {
                 faults.push(name);
             }
         };
-        match &self.came {
-            Came::Refused(_) => {}
-            Came::Silent => note(true, "refused without a word"),
-            Came::Panicked(_) => note(true, "panic"),
-            Came::Made(numbers) => {
+        match &self.result {
+            TrialResult::Refused(_) => {}
+            TrialResult::Silent => note(true, "refused without a word"),
+            TrialResult::Panicked(_) => note(true, "panic"),
+            TrialResult::Made(numbers) => {
                 note(numbers.not_finite, "not finite");
                 if self.bound {
                     note(numbers.spins > 0, "spin");
@@ -180,39 +181,39 @@ impl Trial {
     }
 }
 
-/// Tries all labs on `pairs` pairs of one rig and as many of two, and on half as many sets of four
-/// takes, drawn by `seed`.
+/// Runs all labs on `pairs` pairs of one rig and as many of two, and on half as many sets of four
+/// takes, draw by `seed`.
 #[must_use]
 pub fn try_all(motions: &Motions, pairs: usize, seed: u64) -> Vec<Trial> {
-    let drawn = draw(motions, pairs, seed);
-    let tried = shared_out(drawn.len(), |index| {
-        let (what, takes) = &drawn[index];
-        Bench::new(motions, *what, takes).run()
+    let draw = draw(motions, pairs, seed);
+    let tried = parallel_map(draw.len(), |index| {
+        let (what, takes) = &draw[index];
+        TrialSession::new(motions, *what, takes).run()
     });
     tried.into_iter().flatten().collect()
 }
 
-fn draw(motions: &Motions, pairs: usize, seed: u64) -> Vec<(Drawn, Vec<usize>)> {
+fn draw(motions: &Motions, pairs: usize, seed: u64) -> Vec<(Draw, Vec<usize>)> {
     let takes = &motions.takes;
-    let mut chance = Chance::new(seed);
+    let mut chance = Random::new(seed);
     let rig = |take: usize| takes[take].rig;
-    let mut drawn: Vec<(Drawn, Vec<usize>)> = Vec::new();
+    let mut draw: Vec<(Draw, Vec<usize>)> = Vec::new();
     let wanted = [
-        (Drawn::SameRig, 2, pairs),
-        (Drawn::OtherRigs, 2, pairs),
-        (Drawn::Set, SET, pairs.div_ceil(2)),
+        (Draw::SameRig, 2, pairs),
+        (Draw::OtherRigs, 2, pairs),
+        (Draw::Set, SET, pairs.div_ceil(2)),
     ];
     for (what, size, count) in wanted {
-        let first = drawn.len();
-        // Where there are fewer than are wanted, all are drawn sooner or later.
+        let first = draw.len();
+        // With fewer takes than requested, all of them are draw eventually.
         for _ in 0..count * 200 {
-            if drawn.len() - first == count || takes.is_empty() {
+            if draw.len() - first == count || takes.is_empty() {
                 break;
             }
             let mut chosen = vec![chance.below(takes.len())];
             while chosen.len() < size {
                 let fits = |take: usize| {
-                    (rig(take) == rig(chosen[0])) != (what == Drawn::OtherRigs)
+                    (rig(take) == rig(chosen[0])) != (what == Draw::OtherRigs)
                         && !chosen.contains(&take)
                 };
                 let mates: Vec<usize> = (0..takes.len()).filter(|&take| fits(take)).collect();
@@ -221,44 +222,46 @@ fn draw(motions: &Motions, pairs: usize, seed: u64) -> Vec<(Drawn, Vec<usize>)> 
                     None => break,
                 }
             }
-            if chosen.len() == size && !drawn[first..].iter().any(|(_, known)| *known == chosen) {
-                drawn.push((what, chosen));
+            if chosen.len() == size && !draw[first..].iter().any(|(_, known)| *known == chosen) {
+                draw.push((what, chosen));
             }
         }
     }
-    drawn
+    draw
 }
 
-/// Takes, a session with them, and what their sources do.
-struct Bench<'a> {
+/// Takes, a session with them, and traces of their sources.
+struct TrialSession<'a> {
     motions: &'a Motions,
-    drawn: Drawn,
+    draw: Draw,
     takes: Vec<usize>,
     session: Option<(Session, Vec<String>)>,
 }
 
-impl<'a> Bench<'a> {
-    fn new(motions: &'a Motions, drawn: Drawn, takes: &[usize]) -> Self {
-        Self { motions, drawn, takes: takes.to_vec(), session: None }
+impl<'a> TrialSession<'a> {
+    fn new(motions: &'a Motions, draw: Draw, takes: &[usize]) -> Self {
+        Self { motions, draw, takes: takes.to_vec(), session: None }
     }
 
     fn names(&self) -> Vec<String> {
         self.takes.iter().map(|&take| self.motions.takes[take].name.clone()).collect()
     }
 
-    /// Opens a link in the session; a new one where the last was lost in a panic.
+    /// Opens a link in the session, or in a new one if the last was lost in a panic.
     fn open(&mut self, link: impl Fn(&[String]) -> String) -> Opened {
         if self.session.is_none() {
             match guarded(|| self.motions.open(&self.takes)) {
                 Ok(Ok(session)) => self.session = Some(session),
                 Ok(Err(sentence)) => {
-                    return Opened::without(String::new(), Err(Came::Refused(sentence)));
+                    return Opened::without(String::new(), Err(TrialResult::Refused(sentence)));
                 }
-                Err(place) => return Opened::without(String::new(), Err(Came::Panicked(place))),
+                Err(place) => {
+                    return Opened::without(String::new(), Err(TrialResult::Panicked(place)));
+                }
             }
         }
         let Some((mut session, ids)) = self.session.take() else {
-            return Opened::without(String::new(), Err(Came::Silent));
+            return Opened::without(String::new(), Err(TrialResult::Silent));
         };
         let link = link(&ids);
         let start = Instant::now();
@@ -269,13 +272,13 @@ impl<'a> Bench<'a> {
                 self.session = Some((session, ids));
                 made
             }
-            Err(place) => Err(Came::Panicked(place)),
+            Err(place) => Err(TrialResult::Panicked(place)),
         };
         Opened { link, secs, made }
     }
 
     fn run(mut self) -> Vec<Trial> {
-        // What a session makes for itself is no part of the first result.
+        // The first opening also synthesises the session's clips, which is not timed.
         let view = self.open(|ids| format!("lab=view&a={}", encoded(&ids[0])));
         let mut trials = Vec::new();
         let Ok(first) = &view.made else {
@@ -290,8 +293,8 @@ impl<'a> Bench<'a> {
             return trials;
         };
         let (first, mut sources) = (Arc::clone(&first.motion), Vec::new());
-        let mut is_close = self.drawn == Drawn::Set;
-        if self.drawn == Drawn::Set {
+        let mut is_close = self.draw == Draw::Set;
+        if self.draw == Draw::Set {
             for index in 0..self.takes.len() {
                 if let Ok(outcome) =
                     self.open(|ids| format!("lab=view&a={}", encoded(&ids[index]))).made
@@ -309,7 +312,7 @@ impl<'a> Bench<'a> {
                 // B as it is mixed: on the skeleton of A.
                 sources.extend(outcome.sources.get(1).map(|source| traced(&source.motion)));
             }
-            if self.drawn == Drawn::OtherRigs
+            if self.draw == Draw::OtherRigs
                 && let Ok(outcome) =
                     self.open(|ids| format!("lab=view&a={}", encoded(&ids[1]))).made
                 && let Some(moved) =
@@ -331,33 +334,34 @@ impl<'a> Bench<'a> {
         }
         let mirrored = self.mirrored();
         let path_code = self.edited_path();
-        for way in ways(self.drawn, path_code.as_deref()) {
+        for lab_use in lab_uses(self.draw, path_code.as_deref()) {
             for locked in [false, true] {
-                let opened = self.open(|ids| way.link(ids, locked));
-                let beside: Vec<&MotionTrace> = match (way.of, way.lab) {
+                let opened = self.open(|ids| lab_use.link(ids, locked));
+                let beside: Vec<&MotionTrace> = match (lab_use.of, lab_use.lab) {
                     (Of::First, _) => sources.iter().take(1).collect(),
-                    // Every take plays a second time with left and right exchanged.
+                    // The database contains every take and its mirror image.
                     (_, "match") => sources.iter().chain(&mirrored).collect(),
                     _ => sources.iter().collect(),
                 };
-                let feet: Vec<&MotionTrace> = if way.of == Of::First {
+                let feet: Vec<&MotionTrace> = if lab_use.of == Of::First {
                     sources.iter().take(1).collect()
                 } else {
                     sources.iter().collect()
                 };
-                // A path that turns faster than the motion can says so, and nothing is asked of the
-                // motion on it.
+                // A path that turns faster than the motion can is reported as such, and no bounds
+                // apply to the motion on it.
                 let is_hard = |outcome: &Arc<Outcome>| {
                     outcome.path().is_some_and(|path| !path.hard_turns.is_empty())
                 };
-                // What is laid on top of a motion adds its own speed to it, by design.
-                let adds = way.lab == "layers" && way.method == "additive";
+                // An additive layer adds its own speed by design.
+                let adds = lab_use.lab == "layers" && lab_use.method == "additive";
                 let is_far = opened.made.as_ref().is_ok_and(|outcome| {
                     own_distance_cm(outcome).is_some_and(|cm| cm >= f64::from(CLOSE_CM))
                 });
                 let asks_much =
-                    way.jumps || adds || is_far || opened.made.as_ref().is_ok_and(is_hard);
-                let bound = !asks_much && (is_close || way.lab == "match") && way.lab != "graph";
+                    lab_use.jumps || adds || is_far || opened.made.as_ref().is_ok_and(is_hard);
+                let bound =
+                    !asks_much && (is_close || lab_use.lab == "match") && lab_use.lab != "graph";
                 let numbers = |outcome: &Outcome| {
                     let values: Vec<f64> =
                         outcome.metrics.iter().filter_map(|metric| metric.value).collect();
@@ -366,8 +370,8 @@ impl<'a> Bench<'a> {
                     measured(&outcome.motion, &values, &beside, &feet)
                 };
                 trials.push(self.trial(
-                    way.lab,
-                    way.method.clone(),
+                    lab_use.lab,
+                    lab_use.method.clone(),
                     locked,
                     bound,
                     opened,
@@ -390,23 +394,25 @@ impl<'a> Bench<'a> {
         Trial {
             lab,
             method,
-            drawn: self.drawn,
+            draw: self.draw,
             takes: self.names(),
             link: opened.link,
             locked,
             bound,
             secs: opened.secs,
-            came: match opened.made {
+            result: match opened.made {
                 Ok(outcome) => guarded(|| numbers(&outcome))
-                    .map_or_else(Came::Panicked, |numbers| Came::Made(Box::new(numbers))),
-                Err(came) => came,
+                    .map_or_else(TrialResult::Panicked, |numbers| {
+                        TrialResult::Made(Box::new(numbers))
+                    }),
+                Err(result) => result,
             },
         }
     }
 
-    /// The takes of a set, left and right exchanged.
+    /// Returns the mirror images of the takes of a set.
     fn mirrored(&mut self) -> Vec<MotionTrace> {
-        let count = if self.drawn == Drawn::Set { self.takes.len() } else { 0 };
+        let count = if self.draw == Draw::Set { self.takes.len() } else { 0 };
         let mut traces = Vec::new();
         for index in 0..count {
             if let Ok(outcome) =
@@ -422,9 +428,9 @@ impl<'a> Bench<'a> {
         traces
     }
 
-    /// The word of A's path with its middle moved aside.
+    /// Returns the code of A's path with its middle moved sideways.
     fn edited_path(&mut self) -> Option<String> {
-        if self.drawn == Drawn::Set {
+        if self.draw == Draw::Set {
             return None;
         }
         let fitted = self.open(|ids| format!("lab=path&a={}", encoded(&ids[0]))).made.ok()?;
@@ -447,33 +453,33 @@ impl<'a> Bench<'a> {
 struct Opened {
     link: String,
     secs: f64,
-    made: Result<Arc<Outcome>, Came>,
+    made: Result<Arc<Outcome>, TrialResult>,
 }
 
 impl Opened {
-    fn without(link: String, made: Result<Arc<Outcome>, Came>) -> Self {
+    fn without(link: String, made: Result<Arc<Outcome>, TrialResult>) -> Self {
         Self { link, secs: 0.0, made }
     }
 }
 
 /// Opens a link and returns its result when all work is done.
-fn shown(session: &mut Session, link: &str) -> Result<Arc<Outcome>, Came> {
+fn shown(session: &mut Session, link: &str) -> Result<Arc<Outcome>, TrialResult> {
     let opened = session.apply(Command::OpenLink(link.to_owned()));
-    opened.map_err(|error| Came::Refused(error.to_string()))?;
+    opened.map_err(|error| TrialResult::Refused(error.to_string()))?;
     let start = Instant::now();
     while session.work() {
         if start.elapsed().as_secs_f64() > MAX_SECS {
-            return Err(Came::Silent);
+            return Err(TrialResult::Silent);
         }
     }
-    let pane = session.panes().first().ok_or(Came::Silent)?;
+    let pane = session.panes().first().ok_or(TrialResult::Silent)?;
     match (&pane.problem, &pane.outcome) {
         (Some(problem), _) => Err(match problem.to_string() {
-            sentence if sentence.trim().is_empty() => Came::Silent,
-            sentence => Came::Refused(sentence),
+            sentence if sentence.trim().is_empty() => TrialResult::Silent,
+            sentence => TrialResult::Refused(sentence),
         }),
         (None, Some(outcome)) => Ok(Arc::clone(outcome)),
-        (None, None) => Err(Came::Silent),
+        (None, None) => Err(TrialResult::Silent),
     }
 }
 
@@ -488,7 +494,8 @@ fn is_finite(clip: &Clip) -> bool {
     rotations && moved && clip.root_translations().iter().all(|t| t.is_finite())
 }
 
-/// A result beside `sources` by how it moves, and beside `feet` by how it skates.
+/// Measures a result: its motion compared with `sources`, and its foot skating compared with
+/// `feet`.
 fn measured(
     motion: &Motion,
     values: &[f64],
@@ -523,8 +530,8 @@ fn measured(
     }
 }
 
-/// How far apart that is which a result brings together: the windows of its transition, the frames
-/// that were registered, or the ends of its cycle.
+/// Returns the distance that a result bridges: of the windows of its transition, of the registered
+/// frames, or of the ends of its cycle.
 fn own_distance_cm(outcome: &Outcome) -> Option<f64> {
     match (outcome.transition.as_ref(), outcome.cycle.as_ref().map(|cycle| &cycle.made)) {
         (_, Some(CycleMade::Cut { distance_cm, .. })) => Some(*distance_cm),
@@ -533,8 +540,8 @@ fn own_distance_cm(outcome: &Outcome) -> Option<f64> {
     }
 }
 
-/// The part of A that goes round: it may skate more than the whole of A, in which the feet also
-/// stand or fly.
+/// Returns the part of A that loops: it may skate more than the whole of A, which also contains
+/// standing and flight.
 fn cut_part(outcome: &Outcome, a: &Motion) -> Option<MotionTrace> {
     let CycleMade::Cut { from_secs, to_secs, .. } = outcome.cycle?.made else {
         return None;
@@ -544,14 +551,14 @@ fn cut_part(outcome: &Outcome, a: &Motion) -> Option<MotionTrace> {
     Some(MotionTrace::new(&part, a.roles()))
 }
 
-/// The middle one of some numbers.
+/// Returns the median.
 #[must_use]
 pub fn median(values: &[f64]) -> Option<f64> {
     let values: Vec<f32> = values.iter().map(|value| *value as f32).collect();
     stats::percentile(&values, 0.5).map(f64::from)
 }
 
-impl Way {
+impl LabUse {
     fn link(&self, ids: &[String], locked: bool) -> String {
         let takes = match self.of {
             Of::Both => format!("a={}&b={}", encoded(&ids[0]), encoded(&ids[1])),
@@ -563,10 +570,10 @@ impl Way {
     }
 }
 
-fn ways(drawn: Drawn, path_code: Option<&str>) -> Vec<Way> {
-    let mut ways = Vec::new();
+fn lab_uses(draw: Draw, path_code: Option<&str>) -> Vec<LabUse> {
+    let mut lab_uses = Vec::new();
     let mut add = |lab: &'static str, of: Of, method: String, query: String, jumps: bool| {
-        ways.push(Way {
+        lab_uses.push(LabUse {
             lab,
             method,
             query,
@@ -575,7 +582,7 @@ fn ways(drawn: Drawn, path_code: Option<&str>) -> Vec<Way> {
             jumps,
         });
     };
-    if drawn == Drawn::Set {
+    if draw == Draw::Set {
         for (scenario, jump) in
             SCENARIOS.into_iter().flat_map(|scenario| JUMPS.map(|jump| (scenario, jump)))
         {
@@ -589,7 +596,7 @@ fn ways(drawn: Drawn, path_code: Option<&str>) -> Vec<Way> {
             let query = format!("construction={construction}&walk_method={walk}");
             add("graph", Of::All("clips"), format!("{construction}, {walk}"), query, false);
         }
-        return ways;
+        return lab_uses;
     }
     for law in WEIGHT_LAWS {
         add("blend", Of::Both, law.to_owned(), format!("weight_law={law}"), false);
@@ -597,7 +604,7 @@ fn ways(drawn: Drawn, path_code: Option<&str>) -> Vec<Way> {
     for method in TRANSITIONS {
         add("transition", Of::Both, method.to_owned(), format!("method={method}"), method == "cut");
     }
-    add("speed", Of::Both, "half way".to_owned(), "speed=auto".to_owned(), false);
+    add("speed", Of::Both, "half lab_use".to_owned(), "speed=auto".to_owned(), false);
     for method in LOOPS {
         add("loop", Of::First, method.to_owned(), format!("loop_method={method}"), false);
     }
@@ -611,5 +618,5 @@ fn ways(drawn: Drawn, path_code: Option<&str>) -> Vec<Way> {
         let code = path_code.unwrap_or_default();
         add("path", Of::First, format!("bent, {keep}"), format!("keep={keep}&path={code}"), false);
     }
-    ways
+    lab_uses
 }
