@@ -8,7 +8,6 @@ use segue_motion::skeleton::Roles;
 use segue_motion::synth::Action;
 use segue_motion::transition::{FootLockOptions, foot_lock};
 use std::hint::black_box;
-use std::sync::Arc;
 
 #[path = "common/gait.rs"]
 mod common;

@@ -216,7 +216,6 @@ mod tests {
     use super::*;
     use crate::registration::fixtures::Walk;
     use crate::skeleton::Roles;
-    use std::sync::Arc;
 
     fn source_of(walk: &Walk) -> Motion {
         let clip = walk.clip();

@@ -21,7 +21,7 @@ use super::{LabFacts, Outcome, Slot, Source, Transition};
 use crate::choices;
 use registrar::Found;
 use segue_motion::blend::{
-    self, DissolveOptions, FrameMix, Partner, RegisteredBlend, WeightCurve, WeightLaw, dissolve,
+    DissolveOptions, FrameMix, Partner, RegisteredBlend, WeightCurve, WeightLaw, dissolve,
     registered_blend, registered_join,
 };
 use segue_motion::clip::{Clip, Contacts, Motion};

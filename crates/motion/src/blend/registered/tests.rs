@@ -4,7 +4,6 @@ use super::*;
 use crate::registration::fixtures::Walk;
 use crate::registration::{PairTerms, RegistrationOptions, limb_weights};
 use crate::skeleton::Roles;
-use std::sync::Arc;
 
 fn source(walk: Walk) -> Motion {
     let clip = walk.clip();

@@ -8,7 +8,6 @@ use crate::registration::fixtures::Walk;
 use crate::synth::{Action, Params, synthesize};
 use crate::transition::{FootLockOptions, foot_lock};
 use proptest::prelude::*;
-use std::sync::Arc;
 
 fn find_cycle(clip: Clip) -> Result<(GaitCycle, Roles), GaitError> {
     let roles = Roles::detect(clip.skeleton());

@@ -6,7 +6,6 @@ use crate::registration::fixtures::Walk;
 use crate::skeleton::Roles;
 use glam::DVec2;
 use proptest::prelude::*;
-use std::sync::Arc;
 
 const METHODS: [LoopMethod; 4] = [
     LoopMethod::Exact { half_life_secs: 0.2 },
