@@ -1,6 +1,6 @@
 //! Marks on a figure: bones, axes, contacts, the chosen joint and its trail.
 
-use crate::director::{DrawContext, Shown};
+use crate::context::{DrawContext, Shown};
 use crate::{Body, Color, Colors, Layer, Lens, Pane, pose_at, with_alpha};
 use glam::Vec3;
 use segue_motion::clip::Motion;

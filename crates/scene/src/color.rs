@@ -1,5 +1,7 @@
 //! Colours, and those that the theme gives to the parts of a motion.
 
+use segue_session::Slot;
+
 /// Red, green, blue, alpha, each 0–1; sRGB-encoded as in a palette, alpha straight.
 pub type Color = [f32; 4];
 
@@ -39,10 +41,20 @@ pub struct Colors {
     pub bad: Color,
     /// Where a path turns faster than the motion on it can.
     pub warning: Color,
-    /// Those who play along, each with its ghost and path.
+    /// The extra characters, and those of a crowd, in turn.
     pub others: [Color; 4],
     /// How much a ghost covers, 0 to 1.
     pub ghost_alpha: f32,
+}
+
+impl Colors {
+    /// Returns the colour of what is made from the clip in a slot.
+    pub(crate) fn of_slot(&self, slot: Slot) -> Color {
+        match slot {
+            Slot::A => self.a,
+            Slot::B => self.b,
+        }
+    }
 }
 
 #[cfg(test)]

@@ -3,19 +3,14 @@
 mod cameras;
 
 use crate::body_cache::BodyCache;
+use crate::context::{DrawContext, Shown};
 use crate::framing::{figure_height, resting_place, resting_point};
-use crate::labs::path::PathMarks;
 use crate::{
-    Camera, CameraRig, Color, Colors, Look, Pane, Skinning, Stage, Viewport, annotations,
-    extra_characters, labs, pose_at, result, sources, with_alpha,
+    Camera, CameraRig, Colors, Highlights, Look, Pane, Skinning, Stage, Viewport, annotations,
+    extra_characters, labs, result, sources,
 };
-use segue_motion::clip::Motion;
-use segue_motion::graph;
-use segue_motion::matching;
-use segue_motion::math::Planar;
-use segue_motion::skeleton::WorldPose;
 use segue_session::choices;
-use segue_session::{Key, Outcome, Params, Session};
+use segue_session::{Key, Session};
 use std::sync::Arc;
 
 /// How a session is shown: where its panes lie, in which colours, and what is highlighted.
@@ -43,21 +38,6 @@ impl Default for StageOptions<'_> {
             highlights: Highlights::default(),
         }
     }
-}
-
-/// What the pointer highlights on the stage, or shows there in place of the result.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Highlights {
-    /// Whether the chosen joint is marked.
-    pub joint: bool,
-    /// The pair of frames of A and B (at A's rate) that is shown, aligned, in place of the result.
-    pub pair: Option<[f64; 2]>,
-    /// The transition whose windows are shown, laid on each other, in place of the result.
-    pub jump: Option<[graph::Place; 2]>,
-    /// The frame that is shown as a ghost where the driven character stands.
-    pub candidate: Option<matching::Place>,
-    /// What is done with a path.
-    pub path: PathMarks,
 }
 
 /// Makes the stage from the session, and keeps what goes on from frame to frame: cameras on their
@@ -156,63 +136,6 @@ impl Director {
     #[must_use]
     pub fn camera(&self, pane: usize) -> Option<&Camera> {
         self.rigs.get(pane).map(CameraRig::camera)
-    }
-}
-
-/// Everything that the contents of a pane are made from.
-pub(crate) struct DrawContext<'a> {
-    pub(crate) session: &'a Session,
-    pub(crate) params: &'a Params,
-    pub(crate) look: &'a Look,
-    pub(crate) colors: &'a Colors,
-    pub(crate) highlights: &'a Highlights,
-    pub(crate) bodies: &'a mut BodyCache,
-}
-
-/// A result as it is shown now.
-pub(crate) struct Shown<'a> {
-    pub(crate) outcome: &'a Outcome,
-    /// The time in its motion, seconds.
-    pub(crate) now: f64,
-    /// Where the motion lies in the world.
-    pub(crate) place: Planar,
-    /// The pose.
-    pub(crate) world: WorldPose,
-}
-
-impl<'a> Shown<'a> {
-    /// Poses a result; `None` where its motion has no pose.
-    fn new(shown: segue_session::Shown<'a>) -> Option<Self> {
-        let segue_session::Shown { outcome, secs: now, place } = shown;
-        Some(Self { outcome, now, place, world: pose_at(&outcome.motion, now, &place)? })
-    }
-
-    /// Returns where the result stands now.
-    pub(crate) fn standing(&self) -> Planar {
-        self.place.after(&self.outcome.motion.standing_at(self.now))
-    }
-}
-
-impl DrawContext<'_> {
-    /// Adds the ghost of a motion at a time, where the motion lies at `world_from_clip`.
-    pub(crate) fn add_ghost(
-        &mut self,
-        motion: &Motion,
-        secs: f64,
-        world_from_clip: &Planar,
-        color: Color,
-        pane: &mut Pane,
-    ) {
-        if let Some(world) = pose_at(motion, secs, world_from_clip) {
-            pane.add_ghost(&self.bodies.body(motion), &world, color);
-        }
-    }
-
-    /// Returns the colour of a ghost that stands alone: clearer than beside a result.
-    pub(crate) fn lone_ghost(&self, color: Color, clear: f32) -> Color {
-        /// How many times as much as a ghost beside a result it covers.
-        const ALPHA: f32 = 1.8;
-        with_alpha(color, (ALPHA * clear * self.colors.ghost_alpha).min(0.9))
     }
 }
 

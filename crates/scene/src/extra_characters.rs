@@ -2,7 +2,7 @@
 
 use crate::annotations::add_bones;
 use crate::color::mixed;
-use crate::director::DrawContext;
+use crate::context::DrawContext;
 use crate::ground_path::{MAX_PATH_POINTS, PATH_HEIGHT_M};
 use crate::{Body, Color, Layer, Pane, pose_at};
 use segue_motion::clip::Motion;

@@ -1,6 +1,6 @@
 //! The way of a result over the ground.
 
-use crate::director::Shown;
+use crate::context::Shown;
 use crate::{Color, Colors, Layer, Pane};
 use segue_session::Outcome;
 

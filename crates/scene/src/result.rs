@@ -1,7 +1,7 @@
 //! A result: its figure, the ghosts before and behind it, and the marks on it.
 
 use crate::annotations::{add_axes, add_bones, add_contacts, add_joint_trail};
-use crate::director::{DrawContext, Shown};
+use crate::context::{DrawContext, Shown};
 use crate::ground_path::{add_ground_path, color_at};
 use crate::posing::twisted;
 use crate::{Pane, labs, sources, with_alpha};

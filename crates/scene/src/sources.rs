@@ -1,11 +1,8 @@
 //! The clips that a result is made of, as ghosts.
 
-use crate::director::{DrawContext, Shown};
-use crate::{Color, Colors, Pane, labs, with_alpha};
+use crate::context::{DrawContext, GHOST_FADE_SECS, Shown};
+use crate::{Pane, labs, with_alpha};
 use segue_session::Slot;
-
-/// A ghost fades in before the transition and out behind it, over this long.
-pub(crate) const GHOST_FADE_SECS: f64 = 0.3;
 
 /// Adds both sources around the transition, as far as they differ from the result: A appears as its
 /// weight falls, B vanishes as its weight rises.
@@ -39,7 +36,7 @@ pub(crate) fn add_sources(shown: &Shown<'_>, context: &mut DrawContext<'_>, pane
         if share < 0.02 || !(0.0..=source.motion.clip().duration_secs()).contains(&at) {
             continue;
         }
-        let color = with_alpha(slot_color(source.slot, context.colors), ghost_alpha * share);
+        let color = with_alpha(context.colors.of_slot(source.slot), ghost_alpha * share);
         context.add_ghost(&source.motion, at, &place.after(&source.world_from_clip), color, pane);
     }
 }
@@ -52,17 +49,9 @@ pub(crate) fn add_stand_ins(
     pane: &mut Pane,
 ) {
     for source in &refused.sources {
-        let color = slot_color(source.slot, context.colors);
+        let color = context.colors.of_slot(source.slot);
         let color = with_alpha(color, context.colors.ghost_alpha);
         let at = now.min(source.motion.clip().duration_secs());
         context.add_ghost(&source.motion, at, &source.world_from_clip, color, pane);
-    }
-}
-
-/// Returns the colour of a slot.
-pub(crate) fn slot_color(slot: Slot, colors: &Colors) -> Color {
-    match slot {
-        Slot::A => colors.a,
-        Slot::B => colors.b,
     }
 }

@@ -1,6 +1,6 @@
 //! Where the cameras of the panes go.
 
-use super::{DrawContext, Shown};
+use crate::context::{DrawContext, Shown};
 use crate::framing::{camera_of, middle_height};
 use crate::{Camera, CameraRig, Pane, pose_at};
 use glam::Vec3;

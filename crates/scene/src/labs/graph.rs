@@ -1,8 +1,7 @@
 //! The Graph lab: the windows of a transition, the clips that a walk is made of, and the line that
 //! it follows.
 
-use crate::director::{DrawContext, Shown};
-use crate::sources::GHOST_FADE_SECS;
+use crate::context::{DrawContext, GHOST_FADE_SECS, Shown};
 use crate::{Layer, Pane, with_alpha};
 use glam::Vec3;
 use segue_motion::graph::Place;

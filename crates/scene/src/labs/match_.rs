@@ -1,7 +1,7 @@
 //! The Match lab: where the character was asked to be, where it is asked to go, where the frame that
 //! plays would lead, and the crowd around it.
 
-use crate::director::{DrawContext, Shown};
+use crate::context::{DrawContext, Shown};
 use crate::extra_characters::add_character;
 use crate::{Body, Color, Colors, Layer, Pane, Ring, with_alpha};
 use segue_motion::math::Planar;

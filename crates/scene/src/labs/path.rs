@@ -1,27 +1,10 @@
 //! The Path lab: the way as it was, the path that was fitted to it, the path as it is
 //! now, and its control points.
 
-use crate::{Color, Colors, Layer, Look, Pane, with_alpha};
+use crate::{Color, Colors, Layer, Look, Pane, PathMarks, with_alpha};
 use glam::{DVec2, Vec3};
 use segue_motion::path::{Road, Waypoint};
 use segue_session::OnPath;
-
-/// What is pointed at, held and drawn of a path.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct PathMarks {
-    /// Whether control points are to be seen.
-    pub handles: bool,
-    /// The chosen control point.
-    pub chosen: Option<usize>,
-    /// The control point under the pointer.
-    pub hovered: Option<usize>,
-    /// The place on the path that the pointer is at, (x, z) in metres: a point can be added there.
-    pub place: Option<DVec2>,
-    /// A point is held, or a curve is drawn: cameras stand still.
-    pub is_held: bool,
-    /// The curve that is being drawn by hand, (x, z) in metres.
-    pub drawn: Vec<DVec2>,
-}
 
 /// Points of a curve for each of its control points.
 const POINTS: usize = 24;

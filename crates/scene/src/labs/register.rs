@@ -1,8 +1,7 @@
 //! The Register lab: a pair of frames, and both sources beside the result.
 
-use crate::director::{DrawContext, Shown};
+use crate::context::{DrawContext, GHOST_FADE_SECS, Shown};
 use crate::ground_path::add_ground_path;
-use crate::sources::{GHOST_FADE_SECS, slot_color};
 use crate::{Pane, with_alpha};
 use segue_motion::math::Planar;
 use segue_session::{DistanceMap, Key, Slot};
@@ -61,7 +60,7 @@ pub(crate) fn add_sources_beside(
         let stands = outcome.motion.standing_at(*now);
         let beside =
             place.after(&stands).after(&aside).after(&stands.inverse()).after(&world_from_clip);
-        let color = slot_color(source.slot, context.colors);
+        let color = context.colors.of_slot(source.slot);
         let color = with_alpha(color, context.colors.ghost_alpha * visible);
         context.add_ghost(&source.motion, at, &beside, color, pane);
     }
