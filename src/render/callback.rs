@@ -1,3 +1,5 @@
+//! The stage as a part of egui's picture.
+
 use super::StageRenderer;
 use eframe::egui::{self, PaintCallbackInfo, epaint::ViewportInPixels};
 use eframe::egui_wgpu::{

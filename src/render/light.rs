@@ -1,6 +1,7 @@
 //! What the main light sees: the box about the bodies of a pane, and the map of depths that it is
 //! drawn into.
 
+use super::layout::MAP_FORMAT;
 use super::pipelines::Pipelines;
 use eframe::wgpu;
 use glam::{Vec2, Vec3};
@@ -8,7 +9,6 @@ use segue_scene::{Figure, Pane, Viewport};
 
 /// Width and height of the map of all panes, texels.
 pub(super) const MAP_SIZE: u32 = 2048;
-pub(super) const MAP_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth16Unorm;
 /// A body farther than this from the middle of the picture casts no shadow: the others' would get
 /// coarse, metres.
 const FARTHEST: f32 = 16.0;

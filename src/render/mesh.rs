@@ -1,5 +1,8 @@
 //! The one mesh: a rounded cone before it is bent to a limb.
 
+use super::buffers::filled_buffer;
+use eframe::wgpu;
+
 /// A vertex: cosine and sine about the axis, 0 (the seam with the other cap) to 1 (the pole), and
 /// which ball (0 or 1).
 pub(super) type ConeVertex = [f32; 4];
@@ -45,6 +48,25 @@ impl ConeMesh {
             }
         }
         Self { vertices, indices }
+    }
+}
+
+/// A rounded cone in the memory of the device.
+pub(super) struct ConeBuffers {
+    pub(super) vertices: wgpu::Buffer,
+    pub(super) indices: wgpu::Buffer,
+    pub(super) index_count: u32,
+}
+
+impl ConeBuffers {
+    /// Brings a mesh to the device.
+    pub(super) fn new(device: &wgpu::Device, queue: &wgpu::Queue, mesh: &ConeMesh) -> Self {
+        let buffer = |contents: &[u8], usage| filled_buffer(device, queue, "cone", contents, usage);
+        Self {
+            vertices: buffer(bytemuck::cast_slice(&mesh.vertices), wgpu::BufferUsages::VERTEX),
+            indices: buffer(bytemuck::cast_slice(&mesh.indices), wgpu::BufferUsages::INDEX),
+            index_count: mesh.indices.len() as u32,
+        }
     }
 }
 

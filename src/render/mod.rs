@@ -5,22 +5,29 @@
 //! the last frame is not drawn again. Everything runs on `WebGL2`: instance attributes and small
 //! uniform blocks, no storage buffers.
 
+mod buffers;
 mod callback;
+mod encode;
 mod frame;
 #[cfg(test)]
 mod image;
+mod instances;
+mod layout;
 mod light;
 mod mesh;
 mod pipelines;
+mod quality;
 mod renderer;
 mod skins;
 mod targets;
 #[cfg(test)]
 mod tests;
+mod view;
+mod view_uniform;
 
 pub(crate) use callback::{install, paint_callback, stage_pixels};
 #[cfg(test)]
 use image::{Image, render_to_image};
 #[cfg(test)]
-use renderer::Quality;
+use quality::Quality;
 pub(crate) use renderer::StageRenderer;

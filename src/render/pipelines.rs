@@ -1,12 +1,10 @@
 //! The render pipelines of a device.
 
-use super::frame::{
-    FigureUniform, LimbInstance, RingInstance, SkinInstance, StrokeInstance, ViewUniform,
+use super::layout::{
+    COLOR_FORMAT, DEPTH_FORMAT, FigureUniform, LimbInstance, MAP_FORMAT, RingInstance,
+    SkinInstance, SkinVertex, StrokeInstance, ViewUniform,
 };
-use super::light::MAP_FORMAT;
 use super::mesh::ConeVertex;
-use super::skins::SkinVertex;
-use super::targets::{COLOR_FORMAT, DEPTH_FORMAT};
 use eframe::wgpu;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU32, Ordering};

@@ -1,26 +1,16 @@
 //! What skinned bodies need on the GPU: each mesh once, and the joints of all figures of a stage in
 //! a texture.
 
-use super::frame::{JointTexels, Mesh};
+use super::buffers::filled_buffer;
+use super::frame::SharedMesh;
+use super::layout::{JointTexels, SkinVertex};
 use super::pipelines::Pipelines;
-use super::renderer::filled_buffer;
 use eframe::wgpu;
 use segue_motion::skin::SkinnedMesh;
 use std::sync::{Arc, Weak};
 
 /// Joints in a row of their texture, as skin.wgsl has it.
 const JOINTS_IN_ROW: usize = 512;
-
-/// A vertex of skin.wgsl.
-#[repr(C)]
-#[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
-pub(super) struct SkinVertex {
-    position: [f32; 3],
-    normal: [i16; 4],
-    joints: [u16; 4],
-    weights: [u16; 4],
-    tint: [u8; 4],
-}
 
 /// A mesh in the memory of the device.
 pub(super) struct SkinBuffers {
@@ -82,9 +72,14 @@ pub(super) struct SkinStore(Vec<SkinBuffers>);
 impl SkinStore {
     /// Brings those meshes to the device that are not there yet, and lets go of those that are
     /// gone.
-    pub(super) fn load(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, meshes: &[Mesh]) {
+    pub(super) fn load(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        meshes: &[SharedMesh],
+    ) {
         self.0.retain(|buffers| buffers.mesh.strong_count() > 0);
-        for Mesh(mesh) in meshes {
+        for SharedMesh(mesh) in meshes {
             if self.get(mesh).is_none() {
                 self.0.push(SkinBuffers::new(device, queue, mesh));
             }

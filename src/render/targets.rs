@@ -1,10 +1,8 @@
+//! The textures that a stage is drawn into.
+
+use super::layout::{COLOR_FORMAT, DEPTH_FORMAT};
 use super::pipelines::Pipelines;
 use eframe::wgpu;
-
-/// Colours are kept encoded, as egui keeps its own: blending then looks the same in the stage and
-/// beside it.
-pub(super) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
-pub(super) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth24PlusStencil8;
 
 /// What a stage is drawn into.
 pub(super) struct Targets {
