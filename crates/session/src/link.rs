@@ -1,7 +1,7 @@
 //! The link: what a query string can carry of the state, and back.
 
 use super::outside::short;
-use super::params::{Key, Params, Value};
+use super::params::{Key, Param, Params, Value};
 use percent_encoding::{AsciiSet, CONTROLS, utf8_percent_encode};
 use segue_text::{Message, ToMessage, msg};
 
@@ -51,16 +51,18 @@ pub fn read(query: &str) -> Link {
     link
 }
 
-/// Writes the query string without `?`: what differs from the defaults, in the order of the table.
-/// The playhead is left out while `playing`.
+/// Returns what a link names: the parameters that differ from their defaults, in the order of the
+/// table. The playhead is left out while `playing`.
+pub(crate) fn named(params: &Params) -> impl Iterator<Item = (&'static Param, &Value)> {
+    let is_playing = params.is_on(Key::Play);
+    params.changed().filter(move |(param, _)| param.key != Key::Time || !is_playing)
+}
+
+/// Writes the query string without `?`: what [`named`] returns.
 #[must_use]
 pub fn write(params: &Params) -> String {
     let mut query = String::new();
-    let playing = params.is_on(Key::Play);
-    for (param, value) in params.changed() {
-        if param.key == Key::Time && playing {
-            continue;
-        }
+    for (param, value) in named(params) {
         if !query.is_empty() {
             query.push('&');
         }

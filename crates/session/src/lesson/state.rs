@@ -233,11 +233,11 @@ impl LessonState {
     }
 }
 
-/// Returns whether a link that names only the parameters with another value than the default would
-/// have the open lesson set the parameters.
+/// Returns whether the link that [`link::write`] writes would have the open lesson set the
+/// parameters.
 pub(crate) fn would_set_up(params: &Params) -> bool {
-    let mut changed = params.changed().map(|(param, _)| param.key);
-    !params.text(Key::Lesson).is_empty() && changed.all(is_about_the_reader)
+    let mut named = link::named(params).map(|(param, _)| param.key);
+    !params.text(Key::Lesson).is_empty() && named.all(is_about_the_reader)
 }
 
 /// Returns the parameters when links are laid over each other, and over the defaults of all that

@@ -100,6 +100,16 @@ fn a_link_to_what_is_there_does_not_set_the_page_up() {
 }
 
 #[test]
+fn link_of_default_state_beside_a_lesson_at_a_later_time_keeps_that_state() {
+    let mut session = Session::new();
+    session.apply(Command::OpenLink("lesson=2&lab=blend&t=1.25".into())).unwrap();
+    let link = session.query();
+    assert_eq!(link, "lesson=2&lab=blend");
+    session.apply(Command::OpenLink(link.clone())).unwrap();
+    assert_eq!(session.query(), link);
+}
+
+#[test]
 fn a_try_lays_its_link_over_the_page_and_is_one_step() {
     let mut session = opened();
     set(&mut session, &[(Key::Theme, "light"), (Key::Align, "off"), (Key::Look, "bones")]);
