@@ -2,7 +2,7 @@
 
 use crate::labs::{Answer, Gauge, Inputs, LabError, Outcome, Source};
 use crate::params::{Key, Params, Value};
-use crate::playback::{SpeedRamp, cycle_durations};
+use crate::playback::speed_ramp::{SpeedRamp, cycle_durations};
 use segue_motion::math::Planar;
 use segue_text::ToMessage;
 use std::sync::Arc;

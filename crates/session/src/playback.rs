@@ -2,7 +2,7 @@
 //! and keeps its phase when it gives way to another one.
 
 mod span;
-mod speed_ramp;
+pub(crate) mod speed_ramp;
 
 use crate::choices::Follow;
 use crate::command::PlaybackCommand;
@@ -11,8 +11,7 @@ use crate::pane::Pane;
 use crate::params::{Key, Params, Value};
 use segue_motion::math::Planar;
 pub use span::Span;
-use speed_ramp::differ_in_speed_alone;
-pub(crate) use speed_ramp::{SpeedRamp, cycle_durations};
+use speed_ramp::{SpeedRamp, cycle_durations, differ_in_speed_alone};
 use std::sync::Arc;
 
 /// The time in which the panes play.
