@@ -4,7 +4,7 @@ use crate::compare::Compare;
 use crate::document::Document;
 use crate::files::FileIntake;
 use crate::labs::{Answer, Inputs, LabClips, LabError, LabSet, MoreClip};
-use crate::labs::{lab, preset_motion, recipe_name, recipe_params};
+use crate::labs::{lab_of, preset_motion, recipe_name, recipe_params};
 use crate::library::{Entry, Origin, split_reference};
 use crate::motion::foot_options;
 use crate::outside;
@@ -27,7 +27,7 @@ impl ClipResolver<'_> {
         let is_quick = |entry: &Entry| match entry.origin {
             Origin::Preset => true,
             Origin::Made => {
-                recipe_params(&entry.id).is_some_and(|params| lab::of(params.lab()).is_synthetic())
+                recipe_params(&entry.id).is_some_and(|params| lab_of(params.lab()).is_synthetic())
             }
             _ => false,
         };
@@ -140,7 +140,7 @@ impl ClipResolver<'_> {
     /// Returns the clips that the lab of the parameters makes its result from. Asks for all of them
     /// before it fails with the first that is missing: files are fetched together.
     pub(crate) fn lab_clips(&mut self, params: &Params) -> Result<LabClips, LabError> {
-        let lab = lab::of(params.lab());
+        let lab = lab_of(params.lab());
         let slots: Vec<_> = (lab.slots().iter())
             .map(|slot| self.motion_with_feet(params.text(slot.key()), params))
             .collect();
@@ -163,7 +163,7 @@ impl ClipResolver<'_> {
     /// Returns what a pane's result depends on; `None` while that is still being computed.
     fn inputs(&mut self, params: &Params, match_window: usize) -> Result<Option<Inputs>, LabError> {
         let clips = self.lab_clips(params)?;
-        lab::of(params.lab()).inputs(self.labs, clips, params, match_window)
+        lab_of(params.lab()).inputs(self.labs, clips, params, match_window)
     }
 
     /// Returns the answer to the parameters of a pane; `shown` is what its present result was made

@@ -1,6 +1,7 @@
 //! Whose motion a lab works with: made, captured, or what the user brought.
 
-use super::labs::lab::{self, Lab};
+use super::labs::lab::Lab;
+use super::labs::{LabSet, lab_of};
 use super::library::{Entry, Origin};
 use super::link;
 use super::params::{Key, Kind, Mark, Value};
@@ -23,7 +24,7 @@ impl Session {
     /// to choose, or there are no such clips.
     #[must_use]
     pub fn clip_set(&self, set: ClipSet) -> Option<Vec<(Key, Value)>> {
-        let lab = lab::of(self.params().lab());
+        let lab = lab_of(self.params().lab());
         match set {
             ClipSet::Captured => captured(lab),
             ClipSet::Made => captured(lab).map(|values| {
@@ -54,7 +55,7 @@ impl Session {
 const MOST_OWN: usize = 64;
 
 /// What is to be set so that a lab works with the bundled captured clips.
-fn captured(lab: &dyn Lab) -> Option<Vec<(Key, Value)>> {
+fn captured(lab: &dyn Lab<LabSet>) -> Option<Vec<(Key, Value)>> {
     let listed = || {
         let ids: Vec<String> = SUBJECT_16.iter().map(|sample| sample.id.to_owned()).collect();
         lab.with_clips(&ids)

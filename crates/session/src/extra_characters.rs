@@ -4,7 +4,8 @@ use crate::clip_resolver::ClipResolver;
 use crate::command::{CommandError, ExtraCharacterCommand};
 use crate::document::Document;
 use crate::labs::LabError;
-use crate::labs::lab::{self, Beside};
+use crate::labs::lab::Beside;
+use crate::labs::lab_of;
 use crate::labs::{edit_as_path, read_ids, recipe_id, recipe_name, write_ids};
 use crate::library::{Entry, Origin, split_reference};
 use crate::panes::Panes;
@@ -50,7 +51,7 @@ impl ExtraCharacters {
     /// Finds or makes the clips in the list.
     pub(crate) fn refresh(&mut self, clips: &mut ClipResolver<'_>) {
         self.list.clear();
-        if !lab::of(clips.document.params.lab()).has(Beside::ExtraCharacters) {
+        if !lab_of(clips.document.params.lab()).has(Beside::ExtraCharacters) {
             return;
         }
         for id in ids(clips.document).into_iter().take(MAX_CHARACTERS) {

@@ -9,7 +9,7 @@ mod graph;
 mod in_place;
 mod kept;
 pub(super) mod lab;
-pub(super) mod lab_set;
+mod lab_set;
 mod layers;
 mod loop_;
 mod make;
@@ -19,6 +19,7 @@ mod pair;
 mod path;
 mod register;
 mod rounds;
+pub(super) mod sliced;
 mod speed;
 mod view;
 
@@ -35,9 +36,8 @@ pub(super) use kept::{
     belongs_to, is_as_it_is, read_ids, recipe_id, recipe_ingredients, recipe_name, recipe_params,
 };
 pub use kept::{file_stem, write_ids};
-pub(super) use lab::Inputs;
-pub use lab_set::JobKind;
-pub(super) use lab_set::{LabClips, LabSet, MoreClip};
+pub(super) use lab::{Inputs, LabClips, MoreClip};
+pub(super) use lab_set::{LabSet, lab_of};
 pub use layers::{LayerFacts, LayerFit};
 pub(super) use make::{has as made_motion_has, preset_motion, range_of, synth_action};
 #[cfg(test)]
@@ -52,4 +52,5 @@ pub use register::{
     Beat, DistanceMap, MOST_ALSO, Registered, weight_curve, write_also, write_pairs,
 };
 pub(super) use register::{read_also, read_pins, read_weights};
+pub use sliced::JobKind;
 pub(super) use speed::{SpeedInputs, middle_mps};

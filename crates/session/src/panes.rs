@@ -5,7 +5,7 @@ use crate::clip_resolver::{ClipResolver, widest_window};
 use crate::command::CommandError;
 use crate::compare::MAX_PANES;
 use crate::labs::{DrivenPane, LiveDrive, Outcome, Slot, Source};
-use crate::labs::{belongs_to, lab, recipe_ingredients};
+use crate::labs::{belongs_to, lab_of, recipe_ingredients};
 use crate::pane::{Made, NoResult, Pane};
 use crate::params::{Key, Kind, Params, Value};
 use segue_motion::clip::Motion;
@@ -109,7 +109,7 @@ impl Panes {
         for pane in &self.list {
             let params = Arc::new(pane.params_in(&clips.document.params));
             let database = (clips.lab_clips(&params))
-                .and_then(|motions| clips.labs.match_database(motions, &params));
+                .and_then(|motions| clips.labs.driver.database_of(motions, &params));
             wanted.push(DrivenPane { params, database, shown: pane.outcome.clone() });
         }
         let params: Vec<_> = wanted.iter().map(|pane| Arc::clone(&pane.params)).collect();
@@ -124,7 +124,7 @@ impl Panes {
     pub(crate) fn show_sources(&mut self, clips: &mut ClipResolver<'_>) {
         for pane in self.list.iter_mut().filter(|pane| pane.problem.is_some()) {
             let params = pane.params_in(&clips.document.params);
-            let slots = lab::of(clips.document.params.lab()).slots().iter();
+            let slots = lab_of(clips.document.params.lab()).slots().iter();
             let found = [Slot::A, Slot::B]
                 .into_iter()
                 .filter(|slot| slots.clone().any(|used| used == slot))
@@ -137,7 +137,7 @@ impl Panes {
 /// Returns whether the user drives in the lab of the parameters, now or as soon as there is a
 /// database.
 pub(crate) fn is_driven_by_user(params: &Params) -> bool {
-    lab::of(params.lab()).is_own_drive(params)
+    lab_of(params.lab()).is_own_drive(params)
 }
 
 /// Returns whether a parameter makes a difference in a lab. Parameters of the view do in every lab.

@@ -2,7 +2,7 @@
 
 use super::Document;
 use crate::built_in::{built_in_entries, sample_entry};
-use crate::labs::{lab, read_also, recipe_name, recipe_params};
+use crate::labs::{lab_of, read_also, recipe_name, recipe_params};
 use crate::library::{Entry, Origin};
 use crate::params::{Key, Kind, Value};
 use crate::samples;
@@ -71,7 +71,7 @@ impl Document {
 
     /// Puts back what the open lab's own list of clips names.
     pub(crate) fn bring_back_listed(&mut self) {
-        for id in lab::of(self.params.lab()).listed(&self.params) {
+        for id in lab_of(self.params.lab()).listed(&self.params) {
             self.bring_back(&id);
         }
     }

@@ -5,7 +5,7 @@ use super::places::forget_places;
 use crate::LabId;
 use crate::Selected;
 use crate::command::CommandError;
-use crate::labs::{Slot, lab};
+use crate::labs::{Slot, lab_of};
 use crate::library::Entry;
 use crate::outside;
 use crate::params::{Key, Value};
@@ -48,7 +48,7 @@ impl Document {
         self.remember(None);
         self.library.remove(&entry.id);
         for lab in LabId::ALL {
-            for (key, value) in lab::of(*lab).without_clip(&self.params, &entry.id) {
+            for (key, value) in lab_of(*lab).without_clip(&self.params, &entry.id) {
                 self.set_unchecked(key, value);
             }
         }

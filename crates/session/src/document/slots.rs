@@ -3,7 +3,7 @@
 use super::Document;
 use super::places::forget_places;
 use crate::command::CommandError;
-use crate::labs::{Slot, lab};
+use crate::labs::{Slot, lab_of};
 use crate::library::{Arrival, Entry, Origin};
 use crate::params::{Key, Value};
 
@@ -25,7 +25,7 @@ impl Document {
             return;
         }
         let is_viewed = arrival == Arrival::ByHand
-            && lab::of(self.params.lab()).shows_clip()
+            && lab_of(self.params.lab()).shows_clip()
             && self.slot(Slot::A).is_some();
         let free = [Slot::A, Slot::B]
             .into_iter()
@@ -38,7 +38,7 @@ impl Document {
     /// Offers clips that arrived together the slots in turn: in View that of the clip on the stage;
     /// else those with built-in clips.
     pub(crate) fn offer_together<'a>(&mut self, ids: impl IntoIterator<Item = &'a str>) {
-        let slots = if lab::of(self.params.lab()).shows_clip() {
+        let slots = if lab_of(self.params.lab()).shows_clip() {
             vec![Slot::A]
         } else {
             let free = [Slot::A, Slot::B].into_iter();

@@ -1,7 +1,7 @@
 use super::feet::{Lock, slide, slide_before, with_feet};
-use super::lab::{Inputs, Lab, LabInputs};
-use super::lab_set::{JobKind, LabClips, LabSet, Sliced};
-use super::pair::Pair;
+use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs};
+use super::pair::{Pair, Pairs};
+use super::sliced::{JobKind, Sliced};
 use super::{MatchSearch, Outcome, Slot, Source, Transition};
 use crate::compare::MAX_PANES;
 use crate::labs::LabError;
@@ -23,7 +23,7 @@ use std::sync::Arc;
 /// The Blend lab: A fades into B over a window.
 pub(super) struct BlendLab;
 
-impl Lab for BlendLab {
+impl<S: HasPart<Pairs> + HasPart<Blender>> Lab<S> for BlendLab {
     fn parameters_of(&self) -> &'static [LabId] {
         &[LabId::Blend]
     }
@@ -45,13 +45,13 @@ impl Lab for BlendLab {
 
     fn inputs(
         &self,
-        labs: &mut LabSet,
+        labs: &mut S,
         clips: LabClips,
         params: &Params,
         match_window: usize,
     ) -> Result<Option<Inputs>, LabError> {
-        let pair = labs.pairs.of_slots(&clips.slots)?;
-        Ok(Some(Inputs::new(labs.blender.inputs(&pair, params, match_window)?)))
+        let pair = HasPart::<Pairs>::part(labs).of_slots(&clips.slots)?;
+        Ok(Some(Inputs::new(HasPart::<Blender>::part(labs).inputs(&pair, params, match_window)?)))
     }
 }
 
@@ -59,17 +59,17 @@ impl Lab for BlendLab {
 /// which has the Blend lab's parameters.
 pub(super) struct TransitionLab;
 
-impl Lab for TransitionLab {
+impl<S: HasPart<Pairs> + HasPart<Blender>> Lab<S> for TransitionLab {
     fn parameters_of(&self) -> &'static [LabId] {
         &[LabId::Blend, LabId::Transition]
     }
 
     fn result_name(&self, params: &Params, a: &str, b: &str) -> String {
-        BlendLab.result_name(params, a, b)
+        Lab::<S>::result_name(&BlendLab, params, a, b)
     }
 
     fn file_stem(&self, params: &Params) -> String {
-        BlendLab.file_stem(params)
+        Lab::<S>::file_stem(&BlendLab, params)
     }
 
     fn found(&self, outcome: &Outcome, fps: [f64; 2]) -> Vec<(Key, f64)> {
@@ -84,7 +84,7 @@ impl Lab for TransitionLab {
 
     fn inputs(
         &self,
-        labs: &mut LabSet,
+        labs: &mut S,
         clips: LabClips,
         params: &Params,
         match_window: usize,

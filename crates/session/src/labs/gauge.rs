@@ -1,7 +1,7 @@
 //! The artefact numbers that stand first in the list of every lab: each result is measured in the
 //! same way, beside the clips that it is made of.
 
-use super::lab_set::{JobKind, Sliced};
+use super::sliced::{JobKind, Sliced};
 use super::{Measured, Outcome};
 use segue_motion::clip::Clip;
 use segue_motion::metrics::{MotionTrace, ResultMetrics, TraceMeter};

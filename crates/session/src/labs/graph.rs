@@ -1,8 +1,7 @@
 //! The Graph lab: several clips as a motion graph, and a walk through it that goes on while it
 //! plays.
 
-use super::lab::{Beside, Inputs, Lab, LabInputs};
-use super::lab_set::{LabClips, LabSet};
+use super::lab::{Beside, HasPart, Inputs, Lab, LabClips, LabInputs};
 use crate::LabId;
 use crate::labs::LabError;
 use crate::params::{Key, Params, Value};
@@ -28,7 +27,7 @@ use std::sync::Arc;
 /// The Graph lab: a walk through a motion graph.
 pub(super) struct GraphLab;
 
-impl Lab for GraphLab {
+impl<S: HasPart<Grapher>> Lab<S> for GraphLab {
     fn parameters_of(&self) -> &'static [LabId] {
         &[LabId::Graph]
     }
@@ -46,7 +45,7 @@ impl Lab for GraphLab {
     }
 
     fn without_clip(&self, params: &Params, id: &str) -> Vec<(Key, Value)> {
-        let ids = self.listed(params);
+        let ids = Lab::<S>::listed(self, params);
         let others: Vec<String> = ids.iter().filter(|known| *known != id).cloned().collect();
         if others.is_empty() || others.len() == ids.len() {
             return Vec::new();
@@ -72,13 +71,13 @@ impl Lab for GraphLab {
 
     fn inputs(
         &self,
-        labs: &mut LabSet,
+        labs: &mut S,
         clips: LabClips,
         params: &Params,
         _match_window: usize,
     ) -> Result<Option<Inputs>, LabError> {
         let clips = clips.more.into_iter().map(|clip| (clip.name, clip.motion)).collect();
-        Ok(labs.grapher.inputs(clips, params)?.map(Inputs::new))
+        Ok(HasPart::<Grapher>::part(labs).inputs(clips, params)?.map(Inputs::new))
     }
 }
 

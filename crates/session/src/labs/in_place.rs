@@ -1,8 +1,7 @@
 //! The In place lab: the root motion of a clip is removed, or rebuilt from its planted feet.
 
 use super::feet::{Lock, slide, with_feet};
-use super::lab::{Inputs, Lab, LabInputs};
-use super::lab_set::{LabClips, LabSet};
+use super::lab::{Inputs, Lab, LabClips, LabInputs};
 use super::{Measured, Outcome, Slot};
 use crate::LabId;
 use crate::choices::RootWay;
@@ -16,7 +15,7 @@ use std::sync::Arc;
 /// The In place lab: one clip without root motion, or with a rebuilt one.
 pub(super) struct InPlaceLab;
 
-impl Lab for InPlaceLab {
+impl<S> Lab<S> for InPlaceLab {
     fn parameters_of(&self) -> &'static [LabId] {
         &[LabId::InPlace]
     }
@@ -45,7 +44,7 @@ impl Lab for InPlaceLab {
 
     fn inputs(
         &self,
-        _labs: &mut LabSet,
+        _labs: &mut S,
         clips: LabClips,
         params: &Params,
         _match_window: usize,

@@ -1,6 +1,6 @@
 //! Results that are kept: their id is the recipe, and all that a link needs to make them again.
 
-use super::lab;
+use super::lab_set::lab_of;
 use super::make::made_id;
 use super::{Outcome, Slot};
 use crate::params::{Key, Kind, Mark, PARAMS, Param, Params, Value};
@@ -15,7 +15,7 @@ const DEEPEST: usize = 6;
 
 /// Returns whether a lab depends on a parameter.
 pub(crate) fn belongs_to(key: Key, lab: LabId) -> bool {
-    lab::of(lab).depends_on(key)
+    lab_of(lab).depends_on(key)
 }
 
 /// Whether a parameter can change the result: how feet are held changes nothing while they are not.
@@ -26,8 +26,8 @@ pub(super) fn counts(params: &Params, key: Key) -> bool {
 /// Whether a parameter is part of what a lab's result is made from.
 fn is_ingredient(key: Key, lab: LabId) -> bool {
     match key {
-        Key::A => lab::of(lab).slots().contains(&Slot::A),
-        Key::B => lab::of(lab).slots().contains(&Slot::B),
+        Key::A => lab_of(lab).slots().contains(&Slot::A),
+        Key::B => lab_of(lab).slots().contains(&Slot::B),
         _ if key.param().has(Mark::LookedAt) => false,
         _ => belongs_to(key, lab),
     }
@@ -56,7 +56,7 @@ pub(crate) fn recipe_id(params: &Params, outcome: &Outcome, fps: [f64; 2]) -> Op
         let secs = outcome.duration_secs().round().clamp(10.0, 600.0);
         params.set(Key::WalkSeconds, Value::Number(secs)).ok()?;
     }
-    for (key, value) in lab::of(lab).found(outcome, fps) {
+    for (key, value) in lab_of(lab).found(outcome, fps) {
         if *params.get(key) == Value::Auto {
             params.set(key, Value::Number(value)).ok()?;
         }
@@ -115,13 +115,13 @@ pub(crate) fn recipe_name(params: &Params) -> String {
         Some(kept) => recipe_name(&kept),
         None => params.text(key).split('~').next().unwrap_or_default().to_owned(),
     });
-    lab::of(params.lab()).result_name(params, &a, &b)
+    lab_of(params.lab()).result_name(params, &a, &b)
 }
 
 /// Returns what a file of what the parameters make is called, without its ending.
 #[must_use]
 pub fn file_stem(params: &Params) -> String {
-    lab::of(params.lab()).file_stem(params)
+    lab_of(params.lab()).file_stem(params)
 }
 
 /// Several ids in one text: separated by commas.

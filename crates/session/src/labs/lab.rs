@@ -1,18 +1,17 @@
 //! What a lab answers: what its result depends on and is called, and what it is made from.
 
-use super::lab_set::{LabClips, LabSet};
-use super::{
-    Outcome, Slot, blend, graph, in_place, layers, loop_, make, match_, path, register, speed, view,
-};
+use super::error::LabError;
+use super::outcome::{Outcome, Slot};
 use crate::LabId;
-use crate::labs::LabError;
 use crate::params::{Group, Key, Mark, Params, Value};
+use segue_motion::clip::Motion;
 use std::any::Any;
 use std::fmt;
 use std::sync::Arc;
 
-/// The facts of a lab. Each lab's own file holds them; [`of`] lists all labs.
-pub(crate) trait Lab: Sync {
+/// The facts of a lab, in the lab's own file. `S` is what labs remember between results: a lab names
+/// the parts of it that it uses.
+pub(crate) trait Lab<S>: Sync {
     /// The labs whose parameters the result depends on.
     fn parameters_of(&self) -> &'static [LabId];
 
@@ -63,7 +62,7 @@ pub(crate) trait Lab: Sync {
     /// Says why there can be no result, and what to do.
     fn inputs(
         &self,
-        labs: &mut LabSet,
+        labs: &mut S,
         clips: LabClips,
         params: &Params,
         match_window: usize,
@@ -113,6 +112,40 @@ pub(crate) trait Lab: Sync {
         matches!(param.group, Group::Lab(lab) if self.parameters_of().contains(&lab))
             || self.shared_keys().contains(&key)
             || (self.has_feet() && (param.has(Mark::Feet) || param.has(Mark::Lock)))
+    }
+}
+
+/// A part of what labs remember between results.
+pub(crate) trait HasPart<T> {
+    /// Returns the part.
+    fn part(&mut self) -> &mut T;
+}
+
+/// The clips that a result is made from.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct LabClips {
+    /// Those of the lab's slots, in their order.
+    pub(crate) slots: Vec<Arc<Motion>>,
+    /// Those that it takes besides, by id.
+    pub(crate) more: Vec<MoreClip>,
+}
+
+/// A clip that a lab takes besides those in its slots.
+#[derive(Clone, Debug)]
+pub(crate) struct MoreClip {
+    pub(crate) id: String,
+    /// What a person calls it.
+    pub(crate) name: String,
+    pub(crate) motion: Arc<Motion>,
+}
+
+impl LabClips {
+    pub(crate) fn first(&self) -> Result<&Arc<Motion>, LabError> {
+        self.slots.first().ok_or(LabError::NoClip)
+    }
+
+    pub(crate) fn motions(&self) -> Vec<Arc<Motion>> {
+        self.more.iter().map(|clip| Arc::clone(&clip.motion)).collect()
     }
 }
 
@@ -192,23 +225,5 @@ impl Inputs {
 impl PartialEq for Inputs {
     fn eq(&self, other: &Self) -> bool {
         self.0.equals(&*other.0)
-    }
-}
-
-/// Returns the facts of a lab.
-pub(crate) fn of(lab: LabId) -> &'static dyn Lab {
-    match lab {
-        LabId::View => &view::ViewLab,
-        LabId::Make => &make::MakeLab,
-        LabId::Blend => &blend::BlendLab,
-        LabId::Transition => &blend::TransitionLab,
-        LabId::Speed => &speed::SpeedLab,
-        LabId::Loop => &loop_::LoopLab,
-        LabId::Layers => &layers::LayersLab,
-        LabId::Register => &register::RegisterLab,
-        LabId::Path => &path::PathLab,
-        LabId::Graph => &graph::GraphLab,
-        LabId::Match => &match_::MatchLab,
-        LabId::InPlace => &in_place::InPlaceLab,
     }
 }

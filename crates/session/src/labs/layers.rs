@@ -1,7 +1,6 @@
 use super::feet::{Lock, slide, slide_before, with_feet};
-use super::lab::{Inputs, Lab, LabInputs};
-use super::lab_set::{LabClips, LabSet};
-use super::pair::Pair;
+use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs};
+use super::pair::{Pair, Pairs};
 use super::{LabFacts, Outcome, Slot, Source};
 use crate::LabId;
 use crate::choices;
@@ -21,7 +20,7 @@ use std::sync::Arc;
 /// The Layers lab: a part of one clip over another.
 pub(super) struct LayersLab;
 
-impl Lab for LayersLab {
+impl<S: HasPart<Pairs> + HasPart<Layerer>> Lab<S> for LayersLab {
     fn parameters_of(&self) -> &'static [LabId] {
         &[LabId::Layers]
     }
@@ -36,13 +35,13 @@ impl Lab for LayersLab {
 
     fn inputs(
         &self,
-        labs: &mut LabSet,
+        labs: &mut S,
         clips: LabClips,
         params: &Params,
         _match_window: usize,
     ) -> Result<Option<Inputs>, LabError> {
-        let pair = labs.pairs.of_slots(&clips.slots)?;
-        Ok(Some(Inputs::new(labs.layerer.inputs(&pair, params)?)))
+        let pair = HasPart::<Pairs>::part(labs).of_slots(&clips.slots)?;
+        Ok(Some(Inputs::new(HasPart::<Layerer>::part(labs).inputs(&pair, params)?)))
     }
 }
 

@@ -1,8 +1,7 @@
 //! The Loop lab: a part of a clip becomes a cycle.
 
 use super::feet::Lock;
-use super::lab::{Inputs, Lab, LabInputs};
-use super::lab_set::{LabClips, LabSet};
+use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs};
 use super::rounds::{Rounds, repeated, rounds};
 use super::{Cycle, CycleMade, Outcome, Slot, Source};
 use crate::LabId;
@@ -20,7 +19,7 @@ use std::sync::Arc;
 /// The Loop lab: a cycle cut from a clip, its ends brought together.
 pub(super) struct LoopLab;
 
-impl Lab for LoopLab {
+impl<S: HasPart<CycleFinder>> Lab<S> for LoopLab {
     fn parameters_of(&self) -> &'static [LabId] {
         &[LabId::Loop]
     }
@@ -56,12 +55,12 @@ impl Lab for LoopLab {
 
     fn inputs(
         &self,
-        labs: &mut LabSet,
+        labs: &mut S,
         clips: LabClips,
         params: &Params,
         _match_window: usize,
     ) -> Result<Option<Inputs>, LabError> {
-        Ok(Some(Inputs::new(labs.cycles.inputs(clips.first()?, params)?)))
+        Ok(Some(Inputs::new(HasPart::<CycleFinder>::part(labs).inputs(clips.first()?, params)?)))
     }
 }
 

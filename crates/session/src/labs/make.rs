@@ -1,7 +1,6 @@
 use super::feet::{Lock, slide, slide_before, with_feet};
 use super::kept::{belongs_to, counts};
-use super::lab::{Inputs, Lab, LabInputs};
-use super::lab_set::{LabClips, LabSet};
+use super::lab::{Inputs, Lab, LabClips, LabInputs};
 use super::{Outcome, Slot};
 use crate::labs::LabError;
 use crate::motion::foot_options;
@@ -16,7 +15,7 @@ use std::sync::Arc;
 /// The Make lab: a motion synthesised from parameters.
 pub(super) struct MakeLab;
 
-impl Lab for MakeLab {
+impl<S> Lab<S> for MakeLab {
     fn parameters_of(&self) -> &'static [LabId] {
         &[LabId::Make]
     }
@@ -39,7 +38,7 @@ impl Lab for MakeLab {
 
     fn inputs(
         &self,
-        _labs: &mut LabSet,
+        _labs: &mut S,
         _clips: LabClips,
         params: &Params,
         _match_window: usize,

@@ -2,8 +2,7 @@
 
 use super::Slot;
 use super::kept::{read_ids, write_ids};
-use super::lab::{Inputs, Lab};
-use super::lab_set::{LabClips, LabSet};
+use super::lab::{HasPart, Inputs, Lab, LabClips};
 use crate::LabId;
 use crate::choices;
 use crate::labs::LabError;
@@ -16,7 +15,7 @@ mod settings;
 mod tagging;
 mod trace;
 
-pub(crate) use driver::{Driver, Source};
+pub(crate) use driver::Driver;
 pub(crate) use live_drive::{DrivenPane, LiveDrive};
 #[cfg(test)]
 pub(crate) use settings::options_of;
@@ -28,7 +27,7 @@ pub use trace::{DriveMoment, Driven};
 /// The Match lab: a character that is steered.
 pub(super) struct MatchLab;
 
-impl Lab for MatchLab {
+impl<S: HasPart<Driver>> Lab<S> for MatchLab {
     fn parameters_of(&self) -> &'static [LabId] {
         &[LabId::Match]
     }
@@ -70,7 +69,7 @@ impl Lab for MatchLab {
 
     fn inputs(
         &self,
-        labs: &mut LabSet,
+        labs: &mut S,
         clips: LabClips,
         params: &Params,
         _match_window: usize,
@@ -78,11 +77,16 @@ impl Lab for MatchLab {
         let Some(recording) = recording_of(params)? else {
             return Err(LabError::NothingDriven);
         };
-        let Some(database) = labs.match_database(clips, params)? else {
+        let Some(database) = HasPart::<Driver>::part(labs).database_of(clips, params)? else {
             return Ok(None);
         };
         let options = options_in(&database, params)?;
-        let replay = labs.driver.replay(database, options, recording, filter_of(params)?)?;
+        let replay = HasPart::<Driver>::part(labs).replay(
+            database,
+            options,
+            recording,
+            filter_of(params)?,
+        )?;
         Ok(replay.map(Inputs::new))
     }
 }

@@ -2,8 +2,8 @@
 
 use super::feet::{Lock, locking, slide, slide_before};
 use super::kept::{read_ids, recipe_ingredients, recipe_params, write_ids};
-use super::lab::{Beside, Inputs, Lab, LabInputs};
-use super::lab_set::{JobKind, LabClips, LabSet, Sliced};
+use super::lab::{Beside, HasPart, Inputs, Lab, LabClips, LabInputs};
+use super::sliced::{JobKind, Sliced};
 use super::{LabFacts, Outcome, Slot, Source};
 use crate::LabId;
 use crate::choices;
@@ -26,7 +26,7 @@ mod planter;
 /// The Path lab: a clip on an edited path.
 pub(super) struct PathLab;
 
-impl Lab for PathLab {
+impl<S: HasPart<Paths>> Lab<S> for PathLab {
     fn parameters_of(&self) -> &'static [LabId] {
         &[LabId::Path]
     }
@@ -40,7 +40,7 @@ impl Lab for PathLab {
     }
 
     fn without_clip(&self, params: &Params, id: &str) -> Vec<(Key, Value)> {
-        let ids = self.listed(params);
+        let ids = Lab::<S>::listed(self, params);
         let others: Vec<String> = ids.iter().filter(|known| *known != id).cloned().collect();
         if others.len() == ids.len() {
             return Vec::new();
@@ -66,12 +66,12 @@ impl Lab for PathLab {
 
     fn inputs(
         &self,
-        labs: &mut LabSet,
+        labs: &mut S,
         clips: LabClips,
         params: &Params,
         _match_window: usize,
     ) -> Result<Option<Inputs>, LabError> {
-        Ok(Some(Inputs::new(labs.paths.inputs(clips.first()?, params)?)))
+        Ok(Some(Inputs::new(HasPart::<Paths>::part(labs).inputs(clips.first()?, params)?)))
     }
 }
 

@@ -1,7 +1,6 @@
 //! The Register lab: two clips laid on each other in time, blended or joined along it.
 
-use super::lab::{Beside, Inputs, Lab, LabInputs};
-use super::lab_set::{LabClips, LabSet};
+use super::lab::{Beside, HasPart, Inputs, Lab, LabClips, LabInputs};
 use crate::LabId;
 use crate::labs::LabError;
 use crate::params::{Key, Params};
@@ -16,7 +15,7 @@ pub(crate) use registrar::Registrars;
 
 use super::blend::weight_law;
 use super::feet::{Lock, slide, slide_before, with_feet};
-use super::pair::Pair;
+use super::pair::{Pair, Pairs};
 use super::{LabFacts, Outcome, Slot, Source, Transition};
 use crate::choices;
 use registrar::Found;
@@ -35,7 +34,7 @@ use std::sync::Arc;
 /// The Register lab: clips registered in time, then blended or joined.
 pub(super) struct RegisterLab;
 
-impl Lab for RegisterLab {
+impl<S: HasPart<Pairs> + HasPart<Registrars>> Lab<S> for RegisterLab {
     fn parameters_of(&self) -> &'static [LabId] {
         &[LabId::Register]
     }
@@ -66,15 +65,15 @@ impl Lab for RegisterLab {
 
     fn inputs(
         &self,
-        labs: &mut LabSet,
+        labs: &mut S,
         clips: LabClips,
         params: &Params,
         _match_window: usize,
     ) -> Result<Option<Inputs>, LabError> {
-        let pair = labs.pairs.of_slots(&clips.slots)?;
+        let pair = HasPart::<Pairs>::part(labs).of_slots(&clips.slots)?;
         let weights = read_also(params.text(Key::WarpAlso))?.into_iter().map(|(_, weight)| weight);
         let also: Vec<_> = clips.motions().into_iter().zip(weights).collect();
-        Ok(labs.registrars.inputs(&pair, &also, params)?.map(Inputs::new))
+        Ok(HasPart::<Registrars>::part(labs).inputs(&pair, &also, params)?.map(Inputs::new))
     }
 }
 

@@ -1,9 +1,8 @@
 //! The Speed lab: two gaits at a speed.
 
 use super::feet::Lock;
-use super::lab::{Inputs, Lab, LabInputs};
-use super::lab_set::{LabClips, LabSet};
-use super::pair::Pair;
+use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs};
+use super::pair::{Pair, Pairs};
 use super::rounds::{Rounds, rounds};
 use super::{Cycle, CycleMade, Outcome};
 use crate::LabId;
@@ -18,7 +17,7 @@ use std::sync::Arc;
 /// The Speed lab: two cycles blended to a speed.
 pub(super) struct SpeedLab;
 
-impl Lab for SpeedLab {
+impl<S: HasPart<Pairs> + HasPart<GaitFinder>> Lab<S> for SpeedLab {
     fn parameters_of(&self) -> &'static [LabId] {
         &[LabId::Speed]
     }
@@ -44,13 +43,13 @@ impl Lab for SpeedLab {
 
     fn inputs(
         &self,
-        labs: &mut LabSet,
+        labs: &mut S,
         clips: LabClips,
         params: &Params,
         _match_window: usize,
     ) -> Result<Option<Inputs>, LabError> {
-        let pair = labs.pairs.of_slots(&clips.slots)?;
-        Ok(Some(Inputs::new(labs.gaits.inputs(&pair, params)?)))
+        let pair = HasPart::<Pairs>::part(labs).of_slots(&clips.slots)?;
+        Ok(Some(Inputs::new(HasPart::<GaitFinder>::part(labs).inputs(&pair, params)?)))
     }
 }
 

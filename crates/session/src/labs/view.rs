@@ -2,8 +2,8 @@
 //! ground, and what there is to say of it in numbers.
 
 use super::feet::{Lock, locking, slide, slide_before};
-use super::lab::{Inputs, Lab, LabInputs};
-use super::lab_set::{JobKind, LabClips, LabSet, Sliced};
+use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs};
+use super::sliced::{JobKind, Sliced};
 use super::{Measured, Outcome, Slot};
 use crate::LabId;
 use crate::choices;
@@ -20,7 +20,7 @@ use std::sync::Arc;
 /// The View lab: one clip, placed on the ground.
 pub(super) struct ViewLab;
 
-impl Lab for ViewLab {
+impl<S: HasPart<Viewer>> Lab<S> for ViewLab {
     fn parameters_of(&self) -> &'static [LabId] {
         &[LabId::View]
     }
@@ -53,12 +53,12 @@ impl Lab for ViewLab {
 
     fn inputs(
         &self,
-        labs: &mut LabSet,
+        labs: &mut S,
         clips: LabClips,
         params: &Params,
         _match_window: usize,
     ) -> Result<Option<Inputs>, LabError> {
-        Ok(labs.viewer.inputs(clips.first()?, params).map(Inputs::new))
+        Ok(HasPart::<Viewer>::part(labs).inputs(clips.first()?, params).map(Inputs::new))
     }
 }
 

@@ -1,7 +1,8 @@
 //! What panels and pictures ask about the Graph lab.
 
 use super::Session;
-use crate::labs::lab::{self, Beside};
+use crate::labs::lab::Beside;
+use crate::labs::lab_of;
 use crate::labs::{Built, Cast, Field, Walk, clips_of, read_path, read_visits};
 use crate::params::Key;
 use glam::DVec2;
@@ -9,7 +10,7 @@ use std::sync::Arc;
 
 impl Session {
     fn is_graph_lab(&self) -> bool {
-        lab::of(self.document.params.lab()).has(Beside::Graph)
+        lab_of(self.document.params.lab()).has(Beside::Graph)
     }
 
     /// The ids of the clips that the graph is made of; none where the list cannot be read.

@@ -1,7 +1,7 @@
 //! The numbers that every lab has.
 
 use crate::fixtures::*;
-use crate::labs::lab_set::Sliced as _;
+use crate::labs::sliced::Sliced as _;
 use crate::labs::{Gauge, Measured};
 use crate::params::Kind;
 use glam::Quat;

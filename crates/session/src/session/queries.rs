@@ -4,7 +4,8 @@ use super::Session;
 use crate::Selected;
 use crate::clip_info::ClipInfo;
 use crate::compare::Compare;
-use crate::labs::lab::{self, Beside};
+use crate::labs::lab::Beside;
+use crate::labs::lab_of;
 use crate::labs::{CycleMade, DistanceMap, Slot};
 use crate::labs::{
     is_as_it_is, made_motion_has, middle_mps, range_of, read_pins, read_weights, synth_action,
@@ -49,7 +50,7 @@ impl Session {
     /// Returns whether the clip in a slot is part of what the lab shows.
     #[must_use]
     pub fn uses(&self, slot: Slot) -> bool {
-        lab::of(self.document.params.lab()).slots().contains(&slot)
+        lab_of(self.document.params.lab()).slots().contains(&slot)
     }
 
     /// Returns whether the link that was opened names this parameter, be it with its default.
@@ -163,14 +164,14 @@ impl Session {
     /// in place.
     #[must_use]
     pub fn view_is_changed(&self) -> bool {
-        lab::of(self.document.params.lab()).shows_clip() && !is_as_it_is(&self.document.params)
+        lab_of(self.document.params.lab()).shows_clip() && !is_as_it_is(&self.document.params)
     }
 
     /// Returns the distances between the frames of two clips: those of the first pane, or newer ones
     /// without a result.
     #[must_use]
     pub fn distance_map(&self) -> Option<&Arc<DistanceMap>> {
-        if !lab::of(self.document.params.lab()).has(Beside::DistanceMap) {
+        if !lab_of(self.document.params.lab()).has(Beside::DistanceMap) {
             return None;
         }
         let pane = self.panes.list.first()?;

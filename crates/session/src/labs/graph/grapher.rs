@@ -1,4 +1,4 @@
-use super::super::lab_set::{JobKind, Sliced};
+use super::super::sliced::{JobKind, Sliced};
 use super::built::Building;
 use super::cast::Fitted;
 use super::maker::Maker;

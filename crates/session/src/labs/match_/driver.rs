@@ -1,13 +1,13 @@
 //! Builds databases and plays recorded input, slice by slice.
 
-use super::super::lab_set::{JobKind, Sliced};
-use super::tagging::{HandTag, tagged};
+use super::super::sliced::{JobKind, Sliced};
+use super::tagging::{HandTag, filter_of, read_tags, tagged};
 use super::trace::Tracer;
 use crate::choices;
 use crate::compare::MAX_PANES;
 use crate::labs::LabError;
 use crate::labs::Outcome;
-use crate::labs::lab::LabInputs;
+use crate::labs::lab::{LabClips, LabInputs};
 use crate::params::{Key, Params};
 use segue_motion::clip::Motion;
 use segue_motion::matching::{
@@ -134,7 +134,7 @@ pub(crate) struct Driver {
 
 impl Driver {
     /// A database. `None` while it is built: [`work`](Self::work), then ask again.
-    pub(crate) fn database(&mut self, source: &Source) -> Result<Option<Arc<Database>>, LabError> {
+    fn database(&mut self, source: &Source) -> Result<Option<Arc<Database>>, LabError> {
         if let Some((_, known)) = self.databases.iter().find(|(known, _)| known == source) {
             return known.clone().map(Some);
         }
@@ -142,9 +142,22 @@ impl Driver {
         Ok(None)
     }
 
+    /// Returns the database of clips and parameters, with tags by hand. `None` while it is built.
+    pub(crate) fn database_of(
+        &mut self,
+        clips: LabClips,
+        params: &Params,
+    ) -> Result<Option<Arc<Database>>, LabError> {
+        let tags: Vec<HandTag> = read_tags(params.text(Key::Tags))?;
+        filter_of(params)?;
+        let database = self.database(&Source::new(clips.motions(), params))?;
+        let ids = clips.more.into_iter().map(|clip| clip.id).collect();
+        Ok(database.map(|database| self.tagged(database, ids, tags)))
+    }
+
     /// A database with tags by hand; `ids` are the clips that it was built from, none for the
     /// synthesiser's set.
-    pub(crate) fn tagged(
+    fn tagged(
         &mut self,
         database: Arc<Database>,
         ids: Vec<String>,

@@ -1,4 +1,4 @@
-use super::super::lab_set::{JobKind, Sliced};
+use super::super::sliced::{JobKind, Sliced};
 use super::{Also, DistanceMap, Made, RegisterInputs, read_pins};
 use crate::choices;
 use crate::compare::MAX_PANES;
