@@ -119,7 +119,7 @@ impl LabInputs for GraphInputs {
         Ok(Outcome {
             sources,
             transition,
-            facts: LabFacts::Walk(Arc::clone(walk)),
+            facts: LabFacts::of(Arc::clone(walk)),
             metrics: walk.metrics.clone(),
             beside: walk
                 .built

@@ -320,7 +320,7 @@ impl LabInputs for LayerInputs {
         Ok(Outcome {
             sources: vec![source(Slot::A, a), source(Slot::B, &timed.shown)],
             retargeted: pair.retargeted.clone(),
-            facts: LabFacts::Layer(Arc::new(LayerFacts {
+            facts: LabFacts::of(Arc::new(LayerFacts {
                 shares,
                 fit: timed.fit,
                 has_no_steps: timed.has_no_steps,
@@ -329,5 +329,13 @@ impl LabInputs for LayerInputs {
             beside: vec![Arc::clone(a.clip()), Arc::clone(timed.shown.clip())],
             ..Outcome::plain(Arc::new(motion))
         })
+    }
+}
+
+impl Outcome {
+    /// Returns what of it is a layer; `None` where there is none.
+    #[must_use]
+    pub fn layer(&self) -> Option<&Arc<LayerFacts>> {
+        self.facts.get()
     }
 }

@@ -1,15 +1,12 @@
 //! The result of a lab: a motion, and what is known about it.
 
-use super::graph::Walk;
-use super::layers::LayerFacts;
-use super::match_::Driven;
-use super::path::OnPath;
-use super::register::Registered;
 use crate::params::Key;
 use segue_motion::clip::{Clip, Motion};
 use segue_motion::gait::GaitFacts;
 use segue_motion::math::Planar;
 use segue_motion::metrics::{Metric, MotionTrace, ResultMetrics};
+use std::any::Any;
+use std::fmt;
 use std::sync::Arc;
 
 /// The two places that a clip can take.
@@ -161,7 +158,7 @@ pub struct Outcome {
     pub cycle: Option<Cycle>,
     /// How B came onto the skeleton of A; `None` where both have the same one.
     pub retargeted: Option<Arc<Retargeted>>,
-    /// What only its lab can say of it.
+    /// What only its lab knows of it.
     pub facts: LabFacts,
     /// The artefacts, as numbers: those that every lab has, and its own behind them.
     pub metrics: Vec<Metric>,
@@ -174,34 +171,26 @@ pub struct Outcome {
     pub(crate) is_measured: bool,
 }
 
-/// What one lab alone knows of its results.
-#[derive(Clone, Debug)]
-pub enum LabFacts {
-    /// Nothing beside what every result has.
-    None,
-    /// What of a layered motion is a layer.
-    Layer(Arc<LayerFacts>),
-    /// Which frames of registered clips a motion is made of.
-    Registered(Arc<Registered>),
-    /// The path that a motion goes on.
-    Path(Arc<OnPath>),
-    /// The walk through a graph that a motion is.
-    Walk(Arc<Walk>),
-    /// How a motion was driven.
-    Driven(Arc<Driven>),
-}
+/// A value that one lab alone knows of its results.
+trait Fact: Any + fmt::Debug + Send + Sync {}
 
-macro_rules! fact {
-    ($(#[$doc:meta])* $name:ident, $variant:ident, $fact:ty) => {
-        $(#[$doc])*
-        #[must_use]
-        pub fn $name(&self) -> Option<&Arc<$fact>> {
-            match &self.facts {
-                LabFacts::$variant(fact) => Some(fact),
-                _ => None,
-            }
-        }
-    };
+impl<T: Any + fmt::Debug + Send + Sync> Fact for T {}
+
+/// What one lab alone knows of a result, as a type of its own. The lab's file has the method of
+/// [`Outcome`] that returns it.
+#[derive(Clone, Debug, Default)]
+pub struct LabFacts(Option<Arc<dyn Fact>>);
+
+impl LabFacts {
+    /// Takes the facts of a lab.
+    pub(crate) fn of<T: Any + fmt::Debug + Send + Sync>(facts: Arc<T>) -> Self {
+        Self(Some(Arc::new(facts)))
+    }
+
+    /// Returns the facts, where they are of this type.
+    pub(crate) fn get<T: Any>(&self) -> Option<&Arc<T>> {
+        (&**self.0.as_ref()? as &dyn Any).downcast_ref()
+    }
 }
 
 /// What the artefact numbers of a result are measured of.
@@ -225,33 +214,12 @@ impl Outcome {
             transition: None,
             cycle: None,
             retargeted: None,
-            facts: LabFacts::None,
+            facts: LabFacts::default(),
             metrics: Vec::new(),
             beside: Vec::new(),
             measured: Measured::Motion,
             is_measured: false,
         }
-    }
-
-    fact! {
-        /// Returns what of it is a layer; `None` where there is none.
-        layer, Layer, LayerFacts
-    }
-    fact! {
-        /// Returns which frames of A and B it is made of; `None` where they were not registered.
-        registered, Registered, Registered
-    }
-    fact! {
-        /// Returns the path that it goes on; `None` where it was not edited.
-        path, Path, OnPath
-    }
-    fact! {
-        /// Returns the walk that it is; `None` where it is none.
-        walk, Walk, Walk
-    }
-    fact! {
-        /// Returns how it was driven; `None` where it was not.
-        driven, Driven, Driven
     }
 
     /// Whether there is a place for the numbers that every lab has, and not yet their values.
@@ -271,29 +239,10 @@ impl Outcome {
         self.is_measured = found.is_some();
     }
 
-    /// Its feet are to be planted, and are not yet.
-    pub(crate) fn awaits_feet(&self) -> bool {
-        self.path().is_some_and(|path| path.awaits_feet)
-    }
-
     /// Seconds from the first frame to the last.
     #[must_use]
     pub fn duration_secs(&self) -> f64 {
         self.motion.clip().duration_secs()
-    }
-
-    /// Which time of a source goes into the result at a time of the result, and where the source
-    /// lies then, standing where the result stands. `None` where there is none of it, and where the
-    /// sources are not registered: they simply play on.
-    #[must_use]
-    pub fn source_at(&self, source: &Source, secs: f64) -> Option<(f64, Planar)> {
-        let beat = self.registered()?.beat_at(secs)?;
-        let at = beat.frames[usize::from(source.slot == Slot::B)] / self.motion.clip().fps();
-        let inside = at >= 0.0 && at <= source.motion.clip().duration_secs();
-        inside.then(|| {
-            let stands = source.motion.standing_at(at);
-            (at, self.motion.standing_at(secs).after(&stands.inverse()))
-        })
     }
 
     /// Where the character of a result that goes round stands at a time beyond its end: the time in

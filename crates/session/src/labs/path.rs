@@ -408,7 +408,7 @@ impl LabInputs for PathInputs {
             .with_seams(seams);
         Ok(Outcome {
             sources: vec![Source::new(Slot::A, &fitted.motion, 0.0, Planar::IDENTITY)],
-            facts: LabFacts::Path(Arc::new(OnPath {
+            facts: LabFacts::of(Arc::new(OnPath {
                 fitted: Arc::clone(fitted),
                 road,
                 is_edited: !self.code.is_empty(),
@@ -444,6 +444,19 @@ pub(crate) fn edit_as_path(params: &mut Params, id: &str) -> Result<(), ValueErr
         params.set(key, value)?;
     }
     Ok(())
+}
+
+impl Outcome {
+    /// Returns the path that it is on; `None` where it was not edited.
+    #[must_use]
+    pub fn path(&self) -> Option<&Arc<OnPath>> {
+        self.facts.get()
+    }
+
+    /// Returns whether its feet are to be planted, and are not yet.
+    pub(crate) fn awaits_feet(&self) -> bool {
+        self.path().is_some_and(|path| path.awaits_feet)
+    }
 }
 
 #[cfg(test)]

@@ -517,7 +517,7 @@ impl LabInputs for RegisterInputs {
                 .with_seams(seams),
         );
         Ok(Outcome {
-            facts: LabFacts::Registered(Arc::new(Registered {
+            facts: LabFacts::of(Arc::new(Registered {
                 map: Arc::clone(&self.found.map),
                 registration: Arc::clone(&self.found.registration),
                 is_plain: self.is_plain,
@@ -543,6 +543,28 @@ fn of_two(weight_b: f64) -> [f64; 2] {
 fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     let (sum, count) = values.fold((0.0, 0_usize), |(sum, count), value| (sum + value, count + 1));
     (count > 0).then(|| sum / count as f64)
+}
+
+impl Outcome {
+    /// Returns which frames of A and B it is made of; `None` where they were not registered.
+    #[must_use]
+    pub fn registered(&self) -> Option<&Arc<Registered>> {
+        self.facts.get()
+    }
+
+    /// Returns the time of a source that goes into the result at a time of the result, and where
+    /// the source lies then, standing where the result stands. `None` where there is none of it,
+    /// and where the sources are not registered: they simply play on.
+    #[must_use]
+    pub fn source_at(&self, source: &Source, secs: f64) -> Option<(f64, Planar)> {
+        let beat = self.registered()?.beat_at(secs)?;
+        let at = beat.frames[usize::from(source.slot == Slot::B)] / self.motion.clip().fps();
+        let inside = at >= 0.0 && at <= source.motion.clip().duration_secs();
+        inside.then(|| {
+            let stands = source.motion.standing_at(at);
+            (at, self.motion.standing_at(secs).after(&stands.inverse()))
+        })
+    }
 }
 
 #[cfg(test)]

@@ -1,4 +1,5 @@
 use super::Built;
+use crate::labs::outcome::Outcome;
 use glam::DVec2;
 use segue_motion::clip::Motion;
 use segue_motion::graph::{Choices, PieceSeam, Place, Stay, WalkPiece};
@@ -183,5 +184,13 @@ impl Walk {
                 (2.0 * (1.0 - inside)).min(1.0) * before,
             ),
         ]
+    }
+}
+
+impl Outcome {
+    /// Returns the walk that it is; `None` where it is none.
+    #[must_use]
+    pub fn walk(&self) -> Option<&Arc<Walk>> {
+        self.facts.get()
     }
 }

@@ -169,7 +169,7 @@ impl Tracer {
             is_live,
         };
         Ok(Outcome {
-            facts: LabFacts::Driven(Arc::new(driven)),
+            facts: LabFacts::of(Arc::new(driven)),
             beside: database.motions().iter().map(|motion| Arc::clone(motion.clip())).collect(),
             ..Outcome::plain(Arc::new(motion))
         })
@@ -221,5 +221,13 @@ impl Tracer {
             "How many frames a search looked at, on average.",
         ));
         metrics
+    }
+}
+
+impl Outcome {
+    /// Returns how it was driven; `None` where it was not.
+    #[must_use]
+    pub fn driven(&self) -> Option<&Arc<Driven>> {
+        self.facts.get()
     }
 }
