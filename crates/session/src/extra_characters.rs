@@ -6,10 +6,11 @@ use crate::document::Document;
 use crate::labs::LabError;
 use crate::labs::lab::Beside;
 use crate::labs::lab_of;
-use crate::labs::{edit_as_path, read_ids, recipe_id, recipe_name, write_ids};
+use crate::labs::{read_ids, recipe_id, recipe_ingredients, recipe_name, recipe_params, write_ids};
 use crate::library::{Entry, Origin, split_reference};
 use crate::panes::Panes;
-use crate::params::{Key, Value};
+use crate::params::{Key, Params, Value, ValueError};
+use crate::{LabId, Selected};
 use segue_motion::clip::Motion;
 use std::sync::Arc;
 
@@ -98,7 +99,7 @@ pub(crate) fn apply(
         ExtraCharacterCommand::Edit(place) => {
             let id = ids.get(place).cloned().ok_or(nobody)?;
             let entry = result_entry(panes, 0)?;
-            edit_as_path(&mut params, &id)?;
+            edit(&mut params, &id)?;
             document.remember(None);
             ids[place] = put(document, entry);
         }
@@ -134,4 +135,23 @@ fn put(document: &mut Document, entry: Entry) -> String {
         document.library_revision += 1;
     }
     id
+}
+
+/// Sets the parameters to those of a clip: to its recipe, where the lab with extra characters made
+/// it, else to the clip as that lab opens it.
+fn edit(params: &mut Params, id: &str) -> Result<(), ValueError> {
+    let has_characters = |lab: &LabId| lab_of(*lab).has(Beside::ExtraCharacters);
+    let Some(lab) = LabId::ALL.iter().copied().find(has_characters) else {
+        return Ok(());
+    };
+    let made = recipe_params(id).filter(|made| made.lab() == lab);
+    for key in recipe_ingredients(lab) {
+        let value = match (&made, key) {
+            (Some(made), _) => made.get(key).clone(),
+            (None, Key::A) => Value::Text(id.to_owned()),
+            (None, _) => key.param().default_value(),
+        };
+        params.set(key, value)?;
+    }
+    Ok(())
 }

@@ -7,7 +7,6 @@ mod feet;
 mod gauge;
 mod graph;
 mod in_place;
-mod kept;
 pub(super) mod lab;
 mod lab_set;
 mod layers;
@@ -17,6 +16,7 @@ mod match_;
 mod outcome;
 mod pair;
 mod path;
+mod recipe;
 mod register;
 mod rounds;
 pub(super) mod sliced;
@@ -32,10 +32,6 @@ pub use graph::{
     write_jump, write_path, write_visits,
 };
 pub(super) use graph::{clips_of, read_path, read_visits};
-pub(super) use kept::{
-    belongs_to, is_as_it_is, read_ids, recipe_id, recipe_ingredients, recipe_name, recipe_params,
-};
-pub use kept::{file_stem, write_ids};
 pub(super) use lab::{Inputs, LabClips, MoreClip};
 pub(super) use lab_set::{LabSet, lab_of};
 pub use layers::{LayerFacts, LayerFit};
@@ -46,8 +42,11 @@ pub use match_::{DriveMoment, Driven, HandTag, own_words, write_tags};
 pub(super) use match_::{DrivenPane, LiveDrive, filter_of, read_tags};
 pub use outcome::{Cycle, CycleMade, MatchSearch, Outcome, Retargeted, Slot, Source, Transition};
 pub(super) use outcome::{LabFacts, Measured};
-pub(super) use path::edit_as_path;
 pub use path::{FittedMotion, OnPath, spline_ends};
+pub(super) use recipe::{
+    belongs_to, read_ids, recipe_id, recipe_ingredients, recipe_name, recipe_params,
+};
+pub use recipe::{file_stem, write_ids};
 pub use register::{
     Beat, DistanceMap, MOST_ALSO, Registered, weight_curve, write_also, write_pairs,
 };

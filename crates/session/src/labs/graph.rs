@@ -65,6 +65,12 @@ impl<S: HasPart<Grapher>> Lab<S> for GraphLab {
         "walk".to_owned()
     }
 
+    fn grown(&self, outcome: &Outcome) -> Vec<(Key, Value)> {
+        // As far as a link can say it.
+        let secs = outcome.duration_secs().round().clamp(10.0, 600.0);
+        vec![(Key::WalkSeconds, Value::Number(secs))]
+    }
+
     fn has(&self, beside: Beside) -> bool {
         beside == Beside::Graph
     }

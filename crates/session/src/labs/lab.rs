@@ -74,6 +74,27 @@ pub(crate) trait Lab<S>: Sync {
     /// What a file of the result is called, without its ending.
     fn file_stem(&self, params: &Params) -> String;
 
+    /// Returns the id of the result, where that is not the lab's name with its parameters.
+    fn own_id(&self, _params: &Params) -> Option<String> {
+        None
+    }
+
+    /// Returns what is to be set for the name in front of an [own id](Self::own_id); `None` for
+    /// other names.
+    fn values_of_id(&self, _name: &str) -> Option<Vec<(Key, Value)>> {
+        None
+    }
+
+    /// Returns whether the result is a clip of the library as it is, which has an id already.
+    fn is_clip_as_it_is(&self, _params: &Params) -> bool {
+        false
+    }
+
+    /// Returns what is to be set so that the recipe makes the result as long as it is by now.
+    fn grown(&self, _outcome: &Outcome) -> Vec<(Key, Value)> {
+        Vec::new()
+    }
+
     /// The values that were found for parameters left to Segue; `fps` are the frame rates of the
     /// clips in A and B.
     fn found(&self, _outcome: &Outcome, _fps: [f64; 2]) -> Vec<(Key, f64)> {
@@ -113,6 +134,11 @@ pub(crate) trait Lab<S>: Sync {
             || self.shared_keys().contains(&key)
             || (self.has_feet() && (param.has(Mark::Feet) || param.has(Mark::Lock)))
     }
+}
+
+/// Returns whether a parameter can change the result: those of foot lock cannot while it is off.
+pub(super) fn counts(params: &Params, key: Key) -> bool {
+    params.is_on(Key::FootLock) || !key.param().has(Mark::Lock)
 }
 
 /// A part of what labs remember between results.

@@ -1,6 +1,5 @@
 use super::feet::{Lock, slide, slide_before, with_feet};
-use super::kept::{belongs_to, counts};
-use super::lab::{Inputs, Lab, LabClips, LabInputs};
+use super::lab::{Inputs, Lab, LabClips, LabInputs, counts};
 use super::{Outcome, Slot};
 use crate::labs::LabError;
 use crate::motion::foot_options;
@@ -30,6 +29,14 @@ impl<S> Lab<S> for MakeLab {
 
     fn file_stem(&self, params: &Params) -> String {
         params.choice::<choices::MadeAction>().word().to_owned()
+    }
+
+    fn own_id(&self, params: &Params) -> Option<String> {
+        Some(made_id(params))
+    }
+
+    fn values_of_id(&self, name: &str) -> Option<Vec<(Key, Value)>> {
+        Some(vec![(Key::Gait, Key::Gait.param().parse(name).ok()?)])
     }
 
     fn is_synthetic(&self) -> bool {
@@ -155,7 +162,7 @@ pub(crate) fn preset_motion(id: &str) -> Result<Motion, LabError> {
 pub(crate) fn made_id(params: &Params) -> String {
     let changed = params
         .changed()
-        .filter(|(param, _)| belongs_to(param.key, LabId::Make) && param.key != Key::Gait)
+        .filter(|(param, _)| Lab::<()>::depends_on(&MakeLab, param.key) && param.key != Key::Gait)
         .filter(|(param, _)| has(params, param.key) && counts(params, param.key));
     let list: Vec<String> = changed
         .map(|(param, value)| match (value, range_of(params, param.key)) {

@@ -1,8 +1,8 @@
 //! The Match lab: a character that is driven, live or by input that was written down.
 
 use super::Slot;
-use super::kept::{read_ids, write_ids};
 use super::lab::{HasPart, Inputs, Lab, LabClips};
+use super::recipe::{read_ids, write_ids};
 use crate::LabId;
 use crate::choices;
 use crate::labs::LabError;

@@ -1,15 +1,15 @@
 //! The Path lab: a motion on another path.
 
 use super::feet::{Lock, locking, slide, slide_before};
-use super::kept::{read_ids, recipe_ingredients, recipe_params, write_ids};
 use super::lab::{Beside, HasPart, Inputs, Lab, LabClips, LabInputs};
+use super::recipe::{read_ids, write_ids};
 use super::sliced::{JobKind, Sliced};
 use super::{LabFacts, Outcome, Slot, Source};
 use crate::LabId;
 use crate::choices;
 use crate::compare::MAX_PANES;
 use crate::labs::LabError;
-use crate::params::{Key, Params, Value, ValueError};
+use crate::params::{Key, Params, Value};
 use planter::{Planted, Planter};
 use segue_motion::clip::{Clip, Contacts, Motion};
 use segue_motion::math::Planar;
@@ -426,24 +426,6 @@ impl LabInputs for PathInputs {
     fn is_draft(&self) -> bool {
         matches!(self.feet, Feet::Awaited)
     }
-}
-
-/// Sets everything that a clip on a path is made from; any other clip goes on the path that is
-/// fitted to it.
-///
-/// # Errors
-/// [`ValueError`] of an id that says what no parameter can be.
-pub(crate) fn edit_as_path(params: &mut Params, id: &str) -> Result<(), ValueError> {
-    let made = recipe_params(id).filter(|made| made.lab() == LabId::Path);
-    for key in recipe_ingredients(LabId::Path) {
-        let value = match (&made, key) {
-            (Some(made), _) => made.get(key).clone(),
-            (None, Key::A) => Value::Text(id.to_owned()),
-            (None, _) => key.param().default_value(),
-        };
-        params.set(key, value)?;
-    }
-    Ok(())
 }
 
 impl Outcome {

@@ -2,14 +2,14 @@
 //! ground, and what there is to say of it in numbers.
 
 use super::feet::{Lock, locking, slide, slide_before};
-use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs};
+use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs, counts};
 use super::sliced::{JobKind, Sliced};
 use super::{Measured, Outcome, Slot};
 use crate::LabId;
 use crate::choices;
 use crate::compare::MAX_PANES;
 use crate::labs::LabError;
-use crate::params::{Key, Params};
+use crate::params::{Key, PARAMS, Param, Params};
 use segue_motion::clip::{Motion, take_in_place};
 use segue_motion::math::Planar;
 use segue_motion::metrics::{ClipMeter, Metric, SlideMeter};
@@ -45,6 +45,13 @@ impl<S: HasPart<Viewer>> Lab<S> for ViewLab {
 
     fn file_stem(&self, params: &Params) -> String {
         params.text(Key::A).to_owned()
+    }
+
+    fn is_clip_as_it_is(&self, params: &Params) -> bool {
+        let is_changed = |param: &Param| *params.get(param.key) != param.default_value();
+        !PARAMS.iter().any(|param| {
+            Lab::<S>::depends_on(self, param.key) && counts(params, param.key) && is_changed(param)
+        })
     }
 
     fn shows_clip(&self) -> bool {

@@ -2,7 +2,7 @@
 
 use super::Session;
 use crate::command::CommandError;
-use crate::labs::{Slot, is_as_it_is, lab_of, recipe_id, recipe_name, recipe_params};
+use crate::labs::{Slot, lab_of, recipe_id, recipe_name, recipe_params};
 use crate::library::{Entry, Origin};
 use crate::notice::Level;
 use segue_text::msg;
@@ -25,7 +25,7 @@ impl Session {
             motion.map_or(1.0, |motion| motion.clip().fps())
         });
         let known = CommandError::NotPossible("this clip is in the library already");
-        if lab_of(params.lab()).shows_clip() && is_as_it_is(&params) {
+        if lab_of(params.lab()).is_clip_as_it_is(&params) {
             return Err(known);
         }
         let id = recipe_id(&params, &outcome, fps).ok_or(CommandError::NotPossible(

@@ -7,9 +7,7 @@ use crate::compare::Compare;
 use crate::labs::lab::Beside;
 use crate::labs::lab_of;
 use crate::labs::{CycleMade, DistanceMap, Slot};
-use crate::labs::{
-    is_as_it_is, made_motion_has, middle_mps, range_of, read_pins, read_weights, synth_action,
-};
+use crate::labs::{made_motion_has, middle_mps, range_of, read_pins, read_weights, synth_action};
 use crate::lesson::would_set_up;
 use crate::library::{Entry, split_reference};
 use crate::link;
@@ -164,7 +162,8 @@ impl Session {
     /// in place.
     #[must_use]
     pub fn view_is_changed(&self) -> bool {
-        lab_of(self.document.params.lab()).shows_clip() && !is_as_it_is(&self.document.params)
+        let lab = lab_of(self.document.params.lab());
+        lab.shows_clip() && !lab.is_clip_as_it_is(&self.document.params)
     }
 
     /// Returns the distances between the frames of two clips: those of the first pane, or newer ones

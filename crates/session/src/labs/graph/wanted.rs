@@ -2,7 +2,7 @@ use crate::choices;
 use crate::labs::LabError;
 use crate::labs::blend::{align_by, root_blend, weight_law};
 use crate::labs::feet::Lock;
-use crate::labs::kept::{read_ids, write_ids};
+use crate::labs::recipe::{read_ids, write_ids};
 use crate::outside::short;
 use crate::params::{Key, Params, Value};
 use glam::DVec2;

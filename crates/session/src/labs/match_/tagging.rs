@@ -2,7 +2,7 @@
 //! `walk:0.2-1.5:exclude,run:0-1:-turn,walk:2-3:proud`.
 
 use crate::labs::LabError;
-use crate::labs::kept::{read_ids, write_ids};
+use crate::labs::recipe::{read_ids, write_ids};
 use crate::outside::short;
 use crate::params::{Key, Params, format_number};
 use segue_motion::matching::{Database, DatabaseClip, RATE, Tag, TagFilter, TagRange, TagSet};

@@ -1,7 +1,7 @@
 //! Lists of pairs as links carry them: `12-30,50-71`, `0.3:run`.
 
 use crate::labs::LabError;
-use crate::labs::kept::{read_ids, write_ids};
+use crate::labs::recipe::{read_ids, write_ids};
 use crate::outside::short;
 use crate::params::format_number;
 

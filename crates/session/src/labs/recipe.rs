@@ -1,8 +1,8 @@
-//! Results that are kept: their id is the recipe, and all that a link needs to make them again.
+//! Recipes: the ids of results, from which they are made again.
 
+use super::lab::counts;
 use super::lab_set::lab_of;
-use super::make::made_id;
-use super::{Outcome, Slot};
+use super::outcome::{Outcome, Slot};
 use crate::params::{Key, Kind, Mark, PARAMS, Param, Params, Value};
 use crate::{LabId, Selected};
 use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, utf8_percent_encode};
@@ -18,12 +18,7 @@ pub(crate) fn belongs_to(key: Key, lab: LabId) -> bool {
     lab_of(lab).depends_on(key)
 }
 
-/// Whether a parameter can change the result: how feet are held changes nothing while they are not.
-pub(super) fn counts(params: &Params, key: Key) -> bool {
-    params.is_on(Key::FootLock) || !key.param().has(Mark::Lock)
-}
-
-/// Whether a parameter is part of what a lab's result is made from.
+/// Returns whether a parameter is part of what a lab's result is made from.
 fn is_ingredient(key: Key, lab: LabId) -> bool {
     match key {
         Key::A => lab_of(lab).slots().contains(&Slot::A),
@@ -33,30 +28,30 @@ fn is_ingredient(key: Key, lab: LabId) -> bool {
     }
 }
 
-/// What a lab's result is made from, clips included.
+/// Returns the parameters that a lab's result is made from, clips included.
 pub(crate) fn recipe_ingredients(lab: LabId) -> impl Iterator<Item = Key> {
     PARAMS.iter().map(|param| param.key).filter(move |&key| is_ingredient(key, lab))
 }
 
-/// The id of what the parameters make: `run(turn_rate:20)` of the Make lab,
-/// `transition(a:walk,b:run,half_life:0.3)` of another. `None` for a clip as it is.
+/// Returns the id of the result of the parameters: `run(turn_rate:20)` of a synthesised motion,
+/// `transition(a:walk,b:run,half_life:0.3)` of another result. `None` for a clip as it is.
 ///
-/// What was left to Segue is written down as it was found, so that the same comes out again, and at
-/// once. `fps` are the clips' own frame rates.
+/// Values that Segue found are written down, so that the same result is made again, and at once.
+/// `fps` are the clips' own frame rates.
 pub(crate) fn recipe_id(params: &Params, outcome: &Outcome, fps: [f64; 2]) -> Option<String> {
     let lab = params.lab();
-    match lab {
-        LabId::View if is_as_it_is(params) => return None,
-        LabId::Make => return Some(made_id(params)),
-        _ => {}
+    let facts = lab_of(lab);
+    if facts.is_clip_as_it_is(params) {
+        return None;
+    }
+    if let Some(id) = facts.own_id(params) {
+        return Some(id);
     }
     let mut params = params.clone();
-    if lab == LabId::Graph {
-        // As long as it is by now, as far as a link can say it.
-        let secs = outcome.duration_secs().round().clamp(10.0, 600.0);
-        params.set(Key::WalkSeconds, Value::Number(secs)).ok()?;
+    for (key, value) in facts.grown(outcome) {
+        params.set(key, value).ok()?;
     }
-    for (key, value) in lab_of(lab).found(outcome, fps) {
+    for (key, value) in facts.found(outcome, fps) {
         if *params.get(key) == Value::Auto {
             params.set(key, Value::Number(value)).ok()?;
         }
@@ -73,43 +68,35 @@ pub(crate) fn recipe_id(params: &Params, outcome: &Outcome, fps: [f64; 2]) -> Op
     Some(format!("{}({})", lab.word(), list.join(",")))
 }
 
-/// The parameters that an id stands for; `None` when it stands for none.
+/// Returns the parameters that an id stands for; `None` when it stands for none.
 pub(crate) fn recipe_params(id: &str) -> Option<Params> {
     let (word, list) = id.strip_suffix(')')?.split_once('(')?;
     let mut params = Params::default();
-    let lab = LabId::from_word(word).filter(|lab| *lab != LabId::Make);
-    let is_lab = lab.is_some();
-    let lab = lab.unwrap_or(LabId::Make);
+    let has_own_ids = |lab: LabId| lab_of(lab).own_id(&params).is_some();
+    let lab = LabId::from_word(word).filter(|lab| !has_own_ids(*lab));
+    let named = || LabId::ALL.iter().find_map(|lab| Some((*lab, lab_of(*lab).values_of_id(word)?)));
+    let (lab, values) = lab.map(|lab| (lab, Vec::new())).or_else(named)?;
     params.set(Key::Lab, lab.into()).ok()?;
-    let mut set = |key: Key, text: &str| params.set(key, key.param().parse(text).ok()?).ok();
-    if !is_lab {
-        set(Key::Gait, word)?;
+    for (key, value) in values {
+        params.set(key, value).ok()?;
     }
+    let mut set = |key: Key, text: &str| params.set(key, key.param().parse(text).ok()?).ok();
     for pair in parts(list)? {
         let (name, value) = pair.split_once(':')?;
         let key = Key::from_name(name)?;
-        let allowed = if is_lab { is_ingredient(key, lab) } else { belongs_to(key, lab) };
         let value = if matches!(key.param().kind, Kind::Clip | Kind::Text) && !value.ends_with(')')
         {
             percent_decode_str(value).decode_utf8().ok()?
         } else {
             value.into()
         };
-        set(Some(key).filter(|_| allowed)?, &value)?;
+        set(Some(key).filter(|key| is_ingredient(*key, lab))?, &value)?;
     }
     // A clip as it is has its own id.
-    (lab != LabId::View || !is_as_it_is(&params)).then_some(params)
+    (!lab_of(lab).is_clip_as_it_is(&params)).then_some(params)
 }
 
-/// Whether the View lab changes nothing of its clip.
-pub(crate) fn is_as_it_is(params: &Params) -> bool {
-    let matters = |key: Key| belongs_to(key, LabId::View) && counts(params, key);
-    let changes =
-        |param: &Param| matters(param.key) && *params.get(param.key) != param.default_value();
-    !PARAMS.iter().any(changes)
-}
-
-/// What a person calls what the parameters make.
+/// Returns the name on screen of the result of the parameters.
 pub(crate) fn recipe_name(params: &Params) -> String {
     let [a, b] = [Key::A, Key::B].map(|key| match recipe_params(params.text(key)) {
         Some(kept) => recipe_name(&kept),
@@ -118,7 +105,7 @@ pub(crate) fn recipe_name(params: &Params) -> String {
     lab_of(params.lab()).result_name(params, &a, &b)
 }
 
-/// Returns what a file of what the parameters make is called, without its ending.
+/// Returns the name of a file with the result of the parameters, without its ending.
 #[must_use]
 pub fn file_stem(params: &Params) -> String {
     lab_of(params.lab()).file_stem(params)
