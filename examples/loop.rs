@@ -5,28 +5,23 @@
 #![expect(clippy::print_stdout, reason = "the numbers are the example's output")]
 
 use segue_formats::bvh;
-use segue_motion::clip::{ContactOptions, Contacts, Motion};
-use segue_motion::skeleton::Roles;
+use segue_motion::clip::Motion;
 use segue_motion::synth::{Action, Params, synthesize};
 use segue_motion::transition::{CycleSearch, LoopOptions, close_loop, find_cycle};
 use std::error::Error;
-use std::sync::Arc;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let params = Params { turn_rate_dps: 30.0, ..Params::new(Action::Walk) };
-    let walk = Arc::new(synthesize(&params)?.clip);
-    let roles = Roles::detect(walk.skeleton());
-    let contacts = Contacts::detect(&walk, &roles, &ContactOptions::default());
-    let height = f64::from(roles.body_height(walk.skeleton()));
-    let source = Motion::with_roles(Arc::clone(&walk), &roles);
+    let walk = Motion::analyze(synthesize(&params)?.clip);
+    let fps = walk.clip().fps();
 
     // Two frames whose surroundings look alike are the ends of the cycle.
-    let found = find_cycle(&source, &contacts, height, &CycleSearch::new(walk.fps()))?;
-    let secs = found.cycle.len() as f64 / walk.fps();
+    let found = find_cycle(&walk, &CycleSearch::new(fps))?;
+    let secs = found.cycle.len() as f64 / fps;
     println!("cycle: frames {} to {}, {secs:.2} s", found.cycle.start, found.cycle.end);
 
     // The remaining difference between both ends is spread over the cycle.
-    let cycle = close_loop(&source, found.cycle, &LoopOptions::default())?;
+    let cycle = close_loop(&walk, found.cycle, &LoopOptions::default())?;
     println!(
         "largest turn between the ends: {:.2} ° before, {:.5} ° after",
         cycle.before.turn_deg, cycle.seam.turn_deg

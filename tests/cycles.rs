@@ -107,7 +107,7 @@ fn automatic_cycles_equal_the_exhaustive_search() {
         if clip.duration_secs() <= search.min_secs {
             continue;
         }
-        let found = find_cycle(&source, &contacts, height, &search).unwrap();
+        let found = find_cycle(&source, &search).unwrap();
         let least = least_cm(&clip, &contacts, height, &search);
         let looped = close_loop(&source, found.cycle.clone(), &LoopOptions::default()).unwrap();
         eprintln!(

@@ -6,9 +6,9 @@ mod common;
 
 use common::captured;
 use segue_motion::blend::Concatenation;
-use segue_motion::clip::{Clip, ContactOptions, Contacts, Motion};
+use segue_motion::clip::{Clip, Contacts, Motion};
 use segue_motion::math::{Decay, quat};
-use segue_motion::metrics::{Profile, Subject, TransitionMetrics};
+use segue_motion::metrics::TransitionMetrics;
 use segue_motion::registration::{PoseSearch, PoseWeights, SearchOptions, limb_weights};
 use segue_motion::skeleton::{Role, Roles, Side};
 use segue_motion::synth::{Action, Params, synthesize};
@@ -19,20 +19,16 @@ use std::sync::Arc;
 
 struct Take {
     name: String,
-    profile: Profile,
-    roles: Roles,
+    motion: Motion,
 }
 
 impl Take {
     fn new(name: &str, clip: Clip) -> Self {
-        let roles = Roles::detect(clip.skeleton());
-        let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
-        let source = Arc::new(Motion::with_roles(clip, &roles));
-        Self { name: name.to_owned(), profile: Profile::new(source, &roles, contacts), roles }
+        Self { name: name.to_owned(), motion: Motion::analyze(clip) }
     }
 
     fn clip(&self) -> &Arc<Clip> {
-        self.profile.source().clip()
+        self.motion.clip()
     }
 }
 
@@ -41,10 +37,10 @@ fn takes(wanted: &[&'static str]) -> Vec<Take> {
     captured(wanted).into_iter().map(|(name, clip)| Take::new(name, clip)).collect()
 }
 
-fn joined(a: &Take, b: &Take) -> (Concatenation, usize) {
+fn joined(a: &Take, b: &Take) -> Concatenation {
     let weights = limb_weights(a.clip().skeleton());
-    let height = f64::from(a.roles.body_height(a.clip().skeleton()));
-    let (from, to) = (a.profile.source(), b.profile.source());
+    let height = f64::from(a.motion.body_height());
+    let (from, to) = (&a.motion, &b.motion);
     let mut search = PoseSearch::new(
         (from.clip(), from.ground_frames()),
         (to.clip(), to.ground_frames()),
@@ -56,30 +52,7 @@ fn joined(a: &Take, b: &Take) -> (Concatenation, usize) {
     let found = search.best(PoseWeights::default(), &SearchOptions::new(40)).expect("windows fit");
     let spring = Inertialization::Offset(Decay::Spring { half_life_secs: 0.15 });
     let options = TransitionOptions::new(Method::Inertialize(spring));
-    (
-        concatenate(from, found.leave, to, found.enter, &options).expect("frames are there"),
-        found.enter,
-    )
-}
-
-fn measured(
-    a: &Take,
-    b: &Take,
-    out: &Concatenation,
-    enter: usize,
-    result: &Clip,
-) -> TransitionMetrics {
-    TransitionMetrics::measure(&Subject {
-        result,
-        start: out.transition.start,
-        end: out.transition.end,
-        handover: out.handover,
-        enter,
-        a: &a.profile,
-        b: &b.profile,
-        roles: &a.roles,
-        ground_m: 0.0,
-    })
+    concatenate(from, found.leave, to, found.enter, &options).expect("frames are there")
 }
 
 /// Returns the largest angular velocity of a knee, degrees per second.
@@ -95,22 +68,24 @@ fn fastest_knee(clip: &Clip, roles: &Roles) -> f32 {
 /// Returns foot skating before and after, centimetres, and the fastest knee before and after,
 /// degrees per second.
 fn locked(a: &Take, b: &Take) -> ([f64; 2], [f32; 2]) {
-    let (out, enter) = joined(a, b);
+    let out = joined(a, b);
     let contacts = Contacts::joined(
-        a.profile.contacts(),
-        b.profile.contacts(),
+        a.motion.contacts(),
+        b.motion.contacts(),
         out.transition.start,
-        enter,
+        out.enter,
         out.handover,
     );
-    let clip = foot_lock(&out.clip, &a.roles, &contacts, &FootLockOptions::default())
+    let clip = foot_lock(&out.clip, a.motion.roles(), &contacts, &FootLockOptions::default())
         .expect("there are legs");
-    let skate =
-        [&out.clip, &clip].map(|clip| measured(a, b, &out, enter, clip).skate_cm.unwrap_or(0.0));
-    let knees = [&out.clip, &clip].map(|clip| fastest_knee(clip, &a.roles));
+    let locked = Concatenation { clip: Arc::new(clip), ..out.clone() };
+    let made = [&out, &locked];
+    let skate = made
+        .map(|made| TransitionMetrics::measure(&a.motion, &b.motion, made).skate_cm.unwrap_or(0.0));
+    let knees = made.map(|made| fastest_knee(&made.clip, a.motion.roles()));
     eprintln!(
-        "{} → {} at {} {enter}: skate {:.2} → {:.3} cm, knee {:.0} → {:.0} °/s",
-        a.name, b.name, out.transition.start, skate[0], skate[1], knees[0], knees[1]
+        "{} → {} at {} {}: skate {:.2} → {:.3} cm, knee {:.0} → {:.0} °/s",
+        a.name, b.name, out.transition.start, out.enter, skate[0], skate[1], knees[0], knees[1]
     );
     (skate, knees)
 }

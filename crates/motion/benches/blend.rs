@@ -9,8 +9,8 @@ use common::skeleton;
 use criterion::{Criterion, criterion_group, criterion_main};
 use glam::{Quat, Vec3};
 use segue_motion::blend::{DissolveOptions, RootBlend, dissolve};
-use segue_motion::clip::{Clip, ContactOptions, Contacts, Motion};
-use segue_motion::metrics::{Profile, Subject, TransitionMetrics};
+use segue_motion::clip::{Clip, Motion};
+use segue_motion::metrics::TransitionMetrics;
 use segue_motion::registration::{SearchOptions, TransitionSearch, limb_weights};
 use segue_motion::skeleton::{Roles, Skeleton};
 use segue_motion::synth::{Action, Params, synthesize};
@@ -83,42 +83,24 @@ fn blending(c: &mut Criterion) {
 }
 
 fn measuring(c: &mut Criterion) {
-    let [walk, run] = [Action::Walk, Action::Run].map(|action| {
-        let clip = synthesize(&Params { fps: 120.0, duration_secs: 25.0, ..Params::new(action) })
-            .expect("natural parameters")
-            .clip;
-        let roles = Roles::detect(clip.skeleton());
-        let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
-        (Profile::new(Arc::new(Motion::with_roles(clip, &roles)), &roles, contacts), roles)
+    let [a, b] = [Action::Walk, Action::Run].map(|action| {
+        let params = Params { fps: 120.0, duration_secs: 25.0, ..Params::new(action) };
+        Motion::analyze(synthesize(&params).expect("natural parameters").clip)
     });
-    let ((a, roles), (b, _)) = (walk, run);
     for window in [30, 120] {
-        let out = dissolve(
-            a.source(),
-            2_000,
-            b.source(),
-            500,
-            &DissolveOptions { window, ..DissolveOptions::default() },
-        )
-        .expect("the window fits");
-        let (start, end) = (out.transition.start, out.transition.end);
-        let subject = Subject {
-            result: &out.clip,
-            start,
-            end,
-            handover: out.handover,
-            enter: 500,
-            a: &a,
-            b: &b,
-            roles: &roles,
-            ground_m: 0.0,
-        };
+        let options = DissolveOptions { window, ..DissolveOptions::default() };
+        let out = dissolve(&a, 2_000, &b, 500, &options).expect("the window fits");
         c.bench_function(&format!("metrics, {window} frames"), |bench| {
-            bench.iter(|| TransitionMetrics::measure(black_box(&subject)));
+            bench.iter(|| TransitionMetrics::measure(&a, &b, black_box(&out)));
         });
     }
-    c.bench_function("metrics, profile (once per clip)", |bench| {
-        bench.iter(|| Profile::new(Arc::clone(a.source()), &roles, a.contacts().clone()));
+    c.bench_function("analysis and metrics of a cut (once per clip)", |bench| {
+        bench.iter(|| {
+            let a = Motion::analyze(Arc::clone(a.clip()));
+            let options = DissolveOptions { window: 0, ..DissolveOptions::default() };
+            let out = dissolve(&a, 2_000, &b, 500, &options).expect("the window fits");
+            TransitionMetrics::measure(&a, &b, &out)
+        });
     });
 }
 

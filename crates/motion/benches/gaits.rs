@@ -17,11 +17,10 @@ use common::gait;
 fn living(c: &mut Criterion) {
     let [walk, run] = [Action::Walk, Action::Run].map(|action| gait(action, 600, 0.0));
     let roles = Roles::detect(walk.skeleton());
-    let contacts =
-        [&walk, &run].map(|clip| Contacts::detect(clip, &roles, &ContactOptions::default()));
+    let contacts = Contacts::detect(&walk, &roles, &ContactOptions::default());
     c.bench_function("foot lock, 600 frames", |bench| {
         bench.iter(|| {
-            foot_lock(black_box(&walk), &roles, &contacts[0], &FootLockOptions::default())
+            foot_lock(black_box(&walk), &roles, &contacts, &FootLockOptions::default())
                 .expect("there are legs")
         });
     });
@@ -31,15 +30,11 @@ fn living(c: &mut Criterion) {
         });
     });
     let sources = [walk, run].map(|clip| Motion::with_roles(clip, &roles));
-    let cycles = [0, 1].map(|gait: usize| {
-        GaitCycle::find(&sources[gait], &roles, &contacts[gait]).expect("whole cycles")
-    });
+    let cycles = [0, 1].map(|gait: usize| GaitCycle::find(&sources[gait]).expect("whole cycles"));
     let blend = SpeedBlend::new(&cycles[0], &cycles[1], &roles, &SpeedOptions::default())
         .expect("speeds differ");
     c.bench_function("find a cycle in 600 frames (once per clip)", |bench| {
-        bench.iter(|| {
-            GaitCycle::find(black_box(&sources[0]), &roles, &contacts[0]).expect("whole cycles")
-        });
+        bench.iter(|| GaitCycle::find(black_box(&sources[0])).expect("whole cycles"));
     });
     c.bench_function("one cycle at a speed", |bench| {
         bench.iter(|| blend.cycle_at(black_box(2.3)).expect("a speed"));

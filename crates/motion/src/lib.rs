@@ -14,52 +14,34 @@
 //! file is needed.
 //!
 //! ```
-//! use segue_motion::blend::{Concatenation, DissolveOptions, dissolve};
-//! use segue_motion::clip::{Clip, ContactOptions, Contacts, Motion};
-//! use segue_motion::metrics::{Profile, Subject, TransitionMetrics};
+//! use segue_motion::blend::{DissolveOptions, dissolve};
+//! use segue_motion::clip::Motion;
+//! use segue_motion::metrics::TransitionMetrics;
 //! use segue_motion::registration::{SearchOptions, best_transition, limb_weights};
-//! use segue_motion::skeleton::Roles;
 //! use segue_motion::synth::{Action, Params, synthesize};
-//! use std::sync::Arc;
 //!
-//! let walk = Arc::new(synthesize(&Params::new(Action::Walk))?.clip);
-//! let run = Arc::new(synthesize(&Params::new(Action::Run))?.clip);
-//! let roles = Roles::detect(walk.skeleton());
+//! // Analyse: joint roles, ground frames, foot contacts.
+//! let walk = Motion::analyze(synthesize(&Params::new(Action::Walk))?.clip);
+//! let run = Motion::analyze(synthesize(&Params::new(Action::Run))?.clip);
 //!
 //! // Align: where is half a second of the one most like half a second of the other?
-//! let weights = limb_weights(walk.skeleton());
-//! let height = f64::from(roles.body_height(walk.skeleton()));
-//! let found = best_transition(&walk, &run, &weights, height, &SearchOptions::new(30))?;
+//! let weights = limb_weights(walk.clip().skeleton());
+//! let height = f64::from(walk.body_height());
+//! let options = SearchOptions::new(30);
+//! let found = best_transition(walk.clip(), run.clip(), &weights, height, &options)?;
 //!
 //! // Blend, and for comparison cut.
-//! let profile = |clip: &Arc<Clip>| {
-//!     let contacts = Contacts::detect(clip, &roles, &ContactOptions::default());
-//!     Profile::new(Arc::new(Motion::with_roles(Arc::clone(clip), &roles)), &roles, contacts)
-//! };
-//! let (a, b) = (profile(&walk), profile(&run));
 //! let blended = |window| {
 //!     let options = DissolveOptions { window, ..DissolveOptions::default() };
-//!     dissolve(a.source(), found.leave, b.source(), found.enter, &options)
+//!     dissolve(&walk, found.leave, &run, found.enter, &options)
 //! };
-//! let (blend, cut) = (blended(30)?, blended(0)?);
 //!
 //! // Measure: how far do joints and character jump in a frame, beyond what is usual?
-//! let measured = |out: &Concatenation| {
-//!     TransitionMetrics::measure(&Subject {
-//!         result: &out.clip,
-//!         start: out.transition.start,
-//!         end: out.transition.end,
-//!         handover: out.handover,
-//!         enter: found.enter,
-//!         a: &a,
-//!         b: &b,
-//!         roles: &roles,
-//!         ground_m: 0.0,
-//!     })
-//! };
-//! assert!(measured(&cut).seam_deg.is_some_and(|jump| jump > 60.0));
-//! assert!(measured(&blend).seam_deg.is_some_and(|jump| jump < 5.0));
-//! assert!(measured(&blend).jump_cm.is_some_and(|jump| jump < 0.1));
+//! let blend = TransitionMetrics::measure(&walk, &run, &blended(30)?);
+//! let cut = TransitionMetrics::measure(&walk, &run, &blended(0)?);
+//! assert!(cut.seam_deg.is_some_and(|jump| jump > 60.0));
+//! assert!(blend.seam_deg.is_some_and(|jump| jump < 5.0));
+//! assert!(blend.jump_cm.is_some_and(|jump| jump < 0.1));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!

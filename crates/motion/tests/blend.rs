@@ -1,35 +1,30 @@
 //! From two clips to a transition and its numbers, as a person would: all pairs of made motions.
 
 use segue_motion::blend::{DissolveOptions, RootBlend, dissolve};
-use segue_motion::clip::{ContactOptions, Contacts, Motion};
-use segue_motion::metrics::{Profile, Subject, TransitionMetrics};
+use segue_motion::clip::Motion;
+use segue_motion::metrics::TransitionMetrics;
 use segue_motion::registration::{SearchOptions, best_transition, limb_weights};
-use segue_motion::skeleton::Roles;
 use segue_motion::synth::{Params, presets, synthesize};
-use std::sync::Arc;
 
 const WINDOW: usize = 24;
 
-fn profiles() -> Vec<(&'static str, Profile)> {
+fn motions() -> Vec<(&'static str, Motion)> {
     let made = presets().into_iter().map(|preset| {
-        let clip =
-            synthesize(&Params { fps: 60.0, ..preset.params }).expect("a preset can be made").clip;
-        let roles = Roles::detect(clip.skeleton());
-        let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
-        (preset.id, Profile::new(Arc::new(Motion::with_roles(clip, &roles)), &roles, contacts))
+        let made =
+            synthesize(&Params { fps: 60.0, ..preset.params }).expect("a preset can be made");
+        (preset.id, Motion::analyze(made.clip))
     });
     made.collect()
 }
 
 #[test]
 fn every_pair_of_made_motions_has_a_clean_transition() {
-    let profiles = profiles();
+    let motions = motions();
     let mut counted = 0;
-    for (a_name, a) in &profiles {
-        for (b_name, b) in &profiles {
-            let (from, to) = (a.source().clip(), b.source().clip());
-            let roles = Roles::detect(from.skeleton());
-            let height = f64::from(roles.body_height(from.skeleton()));
+    for (a_name, a) in &motions {
+        for (b_name, b) in &motions {
+            let (from, to) = (a.clip(), b.clip());
+            let height = f64::from(a.body_height());
             let found = best_transition(
                 from,
                 to,
@@ -40,21 +35,8 @@ fn every_pair_of_made_motions_has_a_clean_transition() {
             .expect("windows fit");
             let measured = |window: usize, root: RootBlend, align: bool| {
                 let options = DissolveOptions { window, root, align, ..DissolveOptions::default() };
-                let out = dissolve(a.source(), found.leave, b.source(), found.enter, &options)
-                    .expect("windows fit");
-                let (start, end) = (out.transition.start, out.transition.end);
-                let subject = Subject {
-                    result: &out.clip,
-                    start,
-                    end,
-                    handover: out.handover,
-                    enter: found.enter,
-                    a,
-                    b,
-                    roles: &roles,
-                    ground_m: 0.0,
-                };
-                TransitionMetrics::measure(&subject)
+                let out = dissolve(a, found.leave, b, found.enter, &options).expect("windows fit");
+                TransitionMetrics::measure(a, b, &out)
             };
             let good = measured(WINDOW, RootBlend::Velocity, true);
             let cut = measured(0, RootBlend::Velocity, true);

@@ -1,23 +1,18 @@
 //! Every method on every pair of made motions, with its numbers: what a shoot-out shows.
 
-use segue_motion::blend::{Concatenation, RootBlend, WeightLaw};
-use segue_motion::clip::{ContactOptions, Contacts, Motion};
+use segue_motion::blend::{RootBlend, WeightLaw};
+use segue_motion::clip::Motion;
 use segue_motion::math::Decay;
-use segue_motion::metrics::{Profile, Subject, TransitionMetrics};
+use segue_motion::metrics::TransitionMetrics;
 use segue_motion::registration::{PoseSearch, PoseWeights, SearchOptions, limb_weights};
-use segue_motion::skeleton::Roles;
 use segue_motion::synth::{Params, presets, synthesize};
 use segue_motion::transition::{Inertialization, Method, TransitionOptions, concatenate};
-use std::sync::Arc;
 
-fn profiles() -> Vec<(&'static str, Profile, Roles)> {
+fn motions() -> Vec<(&'static str, Motion)> {
     let made = presets().into_iter().map(|preset| {
-        let clip =
-            synthesize(&Params { fps: 60.0, ..preset.params }).expect("a preset can be made").clip;
-        let roles = Roles::detect(clip.skeleton());
-        let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
-        let source = Arc::new(Motion::with_roles(clip, &roles));
-        (preset.id, Profile::new(source, &roles, contacts), roles)
+        let made =
+            synthesize(&Params { fps: 60.0, ..preset.params }).expect("a preset can be made");
+        (preset.id, Motion::analyze(made.clip))
     });
     made.collect()
 }
@@ -41,37 +36,17 @@ const METHODS: [(&str, Method); 7] = [
     ),
 ];
 
-fn measured(
-    out: &Concatenation,
-    enter: usize,
-    a: &Profile,
-    b: &Profile,
-    roles: &Roles,
-) -> TransitionMetrics {
-    TransitionMetrics::measure(&Subject {
-        result: &out.clip,
-        start: out.transition.start,
-        end: out.transition.end,
-        handover: out.handover,
-        enter,
-        a,
-        b,
-        roles,
-        ground_m: 0.0,
-    })
-}
-
 #[test]
 fn every_method_joins_every_pair_and_its_numbers_can_be_compared() {
-    let profiles = profiles();
-    for (a_name, a, roles) in &profiles {
-        for (b_name, b, _) in &profiles {
-            let (from, to) = (a.source().clip(), b.source().clip());
-            let height = f64::from(roles.body_height(from.skeleton()));
+    let motions = motions();
+    for (a_name, a) in &motions {
+        for (b_name, b) in &motions {
+            let (from, to) = (a.clip(), b.clip());
+            let height = f64::from(a.body_height());
             let weights = limb_weights(from.skeleton());
             let mut search = PoseSearch::new(
-                (from, a.source().ground_frames()),
-                (to, b.source().ground_frames()),
+                (from, a.ground_frames()),
+                (to, b.ground_frames()),
                 &weights,
                 height,
             )
@@ -81,9 +56,9 @@ fn every_method_joins_every_pair_and_its_numbers_can_be_compared() {
                 search.best(PoseWeights::default(), &SearchOptions::new(24)).expect("windows fit");
             let numbers = METHODS.map(|(name, method)| {
                 let options = TransitionOptions::new(method);
-                let out = concatenate(a.source(), found.leave, b.source(), found.enter, &options)
-                    .expect("windows fit");
-                let metrics = measured(&out, found.enter, a, b, roles);
+                let out =
+                    concatenate(a, found.leave, b, found.enter, &options).expect("windows fit");
+                let metrics = TransitionMetrics::measure(a, b, &out);
                 let values: Vec<Option<f64>> =
                     metrics.list().iter().map(|metric| metric.value).collect();
                 assert!(
@@ -121,16 +96,16 @@ fn every_method_joins_every_pair_and_its_numbers_can_be_compared() {
             }
         }
     }
-    assert!(profiles.len() >= 3);
+    assert!(motions.len() >= 3);
 }
 
 /// Behind the last frame of A, in front of the second of B, unaligned or in the world: whatever a
 /// slider can ask for has numbers.
 #[test]
 fn there_are_numbers_at_the_ends_too() {
-    let profiles = profiles();
-    let ((_, a, roles), (_, b, _)) = (&profiles[0], &profiles[1]);
-    let (last_a, last_b) = (a.source().clip().frames(), b.source().clip().frames());
+    let motions = motions();
+    let ((_, a), (_, b)) = (&motions[0], &motions[1]);
+    let (last_a, last_b) = (a.clip().frames(), b.clip().frames());
     for (leave, enter) in [(last_a, 0), (last_a, last_b - 1), (0, 0), (1, 1), (0, last_b - 1)] {
         for (name, method) in METHODS {
             if matches!(method, Method::Dissolve { .. }) {
@@ -140,10 +115,10 @@ fn there_are_numbers_at_the_ends_too() {
                 [(true, RootBlend::Velocity), (true, RootBlend::World), (false, RootBlend::World)]
             {
                 let options = TransitionOptions { align, root, ..TransitionOptions::new(method) };
-                let out = concatenate(a.source(), leave, b.source(), enter, &options)
-                    .expect("frames are in the clips");
+                let out =
+                    concatenate(a, leave, b, enter, &options).expect("frames are in the clips");
                 assert_eq!(out.clip.frames(), leave + last_b - enter);
-                let metrics = measured(&out, enter, a, b, roles);
+                let metrics = TransitionMetrics::measure(a, b, &out);
                 let finite =
                     metrics.list().iter().all(|metric| metric.value.is_none_or(f64::is_finite));
                 assert!(finite, "{name} {leave} {enter} {metrics:?}");

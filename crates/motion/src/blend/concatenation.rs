@@ -3,16 +3,19 @@
 use crate::clip::Clip;
 use crate::math::Planar;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Clip A, then clip B: the result of a transition by any method.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Concatenation {
     /// A up to the transition, the transition, then B; B's part lies in A's world.
-    pub clip: Clip,
+    pub clip: Arc<Clip>,
     /// The transition's frames in the result; empty for a cut, whose first frame of B is
     /// `transition.start`. At its end a dissolve is all B; less than 1 % of an inertialization's
     /// offset is left.
     pub transition: Range<usize>,
+    /// The frame of B that corresponds to the transition's start.
+    pub enter: usize,
     /// The first frame of the result in which B has the greater part: the middle of the window, or
     /// the frame at which half of the offset is left.
     pub handover: usize,

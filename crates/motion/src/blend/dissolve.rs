@@ -125,8 +125,9 @@ pub fn dissolve(
     frames
         .extend(b.ground_frames()[enter + window..].iter().map(|frame| world_from_b.after(frame)));
     Ok(Concatenation {
-        clip,
+        clip: Arc::new(clip),
         transition: leave..leave + window,
+        enter,
         handover: leave + window / 2,
         aligned_b,
         b_during,

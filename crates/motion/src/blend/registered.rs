@@ -8,6 +8,7 @@ use crate::math::{Planar, quat, wrap_angle};
 use crate::registration::Registration;
 use crate::skeleton::{Pose, Side};
 use glam::{DVec2, Quat, Vec3};
+use std::sync::Arc;
 
 /// A clip that is blended with a reference, to which it is registered as the target.
 #[derive(Clone, Copy, Debug)]
@@ -133,8 +134,10 @@ pub fn registered_join(
         .extend(b.ground_frames()[enter_end + 1..].iter().map(|frame| world_from_b.after(frame)));
     Ok(RegisteredJoin {
         joined: Concatenation {
-            clip,
+            clip: Arc::new(clip),
             transition: leave..leave + during.len(),
+            // Time is warped in between: counted back from the end, after which B plays as it is.
+            enter: (enter_end + 1).saturating_sub(during.len()),
             handover: leave + half,
             aligned_b: registration.alignment_at(start),
             b_during,

@@ -100,6 +100,7 @@ mod retarget;
 mod root_motion;
 mod sampling;
 mod storage;
+mod usual;
 mod velocity;
 
 pub use contacts::{ContactOptions, Contacts};
@@ -116,4 +117,5 @@ pub use retarget::{RetargetError, retarget, retarget_onto};
 pub use root_motion::{character_frames, facing, ground_speed};
 pub use sampling::Interpolation;
 pub use storage::{Clip, ClipError, JointTranslations, Provenance, UpAxis};
+pub(crate) use usual::{UsualMotion, turn};
 pub use velocity::{Velocities, velocities};

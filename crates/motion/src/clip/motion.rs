@@ -1,6 +1,6 @@
 //! Clips with what is derived from them once and used everywhere.
 
-use super::{Clip, ContactOptions, Contacts, character_frames, estimate_ground};
+use super::{Clip, ContactOptions, Contacts, UsualMotion, character_frames, estimate_ground};
 use crate::math::{Planar, wrap_angle};
 use crate::skeleton::{Role, Roles};
 use std::ops::Range;
@@ -30,6 +30,7 @@ pub struct Motion {
     feet: FootOptions,
     contacts: OnceLock<Contacts>,
     ground_m: OnceLock<f32>,
+    usual: OnceLock<UsualMotion>,
     seams: Vec<Range<usize>>,
 }
 
@@ -81,6 +82,7 @@ impl Motion {
             feet: FootOptions::default(),
             contacts: OnceLock::new(),
             ground_m: OnceLock::new(),
+            usual: OnceLock::new(),
             seams: Vec::new(),
         }
     }
@@ -189,6 +191,17 @@ impl Motion {
     pub fn ground_m(&self) -> f32 {
         let estimate = || estimate_ground(&self.clip, &self.roles, self.contacts());
         *self.ground_m.get_or_init(|| self.feet.ground_m.unwrap_or_else(estimate))
+    }
+
+    /// Returns the usual speeds of its joints and root; measured on first use and kept.
+    pub(crate) fn usual(&self) -> &UsualMotion {
+        self.usual.get_or_init(|| UsualMotion::of(self))
+    }
+
+    /// Returns the height of the body in its rest pose, metres ([`Roles::body_height`]).
+    #[must_use]
+    pub fn body_height(&self) -> f32 {
+        self.roles.body_height(self.clip.skeleton())
     }
 
     /// Returns the frames in which one clip becomes another, in order: where a result was joined

@@ -31,7 +31,6 @@ impl GaitCycle {
     /// right foot. Of all cycles the one is taken that differs least from the median in duration,
     /// speed, and the phases of strike and lift, and whose ends are most alike. A foot that is
     /// planted in the clip's first frame counts as striking there only if there is no other cycle.
-    /// `contacts` are those of the clip.
     ///
     /// A clip that is one cycle, or most of one, rarely begins with a strike. If it contains none
     /// of the cycles above, it is closed at its own ends ([`WholeCycle`]), or where its poses
@@ -41,13 +40,13 @@ impl GaitCycle {
     /// # Errors
     /// [`GaitError::NoFeet`] and [`GaitError::NoCycle`] when no cycle is found, [`GaitError::Loop`]
     /// when it cannot be closed.
-    pub fn find(source: &Motion, roles: &Roles, contacts: &Contacts) -> Result<Self, GaitError> {
-        let mut candidates = candidates(source, contacts);
+    pub fn find(source: &Motion) -> Result<Self, GaitError> {
+        let mut candidates = candidates(source);
         if candidates.iter().any(|candidate| candidate.range.start > 0) {
             candidates.retain(|candidate| candidate.range.start > 0);
         } else {
             // A foot that is planted in the first frame may have come down long before.
-            match Self::closed_by_its_ends(source, roles, contacts) {
+            match Self::closed_by_its_ends(source) {
                 Err(_) if !candidates.is_empty() => {}
                 closed => return closed,
             }
@@ -85,12 +84,8 @@ impl GaitCycle {
     }
 
     /// Returns the cycle of a clip that does not contain one from strike to strike.
-    fn closed_by_its_ends(
-        source: &Motion,
-        roles: &Roles,
-        contacts: &Contacts,
-    ) -> Result<Self, GaitError> {
-        let clip = source.clip();
+    fn closed_by_its_ends(source: &Motion) -> Result<Self, GaitError> {
+        let (clip, roles) = (source.clip(), source.roles());
         let name = || clip.name().to_owned();
         if Side::BOTH.iter().any(|&side| roles.foot_points(clip.skeleton(), side).is_empty()) {
             return Err(GaitError::NoFeet { name: name() });
@@ -98,10 +93,7 @@ impl GaitCycle {
         // Both ways to choose the ends, the one with the smaller distance first.
         let whole = WholeCycle::of(source);
         let search = CycleSearch { min_secs: CYCLE_SECS.start, ..CycleSearch::new(clip.fps()) };
-        let height = f64::from(roles.body_height(clip.skeleton()));
-        let inside = find_cycle(source, contacts, height, &search)
-            .ok()
-            .filter(|cut| cut.rms_cm < MAX_APART_CM);
+        let inside = find_cycle(source, &search).ok().filter(|cut| cut.rms_cm < MAX_APART_CM);
         let mut closed: Vec<(f64, usize, Loop)> = Vec::new();
         if let Some(whole) = &whole {
             closed.push((whole.gap_cm, 0, whole.close(&LoopOptions::default())?));
@@ -192,7 +184,8 @@ struct Candidate {
     events: Events,
 }
 
-fn candidates(source: &Motion, contacts: &Contacts) -> Vec<Candidate> {
+fn candidates(source: &Motion) -> Vec<Candidate> {
+    let contacts = source.contacts();
     let fps = source.clip().fps();
     let last = source.clip().frames().min(contacts.frames());
     let (left, right) = (contacts.intervals(Side::Left), contacts.intervals(Side::Right));

@@ -23,25 +23,19 @@
 //! # Example
 //!
 //! ```
-//! use segue_motion::clip::{ContactOptions, Contacts, Motion, character_frames, ground_speed};
+//! use segue_motion::clip::{Motion, ground_speed};
 //! use segue_motion::gait::{GaitCycle, SpeedBlend, SpeedOptions};
-//! use segue_motion::skeleton::Roles;
 //! use segue_motion::synth::{Action, Params, synthesize};
-//! use std::sync::Arc;
 //!
-//! let mut cycles = Vec::new();
-//! let mut roles = Roles::default();
-//! for action in [Action::Walk, Action::Run] {
-//!     let clip = Arc::new(synthesize(&Params::new(action))?.clip);
-//!     roles = Roles::detect(clip.skeleton());
-//!     let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
-//!     cycles.push(GaitCycle::find(&Motion::with_roles(clip, &roles), &roles, &contacts)?);
-//! }
-//! let blend = SpeedBlend::new(&cycles[0], &cycles[1], &roles, &SpeedOptions::default())?;
+//! let walk = Motion::analyze(synthesize(&Params::new(Action::Walk))?.clip);
+//! let run = Motion::analyze(synthesize(&Params::new(Action::Run))?.clip);
+//! let cycles = [GaitCycle::find(&walk)?, GaitCycle::find(&run)?];
+//! let blend = SpeedBlend::new(&cycles[0], &cycles[1], walk.roles(), &SpeedOptions::default())?;
 //! let jog = blend.cycle_at(2.5)?;
 //! assert!(jog.facts.weight > 0.4 && jog.facts.weight < 0.6 && !jog.facts.extrapolated);
 //! // The speed is the one asked for; strides and cadence lie between those of the gaits.
-//! let measured = ground_speed(&character_frames(&jog.clip, &roles), jog.clip.fps());
+//! let jog_motion = Motion::with_roles(jog.clip.clone(), walk.roles());
+//! let measured = ground_speed(jog_motion.ground_frames(), jog.clip.fps());
 //! assert!((measured - 2.5).abs() < 0.02 * 2.5);
 //! let [walk, run] = blend.speeds_mps().map(|speed| blend.facts(speed));
 //! assert!(walk.stride_m < jog.facts.stride_m && jog.facts.stride_m < run.stride_m);

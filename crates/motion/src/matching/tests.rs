@@ -385,9 +385,7 @@ fn one_stride(action: Action, fps: f32, turn_rate_dps: f32) -> MatchClip {
     let params = Params { turn_rate_dps, fps, ..Params::new(action) };
     let clip = Arc::new(synthesize(&params).unwrap().clip);
     let roles = Roles::detect(clip.skeleton());
-    let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
-    let cycle =
-        GaitCycle::find(&Motion::with_roles(Arc::clone(&clip), &roles), &roles, &contacts).unwrap();
+    let cycle = GaitCycle::find(&Motion::with_roles(Arc::clone(&clip), &roles)).unwrap();
     MatchClip::new(Arc::new(clip.crop(cycle.range()).unwrap()), roles)
 }
 

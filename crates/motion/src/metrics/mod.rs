@@ -42,8 +42,7 @@
 //! ```
 //!
 //! For a single transition the frames of both clips that play are known: the fields of
-//! [`TransitionMetrics`] are measured beyond what the clips do in these very frames. A [`Profile`]
-//! holds the measurements of one clip for that.
+//! [`TransitionMetrics`] are measured beyond what the clips do in these very frames.
 //!
 //! A foot that rolls from heel to toe moves, but one of its points stands still: that point is
 //! followed. [`foot_slide_cm`] does so for a whole clip.
@@ -54,39 +53,19 @@
 //!
 //! ```
 //! use segue_motion::blend::Concatenation;
-//! use segue_motion::clip::{Clip, ContactOptions, Contacts, Motion};
-//! use segue_motion::metrics::{Profile, Subject, TransitionMetrics};
-//! use segue_motion::skeleton::Roles;
+//! use segue_motion::clip::Motion;
+//! use segue_motion::metrics::TransitionMetrics;
 //! use segue_motion::synth::{Action, Params, synthesize};
 //! use segue_motion::transition::{Method, Mistake, TransitionOptions, concatenate, concatenate_mistaken};
-//! use std::sync::Arc;
 //!
-//! let [walk, run] = [Action::Walk, Action::Run].map(|action| synthesize(&Params::new(action)));
-//! let (walk, run) = (Arc::new(walk?.clip), Arc::new(run?.clip));
-//! let roles = Roles::detect(walk.skeleton());
-//! let profile = |clip: &Arc<Clip>| {
-//!     let contacts = Contacts::detect(clip, &roles, &ContactOptions::default());
-//!     Profile::new(Arc::new(Motion::with_roles(Arc::clone(clip), &roles)), &roles, contacts)
-//! };
-//! let (a, b) = (profile(&walk), profile(&run));
-//! let spin_deg = |out: &Concatenation| {
-//!     let subject = Subject {
-//!         result: &out.clip,
-//!         start: out.transition.start,
-//!         end: out.transition.end,
-//!         handover: out.handover,
-//!         enter: 20,
-//!         a: &a,
-//!         b: &b,
-//!         roles: &roles,
-//!         ground_m: 0.0,
-//!     };
-//!     TransitionMetrics::measure(&subject).spin_deg.unwrap_or(f64::NAN)
-//! };
+//! let a = Motion::analyze(synthesize(&Params::new(Action::Walk))?.clip);
+//! let b = Motion::analyze(synthesize(&Params::new(Action::Run))?.clip);
 //! let options = TransitionOptions::new(Method::Dissolve { window: 30, law: Default::default() });
-//! let right = concatenate(a.source(), 100, b.source(), 20, &options)?;
-//! let mistake = Mistake::AtanForAtan2;
-//! let wrong = concatenate_mistaken(a.source(), 100, b.source(), 20, &options, mistake)?;
+//! let right = concatenate(&a, 100, &b, 20, &options)?;
+//! let wrong = concatenate_mistaken(&a, 100, &b, 20, &options, Mistake::AtanForAtan2)?;
+//! let spin_deg = |made: &Concatenation| {
+//!     TransitionMetrics::measure(&a, &b, made).spin_deg.unwrap_or(f64::NAN)
+//! };
 //! assert!(spin_deg(&right) < 1.0 && spin_deg(&wrong) > 90.0);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -95,7 +74,7 @@
 //!
 //! A joint that is turned by 30° in one frame measures 30° to 0.001°, and a foot that is made to
 //! slide by 5 cm slides 5 cm. A clip that continues as itself has no artefact. A transition costs
-//! O(its frames × joints) and half a second to either side, a profile O(frames × joints) once.
+//! O(its frames × joints) and half a second to either side, and each clip O(frames × joints) once.
 //!
 //! # What it does not do
 //!
@@ -110,7 +89,6 @@
 mod artefacts;
 mod deviation;
 mod lowest;
-mod profile;
 mod result;
 mod slide;
 mod transition;
@@ -118,10 +96,9 @@ mod whole;
 
 pub use artefacts::{Artefacts, Flash, MotionTrace, TraceMeter};
 pub use deviation::deviations;
-pub use profile::Profile;
 pub use result::{JointFrame, ResultMetrics};
 pub use slide::{SlideMeter, foot_slide_cm, foot_slides_cm};
-pub use transition::{Subject, TransitionMetrics};
+pub use transition::{TransitionMetrics, penetration};
 pub use whole::{ClipMeter, ClipMetrics};
 
 /// The direction in which a metric improves.

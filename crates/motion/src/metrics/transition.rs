@@ -2,8 +2,8 @@
 
 use super::Metric;
 use super::lowest::LowPoints;
-use super::profile::{Profile, turn};
-use crate::clip::{Clip, facing, stillest_step, turn_change};
+use crate::blend::Concatenation;
+use crate::clip::{Clip, Motion, UsualMotion, facing, stillest_step, turn, turn_change};
 use crate::math::{Planar, wrap_angle};
 use crate::skeleton::{Roles, Side, WorldPose};
 use glam::{DVec2, Vec3};
@@ -18,27 +18,26 @@ const MIN_CHANGE_MPS: f64 = 0.1;
 
 /// A transition to be measured: frame f of the result shows frame f of clip A before it, and frame
 /// `enter + (f - transition.start)` of clip B after it. Inside both are mixed.
-#[derive(Clone, Copy, Debug)]
-pub struct Subject<'a> {
+struct Subject<'a> {
     /// The clip with the transition in it.
-    pub result: &'a Clip,
+    result: &'a Clip,
     /// The first mixed frame of the result (for a cut: the first of B).
-    pub start: usize,
+    start: usize,
     /// One past the last mixed frame; the start for a cut.
-    pub end: usize,
+    end: usize,
     /// The first frame in which B has the greater part ([`crate::blend::Concatenation::handover`]):
     /// contacts are A's before it, and B's from then on.
-    pub handover: usize,
+    handover: usize,
     /// The frame of B that is shown, or mixed in, at `start`.
-    pub enter: usize,
+    enter: usize,
     /// The outgoing clip.
-    pub a: &'a Profile,
+    a: &'a Motion,
     /// The incoming clip.
-    pub b: &'a Profile,
+    b: &'a Motion,
     /// Roles of the result's joints.
-    pub roles: &'a Roles,
+    roles: &'a Roles,
     /// Height of the ground, metres ([`crate::clip::estimate_ground`]).
-    pub ground_m: f32,
+    ground_m: f32,
 }
 
 /// The artefacts of a transition, measured at its seam alone, beyond the values of the clips in the
@@ -87,10 +86,25 @@ pub struct TransitionMetrics {
 }
 
 impl TransitionMetrics {
-    /// Measures a transition. Only its frames and half a second around it are read; frames that do
-    /// not exist are left out.
+    /// Measures the transition from A to B that was made by any method, on the lower of their
+    /// grounds. Only its frames and half a second around it are read.
     #[must_use]
-    pub fn measure(subject: &Subject<'_>) -> Self {
+    pub fn measure(a: &Motion, b: &Motion, made: &Concatenation) -> Self {
+        Self::of(&Subject {
+            result: &made.clip,
+            start: made.transition.start,
+            end: made.transition.end,
+            handover: made.handover,
+            enter: made.enter,
+            a,
+            b,
+            roles: a.roles(),
+            ground_m: a.ground_m().min(b.ground_m()),
+        })
+    }
+
+    /// Measures a transition. Frames that do not exist are left out.
+    fn of(subject: &Subject<'_>) -> Self {
         let last = subject.result.frames().saturating_sub(1);
         if subject.result.frames() == 0 {
             return Self::default();
@@ -105,9 +119,7 @@ impl TransitionMetrics {
             jump_cm: jump(subject, &steps, &around),
             spin_deg: spin(subject, &steps, &around),
             skate_cm: skate(subject, &steps, &around),
-            penetration_cm: around
-                .depth_below(subject.ground_m)
-                .map(|depth| f64::from(depth) * 100.0),
+            penetration_cm: around.lowest.map(|lowest| depth_cm(lowest, subject.ground_m)),
             lag_s: lag(subject, &steps, &around),
         }
     }
@@ -124,13 +136,7 @@ impl TransitionMetrics {
                 "cm",
                 "How far the character moves over the ground in one frame at the transition, beyond its usual step.",
             ),
-            Metric::lower(
-                "penetration_cm",
-                "Penetration",
-                self.penetration_cm,
-                "cm",
-                "How deep the lowest point of the body is below the ground during the transition.",
-            ),
+            penetration_metric(self.penetration_cm),
             Metric::lower(
                 "lag_s",
                 "Lag",
@@ -142,35 +148,65 @@ impl TransitionMetrics {
     }
 }
 
+/// Returns the penetration in some frames of a clip, as a row of a list: the depth of the deepest
+/// joint or end site below the ground. Frames that do not exist are left out.
+#[must_use]
+pub fn penetration(clip: &Clip, frames: Range<usize>, ground_m: f32) -> Metric {
+    let low_points = LowPoints::of(clip.skeleton());
+    let mut world = WorldPose::default();
+    let lowest = (frames.start..frames.end.min(clip.frames())).filter_map(|frame| {
+        clip.world_pose_into(frame, &mut world);
+        low_points.lowest(&world)
+    });
+    let lowest = lowest.min_by(f32::total_cmp);
+    penetration_metric(lowest.map(|lowest| depth_cm(lowest, ground_m)))
+}
+
+fn depth_cm(lowest: f32, ground_m: f32) -> f64 {
+    f64::from((ground_m - lowest).max(0.0)) * 100.0
+}
+
+fn penetration_metric(value: Option<f64>) -> Metric {
+    Metric::lower(
+        "penetration_cm",
+        "Penetration",
+        value,
+        "cm",
+        "How deep the lowest point of the body is below the ground during the transition.",
+    )
+}
+
 impl Subject<'_> {
     /// Returns the frame of B that corresponds to `frame` of the result.
     fn in_b(&self, frame: usize) -> Option<usize> {
         let frame = self.enter.saturating_add(frame).checked_sub(self.start)?;
-        (frame < self.b.source.ground_frames().len()).then_some(frame)
+        (frame < self.b.ground_frames().len()).then_some(frame)
     }
 
     /// Returns the steps of A and B, in the characters' own frames, that correspond to the step
     /// into `frame` of the result. After its end clip A continues with its last step: an
     /// inertialization may leave it there.
     fn source_steps(&self, frame: usize) -> [Option<Planar>; 2] {
-        let last = self.a.source.ground_frames().len().checked_sub(1);
-        let a = last.map(|last| self.a.source.step_into(frame.min(last)));
-        [a, self.in_b(frame).map(|frame| self.b.source.step_into(frame))]
+        let last = self.a.ground_frames().len().checked_sub(1);
+        let a = last.map(|last| self.a.step_into(frame.min(last)));
+        [a, self.in_b(frame).map(|frame| self.b.step_into(frame))]
     }
 
-    fn usual(&self, of: fn(&Profile) -> &[f32], joint: usize) -> f32 {
-        let get = |profile| of(profile).get(joint).copied().unwrap_or(0.0);
+    fn usual(&self, of: fn(&UsualMotion) -> &[f32], joint: usize) -> f32 {
+        let get = |motion: &Motion| of(motion.usual()).get(joint).copied().unwrap_or(0.0);
         get(self.a).max(get(self.b))
     }
 
     /// Returns whether this foot is planted in the source of `frame`, and how far it moves there in
     /// the step into the frame.
     fn foot_in_source(&self, side: Side, frame: usize) -> (bool, f32) {
-        let (profile, frame) =
+        let (motion, frame) =
             if frame < self.handover { (self.a, Some(frame)) } else { (self.b, self.in_b(frame)) };
-        let slide =
-            frame.and_then(|frame| profile.slides[side.index()].get(frame)).copied().unwrap_or(0.0);
-        (frame.is_some_and(|frame| profile.contacts.planted(side, frame)), slide)
+        let slide = frame
+            .and_then(|frame| motion.usual().slides[side.index()].get(frame))
+            .copied()
+            .unwrap_or(0.0);
+        (frame.is_some_and(|frame| motion.contacts().planted(side, frame)), slide)
     }
 }
 
@@ -226,10 +262,6 @@ impl Around {
         let at = frame.checked_sub(self.frames.start)?;
         Some(self.character.get(at.checked_sub(1)?)?.inverse().after(self.character.get(at)?))
     }
-
-    fn depth_below(&self, ground: f32) -> Option<f32> {
-        self.lowest.map(|lowest| (ground - lowest).max(0.0))
-    }
 }
 
 /// Returns the turn of a joint in the step into `frame`, radians.
@@ -247,7 +279,7 @@ fn unusual(
     subject: &Subject<'_>,
     frames: RangeInclusive<usize>,
     value: fn(&Clip, usize, usize) -> Option<f32>,
-    usual: fn(&Profile) -> &[f32],
+    usual: fn(&UsualMotion) -> &[f32],
 ) -> (Option<f32>, Option<usize>) {
     let clip = subject.result;
     let mut worst: Option<f32> = None;
@@ -262,10 +294,9 @@ fn unusual(
             let excess = found - subject.usual(usual, joint);
             // The sources' own frames are evaluated only where they matter.
             if excess > threshold {
-                let in_a = value(subject.a.source.clip(), frame, joint);
-                let in_b = subject
-                    .in_b(frame)
-                    .and_then(|frame| value(subject.b.source.clip(), frame, joint));
+                let in_a = value(subject.a.clip(), frame, joint);
+                let in_b =
+                    subject.in_b(frame).and_then(|frame| value(subject.b.clip(), frame, joint));
                 let own = in_a.into_iter().chain(in_b).fold(0.0, f32::max);
                 let excess = excess.min(found - own);
                 if excess > threshold {
@@ -278,21 +309,20 @@ fn unusual(
 }
 
 fn seam(subject: &Subject<'_>, steps: &RangeInclusive<usize>) -> (Option<f64>, Option<usize>) {
-    let (worst, joint) = unusual(subject, steps.clone(), joint_turn, |profile| &profile.usual_turn);
+    let (worst, joint) = unusual(subject, steps.clone(), joint_turn, |usual| &usual.turn);
     let degrees = worst.map(|turn| f64::from(turn).to_degrees());
     (degrees, joint.filter(|_| degrees > Some(MIN_NAMED_DEG)))
 }
 
 fn velocity_seam(subject: &Subject<'_>, steps: &RangeInclusive<usize>) -> Option<f64> {
     // Every frame between two steps of which one belongs to the transition.
-    let (worst, _) = unusual(subject, steps.start() - 1..=*steps.end(), turn_change, |profile| {
-        &profile.usual_change
-    });
+    let (worst, _) =
+        unusual(subject, steps.start() - 1..=*steps.end(), turn_change, |usual| &usual.change);
     worst.map(|change| f64::from(change).to_degrees() * subject.result.fps())
 }
 
 fn jump(subject: &Subject<'_>, steps: &RangeInclusive<usize>, around: &Around) -> Option<f64> {
-    let usual = f64::from(subject.a.usual_step.max(subject.b.usual_step));
+    let usual = f64::from(subject.a.usual().step.max(subject.b.usual().step));
     let excess = |frame| {
         let own = subject.source_steps(frame).into_iter().flatten().map(|step| step.shift.length());
         Some((around.step_into(frame)?.shift.length() - own.fold(usual, f64::max)).max(0.0))

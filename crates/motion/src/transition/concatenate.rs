@@ -9,6 +9,7 @@ use crate::blend::{
 use crate::clip::Motion;
 use crate::math::{Planar, quat, unwrap_near, wrap_angle};
 use glam::Vec3;
+use std::sync::Arc;
 
 /// The method of a transition.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -189,8 +190,9 @@ pub(super) fn inertialize(
     );
     let half = frames_in(how.secs_until(0.5)).min(window);
     Ok(Concatenation {
-        clip: made.finish(format!("{} → {}", from.name(), to.name()))?,
+        clip: Arc::new(made.finish(format!("{} → {}", from.name(), to.name()))?),
         transition: leave..leave + window,
+        enter,
         handover: leave + half.saturating_sub(1),
         aligned_b,
         b_during,

@@ -72,19 +72,14 @@ const CANDIDATES: usize = 16;
 /// that travels, as in the last step of a run that stops: repeated, it would be dragged along. The
 /// search goes from coarse to fine: every minimum of a grid of about 1/30 s is refined frame by
 /// frame. A clip that is exactly one cycle has no window after its last frame: its first and last
-/// frame are compared alone, and taken if nothing matches better. `contacts` are those of the clip;
-/// `body_height` in metres.
+/// frame are compared alone, and taken if nothing matches better.
 ///
 /// # Errors
 /// [`LoopError::TooShort`] when no cycle of the shortest duration fits, into the clip or to a given
 /// end; [`LoopError::Registration`] when positions are not finite.
-pub fn find_cycle(
-    source: &Motion,
-    contacts: &Contacts,
-    body_height: f64,
-    search: &CycleSearch,
-) -> Result<CutPoints, LoopError> {
-    let clip = source.clip();
+pub fn find_cycle(source: &Motion, search: &CycleSearch) -> Result<CutPoints, LoopError> {
+    let (clip, contacts) = (source.clip(), source.contacts());
+    let body_height = f64::from(source.body_height());
     let (fps, frames) = (clip.fps(), clip.frames());
     let too_short = LoopError::TooShort { min_secs: search.min_secs, secs: clip.duration_secs() };
     // `as usize` maps NaN and negative numbers to 0.
@@ -317,10 +312,7 @@ mod tests {
     use std::sync::Arc;
 
     fn find(clip: &Arc<Clip>, search: &CycleSearch) -> Result<CutPoints, LoopError> {
-        let roles = Roles::detect(clip.skeleton());
-        let contacts = Contacts::detect(clip, &roles, &ContactOptions::default());
-        let height = f64::from(roles.body_height(clip.skeleton()));
-        find_cycle(&Motion::with_roles(Arc::clone(clip), &roles), &contacts, height, search)
+        find_cycle(&Motion::analyze(Arc::clone(clip)), search)
     }
 
     #[test]
@@ -353,7 +345,7 @@ mod tests {
             let gap = (phase(cut.cycle.start) - phase(cut.cycle.end)).abs();
             assert!(gap.min(1.0 - gap) < 0.02, "{action:?} {cut:?} {gap}");
             assert!(cut.phase_gap.unwrap() < 0.05 && cut.rms_cm < 1.0, "{cut:?}");
-            let source = Motion::with_roles(Arc::clone(&clip), &Roles::detect(clip.skeleton()));
+            let source = Motion::analyze(Arc::clone(&clip));
             let made = close_loop(&source, cut.cycle, &LoopOptions::default()).unwrap();
             assert!(
                 made.seam.turn_deg < 1e-3 && made.before.turn_deg < 10.0,
@@ -367,17 +359,14 @@ mod tests {
     /// As in the last step of a run that stops, where one foot stands while the body still moves.
     #[test]
     fn find_cycle_avoids_dragged_feet() {
-        let clip = Arc::new(Walk { frames: 400, cadence: 1.0, ..Walk::default() }.clip());
-        let roles = Roles::detect(clip.skeleton());
-        let height = f64::from(roles.body_height(clip.skeleton()));
-        let source = Motion::with_roles(Arc::clone(&clip), &roles);
+        let walk = Motion::analyze(Walk { frames: 400, cadence: 1.0, ..Walk::default() }.clip());
         // The left foot steps all the time, the right one stands in the first half.
         let left = (0..400).map(|frame| frame % 60 < 36).collect();
         let right = (0..400).map(|frame| frame < 200 || (frame + 30) % 60 < 36).collect();
         let contacts = Contacts::from_flags([left, right]);
         let search = CycleSearch::new(60.0);
         let finds = |contacts: &Contacts, search: &CycleSearch| {
-            find_cycle(&source, contacts, height, search).unwrap().cycle
+            find_cycle(&walk.clone().with_contacts(contacts.clone()), search).unwrap().cycle
         };
         let cycle = finds(&contacts, &search);
         assert!(cycle.clone().any(|frame| !contacts.planted(Side::Right, frame)), "{cycle:?}");

@@ -13,6 +13,7 @@ use crate::math::{Decay, Planar, quat, spring, wrap_angle};
 use crate::registration::limb_weights;
 use glam::{DVec2, EulerRot, Quat, Vec3};
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 /// A common mistake.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
@@ -305,7 +306,7 @@ fn rotations_of(clip: &Clip) -> Vec<Quat> {
 fn with_rotations(right: Concatenation, rotations: Vec<Quat>) -> Result<Concatenation, BlendError> {
     let roots = right.clip.root_translations().to_vec();
     let clip = rebuilt(&right.clip, rotations, roots)?;
-    Ok(Concatenation { clip, ..right })
+    Ok(Concatenation { clip: Arc::new(clip), ..right })
 }
 
 fn rebuilt(clip: &Clip, rotations: Vec<Quat>, roots: Vec<Vec3>) -> Result<Clip, BlendError> {
@@ -436,7 +437,7 @@ fn with_divided_velocity(right: Concatenation) -> Result<Concatenation, BlendErr
     }
     let placed = |frame: usize, b: &Planar| moved.get(frame).map_or(*b, |moved| moved.after(b));
     Ok(Concatenation {
-        clip: rebuilt(&right.clip, rotations, roots)?,
+        clip: Arc::new(rebuilt(&right.clip, rotations, roots)?),
         b_during: right
             .b_during
             .iter()

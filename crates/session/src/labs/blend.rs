@@ -10,7 +10,7 @@ use crate::{LabId, choices};
 use segue_motion::blend::{AlignBy, RootBlend, WeightLaw};
 use segue_motion::clip::{Clip, Contacts, Motion};
 use segue_motion::math::{Decay, Planar};
-use segue_motion::metrics::{Subject, TransitionMetrics, foot_slide_cm};
+use segue_motion::metrics::{TransitionMetrics, foot_slide_cm};
 use segue_motion::registration::{
     PoseSearch, PoseWeights, SearchOptions, TransitionSearch, limb_weights,
 };
@@ -458,7 +458,6 @@ impl Sliced for Blender {
 impl LabInputs for BlendInputs {
     fn run(&self) -> Result<Outcome, LabError> {
         let Self { pair, place, options, mistake, foot_lock } = self;
-        let [a, b] = &pair.profiles;
         let (from, to) = (&*pair.a, &*pair.incoming);
         let made = match *mistake {
             Some(mistake) => {
@@ -466,7 +465,7 @@ impl LabInputs for BlendInputs {
             }
             None => concatenate(from, place.leave, to, place.enter, options),
         };
-        let made = made?;
+        let mut made = made?;
         let fps = made.clip.fps();
         let secs = |frame: usize| frame as f64 / fps;
         let window = made.transition.clone();
@@ -488,29 +487,20 @@ impl LabInputs for BlendInputs {
         );
         let name = format!("{} to {}", pair.a.clip().name(), pair.b.clip().name());
         let roles = pair.a.roles().clone();
-        let free = Arc::new(made.clip.with_name(name));
-        let clip = with_feet(&free, &roles, &contacts, pair.ground_m(), *foot_lock)?;
-        let motion = Motion::with_ground_frames(clip, &roles, made.frames)
-            .with_feet(pair.a.feet())
-            .with_contacts(contacts)
-            .with_ground_m(pair.ground_m())
-            .with_seams(pair.a.seams_joined(&window, &pair.incoming, place.enter));
+        let free = Arc::new(Arc::unwrap_or_clone(made.clip).with_name(name));
+        made.clip = with_feet(&free, &roles, &contacts, pair.ground_m(), *foot_lock)?;
+        let motion =
+            Motion::with_ground_frames(Arc::clone(&made.clip), &roles, made.frames.clone())
+                .with_feet(pair.a.feet())
+                .with_contacts(contacts)
+                .with_ground_m(pair.ground_m())
+                .with_seams(pair.a.seams_joined(&window, &pair.incoming, place.enter));
         let slid = |clip: &Clip| foot_slide_cm(clip, motion.roles(), motion.contacts());
         let mut metrics = vec![slide(slid(motion.clip()))];
         if foot_lock.is_some() {
             metrics.push(slide_before(slid(&free)));
         }
-        let at_seam = TransitionMetrics::measure(&Subject {
-            result: motion.clip(),
-            start: window.start,
-            end: window.end,
-            handover: made.handover,
-            enter: place.enter,
-            a,
-            b,
-            roles: motion.roles(),
-            ground_m: pair.ground_m(),
-        });
+        let at_seam = TransitionMetrics::measure(from, to, &made);
         metrics.extend(at_seam.list());
         let sources = vec![
             Source::new(Slot::A, &pair.a, 0.0, Planar::IDENTITY),

@@ -13,7 +13,7 @@ use segue_motion::blend::{
 use segue_motion::clip::{Clip, Contacts, Motion};
 use segue_motion::gait::{GaitCycle, strike_phases};
 use segue_motion::math::Planar;
-use segue_motion::metrics::{Profile, Subject, TransitionMetrics, deviations, foot_slide_cm};
+use segue_motion::metrics::{deviations, foot_slide_cm, penetration};
 use segue_motion::transition::{Loop, LoopOptions, close_loop};
 use std::sync::Arc;
 
@@ -106,7 +106,6 @@ struct Timed {
     has_no_steps: bool,
     /// All of B, frame by frame beside A.
     shown: Arc<Motion>,
-    profile: Profile,
 }
 
 /// Makes layers, and keeps what does not change from one to the next: B in A's time.
@@ -188,7 +187,6 @@ impl Layerer {
             reading,
             fit,
             has_no_steps: wanted_fit == choices::LayerFit::Step && fit != LayerFit::InStep,
-            profile: Profile::new(Arc::clone(&shown), roles, shown.contacts().clone()),
             shown,
         })
     }
@@ -201,18 +199,13 @@ impl Layerer {
         {
             return reading.clone();
         }
-        let reading =
-            GaitCycle::find(&pair.incoming, pair.incoming.roles(), pair.incoming.contacts())
-                .ok()
-                .and_then(|cycle| {
-                    let phases = strike_phases(pair.a.contacts(), cycle.events().right_strike)?;
-                    Some(Reading {
-                        over: once_more(cycle.looped())?,
-                        times: Arc::new(
-                            phases.into_iter().map(|phase| phase * cycle.secs()).collect(),
-                        ),
-                    })
-                });
+        let reading = GaitCycle::find(&pair.incoming).ok().and_then(|cycle| {
+            let phases = strike_phases(pair.a.contacts(), cycle.events().right_strike)?;
+            Some(Reading {
+                over: once_more(cycle.looped())?,
+                times: Arc::new(phases.into_iter().map(|phase| phase * cycle.secs()).collect()),
+            })
+        });
         self.in_step = Some((Arc::clone(pair), reading.clone()));
         reading
     }
@@ -297,19 +290,7 @@ impl LabInputs for LayerInputs {
         if self.foot_lock.is_some() {
             metrics.push(slide_before(slid(&free)));
         }
-        let everywhere = TransitionMetrics::measure(&Subject {
-            result: &clip,
-            start: 0,
-            end: clip.frames(),
-            handover: if walks_as_b { 0 } else { usize::MAX },
-            enter: 0,
-            a: &pair.profiles[0],
-            b: &timed.profile,
-            roles: &roles,
-            ground_m,
-        });
-        metrics
-            .extend(everywhere.list().into_iter().filter(|metric| metric.id == "penetration_cm"));
+        metrics.push(penetration(&clip, 0..clip.frames(), ground_m));
         metrics.extend(deviations(&clip, a.clip(), &roles));
         let motion = Motion::with_roles(clip, &roles)
             .with_feet(a.feet())

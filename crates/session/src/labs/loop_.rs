@@ -131,8 +131,7 @@ impl CycleFinder {
         }
         let search =
             CycleSearch { start: given[0], end: given[1], ..CycleSearch::new(motion.clip().fps()) };
-        let body_height = motion.roles().body_height(motion.clip().skeleton());
-        let cut = find_cycle(motion, motion.contacts(), body_height.into(), &search)?;
+        let cut = find_cycle(motion, &search)?;
         let found = Arc::new(Found { motion: Arc::clone(motion), given, cut });
         self.known = Some(Arc::clone(&found));
         Ok(found)

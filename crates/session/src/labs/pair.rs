@@ -1,7 +1,6 @@
 use super::Retargeted;
 use crate::labs::LabError;
 use segue_motion::clip::{Clip, Interpolation, Motion, resample, retarget_onto};
-use segue_motion::metrics::Profile;
 use segue_motion::skeleton::Retargeting;
 use std::sync::Arc;
 
@@ -12,8 +11,6 @@ pub(crate) struct Pair {
     pub(super) b: Arc<Motion>,
     /// B on the skeleton and at the frame rate of A.
     pub(super) incoming: Arc<Motion>,
-    /// What dissolve and metrics know of A and of `incoming`.
-    pub(super) profiles: [Profile; 2],
     /// How B came onto A's skeleton, where that is not its own.
     pub(super) retargeted: Option<Arc<Retargeted>>,
 }
@@ -32,10 +29,7 @@ impl Pair {
 
     fn new(a: &Arc<Motion>, b: &Arc<Motion>) -> Result<Self, LabError> {
         let (incoming, retargeted) = fitted(a, b)?;
-        let profiles = [a, &incoming].map(|motion| {
-            Profile::new(Arc::clone(motion), motion.roles(), motion.contacts().clone())
-        });
-        Ok(Self { a: Arc::clone(a), b: Arc::clone(b), incoming, profiles, retargeted })
+        Ok(Self { a: Arc::clone(a), b: Arc::clone(b), incoming, retargeted })
     }
 }
 

@@ -25,7 +25,7 @@ use segue_motion::blend::{
 };
 use segue_motion::clip::{Clip, Contacts, Motion};
 use segue_motion::math::Planar;
-use segue_motion::metrics::{Metric, Subject, TransitionMetrics, foot_slide_cm};
+use segue_motion::metrics::{Metric, foot_slide_cm, penetration};
 use segue_motion::registration::Registration;
 use segue_motion::skeleton::Side;
 use std::ops::Range;
@@ -398,7 +398,7 @@ impl RegisterInputs {
         });
         Ok(Draft {
             beats: before.chain(during).chain(after).collect(),
-            clip: joined.clip,
+            clip: Arc::unwrap_or_clone(joined.clip),
             frames: joined.frames,
             contacts,
             mixed: joined.transition,
@@ -427,7 +427,6 @@ impl RegisterInputs {
         mixed: &Range<usize>,
         distance_cm: Option<f64>,
     ) -> Vec<Metric> {
-        let [a, b] = &self.pair.profiles;
         let roles = self.pair.a.roles();
         let slid = |clip: &Clip| foot_slide_cm(clip, roles, contacts);
         let mut metrics = vec![slide(slid(clip))];
@@ -441,21 +440,8 @@ impl RegisterInputs {
             "cm",
             "How far apart the frames that are mixed are, in the mean: root mean square per joint, after the best alignment.",
         ));
-        let handover = beats.iter().position(|beat| beat.weights[1] > 0.5).unwrap_or(usize::MAX);
-        let behind = beats.get(mixed.end).or(beats.last()).map_or(0.0, |beat| beat.frames[1]);
-        let found = TransitionMetrics::measure(&Subject {
-            result: clip,
-            start: mixed.start,
-            end: mixed.end,
-            handover,
-            enter: (behind.max(0.0).round() as usize).saturating_sub(mixed.len()),
-            a,
-            b,
-            roles,
-            ground_m: self.ground_m(),
-        });
-        // The others ask what a source does in the same frame, which a bent clock does not have.
-        metrics.extend(found.list().into_iter().filter(|metric| metric.id == "penetration_cm"));
+        let frames = mixed.start.saturating_sub(1)..mixed.end.saturating_add(1);
+        metrics.push(penetration(clip, frames, self.ground_m()));
         metrics
     }
 }

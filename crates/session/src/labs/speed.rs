@@ -11,7 +11,6 @@ use crate::params::{Key, Kind, Params};
 use segue_motion::clip::ground_speed;
 use segue_motion::gait::{GaitCycle, PhaseAlignment, SpeedBlend, SpeedOptions};
 use segue_motion::metrics::Metric;
-use segue_motion::skeleton::Roles;
 use std::sync::Arc;
 
 /// The Speed lab: two cycles blended to a speed.
@@ -110,12 +109,7 @@ impl GaitFinder {
         {
             return Ok(Arc::clone(gaits));
         }
-        let find = |profile: &segue_motion::metrics::Profile, roles: &Roles| {
-            let found = GaitCycle::find(profile.source(), roles, profile.contacts());
-            found.map_err(LabError::from)
-        };
-        let [first, second] = &pair.profiles;
-        let cycles = [find(first, pair.a.roles())?, find(second, pair.incoming.roles())?];
+        let cycles = [GaitCycle::find(&pair.a)?, GaitCycle::find(&pair.incoming)?];
         let gaits = Arc::new(Gaits { pair: Arc::clone(pair), cycles });
         self.known = Some(Arc::clone(&gaits));
         Ok(gaits)

@@ -10,9 +10,8 @@ use crate::transition::{FootLockOptions, foot_lock};
 use proptest::prelude::*;
 
 fn find_cycle(clip: Clip) -> Result<(GaitCycle, Roles), GaitError> {
-    let roles = Roles::detect(clip.skeleton());
-    let contacts = Contacts::detect(&clip, &roles, &ContactOptions::default());
-    Ok((GaitCycle::find(&Motion::with_roles(clip, &roles), &roles, &contacts)?, roles))
+    let motion = Motion::analyze(clip);
+    Ok((GaitCycle::find(&motion)?, motion.roles().clone()))
 }
 
 fn cycle(action: Action) -> (GaitCycle, Roles) {

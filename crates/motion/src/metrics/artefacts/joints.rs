@@ -1,8 +1,7 @@
 //! Angular speeds of joints, and their changes.
 
-use crate::clip::Clip;
+use crate::clip::{Clip, turn};
 use crate::math::stats;
-use crate::metrics::profile::turn;
 use glam::Vec3;
 
 /// The time over which angular velocities are averaged and compared, seconds: one frame at thirty

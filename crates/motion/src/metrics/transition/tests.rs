@@ -1,8 +1,7 @@
 //! Tests of the metrics of transitions.
 
 use super::*;
-use crate::blend::{Concatenation, DissolveOptions, RootBlend, WeightLaw, dissolve};
-use crate::clip::{ContactOptions, Contacts, Motion};
+use crate::blend::{DissolveOptions, RootBlend, WeightLaw, dissolve};
 use crate::registration::fixtures::Walk;
 use crate::synth::{Action, Params, synthesize};
 use glam::Quat;
@@ -31,22 +30,16 @@ fn edited(clip: &Clip, edit: impl Fn(usize, &mut [Quat], &mut Vec3)) -> Clip {
     Clip::new("edited", Arc::clone(clip.skeleton()), clip.fps(), rotations, roots).unwrap()
 }
 
-fn profile(clip: &Clip) -> Profile {
-    let roles = Roles::detect(clip.skeleton());
-    let contacts = Contacts::detect(clip, &roles, &ContactOptions::default());
-    Profile::new(Arc::new(Motion::with_roles(Arc::new(clip.clone()), &roles)), &roles, contacts)
-}
-
 fn measure(
     result: &Clip,
     transition: Range<usize>,
     enter: usize,
-    a: &Profile,
-    b: &Profile,
+    a: &Motion,
+    b: &Motion,
 ) -> TransitionMetrics {
     let roles = Roles::detect(result.skeleton());
     let (start, end) = (transition.start, transition.end);
-    TransitionMetrics::measure(&Subject {
+    TransitionMetrics::of(&Subject {
         result,
         start,
         end,
@@ -60,13 +53,13 @@ fn measure(
 }
 
 fn blended(
-    a: &Profile,
+    a: &Motion,
     leave: usize,
-    b: &Profile,
+    b: &Motion,
     enter: usize,
     options: &DissolveOptions,
 ) -> (Concatenation, TransitionMetrics) {
-    let out = dissolve(&a.source, leave, &b.source, enter, options).unwrap();
+    let out = dissolve(a, leave, b, enter, options).unwrap();
     let metrics = measure(&out.clip, out.transition.clone(), enter, a, b);
     (out, metrics)
 }
@@ -82,7 +75,7 @@ fn ramp(frame: usize, range: Range<usize>) -> f32 {
 
 #[test]
 fn metrics_of_a_still_clip_are_zero() {
-    let a = profile(&still(90));
+    let a = Motion::analyze(still(90));
     let metrics = measure(&still(90), 30..50, 30, &a, &a);
     for (value, what) in [
         (metrics.seam_deg, "seam"),
@@ -99,7 +92,7 @@ fn metrics_of_a_still_clip_are_zero() {
 
 #[test]
 fn seam_of_a_jump_of_30_degrees_is_30_degrees() {
-    let a = profile(&still(90));
+    let a = Motion::analyze(still(90));
     let result = edited(&still(90), |frame, pose, _| {
         if frame >= 30 {
             pose[4] *= Quat::from_rotation_y(30_f32.to_radians());
@@ -127,11 +120,11 @@ fn seam_of_usual_motion_is_zero() {
             pose[4] = Quat::from_rotation_x(5_f32.to_radians() * frame.min(stop) as f32);
         })
     };
-    let a = profile(&turning(1000));
+    let a = Motion::analyze(turning(1000));
     let steady = measure(&turning(1000), 90..110, 90, &a, &a);
     assert_near(steady.seam_deg, 0.0, 1e-3);
     assert_near(steady.seam_dps, 0.0, 0.05);
-    let stopping = measure(&turning(100), 90..110, 90, &a, &profile(&still(200)));
+    let stopping = measure(&turning(100), 90..110, 90, &a, &Motion::analyze(still(200)));
     assert_near(stopping.seam_deg, 0.0, 1e-3);
     assert_near(stopping.seam_dps, 300.0, 0.1);
 }
@@ -143,7 +136,7 @@ fn spin_is_measured_beyond_that_of_the_sources() {
             pose[0] = Quat::from_rotation_y(degrees.to_radians() * ramp(frame, 30..60)) * pose[0];
         })
     };
-    let a = profile(&still(90));
+    let a = Motion::analyze(still(90));
     for degrees in [180.0, -180.0, 360.0, 25.0] {
         assert_near(
             measure(&spun(&still(90), degrees), 31..61, 31, &a, &a).spin_deg,
@@ -169,7 +162,7 @@ fn spin_is_measured_beyond_that_of_the_sources() {
         ..Walk::default()
     }
     .clip();
-    let b = profile(&turning);
+    let b = Motion::analyze(turning.clone());
     assert_near(measure(&turning, 31..61, 31, &a, &b).spin_deg, 0.0, 0.01);
     assert_near(measure(&spun(&turning, 45.0), 31..60, 31, &a, &b).spin_deg, 45.0, 0.01);
     assert_near(measure(&spun(&turning, -45.0), 31..60, 31, &a, &b).spin_deg, 45.0 - 30.0, 0.01);
@@ -177,7 +170,7 @@ fn spin_is_measured_beyond_that_of_the_sources() {
 
 #[test]
 fn skate_of_a_foot_sliding_5_cm_is_5_cm() {
-    let a = profile(&still(120));
+    let a = Motion::analyze(still(120));
     assert!(a.contacts().planted(Side::Left, 40) && a.contacts().planted(Side::Right, 40));
     let slid =
         |way: &dyn Fn(usize) -> f32| edited(&still(120), |frame, _, root| root.x += way(frame));
@@ -202,18 +195,18 @@ fn skate_of_a_foot_sliding_5_cm_is_5_cm() {
 #[test]
 fn skate_of_a_foot_in_the_air_is_zero() {
     let glides = gliding(1.0);
-    let a = profile(&glides);
+    let a = Motion::analyze(glides.clone());
     assert_eq!(measure(&glides, 45..65, 45, &a, &a).skate_cm, None);
     // Slides of a foot in its own clip are not attributed to the transition.
     let slow = gliding(0.3);
-    let b = profile(&slow);
+    let b = Motion::analyze(slow.clone());
     assert!(b.contacts().planted(Side::Left, 50));
     assert_near(measure(&slow, 45..65, 45, &b, &b).skate_cm, 0.0, 1e-3);
 }
 
 #[test]
 fn penetration_is_that_of_the_deepest_point_in_the_transition() {
-    let a = profile(&still(90));
+    let a = Motion::analyze(still(90));
     let lowered = |at: usize| {
         edited(&still(90), move |frame, _, root| root.y -= if frame == at { 0.08 } else { 0.0 })
     };
@@ -223,7 +216,7 @@ fn penetration_is_that_of_the_deepest_point_in_the_transition() {
 
 #[test]
 fn lag_of_a_dissolve_follows_its_weights() {
-    let (a, b) = (profile(&gliding(1.0)), profile(&gliding(2.0)));
+    let (a, b) = (Motion::analyze(gliding(1.0)), Motion::analyze(gliding(2.0)));
     // The share 1 - w of the difference is closed: 0.9 at t = 0.9 for the line, at t = 0.8042 for
     // 3t² - 2t³ (NumPy's roots), and at t = 0.7534 for the quintic.
     for (law, t) in
@@ -236,12 +229,13 @@ fn lag_of_a_dissolve_follows_its_weights() {
     let (_, cut) =
         blended(&a, 40, &b, 20, &DissolveOptions { window: 0, ..DissolveOptions::default() });
     assert_eq!(cut.lag_s, Some(0.0));
-    let (_, alike) = blended(&a, 40, &profile(&gliding(1.05)), 20, &DissolveOptions::default());
+    let (_, alike) =
+        blended(&a, 40, &Motion::analyze(gliding(1.05)), 20, &DissolveOptions::default());
     assert_eq!(alike.lag_s, None);
 }
 
-fn made(params: &Params) -> Profile {
-    profile(&synthesize(params).unwrap().clip)
+fn made(params: &Params) -> Motion {
+    Motion::analyze(synthesize(params).unwrap().clip)
 }
 
 #[test]
@@ -298,7 +292,7 @@ fn metrics_of_root_blends_differ_as_documented() {
     // A walk to the north and one to the south, 5 m apart.
     let north = made(&Params::new(Action::Walk));
     let clip = synthesize(&Params { speed_mps: 1.0, ..Params::new(Action::Walk) }).unwrap().clip;
-    let south = profile(&clip.transformed(&Planar::new(3.0, 5.0, 0.0)));
+    let south = Motion::analyze(clip.transformed(&Planar::new(3.0, 5.0, 0.0)));
     let at = |align: bool, root: RootBlend, window: usize| {
         blended(
             &north,
@@ -327,7 +321,7 @@ fn metrics_of_root_blends_differ_as_documented() {
 #[test]
 fn metrics_of_unusual_subjects_are_finite() {
     let clip = still(20);
-    let (a, empty) = (profile(&clip), profile(&clip.crop(0..0).unwrap()));
+    let (a, empty) = (Motion::analyze(clip.clone()), Motion::analyze(clip.crop(0..0).unwrap()));
     for result in
         [clip.clone(), clip.crop(0..0).unwrap(), clip.crop(0..1).unwrap(), clip.crop(0..2).unwrap()]
     {

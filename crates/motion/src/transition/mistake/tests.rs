@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::clip::{ContactOptions, Contacts};
-use crate::metrics::{Profile, Subject, TransitionMetrics};
+use crate::metrics::TransitionMetrics;
 use crate::skeleton::Roles;
 use crate::synth::{Action, Params, synthesize};
 use std::sync::Arc;
@@ -23,22 +23,16 @@ const ROOT_OPTIONS: [(bool, RootBlend); 3] =
 const LEAVE: usize = 120;
 const ENTER: usize = 31;
 
-/// The built-in walk and run with their profiles.
+/// The built-in walk and run.
 struct Pair {
-    roles: Roles,
-    a: Profile,
-    b: Profile,
+    a: Motion,
+    b: Motion,
 }
 
 fn walk_and_run() -> Pair {
-    let [walk, run] = [Action::Walk, Action::Run]
-        .map(|action| Arc::new(synthesize(&Params::new(action)).unwrap().clip));
-    let roles = Roles::detect(walk.skeleton());
-    let profile = |clip: &Arc<Clip>| {
-        let contacts = Contacts::detect(clip, &roles, &ContactOptions::default());
-        Profile::new(Arc::new(Motion::with_roles(Arc::clone(clip), &roles)), &roles, contacts)
-    };
-    Pair { a: profile(&walk), b: profile(&run), roles }
+    let [a, b] = [Action::Walk, Action::Run]
+        .map(|action| Motion::analyze(synthesize(&Params::new(action)).unwrap().clip));
+    Pair { a, b }
 }
 
 impl Pair {
@@ -49,7 +43,7 @@ impl Pair {
         mistake: Option<Mistake>,
     ) -> Concatenation {
         let options = TransitionOptions { align, root, ..TransitionOptions::new(method) };
-        let (a, b) = (self.a.source(), self.b.source());
+        let (a, b) = (&self.a, &self.b);
         let made = match mistake {
             Some(mistake) => concatenate_mistaken(a, LEAVE, b, ENTER, &options, mistake),
             None => concatenate(a, LEAVE, b, ENTER, &options),
@@ -58,17 +52,7 @@ impl Pair {
     }
 
     fn measured(&self, made: &Concatenation) -> TransitionMetrics {
-        TransitionMetrics::measure(&Subject {
-            result: &made.clip,
-            start: made.transition.start,
-            end: made.transition.end,
-            handover: made.handover,
-            enter: ENTER,
-            a: &self.a,
-            b: &self.b,
-            roles: &self.roles,
-            ground_m: 0.0,
-        })
+        TransitionMetrics::measure(&self.a, &self.b, made)
     }
 }
 
@@ -114,7 +98,7 @@ fn mistaken_alignment_spins_jumps_or_slides() {
     }
     for method in METHODS {
         let wrong = pair.made(method, ROOT_OPTIONS[0], Some(Mistake::WrongFacingAxis));
-        let (a, b) = (pair.a.source(), pair.b.source());
+        let (a, b) = (&pair.a, &pair.b);
         // The first frame is aligned by the projections of the Y axes.
         let stands = wrong.aligned_b.after(&b.ground_frames()[ENTER]);
         assert!(stands.shift.distance(a.ground_frames()[LEAVE].shift) < 1e-6);
@@ -168,7 +152,7 @@ fn mistaken_velocities_stop_the_motion() {
             && way(&right, LEAVE - 1, end - 1).length() > 0.4
     );
     assert!(way(&wrong, end, last).distance(way(&right, end, last)) < 1e-3);
-    let b_stands = wrong.world_from_b.after(&pair.b.source().ground_frames()[ENTER + last - LEAVE]);
+    let b_stands = wrong.world_from_b.after(&&pair.b.ground_frames()[ENTER + last - LEAVE]);
     assert!(b_stands.shift.distance(wrong.frames[last].shift) < 1e-3);
 }
 
@@ -184,15 +168,11 @@ fn mistake_that_does_not_concern_a_method_changes_nothing() {
         }
         // Before the transition the result is A, whatever the mistake is.
         let made = pair.made(METHODS[2], ROOT_OPTIONS[0], Some(mistake));
-        assert_eq!(
-            made.clip.pose(LEAVE - 1),
-            pair.a.source().clip().pose(LEAVE - 1),
-            "{mistake:?}"
-        );
+        assert_eq!(made.clip.pose(LEAVE - 1), pair.a.clip().pose(LEAVE - 1), "{mistake:?}");
         assert_eq!(made.frames.len(), made.clip.frames());
         // Incompatible clips are refused as usual.
         let options = TransitionOptions::new(METHODS[2]);
-        let (a, b) = (pair.a.source(), pair.b.source());
+        let (a, b) = (&pair.a, &pair.b);
         assert!(concatenate_mistaken(a, LEAVE, b, 1 << 20, &options, mistake).is_err());
     }
 }
@@ -205,10 +185,9 @@ fn mixing_with_correct_differences_equals_concatenate() {
             let right = pair.made(method, place, None);
             let (align, root) = place;
             let options = TransitionOptions { align, root, ..TransitionOptions::new(method) };
-            let again =
-                Mixing::new(pair.a.source(), LEAVE, pair.b.source(), ENTER, &options, Mix::Right)
-                    .mixed(right.clone())
-                    .unwrap();
+            let again = Mixing::new(&pair.a, LEAVE, &pair.b, ENTER, &options, Mix::Right)
+                .mixed(right.clone())
+                .unwrap();
             let apart = rotations_of(&right.clip)
                 .iter()
                 .zip(rotations_of(&again.clip))

@@ -1,66 +1,48 @@
-//! Profiles of source clips, against which transitions are measured.
+//! Usual speeds in a clip, against which transitions are measured.
 
-use crate::clip::{Clip, Contacts, Motion, stillest_step, turn_change};
+use super::{Motion, stillest_step, turn_change};
+use crate::clip::Clip;
 use crate::math::{quat, stats};
 use crate::skeleton::{Roles, Side, WorldPose};
 use glam::{Quat, Vec3};
-use std::sync::Arc;
 
 /// The number of steps from which usual values are computed: enough for a 99th percentile, and
 /// bounded for long clips.
 const SAMPLES: usize = 1_000;
 
-/// The measurements of a source clip that metrics need, made once: usual speeds, and the motion of
-/// its feet.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Profile {
-    pub(super) source: Arc<Motion>,
-    pub(super) contacts: Contacts,
+/// The usual speeds of a motion's joints and root, and the motion of its feet.
+#[derive(Clone, Debug)]
+pub(crate) struct UsualMotion {
     /// Per side and frame: the distance that the stillest point of the foot moves over the ground
     /// in the step into that frame, metres.
-    pub(super) slides: [Vec<f32>; 2],
+    pub(crate) slides: [Vec<f32>; 2],
     /// Per joint, the 99th percentile of the turn from one frame to the next, radians.
-    pub(super) usual_turn: Vec<f32>,
+    pub(crate) turn: Vec<f32>,
     /// Per joint, the 99th percentile of the change of that turn (as a rotation vector) from one
     /// step to the next, radians.
-    pub(super) usual_change: Vec<f32>,
+    pub(crate) change: Vec<f32>,
     /// The 99th percentile of the character's step over the ground, metres.
-    pub(super) usual_step: f32,
+    pub(crate) step: f32,
 }
 
-impl Profile {
-    /// Measures a clip. `contacts` are those of the same clip ([`Contacts::detect`]). O(frames ×
-    /// joints).
-    #[must_use]
-    pub fn new(source: Arc<Motion>, roles: &Roles, contacts: Contacts) -> Self {
-        let clip = source.clip();
-        let (usual_turn, usual_change) = usual_turns(clip);
-        let steps: Vec<f32> = source
+impl UsualMotion {
+    /// Measures a motion. O(frames × joints).
+    pub(super) fn of(motion: &Motion) -> Self {
+        let clip = motion.clip();
+        let (turn, change) = usual_turns(clip);
+        let steps: Vec<f32> = motion
             .ground_frames()
             .windows(2)
             .map(|pair| pair[0].shift.distance(pair[1].shift) as f32)
             .collect();
-        let usual_step = stats::percentile(&steps, 0.99).unwrap_or(0.0);
-        let slides = slides(clip, roles);
-        Self { source, contacts, slides, usual_turn, usual_change, usual_step }
-    }
-
-    /// Returns the clip with its ground frames.
-    #[must_use]
-    pub fn source(&self) -> &Arc<Motion> {
-        &self.source
-    }
-
-    /// Returns the contacts of the feet.
-    #[must_use]
-    pub fn contacts(&self) -> &Contacts {
-        &self.contacts
+        let step = stats::percentile(&steps, 0.99).unwrap_or(0.0);
+        Self { slides: slides(clip, motion.roles()), turn, change, step }
     }
 }
 
 /// Returns the rotation vector of the step from one local rotation to the next, radians, in the
 /// parent's frame.
-pub(super) fn turn(from: Quat, to: Quat) -> Vec3 {
+pub(crate) fn turn(from: Quat, to: Quat) -> Vec3 {
     quat::log(to * from.conjugate())
 }
 
