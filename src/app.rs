@@ -9,8 +9,8 @@ mod downloads;
 mod frames;
 mod intake;
 mod keeper;
+mod language;
 mod picture;
-mod speech;
 
 pub(crate) use address_bar::link_query;
 
@@ -22,6 +22,7 @@ use downloads::Downloads;
 use eframe::{egui, wgpu};
 use frames::Frames;
 use keeper::Keeper;
+use language::{LanguageLoader, WindowLanguage};
 use picture::Picture;
 #[cfg(target_arch = "wasm32")]
 use segue_session::Storing;
@@ -29,8 +30,7 @@ use segue_session::export::file_name;
 use segue_session::{
     Command, CommandError, Key, Lesson, Level, PlaybackCommand, Session, Value, link,
 };
-use segue_text::{ToMessage, msg};
-use speech::{Speech, Spoken};
+use segue_text::{Message, ToMessage, msg};
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -116,7 +116,7 @@ pub(crate) struct Segue {
     copied: &'static str,
     /// Whether the work and the link were here once.
     has_begun: bool,
-    speech: Speech,
+    languages: LanguageLoader,
     /// The film that is being made of the page.
     film: Option<platform::Film>,
     /// Whether the link at the start said that the page is embedded: then nothing is stored, and
@@ -163,7 +163,7 @@ struct Window {
     /// How it looks; none before its first frame.
     theme: Option<Theme>,
     /// What it speaks.
-    spoken: Spoken,
+    language: WindowLanguage,
     /// Whether the last frame was computed inside of an input event, which eframe's own clock does
     /// not see.
     within_event: bool,
@@ -219,7 +219,7 @@ impl Segue {
             has_told_of_host: false,
             copied: ui::LINK_COPIED,
             has_begun: false,
-            speech: Speech::new(),
+            languages: LanguageLoader::new(),
         }
     }
 
@@ -400,7 +400,7 @@ impl Segue {
         };
         self.panels.cameras = self.picture.cameras(self.session.panes().len());
         self.panels.language =
-            self.speech.tend(&self.session, &mut self.window.spoken, &self.inbox, ui.ctx());
+            self.languages.update(&self.session, &mut self.window.language, &self.inbox, ui.ctx());
         self.session.set_lesson_language(self.panels.language.tag());
         self.panels.fetching = self.downloads.under_way().collect();
         self.panels.stored = self.keeper.progress();
@@ -514,8 +514,10 @@ impl Segue {
                 Some(film) => film.save(&self.stage_name(), &self.inbox),
                 None => {
                     if let Err(reason) = self.begin_film() {
-                        self.session
-                            .say(Level::Error, msg!("The page could not be recorded: {reason}."));
+                        self.session.say(
+                            Level::Error,
+                            msg!("The page could not be recorded: {reason}.", reason),
+                        );
                     }
                 }
             },
@@ -523,17 +525,17 @@ impl Segue {
     }
 
     /// Begins to film the page.
-    pub(crate) fn begin_film(&mut self) -> Result<(), String> {
+    pub(crate) fn begin_film(&mut self) -> Result<(), Message> {
         if self.film.is_some() {
-            return Err("a recording is under way".to_owned());
+            return Err("a recording is under way".into());
         }
         self.film = Some(platform::Film::begin()?);
         Ok(())
     }
 
     /// Ends the film under way.
-    pub(crate) fn end_film(&mut self) -> Result<platform::Film, String> {
-        self.film.take().ok_or_else(|| "no recording is under way".to_owned())
+    pub(crate) fn end_film(&mut self) -> Result<platform::Film, Message> {
+        self.film.take().ok_or("no recording is under way".into())
     }
 
     /// Remembers how long the last frame took. eframe measures all of it, up to the commands for

@@ -3,10 +3,11 @@
 
 use crate::platform::{self, Fetch, FileBytes, Inbox, fetch, file_name_of};
 use segue_session::lesson::Source;
+use segue_text::Message;
 use std::collections::VecDeque;
 
 /// Bytes, or why there are none.
-pub(crate) type Fetched = Result<FileBytes, String>;
+pub(crate) type Fetched = Result<FileBytes, Message>;
 
 /// Everything under way.
 #[derive(Debug, Default)]

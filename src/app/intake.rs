@@ -48,14 +48,11 @@ impl Segue {
             }
             Incoming::Lesson { source, result } => {
                 self.downloads.end_lesson(&source);
-                let text = result
-                    .as_ref()
-                    .map(|bytes| &**bytes)
-                    .map_err(|reason| Message::data(reason.clone()));
+                let text = result.as_ref().map(|bytes| &**bytes).map_err(Message::clone);
                 self.session.finish_lesson(&source, text);
             }
-            Incoming::Language(files) => {
-                if let Some(reason) = self.speech.arrived(files) {
+            Incoming::Language { tag, files } => {
+                if let Some(reason) = self.languages.finish(tag, files) {
                     self.session.say(Level::Warning, reason);
                 }
             }

@@ -2,6 +2,7 @@ use super::{FileBytes, LargeFile, ReadNews, Stored};
 use eframe::egui;
 use segue_session::lesson::Source;
 use segue_session::{Sample, SavedEntry};
+use segue_text::Message;
 use std::collections::VecDeque;
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -33,7 +34,7 @@ pub(crate) enum Incoming {
     /// Something outside did not work.
     Failed {
         /// What happened and what to do, in a sentence or two.
-        reason: String,
+        reason: Message,
     },
     /// The text that was to be copied is in the clipboard.
     Copied,
@@ -45,17 +46,22 @@ pub(crate) enum Incoming {
         /// Which.
         sample: &'static Sample,
         /// Its packed bytes, or why they are not there.
-        result: Result<Arc<[u8]>, String>,
+        result: Result<Arc<[u8]>, Message>,
     },
     /// The text of a lesson.
     Lesson {
         /// Which.
         source: Source,
         /// Its bytes, or why they are not there.
-        result: Result<Arc<[u8]>, String>,
+        result: Result<Arc<[u8]>, Message>,
     },
-    /// The catalogue and the letters of the language that was asked for, or why they are not here.
-    Language(Result<[Arc<[u8]>; 2], String>),
+    /// The files of a language that was asked for.
+    Language {
+        /// Its tag.
+        tag: &'static str,
+        /// Its texts and its font, or why they are not here.
+        files: Result<[Arc<[u8]>; 2], Message>,
+    },
     /// A part of a file has come over the network.
     Progress {
         /// The file's address.
@@ -70,7 +76,7 @@ pub(crate) enum Incoming {
         /// The file's address.
         address: String,
         /// Its bytes, or why they did not come.
-        result: Result<FileBytes, String>,
+        result: Result<FileBytes, Message>,
     },
     /// Storage was read; `None` where there was nothing in it, or no storage.
     Stored(Option<Box<Stored>>),

@@ -31,6 +31,7 @@ pub(crate) use vault::Vault;
 
 use segue_session::reading::ReadReport;
 use segue_session::{Saved, SavedEntry};
+use segue_text::{Message, msg};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -123,11 +124,12 @@ impl Work {
 
 /// A few names, and how many there are besides: `a.bvh, b.bvh, c.bvh and 12 more`.
 #[cfg(any(test, target_arch = "wasm32"))]
-fn in_short(names: &[String]) -> String {
+fn in_short(names: &[String]) -> Message {
     const MOST: usize = 3;
+    let first: Vec<String> = names.iter().take(MOST).cloned().collect();
     match names.len().saturating_sub(MOST) {
-        0 => names.join(", "),
-        more => format!("{} and {more} more", names[..MOST].join(", ")),
+        0 => msg!("{names}", names = first),
+        more => msg!("{names} and {more} more", names = first, more),
     }
 }
 
@@ -145,13 +147,19 @@ pub(crate) struct Gamepad {
 }
 
 /// Why a file of that size is not read, where up to `most` bytes are; `None` when it is.
-fn too_large(name: &str, bytes: u64, most: u64) -> Option<String> {
+fn too_large(name: &str, bytes: u64, most: u64) -> Option<Message> {
     (bytes > most).then(|| {
         let in_words = |bytes: u64| match bytes.div_ceil(1024) {
-            small @ ..1024 => format!("{small} KB"),
-            large => format!("{} MB", large.div_ceil(1024)),
+            size @ ..1024 => msg!("{size} KB", size),
+            size => msg!("{size} MB", size = size.div_ceil(1024)),
         };
-        format!("{name} has {}; files of up to {} are read.", in_words(bytes), in_words(most))
+        let (size, most) = (in_words(bytes), in_words(most));
+        msg!(
+            "{name} has {size}; files of up to {most} are read.",
+            name = name.to_owned(),
+            size,
+            most
+        )
     })
 }
 
@@ -170,14 +178,17 @@ fn is_motion_file(name: &str) -> bool {
 }
 
 /// What is said of a folder without such files.
-fn no_motion_in(folder: &str) -> String {
-    format!("{folder} has no motion files (.{}).", MOTION_ENDINGS.join(", ."))
+fn no_motion_in(folder: &str) -> Message {
+    let endings = MOTION_ENDINGS.map(|ending| format!(".{ending}")).to_vec();
+    msg!("{folder} has no motion files ({endings}).", folder = folder.to_owned(), endings)
 }
 
 /// What is said of a folder with more files than are read.
-fn too_many_in(folder: &str) -> String {
-    format!(
-        "{folder} has more than {MOST_FILES_OF_FOLDER} motion files: the first {MOST_FILES_OF_FOLDER} are read."
+fn too_many_in(folder: &str) -> Message {
+    msg!(
+        "{folder} has more than {most} motion files: the first {most} are read.",
+        folder = folder.to_owned(),
+        most = MOST_FILES_OF_FOLDER
     )
 }
 
@@ -224,8 +235,8 @@ mod tests {
     fn many_names_are_told_in_short() {
         let names: Vec<String> = ["a", "b", "c", "d", "e"].map(str::to_owned).into();
         assert_eq!(
-            (in_short(&names[..3]).as_str(), in_short(&names).as_str()),
-            ("a, b, c", "a, b, c and 2 more")
+            [in_short(&names[..3]), in_short(&names)].map(|told| told.to_string()),
+            ["a, b, c", "a, b, c and 2 more"]
         );
     }
 

@@ -16,7 +16,7 @@ use segue_session::{
     Command, Entry, FileCommand, Key, Origin, Session, SourceFile, Value, format_number, joint_of,
     word_of_joint,
 };
-use segue_text::ToMessage;
+use segue_text::{Message, ToMessage, msg};
 
 /// The tree of joints scrolls above this height, points.
 const TREE_HEIGHT: f32 = 264.0;
@@ -78,7 +78,7 @@ fn facts_ui(entry: &Entry, motion: &Motion, ui: &mut Ui) {
     }
     let channels = channels_in_words(clip.skeleton());
     if !channels.is_empty() {
-        sentence_ui(&channels, muted, ui);
+        sentence_ui(&say(&channels, ui), muted, ui);
     }
 }
 
@@ -114,10 +114,10 @@ fn overrides_ui(
     let known =
         UNITS.iter().find(|(metres, _)| (metres / provenance.metres_per_unit - 1.0).abs() < 1e-6);
     let unit = known.map_or_else(
-        || format!("{} m", format_number(provenance.metres_per_unit, 1e-6)),
-        |(_, name)| (*name).to_owned(),
+        || msg!("{metres} m", metres = format_number(provenance.metres_per_unit, 1e-6)),
+        |(_, name)| Message::word(name),
     );
-    let found = as_found(&unit, options.metres_per_unit.is_none());
+    let found = say(&as_found(unit, options.metres_per_unit.is_none()), ui);
     let mut choices = vec![(None, found.as_str())];
     choices.extend(UNITS.map(|(metres, name)| (Some(metres), name)));
     if let Some(metres_per_unit) =
@@ -127,7 +127,7 @@ fn overrides_ui(
     }
 
     let axis = |up| if up == UpAxis::Y { "Y" } else { "Z" };
-    let found = as_found(axis(provenance.up), options.up.is_none());
+    let found = say(&as_found(axis(provenance.up), options.up.is_none()), ui);
     let choices = [(None, found.as_str()), (Some(UpAxis::Y), "Y"), (Some(UpAxis::Z), "Z")];
     if let Some(up) = kit::choice_row_ui(text::UP_AXIS, options.up, &choices, ui) {
         reread(ImportOptions { up, ..options });
@@ -144,8 +144,8 @@ fn overrides_ui(
     }
 }
 
-fn as_found(value: &str, is_found: bool) -> String {
-    if is_found { format!("{value}, {}", text::FOUND_WORD) } else { text::AS_FOUND.to_owned() }
+fn as_found(value: impl Into<Message>, is_found: bool) -> Message {
+    if is_found { msg!("{value}, found", value = value.into()) } else { text::AS_FOUND.into() }
 }
 
 /// What is chosen in the list of frame rates.
@@ -230,7 +230,7 @@ fn roles_ui(entry: &Entry, motion: &Motion, out: &mut Out, ui: &mut Ui) {
 }
 
 /// `position X Y Z, rotation Z X Y`; empty for a joint without channels.
-fn in_words(channels: &[Channel]) -> String {
+fn in_words(channels: &[Channel]) -> Message {
     let letters = |of: fn(Channel) -> Option<&'static str>| {
         channels.iter().filter_map(|&channel| of(channel)).collect::<Vec<_>>().join(" ")
     };
@@ -246,18 +246,21 @@ fn in_words(channels: &[Channel]) -> String {
         Channel::ZRotation => Some("Z"),
         _ => None,
     });
-    let parts = [(text::POSITION, place), (text::ROTATION, turn)];
-    let parts = parts.into_iter().filter(|(_, letters)| !letters.is_empty());
-    parts.map(|(what, letters)| format!("{what} {letters}")).collect::<Vec<_>>().join(", ")
+    match [place.is_empty(), turn.is_empty()] {
+        [true, true] => Message::default(),
+        [false, true] => msg!("position {place}", place),
+        [true, false] => msg!("rotation {turn}", turn),
+        [false, false] => msg!("position {place}, rotation {turn}", place, turn),
+    }
 }
 
 /// What channels the file has: for the root, and for the other joints, the most common first. Empty
 /// where there are none.
-fn channels_in_words(skeleton: &Skeleton) -> String {
+fn channels_in_words(skeleton: &Skeleton) -> Message {
     let Some((root, others)) = skeleton.joints().split_first() else {
-        return String::new();
+        return Message::default();
     };
-    let mut kinds: Vec<(String, usize)> = Vec::new();
+    let mut kinds: Vec<(Message, usize)> = Vec::new();
     for words in
         others.iter().map(|joint| in_words(&joint.channels)).filter(|words| !words.is_empty())
     {
@@ -270,17 +273,21 @@ fn channels_in_words(skeleton: &Skeleton) -> String {
     let mut sentences = Vec::new();
     let of_root = in_words(&root.channels);
     if !of_root.is_empty() {
-        sentences.push(format!("{}: {of_root}.", text::ROOT));
+        sentences.push(msg!("Root: {channels}.", channels = of_root));
     }
     match kinds.as_slice() {
         [] => {}
-        [(words, _)] => sentences.push(format!("{}: {words}.", text::JOINTS)),
+        [(words, _)] => sentences.push(msg!("Joints: {channels}.", channels = words.clone())),
         [(words, _), rest @ ..] => {
             let rest: usize = rest.iter().map(|(_, count)| count).sum();
-            sentences.push(format!("{}: {words}; {}.", text::JOINTS, text::others(rest)));
+            sentences.push(msg!(
+                "Joints: {channels}; {rest}.",
+                channels = words.clone(),
+                rest = text::others(rest)
+            ));
         }
     }
-    sentences.join(" ")
+    Message::joined(sentences, " ")
 }
 
 #[cfg(test)]
@@ -301,18 +308,21 @@ mod tests {
         let all = [XPosition, YPosition, ZPosition, ZRotation, XRotation, YRotation];
         let mut joints = vec![joint(None, &all)];
         let skeleton = |joints: &[Joint]| Skeleton::new(joints.to_vec()).unwrap();
-        assert_eq!(channels_in_words(&skeleton(&joints)), "Root: position X Y Z, rotation Z X Y.");
+        assert_eq!(
+            channels_in_words(&skeleton(&joints)).to_string(),
+            "Root: position X Y Z, rotation Z X Y."
+        );
         joints.extend([joint(Some(0), &all[3..]), joint(Some(1), &[]), joint(Some(1), &all[3..])]);
         assert_eq!(
-            channels_in_words(&skeleton(&joints)),
+            channels_in_words(&skeleton(&joints)).to_string(),
             "Root: position X Y Z, rotation Z X Y. Joints: rotation Z X Y."
         );
         joints.push(joint(Some(1), &[XRotation]));
         assert_eq!(
-            channels_in_words(&skeleton(&joints)),
+            channels_in_words(&skeleton(&joints)).to_string(),
             "Root: position X Y Z, rotation Z X Y. Joints: rotation Z X Y; 1 has others."
         );
-        assert_eq!(channels_in_words(&skeleton(&[joint(None, &[])])), "");
+        assert_eq!(channels_in_words(&skeleton(&[joint(None, &[])])).to_string(), "");
     }
 
     #[test]

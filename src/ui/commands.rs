@@ -4,7 +4,7 @@
 
 use super::kit::{self, Button, Icon, MenuItem};
 use super::labs::toggle_compare;
-use super::language::{Language, tr};
+use super::language::tr;
 use super::lessons_panel::{self, toggle_lessons};
 use super::out::{Action, Out};
 use super::stage_panel::frame_everything;
@@ -328,7 +328,7 @@ impl UiCommand {
             }
             Self::ToggleProjector => out.toggle(Key::Projector, self.is_on(session)),
             Self::SwitchLanguage => {
-                let other = other_language(state.language).0;
+                let other = state.language.next();
                 out.set_once(Key::Lang, Value::Choice(other.tag()));
             }
             Self::ToggleHelp => state.help_open = !state.help_open,
@@ -345,14 +345,6 @@ fn close(session: &Session, state: &mut UiState, out: &mut Out) {
     }
     (state.help_open, state.library_open) = (false, false);
     state.drawing = None;
-}
-
-/// The language that the switch leads to, and what the switch says.
-fn other_language(present: Language) -> (Language, &'static str) {
-    match present {
-        Language::English => (Language::Chinese, text::IN_CHINESE),
-        Language::Chinese => (Language::English, text::IN_ENGLISH),
-    }
 }
 
 /// Gives the commands whose keys are pressed, unless text is being typed.
@@ -465,7 +457,7 @@ pub(crate) fn command_item_ui(
 /// Returns what a command is called where its label alone does not say it.
 fn name_of(command: UiCommand, state: &UiState) -> &'static str {
     match command {
-        UiCommand::SwitchLanguage => other_language(state.language).1,
+        UiCommand::SwitchLanguage => state.language.next().switch(),
         UiCommand::ToggleProjector => text::PROJECTOR,
         _ => command.row().text,
     }

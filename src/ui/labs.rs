@@ -26,6 +26,7 @@ use glam::DVec2;
 use graph::seed_detail;
 use segue_session::LabId;
 use segue_session::{Command, Group, Key, Mark, PARAMS, Pane, Params, Session, Slot, Value};
+use segue_text::Message;
 
 /// A lab's part of the page; each lab's own file has it, as `LAB`.
 struct LabUi {
@@ -62,17 +63,17 @@ pub(crate) struct Shown<'a> {
 
 impl Shown<'_> {
     /// Returns the name of the clip in A or B.
-    fn name(&self, key: Key) -> String {
+    fn name(&self, key: Key) -> Message {
         self.name_of(self.params.text(key)).unwrap_or_default()
     }
 
     /// Returns the name of a clip of the library; `None` for one that is not there.
-    fn name_of(&self, id: &str) -> Option<String> {
-        self.session.library().find(id).map(|entry| entry.name.clone())
+    fn name_of(&self, id: &str) -> Option<Message> {
+        self.session.library().find(id).map(|entry| entry.title())
     }
 
     /// Returns the word on screen of a parameter's value.
-    fn spoken(&self, key: Key) -> String {
+    fn spoken(&self, key: Key) -> Message {
         key.param().spoken(self.params.get(key))
     }
 }
@@ -80,9 +81,9 @@ impl Shown<'_> {
 /// What stands above a pane.
 #[derive(Default)]
 pub(crate) struct Title {
-    pub(crate) strong: String,
-    pub(crate) text: String,
-    pub(crate) secondary: String,
+    pub(crate) strong: Message,
+    pub(crate) text: Message,
+    pub(crate) secondary: Message,
 }
 
 /// Returns the part of the page that a lab has.

@@ -90,7 +90,7 @@ fn header_ui(lesson: &Lesson<'_>, out: &mut Out, ui: &mut Ui) {
             go_to(CONTENTS, out);
         }
         if let Lesson::Page(page) = lesson {
-            let words = RichText::new(tr(&text::page_of(page.number, page.of), ui));
+            let words = RichText::new(say(&text::page_of(page.number, page.of), ui));
             ui.label(words.font(theme.font(Type::Small)).color(palette.muted));
         }
         ui.with_layout(Flow::right_to_left(Align::Center), |ui| {

@@ -11,6 +11,7 @@ use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{self, Frame, Id, Key as Keyboard, Margin, Panel, RichText, ScrollArea, Ui};
 use segue_session::export::{ExportFormat, ExportOptions};
 use segue_session::{Command, Entry, FileCommand, Key, Origin, Session, Slot};
+use segue_text::{Message, msg};
 
 /// The share of the memory from which on it is shown how much is in use.
 const MEMORY_SHOWN_FROM: f32 = 0.25;
@@ -84,7 +85,10 @@ pub(crate) fn drop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
             continue;
         };
         let megabytes = size as f64 / 1e6;
-        let detail = format!("{:.0} of {megabytes:.0} MB", job.progress * megabytes);
+        let detail = say(
+            &msg!("{done:.0} of {all:.0} MB", done = job.progress * megabytes, all = megabytes),
+            ui,
+        );
         if kit::progress_row_ui(job.kind.name(), Some(job.progress as f32), &detail, ui) {
             out.commands.push(Command::File(FileCommand::StopReading(task)));
         }
@@ -94,7 +98,7 @@ pub(crate) fn drop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
         kit::brief_progress_ui(text::LOADING_SAMPLES, come as f32 / asked as f32, &detail, ui);
     }
     if let Some(memory) = memory {
-        kit::brief_progress_ui(text::MEMORY, memory.share(), &text::memory(memory), ui);
+        kit::brief_progress_ui(text::MEMORY, memory.share(), &say(&text::memory(memory), ui), ui);
     }
     if state.samples_open {
         samples_ui(session, out, ui);
@@ -155,18 +159,18 @@ fn part_of(session: &Session, entry: &Entry) -> Part {
 }
 
 /// `3.9 s · 468 frames · 30 joints`.
-fn facts(entry: &Entry) -> String {
+fn facts(entry: &Entry) -> Message {
     match &entry.motion {
         Some(motion) => {
             let clip = motion.clip();
-            format!(
-                "{:.1} s · {} frames · {} joints",
-                clip.duration_secs(),
-                clip.frames(),
-                clip.skeleton().len()
+            msg!(
+                "{secs:.1} s · {frames} frames · {joints} joints",
+                secs = clip.duration_secs(),
+                frames = clip.frames(),
+                joints = clip.skeleton().len()
             )
         }
-        None => text::status(entry).to_owned(),
+        None => text::status(entry).into(),
     }
 }
 
@@ -189,10 +193,9 @@ fn entry_ui(entry: &Entry, session: &Session, state: &mut UiState, out: &mut Out
     let warning = warnings.join("\n");
     let actions =
         [(Icon::Sliders, text::DETAILS), (Icon::Pencil, text::RENAME), (Icon::Trash, text::REMOVE)];
-    let facts = facts(entry);
+    let (name, facts) = (say(&entry.title(), ui), say(&facts(entry), ui));
     let row = ClipRow {
-        name: &entry.name,
-        own: matches!(entry.origin, Origin::File(_)),
+        name: &name,
         detail: &facts,
         part,
         warning: &warning,
@@ -227,7 +230,7 @@ fn entry_ui(entry: &Entry, session: &Session, state: &mut UiState, out: &mut Out
             compare_clips(session.params().text(Key::A), &entry.id, out);
         }
         for format in ExportFormat::ALL {
-            let words = format!("{} {}", text::SAVE_AS, text::format(format));
+            let words = say(&msg!("Save as {format}", format = text::format(format)), ui);
             let save = MenuItem { text: &words, icon: Some(Icon::Download), ..MenuItem::default() };
             if kit::menu_item_ui(save, ui).clicked() {
                 let how = ExportOptions { format, ..state.export };

@@ -21,7 +21,7 @@ mod top_bar;
 mod transport_row;
 
 pub(crate) use labs::match_::Pad;
-pub(crate) use language::{Language, Tongue, speak_english};
+pub(crate) use language::{Language, LanguagePack, PackError, activate_english};
 pub(crate) use out::{Action, Out};
 pub(crate) use stage_panel::Paint;
 pub(crate) use state::{Filming, UiState};

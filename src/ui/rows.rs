@@ -9,7 +9,7 @@ pub(crate) use param::{Detail, compare_choice_ui, param_row_ui};
 pub(crate) use save::save_rows_ui;
 
 use super::kit::{self, Button, Icon};
-use super::language::tr;
+use super::language::{say, tr};
 use super::out::Out;
 use super::state::UiState;
 use super::text;
@@ -17,6 +17,7 @@ use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{self, Ui};
 use segue_motion::transition::has_legs;
 use segue_session::{Command, Key, NoResult, Session, Slot, split_reference};
+use segue_text::{Message, msg};
 /// The foot lock, how feet are read where they are held, and why they are not.
 pub(crate) fn foot_rows_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     param_row_ui(Key::FootLock, &Detail::default(), session, out, ui);
@@ -44,7 +45,7 @@ pub(crate) fn save_result_ui(session: &Session, state: &mut UiState, out: &mut O
     let panes = session.panes();
     state.saved_pane = state.saved_pane.min(panes.len().saturating_sub(1));
     let names: Vec<String> =
-        panes.iter().map(|pane| session.variant_name(pane).unwrap_or_default()).collect();
+        panes.iter().map(|pane| say(&session.variant_name(pane).unwrap_or_default(), ui)).collect();
     if panes.len() > 1 {
         let options: Vec<(usize, &str)> = names.iter().map(String::as_str).enumerate().collect();
         if let Some(pane) = kit::choice_row_ui(text::SAVED_PANE, state.saved_pane, &options, ui) {
@@ -82,18 +83,19 @@ pub(crate) fn pair_ui(session: &Session, out: &mut Out, ui: &mut Ui) -> f64 {
     slot_row_ui(Slot::B, session, out, ui);
     let outcome = session.main_outcome();
     if let Some(retargeted) = outcome.and_then(|outcome| outcome.retargeted.as_ref()) {
-        let words = egui::RichText::new(tr(&text::retargeted(retargeted), ui))
+        let words = egui::RichText::new(say(&text::retargeted(retargeted), ui))
             .font(theme_of(ui).font(Type::Small));
         let line = ui.label(words.color(palette_of(ui).muted));
         if !retargeted.unmatched.is_empty() {
-            line.on_hover_text(tr(&retargeted.unmatched.join(", "), ui));
+            let names = msg!("{names}", names = retargeted.unmatched.clone());
+            line.on_hover_text(say(&names, ui));
         }
     }
     let rate = |slot| Some(session.slot(slot)?.motion.as_ref()?.clip().fps());
     if let (Some(a), Some(b)) = (rate(Slot::A), rate(Slot::B))
         && (a - b).abs() > 1e-4 * a
     {
-        let words = egui::RichText::new(tr(&text::resampled(b, a), ui))
+        let words = egui::RichText::new(say(&text::resampled(b, a), ui))
             .font(theme_of(ui).font(Type::Small));
         ui.label(words.color(palette_of(ui).muted));
     }
@@ -120,8 +122,8 @@ pub(crate) fn place_rows_ui(keys: [Key; 2], session: &Session, out: &mut Out, ui
             latest_secs.map(|secs| if key.param().unit == "s" { secs } else { in_frames(secs) });
         let help = match (said_below == index, automatic[index]) {
             (true, _) => found_sentence(session, automatic),
-            (false, true) => String::new(),
-            (false, false) => text::BY_HAND.to_owned(),
+            (false, true) => Message::default(),
+            (false, false) => text::BY_HAND.into(),
         };
         let detail = Detail {
             max,
@@ -135,13 +137,13 @@ pub(crate) fn place_rows_ui(keys: [Key; 2], session: &Session, out: &mut Out, ui
 }
 
 /// How the place was found, with its distance where that is known.
-fn found_sentence(session: &Session, automatic: [bool; 2]) -> String {
+fn found_sentence(session: &Session, automatic: [bool; 2]) -> Message {
     if session.jobs().iter().any(|job| job.task.is_none()) {
-        return format!("{}…", text::MATCHING);
+        return "Looking for the best match…".into();
     }
     match session.main_outcome().and_then(|outcome| outcome.transition) {
         Some(transition) => text::place_found(&transition, automatic),
-        None => format!("{}.", text::FOUND),
+        None => Message::word(text::FOUND).sentence(),
     }
 }
 
@@ -151,6 +153,11 @@ pub(crate) fn slot_row_ui(slot: Slot, session: &Session, out: &mut Out, ui: &mut
     if let Some(id) = clip_choice_ui(slot.label(), chosen, session, ui) {
         out.commands.push(Command::Assign(slot, id));
     }
+}
+
+/// Returns the names of all clips of the library, in the language of the interface.
+pub(crate) fn clip_titles(session: &Session, ui: &Ui) -> Vec<String> {
+    session.library().entries().iter().map(|entry| say(&entry.title(), ui)).collect()
 }
 
 /// A clip of the library to choose; the id of the one that was.
@@ -163,12 +170,15 @@ pub(crate) fn clip_choice_ui(
     let entries = session.library().entries();
     let found = session.library().find(chosen);
     let found = found.and_then(|entry| entries.iter().position(|other| other.id == entry.id));
-    let missing =
-        (found.is_none() && !chosen.is_empty()).then(|| text::missing(split_reference(chosen).0));
+    let missing = (found.is_none() && !chosen.is_empty())
+        .then(|| (usize::MAX, text::missing(split_reference(chosen).0)));
     // The one that is not here cannot be chosen, only seen.
-    let options: Vec<(usize, &str)> = (entries.iter().map(|entry| entry.name.as_str()).enumerate())
-        .chain(missing.as_deref().map(|words| (usize::MAX, words)))
+    let named: Vec<(usize, String)> = (entries.iter().map(|entry| entry.title()).enumerate())
+        .chain(missing)
+        .map(|(index, name)| (index, say(&name, ui)))
         .collect();
+    let options: Vec<(usize, &str)> =
+        named.iter().map(|(index, name)| (*index, name.as_str())).collect();
     let picked = ui
         .push_id(label, |ui| kit::choice_row_ui(label, found.unwrap_or(usize::MAX), &options, ui))
         .inner;
@@ -186,6 +196,6 @@ pub(crate) fn compare_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui
 }
 
 /// The name of the lab that is open.
-pub(crate) fn lab_label(session: &Session) -> String {
-    Key::Lab.param().spoken(session.params().get(Key::Lab))
+pub(crate) fn lab_label(session: &Session) -> &'static str {
+    session.params().lab().label()
 }

@@ -7,7 +7,7 @@ use super::labs::path::ground_line::{GroundLine, ground_line};
 use super::labs::path::hand::path_of;
 use super::labs::path::stage::{frame_once, handles_ui, said_ui};
 use super::labs::{self, Shown, Title};
-use super::language::{say, tr};
+use super::language::say;
 use super::out::{Action, Out};
 use super::state::{Filming, Layout, UiState};
 use super::text;
@@ -17,7 +17,7 @@ use segue_motion::metrics::Better;
 use segue_scene::{camera_of, resting_point, shown_size};
 use segue_session::choices;
 use segue_session::{CycleMade, Key, Kind, Pane, Session, Value};
-use segue_text::ToMessage;
+use segue_text::{Message, ToMessage, msg};
 
 /// Draws the 3D picture: the whole stage, and for each pane that is shown its index in the session
 /// and its place.
@@ -93,7 +93,7 @@ fn stage_ui(
     if says {
         said_ui(stage, numbers_top, state, ui);
     } else if let Some(note) = session.character_note().filter(|_| roomy) {
-        kit::caption_ui(&note, stage.with_max_y(numbers_top - space::S), ui);
+        kit::caption_ui(&say(&note, ui), stage.with_max_y(numbers_top - space::S), ui);
     } else if let Some(hint) = labs::hint(session)
         .filter(|_| state.hint && roomy && layout != Layout::Phone && !is_refused)
     {
@@ -193,7 +193,8 @@ fn pane_ui(
     ui: &mut Ui,
 ) -> f32 {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
-    let words = pane_words(pane, session);
+    let Title { strong, text, secondary } = pane_words(pane, session);
+    let [strong, text, secondary] = [strong, text, secondary].map(|part| say(&part, ui));
     if pane.is_outdated() {
         // What is seen is not what is asked for.
         ui.painter().rect_filled(rect, 0.0, palette.stage.sky.gamma_multiply(0.55));
@@ -211,19 +212,14 @@ fn pane_ui(
     } else {
         ("", Mood::default())
     };
-    let title = PaneTitle {
-        strong: &words.strong,
-        text: &words.text,
-        secondary: &words.secondary,
-        chip,
-        mood,
-    };
+    let title = PaneTitle { strong: &strong, text: &text, secondary: &secondary, chip, mood };
     kit::pane_header_ui(&title, rect, ui);
     if let Some(problem) = &pane.problem {
-        return problem_ui(&say(&problem.to_sentence(), ui), rect, ui);
+        return problem_ui(&problem.to_sentence(), rect, ui);
     } else if pane.outcome.is_none() {
         let jobs = session.jobs();
-        let words = jobs.first().map_or(text::EMPTY_PANE.to_owned(), text::under_way);
+        let words = jobs.first().map_or(text::EMPTY_PANE.into(), text::under_way);
+        let words = say(&words, ui);
         let galley = kit::paint::line_of(
             &[kit::paint::Run::new(&words, Type::Body, palette.muted)],
             rect.width(),
@@ -268,7 +264,7 @@ fn pane_ui(
 
 /// Why a pane has no result, on a plate where its numbers would be: the clips above it are to be
 /// seen. Returns where it begins.
-fn problem_ui(problem: &str, rect: Rect, ui: &mut Ui) -> f32 {
+fn problem_ui(problem: &Message, rect: Rect, ui: &mut Ui) -> f32 {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let width = (rect.width() - 2.0 * space::L).min(420.0 * theme.scale());
     let place = Rect::from_min_max(
@@ -283,7 +279,7 @@ fn problem_ui(problem: &str, rect: Rect, ui: &mut Ui) -> f32 {
         Frame::new().fill(palette.panel_raised).corner_radius(radius::L).inner_margin(space::M);
     let shown = ui.scope_builder(builder, |ui| {
         plate.show(ui, |ui| {
-            let words = egui::RichText::new(tr(problem, ui)).font(theme.font(Type::Body));
+            let words = egui::RichText::new(say(problem, ui)).font(theme.font(Type::Body));
             ui.add(egui::Label::new(words.color(palette.warning)).wrap());
         })
     });
@@ -328,12 +324,14 @@ fn pane_words(pane: &Pane, session: &Session) -> Title {
             return Title { strong, ..Title::default() };
         }
         let secondary = match value {
-            Value::Number(frames) if param.unit == "frames" => format!("{:.2} s", frames / fps),
+            Value::Number(frames) if param.unit == "frames" => {
+                msg!("{secs:.2} s", secs = frames / fps)
+            }
             // A bare number says nothing of itself.
-            Value::Number(_) if param.unit.is_empty() => param.label.to_owned(),
-            _ => String::new(),
+            Value::Number(_) if param.unit.is_empty() => param.label.into(),
+            _ => Message::default(),
         };
-        return Title { strong: param.spoken(value), text: param.unit.to_owned(), secondary };
+        return Title { strong: param.spoken(value), text: param.unit.into(), secondary };
     }
     labs::title(&Shown { pane, params, session })
 }

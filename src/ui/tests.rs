@@ -399,7 +399,7 @@ fn memory_in_use_is_shown_once_it_is_more_than_a_quarter() {
         assert_eq!(harness.query_by_label(text::MEMORY).is_some(), is_shown, "{bytes}");
     }
     let memory = harness.state().session.memory().unwrap();
-    assert_eq!(text::memory(memory), "1234 MB of 3 GB");
+    assert_eq!(text::memory(memory).to_string(), "1234 MB of 3 GB");
 }
 
 #[test]
@@ -557,7 +557,7 @@ fn the_layers_lab_says_how_time_goes_and_where_the_layer_is() {
         ("layers-phone-dark", PHONE, DARK, "lab=layers&play=off"),
     ] {
         let page = page(link);
-        let sentence = text::fit(outcome(&page).layer().expect("a layer"));
+        let sentence = text::fit(outcome(&page).layer().expect("a layer")).to_string();
         let additive = link.contains("additive");
         assert_eq!(sentence.starts_with("No steps"), additive, "{sentence}");
         let mut harness = harness(size, theme, page);

@@ -4,6 +4,7 @@ use super::kit::{self, Curves, Moment, Part, Series, Stripe, Timeline, TimelineE
 use super::labs::make::made_name;
 use super::labs::match_::drive_panel_ui;
 use super::labs::transition;
+use super::language::say;
 use super::out::Out;
 use super::state::{Layout, UiState};
 use super::text;
@@ -17,6 +18,7 @@ use segue_session::{
     Command, CycleMade, Key, Kind, Outcome, Pane, PlaybackCommand, Registered, Session, Slot,
     Source, Value, curve_kind, frame_at, joint_of,
 };
+use segue_text::{Message, msg};
 use std::sync::Arc;
 
 /// The curves of the chosen joint, of every pane over each other, kept until a result or the choice
@@ -64,7 +66,11 @@ pub(crate) fn timeline_panel_ui(
     let clip = outcome.motion.clip();
     let (joint, quantity) = (params.text(Key::Joint), params.choice::<choices::Curve>());
     let unit = unit_of(quantity);
-    let caption = format!("{joint} · {} {unit}", quantity.label());
+    let role = Role::ALL.into_iter().find(|role| role.name() == joint);
+    let joint_title = role.map_or_else(|| Message::data(joint), |role| role.name().into());
+    let quantity_label = quantity.label();
+    let caption = msg!("{joint} · {what} {unit}", joint = joint_title, what = quantity_label, unit);
+    let caption = say(&caption, ui);
     let playhead = Playhead {
         secs: session.now_secs(),
         frame: frame_at(&outcome.motion, session.now_secs()),
@@ -75,7 +81,7 @@ pub(crate) fn timeline_panel_ui(
         curve_menu_ui(outcome, &row, out, ui);
     }
 
-    let panes = named_outcomes(session);
+    let panes = named_outcomes(session, |name| say(name, ui));
     cache.update(outcome, &panes, joint, quantity);
     let palette = palette_of(ui);
     let series: Vec<Series<'_>> = cache
@@ -106,16 +112,17 @@ pub(crate) fn timeline_panel_ui(
         session
             .library()
             .find(made_from.text(key))
-            .map_or_else(String::new, |entry| entry.name.clone())
+            .map_or_else(String::new, |entry| say(&entry.title(), ui))
     });
     let names = match outcome.walk() {
         Some(walk) => [0, 1].map(|part: usize| {
             let clip = walk.passed.get(part).map(|passed| passed.stay.clip);
-            clip.and_then(|clip| walk.built.cast().names().get(clip).cloned()).unwrap_or_default()
+            clip.and_then(|clip| walk.built.cast().names().get(clip))
+                .map_or_else(String::new, |name| say(&session.clip_title(name), ui))
         }),
         None => names,
     };
-    let made = made_name(made_from);
+    let made = made_name(made_from).map(|name| say(&name, ui));
     let round = round_name(outcome, &names);
     let tracks = if outcome.registered().is_some() {
         // The feet of both say more than their bars.
@@ -136,7 +143,7 @@ pub(crate) fn timeline_panel_ui(
     };
     let mut seams = seams(outcome, palette.accent);
     seams.extend(hard_turns(outcome, palette.warning));
-    let feet = feet_names(session, layout);
+    let feet = feet_names(session, layout, ui);
     let stripes = stripes(session, &feet);
     let timeline = Timeline {
         duration: session.duration_secs(),
@@ -258,7 +265,7 @@ fn hard_turns(outcome: &Outcome, color: Color32) -> impl Iterator<Item = Moment<
 }
 
 /// What stands before the stripes of each pane's feet: A, B, result. A phone has room for one pane.
-fn feet_names(session: &Session, layout: Layout) -> Vec<[String; 3]> {
+fn feet_names(session: &Session, layout: Layout, ui: &Ui) -> Vec<[String; 3]> {
     let panes = session.panes();
     let shown = if layout == Layout::Phone { 1 } else { panes.len() };
     let names = |pane: &Pane| {
@@ -267,9 +274,12 @@ fn feet_names(session: &Session, layout: Layout) -> Vec<[String; 3]> {
             .as_ref()
             .filter(|_| panes.len() > 1)
             .map(|(key, value)| key.param().spoken(value));
-        [text::FEET_OF_A, text::FEET_OF_B, text::FEET_OF_RESULT].map(|of| match &value {
-            Some(value) => format!("{of} · {value}"),
-            None => of.to_owned(),
+        [text::FEET_OF_A, text::FEET_OF_B, text::FEET_OF_RESULT].map(|of| {
+            let name = match &value {
+                Some(value) => msg!("{of} · {value}", of, value = value.clone()),
+                None => of.into(),
+            };
+            say(&name, ui)
         })
     };
     panes.iter().take(shown).map(names).collect()
@@ -338,10 +348,13 @@ fn tracks<'a>(outcome: &Outcome, names: &'a [String; 2]) -> Vec<Track<'a>> {
 }
 
 /// The results of all panes, with what tells them apart.
-fn named_outcomes(session: &Session) -> Vec<(String, &Arc<Outcome>)> {
+fn named_outcomes(
+    session: &Session,
+    say: impl Fn(&Message) -> String,
+) -> Vec<(String, &Arc<Outcome>)> {
     let named = session.panes().iter().filter_map(|pane| {
-        let name = session.variant_name(pane).unwrap_or_else(|| text::RESULT.to_owned());
-        Some((name, pane.outcome.as_ref()?))
+        let name = session.variant_name(pane).unwrap_or_else(|| text::RESULT.into());
+        Some((say(&name), pane.outcome.as_ref()?))
     });
     named.collect()
 }
@@ -509,7 +522,7 @@ mod tests {
             ))
             .unwrap();
         while session.work() {}
-        let panes = named_outcomes(&session);
+        let panes = named_outcomes(&session, Message::to_string);
         let mut cache = CurveCache::default();
         cache.update(session.main_outcome().unwrap(), &panes, "right foot", choices::Curve::Angle);
         let names: Vec<&str> = cache.lines.iter().map(|line| line.of.name()).collect();

@@ -2,13 +2,14 @@
 
 use super::commands::{UiCommand, command_button_ui, command_icon_ui, command_item_ui};
 use super::kit::{self, Button, Icon};
-use super::language::tr;
+use super::language::{say, tr};
 use super::out::Out;
 use super::state::{Layout, UiState};
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Align, Layout as Flow, RectAlign, RichText, Sense, Ui, vec2};
 use segue_session::{Key, Kind, Session, Value};
+use segue_text::msg;
 
 /// The whole bar.
 pub(crate) fn top_bar_ui(
@@ -78,8 +79,8 @@ fn actions_ui(session: &Session, layout: Layout, state: &mut UiState, out: &mut 
         command_icon_ui(command, session, state, out, ui);
     }
     let panes = session.panes().len();
-    let label =
-        if panes > 1 { format!("{} · {panes}", text::COMPARE) } else { text::COMPARE.to_owned() };
+    let label = if panes > 1 { msg!("Compare · {panes}", panes) } else { text::COMPARE.into() };
+    let label = say(&label, ui);
     command_button_ui(UiCommand::ToggleCompare, Button::new(&label), session, state, out, ui);
     let lessons = match layout {
         Layout::Desk => Button::new(text::LESSONS).icon(Icon::Book),

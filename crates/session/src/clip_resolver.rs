@@ -133,7 +133,7 @@ impl ClipResolver<'_> {
         match self.answer(params, None, widest_window(params, None)) {
             Answer::Made { outcome, is_draft: false, .. } => Ok(Arc::clone(&outcome.motion)),
             Answer::Refused(problem) => Err(problem),
-            _ => Err(LabError::BeingMade { name: recipe_name(params) }),
+            _ => Err(LabError::BeingMade { name: recipe_name(params).to_string() }),
         }
     }
 

@@ -1,6 +1,7 @@
 use super::labs::{read_ids, write_ids};
 use super::outside::short;
 use super::params::{Choice, Key, Kind, Value, ValueError};
+use segue_text::{Message, msg};
 use std::fmt;
 
 /// Two to four values of one parameter, each in a pane of its own: `blend_window:30,15,10`,
@@ -24,16 +25,16 @@ impl Compare {
     /// two to four values.
     pub fn parse(text: &str) -> Result<Self, ValueError> {
         let refuse =
-            |expected: String| ValueError::NotAComparison { found: text.to_owned(), expected };
+            |expected: Message| ValueError::NotAComparison { found: text.to_owned(), expected };
         let (name, list) = text
             .split_once(':')
             .ok_or_else(|| refuse("`key:value,value`, as in blend_window:30,15,10".into()))?;
         let key = Key::from_name(name.trim())
             .filter(|key| key.param().is_comparable())
             .ok_or_else(|| {
-                refuse(format!(
-                    "a number or a choice of a lab, or a clip, before the colon, not `{}`",
-                    short(name)
+                refuse(msg!(
+                    "a number or a choice of a lab, or a clip, before the colon, not `{found}`",
+                    found = short(name)
                 ))
             })?;
         let is_clip = matches!(key.param().kind, Kind::Clip);
@@ -46,12 +47,18 @@ impl Compare {
         let values = words
             .iter()
             .map(|word| match key.param().parse(word)? {
-                Value::Auto => Err(refuse(format!("a value for each pane, not `{}`", short(word)))),
+                Value::Auto => {
+                    Err(refuse(msg!("a value for each pane, not `{found}`", found = short(word))))
+                }
                 value => Ok(value),
             })
             .collect::<Result<Vec<Value>, ValueError>>()?;
         if !(2..=MAX_PANES).contains(&values.len()) {
-            return Err(refuse(format!("2 to {MAX_PANES} values, not {}", values.len())));
+            return Err(refuse(msg!(
+                "2 to {most} values, not {count}",
+                most = MAX_PANES,
+                count = values.len()
+            )));
         }
         Ok(Self { key, values })
     }

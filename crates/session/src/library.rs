@@ -68,6 +68,8 @@ pub struct Entry {
     pub id: String,
     /// What a person calls it.
     pub name: String,
+    /// What it was called when it came.
+    pub own_name: Message,
     /// Where it comes from.
     pub origin: Origin,
     /// The motion; `None` for a bundled take that has not come, a preset that was not needed yet,
@@ -88,10 +90,12 @@ pub struct Entry {
 
 impl Entry {
     /// An entry that nothing is known of yet but where it comes from.
-    pub(super) fn new(id: impl Into<String>, name: impl Into<String>, origin: Origin) -> Self {
+    pub(super) fn new(id: impl Into<String>, name: impl Into<Message>, origin: Origin) -> Self {
+        let own_name = name.into();
         Self {
             id: id.into(),
-            name: name.into(),
+            name: own_name.to_string(),
+            own_name,
             origin,
             motion: None,
             mesh: None,
@@ -99,6 +103,17 @@ impl Entry {
             about: None,
             warnings: Vec::new(),
             roles_by_hand: None,
+        }
+    }
+
+    /// Returns what the clip is called on screen. The name of a built-in clip and of a result is
+    /// the program's own, and is translated; a name that was given by hand or by a file is data.
+    #[must_use]
+    pub fn title(&self) -> Message {
+        if self.name == self.own_name.to_string() {
+            self.own_name.clone()
+        } else {
+            Message::data(&*self.name)
         }
     }
 
@@ -292,17 +307,16 @@ mod tests {
             index: 0,
             options: ImportOptions::default(),
         };
-        Entry {
-            id: file_id(name, sha256, 0),
-            name: name.into(),
-            origin: Origin::File(file),
-            motion: None,
-            mesh: None,
-            unread: None,
-            about: None,
-            warnings: vec![],
-            roles_by_hand: None,
-        }
+        Entry::new(file_id(name, sha256, 0), name.to_owned(), Origin::File(file))
+    }
+
+    #[test]
+    fn title_of_a_clip_that_a_user_named_is_data() {
+        let mut preset = Entry::new("walk", "Walk", Origin::Preset);
+        assert_eq!(preset.title(), Message::word("Walk"));
+        assert_eq!(dropped("Walk", "3fa9c1d2aa").title(), Message::data("Walk"));
+        preset.name = "Run".to_owned();
+        assert_eq!(preset.title(), Message::data("Run"));
     }
 
     #[test]

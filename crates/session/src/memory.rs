@@ -195,7 +195,7 @@ mod tests {
                 index: 0,
                 options: ImportOptions::default(),
             };
-            Entry::new(name, name, Origin::File(file))
+            Entry::new(name, name.to_owned(), Origin::File(file))
         };
         files.into_iter().map(entry).collect()
     }

@@ -5,10 +5,11 @@ use super::pane::Pane;
 use super::session::Session;
 use segue_formats::csv;
 use segue_motion::metrics::{Better, Metric};
+use segue_text::{Message, msg};
 use std::fmt::Write as _;
 
 /// What stands above a result that is not compared to another one.
-const RESULT: &str = "result";
+const RESULT: Message = Message::word("result");
 
 /// A row of numbers, one for each pane.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,7 +30,7 @@ pub struct NumberRow {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct NumberTable {
     /// What each pane is called: the value in which it differs.
-    pub panes: Vec<String>,
+    pub panes: Vec<Message>,
     /// The numbers.
     pub rows: Vec<NumberRow>,
 }
@@ -39,7 +40,7 @@ impl NumberTable {
     #[must_use]
     pub fn of(session: &Session) -> Self {
         let panes = session.panes();
-        let name = |pane: &Pane| session.variant_name(pane).unwrap_or_else(|| RESULT.to_owned());
+        let name = |pane: &Pane| session.variant_name(pane).unwrap_or(RESULT);
         let of_pane = |pane: &Pane, id: &str| {
             let made = pane.result().ok()?;
             made.outcome.metrics.iter().find(|metric| metric.id == id)?.value
@@ -72,7 +73,8 @@ impl NumberTable {
     /// The table in Markdown.
     #[must_use]
     pub fn markdown(&self) -> String {
-        let names: Vec<String> = self.panes.iter().map(|name| markdown(name)).collect();
+        let names: Vec<String> =
+            self.panes.iter().map(|name| markdown(&name.to_string())).collect();
         let mut out =
             format!("| | {} |\n|---|{}\n", names.join(" | "), "---|".repeat(self.panes.len()));
         for row in &self.rows {
@@ -90,7 +92,7 @@ impl NumberTable {
         let head: Vec<String> = ["", "unit"]
             .into_iter()
             .map(str::to_owned)
-            .chain(self.panes.iter().map(|pane| csv::cell(pane)))
+            .chain(self.panes.iter().map(|pane| csv::cell(&pane.to_string())))
             .collect();
         let mut out = head.join(",") + "\n";
         for row in &self.rows {
@@ -115,11 +117,11 @@ impl NumberTable {
 impl NumberRow {
     /// What is measured, and in which unit.
     #[must_use]
-    pub fn heading(&self) -> String {
+    pub fn heading(&self) -> Message {
         if self.unit.is_empty() {
-            self.label.to_owned()
+            self.label.into()
         } else {
-            format!("{}, {}", self.label, self.unit)
+            msg!("{label}, {unit}", label = self.label, unit = self.unit)
         }
     }
 

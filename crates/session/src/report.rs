@@ -75,7 +75,7 @@ pub fn report(session: &Session, facts: &ReportFacts<'_>) -> Result<String, NoRe
             let name = session.variant_name(pane).unwrap_or_default();
             say(format!(
                 "No result for {}: {}\n",
-                markdown(&name),
+                markdown(&name.to_string()),
                 markdown_sentence(&reason.to_string())
             ));
         }

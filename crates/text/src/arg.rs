@@ -22,6 +22,21 @@ pub enum Arg {
     Note(Message),
 }
 
+impl Arg {
+    pub(crate) fn collect_templates<'a>(&'a self, found: &mut Vec<&'a str>) {
+        match self {
+            Self::Text(_) | Self::Count(_) | Self::Number(_) => {}
+            Self::Message(message) | Self::Note(message) => found.extend(message.templates()),
+            Self::Joined(parts, between) => {
+                for part in parts {
+                    part.collect_templates(found);
+                }
+                found.push(between);
+            }
+        }
+    }
+}
+
 /// What can be an argument of a [`Message`].
 pub trait ToArg {
     /// Returns the argument.

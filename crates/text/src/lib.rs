@@ -141,6 +141,16 @@ impl Message {
         &self.template
     }
 
+    /// Returns the templates that the message is made of: its own, and those of its arguments.
+    #[must_use]
+    pub fn templates(&self) -> Vec<&str> {
+        let mut found = vec![self.template()];
+        for (_, arg) in &self.args {
+            arg.collect_templates(&mut found);
+        }
+        found
+    }
+
     fn arg(&self, name: &str) -> Option<&Arg> {
         self.args.iter().find(|(known, _)| known == name).map(|(_, arg)| arg)
     }

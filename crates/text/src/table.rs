@@ -38,35 +38,7 @@ impl Table {
     /// Returns a message in this language. What has no row is English.
     #[must_use]
     pub fn write(&self, message: &Message) -> String {
-        self.write_with(message, |_| None)
-    }
-
-    /// As [`Self::write`], with a translation of some data: a built-in clip has a name that is the
-    /// program's own.
-    #[must_use]
-    pub fn write_with(&self, message: &Message, data: impl Fn(&str) -> Option<String>) -> String {
-        Writer { table: Some(self), data: &data }.message(message)
-    }
-
-    /// Returns whether all of a message with words in it has a row.
-    #[must_use]
-    pub fn has(&self, message: &Message) -> bool {
-        let template = message.template();
-        let needs_row = parts(template).any(|part| match part {
-            Part::Words(words) => words.contains(char::is_alphabetic),
-            Part::Value(..) => false,
-            Part::Forms(..) => true,
-        });
-        (!needs_row || self.rows.contains_key(template))
-            && message.args.iter().all(|(_, arg)| self.has_arg(arg))
-    }
-
-    fn has_arg(&self, arg: &Arg) -> bool {
-        match arg {
-            Arg::Text(_) | Arg::Count(_) | Arg::Number(_) => true,
-            Arg::Message(message) | Arg::Note(message) => self.has(message),
-            Arg::Joined(parts, _) => parts.iter().all(|part| self.has_arg(part)),
-        }
+        Writer { table: Some(self) }.message(message)
     }
 
     /// Checks that a translation tells what the English template tells: both use the same names, and
@@ -94,10 +66,9 @@ pub(crate) fn english(message: &Message) -> String {
 #[derive(Clone, Copy)]
 struct Writer<'a> {
     table: Option<&'a Table>,
-    data: &'a dyn Fn(&str) -> Option<String>,
 }
 
-const ENGLISH: Writer<'_> = Writer { table: None, data: &|_| None };
+const ENGLISH: Writer<'_> = Writer { table: None };
 
 impl Writer<'_> {
     fn row<'a>(&'a self, english: &'a str) -> &'a str {
@@ -140,7 +111,7 @@ impl Writer<'_> {
 
     fn arg(self, arg: &Arg, digits: Digits) -> String {
         match arg {
-            Arg::Text(text) => (self.data)(text).unwrap_or_else(|| text.clone()),
+            Arg::Text(text) => text.clone(),
             Arg::Count(count) => format!("{count:0width$}", width = digits.least),
             Arg::Number(number) => match digits.behind {
                 Some(behind) => format!("{number:.behind$}"),
@@ -227,24 +198,17 @@ mod tests {
     }
 
     #[test]
-    fn data_is_translated_where_it_is_asked_for() {
-        let table = Table::new([("{name} is here.", "{name}在這裡。")]);
-        let message = msg!("{name} is here.", name = "Walk".to_owned());
-        let built_in = |name: &str| (name == "Walk").then(|| "走".to_owned());
-        assert_eq!(table.write_with(&message, built_in), "走在這裡。");
-        assert_eq!(table.write_with(&message, |_| None), "Walk在這裡。");
+    fn data_that_is_also_a_word_stays_as_it_is() {
+        let table = Table::new([("{name} is here.", "{name}在這裡。"), ("Walk", "走")]);
+        let told = |message| table.write(&message);
+        assert_eq!(told(msg!("{name} is here.", name = "Walk".to_owned())), "Walk在這裡。");
+        assert_eq!(told(msg!("{name} is here.", name = "Walk")), "走在這裡。");
     }
 
     #[test]
-    fn message_is_had_with_all_of_its_parts() {
-        let table = Table::new([("{what} is here.", "{what}在這裡。"), ("left", "左")]);
-        let has = |message: &Message| table.has(message);
-        assert!(has(&msg!("{what} is here.", what = "left")));
-        assert!(has(&msg!("{what} is here.", what = "walk on".to_owned())));
-        assert!(has(&msg!("{what}: {cm:.1}", what = "left", cm = 0.5)));
-        assert!(!has(&msg!("{what} is here.", what = "right")));
-        assert!(!has(&msg!("{what} is gone.", what = "left")));
-        assert!(!has(&msg!("{sides}", sides = vec!["left", "right"])));
+    fn templates_are_those_of_all_parts() {
+        let message = msg!("{what} on {sides}", what = "Walk", sides = vec!["left", "right"]);
+        assert_eq!(message.templates(), ["{what} on {sides}", "Walk", "left", "right", ", "]);
     }
 
     #[test]

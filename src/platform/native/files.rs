@@ -8,6 +8,7 @@ use crate::platform::{
 };
 use eframe::egui::DroppedFileHandle;
 use segue_session::reading::LARGE_BYTES;
+use segue_text::msg;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -65,7 +66,9 @@ fn read_path(path: &Path, inbox: &Inbox) {
     }
     let say = |reason| inbox.push(Incoming::Failed { reason });
     match motion_files(path, &name, MOST_FILES_OF_FOLDER) {
-        Err(error) => say(format!("{name} cannot be read: {error}.")),
+        Err(error) => {
+            say(msg!("{name} cannot be read: {error}.", name, error = error.to_string()));
+        }
         Ok((files, _)) if files.is_empty() => say(no_motion_in(&name)),
         Ok((files, more)) => {
             if more {
@@ -112,7 +115,9 @@ fn motion_files(
 }
 
 fn read_file(path: &Path, name: String, inbox: &Inbox) {
-    let unreadable = |error: std::io::Error| format!("{name} cannot be read: {error}.");
+    let unreadable = |error: std::io::Error| {
+        msg!("{name} cannot be read: {error}.", name = name.clone(), error = error.to_string())
+    };
     let bytes = match std::fs::metadata(path) {
         Ok(metadata) => match too_large(&name, metadata.len(), MAX_FILE_BYTES) {
             Some(reason) => Err(reason),
@@ -139,7 +144,11 @@ pub(crate) fn download(file_name: &str, _mime: &str, bytes: &[u8], inbox: &Inbox
         };
         if let Err(error) = std::fs::write(file.path(), bytes) {
             inbox.push(Incoming::Failed {
-                reason: format!("{} could not be saved: {error}.", file.path().display()),
+                reason: msg!(
+                    "{file} could not be saved: {error}.",
+                    file = file.path().display().to_string(),
+                    error = error.to_string()
+                ),
             });
         }
     });
@@ -157,7 +166,7 @@ mod tests {
 
     fn told(inbox: &Inbox) -> Vec<String> {
         let told = |incoming| match incoming {
-            Incoming::Failed { reason } => reason,
+            Incoming::Failed { reason } => reason.to_string(),
             Incoming::File { name, .. } | Incoming::Large { name, .. } => name,
             other => format!("{other:?}"),
         };

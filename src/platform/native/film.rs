@@ -2,6 +2,7 @@
 
 use crate::platform::{Inbox, Incoming};
 use eframe::egui::Rect;
+use segue_text::Message;
 use std::convert::Infallible;
 
 /// Whether pictures of the stage can be saved.
@@ -28,8 +29,8 @@ pub(crate) struct Film(Infallible);
 
 impl Film {
     /// Says why there is none.
-    pub(crate) fn begin() -> Result<Self, String> {
-        Err("a window cannot record itself".to_owned())
+    pub(crate) fn begin() -> Result<Self, Message> {
+        Err("a window cannot record itself".into())
     }
 
     /// How long it is, seconds.

@@ -18,6 +18,7 @@ use super::{Inbox, Incoming, address};
 use eframe::egui;
 use segue_session::Sample;
 use segue_session::lesson::Source;
+use segue_text::{Message, msg};
 use std::sync::{Arc, LazyLock};
 use std::time::Instant;
 
@@ -96,8 +97,9 @@ pub(crate) struct Fetch;
 
 /// A window loads nothing over the network, and says so.
 pub(crate) fn fetch(address: &str, inbox: &Inbox) -> Fetch {
-    let reason = format!(
-        "This window does not load files over the network. Download {address} and drop the file here."
+    let reason = msg!(
+        "This window does not load files over the network. Download {address} and drop the file here.",
+        address = address.to_owned()
     );
     inbox.push(Incoming::Fetched { address: address.to_owned(), result: Err(reason) });
     Fetch
@@ -109,11 +111,11 @@ pub(crate) fn load_sample(sample: &'static Sample, inbox: &Inbox) {
     inbox.push(Incoming::Sample { sample, result });
 }
 
-/// Reads what it takes to speak a language; [`Incoming::Language`] brings it.
-pub(crate) fn load_language(tag: &str, inbox: &Inbox) {
+/// Reads the files of a language; [`Incoming::Language`] brings them.
+pub(crate) fn load_language(tag: &'static str, inbox: &Inbox) {
     let read = |ending| read_bundled("lang", &format!("{tag}.{ending}"));
-    let files = read("json").and_then(|catalogue| Ok([catalogue, read("otf")?]));
-    inbox.push(Incoming::Language(files));
+    let files = read("json").and_then(|texts| Ok([texts, read("otf")?]));
+    inbox.push(Incoming::Language { tag, files });
 }
 
 /// A window has no page around it that would have a language.
@@ -122,10 +124,12 @@ pub(crate) fn tell_language(_tag: &str) {}
 /// Reads the text of a lesson; [`Incoming::Lesson`] brings it.
 pub(crate) fn load_lesson(source: &Source, inbox: &Inbox) -> Fetch {
     let result = match source {
-        Source::BuiltIn(file) => read_bundled("lessons", file)
-            .map_err(|reason| format!("{file} could not be loaded: {reason}.")),
-        Source::Web(address) => Err(format!(
-            "This window does not load lessons over the network: {address} opens in a browser."
+        Source::BuiltIn(file) => read_bundled("lessons", file).map_err(|reason| {
+            msg!("{file} could not be loaded: {reason}.", file = file.clone(), reason)
+        }),
+        Source::Web(address) => Err(msg!(
+            "This window does not load lessons over the network: {address} opens in a browser.",
+            address = address.clone()
         )),
     };
     let source = source.clone();
@@ -134,7 +138,7 @@ pub(crate) fn load_lesson(source: &Source, inbox: &Inbox) -> Fetch {
 }
 
 /// What lies in a folder beside the program, or in the project's own.
-fn read_bundled(folder: &str, file: &str) -> Result<Arc<[u8]>, String> {
+fn read_bundled(folder: &str, file: &str) -> Result<Arc<[u8]>, Message> {
     let beside =
         std::env::current_exe().ok().and_then(|program| Some(program.parent()?.join(folder)));
     let in_project = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets").join(folder);
@@ -142,7 +146,11 @@ fn read_bundled(folder: &str, file: &str) -> Result<Arc<[u8]>, String> {
         beside.into_iter().chain([in_project]).map(|folder| folder.join(file)).collect();
     let read = paths.iter().find(|path| path.is_file()).map(std::fs::read);
     match read {
-        Some(read) => read.map(Arc::from).map_err(|error| error.to_string()),
-        None => Err(format!("{file} is not in the folder `{folder}` beside the program")),
+        Some(read) => read.map(Arc::from).map_err(|error| Message::data(error.to_string())),
+        None => Err(msg!(
+            "{file} is not in the folder `{folder}` beside the program",
+            file = file.to_owned(),
+            folder = folder.to_owned()
+        )),
     }
 }

@@ -5,6 +5,7 @@ use crate::platform::records::{LATEST, Records};
 use crate::platform::{Arrival, FileBytes, Inbox, Incoming, Stored, StoredFiles, Work};
 use segue_session::reading::LARGE_BYTES;
 use segue_session::{Saved, SavedEntry, Session, Storing};
+use segue_text::{Message, msg};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -91,8 +92,11 @@ impl Storage {
                 });
                 failed.store(done.is_err(), Ordering::Relaxed);
                 if let Err(error) = done {
-                    let reason =
-                        format!("The work could not be stored in {}: {error}.", folder.display());
+                    let reason = msg!(
+                        "The work could not be stored in {folder}: {error}.",
+                        folder = folder.display().to_string(),
+                        error = error.to_string()
+                    );
                     inbox.push(Incoming::Failed { reason });
                 }
                 still_waiting.fetch_sub(taken, Ordering::Relaxed);
@@ -164,13 +168,15 @@ fn folder() -> Option<PathBuf> {
 }
 
 /// What is stored, and what is to be said of it.
-fn read(folder: &Path) -> (Option<Stored>, Option<String>) {
+fn read(folder: &Path) -> (Option<Stored>, Option<Message>) {
     let record = fs::read_to_string(folder.join(RECORD)).ok();
     let records = Records::read(record.as_deref().map(|record| (LATEST, record)));
     if let Some(problem) = records.problem {
-        let reason = format!(
-            "The list of what is stored in {} cannot be read ({problem}). It is kept there as {UNREAD}, and so are all files.",
-            folder.display()
+        let reason = msg!(
+            "The list of what is stored in {folder} cannot be read ({problem}). It is kept there as {file}, and so are all files.",
+            folder = folder.display().to_string(),
+            problem = problem.to_string(),
+            file = UNREAD.to_owned()
         );
         return (None, Some(reason));
     }
@@ -333,7 +339,7 @@ mod tests {
         let storage = Storage::open_in(folder.clone(), &inbox);
         let told: Vec<Incoming> = inbox.take().into();
         assert!(
-            matches!(&told[..], [Incoming::Stored(None), Incoming::Failed { reason }] if reason.contains(UNREAD)),
+            matches!(&told[..], [Incoming::Stored(None), Incoming::Failed { reason }] if reason.to_string().contains(UNREAD)),
             "{told:?}"
         );
         storage.save(work_of("t=2", &["bb"], &[]));

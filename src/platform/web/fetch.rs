@@ -10,6 +10,7 @@ use segue_session::Sample;
 use segue_session::lesson::{MOST_BYTES, Source, host_of};
 use segue_session::outside::short;
 use segue_session::reading::LARGE_BYTES;
+use segue_text::{Message, msg};
 use std::cell::{Cell, OnceCell};
 use std::rc::Rc;
 use std::sync::Arc;
@@ -94,12 +95,13 @@ impl Call {
     }
 
     /// What is said where the patience has ended: of the file `name` at an address.
-    fn lateness(&self, address: &str, name: &str) -> Option<String> {
+    fn lateness(&self, address: &str, name: &str) -> Option<Message> {
         let said = || {
-            format!(
-                "{} has sent nothing for {} s: {name} is not waited for any longer. Try again later.",
-                host_of(address),
-                PATIENCE_MS / 1000
+            msg!(
+                "{host} has sent nothing for {secs} s: {name} is not waited for any longer. Try again later.",
+                host = host_of(address).to_owned(),
+                secs = PATIENCE_MS / 1000,
+                name = name.to_owned()
             )
         };
         self.0.is_late.get().then(said)
@@ -161,9 +163,12 @@ pub(crate) fn load_lesson(source: &Source, inbox: &Inbox) -> Fetch {
     let (source, inbox) = (source.clone(), inbox.clone());
     spawn_local(async move {
         let result = match &source {
-            Source::BuiltIn(file) => bundled(&format!("lessons/{file}"), &call, &inbox)
-                .await
-                .map_err(|reason| format!("{file} could not be loaded: {reason}.")),
+            Source::BuiltIn(file) => {
+                bundled(&format!("lessons/{file}"), &call, &inbox).await.map_err(|reason| {
+                    let file = file.clone();
+                    msg!("{file} could not be loaded: {reason}.", file, reason)
+                })
+            }
             Source::Web(address) => {
                 get(address, &LESSON, &call, &inbox).await.map(|pieces| pieces.to_bytes())
             }
@@ -176,26 +181,27 @@ pub(crate) fn load_lesson(source: &Source, inbox: &Inbox) -> Fetch {
     fetch
 }
 
-/// Asks for what it takes to speak a language; [`Incoming::Language`] brings it.
+/// Asks for the files of a language; [`Incoming::Language`] brings them.
 pub(crate) fn load_language(tag: &'static str, inbox: &Inbox) {
     let inbox = inbox.clone();
     spawn_local(async move {
         let part =
             async |ending| bundled(&format!("lang/{tag}.{ending}"), &Call::new(), &inbox).await;
         let files = async { Ok([part("json").await?, part("otf").await?]) };
-        inbox.push(Incoming::Language(files.await));
+        let files = files.await;
+        inbox.push(Incoming::Language { tag, files });
     });
 }
 
 /// A file that lies beside the page.
-async fn bundled(address: &str, call: &Call, inbox: &Inbox) -> Result<Arc<[u8]>, String> {
+async fn bundled(address: &str, call: &Call, inbox: &Inbox) -> Result<Arc<[u8]>, Message> {
     let refused = || {
         let late = call.0.is_late.get().then_some("its server does not answer");
-        late.unwrap_or("the connection may have been interrupted").to_owned()
+        Message::word(late.unwrap_or("the connection may have been interrupted"))
     };
     let response = request(address, RequestMode::SameOrigin, call).await.map_err(|_| refused())?;
     if !response.ok() {
-        return Err(format!("its server answered {}", response.status()));
+        return Err(msg!("its server answered {status}", status = response.status()));
     }
     let bytes = read(&response, address, None, MAX_FILE_BYTES, call, inbox).await;
     bytes.map(|pieces| pieces.to_bytes()).map_err(|_| refused())
@@ -232,7 +238,12 @@ async fn request(address: &str, mode: RequestMode, call: &Call) -> Result<Respon
     JsFuture::from(window.fetch_with_str_and_init(address, &init)).await?.dyn_into()
 }
 
-async fn get(address: &str, wanted: &Wanted, call: &Call, inbox: &Inbox) -> Result<Pieces, String> {
+async fn get(
+    address: &str,
+    wanted: &Wanted,
+    call: &Call,
+    inbox: &Inbox,
+) -> Result<Pieces, Message> {
     let name = file_name_of(address);
     let Ok(response) = request(address, RequestMode::Cors, call).await else {
         return Err(match call.lateness(address, &name) {
@@ -244,32 +255,35 @@ async fn get(address: &str, wanted: &Wanted, call: &Call, inbox: &Inbox) -> Resu
     match response.status() {
         200..=299 => {}
         404 | 410 => {
-            return Err(format!(
-                "There is no file at {} (answer {}).",
-                short(address),
-                response.status()
+            return Err(msg!(
+                "There is no file at {address} (answer {status}).",
+                address = short(address),
+                status = response.status()
             ));
         }
         401 | 403 => {
-            return Err(format!(
-                "{} does not give {name} to everybody (answer {}).",
-                host_of(address),
-                response.status()
+            return Err(msg!(
+                "{host} does not give {name} to everybody (answer {status}).",
+                host = host_of(address).to_owned(),
+                name = name.to_string(),
+                status = response.status()
             ));
         }
         status => {
-            return Err(format!(
-                "{} answered {status} instead of {name}. Try again later.",
-                host_of(address)
+            return Err(msg!(
+                "{host} answered {status} instead of {name}. Try again later.",
+                host = host_of(address).to_owned(),
+                status,
+                name = name.to_string()
             ));
         }
     }
     let header = |key| response.headers().get(key).ok().flatten();
     if header("content-type").is_some_and(|kind| kind.starts_with("text/html")) {
-        return Err(format!(
-            "{} is a web page, not {}. Use the address of the file itself (on GitHub: Raw).",
-            short(address),
-            wanted.what
+        return Err(msg!(
+            "{address} is a web page, not {what}. Use the address of the file itself (on GitHub: Raw).",
+            address = short(address),
+            what = wanted.what
         ));
     }
     let total = header("content-length").and_then(|length| length.parse::<u64>().ok());
@@ -280,7 +294,11 @@ async fn get(address: &str, wanted: &Wanted, call: &Call, inbox: &Inbox) -> Resu
         match error {
             Unread::TooLarge(reason) => reason,
             Unread::Broken(error) => call.lateness(address, &name).unwrap_or_else(|| {
-                format!("The connection broke while {name} was loading: {}.", words_of(&error))
+                msg!(
+                    "The connection broke while {name} was loading: {error}.",
+                    name = name.to_string(),
+                    error = words_of(&error)
+                )
             }),
         }
     })
@@ -313,17 +331,17 @@ impl Pieces {
     }
 
     /// The file `name`: in the page's memory only where it is small.
-    fn into_file(self, name: &str) -> Result<FileBytes, String> {
+    fn into_file(self, name: &str) -> Result<FileBytes, Message> {
         if self.bytes <= LARGE_BYTES {
             return Ok(FileBytes::Here(self.to_bytes()));
         }
         let file = LargeFile::of_pieces(&self.parts).map(FileBytes::Large);
-        file.ok_or_else(|| format!("This browser has no room for {name}."))
+        file.ok_or_else(|| msg!("This browser has no room for {name}.", name = name.to_owned()))
     }
 }
 
 enum Unread {
-    TooLarge(String),
+    TooLarge(Message),
     Broken(JsValue),
 }
 
@@ -373,32 +391,37 @@ async fn read(
 
 /// A browser does not say why it refused. Asking again without wanting to read the answer tells
 /// apart a server that is not there from one that does not let other pages read.
-async fn why_refused(address: &str, wanted: &Wanted) -> String {
-    let host = host_of(address);
+async fn why_refused(address: &str, wanted: &Wanted) -> Message {
+    let host = host_of(address).to_owned();
     let Some(window) = window() else {
-        return String::new();
+        return Message::default();
     };
     if !window.navigator().on_line() {
-        return format!(
-            "There is no connection to the internet, so {} was not loaded.",
-            file_name_of(address)
+        return msg!(
+            "There is no connection to the internet, so {name} was not loaded.",
+            name = file_name_of(address).to_string()
         );
     }
     if address.starts_with("http://")
         && window.is_secure_context()
         && window.location().protocol().is_ok_and(|p| p == "https:")
     {
-        return format!(
-            "Browsers do not let a secure page load from {}. Use an address that starts with https://.",
-            short(address)
+        return msg!(
+            "Browsers do not let a secure page load from {address}. Use an address that starts with https://.",
+            address = short(address)
         );
     }
     let call = Call::new();
     let there = request(address, RequestMode::NoCors, &call).await.is_ok();
     call.stop();
     if there {
-        format!("{host} does not allow other pages to read its files (CORS). {}", wanted.otherwise)
+        let what = wanted.otherwise;
+        msg!("{host} does not allow other pages to read its files (CORS). {what}", host, what)
     } else {
-        format!("{host} cannot be reached. Check the address: {}", short(address))
+        msg!(
+            "{host} cannot be reached. Check the address: {address}",
+            host,
+            address = short(address)
+        )
     }
 }

@@ -7,6 +7,7 @@ use crate::platform::{Inbox, Incoming, MAX_FILE_BYTES, too_large};
 use eframe::egui::{self, DroppedFileHandle};
 use js_sys::{Array, Reflect, Uint8Array};
 use segue_session::reading::LARGE_BYTES;
+use segue_text::{Message, msg};
 use std::path::Path;
 use std::sync::Arc;
 use wasm_bindgen::{JsCast as _, JsValue};
@@ -75,7 +76,10 @@ fn deliver(name: String, bytes: Result<Vec<u8>, String>, inbox: &Inbox) {
         Err(error) => {
             log::warn!("{name}: {error}");
             Incoming::Failed {
-                reason: format!("{name} cannot be read. If it is a folder, drop the files in it."),
+                reason: msg!(
+                    "{name} cannot be read. If it is a folder, drop the files in it.",
+                    name
+                ),
             }
         }
     });
@@ -121,7 +125,11 @@ pub(crate) fn download(file_name: &str, mime: &str, bytes: &[u8], inbox: &Inbox)
     );
     if let Err(error) = blob.and_then(|blob| hand_over(file_name, &blob)) {
         inbox.push(Incoming::Failed {
-            reason: format!("{file_name} could not be saved: {}.", words_of(&error)),
+            reason: msg!(
+                "{file} could not be saved: {error}.",
+                file = file_name.to_owned(),
+                error = words_of(&error)
+            ),
         });
     }
 }
@@ -171,11 +179,17 @@ pub(crate) fn copy_text(text: String, _ctx: &egui::Context, inbox: &Inbox) {
 
 /// What to do where the clipboard is closed to pages: copy what is short by hand, and take the rest
 /// as a file.
-fn by_hand(text: &str, inbox: &Inbox) -> String {
-    let refused = "This browser does not let the page use the clipboard.";
+fn by_hand(text: &str, inbox: &Inbox) -> Message {
     if text.len() < LONGEST_NOTICE {
-        return format!("{refused} Copy it by hand: {text}");
+        let text = text.to_owned();
+        return msg!(
+            "This browser does not let the page use the clipboard. Copy it by hand: {text}",
+            text
+        );
     }
     download(TEXT_FILE, "text/markdown", text.as_bytes(), inbox);
-    format!("{refused} It is saved as {TEXT_FILE} instead.")
+    msg!(
+        "This browser does not let the page use the clipboard. It is saved as {file} instead.",
+        file = TEXT_FILE.to_owned()
+    )
 }

@@ -8,6 +8,7 @@ use crate::platform::{Inbox, Incoming};
 use eframe::egui::Rect;
 use js_sys::{Array, Error, Promise, Reflect};
 use segue_session::export::file_name;
+use segue_text::{Message, msg};
 use std::cell::OnceCell;
 use wasm_bindgen::{JsCast as _, JsValue};
 use wasm_bindgen_futures::{JsFuture, spawn_local};
@@ -66,7 +67,11 @@ pub(crate) fn take_picture(stage: Rect, inbox: &Inbox) {
 fn tell_failure(file_name: &str, done: Result<(), JsValue>, inbox: &Inbox) {
     if let Err(error) = done {
         inbox.push(Incoming::Failed {
-            reason: format!("{file_name} could not be saved: {}.", words_of(&error)),
+            reason: msg!(
+                "{file} could not be saved: {error}.",
+                file = file_name.to_owned(),
+                error = words_of(&error)
+            ),
         });
     }
 }
@@ -96,11 +101,11 @@ pub(crate) struct Film {
 
 impl Film {
     /// Begins to film the canvas.
-    pub(crate) fn begin() -> Result<Self, String> {
+    pub(crate) fn begin() -> Result<Self, Message> {
         if !can_film() {
-            return Err("this browser cannot record what a page shows".to_owned());
+            return Err("this browser cannot record what a page shows".into());
         }
-        Self::of_canvas().map_err(|error| words_of(&error))
+        Self::of_canvas().map_err(|error| Message::data(words_of(&error)))
     }
 
     fn of_canvas() -> Result<Self, JsValue> {

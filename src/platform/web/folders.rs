@@ -7,6 +7,7 @@ use crate::platform::{
     Inbox, Incoming, MOST_FILES_OF_FOLDER, is_motion_file, no_motion_in, too_many_in,
 };
 use js_sys::{Array, Promise};
+use segue_text::msg;
 use wasm_bindgen::{JsCast as _, JsValue};
 use wasm_bindgen_futures::{JsFuture, spawn_local};
 use web_sys::{DragEvent, File, FileSystemDirectoryEntry, FileSystemEntry, FileSystemFileEntry};
@@ -63,7 +64,7 @@ async fn read_entry(entry: FileSystemEntry, inbox: &Inbox) {
         }
         Ok(files) => read(files, inbox.clone()).await,
         Err(error) => inbox.push(Incoming::Failed {
-            reason: format!("{name} cannot be read: {}.", words_of(&error)),
+            reason: msg!("{name} cannot be read: {error}.", name, error = words_of(&error)),
         }),
     }
 }

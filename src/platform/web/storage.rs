@@ -16,6 +16,7 @@ use idb::{
 };
 use js_sys::{Date, Math, Uint8Array};
 use segue_session::{SavedEntry, Storing};
+use segue_text::{Message, msg};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
@@ -110,7 +111,7 @@ impl Storage {
                 state.queue.clear();
                 if name_of(&error).is_some_and(|name| name == "VersionError") {
                     let reason = "A newer Segue has stored its work in this browser, and this page cannot read it: nothing is stored until you reload the page.";
-                    (None, Some(reason.to_owned()))
+                    (None, Some(Message::word(reason)))
                 } else {
                     // A private window, or storage that the user switched off: Segue works, and
                     // promises nothing.
@@ -128,7 +129,7 @@ impl Storage {
     }
 
     /// What is stored, and what is to be said of it.
-    async fn open_and_read(&self) -> Result<(Option<Stored>, Option<String>), Error> {
+    async fn open_and_read(&self) -> Result<(Option<Stored>, Option<Message>), Error> {
         let database = Rc::new(open_database().await?);
         self.state.borrow_mut().database = Some(Rc::clone(&database));
         let transaction = database.transaction(&[WORK, FILES], TransactionMode::ReadOnly)?;
@@ -146,9 +147,9 @@ impl Storage {
             .filter_map(|(key, value)| Some((key.as_string()?, file_bytes(value)?)))
             .collect();
         let problem = records.problem.map(|problem| {
-            format!(
-                "The list of your work in this browser's storage cannot be read ({problem}). It is kept, and no file is deleted: your clips are here, \
-                 what you set and corrected is not."
+            msg!(
+                "The list of your work in this browser's storage cannot be read ({problem}). It is kept, and no file is deleted: your clips are here, what you set and corrected is not.",
+                problem = problem.to_string()
             )
         });
         if records.saved.is_none() && records.loose.is_empty() {
@@ -314,14 +315,15 @@ impl Storage {
         }
         full.dedup();
         if !full.is_empty() {
-            let reason = format!(
-                "This browser's storage is full: {} will not be here on the next visit. Remove clips from the library that you do not need.",
-                in_short(&full)
+            let reason = msg!(
+                "This browser's storage is full: {names} will not be here on the next visit. Remove clips from the library that you do not need.",
+                names = in_short(&full)
             );
             self.inbox.push(Incoming::Failed { reason });
         }
         if let Some((name, reason)) = other {
-            let reason = format!("{name} could not be stored in this browser: {reason}.");
+            let reason =
+                msg!("{name} could not be stored in this browser: {reason}.", name, reason);
             self.inbox.push(Incoming::Failed { reason });
         }
     }
@@ -424,13 +426,16 @@ impl Storage {
 
 impl Failure {
     /// What is said where the work as a whole was not written.
-    fn of_work(&self) -> String {
+    fn of_work(&self) -> Message {
         match self {
             Self::Full => {
                 "This browser's storage is full: the library and the parameters are not stored. Remove clips that you do not need."
-                    .to_owned()
+                    .into()
             }
-            Self::Other(reason) => format!("The work could not be stored in this browser: {reason}."),
+            Self::Other(reason) => msg!(
+                "The work could not be stored in this browser: {reason}.",
+                reason = reason.clone()
+            ),
         }
     }
 }

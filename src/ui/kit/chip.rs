@@ -2,6 +2,7 @@
 
 use super::icon::Icon;
 use super::paint::{Run, line_of, put};
+use crate::ui::language::tr;
 use crate::ui::theme::{Palette, Type, palette_of, radius, theme_of};
 use eframe::egui::{
     Align2, Color32, Painter, Pos2, Rect, Role, Sense, Stroke, StrokeKind, Ui, Vec2, WidgetInfo,
@@ -135,7 +136,8 @@ pub(crate) fn recording_ui(name: &str, secs: f64, right_center: Pos2, ui: &mut U
     dot(rect.left_center() + vec2(13.0 * scale, 0.0), palette.bad, 4.5 * scale, ui.painter());
     put(ui.painter(), rect.right_center() - vec2(10.0 * scale, 0.0), Align2::RIGHT_CENTER, galley);
     let response = ui.interact(rect, ui.make_persistent_id(("recording", name)), Sense::hover());
-    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("{name}, {time}")));
+    let said = format!("{}, {time}", tr(name, ui));
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &said));
     rect
 }
 

@@ -15,8 +15,6 @@ use eframe::egui::{
 pub(crate) struct ClipRow<'a> {
     /// Its name.
     pub(crate) name: &'a str,
-    /// The name is the user's own, such as that of a file.
-    pub(crate) own: bool,
     /// Length, rate, joints: `3.9 s · 120 fps · 30 joints`. Wraps.
     pub(crate) detail: &'a str,
     /// The part it plays now.
@@ -78,7 +76,7 @@ pub(crate) fn clip_row_ui(row: ClipRow<'_>, ui: &mut Ui) -> ClipRowResponse {
     let show_actions = (hovered || response.has_focus()) && !row.actions.is_empty();
     let actions_width = if show_actions { row.actions.len() as f32 * HIT + 2.0 } else { 0.0 };
     let name = line_of(
-        &[Run::new(row.name, Type::Strong, palette.text).own(row.own)],
+        &[Run::new(row.name, Type::Strong, palette.text).own(true)],
         text_width - actions_width,
         ui,
     );

@@ -2,6 +2,7 @@
 
 use super::paint::{Run, line_of, put};
 use super::timeline::{TimeAxis, hovered_time, nice_step};
+use crate::ui::language::tr;
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{Align2, Color32, Rect, Response, Stroke, StrokeKind, Ui, pos2, vec2};
 
@@ -113,7 +114,7 @@ pub(super) fn curves_ui(
 /// The names of the curves in their colours, in the space before them.
 pub(super) fn key_ui(curves: &Curves<'_>, area: Rect, ui: &Ui) {
     let palette = palette_of(ui);
-    let title = [curves.title, curves.unit].join(" ");
+    let title = format!("{} {}", tr(curves.title, ui), tr(curves.unit, ui));
     let title = line_of(&[Run::new(title.trim(), Type::Small, palette.muted)], area.width(), ui);
     let at = put(ui.painter(), area.left_top() + vec2(0.0, space::S), Align2::LEFT_TOP, title);
     // Letters share a line; words have one each.

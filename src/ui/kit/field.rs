@@ -60,8 +60,7 @@ pub(crate) fn value_row_ui(label: &str, value: &str, unit: &str, ui: &mut Ui) ->
     );
     put(ui.painter(), pos2(row.left(), row.center().y), Align2::LEFT_CENTER, label_galley);
     let response = ui.interact(row, ui.make_persistent_id(("value", label)), Sense::hover());
-    response.widget_info(|| {
-        WidgetInfo::labeled(Role::Label, enabled, format!("{label}: {value} {unit}"))
-    });
+    let said = format!("{}: {value} {}", tr(label, ui), tr(unit, ui));
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, enabled, &said));
     response
 }

@@ -188,15 +188,7 @@ fn library_ui(_mock: &mut Mock, ui: &mut Ui) {
     let actions = [(Icon::Pencil, "Rename"), (Icon::Trash, "Remove")];
     for (index, (name, detail, part, warning)) in CLIPS.into_iter().enumerate() {
         clip_row_ui(
-            ClipRow {
-                name,
-                own: false,
-                detail,
-                part,
-                warning,
-                selected: index == 2,
-                actions: &actions,
-            },
+            ClipRow { name, detail, part, warning, selected: index == 2, actions: &actions },
             ui,
         );
     }

@@ -49,13 +49,8 @@ pub(crate) fn metric_strip_ui(metrics: &[Metric<'_>], ui: &mut Ui) {
         );
         put(ui.painter(), pos2(rect.left(), rect.top() + 0.56 * height), Align2::LEFT_TOP, label);
         let response = ui.interact(rect, ui.make_persistent_id(("metric", index)), Sense::hover());
-        response.widget_info(|| {
-            WidgetInfo::labeled(
-                Role::Label,
-                true,
-                format!("{} {} {word}", metric.value, metric.label),
-            )
-        });
+        let said = format!("{} {} {}", metric.value, tr(metric.label, ui), tr(word, ui));
+        response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &said));
         if !metric.hint.is_empty() {
             response.on_hover_text(tr(metric.hint, ui));
         }

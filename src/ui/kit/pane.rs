@@ -3,6 +3,7 @@
 use super::chip::{Mood, chip_size, paint_chip};
 use super::metrics::{Metric, metric_strip_height, metric_strip_ui};
 use super::paint::{Run, line_of, put};
+use crate::ui::language::tr;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{
     Align2, Direction, Rect, Role, Sense, Shape, Ui, UiBuilder, WidgetInfo, pos2, vec2,
@@ -57,7 +58,7 @@ pub(crate) fn pane_header_ui(title: &PaneTitle<'_>, pane: Rect, ui: &mut Ui) -> 
         ui.make_persistent_id(("pane", pane.min.x.to_bits(), title.strong)),
         Sense::hover(),
     );
-    let said = [title.strong, title.text, title.secondary, title.chip].join(" ");
+    let said = [title.strong, title.text, title.secondary, &tr(title.chip, ui)].join(" ");
     response.widget_info(|| WidgetInfo::labeled(Role::Heading, true, &said));
     strip
 }

@@ -285,7 +285,6 @@ fn a_clip_its_letter_and_its_actions_are_told_apart() {
         let actions = [(Icon::Pencil, "Rename"), (Icon::Trash, "Remove")];
         let row = ClipRow {
             name: "walk",
-            own: false,
             detail: "3.9 s",
             part: Part::A,
             actions: &actions,

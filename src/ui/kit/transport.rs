@@ -86,7 +86,7 @@ pub(crate) fn transport_ui(transport: &Transport<'_>, ui: &mut Ui) -> Option<Tra
         }
         ui.add_space(space::XS);
         let time = format!("{:.2} s", transport.now);
-        let frame = format!("{} {} / {}", words.frame, transport.frame, transport.frames);
+        let frame = format!("{} {} / {}", tr(words.frame, ui), transport.frame, transport.frames);
         let mut runs = vec![Run::new(&time, Type::Strong, palette.text)];
         if !narrow {
             runs.push(Run::new(&frame, Type::Body, palette.muted).after(space::M));

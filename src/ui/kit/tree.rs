@@ -2,13 +2,14 @@
 
 use super::icon::{Icon, paint_icon};
 use super::paint::{Run, faded, focus_ring, line_of, put};
-use crate::ui::language::tr;
+use crate::ui::language::{say, tr};
 use crate::ui::theme::{HIT, Type, palette_of, radius, space, theme_of};
 use eframe::egui::accesskit::Action;
 use eframe::egui::{
     Align2, CursorIcon, EventFilter, Id, Key, Rect, Response, Role, ScrollArea, Sense, Ui,
     WidgetInfo, pos2, style::ScrollAnimation, vec2,
 };
+use segue_text::Message;
 use std::collections::BTreeSet;
 
 /// A hierarchy. Parents stand before their children; roots have none.
@@ -32,7 +33,7 @@ pub(crate) struct TreeRow {
     /// A word at the right end.
     pub(crate) detail: String,
     /// What appears when the pointer rests on it.
-    pub(crate) hint: String,
+    pub(crate) hint: Message,
 }
 
 /// A row that is open to be seen.
@@ -268,14 +269,12 @@ fn row_ui(
     );
     put(ui.painter(), pos2(left, rect.center().y), Align2::LEFT_CENTER, name);
     focus_ring(rect.shrink(2.0), radius::S, &response, ui);
-    response.widget_info(|| {
-        let name = if says.detail.is_empty() {
-            says.name.clone()
-        } else {
-            format!("{}, {}", says.name, says.detail)
-        };
-        WidgetInfo::labeled(Role::TreeItem, enabled, name)
-    });
+    let said = if says.detail.is_empty() {
+        says.name.clone()
+    } else {
+        format!("{}, {}", says.name, tr(&says.detail, ui))
+    };
+    response.widget_info(|| WidgetInfo::labeled(Role::TreeItem, enabled, &said));
     response.ctx.accesskit_node_builder(response.id, |node| {
         node.set_selected(is_chosen);
         node.set_level(row.depth + 1);
@@ -284,7 +283,7 @@ fn row_ui(
             node.add_action(if is_folded { Action::Expand } else { Action::Collapse });
         }
     });
-    if says.hint.is_empty() { response } else { response.on_hover_text(tr(&says.hint, ui)) }
+    if says.hint.is_empty() { response } else { response.on_hover_text(say(&says.hint, ui)) }
 }
 
 #[cfg(test)]

@@ -2,11 +2,13 @@
 
 use super::keys::keys_pressed;
 use super::paint::{Run, focus_ring, line_of, put};
+use crate::ui::language::{say, tr};
 use crate::ui::theme::{Type, palette_of, radius, theme_of};
 use eframe::egui::{
     Align2, CursorIcon, Id, Key, Mesh, Pos2, Rect, Role, Sense, Shape, Stroke, StrokeKind, Ui,
     WidgetInfo, pos2, vec2,
 };
+use segue_text::msg;
 
 /// A key: per cent of the time, and per cent of the weight.
 type CurveKey = (usize, usize);
@@ -149,7 +151,13 @@ pub(crate) fn weight_curve_ui(row: &WeightCurveRow<'_>, ui: &mut Ui) -> Vec<Weig
         let at = place(key);
         let handle = Rect::from_center_size(at, vec2(2.0, 2.0) * REACH * scale);
         let response = ui.interact(handle, id.with(index), Sense::focusable_noninteractive());
-        let name = format!("{}: {} % at {} %", row.label, key.1, key.0);
+        let name = msg!(
+            "{label}: {weight} % at {time} %",
+            label = tr(row.label, ui).into_owned(),
+            weight = key.1,
+            time = key.0
+        );
+        let name = say(&name, ui);
         response.widget_info(|| WidgetInfo::labeled(Role::Slider, true, &name));
         if let Some(changed) = response.has_focus().then(|| worked(row.keys, index, ui)).flatten() {
             events.extend([changed, WeightCurveEvent::Settled]);

@@ -12,6 +12,7 @@ use crate::ui::text;
 use crate::ui::theme::space;
 use eframe::egui::Ui;
 use segue_session::{Key, LabId, Session, Slot};
+use segue_text::msg;
 
 /// The lab's part of the page.
 pub(super) const LAB: LabUi = LabUi {
@@ -25,8 +26,11 @@ pub(super) const LAB: LabUi = LabUi {
 fn title(shown: &Shown<'_>) -> Title {
     Title {
         strong: shown.name(Key::A),
-        text: format!("→ {}", shown.name(Key::B)),
-        secondary: format!("{} frames", shown.params.number(Key::BlendWindow)),
+        text: msg!("→ {clip}", clip = shown.name(Key::B)),
+        secondary: msg!(
+            "{count, plural, one {# frame} other {# frames}}",
+            count = shown.params.number(Key::BlendWindow) as i64
+        ),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::ui::kit;
 use crate::ui::labs::{Compares, LabUi, Shown, Title};
-use crate::ui::language::tr;
+use crate::ui::language::say;
 use crate::ui::out::Out;
 use crate::ui::rows::{Detail, param_row_ui};
 use crate::ui::rows::{compare_ui, foot_rows_ui, lab_label, pair_ui, save_result_ui};
@@ -12,6 +12,7 @@ use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{RichText, Ui};
 use segue_session::choices;
 use segue_session::{Key, Session};
+use segue_text::msg;
 
 /// The lab's part of the page.
 pub(super) const LAB: LabUi = LabUi {
@@ -25,7 +26,7 @@ pub(super) const LAB: LabUi = LabUi {
 fn title(shown: &Shown<'_>) -> Title {
     Title {
         strong: shown.name(Key::A),
-        text: format!("+ {}", shown.name(Key::B)),
+        text: msg!("+ {clip}", clip = shown.name(Key::B)),
         secondary: shown.spoken(Key::Mask),
     }
 }
@@ -50,7 +51,7 @@ pub(super) fn layers_ui(session: &Session, state: &mut UiState, out: &mut Out, u
     }
     param_row_ui(Key::LayerFit, &plain, session, out, ui);
     if let Some(layer) = session.main_outcome().and_then(|outcome| outcome.layer()) {
-        let words = RichText::new(tr(&text::fit(layer), ui)).font(theme_of(ui).font(Type::Small));
+        let words = RichText::new(say(&text::fit(layer), ui)).font(theme_of(ui).font(Type::Small));
         ui.label(words.color(palette_of(ui).muted));
     }
     param_row_ui(Key::LayerStart, &plain, session, out, ui);

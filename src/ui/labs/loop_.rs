@@ -2,6 +2,7 @@
 
 use crate::ui::kit::{self, Button};
 use crate::ui::labs::{Compares, LabUi, Shown, Title};
+use crate::ui::language::say;
 use crate::ui::out::Out;
 use crate::ui::rows::clip_sets_ui;
 use crate::ui::rows::{Detail, param_row_ui};
@@ -12,6 +13,7 @@ use crate::ui::theme::{palette_of, space};
 use eframe::egui::Ui;
 use segue_session::choices::LoopMethod;
 use segue_session::{Cycle, CycleMade, Key, Session, Slot, Value};
+use segue_text::Message;
 
 /// The lab's part of the page.
 pub(super) const LAB: LabUi = LabUi {
@@ -56,10 +58,10 @@ pub(super) fn loop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     let place = |key, said_below: bool| Detail {
         max: duration,
         help: Some(match (automatic(key), said_below) {
-            (false, _) => text::BY_HAND.to_owned(),
-            (true, true) => String::new(),
+            (false, _) => text::BY_HAND.into(),
+            (true, true) => Message::default(),
             // Said in a warning below.
-            (true, false) if poor && automatic(Key::LoopFrom) => String::new(),
+            (true, false) if poor && automatic(Key::LoopFrom) => Message::default(),
             (true, false) => found_sentence(cycle),
         }),
         ..Detail::default()
@@ -69,7 +71,8 @@ pub(super) fn loop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     if let Some(distance_cm) =
         distance_cm.filter(|_| poor && automatic(Key::LoopFrom) && automatic(Key::LoopTo))
     {
-        kit::note_ui(&text::poor_ends(distance_cm), palette_of(ui).warning, ui);
+        let words = text::poor_ends(distance_cm);
+        kit::note_ui(&say(&words, ui), palette_of(ui).warning, ui);
     }
     param_row_ui(Key::LoopMethod, &Detail::default(), session, out, ui);
     // With several methods side by side, what any of them has to set is there.
@@ -78,7 +81,7 @@ pub(super) fn loop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
         kit::note_ui(text::loop_method(*method), palette_of(ui).muted, ui);
     }
     if !methods.iter().all(|method| matches!(method, LoopMethod::Linear | LoopMethod::Cubic)) {
-        let detail = Detail { help: Some(text::LOOP_HALF_LIFE.to_owned()), ..Detail::default() };
+        let detail = Detail { help: Some(text::LOOP_HALF_LIFE.into()), ..Detail::default() };
         param_row_ui(Key::HalfLife, &detail, session, out, ui);
         compare_ui(Key::HalfLife, session, out, ui);
     }
@@ -103,9 +106,9 @@ pub(super) fn compare_loops(session: &Session, out: &mut Out) {
 }
 
 /// How the ends were found, and how well they fit.
-fn found_sentence(cycle: Option<Cycle>) -> String {
+fn found_sentence(cycle: Option<Cycle>) -> Message {
     match cycle.map(|cycle| cycle.made) {
         Some(CycleMade::Cut { distance_cm, .. }) => text::ends_found(distance_cm),
-        _ => format!("{}.", text::FOUND),
+        _ => Message::word(text::FOUND).sentence(),
     }
 }

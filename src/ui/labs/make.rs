@@ -9,6 +9,7 @@ use crate::ui::theme::space;
 use eframe::egui::Ui;
 use segue_session::choices::MadeAction;
 use segue_session::{Command, Group, Key, LabId, PARAMS, Params, Session};
+use segue_text::Message;
 
 /// The lab's part of the page.
 pub(super) const LAB: LabUi = LabUi {
@@ -25,13 +26,13 @@ fn title(shown: &Shown<'_>) -> Title {
     Title { strong: action(shown.params), ..Title::default() }
 }
 
-fn action(params: &Params) -> String {
-    params.choice::<MadeAction>().word().to_owned()
+fn action(params: &Params) -> Message {
+    params.choice::<MadeAction>().word().into()
 }
 
 /// Returns what a motion that was made from these parameters is called; `None` for a result of
 /// another lab.
-pub(crate) fn made_name(params: &Params) -> Option<String> {
+pub(crate) fn made_name(params: &Params) -> Option<Message> {
     (params.lab() == LabId::Make).then(|| action(params))
 }
 

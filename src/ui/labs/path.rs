@@ -10,8 +10,8 @@ use crate::ui::labs::path::hand::path_of;
 use crate::ui::labs::{Compares, LabUi, Shown, Title};
 use crate::ui::language::{say, tr};
 use crate::ui::out::Out;
-use crate::ui::rows::clip_sets_ui;
 use crate::ui::rows::{Detail, param_row_ui};
+use crate::ui::rows::{clip_sets_ui, clip_titles};
 use crate::ui::rows::{foot_rows_ui, lab_label, save_result_ui, slot_row_ui};
 use crate::ui::state::UiState;
 use crate::ui::text;
@@ -19,7 +19,7 @@ use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Rect, RichText, Ui, UiBuilder, pos2, vec2};
 use segue_motion::path::PathEdit;
 use segue_session::{Command, ExtraCharacterCommand, Key, LabId, OnPath, Session, Slot, Value};
-use segue_text::ToMessage;
+use segue_text::{Message, ToMessage};
 
 /// The lab's part of the page.
 pub(super) const LAB: LabUi = LabUi {
@@ -33,7 +33,8 @@ pub(super) const LAB: LabUi = LabUi {
 fn title(shown: &Shown<'_>) -> Title {
     Title {
         strong: shown.name(Key::A),
-        secondary: path_of(shown.session, shown.pane).map_or_else(String::new, text::path_lengths),
+        secondary: path_of(shown.session, shown.pane)
+            .map_or_else(Message::default, text::path_lengths),
         ..Title::default()
     }
 }
@@ -144,10 +145,10 @@ fn points_ui(path: &OnPath, session: &Session, state: &mut UiState, out: &mut Ou
     let points = path.road.spline().points();
     let chosen = state.path.chosen.and_then(|index| Some((index, *points.get(index)?)));
     let words = chosen.map_or_else(
-        || text::POINTS_HELP.to_owned(),
+        || text::POINTS_HELP.into(),
         |(index, place)| text::chosen_point(index, points.len(), place),
     );
-    kit::note_ui(&words, palette_of(ui).muted, ui);
+    kit::note_ui(&say(&words, ui), palette_of(ui).muted, ui);
 }
 
 /// What is done with the whole path.
@@ -189,10 +190,11 @@ fn warnings_ui(path: &OnPath, ui: &mut Ui) {
     let fps = path.fitted.motion().clip().fps();
     let warning = palette_of(ui).warning;
     for turn in path.hard_turns.iter().take(MOST_WARNINGS) {
-        kit::note_ui(&text::hard_turn(turn, fps), warning, ui);
+        kit::note_ui(&say(&text::hard_turn(turn, fps), ui), warning, ui);
     }
     if path.hard_turns.len() > MOST_WARNINGS {
-        kit::note_ui(&text::more_hard_turns(path.hard_turns.len() - MOST_WARNINGS), warning, ui);
+        let more = text::more_hard_turns(path.hard_turns.len() - MOST_WARNINGS);
+        kit::note_ui(&say(&more, ui), warning, ui);
     }
 }
 
@@ -214,6 +216,7 @@ fn fit_ui(path: Option<&OnPath>, session: &Session, out: &mut Out, ui: &mut Ui) 
         path.fitted.places().get(error.frame).map_or(0.0, |place| place.along_m),
     );
     let color = palette_of(ui).a;
+    let words = say(&words, ui);
     kit::profile_ui(&words, path.fitted.errors_cm(), error.most_cm, color, ui);
     kit::note_ui(&words, palette_of(ui).muted, ui);
 }
@@ -247,8 +250,10 @@ fn company_ui(
             let side = theme.row_height();
             let buttons =
                 Rect::from_min_max(pos2(row.right() - 2.0 * side - space::XS, row.top()), row.max);
+            let title = session.clip_title(&companion.name);
+            let shown = say(&title, ui);
             let name = kit::paint::line_of(
-                &[kit::paint::Run::new(&companion.name, Type::Body, palette.text)],
+                &[kit::paint::Run::new(&shown, Type::Body, palette.text)],
                 buttons.left() - row.left() - 2.0 * space::L,
                 ui,
             );
@@ -261,13 +266,13 @@ fn company_ui(
             ui.scope_builder(UiBuilder::new().max_rect(buttons), |ui| {
                 ui.horizontal(|ui| {
                     ui.spacing_mut().item_spacing.x = space::XS;
-                    let edit = text::edit_companion(&companion.name);
+                    let edit = say(&text::edit_companion(title.clone()), ui);
                     if kit::icon_button_ui(Icon::Swap, &edit, ui).clicked() {
                         state.path.chosen = None;
                         out.commands
                             .push(Command::ExtraCharacters(ExtraCharacterCommand::Edit(place)));
                     }
-                    let leave = text::companion_leaves(&companion.name);
+                    let leave = say(&text::companion_leaves(title), ui);
                     if kit::icon_button_ui(Icon::Close, &leave, ui).clicked() {
                         out.commands
                             .push(Command::ExtraCharacters(ExtraCharacterCommand::Remove(place)));
@@ -285,7 +290,8 @@ fn company_ui(
             .push(Command::ExtraCharacters(ExtraCharacterCommand::AddResult(state.saved_pane)));
     }
     let entries = session.library().entries();
-    let clips = entries.iter().enumerate().map(|(index, entry)| (index, entry.name.as_str()));
+    let titles = clip_titles(session, ui);
+    let clips = titles.iter().map(String::as_str).enumerate();
     let options: Vec<(usize, &str)> =
         std::iter::once((usize::MAX, text::CHOOSE_CLIP)).chain(clips).collect();
     let picked = kit::choice_row_ui(text::JOIN_CLIP, usize::MAX, &options, ui);

@@ -23,7 +23,7 @@ use segue_session::{
     Command, DistanceMap, Key, MOST_ALSO, PlaybackCommand, Registered, Session, Slot, Value,
     weight_curve, write_also, write_pairs,
 };
-use segue_text::ToMessage;
+use segue_text::{Message, ToMessage, msg};
 use std::sync::Arc;
 
 /// The lab's part of the page.
@@ -38,12 +38,13 @@ pub(super) const LAB: LabUi = LabUi {
 fn title(shown: &Shown<'_>) -> Title {
     let b = shown.name(Key::B);
     let text = if shown.params.choice::<choices::WarpMode>() == choices::WarpMode::Join {
-        format!("→ {b}")
+        msg!("→ {clip}", clip = b)
     } else {
         let others = shown.session.also_blended().into_iter();
-        let others = others.map(|(id, _)| shown.name_of(&id).unwrap_or(id));
-        let names: Vec<String> = std::iter::once(b).chain(others).collect();
-        format!("+ {}", names.join(" + "))
+        let others = others.map(|(id, _)| shown.name_of(&id).unwrap_or_else(|| id.into()));
+        let names: Vec<Message> =
+            std::iter::once(b).chain(others).map(|clip| msg!("+ {clip}", clip)).collect();
+        Message::joined(names, " ")
     };
     Title { strong: shown.name(Key::A), text, secondary: shown.spoken(Key::WarpWith) }
 }
@@ -172,7 +173,7 @@ fn also_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
                 }
             });
         });
-        let share = text::weight_of(index);
+        let share = say(&text::weight_of(index), ui);
         let response =
             kit::slider_row_ui(*weight, &SliderRow::new(&share, 0.0..=1.0, 0.0).step(0.01), ui);
         if let Some(weight) = response.changed {
@@ -215,7 +216,10 @@ pub(super) fn compare_warps(session: &Session, out: &mut Out) {
 fn map_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let palette = palette_of(ui);
     let job = session.jobs().into_iter().find(|job| job.kind == JobKind::Registering);
-    let waits = job.map(|job| format!("{}… {:.0} %", text::COMPARING, 100.0 * job.progress));
+    let waits = job.map(|job| {
+        let percent = 100.0 * job.progress;
+        say(&msg!("Comparing all frames… {percent:.0} %", percent), ui)
+    });
     let Some(map) = session.distance_map() else {
         kit::note_ui(waits.as_deref().unwrap_or(text::EMPTY_PANE), palette.muted, ui);
         return;
@@ -264,18 +268,19 @@ fn map_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     }
     ui.add_space(space::XS);
     if let Some(picture) = &picture {
-        let [low, high] = text::heat_ends(picture.range_cm);
+        let [low, high] = text::heat_ends(picture.range_cm).map(|end| say(&end, ui));
         kit::heat_legend_ui(&low, &high, ui);
     }
     let pair = state.hovered_pair.or(now.filter(inside));
-    let known = pair.map(|frames| text::pair_apart(secs(frames), map.cm_at(frames)));
+    let known = pair.map(|frames| say(&text::pair_apart(secs(frames), map.cm_at(frames)), ui));
     kit::note_ui(&waits.or(known).unwrap_or_default(), palette.muted, ui);
     if session.params().text(Key::Pins).is_empty() {
         kit::note_ui(text::MAP_HELP, palette.muted, ui);
     } else {
         ui.horizontal(|ui| {
             ui.label(
-                RichText::new(tr(&text::pins(pins.len()), ui)).font(theme_of(ui).font(Type::Label)),
+                RichText::new(say(&text::pins(pins.len()), ui))
+                    .font(theme_of(ui).font(Type::Label)),
             );
             if kit::button_ui(Button::new(text::REMOVE_PINS), ui).clicked() {
                 out.set_once(Key::Pins, Value::Text(String::new()));

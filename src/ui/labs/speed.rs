@@ -2,6 +2,7 @@
 
 use crate::ui::kit::{self, Button, Mark, Part};
 use crate::ui::labs::{Compares, LabUi, Shown, Title};
+use crate::ui::language::say;
 use crate::ui::out::Out;
 use crate::ui::rows::clip_sets_ui;
 use crate::ui::rows::{Detail, param_row_ui};
@@ -11,6 +12,7 @@ use crate::ui::text;
 use crate::ui::theme::{palette_of, space};
 use eframe::egui::Ui;
 use segue_session::{CycleMade, Key, Session, Value};
+use segue_text::{Message, msg};
 
 /// The lab's part of the page.
 pub(super) const LAB: LabUi = LabUi {
@@ -28,8 +30,8 @@ fn title(shown: &Shown<'_>) -> Title {
     let reached = metrics.filter(|metric| metric.id == "speed_mps").find_map(|metric| metric.value);
     Title {
         strong: shown.name(Key::A),
-        text: format!("~ {}", shown.name(Key::B)),
-        secondary: reached.map_or_else(String::new, |speed| format!("{speed:.2} m/s")),
+        text: msg!("~ {clip}", clip = shown.name(Key::B)),
+        secondary: reached.map_or_else(Message::default, |mps| msg!("{mps:.2} m/s", mps)),
     }
 }
 
@@ -58,7 +60,7 @@ pub(super) fn speed_ui(session: &Session, state: &mut UiState, out: &mut Out, ui
     }
     param_row_ui(Key::Speed, &detail, session, out, ui);
     if let (Some(warning), None) = (warning, session.compare()) {
-        kit::note_ui(&warning, palette.warning, ui);
+        kit::note_ui(&say(&warning, ui), palette.warning, ui);
     }
     let on = session.compare().is_some_and(|compare| compare.key == Key::Speed);
     // The rows of what is compared have the way back.

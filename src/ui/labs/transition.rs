@@ -15,6 +15,7 @@ use eframe::egui::Ui;
 use segue_motion::math::spring;
 use segue_session::choices::{self, TransitionMethod};
 use segue_session::{Key, LabId, Session, Value};
+use segue_text::msg;
 
 /// The lab's part of the page.
 pub(super) const LAB: LabUi = LabUi {
@@ -28,7 +29,7 @@ pub(super) const LAB: LabUi = LabUi {
 fn title(shown: &Shown<'_>) -> Title {
     Title {
         strong: shown.name(Key::A),
-        text: format!("→ {}", shown.name(Key::B)),
+        text: msg!("→ {clip}", clip = shown.name(Key::B)),
         secondary: shown.spoken(Key::Method),
     }
 }

@@ -4,6 +4,7 @@ use crate::ui::clip_panel::clip_panel_ui;
 use crate::ui::kit::{self, Button};
 use crate::ui::labs::toggle_compare;
 use crate::ui::labs::{Compares, LabUi, Shown, Title};
+use crate::ui::language::say;
 use crate::ui::out::Out;
 use crate::ui::rows::{
     Detail, clip_choice_ui, foot_rows_ui, keep_ui, lab_label, param_row_ui, slot_row_ui,
@@ -12,6 +13,7 @@ use crate::ui::state::UiState;
 use crate::ui::text;
 use eframe::egui::Ui;
 use segue_session::{Command, Compare, Key, LabId, Session, Slot, Value};
+use segue_text::msg;
 
 /// The lab's part of the page.
 pub(super) const LAB: LabUi = LabUi {
@@ -61,7 +63,7 @@ fn compared_clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let compare = session.compare().filter(|compare| compare.key == Key::A);
     let label = if let Some(compare) = compare {
         for (pane, value) in compare.values.iter().enumerate() {
-            let label = format!("{} {}", text::CLIP, pane + 1);
+            let label = say(&msg!("Clip {number}", number = pane + 1), ui);
             if let Some(id) =
                 clip_choice_ui(&label, compare.key.param().format(value).as_str(), session, ui)
             {

@@ -1,89 +1,154 @@
-//! Which language the interface speaks.
+//! Which language the interface is shown in.
 //!
-//! The parameter `lang` is `auto` until somebody chooses by hand, as the theme is. Three rules
-//! follow from that one: a link carries a language only when its sender chose one; a link that
-//! names none leaves every reader their own; and what was chosen by hand is stored with the work
-//! and is there again on the next visit.
+//! The parameter `lang` is `auto` until it is chosen by hand, as the theme is. A link therefore
+//! carries a language only when its sender chose one; a link that names none leaves every reader
+//! their own; and a language that was chosen by hand is stored with the work and is there again on
+//! the next visit.
 //!
-//! Everything is written in English, in the place where it is used, and translated where it is set
-//! as text: [`tr`] asks the context's [`Tongue`], and the widgets of the kit ask it for all that
-//! they are given. So the core knows no language, what a link or a file carries stays English, and
-//! a new panel is translated by a row in `assets/lang`. Catalogue and letters are fetched when a
-//! language is first asked for; until they are here, everything is in English.
+//! Texts are written in English where they are used, as words or as [`segue_text::Message`]s, and
+//! written out in the language of the interface where they are drawn: by [`say`] for a message, by
+//! [`tr`] for a word, which the widgets of the kit call for all that they are given. The session
+//! knows no language, and links and files stay English. A language is a row of [`LANGUAGES`] and
+//! its files in `assets/lang`, which are fetched when it is first asked for.
 
-mod catalogue;
-mod tongue;
+mod pack;
 
-pub(crate) use tongue::{Tongue, say, speak_english, tr};
+pub(crate) use pack::{LanguagePack, PackError, activate_english, say, tr};
 
 use segue_session::Session;
-use segue_session::choices;
+use segue_session::choices::PageLanguage;
+use std::fmt;
 
 /// A language of the interface.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum Language {
-    /// What everything is written in.
-    #[default]
-    English,
-    /// Traditional Chinese as it is written in Taiwan.
-    Chinese,
+struct LanguageRow {
+    /// Its tag: the word in the link, and the name of its files.
+    tag: &'static str,
+    /// The tags of readers that it is for: a language, and the scripts or regions of it; none where
+    /// it is for all of them.
+    readers: (&'static str, &'static [&'static str]),
+    /// Its name, in English.
+    name: &'static str,
+    /// The name of the button that switches to it.
+    switch: &'static str,
+    /// Whether the program itself is written in it, so that it has no files.
+    is_built_in: bool,
+}
+
+/// The languages of the interface, the one that texts are written in first.
+static LANGUAGES: [LanguageRow; 2] = [
+    LanguageRow {
+        tag: PageLanguage::En.word(),
+        readers: ("en", &[]),
+        name: "English",
+        switch: "Interface in English",
+        is_built_in: true,
+    },
+    // Traditional Chinese as it is written in Taiwan. Simplified Chinese is another one.
+    LanguageRow {
+        tag: PageLanguage::ZhHant.word(),
+        readers: ("zh", &["hant", "tw", "hk", "mo"]),
+        name: "Chinese",
+        switch: "Interface in Chinese",
+        is_built_in: false,
+    },
+];
+
+/// A row of [`LANGUAGES`]. The default is English.
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
+pub(crate) struct Language(usize);
+
+impl fmt::Debug for Language {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(self.tag())
+    }
 }
 
 impl Language {
-    /// What the parameters ask for, for somebody who reads `preferred`.
+    /// Returns the language that the parameters ask for, for a reader of `preferred`.
     pub(crate) fn of(session: &Session, preferred: Self) -> Self {
-        match session.params().choice::<choices::PageLanguage>() {
-            choices::PageLanguage::En => Self::English,
-            choices::PageLanguage::ZhHant => Self::Chinese,
-            choices::PageLanguage::Auto => preferred,
-        }
+        Self::of_tag(session.params().choice::<PageLanguage>().word()).unwrap_or(preferred)
     }
 
-    /// The first of a reader's languages, best first, that there is; English where there is none of
-    /// them.
+    /// Returns the language of a tag in a link.
+    pub(crate) fn of_tag(tag: &str) -> Option<Self> {
+        LANGUAGES.iter().position(|row| row.tag == tag).map(Self)
+    }
+
+    /// Returns the first of a reader's languages, best first, that there is; English where there is
+    /// none of them.
     pub(crate) fn preferred<'a>(tags: impl IntoIterator<Item = &'a str>) -> Self {
-        tags.into_iter().find_map(Self::from_tag).unwrap_or_default()
+        tags.into_iter().find_map(Self::of_reader).unwrap_or_default()
     }
 
-    /// The language of a tag such as `en-GB`, `zh-TW` or `zh_TW.UTF-8`. Simplified Chinese is
-    /// another one.
-    fn from_tag(tag: &str) -> Option<Self> {
+    /// Returns the language for a reader of a tag such as `en-GB`, `zh-TW` or `zh_TW.UTF-8`.
+    fn of_reader(tag: &str) -> Option<Self> {
         let tag = tag.split('.').next().unwrap_or(tag).to_ascii_lowercase().replace('_', "-");
-        let mut parts = tag.split('-');
-        match parts.next()? {
-            "en" => Some(Self::English),
-            "zh" if parts.any(|part| matches!(part, "hant" | "tw" | "hk" | "mo")) => {
-                Some(Self::Chinese)
-            }
-            _ => None,
-        }
+        let parts: Vec<&str> = tag.split('-').collect();
+        let is_for = |row: &LanguageRow| {
+            let (language, regions) = row.readers;
+            parts.first() == Some(&language)
+                && (regions.is_empty() || parts.iter().any(|part| regions.contains(part)))
+        };
+        LANGUAGES.iter().position(is_for).map(Self)
     }
 
-    /// Its tag: the word in the link, and what its files are called by.
+    fn row(self) -> &'static LanguageRow {
+        LANGUAGES.get(self.0).unwrap_or(&LANGUAGES[0])
+    }
+
+    /// Returns its tag: the word in the link, and the name of its files.
     pub(crate) fn tag(self) -> &'static str {
-        match self {
-            Self::English => "en",
-            Self::Chinese => "zh-Hant",
-        }
+        self.row().tag
+    }
+
+    /// Returns its name, in English.
+    pub(crate) fn name(self) -> &'static str {
+        self.row().name
+    }
+
+    /// Returns the name of the button that switches to it.
+    pub(crate) fn switch(self) -> &'static str {
+        self.row().switch
+    }
+
+    /// Returns whether texts are written in it, so that there is nothing to load.
+    pub(crate) fn is_built_in(self) -> bool {
+        self.row().is_built_in
+    }
+
+    /// Returns the next one in the list, and the first after the last.
+    pub(crate) fn next(self) -> Self {
+        Self((self.0 + 1) % LANGUAGES.len())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use segue_session::{Command, Key, Saved, Value};
+    use segue_session::{Command, Key, Saved, Selected as _, Value};
+
+    fn chinese() -> Language {
+        Language::of_tag("zh-Hant").expect("a row of the table")
+    }
+
+    #[test]
+    fn every_language_of_the_parameter_has_a_row() {
+        let tags: Vec<&str> = PageLanguage::ALL.iter().map(|choice| choice.word()).collect();
+        assert_eq!(tags[0], PageLanguage::Auto.word());
+        assert_eq!(tags[1..], LANGUAGES.each_ref().map(|row| row.tag));
+    }
 
     #[test]
     fn the_first_language_that_there_is_is_taken() {
         for (tags, expected) in [
-            (&["zh-TW", "zh", "en-US"][..], Language::Chinese),
-            (&["zh-Hant-HK"], Language::Chinese),
-            (&["zh_TW.UTF-8"], Language::Chinese),
-            (&["ja", "zh-Hant", "en"], Language::Chinese),
-            (&["en-US", "zh-TW"], Language::English),
-            (&["zh-CN", "zh-Hans-TW"][..1], Language::English),
-            (&["fr", "C"], Language::English),
-            (&[], Language::English),
+            (&["zh-TW", "zh", "en-US"][..], chinese()),
+            (&["zh-Hant-HK"], chinese()),
+            (&["zh_TW.UTF-8"], chinese()),
+            (&["ja", "zh-Hant", "en"], chinese()),
+            (&["en-US", "zh-TW"], Language::default()),
+            (&["zh-CN", "zh-Hans-TW"][..1], Language::default()),
+            (&["fr", "C"], Language::default()),
+            (&[], Language::default()),
         ] {
             assert_eq!(Language::preferred(tags.iter().copied()), expected, "{tags:?}");
         }
@@ -92,12 +157,12 @@ mod tests {
     #[test]
     fn a_link_names_a_language_only_after_it_was_chosen_by_hand() {
         let mut session = Session::new();
-        assert_eq!(Language::of(&session, Language::Chinese), Language::Chinese);
+        assert_eq!(Language::of(&session, chinese()), chinese());
         assert!(!session.query().contains("lang"), "{}", session.query());
         session
-            .apply(Command::Set(vec![(Key::Lang, Value::Choice(Language::English.tag()))]))
+            .apply(Command::Set(vec![(Key::Lang, Value::Choice(Language::default().tag()))]))
             .unwrap();
-        assert_eq!(Language::of(&session, Language::Chinese), Language::English);
+        assert_eq!(Language::of(&session, chinese()), Language::default());
         assert!(session.query().contains("lang=en"), "{}", session.query());
     }
 
@@ -109,23 +174,23 @@ mod tests {
         };
         open(&mut session, "lang=zh-Hant");
         open(&mut session, "lab=make");
-        assert_eq!(Language::of(&session, Language::English), Language::Chinese);
+        assert_eq!(Language::of(&session, Language::default()), chinese());
         open(&mut session, "lab=make&lang=auto");
-        assert_eq!(Language::of(&session, Language::English), Language::English);
+        assert_eq!(Language::of(&session, Language::default()), Language::default());
     }
 
     #[test]
     fn what_was_chosen_on_the_last_visit_is_there_again() {
         let saved = |query: &str| Saved { query: query.into(), ..Session::new().saved() };
         for (stored, link, expected) in [
-            ("lang=zh-Hant", None, Language::Chinese),
-            ("lang=zh-Hant", Some("lab=make"), Language::Chinese),
-            ("lang=zh-Hant", Some("lab=make&lang=en"), Language::English),
-            ("lab=make", Some("lab=blend"), Language::English),
+            ("lang=zh-Hant", None, chinese()),
+            ("lang=zh-Hant", Some("lab=make"), chinese()),
+            ("lang=zh-Hant", Some("lab=make&lang=en"), Language::default()),
+            ("lab=make", Some("lab=blend"), Language::default()),
         ] {
             let mut session = Session::new();
             session.restore(&saved(stored), |_| None, link);
-            assert_eq!(Language::of(&session, Language::English), expected, "{stored}, {link:?}");
+            assert_eq!(Language::of(&session, Language::default()), expected, "{stored}, {link:?}");
         }
     }
 }

@@ -1,13 +1,14 @@
 //! One parameter of the table as a row of a panel.
 
 use crate::ui::kit::{self, Button, Icon, Mark, SliderResponse, SliderRow, Source};
-use crate::ui::language::tr;
+use crate::ui::language::{say, tr};
 use crate::ui::out::Out;
 use crate::ui::text;
 use crate::ui::theme::palette_of;
 use eframe::egui::Ui;
 use segue_motion::skeleton::Role;
 use segue_session::{Command, Compare, Key, Kind, Session, Value, decimals_of};
+use segue_text::{Message, msg};
 
 /// What a panel knows about a parameter beyond the table.
 #[derive(Clone, Debug, Default)]
@@ -19,7 +20,7 @@ pub(crate) struct Detail {
     /// The rate at which a number of frames is also said in seconds.
     pub(crate) fps: Option<f64>,
     /// A sentence in place of the table's.
-    pub(crate) help: Option<String>,
+    pub(crate) help: Option<Message>,
     /// Marks on the track, besides those of a comparison.
     pub(crate) marks: Vec<Mark>,
 }
@@ -92,8 +93,10 @@ fn joint_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
 /// file brought one.
 fn character_ui(key: Key, session: &Session, out: &mut Out, ui: &mut Ui) {
     let brought = session.library().entries().iter().filter(|entry| entry.mesh.is_some());
+    let brought: Vec<(&str, String)> =
+        brought.map(|entry| (entry.id.as_str(), say(&entry.title(), ui))).collect();
     let options: Vec<(&str, &str)> = std::iter::once(("", text::MADE_BODY))
-        .chain(brought.map(|entry| (entry.id.as_str(), entry.name.as_str())))
+        .chain(brought.iter().map(|(id, title)| (*id, title.as_str())))
         .collect();
     if options.len() < 2 {
         return;
@@ -134,7 +137,8 @@ fn number_ui(key: Key, detail: &Detail, session: &Session, out: &mut Out, ui: &m
     }
     let in_seconds =
         |value: f64| detail.fps.map_or_else(String::new, |fps| format!("{:.2} s", value / fps));
-    let help = detail.help.as_deref().unwrap_or(param.help);
+    let help = detail.help.as_ref().map(|help| say(help, ui));
+    let help = help.as_deref().unwrap_or(param.help);
     if let Some(compare) = compare {
         return compared_ui(&compare, session.range_of(key), &row, &in_seconds, help, out, ui);
     }
@@ -189,7 +193,7 @@ fn compared_ui(
         let Some(value) = number_of(value) else {
             continue;
         };
-        let (label, secondary) = (format!("{} · {}", param.label, pane + 1), in_seconds(value));
+        let (label, secondary) = (label_of(param.label, pane, ui), in_seconds(value));
         let row = row.clone().label(&label).secondary(&secondary);
         let response =
             kit::slider_row_ui(value, &row.help(if pane == last { help } else { "" }), ui);
@@ -200,6 +204,11 @@ fn compared_ui(
         settle(&response, out);
     }
     panes_ui(compare, range, out, ui);
+}
+
+/// The label of a parameter's row for one of several panes.
+fn label_of(label: &'static str, pane: usize, ui: &Ui) -> String {
+    say(&msg!("{label} · {number}", label, number = pane + 1), ui)
 }
 
 /// A choice that differs from pane to pane: a row for each of them.
@@ -214,7 +223,7 @@ fn compared_choices_ui(
         let Value::Choice(chosen) = value else {
             continue;
         };
-        let label = format!("{label} · {}", pane + 1);
+        let label = label_of(label, pane, ui);
         let picked = ui.push_id(pane, |ui| kit::choice_row_ui(&label, *chosen, options, ui)).inner;
         if let Some(word) = picked {
             let mut panes = compare.clone();

@@ -205,7 +205,7 @@ fn a_stretch_is_tagged_by_hand() {
     play(5, &mut harness);
     press(text::TAGS, &mut harness);
     press(text::TAG_WHAT_PLAYS, &mut harness);
-    press(&text::tag_as("exclude", false), &mut harness);
+    press(&text::tag_as("exclude", false).to_string(), &mut harness);
     let tags = harness.state().session.hand_tags();
     let [tag] = tags.as_slice() else { panic!("{tags:?}") };
     assert!(tag.word == "exclude" && tag.secs[1] - tag.secs[0] > 0.2 && !tag.takes_away, "{tag:?}");

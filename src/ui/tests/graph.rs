@@ -72,7 +72,7 @@ fn the_graph_lab_does_what_is_pressed() {
     assert!(harness.state().session.graph_walk().is_some_and(|walk| !walk.is_jump));
     // Clips come and go.
     press("Clips of the graph: 3", &mut harness);
-    press("Leave out Walk, turn left", &mut harness);
+    press("Leave Walk, turn left out", &mut harness);
     done(&mut harness);
     assert_eq!(text_of(&harness, Key::Clips), "walk,walk_right");
     press(text::ADD_CLIP, &mut harness);

@@ -1,7 +1,7 @@
 //! The panel of lessons.
 
 use super::*;
-use crate::ui::Tongue;
+use crate::ui::LanguagePack;
 use segue_session::Lesson;
 use segue_session::lesson::Source;
 
@@ -172,12 +172,12 @@ fn harness_in_chinese(size: Vec2, theme: Theme, page: Page) -> Harness<'static, 
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets/lang").join(name);
         std::fs::read(path).expect("a language")
     };
-    let tongue =
-        Tongue::read(&file("zh-Hant.json"), Arc::from(file("zh-Hant.otf"))).expect("a language");
+    let pack = LanguagePack::read(&file("zh-Hant.json"), Arc::from(file("zh-Hant.otf")))
+        .expect("a language");
     let mut harness = harness(size, theme, self::page("lab=make&play=off"));
-    tongue.teach(&harness.ctx);
+    pack.install_fonts(&harness.ctx);
     harness.run();
-    tongue.speak(&harness.ctx);
+    pack.activate(&harness.ctx);
     *harness.state_mut() = page;
     harness.run();
     harness

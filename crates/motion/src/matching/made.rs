@@ -5,6 +5,7 @@ use super::{MatchClip, MatchError};
 use crate::clip::Clip;
 use crate::skeleton::Roles;
 use crate::synth::{Action, Params, synthesize};
+use segue_text::{Message, msg};
 use std::sync::Arc;
 
 /// Returns parameters of synthesised motions that are sufficient to steer a character: standing,
@@ -76,28 +77,33 @@ pub fn made_clips(height_m: f32) -> Result<Vec<MatchClip>, MatchError> {
 pub fn made_clip(params: &Params, roles: Option<Roles>) -> Result<MatchClip, MatchError> {
     let made = synthesize(params)?;
     let roles = roles.unwrap_or_else(|| Roles::detect(made.clip.skeleton()));
-    Ok(MatchClip::new(Arc::new(at_database_rate(&made.clip)?.with_name(name_of(params))), roles))
+    Ok(MatchClip::new(
+        Arc::new(at_database_rate(&made.clip)?.with_name(made_name(params).to_string())),
+        roles,
+    ))
 }
 
-/// Returns the name on screen: `walk 1.4 m/s, 30°/s`.
-fn name_of(params: &Params) -> String {
-    let turn = if params.turn_rate_dps == 0.0 {
-        String::new()
-    } else {
-        format!(", {}°/s", params.turn_rate_dps)
-    };
-    let going = |word: &str| format!("{word} {} m/s{turn}", params.speed_mps);
-    match params.action {
-        Action::Idle => "stand".to_owned(),
-        Action::Spin if params.fps < RATE as f32 => {
-            format!("quick turn by {}°", params.spin_degrees)
+/// Returns the name on screen of a synthesised clip: `walk 1.4 m/s, 30°/s`.
+#[must_use]
+pub fn made_name(params: &Params) -> Message {
+    let going = |what: &'static str| {
+        let (mps, dps) = (params.speed_mps, params.turn_rate_dps);
+        if dps == 0.0 {
+            msg!("{what} {mps} m/s", what, mps)
+        } else {
+            msg!("{what} {mps} m/s, {dps}°/s", what, mps, dps)
         }
-        Action::Spin => format!("turn by {}°", params.spin_degrees),
+    };
+    let degrees = params.spin_degrees;
+    match params.action {
+        Action::Idle => "stand".into(),
+        Action::Spin if params.fps < RATE as f32 => msg!("quick turn by {degrees}°", degrees),
+        Action::Spin => msg!("turn by {degrees}°", degrees),
         Action::Walk => going("walk"),
         Action::Run => going("run"),
         Action::Start => going("start to"),
         Action::Stop => going("stop from"),
-        Action::Jump => "jump".to_owned(),
+        Action::Jump => "jump".into(),
     }
 }
 

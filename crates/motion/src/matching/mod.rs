@@ -117,7 +117,7 @@ pub use desired::{Simulation, Steering};
 pub use drive::{Drive, DriveMetrics, Jump, drive};
 pub use error::MatchError;
 pub use features::{Block, FeatureOptions, Features, Layout, Normalisation, RATE, Weights};
-pub use made::{made_clip, made_clips, made_params};
+pub use made::{made_clip, made_clips, made_name, made_params};
 pub use motion::DatabaseClip;
 pub use pace::Pace;
 pub use scenario::Scenario;

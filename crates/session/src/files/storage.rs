@@ -77,7 +77,7 @@ pub(crate) fn stored_entries(
                     lost.push(file.name.clone());
                     continue;
                 };
-                Entry::new(&stored.id, &stored.name, Origin::File(file.with(content)))
+                Entry::new(&stored.id, stored.name.clone(), Origin::File(file.with(content)))
             }
             // Its motion was made with other roles.
             (Some(here), None) => Entry { motion: None, ..here },
@@ -86,10 +86,10 @@ pub(crate) fn stored_entries(
                     continue;
                 }
                 Some(entry) => entry,
-                None if recipe_params(&stored.id).is_some() => {
-                    Entry::new(&stored.id, &stored.name, Origin::Made)
-                }
-                None => continue,
+                None => match recipe_params(&stored.id) {
+                    Some(params) => Entry::new(&stored.id, recipe_name(&params), Origin::Made),
+                    None => continue,
+                },
             },
         };
         entries.push(Entry {
@@ -105,7 +105,7 @@ pub(crate) fn stored_entries(
 pub(crate) fn is_as_it_came(entry: &Entry) -> bool {
     let own_name = match &entry.origin {
         Origin::File(_) => entry.motion.as_ref().map(|motion| motion.clip().name().to_owned()),
-        Origin::Made => recipe_params(&entry.id).map(|params| recipe_name(&params)),
+        Origin::Made => recipe_params(&entry.id).map(|params| recipe_name(&params).to_string()),
         Origin::Preset | Origin::Sample(_) => {
             built_in_entries().find(|known| known.id == entry.id).map(|known| known.name)
         }

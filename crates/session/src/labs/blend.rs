@@ -17,6 +17,7 @@ use segue_motion::registration::{
 use segue_motion::transition::{
     Inertialization, Method, Mistake, TransitionOptions, concatenate, concatenate_mistaken,
 };
+use segue_text::{Message, msg};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
@@ -28,8 +29,8 @@ impl<S: HasPart<Pairs> + HasPart<Blender>> Lab<S> for BlendLab {
         &[LabId::Blend]
     }
 
-    fn result_name(&self, _params: &Params, a: &str, b: &str) -> String {
-        format!("{a} to {b}")
+    fn result_name(&self, _params: &Params, a: Message, b: Message) -> Message {
+        msg!("{a} to {b}", a, b)
     }
 
     fn file_stem(&self, params: &Params) -> String {
@@ -64,7 +65,7 @@ impl<S: HasPart<Pairs> + HasPart<Blender>> Lab<S> for TransitionLab {
         &[LabId::Blend, LabId::Transition]
     }
 
-    fn result_name(&self, params: &Params, a: &str, b: &str) -> String {
+    fn result_name(&self, params: &Params, a: Message, b: Message) -> Message {
         Lab::<S>::result_name(&BlendLab, params, a, b)
     }
 

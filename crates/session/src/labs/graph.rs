@@ -22,6 +22,7 @@ pub use wanted::{check_graph_clips, graph_of, write_jump, write_path, write_visi
 pub(crate) use wanted::{clips_of, read_path, read_visits};
 
 use super::{LabFacts, Measured, Outcome, Slot, Source, Transition};
+use segue_text::{Message, msg};
 use std::sync::Arc;
 
 /// The Graph lab: a walk through a motion graph.
@@ -57,8 +58,8 @@ impl<S: HasPart<Grapher>> Lab<S> for GraphLab {
         Some(graph_of(ids))
     }
 
-    fn result_name(&self, params: &Params, _a: &str, _b: &str) -> String {
-        format!("walk, seed {}", Key::Seed.param().format(params.get(Key::Seed)))
+    fn result_name(&self, params: &Params, _a: Message, _b: Message) -> Message {
+        msg!("walk, seed {seed}", seed = Key::Seed.param().format(params.get(Key::Seed)))
     }
 
     fn file_stem(&self, _params: &Params) -> String {

@@ -10,6 +10,7 @@ use crate::params::{Key, Params};
 use segue_motion::clip::{Clip, Motion, take_in_place, way_from_feet};
 use segue_motion::math::Planar;
 use segue_motion::metrics::{Metric, foot_slide_cm};
+use segue_text::{Message, msg};
 use std::sync::Arc;
 
 /// The In place lab: one clip without root motion, or with a rebuilt one.
@@ -24,10 +25,10 @@ impl<S> Lab<S> for InPlaceLab {
         &[Slot::A]
     }
 
-    fn result_name(&self, params: &Params, a: &str, _b: &str) -> String {
+    fn result_name(&self, params: &Params, a: Message, _b: Message) -> Message {
         match params.choice() {
-            RootWay::TakeOut => format!("{a}, in place"),
-            RootWay::PutBack => format!("{a}, root motion rebuilt"),
+            RootWay::TakeOut => msg!("{a}, in place", a),
+            RootWay::PutBack => msg!("{a}, root motion rebuilt", a),
         }
     }
 

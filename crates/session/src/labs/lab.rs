@@ -5,6 +5,7 @@ use super::outcome::{Outcome, Slot};
 use crate::LabId;
 use crate::params::{Group, Key, Mark, Params, Value};
 use segue_motion::clip::Motion;
+use segue_text::Message;
 use std::any::Any;
 use std::fmt;
 use std::sync::Arc;
@@ -69,7 +70,7 @@ pub(crate) trait Lab<S>: Sync {
     ) -> Result<Option<Inputs>, LabError>;
 
     /// What the result is called; `a` and `b` are what the clips in its slots are called.
-    fn result_name(&self, params: &Params, a: &str, b: &str) -> String;
+    fn result_name(&self, params: &Params, a: Message, b: Message) -> Message;
 
     /// What a file of the result is called, without its ending.
     fn file_stem(&self, params: &Params) -> String;

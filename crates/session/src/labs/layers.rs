@@ -15,6 +15,7 @@ use segue_motion::gait::{GaitCycle, strike_phases};
 use segue_motion::math::Planar;
 use segue_motion::metrics::{deviations, foot_slide_cm, penetration};
 use segue_motion::transition::{Loop, LoopOptions, close_loop};
+use segue_text::{Message, msg};
 use std::sync::Arc;
 
 /// The Layers lab: a part of one clip over another.
@@ -25,8 +26,8 @@ impl<S: HasPart<Pairs> + HasPart<Layerer>> Lab<S> for LayersLab {
         &[LabId::Layers]
     }
 
-    fn result_name(&self, _params: &Params, a: &str, b: &str) -> String {
-        format!("{a} with {b}")
+    fn result_name(&self, _params: &Params, a: Message, b: Message) -> Message {
+        msg!("{a} with {b}", a, b)
     }
 
     fn file_stem(&self, params: &Params) -> String {

@@ -14,6 +14,7 @@ use segue_motion::metrics::Metric;
 use segue_motion::transition::{
     CutPoints, CycleSearch, LoopMethod, LoopOptions, close_loop, find_cycle,
 };
+use segue_text::{Message, msg};
 use std::sync::Arc;
 
 /// The Loop lab: a cycle cut from a clip, its ends brought together.
@@ -32,8 +33,8 @@ impl<S: HasPart<CycleFinder>> Lab<S> for LoopLab {
         &[Slot::A]
     }
 
-    fn result_name(&self, _params: &Params, a: &str, _b: &str) -> String {
-        format!("{a}, looped")
+    fn result_name(&self, _params: &Params, a: Message, _b: Message) -> Message {
+        msg!("{a}, looped", a)
     }
 
     fn file_stem(&self, params: &Params) -> String {

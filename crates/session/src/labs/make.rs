@@ -9,6 +9,7 @@ use crate::{LabId, choices};
 use segue_motion::clip::Motion;
 use segue_motion::metrics::foot_slide_cm;
 use segue_motion::synth::{self, Action};
+use segue_text::Message;
 use std::sync::Arc;
 
 /// The Make lab: a motion synthesised from parameters.
@@ -23,8 +24,8 @@ impl<S> Lab<S> for MakeLab {
         &[]
     }
 
-    fn result_name(&self, params: &Params, _a: &str, _b: &str) -> String {
-        made_id(params)
+    fn result_name(&self, params: &Params, _a: Message, _b: Message) -> Message {
+        made_id(params).into()
     }
 
     fn file_stem(&self, params: &Params) -> String {

@@ -7,6 +7,7 @@ use crate::LabId;
 use crate::choices;
 use crate::labs::LabError;
 use crate::params::{Key, Params, Value};
+use segue_text::{Message, msg};
 mod crowd;
 mod driver;
 mod live;
@@ -52,10 +53,10 @@ impl<S: HasPart<Driver>> Lab<S> for MatchLab {
         Some(vec![(Key::MatchClips, Value::Text(write_ids(ids)))])
     }
 
-    fn result_name(&self, params: &Params, _a: &str, _b: &str) -> String {
+    fn result_name(&self, params: &Params, _a: Message, _b: Message) -> Message {
         match params.choice() {
-            choices::Scenario::Own => "a drive".to_owned(),
-            scenario => format!("a drive: {}", scenario.label()),
+            choices::Scenario::Own => "a drive".into(),
+            scenario => msg!("a drive: {what}", what = scenario.label()),
         }
     }
 

@@ -19,6 +19,7 @@ use segue_motion::path::{
     MotionOptions, Offset, Orientation, PathEditor, Road, SplineEnds, Timing, Waypoint,
 };
 use segue_motion::transition::FootLocking;
+use segue_text::{Message, msg};
 use std::sync::Arc;
 
 mod planter;
@@ -48,8 +49,8 @@ impl<S: HasPart<Paths>> Lab<S> for PathLab {
         vec![(Key::Others, Value::Text(write_ids(&others)))]
     }
 
-    fn result_name(&self, _params: &Params, a: &str, _b: &str) -> String {
-        format!("{a} on a path")
+    fn result_name(&self, _params: &Params, a: Message, _b: Message) -> Message {
+        msg!("{a} on a path", a)
     }
 
     fn file_stem(&self, params: &Params) -> String {

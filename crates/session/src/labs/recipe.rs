@@ -6,6 +6,8 @@ use super::outcome::{Outcome, Slot};
 use crate::params::{Key, Kind, Mark, PARAMS, Param, Params, Value};
 use crate::{LabId, Selected};
 use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, utf8_percent_encode};
+use segue_motion::synth;
+use segue_text::Message;
 
 /// What would end a value, and what says that something is written otherwise.
 const RESERVED: &AsciiSet = &CONTROLS.add(b'(').add(b')').add(b',').add(b':').add(b'%');
@@ -97,12 +99,20 @@ pub(crate) fn recipe_params(id: &str) -> Option<Params> {
 }
 
 /// Returns the name on screen of the result of the parameters.
-pub(crate) fn recipe_name(params: &Params) -> String {
+pub(crate) fn recipe_name(params: &Params) -> Message {
     let [a, b] = [Key::A, Key::B].map(|key| match recipe_params(params.text(key)) {
         Some(kept) => recipe_name(&kept),
-        None => params.text(key).split('~').next().unwrap_or_default().to_owned(),
+        None => reference_name(params.text(key)),
     });
-    lab_of(params.lab()).result_name(params, &a, &b)
+    lab_of(params.lab()).result_name(params, a, b)
+}
+
+/// Returns what a person calls the clip of a reference, which may not be there.
+fn reference_name(reference: &str) -> Message {
+    match synth::presets().into_iter().find(|preset| preset.id == reference) {
+        Some(preset) => preset.id.into(),
+        None => Message::data(reference.split('~').next().unwrap_or_default()),
+    }
 }
 
 /// Returns the name of a file with the result of the parameters, without its ending.

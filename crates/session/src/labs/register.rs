@@ -28,6 +28,7 @@ use segue_motion::math::Planar;
 use segue_motion::metrics::{Metric, foot_slide_cm, penetration};
 use segue_motion::registration::Registration;
 use segue_motion::skeleton::Side;
+use segue_text::{Message, msg};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -43,8 +44,8 @@ impl<S: HasPart<Pairs> + HasPart<Registrars>> Lab<S> for RegisterLab {
         &[Key::WeightLaw]
     }
 
-    fn result_name(&self, _params: &Params, a: &str, b: &str) -> String {
-        format!("{a} to {b}")
+    fn result_name(&self, _params: &Params, a: Message, b: Message) -> Message {
+        msg!("{a} to {b}", a, b)
     }
 
     fn file_stem(&self, params: &Params) -> String {

@@ -11,6 +11,7 @@ use crate::params::{Key, Kind, Params};
 use segue_motion::clip::ground_speed;
 use segue_motion::gait::{GaitCycle, PhaseAlignment, SpeedBlend, SpeedOptions};
 use segue_motion::metrics::Metric;
+use segue_text::{Message, msg};
 use std::sync::Arc;
 
 /// The Speed lab: two cycles blended to a speed.
@@ -21,8 +22,9 @@ impl<S: HasPart<Pairs> + HasPart<GaitFinder>> Lab<S> for SpeedLab {
         &[LabId::Speed]
     }
 
-    fn result_name(&self, params: &Params, a: &str, b: &str) -> String {
-        format!("{a} and {b} at {} m/s", Key::Speed.param().format(params.get(Key::Speed)))
+    fn result_name(&self, params: &Params, a: Message, b: Message) -> Message {
+        let mps = Key::Speed.param().format(params.get(Key::Speed));
+        msg!("{a} and {b} at {mps} m/s", a, b, mps)
     }
 
     fn file_stem(&self, params: &Params) -> String {

@@ -15,6 +15,7 @@ use segue_motion::math::Planar;
 use segue_motion::metrics::{ClipMeter, Metric, SlideMeter};
 use segue_motion::path::{FitOptions, FittedPath};
 use segue_motion::transition::FootLocking;
+use segue_text::{Message, msg};
 use std::sync::Arc;
 
 /// The View lab: one clip, placed on the ground.
@@ -29,16 +30,15 @@ impl<S: HasPart<Viewer>> Lab<S> for ViewLab {
         &[Slot::A]
     }
 
-    fn result_name(&self, params: &Params, a: &str, _b: &str) -> String {
+    fn result_name(&self, params: &Params, a: Message, _b: Message) -> Message {
         let is_placed = [Key::PlaceX, Key::PlaceZ, Key::PlaceHeading]
             .iter()
             .any(|&key| params.optional(key).is_some());
-        let held =
-            if params.is_on(Key::FootLock) { format!("{a}, feet held") } else { a.to_owned() };
+        let held = if params.is_on(Key::FootLock) { msg!("{a}, feet held", a) } else { a };
         match params.choice() {
-            choices::RootMotion::InPlace => format!("{held}, in place"),
-            choices::RootMotion::Residual => format!("{held}, beside its path"),
-            choices::RootMotion::World if is_placed => format!("{held}, moved"),
+            choices::RootMotion::InPlace => msg!("{held}, in place", held),
+            choices::RootMotion::Residual => msg!("{held}, beside its path", held),
+            choices::RootMotion::World if is_placed => msg!("{held}, moved", held),
             choices::RootMotion::World => held,
         }
     }

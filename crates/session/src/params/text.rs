@@ -3,6 +3,7 @@
 use super::param::{Choice, Kind, Param};
 use super::value::{Value, ValueError};
 use crate::compare::Compare;
+use segue_text::Message;
 use serde_json::Value as Json;
 
 impl Param {
@@ -36,16 +37,16 @@ impl Param {
         ValueError::NotAChoice { key: self.name, found: found.to_owned(), expected }
     }
 
-    /// A value as it is said on screen.
+    /// Returns a value as it is said on screen.
     #[must_use]
-    pub fn spoken(&self, value: &Value) -> String {
+    pub fn spoken(&self, value: &Value) -> Message {
         let word = self.format(value);
         match self.kind {
             Kind::Choice(choices) => choices
                 .iter()
                 .find(|choice| choice.key == word)
-                .map_or(word, |choice| choice.label.to_owned()),
-            _ => word,
+                .map_or_else(|| Message::data(word.clone()), |choice| choice.label.into()),
+            _ => Message::data(word),
         }
     }
 

@@ -84,7 +84,7 @@ pub enum ValueError {
         /// What was there.
         found: String,
         /// What would do.
-        expected: String,
+        expected: Message,
     },
 }
 

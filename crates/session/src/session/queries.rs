@@ -14,9 +14,12 @@ use crate::link;
 use crate::pane::Pane;
 use crate::params::{Key, Kind, Value};
 use segue_motion::clip::Motion;
+use segue_motion::matching::{made_name, made_params};
 use segue_motion::skin::Character;
 use segue_motion::synth;
-use std::sync::Arc;
+use segue_text::{Message, msg};
+use std::collections::BTreeMap;
+use std::sync::{Arc, LazyLock};
 
 impl Session {
     /// Returns the query string that restores this state, without `?`.
@@ -77,7 +80,7 @@ impl Session {
     /// Returns the name of the difference of a pane to the others: the value with its unit, or the
     /// clip's name. `None` where there is nothing to compare.
     #[must_use]
-    pub fn variant_name(&self, pane: &Pane) -> Option<String> {
+    pub fn variant_name(&self, pane: &Pane) -> Option<Message> {
         let (key, value) = pane.compared()?;
         let param = key.param();
         Some(match (param.kind, value) {
@@ -85,9 +88,24 @@ impl Session {
                 .document
                 .library
                 .find(id)
-                .map_or_else(|| split_reference(id).0.to_owned(), |entry| entry.name.clone()),
-            _ => format!("{} {}", param.spoken(value), param.unit).trim_end().to_owned(),
+                .map_or_else(|| Message::data(split_reference(id).0), |entry| entry.title()),
+            _ if param.unit.is_empty() => param.spoken(value),
+            _ => msg!("{value} {unit}", value = param.spoken(value), unit = param.unit),
         })
+    }
+
+    /// Returns the title on screen of a clip of which only the name is known, such as one of a
+    /// walk.
+    #[must_use]
+    pub fn clip_title(&self, name: &str) -> Message {
+        static MADE: LazyLock<BTreeMap<String, Message>> = LazyLock::new(|| {
+            let names = made_params().into_iter().map(|params| made_name(&params));
+            names.map(|name| (name.to_string(), name)).collect()
+        });
+        match self.document.library.entries().iter().find(|entry| entry.name == name) {
+            Some(entry) => entry.title(),
+            None => MADE.get(name).cloned().unwrap_or_else(|| Message::data(name)),
+        }
     }
 
     /// Returns the character that moves in place of bodies made around bones: that of the clip that
@@ -100,7 +118,7 @@ impl Session {
     /// Returns why the motion on the stage cannot move the chosen character, in a sentence. `None`
     /// where it can, or none is chosen.
     #[must_use]
-    pub fn character_note(&self) -> Option<String> {
+    pub fn character_note(&self) -> Option<Message> {
         let entry = self.document.library.find(self.document.params.text(Key::Character))?;
         let character = entry.character()?;
         let shown = self.panes.list.iter().filter_map(|pane| pane.outcome.as_ref());
@@ -109,9 +127,9 @@ impl Session {
             |motion: &Arc<Motion>| character.is_moved_by(motion.clip().skeleton(), motion.roles());
         let is_left_out = motions.any(|motion| !moves(motion));
         is_left_out.then(|| {
-            format!(
-                "{} cannot be moved by this clip: they have no limbs in common. The clip has a body of its own.",
-                entry.name
+            msg!(
+                "{name} cannot be moved by this clip: they have no limbs in common. The clip has a body of its own.",
+                name = entry.title()
             )
         })
     }

@@ -64,13 +64,8 @@ pub(super) fn head_ui(
         }
         put(ui.painter(), number_rect.center(), Align2::CENTER_CENTER, number);
         focus_ring(number_rect, theme::radius::S, &number_response, ui);
-        number_response.widget_info(|| {
-            WidgetInfo::labeled(
-                Role::Button,
-                enabled,
-                format!("{}: {}", row.label, words.type_value),
-            )
-        });
+        let said = format!("{}: {}", tr(row.label, ui), tr(words.type_value, ui));
+        number_response.widget_info(|| WidgetInfo::labeled(Role::Button, enabled, &said));
         if number_response.clicked() {
             let start = row.written(value).replace('−', "-");
             ui.data_mut(|data| data.insert_temp(edit_id, start));
@@ -123,7 +118,8 @@ fn auto_tag_ui(
         let response =
             ui.interact(hit, hit_id, Sense::click()).on_hover_cursor(CursorIcon::PointingHand);
         focus_ring(at, 8, &response, ui);
-        let (enabled, name) = (ui.is_enabled(), format!("{}: {}", row.label, words.auto));
+        let (enabled, name) =
+            (ui.is_enabled(), format!("{}: {}", tr(row.label, ui), tr(words.auto, ui)));
         response.widget_info(|| WidgetInfo::labeled(Role::Button, enabled, &name));
         out.reset |= response.clicked();
     }

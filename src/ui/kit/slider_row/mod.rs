@@ -6,6 +6,7 @@ mod track;
 use self::head::head_ui;
 use self::track::{assistive, drag, keys, paint_track};
 use super::paint::{faded, full_width, paragraph, put};
+use crate::ui::language::tr;
 use crate::ui::theme::{self, Type, palette_of, space, theme_of};
 use eframe::egui::{
     Align2, Color32, Rect, Response, Sense, Ui, WidgetInfo, accesskit::Action, pos2,
@@ -239,11 +240,12 @@ pub(crate) fn slider_row_ui(value: f64, row: &SliderRow<'_>, ui: &mut Ui) -> Sli
     let shown = out.changed.unwrap_or(value);
     paint_track(shown, row, track_area, &out.response, ui);
     out.response.widget_info(|| WidgetInfo::slider(enabled, shown, row.label));
+    let spoken = spoken(shown, row, ui);
     out.response.ctx.accesskit_node_builder(id, |node| {
         node.set_min_numeric_value(*row.range.start());
         node.set_max_numeric_value(*row.range.end());
         node.set_numeric_value_step(row.step);
-        node.set_value(spoken(shown, row));
+        node.set_value(spoken);
         node.add_action(Action::SetValue);
         node.add_action(Action::Increment);
         node.add_action(Action::Decrement);
@@ -265,12 +267,12 @@ pub(crate) fn slider_row_ui(value: f64, row: &SliderRow<'_>, ui: &mut Ui) -> Sli
     out
 }
 
-fn spoken(value: f64, row: &SliderRow<'_>) -> String {
+fn spoken(value: f64, row: &SliderRow<'_>, ui: &Ui) -> String {
     let mut said = row.written(value);
     for part in [row.unit, row.secondary] {
         if !part.is_empty() {
             said.push(' ');
-            said.push_str(part);
+            said.push_str(&tr(part, ui));
         }
     }
     said

@@ -2,12 +2,13 @@
 
 use super::super::paint::{Run, gradient_bar, line_of, put};
 use super::{Moment, Part, Stripe, TimeAxis, Timeline, Track};
-use crate::ui::language::tr;
+use crate::ui::language::{say, tr};
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{
     Align2, Id, Pos2, Rangef, Rect, Response, Role, Sense, Shape, Stroke, Ui, WidgetInfo, pos2,
     vec2,
 };
+use segue_text::msg;
 
 pub(super) fn paint_track(track: &Track<'_>, row: Rangef, axis: TimeAxis, duration: f64, ui: &Ui) {
     let palette = palette_of(ui);
@@ -159,9 +160,11 @@ pub(super) fn moment_ui(moment: &Moment<'_>, center: Pos2, id: Id, ui: &Ui) {
     ui.painter().add(Shape::convex_polygon(diamond, moment.color, Stroke::NONE));
     let response =
         ui.interact(Rect::from_center_size(center, vec2(12.0, 12.0)), id, Sense::hover());
-    let said = format!("{}, {:.2} s", moment.name, moment.time);
-    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &said));
-    response.on_hover_text(tr(&said, ui));
+    let said =
+        msg!("{name}, {secs:.2} s", name = tr(moment.name, ui).into_owned(), secs = moment.time);
+    let label = say(&said, ui);
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &label));
+    response.on_hover_text(say(&said, ui));
 }
 
 #[cfg(test)]

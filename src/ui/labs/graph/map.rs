@@ -2,6 +2,7 @@
 
 use super::{jump_words, named, open_jump, point_at, table};
 use crate::ui::kit::{self, Fate, Matrix, MatrixMark, Stretch, TILE, Tile};
+use crate::ui::language::say;
 use crate::ui::out::Out;
 use crate::ui::state::UiState;
 use crate::ui::text;
@@ -10,6 +11,7 @@ use eframe::egui::{Color32, ColorImage, Id, ScrollArea, TextureHandle, TextureOp
 use segue_motion::graph::{Choices, DistanceDetail, Place};
 use segue_session::LabId;
 use segue_session::{Built, Distances, Field, Session, Walk};
+use segue_text::Message;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -177,19 +179,19 @@ pub(crate) fn map_ui(
     let response = kit::matrix_ui(&matrix, most_height, &mut |tile| tiles.texture(tile, &ctx), ui);
     let high_cm = tiles.high_cm;
     tiles.keep(ui);
-    let [low, high] = text::heat_ends([0.0, high_cm]);
+    let [low, high] = text::heat_ends([0.0, high_cm]).map(|end| say(&end, ui));
     kit::heat_legend_ui(&low, &high, ui);
-    let mut words = text::MATRIX_HELP.to_owned();
+    let mut words = Message::word(text::MATRIX_HELP);
     if let (Some(drawn), Some(built)) = (&drawn, built) {
         let ends = response.hovered.and_then(|mark| drawn.ends.get(mark));
         if let Some(&ends) = ends {
             point_at(ends, walk.map(|walk| &**walk), state);
-            words = jump_words(built, walk.map(|walk| &**walk), ends).unwrap_or_default();
+            words = jump_words(built, walk.map(|walk| &**walk), ends, session).unwrap_or_default();
         } else if let Some([row, column]) = response.at {
             let place = |at: f32| set.place(at.max(0.0) as usize);
             if let (Some(leave), Some(enter)) = (place(row), place(column)) {
                 words = text::windows_apart(
-                    [named(built, leave), named(built, enter)],
+                    [leave, enter].map(|place| named(built, place, session)),
                     field.cm(leave, enter),
                 );
             }
@@ -198,7 +200,7 @@ pub(crate) fn map_ui(
             open_jump(ends, session, state, out);
         }
     }
-    kit::note_ui(&words, palette.muted, ui);
+    kit::note_ui(&say(&words, ui), palette.muted, ui);
 }
 
 /// The tiles that were made of a field in the colours of a theme.

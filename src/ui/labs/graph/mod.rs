@@ -19,6 +19,7 @@ use segue_motion::graph::Place;
 use segue_session::{
     Built, Command, Key, PlaybackCommand, Session, Value, Walk, write_jump, write_path,
 };
+use segue_text::{Message, msg};
 
 /// The lab's part of the page.
 pub(super) const LAB: LabUi = LabUi {
@@ -32,13 +33,12 @@ pub(super) const LAB: LabUi = LabUi {
 fn title(shown: &Shown<'_>) -> Title {
     let walk = shown.pane.outcome.as_ref().and_then(|outcome| outcome.walk());
     let at = walk.and_then(|walk| Some((walk, walk.at(shown.session.now_secs())?)));
-    let name =
-        |walk: &Walk, clip: usize| walk.built.cast().names().get(clip).cloned().unwrap_or_default();
+    let name = |walk: &Walk, clip: usize| clip_title(&walk.built, clip, shown.session);
     let next = at.and_then(|(walk, at)| Some(name(walk, walk.passed.get(at.stay + 1)?.stay.clip)));
     Title {
         strong: at.map(|(walk, at)| name(walk, at.place.clip)).unwrap_or_default(),
-        text: next.map(|next| format!("→ {next}")).unwrap_or_default(),
-        secondary: format!("seed {}", shown.params.number(Key::Seed)),
+        text: next.map(|clip| msg!("→ {clip}", clip)).unwrap_or_default(),
+        secondary: msg!("seed {seed}", seed = shown.params.number(Key::Seed)),
     }
 }
 
@@ -72,14 +72,24 @@ fn close_jump(state: &UiState, out: &mut Out) {
     out.set(Key::Time, Value::Number(state.walk_secs.clamp(0.0, 3600.0)));
 }
 
-/// A clip's name and the frame.
-fn named(built: &Built, place: Place) -> (&str, usize) {
-    let name = built.cast().names().get(place.clip).map_or("", String::as_str);
-    (name, place.frame)
+/// Returns what a clip of a graph is called.
+fn clip_title(built: &Built, clip: usize, session: &Session) -> Message {
+    let name = built.cast().names().get(clip);
+    name.map(|name| session.clip_title(name)).unwrap_or_default()
+}
+
+/// Returns a clip's name and the frame.
+fn named(built: &Built, place: Place, session: &Session) -> Message {
+    text::frame_in_words(clip_title(built, place.clip, session), place.frame)
 }
 
 /// A transition in words, with its probability where it is walked.
-fn jump_words(built: &Built, walk: Option<&Walk>, ends: [Place; 2]) -> Option<String> {
+fn jump_words(
+    built: &Built,
+    walk: Option<&Walk>,
+    ends: [Place; 2],
+    session: &Session,
+) -> Option<Message> {
     let jump = built.whole().jumps().get(built.jump_of(ends[0], ends[1])?)?;
     let walk = walk.filter(|walk| std::ptr::eq(&raw const *walk.built, built));
     let probability = walk.and_then(|walk| {
@@ -92,11 +102,8 @@ fn jump_words(built: &Built, walk: Option<&Walk>, ends: [Place; 2]) -> Option<St
         let mut ways = walk.choices.probabilities(from);
         ways.find(|(way, _)| *way == edge).map(|(_, p)| p)
     });
-    Some(text::jump_in_words(
-        [named(built, ends[0]), named(built, ends[1])],
-        jump.distance_cm,
-        probability,
-    ))
+    let ends = ends.map(|place| named(built, place, session));
+    Some(text::jump_in_words(ends, jump.distance_cm, probability))
 }
 
 /// Shows both poses of a transition that is pointed at, unless it is the one that plays: then it is
@@ -110,7 +117,6 @@ fn point_at(ends: [Place; 2], walk: Option<&Walk>, state: &mut UiState) {
 }
 
 /// Why a visit came to nothing.
-fn no_way(built: &Built, (secs, clip): (f64, usize)) -> String {
-    let name = built.cast().names().get(clip).map_or("", String::as_str);
-    text::no_way(name, secs)
+fn no_way(built: &Built, (secs, clip): (f64, usize), session: &Session) -> Message {
+    text::no_way(clip_title(built, clip, session), secs)
 }

@@ -4,8 +4,8 @@ use super::{close_jump, map, no_way, shows_jump, table};
 use crate::ui::kit::{self, Button, Histogram, Icon};
 use crate::ui::language::{say, tr};
 use crate::ui::out::{Action, Out};
-use crate::ui::rows::clip_sets_ui;
 use crate::ui::rows::{Detail, param_row_ui};
+use crate::ui::rows::{clip_sets_ui, clip_titles};
 use crate::ui::rows::{compare_ui, foot_rows_ui, lab_label, save_result_ui};
 use crate::ui::state::UiState;
 use crate::ui::text;
@@ -16,7 +16,7 @@ use segue_session::JobKind;
 use segue_session::LabId;
 use segue_session::choices;
 use segue_session::{Built, Command, Key, Session, Value, graph_of, link, write_visits};
-use segue_text::ToMessage;
+use segue_text::{Message, ToMessage, msg};
 use std::sync::Arc;
 
 /// All rows of the lab.
@@ -77,22 +77,23 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let ids = session.graph_clip_ids();
     let entries = session.library().entries();
-    kit::folded_ui(&format!("{}: {}", text::GRAPH_CLIPS, ids.len()), ui, |ui| {
+    let title = say(&msg!("Clips of the graph: {count}", count = ids.len()), ui);
+    kit::folded_ui(&title, ui, |ui| {
         for id in &ids {
             let entry = session.library().find(id);
-            let name = entry.map_or(id.as_str(), |entry| entry.name.as_str());
+            let name = entry.map_or_else(|| Message::data(&**id), |entry| entry.title());
             let secs = entry
                 .and_then(|entry| entry.motion.as_ref())
                 .map(|motion| motion.clip().duration_secs());
             ui.push_id(id, |ui| {
                 ui.horizontal(|ui| {
                     ui.label(
-                        RichText::new(tr(name, ui))
+                        RichText::new(say(&name, ui))
                             .font(theme.font(Type::Label))
                             .color(palette.text),
                     );
                     ui.with_layout(Flow::right_to_left(Align::Center), |ui| {
-                        let leave_out = format!("{} {name}", text::LEAVE_OUT);
+                        let leave_out = say(&text::leave_clip_out(name), ui);
                         if ids.len() > 1
                             && kit::icon_button_ui(Icon::Close, &leave_out, ui).clicked()
                         {
@@ -102,7 +103,7 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
                         }
                         if let Some(secs) = secs {
                             ui.label(
-                                RichText::new(tr(&format!("{secs:.1} s"), ui))
+                                RichText::new(say(&msg!("{secs:.1} s", secs), ui))
                                     .font(theme.font(Type::Small))
                                     .color(palette.muted),
                             );
@@ -112,9 +113,10 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
             });
         }
     });
-    let free: Vec<(usize, &str)> = (entries.iter().enumerate())
-        .filter(|(_, entry)| !ids.contains(&entry.id))
-        .map(|(index, entry)| (index, entry.name.as_str()))
+    let titles = clip_titles(session, ui);
+    let free: Vec<(usize, &str)> = (entries.iter().zip(&titles).enumerate())
+        .filter(|(_, (entry, _))| !ids.contains(&entry.id))
+        .map(|(index, (_, title))| (index, title.as_str()))
         .collect();
     if let Some(entry) = kit::choice_row_ui(text::ADD_CLIP, usize::MAX, &free, ui)
         .and_then(|index| entries.get(index))
@@ -123,8 +125,11 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         all.push(entry.id.clone());
         set_clips(&all, out);
     }
-    if let Some(words) = session.graph_cast().and_then(|cast| text::moved_onto_first(cast)) {
-        kit::note_ui(&words, palette.muted, ui);
+    if let Some(words) = session
+        .graph_cast()
+        .and_then(|cast| text::moved_onto_first(cast, |name| session.clip_title(name)))
+    {
+        kit::note_ui(&say(&words, ui), palette.muted, ui);
     }
 }
 
@@ -162,7 +167,7 @@ fn construction_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
             compare_ui(Key::SegmentSize, session, out, ui);
         });
     }
-    let quiet = Detail { help: Some(String::new()), ..Detail::default() };
+    let quiet = Detail { help: Some(Message::default()), ..Detail::default() };
     param_row_ui(Key::EdgeThreshold, &quiet, session, out, ui);
     if let Some(field) = session.graph_field() {
         let histogram = Histogram {
@@ -184,12 +189,12 @@ fn construction_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     if let Some(built) = session.graph_built() {
         let walk = session.graph_walk().filter(|walk| Arc::ptr_eq(&walk.built, built));
         kit::note_ui(
-            &text::graph_in_words(built, walk.and_then(|walk| walk.run_secs)),
+            &say(&text::graph_in_words(built, walk.and_then(|walk| walk.run_secs)), ui),
             palette.muted,
             ui,
         );
         if let Some(words) = text::ways_left_out(built) {
-            kit::note_ui(&words, palette.warning, ui);
+            kit::note_ui(&say(&words, ui), palette.warning, ui);
         }
         if built.lacks_some() {
             kit::note_ui(text::GRAPH_LACKS_SOME, palette.warning, ui);
@@ -203,7 +208,7 @@ fn construction_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
 /// What the seed does here.
 pub(crate) fn seed_detail(session: &Session) -> Detail {
     let is_graph = session.params().lab() == LabId::Graph;
-    Detail { help: is_graph.then(|| text::GRAPH_SEED_HELP.to_owned()), ..Detail::default() }
+    Detail { help: is_graph.then(|| text::GRAPH_SEED_HELP.into()), ..Detail::default() }
 }
 
 fn walk_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
@@ -246,7 +251,9 @@ fn ways_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let visits = session.graph_visits();
     if let Some(cast) = session.graph_cast() {
         let reached = reached(session, ui);
-        let options: Vec<(usize, &str)> = (cast.names().iter().map(String::as_str).enumerate())
+        let titles: Vec<String> =
+            cast.names().iter().map(|name| say(&session.clip_title(name), ui)).collect();
+        let options: Vec<(usize, &str)> = (titles.iter().map(String::as_str).enumerate())
             .filter(|(clip, _)| reached.get(*clip).copied().unwrap_or(true))
             .collect();
         if let Some(clip) = kit::choice_row_ui(text::GO_TO_CLIP, usize::MAX, &options, ui) {
@@ -255,7 +262,8 @@ fn ways_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     }
     if let Some(walk) = session.graph_walk() {
         for &missed in &walk.missed {
-            kit::note_ui(&no_way(&walk.built, missed), palette.warning, ui);
+            let words = no_way(&walk.built, missed, session);
+            kit::note_ui(&say(&words, ui), palette.warning, ui);
         }
     }
     if !visits.is_empty() && kit::button_ui(Button::new(text::FORGET_VISITS), ui).clicked() {
@@ -280,11 +288,12 @@ fn ways_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
             out.set_once(Key::WalkPath, Value::Text(String::new()));
         }
         if let Some(trace) = session.graph_walk().and_then(|walk| walk.followed.as_ref()) {
-            kit::note_ui(&text::followed(trace), palette.muted, ui);
+            kit::note_ui(&say(&text::followed(trace), ui), palette.muted, ui);
         }
     }
     if let Some(walk) = session.graph_walk().filter(|walk| walk.ends) {
-        kit::note_ui(&text::dead_end(walk.motion.clip().duration_secs()), palette.warning, ui);
+        let words = text::dead_end(walk.motion.clip().duration_secs());
+        kit::note_ui(&say(&words, ui), palette.warning, ui);
     }
 }
 

@@ -3,6 +3,7 @@
 use super::map::Drawn;
 use super::{jump_words, named, no_way, open_jump, point_at, rows};
 use crate::ui::kit::{self, Moment, Strip, Timeline, TimelineEvent};
+use crate::ui::language::say;
 use crate::ui::out::Out;
 use crate::ui::state::{Layout, UiState};
 use crate::ui::text;
@@ -11,6 +12,7 @@ use crate::ui::transport_row::{Playhead, transport_row_ui};
 use eframe::egui::Ui;
 use segue_motion::graph::Place;
 use segue_session::{Command, Key, PlaybackCommand, Session, Value, Walk, frame_at};
+use segue_text::Message;
 use std::sync::Arc;
 
 /// More seams than these are no marks any more.
@@ -34,6 +36,7 @@ pub(crate) fn walk_panel_ui(
         frame: frame_at(&walk.motion, session.now_secs()),
         frames: walk.motion.clip().frames(),
     };
+    let caption = say(&caption, ui);
     transport_row_ui(playhead, &caption, layout, session, out, ui);
     if layout != Layout::Phone {
         time_ui(session, walk, out, ui);
@@ -123,25 +126,25 @@ fn strip_ui(session: &Session, walk: &Arc<Walk>, state: &mut UiState, out: &mut 
 
 /// The transition under the pointer, else why it does not go to the clip that was pressed, else the
 /// transition that plays, else where the walk is.
-fn caption(session: &Session, walk: &Walk, state: &UiState) -> String {
+fn caption(session: &Session, walk: &Walk, state: &UiState) -> Message {
     let built = session.graph_built();
-    let pointed = state.last_jump.and_then(|ends| jump_words(built?, Some(walk), ends));
+    let pointed = state.last_jump.and_then(|ends| jump_words(built?, Some(walk), ends, session));
     if let Some(words) = pointed {
         return words;
     }
     let now = session.now_secs();
     let told = |(secs, _): &&(f64, usize)| (0.0..TOLD_SECS).contains(&(now + 0.05 - secs));
     if let Some(&missed) = walk.missed.iter().rev().find(told) {
-        return no_way(&walk.built, missed);
+        return no_way(&walk.built, missed, session);
     }
     let Some(at) = walk.at(now) else {
-        return String::new();
+        return Message::default();
     };
     let seam =
         walk.passed.get(at.stay).and_then(|passed| passed.seam).filter(|_| at.left.is_some());
     if let Some(seam) = seam {
-        return jump_words(&walk.built, Some(walk), [seam.leave, seam.enter]).unwrap_or_default();
+        let ends = [seam.leave, seam.enter];
+        return jump_words(&walk.built, Some(walk), ends, session).unwrap_or_default();
     }
-    let (name, frame) = named(&walk.built, at.place);
-    format!("{name} {frame}")
+    named(&walk.built, at.place, session)
 }

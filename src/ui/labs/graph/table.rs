@@ -1,19 +1,20 @@
 //! The numbers of all panes side by side, to be read and to be copied.
 
 use crate::ui::kit::{self, Button};
-use crate::ui::language::tr;
+use crate::ui::language::{say, tr};
 use crate::ui::out::{Action, Out};
 use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Grid, RichText, Ui};
 use segue_session::{NumberTable, Session, digits};
+use segue_text::Message;
 
 /// The table, and two buttons that copy it.
 pub(crate) fn table_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
     let table = NumberTable::of(session);
-    let small = |words: &str, color, ui: &Ui| {
-        RichText::new(tr(words, ui)).font(theme.font(Type::Small)).color(color)
+    let small = |words: &Message, color, ui: &Ui| {
+        RichText::new(say(words, ui)).font(theme.font(Type::Small)).color(color)
     };
     ui.spacing_mut().interact_size.y = 0.0;
     let grid = Grid::new("numbers").num_columns(table.panes.len() + 1).spacing([space::M, 2.0]);
@@ -32,7 +33,7 @@ pub(crate) fn table_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
                     Some(value) if Some(*value) == worst => palette.bad,
                     _ => palette.text,
                 };
-                ui.label(small(&digits(*value), color, ui));
+                ui.label(small(&Message::data(digits(*value)), color, ui));
             }
             ui.end_row();
         }

@@ -31,7 +31,7 @@ pub(super) const LAB: LabUi = LabUi {
 fn title(shown: &Shown<'_>) -> Title {
     let is_live = shown.session.is_driven();
     Title {
-        strong: if is_live { text::LIVE.to_owned() } else { shown.spoken(Key::Scenario) },
+        strong: if is_live { text::LIVE.into() } else { shown.spoken(Key::Scenario) },
         secondary: shown.spoken(Key::Hysteresis),
         ..Title::default()
     }

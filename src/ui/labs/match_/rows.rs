@@ -5,8 +5,8 @@ use super::why::why_ui;
 use crate::ui::kit::{self, Button, Icon};
 use crate::ui::language::{say, tr};
 use crate::ui::out::Out;
-use crate::ui::rows::clip_sets_ui;
 use crate::ui::rows::{Detail, param_row_ui};
+use crate::ui::rows::{clip_sets_ui, clip_titles};
 use crate::ui::rows::{keep_ui, lab_label, save_result_ui};
 use crate::ui::state::UiState;
 use crate::ui::text;
@@ -15,7 +15,7 @@ use eframe::egui::{RichText, Ui, vec2};
 use segue_motion::matching::RATE;
 use segue_session::choices;
 use segue_session::{Command, DriveCommand, Key, Selected, Session, Value, write_ids};
-use segue_text::ToMessage;
+use segue_text::{Message, ToMessage};
 
 /// All rows of the lab.
 pub(crate) fn drive_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
@@ -87,7 +87,7 @@ fn input_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let muted = palette_of(ui).muted;
     if session.is_driven() {
         let secs = session.recording().ticks() as f64 / RATE as f64;
-        kit::note_ui(&text::driven_for(secs), muted, ui);
+        kit::note_ui(&say(&text::driven_for(secs), ui), muted, ui);
         ui.horizontal_wrapped(|ui| {
             ui.spacing_mut().item_spacing = vec2(space::XS, space::XS);
             let replay = Button::new(text::REPLAY).icon(Icon::Loop).hint(text::REPLAY_HELP);
@@ -158,8 +158,12 @@ fn preferred_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
             }))
             .collect();
     let label = |word: &str| -> String {
-        let name = session.library().find(word).map_or(word, |entry| entry.name.as_str());
-        if word.is_empty() { text::THE_CLIP_THAT_PLAYS.to_owned() } else { name.to_owned() }
+        let name = match session.library().find(word) {
+            _ if word.is_empty() => text::THE_CLIP_THAT_PLAYS.into(),
+            Some(entry) => entry.title(),
+            None => session.clip_title(word),
+        };
+        say(&name, ui)
     };
     let labels: Vec<String> = words.iter().map(|word| label(word)).collect();
     let options: Vec<(usize, &str)> = labels.iter().map(String::as_str).enumerate().collect();
@@ -210,19 +214,21 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     for (index, id) in ids.iter().enumerate() {
         ui.push_id(("clip", index), |ui| {
             ui.horizontal(|ui| {
-                let name =
-                    session.library().find(id).map_or(id.as_str(), |entry| entry.name.as_str());
-                if kit::icon_button_ui(Icon::Close, &text::leave_clip_out(name), ui).clicked() {
+                let entry = session.library().find(id);
+                let name = entry.map_or_else(|| Message::data(&**id), |entry| entry.title());
+                let leave_out = say(&text::leave_clip_out(name.clone()), ui);
+                if kit::icon_button_ui(Icon::Close, &leave_out, ui).clicked() {
                     let mut rest = ids.clone();
                     rest.remove(index);
                     set(&rest, out);
                 }
-                ui.label(RichText::new(tr(name, ui)).font(theme.font(Type::Body)));
+                ui.label(RichText::new(say(&name, ui)).font(theme.font(Type::Body)));
             });
         });
     }
     let entries = session.library().entries();
-    let clips = entries.iter().enumerate().map(|(index, entry)| (index, entry.name.as_str()));
+    let titles = clip_titles(session, ui);
+    let clips = titles.iter().map(String::as_str).enumerate();
     let options: Vec<(usize, &str)> =
         std::iter::once((usize::MAX, text::CHOOSE_CLIP)).chain(clips).collect();
     let picked = kit::choice_row_ui(text::ADD_CLIP, usize::MAX, &options, ui);
@@ -233,7 +239,7 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     }
     if let Some((driven, _)) = super::shown(session) {
         let skipped = driven.database.skipped();
-        kit::note_ui(&text::database(&driven.database), palette.muted, ui);
+        kit::note_ui(&say(&text::database(&driven.database), ui), palette.muted, ui);
         for error in skipped.iter().take(3) {
             kit::note_ui(&say(&error.to_sentence(), ui), palette.warning, ui);
         }

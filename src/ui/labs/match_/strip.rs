@@ -4,6 +4,7 @@ use super::shown;
 use crate::ui::kit::{
     self, Curves, Moment, PlaceBar, Places, Series, StripPlace, Timeline, TimelineEvent,
 };
+use crate::ui::language::say;
 use crate::ui::out::Out;
 use crate::ui::state::{Layout, UiState};
 use crate::ui::text;
@@ -12,6 +13,7 @@ use crate::ui::transport_row::{Playhead, transport_row_ui};
 use eframe::egui::{Color32, Ui};
 use segue_motion::matching::{Database, Place, RATE, Tag};
 use segue_session::{Command, Driven, Key, Outcome, PlaybackCommand, Session, Value};
+use segue_text::Message;
 
 /// A jump is seen for so long, seconds.
 const JUMP_SECS: f64 = 0.8;
@@ -38,13 +40,14 @@ pub(crate) fn drive_panel_ui(
     } else {
         Playhead { secs: now, frame: (now * RATE as f64).round() as usize, frames }
     };
+    let caption = say(&caption, ui);
     transport_row_ui(playhead, &caption, layout, session, out, ui);
     let scale = theme_of(ui).scale();
     let rows = if driven.database.options().mirrored { 2.0 } else { 1.0 };
     // The curves below it need room, too.
     let most = if layout == Layout::Phone { 1.0 } else { 0.4 } * ui.available_height();
     let height = ((rows * 20.0 + 16.0) * scale).min(most);
-    strip_ui(driven, now, height, state, ui);
+    strip_ui(session, driven, now, height, state, ui);
     if layout != Layout::Phone {
         ui.add_space(space::XS);
         time_ui(session, outcome, driven, out, ui);
@@ -52,9 +55,9 @@ pub(crate) fn drive_panel_ui(
 }
 
 /// What the last search came to, in a few words.
-fn caption(session: &Session, driven: &Driven) -> String {
+fn caption(session: &Session, driven: &Driven) -> Message {
     let search = shown(session).and_then(|(_, moment)| moment.search.as_ref());
-    search.map_or_else(String::new, |search| text::outcome_of_search(search, driven.is_live))
+    search.map_or_else(Message::default, |search| text::outcome_of_search(search, driven.is_live))
 }
 
 /// The costs of going on and of the best frame; a mark where it jumped.
@@ -138,15 +141,27 @@ fn tag_color(tag: Tag, palette: &Palette) -> Color32 {
     }
 }
 
-fn strip_ui(driven: &Driven, now_secs: f64, height: f32, state: &mut UiState, ui: &mut Ui) {
+fn strip_ui(
+    session: &Session,
+    driven: &Driven,
+    now_secs: f64,
+    height: f32,
+    state: &mut UiState,
+    ui: &mut Ui,
+) {
     let palette = palette_of(ui);
     let database = &driven.database;
     let mirrored = database.options().mirrored;
     let originals = database.motions().iter().filter(|motion| !motion.is_mirrored());
-    let bars: Vec<PlaceBar<'_>> = originals
-        .take(MOST_BARS)
-        .map(|motion| PlaceBar {
-            name: motion.clip().name(),
+    let originals = originals.take(MOST_BARS).map(|motion| {
+        let title = session.clip_title(motion.clip().name());
+        (motion, say(&title, ui))
+    });
+    let named: Vec<_> = originals.collect();
+    let bars: Vec<PlaceBar<'_>> = named
+        .iter()
+        .map(|(motion, name)| PlaceBar {
+            name,
             frames: motion.frames(),
             stretches: (motion.tags().iter())
                 .map(|range| (range.frames.clone(), tag_color(range.tag, palette)))

@@ -3,6 +3,7 @@
 use super::shown;
 use super::strip::strip_place;
 use crate::ui::kit::{self, Button, Chosen, Icon, SliderRow};
+use crate::ui::language::say;
 use crate::ui::out::Out;
 use crate::ui::state::UiState;
 use crate::ui::text;
@@ -31,15 +32,11 @@ pub(crate) fn tags_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
                     set(&rest, out);
                 }
             });
-            let name = session
-                .library()
-                .find(&tag.clip)
-                .map_or(tag.clip.as_str(), |entry| entry.name.as_str());
-            kit::note_ui(
-                &text::hand_tag(name, tag.secs, &tag.word, tag.takes_away),
-                palette_of(ui).text,
-                ui,
-            );
+            let name = match session.library().find(&tag.clip) {
+                Some(entry) => entry.title(),
+                None => session.clip_title(&tag.clip),
+            };
+            kit::note_ui(&say(&text::hand_tag(name, tag), ui), palette_of(ui).text, ui);
         });
     }
     let Some((driven, moment)) = shown(session) else {
@@ -101,12 +98,14 @@ pub(crate) fn tags_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
         for tag in Tag::FIXED {
             // What is there is taken away, what is not is put.
             let takes_away = has(tag);
-            if kit::button_ui(Button::new(&text::tag_as(tag.name(), takes_away)), ui).clicked() {
+            if kit::button_ui(Button::new(&say(&text::tag_as(tag.name(), takes_away), ui)), ui)
+                .clicked()
+            {
                 add(tag.name(), takes_away, out);
             }
         }
         for word in own_words(&tags) {
-            if kit::button_ui(Button::new(&text::tag_as(word, false)), ui).clicked() {
+            if kit::button_ui(Button::new(&say(&text::tag_as(word, false), ui)), ui).clicked() {
                 add(word, false, out);
             }
         }

@@ -2,7 +2,7 @@
 
 use super::shown;
 use crate::ui::kit::{self, CostBars, CostRow};
-use crate::ui::language::tr;
+use crate::ui::language::{say, tr};
 use crate::ui::out::Out;
 use crate::ui::rows::{Detail, param_row_ui};
 use crate::ui::state::UiState;
@@ -11,6 +11,7 @@ use crate::ui::theme::{Palette, Type, palette_of, space, theme_of};
 use eframe::egui::{Color32, RichText, Ui};
 use segue_motion::matching::{Block, Candidate, Database};
 use segue_session::{Key, Session};
+use segue_text::Message;
 
 /// The colours of the blocks, in their order.
 pub(crate) fn block_colors(palette: &Palette) -> [Color32; Block::COUNT] {
@@ -18,13 +19,13 @@ pub(crate) fn block_colors(palette: &Palette) -> [Color32; Block::COUNT] {
 }
 
 /// A frame in words: its clip and its time.
-pub(crate) fn place_name(database: &Database, candidate: &Candidate) -> String {
+pub(crate) fn place_name(database: &Database, candidate: &Candidate, session: &Session) -> Message {
     let place = candidate.place;
     let Some(motion) = database.motion(place.motion) else {
-        return String::new();
+        return Message::default();
     };
     text::frame_of_clip(
-        motion.clip().name(),
+        session.clip_title(motion.clip().name()),
         motion.is_mirrored(),
         motion.clip().time_of(place.frame),
     )
@@ -42,17 +43,17 @@ pub(crate) fn why_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: 
         return;
     };
     let database = &driven.database;
-    let row = |name: String, candidate: &Candidate, strong: bool, shown: bool| CostRow {
-        name,
+    let row = |name: Message, candidate: &Candidate, strong: bool, shown: bool| CostRow {
+        name: say(&name, ui),
         parts: candidate.split.to_vec(),
         strong,
         shown,
     };
-    let current =
-        row(text::going_on(&place_name(database, &search.current)), &search.current, true, false);
+    let place = place_name(database, &search.current, session);
+    let current = row(text::going_on(place), &search.current, true, false);
     let found = search.candidates.iter().enumerate().map(|(index, candidate)| {
         row(
-            place_name(database, candidate),
+            place_name(database, candidate, session),
             candidate,
             index == 0 && search.held.is_none(),
             state.drive.chosen == Some(index),
@@ -70,7 +71,8 @@ pub(crate) fn why_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: 
         state.drive.chosen = clicked.filter(|index| state.drive.chosen != Some(*index));
     }
     ui.add_space(space::XS);
-    kit::note_ui(&text::searched(search, database.valid().len()), palette.muted, ui);
+    let words = text::searched(search, database.valid().len());
+    kit::note_ui(&say(&words, ui), palette.muted, ui);
     kit::note_ui(text::GHOST_HELP, palette.muted, ui);
     param_row_ui(Key::ShownCandidates, &Detail::default(), session, out, ui);
 }

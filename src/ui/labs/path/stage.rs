@@ -3,7 +3,7 @@
 use crate::ui::kit;
 use crate::ui::labs::path::ground_line::View;
 use crate::ui::labs::path::hand::{Held, path_of, snapped};
-use crate::ui::language::say;
+use crate::ui::language::{say, tr};
 use crate::ui::out::Out;
 use crate::ui::state::UiState;
 use crate::ui::text;
@@ -59,14 +59,8 @@ pub(crate) fn handles_ui(
         let hit = Rect::from_center_size(at, Vec2::splat(GRIP)).intersect(rect);
         let response = ui.interact(hit, id, Sense::click_and_drag());
         let chosen = state.path.chosen == Some(index);
-        response.widget_info(|| {
-            WidgetInfo::selected(
-                Role::Button,
-                true,
-                chosen,
-                text::control_point(index, shown, point),
-            )
-        });
+        let said = say(&text::control_point(index, shown, point), ui);
+        response.widget_info(|| WidgetInfo::selected(Role::Button, true, chosen, &said));
         let handle = Handle { index, pane, point, view: &view, path, response: &response };
         handle.input(session, state, out, ui);
     }
@@ -214,7 +208,7 @@ fn place_input(
 pub(crate) fn said_ui(stage: Rect, numbers_top: f32, state: &UiState, ui: &mut Ui) {
     let words = match &state.path.said {
         Some(said) => say(said, ui),
-        None if state.drawing.is_some() => text::DRAW_HINT.to_owned(),
+        None if state.drawing.is_some() => tr(text::DRAW_HINT, ui).into_owned(),
         None => return,
     };
     kit::caption_ui(&words, stage.with_max_y(numbers_top - space::S), ui);

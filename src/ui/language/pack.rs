@@ -1,0 +1,193 @@
+//! The texts and letters of a language, and how a context comes to show them, as
+//! [`theme_of`](crate::ui::theme::theme_of) is its theme.
+
+use eframe::egui::output::OutputEvent;
+use eframe::egui::{Context, FontData, FullOutput, Id, Plugin, Role, Ui};
+use segue_text::{Message, Table, ToMessage};
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+#[cfg(all(test, feature = "ui-tests"))]
+use std::sync::{Mutex, PoisonError};
+
+/// What the interface is shown with in a language: its texts, and a font with its letters.
+#[derive(Clone, Debug)]
+pub(crate) struct LanguagePack {
+    texts: Arc<Texts>,
+    font: Arc<[u8]>,
+}
+
+/// Why a language pack cannot be used.
+#[derive(Debug, thiserror::Error, ToMessage)]
+pub(crate) enum PackError {
+    /// One of its files is not here.
+    #[error("{0}")]
+    NotLoaded(Message),
+    /// The texts are not JSON, or not sections of texts.
+    #[error("its texts cannot be read")]
+    Texts,
+    /// The font is of no kind that is known.
+    #[error("its font cannot be read")]
+    Font,
+}
+
+#[derive(Debug)]
+struct Texts {
+    table: Table,
+    /// The templates that were shown, with their translations.
+    #[cfg(all(test, feature = "ui-tests"))]
+    shown: Mutex<BTreeMap<String, Option<String>>>,
+}
+
+impl LanguagePack {
+    /// Reads the two files of a language: sections of texts by their English, and a font.
+    ///
+    /// # Errors
+    /// [`PackError`] where one of them is something else.
+    pub(crate) fn read(texts: &[u8], font: Arc<[u8]>) -> Result<Self, PackError> {
+        let signatures = [&b"OTTO"[..], &[0, 1, 0, 0]];
+        if !signatures.iter().any(|signature| font.starts_with(signature)) {
+            return Err(PackError::Font);
+        }
+        let sections: BTreeMap<String, BTreeMap<String, String>> =
+            serde_json::from_slice(texts).map_err(|_| PackError::Texts)?;
+        let texts = Texts {
+            table: Table::new(sections.into_values().flatten()),
+            #[cfg(all(test, feature = "ui-tests"))]
+            shown: Mutex::default(),
+        };
+        Ok(Self { texts: Arc::new(texts), font })
+    }
+
+    /// Returns the templates that were shown so far, with their translations.
+    #[cfg(all(test, feature = "ui-tests"))]
+    pub(crate) fn shown(&self) -> Vec<(String, Option<String>)> {
+        let shown = self.texts.shown.lock().unwrap_or_else(PoisonError::into_inner);
+        shown.iter().map(|(text, own)| (text.clone(), own.clone())).collect()
+    }
+
+    /// Adds the font to a context. Its letters can be drawn from the next frame on.
+    pub(crate) fn install_fonts(&self, ctx: &Context) {
+        crate::ui::theme::add_face("Noto Sans TC", FontData::from_owned(self.font.to_vec()), ctx);
+    }
+
+    /// Shows the texts of this context in this language from now on.
+    pub(crate) fn activate(&self, ctx: &Context) {
+        ctx.add_plugin(Labels);
+        ctx.data_mut(|data| data.insert_temp(texts_id(), Some(self.texts.clone())));
+    }
+}
+
+/// Shows the texts of this context in English from now on, as they are written.
+pub(crate) fn activate_english(ctx: &Context) {
+    ctx.data_mut(|data| data.insert_temp(texts_id(), None::<Arc<Texts>>));
+}
+
+impl Texts {
+    fn find(&self, text: &str) -> Option<&str> {
+        let found = self.table.row(text);
+        self.record(text);
+        found
+    }
+
+    fn write(&self, message: &Message) -> String {
+        for template in message.templates() {
+            self.record(template);
+        }
+        self.table.write(message)
+    }
+
+    #[cfg(all(test, feature = "ui-tests"))]
+    fn record(&self, template: &str) {
+        let mut shown = self.shown.lock().unwrap_or_else(PoisonError::into_inner);
+        shown.insert(template.to_owned(), self.table.row(template).map(str::to_owned));
+    }
+
+    #[cfg(not(all(test, feature = "ui-tests")))]
+    #[expect(clippy::unused_self, reason = "tests record what was shown")]
+    fn record(&self, _template: &str) {}
+}
+
+fn texts_id() -> Id {
+    Id::unique("segue language pack")
+}
+
+fn texts_of(ctx: &Context) -> Option<Arc<Texts>> {
+    ctx.data(|data| data.get_temp::<Option<Arc<Texts>>>(texts_id())).flatten()
+}
+
+/// Returns a word or sentence of the program in the language of the interface. The widgets of the
+/// kit call this themselves, for all that they are given.
+pub(crate) fn tr<'a>(text: &'a str, ui: &Ui) -> Cow<'a, str> {
+    match texts_of(ui.ctx()).as_ref().and_then(|texts| texts.find(text)) {
+        Some(found) => Cow::Owned(found.to_owned()),
+        None => Cow::Borrowed(text),
+    }
+}
+
+/// Returns a message in the language of the interface. Not to be called while egui holds its
+/// context, as in the closure of `widget_info`.
+pub(crate) fn say(message: &Message, ui: &Ui) -> String {
+    match texts_of(ui.ctx()) {
+        Some(texts) => texts.write(message),
+        None => message.to_string(),
+    }
+}
+
+/// Translates the labels that screen readers are told, which no widget has to think of.
+struct Labels;
+
+impl Plugin for Labels {
+    fn debug_name(&self) -> &'static str {
+        "segue labels"
+    }
+
+    fn output_hook(&mut self, ctx: &Context, output: &mut FullOutput) {
+        let Some(texts) = texts_of(ctx) else {
+            return;
+        };
+        if let Some(update) = &mut output.platform_output.accesskit_update {
+            for (_, node) in &mut update.nodes {
+                if let Some(label) = node.label().and_then(|label| texts.find(label)) {
+                    node.set_label(label);
+                }
+                // A text that is edited is the user's.
+                if !matches!(
+                    node.role(),
+                    Role::TextInput | Role::MultilineTextInput | Role::TextRun
+                ) && let Some(value) = node.value().and_then(|value| texts.find(value))
+                {
+                    node.set_value(value);
+                }
+            }
+        }
+        for event in &mut output.platform_output.events {
+            let (OutputEvent::Clicked(info)
+            | OutputEvent::DoubleClicked(info)
+            | OutputEvent::TripleClicked(info)
+            | OutputEvent::FocusGained(info)
+            | OutputEvent::TextSelectionChanged(info)
+            | OutputEvent::ValueChanged(info)) = event;
+            if let Some(label) = info.label.as_deref().and_then(|label| texts.find(label)) {
+                info.label = Some(label.to_owned());
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(texts: &[u8], font: &[u8]) -> Result<LanguagePack, PackError> {
+        LanguagePack::read(texts, Arc::from(font))
+    }
+
+    #[test]
+    fn pack_of_other_files_is_refused() {
+        assert!(read(br#"{"words": {"left": "right"}}"#, b"OTTO").is_ok());
+        assert!(matches!(read(b"<!doctype html>", b"OTTO"), Err(PackError::Texts)));
+        assert!(matches!(read(br#"{"a": "b"}"#, b"OTTO"), Err(PackError::Texts)));
+        assert!(matches!(read(b"{}", b"<!doctype html>"), Err(PackError::Font)));
+    }
+}

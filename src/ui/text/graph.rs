@@ -1,0 +1,224 @@
+//! The texts of the Graph lab.
+
+use segue_session::{Built, Cast, Trace};
+use segue_text::{Message, msg};
+
+/// What the Graph lab does.
+pub(crate) const GRAPH_ABOUT: &str = "Several clips, and every place where one may go over into another. A walk through them never ends: the seed says where it goes.";
+/// Over the stage.
+pub(crate) const GRAPH_HINT: &str =
+    "Point at a ring or an arc to see both poses. Click it to play that transition alone.";
+/// Of the seed, in place of what it does for a made motion.
+pub(crate) const GRAPH_SEED_HELP: &str =
+    "Another seed, another way through the graph; the same seed, the same walk on every machine.";
+/// Why a visit came to nothing.
+pub(crate) fn no_way(name: Message, secs: f64) -> Message {
+    msg!(
+        "No way leads to {name} from where the walk is at {secs:.1} s: a higher threshold may make one.",
+        name,
+        secs
+    )
+}
+
+pub(crate) const GRAPH_LACKS_SOME: &str =
+    "More transitions lie below the threshold than can be held: the closest are.";
+/// Adds one.
+pub(crate) const ADD_CLIP: &str = "Add a clip";
+/// While it is computed.
+pub(crate) const GRAPHING: &str = "Making graph and walk";
+/// After it was given up.
+pub(crate) const GO_ON: &str = "Go on";
+/// Of the parameters that say where the walk goes.
+pub(crate) const WALK: &str = "The walk";
+/// The picture of the distances.
+pub(crate) const ALL_DISTANCES: &str = "Distances of all windows";
+/// Below it.
+pub(crate) const MATRIX_HELP: &str = "Down: where a clip is left. Across: where one is entered. Rings are transitions. Wheel: closer; drag: move.";
+/// The histogram's name.
+pub(crate) const ALL_HISTOGRAM: &str = "How many pairs of windows are how far apart";
+/// The strip's name.
+pub(crate) const GRAPH_STRIP: &str = "The graph: clips and transitions";
+/// Of the links to what is worth a look.
+pub(crate) const EXPERIMENTS: &str = "Experiments";
+/// Chooses a clip to go to.
+pub(crate) const GO_TO_CLIP: &str = "Go to a clip from here";
+/// Takes that back.
+pub(crate) const FORGET_VISITS: &str = "By chance again";
+/// Draws a line to follow.
+pub(crate) const DRAW_PATH: &str = "Draw a path on the ground";
+/// While it is drawn.
+pub(crate) const DRAWING: &str = "Press on the ground and draw. The walk starts at its beginning.";
+/// Takes it away.
+pub(crate) const REMOVE_PATH: &str = "Remove the path";
+/// Back from one transition.
+pub(crate) const BACK_TO_WALK: &str = "Back to the walk";
+/// Of the files.
+pub(crate) const GRAPH_FILES: &str = "The graph as a file";
+/// Of the table of numbers.
+pub(crate) const NUMBERS: &str = "Numbers";
+/// Copies it.
+pub(crate) const COPY_MARKDOWN: &str = "Copy as Markdown";
+/// Copies it.
+pub(crate) const COPY_CSV: &str = "Copy as CSV";
+/// What is said then.
+pub(crate) const TABLE_COPIED: &str = "The table is in the clipboard.";
+/// A row of it.
+/// A mark of the walk.
+pub(crate) const SEAM: &str = "Into another clip";
+
+/// What is opened by a click: its name, what it does, and the values that it sets.
+pub(crate) struct Experiment {
+    pub(crate) name: &'static str,
+    pub(crate) help: &'static str,
+    pub(crate) query: &'static str,
+}
+
+/// The experiments of the course, each on the same seed.
+pub(crate) const GRAPH_EXPERIMENTS: &[Experiment] = &[
+    Experiment {
+        name: "Windows: full, half, third",
+        help: "A long one drags, a short one bursts.",
+        query: "construction=segments&segment_size=60&blend_window=30&compare=blend_window:30,15,10",
+    },
+    Experiment {
+        name: "Segments: full, half, third",
+        help: "Long segments repeat little, short ones never come to rest. A third is no longer than the window: nothing is left of a segment, and many programs crash.",
+        query: "construction=segments&blend_window=20&segment_size=60&compare=segment_size:60,30,20",
+    },
+    Experiment {
+        name: "Continuity: low, middle, high",
+        help: "How long a clip is left unbroken.",
+        query: "going_on=share&compare=continuity:0.3,0.8,0.98",
+    },
+    Experiment {
+        name: "Weight of going on: 1 and 1000",
+        help: "One constant beside the distances: the more ways lead out, the less it holds.",
+        query: "going_on=constant&edge_weight=proportional&compare=continuity_weight:1,1000",
+    },
+    Experiment {
+        name: "atan for atan2",
+        help: "Every clip is laid on with its back to the front, as if it faced the other way in its file: spins.",
+        query: "transform=whole&compare=atan:atan2,atan",
+    },
+    Experiment {
+        name: "Degrees for radians",
+        help: "A turn in degrees that is taken for radians: every clip goes off in a direction of its own.",
+        query: "transform=whole&compare=atan:atan2,degrees",
+    },
+    Experiment {
+        name: "First frame only",
+        help: "The clip starts in the right place and goes off as it was recorded, or flies back to where it was recorded.",
+        query: "atan=atan2&compare=transform:whole,first,teleport",
+    },
+];
+
+/// What the limit of ways out has left out; `None` where that is nothing.
+pub(crate) fn ways_left_out(built: &Built) -> Option<Message> {
+    let count = built.whole().left_out();
+    (count > 0).then(|| {
+        msg!(
+            "{count, plural, one {# transition is left out: no more than {most} leave one stretch. Raise the ways out to have it.} other {# transitions are left out: no more than {most} leave one stretch. Raise the ways out to have them.}}",
+            count,
+            most = built.options().most_ways_out
+        )
+    })
+}
+
+/// What there is of a graph.
+pub(crate) fn graph_in_words(built: &Built, run_secs: Option<f64>) -> Message {
+    const NAMED: usize = 4;
+    let first = msg!(
+        "{jumps, plural, one {# transition} other {# transitions}}, {dead, plural, =0 {no dead end} one {# dead end} other {# dead ends}}.",
+        jumps = built.whole().jumps().len(),
+        dead = built.dead_ends()
+    );
+    let percent = |share: &f64| msg!("{percent:.0} %", percent = 100.0 * share);
+    let components = match built.rings() {
+        [] => "Nothing leads back: every walk comes to an end.".into(),
+        [one] => msg!("One component, with {share} of all frames.", share = percent(one)),
+        rings => {
+            let mut shares: Vec<Message> = rings.iter().take(NAMED).map(percent).collect();
+            shares.extend((rings.len() > NAMED).then_some("…".into()));
+            msg!(
+                "{count} components that do not reach each other, with {shares} of all frames: a higher threshold joins them.",
+                count = rings.len(),
+                shares
+            )
+        }
+    };
+    let pruned = built.is_pruned().then(|| {
+        msg!(
+            "The walk keeps to the largest: {jumps, plural, one {# transition} other {# transitions}}.",
+            jumps = built.graph().jumps().len()
+        )
+    });
+    let run = run_secs.map(|secs| {
+        msg!("A clip runs for {secs:.1} s on average until the next transition.", secs)
+    });
+    let sentences = [first, components].into_iter().chain(pruned).chain(run).collect();
+    Message::joined(sentences, " ")
+}
+
+/// A transition: from where to where, how far apart, how probable.
+pub(crate) fn jump_in_words(ends: [Message; 2], cm: f64, probability: Option<f64>) -> Message {
+    let [leave, enter] = ends;
+    match probability {
+        Some(p) => {
+            msg!("{leave} → {enter} · {cm:.1} cm · p {p:.2}", leave, enter, cm, p)
+        }
+        None => msg!("{leave} → {enter} · {cm:.1} cm", leave, enter, cm),
+    }
+}
+
+/// Returns a frame of a clip in words.
+pub(crate) fn frame_in_words(name: Message, frame: usize) -> Message {
+    msg!("{name} {frame}", name, frame)
+}
+
+/// A pair of windows that is no transition.
+pub(crate) fn windows_apart([leave, enter]: [Message; 2], cm: Option<f64>) -> Message {
+    match cm {
+        Some(cm) => msg!("{leave} | {enter}: {cm:.1} cm apart", leave, enter, cm),
+        None => msg!("{leave} | {enter}: no window starts here", leave, enter),
+    }
+}
+
+/// Which clips were moved onto the skeleton of the first; `None` where all are on it.
+pub(crate) fn moved_onto_first(cast: &Cast, title: impl Fn(&str) -> Message) -> Option<Message> {
+    let moved: Vec<Message> = (cast.names().iter().enumerate())
+        .filter(|(clip, _)| cast.retargeted(*clip).is_some())
+        .map(|(_, name)| title(name))
+        .collect();
+    let first = cast.names().first().filter(|_| !moved.is_empty())?;
+    Some(msg!("Moved onto the skeleton of {first}: {names}.", first = title(first), names = moved))
+}
+
+/// How a walk follows its line.
+pub(crate) fn followed(trace: &Trace) -> Message {
+    let &Trace { along_m, length_m, rms_m, looked_at, .. } = trace;
+    if trace.is_searching {
+        msg!(
+            "So far {along_m:.1} of {length_m:.1} m of the path are followed, {rms_m:.2} m off it on average; {looked_at} ways were looked at.",
+            along_m,
+            length_m,
+            rms_m,
+            looked_at
+        )
+    } else {
+        msg!(
+            "Follows {along_m:.1} of {length_m:.1} m of the path, {rms_m:.2} m off it on average; {looked_at} ways were looked at.",
+            along_m,
+            length_m,
+            rms_m,
+            looked_at
+        )
+    }
+}
+
+/// That a walk has an end.
+pub(crate) fn dead_end(secs: f64) -> Message {
+    msg!(
+        "The walk comes to a dead end after {secs:.1} s. Keep to the largest component, and it never does.",
+        secs
+    )
+}

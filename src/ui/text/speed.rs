@@ -1,0 +1,51 @@
+//! The texts of the Speed and In place labs.
+
+use segue_motion::gait::GaitFacts;
+use segue_text::{Message, msg};
+
+/// What the In place lab does.
+pub(crate) const IN_PLACE_ABOUT: &str =
+    "Removes the root motion of a clip, or rebuilds it from the planted feet.";
+/// What the Speed lab does.
+pub(crate) const SPEED_ABOUT: &str = "Blends two gaits, such as a walk and a run, to any speed between them. Drag the speed while it plays.";
+/// Opens the speeds of A and B and the one between.
+pub(crate) const THREE_SPEEDS: &str = "A, half way, B";
+/// A chip over a pane whose speed lies beyond both clips.
+pub(crate) const BEYOND: &str = "beyond both clips";
+
+/// How fast both clips go, and where.
+pub(crate) fn gaits([a, b]: [f64; 2], [[from_a, to_a], [from_b, to_b]]: [[f64; 2]; 2]) -> Message {
+    msg!(
+        "Speed of one cycle: A {a:.2} m/s from {from_a:.2} to {to_a:.2} s, B {b:.2} m/s from {from_b:.2} to {to_b:.2} s. The mean over a whole clip, as in View, may differ.",
+        a,
+        from_a,
+        to_a,
+        b,
+        from_b,
+        to_b
+    )
+}
+
+/// That the speed asked for lies beyond both clips; `None` where it does not.
+pub(crate) fn beyond_gaits(facts: &GaitFacts, [a, b]: [f64; 2]) -> Option<Message> {
+    let (low, high) = (a.min(b), a.max(b));
+    if facts.limited {
+        Some(msg!(
+            "Too far beyond both clips ({low:.2} to {high:.2} m/s): this is {mps:.2} m/s, the nearest that can be made of them.",
+            low,
+            high,
+            mps = facts.speed_mps
+        ))
+    } else if facts.extrapolated {
+        Some(msg!(
+            "Beyond both clips ({low:.2} to {high:.2} m/s): the pose is a guess, and may bend what does not bend.",
+            low,
+            high
+        ))
+    } else {
+        None
+    }
+}
+
+/// A mark on the timeline.
+pub(crate) const CYCLE_BEGINS: &str = "The cycle begins again";

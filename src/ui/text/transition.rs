@@ -1,0 +1,159 @@
+//! The texts of the Blend, Transition and Layers labs.
+
+use super::{BY_HAND, FOUND};
+use segue_session::choices::Mistake;
+use segue_session::{LayerFacts, LayerFit, Retargeted, Transition, format_number};
+use segue_text::{Message, msg};
+
+/// How the place of a transition was found, and how far apart the clips are there. `automatic`:
+/// whether A's frame and B's are left to Segue.
+pub(crate) fn place_found(transition: &Transition, automatic: [bool; 2]) -> Message {
+    let by_hand = automatic == [false, false];
+    let Some(search) = transition.search.filter(|_| transition.distance_cm.is_finite()) else {
+        return if by_hand { BY_HAND.into() } else { Message::word(FOUND).sentence() };
+    };
+    let cm = transition.distance_cm;
+    let mut said = match (by_hand, search.by_pose) {
+        (true, true) => vec![BY_HAND.into(), msg!("The poses are {cm:.1} cm apart.", cm)],
+        (true, false) => vec![BY_HAND.into(), msg!("The windows are {cm:.1} cm apart.", cm)],
+        (false, true) => {
+            vec![msg!("Found automatically: best match of two poses, {cm:.1} cm.", cm)]
+        }
+        (false, false) => {
+            vec![msg!("Found automatically: best match of both windows, {cm:.1} cm.", cm)]
+        }
+    };
+    match automatic {
+        _ if search.is_widened => {
+            said.push("A clip is too short for its half to be searched: all of it was.".into());
+        }
+        [true, true] => said.push("Searched: A's second half and B's first half.".into()),
+        [true, false] => said.push("Searched: A's second half.".into()),
+        [false, true] => said.push("Searched: B's first half.".into()),
+        [false, false] => {}
+    }
+    if search.is_shortened && !search.by_pose {
+        said.push(msg!(
+            "Compared over {frames, plural, one {# frame} other {# frames}}: the clip ends there.",
+            frames = search.window_frames
+        ));
+    }
+    Message::joined(said, " ")
+}
+
+/// That B was moved onto A's skeleton, and what was not matched.
+pub(crate) fn retargeted(retargeted: &Retargeted) -> Message {
+    /// More names would be a list that nobody reads.
+    const NAMED: usize = 4;
+    let unmatched = &retargeted.unmatched;
+    let count = unmatched.len();
+    let names: Vec<String> = unmatched.iter().take(NAMED).cloned().collect();
+    match count {
+        0 => "B's motion is moved onto A's skeleton.".into(),
+        1..=NAMED => msg!("B's motion is moved onto A's skeleton; not matched: {names}.", names),
+        _ => msg!(
+            "B's motion is moved onto A's skeleton; not matched: {names}, … ({count}).",
+            names,
+            count
+        ),
+    }
+}
+
+/// That B runs at another rate than A.
+pub(crate) fn resampled(from: f64, to: f64) -> Message {
+    let [from, to] = [from, to].map(|fps| format_number(fps, 0.01));
+    msg!(
+        "B is resampled from {from} to {to} frames per second, the rate of A and of the result.",
+        from,
+        to
+    )
+}
+
+/// What the student will see of a mistake of the Transition lab; empty for none.
+pub(crate) fn mistake(key: Mistake) -> &'static str {
+    match key {
+        Mistake::Hemisphere => {
+            "Limbs swing the long way round: half of B's quaternions come with the other sign, the same rotations, and nobody took the nearer one."
+        }
+        Mistake::Euler => {
+            "Limbs twist and flip, forearms first: three angles mixed one by one are no rotation on the way from A to B."
+        }
+        Mistake::Degrees => {
+            "Limbs whirl: an angle in degrees taken for radians is 57 times too large."
+        }
+        Mistake::Atan => {
+            "B arrives turned by half a turn and goes off backwards: atan cannot tell a direction from its opposite."
+        }
+        Mistake::TransformDegrees => {
+            "B goes off in a direction of its own: its turn in degrees was taken for radians."
+        }
+        Mistake::Facing => {
+            "B is turned to wherever the hips happen to tilt: the root's Y axis points up, and its shadow on the ground is no facing."
+        }
+        Mistake::Alignment => "The character flies to where B's file has it: nobody laid B on A.",
+        Mistake::Velocity => {
+            "Everything that moved stops dead at the seam and starts anew: the velocities are thousands of times too small."
+        }
+        Mistake::WorldRoot => {
+            "The feet slide and the pace surges: where A and B stand is mixed, not how they go."
+        }
+        Mistake::None => "",
+    }
+}
+
+/// Of `velocity` where the method is a dissolve, which has no other velocity.
+pub(crate) const VELOCITY_IN_DISSOLVE: &str = "The character treads on the spot through the window and then goes on: its velocity over the ground is thousands of times too small.";
+/// For a method that the mistake cannot be made in.
+pub(crate) const MISTAKE_IDLE: &str =
+    "A cut mixes nothing, so there is nothing to see: choose another method.";
+/// What a comparison opens that shows the mistake.
+pub(crate) const RIGHT_AND_WRONG: &str = "Right beside wrong";
+
+/// How B's time goes in a layer.
+pub(crate) fn fit(layer: &LayerFacts) -> Message {
+    let how = Message::word(match layer.fit {
+        LayerFit::InStep => "One cycle of B keeps step with A.",
+        LayerFit::Looped => "B loops, its ends brought together.",
+        LayerFit::Once => "B is long enough to play once.",
+        LayerFit::Held => "B stays in its last frame when it is over.",
+    });
+    if layer.has_no_steps {
+        Message::joined(vec!["No steps to keep in time with.".into(), how], " ")
+    } else {
+        how
+    }
+}
+
+/// Several methods on the same transition.
+pub(crate) const SHOOT_OUT: &str = "Shoot-out of methods";
+/// What the button opens.
+pub(crate) const SHOOT_OUT_QUERY: &str = "method:inertialize,smooth,dead";
+/// The rows of the half-life ruler.
+pub(crate) const HALF_LEFT: &str = "Half is left after";
+/// Likewise.
+pub(crate) const TENTH_LEFT: &str = "A tenth";
+/// Likewise.
+pub(crate) const HUNDREDTH_LEFT: &str = "A hundredth";
+/// The dissolve with as much of A in it.
+pub(crate) const ALIKE_WINDOW: &str = "Dissolve that feels alike";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_not_matched_is_named_and_counted() {
+        let told = |names: &[&str]| {
+            retargeted(&Retargeted {
+                unmatched: names.iter().map(|name| (*name).to_owned()).collect(),
+            })
+            .to_string()
+        };
+        assert_eq!(told(&[]), "B's motion is moved onto A's skeleton.");
+        assert_eq!(told(&["Tail"]), "B's motion is moved onto A's skeleton; not matched: Tail.");
+        assert_eq!(
+            told(&["a", "b", "c", "d", "e"]),
+            "B's motion is moved onto A's skeleton; not matched: a, b, c, d, … (5)."
+        );
+    }
+}
