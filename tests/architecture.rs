@@ -84,7 +84,7 @@ const NAMES_LABS: [&str; 6] = [
     "crates/session/src/labs.rs",
     "crates/session/src/labs/",
     "crates/session/src/choices.rs",
-    "crates/session/src/params.rs",
+    "crates/session/src/params/table.rs",
     "src/ui/labs.rs",
     "src/ui/labs/",
 ];

@@ -23,21 +23,26 @@ fn row(param: &Param) -> String {
         }
         Kind::Clip => "a clip's id".to_owned(),
         Kind::Compare => "`key:value,value`".to_owned(),
+        Kind::Joint => "a body part or a joint's name".to_owned(),
+        Kind::Character => "a clip's id, or empty".to_owned(),
         Kind::Text => "text".to_owned(),
+        Kind::List(_) => "a list".to_owned(),
     };
     let default = param.format(&param.default_value());
     let default = if default.is_empty() { String::new() } else { format!("`{default}`") };
+    let shared: Vec<&str> = param.shared_with.iter().map(|lab| lab.word()).collect();
     format!(
-        "| `{}` | {} | {values} | {default} | {} |\n",
+        "| `{}` | {} | {} | {values} | {default} | {} |\n",
         param.name,
         param.group.name(),
+        shared.join(", "),
         param.help
     )
 }
 
 fn table() -> String {
     let mut table =
-        "| key | part | values | default | what it does |\n|---|---|---|---|---|\n".to_owned();
+        "| key | part | used by, too | values | default | what it does |\n|---|---|---|---|---|---|\n".to_owned();
     for param in PARAMS {
         table.push_str(&row(param));
     }

@@ -18,8 +18,8 @@ use segue_session::export::{
 use segue_session::outside;
 use segue_session::reading::Content;
 use segue_session::{
-    ClipInfo, Command, CommandError, FileCommand, Key, Kind, Loaded, Made, PARAMS, Pane, Param,
-    PlaybackCommand, ReportFacts, Value, check_graph_clips, file_stem, frame_at, report,
+    ClipInfo, Command, CommandError, FileCommand, Key, Kind, List, Loaded, Made, PARAMS, Pane,
+    Param, PlaybackCommand, ReportFacts, Value, check_graph_clips, file_stem, frame_at, report,
 };
 use serde::Serialize;
 use serde_json::{Map, Value as Json};
@@ -205,7 +205,7 @@ impl Segue {
                 known.ok_or_else(|| format!("{name}: {}", CommandError::NoClip(id.clone())))?,
             );
         }
-        if let (Key::Clips, Value::Text(ids)) = (key, &value) {
+        if let (Key::Clips, Value::List(List::ClipIds(ids))) = (key, &value) {
             check_graph_clips(ids).map_err(|reason| format!("{name}: {reason}"))?;
         }
         Ok((key, value))

@@ -25,7 +25,7 @@ use eframe::egui::Ui;
 use glam::DVec2;
 use graph::seed_detail;
 use segue_session::LabId;
-use segue_session::{Command, Group, Key, Mark, PARAMS, Pane, Params, Session, Slot, Value};
+use segue_session::{Command, Group, Key, Kind, Mark, PARAMS, Pane, Params, Session, Slot};
 use segue_text::Message;
 
 /// A lab's part of the page; each lab's own file has it, as `LAB`.
@@ -130,7 +130,7 @@ pub(crate) fn take_line(points: &[DVec2], session: &Session, state: &mut UiState
 /// goes back to one pane.
 pub(crate) fn toggle_compare(session: &Session, out: &mut Out) {
     if session.panes().len() > 1 {
-        out.set_once(Key::Compare, Value::Text(String::new()));
+        out.compare(None);
         return;
     }
     match of(session.params().lab()).compares {
@@ -173,7 +173,7 @@ fn named_params(session: &Session) -> impl Iterator<Item = Key> + '_ {
             || (named
                 && (group.is_of_lab()
                     || matches!(group, Group::Stage)
-                    || matches!(key, Key::A | Key::B)))
+                    || matches!(key.param().kind, Kind::Clip)))
     })
 }
 

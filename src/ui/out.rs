@@ -1,7 +1,7 @@
 //! What the panels ask for. They change nothing themselves.
 
 use segue_session::export::ExportOptions;
-use segue_session::{Command, Key, Value};
+use segue_session::{Command, Compare, Key, Value};
 
 /// What only the platform can do.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,6 +63,16 @@ impl Out {
     pub(crate) fn set_once(&mut self, key: Key, value: Value) {
         self.set(key, value);
         self.commands.push(Command::Settle);
+    }
+
+    /// Opens values side by side, or one pane, in one step of its own.
+    pub(crate) fn compare(&mut self, compare: Option<Compare>) {
+        self.set_once(Key::Compare, Value::Compare(compare));
+    }
+
+    /// Brings a parameter back to its default, in one step of its own.
+    pub(crate) fn reset(&mut self, key: Key) {
+        self.commands.push(Command::Reset(key));
     }
 
     /// Turns a switch round.

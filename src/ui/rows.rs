@@ -16,7 +16,7 @@ use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{self, Ui};
 use segue_motion::transition::has_legs;
-use segue_session::{Command, Key, NoResult, Session, Slot, split_reference};
+use segue_session::{Command, Key, Mark, NoResult, PARAMS, Session, Slot, split_reference};
 use segue_text::{Message, msg};
 /// The foot lock, how feet are read where they are held, and why they are not.
 pub(crate) fn foot_rows_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
@@ -29,14 +29,16 @@ pub(crate) fn foot_rows_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         ui.label(words.color(palette_of(ui).warning));
     }
     kit::folded_ui(text::FEET, ui, |ui| {
-        if session.params().is_on(Key::FootLock) {
-            for key in [Key::LockBlend, Key::LockReach, Key::LockClearance] {
-                param_row_ui(key, &Detail::default(), session, out, ui);
+        let mut rows_ui = |mark: Mark| {
+            for param in PARAMS.iter().filter(|param| param.has(mark) && param.key != Key::FootLock)
+            {
+                param_row_ui(param.key, &Detail::default(), session, out, ui);
             }
+        };
+        if session.params().is_on(Key::FootLock) {
+            rows_ui(Mark::Lock);
         }
-        for key in [Key::Ground, Key::ContactHeight, Key::ContactSpeed] {
-            param_row_ui(key, &Detail::default(), session, out, ui);
-        }
+        rows_ui(Mark::Feet);
     });
 }
 

@@ -16,7 +16,7 @@ use segue_session::choices::{Mistake, Selected as _};
 use segue_session::export::{ExportFormat, ExportOptions, export};
 use segue_session::reading::Content;
 use segue_session::{
-    Command, Entry, FileCommand, Kind, Level, Origin, Outcome, PageMemory, Slot, SourceFile,
+    Command, Entry, FileCommand, Kind, Level, List, Origin, Outcome, PageMemory, Slot, SourceFile,
     Storing, Value,
 };
 use std::fmt::Write as _;
@@ -180,6 +180,12 @@ fn the_stage_has_its_own_colours_and_rows() {
     assert_eq!(["auto", "dark", "light", "paper"].map(dark), [true, true, false, false]);
     assert_eq!(stage_look(&session("paper"), page), Look::PAPER);
     assert_eq!(stage_look(&session("auto"), page), Look::DARK);
+}
+
+/// The comparison as the link has it; nothing for one pane.
+fn compared(harness: &Harness<'_, Page>) -> String {
+    let compare = harness.state().session.compare();
+    compare.map(ToString::to_string).unwrap_or_default()
 }
 
 /// The built-in walk as a file, with a tail that no other skeleton has, and a T-pose in front.
@@ -489,7 +495,7 @@ fn a_gait_takes_any_speed_and_says_when_that_is_a_guess() {
     }
     let mut harness = harness(DESK, DARK, page("lab=speed&play=off"));
     press("A, half way, B", &mut harness);
-    assert_eq!(harness.state().session.params().text(Key::Compare), "speed:1.4,2.45,3.5");
+    assert_eq!(compared(&harness), "speed:1.4,2.45,3.5");
     let back = harness.get_by_label("One pane").rect();
     assert!(
         back.right() < DESK.x - space::M,
@@ -589,7 +595,7 @@ fn a_mistake_is_chosen_explained_and_held_against_the_right_way() {
     picture("break-desk-dark", &mut harness);
     press(text::RIGHT_AND_WRONG, &mut harness);
     assert_eq!(harness.state().session.panes().len(), 2);
-    assert_eq!(harness.state().session.params().text(Key::Compare), "mistake:none,euler");
+    assert_eq!(compared(&harness), "mistake:none,euler");
     harness.get_by_label(text::mistake(Mistake::Euler));
     picture("break-compare-dark", &mut harness);
     press(text::RIGHT_AND_WRONG, &mut harness);
@@ -618,7 +624,10 @@ fn a_clip_of_another_skeleton_is_said_to_be_moved() {
     let mut page = with_file("lab=graph&clips=walk,walk_left&walk_seconds=10&play=off");
     let id = loaded(&page).id.clone();
     page.session
-        .apply(Command::Set(vec![(Key::Clips, Value::Text(format!("walk,{id}")))]))
+        .apply(Command::Set(vec![(
+            Key::Clips,
+            List::ClipIds(vec!["walk".to_owned(), id.clone()]).into(),
+        )]))
         .expect("a page as the tests need it");
     while page.session.work() {}
     let harness = harness(DESK, DARK, page);
@@ -701,45 +710,39 @@ fn space_plays_after_a_drag() {
 fn values_side_by_side_are_dragged_one_by_one() {
     let mut harness = harness(DESK, DARK, page("compare=blend_window:30,15,10&play=off"));
     picture("compare-rows", &mut harness);
-    let compare = |harness: &Harness<'_, Page>| {
-        harness.state().session.params().text(Key::Compare).to_owned()
-    };
     harness.get_by_label("Blend window · 2").focus();
     harness.step();
     harness.key_press(egui::Key::ArrowRight);
     harness.run_steps(2);
-    assert_eq!(compare(&harness), "blend_window:30,16,10");
+    assert_eq!(compared(&harness), "blend_window:30,16,10");
     press(text::PANE_MORE, &mut harness);
-    assert_eq!(compare(&harness), "blend_window:30,16,10,8");
+    assert_eq!(compared(&harness), "blend_window:30,16,10,8");
     // There is no room for a fifth: the button keeps its place, and does nothing.
     press(text::PANE_MORE, &mut harness);
-    assert_eq!(compare(&harness), "blend_window:30,16,10,8");
+    assert_eq!(compared(&harness), "blend_window:30,16,10,8");
     for _ in 0..3 {
         press(text::PANE_LESS, &mut harness);
     }
-    assert_eq!(compare(&harness), "");
+    assert_eq!(compared(&harness), "");
     assert_eq!(harness.state().session.panes().len(), 1);
     harness.state_mut().session.apply(Command::Undo).unwrap();
-    assert_eq!(compare(&harness), "blend_window:30,16");
+    assert_eq!(compared(&harness), "blend_window:30,16");
 }
 
 #[test]
 fn choices_side_by_side_have_a_row_each() {
     let mut harness = harness(DESK, DARK, page("compare=weight_law:smooth,linear&play=off"));
     picture("compare-choices", &mut harness);
-    let compare = |harness: &Harness<'_, Page>| {
-        harness.state().session.params().text(Key::Compare).to_owned()
-    };
     assert!(harness.query_by_label("Weight law").is_none());
     press(text::PANE_MORE, &mut harness);
-    let three = compare(&harness);
+    let three = compared(&harness);
     assert!(
         three.starts_with("weight_law:smooth,linear,") && three.matches(',').count() == 2,
         "{three}"
     );
     press(text::PANE_LESS, &mut harness);
     press("One pane", &mut harness);
-    assert_eq!(compare(&harness), "");
+    assert_eq!(compared(&harness), "");
     assert_eq!(harness.state().session.params().choice::<choices::WeightLaw>().word(), "smooth");
 }
 

@@ -1,14 +1,13 @@
 //! Where labs get their clips: from the library, made, made again by their recipe, or asked for.
 
-use crate::compare::Compare;
 use crate::document::Document;
 use crate::files::FileIntake;
 use crate::labs::{Answer, Inputs, LabClips, LabError, LabSet, MoreClip};
-use crate::labs::{lab_of, preset_motion, recipe_name, recipe_params};
+use crate::labs::{lab_of, preset_motion, recipe_name, recipe_params, slots_of};
 use crate::library::{Entry, Origin, split_reference};
 use crate::motion::foot_options;
 use crate::outside;
-use crate::params::{Key, Params, Value};
+use crate::params::{Compare, Key, Params, Value};
 use segue_motion::clip::Motion;
 use std::sync::Arc;
 
@@ -141,12 +140,15 @@ impl ClipResolver<'_> {
     /// before it fails with the first that is missing: files are fetched together.
     pub(crate) fn lab_clips(&mut self, params: &Params) -> Result<LabClips, LabError> {
         let lab = lab_of(params.lab());
-        let slots: Vec<_> = (lab.slots().iter())
+        let slots: Vec<_> = slots_of(params.lab())
             .map(|slot| self.motion_with_feet(params.text(slot.key()), params))
             .collect();
         let ids = lab.more_clips(params)?;
-        let motions =
-            if lab.has_feet() { self.motions_with_feet(&ids, params) } else { self.motions(&ids) };
+        let motions = if Key::ContactHeight.param().is_used_by(params.lab()) {
+            self.motions_with_feet(&ids, params)
+        } else {
+            self.motions(&ids)
+        };
         let slots = slots.into_iter().collect::<Result<_, _>>()?;
         let more = ids.into_iter().zip(motions?).map(|(id, motion)| MoreClip {
             name: self

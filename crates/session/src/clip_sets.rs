@@ -4,7 +4,7 @@ use super::labs::lab::Lab;
 use super::labs::{LabSet, lab_of};
 use super::library::{Entry, Origin};
 use super::link;
-use super::params::{Key, Kind, Mark, Value};
+use super::params::{Key, Kind, ListKind, Value};
 use super::samples::SUBJECT_16;
 use super::session::Session;
 
@@ -43,7 +43,7 @@ impl Session {
     #[must_use]
     pub fn uses_clip_set(&self, set: ClipSet) -> bool {
         let names_clips =
-            |key: Key| matches!(key.param().kind, Kind::Clip) || key.param().has(Mark::Clips);
+            |key: Key| matches!(key.param().kind, Kind::Clip | Kind::List(ListKind::ClipIds));
         self.clip_set(set).is_some_and(|values| {
             let mut clips = values.iter().filter(|(key, _)| names_clips(*key));
             clips.all(|(key, value)| self.params().get(*key) == value)

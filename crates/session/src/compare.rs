@@ -1,68 +1,8 @@
-use super::labs::{read_ids, write_ids};
-use super::outside::short;
-use super::params::{Choice, Key, Kind, Value, ValueError};
-use segue_text::{Message, msg};
-use std::fmt;
+//! What is compared: the panes that a parameter begins with, and one pane more.
 
-/// Two to four values of one parameter, each in a pane of its own: `blend_window:30,15,10`,
-/// `method:inertialize,smooth`, `a:walk,run`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Compare {
-    /// The parameter in which the panes differ.
-    pub key: Key,
-    /// Its value in each pane, in order.
-    pub values: Vec<Value>,
-}
-
-/// How many panes fit side by side.
-pub const MAX_PANES: usize = 4;
+use crate::params::{Choice, Compare, Key, Kind, MAX_PANES, Value};
 
 impl Compare {
-    /// Reads `key:value,value,…`.
-    ///
-    /// # Errors
-    /// [`ValueError`] when the key cannot be compared, a value does not fit it, or there are not
-    /// two to four values.
-    pub fn parse(text: &str) -> Result<Self, ValueError> {
-        let refuse =
-            |expected: Message| ValueError::NotAComparison { found: text.to_owned(), expected };
-        let (name, list) = text
-            .split_once(':')
-            .ok_or_else(|| refuse("`key:value,value`, as in blend_window:30,15,10".into()))?;
-        let key = Key::from_name(name.trim())
-            .filter(|key| key.param().is_comparable())
-            .ok_or_else(|| {
-                refuse(msg!(
-                    "a number or a choice of a lab, or a clip, before the colon, not `{found}`",
-                    found = short(name)
-                ))
-            })?;
-        let is_clip = matches!(key.param().kind, Kind::Clip);
-        let words = if is_clip {
-            read_ids(list)
-                .ok_or_else(|| refuse("ids whose brackets close, separated by commas".into()))?
-        } else {
-            list.split(',').map(|word| word.trim().to_owned()).collect()
-        };
-        let values = words
-            .iter()
-            .map(|word| match key.param().parse(word)? {
-                Value::Auto => {
-                    Err(refuse(msg!("a value for each pane, not `{found}`", found = short(word))))
-                }
-                value => Ok(value),
-            })
-            .collect::<Result<Vec<Value>, ValueError>>()?;
-        if !(2..=MAX_PANES).contains(&values.len()) {
-            return Err(refuse(msg!(
-                "2 to {most} values, not {count}",
-                most = MAX_PANES,
-                count = values.len()
-            )));
-        }
-        Ok(Self { key, values })
-    }
-
     /// The experiment of the course: the full value, half of it and a third. Where the range (the
     /// parameter's own, or a narrower one) does not hold all three apart, both its ends and its
     /// middle. `None` for a parameter that is no number or cannot be compared.
@@ -133,18 +73,6 @@ impl Compare {
             more.values.truncate(MAX_PANES);
         }
         more
-    }
-}
-
-impl fmt::Display for Compare {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let param = self.key.param();
-        let values: Vec<String> = self.values.iter().map(|value| param.format(value)).collect();
-        let values = match param.kind {
-            Kind::Clip => write_ids(&values),
-            _ => values.join(","),
-        };
-        write!(f, "{}:{values}", param.name)
     }
 }
 

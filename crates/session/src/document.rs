@@ -7,10 +7,9 @@ mod places;
 mod slots;
 
 use crate::built_in::preset_entries;
-use crate::compare::Compare;
 use crate::labs::Slot;
 use crate::library::{Entry, Library};
-use crate::params::{Key, Mark, Params, Value, ValueError};
+use crate::params::{Key, Kind, ListKind, Mark, Params, Value, ValueError};
 use history::History;
 use places::forget_places;
 use std::sync::Arc;
@@ -55,11 +54,6 @@ impl Document {
     /// Returns the clip in a slot.
     pub(crate) fn slot(&self, slot: Slot) -> Option<&Arc<Entry>> {
         self.library.find(self.params.text(slot.key()))
-    }
-
-    /// Returns the comparison that is open.
-    pub(crate) fn compare(&self) -> Option<Compare> {
-        Compare::parse(self.params.text(Key::Compare)).ok()
     }
 
     /// Returns whether the link that was opened names this parameter, be it with its default.
@@ -163,7 +157,7 @@ impl Document {
         }
         if changed
             .iter()
-            .any(|key| matches!(key, Key::Lab | Key::Clips | Key::MatchClips | Key::Others))
+            .any(|key| *key == Key::Lab || key.param().kind == Kind::List(ListKind::ClipIds))
         {
             self.bring_back_listed();
         }

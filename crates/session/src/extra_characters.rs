@@ -5,11 +5,10 @@ use crate::command::{CommandError, ExtraCharacterCommand};
 use crate::document::Document;
 use crate::labs::LabError;
 use crate::labs::lab::Beside;
-use crate::labs::lab_of;
-use crate::labs::{read_ids, recipe_id, recipe_ingredients, recipe_name, recipe_params, write_ids};
+use crate::labs::{lab_of, recipe_id, recipe_ingredients, recipe_name, recipe_params};
 use crate::library::{Entry, Origin, split_reference};
 use crate::panes::Panes;
-use crate::params::{Key, Params, Value, ValueError};
+use crate::params::{Key, List, Params, Value, ValueError};
 use crate::{LabId, Selected};
 use segue_motion::clip::Motion;
 use std::sync::Arc;
@@ -68,7 +67,7 @@ impl ExtraCharacters {
 
 /// Returns the ids in the list.
 fn ids(document: &Document) -> Vec<String> {
-    read_ids(document.params.text(Key::Others)).unwrap_or_default()
+    document.params.clip_ids(Key::Others).to_vec()
 }
 
 /// Carries out a command as one step for undo.
@@ -111,7 +110,7 @@ pub(crate) fn apply(
             ids.remove(place);
         }
     }
-    params.set(Key::Others, Value::Text(write_ids(&ids)))?;
+    params.set(Key::Others, List::ClipIds(ids).into())?;
     document.params = params;
     Ok(())
 }

@@ -29,27 +29,21 @@ pub use error::LabError;
 pub(super) use gauge::Gauge;
 pub use graph::{
     At, Built, Cast, Distances, Field, Passed, Trace, Walk, WalkGhost, check_graph_clips, graph_of,
-    write_jump, write_path, write_visits,
 };
-pub(super) use graph::{clips_of, read_path, read_visits};
-pub(super) use lab::{Inputs, LabClips, MoreClip};
+pub(super) use graph::{clips_of, visits_of};
+pub(super) use lab::{Inputs, LabClips, MoreClip, slots_of};
 pub(super) use lab_set::{LabSet, lab_of};
 pub use layers::{LayerFacts, LayerFit};
 pub(super) use make::{has as made_motion_has, preset_motion, range_of, synth_action};
 #[cfg(test)]
 pub(super) use match_::options_of;
-pub use match_::{DriveMoment, Driven, HandTag, own_words, write_tags};
-pub(super) use match_::{DrivenPane, LiveDrive, filter_of, read_tags};
+pub use match_::{DriveMoment, Driven, own_words};
+pub(super) use match_::{DrivenPane, LiveDrive, filter_of};
 pub use outcome::{Cycle, CycleMade, MatchSearch, Outcome, Retargeted, Slot, Source, Transition};
 pub(super) use outcome::{LabFacts, Measured};
 pub use path::{FittedMotion, OnPath, spline_ends};
-pub(super) use recipe::{
-    belongs_to, read_ids, recipe_id, recipe_ingredients, recipe_name, recipe_params,
-};
-pub use recipe::{file_stem, write_ids};
-pub use register::{
-    Beat, DistanceMap, MOST_ALSO, Registered, weight_curve, write_also, write_pairs,
-};
-pub(super) use register::{read_also, read_pins, read_weights};
+pub use recipe::file_stem;
+pub(super) use recipe::{recipe_id, recipe_ingredients, recipe_name, recipe_params};
+pub use register::{Beat, DistanceMap, Registered, weight_curve};
 pub use sliced::JobKind;
 pub(super) use speed::{SpeedInputs, middle_mps};

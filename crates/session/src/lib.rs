@@ -103,13 +103,11 @@ pub use command::{
     Command, CommandError, DriveCommand, ExtraCharacterCommand, FileCommand, PlaybackCommand,
     Request,
 };
-pub use compare::{Compare, MAX_PANES};
 pub use extra_characters::ExtraCharacter;
 pub use files::{Job, Loaded};
 pub use labs::LabError;
 pub use labs::{
     At, Built, Cast, Distances, Field, Passed, Trace, Walk, WalkGhost, check_graph_clips, graph_of,
-    write_jump, write_path, write_visits,
 };
 pub use labs::{
     Beat, DistanceMap, DriveMoment, Driven, FittedMotion, OnPath, Registered, spline_ends,
@@ -118,9 +116,7 @@ pub use labs::{
     Cycle, CycleMade, LayerFacts, LayerFit, MatchSearch, Outcome, Retargeted, Slot, Source,
     Transition, mistake_shows,
 };
-pub use labs::{HandTag, own_words, write_tags};
-pub use labs::{JobKind, file_stem, write_ids};
-pub use labs::{MOST_ALSO, weight_curve, write_also, write_pairs};
+pub use labs::{JobKind, file_stem, own_words, weight_curve};
 pub use lesson::{Lesson, LessonPage};
 pub use library::{Entry, Library, Origin, SourceFile, file_id, split_reference};
 pub use memory::{MemoryUse, PageMemory};
@@ -129,8 +125,8 @@ pub use notice::{Level, Notice, Notices};
 pub use numbers::{NumberRow, NumberTable, digits};
 pub use pane::{Made, NoResult, Pane, Shown};
 pub use params::{
-    Choice, Group, Key, Kind, Mark, PARAMS, Param, Params, Value, ValueError, decimals_of,
-    format_number,
+    Choice, Compare, Group, HandTag, Key, Kind, List, ListKind, MAX_PANES, MAX_WEIGHTED_CLIPS,
+    Mark, Misread, PARAMS, Param, Params, Value, ValueError, decimals_of, format_number, write_ids,
 };
 pub use playback::Span;
 pub use report::{ReportFacts, report};

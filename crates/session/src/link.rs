@@ -76,7 +76,7 @@ pub fn write(params: &Params) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::params::{Kind, PARAMS};
+    use crate::params::{Compare, Kind, PARAMS};
     use proptest::prelude::*;
 
     fn any_value(row: usize) -> BoxedStrategy<(Key, Value)> {
@@ -99,9 +99,12 @@ mod tests {
             Kind::Choice(choices) => {
                 (0..choices.len()).prop_map(move |i| (key, Value::Choice(choices[i].key))).boxed()
             }
-            Kind::Clip | Kind::Text => {
+            Kind::Clip | Kind::Joint | Kind::Character | Kind::Text => {
                 "[^\\pC]{0,12}".prop_map(move |text| (key, Value::Text(text))).boxed()
             }
+            Kind::List(kind) => "[0-9:,.\\-a-z() ]{0,12}"
+                .prop_map(move |text| (key, kind.read(&text).unwrap_or(kind.empty()).into()))
+                .boxed(),
             Kind::Compare => (1.0f64..120.0, 1.0f64..120.0)
                 .prop_map(move |(x, y)| {
                     (key, key.param().parse(&format!("blend_window:{x},{y}")).unwrap())
@@ -138,12 +141,64 @@ mod tests {
         let mut params = Params::default();
         assert_eq!(write(&params), "");
         params.set(Key::BlendWindow, Value::Number(24.0)).unwrap();
-        params.set(Key::Compare, Value::Text("blend_window:30,15,10".into())).unwrap();
+        params
+            .set(
+                Key::Compare,
+                Value::Compare(Compare::full_half_third(Key::BlendWindow, 30.0, None)),
+            )
+            .unwrap();
         params.set(Key::A, Value::Text("01_01~3fa9c1d2".into())).unwrap();
         assert_eq!(
             write(&params),
             "a=01_01~3fa9c1d2&blend_window=24&compare=blend_window:30,15,10"
         );
+    }
+
+    #[test]
+    fn list_that_cannot_be_read_is_named_with_its_place() {
+        for (query, problem) in [
+            (
+                "pins=12-30,50",
+                "pins: entry 2: found `50`, expected a frame of A and one of B, as in 12-30",
+            ),
+            (
+                "clips=walk,(run",
+                "clips: found `walk,(run`, expected brackets that close, and commas between the entries",
+            ),
+            (
+                "match_clips=walk)",
+                "match_clips: found `walk)`, expected brackets that close, and commas between the entries",
+            ),
+            (
+                "warp_also=2:run",
+                "warp_also: entry 1: found `2:run`, expected a weight from 0 to 1 and a clip, as in 0.3:run",
+            ),
+            (
+                "warp_curve=0-101",
+                "warp_curve: entry 1: found `0-101`, expected per cent of the blend and of B, as in 50-100",
+            ),
+            (
+                "go_to=3",
+                "go_to: entry 1: found `3`, expected seconds and a clip's place in the list, as in 12.5:3",
+            ),
+            (
+                "walk_path=0:0,a",
+                "walk_path: entry 2: found `a`, expected x and z in metres, as in 1.5:4",
+            ),
+            (
+                "jump=0:1-x",
+                "jump: found `0:1-x`, expected the clip and the frame that are left and those that are entered, as in 0:52-3:14",
+            ),
+            ("path=nonsense!", "path: this is not a path from a link: copy the whole link"),
+            ("drive=0.0.0", "drive: found `0.0.0`, expected input of one tick or more"),
+            (
+                "tags=walk",
+                "tags: entry 1: found `walk`, expected a clip, its seconds and a word, as in walk:0.2-1.5:exclude",
+            ),
+        ] {
+            let link = read(query);
+            assert_eq!((link.values, link.problems[0].to_string()), (vec![], problem.to_owned()));
+        }
     }
 
     #[test]

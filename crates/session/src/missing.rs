@@ -17,7 +17,7 @@ pub(crate) fn look_for_clips(document: &mut Document, notices: &mut Notices) {
     for reference in document.compared_clips() {
         look_for(document, notices, "A clip to compare", &reference);
     }
-    for (reference, _) in document.also_blended() {
+    for (reference, _) in document.params.weighted_clips().to_vec() {
         look_for(document, notices, "A clip of the blend", &reference);
     }
     document.bring_back_listed();
@@ -43,7 +43,7 @@ fn look_for(document: &mut Document, notices: &mut Notices, what: &'static str, 
 /// named.
 pub(crate) fn dismiss_found(document: &Document, notices: &mut Notices) {
     let slots = [Slot::A, Slot::B].map(|slot| document.params.text(slot.key()).to_owned());
-    let others = document.also_blended().into_iter().map(|(reference, _)| reference);
+    let others = document.params.weighted_clips().iter().map(|(reference, _)| reference.clone());
     let named: Vec<String> =
         slots.into_iter().chain(document.compared_clips()).chain(others).collect();
     notices.keep_missing(|reference| match document.library.find(reference) {

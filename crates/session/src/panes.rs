@@ -3,11 +3,10 @@
 
 use crate::clip_resolver::{ClipResolver, widest_window};
 use crate::command::CommandError;
-use crate::compare::MAX_PANES;
 use crate::labs::{DrivenPane, LiveDrive, Outcome, Slot, Source};
-use crate::labs::{belongs_to, lab_of, recipe_ingredients};
+use crate::labs::{lab_of, recipe_ingredients, slots_of};
 use crate::pane::{Made, NoResult, Pane};
-use crate::params::{Key, Kind, Params, Value};
+use crate::params::{Key, Kind, MAX_PANES, Params, Value};
 use segue_motion::clip::Motion;
 use segue_motion::math::Planar;
 use std::sync::Arc;
@@ -66,9 +65,10 @@ impl Panes {
     pub(crate) fn refresh(&mut self, clips: &mut ClipResolver<'_>) {
         let compare = clips
             .document
+            .params
             .compare()
             .filter(|compare| uses(clips.document.params.lab(), compare.key));
-        let variants: Vec<Option<(Key, Value)>> = match &compare {
+        let variants: Vec<Option<(Key, Value)>> = match compare {
             Some(compare) => compare
                 .values
                 .iter()
@@ -78,7 +78,7 @@ impl Panes {
             None => vec![None],
         };
         let is_driven = is_driven_by_user(&clips.document.params);
-        let match_window = widest_window(&clips.document.params, compare.as_ref());
+        let match_window = widest_window(&clips.document.params, compare);
         let mut old = std::mem::take(&mut self.list).into_iter();
         clips.labs.ask_anew();
         clips.labs.grapher.guide_by(None);
@@ -124,10 +124,7 @@ impl Panes {
     pub(crate) fn show_sources(&mut self, clips: &mut ClipResolver<'_>) {
         for pane in self.list.iter_mut().filter(|pane| pane.problem.is_some()) {
             let params = pane.params_in(&clips.document.params);
-            let slots = lab_of(clips.document.params.lab()).slots().iter();
-            let found = [Slot::A, Slot::B]
-                .into_iter()
-                .filter(|slot| slots.clone().any(|used| used == slot))
+            let found = slots_of(clips.document.params.lab())
                 .filter_map(|slot| Some((slot, clips.motion(params.text(slot.key())).ok()?)));
             pane.sources = beside_each_other(found.collect());
         }
@@ -144,7 +141,7 @@ pub(crate) fn is_driven_by_user(params: &Params) -> bool {
 fn uses(lab: crate::LabId, key: Key) -> bool {
     let is_clip = |key: Key| recipe_ingredients(lab).any(|ingredient| ingredient == key);
     if key.param().group.is_of_lab() {
-        belongs_to(key, lab)
+        key.param().is_used_by(lab)
     } else {
         !matches!(key.param().kind, Kind::Clip) || is_clip(key)
     }

@@ -10,7 +10,6 @@ mod storage;
 
 use crate::clip_resolver::ClipResolver;
 use crate::command::{Command, CommandError, DriveCommand, PlaybackCommand, Request};
-use crate::compare::Compare;
 use crate::document::Document;
 use crate::extra_characters::{self, ExtraCharacter, ExtraCharacters};
 use crate::files::{FileIntake, Job};
@@ -22,7 +21,7 @@ use crate::missing::{dismiss_found, look_for_clips};
 use crate::notice::{Level, Notices};
 use crate::pane::{Made, NoResult, Pane};
 use crate::panes::{Panes, is_driven_by_user};
-use crate::params::{Key, Params, Value};
+use crate::params::{Compare, Key, Params, Value};
 use crate::playback::{self, PlaybackState, Span, Timeline};
 use crate::reading::{Reads, read};
 use segue_text::{Message, msg};
@@ -270,8 +269,8 @@ impl Session {
             Command::Rename(id, name) => self.document.rename(&id, &name)?,
             Command::Keep(pane) => self.keep(pane)?,
             Command::Compare(key) => {
-                let compare = self.comparison(key)?.to_string();
-                self.set_as_step(vec![(Key::Compare, Value::Text(compare))])?;
+                let compare = Some(self.comparison(key)?);
+                self.set_as_step(vec![(Key::Compare, Value::Compare(compare))])?;
             }
             Command::Try(query) => self.try_link(&query)?,
             Command::File(command) => {

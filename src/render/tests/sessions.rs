@@ -3,7 +3,7 @@
 use super::{colors, gpu, options, staged};
 use segue_motion::path::{PathEdit, Pins};
 use segue_scene::{Colors, Director, Highlights, Look, PathMarks, StageOptions, Viewport};
-use segue_session::{Command, Key, Session, Value};
+use segue_session::{Command, Key, List, Session};
 use std::sync::Arc;
 
 #[test]
@@ -120,7 +120,10 @@ fn a_path_lies_on_the_stage_with_its_points_and_those_who_play_along() {
                 let edited =
                     spline.edited(&PathEdit::Move { index: 4, to }, Pins::default()).unwrap();
                 session
-                    .apply(Command::Set(vec![(Key::Path, Value::Text(edited.to_code()))]))
+                    .apply(Command::Set(vec![(
+                        Key::Path,
+                        List::EditedPath(Some(edited.clone())).into(),
+                    )]))
                     .unwrap();
                 assert!(!session.main_outcome().unwrap().path().unwrap().hard_turns.is_empty());
             }

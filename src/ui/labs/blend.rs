@@ -54,11 +54,7 @@ pub(super) fn blend_ui(session: &Session, state: &mut UiState, out: &mut Out, ui
     let longest_window = if shortest.is_finite() { Some((shortest * fps).floor()) } else { None };
     param_row_ui(
         Key::BlendWindow,
-        &Detail {
-            fps: Some(fps),
-            max: longest_window.map(|max| max.max(window)),
-            ..Detail::default()
-        },
+        &Detail { max: longest_window.map(|max| max.max(window)), ..Detail::default() },
         session,
         out,
         ui,

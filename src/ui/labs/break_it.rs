@@ -8,7 +8,7 @@ use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, theme_of};
 use eframe::egui::{RichText, Ui};
 use segue_session::choices::{Mistake, TransitionMethod};
-use segue_session::{Compare, Key, Session, Value, mistake_shows};
+use segue_session::{Compare, Key, Session, mistake_shows};
 
 /// The choice, a sentence for every mistake that is on the stage, and the right way beside it.
 pub(super) fn break_it_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
@@ -36,14 +36,11 @@ pub(super) fn break_it_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
             .clicked()
     {
         let none = Mistake::None.into();
-        let query = match compared {
-            Some(_) => String::new(),
-            None => {
-                Compare { key: Key::Mistake, values: vec![none, params.get(Key::Mistake).clone()] }
-                    .to_string()
-            }
-        };
-        out.set_once(Key::Compare, Value::Text(query));
+        let values = vec![none, params.get(Key::Mistake).clone()];
+        out.compare(match compared {
+            Some(_) => None,
+            None => Some(Compare { key: Key::Mistake, values }),
+        });
     }
 }
 

@@ -11,7 +11,7 @@ use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{palette_of, space};
 use eframe::egui::Ui;
-use segue_session::{Key, Session, Slot, Value};
+use segue_session::{Compare, Key, Session, Slot};
 use segue_text::ToMessage;
 
 /// The lab's part of the page.
@@ -49,5 +49,5 @@ fn in_place_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut U
 fn compare_ways(session: &Session, out: &mut Out) {
     let on = session.compare().is_some_and(|compare| compare.key == Key::RootWay);
     let query = if on { "" } else { "root_way:take_out,put_back" };
-    out.set_once(Key::Compare, Value::Text(query.to_owned()));
+    out.compare(Compare::parse(query).ok());
 }

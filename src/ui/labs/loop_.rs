@@ -12,7 +12,7 @@ use crate::ui::text;
 use crate::ui::theme::{palette_of, space};
 use eframe::egui::Ui;
 use segue_session::choices::LoopMethod;
-use segue_session::{Cycle, CycleMade, Key, Session, Slot, Value};
+use segue_session::{Compare, Cycle, CycleMade, Key, Session, Slot};
 use segue_text::Message;
 
 /// The lab's part of the page.
@@ -45,10 +45,6 @@ pub(super) fn loop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     ui.add_space(space::S);
     let params = session.params();
     let cycle = session.main_outcome().and_then(|outcome| outcome.cycle);
-    let duration = session
-        .slot(Slot::A)
-        .and_then(|entry| entry.motion.as_ref())
-        .map(|motion| motion.clip().duration_secs());
     let automatic = |key| params.optional(key).is_none();
     let distance_cm = cycle.and_then(|cycle| match cycle.made {
         CycleMade::Cut { distance_cm, .. } => Some(distance_cm),
@@ -56,7 +52,6 @@ pub(super) fn loop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     });
     let poor = distance_cm.is_some_and(|distance_cm| distance_cm > POOR_ENDS_CM);
     let place = |key, said_below: bool| Detail {
-        max: duration,
         help: Some(match (automatic(key), said_below) {
             (false, _) => text::BY_HAND.into(),
             (true, true) => Message::default(),
@@ -102,7 +97,7 @@ pub(super) fn loop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
 pub(super) fn compare_loops(session: &Session, out: &mut Out) {
     let on = session.compare().is_some_and(|compare| compare.key == Key::LoopMethod);
     let query = if on { "" } else { text::LOOP_SHOOT_OUT_QUERY };
-    out.set_once(Key::Compare, Value::Text(query.to_owned()));
+    out.compare(Compare::parse(query).ok());
 }
 
 /// How the ends were found, and how well they fit.

@@ -18,7 +18,7 @@ use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Rect, RichText, Ui, UiBuilder, pos2, vec2};
 use segue_motion::path::PathEdit;
-use segue_session::{Command, ExtraCharacterCommand, Key, LabId, OnPath, Session, Slot, Value};
+use segue_session::{Command, Compare, ExtraCharacterCommand, Key, LabId, OnPath, Session, Slot};
 use segue_text::{Message, ToMessage};
 
 /// The lab's part of the page.
@@ -78,7 +78,7 @@ pub(super) fn path_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     if let Some(path) = path {
         whole_ui(path, session, state, out, ui);
     }
-    if !session.params().text(Key::Path).is_empty()
+    if session.params().edited_path().is_some()
         && kit::button_ui(
             Button::new(text::RESET_PATH).icon(Icon::Undo).hint(text::RESET_PATH_HELP),
             ui,
@@ -87,7 +87,7 @@ pub(super) fn path_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     {
         state.path.said = None;
         state.path.chosen = None;
-        out.set_once(Key::Path, Value::Text(String::new()));
+        out.reset(Key::Path);
     }
     if let Some(said) = &state.path.said {
         kit::note_ui(&say(said, ui), palette.warning, ui);
@@ -225,7 +225,7 @@ fn fit_ui(path: Option<&OnPath>, session: &Session, out: &mut Out, ui: &mut Ui) 
 pub(super) fn compare_points(session: &Session, out: &mut Out) {
     let on = session.compare().is_some_and(|compare| compare.key == Key::ControlPoints);
     let query = if on { "" } else { text::FOUR_EIGHT_SIXTEEN_QUERY };
-    out.set_once(Key::Compare, Value::Text(query.to_owned()));
+    out.compare(Compare::parse(query).ok());
 }
 
 /// Who else is on the stage.

@@ -20,8 +20,8 @@ use segue_motion::skeleton::Side;
 use segue_session::JobKind;
 use segue_session::choices::{self, WarpMode};
 use segue_session::{
-    Command, DistanceMap, Key, MOST_ALSO, PlaybackCommand, Registered, Session, Slot, Value,
-    weight_curve, write_also, write_pairs,
+    Command, Compare, DistanceMap, Key, List, MAX_WEIGHTED_CLIPS, PlaybackCommand, Registered,
+    Session, Value, weight_curve,
 };
 use segue_text::{Message, ToMessage, msg};
 use std::sync::Arc;
@@ -40,8 +40,8 @@ fn title(shown: &Shown<'_>) -> Title {
     let text = if shown.params.choice::<choices::WarpMode>() == choices::WarpMode::Join {
         msg!("→ {clip}", clip = b)
     } else {
-        let others = shown.session.also_blended().into_iter();
-        let others = others.map(|(id, _)| shown.name_of(&id).unwrap_or_else(|| id.into()));
+        let others = shown.session.params().weighted_clips().iter();
+        let others = others.map(|(id, _)| shown.name_of(id).unwrap_or_else(|| id.clone().into()));
         let names: Vec<Message> =
             std::iter::once(b).chain(others).map(|clip| msg!("+ {clip}", clip)).collect();
         Message::joined(names, " ")
@@ -74,21 +74,14 @@ pub(super) fn register_ui(session: &Session, state: &mut UiState, out: &mut Out,
         also_ui(session, out, ui);
     }
     if modes.contains(&WarpMode::Join) {
-        let last = |slot| {
-            let motion = session.slot(slot).and_then(|entry| entry.motion.as_ref());
-            motion.map(|motion| motion.clip().duration_secs())
-        };
-        let detail = Detail { max: last(Slot::A), ..Detail::default() };
-        param_row_ui(Key::WarpFrom, &detail, session, out, ui);
-        param_row_ui(Key::WarpTo, &detail, session, out, ui);
+        param_row_ui(Key::WarpFrom, &plain, session, out, ui);
+        param_row_ui(Key::WarpTo, &plain, session, out, ui);
         param_row_ui(Key::WeightLaw, &plain, session, out, ui);
     }
     foot_rows_ui(session, out, ui);
     ui.add_space(space::S);
     kit::section_header_ui(text::REGISTRATION, ui);
-    let fps = session.distance_map().map_or(60.0, |map| map.fps());
-    let window = Detail { fps: Some(fps), ..Detail::default() };
-    param_row_ui(Key::RegistrationWindow, &window, session, out, ui);
+    param_row_ui(Key::RegistrationWindow, &plain, session, out, ui);
     param_row_ui(Key::SlopeLimit, &plain, session, out, ui);
     param_row_ui(Key::WarpSmoothing, &plain, session, out, ui);
     param_row_ui(Key::Ends, &plain, session, out, ui);
@@ -101,7 +94,7 @@ pub(super) fn register_ui(session: &Session, state: &mut UiState, out: &mut Out,
 
 /// One weight, or a curve of weights.
 fn weight_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
-    let keys = session.weight_keys();
+    let keys = session.params().weight_curve();
     if keys.is_empty() {
         param_row_ui(Key::WarpWeight, &Detail::default(), session, out, ui);
         compare_ui(Key::WarpWeight, session, out, ui);
@@ -110,13 +103,13 @@ fn weight_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
             RichText::new(tr(Key::WarpCurve.param().label, ui))
                 .font(theme_of(ui).font(Type::Label)),
         );
-        let curve = weight_curve(&keys);
+        let curve = weight_curve(keys);
         let points: Vec<f64> =
             (0..=CURVE_POINTS).map(|k| curve.at(k as f64 / CURVE_POINTS as f64)).collect();
         let duration = session.duration_secs();
         let row = WeightCurveRow {
             label: Key::WarpCurve.param().label,
-            keys: &keys,
+            keys,
             curve: &points,
             now: (duration > 0.0).then(|| session.now_secs() / duration),
             ends: [text::ALL_B, text::ALL_A],
@@ -124,7 +117,7 @@ fn weight_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         for event in kit::weight_curve_ui(&row, ui) {
             match event {
                 WeightCurveEvent::Keys(keys) => {
-                    out.set(Key::WarpCurve, Value::Text(write_pairs(&keys)));
+                    out.set(Key::WarpCurve, List::WeightCurve(in_order(keys)).into());
                 }
                 WeightCurveEvent::Settled => out.commands.push(Command::Settle),
             }
@@ -132,25 +125,35 @@ fn weight_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         kit::note_ui(text::WEIGHT_CURVE_HELP, palette_of(ui).muted, ui);
     }
     let (label, wanted) = if keys.is_empty() {
-        (text::WEIGHT_OVER_TIME, text::FIRST_WEIGHTS)
+        (text::WEIGHT_OVER_TIME, FIRST_WEIGHTS.to_vec())
     } else {
-        (text::ONE_WEIGHT, "")
+        (text::ONE_WEIGHT, Vec::new())
     };
     if kit::button_ui(Button::new(label), ui).clicked() {
-        out.set_once(Key::WarpCurve, Value::Text(wanted.to_owned()));
+        out.set_once(Key::WarpCurve, List::WeightCurve(wanted).into());
     }
+}
+
+/// The weight over time as it begins: that of B grows all the way.
+const FIRST_WEIGHTS: [(usize, usize); 2] = [(0, 0), (100, 100)];
+
+/// Returns pairs in the order of the first, each once.
+fn in_order(mut pairs: Vec<(usize, usize)>) -> Vec<(usize, usize)> {
+    pairs.sort_unstable();
+    pairs.dedup();
+    pairs
 }
 
 /// The further clips of a blend, each with its weight.
 fn also_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
-    let also = session.also_blended();
-    let set = |also: &[(String, f64)], out: &mut Out| {
-        out.set(Key::WarpAlso, Value::Text(write_also(also)));
+    let also = session.params().weighted_clips();
+    let set = |also: Vec<(String, f64)>, out: &mut Out| {
+        out.set(Key::WarpAlso, List::WeightedClips(also).into());
     };
     for (index, (id, weight)) in also.iter().enumerate() {
         let label = text::blended_clip(index);
         let with = |clip: (String, f64)| {
-            let mut also = also.clone();
+            let mut also = also.to_vec();
             also[index] = clip;
             also
         };
@@ -163,12 +166,12 @@ fn also_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
                     .filter(|(at, _)| *at != index)
                     .map(|(_, clip)| clip.clone())
                     .collect();
-                set(&rest, out);
+                set(rest, out);
                 out.commands.push(Command::Settle);
             }
             ui.vertical(|ui| {
                 if let Some(chosen) = clip_choice_ui(&label, id, session, ui) {
-                    set(&with((chosen, *weight)), out);
+                    set(with((chosen, *weight)), out);
                     out.commands.push(Command::Settle);
                 }
             });
@@ -177,13 +180,14 @@ fn also_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         let response =
             kit::slider_row_ui(*weight, &SliderRow::new(&share, 0.0..=1.0, 0.0).step(0.01), ui);
         if let Some(weight) = response.changed {
-            set(&with((id.clone(), weight)), out);
+            let hundredths = (weight * 100.0).round();
+            set(with((id.clone(), hundredths / 100.0)), out);
         }
         if response.drag_ended || (response.changed.is_some() && !response.response.dragged()) {
             out.commands.push(Command::Settle);
         }
     }
-    if also.len() < MOST_ALSO
+    if also.len() < MAX_WEIGHTED_CLIPS
         && kit::button_ui(
             Button::new(text::BLEND_MORE).icon(Icon::Plus).hint(Key::WarpAlso.param().help),
             ui,
@@ -199,7 +203,7 @@ fn also_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         let entries = session.library().entries();
         let next = entries.iter().find(|entry| !is_in(&entry.id)).or(entries.first());
         let added = next.map(|entry| (entry.id.clone(), FIRST_SHARE));
-        set(&also.iter().cloned().chain(added).collect::<Vec<_>>(), out);
+        set(also.iter().cloned().chain(added).collect(), out);
         out.commands.push(Command::Settle);
     }
 }
@@ -208,7 +212,7 @@ fn also_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
 pub(super) fn compare_warps(session: &Session, out: &mut Out) {
     let on = session.compare().is_some_and(|compare| compare.key == Key::WarpWith);
     let query = if on { "" } else { "warp_with:registered,plain" };
-    out.set_once(Key::Compare, Value::Text(query.to_owned()));
+    out.compare(Compare::parse(query).ok());
 }
 
 /// The map, its legend, and what is known of the pair under the pointer, else of the one that is
@@ -243,7 +247,7 @@ fn map_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
         .collect();
     let lines = lines(&registered, palette);
     let curves: Vec<MapCurve<'_>> = lines.iter().map(Line::curve).collect();
-    let pins = session.pins();
+    let pins = session.params().pins();
     let pin_secs: Vec<[f64; 2]> = pins.iter().map(|&(a, b)| secs([a as f64, b as f64])).collect();
     let now = (registered.first())
         .and_then(|registered| registered.beat_at(session.now_secs()))
@@ -264,7 +268,7 @@ fn map_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     // All of it should be in sight at once.
     let room = 0.85 * ui.clip_rect().height();
     for event in kit::heat_map_ui(&view, room, ui) {
-        map_event(event, map, registered.first().copied(), &pins, state, out);
+        map_event(event, map, registered.first().copied(), pins, state, out);
     }
     ui.add_space(space::XS);
     if let Some(picture) = &picture {
@@ -274,7 +278,7 @@ fn map_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let pair = state.hovered_pair.or(now.filter(inside));
     let known = pair.map(|frames| say(&text::pair_apart(secs(frames), map.cm_at(frames)), ui));
     kit::note_ui(&waits.or(known).unwrap_or_default(), palette.muted, ui);
-    if session.params().text(Key::Pins).is_empty() {
+    if pins.is_empty() {
         kit::note_ui(text::MAP_HELP, palette.muted, ui);
     } else {
         ui.horizontal(|ui| {
@@ -283,7 +287,7 @@ fn map_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
                     .font(theme_of(ui).font(Type::Label)),
             );
             if kit::button_ui(Button::new(text::REMOVE_PINS), ui).clicked() {
-                out.set_once(Key::Pins, Value::Text(String::new()));
+                out.reset(Key::Pins);
             }
         });
     }
@@ -324,11 +328,11 @@ fn map_event(
         }
         HeatMapEvent::Pin { from, to } => {
             let wanted: Vec<(usize, usize)> = others(from).chain([pin(to)]).collect();
-            out.set(Key::Pins, Value::Text(write_pairs(&wanted)));
+            out.set(Key::Pins, List::Pins(in_order(wanted)).into());
         }
         HeatMapEvent::Unpin(from) => {
             let left: Vec<(usize, usize)> = others(Some(from)).collect();
-            out.set(Key::Pins, Value::Text(write_pairs(&left)));
+            out.set(Key::Pins, List::Pins(in_order(left)).into());
         }
         HeatMapEvent::Settled => out.commands.push(Command::Settle),
     }

@@ -11,7 +11,7 @@ use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{palette_of, space};
 use eframe::egui::Ui;
-use segue_session::{CycleMade, Key, Session, Value};
+use segue_session::{Compare, CycleMade, Key, Session, Value};
 use segue_text::{Message, msg};
 
 /// The lab's part of the page.
@@ -89,5 +89,5 @@ pub(super) fn compare_speeds(session: &Session, out: &mut Out) {
         }
         _ => String::new(),
     };
-    out.set_once(Key::Compare, Value::Text(query));
+    out.compare(Compare::parse(&query).ok());
 }

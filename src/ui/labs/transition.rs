@@ -14,7 +14,7 @@ use crate::ui::theme::space;
 use eframe::egui::Ui;
 use segue_motion::math::spring;
 use segue_session::choices::{self, TransitionMethod};
-use segue_session::{Key, LabId, Session, Value};
+use segue_session::{Compare, Key, LabId, Session};
 use segue_text::msg;
 
 /// The lab's part of the page.
@@ -60,13 +60,12 @@ pub(super) fn transition_ui(session: &Session, state: &mut UiState, out: &mut Ou
         param_row_ui(Key::ExtrapolationHalfLife, &Detail::default(), session, out, ui);
     }
     if any(&[TransitionMethod::Smooth, TransitionMethod::Linear]) {
-        let detail = Detail { fps: Some(fps), ..Detail::default() };
-        param_row_ui(Key::BlendWindow, &detail, session, out, ui);
+        param_row_ui(Key::BlendWindow, &Detail::default(), session, out, ui);
     }
     let shoot_out = session.compare().is_some_and(|compare| compare.key == Key::Method);
     if kit::button_ui(Button::new(text::SHOOT_OUT).selected(shoot_out), ui).clicked() {
         let query = if shoot_out { "" } else { text::SHOOT_OUT_QUERY };
-        out.set_once(Key::Compare, Value::Text(query.to_owned()));
+        out.compare(Compare::parse(query).ok());
     }
     break_it_ui(session, out, ui);
     ui.add_space(space::S);

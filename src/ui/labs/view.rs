@@ -33,10 +33,10 @@ fn title(shown: &Shown<'_>) -> Title {
 /// Opens two clips as they are, side by side: a reference, and what somebody made after it.
 pub(crate) fn compare_clips(reference: &str, other: &str, out: &mut Out) {
     let values = [reference, other].map(|id| Value::Text(id.to_owned())).to_vec();
-    let compare = Compare { key: Key::A, values }.to_string();
+    let compare = Compare { key: Key::A, values };
     out.commands.push(Command::Set(vec![
         (Key::Lab, LabId::View.into()),
-        (Key::Compare, Value::Text(compare)),
+        (Key::Compare, Value::Compare(Some(compare))),
     ]));
     out.commands.push(Command::Settle);
 }
@@ -69,7 +69,7 @@ fn compared_clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
             {
                 let mut compare = compare.clone();
                 compare.values[pane] = Value::Text(id);
-                out.set_once(Key::Compare, Value::Text(compare.to_string()));
+                out.compare(Some(compare));
             }
         }
         text::COMPARE_OFF

@@ -7,7 +7,8 @@ use crate::ui::text;
 use crate::ui::theme::palette_of;
 use eframe::egui::Ui;
 use segue_motion::skeleton::Role;
-use segue_session::{Command, Compare, Key, Kind, Session, Value, decimals_of};
+use segue_session::Mark::{InSeconds, PlaceInA, PlaceInB};
+use segue_session::{Command, Compare, Key, Kind, Session, Slot, Value, decimals_of};
 use segue_text::{Message, msg};
 
 /// What a panel knows about a parameter beyond the table.
@@ -17,8 +18,6 @@ pub(crate) struct Detail {
     pub(crate) max: Option<f64>,
     /// What is used in place of the value that is set, where the clips allow no more.
     pub(crate) used: Option<f64>,
-    /// The rate at which a number of frames is also said in seconds.
-    pub(crate) fps: Option<f64>,
     /// A sentence in place of the table's.
     pub(crate) help: Option<Message>,
     /// Marks on the track, besides those of a comparison.
@@ -48,7 +47,7 @@ pub(crate) fn param_row_ui(
             let options: Vec<(&'static str, &str)> =
                 choices.iter().map(|choice| (choice.key, choice.label)).collect();
             if let Some(compare) = session.compare().filter(|compare| compare.key == key) {
-                return compared_choices_ui(&compare, &options, out, ui);
+                return compared_choices_ui(compare, &options, out, ui);
             }
             let chosen = session.params().word(key);
             let picked = if choices.len() <= 4 {
@@ -63,11 +62,9 @@ pub(crate) fn param_row_ui(
                 out.set_once(key, Value::Choice(word));
             }
         }
-        Kind::Text if matches!(key, Key::Joint | Key::FollowJoint) => {
-            joint_ui(key, session, out, ui);
-        }
-        Kind::Text if key == Key::Character => character_ui(key, session, out, ui),
-        Kind::Clip | Kind::Text | Kind::Compare => {}
+        Kind::Joint => joint_ui(key, session, out, ui),
+        Kind::Character => character_ui(key, session, out, ui),
+        Kind::Clip | Kind::Text | Kind::List(_) | Kind::Compare => {}
     });
     // A slider has its sentence below it.
     if matches!(param.kind, Kind::Switch | Kind::Choice(_)) {
@@ -120,12 +117,13 @@ fn number_ui(key: Key, detail: &Detail, session: &Session, out: &mut Out, ui: &m
         _ => session.automatic_value(key).unwrap_or(min),
     };
     let (min, max) = session.range_of(key).unwrap_or((min, max));
-    let max = detail.max.map_or(max, |limit| limit.clamp(min + step, max));
+    let end = detail.max.or_else(|| end_of_clip(key, session));
+    let max = end.map_or(max, |limit| limit.clamp(min + step, max));
     let compare = session.compare().filter(|compare| compare.key == key);
     let color = palette_of(ui).muted;
     let values =
         |compare: &Compare| -> Vec<f64> { compare.values.iter().filter_map(number_of).collect() };
-    let marks: Vec<Mark> = (compare.iter().flat_map(values))
+    let marks: Vec<Mark> = (compare.into_iter().flat_map(values))
         .map(|value| Mark { value, color })
         .chain(detail.marks.iter().copied())
         .collect();
@@ -135,12 +133,13 @@ fn number_ui(key: Key, detail: &Detail, session: &Session, out: &mut Out, ui: &m
     if logarithmic {
         row = row.log();
     }
+    let fps = param.has(InSeconds).then(|| frame_rate(session));
     let in_seconds =
-        |value: f64| detail.fps.map_or_else(String::new, |fps| format!("{:.2} s", value / fps));
+        |value: f64| fps.map_or_else(String::new, |fps| format!("{:.2} s", value / fps));
     let help = detail.help.as_ref().map(|help| say(help, ui));
     let help = help.as_deref().unwrap_or(param.help);
     if let Some(compare) = compare {
-        return compared_ui(&compare, session.range_of(key), &row, &in_seconds, help, out, ui);
+        return compared_ui(compare, session.range_of(key), &row, &in_seconds, help, out, ui);
     }
     // What was set for another motion is brought to what this one can do.
     let value = given.or_else(|| session.automatic_value(key)).unwrap_or(default);
@@ -159,6 +158,23 @@ fn number_ui(key: Key, detail: &Detail, session: &Session, out: &mut Out, ui: &m
         out.set(key, Value::Number(value));
     }
     settle(&response, out);
+}
+
+/// Returns the end of the clip that a parameter is a place in, in its unit.
+fn end_of_clip(key: Key, session: &Session) -> Option<f64> {
+    let param = key.param();
+    let slots = [(Slot::A, PlaceInA), (Slot::B, PlaceInB)];
+    let (slot, _) = slots.into_iter().find(|(_, mark)| param.has(*mark))?;
+    let clip = session.slot(slot)?.motion.as_ref()?.clip();
+    Some(if param.unit == "s" { clip.duration_secs() } else { clip.frames() as f64 - 1.0 })
+}
+
+/// Returns the frame rate of what is shown, or of the clips that it is to be made from.
+fn frame_rate(session: &Session) -> f64 {
+    let shown = session.main_outcome().map(|outcome| outcome.motion.clip().fps());
+    let of_graph = || session.graph_cast().map(|cast| cast.set().fps());
+    let of_map = || session.distance_map().map(|map| map.fps());
+    shown.or_else(of_graph).or_else(of_map).unwrap_or(60.0)
 }
 
 /// What follows a drag is one thing to undo.
@@ -199,7 +215,7 @@ fn compared_ui(
             kit::slider_row_ui(value, &row.help(if pane == last { help } else { "" }), ui);
         if let Some(value) = response.changed {
             panes.values[pane] = Value::Number(value);
-            out.set(Key::Compare, Value::Text(panes.to_string()));
+            out.set(Key::Compare, Value::Compare(Some(panes.clone())));
         }
         settle(&response, out);
     }
@@ -228,7 +244,7 @@ fn compared_choices_ui(
         if let Some(word) = picked {
             let mut panes = compare.clone();
             panes.values[pane] = Value::Choice(word);
-            out.set_once(Key::Compare, Value::Text(panes.to_string()));
+            out.compare(Some(panes));
         }
     }
     panes_ui(compare, None, out, ui);
@@ -242,13 +258,13 @@ fn panes_ui(compare: &Compare, range: Option<(f64, f64)>, out: &mut Out, ui: &mu
         let has_room = compare.with_one_more(range) != *compare;
         // Dimmed it keeps its place: the next button must not come under the pointer.
         if ui.add_enabled_ui(has_room, |ui| kit::button_ui(more, ui)).inner.clicked() {
-            out.set_once(Key::Compare, Value::Text(compare.with_one_more(range).to_string()));
+            out.compare(Some(compare.with_one_more(range)));
         }
         if kit::button_ui(Button::icon_only(Icon::Minus, text::PANE_LESS), ui).clicked() {
             panes.values.pop();
             match panes.values.as_slice() {
                 [_] => keep_first(&panes, out),
-                _ => out.set(Key::Compare, Value::Text(panes.to_string())),
+                _ => out.set(Key::Compare, Value::Compare(Some(panes.clone()))),
             }
             out.commands.push(Command::Settle);
         }
@@ -262,7 +278,7 @@ fn panes_ui(compare: &Compare, range: Option<(f64, f64)>, out: &mut Out, ui: &mu
 /// One pane, as the first one is: its value is the parameter's own again.
 fn keep_first(compare: &Compare, out: &mut Out) {
     let own = compare.values.first().map(|value| (compare.key, value.clone()));
-    let alone = (Key::Compare, Value::Text(String::new()));
+    let alone = (Key::Compare, Value::Compare(None));
     out.commands.push(Command::Set(own.into_iter().chain([alone]).collect()));
 }
 
@@ -276,7 +292,7 @@ pub(crate) fn compare_choice_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         .collect();
     match kit::choice_row_ui(text::SIDE_BY_SIDE, compared, &options, ui) {
         Some(Some(key)) => out.commands.push(Command::Compare(key)),
-        Some(None) => out.set_once(Key::Compare, Value::Text(String::new())),
+        Some(None) => out.compare(None),
         None => {}
     }
 }

@@ -206,9 +206,9 @@ fn a_stretch_is_tagged_by_hand() {
     press(text::TAGS, &mut harness);
     press(text::TAG_WHAT_PLAYS, &mut harness);
     press(&text::tag_as("exclude", false).to_string(), &mut harness);
-    let tags = harness.state().session.hand_tags();
-    let [tag] = tags.as_slice() else { panic!("{tags:?}") };
+    let tags = harness.state().session.params().tags();
+    let [tag] = tags else { panic!("{tags:?}") };
     assert!(tag.word == "exclude" && tag.secs[1] - tag.secs[0] > 0.2 && !tag.takes_away, "{tag:?}");
     press(text::TAKE_TAG_AWAY, &mut harness);
-    assert!(harness.state().session.hand_tags().is_empty());
+    assert!(harness.state().session.params().tags().is_empty());
 }

@@ -28,7 +28,7 @@ fn the_graph_lab_does_what_is_pressed() {
     let link = "lab=graph&clips=walk,walk_left,walk_right&walk_seconds=20&play=off";
     let mut harness = harness(DESK, DARK, page(link));
     let text_of = |harness: &Harness<'_, Page>, key: Key| {
-        harness.state().session.params().text(key).to_owned()
+        key.param().format(harness.state().session.params().get(key))
     };
     let done = |harness: &mut Harness<'_, Page>| {
         harness.run();
@@ -62,7 +62,7 @@ fn the_graph_lab_does_what_is_pressed() {
     harness.drag_at(ring);
     harness.drop_at(ring);
     done(&mut harness);
-    assert_eq!(text_of(&harness, Key::Jump), segue_session::write_jump(ends[0], ends[1]));
+    assert_eq!(harness.state().session.params().jump(), Some(&ends));
     assert!(outcome(harness.state()).transition.is_some());
     let plays = harness.state().session.params().is_on(Key::Play);
     assert!(plays, "a transition that is asked for is seen, also where all stood still");
@@ -229,8 +229,8 @@ fn the_distances_of_very_many_frames_are_seen_from_afar_and_nearby() {
     harness.drag_at(ring);
     harness.drop_at(ring);
     harness.run();
-    let jump = harness.state().session.params().text(Key::Jump).to_owned();
-    assert_eq!(jump, segue_session::write_jump(pointed[0], pointed[1]));
+    let jump = *harness.state().session.params().jump().unwrap();
+    assert_eq!(jump, pointed);
     // What plays is looked at itself, though the pointer still rests on its ring.
     while harness.state_mut().session.work() {}
     harness.run_steps(3);

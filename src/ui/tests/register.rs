@@ -46,7 +46,8 @@ fn a_weight_over_time_is_drawn_by_hand() {
     let mut harness = harness(DESK, DARK, page("lab=register&play=off"));
     press(text::WEIGHT_OVER_TIME, &mut harness);
     let label = Key::WarpCurve.param().label;
-    let keys = |harness: &Harness<'_, Page>| harness.state().session.weight_keys();
+    let keys =
+        |harness: &Harness<'_, Page>| harness.state().session.params().weight_curve().to_vec();
     assert_eq!(keys(&harness), [(0, 0), (100, 100)]);
     let image = harness.get_by_role_and_label(Role::Image, label);
     image.scroll_to_me();
@@ -113,7 +114,7 @@ fn the_map_is_pointed_at_pressed_and_pinned() {
         "{beat:?} for {a} {b}"
     );
     // A drag sets a pin, and the curve passes through it.
-    let pins = |harness: &Harness<'_, Page>| harness.state().session.pins();
+    let pins = |harness: &Harness<'_, Page>| harness.state().session.params().pins().to_vec();
     let drag = |harness: &mut Harness<'_, Page>, from, to| {
         harness.drag_at(from);
         harness.run();
@@ -136,14 +137,14 @@ fn the_map_is_pointed_at_pressed_and_pinned() {
     assert_eq!(pins(&harness), []);
     for expected in [moved.as_slice(), &[(pin_a, pin_b)], &[]] {
         harness.state_mut().session.apply(Command::Undo).unwrap();
-        assert_eq!(harness.state().session.pins(), expected);
+        assert_eq!(harness.state().session.params().pins(), expected);
     }
     harness.state_mut().session.apply(Command::Redo).unwrap();
     harness.run();
     press("Remove pins", &mut harness);
     assert_eq!(pins(&harness), []);
     // What cannot be is said, and nothing stands for it.
-    let set = Command::Set(vec![(Key::Pins, Value::Text("100-90,120-80".into()))]);
+    let set = Command::Set(vec![(Key::Pins, List::Pins(vec![(100, 90), (120, 80)]).into())]);
     harness.state_mut().session.apply(set).unwrap();
     harness.run();
     assert!(harness.query_all_by_label_contains("exclude each other").count() >= 1);

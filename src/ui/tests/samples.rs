@@ -85,7 +85,11 @@ fn the_users_own_clips_fill_graph_and_match_with_one_click() {
         let id = loaded(harness.state()).id.clone();
         press(text::clip_set(ClipSet::Own).0, &mut harness);
         let session = &harness.state().session;
-        let ids = if lab == "graph" { session.graph_clip_ids() } else { session.match_clip_ids() };
+        let ids = if lab == "graph" {
+            session.graph_clip_ids()
+        } else {
+            session.params().clip_ids(Key::MatchClips).to_vec()
+        };
         assert_eq!(ids, [id], "{lab}");
     }
 }

@@ -10,8 +10,6 @@ pub(crate) const REGISTER_HINT: &str = "A and B go beside what is made of them, 
 pub(crate) const WEIGHT_OVER_TIME: &str = "Draw over time";
 /// And a number again.
 pub(crate) const ONE_WEIGHT: &str = "One weight";
-/// What that curve begins as.
-pub(crate) const FIRST_WEIGHTS: &str = "0-0,100-100";
 /// The ends of the weight.
 pub(crate) const ALL_B: &str = "all B";
 /// See [`ALL_B`].

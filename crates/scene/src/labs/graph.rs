@@ -59,7 +59,7 @@ pub(crate) fn add_walk_sources(
 
 /// Adds the line that a walk is asked to follow.
 pub(crate) fn add_asked_path(context: &DrawContext<'_>, pane: &mut Pane) {
-    let points = context.session.graph_path().into_iter();
+    let points = context.session.graph_path().iter().copied();
     let points = points.map(|point| Vec3::new(point.x as f32, 0.006, point.y as f32));
     pane.add_dashed_path(points, context.colors.b, 0.12, 2.5, Layer::Ground);
 }

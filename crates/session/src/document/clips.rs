@@ -2,9 +2,9 @@
 
 use super::Document;
 use crate::built_in::{built_in_entries, sample_entry};
-use crate::labs::{lab_of, read_also, recipe_name, recipe_params};
+use crate::labs::{lab_of, recipe_name, recipe_params};
 use crate::library::{Entry, Origin};
-use crate::params::{Key, Kind, Value};
+use crate::params::{Kind, Value};
 use crate::samples;
 use segue_formats::FileKind;
 
@@ -12,19 +12,13 @@ impl Document {
     /// Returns the clips that are compared with each other.
     pub(crate) fn compared_clips(&self) -> Vec<String> {
         let compare =
-            self.compare().filter(|compare| matches!(compare.key.param().kind, Kind::Clip));
-        let values = compare.map(|compare| compare.values).unwrap_or_default();
-        let clips = values.into_iter().filter_map(|value| match value {
-            Value::Text(id) => Some(id),
+            self.params.compare().filter(|compare| matches!(compare.key.param().kind, Kind::Clip));
+        let values = compare.map_or(&[][..], |compare| &compare.values);
+        let clips = values.iter().filter_map(|value| match value {
+            Value::Text(id) => Some(id.clone()),
             _ => None,
         });
         clips.collect()
-    }
-
-    /// Returns the further clips of a registered blend, with their weights; none where they cannot
-    /// be read.
-    pub(crate) fn also_blended(&self) -> Vec<(String, f64)> {
-        read_also(self.params.text(Key::WarpAlso)).unwrap_or_default()
     }
 
     /// Makes sure that a clip is in the library. Returns whether it is, or can be made or fetched

@@ -10,6 +10,12 @@ pub(super) fn forget_places(params: &mut Params, slot: Slot, given: &[Key]) -> V
         Slot::A => Mark::PlaceInA,
         Slot::B => Mark::PlaceInB,
     };
+    reset_marked(params, mark, given)
+}
+
+/// Sets back the parameters that have a mark, but for those `given`. Returns those that have
+/// changed.
+pub(super) fn reset_marked(params: &mut Params, mark: Mark, given: &[Key]) -> Vec<Key> {
     let places = PARAMS.iter().filter(|param| param.has(mark)).map(|param| param.key);
     let mut changed = Vec::new();
     for key in places.filter(|key| !given.contains(key)) {

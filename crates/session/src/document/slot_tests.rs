@@ -176,7 +176,7 @@ fn another_clip_forgets_the_places_in_the_one_before() {
     set(&mut session, "pins=1-2");
     session.load("x.bvh", made_bvh(1.0)).unwrap();
     assert_eq!(session.params().optional(Key::LeaveA), None);
-    assert_eq!(session.params().text(Key::Pins), "");
+    assert_eq!(session.params().pins(), []);
 }
 
 #[test]

@@ -1,11 +1,11 @@
 //! What A and B hold: chosen by hand or by a link, or brought by a file.
 
 use super::Document;
-use super::places::forget_places;
+use super::places::{forget_places, reset_marked};
 use crate::command::CommandError;
 use crate::labs::{Slot, lab_of};
 use crate::library::{Arrival, Entry, Origin};
-use crate::params::{Key, Value};
+use crate::params::{Key, Mark, Value};
 
 impl Document {
     /// Returns the id of a clip that may be put into a slot: one of the library, or a built-in one
@@ -52,10 +52,7 @@ impl Document {
     fn put_into(&mut self, slot: Slot, id: &str) {
         self.set_unchecked(slot.key(), Value::Text(id.to_owned()));
         forget_places(&mut self.params, slot, &[]);
-        // The part of the earlier result that played means nothing in the new one.
-        for key in [Key::In, Key::Out] {
-            self.set_unchecked(key, Value::Auto);
-        }
+        reset_marked(&mut self.params, Mark::PlaceInResult, &[]);
     }
 
     /// Returns whether a clip that arrives may take a slot. A slot that waits for a clip keeps

@@ -1,5 +1,6 @@
 //! Bundled takes, alone and as a set: asked for, come, failed, taken back, stored.
 
+use crate::List;
 use crate::clip_sets::ClipSet;
 use crate::fixtures::*;
 use crate::samples::{Sample, SampleSet};
@@ -268,7 +269,7 @@ fn the_users_own_clips_take_the_place_of_the_set_in_graph_and_match() {
         let values = session.clip_set(ClipSet::Own).unwrap();
         assert_eq!(
             values[0],
-            (key, Value::Text(crate::write_ids(&own))),
+            (key, List::ClipIds(own.clone()).into()),
             "{lab}: no bundled take among them"
         );
         session.apply(Command::Set(values)).unwrap();

@@ -3,9 +3,8 @@ use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs};
 use super::pair::{Pair, Pairs};
 use super::sliced::{JobKind, Sliced};
 use super::{MatchSearch, Outcome, Slot, Source, Transition};
-use crate::compare::MAX_PANES;
 use crate::labs::LabError;
-use crate::params::{Key, Params};
+use crate::params::{Key, MAX_PANES, Params};
 use crate::{LabId, choices};
 use segue_motion::blend::{AlignBy, RootBlend, WeightLaw};
 use segue_motion::clip::{Clip, Contacts, Motion};
@@ -25,10 +24,6 @@ use std::sync::Arc;
 pub(super) struct BlendLab;
 
 impl<S: HasPart<Pairs> + HasPart<Blender>> Lab<S> for BlendLab {
-    fn parameters_of(&self) -> &'static [LabId] {
-        &[LabId::Blend]
-    }
-
     fn result_name(&self, _params: &Params, a: Message, b: Message) -> Message {
         msg!("{a} to {b}", a, b)
     }
@@ -61,10 +56,6 @@ impl<S: HasPart<Pairs> + HasPart<Blender>> Lab<S> for BlendLab {
 pub(super) struct TransitionLab;
 
 impl<S: HasPart<Pairs> + HasPart<Blender>> Lab<S> for TransitionLab {
-    fn parameters_of(&self) -> &'static [LabId] {
-        &[LabId::Blend, LabId::Transition]
-    }
-
     fn result_name(&self, params: &Params, a: Message, b: Message) -> Message {
         Lab::<S>::result_name(&BlendLab, params, a, b)
     }

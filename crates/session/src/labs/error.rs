@@ -1,13 +1,12 @@
 //! Why a lab has no result.
 
 use crate::labs::graph::MOST_CLIPS;
-use crate::labs::register::MOST_ALSO;
 use segue_formats::ImportError;
 use segue_motion::blend::{BlendError, LayerError};
 use segue_motion::clip::{ClipError, RetargetError, RootWayError};
 use segue_motion::gait::GaitError;
 use segue_motion::graph::GraphError;
-use segue_motion::matching::{MatchError, RecordingError};
+use segue_motion::matching::MatchError;
 use segue_motion::path::PathEditError;
 use segue_motion::registration::{PathError, RegistrationError};
 use segue_motion::synth::SynthError;
@@ -94,12 +93,6 @@ pub enum LabError {
     /// The user stopped the computation.
     #[error("Stopped. Change anything, or go on.")]
     Stopped,
-    /// The list of the graph's clips cannot be read.
-    #[error("Clips: found `{found}`, expected clips with commas between them, as in walk,run.")]
-    GraphClips {
-        /// What was there.
-        found: String,
-    },
     /// The graph has no clips.
     #[error("A motion graph needs a clip: add at least one.")]
     NoGraphClips,
@@ -122,32 +115,6 @@ pub enum LabError {
         /// The index of the last one.
         last: usize,
     },
-    /// A list of pairs of numbers cannot be read.
-    #[error("{what}: found `{found}`, expected pairs as in {example}.")]
-    Pairs {
-        /// What the list is of.
-        what: &'static str,
-        /// What was there.
-        found: String,
-        /// What would do.
-        example: &'static str,
-    },
-    /// A list of pairs of numbers is too long.
-    #[error("{what}: found {count} pairs, expected {most} at most.")]
-    TooManyPairs {
-        /// What the list is of.
-        what: &'static str,
-        /// How many.
-        count: usize,
-        /// How many can be used.
-        most: usize,
-    },
-    /// A transition of the graph cannot be read.
-    #[error("Transition: found `{found}`, expected clips and frames as in 0:52-3:14.")]
-    Jump {
-        /// What was there.
-        found: String,
-    },
     /// The transition that is played alone is not in the graph any more.
     #[error(
         "There is no transition from frame {leave} of {from} to frame {enter} of {to} any more: go back to the walk, or raise the threshold."
@@ -162,18 +129,9 @@ pub enum LabError {
         /// The clip that is entered.
         to: String,
     },
-    /// The list of the database's clips cannot be read.
-    #[error("The list of clips cannot be read: its brackets do not close.")]
-    MatchClips,
     /// Nothing was driven.
     #[error("Nothing was driven yet.")]
     NothingDriven,
-    /// The recorded input cannot be read.
-    #[error("The recorded input cannot be played: {0}.")]
-    Recording(#[from] RecordingError),
-    /// The recorded input is empty.
-    #[error("The recorded input holds nothing: drive anew.")]
-    EmptyRecording,
     /// The preferred clip is not in the database.
     #[error(
         "`{name}` is not among the clips to choose frames from: choose another clip to prefer, or none."
@@ -189,48 +147,6 @@ pub enum LabError {
     NoTag {
         /// The tag.
         word: String,
-    },
-    /// The tags cannot be read.
-    #[error(
-        "Tags: found `{found}`, expected a clip, its seconds and a word, as in walk:0.2-1.5:exclude."
-    )]
-    Tags {
-        /// What was there.
-        found: String,
-    },
-    /// There are too many of something in a link.
-    #[error("{what}: {count} are more than can be kept: use at most {most}.")]
-    TooMany {
-        /// What there is too much of.
-        what: &'static str,
-        /// How many.
-        count: usize,
-        /// How many can be used.
-        most: usize,
-    },
-    /// Pairs of frames or of shares cannot be read.
-    #[error("{what}: found `{found}`, expected {expected}.")]
-    FramePairs {
-        /// What the list is of.
-        what: &'static str,
-        /// What was there.
-        found: String,
-        /// What would do.
-        expected: &'static str,
-    },
-    /// Further clips of a blend cannot be read.
-    #[error(
-        "More clips: found `{found}`, expected a weight from 0 to 1 and a clip, as in 0.3:run,0.2:fast_walk."
-    )]
-    MoreClips {
-        /// What was there.
-        found: String,
-    },
-    /// A blend has too many further clips.
-    #[error("More clips: {count} are more than can be blended: use at most {MOST_ALSO}.")]
-    TooManyMoreClips {
-        /// How many.
-        count: usize,
     },
     /// A pin outside of the clips.
     #[error(

@@ -2,7 +2,6 @@
 //! plays.
 
 use super::lab::{Beside, HasPart, Inputs, Lab, LabClips, LabInputs};
-use crate::LabId;
 use crate::labs::LabError;
 use crate::params::{Key, Params, Value};
 mod built;
@@ -18,8 +17,8 @@ pub use cast::Cast;
 pub(crate) use grapher::Grapher;
 pub use walk::{At, Passed, Trace, Walk, WalkGhost};
 pub(crate) use wanted::MOST_CLIPS;
-pub use wanted::{check_graph_clips, graph_of, write_jump, write_path, write_visits};
-pub(crate) use wanted::{clips_of, read_path, read_visits};
+pub use wanted::{check_graph_clips, graph_of};
+pub(crate) use wanted::{clips_of, visits_of};
 
 use super::{LabFacts, Measured, Outcome, Slot, Source, Transition};
 use segue_text::{Message, msg};
@@ -29,20 +28,8 @@ use std::sync::Arc;
 pub(super) struct GraphLab;
 
 impl<S: HasPart<Grapher>> Lab<S> for GraphLab {
-    fn parameters_of(&self) -> &'static [LabId] {
-        &[LabId::Graph]
-    }
-
-    fn shared_keys(&self) -> &'static [Key] {
-        &[Key::BlendWindow, Key::WeightLaw, Key::AlignBy, Key::RootBlend, Key::HalfLife, Key::Seed]
-    }
-
-    fn slots(&self) -> &'static [Slot] {
-        &[]
-    }
-
     fn more_clips(&self, params: &Params) -> Result<Vec<String>, LabError> {
-        clips_of(params.text(Key::Clips))
+        clips_of(params.clip_ids(Key::Clips))
     }
 
     fn without_clip(&self, params: &Params, id: &str) -> Vec<(Key, Value)> {

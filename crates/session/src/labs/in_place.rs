@@ -2,8 +2,7 @@
 
 use super::feet::{Lock, slide, with_feet};
 use super::lab::{Inputs, Lab, LabClips, LabInputs};
-use super::{Measured, Outcome, Slot};
-use crate::LabId;
+use super::{Measured, Outcome};
 use crate::choices::RootWay;
 use crate::labs::LabError;
 use crate::params::{Key, Params};
@@ -17,14 +16,6 @@ use std::sync::Arc;
 pub(super) struct InPlaceLab;
 
 impl<S> Lab<S> for InPlaceLab {
-    fn parameters_of(&self) -> &'static [LabId] {
-        &[LabId::InPlace]
-    }
-
-    fn slots(&self) -> &'static [Slot] {
-        &[Slot::A]
-    }
-
     fn result_name(&self, params: &Params, a: Message, _b: Message) -> Message {
         match params.choice() {
             RootWay::TakeOut => msg!("{a}, in place", a),

@@ -3,7 +3,7 @@
 use super::error::LabError;
 use super::outcome::{Outcome, Slot};
 use crate::LabId;
-use crate::params::{Group, Key, Mark, Params, Value};
+use crate::params::{Key, Mark, Params, Value};
 use segue_motion::clip::Motion;
 use segue_text::Message;
 use std::any::Any;
@@ -13,24 +13,6 @@ use std::sync::Arc;
 /// The facts of a lab, in the lab's own file. `S` is what labs remember between results: a lab names
 /// the parts of it that it uses.
 pub(crate) trait Lab<S>: Sync {
-    /// The labs whose parameters the result depends on.
-    fn parameters_of(&self) -> &'static [LabId];
-
-    /// Parameters of other labs that the result depends on.
-    fn shared_keys(&self) -> &'static [Key] {
-        &[]
-    }
-
-    /// Whether the result depends on how the feet of its clips are read and held.
-    fn has_feet(&self) -> bool {
-        true
-    }
-
-    /// The slots whose clips the result is made from.
-    fn slots(&self) -> &'static [Slot] {
-        &[Slot::A, Slot::B]
-    }
-
     /// The ids of the clips that the lab's own list names; none where it has no list, and where
     /// that cannot be read.
     fn listed(&self, params: &Params) -> Vec<String> {
@@ -127,14 +109,11 @@ pub(crate) trait Lab<S>: Sync {
     fn has(&self, _beside: Beside) -> bool {
         false
     }
+}
 
-    /// Whether the result depends on a parameter.
-    fn depends_on(&self, key: Key) -> bool {
-        let param = key.param();
-        matches!(param.group, Group::Lab(lab) if self.parameters_of().contains(&lab))
-            || self.shared_keys().contains(&key)
-            || (self.has_feet() && (param.has(Mark::Feet) || param.has(Mark::Lock)))
-    }
+/// Returns the slots whose clips a lab's result is made from.
+pub(crate) fn slots_of(lab: LabId) -> impl Iterator<Item = Slot> {
+    [Slot::A, Slot::B].into_iter().filter(move |slot| slot.key().param().is_used_by(lab))
 }
 
 /// Returns whether a parameter can change the result: those of foot lock cannot while it is off.

@@ -2,11 +2,9 @@ use super::feet::{Lock, slide, slide_before, with_feet};
 use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs};
 use super::pair::{Pair, Pairs};
 use super::{LabFacts, Outcome, Slot, Source};
-use crate::LabId;
 use crate::choices;
-use crate::compare::MAX_PANES;
 use crate::labs::LabError;
-use crate::params::{Key, Params};
+use crate::params::{Key, MAX_PANES, Params};
 use segue_motion::blend::{
     BodyPart, LayerMode, LayerOptions, LayerTime, Reference, layer_timed, mask,
 };
@@ -22,10 +20,6 @@ use std::sync::Arc;
 pub(super) struct LayersLab;
 
 impl<S: HasPart<Pairs> + HasPart<Layerer>> Lab<S> for LayersLab {
-    fn parameters_of(&self) -> &'static [LabId] {
-        &[LabId::Layers]
-    }
-
     fn result_name(&self, _params: &Params, a: Message, b: Message) -> Message {
         msg!("{a} with {b}", a, b)
     }

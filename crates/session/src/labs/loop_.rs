@@ -4,7 +4,6 @@ use super::feet::Lock;
 use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs};
 use super::rounds::{Rounds, repeated, rounds};
 use super::{Cycle, CycleMade, Outcome, Slot, Source};
-use crate::LabId;
 use crate::choices;
 use crate::labs::LabError;
 use crate::params::{Key, Params};
@@ -21,18 +20,6 @@ use std::sync::Arc;
 pub(super) struct LoopLab;
 
 impl<S: HasPart<CycleFinder>> Lab<S> for LoopLab {
-    fn parameters_of(&self) -> &'static [LabId] {
-        &[LabId::Loop]
-    }
-
-    fn shared_keys(&self) -> &'static [Key] {
-        &[Key::HalfLife]
-    }
-
-    fn slots(&self) -> &'static [Slot] {
-        &[Slot::A]
-    }
-
     fn result_name(&self, _params: &Params, a: Message, _b: Message) -> Message {
         msg!("{a}, looped", a)
     }

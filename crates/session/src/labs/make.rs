@@ -1,6 +1,6 @@
+use super::Outcome;
 use super::feet::{Lock, slide, slide_before, with_feet};
 use super::lab::{Inputs, Lab, LabClips, LabInputs, counts};
-use super::{Outcome, Slot};
 use crate::labs::LabError;
 use crate::motion::foot_options;
 use crate::outside::short;
@@ -16,14 +16,6 @@ use std::sync::Arc;
 pub(super) struct MakeLab;
 
 impl<S> Lab<S> for MakeLab {
-    fn parameters_of(&self) -> &'static [LabId] {
-        &[LabId::Make]
-    }
-
-    fn slots(&self) -> &'static [Slot] {
-        &[]
-    }
-
     fn result_name(&self, params: &Params, _a: Message, _b: Message) -> Message {
         made_id(params).into()
     }
@@ -163,7 +155,7 @@ pub(crate) fn preset_motion(id: &str) -> Result<Motion, LabError> {
 pub(crate) fn made_id(params: &Params) -> String {
     let changed = params
         .changed()
-        .filter(|(param, _)| Lab::<()>::depends_on(&MakeLab, param.key) && param.key != Key::Gait)
+        .filter(|(param, _)| param.is_used_by(LabId::Make) && param.key != Key::Gait)
         .filter(|(param, _)| has(params, param.key) && counts(params, param.key));
     let list: Vec<String> = changed
         .map(|(param, value)| match (value, range_of(params, param.key)) {

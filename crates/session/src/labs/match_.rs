@@ -1,12 +1,9 @@
 //! The Match lab: a character that is driven, live or by input that was written down.
 
-use super::Slot;
 use super::lab::{HasPart, Inputs, Lab, LabClips};
-use super::recipe::{read_ids, write_ids};
-use crate::LabId;
 use crate::choices;
 use crate::labs::LabError;
-use crate::params::{Key, Params, Value};
+use crate::params::{Key, List, Params, Value};
 use segue_text::{Message, msg};
 mod crowd;
 mod driver;
@@ -21,36 +18,20 @@ pub(crate) use live_drive::{DrivenPane, LiveDrive};
 #[cfg(test)]
 pub(crate) use settings::options_of;
 use settings::{options_in, recording_of};
-pub use tagging::{HandTag, own_words, write_tags};
-pub(crate) use tagging::{filter_of, read_tags};
+pub(crate) use tagging::filter_of;
+pub use tagging::own_words;
 pub use trace::{DriveMoment, Driven};
 
 /// The Match lab: a character that is steered.
 pub(super) struct MatchLab;
 
 impl<S: HasPart<Driver>> Lab<S> for MatchLab {
-    fn parameters_of(&self) -> &'static [LabId] {
-        &[LabId::Match]
-    }
-
-    fn shared_keys(&self) -> &'static [Key] {
-        &[Key::BlendTime, Key::ExtrapolationHalfLife]
-    }
-
-    fn has_feet(&self) -> bool {
-        false
-    }
-
-    fn slots(&self) -> &'static [Slot] {
-        &[]
-    }
-
     fn more_clips(&self, params: &Params) -> Result<Vec<String>, LabError> {
-        read_ids(params.text(Key::MatchClips)).ok_or(LabError::MatchClips)
+        Ok(params.clip_ids(Key::MatchClips).to_vec())
     }
 
     fn with_clips(&self, ids: &[String]) -> Option<Vec<(Key, Value)>> {
-        Some(vec![(Key::MatchClips, Value::Text(write_ids(ids)))])
+        Some(vec![(Key::MatchClips, List::ClipIds(ids.to_vec()).into())])
     }
 
     fn result_name(&self, params: &Params, _a: Message, _b: Message) -> Message {
@@ -65,7 +46,7 @@ impl<S: HasPart<Driver>> Lab<S> for MatchLab {
     }
 
     fn is_own_drive(&self, params: &Params) -> bool {
-        matches!(recording_of(params), Ok(None))
+        recording_of(params).is_none()
     }
 
     fn inputs(
@@ -75,7 +56,7 @@ impl<S: HasPart<Driver>> Lab<S> for MatchLab {
         params: &Params,
         _match_window: usize,
     ) -> Result<Option<Inputs>, LabError> {
-        let Some(recording) = recording_of(params)? else {
+        let Some(recording) = recording_of(params) else {
             return Err(LabError::NothingDriven);
         };
         let Some(database) = HasPart::<Driver>::part(labs).database_of(clips, params)? else {

@@ -2,14 +2,11 @@
 
 use super::feet::{Lock, locking, slide, slide_before};
 use super::lab::{Beside, HasPart, Inputs, Lab, LabClips, LabInputs};
-use super::recipe::{read_ids, write_ids};
 use super::sliced::{JobKind, Sliced};
 use super::{LabFacts, Outcome, Slot, Source};
-use crate::LabId;
 use crate::choices;
-use crate::compare::MAX_PANES;
 use crate::labs::LabError;
-use crate::params::{Key, Params, Value};
+use crate::params::{Key, List, MAX_PANES, Params, Value};
 use planter::{Planted, Planter};
 use segue_motion::clip::{Clip, Contacts, Motion};
 use segue_motion::math::Planar;
@@ -28,16 +25,8 @@ mod planter;
 pub(super) struct PathLab;
 
 impl<S: HasPart<Paths>> Lab<S> for PathLab {
-    fn parameters_of(&self) -> &'static [LabId] {
-        &[LabId::Path]
-    }
-
-    fn slots(&self) -> &'static [Slot] {
-        &[Slot::A]
-    }
-
     fn listed(&self, params: &Params) -> Vec<String> {
-        read_ids(params.text(Key::Others)).unwrap_or_default()
+        params.clip_ids(Key::Others).to_vec()
     }
 
     fn without_clip(&self, params: &Params, id: &str) -> Vec<(Key, Value)> {
@@ -46,7 +35,7 @@ impl<S: HasPart<Paths>> Lab<S> for PathLab {
         if others.len() == ids.len() {
             return Vec::new();
         }
-        vec![(Key::Others, Value::Text(write_ids(&others)))]
+        vec![(Key::Others, List::ClipIds(others).into())]
     }
 
     fn result_name(&self, _params: &Params, a: Message, _b: Message) -> Message {
@@ -159,8 +148,8 @@ pub struct OnPath {
 #[derive(Clone, Debug)]
 pub(crate) struct PathInputs {
     fitted: Arc<FittedMotion>,
-    /// The word of the edited path; empty for the fitted one.
-    code: String,
+    /// The edited path; `None` for the fitted one.
+    edited: Option<GroundSpline>,
     carry: CarryOptions,
     /// How planted feet are held, where they are.
     lock: Option<Lock>,
@@ -184,7 +173,7 @@ impl PathInputs {
     /// Whether it is the same motion on the same path with its feet held alike, at once or later.
     fn makes_the_same(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.fitted, &other.fitted)
-            && self.code == other.code
+            && self.edited == other.edited
             && (self.carry, self.lock) == (other.carry, other.lock)
     }
 }
@@ -221,7 +210,7 @@ impl Paths {
         };
         let mut inputs = PathInputs {
             fitted: self.fitted(motion, options)?,
-            code: params.text(Key::Path).to_owned(),
+            edited: params.edited_path().cloned(),
             carry: carry_options(params),
             lock: Lock::of(params),
             feet: Feet::Free,
@@ -304,11 +293,9 @@ fn carry_options(params: &Params) -> CarryOptions {
 /// The path, and the motion on it as its feet come.
 fn free_motion(inputs: &PathInputs) -> Result<(Arc<Road>, EditedMotion), LabError> {
     let fitted = &inputs.fitted;
-    let road = if inputs.code.is_empty() {
-        Arc::clone(&fitted.road)
-    } else {
-        let spline = GroundSpline::from_code(&inputs.code);
-        Arc::new(spline.and_then(Road::new)?)
+    let road = match &inputs.edited {
+        Some(edited) => Arc::new(Road::new(edited.clone())?),
+        None => Arc::clone(&fitted.road),
     };
     let options = MotionOptions { carry: inputs.carry, foot_lock: None };
     let made = fitted.editor.motion(&road, &options)?;
@@ -391,7 +378,7 @@ impl LabInputs for PathInputs {
         if matches!(self.feet, Feet::AtOnce | Feet::Planted(_)) {
             metrics.push(slide_before(made.slide_cm.carried));
         }
-        if !self.code.is_empty() {
+        if self.edited.is_some() {
             metrics.push(Metric::fact(
                 "path_original_m",
                 "Length of the original path",
@@ -412,7 +399,7 @@ impl LabInputs for PathInputs {
             facts: LabFacts::of(Arc::new(OnPath {
                 fitted: Arc::clone(fitted),
                 road,
-                is_edited: !self.code.is_empty(),
+                is_edited: self.edited.is_some(),
                 places: made.places,
                 hard_turns: made.hard_turns,
                 awaits_feet: matches!(self.feet, Feet::Awaited),

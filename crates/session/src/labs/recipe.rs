@@ -2,37 +2,16 @@
 
 use super::lab::counts;
 use super::lab_set::lab_of;
-use super::outcome::{Outcome, Slot};
-use crate::params::{Key, Kind, Mark, PARAMS, Param, Params, Value};
+use super::outcome::Outcome;
+use crate::params::{Key, Kind, PARAMS, Param, Params, Value, escaped, is_recipe, parts};
 use crate::{LabId, Selected};
-use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, utf8_percent_encode};
+use percent_encoding::percent_decode_str;
 use segue_motion::synth;
 use segue_text::Message;
 
-/// What would end a value, and what says that something is written otherwise.
-const RESERVED: &AsciiSet = &CONTROLS.add(b'(').add(b')').add(b',').add(b':').add(b'%');
-
-/// A result of a result of a result: deeper ids name nothing.
-const DEEPEST: usize = 6;
-
-/// Returns whether a lab depends on a parameter.
-pub(crate) fn belongs_to(key: Key, lab: LabId) -> bool {
-    lab_of(lab).depends_on(key)
-}
-
-/// Returns whether a parameter is part of what a lab's result is made from.
-fn is_ingredient(key: Key, lab: LabId) -> bool {
-    match key {
-        Key::A => lab_of(lab).slots().contains(&Slot::A),
-        Key::B => lab_of(lab).slots().contains(&Slot::B),
-        _ if key.param().has(Mark::LookedAt) => false,
-        _ => belongs_to(key, lab),
-    }
-}
-
 /// Returns the parameters that a lab's result is made from, clips included.
 pub(crate) fn recipe_ingredients(lab: LabId) -> impl Iterator<Item = Key> {
-    PARAMS.iter().map(|param| param.key).filter(move |&key| is_ingredient(key, lab))
+    PARAMS.iter().filter(move |param| param.is_ingredient_of(lab)).map(|param| param.key)
 }
 
 /// Returns the id of the result of the parameters: `run(turn_rate:20)` of a synthesised motion,
@@ -59,10 +38,10 @@ pub(crate) fn recipe_id(params: &Params, outcome: &Outcome, fps: [f64; 2]) -> Op
         }
     }
     let ingredients =
-        PARAMS.iter().filter(|param| is_ingredient(param.key, lab) && counts(&params, param.key));
+        PARAMS.iter().filter(|param| param.is_ingredient_of(lab) && counts(&params, param.key));
     let ingredients = ingredients.filter(|param| {
         let named = matches!(param.kind, Kind::Clip);
-        named || *params.get(param.key) != param.default_value()
+        named || params.is_changed(param.key)
     });
     let list: Vec<String> = ingredients
         .map(|param| format!("{}:{}", param.name, written(param, params.get(param.key))))
@@ -86,13 +65,12 @@ pub(crate) fn recipe_params(id: &str) -> Option<Params> {
     for pair in parts(list)? {
         let (name, value) = pair.split_once(':')?;
         let key = Key::from_name(name)?;
-        let value = if matches!(key.param().kind, Kind::Clip | Kind::Text) && !value.ends_with(')')
-        {
+        let value = if is_text(key.param()) && !value.ends_with(')') {
             percent_decode_str(value).decode_utf8().ok()?
         } else {
             value.into()
         };
-        set(Some(key).filter(|key| is_ingredient(*key, lab))?, &value)?;
+        set(Some(key).filter(|key| key.param().is_ingredient_of(lab))?, &value)?;
     }
     // A clip as it is has its own id.
     (!lab_of(lab).is_clip_as_it_is(&params)).then_some(params)
@@ -121,65 +99,22 @@ pub fn file_stem(params: &Params) -> String {
     lab_of(params.lab()).file_stem(params)
 }
 
-/// Several ids in one text: separated by commas.
-#[must_use]
-pub fn write_ids(ids: &[String]) -> String {
-    let written = |id: &String| match recipe_params(id) {
-        Some(_) => id.clone(),
-        None => utf8_percent_encode(id, RESERVED).to_string(),
-    };
-    ids.iter().map(written).collect::<Vec<_>>().join(",")
-}
-
-/// The ids of such a text; `None` when its brackets do not close.
-pub(crate) fn read_ids(text: &str) -> Option<Vec<String>> {
-    let id = |part: &str| {
-        if part.ends_with(')') {
-            part.to_owned()
-        } else {
-            percent_decode_str(part).decode_utf8_lossy().into_owned()
-        }
-    };
-    Some(parts(text)?.into_iter().map(id).collect())
-}
-
 /// A value inside of an id. A kept clip's own id stays as it is: its brackets close.
 fn written(param: &Param, value: &Value) -> String {
     let text = param.format(value);
-    if matches!(param.kind, Kind::Clip | Kind::Text) && recipe_params(&text).is_none() {
-        utf8_percent_encode(&text, RESERVED).to_string()
-    } else {
-        text
-    }
+    if is_text(param) && !is_recipe(&text) { escaped(&text) } else { text }
 }
 
-/// The list's parts: at the commas outside of brackets. `None` when the brackets do not close, or
-/// lie too deep.
-fn parts(list: &str) -> Option<Vec<&str>> {
-    let (mut parts, mut depth, mut start) = (Vec::new(), 0_usize, 0);
-    for (at, letter) in list.char_indices() {
-        match letter {
-            '(' => depth += 1,
-            ')' => depth = depth.checked_sub(1)?,
-            ',' if depth == 0 => {
-                parts.push(&list[start..at]);
-                start = at + 1;
-            }
-            _ => {}
-        }
-        if depth > DEEPEST {
-            return None;
-        }
-    }
-    parts.push(&list[start..]);
-    parts.retain(|part| !part.is_empty());
-    (depth == 0).then_some(parts)
+/// Whether a value may hold what ends one.
+fn is_text(param: &Param) -> bool {
+    matches!(param.kind, Kind::Clip | Kind::Joint | Kind::Character | Kind::Text | Kind::List(_))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::labs::lab::LabInputs;
+    use crate::params::List;
     use proptest::prelude::*;
 
     fn named(a: &str, b: &str) -> Option<Params> {
@@ -217,7 +152,7 @@ mod tests {
     fn lists_stay_whole_inside_of_an_id() {
         let mut params = Params::default();
         params.set(Key::Lab, LabId::Register.into()).expect("a lab");
-        params.set(Key::Pins, Value::Text("12-30,50-71".into())).expect("a text");
+        params.set(Key::Pins, List::Pins(vec![(12, 30), (50, 71)]).into()).expect("pins");
         assert_eq!(recipe_params(&id_of(&params)), Some(params));
     }
 

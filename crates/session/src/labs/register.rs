@@ -1,16 +1,12 @@
 //! The Register lab: two clips laid on each other in time, blended or joined along it.
 
 use super::lab::{Beside, HasPart, Inputs, Lab, LabClips, LabInputs};
-use crate::LabId;
 use crate::labs::LabError;
 use crate::params::{Key, Params};
 mod map;
-mod pairs;
 mod registrar;
 
 pub use map::DistanceMap;
-pub use pairs::{MOST_ALSO, write_also, write_pairs};
-pub(crate) use pairs::{read_also, read_pins, read_weights};
 pub(crate) use registrar::Registrars;
 
 use super::blend::weight_law;
@@ -36,14 +32,6 @@ use std::sync::Arc;
 pub(super) struct RegisterLab;
 
 impl<S: HasPart<Pairs> + HasPart<Registrars>> Lab<S> for RegisterLab {
-    fn parameters_of(&self) -> &'static [LabId] {
-        &[LabId::Register]
-    }
-
-    fn shared_keys(&self) -> &'static [Key] {
-        &[Key::WeightLaw]
-    }
-
     fn result_name(&self, _params: &Params, a: Message, b: Message) -> Message {
         msg!("{a} to {b}", a, b)
     }
@@ -53,7 +41,7 @@ impl<S: HasPart<Pairs> + HasPart<Registrars>> Lab<S> for RegisterLab {
     }
 
     fn more_clips(&self, params: &Params) -> Result<Vec<String>, LabError> {
-        Ok(read_also(params.text(Key::WarpAlso))?.into_iter().map(|(id, _)| id).collect())
+        Ok(params.weighted_clips().iter().map(|(id, _)| id.clone()).collect())
     }
 
     fn captured_link(&self) -> Option<&'static str> {
@@ -72,7 +60,7 @@ impl<S: HasPart<Pairs> + HasPart<Registrars>> Lab<S> for RegisterLab {
         _match_window: usize,
     ) -> Result<Option<Inputs>, LabError> {
         let pair = HasPart::<Pairs>::part(labs).of_slots(&clips.slots)?;
-        let weights = read_also(params.text(Key::WarpAlso))?.into_iter().map(|(_, weight)| weight);
+        let weights = params.weighted_clips().iter().map(|(_, weight)| *weight);
         let also: Vec<_> = clips.motions().into_iter().zip(weights).collect();
         Ok(HasPart::<Registrars>::part(labs).inputs(&pair, &also, params)?.map(Inputs::new))
     }
@@ -178,20 +166,20 @@ enum Made {
 }
 
 impl Made {
-    fn of(params: &Params) -> Result<Self, LabError> {
+    fn of(params: &Params) -> Self {
         if params.choice::<choices::WarpMode>() == choices::WarpMode::Join {
-            return Ok(Self::Join {
+            return Self::Join {
                 part_secs: [Key::WarpFrom, Key::WarpTo].map(|key| params.optional(key)),
                 law: weight_law(params),
-            });
+            };
         }
-        let keys = read_weights(params.text(Key::WarpCurve))?;
+        let keys = params.weight_curve();
         let weight = if keys.is_empty() {
             WeightCurve::constant(params.number(Key::WarpWeight))
         } else {
-            weight_curve(&keys)
+            weight_curve(keys)
         };
-        Ok(Self::Blend { weight })
+        Self::Blend { weight }
     }
 }
 

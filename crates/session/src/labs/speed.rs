@@ -5,7 +5,6 @@ use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs};
 use super::pair::{Pair, Pairs};
 use super::rounds::{Rounds, rounds};
 use super::{Cycle, CycleMade, Outcome};
-use crate::LabId;
 use crate::labs::LabError;
 use crate::params::{Key, Kind, Params};
 use segue_motion::clip::ground_speed;
@@ -18,10 +17,6 @@ use std::sync::Arc;
 pub(super) struct SpeedLab;
 
 impl<S: HasPart<Pairs> + HasPart<GaitFinder>> Lab<S> for SpeedLab {
-    fn parameters_of(&self) -> &'static [LabId] {
-        &[LabId::Speed]
-    }
-
     fn result_name(&self, params: &Params, a: Message, b: Message) -> Message {
         let mps = Key::Speed.param().format(params.get(Key::Speed));
         msg!("{a} and {b} at {mps} m/s", a, b, mps)

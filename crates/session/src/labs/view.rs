@@ -4,12 +4,10 @@
 use super::feet::{Lock, locking, slide, slide_before};
 use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs, counts};
 use super::sliced::{JobKind, Sliced};
-use super::{Measured, Outcome, Slot};
-use crate::LabId;
-use crate::choices;
-use crate::compare::MAX_PANES;
+use super::{Measured, Outcome};
 use crate::labs::LabError;
-use crate::params::{Key, PARAMS, Param, Params};
+use crate::params::{Key, Kind, MAX_PANES, PARAMS, Param, Params};
+use crate::{LabId, choices};
 use segue_motion::clip::{Motion, take_in_place};
 use segue_motion::math::Planar;
 use segue_motion::metrics::{ClipMeter, Metric, SlideMeter};
@@ -22,14 +20,6 @@ use std::sync::Arc;
 pub(super) struct ViewLab;
 
 impl<S: HasPart<Viewer>> Lab<S> for ViewLab {
-    fn parameters_of(&self) -> &'static [LabId] {
-        &[LabId::View]
-    }
-
-    fn slots(&self) -> &'static [Slot] {
-        &[Slot::A]
-    }
-
     fn result_name(&self, params: &Params, a: Message, _b: Message) -> Message {
         let is_placed = [Key::PlaceX, Key::PlaceZ, Key::PlaceHeading]
             .iter()
@@ -48,10 +38,13 @@ impl<S: HasPart<Viewer>> Lab<S> for ViewLab {
     }
 
     fn is_clip_as_it_is(&self, params: &Params) -> bool {
-        let is_changed = |param: &Param| *params.get(param.key) != param.default_value();
-        !PARAMS.iter().any(|param| {
-            Lab::<S>::depends_on(self, param.key) && counts(params, param.key) && is_changed(param)
-        })
+        let changes = |param: &Param| {
+            !matches!(param.kind, Kind::Clip)
+                && param.is_used_by(LabId::View)
+                && counts(params, param.key)
+                && params.is_changed(param.key)
+        };
+        !PARAMS.iter().any(changes)
     }
 
     fn shows_clip(&self) -> bool {

@@ -4,7 +4,7 @@ use super::page::Page;
 use super::parse::{LessonError, parse};
 use super::shelf::{CONTENTS, LESSONS, Source, source_of};
 use crate::link::{self, Link};
-use crate::params::{Group, Key, Mark, PARAMS, Param, Params};
+use crate::params::{Group, Key, Kind, Mark, PARAMS, Param, Params};
 use segue_text::{Message, msg};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -249,7 +249,7 @@ fn laid_over(present: &Params, links: &[Link], new: bool) -> Params {
     let starts_anew =
         |param: &&Param| is_of_page_state(param) || (new && param.group != Group::Page);
     for param in PARAMS.iter().filter(starts_anew) {
-        if !matches!(param.key, Key::A | Key::B) {
+        if !matches!(param.kind, Kind::Clip) {
             params.copy_from(&defaults, param.key);
         }
     }

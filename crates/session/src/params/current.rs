@@ -1,18 +1,37 @@
 //! The current value of every parameter.
 
-use super::param::{Kind, Param};
+use super::param::{Kind, Param, Start};
 use super::table::{Key, PARAMS};
-use super::value::{Value, ValueError};
+use super::value::{Compare, Value, ValueError};
 use crate::{LabId, Selected};
 use std::fmt;
+use std::sync::LazyLock;
 
 /// The current value of every parameter.
 #[derive(Clone, PartialEq)]
 pub struct Params(Vec<Value>);
 
+/// What every parameter is in a new document.
+pub(super) static DEFAULTS: LazyLock<Params> =
+    LazyLock::new(|| Params(PARAMS.iter().map(start_value).collect()));
+
+fn start_value(param: &Param) -> Value {
+    match param.default {
+        Start::Auto => Value::Auto,
+        Start::Number(number) => Value::Number(number),
+        Start::Switch(on) => Value::Switch(on),
+        Start::Choice(word) => Value::Choice(word),
+        Start::Text(text) => {
+            let value = param.parse(text);
+            debug_assert!(value.is_ok(), "{value:?}");
+            value.unwrap_or_else(|_| Value::Text(text.to_owned()))
+        }
+    }
+}
+
 impl Default for Params {
     fn default() -> Self {
-        Self(PARAMS.iter().map(Param::default_value).collect())
+        DEFAULTS.clone()
     }
 }
 
@@ -66,12 +85,12 @@ impl Params {
         *self.get(key) == Value::Switch(true)
     }
 
-    /// Returns a clip's id or a text; the empty text for a parameter of another kind. Choices have
-    /// types: [`Params::choice`].
+    /// Returns a clip's id or a text; the empty text for a parameter of another kind. Choices and
+    /// lists have types: [`Params::choice`], [`Params::pins`] and others.
     #[must_use]
     pub fn text(&self, key: Key) -> &str {
         debug_assert!(
-            matches!(key.param().kind, Kind::Clip | Kind::Text | Kind::Compare),
+            matches!(key.param().kind, Kind::Clip | Kind::Joint | Kind::Character | Kind::Text),
             "{key:?} is no text"
         );
         match self.get(key) {
@@ -103,8 +122,23 @@ impl Params {
         self.choice()
     }
 
-    /// The parameters that differ from their default, in the order of the table.
+    /// Returns the comparison that is open; `None` for one pane.
+    #[must_use]
+    pub fn compare(&self) -> Option<&Compare> {
+        match self.get(Key::Compare) {
+            Value::Compare(compare) => compare.as_ref(),
+            _ => None,
+        }
+    }
+
+    /// Returns whether a parameter differs from its default.
+    #[must_use]
+    pub fn is_changed(&self, key: Key) -> bool {
+        self.get(key) != DEFAULTS.get(key)
+    }
+
+    /// Returns the parameters that differ from their default, in the order of the table.
     pub fn changed(&self) -> impl Iterator<Item = (&'static Param, &Value)> {
-        PARAMS.iter().zip(&self.0).filter(|(param, value)| **value != param.default_value())
+        PARAMS.iter().zip(&self.0).filter(|(param, _)| self.is_changed(param.key))
     }
 }

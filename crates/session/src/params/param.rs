@@ -1,5 +1,7 @@
 //! What a row of the table says of its parameter.
 
+use super::current::DEFAULTS;
+use super::grammar::ListKind;
 use super::table::Key;
 use super::value::Value;
 use crate::LabId;
@@ -70,9 +72,16 @@ pub enum Kind {
     Choice(&'static [Choice]),
     /// The id of a clip in the library.
     Clip,
+    /// A body part, or the name of a joint.
+    Joint,
+    /// The id of a clip whose file brought a character; empty for a body made around the bones.
+    Character,
     /// Free text.
     Text,
-    /// A comparable parameter and two to four values of it; see [`Compare`].
+    /// A list, read once.
+    List(ListKind),
+    /// A comparable parameter and two to four values of it; see
+    /// [`Compare`](super::Compare).
     Compare,
 }
 
@@ -91,7 +100,8 @@ impl Kind {
             Self::Switch => "switch",
             Self::Choice(_) => "choice",
             Self::Clip => "clip",
-            Self::Text => "text",
+            Self::Joint | Self::Character | Self::Text => "text",
+            Self::List(_) => "list",
             Self::Compare => "compare",
         }
     }
@@ -116,6 +126,8 @@ pub struct Param {
     pub help: &'static str,
     /// What is special about it.
     pub(super) marks: &'static [Mark],
+    /// The labs besides its own whose results depend on it.
+    pub shared_with: &'static [LabId],
     pub(super) default: Start,
 }
 
@@ -126,14 +138,16 @@ pub enum Mark {
     PlaceInA,
     /// A place in the clip in B.
     PlaceInB,
+    /// A place in what plays: it means nothing when another clip is shown.
+    PlaceInResult,
+    /// A number of frames that is also said in seconds.
+    InSeconds,
     /// Looked at or worked with: no result is made from it, though it stands in a lab.
     LookedAt,
-    /// Says how feet are read and held, in every lab with clips.
+    /// Says how feet are read and held.
     Feet,
-    /// Says how planted feet are held, which counts only while they are; also in every lab.
+    /// Says how planted feet are held, which counts only while they are.
     Lock,
-    /// A list of clips that a lab works with.
-    Clips,
     /// Part of what is shown, though it belongs to the page.
     State,
     /// A change of it is no step of undo: looking around, playing and stopping.
@@ -157,22 +171,28 @@ pub(super) enum Start {
 }
 
 impl Param {
-    /// The value when nobody has said anything.
+    /// Returns the value that it has in a new document.
     #[must_use]
     pub fn default_value(&self) -> Value {
-        match self.default {
-            Start::Auto => Value::Auto,
-            Start::Number(number) => Value::Number(number),
-            Start::Switch(on) => Value::Switch(on),
-            Start::Choice(word) => Value::Choice(word),
-            Start::Text(text) => Value::Text(text.to_owned()),
-        }
+        DEFAULTS.get(self.key).clone()
     }
 
     /// Returns whether it has a mark.
     #[must_use]
     pub fn has(&self, mark: Mark) -> bool {
         self.marks.contains(&mark)
+    }
+
+    /// Returns whether a lab's result, or what it shows beside it, depends on this parameter.
+    #[must_use]
+    pub fn is_used_by(&self, lab: LabId) -> bool {
+        self.group == Group::Lab(lab) || self.shared_with.contains(&lab)
+    }
+
+    /// Returns whether a lab's result is made from this parameter.
+    #[must_use]
+    pub fn is_ingredient_of(&self, lab: LabId) -> bool {
+        self.is_used_by(lab) && !self.has(Mark::LookedAt)
     }
 
     /// Returns whether compare can make panes of it: a clip, or a number or choice that changes the

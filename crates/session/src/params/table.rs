@@ -1,5 +1,6 @@
 //! The rows of the table of parameters.
 
+use super::grammar::ListKind;
 use super::param::{Group, Kind, Mark, Param, Start};
 use crate::choices::{
     AlignBy, Atan, Backdrop, Camera, Construction, Curve, EdgeWeight, Ends, Follow, GoingOn,
@@ -9,8 +10,15 @@ use crate::choices::{
     TransitionMethod, WalkMethod, WarpMode, WarpWith, WeightLaw,
 };
 
+/// Labs that a row names behind `in`.
+macro_rules! labs {
+    () => { &[] };
+    ([$($lab:ident),*]) => { &[$(LabId::$lab),*] };
+    ($labs:ident) => { $labs };
+}
+
 macro_rules! parameters {
-    ($($key:ident $name:literal $label:literal $group:ident$(($lab:ident))?, $kind:expr, $default:expr, $unit:literal, $help:literal $([$($mark:ident),*])?;)*) => {
+    ($($key:ident $name:literal $label:literal $group:ident$(($lab:ident))?, $kind:expr, $default:expr, $unit:literal, $help:literal $([$($mark:ident),*])? $(in $labs:tt)?;)*) => {
         /// The name of a parameter inside the program; its row is [`Key::param`].
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         #[expect(missing_docs, reason = "the help sentence of the row says it")]
@@ -18,7 +26,7 @@ macro_rules! parameters {
 
         /// Every parameter, in the order in which links and panels show them.
         pub static PARAMS: &[Param] = &[$(Param {
-            key: Key::$key, name: $name, label: $label, kind: $kind, unit: $unit, group: Group::$group$((LabId::$lab))?, help: $help, marks: &[$($(Mark::$mark),*)?], default: $default,
+            key: Key::$key, name: $name, label: $label, kind: $kind, unit: $unit, group: Group::$group$((LabId::$lab))?, help: $help, marks: &[$($(Mark::$mark),*)?], shared_with: labs!($($labs)?), default: $default,
         }),*];
     };
 }
@@ -33,31 +41,62 @@ const fn logarithmic(min: f64, max: f64, step: f64) -> Kind {
     Kind::Number { min, max, step, auto: false, logarithmic: true }
 }
 
+/// The labs that make a result of the clip in A.
+const OF_A: &[LabId] = &[
+    LabId::View,
+    LabId::Blend,
+    LabId::Transition,
+    LabId::Speed,
+    LabId::Loop,
+    LabId::Layers,
+    LabId::Register,
+    LabId::Path,
+    LabId::InPlace,
+];
+/// The labs that make a result of the clip in B.
+const OF_B: &[LabId] =
+    &[LabId::Blend, LabId::Transition, LabId::Speed, LabId::Layers, LabId::Register];
+/// The labs that read the feet of their clips, and can hold them.
+const OF_FEET: &[LabId] = &[
+    LabId::View,
+    LabId::Make,
+    LabId::Transition,
+    LabId::Speed,
+    LabId::Loop,
+    LabId::Layers,
+    LabId::Register,
+    LabId::Path,
+    LabId::Graph,
+    LabId::InPlace,
+];
+
+// Key, name in the link, label, group, values, default, unit, help; [marks] and `in` the labs that
+// share it, where there are any.
 parameters! {
     Lab "lab" "Lab" Page, Kind::Choice(LabId::CHOICES), Start::Choice(LabId::Blend.word()), "", "Which experiment is open." [State];
-    A "a" "A" Page, Kind::Clip, Start::Text("walk"), "", "The clip that plays first." [State];
-    B "b" "B" Page, Kind::Clip, Start::Text("run"), "", "The clip that follows." [State];
+    A "a" "A" Page, Kind::Clip, Start::Text("walk"), "", "The clip that plays first." [State] in OF_A;
+    B "b" "B" Page, Kind::Clip, Start::Text("run"), "", "The clip that follows." [State] in OF_B;
 
-    BlendWindow "blend_window" "Blend window" Lab(Blend), number(1.0, 240.0, 1.0), Start::Number(30.0), "frames", "How long A fades into B. Long drags, short bursts.";
-    LeaveA "leave_a" "Leave A at" Lab(Blend), auto(0.0, 600.0, 0.001), Start::Auto, "s", "Where the blend window begins in A. Left to Segue: the best match in A's second half." [PlaceInA];
-    EnterB "enter_b" "Enter B at" Lab(Blend), auto(0.0, 600.0, 0.001), Start::Auto, "s", "Where the blend window begins in B. Left to Segue: the best match in B's first half." [PlaceInB];
-    WeightLaw "weight_law" "Weight law" Lab(Blend), Kind::Choice(WeightLaw::CHOICES), Start::Choice(WeightLaw::Smooth.word()), "", "How the weight moves from A to B inside the window.";
-    Align "align" "Align to A" Lab(Blend), Kind::Switch, Start::Switch(true), "", "Turns and moves B over the ground so that it continues A.";
-    AlignBy "align_by" "Align by" Lab(Blend), Kind::Choice(AlignBy::CHOICES), Start::Choice(AlignBy::Window.word()), "", "What is laid on what: all joints over the blend window, as well as they fit, or the place and facing of the first posture alone.";
-    RootBlend "root_blend" "Blend root by velocity" Lab(Blend), Kind::Switch, Start::Switch(true), "", "Blends how the character moves instead of where it is: its speed does not dent, and feet slide less. Off, B stays where the alignment puts it.";
+    BlendWindow "blend_window" "Blend window" Lab(Blend), number(1.0, 240.0, 1.0), Start::Number(30.0), "frames", "How long A fades into B. Long drags, short bursts." [InSeconds] in [Transition, Graph];
+    LeaveA "leave_a" "Leave A at" Lab(Blend), auto(0.0, 600.0, 0.001), Start::Auto, "s", "Where the blend window begins in A. Left to Segue: the best match in A's second half." [PlaceInA] in [Transition];
+    EnterB "enter_b" "Enter B at" Lab(Blend), auto(0.0, 600.0, 0.001), Start::Auto, "s", "Where the blend window begins in B. Left to Segue: the best match in B's first half." [PlaceInB] in [Transition];
+    WeightLaw "weight_law" "Weight law" Lab(Blend), Kind::Choice(WeightLaw::CHOICES), Start::Choice(WeightLaw::Smooth.word()), "", "How the weight moves from A to B inside the window." in [Transition, Graph, Register];
+    Align "align" "Align to A" Lab(Blend), Kind::Switch, Start::Switch(true), "", "Turns and moves B over the ground so that it continues A." in [Transition];
+    AlignBy "align_by" "Align by" Lab(Blend), Kind::Choice(AlignBy::CHOICES), Start::Choice(AlignBy::Window.word()), "", "What is laid on what: all joints over the blend window, as well as they fit, or the place and facing of the first posture alone." in [Transition, Graph];
+    RootBlend "root_blend" "Blend root by velocity" Lab(Blend), Kind::Switch, Start::Switch(true), "", "Blends how the character moves instead of where it is: its speed does not dent, and feet slide less. Off, B stays where the alignment puts it." in [Transition, Graph];
 
-    FootLock "foot_lock" "Foot lock" Lab(Blend), Kind::Switch, Start::Switch(false), "", "Holds planted feet where they stand, and bends the legs to it." [Feet];
-    LockBlend "lock_blend" "Lock blend" Lab(Blend), number(0.02, 1.0, 0.01), Start::Number(0.2), "s", "How long a foot takes to reach the place where it is held, and to leave it again. Longer: softer, and more of the swing changes. Shorter: the swing stays as it was, and the foot moves suddenly." [Lock];
-    LockReach "lock_reach" "Lock reach" Lab(Blend), number(1.0, 100.0, 1.0), Start::Number(30.0), "cm", "How far a foot may be moved to be held, for a body of 1.75 m. Farther: feet that slide a long way are held too, and legs bend more. Nearer: legs stay closer to how they were, and feet slide." [Lock];
-    LockClearance "lock_clearance" "Swing clearance" Lab(Blend), number(0.0, 10.0, 0.5), Start::Number(2.5), "cm", "How high above where it stands a foot is kept while it swings, for a body of 1.75 m. Higher: low swings are lifted more. 0 leaves swings as they are." [Lock];
-    Ground "ground" "Ground" Lab(Blend), auto(-100.0, 100.0, 0.5), Start::Auto, "cm", "The height of the ground for foot lock and penetration. Left to Segue: planted feet tell it, and it is 0 unless they stand or dip more than 3 cm elsewhere." [Feet, NoCompare];
-    ContactHeight "contact_height" "Contact height" Lab(Blend), number(1.0, 15.0, 0.5), Start::Number(4.0), "cm", "A foot is planted below this height above its own lowest level, for a body of 1.75 m. Higher: longer stances." [Feet, NoCompare];
-    ContactSpeed "contact_speed" "Contact speed" Lab(Blend), number(0.1, 2.0, 0.05), Start::Number(0.4), "m/s", "A foot is planted while it is slower than this. Faster: longer stances, and feet that slide are held too." [Feet, NoCompare];
+    FootLock "foot_lock" "Foot lock" Lab(Blend), Kind::Switch, Start::Switch(false), "", "Holds planted feet where they stand, and bends the legs to it." [Feet] in OF_FEET;
+    LockBlend "lock_blend" "Lock blend" Lab(Blend), number(0.02, 1.0, 0.01), Start::Number(0.2), "s", "How long a foot takes to reach the place where it is held, and to leave it again. Longer: softer, and more of the swing changes. Shorter: the swing stays as it was, and the foot moves suddenly." [Lock] in OF_FEET;
+    LockReach "lock_reach" "Lock reach" Lab(Blend), number(1.0, 100.0, 1.0), Start::Number(30.0), "cm", "How far a foot may be moved to be held, for a body of 1.75 m. Farther: feet that slide a long way are held too, and legs bend more. Nearer: legs stay closer to how they were, and feet slide." [Lock] in OF_FEET;
+    LockClearance "lock_clearance" "Swing clearance" Lab(Blend), number(0.0, 10.0, 0.5), Start::Number(2.5), "cm", "How high above where it stands a foot is kept while it swings, for a body of 1.75 m. Higher: low swings are lifted more. 0 leaves swings as they are." [Lock] in OF_FEET;
+    Ground "ground" "Ground" Lab(Blend), auto(-100.0, 100.0, 0.5), Start::Auto, "cm", "The height of the ground for foot lock and penetration. Left to Segue: planted feet tell it, and it is 0 unless they stand or dip more than 3 cm elsewhere." [Feet, NoCompare] in OF_FEET;
+    ContactHeight "contact_height" "Contact height" Lab(Blend), number(1.0, 15.0, 0.5), Start::Number(4.0), "cm", "A foot is planted below this height above its own lowest level, for a body of 1.75 m. Higher: longer stances." [Feet, NoCompare] in OF_FEET;
+    ContactSpeed "contact_speed" "Contact speed" Lab(Blend), number(0.1, 2.0, 0.05), Start::Number(0.4), "m/s", "A foot is planted while it is slower than this. Faster: longer stances, and feet that slide are held too." [Feet, NoCompare] in OF_FEET;
 
     Method "method" "Method" Lab(Transition), Kind::Choice(TransitionMethod::CHOICES), Start::Choice(TransitionMethod::Inertialize.word()), "", "How A goes over into B.";
-    HalfLife "half_life" "Half-life" Lab(Transition), logarithmic(0.02, 1.5, 0.01), Start::Number(0.2), "s", "How slowly the difference from A decays: half of it is left after 1.2 half-lives.";
-    BlendTime "blend_time" "Blend time" Lab(Transition), logarithmic(0.05, 2.0, 0.01), Start::Number(0.4), "s", "When nothing of A is left, for cubic, quintic and dead blend. A quintic ends sooner where the difference is small and closes fast: it would overshoot otherwise.";
-    ExtrapolationHalfLife "extrapolation_half_life" "Extrapolation half-life" Lab(Transition), logarithmic(0.02, 1.0, 0.01), Start::Number(0.1), "s", "How long A runs on by itself in a dead blend: half of its velocity is left after this time.";
+    HalfLife "half_life" "Half-life" Lab(Transition), logarithmic(0.02, 1.5, 0.01), Start::Number(0.2), "s", "How slowly the difference from A decays: half of it is left after 1.2 half-lives." in [Loop, Graph];
+    BlendTime "blend_time" "Blend time" Lab(Transition), logarithmic(0.05, 2.0, 0.01), Start::Number(0.4), "s", "When nothing of A is left, for cubic, quintic and dead blend. A quintic ends sooner where the difference is small and closes fast: it would overshoot otherwise." in [Match];
+    ExtrapolationHalfLife "extrapolation_half_life" "Extrapolation half-life" Lab(Transition), logarithmic(0.02, 1.0, 0.01), Start::Number(0.1), "s", "How long A runs on by itself in a dead blend: half of its velocity is left after this time." in [Match];
     MixFrameA "mix_frame_a" "Leave A at" Lab(Transition), auto(0.0, 1_000_000.0, 1.0), Start::Auto, "frame", "The frame of A at which B takes over. Left to Segue: the best match in A's second half." [PlaceInA];
     MixFrameB "mix_frame_b" "Enter B at" Lab(Transition), auto(0.0, 1_000_000.0, 1.0), Start::Auto, "frame", "The frame of B that plays then. Left to Segue: the best match in B's first half." [PlaceInB];
     MatchBy "match_by" "Match by" Lab(Transition), Kind::Choice(MatchBy::CHOICES), Start::Choice(MatchBy::Pose.word()), "", "What the best match compares: two poses, or windows of the whole body.";
@@ -92,16 +131,16 @@ parameters! {
     WarpWith "warp_with" "Timewarp" Lab(Register), Kind::Choice(WarpWith::CHOICES), Start::Choice(WarpWith::Registered.word()), "", "Registered: B's time is bent so that like meets like. Plain: both clips run at their own speed, as in a dissolve.";
     WarpMode "warp_mode" "Make" Lab(Register), Kind::Choice(WarpMode::CHOICES), Start::Choice(WarpMode::Blend.word()), "", "Blend: both clips at once, with a weight. Join: A goes over into B.";
     WarpWeight "warp_weight" "Weight of B" Lab(Register), number(0.0, 1.0, 0.01), Start::Number(0.5), "", "0 is A, 1 is B; between them a motion that is in neither clip.";
-    WarpAlso "warp_also" "More clips" Lab(Register), Kind::Text, Start::Text(""), "", "Further clips in a blend, registered to A like B, each with its weight, as in 0.3:run,0.2:fast_walk. A has what the others leave.";
-    WarpCurve "warp_curve" "Weight over time" Lab(Register), Kind::Text, Start::Text(""), "", "The weight of B over the blend: per cent of the blend and per cent of B, as in 0-0,50-100,100-0. Empty: the same weight all the time.";
+    WarpAlso "warp_also" "More clips" Lab(Register), Kind::List(ListKind::WeightedClips), Start::Text(""), "", "Further clips in a blend, registered to A like B, each with its weight, as in 0.3:run,0.2:fast_walk. A has what the others leave.";
+    WarpCurve "warp_curve" "Weight over time" Lab(Register), Kind::List(ListKind::WeightCurve), Start::Text(""), "", "The weight of B over the blend: per cent of the blend and per cent of B, as in 0-0,50-100,100-0. Empty: the same weight all the time.";
     WarpFrom "warp_from" "Leave A at" Lab(Register), auto(0.0, 600.0, 0.01), Start::Auto, "s", "Where in A a join begins to go over into B." [PlaceInA];
     WarpTo "warp_to" "All B at" Lab(Register), auto(0.0, 600.0, 0.01), Start::Auto, "s", "Where in A, on its own clock, a join is all B." [PlaceInA];
-    RegistrationWindow "registration_window" "Window" Lab(Register), number(1.0, 121.0, 1.0), Start::Number(5.0), "frames", "How many frames about each pair are compared. One frame compares poses; more also tell how they move.";
+    RegistrationWindow "registration_window" "Window" Lab(Register), number(1.0, 121.0, 1.0), Start::Number(5.0), "frames", "How many frames about each pair are compared. One frame compares poses; more also tell how they move." [InSeconds];
     SlopeLimit "slope_limit" "Slope limit" Lab(Register), number(1.0, 16.0, 1.0), Start::Number(2.0), "steps", "How many steps in a row one clip may go on while the other stands still.";
     Ends "ends" "Ends" Lab(Register), Kind::Choice(Ends::CHOICES), Start::Choice(Ends::Free.word()), "", "Corner: first meets first, last meets last. Free: a clip may begin or end inside the other.";
     EndSlack "end_slack" "Left out at most" Lab(Register), number(0.0, 50.0, 1.0), Start::Number(40.0), "%", "How much of one clip may be left out at each free end.";
     WarpSmoothing "warp_smoothing" "Smoothing" Lab(Register), auto(0.0, 60.0, 1.0), Start::Auto, "frames", "Over how many frames to either side the timewarp and the alignment are smoothed. Left to Segue: a tenth of a second.";
-    Pins "pins" "Pins" Lab(Register), Kind::Text, Start::Text(""), "", "Pairs of frames of A and B, at A's rate, that must meet, as in 12-30,50-71." [PlaceInA, PlaceInB];
+    Pins "pins" "Pins" Lab(Register), Kind::List(ListKind::Pins), Start::Text(""), "", "Pairs of frames of A and B, at A's rate, that must meet, as in 12-30,50-71." [PlaceInA, PlaceInB];
 
     ControlPoints "control_points" "Control points" Lab(Path), number(4.0, 64.0, 1.0), Start::Number(8.0), "points", "How finely the path follows the way of the hips. Four cannot follow a turn, many follow every sway.";
     PathSmoothing "path_smoothing" "Smoothing" Lab(Path), number(0.0, 5.0, 0.01), Start::Number(0.0), "", "How much a bend counts against the distance from the hips: 0 is least squares alone.";
@@ -109,14 +148,14 @@ parameters! {
     PathFacing "path_facing" "Body faces" Lab(Path), Kind::Choice(PathFacing::CHOICES), Start::Choice(PathFacing::Path.word()), "", "Whether the body turns where the path turns, or faces as it did before.";
     PathOffset "path_offset" "Sway of the hips" Lab(Path), Kind::Choice(PathOffset::CHOICES), Start::Choice(PathOffset::Path.word()), "", "Whether the way from the path to the hips turns with the path, or stays as it was in the world: then sway to the side becomes a surge where the path has turned.";
     PathSpline "path_spline" "Spline" Lab(Path), Kind::Choice(PathSpline::CHOICES), Start::Choice(PathSpline::Clamped.word()), "", "Clamped: the path begins in the first control point and ends in the last. Uniform: the same path from other control points, beside which it begins and ends.";
-    Path "path" "Path" Lab(Path), Kind::Text, Start::Text(""), "", "The edited path: its control points to 1 cm in a short word. Empty: the path as it was fitted." [PlaceInA];
+    Path "path" "Path" Lab(Path), Kind::List(ListKind::EditedPath), Start::Text(""), "", "The edited path: its control points to 1 cm in a short word. Empty: the path as it was fitted." [PlaceInA];
     PathGrid "path_grid" "Snap to grid" Lab(Path), number(0.0, 2.0, 0.05), Start::Number(0.0), "m", "Width of the grid that moved points snap to; 0 is none." [LookedAt];
     PinStart "pin_start" "Pin the start" Lab(Path), Kind::Switch, Start::Switch(false), "", "Whatever is done to the path, its start stays where it is." [LookedAt];
     PinEnd "pin_end" "Pin the end" Lab(Path), Kind::Switch, Start::Switch(false), "", "Whatever is done to the path, its end stays where it is." [LookedAt];
-    Others "others" "Others" Lab(Path), Kind::Text, Start::Text(""), "", "Clips that play along on the stage, each in a colour of its own: ids, separated by commas." [LookedAt];
-    Clips "clips" "Clips" Lab(Graph), Kind::Text, Start::Text("walk,walk_left,walk_right,slow_walk,fast_walk,start,stop,idle"), "", "The clips of the graph, as in walk,run,idle. Those that move another skeleton than the first are moved onto it." [Clips];
+    Others "others" "Others" Lab(Path), Kind::List(ListKind::ClipIds), Start::Text(""), "", "Clips that play along on the stage, each in a colour of its own: ids, separated by commas." [LookedAt];
+    Clips "clips" "Clips" Lab(Graph), Kind::List(ListKind::ClipIds), Start::Text("walk,walk_left,walk_right,slow_walk,fast_walk,start,stop,idle"), "", "The clips of the graph, as in walk,run,idle. Those that move another skeleton than the first are moved onto it.";
     Construction "construction" "Construction" Lab(Graph), Kind::Choice(Construction::CHOICES), Start::Choice(Construction::Minima.word()), "", "Segments: all clips are cut into equal parts. Local minima: one goes over where two windows are more alike than all around.";
-    SegmentSize "segment_size" "Segment size" Lab(Graph), number(1.0, 600.0, 1.0), Start::Number(60.0), "frames", "How long each part of a clip is. It must be longer than the blend window.";
+    SegmentSize "segment_size" "Segment size" Lab(Graph), number(1.0, 600.0, 1.0), Start::Number(60.0), "frames", "How long each part of a clip is. It must be longer than the blend window." [InSeconds];
     EdgeThreshold "edge_threshold" "Edge threshold" Lab(Graph), number(0.1, 60.0, 0.1), Start::Number(8.0), "cm", "One goes over only between windows that are closer than this: root mean square per joint on a body of 1.75 m.";
     MinJump "min_jump" "Shortest jump" Lab(Graph), number(0.0, 5.0, 0.05), Start::Number(0.5), "s", "Inside of a clip one does not go to what is less than this away.";
     MostWaysOut "most_ways_out" "Ways out at most" Lab(Graph), logarithmic(1.0, 10_000.0, 1.0), Start::Number(64.0), "", "How many transitions may leave one segment: the closest stay. More of them take longer to build and to choose from.";
@@ -131,13 +170,13 @@ parameters! {
     Transform "transform" "Transform" Lab(Graph), Kind::Choice(Transform::CHOICES), Start::Choice(Transform::Whole.word()), "", "What is laid onto the walk: the whole clip, or its first frame alone, which is a classic mistake. The rest then has its recorded direction, or its recorded place as well.";
     Atan "atan" "Angle of the transform" Lab(Graph), Kind::Choice(Atan::CHOICES), Start::Choice(Atan::Atan2.word()), "", "Taken by atan2, or by a mistake: atan cannot tell a direction from its opposite, degrees are no radians, and the root's Y axis points up and not ahead.";
     WalkSeconds "walk_seconds" "Measured walk" Lab(Graph), number(10.0, 600.0, 10.0), Start::Number(60.0), "s", "How much of the walk the numbers are about. It goes on while it plays, for half an hour.";
-    GoTo "go_to" "Go to" Lab(Graph), Kind::Text, Start::Text(""), "", "When to set off for which clip, by its place in the list, as in 12.5:3,40:0.";
-    WalkPath "walk_path" "Ground path" Lab(Graph), Kind::Text, Start::Text(""), "", "A line over the ground that the walk follows: x and z in metres, as in 0:0,1.5:4.";
-    Jump "jump" "Transition" Lab(Graph), Kind::Text, Start::Text(""), "", "One transition in place of the walk: which clip is left and entered at which frame, as in 0:52-3:14.";
+    GoTo "go_to" "Go to" Lab(Graph), Kind::List(ListKind::Visits), Start::Text(""), "", "When to set off for which clip, by its place in the list, as in 12.5:3,40:0.";
+    WalkPath "walk_path" "Ground path" Lab(Graph), Kind::List(ListKind::GroundPath), Start::Text(""), "", "A line over the ground that the walk follows: x and z in metres, as in 0:0,1.5:4.";
+    Jump "jump" "Transition" Lab(Graph), Kind::List(ListKind::Jump), Start::Text(""), "", "One transition in place of the walk: which clip is left and entered at which frame, as in 0:52-3:14.";
 
     Scenario "scenario" "Input" Lab(Match), Kind::Choice(Scenario::CHOICES), Start::Choice(Scenario::Own.word()), "", "Who drives: you, or input that was written down, the same for everybody.";
-    Drive "drive" "Recorded input" Lab(Match), Kind::Text, Start::Text(""), "", "Input that is played again, exactly: stretches of ticks and velocities. Empty: drive yourself.";
-    MatchClips "match_clips" "Clips" Lab(Match), Kind::Text, Start::Text(""), "", "The clips to choose frames from: ids, separated by commas. Empty: the synthesiser's set of walks, runs, turns, starts, stops and spins." [Clips];
+    Drive "drive" "Recorded input" Lab(Match), Kind::List(ListKind::Recording), Start::Text(""), "", "Input that is played again, exactly: stretches of ticks and velocities. Empty: drive yourself.";
+    MatchClips "match_clips" "Clips" Lab(Match), Kind::List(ListKind::ClipIds), Start::Text(""), "", "The clips to choose frames from: ids, separated by commas. Empty: the synthesiser's set of walks, runs, turns, starts, stops and spins.";
     Mirrored "mirrored" "Mirrored copies" Lab(Match), Kind::Switch, Start::Switch(true), "", "Every clip a second time, left and right exchanged.";
     MatchCycles "match_cycles" "Cycles go round" Lab(Match), Kind::Switch, Start::Switch(true), "", "A clip that is a cycle plays round and round and is searched to its last frame. Off: it ends, and what is near its end is never chosen.";
     WalkSpeed "walk_speed" "Walking speed" Lab(Match), number(0.3, 2.2, 0.05), Start::Number(1.4), "m/s", "How fast the character is asked to walk." [LookedAt];
@@ -172,7 +211,7 @@ parameters! {
     PlantFeet "plant_feet" "Foot lock" Lab(Match), Kind::Switch, Start::Switch(true), "", "Holds planted feet where they stand while it plays.";
     AskTag "ask_tag" "Only frames of" Lab(Match), Kind::Text, Start::Text("any"), "", "Frames must have this tag: walk, run, idle, turn, or a word of your own.";
     ForbidTag "forbid_tag" "No frames of" Lab(Match), Kind::Text, Start::Text("nothing"), "", "Frames must not have this tag.";
-    Tags "tags" "Tags" Lab(Match), Kind::Text, Start::Text(""), "", "Tags by hand: clip, seconds and word, as in walk:0.2-1.5:exclude. A word behind a minus sign is taken away there.";
+    Tags "tags" "Tags" Lab(Match), Kind::List(ListKind::Tags), Start::Text(""), "", "Tags by hand: clip, seconds and word, as in walk:0.2-1.5:exclude. A word behind a minus sign is taken away there.";
     ShownCandidates "shown_candidates" "Candidates shown" Lab(Match), number(1.0, 8.0, 1.0), Start::Number(5.0), "frames", "How many of the best frames each search tells of." [LookedAt];
     Crowd "crowd" "Characters" Lab(Match), number(1.0, 100.0, 1.0), Start::Number(1.0), "", "Others walk about you, each with a controller of its own, all with the same clips." [LookedAt];
 
@@ -187,11 +226,11 @@ parameters! {
     Bounce "bounce" "Bounce" Lab(Make), number(0.0, 2.0, 0.05), Start::Number(1.0), "×", "How far the hips rise and fall; 1 is natural.";
     Lean "lean" "Lean" Lab(Make), number(0.0, 2.0, 0.05), Start::Number(1.0), "×", "How far the trunk leans forward and into turns; 1 is natural.";
     MakeSeconds "make_seconds" "Length" Lab(Make), number(1.0, 30.0, 0.1), Start::Number(4.0), "s", "How long the clip is.";
-    Seed "seed" "Seed" Lab(Make), number(0.0, 999.0, 1.0), Start::Number(7.0), "", "Another seed, another natural variation; the same seed, the same clip.";
+    Seed "seed" "Seed" Lab(Make), number(0.0, 999.0, 1.0), Start::Number(7.0), "", "Another seed, another natural variation; the same seed, the same clip." in [Graph];
 
     Stage "stage" "Stage" Stage, Kind::Choice(Backdrop::CHOICES), Start::Choice(Backdrop::Auto.word()), "", "Dark, light, or paper: black lines on white, for print and bright rooms. Auto goes with the theme.";
     Look "look" "Character" Stage, Kind::Choice(Look::CHOICES), Start::Choice(Look::Body.word()), "", "A body in one skin, a mannequin of limbs, bones, or bones inside of the body.";
-    Character "character" "Figure" Stage, Kind::Text, Start::Text(""), "", "The clip whose file brought a mesh with a skin: its character is moved. Empty: a body is made around the bones.";
+    Character "character" "Figure" Stage, Kind::Character, Start::Text(""), "", "The clip whose file brought a mesh with a skin: its character is moved. Empty: a body is made around the bones.";
     FigureHeight "figure_height" "Height" Stage, number(0.5, 1.5, 0.01), Start::Number(1.0), "×", "How high the character is beside its clip. Its steps and its path grow with it.";
     FigureBuild "figure_build" "Build" Stage, number(0.6, 1.6, 0.05), Start::Number(1.0), "×", "How broad the character is: 1 is average.";
     Skinning "skinning" "Skinning" Stage, Kind::Choice(Skinning::CHOICES), Start::Choice(Skinning::Dual.word()), "", "How the skin follows two joints at once: twist a forearm to see the difference." [Compare];
@@ -202,12 +241,12 @@ parameters! {
     GhostStep "ghost_step" "Onion skin step" Stage, number(0.05, 1.0, 0.05), Start::Number(0.25), "s", "Time from one onion-skin pose to the next.";
     Trail "trail" "Ground path" Stage, Kind::Switch, Start::Switch(true), "", "The way of the hips, drawn on the ground.";
     JointTrail "joint_trail" "Joint trail" Stage, Kind::Switch, Start::Switch(false), "", "The way of the chosen joint through the air.";
-    Joint "joint" "Joint" Stage, Kind::Text, Start::Text("right foot"), "", "The joint whose curve and trail are shown: a body part or a joint's name.";
+    Joint "joint" "Joint" Stage, Kind::Joint, Start::Text("right foot"), "", "The joint whose curve and trail are shown: a body part or a joint's name.";
     Curve "curve" "Curve" Stage, Kind::Choice(Curve::CHOICES), Start::Choice(Curve::Speed.word()), "", "What of the chosen joint is plotted.";
     Contacts "contacts" "Foot contacts" Stage, Kind::Switch, Start::Switch(true), "", "A ring under a planted foot, red where it slides.";
     Follow "follow" "Follow" Camera, Kind::Choice(Follow::CHOICES), Start::Choice(Follow::Result.word()), "", "Which character the camera stays with.";
     FollowOther "follow_other" "Which other" Camera, number(1.0, 6.0, 1.0), Start::Number(1.0), "", "Which of the others the camera stays with, by their order.";
-    FollowJoint "follow_joint" "Follow joint" Camera, Kind::Text, Start::Text("hips"), "", "The joint that the camera stays with.";
+    FollowJoint "follow_joint" "Follow joint" Camera, Kind::Joint, Start::Text("hips"), "", "The joint that the camera stays with.";
     FollowHalfLife "follow_half_life" "Camera half-life" Camera, logarithmic(0.02, 2.0, 0.01), Start::Number(0.2), "s", "How lazily the camera follows.";
     Camera "camera" "Camera" Camera, Kind::Choice(Camera::CHOICES), Start::Choice(Camera::Orbit.word()), "", "From the side, or from above.";
     CameraYaw "camera_yaw" "Camera direction" Camera, number(-180.0, 180.0, 0.5), Start::Number(62.0), "°", "From where the camera looks, around the vertical." [NoUndo];
@@ -221,8 +260,8 @@ parameters! {
     Rate "rate" "Playback speed" Transport, logarithmic(0.05, 4.0, 0.05), Start::Number(1.0), "×", "How fast time runs.";
     Loop "loop" "Loop" Transport, Kind::Switch, Start::Switch(true), "", "Starts again at the end.";
     Time "t" "Time" Transport, number(0.0, 3600.0, 0.001), Start::Number(0.0), "s", "Where the playhead stands; written to the link while paused." [NoUndo];
-    In "in" "In mark" Transport, auto(0.0, 3600.0, 0.01), Start::Auto, "s", "Where playing begins.";
-    Out "out" "Out mark" Transport, auto(0.0, 3600.0, 0.01), Start::Auto, "s", "Where playing ends.";
+    In "in" "In mark" Transport, auto(0.0, 3600.0, 0.01), Start::Auto, "s", "Where playing begins." [PlaceInResult];
+    Out "out" "Out mark" Transport, auto(0.0, 3600.0, 0.01), Start::Auto, "s", "Where playing ends." [PlaceInResult];
 
     Compare "compare" "Compare" Page, Kind::Compare, Start::Text(""), "", "One pane for each value of a parameter, as in blend_window:30,15,10." [State];
     Theme "theme" "Theme" Page, Kind::Choice(PageTheme::CHOICES), Start::Choice(PageTheme::Auto.word()), "", "Dark, light, or as the system has it.";

@@ -18,7 +18,8 @@ fn the_table_is_sound() {
         let default = param.format(&param.default_value());
         assert!(!is_place || default == "auto" || default.is_empty(), "{}", param.name);
         let is_of_lab = param.group.is_of_lab();
-        let outside = [Mark::State, Mark::NoUndo, Mark::Compare, Mark::ByPointer];
+        let outside =
+            [Mark::State, Mark::NoUndo, Mark::Compare, Mark::ByPointer, Mark::PlaceInResult];
         for &mark in param.marks {
             assert_eq!(is_of_lab, !outside.contains(&mark), "{}: {mark:?}", param.name);
         }

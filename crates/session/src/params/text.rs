@@ -1,10 +1,13 @@
 //! Values as text: in links, in ids of kept results, in the page's API.
 
+use super::grammar::{parts, read_id, write_ids};
 use super::param::{Choice, Kind, Param};
-use super::value::{Value, ValueError};
-use crate::compare::Compare;
-use segue_text::Message;
+use super::table::Key;
+use super::value::{Compare, MAX_PANES, Value, ValueError};
+use crate::outside::short;
+use segue_text::{Message, msg};
 use serde_json::Value as Json;
+use std::fmt;
 
 impl Param {
     /// Checks a value and brings it into its normal form: numbers are snapped to the step.
@@ -79,9 +82,15 @@ impl Param {
                 Some(found) => Ok(Value::Choice(found.key)),
                 None => Err(self.not_a_choice(text, choices)),
             },
-            Kind::Clip | Kind::Text => Ok(Value::Text(text.to_owned())),
-            Kind::Compare if text.is_empty() => Ok(Value::Text(String::new())),
-            Kind::Compare => Ok(Value::Text(Compare::parse(text)?.to_string())),
+            Kind::Clip | Kind::Joint | Kind::Character | Kind::Text => {
+                Ok(Value::Text(text.to_owned()))
+            }
+            Kind::List(kind) => match kind.read(text) {
+                Ok(list) => Ok(Value::List(list)),
+                Err(error) => Err(ValueError::Misread { key: self.name, error }),
+            },
+            Kind::Compare if text.is_empty() => Ok(Value::Compare(None)),
+            Kind::Compare => Ok(Value::Compare(Some(Compare::parse(text)?))),
         }
     }
 
@@ -95,6 +104,10 @@ impl Param {
             (Value::Switch(on), _) => if *on { "on" } else { "off" }.to_owned(),
             (Value::Choice(word), _) => (*word).to_owned(),
             (Value::Text(text), _) => text.clone(),
+            (Value::List(list), _) => list.write(),
+            (Value::Compare(compare), _) => {
+                compare.as_ref().map_or_else(String::new, Compare::to_string)
+            }
         }
     }
 
@@ -154,4 +167,65 @@ pub fn decimals_of(step: f64) -> usize {
             ((step * 10f64.powi(decimals)).round() - step * 10f64.powi(decimals)).abs() < 1e-9
         })
         .unwrap_or(6) as usize
+}
+
+/// A comparison and its values have one grammar: each value is one of the compared parameter.
+impl Compare {
+    /// Reads `key:value,value,…`.
+    ///
+    /// # Errors
+    /// [`ValueError`] when the key cannot be compared, a value does not fit it, or there are not
+    /// two to four values.
+    pub fn parse(text: &str) -> Result<Self, ValueError> {
+        let refuse =
+            |expected: Message| ValueError::NotAComparison { found: text.to_owned(), expected };
+        let (name, list) = text
+            .split_once(':')
+            .ok_or_else(|| refuse("`key:value,value`, as in blend_window:30,15,10".into()))?;
+        let key = Key::from_name(name.trim())
+            .filter(|key| key.param().is_comparable())
+            .ok_or_else(|| {
+                refuse(msg!(
+                    "a number or a choice of a lab, or a clip, before the colon, not `{found}`",
+                    found = short(name)
+                ))
+            })?;
+        let is_clip = matches!(key.param().kind, Kind::Clip);
+        let words = if is_clip {
+            let parts = parts(list)
+                .ok_or_else(|| refuse("ids whose brackets close, separated by commas".into()))?;
+            parts.into_iter().map(read_id).collect::<Vec<String>>()
+        } else {
+            list.split(',').map(|word| word.trim().to_owned()).collect()
+        };
+        let values = words
+            .iter()
+            .map(|word| match key.param().parse(word)? {
+                Value::Auto => {
+                    Err(refuse(msg!("a value for each pane, not `{found}`", found = short(word))))
+                }
+                value => Ok(value),
+            })
+            .collect::<Result<Vec<Value>, ValueError>>()?;
+        if !(2..=MAX_PANES).contains(&values.len()) {
+            return Err(refuse(msg!(
+                "2 to {most} values, not {count}",
+                most = MAX_PANES,
+                count = values.len()
+            )));
+        }
+        Ok(Self { key, values })
+    }
+}
+
+impl fmt::Display for Compare {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let param = self.key.param();
+        let values: Vec<String> = self.values.iter().map(|value| param.format(value)).collect();
+        let values = match param.kind {
+            Kind::Clip => write_ids(&values),
+            _ => values.join(","),
+        };
+        write!(f, "{}:{values}", param.name)
+    }
 }

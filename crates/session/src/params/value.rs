@@ -1,5 +1,7 @@
 //! Values of parameters, and why one does not fit.
 
+use super::grammar::{List, Misread};
+use super::table::Key;
 use crate::Selected;
 use crate::outside::short;
 use segue_text::{Message, msg};
@@ -17,7 +19,24 @@ pub enum Value {
     Choice(&'static str),
     /// A clip's id or free text.
     Text(String),
+    /// A list.
+    List(List),
+    /// Several values of a parameter; `None` for one pane.
+    Compare(Option<Compare>),
 }
+
+/// Two to four values of one parameter, each in a pane of its own: `blend_window:30,15,10`,
+/// `method:inertialize,smooth`, `a:walk,run`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Compare {
+    /// The parameter in which the panes differ.
+    pub key: Key,
+    /// Its value in each pane, in order.
+    pub values: Vec<Value>,
+}
+
+/// How many panes fit side by side.
+pub const MAX_PANES: usize = 4;
 
 impl Value {
     /// Returns a choice as its type; `None` for anything else.
@@ -77,6 +96,14 @@ pub enum ValueError {
         found: String,
         /// The words that there are.
         expected: String,
+    },
+    /// No such list.
+    #[error("{key}: {error}")]
+    Misread {
+        /// The parameter.
+        key: &'static str,
+        /// What cannot be read.
+        error: Misread,
     },
     /// Not a comparison.
     #[error("compare: found `{found}`, expected {expected}", found = short(.found))]

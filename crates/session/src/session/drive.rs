@@ -3,8 +3,8 @@
 use super::Session;
 use crate::choices::Scenario;
 use crate::command::{CommandError, DriveCommand};
-use crate::labs::{HandTag, filter_of, read_ids, read_tags};
-use crate::params::{Key, Params, Value};
+use crate::labs::filter_of;
+use crate::params::{Key, List, Params, Value};
 use segue_motion::matching::{Control, Database, Recording};
 use segue_motion::skeleton::Pose;
 use std::sync::Arc;
@@ -38,19 +38,6 @@ impl Session {
         self.drive.crowd()
     }
 
-    /// Returns the ids of the clips of the Match lab; none where the synthesiser's set is used or
-    /// the list cannot be read.
-    #[must_use]
-    pub fn match_clip_ids(&self) -> Vec<String> {
-        read_ids(self.document.params.text(Key::MatchClips)).unwrap_or_default()
-    }
-
-    /// Returns the tags that were set by hand; none where they cannot be read.
-    #[must_use]
-    pub fn hand_tags(&self) -> Vec<HandTag> {
-        read_tags(self.document.params.text(Key::Tags)).unwrap_or_default()
-    }
-
     /// Takes in how long the last call of [`Session::tick`] took, seconds: the session has no
     /// clock.
     pub fn tick_took(&mut self, secs: f64) {
@@ -73,10 +60,10 @@ impl Session {
                 if self.drive.recording().ticks() == 0 {
                     return Err(CommandError::NotPossible("nothing was driven yet"));
                 }
-                let text = self.drive.recording().to_text();
+                let recording = List::Recording(Some(self.drive.recording().clone()));
                 self.set_as_step(vec![
                     (Key::Scenario, Scenario::Own.into()),
-                    (Key::Drive, Value::Text(text)),
+                    (Key::Drive, recording.into()),
                     (Key::Time, Value::Number(0.0)),
                 ])?;
             }
@@ -104,8 +91,9 @@ impl Session {
     /// written down.
     pub(super) fn with_recording(&self, mut params: Params) -> Params {
         if self.is_driven() {
-            let text = Value::Text(self.drive.recording().to_text());
-            let result = params.set(Key::Drive, text);
+            let recording = Some(self.drive.recording().clone());
+            let driven = recording.filter(|recording| recording.ticks() > 0);
+            let result = params.set(Key::Drive, List::Recording(driven).into());
             debug_assert!(result.is_ok(), "{result:?}");
         }
         params

@@ -3,7 +3,7 @@
 use super::Session;
 use crate::labs::lab::Beside;
 use crate::labs::lab_of;
-use crate::labs::{Built, Cast, Field, Walk, clips_of, read_path, read_visits};
+use crate::labs::{Built, Cast, Field, Walk, clips_of, visits_of};
 use crate::params::Key;
 use glam::DVec2;
 use std::sync::Arc;
@@ -13,10 +13,10 @@ impl Session {
         lab_of(self.document.params.lab()).has(Beside::Graph)
     }
 
-    /// The ids of the clips that the graph is made of; none where the list cannot be read.
+    /// The ids of the clips that the graph is made of; none where there are too many.
     #[must_use]
     pub fn graph_clip_ids(&self) -> Vec<String> {
-        clips_of(self.document.params.text(Key::Clips)).unwrap_or_default()
+        clips_of(self.document.params.clip_ids(Key::Clips)).unwrap_or_default()
     }
 
     /// The clips of the graph, on one skeleton; `None` outside of the Graph lab and while they are
@@ -67,15 +67,12 @@ impl Session {
     /// When the walk sets off for which clip: seconds, and the clip's index.
     #[must_use]
     pub fn graph_visits(&self) -> Vec<(f64, usize)> {
-        read_visits(self.document.params.text(Key::GoTo)).unwrap_or_default()
+        visits_of(&self.document.params)
     }
 
     /// The line that the walk follows, (x, z) in metres.
     #[must_use]
-    pub fn graph_path(&self) -> Vec<DVec2> {
-        if !self.is_graph_lab() {
-            return Vec::new();
-        }
-        read_path(self.document.params.text(Key::WalkPath)).unwrap_or_default()
+    pub fn graph_path(&self) -> &[DVec2] {
+        if self.is_graph_lab() { self.document.params.ground_path() } else { &[] }
     }
 }

@@ -3,16 +3,15 @@
 use super::Session;
 use crate::Selected;
 use crate::clip_info::ClipInfo;
-use crate::compare::Compare;
 use crate::labs::lab::Beside;
 use crate::labs::lab_of;
 use crate::labs::{CycleMade, DistanceMap, Slot};
-use crate::labs::{made_motion_has, middle_mps, range_of, read_pins, read_weights, synth_action};
+use crate::labs::{made_motion_has, middle_mps, range_of, synth_action};
 use crate::lesson::would_set_up;
 use crate::library::{Entry, split_reference};
 use crate::link;
 use crate::pane::Pane;
-use crate::params::{Key, Kind, Value};
+use crate::params::{Compare, Key, Kind, Value};
 use segue_motion::clip::Motion;
 use segue_motion::matching::{made_name, made_params};
 use segue_motion::skin::Character;
@@ -38,8 +37,8 @@ impl Session {
 
     /// Returns the comparison that is open.
     #[must_use]
-    pub fn compare(&self) -> Option<Compare> {
-        self.document.compare()
+    pub fn compare(&self) -> Option<&Compare> {
+        self.document.params.compare()
     }
 
     /// Returns the clip in a slot.
@@ -51,7 +50,7 @@ impl Session {
     /// Returns whether the clip in a slot is part of what the lab shows.
     #[must_use]
     pub fn uses(&self, slot: Slot) -> bool {
-        lab_of(self.document.params.lab()).slots().contains(&slot)
+        slot.key().param().is_used_by(self.document.params.lab())
     }
 
     /// Returns whether the link that was opened names this parameter, be it with its default.
@@ -195,27 +194,6 @@ impl Session {
         let shown = pane.outcome.as_ref().and_then(|outcome| outcome.registered());
         let shown = shown.map(|registered| &registered.map);
         shown.or_else(|| self.labs.registrars.last_map())
-    }
-
-    /// Returns the pairs of frames of A and B, at A's rate, that must meet; none where they cannot be
-    /// read.
-    #[must_use]
-    pub fn pins(&self) -> Vec<(usize, usize)> {
-        read_pins(self.document.params.text(Key::Pins)).unwrap_or_default()
-    }
-
-    /// Returns the weight of B over the course of a registered blend, in per cent of both; empty
-    /// where it stays the same, or cannot be read.
-    #[must_use]
-    pub fn weight_keys(&self) -> Vec<(usize, usize)> {
-        read_weights(self.document.params.text(Key::WarpCurve)).unwrap_or_default()
-    }
-
-    /// Returns the further clips of a registered blend, with their weights; none where they cannot
-    /// be read.
-    #[must_use]
-    pub fn also_blended(&self) -> Vec<(String, f64)> {
-        self.document.also_blended()
     }
 
     /// Returns whether the motion to be synthesised has a parameter: a standing one has no speed.

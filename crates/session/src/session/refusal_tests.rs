@@ -1,5 +1,6 @@
 //! Where a result cannot be made, nothing stands for it: every lab, every kind of refusal.
 
+use crate::List;
 use crate::fixtures::*;
 use crate::{NumberTable, ReportFacts, report};
 use segue_formats::bvh;
@@ -111,7 +112,8 @@ const REPLAY: &str = "lab=match&mirrored=off&match_clips=idle,walk,walk_left,wal
 fn refusals() -> Vec<(&'static str, Change, &'static str)> {
     use Change::{A, B, Both, Set};
     use Clips::{BuiltIn, Empty, Missing, OneFrame, Short, Snake};
-    let text = |text: &str| Value::Text(text.to_owned());
+    let pins = List::Pins(vec![(9999, 3)]).into();
+    let also = List::WeightedClips(vec![("nobody".into(), 0.3)]).into();
     vec![
         ("lab=view", A(Missing), "not here"),
         ("lab=view&foot_lock=on", A(Missing), "not here"),
@@ -139,8 +141,8 @@ fn refusals() -> Vec<(&'static str, Change, &'static str)> {
         ("lab=register", A(Short), ""),
         ("lab=register", B(Missing), "not here"),
         ("lab=register", B(Snake), "in common"),
-        ("lab=register", Set(Key::Pins, text("9999-3")), "beyond"),
-        ("lab=register", Set(Key::WarpAlso, text("0.3:nobody")), "not here"),
+        ("lab=register", Set(Key::Pins, pins), "beyond"),
+        ("lab=register", Set(Key::WarpAlso, also), "not here"),
         (
             "lab=register&warp_mode=join&warp_to=1",
             Set(Key::WarpFrom, Value::Number(1.0)),
@@ -149,18 +151,17 @@ fn refusals() -> Vec<(&'static str, Change, &'static str)> {
         ("lab=path", A(BuiltIn("idle")), "stays within"),
         ("lab=path", A(OneFrame), ""),
         ("lab=path", A(Missing), "not here"),
-        ("lab=path", Set(Key::Path, text("nonsense!")), "not a path"),
         (GRAPH, Change::Clips(Short), ""),
         (GRAPH, Change::Clips(Missing), "not here"),
         (GRAPH, Change::Clips(Snake), "in common"),
-        (GRAPH, Set(Key::GoTo, text("6:9")), "no clip 9"),
-        (GRAPH, Set(Key::Clips, text("walk,(run")), "expected clips"),
+        (GRAPH, Set(Key::GoTo, List::Visits(vec![(6.0, 9)]).into()), "no clip 9"),
+        (GRAPH, Set(Key::Clips, List::ClipIds(Vec::new()).into()), "add at least one"),
         (MATCH, Change::Clips(OneFrame), ""),
         (MATCH, Change::Clips(Missing), "not here"),
         (MATCH, Set(Key::AheadFar, Value::Number(0.3)), "must rise"),
         (REPLAY, Change::Clips(OneFrame), ""),
         (REPLAY, Change::Clips(Missing), "not here"),
-        (REPLAY, Set(Key::AskTag, text("tired")), "tired"),
+        (REPLAY, Set(Key::AskTag, Value::Text("tired".into())), "tired"),
     ]
 }
 
@@ -184,11 +185,11 @@ fn change(session: &mut Session, change: &Change) -> Vec<Slot> {
         }
         Change::Clips(clips) => {
             let key = if lab == "graph" { Key::Clips } else { Key::MatchClips };
-            let (_, Value::Text(id)) = put(session, key, *clips) else { panic!() };
-            values.push((key, Value::Text(format!("walk,{id}"))));
-            if *clips != Clips::Snake && lab == "graph" || lab == "match" {
-                values[0].1 = Value::Text(id);
+            let mut ids = vec![clips.id(session)];
+            if *clips == Clips::Snake && lab == "graph" {
+                ids.insert(0, "walk".to_owned());
             }
+            values.push((key, List::ClipIds(ids).into()));
         }
         Change::Set(key, value) => values.push((*key, value.clone())),
     }

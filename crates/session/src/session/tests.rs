@@ -115,7 +115,7 @@ fn a_motion_is_made_whatever_was_set_for_another() {
         (Key::Gait, Value::Choice("run")),
         (Key::GaitSpeed, Value::Number(6.0)),
         (Key::MakeSeconds, Value::Number(1.0)),
-        (Key::Compare, Value::Text(String::new())),
+        (Key::Compare, Value::Compare(None)),
     ];
     session.apply(Command::Set(make.to_vec())).unwrap();
     for gait in ["run", "walk", "idle", "start", "stop", "spin", "jump"] {
@@ -124,13 +124,13 @@ fn a_motion_is_made_whatever_was_set_for_another() {
         // Side by side, too, each pane shows something, and no two the same.
         if session.range_of(Key::GaitSpeed).is_some() {
             session.apply(Command::Compare(Key::GaitSpeed)).unwrap();
-            let values = session.compare().unwrap().values;
+            let values = session.compare().unwrap().values.clone();
             assert!(values[0] != values[1] && values[1] != values[2], "{gait}: {values:?}");
             assert!(
                 session.panes().iter().all(|pane| pane.problem.is_none()),
                 "{gait}: {values:?}"
             );
-            session.apply(Command::Set(vec![(Key::Compare, Value::Text(String::new()))])).unwrap();
+            session.apply(Command::Set(vec![(Key::Compare, Value::Compare(None))])).unwrap();
         }
     }
 }

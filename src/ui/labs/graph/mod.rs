@@ -16,9 +16,7 @@ use crate::ui::state::UiState;
 use crate::ui::text;
 use glam::DVec2;
 use segue_motion::graph::Place;
-use segue_session::{
-    Built, Command, Key, PlaybackCommand, Session, Value, Walk, write_jump, write_path,
-};
+use segue_session::{Built, Command, Key, List, PlaybackCommand, Session, Value, Walk};
 use segue_text::{Message, msg};
 
 /// The lab's part of the page.
@@ -45,30 +43,32 @@ fn title(shown: &Shown<'_>) -> Title {
 /// The walk follows what was drawn, from its beginning.
 fn take_line(points: &[DVec2], _: &Session, _: &mut UiState, out: &mut Out) {
     if points.len() > 1 {
-        out.set_once(Key::WalkPath, Value::Text(write_path(points)));
+        // To the centimetre: what the link says is what is followed.
+        let points = points.iter().map(|point| (point * 100.0).round() / 100.0).collect();
+        out.set_once(Key::WalkPath, List::GroundPath(points).into());
         out.commands.push(Command::Playback(PlaybackCommand::Seek(0.0)));
     }
 }
 
 /// Whether the lab shows one transition in place of the walk.
 fn shows_jump(session: &Session) -> bool {
-    !session.params().text(Key::Jump).is_empty()
+    session.params().jump().is_some()
 }
 
 /// Plays one transition, also where all stands still: whoever asks for it wants to see it. The walk
 /// is kept where it is.
-fn open_jump([leave, enter]: [Place; 2], session: &Session, state: &mut UiState, out: &mut Out) {
+fn open_jump(jump: [Place; 2], session: &Session, state: &mut UiState, out: &mut Out) {
     if !shows_jump(session) {
         state.walk_secs = session.now_secs();
     }
-    out.set_once(Key::Jump, Value::Text(write_jump(leave, enter)));
+    out.set_once(Key::Jump, List::Jump(Some(jump)).into());
     out.commands.push(Command::Playback(PlaybackCommand::Seek(0.0)));
     out.set(Key::Play, Value::Switch(true));
 }
 
 /// Goes back to the walk, where it was.
 fn close_jump(state: &UiState, out: &mut Out) {
-    out.set_once(Key::Jump, Value::Text(String::new()));
+    out.reset(Key::Jump);
     out.set(Key::Time, Value::Number(state.walk_secs.clamp(0.0, 3600.0)));
 }
 

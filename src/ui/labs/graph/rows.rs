@@ -15,7 +15,7 @@ use petgraph::graph::NodeIndex;
 use segue_session::JobKind;
 use segue_session::LabId;
 use segue_session::choices;
-use segue_session::{Built, Command, Key, Session, Value, graph_of, link, write_visits};
+use segue_session::{Built, Command, Key, List, Session, Value, graph_of, link};
 use segue_text::{Message, ToMessage, msg};
 use std::sync::Arc;
 
@@ -142,11 +142,9 @@ fn set_clips(ids: &[String], out: &mut Out) {
 fn construction_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let params = session.params();
     let palette = palette_of(ui);
-    let fps = session.graph_cast().map_or(60.0, |cast| cast.set().fps());
     param_row_ui(Key::Construction, &Detail::default(), session, out, ui);
     let longest = session.graph_cast().map(|cast| cast.set().longest() as f64);
     let window = Detail {
-        fps: Some(fps),
         max: longest.map(|longest| (longest - 2.0).max(params.number(Key::BlendWindow))),
         help: Some("How long a transition takes, and over which windows are compared. Long drags, short bursts.".into()),
         ..Detail::default()
@@ -158,7 +156,6 @@ fn construction_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         || matches!(compared, Some(Key::SegmentSize | Key::Construction))
     {
         let segment = Detail {
-            fps: Some(fps),
             max: longest.map(|longest| longest.max(params.number(Key::SegmentSize))),
             ..Detail::default()
         };
@@ -267,7 +264,7 @@ fn ways_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
         }
     }
     if !visits.is_empty() && kit::button_ui(Button::new(text::FORGET_VISITS), ui).clicked() {
-        out.set_once(Key::GoTo, Value::Text(String::new()));
+        out.reset(Key::GoTo);
     }
     let draw = Button::new(text::DRAW_PATH).selected(state.drawing.is_some());
     if kit::button_ui(draw, ui).clicked() && state.drawing.take().is_none() {
@@ -277,15 +274,15 @@ fn ways_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
             (Key::Camera, choices::Camera::Top.into()),
             (Key::Follow, choices::Follow::Off.into()),
             (Key::CameraDistance, Value::Number(14.0)),
-            (Key::Jump, Value::Text(String::new())),
+            (Key::Jump, List::Jump(None).into()),
         ]));
     }
     if state.drawing.is_some() {
         kit::note_ui(text::DRAWING, palette.accent_ink, ui);
     }
-    if !session.params().text(Key::WalkPath).is_empty() {
+    if !session.params().ground_path().is_empty() {
         if kit::button_ui(Button::new(text::REMOVE_PATH), ui).clicked() {
-            out.set_once(Key::WalkPath, Value::Text(String::new()));
+            out.reset(Key::WalkPath);
         }
         if let Some(trace) = session.graph_walk().and_then(|walk| walk.followed.as_ref()) {
             kit::note_ui(&say(&text::followed(trace), ui), palette.muted, ui);
@@ -332,8 +329,8 @@ pub(crate) fn go_to(clip: usize, session: &Session, out: &mut Out) {
     let now = session.now_secs();
     let mut visits = session.graph_visits();
     visits.retain(|(secs, _)| *secs < now);
-    visits.push((now, clip));
-    out.set_once(Key::GoTo, Value::Text(write_visits(&visits)));
+    visits.push(((now * 10.0).round() / 10.0, clip));
+    out.set_once(Key::GoTo, List::Visits(visits).into());
 }
 
 fn experiments_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
@@ -347,9 +344,9 @@ fn experiments_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         kit::note_ui(experiment.help, palette_of(ui).muted, ui);
         if response.clicked() {
             if on {
-                values = vec![(Key::Compare, Value::Text(String::new()))];
+                values = vec![(Key::Compare, Value::Compare(None))];
             } else {
-                values.push((Key::Jump, Value::Text(String::new())));
+                values.push((Key::Jump, List::Jump(None).into()));
             }
             out.commands.push(Command::Set(values));
             out.commands.push(Command::Settle);

@@ -14,7 +14,7 @@ use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{RichText, Ui, vec2};
 use segue_motion::matching::RATE;
 use segue_session::choices;
-use segue_session::{Command, DriveCommand, Key, Selected, Session, Value, write_ids};
+use segue_session::{Command, Compare, DriveCommand, Key, List, Selected, Session, Value};
 use segue_text::{Message, ToMessage};
 
 /// All rows of the lab.
@@ -101,7 +101,7 @@ fn input_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
             }
         });
     } else if session.params().choice::<choices::Scenario>() != choices::Scenario::Own
-        || !session.params().text(Key::Drive).is_empty()
+        || session.params().recording().is_some()
     {
         kit::note_ui(text::RECORDED, muted, ui);
         if kit::button_ui(Button::new(text::DRIVE_YOURSELF).icon(Icon::Play).outlined(), ui)
@@ -109,7 +109,7 @@ fn input_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         {
             out.commands.push(Command::Set(vec![
                 (Key::Scenario, choices::Scenario::Own.into()),
-                (Key::Drive, Value::Text(String::new())),
+                (Key::Drive, List::Recording(None).into()),
                 (Key::Play, Value::Switch(true)),
             ]));
             out.commands.push(Command::Settle);
@@ -149,7 +149,7 @@ fn preferred_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let Some((driven, _)) = super::shown(session) else {
         return;
     };
-    let ids = session.match_clip_ids();
+    let ids = session.params().clip_ids(Key::MatchClips);
     let originals = driven.database.motions().iter().filter(|motion| !motion.is_mirrored());
     let words: Vec<&str> =
         std::iter::once("")
@@ -179,7 +179,7 @@ fn preferred_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
 pub(crate) fn compare_hysteresis(session: &Session, out: &mut Out) {
     let on = session.compare().is_some_and(|compare| compare.key == Key::Hysteresis);
     let query = if on { "" } else { text::HYSTERESES_QUERY };
-    out.set_once(Key::Compare, Value::Text(query.to_owned()));
+    out.compare(Compare::parse(query).ok());
 }
 
 fn going_over_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
@@ -205,12 +205,13 @@ fn going_over_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
 /// The clips that frames are chosen from, and how many characters choose.
 fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let (theme, palette) = (theme_of(ui), palette_of(ui));
-    let ids = session.match_clip_ids();
+    let ids = session.params().clip_ids(Key::MatchClips);
     if ids.is_empty() {
         kit::note_ui(text::MADE_SET, palette.muted, ui);
     }
-    let set =
-        |ids: &[String], out: &mut Out| out.set_once(Key::MatchClips, Value::Text(write_ids(ids)));
+    let set = |ids: Vec<String>, out: &mut Out| {
+        out.set_once(Key::MatchClips, List::ClipIds(ids).into());
+    };
     for (index, id) in ids.iter().enumerate() {
         ui.push_id(("clip", index), |ui| {
             ui.horizontal(|ui| {
@@ -218,9 +219,9 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
                 let name = entry.map_or_else(|| Message::data(&**id), |entry| entry.title());
                 let leave_out = say(&text::leave_clip_out(name.clone()), ui);
                 if kit::icon_button_ui(Icon::Close, &leave_out, ui).clicked() {
-                    let mut rest = ids.clone();
+                    let mut rest = ids.to_vec();
                     rest.remove(index);
-                    set(&rest, out);
+                    set(rest, out);
                 }
                 ui.label(RichText::new(say(&name, ui)).font(theme.font(Type::Body)));
             });
@@ -233,9 +234,9 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         std::iter::once((usize::MAX, text::CHOOSE_CLIP)).chain(clips).collect();
     let picked = kit::choice_row_ui(text::ADD_CLIP, usize::MAX, &options, ui);
     if let Some(entry) = picked.and_then(|index| entries.get(index)) {
-        let mut more = ids.clone();
+        let mut more = ids.to_vec();
         more.push(entry.id.clone());
-        set(&more, out);
+        set(more, out);
     }
     if let Some((driven, _)) = super::shown(session) {
         let skipped = driven.database.skipped();

@@ -10,7 +10,7 @@ use crate::ui::text;
 use crate::ui::theme::{palette_of, space};
 use eframe::egui::{Ui, vec2};
 use segue_motion::matching::{Database, DatabaseClip, RATE, Tag};
-use segue_session::{HandTag, Key, Session, Value, own_words, write_tags};
+use segue_session::{HandTag, Key, List, Session, Value, own_words};
 
 /// What "what plays now" reaches to either side, frames.
 const AROUND: usize = 15;
@@ -18,18 +18,18 @@ const AROUND: usize = 15;
 /// All rows of the section.
 pub(crate) fn tags_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let muted = palette_of(ui).muted;
-    let tags = session.hand_tags();
+    let tags = session.params().tags();
     for (key, word) in [(Key::AskTag, "any"), (Key::ForbidTag, "nothing")] {
-        wanted_ui(key, word, &tags, session, out, ui);
+        wanted_ui(key, word, tags, session, out, ui);
     }
     kit::note_ui(text::TAGS_HELP, muted, ui);
     for (index, tag) in tags.iter().enumerate() {
         ui.horizontal(|ui| {
             ui.push_id(("tag", index), |ui| {
                 if kit::icon_button_ui(Icon::Close, text::TAKE_TAG_AWAY, ui).clicked() {
-                    let mut rest = tags.clone();
+                    let mut rest = tags.to_vec();
                     rest.remove(index);
-                    set(&rest, out);
+                    set(rest, out);
                 }
             });
             let name = match session.library().find(&tag.clip) {
@@ -55,7 +55,7 @@ pub(crate) fn tags_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
         state.drive.stretch = None;
         return;
     };
-    let ids = session.match_clip_ids();
+    let ids = session.params().clip_ids(Key::MatchClips);
     let clip = ids.get(motion.source()).map_or(motion.clip().name(), String::as_str);
     let frames = motion.frames();
     let secs = |frame: usize| frame as f64 / RATE as f64;
@@ -82,11 +82,12 @@ pub(crate) fn tags_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     let add = |word: &str, takes_away: bool, out: &mut Out| {
         let tag = HandTag {
             clip: clip.to_owned(),
-            secs: [secs(from), secs(to)],
+            // To hundredths, as the rows say it.
+            secs: [from, to].map(|frame| (secs(frame) * 100.0).round() / 100.0),
             word: word.to_owned(),
             takes_away,
         };
-        set(&tags.iter().cloned().chain([tag]).collect::<Vec<_>>(), out);
+        set(tags.iter().cloned().chain([tag]).collect(), out);
     };
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(space::XS, space::XS);
@@ -104,7 +105,7 @@ pub(crate) fn tags_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
                 add(tag.name(), takes_away, out);
             }
         }
-        for word in own_words(&tags) {
+        for word in own_words(tags) {
             if kit::button_ui(Button::new(&say(&text::tag_as(word, false), ui)), ui).clicked() {
                 add(word, false, out);
             }
@@ -116,8 +117,8 @@ pub(crate) fn tags_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     }
 }
 
-fn set(tags: &[HandTag], out: &mut Out) {
-    out.set_once(Key::Tags, Value::Text(write_tags(tags)));
+fn set(tags: Vec<HandTag>, out: &mut Out) {
+    out.set_once(Key::Tags, List::Tags(tags).into());
 }
 
 /// The clip of a bar in the strip.

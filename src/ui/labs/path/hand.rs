@@ -7,7 +7,7 @@ use segue_motion::path::{
     FitOptions, GroundSpline, PathEdit, PathEditError, Pins, Road, SplineEnds, drawn_path,
 };
 use segue_session::LabId;
-use segue_session::{Command, Key, OnPath, Pane, Session, Value, spline_ends};
+use segue_session::{Command, Key, List, OnPath, Pane, Session, Value, spline_ends};
 use segue_text::{Message, ToMessage};
 
 /// The hand on the path, remembered between frames.
@@ -83,9 +83,8 @@ impl PathHand {
         let edited = edited.and_then(|spline| spline.rounded()).and_then(Road::new);
         match edited {
             Ok(road) => {
-                let code = road.spline().to_code();
-                if session.params().text(Key::Path) != code {
-                    out.set(Key::Path, Value::Text(code));
+                if session.params().edited_path() != Some(road.spline()) {
+                    out.set(Key::Path, List::EditedPath(Some(road.spline().clone())).into());
                 }
                 self.said = None;
                 true

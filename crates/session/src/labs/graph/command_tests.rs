@@ -2,7 +2,7 @@
 
 use crate::JobKind;
 use crate::fixtures::*;
-use crate::{Walk, write_jump, write_path};
+use crate::{List, Walk};
 use glam::DVec2;
 use segue_motion::graph::Place;
 use segue_text::ToMessage;
@@ -231,7 +231,7 @@ fn a_clip_is_gone_to_and_a_path_is_followed() {
     let mut session = opened(SMALL);
     let before = Arc::clone(walk(&session));
     for clip in [2, 0, 1] {
-        set(&mut session, Key::GoTo, Value::Text(format!("6:{clip}")));
+        set(&mut session, Key::GoTo, List::Visits(vec![(6.0, clip)]).into());
         let now = walk(&session);
         let reached = (60..140).any(|k| now.at(f64::from(k) * 0.1).unwrap().place.clip == clip);
         assert!(reached, "clip {clip}: {:?}", way(now));
@@ -243,12 +243,12 @@ fn a_clip_is_gone_to_and_a_path_is_followed() {
             .take_while(|(a, b)| a == b);
         assert!(same.count() >= 5 * 60, "what has played stays");
     }
-    set(&mut session, Key::GoTo, Value::Text("6:9".into()));
+    set(&mut session, Key::GoTo, List::Visits(vec![(6.0, 9)]).into());
     assert!(session.panes()[0].problem.as_ref().unwrap().to_string().contains("no clip 9"));
-    set(&mut session, Key::GoTo, Value::Text(String::new()));
+    session.apply(Command::Reset(Key::GoTo)).unwrap();
 
     let line: Vec<DVec2> = (0..=10).map(|k| DVec2::new(0.1 * f64::from(k), f64::from(k))).collect();
-    set(&mut session, Key::WalkPath, Value::Text(write_path(&line)));
+    set(&mut session, Key::WalkPath, List::GroundPath(line.clone()).into());
     let walk = walk(&session);
     let trace = walk.followed.as_ref().unwrap();
     assert!(trace.along_m > 9.5 && trace.rms_m < 1.0, "{trace:?}");
@@ -262,9 +262,11 @@ fn a_clip_is_gone_to_and_a_path_is_followed() {
 fn the_best_way_so_far_is_walked_while_a_path_is_searched() {
     let line: Vec<DVec2> = (0..=10).map(|k| DVec2::new(0.1 * f64::from(k), f64::from(k))).collect();
     let mut patient = opened(SMALL);
-    set(&mut patient, Key::WalkPath, Value::Text(write_path(&line)));
+    set(&mut patient, Key::WalkPath, List::GroundPath(line.clone()).into());
     let mut hasty = opened(SMALL);
-    hasty.apply(Command::Set(vec![(Key::WalkPath, Value::Text(write_path(&line)))])).unwrap();
+    hasty
+        .apply(Command::Set(vec![(Key::WalkPath, List::GroundPath(line.clone()).into())]))
+        .unwrap();
     let (mut shown, mut along) = (0, 0.0);
     let mut last = Arc::clone(walk(&hasty));
     while hasty.work() {
@@ -313,7 +315,7 @@ fn held_feet_stay_where_they_are_while_the_walk_grows() {
 fn one_transition_plays_alone() {
     let mut session = opened(SMALL);
     let jump = walk(&session).built.whole().jumps()[3];
-    set(&mut session, Key::Jump, Value::Text(write_jump(jump.leave, jump.enter)));
+    set(&mut session, Key::Jump, List::Jump(Some([jump.leave, jump.enter])).into());
     let outcome = session.main_outcome().unwrap();
     let transition = outcome.transition.unwrap();
     assert!(walk(&session).is_jump && outcome.sources.len() == 2);
@@ -327,8 +329,8 @@ fn one_transition_plays_alone() {
         assert!(off < 0.25, "{off} m");
     }
     assert!(number(&session, 0, "variety").is_nan());
-    let none = write_jump(Place { clip: 0, frame: 1 }, Place { clip: 1, frame: 1 });
-    set(&mut session, Key::Jump, Value::Text(none));
+    let none = [0, 1].map(|clip| Place { clip, frame: 1 });
+    set(&mut session, Key::Jump, List::Jump(Some(none)).into());
     let pane = &session.panes()[0];
     assert!(
         pane.problem.as_ref().unwrap().to_string().contains("There is no transition from frame 1"),
@@ -383,16 +385,8 @@ fn every_setting_answers_and_no_earlier_walk_stands_for_it() {
         }
     }
     assert!(made > 10 && refused > 10, "{made} {refused}");
-    for (key, text) in [
-        (Key::Clips, "walk,nobody"),
-        (Key::Clips, "walk,(run"),
-        (Key::Clips, ","),
-        (Key::WalkPath, "0:0"),
-        (Key::WalkPath, "a"),
-        (Key::GoTo, "3"),
-        (Key::Jump, "0:1-x"),
-    ] {
-        set(&mut session, key, Value::Text(text.into()));
+    for (key, text) in [(Key::Clips, "walk,nobody"), (Key::Clips, ","), (Key::WalkPath, "0:0")] {
+        set(&mut session, key, key.param().parse(text).unwrap());
         assert!(session.panes()[0].problem.is_some(), "{text}");
         session.apply(Command::Reset(key)).unwrap();
     }
@@ -450,7 +444,7 @@ fn a_walk_can_set_off_at_any_time() {
         let mut known = std::collections::BTreeMap::new();
         for tenth in (0..180).step_by(4) {
             let (secs, clip) = (f64::from(tenth) * 0.1, tenth as usize / 4 % 3);
-            set(&mut session, Key::GoTo, Value::Text(format!("{secs}:{clip}")));
+            set(&mut session, Key::GoTo, List::Visits(vec![(secs, clip)]).into());
             let now = &Arc::clone(walk(&session));
             assert_eq!(now.missed, []);
             hangs_together(now);
@@ -475,9 +469,10 @@ fn a_walk_can_set_off_at_any_time() {
             let flashes = number(&session, 0, "flashes");
             let mut alone = 0.0;
             for seam in now.passed.iter().filter_map(|passed| passed.seam) {
-                let text = write_jump(seam.leave, seam.enter);
+                let jump = List::Jump(Some([seam.leave, seam.enter]));
+                let text = jump.write();
                 if !known.contains_key(&text) {
-                    set(&mut session, Key::Jump, Value::Text(text.clone()));
+                    set(&mut session, Key::Jump, jump.into());
                     known.insert(text.clone(), number(&session, 0, "flashes"));
                 }
                 alone += known[&text];
@@ -492,7 +487,7 @@ fn a_walk_can_set_off_at_any_time() {
     // One visit behind the other, and a second one before the first has come to anything.
     let mut session = opened(SMALL);
     for visits in ["3:2,9:0,14:1", "6:2,6.1:0,6.2:1"] {
-        set(&mut session, Key::GoTo, Value::Text(visits.into()));
+        set(&mut session, Key::GoTo, Key::GoTo.param().parse(visits).unwrap());
         hangs_together(walk(&session));
     }
     let reached = (62..150).any(|k| walk(&session).at(f64::from(k) * 0.1).unwrap().place.clip == 1);
@@ -509,10 +504,10 @@ fn where_no_way_leads_is_told() {
     assert_eq!(walked, [true, true, true, false, false]);
     assert_eq!(built.clips_from(Place { clip: 0, frame: 50 }), walked[..4]);
     let before = way(walk(&session));
-    set(&mut session, Key::GoTo, Value::Text("5:3,8:1".into()));
+    set(&mut session, Key::GoTo, List::Visits(vec![(5.0, 3), (8.0, 1)]).into());
     assert_eq!(walk(&session).missed, [(5.0, 3)]);
     assert_ne!(way(walk(&session)), before, "the other visit is made");
-    set(&mut session, Key::GoTo, Value::Text(String::new()));
+    session.apply(Command::Reset(Key::GoTo)).unwrap();
     assert_eq!(walk(&session).missed, []);
     // All of the graph: its parts do not reach each other, or one way only.
     set(&mut session, Key::Prune, Value::Switch(false));
@@ -544,7 +539,7 @@ fn a_walk_that_goes_like_another_does_not_hang_on_what_was_shown_of_it() {
     let mut late = opened(&format!("{small}&blend_window=24&t=90"));
     assert!(walk(&late).motion.clip().duration_secs() > 100.0);
     late.apply(Command::Set(vec![
-        (Key::Compare, Value::Text(compare.into())),
+        (Key::Compare, Key::Compare.param().parse(compare).unwrap()),
         (Key::Time, Value::Number(0.0)),
     ]))
     .unwrap();
@@ -564,7 +559,7 @@ fn a_walk_that_goes_like_another_does_not_hang_on_what_was_shown_of_it() {
     }
     // One that follows a line goes there, whatever the first one does.
     let line: Vec<DVec2> = (0..=10).map(|k| DVec2::new(0.1 * f64::from(k), f64::from(k))).collect();
-    let path = write_path(&line);
+    let path = List::GroundPath(line).write();
     let both = opened(&format!("{small}&walk_path={path}&compare={compare}"));
     let alone = opened(&format!("{small}&walk_path={path}&blend_window=12"));
     assert!(!walk_of(&both, 1).is_guided);
@@ -579,7 +574,7 @@ fn a_walk_that_goes_like_another_goes_where_it_is_sent() {
     let link = "lab=graph&clips=walk,start,stop,idle,walk_left&walk_seconds=30&play=off&compare=blend_window:24,12,8&edge_threshold=10";
     let mut session = opened(link);
     for secs in (2..16).map(f64::from) {
-        set(&mut session, Key::GoTo, Value::Text(format!("{secs}:3")));
+        set(&mut session, Key::GoTo, List::Visits(vec![(secs, 3)]).into());
         for pane in 0..3 {
             let walk = walk_of(&session, pane);
             assert_eq!(walk.missed, []);
@@ -600,7 +595,7 @@ fn a_clip_that_is_taken_out_takes_the_places_along_that_were_told_by_numbers() {
     session.apply(Command::Remove("walk".into())).unwrap();
     while session.work() {}
     assert_eq!(session.graph_clip_ids(), ["walk_left", "walk_right"]);
-    let text = |session: &Session, key| session.params().text(key).to_owned();
+    let text = |session: &Session, key: Key| key.param().format(session.params().get(key));
     assert_eq!(
         (text(&session, Key::GoTo), text(&session, Key::Jump)),
         (String::new(), String::new())

@@ -4,10 +4,9 @@ use super::cast::Fitted;
 use super::maker::Maker;
 use super::wanted::{GraphKey, Wanted};
 use super::{Built, Cast, Field, GraphInputs};
-use crate::compare::MAX_PANES;
 use crate::labs::LabError;
 use crate::labs::pair::fitted;
-use crate::params::Params;
+use crate::params::{MAX_PANES, Params};
 use segue_motion::clip::Motion;
 use segue_motion::graph::{
     AllPairs, CandidateSearch, CandidateStream, Candidates, CountedTo, GraphError, GraphOptions,

@@ -1,14 +1,13 @@
 //! Builds databases and plays recorded input, slice by slice.
 
 use super::super::sliced::{JobKind, Sliced};
-use super::tagging::{HandTag, filter_of, read_tags, tagged};
+use super::tagging::{filter_of, tagged};
 use super::trace::Tracer;
 use crate::choices;
-use crate::compare::MAX_PANES;
 use crate::labs::LabError;
 use crate::labs::Outcome;
 use crate::labs::lab::{LabClips, LabInputs};
-use crate::params::{Key, Params};
+use crate::params::{HandTag, Key, MAX_PANES, Params};
 use segue_motion::clip::Motion;
 use segue_motion::matching::{
     Control, Controller, ControllerOptions, Database, DatabaseBuilder, DatabaseOptions,
@@ -148,11 +147,10 @@ impl Driver {
         clips: LabClips,
         params: &Params,
     ) -> Result<Option<Arc<Database>>, LabError> {
-        let tags: Vec<HandTag> = read_tags(params.text(Key::Tags))?;
         filter_of(params)?;
         let database = self.database(&Source::new(clips.motions(), params))?;
         let ids = clips.more.into_iter().map(|clip| clip.id).collect();
-        Ok(database.map(|database| self.tagged(database, ids, tags)))
+        Ok(database.map(|database| self.tagged(database, ids, params.tags().to_vec())))
     }
 
     /// A database with tags by hand; `ids` are the clips that it was built from, none for the

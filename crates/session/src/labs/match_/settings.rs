@@ -3,7 +3,6 @@
 use super::tagging::clip_name;
 use crate::choices;
 use crate::labs::LabError;
-use crate::labs::read_ids;
 use crate::outside::short;
 use crate::params::{Key, Params};
 use segue_motion::matching::{
@@ -78,8 +77,8 @@ pub(crate) fn options_in(
     if name.is_empty() {
         return Ok(options);
     }
-    let ids = read_ids(params.text(Key::MatchClips)).unwrap_or_default();
-    let named = database.motions().iter().find(|motion| clip_name(motion, &ids) == name);
+    let ids = params.clip_ids(Key::MatchClips);
+    let named = database.motions().iter().find(|motion| clip_name(motion, ids) == name);
     let source = named
         .map(|motion| motion.source())
         .ok_or_else(|| LabError::NoPreferredClip { name: short(name) })?;
@@ -87,17 +86,9 @@ pub(crate) fn options_in(
 }
 
 /// The input that is played; `None` where the user drives.
-pub(crate) fn recording_of(params: &Params) -> Result<Option<Recording>, LabError> {
-    if let Some(scenario) = Scenario::find(params.choice::<choices::Scenario>().word()) {
-        return Ok(Some(scenario.recording()));
+pub(crate) fn recording_of(params: &Params) -> Option<Recording> {
+    match Scenario::find(params.choice::<choices::Scenario>().word()) {
+        Some(scenario) => Some(scenario.recording()),
+        None => params.recording().cloned(),
     }
-    let text = params.text(Key::Drive);
-    if text.is_empty() {
-        return Ok(None);
-    }
-    let recording = Recording::from_text(text)?;
-    if recording.ticks() == 0 {
-        return Err(LabError::EmptyRecording);
-    }
-    Ok(Some(recording))
 }

@@ -1,74 +1,10 @@
-//! Tags that are set by hand, beside those that speed and turn rate suggest:
-//! `walk:0.2-1.5:exclude,run:0-1:-turn,walk:2-3:proud`.
+//! Tags that are set by hand, beside those that speed and turn rate suggest.
 
 use crate::labs::LabError;
-use crate::labs::recipe::{read_ids, write_ids};
 use crate::outside::short;
-use crate::params::{Key, Params, format_number};
+use crate::params::{HandTag, Key, Params};
 use segue_motion::matching::{Database, DatabaseClip, RATE, Tag, TagFilter, TagRange, TagSet};
 use std::sync::Arc;
-
-/// A link with more tags is an accident.
-const MOST_TAGS: usize = 200;
-/// A word of one's own is no longer than this, characters.
-const LONGEST_WORD: usize = 24;
-
-/// A stretch of a clip that gets a tag, or loses one.
-#[derive(Clone, Debug, PartialEq)]
-pub struct HandTag {
-    /// The clip's id, or the name of one of the synthesiser's set.
-    pub clip: String,
-    /// From and to, seconds in the clip.
-    pub secs: [f64; 2],
-    /// `walk`, `run`, `idle`, `turn`, `exclude`, or a word of one's own.
-    pub word: String,
-    /// The tag is taken away there.
-    pub takes_away: bool,
-}
-
-/// Reads the parameter `tags`.
-pub(crate) fn read_tags(text: &str) -> Result<Vec<HandTag>, LabError> {
-    if text.trim().is_empty() {
-        return Ok(Vec::new());
-    }
-    let refuse = |found: &str| LabError::Tags { found: short(found) };
-    let parts = read_ids(text).ok_or_else(|| refuse(text))?;
-    if parts.len() > MOST_TAGS {
-        return Err(LabError::TooMany { what: "Tags", count: parts.len(), most: MOST_TAGS });
-    }
-    parts.iter().map(|part| read_tag(part).ok_or_else(|| refuse(part))).collect()
-}
-
-fn read_tag(part: &str) -> Option<HandTag> {
-    let (rest, word) = part.rsplit_once(':')?;
-    let (clip, secs) = rest.rsplit_once(':')?;
-    let (from, to) = secs.split_once('-')?;
-    let number =
-        |text: &str| text.trim().parse().ok().filter(|secs: &f64| secs.is_finite() && *secs >= 0.0);
-    let secs = [number(from)?, number(to)?];
-    let (word, takes_away) =
-        word.trim().strip_prefix('-').map_or((word.trim(), false), |word| (word, true));
-    let is_word = !word.is_empty() && word.chars().count() <= LONGEST_WORD;
-    (is_word && !clip.is_empty() && secs[0] < secs[1]).then(|| HandTag {
-        clip: clip.to_owned(),
-        secs,
-        word: word.to_owned(),
-        takes_away,
-    })
-}
-
-/// Writes tags as the parameter `tags` has them, to hundredths of a second.
-#[must_use]
-pub fn write_tags(tags: &[HandTag]) -> String {
-    let written = |tag: &HandTag| {
-        let [from, to] = tag.secs.map(|secs| format_number(secs, 0.01));
-        let sign = if tag.takes_away { "-" } else { "" };
-        // What would end a part of the list ends no word.
-        let word = tag.word.replace([',', ':', '(', ')', '%'], " ");
-        format!("{}:{from}-{to}:{sign}{}", write_ids(std::slice::from_ref(&tag.clip)), word.trim())
-    };
-    tags.iter().map(written).collect::<Vec<_>>().join(",")
-}
 
 /// The words of one's own among tags, in the order in which they come.
 #[must_use]
@@ -94,8 +30,7 @@ fn tag_of(word: &str, own: &[&str]) -> Option<Tag> {
 
 /// Which frames may be found.
 pub(crate) fn filter_of(params: &Params) -> Result<TagFilter, LabError> {
-    let tags = read_tags(params.text(Key::Tags))?;
-    let own = own_words(&tags);
+    let own = own_words(params.tags());
     let set = |key: Key| {
         let word = params.text(key).trim();
         if word.is_empty() || word == key.param().format(&key.param().default_value()) {
@@ -164,32 +99,16 @@ fn without(range: TagRange, tag: Tag, from: usize, to: usize) -> Vec<TagRange> {
 mod tests {
     use super::*;
 
-    fn hand(clip: &str, secs: [f64; 2], word: &str, takes_away: bool) -> HandTag {
-        HandTag { clip: clip.into(), secs, word: word.into(), takes_away }
-    }
-
     #[test]
-    fn tags_read_back_as_written() {
-        let tags = vec![
-            hand("walk(make_seconds:6)", [0.2, 1.5], "exclude", false),
-            hand("a, b: c~0a1b2c3d", [0.0, 2.0], "turn", true),
-            hand("run", [1.0, 1.25], "very proud", false),
-        ];
-        assert_eq!(read_tags(&write_tags(&tags)), Ok(tags.clone()));
+    fn words_of_the_user_are_told_from_fixed_ones() {
+        let hand = |word: &str| HandTag {
+            clip: "walk".into(),
+            secs: [0.0, 1.0],
+            word: word.into(),
+            takes_away: false,
+        };
+        let tags = ["exclude", "very proud", "turn", "very proud"].map(hand);
         assert_eq!(own_words(&tags), ["very proud"]);
-        for bad in [
-            "walk",
-            "walk:1-2",
-            "walk:2-1:run",
-            "walk:0-NaN:run",
-            "walk:0-1:",
-            "walk:0-1:-",
-            ":0-1:run",
-            "walk(:0-1:run",
-        ] {
-            assert!(read_tags(bad).is_err(), "{bad}");
-        }
-        assert_eq!(read_tags(" "), Ok(vec![]));
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The Path lab, by commands.
 
 use crate::JobKind;
+use crate::List;
 use crate::fixtures::*;
 use crate::{ExtraCharacterCommand, OnPath};
 use glam::DVec2;
@@ -27,7 +28,12 @@ fn metric(session: &Session, id: &str) -> f64 {
 fn moved(session: &Session, index: usize, by: DVec2) -> Value {
     let spline = path(session).road.spline();
     let to = spline.points()[index] + by;
-    Value::Text(spline.edited(&PathEdit::Move { index, to }, Pins::default()).unwrap().to_code())
+    List::EditedPath(spline.edited(&PathEdit::Move { index, to }, Pins::default()).ok()).into()
+}
+
+/// The edited path as the link has it.
+fn code(session: &Session) -> String {
+    session.params().edited_path().unwrap().to_code()
 }
 
 fn set(session: &mut Session, key: Key, value: Value) {
@@ -65,9 +71,8 @@ fn a_dragged_point_takes_the_character_with_it_and_is_one_step() {
         let value = {
             let spline = fitted.road().spline();
             let to = spline.points()[4] + DVec2::new(0.2 * f64::from(step), 0.0);
-            Value::Text(
-                spline.edited(&PathEdit::Move { index: 4, to }, Pins::default()).unwrap().to_code(),
-            )
+            let edited = spline.edited(&PathEdit::Move { index: 4, to }, Pins::default());
+            List::EditedPath(edited.ok()).into()
         };
         set(&mut session, Key::Path, value);
         assert!(Arc::ptr_eq(&path(&session).fitted, &fitted), "the fit stays while a point moves");
@@ -119,11 +124,6 @@ fn what_is_no_path_says_so_and_loses_nothing() {
         "{:?}",
         session.panes()[0].problem
     );
-    let session = open("lab=path&a=walk&path=nonsense!");
-    assert!(
-        session.panes()[0].problem.as_ref().unwrap().to_string().contains("not a path from a link")
-    );
-    assert_eq!(session.params().text(Key::Path), "nonsense!");
     // All points in one place: no direction.
     let code = GroundSpline::uniform(vec![DVec2::ONE; 6]).unwrap().to_code();
     let mut session = open(&format!("lab=path&a=walk&path={code}"));
@@ -135,7 +135,7 @@ fn what_is_no_path_says_so_and_loses_nothing() {
         [(0.0, 0.0), (2.0, 1.0), (2.0, -1.0), (-2.0, 1.0), (-2.0, -1.0), (-1.0, 0.5), (0.0, 0.0)];
     let eight = GroundSpline::uniform(eight.map(DVec2::from).to_vec()).unwrap();
     let closed = eight.edited(&PathEdit::Close, Pins::default()).unwrap();
-    set(&mut session, Key::Path, Value::Text(closed.to_code()));
+    set(&mut session, Key::Path, List::EditedPath(Some(closed)).into());
     assert!(path(&session).road.spline().is_closed());
     assert!(metric(&session, "path_m") > 5.0);
 }
@@ -169,7 +169,7 @@ fn characters_on_paths_of_their_own_play_together_from_a_link() {
     let value = moved(&session, 4, DVec2::new(1.0, 0.0));
     set(&mut session, Key::Path, value);
     session.apply(Command::Settle).unwrap();
-    let first = session.params().text(Key::Path).to_owned();
+    let first = code(&session);
     session.apply(Command::ExtraCharacters(ExtraCharacterCommand::AddResult(0))).unwrap();
     let id = format!("path(a:walk,path:{first})");
     assert_eq!(session.extra_characters()[0].id, id);
@@ -192,9 +192,9 @@ fn characters_on_paths_of_their_own_play_together_from_a_link() {
     assert!(other.duration_secs() >= other.extra_characters()[1].duration_secs().unwrap());
 
     // The first one is edited again, and the present one waits in its place.
-    let second = session.params().text(Key::Path).to_owned();
+    let second = code(&session);
     session.apply(Command::ExtraCharacters(ExtraCharacterCommand::Edit(0))).unwrap();
-    assert_eq!(session.params().text(Key::Path), first);
+    assert_eq!(code(&session), first);
     assert_eq!(names(&session), [format!("path(a:walk,path:{second})"), "run".to_owned()]);
     session.apply(Command::ExtraCharacters(ExtraCharacterCommand::Remove(1))).unwrap();
     assert_eq!(session.extra_characters().len(), 1);
@@ -227,8 +227,8 @@ fn a_kept_path_is_a_clip_for_every_other_lab() {
     let value = moved(&session, 3, DVec2::new(0.5, 0.0));
     set(&mut session, Key::Path, value);
     session.apply(Command::Keep(0)).unwrap();
-    let code = session.params().text(Key::Path).to_owned();
-    let id = format!("path(a:run,foot_lock:on,keep:whole,path:{code})");
+    let word = code(&session);
+    let id = format!("path(a:run,foot_lock:on,keep:whole,path:{word})");
     assert!(session.library().find(&id).is_some(), "{:?}", session.library().entries().last());
     let other = open(&format!("lab=path&a={id}&control_points=6"));
     assert_eq!(

@@ -2,8 +2,8 @@
 //! when the hand rests.
 
 use super::{PathInputs, free_motion};
-use crate::compare::MAX_PANES;
 use crate::labs::LabError;
+use crate::params::MAX_PANES;
 use segue_motion::clip::{Clip, Contacts};
 use segue_motion::metrics::SlideMeter;
 use segue_motion::transition::FootLocking;

@@ -136,7 +136,7 @@ fn a_join_is_a_then_b_with_less_sliding_than_a_dissolve() {
 #[test]
 fn pins_are_in_the_link_and_the_curve_passes_them() {
     let session = opened("lab=register&pins=100-92,40-60");
-    assert_eq!(session.pins(), [(100, 92), (40, 60)]);
+    assert_eq!(session.params().pins(), [(100, 92), (40, 60)]);
     let warp = registered(&session).registration.warp();
     assert!((warp.at(100.0) - 92.0).abs() < 1e-6 && (warp.at(40.0) - 60.0).abs() < 1e-6);
     let query = session.query();
@@ -150,13 +150,12 @@ fn what_cannot_be_is_said_and_no_earlier_result_stands_for_it() {
     let mut session = opened("lab=register");
     for (key, value, sentence) in [
         (Key::Pins, "100-90,120-80", "The pins at frames 100 | 90 and 120 | 80 exclude each other"),
-        (Key::Pins, "12", "Pins: found `12`"),
         (Key::Pins, "5-9999", "The pin at frames 5 | 9999 lies beyond the clips"),
         (Key::Pins, "100-90,110-170", "raise the slope limit to"),
         (Key::B, "idle(make_seconds:1)", "No path with a slope limit of 1"),
     ] {
         assert!(session.panes()[0].result().is_ok());
-        let mut values = vec![(key, Value::Text(value.into()))];
+        let mut values = vec![(key, key.param().parse(value).unwrap())];
         if key == Key::B {
             values.extend([
                 (Key::SlopeLimit, Value::Number(1.0)),
@@ -228,9 +227,6 @@ fn a_weight_can_change_over_the_blend() {
         weights[0] < 1e-9 && weights[last / 2] > 0.99 && (weights[last] - 0.2).abs() < 0.01,
         "{weights:?}"
     );
-    let bad = opened("lab=register&warp_curve=0-0,50-200");
-    let problem = bad.panes()[0].problem.clone().unwrap();
-    assert!(problem.to_string().contains("`50-200`"), "{problem}");
 }
 
 #[test]
@@ -259,9 +255,6 @@ fn more_than_two_clips_are_blended() {
         percent_encoding::utf8_percent_encode(&id, percent_encoding::NON_ALPHANUMERIC)
     ));
     assert_eq!(again.main_outcome().unwrap().motion.clip().rotations(20), before.rotations(20));
-    for (bad, word) in [("0.5:nobody", "nobody"), ("2:run", "`2:run`")] {
-        let problem =
-            opened(&format!("lab=register&warp_also={bad}")).panes()[0].problem.clone().unwrap();
-        assert!(problem.to_string().contains(word), "{problem}");
-    }
+    let missing = opened("lab=register&warp_also=0.5:nobody").panes()[0].problem.clone().unwrap();
+    assert!(missing.to_string().contains("nobody"), "{missing}");
 }

@@ -1,11 +1,10 @@
 use super::super::sliced::{JobKind, Sliced};
-use super::{Also, DistanceMap, Made, RegisterInputs, read_pins};
+use super::{Also, DistanceMap, Made, RegisterInputs};
 use crate::choices;
-use crate::compare::MAX_PANES;
 use crate::labs::LabError;
 use crate::labs::feet::Lock;
 use crate::labs::pair::{Pair, Pairs};
-use crate::params::{Key, Params};
+use crate::params::{Key, MAX_PANES, Params};
 use segue_motion::clip::Motion;
 use segue_motion::registration::{
     PairTerms, PathEnd, PathError, PathOptions, PathSearch, PausedSweep, Registration,
@@ -55,9 +54,9 @@ impl Registrars {
         also: &[(Arc<Motion>, f64)],
         params: &Params,
     ) -> Result<Option<RegisterInputs>, LabError> {
-        let pins = read_pins(params.text(Key::Pins))?;
+        let pins = params.pins().to_vec();
         let found = self.b.found(pair, wanted_of(pair, params, pins)?)?;
-        let made = Made::of(params)?;
+        let made = Made::of(params);
         let also = if matches!(made, Made::Join { .. }) { &[] } else { also };
         self.also.resize_with(also.len(), Default::default);
         let mut more = Vec::with_capacity(also.len());
