@@ -187,4 +187,6 @@ impl Document {
 }
 
 #[cfg(test)]
+mod history_tests;
+#[cfg(test)]
 mod slot_tests;

@@ -24,4 +24,6 @@ mod sample_tests;
 #[cfg(test)]
 mod storage_tests;
 #[cfg(test)]
+mod task_tests;
+#[cfg(test)]
 mod tests;

@@ -109,3 +109,8 @@ pub(crate) fn serve(session: &mut Session) {
         }
     }
 }
+
+/// Sets the blend window, in frames.
+pub(crate) fn blend_window(session: &mut Session, frames: f64) {
+    session.apply(Command::Set(vec![(Key::BlendWindow, Value::Number(frames))])).unwrap();
+}

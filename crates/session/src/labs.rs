@@ -47,3 +47,6 @@ pub(super) use recipe::{recipe_id, recipe_ingredients, recipe_name, recipe_param
 pub use register::{Beat, DistanceMap, Registered, weight_curve};
 pub use sliced::JobKind;
 pub(super) use speed::{SpeedInputs, middle_mps};
+
+#[cfg(test)]
+mod foot_lock_tests;

@@ -276,3 +276,21 @@ fn the_users_own_clips_take_the_place_of_the_set_in_graph_and_match() {
         assert!(session.uses_clip_set(ClipSet::Own), "{lab}");
     }
 }
+
+#[test]
+fn a_bundled_take_is_asked_for_and_takes_its_place() {
+    let mut session = Session::new();
+    let sample = &Session::samples()[2];
+    session.apply(Command::Assign(Slot::A, sample.id.into())).unwrap();
+    assert!(session.take_requests().contains(&Request::Sample(sample)));
+    let packed = std::fs::read(format!(
+        "{}/../../assets/samples/{}",
+        env!("CARGO_MANIFEST_DIR"),
+        sample.file
+    ))
+    .unwrap();
+    session.load_sample(sample, &packed).unwrap();
+    settle(&mut session);
+    assert_eq!(session.panes()[0].problem, None);
+    assert!(session.main_outcome().unwrap().motion.clip().frames() > 30);
+}

@@ -126,3 +126,27 @@ fn work_that_comes_late_completes_what_waits_for_it() {
     session.restore_late(&Saved::default(), |_| None);
     assert_eq!(session.library().entries().len(), clips);
 }
+
+#[test]
+fn the_work_survives_storage() {
+    let bytes = made_bvh(5.0);
+    let mut session = Session::new();
+    let id = session.load("kept.bvh", Arc::clone(&bytes)).unwrap().ids.remove(0);
+    session.apply(Command::Rename(id.clone(), "my walk".into())).unwrap();
+    session.apply(Command::Remove("idle".into())).unwrap();
+    blend_window(&mut session, 17.0);
+    let saved = session.saved();
+
+    let mut restored = Session::new();
+    restored.restore(&saved, |_| Some(Content::Here(Arc::clone(&bytes))), None);
+    settle(&mut restored);
+    settle(&mut session);
+    assert_eq!(restored.clip_infos(), session.clip_infos());
+    assert_eq!(restored.query(), session.query());
+
+    let mut without = Session::new();
+    without.restore(&saved, |_| None, None);
+    assert!(
+        without.notices().list().iter().any(|notice| notice.text.to_string().contains("kept.bvh"))
+    );
+}

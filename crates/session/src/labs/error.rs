@@ -1,6 +1,5 @@
 //! Why a lab has no result.
 
-use crate::labs::graph::MOST_CLIPS;
 use segue_formats::ImportError;
 use segue_motion::blend::{BlendError, LayerError};
 use segue_motion::clip::{ClipError, RetargetError, RootWayError};
@@ -12,6 +11,9 @@ use segue_motion::registration::{PathError, RegistrationError};
 use segue_motion::synth::SynthError;
 use segue_motion::transition::{FootLockError, LoopError};
 use segue_text::{Message, ToMessage};
+
+/// The most clips of a motion graph: the picture of its distances shows no more.
+pub(crate) const MOST_CLIPS: usize = 64;
 
 /// Why a lab has no result, and what to do.
 #[derive(Clone, Debug, PartialEq, thiserror::Error, ToMessage)]

@@ -16,7 +16,6 @@ pub use built::{Built, Distances, Field};
 pub use cast::Cast;
 pub(crate) use grapher::Grapher;
 pub use walk::{At, Passed, Trace, Walk, WalkGhost};
-pub(crate) use wanted::MOST_CLIPS;
 pub use wanted::{check_graph_clips, graph_of};
 pub(crate) use wanted::{clips_of, visits_of};
 

@@ -315,3 +315,6 @@ impl Outcome {
         self.facts.get()
     }
 }
+
+#[cfg(test)]
+mod command_tests;

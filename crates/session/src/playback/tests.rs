@@ -1,5 +1,6 @@
 //! Results that loop: in place, phase and speed they go on from what played before.
 
+use crate::Span;
 use crate::fixtures::*;
 use crate::{Cycle, CycleMade};
 use glam::Quat;
@@ -345,4 +346,23 @@ fn clips_that_are_no_gaits_say_so() {
     session.apply(Command::OpenLink("lab=speed&a=walk&b=walk".into())).unwrap();
     let problem = session.panes()[0].problem.clone().unwrap();
     assert!(problem.to_string().contains("differ"), "{problem}");
+}
+
+#[test]
+fn the_playhead_goes_round_in_the_span_between_the_marks() {
+    let mut session = Session::new();
+    session
+        .apply(Command::Set(vec![(Key::In, Value::Number(1.0)), (Key::Out, Value::Number(2.0))]))
+        .unwrap();
+    assert_eq!(session.span(), Span { start: 1.0, end: 2.0 });
+    for _ in 0..100 {
+        assert!(session.tick(0.03));
+        assert!((1.0..=2.0).contains(&session.now_secs()));
+    }
+    session.apply(Command::Playback(PlaybackCommand::TogglePlay)).unwrap();
+    let now = session.now_secs();
+    assert!(!session.tick(0.5));
+    assert_eq!(session.now_secs(), now);
+    session.apply(Command::Playback(PlaybackCommand::Step(1))).unwrap();
+    assert!((session.now_secs() - now - 1.0 / 60.0).abs() < 0.02);
 }

@@ -130,3 +130,103 @@ fn what_no_link_can_hold_is_not_kept() {
         last.main_outcome().unwrap().motion.clip().frames()
     );
 }
+
+#[test]
+fn made_clips_are_kept_and_travel_in_the_link() {
+    let mut session = Session::new();
+    session.apply(Command::OpenLink("lab=make&gait=run&turn_rate=20".into())).unwrap();
+    session.apply(Command::Keep(0)).unwrap();
+    let id = "run(turn_rate:20)";
+    assert!(session.library().find(id).is_some());
+    let mut other = Session::new();
+    other.apply(Command::OpenLink(format!("lab=view&a={id}"))).unwrap();
+    assert_eq!(other.panes()[0].problem, None);
+    assert_eq!(
+        other.main_outcome().unwrap().motion.clip().rotations(9),
+        session.main_outcome().unwrap().motion.clip().rotations(9)
+    );
+}
+
+#[test]
+fn results_of_every_lab_are_kept_as_recipes() {
+    for (link, id) in [
+        (
+            "lab=blend&blend_window=12&leave_a=1.5&enter_b=0.5",
+            "blend(a:walk,b:run,blend_window:12,leave_a:1.5,enter_b:0.5)",
+        ),
+        (
+            "lab=loop&a=run&loop_method=linear&loop_from=0.5&loop_to=1.5",
+            "loop(a:run,loop_from:0.5,loop_to:1.5,loop_method:linear)",
+        ),
+        (
+            "lab=layers&mask=arms&foot_lock=on&lock_reach=12&lock_clearance=0",
+            "layers(a:walk,b:run,foot_lock:on,lock_reach:12,lock_clearance:0,mask:arms)",
+        ),
+        // Nothing is locked.
+        ("lab=layers&mask=arms&lock_reach=12", "layers(a:walk,b:run,mask:arms)"),
+        ("lab=view&root_motion=in_place", "view(a:walk,root_motion:in_place)"),
+        ("lab=register&warp_weight=0.3", "register(a:walk,b:run,warp_weight:0.3)"),
+        ("lab=speed&speed=2", "speed(a:walk,b:run,speed:2)"),
+        ("lab=in_place&root_way_turn=off", "in_place(a:walk,root_way_turn:off)"),
+        (
+            "lab=transition&method=cubic&mix_frame_a=70&mix_frame_b=20",
+            "transition(a:walk,b:run,method:cubic,mix_frame_a:70,mix_frame_b:20)",
+        ),
+    ] {
+        let mut session = Session::new();
+        session.apply(Command::OpenLink(link.into())).unwrap();
+        settle(&mut session);
+        session.apply(Command::Keep(0)).unwrap();
+        assert!(
+            session.library().find(id).is_some(),
+            "{link}: {:?}",
+            session.library().entries().last().map(|entry| &entry.id)
+        );
+        assert!(session.apply(Command::Keep(0)).is_err(), "a second one of the same");
+        // Whoever opens a link to it has none of the data, and gets the same motion.
+        let mut other = Session::new();
+        other.apply(Command::OpenLink(format!("lab=view&a={id}"))).unwrap();
+        settle(&mut other);
+        assert_eq!(other.panes()[0].problem, None, "{id}");
+        let clip = |session: &Session| Arc::clone(session.main_outcome().unwrap().motion.clip());
+        assert_eq!(clip(&other).frames(), clip(&session).frames(), "{id}");
+        assert_eq!(clip(&other).rotations(40), clip(&session).rotations(40), "{id}");
+    }
+}
+
+#[test]
+fn what_was_found_is_part_of_the_recipe() {
+    for (lab, named) in [
+        ("blend", "leave_a"),
+        ("transition", "mix_frame_b"),
+        ("loop", "loop_to"),
+        ("speed", "speed"),
+    ] {
+        let mut session = Session::new();
+        session.apply(Command::OpenLink(format!("lab={lab}"))).unwrap();
+        settle(&mut session);
+        session.apply(Command::Keep(0)).unwrap();
+        let kept = Arc::clone(session.library().entries().last().unwrap());
+        assert!(kept.id.contains(&format!("{named}:")), "{}", kept.id);
+        // Kept of what is kept: the link still holds it all.
+        session
+            .apply(Command::OpenLink(format!(
+                "lab=transition&a={}&b=run&mix_frame_a=9&mix_frame_b=9",
+                kept.id
+            )))
+            .unwrap();
+        settle(&mut session);
+        session.apply(Command::Keep(0)).unwrap();
+        let twice = session.library().entries().last().unwrap().id.clone();
+        assert!(twice.contains(&kept.id), "{twice}");
+        let mut other = Session::new();
+        other.apply(Command::OpenLink(format!("lab=view&a={twice}"))).unwrap();
+        settle(&mut other);
+        assert_eq!(other.panes()[0].problem, None, "{twice}");
+        assert_eq!(
+            other.main_outcome().unwrap().motion.clip().root_translations().last(),
+            session.main_outcome().unwrap().motion.clip().root_translations().last(),
+            "{twice}"
+        );
+    }
+}

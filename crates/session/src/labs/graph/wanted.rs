@@ -1,6 +1,6 @@
 use crate::choices;
-use crate::labs::LabError;
 use crate::labs::blend::{align_by, root_blend, weight_law};
+use crate::labs::error::{LabError, MOST_CLIPS};
 use crate::labs::feet::Lock;
 use crate::params::{Key, List, Params, Value};
 use glam::DVec2;
@@ -11,8 +11,6 @@ use segue_motion::graph::{
 use segue_motion::math::Decay;
 use segue_motion::transition::{Inertialization, Method, Mistake};
 
-/// More clips make a picture that nobody can read.
-pub(crate) const MOST_CLIPS: usize = 64;
 /// What a walk depends on, besides the clips.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Wanted {

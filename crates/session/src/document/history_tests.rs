@@ -1,0 +1,50 @@
+//! Steps of undo.
+
+use crate::fixtures::*;
+
+#[test]
+fn a_drag_is_one_step_of_undo() {
+    let mut session = Session::new();
+    for frames in [31.0, 32.0, 40.0] {
+        blend_window(&mut session, frames);
+    }
+    session.apply(Command::Settle).unwrap();
+    blend_window(&mut session, 50.0);
+    session.apply(Command::Undo).unwrap();
+    assert_eq!(session.params().number(Key::BlendWindow), 40.0);
+    session.apply(Command::Undo).unwrap();
+    assert_eq!(session.params().number(Key::BlendWindow), 30.0);
+    assert!(!session.can_undo());
+    session.apply(Command::Redo).unwrap();
+    assert_eq!(session.params().number(Key::BlendWindow), 40.0);
+}
+
+#[test]
+fn undo_leaves_the_playhead_and_the_camera_alone() {
+    let mut session = Session::new();
+    blend_window(&mut session, 20.0);
+    session.apply(Command::Playback(PlaybackCommand::Seek(1.0))).unwrap();
+    session.apply(Command::Set(vec![(Key::CameraYaw, Value::Number(5.0))])).unwrap();
+    session.apply(Command::Undo).unwrap();
+    assert_eq!((session.now_secs(), session.params().number(Key::CameraYaw)), (1.0, 5.0));
+    assert_eq!(session.params().number(Key::BlendWindow), 30.0);
+}
+
+#[test]
+fn undo_takes_back_marks_speed_and_what_the_camera_follows() {
+    let mut session = Session::new();
+    let values = [
+        (Key::In, Value::Number(1.0)),
+        (Key::Rate, Value::Number(0.5)),
+        (Key::Follow, Value::Choice("off")),
+    ];
+    for (key, value) in values.clone() {
+        session.apply(Command::Set(vec![(key, value)])).unwrap();
+        session.apply(Command::Settle).unwrap();
+    }
+    for (key, value) in values.into_iter().rev() {
+        assert_eq!(session.params().get(key), &value);
+        session.apply(Command::Undo).unwrap();
+        assert_eq!(session.params().get(key), &key.param().default_value());
+    }
+}

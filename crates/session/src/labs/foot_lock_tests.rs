@@ -1,0 +1,197 @@
+//! Foot lock in all labs, by commands.
+
+use crate::JobKind;
+use crate::fixtures::*;
+use glam::Quat;
+use segue_motion::clip::Clip;
+use segue_motion::metrics::foot_slide_cm;
+use segue_motion::transition::{FootLockOptions, foot_lock};
+
+/// Every lab with a foot lock, where it has something to hold.
+const LOCKING_LABS: [&str; 9] = [
+    "lab=make&gait=stop",
+    "lab=view&a=stop",
+    "lab=blend",
+    "lab=transition",
+    "lab=speed",
+    "lab=loop",
+    "lab=layers&mask=whole",
+    "lab=register&b=walk_left",
+    "lab=graph&clips=walk,walk_left,walk_right&walk_seconds=20&blend_window=20",
+];
+
+fn opened(link: &str) -> Session {
+    let mut session = Session::new();
+    session.apply(Command::OpenLink(link.into())).unwrap();
+    settle(&mut session);
+    assert!(session.panes().iter().all(|pane| pane.problem.is_none()), "{link}");
+    session
+}
+
+#[test]
+fn foot_lock_stills_the_feet_and_tells_what_it_did() {
+    let mut session = Session::new();
+    session.apply(Command::OpenLink("lab=transition&half_life=0.3&foot_lock=on".into())).unwrap();
+    settle(&mut session);
+    let outcome = session.main_outcome().unwrap();
+    let value =
+        |id: &str| outcome.metrics.iter().find(|metric| metric.id == id).unwrap().value.unwrap();
+    let (before, after) = (value("foot_slide_before_cm"), value("foot_slide_cm"));
+    assert!(before > 3.0 && after < 0.1 * before, "{before} cm, {after} cm");
+    session.apply(Command::Set(vec![(Key::FootLock, Value::Switch(false))])).unwrap();
+    let skate =
+        session.main_outcome().unwrap().metrics.iter().find(|metric| metric.id == "foot_slide_cm");
+    assert_eq!(skate.unwrap().value, Some(before));
+}
+
+/// All local rotations of a clip, frame by frame.
+fn rotations_of(clip: &Clip) -> Vec<Quat> {
+    (0..clip.frames()).flat_map(|frame| clip.rotations(frame).to_vec()).collect()
+}
+
+/// Those of the first pane's result.
+fn rotations(session: &Session) -> Vec<Quat> {
+    rotations_of(session.main_outcome().unwrap().motion.clip())
+}
+
+#[test]
+fn lock_settings_change_a_held_result_in_every_lab() {
+    // A path is short enough to be held at once, or is held in slices.
+    let paths = ["lab=path&a=run", "lab=path&a=walk(make_seconds:12)"];
+    for lab in LOCKING_LABS.into_iter().chain(paths) {
+        let mut session = opened(&format!("{lab}&foot_lock=on"));
+        let usual = rotations(&session);
+        let settings = [(Key::LockBlend, 0.6), (Key::LockReach, 1.0), (Key::LockClearance, 10.0)];
+        let settings = settings.map(|(key, value)| (key, Value::Number(value)));
+        session.apply(Command::Set(settings.to_vec())).unwrap();
+        settle(&mut session);
+        assert_ne!(rotations(&session), usual, "{lab}");
+        for (key, _) in settings {
+            session.apply(Command::Reset(key)).unwrap();
+        }
+        settle(&mut session);
+        assert_eq!(rotations(&session), usual, "{lab}");
+    }
+}
+
+#[test]
+fn each_lock_setting_changes_a_held_result_and_no_other() {
+    let [held, free] =
+        ["on", "off"].map(|lock| format!("lab=transition&half_life=0.3&foot_lock={lock}"));
+    let (usual_held, usual_free) = (rotations(&opened(&held)), rotations(&opened(&free)));
+    for setting in ["lock_blend=0.6", "lock_reach=3", "lock_clearance=8"] {
+        assert_ne!(rotations(&opened(&format!("{held}&{setting}"))), usual_held, "{setting}");
+        assert_eq!(rotations(&opened(&format!("{free}&{setting}"))), usual_free, "{setting}");
+        // Nor is a clip kept, or shown as changed, for what has no effect.
+        let mut view = opened(&format!("lab=view&a=walk&{setting}"));
+        assert!(!view.view_is_changed() && view.apply(Command::Keep(0)).is_err(), "{setting}");
+        assert!(opened(&format!("lab=view&a=walk&foot_lock=on&{setting}")).view_is_changed());
+    }
+}
+
+#[test]
+fn clearance_of_zero_leaves_the_swing_as_it_is() {
+    let free = opened("lab=blend");
+    let motion = &free.main_outcome().unwrap().motion;
+    let held = |clearance_m| {
+        let options = FootLockOptions {
+            ground_m: Some(motion.ground_m()),
+            clearance_m,
+            ..FootLockOptions::default()
+        };
+        rotations_of(
+            &foot_lock(motion.clip(), motion.roles(), motion.contacts(), &options).unwrap(),
+        )
+    };
+    assert_eq!(rotations(&opened("lab=blend&foot_lock=on&lock_clearance=0")), held(None));
+    assert_eq!(rotations(&opened("lab=blend&foot_lock=on&lock_clearance=8")), held(Some(0.08)));
+    assert_ne!(held(None), held(Some(0.08)));
+}
+
+#[test]
+fn lock_settings_come_back_from_a_link() {
+    let link = "lab=transition&foot_lock=on&lock_blend=0.5&lock_reach=12&lock_clearance=0";
+    let session = opened(link);
+    let query = session.query();
+    for setting in ["lock_blend=0.5", "lock_reach=12", "lock_clearance=0"] {
+        assert!(query.split('&').any(|pair| pair == setting), "{setting} in {query}");
+    }
+    let again = opened(&query);
+    assert_eq!(again.query(), query);
+    assert_eq!(rotations(&again), rotations(&session));
+    let panes = opened("lab=transition&foot_lock=on&compare=lock_reach:30,3");
+    let of_pane =
+        |pane: usize| rotations_of(panes.panes()[pane].outcome.as_ref().unwrap().motion.clip());
+    assert_ne!(of_pane(0), of_pane(1));
+}
+
+#[test]
+fn one_switch_holds_the_feet_in_every_lab() {
+    for lab in LOCKING_LABS {
+        let mut session = Session::new();
+        session.apply(Command::OpenLink(format!("{lab}&foot_lock=on"))).unwrap();
+        settle(&mut session);
+        let metrics = &session.main_outcome().unwrap().metrics;
+        let value = |wanted: &str| {
+            metrics.iter().find(|metric| metric.id.starts_with(wanted)).unwrap().value.unwrap()
+        };
+        let before = value("foot_slide_before_cm");
+        let after = value("foot_slide_cm");
+        assert!(after <= before && after < 1.0, "{lab}: {before} cm, {after} cm");
+    }
+}
+
+#[test]
+fn a_held_view_is_kept_under_its_recipe() {
+    let mut session = Session::new();
+    session.apply(Command::OpenLink("lab=view&a=stop&foot_lock=on".into())).unwrap();
+    let held = session.main_outcome().unwrap().motion.clip().clone();
+    session.apply(Command::Keep(0)).unwrap();
+    session
+        .apply(Command::OpenLink(
+            "lab=blend&a=view(a:stop,foot_lock:on)&b=walk(foot_lock:on)".into(),
+        ))
+        .unwrap();
+    settle(&mut session);
+    let mut other = Session::new();
+    other.apply(Command::OpenLink(session.query())).unwrap();
+    settle(&mut other);
+    for session in [&session, &other] {
+        let of_slot = |slot| session.slot(slot).unwrap().motion.as_ref().unwrap();
+        assert_eq!(*of_slot(Slot::A).clip(), held);
+        assert_eq!(of_slot(Slot::B).clip().name(), "walk(foot_lock:on)");
+    }
+}
+
+#[test]
+fn a_long_clip_is_held_in_slices_while_the_free_one_stays() {
+    let mut session = Session::new();
+    let long = "walk(make_seconds:25)";
+    session.apply(Command::OpenLink(format!("lab=view&a={long}"))).unwrap();
+    let free = session.main_outcome().unwrap().clone();
+    assert!(
+        free.motion.clip().frames() > 1_000
+            && free.metrics.iter().all(|metric| metric.value.is_none())
+    );
+    session.apply(Command::Set(vec![(Key::FootLock, Value::Switch(true))])).unwrap();
+    assert!(Arc::ptr_eq(session.main_outcome().unwrap(), &free));
+    let mut last = 0.0;
+    while let Some(job) = session.jobs().into_iter().find(|job| job.kind == JobKind::HoldingFeet) {
+        assert!(job.progress >= last);
+        last = job.progress;
+        session.work();
+    }
+    assert!(last > 0.9, "{last}");
+    settle(&mut session);
+    let held = session.main_outcome().unwrap();
+    let motion = &free.motion;
+    let whole =
+        foot_lock(motion.clip(), motion.roles(), motion.contacts(), &FootLockOptions::default())
+            .unwrap();
+    assert_eq!(**held.motion.clip(), whole);
+    let before = held.metrics.iter().find(|metric| metric.id == "foot_slide_before_cm");
+    assert_eq!(
+        before.unwrap().value,
+        foot_slide_cm(motion.clip(), motion.roles(), motion.contacts())
+    );
+}

@@ -1,0 +1,116 @@
+//! The Layers lab, by commands.
+
+use crate::fixtures::*;
+use segue_motion::metrics::foot_slide_cm;
+
+fn opened(link: &str) -> Session {
+    let mut session = Session::new();
+    session.apply(Command::OpenLink(link.into())).unwrap();
+    settle(&mut session);
+    assert!(session.panes().iter().all(|pane| pane.problem.is_none()), "{link}");
+    session
+}
+
+fn number_of(outcome: &Outcome, id: &str) -> f64 {
+    let metric = outcome.metrics.iter().find(|metric| metric.id == id);
+    metric.and_then(|metric| metric.value).unwrap_or(f64::NAN)
+}
+
+#[test]
+fn the_layers_lab_opens_with_a_run_on_walking_legs() {
+    let session = opened("lab=layers");
+    let outcome = session.main_outcome().unwrap();
+    let layer = outcome.layer().unwrap();
+    assert_eq!((layer.fit, layer.has_no_steps), (crate::LayerFit::InStep, false));
+    assert!(layer.shares[0] == 0.0 && layer.shares.contains(&1.0));
+    let walk = session.slot(Slot::A).unwrap().motion.clone().unwrap();
+    // The legs are the walk's, bit for bit, and stand as they stood.
+    assert_eq!(outcome.motion.clip().root_translations(), walk.clip().root_translations());
+    assert_eq!(outcome.motion.contacts(), walk.contacts());
+    let slide = foot_slide_cm(walk.clip(), walk.roles(), walk.contacts());
+    assert_eq!(
+        (number_of(outcome, "foot_slide_cm"), number_of(outcome, "off_legs_deg")),
+        (slide.unwrap(), 0.0)
+    );
+    let jump = number_of(outcome, "velocity_jump_dps");
+    assert!(jump < 60.0, "{jump}");
+    assert!(number_of(outcome, "off_arms_deg") > 10.0);
+    // B's track and A's have the length of A.
+    assert!(
+        outcome.sources.iter().all(|source| source.motion.clip().frames() == walk.clip().frames())
+    );
+}
+
+#[test]
+fn the_arms_of_a_run_in_step_swing_with_the_legs() {
+    // As far apart as the hands are when the left foot strikes, in every cycle.
+    let session = opened("lab=layers&mask=arms&keep_orientation=off");
+    let outcome = session.main_outcome().unwrap();
+    let hand = outcome.motion.roles().get(segue_motion::skeleton::Role::LeftForearm).unwrap();
+    let strikes = outcome.motion.contacts().intervals(segue_motion::skeleton::Side::Left);
+    let at: Vec<_> = strikes
+        .iter()
+        .skip(1)
+        .map(|stance| outcome.motion.clip().rotations(stance.start)[hand])
+        .collect();
+    assert!(at.len() >= 2);
+    for pair in at.windows(2) {
+        assert!(segue_motion::math::quat::angle_between(pair[0], pair[1]) < 0.02, "{at:?}");
+    }
+}
+
+#[test]
+fn layers_are_live_and_say_how_their_time_goes() {
+    use crate::LayerFit;
+    for (link, fit, has_no_steps) in [
+        ("lab=layers&b=run(make_seconds:2)&layer_fit=loop", LayerFit::Looped, false),
+        ("lab=layers&layer_fit=hold", LayerFit::Held, false),
+        ("lab=layers&a=run(make_seconds:2)&b=walk&layer_fit=loop", LayerFit::Once, false),
+        ("lab=layers&b=idle(make_seconds:2)", LayerFit::Looped, true),
+        ("lab=layers&a=idle(make_seconds:2)&b=walk", LayerFit::Once, true),
+    ] {
+        let session = opened(link);
+        let layer = session.main_outcome().unwrap().layer().cloned().unwrap();
+        assert_eq!((layer.fit, layer.has_no_steps), (fit, has_no_steps), "{link}");
+        assert!(number_of(session.main_outcome().unwrap(), "velocity_jump_dps") < 400.0, "{link}");
+    }
+    let mut session = opened("lab=layers&compare=layer_weight:0,0.5,1");
+    let arms: Vec<f64> = session
+        .panes()
+        .iter()
+        .map(|pane| number_of(pane.outcome.as_ref().unwrap(), "off_arms_deg"))
+        .collect();
+    assert!(arms[0] == 0.0 && arms[1] > 0.3 * arms[2] && arms[1] < 0.7 * arms[2], "{arms:?}");
+    // What did not change is not computed again, in any pane, whatever they differ in.
+    for compare in [
+        "layer_weight:0,0.5",
+        "layer_start:0,0.2,0.4",
+        "layer_fit:step,loop",
+        "mask:upper,head,legs,whole",
+    ] {
+        session.apply(Command::OpenLink(format!("lab=layers&compare={compare}"))).unwrap();
+        let outcomes = |session: &Session| {
+            session.panes().iter().map(|pane| pane.outcome.clone().unwrap()).collect::<Vec<_>>()
+        };
+        let before = outcomes(&session);
+        session.apply(Command::Set(vec![(Key::CameraYaw, Value::Number(12.0))])).unwrap();
+        assert!(
+            before.iter().zip(outcomes(&session)).all(|(a, b)| Arc::ptr_eq(a, &b)),
+            "{compare}"
+        );
+        assert!(before.windows(2).all(|pair| pair[0].motion != pair[1].motion), "{compare}");
+    }
+    // Against the mean, an additive layer leaves the posture; against the rest pose it adds all of
+    // it.
+    let off = |reference: &str| {
+        let session =
+            opened(&format!("lab=layers&layer_mode=additive&layer_reference={reference}"));
+        number_of(session.main_outcome().unwrap(), "off_arms_deg")
+    };
+    assert!(
+        off("mean") > 1.0 && off("mean") < 0.5 * off("rest"),
+        "{} {}",
+        off("mean"),
+        off("rest")
+    );
+}
