@@ -19,8 +19,8 @@ pub(crate) struct ClipResolver<'a> {
 }
 
 impl ClipResolver<'_> {
-    /// Makes one built-in clip that was not needed yet, so that the library can describe it. Returns
-    /// `false` when all are made.
+    /// Makes one built-in clip that was not needed yet, so that the library can describe it.
+    /// Returns `false` when all are made.
     pub(crate) fn make_next(&mut self) -> bool {
         // What another lab made takes its time, and is made when it is used.
         let is_quick = |entry: &Entry| match entry.origin {

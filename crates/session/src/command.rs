@@ -1,3 +1,6 @@
+//! The commands that change a session, why one cannot be carried out, and what the session asks of
+//! the app.
+
 use super::labs::Slot;
 use super::lesson::Source;
 use super::outside::short;
@@ -123,7 +126,7 @@ pub enum CommandError {
     NotPossible(&'static str),
 }
 
-/// What the document needs from outside.
+/// Something that the session asks of the app.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Request {
     /// A bundled take; hand its packed bytes to [`super::Session::load_sample`], or say to
@@ -136,11 +139,11 @@ pub enum Request {
     /// A file that is not to be read between two frames; read it elsewhere and hand the report to
     /// [`super::Session::finish_reading`].
     Read(ReadTask),
-    /// Nobody waits for a task any longer.
+    /// A task that was given up.
     StopReading {
         /// The task's number.
         task: u64,
-        /// The key of a file outside that nobody else needs.
+        /// The key of a file outside that is no longer needed.
         forget: Option<String>,
     },
 }

@@ -1,4 +1,5 @@
-//! Clips that the parameters name and the library does not have: the user is told which file to drop.
+//! Clips that the parameters name and the library does not have: the user is told which file to
+//! drop.
 
 use crate::document::Document;
 use crate::labs::Slot;

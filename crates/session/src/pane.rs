@@ -9,8 +9,8 @@ use std::sync::Arc;
 
 /// One pane of the stage: a result under one value of the compared parameter.
 ///
-/// While a result is computed, an older one may stay on the stage. Clips, files, numbers and reports
-/// are made of [`Pane::result`], and never of what is on the stage.
+/// While a result is computed, an older one may stay on the stage. Clips, files, numbers and
+/// reports are made of [`Pane::result`], and never of what is on the stage.
 #[derive(Clone, Debug, Default)]
 pub struct Pane {
     /// The compared parameter and this pane's value; `None` when there is nothing to compare.
@@ -111,7 +111,8 @@ impl Pane {
         Some(Made { outcome, params })
     }
 
-    /// Returns the parameters that the result on the stage was made from; `None` where there is none.
+    /// Returns the parameters that the result on the stage was made from; `None` where there is
+    /// none.
     #[must_use]
     pub fn made_from(&self) -> Option<&Params> {
         self.made().map(|made| made.params)
@@ -125,14 +126,15 @@ impl Pane {
         Some((*key, self.made_from().map_or(value, |from| from.get(*key))))
     }
 
-    /// Returns whether the result on the stage is of earlier parameters: that of the present ones is
-    /// being computed.
+    /// Returns whether the result on the stage is of earlier parameters: that of the present ones
+    /// is being computed.
     #[must_use]
     pub fn is_outdated(&self) -> bool {
         self.outcome.is_some() && self.standing == Standing::Earlier
     }
 
-    /// Takes the answer to what `params` ask for. Where there can be no result, an earlier one goes.
+    /// Takes the answer to what `params` ask for. Where there can be no result, an earlier one
+    /// goes.
     pub(crate) fn take(&mut self, answer: Answer, params: &Arc<Params>) {
         self.problem = None;
         self.sources.clear();
@@ -161,8 +163,8 @@ impl Pane {
         }
     }
 
-    /// Puts the metrics that every lab has first in the list of a new result. Until they are measured
-    /// it is a draft.
+    /// Puts the metrics that every lab has first in the list of a new result. Until they are
+    /// measured it is a draft.
     pub(crate) fn measure(&mut self, gauge: &mut Gauge) {
         let Some(outcome) = self.outcome.as_mut().filter(|_| self.standing != Standing::Earlier)
         else {

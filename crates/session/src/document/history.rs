@@ -5,7 +5,7 @@ use crate::params::{Key, Mark, PARAMS, Params};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// What undo brings back.
+/// A state of the document.
 #[derive(Clone, Debug)]
 struct State {
     params: Params,

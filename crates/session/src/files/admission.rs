@@ -205,8 +205,8 @@ fn takes_character(document: &Document, entry: &Entry, arrival: Arrival) -> bool
     }
 }
 
-/// Gives the clips that are in the library the content of a new report. Leaves out those that are to
-/// be read with other options by now.
+/// Gives the clips that are in the library the content of a new report. Leaves out those that are
+/// to be read with other options by now.
 pub(super) fn refill(
     document: &mut Document,
     report: ReadReport,
@@ -240,8 +240,8 @@ pub(super) fn refill(
     Ok(loaded)
 }
 
-/// Returns an entry for every clip of a file, and the file's warnings. `content` is the file's, unless it
-/// arrival out of an archive.
+/// Returns an entry for every clip of a file, and the file's warnings. `content` is the file's,
+/// unless it came out of an archive.
 fn file_entries(
     file: ReadFile,
     content: &Content,

@@ -79,8 +79,8 @@ impl FileIntake {
         Ok(())
     }
 
-    /// Reads the clips again that a notice offers to mend, as one step for undo. Tells of those that
-    /// cannot be read; they stay as they are.
+    /// Reads the clips again that a notice offers to mend, as one step for undo. Tells of those
+    /// that cannot be read; they stay as they are.
     pub(crate) fn mend(&mut self, document: &mut Document, notices: &mut Notices, notice: u64) {
         let found = notices.list().iter().find(|found| found.id == notice);
         let clips = found.map(|found| found.mends.clone()).unwrap_or_default();

@@ -15,19 +15,19 @@ use std::sync::Arc;
 const MAX_SAMPLE_BYTES: usize = 64 << 20;
 
 impl FileIntake {
-    /// The bundled takes that were asked for and have not come.
+    /// Returns the bundled takes that were asked for and have not arrived.
     pub(crate) fn awaited_samples(&self) -> &[&'static Sample] {
         &self.samples.samples
     }
 
-    /// How many of the takes that were asked for together have come, and how many these are; `None`
-    /// while none is waited for.
+    /// Returns how many of the takes that were asked for together have arrived, and how many these
+    /// are; `None` while none is awaited.
     pub(crate) fn samples_progress(&self) -> Option<(usize, usize)> {
         let AwaitedSamples { samples, asked, .. } = &self.samples;
         (!samples.is_empty()).then(|| (asked - samples.len(), *asked))
     }
 
-    /// Asks for a take, unless that is under way or was in vain a moment ago.
+    /// Asks for a take, unless it is awaited, or has failed since the last command.
     pub(crate) fn ask_for_sample(&mut self, document: &mut Document, sample: &'static Sample) {
         let AwaitedSamples { samples, asked, failed } = &mut self.samples;
         if samples.contains(&sample) || failed.contains(&sample) {
@@ -75,8 +75,8 @@ impl FileIntake {
         }
     }
 
-    /// Takes a bundled take that was asked for with [`Request::Sample`]; `packed` is its gzip file.
-    /// Where files are read elsewhere, so is it, and is not there yet.
+    /// Takes in a bundled take that was asked for with [`Request::Sample`]; `packed` is its gzip
+    /// file. Where files are read elsewhere, it is not there yet.
     ///
     /// # Errors
     /// [`ImportError`] when it is damaged; of one that is read elsewhere, that is told when it was
@@ -107,8 +107,8 @@ impl FileIntake {
         self.take_sample(document, notices, sample, report)
     }
 
-    /// Says why a bundled take that was asked for has not come. It is asked for again when
-    /// something else is done that needs it.
+    /// Tells why a bundled take that was asked for has not arrived. The next command that needs it
+    /// asks for it again.
     pub(crate) fn fail_sample(
         &mut self,
         document: &mut Document,
@@ -127,7 +127,7 @@ impl FileIntake {
         notices.say(Level::Error, text);
     }
 
-    /// What did not come may come now.
+    /// Lets takes that failed be asked for again.
     pub(crate) fn forget_failed_samples(&mut self) {
         self.samples.failed.clear();
     }

@@ -13,9 +13,9 @@ use segue_text::msg;
 use std::sync::Arc;
 
 impl FileIntake {
-    /// Reads the files of the library that have no motion yet, and asks for the bundled takes. Names
-    /// those that cannot be read any more together with those that are `lost` already, and removes
-    /// their clips.
+    /// Reads the files of the library that have no motion yet, and asks for the bundled takes.
+    /// Names those that cannot be read any more together with those that are `lost` already, and
+    /// removes their clips.
     pub(crate) fn read_stored(
         &mut self,
         document: &mut Document,

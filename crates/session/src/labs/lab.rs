@@ -1,4 +1,4 @@
-//! What a lab answers: what its result depends on and is called, and what it is made from.
+//! The trait of labs: what a result depends on, what it is called, and what it is made from.
 
 use super::error::LabError;
 use super::outcome::{Outcome, Slot};
@@ -10,11 +10,10 @@ use std::any::Any;
 use std::fmt;
 use std::sync::Arc;
 
-/// The facts of a lab, in the lab's own file. `S` is what labs remember between results: a lab names
-/// the parts of it that it uses.
+/// The facts of a lab, in the lab's own file. `S` is what labs remember between results: a lab
+/// names the parts of it that it uses.
 pub(crate) trait Lab<S>: Sync {
-    /// The ids of the clips that the lab's own list names; none where it has no list, and where
-    /// that cannot be read.
+    /// Returns the ids of the clips that the lab's own list names; none where it has no list.
     fn listed(&self, params: &Params) -> Vec<String> {
         self.more_clips(params).unwrap_or_default()
     }
@@ -24,7 +23,7 @@ pub(crate) trait Lab<S>: Sync {
         Vec::new()
     }
 
-    /// The ids of the clips that the result is made from besides those in its slots.
+    /// Returns the ids of the clips that the result is made from besides those in its slots.
     ///
     /// # Errors
     /// Says what of the list cannot be read.
@@ -32,8 +31,8 @@ pub(crate) trait Lab<S>: Sync {
         Ok(Vec::new())
     }
 
-    /// What is to be set so that the lab works with these clips; `None` where it takes no list of
-    /// clips.
+    /// Returns what is to be set so that the lab works with these clips; `None` where it takes no
+    /// list of clips.
     fn with_clips(&self, _ids: &[String]) -> Option<Vec<(Key, Value)>> {
         None
     }
@@ -51,10 +50,10 @@ pub(crate) trait Lab<S>: Sync {
         match_window: usize,
     ) -> Result<Option<Inputs>, LabError>;
 
-    /// What the result is called; `a` and `b` are what the clips in its slots are called.
+    /// Returns the name of the result; `a` and `b` are the names of the clips in its slots.
     fn result_name(&self, params: &Params, a: Message, b: Message) -> Message;
 
-    /// What a file of the result is called, without its ending.
+    /// Returns the name of a file with the result, without its ending.
     fn file_stem(&self, params: &Params) -> String;
 
     /// Returns the id of the result, where that is not the lab's name with its parameters.
@@ -78,34 +77,34 @@ pub(crate) trait Lab<S>: Sync {
         Vec::new()
     }
 
-    /// The values that were found for parameters left to Segue; `fps` are the frame rates of the
-    /// clips in A and B.
+    /// Returns the values that were found for parameters left to Segue; `fps` are the frame rates
+    /// of the clips in A and B.
     fn found(&self, _outcome: &Outcome, _fps: [f64; 2]) -> Vec<(Key, f64)> {
         Vec::new()
     }
 
-    /// A link to the lab's bundled captured clips; `None` where it takes a list of clips or has
-    /// none.
+    /// Returns a link to the lab's bundled captured clips; `None` where it takes a list of clips or
+    /// has none.
     fn captured_link(&self) -> Option<&'static str> {
         None
     }
 
-    /// Whether the result is a clip as it is: what is opened meanwhile takes its place.
+    /// Returns whether the lab shows one clip: a file that is opened takes its place.
     fn shows_clip(&self) -> bool {
         false
     }
 
-    /// Whether results are made in a moment, and from parameters alone.
+    /// Returns whether results are made in a moment, and from parameters alone.
     fn is_synthetic(&self) -> bool {
         false
     }
 
-    /// Whether the user drives what is shown, with these parameters.
+    /// Returns whether the user drives the result, with these parameters.
     fn is_own_drive(&self, _params: &Params) -> bool {
         false
     }
 
-    /// Whether there is something beside the result.
+    /// Returns whether there is something beside the result.
     fn has(&self, _beside: Beside) -> bool {
         false
     }
@@ -140,7 +139,7 @@ pub(crate) struct LabClips {
 #[derive(Clone, Debug)]
 pub(crate) struct MoreClip {
     pub(crate) id: String,
-    /// What a person calls it.
+    /// Its name on screen.
     pub(crate) name: String,
     pub(crate) motion: Arc<Motion>,
 }
@@ -155,7 +154,7 @@ impl LabClips {
     }
 }
 
-/// What a lab may show beside its result.
+/// Something that a lab shows beside its result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Beside {
     /// Clips that play beside the result.
@@ -166,7 +165,7 @@ pub(crate) enum Beside {
     DistanceMap,
 }
 
-/// What a lab's result depends on. Equal inputs give equal results: nothing is computed again.
+/// All that a lab's result depends on. Equal inputs give equal results: nothing is computed again.
 pub(crate) trait LabInputs: fmt::Debug + PartialEq + Send + Sync + 'static {
     /// Makes the result.
     ///

@@ -35,7 +35,7 @@ pub(crate) fn lab_of(lab: LabId) -> &'static dyn Lab<LabSet> {
     }
 }
 
-/// What labs remember of what they have found, so that what did not change is not computed again.
+/// All that labs remember of earlier results, so that only what has changed is computed again.
 #[derive(Debug, Default)]
 pub(crate) struct LabSet {
     pairs: Pairs,
@@ -54,7 +54,7 @@ pub(crate) struct LabSet {
 }
 
 impl LabSet {
-    /// What works in slices, in the order in which it gets its turn.
+    /// Returns the parts that work in slices, in the order of their turns.
     fn sliced(&self) -> [&dyn Sliced; 7] {
         [
             &self.blender,

@@ -12,9 +12,9 @@ use std::sync::Arc;
 /// The two places that a clip can take.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Slot {
-    /// What plays first; warm.
+    /// The first clip; warm.
     A,
-    /// What follows; cool.
+    /// The second clip; cool.
     B,
 }
 
@@ -108,7 +108,7 @@ pub struct Retargeted {
     pub unmatched: Vec<String>,
 }
 
-/// What a result goes round in.
+/// The cycle of a result that loops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cycle {
     /// How long one takes, seconds: a whole number of frames. The result is a whole number of
@@ -148,13 +148,13 @@ pub enum CycleMade {
 /// A result: a motion, and what is known about how it came to be.
 #[derive(Clone, Debug)]
 pub struct Outcome {
-    /// What plays.
+    /// The motion that plays.
     pub motion: Arc<Motion>,
     /// What it was made from; empty when it is a clip of the library itself.
     pub sources: Vec<Source>,
     /// Where the transition is; `None` where there is none.
     pub transition: Option<Transition>,
-    /// What it goes round in; `None` for what has an end.
+    /// The cycle in which it loops; `None` where it has an end.
     pub cycle: Option<Cycle>,
     /// How B came onto the skeleton of A; `None` where both have the same one.
     pub retargeted: Option<Arc<Retargeted>>,
@@ -165,7 +165,7 @@ pub struct Outcome {
     /// The clips that it is made of, on its skeleton: only what exceeds them is an artefact. None
     /// for a clip as it is.
     pub(crate) beside: Vec<Arc<Clip>>,
-    /// What is measured for the numbers that every lab has.
+    /// The motion that the metrics of every lab are measured of.
     pub(crate) measured: Measured,
     /// Those numbers are known.
     pub(crate) is_measured: bool,
@@ -193,7 +193,7 @@ impl LabFacts {
     }
 }
 
-/// What the artefact numbers of a result are measured of.
+/// The motion that the metrics of every lab are measured of.
 #[derive(Clone, Debug, Default)]
 pub(crate) enum Measured {
     /// Its motion.
@@ -222,7 +222,7 @@ impl Outcome {
         }
     }
 
-    /// Whether there is a place for the numbers that every lab has, and not yet their values.
+    /// Returns whether there are rows for the metrics of every lab, and not yet their values.
     pub(crate) fn awaits_numbers(&self) -> bool {
         let common = ResultMetrics::default().list();
         !self.is_measured
@@ -245,8 +245,8 @@ impl Outcome {
         self.motion.clip().duration_secs()
     }
 
-    /// Where the character of a result that goes round stands at a time beyond its end: the time in
-    /// its motion, and where that then lies. A result that has an end stays as it is.
+    /// Returns where a result that loops is at a time beyond its end: the time in its motion, and
+    /// the place of that. A result that has an end stays as it is.
     pub(crate) fn around(&self, secs: f64) -> (f64, Planar) {
         let duration = self.duration_secs();
         if self.cycle.is_none() || duration <= 0.0 || secs.is_nan() || secs <= duration {
@@ -258,8 +258,7 @@ impl Outcome {
         (secs - rounds * duration, place)
     }
 
-    /// What brings the character from where it stands at one time of the motion to where it stands
-    /// at another.
+    /// Returns the step of the character from one time of the motion to another.
     pub(crate) fn step(&self, from_secs: f64, to_secs: f64) -> Planar {
         self.motion.standing_at(to_secs).after(&self.motion.standing_at(from_secs).inverse())
     }

@@ -65,7 +65,7 @@ pub(crate) struct LessonState {
 pub(crate) struct NewParams {
     pub(crate) params: Params,
     pub(crate) named: Vec<Key>,
-    /// What is wrong with the link.
+    /// The problems of the link.
     pub(crate) problems: Vec<Message>,
 }
 
@@ -219,7 +219,8 @@ impl LessonState {
         })
     }
 
-    /// Returns the parameters that a link of the open page asks for; `None` where no lesson is open.
+    /// Returns the parameters that a link of the open page asks for; `None` where no lesson is
+    /// open.
     pub(crate) fn tried(&self, params: &Params, link: Link) -> Option<NewParams> {
         let page = self.page(params)?;
         let state = link::read(page.state.as_ref().map_or("", |state| state.query.as_str()));

@@ -10,8 +10,8 @@ pub struct Span {
 }
 
 impl Span {
-    /// The part of `[0, duration]` between two marks; a mark that is missing or outside is the end
-    /// of the result, and marks in the wrong order are taken the other way round.
+    /// Returns the part of `[0, duration]` between two marks; a mark that is missing or outside is
+    /// the end of the result, and marks in the wrong order are taken the other way round.
     #[must_use]
     pub fn between(in_mark: Option<f64>, out_mark: Option<f64>, duration: f64) -> Self {
         let start = in_mark.unwrap_or(0.0).clamp(0.0, duration);
@@ -19,10 +19,10 @@ impl Span {
         Self { start: start.min(end), end: start.max(end) }
     }
 
-    /// The playhead after `dt_secs` of playing at `rate`, and whether it still moves.
+    /// Returns the playhead after `dt_secs` of playing at `rate`, and whether it still moves.
     ///
-    /// A playhead outside the span enters at the start. With `repeat` it goes round; else it stops
-    /// at the end.
+    /// A playhead outside the span enters at the start. With `repeat` it begins again; else it
+    /// stops at the end.
     #[must_use]
     pub fn advance(&self, now: f64, dt_secs: f64, rate: f64, repeat: bool) -> (f64, bool) {
         let length = self.end - self.start;
@@ -40,7 +40,7 @@ impl Span {
         }
     }
 
-    /// How many times a playhead that goes round, as in [`Span::advance`], comes to the end.
+    /// Returns how many times a playhead that repeats, as in [`Span::advance`], comes to the end.
     #[must_use]
     pub fn rounds(&self, now: f64, dt_secs: f64, rate: f64) -> usize {
         let length = self.end - self.start;

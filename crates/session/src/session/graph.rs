@@ -1,4 +1,4 @@
-//! What panels and pictures ask about the Graph lab.
+//! Queries of panels and pictures about the Graph lab.
 
 use super::Session;
 use crate::labs::lab::Beside;
@@ -13,64 +13,66 @@ impl Session {
         lab_of(self.document.params.lab()).has(Beside::Graph)
     }
 
-    /// The ids of the clips that the graph is made of; none where there are too many.
+    /// Returns the ids of the clips that the graph is made of; none where there are too many.
     #[must_use]
     pub fn graph_clip_ids(&self) -> Vec<String> {
         clips_of(self.document.params.clip_ids(Key::Clips)).unwrap_or_default()
     }
 
-    /// The clips of the graph, on one skeleton; `None` outside of the Graph lab and while they are
-    /// made ready.
+    /// Returns the clips of the graph, on one skeleton; `None` outside of the Graph lab and while
+    /// they are made ready.
     #[must_use]
     pub fn graph_cast(&self) -> Option<&Arc<Cast>> {
         self.labs.grapher.cast().filter(|_| self.is_graph_lab())
     }
 
-    /// The distances that the Graph lab looks at: those of the first pane's window, or the last
-    /// ones while these are made.
+    /// Returns the distances of the first pane's window, or the last ones while these are computed;
+    /// `None` outside of the Graph lab.
     #[must_use]
     pub fn graph_field(&self) -> Option<&Arc<Field>> {
         self.labs.grapher.field().filter(|_| self.is_graph_lab())
     }
 
-    /// The graph of the first pane: the one that is asked for where it is made, else the one that
-    /// is walked in.
+    /// Returns the graph of the first pane: that of the present parameters where it is made, else
+    /// that of the walk.
     #[must_use]
     pub fn graph_built(&self) -> Option<&Arc<Built>> {
         let walked = || self.graph_walk().map(|walk| &walk.built);
         self.labs.grapher.built().or_else(walked).filter(|_| self.is_graph_lab())
     }
 
-    /// The walk of the first pane.
+    /// Returns the walk of the first pane.
     #[must_use]
     pub fn graph_walk(&self) -> Option<&Arc<Walk>> {
         self.main_outcome()?.walk().filter(|_| self.is_graph_lab())
     }
 
-    /// How long it took to make a graph, seconds, as far as [`Session::work_took`] was told.
+    /// Returns how long it took to make a graph, seconds, as far as [`Session::work_took`] was
+    /// told.
     #[must_use]
     pub fn graph_build_secs(&self, built: &Built) -> Option<f64> {
         self.labs.grapher.build_secs(built)
     }
 
-    /// How long the last call of [`Session::work`] took, seconds: there is no clock here.
+    /// Takes in how long the last call of [`Session::work`] took, seconds: the session has no
+    /// clock.
     pub fn work_took(&mut self, secs: f64) {
         self.labs.grapher.took(secs);
     }
 
-    /// Whether making the graph was given up.
+    /// Returns whether making the graph was given up.
     #[must_use]
     pub fn graph_is_stopped(&self) -> bool {
         self.is_graph_lab() && self.labs.grapher.is_stopped()
     }
 
-    /// When the walk sets off for which clip: seconds, and the clip's index.
+    /// Returns when the walk sets off for which clip: seconds, and the clip's index.
     #[must_use]
     pub fn graph_visits(&self) -> Vec<(f64, usize)> {
         visits_of(&self.document.params)
     }
 
-    /// The line that the walk follows, (x, z) in metres.
+    /// Returns the line that the walk follows, (x, z) in metres.
     #[must_use]
     pub fn graph_path(&self) -> &[DVec2] {
         if self.is_graph_lab() { self.document.params.ground_path() } else { &[] }

@@ -1,4 +1,4 @@
-//! What panels, the page's API and pictures ask of a session.
+//! Queries of panels, the page's API and pictures.
 
 use super::Session;
 use crate::Selected;
@@ -175,16 +175,16 @@ impl Session {
         Some((secs * motion.clip().fps()).round())
     }
 
-    /// Returns whether the open lab shows a clip, and changes it: its feet are held, it is moved, or
-    /// in place.
+    /// Returns whether the open lab shows a clip, and changes it: its feet are held, it is moved,
+    /// or in place.
     #[must_use]
     pub fn view_is_changed(&self) -> bool {
         let lab = lab_of(self.document.params.lab());
         lab.shows_clip() && !lab.is_clip_as_it_is(&self.document.params)
     }
 
-    /// Returns the distances between the frames of two clips: those of the first pane, or newer ones
-    /// without a result.
+    /// Returns the distances between the frames of two clips: those of the first pane, or newer
+    /// ones without a result.
     #[must_use]
     pub fn distance_map(&self) -> Option<&Arc<DistanceMap>> {
         if !lab_of(self.document.params.lab()).has(Beside::DistanceMap) {

@@ -11,7 +11,7 @@ use crate::saved::{Saved, SavedEntry};
 use std::sync::Arc;
 
 impl Session {
-    /// What is stored of the work.
+    /// Returns the work as it is stored.
     #[must_use]
     pub fn saved(&self) -> Saved {
         Saved {
@@ -46,9 +46,9 @@ impl Session {
         self.keep_language(saved);
         self.open_link(query.unwrap_or(&saved.query));
         self.document.forget_steps();
-        // What was shown until now is none of this work's, and stands in for nothing of it.
+        // The results on the stage are not of this work.
         self.panes.list.clear();
-        // What is shown is asked for first.
+        // The files of what is shown are asked for first.
         self.refresh();
         self.files.read_stored(&mut self.document, &mut self.notices, lost);
         look_for_clips(&mut self.document, &mut self.notices);
@@ -74,8 +74,8 @@ impl Session {
         }
         let nothing_came = self.document.library.entries().is_empty();
         for entry in before.entries() {
-            // A preset that is not stored was removed on an earlier visit. What the parameters name
-            // of these comes back.
+            // A preset that is not stored was removed on an earlier visit. It comes back where the
+            // parameters name it.
             let stays = nothing_came || !matches!(entry.origin, Origin::Preset);
             if stays && self.document.library.get(&entry.id).is_none() {
                 self.document.library.put_shared(Arc::clone(entry));
