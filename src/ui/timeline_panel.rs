@@ -15,8 +15,8 @@ use segue_motion::clip::{Motion, joint_curve};
 use segue_motion::skeleton::{Role, Side};
 use segue_session::choices;
 use segue_session::{
-    Command, CycleMade, Key, Kind, Outcome, Pane, PlaybackCommand, Registered, Session, Slot,
-    Source, Value, curve_kind, frame_at, joint_of,
+    Command, CycleMade, Key, Kind, Outcome, Pane, PlacedClip, PlaybackCommand, Registered, Session,
+    Slot, Value, curve_kind, frame_at, joint_of,
 };
 use segue_text::{Message, msg};
 use std::sync::Arc;
@@ -438,7 +438,7 @@ fn curve(
 /// The curve of a source in the result's time: what it has in the frames that the result is made
 /// of.
 fn registered_curve(
-    source: &Source,
+    source: &PlacedClip,
     registered: &Registered,
     joint: &str,
     quantity: choices::Curve,

@@ -1,6 +1,6 @@
 //! A motion as the bytes of a file.
 
-use super::labs::{Outcome, Source};
+use super::labs::{Outcome, PlacedClip};
 use super::motion::{curve_kind, joint_of};
 use super::params::{Key, Params};
 use segue_formats::bvh::{self, RotationOrder};
@@ -178,7 +178,7 @@ fn plotted(motion: &Motion, whose: &str, params: &Params) -> Option<Column> {
 }
 
 /// The values of a source's frames at the frames of the result.
-fn in_time_of(result: &Motion, source: &Source, values: &[f32]) -> Vec<f32> {
+fn in_time_of(result: &Motion, source: &PlacedClip, values: &[f32]) -> Vec<f32> {
     let fps = source.motion.clip().fps();
     let at = |frame: usize| ((result.clip().time_of(frame) - source.starts_at_secs) * fps).round();
     (0..result.clip().frames())

@@ -39,7 +39,9 @@ pub(super) use make::{has as made_motion_has, preset_motion, range_of, synth_act
 pub(super) use match_::options_of;
 pub use match_::{DriveMoment, Driven, own_words};
 pub(super) use match_::{DrivenPane, LiveDrive, filter_of};
-pub use outcome::{Cycle, CycleMade, MatchSearch, Outcome, Retargeted, Slot, Source, Transition};
+pub use outcome::{
+    Cycle, CycleMade, MatchSearch, Outcome, PlacedClip, Retargeted, Slot, Transition,
+};
 pub(super) use outcome::{LabFacts, Measured};
 pub use path::{FittedMotion, OnPath, spline_ends};
 pub use recipe::file_stem;

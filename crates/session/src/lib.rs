@@ -113,7 +113,7 @@ pub use labs::{
     Beat, DistanceMap, DriveMoment, Driven, FittedMotion, OnPath, Registered, spline_ends,
 };
 pub use labs::{
-    Cycle, CycleMade, LayerFacts, LayerFit, MatchSearch, Outcome, Retargeted, Slot, Source,
+    Cycle, CycleMade, LayerFacts, LayerFit, MatchSearch, Outcome, PlacedClip, Retargeted, Slot,
     Transition, mistake_shows,
 };
 pub use labs::{JobKind, file_stem, own_words, weight_curve};

@@ -1,6 +1,6 @@
 //! A pane of the stage: a result, and what it is to the present parameters.
 
-use crate::labs::{Answer, Gauge, Inputs, LabError, Outcome, Source};
+use crate::labs::{Answer, Gauge, Inputs, LabError, Outcome, PlacedClip};
 use crate::params::{Key, Params, Value};
 use crate::playback::speed_ramp::{SpeedRamp, cycle_durations};
 use segue_motion::math::Planar;
@@ -22,7 +22,7 @@ pub struct Pane {
     pub problem: Option<LabError>,
     /// The clips that the result would have been made of, as they lie on the stage in its place.
     /// Empty where there is no problem.
-    pub sources: Vec<Source>,
+    pub sources: Vec<PlacedClip>,
     /// The parameters that `outcome` was made from.
     made_from: Option<Arc<Params>>,
     standing: Standing,

@@ -3,7 +3,7 @@
 
 use crate::clip_resolver::{ClipResolver, widest_window};
 use crate::command::CommandError;
-use crate::labs::{DrivenPane, LiveDrive, Outcome, Slot, Source};
+use crate::labs::{DrivenPane, LiveDrive, Outcome, PlacedClip, Slot};
 use crate::labs::{lab_of, recipe_ingredients, slots_of};
 use crate::pane::{Made, NoResult, Pane};
 use crate::params::{Key, Kind, MAX_PANES, Params, Value};
@@ -149,7 +149,7 @@ fn uses(lab: crate::LabId, key: Key) -> bool {
 
 /// Places clips on the stage, the first on the left of the second, as seen from behind; one alone
 /// lies where its file has it.
-fn beside_each_other(clips: Vec<(Slot, Arc<Motion>)>) -> Vec<Source> {
+fn beside_each_other(clips: Vec<(Slot, Arc<Motion>)>) -> Vec<PlacedClip> {
     /// From the middle to either side, metres.
     const ASIDE_METRES: f64 = 0.6;
     let Some(stands) = clips.first().map(|(_, first)| first.standing_at(0.0)) else {
@@ -160,7 +160,7 @@ fn beside_each_other(clips: Vec<(Slot, Arc<Motion>)>) -> Vec<Source> {
         clips.into_iter().zip([ASIDE_METRES, -ASIDE_METRES]).map(|((slot, motion), side)| {
             let aside = Planar::new(0.0, if alone { 0.0 } else { side }, 0.0);
             let world_from_clip = stands.after(&aside).after(&motion.standing_at(0.0).inverse());
-            Source::new(slot, &motion, 0.0, world_from_clip)
+            PlacedClip::new(slot, &motion, 0.0, world_from_clip)
         });
     placed.collect()
 }

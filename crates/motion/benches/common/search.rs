@@ -2,10 +2,11 @@
 //! `tools/match_speed.rs` measure.
 
 use glam::DVec2;
+use segue_motion::clip::Motion;
 use segue_motion::matching::search::{Question, TreeIndex, scan};
 use segue_motion::matching::{
-    Control, Controller, ControllerOptions, Database, DatabaseOptions, Hit, MatchClip, RATE,
-    Recording, TagFilter, made_params,
+    Control, Controller, ControllerOptions, Database, DatabaseOptions, Hit, RATE, Recording,
+    TagFilter, made_params,
 };
 use segue_motion::math::Planar;
 use segue_motion::skeleton::Roles;
@@ -30,8 +31,8 @@ impl Chance {
 
 /// Clips of the synthesiser, each by another person in another manner, with so many frames when
 /// mirrored.
-pub(crate) fn clips(frames: usize) -> Vec<MatchClip> {
-    let (mut chance, mut clips, mut made_frames) = (Chance(1), Vec::<MatchClip>::new(), 0);
+pub(crate) fn clips(frames: usize) -> Vec<Arc<Motion>> {
+    let (mut chance, mut clips, mut made_frames) = (Chance(1), Vec::<Arc<Motion>>::new(), 0);
     for round in 0.. {
         for natural in made_params() {
             if 2 * made_frames >= frames {
@@ -66,8 +67,8 @@ pub(crate) fn clips(frames: usize) -> Vec<MatchClip> {
             made_frames += clip.frames();
             let roles = clips
                 .first()
-                .map_or_else(|| Roles::detect(clip.skeleton()), |first| first.roles.clone());
-            clips.push(MatchClip::new(Arc::new(clip), roles));
+                .map_or_else(|| Roles::detect(clip.skeleton()), |first| first.roles().clone());
+            clips.push(Arc::new(Motion::with_roles(clip, &roles)));
         }
     }
     clips

@@ -18,15 +18,15 @@ pub struct FootOptions {
 /// A clip with its joint roles, ground frames, foot contacts and ground height: the input of every
 /// algorithm that combines clips.
 ///
-/// [`analyze`](Self::analyze) makes it once; then it is shared in an [`Arc`]. Roles and ground
-/// frames are computed at once, in O(frames × joints). Contacts and ground height are computed on
-/// first use and kept, unless they are given ([`with_contacts`](Self::with_contacts),
-/// [`with_ground_m`](Self::with_ground_m)).
+/// [`analyze`](Self::analyze) makes it once; then it is shared in an [`Arc`]. Ground frames,
+/// contacts and ground height are computed on first use, each in O(frames × joints), and kept,
+/// unless they are given ([`with_ground_frames`](Self::with_ground_frames),
+/// [`with_contacts`](Self::with_contacts), [`with_ground_m`](Self::with_ground_m)).
 #[derive(Clone, Debug)]
 pub struct Motion {
     clip: Arc<Clip>,
     roles: Roles,
-    ground_frames: Vec<Planar>,
+    ground_frames: OnceLock<Vec<Planar>>,
     feet: FootOptions,
     contacts: OnceLock<Contacts>,
     ground_m: OnceLock<f32>,
@@ -35,11 +35,11 @@ pub struct Motion {
 }
 
 impl PartialEq for Motion {
-    /// Contacts and ground height that were not used yet are computed for the comparison.
+    /// What was not used yet is computed for the comparison.
     fn eq(&self, other: &Self) -> bool {
         self.clip == other.clip
             && self.roles == other.roles
-            && self.ground_frames == other.ground_frames
+            && self.ground_frames() == other.ground_frames()
             && self.feet == other.feet
             && self.seams == other.seams
             && self.ground_m() == other.ground_m()
@@ -59,9 +59,16 @@ impl Motion {
     /// Analyses a clip whose joints have these roles.
     #[must_use]
     pub fn with_roles(clip: impl Into<Arc<Clip>>, roles: &Roles) -> Self {
-        let clip = clip.into();
-        let ground_frames = character_frames(&clip, roles);
-        Self::with_ground_frames(clip, roles, ground_frames)
+        Self {
+            clip: clip.into(),
+            roles: roles.clone(),
+            ground_frames: OnceLock::new(),
+            feet: FootOptions::default(),
+            contacts: OnceLock::new(),
+            ground_m: OnceLock::new(),
+            usual: OnceLock::new(),
+            seams: Vec::new(),
+        }
     }
 
     /// Returns the motion of a clip whose ground frames ([`character_frames`]) are known, one per
@@ -75,16 +82,7 @@ impl Motion {
         let clip = clip.into();
         let last = ground_frames.last().copied().unwrap_or(Planar::IDENTITY);
         ground_frames.resize(clip.frames(), last);
-        Self {
-            clip,
-            roles: roles.clone(),
-            ground_frames,
-            feet: FootOptions::default(),
-            contacts: OnceLock::new(),
-            ground_m: OnceLock::new(),
-            usual: OnceLock::new(),
-            seams: Vec::new(),
-        }
+        Self { ground_frames: ground_frames.into(), ..Self::with_roles(clip, roles) }
     }
 
     /// Returns the same motion with its feet read by other options: contacts and ground height are
@@ -132,7 +130,8 @@ impl Motion {
     /// Returns the same motion elsewhere on the ground ([`Clip::transformed`]).
     #[must_use]
     pub fn moved(&self, world_from_clip: &Planar) -> Self {
-        let frames = self.ground_frames.iter().map(|frame| world_from_clip.after(frame)).collect();
+        let frames =
+            self.ground_frames().iter().map(|frame| world_from_clip.after(frame)).collect();
         Self {
             contacts: self.contacts.clone(),
             ground_m: self.ground_m.clone(),
@@ -170,7 +169,7 @@ impl Motion {
     /// clip.
     #[must_use]
     pub fn ground_frames(&self) -> &[Planar] {
-        &self.ground_frames
+        self.ground_frames.get_or_init(|| character_frames(&self.clip, &self.roles))
     }
 
     /// Returns how its feet are read.
@@ -248,11 +247,12 @@ impl Motion {
     /// that of the nearest frame outside the clip.
     #[must_use]
     pub fn standing_at(&self, secs: f64) -> Planar {
-        let last = self.ground_frames.len().saturating_sub(1);
+        let frames = self.ground_frames();
+        let last = frames.len().saturating_sub(1);
         // `max` takes NaN to 0.
         let at = (secs * self.clip.fps()).max(0.0).min(last as f64);
         let [here, next] = [at.floor() as usize, (at.floor() as usize + 1).min(last)]
-            .map(|frame| self.ground_frames.get(frame));
+            .map(|frame| frames.get(frame));
         let (Some(here), Some(next)) = (here, next) else {
             return Planar::IDENTITY;
         };
@@ -266,7 +266,8 @@ impl Motion {
     /// frame 0 the step that follows it.
     pub(crate) fn step_into(&self, frame: usize) -> Planar {
         let frame = frame.max(1);
-        match (self.ground_frames.get(frame - 1), self.ground_frames.get(frame)) {
+        let frames = self.ground_frames();
+        match (frames.get(frame - 1), frames.get(frame)) {
             (Some(before), Some(here)) => before.inverse().after(here),
             _ => Planar::IDENTITY,
         }

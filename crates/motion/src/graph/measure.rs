@@ -2,10 +2,10 @@
 
 use super::stitch::PieceSeam;
 use super::{FrameSet, MotionGraph, Place, WalkPiece};
-use crate::clip::{Clip, Contacts, stillest_step, turn_change};
+use crate::clip::{Clip, stillest_step, turn_change};
 use crate::math::{Planar, quat, stats, wrap_angle};
 use crate::metrics::{Better, Metric};
-use crate::skeleton::{Roles, Side, WorldPose};
+use crate::skeleton::{Side, WorldPose};
 use glam::{DVec2, Quat, Vec3};
 use std::ops::Range;
 use std::sync::Arc;
@@ -27,9 +27,6 @@ const MIN_CHANGE_MPS: f64 = 0.1;
 #[derive(Clone, Debug)]
 pub struct WalkProfile {
     set: Arc<FrameSet>,
-    roles: Roles,
-    /// Per clip.
-    contacts: Vec<Contacts>,
     /// Per joint, 99th and 99.9th percentile of the turn from one frame to the next, radians.
     turns: Vec<[f32; 2]>,
     /// Per joint, 99th percentile of the change of that turn.
@@ -39,11 +36,10 @@ pub struct WalkProfile {
 }
 
 impl WalkProfile {
-    /// Measures the clips; `contacts` has one entry per clip ([`Contacts::detect`]). O(frames ×
-    /// joints).
+    /// Measures the clips. O(frames × joints).
     #[must_use]
-    pub fn new(set: Arc<FrameSet>, roles: &Roles, contacts: Vec<Contacts>) -> Self {
-        let mut profile = Self::begun(set, roles, contacts);
+    pub fn new(set: Arc<FrameSet>) -> Self {
+        let mut profile = Self::begun(set);
         while !profile.advance(usize::MAX) {}
         profile
     }
@@ -51,7 +47,7 @@ impl WalkProfile {
     /// Likewise, with all joints still to be measured: call [`advance`](Self::advance) until it is
     /// complete.
     #[must_use]
-    pub fn begun(set: Arc<FrameSet>, roles: &Roles, contacts: Vec<Contacts>) -> Self {
+    pub fn begun(set: Arc<FrameSet>) -> Self {
         let steps = |clip: &Clip| -> Vec<f32> {
             clip.root_translations().windows(2).map(|pair| pair[0].distance(pair[1])).collect()
         };
@@ -59,8 +55,6 @@ impl WalkProfile {
         Self {
             step: stats::percentile(&steps, 0.999).unwrap_or(0.0),
             set,
-            roles: roles.clone(),
-            contacts,
             turns: Vec::new(),
             changes: Vec::new(),
         }
@@ -91,9 +85,8 @@ impl WalkProfile {
     }
 
     fn planted(&self, place: Place, side: Side) -> bool {
-        let contacts = self.contacts.get(place.clip);
-        contacts.is_some_and(|contacts| {
-            place.frame < self.set.frames_of(place.clip) && contacts.planted(side, place.frame)
+        self.set.clip(place.clip).is_some_and(|motion| {
+            place.frame < motion.clip().frames() && motion.contacts().planted(side, place.frame)
         })
     }
 
@@ -312,7 +305,10 @@ impl WalkMeter {
     }
 
     fn measure(&mut self, piece: &WalkPiece, frames: Range<usize>, profile: &WalkProfile) {
-        let points = Side::BOTH.map(|side| profile.roles.foot_points(piece.clip.skeleton(), side));
+        let roles = profile.set.clips().first().map(|motion| motion.roles());
+        let points = Side::BOTH.map(|side| {
+            roles.map_or_else(Vec::new, |roles| roles.foot_points(piece.clip.skeleton(), side))
+        });
         let mut world = WorldPose::default();
         for frame in frames {
             let standing = piece.frames.get(frame).copied().unwrap_or(Planar::IDENTITY);

@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::blend::align_onto;
+use crate::clip::Motion;
 use crate::clip::fixtures::{points_clip, points_skeleton};
-use crate::clip::{ContactOptions, Contacts, Motion};
 use crate::math::Planar;
 use crate::registration::fixtures::Walk;
 use crate::registration::rms_cm;
@@ -82,13 +82,7 @@ fn pieces(
 }
 
 fn profile(set: &Arc<FrameSet>) -> WalkProfile {
-    let roles = Roles::detect(set.clips()[0].clip().skeleton());
-    let contacts = set
-        .clips()
-        .iter()
-        .map(|source| Contacts::detect(source.clip(), &roles, &ContactOptions::default()));
-    let contacts = contacts.collect();
-    WalkProfile::new(Arc::clone(set), &roles, contacts)
+    WalkProfile::new(Arc::clone(set))
 }
 
 #[test]

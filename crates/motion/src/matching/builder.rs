@@ -1,7 +1,7 @@
 //! Construction of databases in slices.
 
 use super::cycle;
-use super::database::{Database, DatabaseOptions, MatchClip, spread_all};
+use super::database::{Database, DatabaseOptions, spread_all};
 use super::features::{Features, Layout, RATE};
 use super::motion::{DatabaseClip, FeatureJoints, mirrored_contacts};
 use super::pace::Pace;
@@ -9,7 +9,9 @@ use super::search::{BoxBuilder, BoxIndex};
 use super::tags::{TagRange, suggest_tags};
 use super::{MatchError, Weights};
 use crate::blend::moving_joints_of;
-use crate::clip::{Clip, ContactOptions, Contacts, Interpolation, mirror, resample, retarget_onto};
+use crate::clip::{
+    Clip, ContactOptions, Contacts, Interpolation, Motion, mirror, resample, retarget_onto,
+};
 use crate::math::Planar;
 use crate::registration::{Progress, REFERENCE_HEIGHT_M};
 use crate::skeleton::{Roles, Side, Skeleton};
@@ -34,7 +36,7 @@ const FRAMES_PER_SORT: usize = 100_000;
 /// left out and named in [`Database::skipped`].
 #[derive(Clone, Debug)]
 pub struct DatabaseBuilder {
-    clips: Vec<MatchClip>,
+    clips: Vec<Arc<Motion>>,
     options: DatabaseOptions,
     layout: Layout,
     skeleton: Arc<Skeleton>,
@@ -132,18 +134,18 @@ impl DatabaseBuilder {
     /// # Errors
     /// [`MatchError::NoClips`], [`MatchError::Times`], [`MatchError::TooManyFrames`],
     /// [`MatchError::NoFeet`] for the first clip.
-    pub fn new(clips: Vec<MatchClip>, options: &DatabaseOptions) -> Result<Self, MatchError> {
+    pub fn new(clips: Vec<Arc<Motion>>, options: &DatabaseOptions) -> Result<Self, MatchError> {
         let layout = Layout::new(&options.features)?;
         let first = clips.first().ok_or(MatchError::NoClips)?;
-        FeatureJoints::find(&first.clip, &first.roles)?;
-        let (skeleton, roles) = (Arc::clone(first.clip.skeleton()), first.roles.clone());
+        FeatureJoints::find(first.clip(), first.roles())?;
+        let (skeleton, roles) = (Arc::clone(first.clip().skeleton()), first.roles().clone());
         let copies = if options.mirrored { 2.0 } else { 1.0 };
         let frames: f64 =
-            clips.iter().map(|clip| clip.clip.duration_secs() * RATE as f64 * copies).sum();
+            clips.iter().map(|clip| clip.clip().duration_secs() * RATE as f64 * copies).sum();
         if frames > MAX_FRAMES as f64 {
             return Err(MatchError::TooManyFrames { frames: frames as usize, most: MAX_FRAMES });
         }
-        let longest_secs = clips.iter().map(|clip| clip.clip.duration_secs()).fold(0.0, f64::max);
+        let longest_secs = clips.iter().map(|clip| clip.clip().duration_secs()).fold(0.0, f64::max);
         Ok(Self {
             clips,
             options: options.clone(),
@@ -222,8 +224,8 @@ impl DatabaseBuilder {
                         self.stage = Stage::Measure(round);
                     } else {
                         self.skipped.push(MatchError::TooShort {
-                            name: from.clip.name().to_owned(),
-                            secs: from.clip.duration_secs(),
+                            name: from.clip().name().to_owned(),
+                            secs: from.clip().duration_secs(),
                             horizon_secs: self.layout.horizon() as f64 / RATE as f64,
                         });
                         self.next += 1;
@@ -338,12 +340,12 @@ impl DatabaseBuilder {
     }
 
     /// Returns a clip on the first clip's skeleton and at the database's rate.
-    fn prepared(&self, from: &MatchClip) -> Result<PreparedClip, MatchError> {
-        let mut clip = Arc::clone(&from.clip);
+    fn prepared(&self, from: &Motion) -> Result<PreparedClip, MatchError> {
+        let mut clip = Arc::clone(from.clip());
         if clip.skeleton() != &self.skeleton
             && let Some(model) = self.clips.first()
         {
-            let moved = retarget_onto(&clip, &from.roles, &model.clip, &model.roles)
+            let moved = retarget_onto(&clip, from.roles(), model.clip(), model.roles())
                 .map_err(|error| MatchError::Retarget { name: clip.name().to_owned(), error })?;
             clip = Arc::new(moved);
         }
@@ -360,17 +362,6 @@ impl DatabaseBuilder {
     }
 
     fn tags_of(&self, motion: &DatabaseClip) -> Vec<TagRange> {
-        let Some(from) = self.clips.get(self.next) else {
-            return Vec::new();
-        };
-        if let Some(tags) = &from.tags {
-            let at = |frame: usize| (frame as f64 * RATE as f64 / from.clip.fps()).round() as usize;
-            let range = |range: &TagRange| TagRange {
-                tag: range.tag,
-                frames: at(range.frames.start)..at(range.frames.end),
-            };
-            return tags.iter().map(range).collect();
-        }
         let scale = f64::from(self.roles.body_height(&self.skeleton)) / REFERENCE_HEIGHT_M;
         suggest_tags(motion.roots(), RATE as f64, scale)
     }

@@ -6,7 +6,7 @@ use super::pace::Pace;
 use super::search::{BoxIndex, BoxMasks, Candidates, Question};
 use super::tags::{self, TagRange, TagSet};
 use super::{Block, DatabaseBuilder, Features, MatchError, Weights};
-use crate::clip::Clip;
+use crate::clip::Motion;
 use crate::math::{Planar, quat, stats};
 use crate::skeleton::{Pose, Roles, Skeleton};
 use std::sync::Arc;
@@ -30,25 +30,6 @@ pub struct Place {
     pub motion: usize,
     /// The frame of that motion.
     pub frame: usize,
-}
-
-/// A clip from which a database is built.
-#[derive(Clone, Debug, PartialEq)]
-pub struct MatchClip {
-    /// The clip, at any rate and on any skeleton.
-    pub clip: Arc<Clip>,
-    /// The roles of its joints.
-    pub roles: Roles,
-    /// Its tags, at its own rate; `None` for those suggested by speed and turn rate.
-    pub tags: Option<Vec<TagRange>>,
-}
-
-impl MatchClip {
-    /// Returns the clip with suggested tags.
-    #[must_use]
-    pub fn new(clip: Arc<Clip>, roles: Roles) -> Self {
-        Self { clip, roles, tags: None }
-    }
 }
 
 /// Options of a database.
@@ -99,7 +80,7 @@ impl Database {
     ///
     /// # Errors
     /// The same as for [`DatabaseBuilder`].
-    pub fn new(clips: Vec<MatchClip>, options: &DatabaseOptions) -> Result<Self, MatchError> {
+    pub fn new(clips: Vec<Arc<Motion>>, options: &DatabaseOptions) -> Result<Self, MatchError> {
         DatabaseBuilder::new(clips, options)?.finish()
     }
 

@@ -1,8 +1,8 @@
 //! Databases of synthesised motions.
 
+use super::MatchError;
 use super::features::RATE;
-use super::{MatchClip, MatchError};
-use crate::clip::Clip;
+use crate::clip::{Clip, Motion};
 use crate::skeleton::Roles;
 use crate::synth::{Action, Params, synthesize};
 use segue_text::{Message, msg};
@@ -60,11 +60,11 @@ const HASTY_RATE: f32 = 2.0 / 3.0;
 ///
 /// # Errors
 /// [`MatchError::Synth`] for a height out of range.
-pub fn made_clips(height_m: f32) -> Result<Vec<MatchClip>, MatchError> {
-    let mut clips: Vec<MatchClip> = Vec::new();
+pub fn made_clips(height_m: f32) -> Result<Vec<Arc<Motion>>, MatchError> {
+    let mut clips: Vec<Arc<Motion>> = Vec::new();
     for params in made_params() {
-        let roles = clips.first().map(|first| first.roles.clone());
-        clips.push(made_clip(&Params { height_m, ..params }, roles)?);
+        let roles = clips.first().map(|first| first.roles().clone());
+        clips.push(Arc::new(made_clip(&Params { height_m, ..params }, roles)?));
     }
     Ok(clips)
 }
@@ -74,13 +74,11 @@ pub fn made_clips(height_m: f32) -> Result<Vec<MatchClip>, MatchError> {
 ///
 /// # Errors
 /// [`MatchError::Synth`] for parameters out of range.
-pub fn made_clip(params: &Params, roles: Option<Roles>) -> Result<MatchClip, MatchError> {
+pub fn made_clip(params: &Params, roles: Option<Roles>) -> Result<Motion, MatchError> {
     let made = synthesize(params)?;
     let roles = roles.unwrap_or_else(|| Roles::detect(made.clip.skeleton()));
-    Ok(MatchClip::new(
-        Arc::new(at_database_rate(&made.clip)?.with_name(made_name(params).to_string())),
-        roles,
-    ))
+    let clip = at_database_rate(&made.clip)?.with_name(made_name(params).to_string());
+    Ok(Motion::with_roles(clip, &roles))
 }
 
 /// Returns the name on screen of a synthesised clip: `walk 1.4 m/s, 30°/s`.

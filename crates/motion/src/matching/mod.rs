@@ -34,19 +34,17 @@
 //! # Example
 //!
 //! ```
+//! use segue_motion::clip::Motion;
 //! use segue_motion::matching::search::{Question, scan};
 //! use segue_motion::matching::{Control, Controller, ControllerOptions, Database, DatabaseOptions};
-//! use segue_motion::matching::{MatchClip, TagFilter, Weights};
+//! use segue_motion::matching::{TagFilter, Weights};
 //! use segue_motion::math::Planar;
-//! use segue_motion::skeleton::Roles;
 //! use segue_motion::synth::{Action, Params, synthesize};
 //! use std::sync::Arc;
 //!
 //! let mut clips = Vec::new();
 //! for action in [Action::Idle, Action::Start, Action::Walk, Action::Stop] {
-//!     let clip = Arc::new(synthesize(&Params::new(action))?.clip);
-//!     let roles = Roles::detect(clip.skeleton());
-//!     clips.push(MatchClip::new(clip, roles));
+//!     clips.push(Arc::new(Motion::analyze(synthesize(&Params::new(action))?.clip)));
 //! }
 //! let database = Arc::new(Database::new(clips, &DatabaseOptions::default())?);
 //!
@@ -112,7 +110,7 @@ pub use controller::{
     Candidate, Controller, ControllerOptions, Following, FootPlanting, HoldReason, Hysteresis,
     SearchMethod, SearchReason, SearchRecord,
 };
-pub use database::{Database, DatabaseOptions, MatchClip, Place};
+pub use database::{Database, DatabaseOptions, Place};
 pub use desired::{Simulation, Steering};
 pub use drive::{Drive, DriveMetrics, Jump, drive};
 pub use error::MatchError;

@@ -2,7 +2,7 @@
 
 use super::search::{Question, scan};
 use super::*;
-use crate::clip::{Clip, ContactOptions, Contacts, Interpolation, Motion, resample};
+use crate::clip::{Clip, Contacts, Interpolation, Motion, resample};
 use crate::gait::GaitCycle;
 use crate::math::{Decay, Planar, wrap_angle};
 use crate::skeleton::{Joint, Roles, Skeleton};
@@ -40,7 +40,7 @@ fn joint(name: &str, parent: Option<usize>, offset: [f32; 3]) -> Joint {
 }
 
 /// Returns the oracle's body: hips, and on either side a thigh that swings and a foot.
-fn oracle_clip(golden: &Value) -> MatchClip {
+fn oracle_clip(golden: &Value) -> Arc<Motion> {
     let skeleton = Skeleton::new(vec![
         joint("Hips", None, [0.0; 3]),
         joint("LeftUpLeg", Some(0), [0.1, 0.0, 0.0]),
@@ -67,7 +67,7 @@ fn oracle_clip(golden: &Value) -> MatchClip {
     let roles = Roles::detect(&skeleton);
     let clip =
         Clip::new("oracle", skeleton, RATE as f64, rotations.collect(), roots.collect()).unwrap();
-    MatchClip::new(Arc::new(clip), roles)
+    Arc::new(Motion::with_roles(clip, &roles))
 }
 
 #[test]
@@ -132,44 +132,36 @@ fn simulation_agrees_with_the_oracle() {
 fn database_of_invalid_clips_is_refused() {
     let options = DatabaseOptions::default();
     assert_eq!(Database::new(vec![], &options), Err(MatchError::NoClips));
-    let walk = MatchClip::new(
-        Arc::new(synthesize(&Params::new(Action::Walk)).unwrap().clip),
-        Roles::default(),
-    );
-    let walk = MatchClip { roles: Roles::detect(walk.clip.skeleton()), ..walk };
-    let short = MatchClip { clip: Arc::new(walk.clip.crop(0..35).unwrap()), ..walk.clone() };
+    let walk = Motion::analyze(synthesize(&Params::new(Action::Walk)).unwrap().clip);
+    let with = |clip: Clip| Arc::new(Motion::with_roles(clip, walk.roles()));
+    let short = with(walk.clip().crop(0..35).unwrap());
     let alone = Database::new(vec![short.clone()], &options);
     assert!(matches!(alone, Err(MatchError::NoValidFrame { clips: 1, .. })), "{alone:?}");
     assert!(alone.unwrap_err().to_string().contains("0.57 s"));
     // With a longer clip it is left out.
-    let both = Database::new(vec![short, walk.clone()], &options).unwrap();
+    let both = Database::new(vec![short, Arc::new(walk.clone())], &options).unwrap();
     assert!(matches!(both.skipped(), [MatchError::TooShort { .. }]) && both.motions().len() == 2);
     assert_eq!(both.motions()[0].source(), 1);
-    let footless = MatchClip { roles: Roles::default(), ..walk.clone() };
+    let footless = Arc::new(Motion::with_roles(Arc::clone(walk.clip()), &Roles::default()));
     let error = Database::new(vec![footless], &options).unwrap_err();
     assert!(error.to_string().contains("hips"), "{error}");
     let endless = Clip::new(
         "endless",
-        walk.clip.skeleton().clone(),
+        walk.clip().skeleton().clone(),
         1e-5,
-        vec![Quat::IDENTITY; 2 * walk.clip.skeleton().len()],
+        vec![Quat::IDENTITY; 2 * walk.clip().skeleton().len()],
         vec![Vec3::Y; 2],
     );
-    let endless = MatchClip { clip: Arc::new(endless.unwrap()), ..walk.clone() };
     assert!(matches!(
-        Database::new(vec![endless], &options),
+        Database::new(vec![with(endless.unwrap())], &options),
         Err(MatchError::TooManyFrames { .. })
     ));
-    let mut broken = walk.clip.root_translations().to_vec();
+    let mut broken = walk.clip().root_translations().to_vec();
     broken[7].x = f32::NAN;
     let rotations =
-        (0..walk.clip.frames()).flat_map(|frame| walk.clip.rotations(frame).to_vec()).collect();
-    let broken = MatchClip {
-        clip: Arc::new(
-            Clip::new("broken", walk.clip.skeleton().clone(), 60.0, rotations, broken).unwrap(),
-        ),
-        ..walk
-    };
+        (0..walk.clip().frames()).flat_map(|frame| walk.clip().rotations(frame).to_vec()).collect();
+    let broken =
+        with(Clip::new("broken", walk.clip().skeleton().clone(), 60.0, rotations, broken).unwrap());
     assert!(matches!(Database::new(vec![broken], &options), Err(MatchError::NotFinite { .. })));
 }
 
@@ -186,8 +178,7 @@ fn database_with_other_rates_times_and_tags_differs_as_documented() {
     let finer = resample(&clip, 120.0, Interpolation::Cubic).unwrap();
     // As a clip that ends: a repetition has a whole number of frames, which differ between rates.
     let [usual, fine] = [clip, finer].map(|clip| {
-        let roles = Roles::detect(clip.skeleton());
-        Database::new(vec![MatchClip::new(Arc::new(clip), roles)], &cycle_options(false)).unwrap()
+        Database::new(vec![Arc::new(Motion::analyze(clip))], &cycle_options(false)).unwrap()
     });
     assert_eq!(usual.frames(), fine.frames());
     assert!(usual.valid().iter().all(|&frame| usual.tags(frame as usize).has(Tag::Walk)));
@@ -381,12 +372,12 @@ fn options_changed_during_a_jump_keep_the_velocity() {
 }
 
 /// Returns one stride of a made gait, without the frame that equals its first.
-fn one_stride(action: Action, fps: f32, turn_rate_dps: f32) -> MatchClip {
+fn one_stride(action: Action, fps: f32, turn_rate_dps: f32) -> Arc<Motion> {
     let params = Params { turn_rate_dps, fps, ..Params::new(action) };
     let clip = Arc::new(synthesize(&params).unwrap().clip);
     let roles = Roles::detect(clip.skeleton());
     let cycle = GaitCycle::find(&Motion::with_roles(Arc::clone(&clip), &roles)).unwrap();
-    MatchClip::new(Arc::new(clip.crop(cycle.range()).unwrap()), roles)
+    Arc::new(Motion::with_roles(clip.crop(cycle.range()).unwrap(), &roles))
 }
 
 fn cycle_options(cycles: bool) -> DatabaseOptions {
@@ -402,7 +393,7 @@ fn cycle_has_the_features_of_its_repeated_clip() {
         (Action::Run, 30.0, -40.0),
     ] {
         let stride = one_stride(action, fps, turn);
-        let secs = stride.clip.frames() as f64 / stride.clip.fps();
+        let secs = stride.clip().frames() as f64 / stride.clip().fps();
         let database = Database::new(vec![stride.clone()], &cycle_options(true)).unwrap();
         assert!(database.skipped().is_empty() && database.motions().len() == 2);
         let layout = database.features().layout().clone();
@@ -421,7 +412,7 @@ fn cycle_has_the_features_of_its_repeated_clip() {
             assert!(step(frames - 1).distance(step(frames - 2)) < 0.1 * step(0).length(), "{name}");
             let long = repeat_clip(motion.clip(), &motion.cycle().unwrap(), 9).unwrap();
             let long = Database::new(
-                vec![MatchClip::new(Arc::new(long), stride.roles.clone())],
+                vec![Arc::new(Motion::with_roles(long, stride.roles()))],
                 &cycle_options(false),
             )
             .unwrap();
@@ -543,11 +534,9 @@ fn votes_for_another_clip_allow_jumps_within_a_clip() {
         }
     }
     // In a database of one clip no votes are needed.
-    let walk = synthesize(&Params::new(Action::Walk)).unwrap().clip;
-    let roles = Roles::detect(walk.skeleton());
+    let walk = Motion::analyze(synthesize(&Params::new(Action::Walk)).unwrap().clip);
     let alone = DatabaseOptions { mirrored: false, ..cycle_options(false) };
-    let alone =
-        Arc::new(Database::new(vec![MatchClip::new(Arc::new(walk), roles)], &alone).unwrap());
+    let alone = Arc::new(Database::new(vec![Arc::new(walk)], &alone).unwrap());
     let jumps = |hysteresis| {
         let options = ControllerOptions { hysteresis, ..options };
         drive(&alone, options, &Scenario::StartStop.recording()).unwrap().jumps
@@ -697,12 +686,9 @@ fn mirrored_contacts_are_swapped() {
 
 #[test]
 fn controller_of_walks_is_not_pulled_faster_than_its_clips() {
-    let clip = synthesize(&Params::new(Action::Walk)).unwrap().clip;
-    let roles = Roles::detect(clip.skeleton());
-    let database = Arc::new(
-        Database::new(vec![MatchClip::new(Arc::new(clip), roles)], &DatabaseOptions::default())
-            .unwrap(),
-    );
+    let walk = Motion::analyze(synthesize(&Params::new(Action::Walk)).unwrap().clip);
+    let database =
+        Arc::new(Database::new(vec![Arc::new(walk)], &DatabaseOptions::default()).unwrap());
     let mut controller =
         Controller::new(Arc::clone(&database), options(), &Planar::IDENTITY).unwrap();
     let (rate, pace) = (RATE as f64, database.pace());

@@ -304,9 +304,9 @@ fn phase_gap(contacts: &Contacts, a: usize, b: usize) -> Option<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::clip::ContactOptions;
+
     use crate::registration::fixtures::Walk;
-    use crate::skeleton::Roles;
+
     use crate::synth::{Action, Params, synthesize};
     use crate::transition::{LoopOptions, close_loop};
     use std::sync::Arc;

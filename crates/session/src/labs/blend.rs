@@ -2,7 +2,7 @@ use super::feet::{Lock, slide, slide_before, with_feet};
 use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs};
 use super::pair::{Pair, Pairs};
 use super::sliced::{JobKind, Sliced};
-use super::{MatchSearch, Outcome, Slot, Source, Transition};
+use super::{MatchSearch, Outcome, PlacedClip, Slot, Transition};
 use crate::labs::LabError;
 use crate::params::{Key, MAX_PANES, Params};
 use crate::{LabId, choices};
@@ -495,8 +495,8 @@ impl LabInputs for BlendInputs {
         let at_seam = TransitionMetrics::measure(from, to, &made);
         metrics.extend(at_seam.list());
         let sources = vec![
-            Source::new(Slot::A, &pair.a, 0.0, Planar::IDENTITY),
-            Source::new(
+            PlacedClip::new(Slot::A, &pair.a, 0.0, Planar::IDENTITY),
+            PlacedClip::new(
                 Slot::B,
                 &pair.incoming,
                 secs(place.leave) - secs(place.enter),

@@ -19,7 +19,7 @@ pub use walk::{At, Passed, Trace, Walk, WalkGhost};
 pub use wanted::{check_graph_clips, graph_of};
 pub(crate) use wanted::{clips_of, visits_of};
 
-use super::{LabFacts, Measured, Outcome, Slot, Source, Transition};
+use super::{LabFacts, Measured, Outcome, PlacedClip, Slot, Transition};
 use segue_text::{Message, msg};
 use std::sync::Arc;
 
@@ -97,7 +97,7 @@ impl LabInputs for GraphInputs {
             sources.extend(clips.into_iter().filter_map(|(slot, part)| {
                 let motion = walk.built.cast.motions().get(part.stay.clip)?;
                 let starts_at = secs(part.start) - secs(part.stay.from);
-                Some(Source::new(slot, motion, starts_at, part.world_from_clip))
+                Some(PlacedClip::new(slot, motion, starts_at, part.world_from_clip))
             }));
             transition = Some(Transition {
                 start_secs: secs(entered.start),

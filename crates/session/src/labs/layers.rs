@@ -1,7 +1,7 @@
 use super::feet::{Lock, slide, slide_before, with_feet};
 use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs};
 use super::pair::{Pair, Pairs};
-use super::{LabFacts, Outcome, Slot, Source};
+use super::{LabFacts, Outcome, PlacedClip, Slot};
 use crate::choices;
 use crate::labs::LabError;
 use crate::params::{Key, MAX_PANES, Params};
@@ -292,7 +292,7 @@ impl LabInputs for LayerInputs {
             .with_contacts(contacts)
             .with_ground_m(ground_m)
             .with_seams(a.seams().to_vec());
-        let source = |slot, motion| Source::new(slot, motion, 0.0, Planar::IDENTITY);
+        let source = |slot, motion| PlacedClip::new(slot, motion, 0.0, Planar::IDENTITY);
         Ok(Outcome {
             sources: vec![source(Slot::A, a), source(Slot::B, &timed.shown)],
             retargeted: pair.retargeted.clone(),

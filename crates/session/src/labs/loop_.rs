@@ -3,7 +3,7 @@
 use super::feet::Lock;
 use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs};
 use super::rounds::{Rounds, repeated, rounds};
-use super::{Cycle, CycleMade, Outcome, Slot, Source};
+use super::{Cycle, CycleMade, Outcome, PlacedClip, Slot};
 use crate::choices;
 use crate::labs::LabError;
 use crate::params::{Key, Params};
@@ -207,7 +207,12 @@ impl LabInputs for LoopInputs {
             ),
         ]);
         Ok(Outcome {
-            sources: vec![Source::new(Slot::A, motion, -secs(cut.cycle.start), Planar::IDENTITY)],
+            sources: vec![PlacedClip::new(
+                Slot::A,
+                motion,
+                -secs(cut.cycle.start),
+                Planar::IDENTITY,
+            )],
             cycle: Some(Cycle {
                 secs: secs(frames),
                 made: CycleMade::Cut {

@@ -40,7 +40,7 @@ impl Slot {
 
 /// A clip that a result was made from, as it lies in the result's time and world.
 #[derive(Clone, Debug)]
-pub struct Source {
+pub struct PlacedClip {
     /// Its slot.
     pub slot: Slot,
     /// The clip as it is in the library, on its own skeleton.
@@ -52,7 +52,7 @@ pub struct Source {
     pub world_from_clip: Planar,
 }
 
-impl Source {
+impl PlacedClip {
     pub(crate) fn new(
         slot: Slot,
         motion: &Arc<Motion>,
@@ -151,7 +151,7 @@ pub struct Outcome {
     /// The motion that plays.
     pub motion: Arc<Motion>,
     /// What it was made from; empty when it is a clip of the library itself.
-    pub sources: Vec<Source>,
+    pub sources: Vec<PlacedClip>,
     /// Where the transition is; `None` where there is none.
     pub transition: Option<Transition>,
     /// The cycle in which it loops; `None` where it has an end.

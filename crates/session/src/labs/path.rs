@@ -3,7 +3,7 @@
 use super::feet::{Lock, locking, slide, slide_before};
 use super::lab::{Beside, HasPart, Inputs, Lab, LabClips, LabInputs};
 use super::sliced::{JobKind, Sliced};
-use super::{LabFacts, Outcome, Slot, Source};
+use super::{LabFacts, Outcome, PlacedClip, Slot};
 use crate::choices;
 use crate::labs::LabError;
 use crate::params::{Key, List, MAX_PANES, Params, Value};
@@ -395,7 +395,7 @@ impl LabInputs for PathInputs {
             .with_ground_m(fitted.motion.ground_m())
             .with_seams(seams);
         Ok(Outcome {
-            sources: vec![Source::new(Slot::A, &fitted.motion, 0.0, Planar::IDENTITY)],
+            sources: vec![PlacedClip::new(Slot::A, &fitted.motion, 0.0, Planar::IDENTITY)],
             facts: LabFacts::of(Arc::new(OnPath {
                 fitted: Arc::clone(fitted),
                 road,

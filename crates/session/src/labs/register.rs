@@ -12,7 +12,7 @@ pub(crate) use registrar::Registrars;
 use super::blend::weight_law;
 use super::feet::{Lock, slide, slide_before, with_feet};
 use super::pair::{Pair, Pairs};
-use super::{LabFacts, Outcome, Slot, Source, Transition};
+use super::{LabFacts, Outcome, PlacedClip, Slot, Transition};
 use crate::choices;
 use registrar::Found;
 use segue_motion::blend::{
@@ -480,8 +480,8 @@ impl LabInputs for RegisterInputs {
         let metrics = self.measured([&clip, &free], &contacts, &beats, &mixed, distance_cm);
         let seams = self.seams(&beats, is_join.then_some(&mixed));
         let sources = vec![
-            Source::new(Slot::A, &pair.a, 0.0, Planar::IDENTITY),
-            Source::new(Slot::B, &pair.incoming, secs(mixed.end) - left, world_from_b),
+            PlacedClip::new(Slot::A, &pair.a, 0.0, Planar::IDENTITY),
+            PlacedClip::new(Slot::B, &pair.incoming, secs(mixed.end) - left, world_from_b),
         ];
         let steps = Contacts::detect(&clip, &roles, &pair.a.feet().contacts);
         let motion = Arc::new(
@@ -531,7 +531,7 @@ impl Outcome {
     /// the source lies then, standing where the result stands. `None` where there is none of it,
     /// and where the sources are not registered: they simply play on.
     #[must_use]
-    pub fn source_at(&self, source: &Source, secs: f64) -> Option<(f64, Planar)> {
+    pub fn source_at(&self, source: &PlacedClip, secs: f64) -> Option<(f64, Planar)> {
         let beat = self.registered()?.beat_at(secs)?;
         let at = beat.frames[usize::from(source.slot == Slot::B)] / self.motion.clip().fps();
         let inside = at >= 0.0 && at <= source.motion.clip().duration_secs();

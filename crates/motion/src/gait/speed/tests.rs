@@ -1,9 +1,7 @@
 //! Tests of gait cycles and of blending by speed.
 
 use super::*;
-use crate::clip::{
-    ContactOptions, Motion, character_frames, ground_speed, resample, stillest_step,
-};
+use crate::clip::{Motion, character_frames, ground_speed, resample, stillest_step};
 use crate::registration::fixtures::Walk;
 use crate::synth::{Action, Params, synthesize};
 use crate::transition::{FootLockOptions, foot_lock};

@@ -352,9 +352,9 @@ fn towards(last: [Quat; 3], wanted: [Quat; 3], most_turn: [f32; 3]) -> [Quat; 3]
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::clip::Clip;
-    use crate::matching::{DatabaseOptions, MatchClip};
-    use crate::skeleton::{Role, Roles};
+    use crate::clip::{Clip, Motion};
+    use crate::matching::DatabaseOptions;
+    use crate::skeleton::Role;
     use crate::synth::{Action, Params, synthesize};
     use std::sync::Arc;
 
@@ -363,9 +363,7 @@ mod tests {
 
     fn database(actions: &[Action]) -> Database {
         let clips = actions.iter().map(|&action| {
-            let clip = synthesize(&Params::new(action)).unwrap().clip;
-            let roles = Roles::detect(clip.skeleton());
-            MatchClip::new(Arc::new(clip), roles)
+            Arc::new(Motion::analyze(synthesize(&Params::new(action)).unwrap().clip))
         });
         let options =
             DatabaseOptions { mirrored: false, cycles: false, ..DatabaseOptions::default() };

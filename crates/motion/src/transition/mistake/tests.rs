@@ -1,11 +1,8 @@
 //! Tests of the deliberate mistakes.
 
 use super::*;
-use crate::clip::{ContactOptions, Contacts};
 use crate::metrics::TransitionMetrics;
-use crate::skeleton::Roles;
 use crate::synth::{Action, Params, synthesize};
-use std::sync::Arc;
 
 const METHODS: [Method; 6] = [
     Method::Cut,
@@ -152,7 +149,7 @@ fn mistaken_velocities_stop_the_motion() {
             && way(&right, LEAVE - 1, end - 1).length() > 0.4
     );
     assert!(way(&wrong, end, last).distance(way(&right, end, last)) < 1e-3);
-    let b_stands = wrong.world_from_b.after(&&pair.b.ground_frames()[ENTER + last - LEAVE]);
+    let b_stands = wrong.world_from_b.after(&pair.b.ground_frames()[ENTER + last - LEAVE]);
     assert!(b_stands.shift.distance(wrong.frames[last].shift) < 1e-3);
 }
 

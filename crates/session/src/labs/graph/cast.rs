@@ -28,8 +28,7 @@ impl Cast {
         let first = motions.first().ok_or(LabError::NoGraphClips)?;
         let height = f64::from(first.roles().body_height(first.clip().skeleton()));
         let set = Arc::new(FrameSet::new(motions.clone(), height)?);
-        let contacts = motions.iter().map(|motion| motion.contacts().clone()).collect();
-        let profile = WalkProfile::begun(Arc::clone(&set), first.roles(), contacts);
+        let profile = WalkProfile::begun(Arc::clone(&set));
         Ok(Self { names, motions, retargeted, set, profile, jolts: JoltSearch::default() })
     }
 

@@ -11,8 +11,7 @@ use crate::params::{HandTag, Key, MAX_PANES, Params};
 use segue_motion::clip::Motion;
 use segue_motion::matching::{
     Control, Controller, ControllerOptions, Database, DatabaseBuilder, DatabaseOptions,
-    FeatureOptions, MatchClip, MatchError, Normalisation, Recording, TagFilter, made_clip,
-    made_params,
+    FeatureOptions, MatchError, Normalisation, Recording, TagFilter, made_clip, made_params,
 };
 use segue_motion::math::Planar;
 use std::sync::Arc;
@@ -120,7 +119,7 @@ struct Tagged {
 /// Builds databases and plays recordings, and keeps the last ones.
 #[derive(Debug, Default)]
 pub(crate) struct Driver {
-    made: Vec<MatchClip>,
+    made: Vec<Arc<Motion>>,
     databases: Vec<(Source, Result<Arc<Database>, LabError>)>,
     tagged: Vec<Tagged>,
     building: Option<(Source, Box<DatabaseBuilder>)>,
@@ -213,16 +212,10 @@ impl Driver {
             if let Some((_, Ok(database))) = alike {
                 Box::new(DatabaseBuilder::retimed(database, &source.options.features)?)
             } else if !source.clips.is_empty() {
-                let clip = |motion: &Arc<Motion>| {
-                    MatchClip::new(Arc::clone(motion.clip()), motion.roles().clone())
-                };
-                Box::new(DatabaseBuilder::new(
-                    source.clips.iter().map(clip).collect(),
-                    &source.options,
-                )?)
+                Box::new(DatabaseBuilder::new(source.clips.clone(), &source.options)?)
             } else if let Some(params) = made_params().get(self.made.len()) {
-                let roles = self.made.first().map(|first| first.roles.clone());
-                self.made.push(made_clip(params, roles)?);
+                let roles = self.made.first().map(|first| first.roles().clone());
+                self.made.push(Arc::new(made_clip(params, roles)?));
                 return Ok(None);
             } else {
                 Box::new(DatabaseBuilder::new(self.made.clone(), &source.options)?)
