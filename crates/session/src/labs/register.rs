@@ -412,7 +412,7 @@ impl RegisterInputs {
         &self,
         [clip, free]: [&Clip; 2],
         contacts: &Contacts,
-        beats: &[Beat],
+        _beats: &[Beat],
         mixed: &Range<usize>,
         distance_cm: Option<f64>,
     ) -> Vec<Metric> {
