@@ -54,7 +54,7 @@ const UNSEEN: [&str; 17] = [
 
 /// Literals that look like sentences and are none: names of files, of joints and of widgets'
 /// memory, and what only the tests of a library read.
-const NO_SENTENCE: [&str; 29] = [
+const NO_SENTENCE: [&str; 30] = [
     "{} and {}",
     "{} and {} registered",
     "{} loop",
@@ -65,6 +65,7 @@ const NO_SENTENCE: [&str; 29] = [
     "node {index}",
     "(prefers-reduced-motion: reduce)",
     "try it",
+    "variety",
     "End Site",
     "Library/Application Support",
     "motion graph.json",
@@ -252,7 +253,7 @@ fn shown(path: &str, source: &str) -> Vec<String> {
                 next.starts_with("=>") || next.starts_with('|') || before.ends_with('|')
             };
             let is_error = before.ends_with("#[error(");
-            let is_sentence = text.contains(' ') || is_error;
+            let is_sentence = text.trim().contains(' ') || is_error;
             let is_query =
                 text.contains(['_', '=', '&', '\n']) || text.contains(':') && !text.contains(' ');
             let is_word = words && !is_query && !is_key();
