@@ -405,7 +405,7 @@ impl Segue {
         self.panels.fetching = self.downloads.under_way().collect();
         self.panels.stored = self.keeper.progress();
         if self.session.is_driven() {
-            self.panels.drive.pad = platform::gamepad().map(|pad| ui::Pad {
+            self.panels.gamepad = platform::gamepad().map(|pad| ui::Gamepad {
                 walk: pad.left,
                 look: pad.right,
                 run: pad.run,
@@ -431,7 +431,7 @@ impl Segue {
         // Only now: what a slider has just changed is in this picture, not in the next.
         let theme = ui::stage_theme(&self.session, ui::theme::theme_of(ui));
         let look = ui::stage_look(&self.session, theme);
-        let highlights = self.panels.highlights(&self.session);
+        let highlights = ui::highlights(&self.session, &self.panels);
         self.picture.finish(frame, &self.session, (theme.palette(), look), highlights, ui);
         if self.session.revision() != before {
             ui.ctx().request_repaint();

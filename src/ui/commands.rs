@@ -7,7 +7,7 @@ use super::labs::toggle_compare;
 use super::language::tr;
 use super::lessons_panel::{self, toggle_lessons};
 use super::out::{Action, Out};
-use super::stage_panel::frame_everything;
+use super::stage::framing::frame_everything;
 use super::state::UiState;
 use super::text;
 use super::theme::theme_of;

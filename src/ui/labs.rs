@@ -1,19 +1,27 @@
 //! What each lab has on the page: its panel, the titles of its panes, what its comparison begins
 //! with.
 
-pub(crate) mod blend;
+mod blend;
 mod break_it;
-pub(crate) mod graph;
+mod graph;
 mod in_place;
+pub(crate) mod in_time;
+mod lab_ui;
 mod layers;
 mod loop_;
-pub(crate) mod make;
-pub(crate) mod match_;
-pub(crate) mod path;
+mod make;
+mod match_;
+pub(crate) mod on_stage;
+mod path;
 mod register;
 mod speed;
-pub(crate) mod transition;
-pub(crate) mod view;
+pub(crate) mod states;
+mod transition;
+mod view;
+
+pub(crate) use blend::welcome;
+pub(crate) use lab_ui::{Shown, Title};
+pub(crate) use view::compare_clips;
 
 use super::kit;
 use super::out::Out;
@@ -22,69 +30,9 @@ use super::state::UiState;
 use super::text;
 use super::theme::space;
 use eframe::egui::Ui;
-use glam::DVec2;
 use graph::seed_detail;
-use segue_session::LabId;
-use segue_session::{Command, Group, Key, Kind, Mark, PARAMS, Pane, Params, Session, Slot};
-use segue_text::Message;
-
-/// A lab's part of the page; each lab's own file has it, as `LAB`.
-struct LabUi {
-    /// The rows of its panel.
-    panel_ui: fn(&Session, &mut UiState, &mut Out, &mut Ui),
-    /// What its comparison begins with.
-    compares: Compares,
-    /// What stands above a pane.
-    title: fn(&Shown<'_>) -> Title,
-    /// What to look at on the stage, in one line.
-    hint: fn(&Session) -> Option<&'static str>,
-    /// Takes a line that was drawn over the ground; `None` where none can be drawn.
-    take_line: Option<TakeLine>,
-}
-
-/// Takes a line over the ground, x and z in metres.
-type TakeLine = fn(&[DVec2], &Session, &mut UiState, &mut Out);
-
-/// What a comparison begins with.
-enum Compares {
-    /// A parameter: the value that is set, and others.
-    Key(Key),
-    /// What the lab chooses itself.
-    Own(fn(&Session, &mut Out)),
-}
-
-/// What a pane shows.
-pub(crate) struct Shown<'a> {
-    pub(crate) pane: &'a Pane,
-    /// The parameters of what is on the stage; without anything there, of what is asked for.
-    pub(crate) params: &'a Params,
-    pub(crate) session: &'a Session,
-}
-
-impl Shown<'_> {
-    /// Returns the name of the clip in A or B.
-    fn name(&self, key: Key) -> Message {
-        self.name_of(self.params.text(key)).unwrap_or_default()
-    }
-
-    /// Returns the name of a clip of the library; `None` for one that is not there.
-    fn name_of(&self, id: &str) -> Option<Message> {
-        self.session.library().find(id).map(|entry| entry.title())
-    }
-
-    /// Returns the word on screen of a parameter's value.
-    fn spoken(&self, key: Key) -> Message {
-        key.param().spoken(self.params.get(key))
-    }
-}
-
-/// What stands above a pane.
-#[derive(Default)]
-pub(crate) struct Title {
-    pub(crate) strong: Message,
-    pub(crate) text: Message,
-    pub(crate) secondary: Message,
-}
+use lab_ui::{Compares, LabUi};
+use segue_session::{Command, Group, Key, Kind, LabId, Mark, PARAMS, Session, Slot};
 
 /// Returns the part of the page that a lab has.
 fn of(lab: LabId) -> &'static LabUi {
@@ -104,28 +52,6 @@ fn of(lab: LabId) -> &'static LabUi {
     }
 }
 
-/// Returns what a pane says of itself, where it is compared with no other.
-pub(crate) fn title(shown: &Shown<'_>) -> Title {
-    (of(shown.params.lab()).title)(shown)
-}
-
-/// Returns what to look at, in one line.
-pub(crate) fn hint(session: &Session) -> Option<&'static str> {
-    (of(session.params().lab()).hint)(session)
-}
-
-/// Returns whether a line can be drawn over the ground.
-pub(crate) fn takes_lines(session: &Session) -> bool {
-    of(session.params().lab()).take_line.is_some()
-}
-
-/// Hands a line that was drawn over the ground to the lab that is open.
-pub(crate) fn take_line(points: &[DVec2], session: &Session, state: &mut UiState, out: &mut Out) {
-    if let Some(take_line) = of(session.params().lab()).take_line {
-        take_line(points, session, state, out);
-    }
-}
-
 /// Opens "full, half, third" of the lab's first number, or what else the lab has to compare, or
 /// goes back to one pane.
 pub(crate) fn toggle_compare(session: &Session, out: &mut Out) {
@@ -139,7 +65,27 @@ pub(crate) fn toggle_compare(session: &Session, out: &mut Out) {
     }
 }
 
-/// The right panel: one section for the lab, two that fold for stage and camera.
+/// Returns the title of a pane that is compared with no other.
+pub(crate) fn title(shown: &Shown<'_>) -> Title {
+    (of(shown.params.lab()).title)(shown)
+}
+
+/// Returns whether the lab has a panel beside the stage, where there is room for one.
+pub(crate) fn has_side_panel(session: &Session) -> bool {
+    graph::is_open(session)
+}
+
+/// Returns the share of the room beside the parameters that the lab's side panel takes.
+pub(crate) fn side_panel_share(session: &Session) -> f32 {
+    graph::map_share(session)
+}
+
+/// Draws the lab's side panel.
+pub(crate) fn side_panel_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+    graph::map_panel_ui(session, state, out, ui);
+}
+
+/// Draws the right panel: one section for the lab, two that fold for stage and camera.
 pub(crate) fn lab_panel_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     (of(session.params().lab()).panel_ui)(session, state, out, ui);
     ui.add_space(space::S);

@@ -2,7 +2,7 @@
 
 use super::clip_panel::clip_panel_ui;
 use super::kit::{self, Button, ClipRow, Icon, MenuItem, Part};
-use super::labs::view::compare_clips;
+use super::labs::compare_clips;
 use super::language::{say, tr};
 use super::out::{Action, Out};
 use super::state::{Typing, UiState};

@@ -1,15 +1,12 @@
-//! What the interface remembers that is nobody else's business.
+//! What the interface remembers between frames.
 
-use super::labs;
-use super::labs::match_::DriveHand;
-use super::labs::path::hand::PathHand;
+use super::labs::states::LabStates;
 use super::language::Language;
 use eframe::egui::Rect;
 use glam::DVec2;
-use segue_motion::graph::Place;
-use segue_scene::{Camera, Highlights, PathMarks};
+use segue_scene::Camera;
+use segue_session::Storing;
 use segue_session::export::ExportOptions;
-use segue_session::{Session, Storing};
 
 /// How much room there is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,6 +53,19 @@ pub(crate) struct Filming {
     pub(crate) secs: Option<f64>,
 }
 
+/// What a gamepad asks for: sticks from -1 to 1, to the right and up.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Gamepad {
+    /// The left stick.
+    pub(crate) walk: [f32; 2],
+    /// The right stick.
+    pub(crate) look: [f32; 2],
+    /// The button to run.
+    pub(crate) run: bool,
+    /// The button to strafe.
+    pub(crate) strafe: bool,
+}
+
 /// The state of the interface.
 #[derive(Clone, Debug)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a thing of its own that is open or not")]
@@ -80,26 +90,16 @@ pub(crate) struct UiState {
     pub(crate) details: Option<String>,
     /// A tree of joints was shown in the last frame: the chosen one is marked on the stage.
     pub(crate) joints_open: bool,
-    /// The pair of frames of A and B, at A's rate, that the pointer is at on the map of distances.
-    pub(crate) hovered_pair: Option<[f64; 2]>,
-    /// The hand on the path of the Path lab.
-    pub(crate) path: PathHand,
-    /// The hand that drives in the Match lab.
-    pub(crate) drive: DriveHand,
+    /// What the labs remember.
+    pub(crate) labs: LabStates,
+    /// A gamepad that is there.
+    pub(crate) gamepad: Option<Gamepad>,
     /// The cameras of all panes as they were drawn last.
     pub(crate) cameras: Vec<Option<Camera>>,
-    /// The transition that the pointer is at, on the map of distances or on an arc.
-    pub(crate) hovered_jump: Option<[Place; 2]>,
-    /// Likewise in the frame before.
-    pub(crate) last_jump: Option<[Place; 2]>,
     /// The line that is drawn on the ground, (x, z) in metres; none while nobody draws.
     pub(crate) drawing: Option<Vec<DVec2>>,
-    /// Where the walk was when a single transition was opened, seconds.
-    pub(crate) walk_secs: f64,
     /// How much room there is.
     pub(crate) layout: Layout,
-    /// The map of the graph has a panel of its own; elsewhere it stands among the parameters.
-    pub(crate) has_map_panel: bool,
     /// How motions are saved.
     pub(crate) export: ExportOptions,
     /// The pane whose result is saved.
@@ -135,16 +135,11 @@ impl Default for UiState {
             typed_fps: None,
             details: None,
             joints_open: false,
-            hovered_pair: None,
-            path: PathHand::default(),
-            drive: DriveHand::default(),
+            labs: LabStates::default(),
+            gamepad: None,
             cameras: Vec::new(),
-            hovered_jump: None,
-            last_jump: None,
             drawing: None,
-            walk_secs: 0.0,
             layout: Layout::Desk,
-            has_map_panel: false,
             export: ExportOptions::default(),
             saved_pane: 0,
             language: Language::default(),
@@ -155,33 +150,6 @@ impl Default for UiState {
             fetching: Vec::new(),
             host_reads: false,
             stored: None,
-        }
-    }
-}
-
-impl UiState {
-    /// Returns what the pointer highlights on the stage.
-    pub(crate) fn highlights(&self, session: &Session) -> Highlights {
-        Highlights {
-            joint: self.joints_open,
-            pair: self.hovered_pair,
-            jump: self.hovered_jump,
-            candidate: self.drive.ghost(session),
-            path: self.path_marks(session),
-        }
-    }
-
-    /// Returns what is pointed at, held and drawn of a path.
-    fn path_marks(&self, session: &Session) -> PathMarks {
-        let is_open = labs::path::is_open(session);
-        let drawn = self.drawing.clone().unwrap_or_default();
-        PathMarks {
-            handles: is_open && drawn.is_empty(),
-            chosen: self.path.chosen,
-            hovered: self.path.hovered,
-            place: self.path.place.map(|(place, _)| place),
-            is_held: is_open && (self.path.held.is_some() || !drawn.is_empty()),
-            drawn,
         }
     }
 }

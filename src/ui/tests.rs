@@ -1,10 +1,11 @@
 //! What the panels show and ask for. With `SEGUE_GALLERY` set to a folder, pictures of them are
 //! written there.
 
+use super::out::Out;
+use super::theme::{Theme, palette_of, space};
 use super::*;
-use crate::ui::theme::Theme;
 use eframe::egui::accesskit::Toggled;
-use eframe::egui::{self, Key as Keyboard, Rect, Role, Shape, Vec2, vec2};
+use eframe::egui::{self, Key as Keyboard, Rect, Role, Shape, Ui, Vec2, vec2};
 use egui_kittest::{
     Harness,
     kittest::{NodeT as _, Queryable as _},
@@ -16,8 +17,8 @@ use segue_session::choices::{Mistake, Selected as _};
 use segue_session::export::{ExportFormat, ExportOptions, export};
 use segue_session::reading::Content;
 use segue_session::{
-    Command, Entry, FileCommand, Kind, Level, List, Origin, Outcome, PageMemory, Slot, SourceFile,
-    Storing, Value,
+    Command, Entry, FileCommand, Key, Kind, Level, List, Origin, Outcome, PageMemory, Session,
+    Slot, SourceFile, Storing, Value,
 };
 use std::fmt::Write as _;
 use std::sync::Arc;
@@ -61,7 +62,7 @@ impl Page {
         };
         let shown: Vec<(usize, Viewport)> =
             places.iter().map(|&(pane, rect)| (pane, viewport(rect))).collect();
-        let highlights = self.state.highlights(&self.session);
+        let highlights = highlights(&self.session, &self.state);
         let options = StageOptions { panes: &shown, highlights, ..StageOptions::default() };
         self.director.stage(&self.session, &options, 10.0);
         let panes = self.session.panes().len();
@@ -804,8 +805,8 @@ fn hysteresis_shows_the_rows_of_its_choice() {
 
 #[test]
 fn the_first_visit_says_what_to_watch() {
-    assert!(labs::blend::is_welcome(&Session::new()));
-    assert!(!labs::blend::is_welcome(&page("lab=transition").session));
+    assert!(labs::welcome(&Session::new()).is_some());
+    assert!(labs::welcome(&page("lab=transition").session).is_none());
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Curves under the timeline, on the same axis of time.
 
 use super::paint::{Run, line_of, put};
-use super::timeline::{TimeAxis, hovered_time, nice_step};
+use super::time_axis::{TimeAxis, hovered_time, nice_step};
 use crate::ui::language::tr;
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{Align2, Color32, Rect, Response, Stroke, StrokeKind, Ui, pos2, vec2};

@@ -2,7 +2,7 @@
 //! curves and pins on it.
 
 use super::paint::{Run, focus_ring, line_of, put};
-use super::timeline::nice_step;
+use super::time_axis::nice_step;
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{
     Align2, Color32, CornerRadius, CursorIcon, Id, Pos2, Rangef, Rect, Response, Role, Sense,

@@ -38,6 +38,7 @@ mod switch_row;
 mod tabs;
 #[cfg(all(test, feature = "ui-tests"))]
 mod tests;
+mod time_axis;
 mod timeline;
 mod transport;
 mod tree;

@@ -1,7 +1,7 @@
 //! The Blend lab: the window, its place and its weight.
 
 use crate::ui::kit;
-use crate::ui::labs::{Compares, LabUi, Shown, Title};
+use crate::ui::labs::lab_ui::{Compares, Edge, LabUi, Shown, Title};
 use crate::ui::out::Out;
 use crate::ui::rows::{
     Detail, compare_ui, foot_rows_ui, lab_label, pair_ui, param_row_ui, place_rows_ui,
@@ -11,7 +11,7 @@ use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::space;
 use eframe::egui::Ui;
-use segue_session::{Key, LabId, Session, Slot};
+use segue_session::{Key, LabId, Outcome, Session, Slot};
 use segue_text::msg;
 
 /// The lab's part of the page.
@@ -19,7 +19,7 @@ pub(super) const LAB: LabUi = LabUi {
     panel_ui: blend_ui,
     compares: Compares::Key(Key::BlendWindow),
     title,
-    hint: |session| is_welcome(session).then_some(text::WELCOME_HINT),
+    hint: welcome,
     take_line: None,
 };
 
@@ -34,14 +34,31 @@ fn title(shown: &Shown<'_>) -> Title {
     }
 }
 
-/// Whether the hint's sentence is about what is on the stage: the windows of the built-in walk and
+/// Returns the hint for first visitors, while it is about what is on the stage.
+pub(crate) fn welcome(session: &Session) -> Option<&'static str> {
+    is_welcome(session).then_some(text::WELCOME_HINT)
+}
+
+/// Returns whether the hint for first visitors is about what is on the stage: the windows of the built-in walk and
 /// run.
-pub(crate) fn is_welcome(session: &Session) -> bool {
+fn is_welcome(session: &Session) -> bool {
     let shown = |key, id| session.params().text(key) == id;
     session.params().lab() == LabId::Blend
         && shown(Key::A, "walk")
         && shown(Key::B, "run")
         && session.compare().is_some_and(|compare| compare.key == Key::BlendWindow)
+}
+
+/// Returns the value that dragging an end of the transition to a time sets.
+pub(super) fn edge_value(edge: Edge, secs: f64, outcome: &Outcome) -> (Key, f64) {
+    match edge {
+        // The result runs on A's time up to the window.
+        Edge::Start => (Key::LeaveA, secs.max(0.0)),
+        Edge::End => {
+            let start = outcome.transition.map_or(0.0, |found| found.start_secs);
+            (Key::BlendWindow, (secs - start) * outcome.motion.clip().fps())
+        }
+    }
 }
 
 pub(super) fn blend_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {

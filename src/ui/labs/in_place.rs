@@ -1,7 +1,7 @@
 //! The In place lab: a clip, and what becomes of its way over the ground.
 
 use crate::ui::kit;
-use crate::ui::labs::{Compares, LabUi, Shown, Title};
+use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
 use crate::ui::language::say;
 use crate::ui::out::Out;
 use crate::ui::rows::{

@@ -1,7 +1,7 @@
 //! The Layers lab: which part of the body is B's, how much of it, and when.
 
 use crate::ui::kit;
-use crate::ui::labs::{Compares, LabUi, Shown, Title};
+use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
 use crate::ui::language::say;
 use crate::ui::out::Out;
 use crate::ui::rows::{Detail, param_row_ui};

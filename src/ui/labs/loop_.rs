@@ -1,7 +1,7 @@
 //! The Loop lab: a cycle and how its ends are brought together.
 
 use crate::ui::kit::{self, Button};
-use crate::ui::labs::{Compares, LabUi, Shown, Title};
+use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
 use crate::ui::language::say;
 use crate::ui::out::Out;
 use crate::ui::rows::clip_sets_ui;

@@ -1,7 +1,7 @@
 //! The Make lab: a motion from parameters.
 
 use crate::ui::kit;
-use crate::ui::labs::{Compares, LabUi, Shown, Title};
+use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
 use crate::ui::out::Out;
 use crate::ui::rows::{Detail, compare_ui, foot_rows_ui, lab_label, param_row_ui, save_result_ui};
 use crate::ui::state::UiState;

@@ -6,8 +6,8 @@ pub(crate) mod hand;
 pub(crate) mod stage;
 
 use crate::ui::kit::{self, Button, Icon};
+use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
 use crate::ui::labs::path::hand::path_of;
-use crate::ui::labs::{Compares, LabUi, Shown, Title};
 use crate::ui::language::{say, tr};
 use crate::ui::out::Out;
 use crate::ui::rows::{Detail, param_row_ui};
@@ -27,7 +27,7 @@ pub(super) const LAB: LabUi = LabUi {
     compares: Compares::Own(compare_points),
     title,
     hint: |_| Some(text::PATH_HINT),
-    take_line: Some(|points, session, state, out| state.path.take_drawn(points, session, out)),
+    take_line: Some(|points, session, state, out| state.labs.path.take_drawn(points, session, out)),
 };
 
 fn title(shown: &Shown<'_>) -> Title {
@@ -85,11 +85,11 @@ pub(super) fn path_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
         )
         .clicked()
     {
-        state.path.said = None;
-        state.path.chosen = None;
+        state.labs.path.said = None;
+        state.labs.path.chosen = None;
         out.reset(Key::Path);
     }
-    if let Some(said) = &state.path.said {
+    if let Some(said) = &state.labs.path.said {
         kit::note_ui(&say(said, ui), palette.warning, ui);
     }
     if let Some(path) = path {
@@ -123,27 +123,27 @@ fn points_ui(path: &OnPath, session: &Session, state: &mut UiState, out: &mut Ou
             .selected(state.drawing.is_some());
         if kit::button_ui(draw, ui).clicked() {
             state.drawing = if state.drawing.is_some() { None } else { Some(Vec::new()) };
-            state.path.said = None;
+            state.labs.path.said = None;
         }
         if kit::button_ui(Button::new(text::ADD_POINT).hint(text::ADD_POINT_HELP), ui).clicked() {
-            state.path.add_point(path, session, out);
+            state.labs.path.add_point(path, session, out);
         }
         if kit::button_ui(Button::new(text::REMOVE_POINT).hint(text::REMOVE_POINT_HELP), ui)
             .clicked()
         {
-            state.path.remove_point(path, session, out);
+            state.labs.path.remove_point(path, session, out);
         }
         for key in [Key::PinStart, Key::PinEnd] {
             let on = session.params().is_on(key);
             let button = Button::new(key.param().label).hint(key.param().help).selected(on);
             if kit::button_ui(button, ui).clicked() {
-                state.path.said = None;
+                state.labs.path.said = None;
                 out.toggle(key, on);
             }
         }
     });
     let points = path.road.spline().points();
-    let chosen = state.path.chosen.and_then(|index| Some((index, *points.get(index)?)));
+    let chosen = state.labs.path.chosen.and_then(|index| Some((index, *points.get(index)?)));
     let words = chosen.map_or_else(
         || text::POINTS_HELP.into(),
         |(index, place)| text::chosen_point(index, points.len(), place),
@@ -178,7 +178,7 @@ fn whole_ui(path: &OnPath, session: &Session, state: &mut UiState, out: &mut Out
         ui.spacing_mut().item_spacing = vec2(space::XS, space::XS);
         for (label, edit) in edits {
             if kit::button_ui(Button::new(label), ui).clicked() {
-                state.path.edit_once(spline, &edit, session, out);
+                state.labs.path.edit_once(spline, &edit, session, out);
             }
         }
     });
@@ -268,7 +268,7 @@ fn company_ui(
                     ui.spacing_mut().item_spacing.x = space::XS;
                     let edit = say(&text::edit_companion(title.clone()), ui);
                     if kit::icon_button_ui(Icon::Swap, &edit, ui).clicked() {
-                        state.path.chosen = None;
+                        state.labs.path.chosen = None;
                         out.commands
                             .push(Command::ExtraCharacters(ExtraCharacterCommand::Edit(place)));
                     }

@@ -4,7 +4,7 @@ use crate::ui::kit::{
     self, Button, Feet, HeatMap, HeatMapEvent, Icon, MapCurve, SliderRow, WeightCurveEvent,
     WeightCurveRow,
 };
-use crate::ui::labs::{Compares, LabUi, Shown, Title};
+use crate::ui::labs::lab_ui::{Compares, Edge, LabUi, Shown, Title};
 use crate::ui::language::{say, tr};
 use crate::ui::out::Out;
 use crate::ui::rows::clip_sets_ui;
@@ -34,6 +34,24 @@ pub(super) const LAB: LabUi = LabUi {
     hint: |_| Some(text::REGISTER_HINT),
     take_line: None,
 };
+
+/// Returns the value that dragging an end of the transition to a time sets; `None` where nothing of
+/// A plays then.
+pub(super) fn edge_value(
+    edge: Edge,
+    secs: f64,
+    registered: &Registered,
+    fps: f64,
+) -> Option<(Key, f64)> {
+    match edge {
+        Edge::Start => Some((Key::WarpFrom, secs.max(0.0))),
+        // The end is a time of A, whose clock is bent until then.
+        Edge::End => {
+            let beat = registered.beat_at(secs)?;
+            Some((Key::WarpTo, (beat.frames[0] / fps).max(0.0)))
+        }
+    }
+}
 
 fn title(shown: &Shown<'_>) -> Title {
     let b = shown.name(Key::B);
@@ -275,7 +293,7 @@ fn map_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
         let [low, high] = text::heat_ends(picture.range_cm).map(|end| say(&end, ui));
         kit::heat_legend_ui(&low, &high, ui);
     }
-    let pair = state.hovered_pair.or(now.filter(inside));
+    let pair = state.labs.register.hovered_pair.or(now.filter(inside));
     let known = pair.map(|frames| say(&text::pair_apart(secs(frames), map.cm_at(frames)), ui));
     kit::note_ui(&waits.or(known).unwrap_or_default(), palette.muted, ui);
     if pins.is_empty() {
@@ -319,7 +337,7 @@ fn map_event(
         pins.iter().copied().filter(move |known| taken.map(pin) != Some(*known))
     };
     match event {
-        HeatMapEvent::Hover(at) => state.hovered_pair = Some(frames(at)),
+        HeatMapEvent::Hover(at) => state.labs.register.hovered_pair = Some(frames(at)),
         HeatMapEvent::Seek(at) => {
             if let Some(secs) = registered.and_then(|registered| registered.secs_near(frames(at))) {
                 out.set(Key::Play, Value::Switch(false));

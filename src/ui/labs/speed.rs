@@ -1,7 +1,7 @@
 //! The Speed lab: two cycles at a speed.
 
 use crate::ui::kit::{self, Button, Mark, Part};
-use crate::ui::labs::{Compares, LabUi, Shown, Title};
+use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
 use crate::ui::language::say;
 use crate::ui::out::Out;
 use crate::ui::rows::clip_sets_ui;

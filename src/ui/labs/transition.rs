@@ -2,7 +2,7 @@
 
 use super::break_it::break_it_ui;
 use crate::ui::kit::{self, Button};
-use crate::ui::labs::{Compares, LabUi, Shown, Title};
+use crate::ui::labs::lab_ui::{Compares, Edge, LabUi, Shown, Title};
 use crate::ui::out::Out;
 use crate::ui::rows::{
     Detail, compare_ui, foot_rows_ui, lab_label, pair_ui, param_row_ui, place_rows_ui,
@@ -14,7 +14,7 @@ use crate::ui::theme::space;
 use eframe::egui::Ui;
 use segue_motion::math::spring;
 use segue_session::choices::{self, TransitionMethod};
-use segue_session::{Compare, Key, LabId, Session};
+use segue_session::{Compare, Key, LabId, Outcome, Session};
 use segue_text::msg;
 
 /// The lab's part of the page.
@@ -34,9 +34,38 @@ fn title(shown: &Shown<'_>) -> Title {
     }
 }
 
-/// Whether the lab is open.
+/// Returns whether the lab is open.
 pub(crate) fn is_open(session: &Session) -> bool {
     session.params().lab() == LabId::Transition
+}
+
+/// Returns the value that dragging an end of the transition to a time sets; `None` for a cut, which
+/// has no length.
+pub(super) fn edge_value(
+    edge: Edge,
+    secs: f64,
+    session: &Session,
+    outcome: &Outcome,
+) -> Option<(Key, f64)> {
+    let (params, fps) = (session.params(), outcome.motion.clip().fps());
+    if edge == Edge::Start {
+        return Some((Key::MixFrameA, (secs * fps).round().max(0.0)));
+    }
+    let (start, end) =
+        outcome.transition.map_or((0.0, 0.0), |found| (found.start_secs, found.end_secs));
+    let wanted = secs - start;
+    // The parameter that sets the length depends on the method.
+    Some(match params.choice::<TransitionMethod>() {
+        TransitionMethod::Cubic | TransitionMethod::Quintic | TransitionMethod::Dead => {
+            (Key::BlendTime, wanted)
+        }
+        TransitionMethod::Inertialize => {
+            let share = wanted / (end - start).max(1.0 / fps);
+            (Key::HalfLife, params.number(Key::HalfLife) * share)
+        }
+        TransitionMethod::Cut => return None,
+        TransitionMethod::Smooth | TransitionMethod::Linear => (Key::BlendWindow, wanted * fps),
+    })
 }
 
 /// What the methods of the lab have to set, and what they share.

@@ -2,8 +2,8 @@
 
 use crate::ui::clip_panel::clip_panel_ui;
 use crate::ui::kit::{self, Button};
+use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
 use crate::ui::labs::toggle_compare;
-use crate::ui::labs::{Compares, LabUi, Shown, Title};
 use crate::ui::language::say;
 use crate::ui::out::Out;
 use crate::ui::rows::{

@@ -2,12 +2,18 @@
 
 use super::*;
 use eframe::egui::{Event, Modifiers};
-use segue_motion::matching::Control;
+use segue_motion::matching::{Control, Place};
 use segue_session::{DriveCommand, Driven, PlaybackCommand};
 
 /// A database that is built in a moment.
 const SMALL: &str =
     "lab=match&mirrored=off&match_clips=idle,walk,walk_left,walk_right,walk(make_seconds:6)";
+
+/// Returns the frame that is shown as a ghost.
+fn ghost(harness: &Harness<'_, Page>) -> Option<Place> {
+    let page = harness.state();
+    highlights(&page.session, &page.state).candidate
+}
 
 fn driven(harness: &Harness<'_, Page>) -> Arc<Driven> {
     outcome(harness.state()).driven().cloned().expect("a drive")
@@ -105,18 +111,18 @@ fn the_stick_drives_while_it_is_held_and_leaves_the_camera() {
 #[test]
 fn a_gamepad_pushes_by_as_much_as_it_is_pushed() {
     let mut harness = harness(DESK, DARK, page(&format!("{SMALL}&camera_yaw=180")));
-    let mut pad = Pad { walk: [0.0, 0.1], ..Pad::default() };
-    harness.state_mut().state.drive.pad = Some(pad);
+    let mut pad = Gamepad { walk: [0.0, 0.1], ..Gamepad::default() };
+    harness.state_mut().state.gamepad = Some(pad);
     play(2, &mut harness);
     assert_eq!(control(&harness), Control::default(), "it trembles");
     pad.walk = [0.0, 0.59];
-    harness.state_mut().state.drive.pad = Some(pad);
+    harness.state_mut().state.gamepad = Some(pad);
     play(2, &mut harness);
     let half = control(&harness).velocity().y;
     assert!((half - 0.7).abs() < 0.05, "{half}");
     pad.run = true;
     pad.look = [1.0, 0.0];
-    harness.state_mut().state.drive.pad = Some(pad);
+    harness.state_mut().state.gamepad = Some(pad);
     play(2, &mut harness);
     assert!(control(&harness).velocity().y > 1.5);
     assert!(harness.state().session.params().number(Key::CameraYaw) < 180.0);
@@ -133,7 +139,7 @@ fn a_search_tells_why_and_a_candidate_is_a_ghost() {
     assert!(!harness.state().session.params().is_on(Key::Play));
     let search =
         driven(&harness).moments.last().and_then(|moment| moment.search.clone()).expect("a search");
-    assert_eq!(harness.state().state.drive.ghost(&harness.state().session), None);
+    assert_eq!(ghost(&harness), None);
     let rows: Vec<Rect> =
         harness.get_all_by_label_contains(" s: ").map(|node| node.rect()).collect();
     assert_eq!(rows.len(), 1 + search.candidates.len());
@@ -143,8 +149,7 @@ fn a_search_tells_why_and_a_candidate_is_a_ghost() {
     step(vec![button(second, false)], &mut harness);
     step(vec![Event::PointerGone], &mut harness);
     harness.run();
-    let ghost = harness.state().state.drive.ghost(&harness.state().session);
-    assert_eq!(ghost, Some(search.candidates[1].place));
+    assert_eq!(ghost(&harness), Some(search.candidates[1].place));
     picture("match-why-dark", &mut harness);
 }
 

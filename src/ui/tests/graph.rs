@@ -57,7 +57,7 @@ fn the_graph_lab_does_what_is_pressed() {
     let ring = field.min + mark * field.size();
     harness.hover_at(ring);
     harness.run();
-    let ends = harness.state().state.hovered_jump.expect("pointed at");
+    let ends = harness.state().state.labs.graph.hovered_jump.expect("pointed at");
     picture("graph-pointed-dark", &mut harness);
     harness.drag_at(ring);
     harness.drop_at(ring);
@@ -213,7 +213,7 @@ fn the_distances_of_very_many_frames_are_seen_from_afar_and_nearby() {
             assert!(steps < 20, "tiles are still made");
         }
         if name == "graph-nearer-dark" {
-            assert_eq!(harness.state().state.hovered_jump, Some(ends));
+            assert_eq!(harness.state().state.labs.graph.hovered_jump, Some(ends));
         }
         picture(name, &mut harness);
     }
@@ -225,7 +225,7 @@ fn the_distances_of_very_many_frames_are_seen_from_afar_and_nearby() {
     harness.run();
     harness.hover_at(ring);
     harness.run();
-    let pointed = harness.state().state.hovered_jump.expect("there are rings");
+    let pointed = harness.state().state.labs.graph.hovered_jump.expect("there are rings");
     harness.drag_at(ring);
     harness.drop_at(ring);
     harness.run();
@@ -235,5 +235,5 @@ fn the_distances_of_very_many_frames_are_seen_from_afar_and_nearby() {
     while harness.state_mut().session.work() {}
     harness.run_steps(3);
     assert!(harness.state().session.graph_walk().unwrap().is_jump);
-    assert_eq!(harness.state().state.last_jump, None);
+    assert_eq!(harness.state().state.labs.graph.last_jump, None);
 }

@@ -157,7 +157,7 @@ fn keys_move_a_point_go_to_the_next_and_take_one_out() {
     assert!(points(&harness)[2].distance(before[2]) > 0.2);
     harness.key_press(Keyboard::Tab);
     harness.run_steps(2);
-    assert_eq!(harness.state().state.path.chosen, Some(3));
+    assert_eq!(harness.state().state.labs.path.chosen, Some(3));
     harness.key_press(Keyboard::Delete);
     harness.run_steps(2);
     assert_eq!(points(&harness).len(), 7);
@@ -181,7 +181,7 @@ fn a_double_click_on_the_path_adds_a_point_where_it_is() {
     step(vec![down.clone(), up.clone(), down, up], &mut harness);
     harness.run_steps(2);
     let state = &harness.state().state;
-    assert_eq!(points(&harness).len(), 9, "{:?}", state.path);
+    assert_eq!(points(&harness).len(), 9, "{:?}", state.labs.path);
 }
 
 #[test]

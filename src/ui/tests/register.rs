@@ -90,7 +90,7 @@ fn the_map_is_pointed_at_pressed_and_pinned() {
         let entry = session.library().find(session.params().text(key)).unwrap();
         entry.motion.as_ref().unwrap().clip().duration_secs()
     });
-    let [a, b] = harness.state().state.hovered_pair.expect("pointed at");
+    let [a, b] = harness.state().state.labs.register.hovered_pair.expect("pointed at");
     let fps = harness.state().session.distance_map().unwrap().fps();
     assert!(
         (a / fps - 0.5 * spans[0]).abs() < 0.02 && (b / fps - 0.5 * spans[1]).abs() < 0.02,

@@ -3,7 +3,7 @@
 
 use super::super::paint::{Run, faded, focus_ring, line_of, put};
 use super::super::words::Words;
-use super::{SliderResponse, SliderRow, Source};
+use super::row::{SliderResponse, SliderRow, Source};
 use crate::ui::language::tr;
 use crate::ui::theme::{self, Type, palette_of, space, theme_of};
 use eframe::egui::{

@@ -2,7 +2,7 @@
 
 use super::super::keys::keys_pressed;
 use super::super::paint::{faded, focus_ring};
-use super::{SliderResponse, SliderRow, Source};
+use super::row::{SliderResponse, SliderRow, Source};
 use crate::ui::theme::{palette_of, theme_of};
 use eframe::egui::{
     EventFilter, Key, Pos2, Rect, Response, Stroke, Ui, Vec2,

@@ -2,7 +2,8 @@
 
 use super::super::keys::keys_pressed;
 use super::super::paint::focus_ring;
-use super::{TimeAxis, Timeline, TimelineEvent};
+use super::super::time_axis::TimeAxis;
+use super::content::{Timeline, TimelineEvent};
 use crate::ui::theme::{HIT, palette_of, radius, theme_of};
 use eframe::egui::{
     CursorIcon, EventFilter, Id, Key, Rangef, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo,

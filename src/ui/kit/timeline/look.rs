@@ -1,7 +1,9 @@
 //! How the timeline looks: bars, seconds, the playhead, what a loop leaves out.
 
+use super::super::chip::Part;
 use super::super::paint::{Run, gradient_bar, line_of, put};
-use super::{Moment, Part, Stripe, TimeAxis, Timeline, Track};
+use super::super::time_axis::{TimeAxis, nice_step};
+use super::content::{Moment, Stripe, Timeline, Track};
 use crate::ui::language::{say, tr};
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{
@@ -78,20 +80,6 @@ pub(super) fn paint_ruler(axis: TimeAxis, bottom: f32, plot: Rect, ruler: Rect, 
     }
 }
 
-/// The step of 1, 2 or 5 times a power of ten that divides `span` into at most `most` pieces.
-pub(crate) fn nice_step(span: f64, most: f64) -> f64 {
-    let rough = span / most.max(1.0);
-    if !(rough.is_finite() && rough > 0.0) {
-        return 1.0;
-    }
-    let power = 10.0_f64.powf(rough.log10().floor());
-    [1.0, 2.0, 5.0, 10.0]
-        .into_iter()
-        .map(|factor| factor * power)
-        .find(|&step| step >= rough * (1.0 - 1e-9))
-        .unwrap_or(10.0 * power)
-}
-
 /// What a loop leaves out is veiled.
 pub(super) fn outside_loop(timeline: &Timeline<'_>, axis: TimeAxis, area: Rect, ui: &Ui) {
     let veil = palette_of(ui).panel.gamma_multiply(0.66);
@@ -165,24 +153,4 @@ pub(super) fn moment_ui(moment: &Moment<'_>, center: Pos2, id: Id, ui: &Ui) {
     let label = say(&said, ui);
     response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &label));
     response.on_hover_text(say(&said, ui));
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn steps_are_round_and_few() {
-        assert_eq!(nice_step(10.0, 10.0), 1.0);
-        assert_eq!(nice_step(3.9, 10.0), 0.5);
-        assert_eq!(nice_step(61.0, 8.0), 10.0);
-        assert_eq!(nice_step(0.0, 8.0), 1.0);
-        for span in [0.3, 1.7, 9.9, 128.0] {
-            let step = nice_step(span, 8.0);
-            assert!(
-                span / step <= 8.0 + 1e-9 && span / step > 8.0 / 5.1,
-                "{span} in steps of {step}"
-            );
-        }
-    }
 }

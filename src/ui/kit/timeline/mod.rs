@@ -1,6 +1,7 @@
 //! What happens in time: bars for the clips, the transition between them, a playhead over all, and
 //! the curves below.
 
+mod content;
 mod handles;
 mod look;
 mod scrub;
@@ -8,129 +9,14 @@ mod scrub;
 use self::handles::Handles;
 use self::look::{moment_ui, outside_loop, paint_playhead, paint_ruler, paint_stripe, paint_track};
 use self::scrub::scrub_ui;
-use super::chip::Part;
-use super::curves::{Curves, curves_ui, hover_ui, key_ui};
+use super::curves::{curves_ui, hover_ui, key_ui};
 use super::paint::{Run, focus_ring, full_width, line_of, put};
+use super::time_axis::TimeAxis;
 use super::words::Words;
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
-use eframe::egui::{Align2, Color32, Rangef, Rect, Response, Sense, Ui, pos2};
-use std::ops::Range;
+use eframe::egui::{Align2, Rangef, Rect, Sense, Ui, pos2};
 
-pub(super) use self::look::nice_step;
-
-/// A clip on the timeline.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Track<'a> {
-    /// Which part it plays: gives the bar its colour.
-    pub(crate) part: Part,
-    /// What stands before the bar: `A walk`. Hidden where there is no room.
-    pub(crate) label: &'a str,
-    /// What stands inside the bar.
-    pub(crate) name: &'a str,
-    /// When it begins and ends, in seconds.
-    pub(crate) start: f64,
-    /// When it ends, in seconds.
-    pub(crate) end: f64,
-    /// How long it takes to appear, in seconds.
-    pub(crate) fade_in: f64,
-    /// How long it takes to vanish, in seconds.
-    pub(crate) fade_out: f64,
-}
-
-/// When the feet of a motion stand: the left one in the upper line, the right one in the lower.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Stripe<'a> {
-    /// Whose feet: gives the colour.
-    pub(crate) part: Part,
-    /// What stands before them.
-    pub(crate) label: &'a str,
-    /// From and to, seconds: left, right.
-    pub(crate) feet: [Vec<Range<f64>>; 2],
-}
-
-/// A moment worth a mark: a foot planted, a seam.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Moment<'a> {
-    /// When, in seconds.
-    pub(crate) time: f64,
-    /// Its colour.
-    pub(crate) color: Color32,
-    /// What it is.
-    pub(crate) name: &'a str,
-}
-
-/// All that the timeline shows.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Timeline<'a> {
-    /// The length of it all, in seconds.
-    pub(crate) duration: f64,
-    /// Where the playhead stands, in seconds.
-    pub(crate) now: f64,
-    /// Frames per second: arrow keys step by one frame. 0: by a hundredth of the whole.
-    pub(crate) fps: f64,
-    /// The clips, from top to bottom.
-    pub(crate) tracks: &'a [Track<'a>],
-    /// When feet stand, below the clips, from top to bottom.
-    pub(crate) stripes: &'a [Stripe<'a>],
-    /// When the transition begins and ends, in seconds.
-    pub(crate) transition: Option<Range<f64>>,
-    /// Its edges can be dragged.
-    pub(crate) transition_editable: bool,
-    /// Where a loop begins, in seconds.
-    pub(crate) in_point: Option<f64>,
-    /// Where it ends, in seconds.
-    pub(crate) out_point: Option<f64>,
-    /// Marks above the bars.
-    pub(crate) moments: &'a [Moment<'a>],
-    /// The curves below the bars; none: bars only.
-    pub(crate) curves: Option<Curves<'a>>,
-}
-
-/// What was asked of the timeline. Times are in seconds, within the timeline.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum TimelineEvent {
-    /// Show this moment.
-    Seek(f64),
-    /// The playhead was taken hold of: pause while it is held.
-    ScrubStarted,
-    /// It was let go.
-    ScrubEnded,
-    /// Let the loop begin here.
-    SetIn(f64),
-    /// Let the loop end here.
-    SetOut(f64),
-    /// Let the transition begin here.
-    SetTransitionStart(f64),
-    /// Let the transition end here.
-    SetTransitionEnd(f64),
-    /// A handle was taken hold of: what follows until it is let go is one thing to undo.
-    EditStarted,
-    /// The handle was let go.
-    EditEnded,
-}
-
-/// Where times lie on the screen.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct TimeAxis {
-    /// The range of x that stands for the whole duration.
-    pub(crate) x: Rangef,
-    /// The duration, in seconds.
-    pub(crate) duration: f64,
-}
-
-impl TimeAxis {
-    /// Where a time lies.
-    pub(crate) fn x_of(&self, time: f64) -> f32 {
-        let t = if self.duration > 0.0 { time / self.duration } else { 0.0 };
-        self.x.min + t as f32 * self.x.span()
-    }
-
-    /// The time at a place, within the duration.
-    pub(crate) fn time_at(&self, x: f32) -> f64 {
-        let t = f64::from((x - self.x.min) / self.x.span().max(1.0));
-        (t * self.duration).clamp(0.0, self.duration.max(0.0))
-    }
-}
+pub(crate) use self::content::{Moment, Stripe, Timeline, TimelineEvent, Track};
 
 /// The bars, the curves, and the playhead over both. Press anywhere to go there, drag to scrub, use
 /// the arrow keys for frames.
@@ -292,24 +178,3 @@ const STRIPE: f32 = 15.0;
 
 /// Height of the line with the seconds, at a desk.
 const RULER: f32 = 18.0;
-
-/// A read-only look at the pointer's place in time, for panes that want to show it too.
-pub(crate) fn hovered_time(axis: TimeAxis, plot: Rect, response: &Response) -> Option<f64> {
-    response.hover_pos().filter(|pos| plot.contains(*pos)).map(|pos| axis.time_at(pos.x))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn places_and_times_are_inverse_and_stay_inside() {
-        let axis = TimeAxis { x: Rangef::new(100.0, 500.0), duration: 8.0 };
-        assert_eq!(axis.x_of(2.0), 200.0);
-        assert_eq!(axis.time_at(200.0), 2.0);
-        assert_eq!(axis.time_at(-50.0), 0.0);
-        assert_eq!(axis.time_at(900.0), 8.0);
-        let empty = TimeAxis { x: Rangef::new(100.0, 500.0), duration: 0.0 };
-        assert_eq!((empty.x_of(3.0), empty.time_at(300.0)), (100.0, 0.0));
-    }
-}

@@ -1,8 +1,9 @@
 //! How pointer, keys and screen readers move the playhead.
 
 use super::super::keys::keys_pressed;
+use super::super::time_axis::TimeAxis;
 use super::super::words::Words;
-use super::{TimeAxis, Timeline, TimelineEvent};
+use super::content::{Timeline, TimelineEvent};
 use eframe::egui::{
     EventFilter, Key, Pos2, Response, Ui, WidgetInfo,
     accesskit::{Action, ActionData},

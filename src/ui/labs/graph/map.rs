@@ -1,6 +1,7 @@
 //! The distances of all windows as a picture, with the transitions on it.
 
-use super::{jump_words, named, open_jump, point_at, table};
+use super::jump::{jump_words, named, open_jump, point_at};
+use super::table;
 use crate::ui::kit::{self, Fate, Matrix, MatrixMark, Stretch, TILE, Tile};
 use crate::ui::language::say;
 use crate::ui::out::Out;
@@ -159,7 +160,11 @@ pub(crate) fn map_ui(
         .filter_map(|(clip, name)| Some((set.number(Place { clip, frame: 0 })?, name.as_str())))
         .collect();
     let lit = drawn.as_ref().and_then(|drawn| {
-        drawn.pointed_or_lit(state.last_jump, walk.map(|walk| &**walk), session.now_secs())
+        drawn.pointed_or_lit(
+            state.labs.graph.last_jump,
+            walk.map(|walk| &**walk),
+            session.now_secs(),
+        )
     });
     let now = walk.and_then(|walk| walk.at(session.now_secs())).and_then(|at| set.number(at.place));
     let matrix = Matrix {

@@ -1,6 +1,7 @@
 //! What is set of graph and walk.
 
-use super::{close_jump, map, no_way, shows_jump, table};
+use super::jump::{close_jump, no_way, shows_jump};
+use super::{map, table};
 use crate::ui::kit::{self, Button, Histogram, Icon};
 use crate::ui::language::{say, tr};
 use crate::ui::out::{Action, Out};
@@ -34,7 +35,7 @@ pub(crate) fn graph_ui(session: &Session, state: &mut UiState, out: &mut Out, ui
     if let Some(problem) = session.panes().iter().find_map(|pane| pane.problem.as_ref()) {
         kit::note_ui(&say(&problem.to_sentence(), ui), palette.warning, ui);
     }
-    if !state.has_map_panel {
+    if !state.labs.graph.has_map_panel {
         map::map_ui(session, f32::INFINITY, state, out, ui);
     }
     clips_ui(session, out, ui);
@@ -47,7 +48,7 @@ pub(crate) fn graph_ui(session: &Session, state: &mut UiState, out: &mut Out, ui
     ui.add_space(space::M);
     experiments_ui(session, out, ui);
     ui.add_space(space::M);
-    if !state.has_map_panel || session.panes().len() < 2 {
+    if !state.labs.graph.has_map_panel || session.panes().len() < 2 {
         kit::folded_ui(text::NUMBERS, ui, |ui| table::table_ui(session, out, ui));
     }
     files_ui(session, out, ui);

@@ -1,7 +1,8 @@
 //! Below the stage: the walk in time, and the graph as bars and arcs.
 
+use super::jump::{jump_words, named, no_way, open_jump, point_at};
 use super::map::Drawn;
-use super::{jump_words, named, no_way, open_jump, point_at, rows};
+use super::rows;
 use crate::ui::kit::{self, Moment, Strip, Timeline, TimelineEvent};
 use crate::ui::language::say;
 use crate::ui::out::Out;
@@ -109,7 +110,7 @@ fn strip_ui(session: &Session, walk: &Arc<Walk>, state: &mut UiState, out: &mut 
         arcs: &drawn.arcs,
         now: at.and_then(|at| set.number(at.place)),
         lit_stretch,
-        lit_arc: drawn.pointed_or_lit(state.last_jump, Some(walk), session.now_secs()),
+        lit_arc: drawn.pointed_or_lit(state.labs.graph.last_jump, Some(walk), session.now_secs()),
     };
     let height = (ui.available_height() - space::XS).max(40.0);
     let response = kit::strip_ui(&strip, height, ui);
@@ -128,7 +129,8 @@ fn strip_ui(session: &Session, walk: &Arc<Walk>, state: &mut UiState, out: &mut 
 /// transition that plays, else where the walk is.
 fn caption(session: &Session, walk: &Walk, state: &UiState) -> Message {
     let built = session.graph_built();
-    let pointed = state.last_jump.and_then(|ends| jump_words(built?, Some(walk), ends, session));
+    let pointed =
+        state.labs.graph.last_jump.and_then(|ends| jump_words(built?, Some(walk), ends, session));
     if let Some(words) = pointed {
         return words;
     }

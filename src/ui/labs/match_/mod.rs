@@ -2,22 +2,19 @@
 //! strip.
 
 mod hand;
+mod present;
 mod rows;
 mod strip;
 mod tags;
 mod why;
 
-pub(crate) use hand::{DriveHand, Pad};
-pub(crate) use hand::{steer, stick_on_stage_ui};
+pub(crate) use hand::{candidate, steer, stick_on_stage_ui};
 pub(crate) use rows::{compare_hysteresis, drive_ui};
 pub(crate) use strip::drive_panel_ui;
 
-use crate::ui::labs::{Compares, LabUi, Shown, Title};
+use crate::ui::labs::lab_ui::{Compares, LabUi, Shown, Title};
 use crate::ui::text;
-use segue_session::LabId;
-use segue_session::{DriveMoment, Driven};
-use segue_session::{Key, Session};
-use std::sync::Arc;
+use segue_session::Key;
 
 /// The lab's part of the page.
 pub(super) const LAB: LabUi = LabUi {
@@ -35,15 +32,4 @@ fn title(shown: &Shown<'_>) -> Title {
         secondary: shown.spoken(Key::Hysteresis),
         ..Title::default()
     }
-}
-
-/// Whether the lab is open.
-pub(crate) fn is_open(session: &Session) -> bool {
-    session.params().lab() == LabId::Match
-}
-
-/// What the first pane shows now, where it was driven.
-fn shown(session: &Session) -> Option<(&Arc<Driven>, &DriveMoment)> {
-    let driven = session.main_outcome()?.driven()?;
-    Some((driven, driven.at(session.now_secs())?))
 }

@@ -1,5 +1,6 @@
 //! What is set in the Match lab.
 
+use super::present::shown;
 use super::tags::tags_ui;
 use super::why::why_ui;
 use crate::ui::kit::{self, Button, Icon};
@@ -146,7 +147,7 @@ fn hysteresis_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
 
 /// Which clip is preferred while the input is still.
 fn preferred_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
-    let Some((driven, _)) = super::shown(session) else {
+    let Some((driven, _)) = shown(session) else {
         return;
     };
     let ids = session.params().clip_ids(Key::MatchClips);
@@ -238,7 +239,7 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         more.push(entry.id.clone());
         set(more, out);
     }
-    if let Some((driven, _)) = super::shown(session) {
+    if let Some((driven, _)) = shown(session) {
         let skipped = driven.database.skipped();
         kit::note_ui(&say(&text::database(&driven.database), ui), palette.muted, ui);
         for error in skipped.iter().take(3) {

@@ -1,6 +1,6 @@
 //! Below the stage: the clips with the place that plays jumping on them, and the costs over time.
 
-use super::shown;
+use super::present::shown;
 use crate::ui::kit::{
     self, Curves, Moment, PlaceBar, Places, Series, StripPlace, Timeline, TimelineEvent,
 };
@@ -199,12 +199,12 @@ fn strip_ui(
         rows: if mirrored { 2 } else { 1 },
         now: moment.and_then(|moment| at(moment.place)),
         jumps: &jumps,
-        chosen: state.drive.stretch.as_ref(),
+        chosen: state.labs.match_.stretch.as_ref(),
         marks: &marks,
         legend: &legend,
     };
     if let Some(stretch) = kit::places_ui(&places, height, ui) {
-        state.drive.stretch = Some(stretch);
+        state.labs.match_.stretch = Some(stretch);
     }
 }
 

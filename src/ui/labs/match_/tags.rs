@@ -1,6 +1,6 @@
 //! Stretches of clips that are tagged by hand, and which tags are asked for.
 
-use super::shown;
+use super::present::shown;
 use super::strip::strip_place;
 use crate::ui::kit::{self, Button, Chosen, Icon, SliderRow};
 use crate::ui::language::say;
@@ -43,16 +43,16 @@ pub(crate) fn tags_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
         return;
     };
     if kit::button_ui(Button::new(text::TAG_WHAT_PLAYS), ui).clicked() {
-        state.drive.stretch = strip_place(&driven.database, moment.place).map(|at| Chosen {
+        state.labs.match_.stretch = strip_place(&driven.database, moment.place).map(|at| Chosen {
             bar: at.bar,
             frames: at.frame.saturating_sub(AROUND)..at.frame + AROUND,
         });
     }
-    let Some(stretch) = &mut state.drive.stretch else {
+    let Some(stretch) = &mut state.labs.match_.stretch else {
         return;
     };
     let Some(motion) = motion_of(&driven.database, stretch.bar) else {
-        state.drive.stretch = None;
+        state.labs.match_.stretch = None;
         return;
     };
     let ids = session.params().clip_ids(Key::MatchClips);
@@ -111,9 +111,10 @@ pub(crate) fn tags_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
             }
         }
     });
-    let field = kit::text_field_ui(text::OWN_WORD, text::TYPE_A_WORD, &mut state.drive.word, ui);
-    if field.committed && !state.drive.word.trim().is_empty() {
-        add(std::mem::take(&mut state.drive.word).trim(), false, out);
+    let field =
+        kit::text_field_ui(text::OWN_WORD, text::TYPE_A_WORD, &mut state.labs.match_.word, ui);
+    if field.committed && !state.labs.match_.word.trim().is_empty() {
+        add(std::mem::take(&mut state.labs.match_.word).trim(), false, out);
     }
 }
 

@@ -1,6 +1,6 @@
 //! Why this frame: what the last search found, with its cost by feature block.
 
-use super::shown;
+use super::present::shown;
 use crate::ui::kit::{self, CostBars, CostRow};
 use crate::ui::language::{say, tr};
 use crate::ui::out::Out;
@@ -33,7 +33,7 @@ pub(crate) fn place_name(database: &Database, candidate: &Candidate, session: &S
 
 /// The rows.
 pub(crate) fn why_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    state.drive.hovered = None;
+    state.labs.match_.hovered = None;
     let palette = palette_of(ui);
     ui.label(RichText::new(tr(text::WHY, ui)).font(theme_of(ui).font(Type::Strong)));
     let search =
@@ -56,7 +56,7 @@ pub(crate) fn why_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: 
             place_name(database, candidate, session),
             candidate,
             index == 0 && search.held.is_none(),
-            state.drive.chosen == Some(index),
+            state.labs.match_.chosen == Some(index),
         )
     });
     let rows: Vec<CostRow> = std::iter::once(current).chain(found).collect();
@@ -65,10 +65,10 @@ pub(crate) fn why_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: 
         Block::ALL.iter().map(|block| text::block(*block)).zip(colors).collect();
     let response = kit::cost_bars_ui(&CostBars { rows: &rows, parts: &parts }, ui);
     // The first row is what was left: it has no ghost.
-    state.drive.hovered = response.hovered.and_then(|row| row.checked_sub(1));
+    state.labs.match_.hovered = response.hovered.and_then(|row| row.checked_sub(1));
     if let Some(clicked) = response.clicked {
         let clicked = clicked.checked_sub(1);
-        state.drive.chosen = clicked.filter(|index| state.drive.chosen != Some(*index));
+        state.labs.match_.chosen = clicked.filter(|index| state.labs.match_.chosen != Some(*index));
     }
     ui.add_space(space::XS);
     let words = text::searched(search, database.valid().len());

@@ -1,13 +1,12 @@
 //! The path on the stage: its control points are taken with mouse, finger or keys.
 
-use crate::ui::kit;
 use crate::ui::labs::path::ground_line::View;
 use crate::ui::labs::path::hand::{Held, path_of, snapped};
 use crate::ui::language::{say, tr};
 use crate::ui::out::Out;
+use crate::ui::stage::framing::framing;
 use crate::ui::state::UiState;
 use crate::ui::text;
-use crate::ui::theme::space;
 use eframe::egui::{
     CursorIcon, EventFilter, Key as Keyboard, Modifiers, Rect, Response, Role, Sense, Ui, Vec2,
     WidgetInfo,
@@ -48,7 +47,7 @@ pub(crate) fn handles_ui(
     let view = View { camera: &camera, rect };
     let spline = path.road.spline();
     let count = spline.points().len();
-    state.path.chosen = state.path.chosen.filter(|&chosen| chosen < count);
+    state.labs.path.chosen = state.labs.path.chosen.filter(|&chosen| chosen < count);
     // Both ends of a loop are one point.
     let shown = if spline.is_closed() { count - 1 } else { count };
     for (index, &point) in spline.points().iter().enumerate().take(shown) {
@@ -58,13 +57,13 @@ pub(crate) fn handles_ui(
         let id = ui.make_persistent_id(("control point", pane, index));
         let hit = Rect::from_center_size(at, Vec2::splat(GRIP)).intersect(rect);
         let response = ui.interact(hit, id, Sense::click_and_drag());
-        let chosen = state.path.chosen == Some(index);
+        let chosen = state.labs.path.chosen == Some(index);
         let said = say(&text::control_point(index, shown, point), ui);
         response.widget_info(|| WidgetInfo::selected(Role::Button, true, chosen, &said));
         let handle = Handle { index, pane, point, view: &view, path, response: &response };
         handle.input(session, state, out, ui);
     }
-    if state.path.held.is_none() && state.path.hovered.is_none() {
+    if state.labs.path.held.is_none() && state.labs.path.hovered.is_none() {
         place_input(spline, &view, stage, session, state, out, ui);
     }
 }
@@ -82,7 +81,7 @@ struct Handle<'a> {
 impl Handle<'_> {
     fn input(&self, session: &Session, state: &mut UiState, out: &mut Out, ui: &Ui) {
         let Self { index, pane, point, view, path, response } = *self;
-        let hand = &mut state.path;
+        let hand = &mut state.labs.path;
         if response.hovered() || response.dragged() {
             hand.hovered = Some(index);
             let icon = if response.dragged() { CursorIcon::Grabbing } else { CursorIcon::Grab };
@@ -153,14 +152,14 @@ impl Handle<'_> {
             let by = DVec2::new(cos, -sin) * steps.x - DVec2::new(sin, cos) * steps.y;
             let to = snapped(point + by * step, session);
             let spline = path.road.spline();
-            state.path.edit_once(spline, &PathEdit::Move { index, to }, session, out);
+            state.labs.path.edit_once(spline, &PathEdit::Move { index, to }, session, out);
         }
         if pressed(Modifiers::NONE, Keyboard::Delete)
             + pressed(Modifiers::NONE, Keyboard::Backspace)
             > 0.0
         {
-            state.path.chosen = Some(index);
-            state.path.remove_point(path, session, out);
+            state.labs.path.chosen = Some(index);
+            state.labs.path.remove_point(path, session, out);
         }
     }
 }
@@ -189,10 +188,10 @@ fn place_input(
     let Some((_, place, parameter)) = nearest.filter(|nearest| nearest.0 < REACH) else {
         return;
     };
-    state.path.place = Some((place, parameter));
+    state.labs.path.place = Some((place, parameter));
     ui.ctx().set_cursor_icon(CursorIcon::Copy);
     if stage.double_clicked()
-        && state.path.edit_once(spline, &PathEdit::Insert { at: parameter }, session, out)
+        && state.labs.path.edit_once(spline, &PathEdit::Insert { at: parameter }, session, out)
     {
         let before = spline
             .with_ends(SplineEnds::Clamped)
@@ -200,18 +199,16 @@ fn place_input(
             .iter()
             .filter(|&&at| at < parameter)
             .count();
-        state.path.chosen = Some(before);
+        state.labs.path.chosen = Some(before);
     }
 }
 
-/// Why the last edit was not made, where the hand is.
-pub(crate) fn said_ui(stage: Rect, numbers_top: f32, state: &UiState, ui: &mut Ui) {
-    let words = match &state.path.said {
-        Some(said) => say(said, ui),
-        None if state.drawing.is_some() => tr(text::DRAW_HINT, ui).into_owned(),
-        None => return,
-    };
-    kit::caption_ui(&words, stage.with_max_y(numbers_top - space::S), ui);
+/// Returns why the last edit was not made, or how to draw.
+pub(crate) fn note(state: &UiState, ui: &Ui) -> Option<String> {
+    match &state.labs.path.said {
+        Some(said) => Some(say(said, ui)),
+        None => state.drawing.is_some().then(|| tr(text::DRAW_HINT, ui).into_owned()),
+    }
 }
 
 /// When the lab opens, the whole path comes into sight, unless somebody has put the camera
@@ -219,14 +216,13 @@ pub(crate) fn said_ui(stage: Rect, numbers_top: f32, state: &UiState, ui: &mut U
 pub(crate) fn frame_once(session: &Session, state: &mut UiState, out: &mut Out) {
     let is_open = session.params().lab() == LabId::Path;
     let untouched = || session.params().changed().all(|(param, _)| param.group != Group::Camera);
-    match (is_open, &state.path.framed) {
-        (true, None) if !untouched() => state.path.framed = Some(Vec::new()),
+    match (is_open, &state.labs.path.framed) {
+        (true, None) if !untouched() => state.labs.path.framed = Some(Vec::new()),
         (true, None) => {
             if session.main_outcome().is_some_and(|outcome| outcome.path().is_some())
-                && let Some(values) =
-                    crate::ui::stage_panel::framing(session, state, Some(PITCH_DEG))
+                && let Some(values) = framing(session, state, Some(PITCH_DEG))
             {
-                state.path.framed = Some(values.clone());
+                state.labs.path.framed = Some(values.clone());
                 out.commands.push(Command::Set(values));
             }
         }
@@ -238,8 +234,8 @@ pub(crate) fn frame_once(session: &Session, state: &mut UiState, out: &mut Out) 
                 let defaults = values.iter().map(|(key, _)| (*key, key.param().default_value()));
                 out.commands.push(Command::Set(defaults.collect()));
             }
-            state.path.framed = None;
-            state.path.said = None;
+            state.labs.path.framed = None;
+            state.labs.path.said = None;
         }
         _ => {}
     }

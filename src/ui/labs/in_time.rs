@@ -1,0 +1,79 @@
+//! What single labs have in time: strips in place of the timeline, and what its handles set.
+
+use super::lab_ui::Edge;
+use super::{blend, graph, make, match_, register, transition};
+use crate::ui::out::Out;
+use crate::ui::state::{Layout, UiState};
+use eframe::egui::{Context, Ui};
+use segue_session::{Key, Kind, Outcome, Params, Session, Walk};
+use segue_text::Message;
+use std::sync::Arc;
+
+/// Steers what is driven by keys, stick and gamepad.
+pub(crate) fn steer(session: &Session, state: &mut UiState, out: &mut Out, ctx: &Context) {
+    match_::steer(session, state, out, ctx);
+}
+
+/// Draws the strip of a walk or of a driven character. Returns `false`, and draws nothing, where
+/// the timeline shows the result.
+pub(crate) fn strip_ui(
+    session: &Session,
+    layout: Layout,
+    state: &mut UiState,
+    out: &mut Out,
+    ui: &mut Ui,
+) -> bool {
+    if let Some(walk) = whole_walk(session) {
+        graph::walk_panel_ui(session, walk, layout, state, out, ui);
+        return true;
+    }
+    let Some(outcome) = session.main_outcome() else {
+        return false;
+    };
+    let Some(driven) = outcome.driven() else {
+        return false;
+    };
+    match_::drive_panel_ui(session, outcome, driven, layout, state, out, ui);
+    true
+}
+
+/// Returns whether a strip is drawn in place of the timeline.
+pub(crate) fn has_strip(session: &Session) -> bool {
+    let is_driven = session.main_outcome().is_some_and(|outcome| outcome.driven().is_some());
+    is_driven || whole_walk(session).is_some()
+}
+
+/// Returns the walk of the first pane, where it is not a single transition.
+fn whole_walk(session: &Session) -> Option<&Arc<Walk>> {
+    session.graph_walk().filter(|walk| !walk.is_jump)
+}
+
+/// Returns the name of a motion that was made from these parameters alone; `None` for results of
+/// clips.
+pub(crate) fn made_name(params: &Params) -> Option<Message> {
+    make::made_name(params)
+}
+
+/// Returns the value that dragging the start of the transition to a time sets.
+pub(crate) fn start_value(secs: f64, session: &Session, outcome: &Outcome) -> Option<(Key, f64)> {
+    edge_value(Edge::Start, secs, session, outcome)
+}
+
+/// Returns the value that dragging the end of the transition to a time sets, within its limits.
+pub(crate) fn end_value(secs: f64, session: &Session, outcome: &Outcome) -> Option<(Key, f64)> {
+    let (key, value) = edge_value(Edge::End, secs, session, outcome)?;
+    match key.param().kind {
+        Kind::Number { min, max, .. } => Some((key, value.clamp(min, max))),
+        _ => Some((key, value)),
+    }
+}
+
+fn edge_value(edge: Edge, secs: f64, session: &Session, outcome: &Outcome) -> Option<(Key, f64)> {
+    if let Some(registered) = outcome.registered() {
+        return register::edge_value(edge, secs, registered, outcome.motion.clip().fps());
+    }
+    if transition::is_open(session) {
+        return transition::edge_value(edge, secs, session, outcome);
+    }
+    Some(blend::edge_value(edge, secs, outcome))
+}

@@ -1,0 +1,75 @@
+//! The parts that every lab has on the page, as types.
+
+use crate::ui::out::Out;
+use crate::ui::state::UiState;
+use eframe::egui::Ui;
+use glam::DVec2;
+use segue_session::{Key, Pane, Params, Session};
+use segue_text::Message;
+
+/// A lab's part of the page; each lab's own file has one, as `LAB`.
+pub(crate) struct LabUi {
+    /// The rows of its panel.
+    pub(crate) panel_ui: fn(&Session, &mut UiState, &mut Out, &mut Ui),
+    /// What its comparison begins with.
+    pub(crate) compares: Compares,
+    /// The title of a pane.
+    pub(crate) title: fn(&Shown<'_>) -> Title,
+    /// What to look at on the stage, in one line.
+    pub(crate) hint: fn(&Session) -> Option<&'static str>,
+    /// Takes a line that was drawn over the ground; `None` where none can be drawn.
+    pub(crate) take_line: Option<TakeLine>,
+}
+
+/// Takes a line over the ground, x and z in metres.
+pub(crate) type TakeLine = fn(&[DVec2], &Session, &mut UiState, &mut Out);
+
+/// What a comparison begins with.
+pub(crate) enum Compares {
+    /// A parameter: the value that is set, and others.
+    Key(Key),
+    /// A choice of the lab's own.
+    Own(fn(&Session, &mut Out)),
+}
+
+/// What a pane shows.
+pub(crate) struct Shown<'a> {
+    pub(crate) pane: &'a Pane,
+    /// The parameters of the result on the stage; without one, the present ones.
+    pub(crate) params: &'a Params,
+    pub(crate) session: &'a Session,
+}
+
+impl Shown<'_> {
+    /// Returns the name of the clip in A or B.
+    pub(crate) fn name(&self, key: Key) -> Message {
+        self.name_of(self.params.text(key)).unwrap_or_default()
+    }
+
+    /// Returns the name of a clip of the library; `None` for one that is not there.
+    pub(crate) fn name_of(&self, id: &str) -> Option<Message> {
+        self.session.library().find(id).map(|entry| entry.title())
+    }
+
+    /// Returns the word on screen of a parameter's value.
+    pub(crate) fn spoken(&self, key: Key) -> Message {
+        key.param().spoken(self.params.get(key))
+    }
+}
+
+/// The title of a pane.
+#[derive(Default)]
+pub(crate) struct Title {
+    pub(crate) strong: Message,
+    pub(crate) text: Message,
+    pub(crate) secondary: Message,
+}
+
+/// An end of the transition on the timeline.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Edge {
+    /// Where it begins.
+    Start,
+    /// Where it ends.
+    End,
+}

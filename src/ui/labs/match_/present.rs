@@ -1,0 +1,15 @@
+//! What the Match lab shows now.
+
+use segue_session::{DriveMoment, Driven, LabId, Session};
+use std::sync::Arc;
+
+/// Returns whether the lab is open.
+pub(super) fn is_open(session: &Session) -> bool {
+    session.params().lab() == LabId::Match
+}
+
+/// Returns what the first pane shows now, where it was driven.
+pub(super) fn shown(session: &Session) -> Option<(&Arc<Driven>, &DriveMoment)> {
+    let driven = session.main_outcome()?.driven()?;
+    Some((driven, driven.at(session.now_secs())?))
+}

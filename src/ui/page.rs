@@ -1,0 +1,248 @@
+//! The page: where its panels lie, at a desk, on a phone, and inside another page.
+
+use super::commands;
+use super::kit;
+use super::labs::{self, in_time, on_stage};
+use super::lessons_panel;
+use super::library_panel;
+use super::out::Out;
+use super::overlays;
+use super::stage::{Paint, stage_panel_ui};
+use super::state::{Layout, UiState};
+use super::text;
+use super::theme::{palette_of, space, theme_of};
+use super::timeline::{CurveCache, timeline_panel_ui};
+use super::top_bar;
+use eframe::egui::{self, Frame, Margin, Panel, ScrollArea, Stroke, Ui};
+use segue_session::{Key, Session};
+
+/// Draws the page. `paint` draws the 3D picture into the stage.
+pub(crate) fn show(
+    session: &Session,
+    state: &mut UiState,
+    curves: &mut CurveCache,
+    paint: Paint<'_>,
+    ui: &mut Ui,
+) -> Out {
+    let mut out = Out::default();
+    state.joints_open = false;
+    on_stage::begin_frame(session, state);
+    commands::take_keys(session, state, &mut out, ui);
+    let layout = Layout::of(ui.available_width(), theme_of(ui).scale());
+    state.layout = layout;
+    let has_room = ui.available_width() >= MAP_ROOM * theme_of(ui).scale();
+    state.labs.graph.has_map_panel =
+        has_room && labs::has_side_panel(session) && !lessons_panel::is_open(session);
+    if session.params().is_on(Key::Embed) {
+        embedded_ui(session, state, curves, &mut out, paint, ui);
+    } else {
+        match layout {
+            Layout::Phone => phone_ui(session, state, curves, &mut out, paint, ui),
+            Layout::Desk | Layout::Tablet => {
+                desk_ui(session, layout, state, curves, &mut out, paint, ui);
+            }
+        }
+    }
+    in_time::steer(session, state, &mut out, ui.ctx());
+    overlays::overlays_ui(session, state, &mut out, ui);
+    out
+}
+
+fn panel_frame(ui: &Ui, horizontal: f32, vertical: f32) -> Frame {
+    Frame::new()
+        .fill(palette_of(ui).panel)
+        .inner_margin(Margin::symmetric(horizontal as i8, vertical as i8))
+}
+
+/// The frame of a panel that scrolls: at its right edge there is room for the bar, so that it does
+/// not lie on numbers and units.
+fn scrolling_frame(ui: &Ui, horizontal: f32, vertical: f32) -> Frame {
+    let mut frame = panel_frame(ui, horizontal, vertical);
+    frame.inner_margin.right = BAR_MARGIN as i8;
+    frame
+}
+
+/// What scrolls inside of a [`scrolling_frame`], as wide as in a panel that does not.
+fn scrolled_ui(horizontal: f32, ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
+    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        let margin = Margin { right: (horizontal - BAR_MARGIN) as i8, ..Margin::ZERO };
+        Frame::new().inner_margin(margin).show(ui, content);
+    });
+}
+
+/// From this width on the map of a graph has room beside the stage, points.
+const MAP_ROOM: f32 = 1000.0;
+/// Between the bar of a panel that scrolls and the panel's edge, points.
+const BAR_MARGIN: f32 = 3.0;
+
+fn desk_ui(
+    session: &Session,
+    layout: Layout,
+    state: &mut UiState,
+    curves: &mut CurveCache,
+    out: &mut Out,
+    paint: Paint<'_>,
+    ui: &mut Ui,
+) {
+    let scale = theme_of(ui).scale();
+    let height = ui.available_height();
+    let frame = panel_frame(ui, space::L, space::S);
+    Panel::top("top bar")
+        .exact_size(48.0 * scale)
+        .frame(frame)
+        .show(ui, |ui| top_bar::top_bar_ui(session, layout, state, out, ui));
+    Panel::bottom("timeline")
+        .exact_size((214.0 * scale).min(0.31 * height).round())
+        .frame(panel_frame(ui, space::L, space::S))
+        .resizable(false)
+        .show(ui, |ui| {
+            timeline_panel_ui(session, layout, curves, state, out, ui);
+        });
+    let side = |ui: &Ui| panel_frame(ui, space::M, space::M);
+    let lesson = lessons_panel::is_open(session);
+    if lesson && layout == Layout::Desk {
+        Panel::left("lesson")
+            .exact_size(lessons_panel::width(ui.available_width(), scale))
+            .frame(scrolling_frame(ui, space::L, space::M))
+            .resizable(false)
+            .show(ui, |ui| lessons_panel::lessons_panel_ui(session, state, out, ui));
+    }
+    // A lesson, and the map of the graph, take the library's room.
+    let drawer = layout == Layout::Tablet || lesson || labs::has_side_panel(session);
+    if state.library_open || !drawer {
+        Panel::left("library").exact_size(244.0 * scale).frame(side(ui)).resizable(false).show(
+            ui,
+            |ui| {
+                library_panel::library_panel_ui(session, state, out, ui);
+            },
+        );
+    }
+    // A lesson that has no place of its own shares that of the parameters.
+    let shared = lesson && layout == Layout::Tablet;
+    Panel::right("lab")
+        .exact_size(if shared { 340.0 } else { 288.0 } * scale)
+        .frame(scrolling_frame(ui, space::L, space::M))
+        .resizable(false)
+        .show(ui, |ui| {
+            if shared {
+                lessons_panel::lesson_or_parameters_ui(state, ui);
+                if !state.lesson_behind {
+                    lessons_panel::lessons_panel_ui(session, state, out, ui);
+                    return;
+                }
+            }
+            if drawer {
+                library_panel::library_button_ui(state, ui);
+                ui.add_space(space::S);
+            }
+            scrolled_ui(space::L, ui, |ui| labs::lab_panel_ui(session, state, out, ui));
+        });
+    if state.labs.graph.has_map_panel {
+        Panel::right("graph map")
+            .exact_size((labs::side_panel_share(session) * ui.available_width()).round())
+            .frame(panel_frame(ui, space::M, space::M))
+            .resizable(false)
+            .show(ui, |ui| labs::side_panel_ui(session, state, out, ui));
+    }
+    egui::CentralPanel::default().frame(Frame::new()).show(ui, |ui| {
+        stage_panel_ui(session, layout, state, out, paint, ui);
+    });
+}
+
+/// Draws the timeline where room is scarce. Strips of walks and drives fill the room that they get;
+/// tracks and stripes take the room that they need, and no panel may be smaller than its contents:
+/// the next one would cover it.
+fn slim_time_ui(
+    panel: Panel,
+    margin: f32,
+    session: &Session,
+    state: &mut UiState,
+    curves: &mut CurveCache,
+    out: &mut Out,
+    ui: &mut Ui,
+) {
+    let scale = theme_of(ui).scale();
+    let panel = if in_time::has_strip(session) {
+        panel.exact_size(144.0 * scale)
+    } else {
+        panel.default_size(136.0 * scale)
+    };
+    panel.frame(panel_frame(ui, margin, space::S)).show(ui, |ui| {
+        timeline_panel_ui(session, Layout::Phone, curves, state, out, ui);
+    });
+}
+
+/// One column: bar, stage, timeline, parameters.
+fn phone_ui(
+    session: &Session,
+    state: &mut UiState,
+    curves: &mut CurveCache,
+    out: &mut Out,
+    paint: Paint<'_>,
+    ui: &mut Ui,
+) {
+    let scale = theme_of(ui).scale();
+    let frame = panel_frame(ui, space::M, space::S);
+    Panel::top("top bar")
+        .exact_size(48.0 * scale)
+        .frame(frame)
+        .show(ui, |ui| top_bar::top_bar_ui(session, Layout::Phone, state, out, ui));
+    let lesson = lessons_panel::is_open(session);
+    let height = ui.available_height();
+    Panel::top("stage")
+        .exact_size((height * if lesson { 0.42 } else { 0.5 }).round())
+        .frame(Frame::new())
+        .show(ui, |ui| {
+            stage_panel_ui(session, Layout::Phone, state, out, paint, ui);
+        });
+    slim_time_ui(Panel::top("timeline"), space::L, session, state, curves, out, ui);
+    egui::CentralPanel::default().frame(scrolling_frame(ui, space::L, space::M)).show(ui, |ui| {
+        if lesson && !state.library_open {
+            lessons_panel::lesson_or_parameters_ui(state, ui);
+            if !state.lesson_behind {
+                lessons_panel::lessons_panel_ui(session, state, out, ui);
+                return;
+            }
+        }
+        scrolled_ui(space::L, ui, |ui| {
+            if state.library_open {
+                library_panel::drop_ui(session, state, out, ui);
+                library_panel::library_list_ui(session, state, out, ui);
+                ui.add_space(space::M);
+                if kit::button_ui(kit::Button::new(text::CLOSE), ui).clicked() {
+                    state.library_open = false;
+                }
+            } else {
+                // On so small a stage it would lie on what it speaks of.
+                if let Some(hint) = labs::welcome(session) {
+                    kit::note_ui(hint, palette_of(ui).muted, ui);
+                    ui.add_space(space::M);
+                }
+                labs::lab_panel_ui(session, state, out, ui);
+            }
+        });
+    });
+}
+
+/// Inside another page: the stage, a slim timeline, and the parameters that the link names.
+fn embedded_ui(
+    session: &Session,
+    state: &mut UiState,
+    curves: &mut CurveCache,
+    out: &mut Out,
+    paint: Paint<'_>,
+    ui: &mut Ui,
+) {
+    let scale = theme_of(ui).scale();
+    slim_time_ui(Panel::bottom("timeline"), space::M, session, state, curves, out, ui);
+    if labs::has_named_params(session) {
+        let frame = panel_frame(ui, space::M, space::S).stroke(Stroke::NONE);
+        Panel::bottom("parameters")
+            .frame(frame)
+            .show(ui, |ui| labs::named_params_ui(session, out, ui));
+    }
+    let layout = if ui.available_width() < 480.0 * scale { Layout::Phone } else { Layout::Desk };
+    egui::CentralPanel::default().frame(Frame::new()).show(ui, |ui| {
+        stage_panel_ui(session, layout, state, out, paint, ui);
+    });
+}

@@ -1,0 +1,143 @@
+//! The bottom panel: what happens in time.
+
+mod curves;
+mod events;
+mod tracks;
+
+pub(crate) use self::curves::CurveCache;
+
+use self::curves::{Curve, CurveOf, curve_menu_ui, unit_of};
+use self::events::timeline_event;
+use self::tracks::{
+    feet_names, hard_turns, named_outcomes, round_name, seams, stripes, tracks, whole_track,
+};
+use crate::ui::kit::{self, Curves, Part, Series, Timeline};
+use crate::ui::labs::in_time;
+use crate::ui::language::say;
+use crate::ui::out::Out;
+use crate::ui::state::{Layout, UiState};
+use crate::ui::text;
+use crate::ui::theme::palette_of;
+use crate::ui::transport_row::{Playhead, transport_row_ui};
+use eframe::egui::Ui;
+use segue_motion::skeleton::Role;
+use segue_session::choices;
+use segue_session::{Key, Pane, Session, frame_at};
+use segue_text::{Message, msg};
+
+/// Draws the panel: the strip of a walk or drive, else the timeline of the result.
+pub(crate) fn timeline_panel_ui(
+    session: &Session,
+    layout: Layout,
+    cache: &mut CurveCache,
+    state: &mut UiState,
+    out: &mut Out,
+    ui: &mut Ui,
+) {
+    if in_time::strip_ui(session, layout, state, out, ui) {
+        return;
+    }
+    let params = session.params();
+    let Some(outcome) = session.main_outcome() else {
+        return kit::note_ui(text::EMPTY_PANE, palette_of(ui).muted, ui);
+    };
+    let clip = outcome.motion.clip();
+    let (joint, quantity) = (params.text(Key::Joint), params.choice::<choices::Curve>());
+    let unit = unit_of(quantity);
+    let role = Role::ALL.into_iter().find(|role| role.name() == joint);
+    let joint_title = role.map_or_else(|| Message::data(joint), |role| role.name().into());
+    let quantity_label = quantity.label();
+    let caption = msg!("{joint} · {what} {unit}", joint = joint_title, what = quantity_label, unit);
+    let caption = say(&caption, ui);
+    let playhead = Playhead {
+        secs: session.now_secs(),
+        frame: frame_at(&outcome.motion, session.now_secs()),
+        frames: clip.frames(),
+    };
+    let row = transport_row_ui(playhead, &caption, layout, session, out, ui);
+    if layout != Layout::Phone {
+        curve_menu_ui(outcome, &row, out, ui);
+    }
+
+    let panes = named_outcomes(session, |name| say(name, ui));
+    cache.update(outcome, &panes, joint, quantity);
+    let palette = palette_of(ui);
+    let series: Vec<Series<'_>> = cache
+        .lines
+        .iter()
+        .map(|Curve { of, points }| match of {
+            CurveOf::Source(part) => Series {
+                name: of.name(),
+                color: part.fill(palette).0,
+                ink: part.ink(palette),
+                strong: false,
+                points,
+            },
+            CurveOf::Pane(index, _) => Series {
+                name: of.name(),
+                // The first is the result that everything else on the page shows; two more are told
+                // apart by light, the last by a colour that neither clip has.
+                color: [palette.accent, palette.text, palette.muted, palette.others[1]][index % 4],
+                ink: [palette.accent_ink, palette.text, palette.muted, palette.others[1]]
+                    [index % 4],
+                strong: *index == 0,
+                points,
+            },
+        })
+        .collect();
+    let made_from = session.panes().first().and_then(Pane::made_from).unwrap_or(params);
+    let names = [Key::A, Key::B].map(|key| {
+        session
+            .library()
+            .find(made_from.text(key))
+            .map_or_else(String::new, |entry| say(&entry.title(), ui))
+    });
+    let names = match outcome.walk() {
+        Some(walk) => [0, 1].map(|part: usize| {
+            let clip = walk.passed.get(part).map(|passed| passed.stay.clip);
+            clip.and_then(|clip| walk.built.cast().names().get(clip))
+                .map_or_else(String::new, |name| say(&session.clip_title(name), ui))
+        }),
+        None => names,
+    };
+    let made = in_time::made_name(made_from).map(|name| say(&name, ui));
+    let round = round_name(outcome, &names);
+    let tracks = if outcome.registered().is_some() {
+        // The feet of both say more than their bars.
+        Vec::new()
+    } else if let Some(made) = &made {
+        vec![whole_track(Part::Result, made, outcome)]
+    } else if outcome.cycle.is_some() {
+        vec![whole_track(Part::Result, &round, outcome)]
+    } else {
+        tracks(outcome, &names)
+    };
+    let curves = Curves {
+        title: quantity.label(),
+        unit,
+        decimals: 2,
+        include: (quantity != choices::Curve::Turn).then_some(0.0),
+        series: &series,
+    };
+    let mut seams = seams(outcome, palette.accent);
+    seams.extend(hard_turns(outcome, palette.warning));
+    let feet = feet_names(session, layout, ui);
+    let stripes = stripes(session, &feet);
+    let timeline = Timeline {
+        duration: session.duration_secs(),
+        now: session.now_secs(),
+        fps: clip.fps(),
+        tracks: &tracks,
+        stripes: &stripes,
+        transition: outcome.transition.map(|transition| transition.start_secs..transition.end_secs),
+        transition_editable: session.panes().len() == 1 && outcome.walk().is_none(),
+        // Left to Segue they stand at the ends, to be taken hold of.
+        in_point: Some(params.optional(Key::In).unwrap_or(0.0)),
+        out_point: Some(params.optional(Key::Out).unwrap_or(session.duration_secs())),
+        moments: &seams,
+        curves: (layout != Layout::Phone).then_some(curves),
+    };
+    for event in kit::timeline_ui(&timeline, ui) {
+        timeline_event(event, session, outcome, out);
+    }
+}
