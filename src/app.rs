@@ -3,20 +3,25 @@
 //! [`Segue`] outlives the window that draws it: when the graphics device is lost, a new one draws
 //! the same [`Segue`] on.
 
+mod actions;
 mod address_bar;
 pub(crate) mod api;
 mod downloads;
+mod events;
 mod frames;
 mod intake;
 mod keeper;
 mod language;
 mod picture;
+mod view;
 
 pub(crate) use address_bar::link_query;
+pub(crate) use events::Event;
+pub(crate) use view::View;
 
 use crate::platform::{self, Inbox, Incoming, Pace, Reader, Storage, Vault};
 use crate::ui::theme::Theme;
-use crate::ui::{self, Action, CurveCache, Filming, UiState};
+use crate::ui::{self, CurveCache, Filming, UiState};
 use address_bar::AddressBar;
 use downloads::Downloads;
 use eframe::{egui, wgpu};
@@ -26,12 +31,11 @@ use language::{LanguageLoader, WindowLanguage};
 use picture::Picture;
 #[cfg(target_arch = "wasm32")]
 use segue_session::Storing;
-use segue_session::export::file_name;
 use segue_session::{
     Command, CommandError, Key, Lesson, Level, PlaybackCommand, Session, Value, link,
 };
-use segue_text::{Message, ToMessage, msg};
-use std::cell::{Cell, RefCell};
+use segue_text::ToMessage;
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::time::Duration;
@@ -51,46 +55,6 @@ const LONGEST_STEP_SECS: f64 = 0.25;
 
 /// Without a graphics card a picture every so many milliseconds is enough.
 const SOFTWARE_FRAME_MS: f64 = 33.0;
-
-/// What the page's API tells its listeners.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
-#[serde(untagged)]
-pub(crate) enum Event {
-    /// Anything but the playhead has changed.
-    Change {
-        /// The link to the new state.
-        query: String,
-    },
-    /// Something did not work.
-    Error {
-        /// What and why.
-        message: String,
-    },
-    /// Something that takes long goes on.
-    Progress {
-        /// What.
-        name: String,
-        /// How much of it is done, 0 to 1, where that is known.
-        progress: Option<f64>,
-    },
-    /// The graphics device is gone.
-    Lost {
-        /// What the driver says.
-        message: String,
-    },
-}
-
-impl Event {
-    /// The name that listeners know it by.
-    pub(crate) fn name(&self) -> &'static str {
-        match self {
-            Self::Change { .. } => "change",
-            Self::Error { .. } => "error",
-            Self::Progress { .. } => "progress",
-            Self::Lost { .. } => "lost",
-        }
-    }
-}
 
 /// The document, the panels' state, and what connects them to the world outside.
 #[derive(Debug)]
@@ -457,87 +421,6 @@ impl Segue {
         }
     }
 
-    /// Tells once, before the first file is read, that the page around this one can use it: it
-    /// drives this one by the page's API.
-    fn tell_of_host(&mut self) {
-        if self.panels.host_reads && !std::mem::replace(&mut self.has_told_of_host, true) {
-            self.session.say(Level::Warning, ui::HOST_READS);
-        }
-    }
-
-    /// Does what only the platform can do.
-    fn act(&mut self, action: &Action, ctx: &egui::Context) {
-        match action {
-            Action::OpenFiles => {
-                self.tell_of_host();
-                platform::open_files(&self.inbox);
-            }
-            Action::OpenPage(address) => platform::open_page(address, ctx),
-            Action::StopFetching(name) => self.stop_fetching(name),
-            Action::StopLesson => self.stop_lessons(),
-            Action::CopyLink => {
-                self.copied = ui::LINK_COPIED;
-                platform::copy_text(self.url(), ctx, &self.inbox);
-            }
-            Action::CopyText(text) => {
-                self.copied = ui::TABLE_COPIED;
-                platform::copy_text(text.clone(), ctx, &self.inbox);
-            }
-            Action::CopyReport => {
-                if let Some(stage) = self.picture.place() {
-                    platform::take_picture(stage, &self.inbox);
-                }
-            }
-            Action::SaveText { name, mime, text } => {
-                platform::download(name, mime, text.as_bytes(), &self.inbox);
-            }
-            Action::Save { which, how } => match self.export_as(which, how) {
-                Ok(file) => platform::download(&file.name, file.mime, &file.bytes, &self.inbox),
-                Err(reason) => self.session.say(
-                    Level::Error,
-                    msg!(
-                        "The file could not be saved: {reason}.",
-                        reason = reason.trim_end_matches('.').to_owned()
-                    ),
-                ),
-            },
-            Action::SavePicture => {
-                if let Some(stage) = self.picture.place() {
-                    platform::save_picture(
-                        &file_name(&self.stage_name(), "png"),
-                        stage,
-                        &self.inbox,
-                    );
-                }
-            }
-            Action::Record => match self.film.take() {
-                Some(film) => film.save(&self.stage_name(), &self.inbox),
-                None => {
-                    if let Err(reason) = self.begin_film() {
-                        self.session.say(
-                            Level::Error,
-                            msg!("The page could not be recorded: {reason}.", reason),
-                        );
-                    }
-                }
-            },
-        }
-    }
-
-    /// Begins to film the page.
-    pub(crate) fn begin_film(&mut self) -> Result<(), Message> {
-        if self.film.is_some() {
-            return Err("a recording is under way".into());
-        }
-        self.film = Some(platform::Film::begin()?);
-        Ok(())
-    }
-
-    /// Ends the film under way.
-    pub(crate) fn end_film(&mut self) -> Result<platform::Film, Message> {
-        self.film.take().ok_or("no recording is under way".into())
-    }
-
     /// Remembers how long the last frame took. eframe measures all of it, up to the commands for
     /// the graphics device, but only when it began with the screen's beat; a frame that was
     /// computed inside of an input event is counted with what was measured here.
@@ -629,77 +512,5 @@ impl Segue {
             events.push(Event::Change { query: link_query(&self.session) });
         }
         events
-    }
-}
-
-/// What eframe draws: a window on a [`Segue`].
-pub(crate) struct View {
-    segue: Shared,
-    /// Called with what there is to tell, after every frame.
-    tell: Box<dyn Fn(Vec<Event>)>,
-    /// Whether work goes on between frames.
-    works: Rc<Cell<bool>>,
-}
-
-impl View {
-    /// A window that begins to draw `segue`.
-    pub(crate) fn new(
-        segue: Shared,
-        cc: &eframe::CreationContext<'_>,
-        tell: impl Fn(Vec<Event>) + 'static,
-    ) -> Self {
-        segue.borrow_mut().attach(cc);
-        Self { segue, tell: Box::new(tell), works: Rc::default() }
-    }
-
-    /// Has what a frame left over done before the next one, where the platform can: frames are far
-    /// apart where pictures are drawn in software, and the processor waits for them.
-    fn work_on(&self, ctx: &egui::Context) {
-        if self.works.replace(true) {
-            return;
-        }
-        let (segue, works, ctx) = (Rc::clone(&self.segue), Rc::clone(&self.works), ctx.clone());
-        platform::between_frames(move || {
-            // In use means that it is being worked on.
-            let Ok(mut segue) = segue.try_borrow_mut() else {
-                return true;
-            };
-            let before = segue.session.revision();
-            let more = segue.pump();
-            if !more || segue.session.revision() != before {
-                ctx.request_repaint();
-            }
-            works.set(more);
-            more
-        });
-    }
-}
-
-impl eframe::App for View {
-    fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
-        // In use means: some call of the page's API is being answered. The next frame will do.
-        let Ok(mut segue) = self.segue.try_borrow_mut() else {
-            ctx.request_repaint();
-            return;
-        };
-        if segue.logic(ctx) {
-            self.work_on(ctx);
-        }
-        segue.schedule(ctx);
-        let events = segue.take_events();
-        drop(segue);
-        (self.tell)(events);
-    }
-
-    fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
-        if let Ok(mut segue) = self.segue.try_borrow_mut() {
-            segue.ui(ui, frame);
-        }
-    }
-
-    fn on_exit(&mut self) {
-        if let Ok(mut segue) = self.segue.try_borrow_mut() {
-            segue.leave();
-        }
     }
 }

@@ -1,0 +1,92 @@
+//! What only the platform can do: files, clipboard, pictures and films.
+
+use super::Segue;
+use crate::platform;
+use crate::ui::{self, Action};
+use eframe::egui;
+use segue_session::Level;
+use segue_session::export::file_name;
+use segue_text::{Message, msg};
+
+impl Segue {
+    /// Tells once, before the first file is read, that the page around this one can use it: it
+    /// drives this one by the page's API.
+    pub(super) fn tell_of_host(&mut self) {
+        if self.panels.host_reads && !std::mem::replace(&mut self.has_told_of_host, true) {
+            self.session.say(Level::Warning, ui::HOST_READS);
+        }
+    }
+
+    /// Does what only the platform can do.
+    pub(super) fn act(&mut self, action: &Action, ctx: &egui::Context) {
+        match action {
+            Action::OpenFiles => {
+                self.tell_of_host();
+                platform::open_files(&self.inbox);
+            }
+            Action::OpenPage(address) => platform::open_page(address, ctx),
+            Action::StopFetching(name) => self.stop_fetching(name),
+            Action::StopLesson => self.stop_lessons(),
+            Action::CopyLink => {
+                self.copied = ui::LINK_COPIED;
+                platform::copy_text(self.url(), ctx, &self.inbox);
+            }
+            Action::CopyText(text) => {
+                self.copied = ui::TABLE_COPIED;
+                platform::copy_text(text.clone(), ctx, &self.inbox);
+            }
+            Action::CopyReport => {
+                if let Some(stage) = self.picture.place() {
+                    platform::take_picture(stage, &self.inbox);
+                }
+            }
+            Action::SaveText { name, mime, text } => {
+                platform::download(name, mime, text.as_bytes(), &self.inbox);
+            }
+            Action::Save { which, how } => match self.export_as(which, how) {
+                Ok(file) => platform::download(&file.name, file.mime, &file.bytes, &self.inbox),
+                Err(reason) => self.session.say(
+                    Level::Error,
+                    msg!(
+                        "The file could not be saved: {reason}.",
+                        reason = reason.trim_end_matches('.').to_owned()
+                    ),
+                ),
+            },
+            Action::SavePicture => {
+                if let Some(stage) = self.picture.place() {
+                    platform::save_picture(
+                        &file_name(&self.stage_name(), "png"),
+                        stage,
+                        &self.inbox,
+                    );
+                }
+            }
+            Action::Record => match self.film.take() {
+                Some(film) => film.save(&self.stage_name(), &self.inbox),
+                None => {
+                    if let Err(reason) = self.begin_film() {
+                        self.session.say(
+                            Level::Error,
+                            msg!("The page could not be recorded: {reason}.", reason),
+                        );
+                    }
+                }
+            },
+        }
+    }
+
+    /// Begins to film the page.
+    pub(crate) fn begin_film(&mut self) -> Result<(), Message> {
+        if self.film.is_some() {
+            return Err("a recording is under way".into());
+        }
+        self.film = Some(platform::Film::begin()?);
+        Ok(())
+    }
+
+    /// Ends the film under way.
+    pub(crate) fn end_film(&mut self) -> Result<platform::Film, Message> {
+        self.film.take().ok_or("no recording is under way".into())
+    }
+}

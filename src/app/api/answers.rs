@@ -1,0 +1,102 @@
+//! What the page's API answers, as plain data.
+
+use crate::app::frames::FrameTimes;
+use segue_session::ClipInfo;
+use serde::Serialize;
+use serde_json::Value as Json;
+
+/// A row of `keys()`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct KeyInfo {
+    pub(super) key: &'static str,
+    pub(super) label: &'static str,
+    #[serde(rename = "type")]
+    pub(super) kind: &'static str,
+    pub(super) min: Option<f64>,
+    pub(super) max: Option<f64>,
+    pub(super) step: Option<f64>,
+    /// Whether the value may be `"auto"`.
+    pub(super) auto: bool,
+    /// The words that a choice takes.
+    pub(super) choices: Vec<&'static str>,
+    pub(super) default: Json,
+    pub(super) unit: &'static str,
+    pub(super) lab: &'static str,
+    pub(super) help: &'static str,
+}
+
+/// What `load()` resolves with.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct LoadedClips {
+    pub(super) clips: Vec<ClipInfo>,
+    pub(super) warnings: Vec<String>,
+}
+
+impl LoadedClips {
+    /// The SHA-256 of the files that the clips came from.
+    #[cfg(target_arch = "wasm32")]
+    pub(crate) fn files(&self) -> Vec<String> {
+        self.clips.iter().filter_map(|clip| clip.sha256.clone()).collect()
+    }
+}
+
+/// What `pose()` answers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct PoseInfo {
+    /// The joints' names.
+    pub(super) joints: Vec<String>,
+    /// The index of every joint's parent; -1 for a root.
+    pub(super) parents: Vec<i64>,
+    /// World positions in metres: x, y, z of the first joint, then of the next.
+    pub(super) positions: Vec<f32>,
+    /// World rotations: x, y, z, w of the first joint, then of the next.
+    pub(super) rotations: Vec<f32>,
+    /// Whether the left and the right foot is planted.
+    pub(super) contacts: [bool; 2],
+}
+
+/// One number of `metrics()`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct MetricInfo {
+    pub(super) label: &'static str,
+    /// The number of the first pane; `null` where it cannot be told.
+    pub(super) value: Option<f64>,
+    pub(super) unit: &'static str,
+    /// The numbers of all panes, left to right.
+    pub(super) panes: Vec<Option<f64>>,
+    /// `lower`, `higher`, or `neutral` where neither is better.
+    pub(super) better: &'static str,
+    pub(super) help: &'static str,
+}
+
+/// Something that is under way.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct JobInfo {
+    pub(super) name: String,
+    /// 0 to 1; `null` where it cannot be told.
+    pub(super) progress: Option<f64>,
+}
+
+/// What `stats()` answers, but for what only the page knows.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Stats {
+    pub(super) backend: &'static str,
+    pub(super) frames: u64,
+    /// Input, panels and scene.
+    pub(super) frame_ms: FrameTimes,
+    /// The same with the commands for the graphics device.
+    pub(super) draw_ms: FrameTimes,
+    pub(super) jobs: Vec<JobInfo>,
+    pub(super) wasm_bytes: u64,
+}
+
+/// A file to hand to the user.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct ExportedFile {
+    /// A name for it.
+    pub(crate) name: String,
+    /// What it is.
+    pub(crate) mime: &'static str,
+    /// Its bytes.
+    pub(crate) bytes: Vec<u8>,
+}

@@ -1,0 +1,288 @@
+//! What the page's API is asked, and what it answers.
+
+use super::*;
+use crate::platform::{Inbox, Storage};
+use segue_text::ToMessage;
+use serde_json::json;
+
+fn open(link: &str) -> Segue {
+    let mut segue = Segue::new(Inbox::default(), None, link.to_owned());
+    while segue.pump() || segue.is_busy() {}
+    segue
+}
+
+/// As the page's `load` does.
+fn load(segue: &mut Segue, name: &str, bytes: &[u8]) -> Result<LoadedClips, String> {
+    let task = segue.load_elsewhere(name, FileBytes::Here(Arc::from(bytes)));
+    while segue.is_reading(task) {
+        segue.pump();
+    }
+    segue.read_result(task).expect("nobody stopped it")
+}
+
+fn object(json: Json) -> Map<String, Json> {
+    if let Json::Object(map) = json { map } else { panic!("{json} is no object") }
+}
+
+#[test]
+fn a_bundled_take_can_be_named_before_it_is_in_the_library() {
+    let mut segue = open("lab=view&play=off");
+    segue.set(&object(json!({ "a": "cmu_jump" }))).unwrap();
+    assert_eq!(segue.params()["a"], json!("cmu_jump"));
+    assert!(segue.clips().iter().any(|clip| clip.id == "cmu_jump"));
+}
+
+#[test]
+fn values_are_set_all_or_none_and_what_is_wrong_is_named() {
+    let mut segue = open("lab=blend");
+    segue
+        .set(&object(
+            json!({ "blend_window": 24, "align": false, "weight_law": "linear", "leave_a": "auto" }),
+        ))
+        .unwrap();
+    assert_eq!(segue.params()["blend_window"], json!(24.0));
+    assert_eq!(segue.params()["align"], json!(false));
+    let before = segue.url();
+    for (values, part) in [
+        (json!({ "blend_window": 12, "colour": "red" }), "`colour` is not a parameter"),
+        (
+            json!({ "align": true, "blend_window": 0 }),
+            "blend_window: found 0, expected 1 to 240 frames",
+        ),
+        (json!({ "blend_window": null }), "blend_window: found `null`, expected a number"),
+        (json!({ "a": "nobody" }), "a: there is no clip `nobody`"),
+        (json!({ "blend_window": [1, 2] }), "blend_window: found `[1,2]`"),
+    ] {
+        let message = segue.set(&object(values)).unwrap_err();
+        assert!(message.contains(part), "{message}");
+        assert_eq!(segue.url(), before, "{message}");
+    }
+}
+
+#[test]
+fn every_link_leads_back_even_that_of_the_defaults() {
+    let mut segue = open("blend_window=24");
+    assert_eq!(segue.url(), "?blend_window=24");
+    segue.set(&object(json!({ "blend_window": 30 }))).unwrap();
+    assert_eq!(segue.url(), "?lab=blend");
+    assert_eq!(open("lab=blend").url(), segue.url());
+}
+
+#[test]
+fn keys_and_values_have_the_same_names() {
+    let names: Vec<&str> = keys().iter().map(|key| key.key).collect();
+    let segue = open("lab=blend");
+    assert!(names.iter().all(|name| segue.params().contains_key(*name)));
+    assert_eq!(names.len(), segue.params().len());
+    let rows = serde_json::to_value(keys()).unwrap();
+    let window = rows.as_array().unwrap().iter().find(|row| row["key"] == "blend_window").unwrap();
+    assert_eq!(
+        (&window["type"], &window["min"], &window["max"], &window["unit"], &window["lab"]),
+        (&json!("integer"), &json!(1.0), &json!(240.0), &json!("frames"), &json!("blend"))
+    );
+}
+
+#[test]
+fn a_pose_is_in_the_world_and_complete() {
+    let segue = open("compare=blend_window:30,10");
+    let pose = segue.pose("result:1", 0.5).unwrap();
+    let joints = pose.joints.len();
+    assert!(joints > 10);
+    assert_eq!(
+        (pose.parents.len(), pose.positions.len(), pose.rotations.len()),
+        (joints, 3 * joints, 4 * joints)
+    );
+    assert_eq!(pose.parents[0], -1);
+    // Bones keep their lengths: a child is as far from its parent as at the start.
+    let start = segue.pose("result:1", 0.0).unwrap();
+    let bone = |pose: &PoseInfo, joint: usize| {
+        let place = |joint: usize| Vec3::from_slice(&pose.positions[3 * joint..]);
+        place(joint).distance(place(pose.parents[joint] as usize))
+    };
+    for joint in 1..joints {
+        assert!((bone(&pose, joint) - bone(&start, joint)).abs() < 1e-4, "{}", pose.joints[joint]);
+    }
+    for which in ["result:2", "result:x", "resultant", "nobody"] {
+        assert!(
+            segue.pose(which, 0.0).unwrap_err().contains(&format!("found `{which}`")),
+            "{which}"
+        );
+    }
+}
+
+#[test]
+fn metrics_have_a_number_for_every_pane() {
+    let segue = open("compare=blend_window:30,15,10");
+    let metrics = segue.metrics().unwrap();
+    assert!(!metrics.is_empty());
+    for (name, metric) in metrics {
+        assert_eq!(metric.panes.len(), 3, "{name}");
+        assert_eq!(metric.panes[0], metric.value, "{name}");
+    }
+}
+
+#[test]
+fn what_cannot_be_made_is_refused_with_its_sentence_by_every_call() {
+    for (good, bad, part) in [
+        ("lab=speed", json!({ "a": "idle" }), "cycle"),
+        ("lab=loop&loop_to=1.5", json!({ "loop_from": 1.5 }), "cycle"),
+        ("lab=path&a=walk", json!({ "a": "idle" }), "stays within"),
+        (
+            "lab=match&match_clips=walk,run",
+            json!({ "ahead_near": 1, "ahead_far": 0.5 }),
+            "must rise",
+        ),
+    ] {
+        let mut segue = open(good);
+        let name = segue.stage_name();
+        assert!(
+            segue.metrics().is_ok()
+                && segue.export("result", "bvh", None).is_ok()
+                && segue.report(None).is_ok()
+        );
+        segue.set(&object(bad)).unwrap();
+        while segue.pump() || segue.is_busy() {}
+        let kept = segue.clips().len();
+        let refused = [
+            segue.pose("result", 0.0).map(drop),
+            segue.metrics().map(drop),
+            segue.export("result", "bvh", None).map(drop),
+            segue.report(None).map(drop),
+            segue.keep("result").map(drop),
+        ];
+        let problem = segue.session.panes()[0].problem.clone().unwrap();
+        let sentence = problem.to_sentence().to_string();
+        assert!(sentence.contains(part), "{good}: {sentence}");
+        assert_eq!(refused, std::array::from_fn(|_| Err(sentence.clone())), "{good}");
+        assert_eq!(segue.clips().len(), kept);
+        assert!(segue.stage_name() != name || !good.contains("path"), "{name}");
+    }
+}
+
+#[test]
+fn what_is_exported_can_be_loaded_again() {
+    let mut segue = open("a=walk&lab=view");
+    let file = segue.export("result", "bvh", None).unwrap();
+    assert_eq!(file.name, "walk.bvh");
+    let loaded = load(&mut segue, &file.name, &file.bytes).unwrap();
+    assert_eq!(loaded.clips.len(), 1);
+    assert_eq!(loaded.clips[0].frames, segue.motion("walk").unwrap().clip().frames());
+    assert_eq!(
+        segue.export("result", "fbx", None).unwrap_err(),
+        "found `fbx`, expected one of bvh, csv, glb"
+    );
+    assert_eq!(
+        segue.export("result", "glb", Some("statue")).unwrap_err(),
+        "found `statue`, expected one of character, plain"
+    );
+    assert!(load(&mut segue, "x.bvh", b"HIERARCHY oops").unwrap_err().starts_with("x.bvh:1:"));
+    assert_eq!(segue.clips().iter().filter(|clip| clip.sha256.is_some()).count(), 1);
+}
+
+#[test]
+fn every_clip_and_every_pane_is_exported_in_every_format() {
+    let segue = open("compare=blend_window:30,10&joint=left%20foot");
+    for (which, stem) in [
+        ("walk", "Walk"),
+        ("result", "walk to run 30 frames"),
+        ("result:1", "walk to run 10 frames"),
+    ] {
+        for (format, mime) in
+            [("bvh", "text/plain"), ("csv", "text/csv"), ("glb", "model/gltf-binary")]
+        {
+            let file = segue.export(which, format, None).unwrap();
+            assert_eq!(
+                (file.name.to_lowercase(), file.mime),
+                (format!("{}.{format}", stem.to_lowercase()), mime)
+            );
+            assert!(file.bytes.len() > 1000);
+        }
+    }
+    let table = String::from_utf8(segue.export("result:1", "csv", None).unwrap().bytes).unwrap();
+    let header = table.lines().next().unwrap();
+    assert!(
+        header.ends_with(
+            "left foot.speed_m_per_s,A left foot.speed_m_per_s,B left foot.speed_m_per_s"
+        )
+    );
+    let frames = segue.motion("result:1").unwrap().clip().frames();
+    assert_eq!(table.lines().count(), frames + 1);
+}
+
+#[test]
+fn more_clips_than_a_graph_takes_are_refused_with_the_sentence() {
+    let mut segue = open("lab=graph&play=off");
+    let before = segue.params();
+    let many: Vec<String> = (0..65).map(|n| format!("clip{n}")).collect();
+    let refused = segue.set(&object(json!({ "clips": many.join(",") }))).unwrap_err();
+    assert_eq!(refused, "clips: These are 65 clips: take 64 at most.");
+    assert_eq!(segue.params(), before);
+}
+
+#[test]
+fn time_of_a_pose_is_a_number() {
+    let segue = open("lab=view&play=off");
+    for secs in [f64::NAN, f64::INFINITY] {
+        assert!(segue.pose("walk", secs).unwrap_err().contains("expected seconds"));
+    }
+}
+
+/// However a link spells it, the page that answers the one around it is the page that stores
+/// nothing.
+#[test]
+fn embedded_page_in_any_spelling_has_no_storage() {
+    for (link, embedded) in [
+        ("embed=1", true),
+        ("embed=on", true),
+        ("embed=yes", true),
+        ("embed=true", true),
+        ("?embed=1", true),
+        ("??embed=1", true),
+        ("embed=%31", true),
+        ("%65mbed=1", true),
+        ("lab=view&embed=1", true),
+        ("embed=1&embed=0", true),
+        ("embed=0&embed=1", true),
+        ("embed=1&embed=nonsense", true),
+        ("embed=On", false),
+        ("embed=ON", false),
+        ("embed=1%20", false),
+        ("embed=+1", false),
+        ("embed=", false),
+        ("embed", false),
+        ("??embed", false),
+        ("Embed=1", false),
+        ("embed=0", false),
+        ("embed%3D1", false),
+        ("", false),
+    ] {
+        let segue = Segue::start_on(Inbox::default(), link.to_owned(), |_| {
+            assert!(!embedded, "{link}: the storage is opened");
+            Storage::default()
+        });
+        assert_eq!(segue.is_embedded(), embedded, "{link}");
+    }
+}
+
+#[test]
+fn page_around_the_frame_is_told_of_once() {
+    let mut segue = open("lab=view&play=off");
+    let said = |segue: &Segue| {
+        segue
+            .session
+            .notices()
+            .list()
+            .iter()
+            .filter(|notice| notice.text.to_string() == crate::ui::HOST_READS)
+            .count()
+    };
+    segue.tell_of_host();
+    assert_eq!(said(&segue), 0, "there is none");
+    segue.panels.host_reads = true;
+    segue.tell_of_host();
+    assert_eq!(said(&segue), 1);
+    let id = segue.session.notices().list().last().unwrap().id;
+    segue.apply(Command::Dismiss(id)).unwrap();
+    segue.tell_of_host();
+    assert_eq!(said(&segue), 0, "it is told once");
+}

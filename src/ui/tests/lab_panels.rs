@@ -1,0 +1,178 @@
+//! The panels of single labs.
+
+use super::*;
+
+#[test]
+fn a_blend_of_two_skeletons_says_what_was_not_matched() {
+    let page = with_file("lab=blend&b=run&play=off");
+    assert_eq!(outcome(&page).retargeted.as_ref().unwrap().unmatched, ["Tail"]);
+    for (name, size, theme) in
+        [("retarget-desk-light", DESK, LIGHT), ("retarget-phone-dark", PHONE, DARK)]
+    {
+        let mut harness = harness(size, theme, with_file("lab=blend&b=run&play=off"));
+        harness.get_by_label("B's motion is moved onto A's skeleton; not matched: Tail.");
+        picture(name, &mut harness);
+    }
+    assert!(outcome(&self::page("lab=blend&play=off")).retargeted.is_none());
+}
+
+#[test]
+fn a_gait_takes_any_speed_and_says_when_that_is_a_guess() {
+    for (name, size, theme, link) in [
+        ("speed-desk-dark", DESK, DARK, "lab=speed&play=off&t=1"),
+        ("speed-desk-light", DESK, LIGHT, "lab=speed&speed=9&foot_lock=on&play=off"),
+        ("speed-compare-desk-dark", DESK, DARK, "lab=speed&compare=speed:1.4,2.2,3.9&play=off"),
+        ("speed-phone-dark", PHONE, DARK, "lab=speed&play=off"),
+        ("speed-projector", vec2(1280.0, 720.0), HALL, "lab=speed&play=off"),
+    ] {
+        let mut harness = harness(size, theme, page(link));
+        harness.get_by_label(text::SPEED_ABOUT);
+        assert_eq!(
+            harness.query_all_by_label_contains("Too far beyond both clips").count(),
+            usize::from(link.contains("speed=9"))
+        );
+        picture(name, &mut harness);
+    }
+    let mut harness = harness(DESK, DARK, page("lab=speed&play=off"));
+    press("A, half way, B", &mut harness);
+    assert_eq!(compared(&harness), "speed:1.4,2.45,3.5");
+    let back = harness.get_by_label("One pane").rect();
+    assert!(
+        back.right() < DESK.x - space::M,
+        "the row of buttons is as wide as the panel at most: {back:?}"
+    );
+    press("One pane", &mut harness);
+    assert_eq!(harness.state().session.panes().len(), 1);
+    assert_eq!(harness.state().session.params().number(Key::Speed), 1.4, "as the first pane was");
+}
+
+#[test]
+fn lock_settings_are_offered_while_feet_are_held() {
+    let rows = ["Lock blend", "Lock reach", "Swing clearance"];
+    let mut harness = harness(DESK, DARK, page("lab=blend&play=off"));
+    press(text::FEET, &mut harness);
+    assert!(harness.query_by_label("Contact height").is_some());
+    assert!(rows.iter().all(|row| harness.query_by_label(row).is_none()));
+    press("Foot lock", &mut harness);
+    for row in rows {
+        let slider = harness.get_by_label(row);
+        assert!(slider.rect().height() > 0.0, "{row}");
+    }
+}
+
+#[test]
+fn a_loop_says_where_it_was_cut_and_what_its_method_does() {
+    for (name, size, theme, link) in [
+        ("loop-desk-dark", DESK, DARK, "lab=loop&play=off&t=1"),
+        (
+            "loop-desk-light",
+            DESK,
+            LIGHT,
+            "lab=loop&a=walk_left&loop_method=linear&loop_from=0.5&foot_lock=on&play=off",
+        ),
+        (
+            "loop-compare-desk-dark",
+            DESK,
+            DARK,
+            "lab=loop&compare=loop_method:exact,end,both&play=off",
+        ),
+        ("loop-phone-dark", PHONE, DARK, "lab=loop&play=off"),
+    ] {
+        let mut harness = harness(size, theme, page(link));
+        harness.get_by_label_contains("Makes a seamless cycle");
+        picture(name, &mut harness);
+    }
+    let mut harness = harness(DESK, DARK, page("lab=loop&play=off"));
+    harness.get_by_label_contains("solved so that pose and velocity close");
+    press("Exact against classic", &mut harness);
+    assert_eq!(harness.state().session.panes().len(), 3);
+    press("Exact against classic", &mut harness);
+    assert_eq!(harness.state().session.panes().len(), 1);
+    // The keys follow the tabs.
+    harness.key_press(Keyboard::Num5);
+    harness.run();
+    assert_eq!(harness.state().session.params().lab().word(), "speed");
+}
+
+#[test]
+fn the_layers_lab_says_how_time_goes_and_where_the_layer_is() {
+    for (name, size, theme, link) in [
+        ("layers-desk-dark", DESK, DARK, "lab=layers&play=off&t=1"),
+        ("layers-additive-light", DESK, LIGHT, "lab=layers&layer_mode=additive&b=jump&play=off"),
+        ("layers-compare-dark", DESK, DARK, "lab=layers&compare=layer_weight:1,0.5,0.33&play=off"),
+        ("layers-phone-dark", PHONE, DARK, "lab=layers&play=off"),
+    ] {
+        let page = page(link);
+        let sentence = text::fit(outcome(&page).layer().expect("a layer")).to_string();
+        let additive = link.contains("additive");
+        assert_eq!(sentence.starts_with("No steps"), additive, "{sentence}");
+        let mut harness = harness(size, theme, page);
+        harness.get_by_label(&sentence);
+        // What does not concern the kind of layer is not offered.
+        assert_eq!(harness.query_by_label("Keep B's posture").is_none(), additive);
+        assert_eq!(harness.query_by_label("first frame").is_some(), additive);
+        picture(name, &mut harness);
+    }
+    let mut harness = harness(DESK, DARK, page("lab=layers&play=off"));
+    press("additive", &mut harness);
+    press("Mask", &mut harness);
+    press("left arm", &mut harness);
+    let params = harness.state().session.params();
+    assert_eq!(
+        (params.choice::<choices::LayerMode>().word(), params.choice::<choices::Mask>().word()),
+        ("additive", "left_arm")
+    );
+    harness.get_by_label("first frame");
+}
+
+#[test]
+fn a_mistake_is_chosen_explained_and_held_against_the_right_way() {
+    let mut harness = harness(DESK, DARK, page("lab=transition&play=off&t=2.3"));
+    assert!(harness.query_by_label(text::RIGHT_AND_WRONG).is_none());
+    press("Break it", &mut harness);
+    press("Euler angles mixed", &mut harness);
+    harness.get_by_label(text::mistake(Mistake::Euler));
+    picture("break-desk-dark", &mut harness);
+    press(text::RIGHT_AND_WRONG, &mut harness);
+    assert_eq!(harness.state().session.panes().len(), 2);
+    assert_eq!(compared(&harness), "mistake:none,euler");
+    harness.get_by_label(text::mistake(Mistake::Euler));
+    picture("break-compare-dark", &mut harness);
+    press(text::RIGHT_AND_WRONG, &mut harness);
+    assert_eq!(harness.state().session.panes().len(), 1);
+    // A cut has nothing to be mixed wrongly, and that is said.
+    let cut =
+        self::harness(DESK, LIGHT, page("lab=transition&method=cut&mistake=degrees&play=off"));
+    cut.get_by_label(text::MISTAKE_IDLE);
+    let dissolve =
+        self::harness(DESK, DARK, page("lab=transition&method=smooth&mistake=velocity&play=off"));
+    dissolve.get_by_label(text::VELOCITY_IN_DISSOLVE);
+    let turned =
+        self::harness(PHONE, LIGHT, page("lab=transition&method=cut&mistake=atan&play=off"));
+    turned.get_by_label(text::mistake(Mistake::Atan));
+}
+
+#[test]
+fn every_mistake_has_its_sentence() {
+    for &mistake in Mistake::ALL {
+        assert_eq!(text::mistake(mistake).is_empty(), mistake == Mistake::None, "{mistake:?}");
+    }
+}
+
+#[test]
+fn hysteresis_shows_the_rows_of_its_choice() {
+    for (link, bias, time) in [
+        ("hysteresis=bias", true, false),
+        ("hysteresis=time", false, true),
+        ("compare=hysteresis:bias,time", true, true),
+    ] {
+        let mut harness = harness(
+            vec2(1440.0, 2400.0),
+            DARK,
+            page(&format!("lab=match&scenario=straight&{link}&play=off")),
+        );
+        harness.run_steps(2);
+        let has = |key: Key| harness.query_by_label(key.param().label).is_some();
+        assert_eq!((has(Key::BiasShare), has(Key::MinimumTime)), (bias, time), "{link}");
+    }
+}
