@@ -107,7 +107,7 @@ fn overrides_ui(
 ) {
     let options = file.options;
     let mut reread = |options: ImportOptions| {
-        out.commands.push(Command::File(FileCommand::Reimport(entry.id.clone(), options)))
+        out.commands.push(Command::File(FileCommand::Reimport(entry.id.clone(), options)));
     };
     let provenance = motion.clip().provenance();
 

@@ -280,7 +280,7 @@ impl UiCommand {
             Self::TenBack => out.commands.push(Command::Playback(PlaybackCommand::Step(-10))),
             Self::TenOn => out.commands.push(Command::Playback(PlaybackCommand::Step(10))),
             Self::ToBeginning => {
-                out.commands.push(Command::Playback(PlaybackCommand::Seek(session.span().start)))
+                out.commands.push(Command::Playback(PlaybackCommand::Seek(session.span().start)));
             }
             Self::Mark(key) => out.set_once(key, Value::Number(session.now_secs())),
             Self::ClearMark(key) => out.commands.push(Command::Reset(key)),

@@ -37,12 +37,12 @@ pub(super) fn transport_row_ui(
     let row = ui.horizontal(|ui| kit::transport_ui(&transport, ui));
     match row.inner {
         Some(TransportEvent::SetPlaying(_)) => {
-            out.commands.push(Command::Playback(PlaybackCommand::TogglePlay))
+            out.commands.push(Command::Playback(PlaybackCommand::TogglePlay));
         }
         Some(TransportEvent::SetRepeat(on)) => out.set_once(Key::Loop, Value::Switch(on)),
         Some(TransportEvent::SetSpeed(speed)) => out.set_once(Key::Rate, Value::Number(speed)),
         Some(TransportEvent::Step(frames)) => {
-            out.commands.push(Command::Playback(PlaybackCommand::Step(frames.into())))
+            out.commands.push(Command::Playback(PlaybackCommand::Step(frames.into())));
         }
         None => {}
     }

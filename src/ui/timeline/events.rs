@@ -33,7 +33,7 @@ pub(super) fn timeline_event(
             out.set(Key::Out, Value::Auto);
         }
         TimelineEvent::Seek(secs) => {
-            out.commands.push(Command::Playback(PlaybackCommand::Seek(secs)))
+            out.commands.push(Command::Playback(PlaybackCommand::Seek(secs)));
         }
         TimelineEvent::ScrubStarted => out.set(Key::Play, Value::Switch(false)),
         TimelineEvent::SetIn(secs) => out.set(Key::In, Value::Number(secs)),

@@ -73,7 +73,7 @@ fn time_ui(session: &Session, walk: &Walk, out: &mut Out, ui: &mut Ui) {
     for event in kit::timeline_ui(&timeline, ui) {
         match event {
             TimelineEvent::Seek(secs) => {
-                out.commands.push(Command::Playback(PlaybackCommand::Seek(secs)))
+                out.commands.push(Command::Playback(PlaybackCommand::Seek(secs)));
             }
             TimelineEvent::ScrubStarted => out.set(Key::Play, Value::Switch(false)),
             TimelineEvent::SetIn(secs) => out.set(Key::In, Value::Number(secs)),

@@ -118,7 +118,7 @@ fn time_ui(session: &Session, outcome: &Outcome, driven: &Driven, out: &mut Out,
         match event {
             _ if driven.is_live => {}
             TimelineEvent::Seek(secs) => {
-                out.commands.push(Command::Playback(PlaybackCommand::Seek(secs)))
+                out.commands.push(Command::Playback(PlaybackCommand::Seek(secs)));
             }
             TimelineEvent::ScrubStarted => out.set(Key::Play, Value::Switch(false)),
             TimelineEvent::SetIn(secs) => out.set(Key::In, Value::Number(secs)),
