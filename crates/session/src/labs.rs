@@ -1,4 +1,4 @@
-//! What is made from clips and parameters: inputs in, clip and numbers out.
+//! Labs: results made from clips and parameters, as pure functions of their inputs.
 
 mod answer;
 mod blend;

@@ -51,8 +51,8 @@ impl<S: HasPart<Pairs> + HasPart<Blender>> Lab<S> for BlendLab {
     }
 }
 
-/// The Transition lab: A goes over into B by one of several methods. One of them is a dissolve,
-/// which has the Blend lab's parameters.
+/// The Transition lab: a transition from A to B by one of several methods. One of them is a
+/// dissolve, which has the Blend lab's parameters.
 pub(super) struct TransitionLab;
 
 impl<S: HasPart<Pairs> + HasPart<Blender>> Lab<S> for TransitionLab {
@@ -85,7 +85,7 @@ impl<S: HasPart<Pairs> + HasPart<Blender>> Lab<S> for TransitionLab {
     }
 }
 
-/// What a blend depends on. Equal inputs, equal result.
+/// The inputs of a blend. Equal inputs give equal results.
 #[derive(Clone, Debug)]
 pub(crate) struct BlendInputs {
     pair: Arc<Pair>,
@@ -105,30 +105,30 @@ impl PartialEq for BlendInputs {
     }
 }
 
-/// Where A is left and B entered.
+/// The frames at which A is left and B is entered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Place {
     leave: usize,
     enter: usize,
     distance_cm: f32,
     search: Option<MatchSearch>,
-    /// Whether one of the frames only stands for the best match, which is being looked for.
+    /// Whether one of the frames stands in for the best match, which is being searched for.
     is_guess: bool,
 }
 
-/// What a match depends on, besides the two clips.
+/// A request for a match, besides the two clips.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Wanted {
     window: usize,
-    /// Frames that must be left of a clip at a frame that is set by hand, that frame among them.
+    /// The number of frames that a clip must have from a frame set by hand on, that frame included.
     behind: usize,
     leave: Option<usize>,
     enter: Option<usize>,
-    /// Single poses are compared by these, else windows.
+    /// Weights by which single poses are compared; `None` compares windows.
     weights: Option<PoseWeights>,
 }
 
-/// The mistake that the Transition lab is to make.
+/// Returns the mistake that the Transition lab is to make.
 fn mistake_of(params: &Params) -> Option<Mistake> {
     match params.choice::<choices::Mistake>() {
         choices::Mistake::Hemisphere => Some(Mistake::NoHemisphereCheck),
@@ -144,8 +144,7 @@ fn mistake_of(params: &Params) -> Option<Mistake> {
     }
 }
 
-/// Whether the method of the Transition lab gives the mistake that it is to make an opportunity.
-/// `true` where it is to make none.
+/// Returns whether the chosen method shows the chosen mistake; `true` without a mistake.
 #[must_use]
 pub fn mistake_shows(params: &Params) -> bool {
     mistake_of(params).is_none_or(|mistake| {
@@ -153,7 +152,7 @@ pub fn mistake_shows(params: &Params) -> bool {
     })
 }
 
-/// How the weight moves from A to B.
+/// Returns the law by which the weight moves from A to B.
 pub(super) fn weight_law(params: &Params) -> WeightLaw {
     match params.choice::<choices::WeightLaw>() {
         choices::WeightLaw::Linear => WeightLaw::Linear,
@@ -162,7 +161,7 @@ pub(super) fn weight_law(params: &Params) -> WeightLaw {
     }
 }
 
-/// By what B is laid on A.
+/// Returns the points by which B is aligned with A.
 pub(super) fn align_by(params: &Params) -> AlignBy {
     match params.choice::<choices::AlignBy>() {
         choices::AlignBy::First => AlignBy::FirstPose,
@@ -170,12 +169,12 @@ pub(super) fn align_by(params: &Params) -> AlignBy {
     }
 }
 
-/// How the way over the ground is made.
+/// Returns the method of blending root motion.
 pub(super) fn root_blend(params: &Params) -> RootBlend {
     if params.is_on(Key::RootBlend) { RootBlend::Velocity } else { RootBlend::World }
 }
 
-/// The method of the Transition lab; `window` is that of its dissolves.
+/// Returns the method of the Transition lab; `window` is that of its dissolves.
 fn method_of(params: &Params, window: usize) -> Method {
     let blend_secs = params.number(Key::BlendTime);
     match params.choice::<choices::TransitionMethod>() {
@@ -200,8 +199,8 @@ fn method_of(params: &Params, window: usize) -> Method {
     }
 }
 
-/// Where to look for what is left to Segue: A is left in its second half, B entered in its first,
-/// and no seam of a kept clip is left out. The window fits behind the last one of A.
+/// Returns the range of the automatic search: A is left in its second half, B entered in its first,
+/// and all seams of kept clips are included. The window fits after the last one of A.
 fn open_search(pair: &Pair, window: usize) -> SearchOptions {
     let mut options = SearchOptions::new(window);
     let share = |frame: f64, motion: &Motion| frame / motion.clip().frames().max(1) as f64;
@@ -229,31 +228,31 @@ fn pose_search(pair: &Pair) -> Result<PoseSearch, LabError> {
     search.map_err(LabError::from)
 }
 
-/// Makes blends, and keeps what does not change from one to the next: the pair of clips and the
-/// distances between their frames.
+/// A cache of what does not change between blends: the pair of clips and the distances between
+/// their frames.
 #[derive(Debug, Default)]
 pub(crate) struct Blender {
     pair: Option<Arc<Pair>>,
     search: Option<TransitionSearch>,
-    /// Begun when a lab asks for it.
+    /// The search by pose, begun on request.
     poses: Option<PoseSearch>,
-    /// The last matches that were found, and what was asked: panes share one, or have one each, and
-    /// most changes leave them as they are.
+    /// The last matches with their requests: panes share one or have one each, and most changes
+    /// leave them valid.
     found: VecDeque<(Wanted, Place)>,
     progress: f32,
-    /// All distances have just been computed, and no pane has asked for the place yet.
+    /// Whether all distances have been computed and not been fetched yet.
     is_ready: bool,
 }
 
-/// Rows of the distance grid in one slice: about 2 ms for 31 joints in a browser.
+/// The number of rows of the distance grid in one slice: about 2 ms for 31 joints in a browser.
 const ROWS_PER_SLICE: usize = 16;
-/// Rows that are compared at once when the clips change: a few seconds of motion need no second
-/// slice.
+/// The number of rows that are compared at once when the clips change: a few seconds of motion need
+/// no second slice.
 const ROWS_AT_ONCE: usize = 160;
 
 impl Blender {
-    /// Brings everything to the point where the blend itself is a pure function: finds the place,
-    /// makes the clips fit each other.
+    /// Prepares the inputs, with which the blend itself is a pure function: finds the place and
+    /// fits the clips to each other.
     pub(crate) fn inputs(
         &mut self,
         pair: &Arc<Pair>,
@@ -272,7 +271,7 @@ impl Blender {
         } else {
             [Key::LeaveA, Key::EnterB].map(|key| params.optional(key).map(|secs| secs * fps))
         };
-        // Left to Segue, A is left behind its last seam.
+        // If automatic, A is left after its last seam.
         let room_in_a = if given[0].is_none() {
             frames_a - pair.a.behind_seams().min(frames_a)
         } else {
@@ -287,8 +286,8 @@ impl Blender {
             Method::Dissolve { window, law }
         };
         let match_window = match_window.min(most);
-        // A dissolve needs its window behind both frames, the widest one where several stand side
-        // by side, so that all show the same place. The other methods need one frame of B.
+        // A dissolve needs its window after both frames: the widest one where several panes are
+        // compared, so that all show the same place. The other methods need one frame of B.
         let behind =
             if let Method::Dissolve { window, .. } = method { match_window.max(window) } else { 1 };
         let [leave, enter] = [(given[0], frames_a), (given[1], frames_b)].map(|(frame, frames)| {
@@ -317,7 +316,7 @@ impl Blender {
         })
     }
 
-    /// Begins to compare the frames of two clips that were not the last ones.
+    /// Begins to compare the frames of two new clips.
     fn meet(&mut self, pair: &Arc<Pair>) -> Result<(), LabError> {
         if self.pair.as_ref().is_some_and(|known| Arc::ptr_eq(known, pair)) {
             return Ok(());
@@ -339,7 +338,7 @@ impl Blender {
     }
 
     fn compare_rows(&mut self, rows: usize) {
-        // The windows first; where poses are asked for, they follow.
+        // The windows first, then the poses if they are requested.
         let windows = self.search.as_mut().map(|search| search.advance(rows));
         let poses = match (&windows, &mut self.poses) {
             (Some(progress), Some(search)) if progress.is_complete() => Some(search.advance(rows)),
@@ -354,8 +353,8 @@ impl Blender {
         };
     }
 
-    /// The frames that the user named, and the best match for what is left open. Until the
-    /// distances are known, the middle of what is allowed.
+    /// Returns the frames that the user set, and the best match for the others. Until the distances
+    /// are known, the middle of the allowed range.
     fn place(&mut self, pair: &Pair, wanted: Wanted) -> Result<Place, LabError> {
         if wanted.weights.is_some() && self.poses.is_none() {
             self.poses = Some(pose_search(pair)?);
@@ -418,7 +417,7 @@ impl Blender {
         Ok(place)
     }
 
-    /// Whether the distances between the clips' frames are still being computed.
+    /// Returns whether the distances between the clips' frames are being computed.
     fn is_searching(&self) -> bool {
         self.search.is_some() && self.progress < 1.0
     }
@@ -513,7 +512,7 @@ impl LabInputs for BlendInputs {
         })
     }
 
-    /// Whether the best match is still being looked for.
+    /// Returns whether the best match is being searched for.
     fn is_draft(&self) -> bool {
         self.place.is_guess
     }

@@ -1,4 +1,4 @@
-//! Why a lab has no result.
+//! The reasons why a lab has no result.
 
 use segue_formats::ImportError;
 use segue_motion::blend::{BlendError, LayerError};
@@ -15,28 +15,28 @@ use segue_text::{Message, ToMessage};
 /// The most clips of a motion graph: the picture of its distances shows no more.
 pub(crate) const MOST_CLIPS: usize = 64;
 
-/// Why a lab has no result, and what to do.
+/// The reason why a lab has no result, with the remedy.
 #[derive(Clone, Debug, PartialEq, thiserror::Error, ToMessage)]
 pub enum LabError {
-    /// A clip that the parameters name is not in the library.
+    /// A clip in the parameters that is not in the library.
     #[error("`{name}` is not here: drop its file, or choose another clip.")]
     MissingClip {
         /// Its name.
         name: String,
     },
-    /// A bundled take is on its way.
+    /// A bundled take that is being loaded.
     #[error("{name} is being loaded.")]
     Loading {
         /// Its name.
         name: &'static str,
     },
-    /// An id that is no recipe.
+    /// An id that is not a recipe.
     #[error("`{id}` names no motion.")]
     NoRecipe {
         /// The id.
         id: String,
     },
-    /// A preset that there is not.
+    /// An unknown preset.
     #[error("`{id}` is no built-in motion.")]
     NoPreset {
         /// Its id.
@@ -48,76 +48,76 @@ pub enum LabError {
         /// The motion's file.
         file: String,
     },
-    /// The clip's file was not read.
+    /// A clip whose file could not be read.
     #[error("{0}")]
     Unread(Message),
-    /// The clip's file is being read.
+    /// A clip whose file is being read.
     #[error("{file} is being read.")]
     Reading {
         /// The file.
         file: String,
     },
-    /// The file is another one by now.
+    /// A clip that its file no longer contains.
     #[error("{file} has no such clip any more.")]
     NoSuchClip {
         /// The file.
         file: String,
     },
-    /// A clip is itself a result that is computed.
+    /// A clip that is itself a result being computed.
     #[error("{name} is being made.")]
     BeingMade {
-        /// What the clip is called.
+        /// The name of the clip.
         name: String,
     },
-    /// Of one clip among several.
+    /// An error about one clip among several.
     #[error("{name}: {error}")]
     OfClip {
-        /// What the clip is called.
+        /// The name of the clip.
         name: String,
-        /// Why it cannot take part.
+        /// The error.
         error: Box<LabError>,
     },
-    /// There is no first clip.
+    /// A missing first clip.
     #[error("There is no clip in A.")]
     NoClip,
-    /// There are not two clips.
+    /// Missing clips.
     #[error("There are no clips in A and B.")]
     NoPair,
-    /// There is nothing to find a place in.
+    /// Missing clips for a match.
     #[error("there are no clips to match")]
     NothingToMatch,
-    /// There is nothing to register.
+    /// Missing clips for a registration.
     #[error("There are no clips to register.")]
     NothingToRegister,
     /// A cycle without frames.
     #[error("the cycle has no frames")]
     EmptyCycle,
-    /// The user stopped the computation.
+    /// A computation that the user stopped.
     #[error("Stopped. Change anything, or go on.")]
     Stopped,
-    /// The graph has no clips.
+    /// A graph without clips.
     #[error("A motion graph needs a clip: add at least one.")]
     NoGraphClips,
-    /// The graph has too many clips.
+    /// A graph with too many clips.
     #[error("These are {count} clips: take {MOST_CLIPS} at most.")]
     TooManyGraphClips {
-        /// How many.
+        /// Their number.
         count: usize,
     },
-    /// Mistakes of the transform and of the angle at once.
+    /// Two mistakes at once, of the transform and of the angle.
     #[error(
         "Two mistakes at once cannot be told apart: choose the transform of the whole clip, or atan2."
     )]
     TwoMistakes,
-    /// The walk is to visit a clip that there is not.
+    /// A visit to a clip that does not exist.
     #[error("Go to: there is no clip {clip}, they are counted from 0 to {last}.")]
     NoVisit {
         /// The clip's index.
         clip: usize,
-        /// The index of the last one.
+        /// The index of the last clip.
         last: usize,
     },
-    /// The transition that is played alone is not in the graph any more.
+    /// A transition to be played alone that is no longer in the graph.
     #[error(
         "There is no transition from frame {leave} of {from} to frame {enter} of {to} any more: go back to the walk, or raise the threshold."
     )]
@@ -131,10 +131,10 @@ pub enum LabError {
         /// The clip that is entered.
         to: String,
     },
-    /// Nothing was driven.
+    /// A replay without input.
     #[error("Nothing was driven yet.")]
     NothingDriven,
-    /// The preferred clip is not in the database.
+    /// A preferred clip that is not in the database.
     #[error(
         "`{name}` is not among the clips to choose frames from: choose another clip to prefer, or none."
     )]
@@ -142,7 +142,7 @@ pub enum LabError {
         /// Its name.
         name: String,
     },
-    /// A tag that no frame has.
+    /// A tag without frames.
     #[error(
         "No frame has the tag `{word}`: tag a stretch of a clip with it, or choose another tag."
     )]
@@ -150,7 +150,7 @@ pub enum LabError {
         /// The tag.
         word: String,
     },
-    /// A pin outside of the clips.
+    /// A pin outside the clips.
     #[error(
         "The pin at frames {a} | {b} lies beyond the clips, which have {frames_a} and {frames_b} frames: move it inside or remove it."
     )]
@@ -164,7 +164,7 @@ pub enum LabError {
         /// Frames of B.
         frames_b: usize,
     },
-    /// Seams of the clips leave no room for a join.
+    /// Seams of the clips that leave no room for a join.
     #[error(
         "Behind the last seam of A, at {last_secs:.2} s, and before the first one of B, at {first_secs:.2} s of A, there is no room to go over: set by hand where the join begins and ends."
     )]
@@ -179,58 +179,58 @@ pub enum LabError {
         "The join begins at {begin_secs:.2} s and ends at {end_secs:.2} s of A, of which {from_secs:.2} to {to_secs:.2} s are registered: move its end behind its beginning."
     )]
     JoinBackwards {
-        /// Where it begins, seconds of A.
+        /// The beginning of the join, seconds of A.
         begin_secs: f64,
-        /// Where it ends, seconds of A.
+        /// The end of the join, seconds of A.
         end_secs: f64,
-        /// Where the registered part begins, seconds of A.
+        /// The beginning of the registered part, seconds of A.
         from_secs: f64,
-        /// Where the registered part ends, seconds of A.
+        /// The end of the registered part, seconds of A.
         to_secs: f64,
     },
-    /// A file cannot be read.
+    /// An error of reading a file.
     #[error(transparent)]
     Import(#[from] ImportError),
-    /// Clips cannot be blended.
+    /// An error of blending.
     #[error(transparent)]
     Blend(#[from] BlendError),
-    /// Clips cannot be layered.
+    /// An error of layering.
     #[error(transparent)]
     Layer(#[from] LayerError),
-    /// The result is no clip.
+    /// An invalid clip.
     #[error(transparent)]
     Clip(#[from] ClipError),
-    /// A clip does not fit the skeleton.
+    /// An error of retargeting.
     #[error(transparent)]
     Retarget(#[from] RetargetError),
-    /// The clip has no way over the ground.
+    /// An error of extracting root motion.
     #[error(transparent)]
     RootWay(#[from] RootWayError),
-    /// There is no gait.
+    /// An error of finding gaits.
     #[error(transparent)]
     Gait(#[from] GaitError),
-    /// There is no graph.
+    /// An error of building a motion graph.
     #[error(transparent)]
     Graph(#[from] GraphError),
-    /// There is no database.
+    /// An error of building a database.
     #[error(transparent)]
     Match(#[from] MatchError),
-    /// The path cannot be used.
+    /// An error of editing a path.
     #[error(transparent)]
     Path(#[from] PathEditError),
-    /// There is no way through the distances.
+    /// An error of finding a path through the distances.
     #[error(transparent)]
     Warp(#[from] PathError),
-    /// The clips cannot be compared.
+    /// An error of comparing clips.
     #[error(transparent)]
     Registration(#[from] RegistrationError),
-    /// The motion cannot be made.
+    /// An error of synthesis.
     #[error(transparent)]
     Synth(#[from] SynthError),
-    /// Feet cannot be held.
+    /// An error of locking feet.
     #[error(transparent)]
     FootLock(#[from] FootLockError),
-    /// The cycle cannot be closed.
+    /// An error of closing a cycle.
     #[error(transparent)]
     Loop(#[from] LoopError),
 }

@@ -1,4 +1,4 @@
-//! Planted feet: held where they stand, and how far they slide.
+//! Locking of planted feet, and the distance that they slide.
 
 use crate::labs::LabError;
 use crate::params::{Key, Params};
@@ -8,7 +8,7 @@ use segue_motion::skeleton::Roles;
 use segue_motion::transition::{FootLockError, FootLockOptions, FootLocking};
 use std::sync::Arc;
 
-/// How planted feet are held on whatever ground a clip has: [`FootLockOptions`] without the ground.
+/// Foot lock options for clips on ground of any height: [`FootLockOptions`] without the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Lock {
     blend_secs: f64,
@@ -17,7 +17,7 @@ pub(super) struct Lock {
 }
 
 impl Lock {
-    /// Returns what the parameters ask for; `None` where feet are not held.
+    /// Returns the options of the parameters; `None` if feet are not locked.
     pub(super) fn of(params: &Params) -> Option<Self> {
         let metres = |key| (params.number(key) / 100.0) as f32;
         params.is_on(Key::FootLock).then(|| Self {
@@ -34,8 +34,8 @@ impl Lock {
     }
 }
 
-/// Begins to hold the planted feet of a clip above ground of a height, metres. `None` for a body
-/// without legs, which stays as it is: what cannot be held is no reason to have no result.
+/// Begins to lock the planted feet of a clip above ground of a height, metres. `None` for a body
+/// without legs, which stays unchanged: that is no reason to have no result.
 pub(super) fn locking(
     clip: Arc<Clip>,
     roles: &Roles,
@@ -50,7 +50,7 @@ pub(super) fn locking(
     }
 }
 
-/// Returns a result as it is, or with its planted feet held as [`locking`] does.
+/// Returns a clip unchanged, or with its planted feet locked as by [`locking`].
 pub(super) fn with_feet(
     free: &Arc<Clip>,
     roles: &Roles,
@@ -67,8 +67,8 @@ pub(super) fn with_feet(
     }
 }
 
-/// How far the feet of a whole result slide: in all labs as
-/// [`foot_slide_cm`](segue_motion::metrics::foot_slide_cm) has it.
+/// Returns the metric of foot slide over a whole result, in all labs as
+/// [`foot_slide_cm`](segue_motion::metrics::foot_slide_cm) defines it.
 pub(super) fn slide(cm: Option<f64>) -> Metric {
     Metric::lower(
         "foot_slide_cm",
@@ -79,7 +79,7 @@ pub(super) fn slide(cm: Option<f64>) -> Metric {
     )
 }
 
-/// How far the feet of a result would slide if they were not held.
+/// Returns the metric of foot slide without the foot lock.
 pub(super) fn slide_before(cm: Option<f64>) -> Metric {
     Metric::fact(
         "foot_slide_before_cm",
@@ -96,7 +96,7 @@ mod tests {
     use crate::params::Value;
     use segue_motion::registration::fixtures::Walk;
 
-    /// The parameters with the foot lock on.
+    /// Returns parameters with the foot lock on.
     fn locked() -> Params {
         let mut params = Params::default();
         params.set(Key::FootLock, Value::Switch(true)).unwrap();
@@ -104,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn unchanged_parameters_are_the_usual_options() {
+    fn lock_of_default_parameters_has_default_options() {
         assert_eq!(Lock::of(&Params::default()), None);
         let lock = Lock::of(&locked()).unwrap();
         assert_eq!(lock.on_ground(0.0), FootLockOptions::default());
@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn every_parameter_is_one_option() {
+    fn lock_of_each_parameter_sets_one_option() {
         let mut params = locked();
         for (key, value) in
             [(Key::LockBlend, 0.5), (Key::LockReach, 12.0), (Key::LockClearance, 6.0)]
@@ -135,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn body_without_legs_stays_as_it_is() {
+    fn locking_without_legs_changes_nothing() {
         let clip = Arc::new(Walk::default().clip());
         let roles = Roles::default();
         let contacts = Contacts::from_flags([vec![true; clip.frames()], vec![true; clip.frames()]]);

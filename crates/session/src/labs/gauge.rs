@@ -1,5 +1,5 @@
-//! The artefact numbers that stand first in the list of every lab: each result is measured in the
-//! same way, beside the clips that it is made of.
+//! Measurement of the artefact metrics of every lab: each result is measured in the same way,
+//! compared with the clips that it was made from.
 
 use super::sliced::{JobKind, Sliced};
 use super::{Measured, Outcome};
@@ -8,26 +8,26 @@ use segue_motion::metrics::{MotionTrace, ResultMetrics, TraceMeter};
 use segue_motion::skeleton::Roles;
 use std::sync::{Arc, Weak};
 
-/// So many frames are measured at once when a result is asked for: about 5 ms for 31 joints.
+/// The number of frames that are measured at once: about 5 ms for 31 joints.
 const AT_ONCE: usize = 1_200;
-/// Frames in one slice of work: about 2 ms for 31 joints in a browser.
+/// The number of frames in one slice of work: about 2 ms for 31 joints in a browser.
 const PER_SLICE: usize = 500;
 
-/// Measures results and their clips slice by slice, and keeps what was measured of a clip as long
-/// as the clip is there.
+/// A measurement of results and their clips in slices. Measurements of a clip are kept as long as
+/// the clip exists.
 #[derive(Debug, Default)]
 pub(crate) struct Gauge {
     known: Vec<(Weak<Clip>, Arc<MotionTrace>)>,
-    /// What a pane waits for.
+    /// The requested clips.
     wanted: Vec<(Arc<Clip>, Roles)>,
     under_way: Option<(Arc<Clip>, TraceMeter)>,
-    /// All that panes waited for has just been measured, and nobody has asked for it yet.
+    /// Whether everything requested has been measured and not been fetched yet.
     is_ready: bool,
 }
 
 impl Gauge {
-    /// The numbers of a result. `None` when they take longer than a frame: [`work`](Self::work),
-    /// then ask again.
+    /// Returns the metrics of a result. `None` if they take longer than a frame: call
+    /// [`work`](Self::work), then ask again.
     pub(crate) fn numbers(&mut self, outcome: &Outcome) -> Option<ResultMetrics> {
         let (mut left, roles) = (AT_ONCE, outcome.motion.roles());
         let own = match &outcome.measured {
@@ -39,15 +39,14 @@ impl Gauge {
         Some(measured(own.as_deref()?, &clips?))
     }
 
-    /// The numbers of what was just done by somebody who is driven: a few seconds, which are
-    /// measured at once. `None` while its clips are not.
+    /// Returns the metrics of the last seconds of a live drive, measured at once. `None` while its
+    /// clips have not been measured.
     pub(crate) fn numbers_now(&mut self, outcome: &Outcome) -> Option<ResultMetrics> {
         let clips = self.traces(&outcome.beside, outcome.motion.roles(), &mut 0)?;
         Some(measured(&MotionTrace::new(outcome.motion.clip(), outcome.motion.roles()), &clips))
     }
 
-    /// What is known of some clips; `None` while one of them is not measured. All that are not
-    /// known are asked for.
+    /// Returns the measurements of some clips; `None` and requests them if one of them is missing.
     fn traces(
         &mut self,
         clips: &[Arc<Clip>],
@@ -80,8 +79,8 @@ impl Gauge {
 
     fn keep(&mut self, clip: &Arc<Clip>, trace: MotionTrace) -> Arc<MotionTrace> {
         let trace = Arc::new(trace);
-        // An address is another clip's as soon as its own is gone and its weak pointers are, too:
-        // those that are kept here hold it.
+        // An address is reused as soon as both the clip and all weak pointers to it are gone: the
+        // weak pointers here prevent that.
         self.known.retain(|(known, _)| known.strong_count() > 0);
         self.known.push((Arc::downgrade(clip), Arc::clone(&trace)));
         trace
@@ -115,7 +114,7 @@ impl Sliced for Gauge {
         self.is_ready
     }
 
-    /// Numbers come soon by themselves.
+    /// Metrics are quick, so no progress is reported.
     fn progress(&self) -> Option<(JobKind, f64)> {
         None
     }

@@ -1,4 +1,4 @@
-//! The Graph lab: several clips as a motion graph, and a walk through it that goes on while it
+//! The Graph lab: a motion graph of several clips, and a walk through it that is extended while it
 //! plays.
 
 use super::lab::{Beside, HasPart, Inputs, Lab, LabClips, LabInputs};
@@ -74,7 +74,7 @@ impl<S: HasPart<Grapher>> Lab<S> for GraphLab {
     }
 }
 
-/// What a walk's result depends on. Equal inputs, equal result.
+/// The inputs of a walk's result. Equal inputs give equal results.
 #[derive(Clone, Debug)]
 pub(crate) struct GraphInputs(pub(super) Arc<Walk>);
 
@@ -126,7 +126,8 @@ impl LabInputs for GraphInputs {
         })
     }
 
-    /// Whether it goes the best way that was found so far, while a better one is searched for.
+    /// Returns whether the walk follows the best path found so far, while a better one is searched
+    /// for.
     fn is_draft(&self) -> bool {
         self.0.followed.as_ref().is_some_and(|trace| trace.is_searching)
     }

@@ -50,7 +50,7 @@ impl<S> Lab<S> for InPlaceLab {
     }
 }
 
-/// What the result depends on. Equal inputs, equal result.
+/// The inputs of the result. Equal inputs give equal results.
 #[derive(Clone, Debug)]
 struct InPlaceInputs {
     motion: Arc<Motion>,
@@ -86,7 +86,7 @@ impl LabInputs for InPlaceInputs {
         let moved = |clip: &Clip| Arc::new(clip.transformed_by_frame(&moves));
         let lock =
             |clip| with_feet(clip, source.roles(), &contacts, source.ground_m(), self.foot_lock);
-        // Feet stand where the body goes its way: in the source, or in the result.
+        // The feet are planted while the body travels: in the source, or in the result.
         let (going, standing, frames) = match self.way {
             RootWay::TakeOut => {
                 let going = lock(source.clip())?;
@@ -118,7 +118,7 @@ impl LabInputs for InPlaceInputs {
     }
 }
 
-/// Returns how far, how fast and with what turn a body travels.
+/// Returns metrics of the travel of a body: distance, speed and turn.
 fn way_metrics(frames: &[Planar], fps: f64) -> [Metric; 3] {
     let steps = || frames.windows(2).map(|pair| pair[0].inverse().after(&pair[1]));
     let way_m: f64 = steps().map(|step| step.shift.length()).sum();
@@ -165,7 +165,7 @@ mod tests {
         metric.value.expect("a value")
     }
 
-    /// From the first place on the ground to the last, metres.
+    /// Returns the distance between the first and the last position on the ground, metres.
     fn way_m(session: &Session) -> f64 {
         let frames = session.main_outcome().expect("a result").motion.ground_frames();
         frames[0].shift.distance(frames[frames.len() - 1].shift)

@@ -13,12 +13,13 @@ use std::sync::Arc;
 /// The facts of a lab, in the lab's own file. `S` is what labs remember between results: a lab
 /// names the parts of it that it uses.
 pub(crate) trait Lab<S>: Sync {
-    /// Returns the ids of the clips that the lab's own list names; none where it has no list.
+    /// Returns the ids of the clips in the lab's own list; empty if it has no list.
     fn listed(&self, params: &Params) -> Vec<String> {
         self.more_clips(params).unwrap_or_default()
     }
 
-    /// Returns what is to be set so that the lab no longer names a clip; nothing where it does not.
+    /// Returns the parameters to set so that the lab no longer uses a clip; empty if it does not use
+    /// it.
     fn without_clip(&self, _params: &Params, _id: &str) -> Vec<(Key, Value)> {
         Vec::new()
     }
@@ -26,22 +27,22 @@ pub(crate) trait Lab<S>: Sync {
     /// Returns the ids of the clips that the result is made from besides those in its slots.
     ///
     /// # Errors
-    /// Says what of the list cannot be read.
+    /// [`LabError`] if the list cannot be read.
     fn more_clips(&self, _params: &Params) -> Result<Vec<String>, LabError> {
         Ok(Vec::new())
     }
 
-    /// Returns what is to be set so that the lab works with these clips; `None` where it takes no
-    /// list of clips.
+    /// Returns the parameters that make the lab work with these clips; `None` if it takes no list
+    /// of clips.
     fn with_clips(&self, _ids: &[String]) -> Option<Vec<(Key, Value)>> {
         None
     }
 
-    /// Returns what the result depends on; `None` while that is still being computed.
+    /// Returns everything that the result depends on; `None` while it is being computed.
     /// `match_window` is the window of the automatic match, in frames.
     ///
     /// # Errors
-    /// Says why there can be no result, and what to do.
+    /// [`LabError`] with the reason why there can be no result, and the remedy.
     fn inputs(
         &self,
         labs: &mut S,
@@ -53,7 +54,7 @@ pub(crate) trait Lab<S>: Sync {
     /// Returns the name of the result; `a` and `b` are the names of the clips in its slots.
     fn result_name(&self, params: &Params, a: Message, b: Message) -> Message;
 
-    /// Returns the name of a file with the result, without its ending.
+    /// Returns the name of a file of the result, without its ending.
     fn file_stem(&self, params: &Params) -> String;
 
     /// Returns the id of the result, where that is not the lab's name with its parameters.
@@ -77,34 +78,34 @@ pub(crate) trait Lab<S>: Sync {
         Vec::new()
     }
 
-    /// Returns the values that were found for parameters left to Segue; `fps` are the frame rates
-    /// of the clips in A and B.
+    /// Returns the values of parameters that were determined automatically; `fps` are the frame
+    /// rates of the clips in A and B.
     fn found(&self, _outcome: &Outcome, _fps: [f64; 2]) -> Vec<(Key, f64)> {
         Vec::new()
     }
 
-    /// Returns a link to the lab's bundled captured clips; `None` where it takes a list of clips or
-    /// has none.
+    /// Returns a link to the lab with its bundled captured clips; `None` if it takes a list of
+    /// clips or has none.
     fn captured_link(&self) -> Option<&'static str> {
         None
     }
 
-    /// Returns whether the lab shows one clip: a file that is opened takes its place.
+    /// Returns whether the result is an unchanged clip, which a newly opened one replaces.
     fn shows_clip(&self) -> bool {
         false
     }
 
-    /// Returns whether results are made in a moment, and from parameters alone.
+    /// Returns whether results are made at once, and from parameters alone.
     fn is_synthetic(&self) -> bool {
         false
     }
 
-    /// Returns whether the user drives the result, with these parameters.
+    /// Returns whether, with these parameters, the user drives the character.
     fn is_own_drive(&self, _params: &Params) -> bool {
         false
     }
 
-    /// Returns whether there is something beside the result.
+    /// Returns whether the lab has a view beside the result.
     fn has(&self, _beside: Beside) -> bool {
         false
     }
@@ -154,27 +155,26 @@ impl LabClips {
     }
 }
 
-/// Something that a lab shows beside its result.
+/// A view that a lab may show beside its result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Beside {
     /// Clips that play beside the result.
     ExtraCharacters,
-    /// The graph that a walk goes through.
+    /// The graph of a walk.
     Graph,
     /// The distances between the frames of two clips.
     DistanceMap,
 }
 
-/// All that a lab's result depends on. Equal inputs give equal results: nothing is computed again.
+/// The inputs of a lab's result. Equal inputs give equal results, so nothing is computed twice.
 pub(crate) trait LabInputs: fmt::Debug + PartialEq + Send + Sync + 'static {
-    /// Makes the result.
+    /// Computes the result.
     ///
     /// # Errors
-    /// Says why there can be no result, and what to do.
+    /// [`LabError`] with the reason why there can be no result, and the remedy.
     fn run(&self) -> Result<Outcome, LabError>;
 
-    /// Returns whether the result is shown while more of it is computed: it will be another motion
-    /// then, or have numbers.
+    /// Returns whether the result is preliminary: its motion or its metrics will change.
     fn is_draft(&self) -> bool {
         false
     }
@@ -184,7 +184,7 @@ pub(crate) trait LabInputs: fmt::Debug + PartialEq + Send + Sync + 'static {
 #[derive(Clone, Debug)]
 pub(crate) struct Inputs(Arc<dyn AnyInputs>);
 
-/// [`LabInputs`] of a lab that is not known here.
+/// [`LabInputs`] of any lab.
 trait AnyInputs: Any + fmt::Debug + Send + Sync {
     fn run(&self) -> Result<Outcome, LabError>;
     fn is_draft(&self) -> bool;
@@ -206,22 +206,22 @@ impl<T: LabInputs> AnyInputs for T {
 }
 
 impl Inputs {
-    /// Takes the inputs of a lab.
+    /// Wraps the inputs of a lab.
     pub(crate) fn new(inputs: impl LabInputs) -> Self {
         Self(Arc::new(inputs))
     }
 
-    /// Makes the result; errors as [`LabInputs::run`].
+    /// Computes the result; errors as [`LabInputs::run`].
     pub(crate) fn run(&self) -> Result<Outcome, LabError> {
         self.0.run()
     }
 
-    /// As [`LabInputs::is_draft`].
+    /// Returns whether the result is preliminary, as [`LabInputs::is_draft`].
     pub(crate) fn is_draft(&self) -> bool {
         self.0.is_draft()
     }
 
-    /// Returns the inputs as those of one lab; `None` where they are another's.
+    /// Returns the inputs as those of one lab; `None` if they are another's.
     pub(crate) fn of_lab<T: LabInputs>(&self) -> Option<&T> {
         (&*self.0 as &dyn Any).downcast_ref()
     }

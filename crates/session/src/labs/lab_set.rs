@@ -35,7 +35,7 @@ pub(crate) fn lab_of(lab: LabId) -> &'static dyn Lab<LabSet> {
     }
 }
 
-/// All that labs remember of earlier results, so that only what has changed is computed again.
+/// The caches of all labs, so that unchanged intermediate results are not computed again.
 #[derive(Debug, Default)]
 pub(crate) struct LabSet {
     pairs: Pairs,
@@ -54,7 +54,7 @@ pub(crate) struct LabSet {
 }
 
 impl LabSet {
-    /// Returns the parts that work in slices, in the order of their turns.
+    /// Returns all sliced work, in the order of scheduling.
     fn sliced(&self) -> [&dyn Sliced; 7] {
         [
             &self.blender,
@@ -79,26 +79,26 @@ impl LabSet {
         ]
     }
 
-    /// Forgets what panes wait for: all are about to ask again.
+    /// Clears the pending requests of all labs; each pane then requests what it needs again.
     pub(crate) fn ask_anew(&mut self) {
         for sliced in self.sliced_mut() {
             sliced.ask_anew();
         }
     }
 
-    /// Does one slice of work; `now_secs` is where the playhead stands. Returns `false` when there
-    /// was nothing to do.
+    /// Does one slice of work; `now_secs` is the playhead. Returns `false` if there was nothing to
+    /// do.
     pub(crate) fn work(&mut self, now_secs: f64) -> bool {
         self.grapher.play_at(now_secs);
         self.sliced_mut().into_iter().any(Sliced::work)
     }
 
-    /// Returns whether something that a pane waits for is there.
+    /// Returns whether any requested result is available.
     pub(crate) fn is_ready(&self) -> bool {
         self.sliced().into_iter().any(Sliced::is_ready)
     }
 
-    /// Returns what is worked on, each kind once, and how much of it is done, 0 to 1.
+    /// Returns the kinds of work in progress, each once, with their progress, 0 to 1.
     pub(crate) fn progress(&self) -> Vec<(JobKind, f64)> {
         let mut found: Vec<(JobKind, f64)> = Vec::new();
         for (kind, progress) in self.sliced().into_iter().filter_map(Sliced::progress) {

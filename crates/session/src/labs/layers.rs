@@ -40,31 +40,31 @@ impl<S: HasPart<Pairs> + HasPart<Layerer>> Lab<S> for LayersLab {
     }
 }
 
-/// How the layer's time goes with that of the clip below.
+/// The fit of the layer's time to that of the clip below.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LayerFit {
     /// One cycle of B is repeated so that its feet would strike when A's do.
     InStep,
-    /// B begins again at its end; its ends are brought together.
+    /// B starts again at its end; its ends are made to match.
     Looped,
     /// B is long enough to play once.
     Once,
-    /// B stays in its last frame, and before its beginning in its first.
+    /// B holds its last frame after its end, and its first before its beginning.
     Held,
 }
 
-/// What is known of a layer that was laid over a clip.
+/// Facts about a layer that was laid over a clip.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LayerFacts {
-    /// Each joint's share of B, 0 to 1.
+    /// The share of B in each joint, 0 to 1.
     pub shares: Vec<f32>,
-    /// How B's time goes.
+    /// The fit of B's time.
     pub fit: LayerFit,
-    /// B was to keep step, and one of the clips has no steps.
+    /// Whether B should be in step, but one of the clips has no steps.
     pub has_no_steps: bool,
 }
 
-/// What a layer depends on. Equal inputs, equal result.
+/// The inputs of a layer. Equal inputs give equal results.
 #[derive(Clone, Debug)]
 pub(crate) struct LayerInputs {
     pair: Arc<Pair>,
@@ -82,11 +82,11 @@ impl PartialEq for LayerInputs {
     }
 }
 
-/// B as it is read, and when.
+/// A reading of B: a clip, and the time in it for each frame of A.
 #[derive(Clone, Debug)]
 struct Reading {
     over: Arc<Clip>,
-    /// One time for every frame of A, seconds.
+    /// The time for every frame of A, seconds.
     times: Arc<Vec<f64>>,
 }
 
@@ -94,26 +94,26 @@ struct Reading {
 #[derive(Debug)]
 struct Timed {
     pair: Arc<Pair>,
-    /// The word of the parameter, and the start in seconds.
+    /// The chosen fit, and the start in seconds.
     wanted: (choices::LayerFit, f64),
     reading: Reading,
     fit: LayerFit,
     has_no_steps: bool,
-    /// All of B, frame by frame beside A.
+    /// B frame by frame in A's time.
     shown: Arc<Motion>,
 }
 
-/// Makes layers, and keeps what does not change from one to the next: B in A's time.
+/// A cache of B in A's time.
 #[derive(Debug, Default)]
 pub(crate) struct Layerer {
-    /// B in step with A, where both have steps.
+    /// B in step with A, if both have steps.
     in_step: Option<(Arc<Pair>, Option<Reading>)>,
-    /// The last ones that were asked for, at most one for each pane.
+    /// The last ones requested, at most one for each pane.
     timed: Vec<Arc<Timed>>,
 }
 
 impl Layerer {
-    /// Brings everything to the point where the layer itself is a pure function.
+    /// Prepares the inputs, with which the layer itself is a pure function.
     pub(crate) fn inputs(
         &mut self,
         pair: &Arc<Pair>,
@@ -186,8 +186,8 @@ impl Layerer {
         })
     }
 
-    /// One cycle of B, and for every frame of A the time of that cycle at which B's feet are where
-    /// A's are.
+    /// Returns one cycle of B, and for every frame of A the time in that cycle at which B's feet
+    /// are where A's are.
     fn in_step(&mut self, pair: &Arc<Pair>) -> Option<Reading> {
         if let Some((known, reading)) = &self.in_step
             && Arc::ptr_eq(known, pair)
@@ -206,14 +206,14 @@ impl Layerer {
     }
 }
 
-/// All of B as a cycle.
+/// Returns all of B as a cycle.
 fn closed(pair: &Pair) -> Option<Arc<Clip>> {
     let source = &pair.incoming;
     let last = source.clip().frames().checked_sub(1)?;
     once_more(&close_loop(source, 0..last, &LoopOptions::default()).ok()?)
 }
 
-/// A cycle and its first frame again: where a layer loops, its last frame is its first.
+/// Returns a cycle and its first frame again: where a layer loops, its last frame is its first.
 fn once_more(looped: &Loop) -> Option<Arc<Clip>> {
     let twice = looped.repeat(2).ok()?;
     twice.crop(0..looped.clip.frames() + 1).ok().map(Arc::new)
@@ -226,7 +226,7 @@ fn time_of(fit: LayerFit) -> LayerTime {
     }
 }
 
-/// What the lab is set to; how long the layer lasts is not known here.
+/// Returns the options of the parameters; the duration of the layer is not known here.
 fn options_of(params: &Params) -> LayerOptions {
     let parts = match params.choice::<choices::Mask>() {
         choices::Mask::Arms => vec![BodyPart::LeftArm, BodyPart::RightArm],
@@ -273,7 +273,7 @@ impl LabInputs for LayerInputs {
         let root_share = shares.first().copied().unwrap_or(0.0);
         let _walks_as_b = options.mode == LayerMode::Override && root_share > 0.5;
         let ground_m = if root_share == 0.0 { a.ground_m() } else { pair.ground_m() };
-        // Legs that are not touched stand as they stood.
+        // Legs that the layer does not touch keep their contacts.
         let contacts = if root_share == 0.0 {
             a.contacts().clone()
         } else {

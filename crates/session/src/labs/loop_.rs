@@ -16,7 +16,7 @@ use segue_motion::transition::{
 use segue_text::{Message, msg};
 use std::sync::Arc;
 
-/// The Loop lab: a cycle cut from a clip, its ends brought together.
+/// The Loop lab: a cycle cut from a clip, with matching ends.
 pub(super) struct LoopLab;
 
 impl<S: HasPart<CycleFinder>> Lab<S> for LoopLab {
@@ -52,7 +52,7 @@ impl<S: HasPart<CycleFinder>> Lab<S> for LoopLab {
     }
 }
 
-/// What a loop depends on. Equal inputs, equal result.
+/// The inputs of a loop. Equal inputs give equal results.
 #[derive(Clone, Debug)]
 pub(crate) struct LoopInputs {
     found: Arc<Found>,
@@ -68,23 +68,23 @@ impl PartialEq for LoopInputs {
     }
 }
 
-/// Where a clip is cut, and what was asked.
+/// The ends of a cycle, and the request for them.
 #[derive(Debug)]
 struct Found {
     motion: Arc<Motion>,
-    /// The ends that the user named.
+    /// The ends that the user set.
     given: [Option<usize>; 2],
     cut: CutPoints,
 }
 
-/// Finds where a clip repeats itself, and keeps that while nothing else is asked.
+/// A cache of the last search for a cycle.
 #[derive(Debug, Default)]
 pub(crate) struct CycleFinder {
     known: Option<Arc<Found>>,
 }
 
 impl CycleFinder {
-    /// What the parameters ask for, of this clip.
+    /// Returns the loop of the parameters for a clip.
     pub(crate) fn inputs(
         &mut self,
         motion: &Arc<Motion>,
@@ -147,7 +147,7 @@ impl LabInputs for LoopInputs {
         let Found { motion, cut, .. } = &*self.found;
         let looped = close_loop(motion, cut.cycle.clone(), &self.options)?;
         let (fps, frames) = (looped.clip.fps(), cut.cycle.len());
-        // One more, of which the first frame is the one behind the last.
+        // Four repetitions, cropped to three and the first frame of the fourth.
         let three = looped.repeat(4).and_then(|clip| clip.crop(0..3 * frames + 1));
         let three = three?;
         let contacts = repeated(motion.contacts(), &cut.cycle, 3 * frames + 1);

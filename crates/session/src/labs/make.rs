@@ -47,7 +47,7 @@ impl<S> Lab<S> for MakeLab {
     }
 }
 
-/// The action that the Make lab is set to.
+/// Returns the chosen action of the Make lab.
 pub(crate) fn synth_action(params: &Params) -> Action {
     match params.choice::<choices::MadeAction>() {
         choices::MadeAction::Run => Action::Run,
@@ -60,7 +60,7 @@ pub(crate) fn synth_action(params: &Params) -> Action {
     }
 }
 
-/// Whether the chosen motion has that parameter: nobody who stands has a speed.
+/// Returns whether the chosen action has a parameter: standing has no speed, for instance.
 pub(crate) fn has(params: &Params, key: Key) -> bool {
     let lacks = match key {
         Key::GaitSpeed => matches!(
@@ -80,7 +80,7 @@ pub(crate) fn has(params: &Params, key: Key) -> bool {
     !lacks
 }
 
-/// What of a number's range the chosen motion can be made with, where it is not all of it.
+/// Returns the part of a number's range that the chosen action supports, if that is not all of it.
 pub(crate) fn range_of(params: &Params, key: Key) -> Option<(f64, f64)> {
     let (own, table) = match (key, key.param().kind) {
         (Key::GaitSpeed, Kind::Number { min, max, .. }) => {
@@ -91,14 +91,14 @@ pub(crate) fn range_of(params: &Params, key: Key) -> Option<(f64, f64)> {
         }
         _ => return None,
     };
-    // As the decimals are written: 0.4 of an f32 is a little more than 0.4.
+    // Rounded to the decimals as written: 0.4 of an f32 is a little more than 0.4.
     let own = [own.0, own.1].map(|end| (f64::from(end) * 1e3).round() / 1e3);
     Some((own[0].max(table.0), own[1].min(table.1)))
 }
 
 fn synth_params(params: &Params) -> synth::Params {
     let of = |key| params.number(key) as f32;
-    // A number that was set for another motion is brought to what this one can do.
+    // A number that was set for another action is clamped to the range of this one.
     let within = |key, value: f32| match range_of(params, key) {
         Some((min, max)) => value.clamp(min as f32, max as f32),
         None => value,
@@ -123,7 +123,7 @@ fn synth_params(params: &Params) -> synth::Params {
     }
 }
 
-/// The motion that the Make lab is set to.
+/// Synthesises the motion of the Make lab's parameters.
 fn make(params: &Params) -> Result<Outcome, LabError> {
     let made = synth::synthesize(&synth_params(params))?;
     let mut motion =
@@ -140,7 +140,7 @@ fn make(params: &Params) -> Result<Outcome, LabError> {
     Ok(Outcome { metrics, ..Outcome::plain(Arc::new(motion)) })
 }
 
-/// A built-in motion by its id.
+/// Returns a built-in motion by its id.
 pub(crate) fn preset_motion(id: &str) -> Result<Motion, LabError> {
     let preset = synth::presets()
         .into_iter()
@@ -150,8 +150,8 @@ pub(crate) fn preset_motion(id: &str) -> Result<Motion, LabError> {
     Ok(Motion::analyze(made.clip.with_name(preset.title)))
 }
 
-/// The id of a made clip: the motion and what differs from its default, `run(turn_rate:20,seed:9)`.
-/// It is all that is needed to make it again.
+/// Returns the id of a synthesised clip: its action and the parameters that differ from their
+/// defaults, `run(turn_rate:20,seed:9)`. It is sufficient to make the clip again.
 pub(crate) fn made_id(params: &Params) -> String {
     let changed = params
         .changed()
@@ -159,7 +159,7 @@ pub(crate) fn made_id(params: &Params) -> String {
         .filter(|(param, _)| has(params, param.key) && counts(params, param.key));
     let list: Vec<String> = changed
         .map(|(param, value)| match (value, range_of(params, param.key)) {
-            // As it is made, not as it was set for another motion.
+            // As used, not as set for another action.
             (Value::Number(number), Some((min, max))) => {
                 (param, Value::Number(number.clamp(min, max)))
             }
@@ -170,7 +170,7 @@ pub(crate) fn made_id(params: &Params) -> String {
     format!("{}({})", params.choice::<choices::MadeAction>().word(), list.join(","))
 }
 
-/// What a made motion depends on.
+/// The inputs of a synthesised motion.
 #[derive(Clone, Debug)]
 pub(crate) struct MakeInputs {
     params: Arc<Params>,
@@ -189,7 +189,7 @@ impl LabInputs for MakeInputs {
     }
 }
 
-/// The id says all that the motion depends on.
+/// The id contains everything that the motion depends on.
 impl PartialEq for MakeInputs {
     fn eq(&self, other: &Self) -> bool {
         self.id == other.id
@@ -202,7 +202,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_id_is_all_that_is_needed_to_make_a_clip_again() {
+    fn made_id_is_sufficient_to_make_the_clip() {
         let mut params = Params::default();
         params.set(Key::Gait, Value::Choice("run")).unwrap();
         params.set(Key::TurnRate, Value::Number(-20.0)).unwrap();

@@ -1,4 +1,4 @@
-//! The Match lab: a character that is driven, live or by input that was written down.
+//! The Match lab: a character that is driven, live or by recorded input.
 
 use super::lab::{HasPart, Inputs, Lab, LabClips};
 use crate::choices;

@@ -4,25 +4,25 @@ use segue_motion::clip::{Clip, Interpolation, Motion, resample, retarget_onto};
 use segue_motion::skeleton::Retargeting;
 use std::sync::Arc;
 
-/// Two clips made ready for each other.
+/// Two clips on one skeleton and at one frame rate.
 #[derive(Debug)]
 pub(crate) struct Pair {
     pub(super) a: Arc<Motion>,
     pub(super) b: Arc<Motion>,
     /// B on the skeleton and at the frame rate of A.
     pub(super) incoming: Arc<Motion>,
-    /// How B came onto A's skeleton, where that is not its own.
+    /// The retargeting of B; `None` if its skeleton is A's.
     pub(super) retargeted: Option<Arc<Retargeted>>,
 }
 
 impl Pair {
-    /// The height of the ground under both clips, metres: the lower one, so that no foot is lifted
-    /// off the ground that its own clip has.
+    /// Returns the height of the ground under both clips, metres: the lower one, so that no foot is
+    /// lifted off the ground of its own clip.
     pub(super) fn ground_m(&self) -> f32 {
         self.a.ground_m().min(self.incoming.ground_m())
     }
 
-    /// Both clips on the skeleton of A.
+    /// Returns both clips on the skeleton of A.
     pub(super) fn clips(&self) -> Vec<Arc<Clip>> {
         [&self.a, &self.incoming].map(|motion| Arc::clone(motion.clip())).into()
     }
@@ -33,7 +33,8 @@ impl Pair {
     }
 }
 
-/// B on the skeleton and at the frame rate of A, and how it came there if that is not its own.
+/// Returns B on the skeleton and at the frame rate of A, and the report on retargeting if it was
+/// needed.
 pub(super) fn fitted(
     a: &Arc<Motion>,
     b: &Arc<Motion>,
@@ -60,7 +61,7 @@ pub(super) fn fitted(
 }
 
 impl Retargeted {
-    /// What happens to `b` on the skeleton of `a`.
+    /// Compares the skeletons of `a` and `b`.
     fn between(a: &Motion, b: &Motion) -> Self {
         let skeleton = a.clip().skeleton();
         let way = Retargeting::new(b.clip().skeleton(), b.roles(), skeleton, a.roles());
@@ -70,12 +71,12 @@ impl Retargeted {
     }
 }
 
-/// Makes pairs, and keeps the last one: labs and panes share it.
+/// A cache of the last pair, which labs and panes share.
 #[derive(Debug, Default)]
 pub(crate) struct Pairs(Option<Arc<Pair>>);
 
 impl Pairs {
-    /// As [`of`](Self::of), for the clips of a lab's slots.
+    /// Returns the pair of a lab's slots, as [`of`](Self::of) does.
     pub(crate) fn of_slots(&mut self, slots: &[Arc<Motion>]) -> Result<Arc<Pair>, LabError> {
         match slots {
             [a, b] => self.of(a, b),
@@ -83,7 +84,7 @@ impl Pairs {
         }
     }
 
-    /// B on the skeleton and at the rate of A.
+    /// Returns B on the skeleton and at the rate of A.
     pub(crate) fn of(&mut self, a: &Arc<Motion>, b: &Arc<Motion>) -> Result<Arc<Pair>, LabError> {
         if let Some(pair) = &self.0
             && Arc::ptr_eq(&pair.a, a)
@@ -119,8 +120,8 @@ mod tests {
         changes.fold(0.0, f32::max)
     }
 
-    /// Between the frames of a slower clip the velocity changes evenly, and not in a step at each
-    /// of them.
+    /// Between the frames of a slower clip the velocity changes evenly, not in a step at each of
+    /// them.
     #[test]
     fn slower_incoming_clip_is_resampled_without_velocity_steps() {
         let at = |fps: f32| {

@@ -65,7 +65,8 @@ impl<S: HasPart<Paths>> Lab<S> for PathLab {
     }
 }
 
-/// A motion and the path that was fitted to its way: what stays while the path is edited.
+/// A motion and the path that was fitted to its trajectory, which stay the same while the path is
+/// edited.
 #[derive(Debug)]
 pub struct FittedMotion {
     motion: Arc<Motion>,
@@ -96,67 +97,68 @@ impl FittedMotion {
         })
     }
 
-    /// The motion as it came.
+    /// Returns the motion before editing.
     #[must_use]
     pub fn motion(&self) -> &Arc<Motion> {
         &self.motion
     }
 
-    /// The fitted path.
+    /// Returns the fitted path.
     #[must_use]
     pub fn road(&self) -> &Arc<Road> {
         &self.road
     }
 
-    /// For every frame of the motion the place on the fitted path that it rides in.
+    /// Returns the place on the fitted path for every frame of the motion.
     #[must_use]
     pub fn places(&self) -> &[Waypoint] {
         self.editor.path().places()
     }
 
-    /// How far the hips are from the path.
+    /// Returns the distance of the hips from the path.
     #[must_use]
     pub fn error(&self) -> FitError {
         self.error
     }
 
-    /// Likewise frame by frame: metres along the path, and centimetres away from it.
+    /// Returns the distances frame by frame: centimetres along the path, and centimetres away from
+    /// it.
     #[must_use]
     pub fn errors_cm(&self) -> &[[f64; 2]] {
         &self.errors_cm
     }
 }
 
-/// What is known of a motion on an edited path.
+/// Facts about a motion on an edited path.
 #[derive(Clone, Debug)]
 pub struct OnPath {
     /// The motion before it was edited.
     pub fitted: Arc<FittedMotion>,
-    /// The path that it goes on now.
+    /// The edited path.
     pub road: Arc<Road>,
-    /// Whether that is another one than was fitted.
+    /// Whether it differs from the fitted path.
     pub is_edited: bool,
-    /// For every frame of the result the place on the path that it rides in.
+    /// The place on the path for every frame of the result.
     pub places: Vec<Waypoint>,
-    /// Where the path turns faster than the motion can.
+    /// The places at which the path turns faster than the motion can.
     pub hard_turns: Vec<HardTurn>,
-    /// Its feet will be planted as soon as the hand rests, and are not yet.
+    /// Whether its feet are to be locked as soon as dragging ends, and are not yet.
     pub awaits_feet: bool,
 }
 
-/// What a motion on a path depends on. Equal inputs, equal result.
+/// The inputs of a motion on a path. Equal inputs give equal results.
 #[derive(Clone, Debug)]
 pub(crate) struct PathInputs {
     fitted: Arc<FittedMotion>,
     /// The edited path; `None` for the fitted one.
     edited: Option<GroundSpline>,
     carry: CarryOptions,
-    /// How planted feet are held, where they are.
+    /// The foot lock options, if feet are locked.
     lock: Option<Lock>,
     feet: Feet,
 }
 
-/// What becomes of the feet.
+/// The state of the feet.
 #[derive(Clone, Debug)]
 enum Feet {
     Free,
@@ -165,12 +167,13 @@ enum Feet {
     Planted(Arc<Planted>),
 }
 
-/// The feet of so many frames are planted while the hand moves: about 3 ms for 31 joints in a
+/// The number of frames whose feet are locked during dragging: about 3 ms for 31 joints in a
 /// browser.
 const AT_ONCE: usize = 400;
 
 impl PathInputs {
-    /// Whether it is the same motion on the same path with its feet held alike, at once or later.
+    /// Returns whether the motion, the path and the foot lock are the same, whether locked at once
+    /// or later.
     fn makes_the_same(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.fitted, &other.fitted)
             && self.edited == other.edited
@@ -188,7 +191,7 @@ impl PartialEq for PathInputs {
     }
 }
 
-/// Fits paths, and keeps the last ones: a hand that drags a point changes none of them.
+/// A cache of the last fitted paths: dragging a point changes none of them.
 #[derive(Debug, Default)]
 pub(crate) struct Paths {
     fitted: Vec<Arc<FittedMotion>>,
@@ -196,7 +199,7 @@ pub(crate) struct Paths {
 }
 
 impl Paths {
-    /// What the parameters ask for, of this clip.
+    /// Returns the motion on a path of the parameters for a clip.
     pub(crate) fn inputs(
         &mut self,
         motion: &Arc<Motion>,
@@ -263,7 +266,7 @@ impl Sliced for Paths {
     }
 }
 
-/// Whose control points a path has that is fitted or drawn.
+/// Returns whether the spline of a fitted or drawn path is open or closed.
 #[must_use]
 pub fn spline_ends(params: &Params) -> SplineEnds {
     match params.choice::<choices::PathSpline>() {
@@ -290,7 +293,7 @@ fn carry_options(params: &Params) -> CarryOptions {
     }
 }
 
-/// The path, and the motion on it as its feet come.
+/// Returns the path, and the motion on it without foot lock.
 fn free_motion(inputs: &PathInputs) -> Result<(Arc<Road>, EditedMotion), LabError> {
     let fitted = &inputs.fitted;
     let road = match &inputs.edited {
@@ -303,8 +306,8 @@ fn free_motion(inputs: &PathInputs) -> Result<(Arc<Road>, EditedMotion), LabErro
 }
 
 impl PathInputs {
-    /// Begins to hold the planted feet of the motion on the path, which turned the whole body by so
-    /// many radians in every frame. `None` where they are not to be held, or there are no legs.
+    /// Begins to lock the feet of the motion on the path, which rotated the whole body by these
+    /// angles in each frame, radians. `None` if they are not to be locked, or if there are no legs.
     fn locking(
         &self,
         free: &Arc<Clip>,
@@ -410,7 +413,7 @@ impl LabInputs for PathInputs {
         })
     }
 
-    /// Whether its feet are to be planted, and are not yet.
+    /// Returns whether its feet are to be locked, and are not yet.
     fn is_draft(&self) -> bool {
         matches!(self.feet, Feet::Awaited)
     }

@@ -72,7 +72,7 @@ pub(crate) fn recipe_params(id: &str) -> Option<Params> {
         };
         set(Some(key).filter(|key| key.param().is_ingredient_of(lab))?, &value)?;
     }
-    // A clip as it is has its own id.
+    // An unchanged clip has its own id.
     (!lab_of(lab).is_clip_as_it_is(&params)).then_some(params)
 }
 
@@ -99,7 +99,7 @@ pub fn file_stem(params: &Params) -> String {
     lab_of(params.lab()).file_stem(params)
 }
 
-/// A value inside of an id. A kept clip's own id stays as it is: its brackets close.
+/// Encodes a value inside an id. The id of a kept clip stays unchanged: its brackets close.
 fn written(param: &Param, value: &Value) -> String {
     let text = param.format(value);
     if is_text(param) && !is_recipe(&text) { escaped(&text) } else { text }
@@ -161,7 +161,7 @@ mod tests {
         fn any_name_of_a_file_comes_back(a in ".{0,24}", b in "[a-z(),:%~ ]{0,16}") {
             let params = named(&a, &b).expect("texts");
             prop_assert_eq!(recipe_params(&id_of(&params)), Some(params.clone()));
-            // And once more inside of another.
+            // And again inside another.
             let outer = named(&id_of(&params), &b).expect("texts");
             prop_assert_eq!(recipe_params(&id_of(&outer)), Some(outer));
         }

@@ -1,4 +1,4 @@
-//! The Register lab: two clips laid on each other in time, blended or joined along it.
+//! The Register lab: two clips registered in time, then blended or joined.
 
 use super::lab::{Beside, HasPart, Inputs, Lab, LabClips, LabInputs};
 use crate::labs::LabError;
@@ -66,33 +66,30 @@ impl<S: HasPart<Pairs> + HasPart<Registrars>> Lab<S> for RegisterLab {
     }
 }
 
-/// What a frame of a registered result is made of.
+/// The frames that a frame of a registered result is made from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Beat {
     /// The frame of A and that of B, at A's rate; beyond the clips where one of them is over, or
     /// has not begun.
     pub frames: [f64; 2],
-    /// How much of A there is, and of B, 0 to 1; where more clips are blended, less than 1
-    /// together.
+    /// The weights of A and of B, 0 to 1; with further clips, their sum is less than 1.
     pub weights: [f64; 2],
 }
 
-/// How a result follows from the registration of A and B.
+/// The registration of A and B, and the result made by it.
 #[derive(Clone, Debug)]
 pub struct Registered {
-    /// The distances that were looked at.
+    /// The distances.
     pub map: Arc<DistanceMap>,
-    /// Path and curves through them: those that the result follows, or the ones that it leaves out
-    /// where it is plain.
+    /// The path and the curves through it, which the result follows unless it is plain.
     pub registration: Arc<Registration>,
-    /// Both clips run at their own speed.
+    /// Whether both clips run at their own speed.
     pub is_plain: bool,
-    /// What each frame of the result is made of.
+    /// The frames of A and B for each frame of the result.
     pub beats: Vec<Beat>,
-    /// When the feet of the result stand, by its own motion.
+    /// The contacts of the result, by its own motion.
     pub steps: Contacts,
-    /// The part of A that can be registered, or that a join takes to go over: from and to, seconds
-    /// in A.
+    /// The part of A that can be registered, or that the join covers: from and to, seconds in A.
     pub part_secs: [f64; 2],
 }
 
@@ -101,11 +98,11 @@ impl Registered {
         self.map.fps()
     }
 
-    /// What the result is made of at a time, which may lie between two frames.
+    /// Returns the frames of A and B at a time, which may be between two frames.
     #[must_use]
     pub fn beat_at(&self, secs: f64) -> Option<Beat> {
         let last = self.beats.len().checked_sub(1)?;
-        // `max` takes NaN to 0.
+        // `max` maps NaN to 0.
         let at = (secs * self.fps()).max(0.0).min(last as f64);
         let (here, next) = (
             self.beats.get(at.floor() as usize)?,
@@ -118,7 +115,7 @@ impl Registered {
         })
     }
 
-    /// The time of the result that comes nearest to a pair of frames.
+    /// Returns the time of the result that is nearest to a pair of frames.
     #[must_use]
     pub fn secs_near(&self, frames: [f64; 2]) -> Option<f64> {
         let off = |beat: &Beat| (beat.frames[0] - frames[0]).hypot(beat.frames[1] - frames[1]);
@@ -126,8 +123,8 @@ impl Registered {
         nearest.map(|(frame, _)| frame as f64 / self.fps())
     }
 
-    /// When a foot of a source stands, in the result's time; of the result itself where there is
-    /// none.
+    /// Returns the stances of a foot of a source in the result's time; of the result itself if
+    /// there is no source.
     #[must_use]
     pub fn stances(&self, of: Option<Slot>, side: Side) -> Vec<Range<f64>> {
         let secs =
@@ -148,19 +145,19 @@ fn stands(contacts: &Contacts, side: Side, frame: f64) -> bool {
     frame > -0.5 && contacts.planted(side, frame.round() as usize)
 }
 
-/// What is made of two registered clips.
+/// The kind of result of two registered clips.
 #[derive(Clone, Debug, PartialEq)]
 enum Made {
-    /// Both at once.
+    /// Both clips at once.
     Blend {
         /// The weight of B.
         weight: WeightCurve,
     },
-    /// A goes over into B.
+    /// A transition from A to B.
     Join {
-        /// Where it begins and ends, seconds in A.
+        /// The beginning and end, seconds in A.
         part_secs: [Option<f64>; 2],
-        /// How the weight moves from A to B meanwhile.
+        /// The law by which the weight moves from A to B.
         law: WeightLaw,
     },
 }
@@ -183,13 +180,13 @@ impl Made {
     }
 }
 
-/// The curve through keys in per cent of the blend and per cent of B.
+/// Returns the curve through keys in per cent of the blend and per cent of B.
 #[must_use]
 pub fn weight_curve(keys: &[(usize, usize)]) -> WeightCurve {
     WeightCurve::new(keys.iter().map(|&(at, weight)| (at as f64 / 100.0, weight as f64 / 100.0)))
 }
 
-/// What a registered result depends on. Equal inputs, equal result.
+/// The inputs of a registered result. Equal inputs give equal results.
 #[derive(Clone, Debug)]
 pub(crate) struct RegisterInputs {
     pair: Arc<Pair>,
@@ -217,7 +214,7 @@ impl PartialEq for Also {
 }
 
 impl Found {
-    /// The registration that a result follows.
+    /// Returns the registration that a result follows.
     fn way(&self, is_plain: bool) -> &Registration {
         if is_plain { &self.lockstep } else { &self.registration }
     }
@@ -233,16 +230,16 @@ impl PartialEq for RegisterInputs {
     }
 }
 
-/// A motion made of two, before its feet are held and measured.
+/// A motion made of two, before its feet are locked and measured.
 struct Draft {
     clip: Clip,
-    /// Where the character stands.
+    /// The ground frames of the character.
     frames: Vec<Planar>,
     beats: Vec<Beat>,
     contacts: Contacts,
     /// The frames in which both clips are mixed.
     mixed: Range<usize>,
-    /// Where B lies behind them.
+    /// The placement of B after them.
     world_from_b: Planar,
 }
 
@@ -259,12 +256,12 @@ impl RegisterInputs {
         [&self.pair.a, &self.pair.incoming]
     }
 
-    /// Of A and of B.
+    /// Returns the contacts of A and of B.
     fn contacts(&self) -> [&Contacts; 2] {
         [self.pair.a.contacts(), self.pair.incoming.contacts()]
     }
 
-    /// The frames of A that are registered: first and last.
+    /// Returns the first and the last registered frame of A.
     fn span(&self) -> [f64; 2] {
         let warp = self.found.registration.warp();
         let [last_a, last_b] = self.sources().map(|source| source.clip().frames() as f64 - 1.0);
@@ -300,7 +297,7 @@ impl RegisterInputs {
         })
     }
 
-    /// Where the seams of A and B lie in the result, and its own, where it is a join.
+    /// Returns the places of the seams of A and B in the result, and of its own if it is a join.
     fn seams(&self, beats: &[Beat], own: Option<&Range<usize>>) -> Vec<Range<usize>> {
         let plays =
             |of: usize, frame: usize| beats.partition_point(|beat| beat.frames[of] < frame as f64);
@@ -315,9 +312,9 @@ impl RegisterInputs {
         before.chain([own.clone()]).chain(behind).collect()
     }
 
-    /// From and to in frames of A: what was asked for, inside of what is registered; the middle
-    /// half of it where nothing was, so that no seam of a kept clip is left out: behind the last
-    /// one of A, before the first one of B.
+    /// Returns the first and the last frame of the join in A: as requested, within the registered
+    /// part; otherwise the middle half of it, between the last seam of A and the first one of B, so
+    /// that no seam of a kept clip is cut.
     fn part(&self, part_secs: [Option<f64>; 2]) -> Result<[usize; 2], LabError> {
         let [from, to] = self.span();
         let fps = self.pair.a.clip().fps();
@@ -395,19 +392,19 @@ impl RegisterInputs {
         })
     }
 
-    /// All clips on the skeleton of A.
+    /// Returns all clips on the skeleton of A.
     fn beside(&self) -> Vec<Arc<Clip>> {
         let also = self.also.iter().map(|also| Arc::clone(also.pair.incoming.clip()));
         self.pair.clips().into_iter().chain(also).collect()
     }
 
-    /// The height of the ground under all clips, metres: the lowest.
+    /// Returns the height of the ground under all clips, metres: the lowest.
     fn ground_m(&self) -> f32 {
         let also = self.also.iter().map(|also| also.pair.ground_m());
         also.fold(self.pair.ground_m(), f32::min)
     }
 
-    /// How far feet slide, how far apart the mixed frames are, and how deep the body sinks.
+    /// Returns the metrics of foot slide, of the distance of the mixed frames, and of penetration.
     fn measured(
         &self,
         [clip, free]: [&Clip; 2],
@@ -510,7 +507,7 @@ impl LabInputs for RegisterInputs {
     }
 }
 
-/// The weights of A and of B where there are no more.
+/// Returns the weights of A and B without further clips.
 fn of_two(weight_b: f64) -> [f64; 2] {
     [1.0 - weight_b, weight_b]
 }

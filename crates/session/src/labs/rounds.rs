@@ -1,4 +1,4 @@
-//! A cycle that is played several times: what the Speed and the Loop lab show.
+//! Repetition of a cycle, as shown by the Speed and the Loop lab.
 
 use super::feet::{Lock, slide, slide_before, with_feet};
 use crate::labs::LabError;
@@ -8,23 +8,22 @@ use segue_motion::skeleton::{Roles, Side};
 use segue_motion::transition::repeat_clip;
 use std::sync::Arc;
 
-/// Cycles follow each other until they fill this, seconds.
+/// The least duration of the repeated cycles, seconds.
 const SHOWN_SECS: f64 = 6.0;
 
-/// Several rounds of a cycle, and what their feet do.
+/// Several repetitions of a cycle, and the slide of their feet.
 pub(super) struct Rounds {
-    /// Whole cycles and the frame behind them, which has the pose of the first.
+    /// Whole cycles and one more frame, which has the pose of the first.
     pub(super) motion: Motion,
-    /// How far planted feet slide, and how far they would without the foot lock.
+    /// The foot slide, with the foot lock and without it.
     pub(super) slides: Vec<Metric>,
 }
 
-/// Plays a cycle of `cycle_frames` several times.
+/// Repeats a cycle of `cycle_frames` several times.
 ///
-/// `three` are three cycles and the frame behind them, with the contacts of the feet. The one in
-/// the middle is played again and again: a stance that the end of a clip cuts in two would be
-/// planted elsewhere than the same stance with all that is around it. `ground_m` is the height of
-/// the ground.
+/// `three` are three cycles and one more frame, with the contacts of the feet. The middle cycle is
+/// repeated: a stance that the end of a clip cuts in two would be locked at another position than
+/// the same stance in full. `ground_m` is the height of the ground.
 pub(super) fn rounds(
     roles: &Roles,
     cycle_frames: usize,
@@ -59,7 +58,7 @@ pub(super) fn rounds(
     })
 }
 
-/// The contacts of `frames` frames that go round in those of a part of a clip.
+/// Returns the contacts of `frames` frames that repeat a part of a clip.
 pub(super) fn repeated(
     contacts: &Contacts,
     cycle: &std::ops::Range<usize>,

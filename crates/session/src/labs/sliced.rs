@@ -3,24 +3,24 @@
 /// The kinds of work that is done in slices.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum JobKind {
-    /// The best place for a transition is searched for.
+    /// A search for the best place of a transition.
     Matching,
-    /// Clips are registered in time.
+    /// The registration of clips in time.
     Registering,
-    /// A motion graph is built.
+    /// The construction of a motion graph.
     BuildingGraph,
-    /// Planted feet are held.
+    /// The locking of planted feet.
     HoldingFeet,
-    /// The features of clips are computed for motion matching.
+    /// The computation of features for motion matching.
     BuildingDatabase,
-    /// Recorded input is played.
+    /// The playback of recorded input.
     Driving,
-    /// A file is read; its name.
+    /// The reading of a file with this name.
     Reading(String),
 }
 
 impl JobKind {
-    /// The name in the page's API: a word of its own, or the file's name.
+    /// Returns the name in the page's API: a fixed word, or the file's name.
     #[must_use]
     pub fn name(&self) -> &str {
         match self {
@@ -35,15 +35,15 @@ impl JobKind {
     }
 }
 
-/// Work that is done in slices, between frames, for panes that wait for it.
+/// Work that is done in slices between frames, for panes that wait for it.
 pub(crate) trait Sliced {
     /// Forgets which panes wait: all are about to ask again.
     fn ask_anew(&mut self);
 
-    /// Does one slice. Returns `false` when there was nothing to do.
+    /// Does one slice. Returns `false` if there was nothing to do.
     fn work(&mut self) -> bool;
 
-    /// Returns whether something that a pane waits for is there, so that it should ask again.
+    /// Returns whether a requested result is available, so that its pane should ask again.
     fn is_ready(&self) -> bool;
 
     /// Returns the kind of the present work and how much of it is done, 0 to 1; `None` without work

@@ -1,4 +1,4 @@
-//! The Speed lab: two gaits at a speed.
+//! The Speed lab: two gait cycles blended to a speed.
 
 use super::feet::Lock;
 use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs};
@@ -49,14 +49,14 @@ impl<S: HasPart<Pairs> + HasPart<GaitFinder>> Lab<S> for SpeedLab {
     }
 }
 
-/// The cycles of two clips, found once.
+/// The cycles of two clips.
 #[derive(Debug)]
 struct Gaits {
     pair: Arc<Pair>,
     cycles: [GaitCycle; 2],
 }
 
-/// What a gait at a speed depends on. Equal inputs, equal result.
+/// The inputs of a gait at a speed. Equal inputs give equal results.
 #[derive(Clone, Debug)]
 pub(crate) struct SpeedInputs {
     gaits: Arc<Gaits>,
@@ -73,14 +73,14 @@ impl PartialEq for SpeedInputs {
     }
 }
 
-/// Finds the cycles of two clips, and keeps them while the clips stay.
+/// A cache of the cycles of two clips.
 #[derive(Debug, Default)]
 pub(crate) struct GaitFinder {
     known: Option<Arc<Gaits>>,
 }
 
 impl GaitFinder {
-    /// What the parameters ask for, of these two clips.
+    /// Returns the gait of the parameters for two clips.
     pub(crate) fn inputs(
         &mut self,
         pair: &Arc<Pair>,
@@ -113,7 +113,7 @@ impl GaitFinder {
     }
 }
 
-/// The speed half way between two, on a step of the slider.
+/// Returns the speed halfway between two, on a step of the slider.
 pub(crate) fn middle_mps([a, b]: [f64; 2]) -> f64 {
     let Kind::Number { min, max, step, .. } = Key::Speed.param().kind else {
         return 0.5 * (a + b);
@@ -122,13 +122,13 @@ pub(crate) fn middle_mps([a, b]: [f64; 2]) -> f64 {
 }
 
 impl SpeedInputs {
-    /// Whether it is the same gaits, laid on each other in the same way.
+    /// Returns whether the gaits and their alignment are the same.
     pub(crate) fn differs_in_speed_alone(&self, other: &Self) -> bool {
         let asked_mps = other.asked_mps;
         Self { asked_mps, ..self.clone() } == *other
     }
 
-    /// The gait at another speed than the one asked for.
+    /// Computes the gait at another speed.
     pub(crate) fn run_at(&self, speed_mps: f64) -> Result<Outcome, LabError> {
         let asked_mps = speed_mps;
         Self { asked_mps, ..self.clone() }.run()

@@ -1,5 +1,5 @@
-//! The View lab: a clip as it is, with its planted feet held, elsewhere or without its way over the
-//! ground, and what there is to say of it in numbers.
+//! The View lab: one clip, with its planted feet locked, at another place or without its root
+//! motion, and its metrics.
 
 use super::feet::{Lock, locking, slide, slide_before};
 use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs, counts};
@@ -62,12 +62,12 @@ impl<S: HasPart<Viewer>> Lab<S> for ViewLab {
     }
 }
 
-/// Clips of up to so many frames are done at once: about 8 ms for 31 joints.
+/// Clips of up to this number of frames are processed at once: about 8 ms for 31 joints.
 const AT_ONCE: usize = 1_000;
-/// Frames in one slice of work: about 2 ms for 31 joints in a browser.
+/// The number of frames in one slice of work: about 2 ms for 31 joints in a browser.
 const PER_SLICE: usize = 500;
 
-/// What a view depends on. Equal inputs, equal result.
+/// The inputs of a view. Equal inputs give equal results.
 #[derive(Clone, Debug)]
 pub(crate) struct ViewInputs {
     motion: Arc<Motion>,
@@ -97,29 +97,29 @@ impl LabInputs for ViewInputs {
         Ok(Outcome { motion, measured, ..shown })
     }
 
-    /// Whether nothing is known of it yet but the clip itself.
+    /// Returns whether only the clip itself is known so far.
     fn is_draft(&self) -> bool {
         self.viewed.is_none()
     }
 }
 
-/// What is taken out of the way over the ground.
+/// The part of the root motion that is removed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum RootMotion {
     /// Nothing.
     World,
-    /// Where the character stands and faces, frame by frame.
+    /// The position and facing of the character, frame by frame.
     InPlace,
-    /// Its path and the path's direction: what is left is the residual motion of path editing.
+    /// The path and its direction: the residual motion of path editing is left.
     Residual,
 }
 
-/// Where on the ground a clip is shown.
+/// The placement of a clip on the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Ground {
     root_motion: RootMotion,
-    /// Where the first frame stands, (x, z) in metres, and what it faces, degrees; as it comes
-    /// where nothing is given.
+    /// The position of the first frame, (x, z) in metres, and its facing, degrees; unchanged if not
+    /// given.
     start: [Option<f64>; 2],
     heading_deg: Option<f64>,
 }
@@ -137,7 +137,7 @@ impl Ground {
         }
     }
 
-    /// The motion there.
+    /// Returns the motion at this placement.
     fn moved(&self, motion: &Arc<Motion>) -> Result<Arc<Motion>, LabError> {
         let frames = motion.ground_frames();
         let mut moves = match self.root_motion {
@@ -171,7 +171,7 @@ impl Ground {
     }
 }
 
-/// What came of it.
+/// The result for one clip.
 #[derive(Debug)]
 struct Viewed {
     of: Arc<Motion>,
@@ -179,14 +179,13 @@ struct Viewed {
     made: Result<Outcome, LabError>,
 }
 
-/// Holds feet and measures clips slice by slice, and keeps what as many panes as there can be have
-/// asked for.
+/// A cache of locked and measured clips, as many as there can be panes, with their work in slices.
 #[derive(Debug, Default)]
 pub(crate) struct Viewer {
-    /// The newest last.
+    /// The results, the newest last.
     known: Vec<Arc<Viewed>>,
     under_way: Vec<UnderWay>,
-    /// Something has just been done, and nobody has asked for it yet.
+    /// Whether a requested result is available and has not been fetched yet.
     is_ready: bool,
 }
 
@@ -200,7 +199,7 @@ struct UnderWay {
 
 #[derive(Debug)]
 enum Stage {
-    /// The feet as they are, of a clip whose feet will be held.
+    /// Measures the unlocked feet of a clip that will be locked.
     Before(Lock, SlideMeter),
     Locking {
         before_cm: Option<f64>,
@@ -209,7 +208,7 @@ enum Stage {
     Measuring {
         /// The clip as it will be shown.
         motion: Arc<Motion>,
-        /// Of a clip whose feet are held: how far they slid before.
+        /// The foot slide before locking, for a clip with locked feet.
         before: Option<Metric>,
         meter: Box<ClipMeter>,
     },
@@ -223,9 +222,9 @@ impl Stage {
 }
 
 impl Viewer {
-    /// The clip as the parameters ask for it, with its feet held if they are to be. `None` when
-    /// that takes longer than a frame: [`work`](Self::work), then ask again. A clip as it is comes
-    /// at once, and again with its numbers.
+    /// Returns the clip of the parameters, with its feet locked if they are to be. `None` if that
+    /// takes longer than a frame: call [`work`](Self::work), then ask again. An unchanged clip is
+    /// returned at once, and later again with its metrics.
     pub(crate) fn inputs(&mut self, motion: &Arc<Motion>, params: &Params) -> Option<ViewInputs> {
         let lock = Lock::of(params);
         let viewed = self.known(motion, lock).or_else(|| {
@@ -249,7 +248,7 @@ impl Viewer {
         self.known.iter().find(is_it).cloned()
     }
 
-    /// Has it done, if nobody else has; where it stands among what is under way.
+    /// Begins the work unless it is under way; returns its index among the work under way.
     fn begin(&mut self, motion: &Arc<Motion>, lock: Option<Lock>) -> usize {
         let is_it = |at: &UnderWay| Arc::ptr_eq(&at.motion, motion) && at.lock == lock;
         if let Some(index) = self.under_way.iter().position(is_it) {
@@ -308,7 +307,7 @@ impl Sliced for Viewer {
     }
 
     fn progress(&self) -> Option<(JobKind, f64)> {
-        // Nobody waits for numbers.
+        // Metrics are quick, so no progress is reported.
         let at = self.under_way.iter().find(|at| at.lock.is_some())?;
         let progress = match &at.stage {
             Stage::Before(..) => 0.0,
@@ -319,7 +318,7 @@ impl Sliced for Viewer {
     }
 }
 
-/// What a slice of work leads to.
+/// The result of a slice of work.
 enum Step {
     On(Box<Stage>),
     Done(Box<Result<Outcome, LabError>>),
@@ -347,7 +346,7 @@ fn next(of: &Arc<Motion>, stage: Stage) -> Step {
                 return on(Stage::Locking { before_cm, locking });
             }
             match locking.finish() {
-                // Hips are only raised and lowered: the character stands where it stood.
+                // Hips are only raised and lowered, so the character's ground frames stay.
                 Ok(locked) => {
                     let motion = of.with_clip(locked, of.ground_frames().to_vec());
                     on(Stage::measuring(Arc::new(motion), Some(slide_before(before_cm))))

@@ -10,7 +10,7 @@ fn opened(link: &str) -> Session {
     session
 }
 
-/// Where A is left and B entered, in frames, and what else is known of the transition.
+/// Returns the frames at which A is left and B is entered, and the transition.
 fn place(session: &Session) -> ([usize; 2], Transition) {
     let outcome = session.main_outcome().unwrap();
     let transition = outcome.transition.unwrap();
@@ -19,8 +19,8 @@ fn place(session: &Session) -> ([usize; 2], Transition) {
     ([frame(transition.leave_a_secs), frame(transition.enter_b_secs)], transition)
 }
 
-/// The distance of two windows by the alignment's own closed form, centimetres.
-fn apart_cm(
+/// Returns the distance of two windows by the closed form of the alignment, centimetres.
+fn distance_cm(
     a: &Clip,
     b: &Clip,
     [leave, enter]: [usize; 2],
@@ -34,7 +34,7 @@ fn apart_cm(
 }
 
 #[test]
-fn frame_set_by_hand_near_an_end_is_the_one_that_is_matched_and_measured() {
+fn frame_set_near_an_end_is_matched_and_measured() {
     for (link, frame_a, frame_b) in [
         ("mix_frame_a=110", Some(110), None),
         ("mix_frame_a=118", Some(118), None),
@@ -56,7 +56,7 @@ fn frame_set_by_hand_near_an_end_is_the_one_that_is_matched_and_measured() {
         assert_eq!(frame_a.unwrap_or(found[0]), found[0], "{link}");
         assert_eq!(frame_b.unwrap_or(found[1]), found[1], "{link}");
         let height = f64::from(a.roles().body_height(a.clip().skeleton()));
-        let apart = |pair| apart_cm(a.clip(), b.clip(), pair, window, height);
+        let apart = |pair| distance_cm(a.clip(), b.clip(), pair, window, height);
         assert!(
             (f64::from(transition.distance_cm) - apart(found)).abs() < 0.01,
             "{link}: {transition:?}"
@@ -72,11 +72,11 @@ fn frame_set_by_hand_near_an_end_is_the_one_that_is_matched_and_measured() {
 }
 
 #[test]
-fn pose_set_by_hand_near_an_end_is_the_one_that_is_matched_and_measured() {
+fn pose_set_near_an_end_is_matched_and_measured() {
     let pair = place(&opened("lab=transition&mix_frame_a=118"));
     assert_eq!(pair.0[0], 118);
     assert!(pair.1.search.unwrap().by_pose);
-    // The distance shown is that of the pair: the same when both frames are named.
+    // The distance shown is that of the pair: the same when both frames are set.
     let both = place(&opened(&format!("lab=transition&mix_frame_a=118&mix_frame_b={}", pair.0[1])));
     assert_eq!(both.0, pair.0);
     assert_eq!(both.1.distance_cm, pair.1.distance_cm);
@@ -85,7 +85,7 @@ fn pose_set_by_hand_near_an_end_is_the_one_that_is_matched_and_measured() {
 }
 
 #[test]
-fn panes_with_other_windows_leave_at_the_same_frame() {
+fn panes_with_different_windows_share_the_leave_frame() {
     let session = opened("lab=blend&compare=blend_window:60,10&leave_a=2.5");
     let shown = |pane: usize| session.panes()[pane].outcome.as_ref().unwrap().transition.unwrap();
     let (wide, narrow) = (shown(0), shown(1));

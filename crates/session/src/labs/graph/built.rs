@@ -13,21 +13,21 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub struct Field {
     distances: Distances,
-    /// Of held distances.
+    /// The histogram of the stored distances.
     histogram: Vec<u32>,
 }
 
-/// All distances of a set, as far as they are held.
+/// All distances of a set, as far as they are kept in memory.
 #[derive(Debug)]
 pub enum Distances {
-    /// Each of them.
+    /// Every distance.
     Held(FrameDistances),
-    /// The smallest of every square of windows.
+    /// The smallest distance in every square of windows.
     FromAfar(Box<DistanceOverview>),
 }
 
 impl Field {
-    /// To be counted.
+    /// Returns a field whose distances are yet to be counted.
     pub(super) fn held(distances: FrameDistances) -> Self {
         Self { distances: Distances::Held(distances), histogram: vec![0; DistanceOverview::BINS] }
     }
@@ -36,7 +36,7 @@ impl Field {
         Self { distances: Distances::FromAfar(Box::new(overview)), histogram: Vec::new() }
     }
 
-    /// Counts about so many cells more; `true` behind the last one.
+    /// Counts about `cells` more cells; returns `true` after the last one.
     pub(super) fn count(&mut self, at: &mut CountedTo, cells: usize) -> bool {
         match &self.distances {
             Distances::Held(distances) => {
@@ -46,13 +46,13 @@ impl Field {
         }
     }
 
-    /// The distances.
+    /// Returns the distances.
     #[must_use]
     pub fn distances(&self) -> &Distances {
         &self.distances
     }
 
-    /// Where all of them are held.
+    /// Returns all distances, if they are kept in memory.
     pub(super) fn all(&self) -> Option<&FrameDistances> {
         match &self.distances {
             Distances::Held(distances) => Some(distances),
@@ -60,7 +60,7 @@ impl Field {
         }
     }
 
-    /// Frames of each window.
+    /// Returns the number of frames of each window.
     #[must_use]
     pub fn window(&self) -> usize {
         match &self.distances {
@@ -69,8 +69,8 @@ impl Field {
         }
     }
 
-    /// The distance of the windows that start at two frames, centimetres; `None` where a window
-    /// crosses the end of its clip.
+    /// Returns the distance of the windows that start at two frames, centimetres; `None` if a
+    /// window crosses the end of its clip.
     #[must_use]
     pub fn cm(&self, a: Place, b: Place) -> Option<f64> {
         match &self.distances {
@@ -79,7 +79,8 @@ impl Field {
         }
     }
 
-    /// How many pairs of windows lie in each half centimetre; the last takes what is farther.
+    /// Returns the number of pairs of windows in each half centimetre; the last bin includes all
+    /// larger distances.
     #[must_use]
     pub fn histogram(&self) -> &[u32] {
         match &self.distances {
@@ -88,13 +89,13 @@ impl Field {
         }
     }
 
-    /// How wide each of its bins is, centimetres.
+    /// Returns the width of the bins, centimetres.
     #[must_use]
     pub fn bin_cm(&self) -> f64 {
         DistanceOverview::BIN_CM
     }
 
-    /// Numbers that are held.
+    /// Returns the number of stored distances.
     pub(super) fn cells(&self) -> usize {
         match &self.distances {
             Distances::Held(_) => self.histogram.iter().map(|&count| count as usize).sum(),
@@ -103,38 +104,38 @@ impl Field {
     }
 }
 
-/// A graph, and what is known of it.
+/// A graph, and facts about it.
 #[derive(Debug)]
 pub struct Built {
     pub(super) cast: Arc<Cast>,
     pub(super) key: GraphKey,
     whole: Arc<MotionGraph>,
     graph: Arc<MotionGraph>,
-    /// Per node of the whole graph: its component, the largest first.
+    /// The component of each node of the whole graph, the largest first.
     component: Vec<usize>,
-    /// The shares of all frames of the components that one can walk in, largest first.
+    /// The share of all frames of each component that allows endless walks, the largest first.
     rings: Vec<f64>,
-    /// Their components, in the same order.
+    /// The components of these shares, in the same order.
     ring_components: Vec<usize>,
     dead_ends: usize,
     lacks_some: bool,
-    /// Per clip, whether anything of it is walked in.
+    /// For each clip, whether walks can use any of it.
     is_walked: Vec<bool>,
 }
 
-/// A [`Built`] on its way: of very many transitions each slice takes milliseconds.
+/// The construction of a [`Built`] in slices, because very many transitions take milliseconds each.
 #[derive(Debug)]
 pub(super) enum Building {
-    /// Where one may go over.
+    /// Candidates for transitions are known.
     Found(Arc<Candidates>),
-    /// Stretches and transitions, and whether there are more than are held.
+    /// Nodes and transitions are known, and whether there are more transitions than can be kept.
     Linked(MotionGraph, bool),
-    /// Which of them hang together.
+    /// Components are known.
     Parted(Arc<MotionGraph>, bool, Vec<Vec<NodeIndex>>),
 }
 
 impl Building {
-    /// The next slice: what is left, or the graph.
+    /// Does the next slice; returns the remaining work, or the graph.
     pub(super) fn advance(
         self,
         cast: &Arc<Cast>,
@@ -207,69 +208,72 @@ impl Built {
         })
     }
 
-    /// The clips.
+    /// Returns the clips.
     #[must_use]
     pub fn cast(&self) -> &Arc<Cast> {
         &self.cast
     }
 
-    /// How it was made.
+    /// Returns the options of its construction.
     #[must_use]
     pub fn options(&self) -> &GraphOptions {
         &self.key.options
     }
 
-    /// Whether only the largest component is walked in.
+    /// Returns whether walks are restricted to the largest component.
     #[must_use]
     pub fn is_pruned(&self) -> bool {
         self.key.pruned
     }
 
-    /// All of the graph.
+    /// Returns the whole graph.
     #[must_use]
     pub fn whole(&self) -> &Arc<MotionGraph> {
         &self.whole
     }
 
-    /// What is walked in.
+    /// Returns the graph of the walks.
     #[must_use]
     pub fn graph(&self) -> &Arc<MotionGraph> {
         &self.graph
     }
 
-    /// In which of [`Self::rings`] a node of the whole graph lies; `None` outside of them.
+    /// Returns the index in [`Self::rings`] of the component of a node of the whole graph; `None`
+    /// if it is in none of them.
     #[must_use]
     pub fn ring_of(&self, node: usize) -> Option<usize> {
         let component = self.component.get(node)?;
         self.ring_components.iter().position(|ring| ring == component)
     }
 
-    /// The shares of all frames of the components that one can walk in for ever, largest first.
+    /// Returns the shares of all frames of the components that allow endless walks, the largest
+    /// first.
     #[must_use]
     pub fn rings(&self) -> &[f64] {
         &self.rings
     }
 
-    /// Nodes without a way out.
+    /// Returns the number of nodes without an outgoing edge.
     #[must_use]
     pub fn dead_ends(&self) -> usize {
         self.dead_ends
     }
 
-    /// Whether there are more transitions below the threshold than can be held: the closest are.
+    /// Returns whether there are more transitions below the threshold than can be kept: the closest
+    /// are kept.
     #[must_use]
     pub fn lacks_some(&self) -> bool {
         self.lacks_some
     }
 
-    /// Whether anything of a clip is walked in: from everywhere, where the graph is pruned.
+    /// Returns whether walks can use any of a clip; from everywhere, if the graph is pruned.
     #[must_use]
     pub fn is_walked(&self, clip: usize) -> bool {
         self.is_walked.get(clip).copied().unwrap_or(false)
     }
 
-    /// The clips that ways lead to from a place, that one's included; of a graph that is pruned,
-    /// all that are walked in.
+    /// Returns the clips that can be reached from a place, its own included; in a pruned graph, all
+    /// clips that walks use.
     #[must_use]
     pub fn clips_from(&self, place: Place) -> Vec<bool> {
         let start = self.graph.node_at(place);
@@ -289,7 +293,7 @@ impl Built {
         reached
     }
 
-    /// The index of a transition in the whole graph.
+    /// Returns the index of a transition in the whole graph.
     #[must_use]
     pub fn jump_of(&self, leave: Place, enter: Place) -> Option<usize> {
         self.whole.jumps().iter().position(|jump| jump.leave == leave && jump.enter == enter)

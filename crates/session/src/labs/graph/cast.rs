@@ -4,7 +4,7 @@ use segue_motion::clip::Motion;
 use segue_motion::graph::{FrameSet, JoltSearch, WalkProfile};
 use std::sync::Arc;
 
-/// The clips of a graph, on the skeleton and at the rate of the first.
+/// The clips of a graph, on the skeleton and at the frame rate of the first.
 #[derive(Debug)]
 pub struct Cast {
     names: Vec<String>,
@@ -15,14 +15,14 @@ pub struct Cast {
     jolts: JoltSearch,
 }
 
-/// So many frames of single joints are measured in one slice.
+/// The number of frames of single joints that are measured in one slice.
 const JOINT_FRAMES: usize = 12_000;
 
-/// A clip that was made ready for the others, and how it came onto their skeleton.
+/// A clip that was fitted to the first, and the report on its retargeting.
 pub(super) type Fitted = (Arc<Motion>, Option<Arc<Retargeted>>);
 
 impl Cast {
-    /// The clips in order; the rest of what has to be known of them is found by [`Self::advance`].
+    /// Returns the clips in order; further measurements are made by [`Self::advance`].
     pub(super) fn new(names: Vec<String>, fitted: Vec<Fitted>) -> Result<Self, LabError> {
         let (motions, retargeted): (Vec<_>, Vec<_>) = fitted.into_iter().unzip();
         let first = motions.first().ok_or(LabError::NoGraphClips)?;
@@ -32,31 +32,31 @@ impl Cast {
         Ok(Self { names, motions, retargeted, set, profile, jolts: JoltSearch::default() })
     }
 
-    /// A slice of that; `true` when nothing is left.
+    /// Measures a slice; returns `true` if nothing is left.
     pub(super) fn advance(&mut self) -> bool {
         let joints = (JOINT_FRAMES / self.set.frames().max(1)).max(1);
         self.profile.advance(joints) && self.jolts.advance(&self.set, JOINT_FRAMES)
     }
 
-    /// What the clips are called.
+    /// Returns the names of the clips.
     #[must_use]
     pub fn names(&self) -> &[String] {
         &self.names
     }
 
-    /// The clips, made ready.
+    /// Returns the fitted clips.
     #[must_use]
     pub fn motions(&self) -> &[Arc<Motion>] {
         &self.motions
     }
 
-    /// How a clip came onto the skeleton of the first; `None` where it is its own.
+    /// Returns the report on retargeting a clip; `None` if it has the skeleton of the first.
     #[must_use]
     pub fn retargeted(&self, clip: usize) -> Option<&Arc<Retargeted>> {
         self.retargeted.get(clip)?.as_ref()
     }
 
-    /// Their frames.
+    /// Returns the frames of all clips.
     #[must_use]
     pub fn set(&self) -> &Arc<FrameSet> {
         &self.set

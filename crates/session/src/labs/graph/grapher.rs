@@ -16,59 +16,59 @@ use segue_motion::registration::Progress;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// Pairs of frames in one slice, about a millisecond for 31 joints.
+/// The number of pairs of frames in one slice, about a millisecond for 31 joints.
 const PAIRS: usize = 100_000;
-/// Cells of the matrix in one slice.
+/// The number of cells of the matrix in one slice.
 const CELLS: usize = 250_000;
-/// Of more frames the matrix is not held: 300 MB.
-const MOST_FRAMES: usize = 6_000;
-/// Cells of all fields that are kept: 160 MB.
-const MOST_CELLS: usize = 40_000_000;
-/// Places to go over that are kept for other thresholds: 50 MB.
-const MOST_FOUND: usize = 800_000;
+/// Above this number of frames the distance matrix (300 MB) is not kept in memory.
+const MAX_FRAMES: usize = 6_000;
+/// The number of cells of all distance fields that are kept: 160 MB.
+const MAX_CELLS: usize = 40_000_000;
+/// The number of candidates that are kept for other thresholds: 50 MB.
+const MAX_CANDIDATES: usize = 800_000;
 
-/// Makes graphs and walks slice by slice, and keeps what a change leaves as it is: products of
-/// frames for a new window, places to go over for a new threshold, the graph for another walk.
+/// Builds graphs and walks in slices, and caches what a change does not affect: products of frames
+/// for a new window, candidates for a new threshold, the graph for another walk.
 #[derive(Debug, Default)]
 pub(crate) struct Grapher {
-    /// What is asked for: the clips' names and motions.
+    /// The requested clips, by name and motion.
     clips: Vec<(String, Arc<Motion>)>,
     fitted: Vec<Fitted>,
-    /// The clips, while they are measured.
-    casting: Option<Box<Cast>>,
+    /// The clips while they are measured.
+    measuring_clips: Option<Box<Cast>>,
     cast: Option<Result<Arc<Cast>, LabError>>,
     all: Option<AllPairs>,
     sweep: Option<PausedAllSweep>,
-    /// Distances that are counted, and how far.
+    /// A distance field that is being counted, and the progress.
     counting: Option<(Field, CountedTo)>,
-    /// One for each window that was asked for last.
+    /// One field for each window that was requested last.
     fields: Vec<Arc<Field>>,
-    /// By the options whose threshold they look as far as.
+    /// The search in progress, with the options whose threshold it covers.
     search: Option<(GraphOptions, Search)>,
-    /// What was found last, by these options.
+    /// The last candidates, with their options.
     found: Vec<(GraphOptions, Arc<Candidates>)>,
     building: Option<(GraphKey, Building)>,
     built: Vec<(GraphKey, Result<Arc<Built>, LabError>)>,
     makers: Vec<(Wanted, Result<Maker, LabError>)>,
-    /// What panes show or wait for, the first pane's first.
+    /// The requests of the panes, the first pane's first.
     wanted: Vec<Wanted>,
     now_secs: f64,
-    /// There is something new to show.
+    /// Whether there is something new to show.
     is_ready: bool,
     stopped: bool,
-    /// The parameters of the walk that the others go like.
+    /// The parameters of the walk that the others follow.
     guide: Option<Params>,
-    /// Seconds of work, by what it was for.
+    /// Seconds of work for each graph.
     took: Vec<(GraphKey, f64)>,
     worked_for: Option<GraphKey>,
-    /// The last slice was one of the last maker's.
+    /// Whether the last slice was one of the last walk.
     stepped: bool,
 }
 
-/// The options by which places to go over are looked for: so far beyond the threshold that is asked
-/// for that it can be dragged up a good deal, too, and nobody looks again. Those that lie beyond
-/// are left aside when a graph is made, and there are as many as are held at most.
-fn reaching(options: &GraphOptions) -> GraphOptions {
+/// Returns search options with the threshold raised above the requested one, so that moderate
+/// increases need no new search. Candidates above the requested threshold are filtered when the
+/// graph is built; at most as many as can be kept are found.
+fn widened(options: &GraphOptions) -> GraphOptions {
     let most = GraphOptions::MAX_THRESHOLD_CM.max(options.edge_threshold_cm);
     GraphOptions {
         edge_threshold_cm: (1.5 * options.edge_threshold_cm + 4.0).min(most),
@@ -76,7 +76,7 @@ fn reaching(options: &GraphOptions) -> GraphOptions {
     }
 }
 
-/// Whether what is found by some options serves others.
+/// Returns whether the candidates for some options serve others.
 fn serves(known: &GraphOptions, options: &GraphOptions) -> bool {
     let alike = GraphOptions {
         edge_threshold_cm: known.edge_threshold_cm,
@@ -86,7 +86,7 @@ fn serves(known: &GraphOptions, options: &GraphOptions) -> bool {
     alike == *known && options.edge_threshold_cm <= known.edge_threshold_cm
 }
 
-/// Where one may go over, on the way.
+/// The stages of a search for candidates.
 #[derive(Debug)]
 enum Search {
     Held(Box<CandidateSearch>),
@@ -94,13 +94,13 @@ enum Search {
 }
 
 impl Grapher {
-    /// Walks that are asked for from now on go like the one of these parameters, where their graphs
-    /// allow it.
+    /// Makes walks that are requested from now on follow the walk of these parameters, where their
+    /// graphs allow it.
     pub(crate) fn guide_by(&mut self, params: Option<&Params>) {
         self.guide = params.cloned();
     }
 
-    /// A walk as far as it is made; `None` when that takes longer than a frame:
+    /// Returns a walk as far as it has been made; `None` if that takes longer than a frame: call
     /// [`work`](Self::work), then ask again.
     pub(crate) fn inputs(
         &mut self,
@@ -124,19 +124,19 @@ impl Grapher {
         }
     }
 
-    /// The clips, where they are ready.
+    /// Returns the clips, if they are ready.
     pub(crate) fn cast(&self) -> Option<&Arc<Cast>> {
         self.cast.as_ref()?.as_ref().ok()
     }
 
-    /// The distances that the first pane asks for; the last ones that there are while it waits.
+    /// Returns the distances that the first pane requested, or the last ones while it waits.
     pub(crate) fn field(&self) -> Option<&Arc<Field>> {
         let window = self.wanted.first().map(|wanted| wanted.graph.options.blend_window);
         let asked = self.fields.iter().find(|field| Some(field.window()) == window);
         asked.or(self.fields.last())
     }
 
-    /// The graph that the first pane asks for, where it is made.
+    /// Returns the graph that the first pane requested, if it is ready.
     pub(crate) fn built(&self) -> Option<&Arc<Built>> {
         let key = self.wanted.first()?.graph;
         self.known(key)?.as_ref().ok()
@@ -146,12 +146,12 @@ impl Grapher {
         self.built.iter().find(|(known, _)| *known == key).map(|(_, built)| built)
     }
 
-    /// How long it took to make a graph, seconds; `None` where nobody measured it.
+    /// Returns the time that building a graph took, seconds; `None` if it was not measured.
     pub(crate) fn build_secs(&self, built: &Built) -> Option<f64> {
         self.took.iter().find(|(key, _)| *key == built.key).map(|(_, secs)| *secs)
     }
 
-    /// How long the last slice took, seconds.
+    /// Records the duration of the last slice, seconds.
     pub(crate) fn took(&mut self, secs: f64) {
         if let (true, Some((_, Ok(maker)))) = (self.stepped, self.makers.last_mut()) {
             maker.took(secs);
@@ -168,23 +168,22 @@ impl Grapher {
         self.took.drain(..extra);
     }
 
-    /// Gives up what is under way, or goes on with it.
+    /// Stops the work in progress, or resumes it.
     pub(crate) fn stop(&mut self, stopped: bool) {
         self.stopped = stopped;
     }
 
-    /// Whether it was given up.
+    /// Returns whether the work was stopped.
     pub(crate) fn is_stopped(&self) -> bool {
         self.stopped
     }
 
-    /// Tells where the playhead stands, seconds: walks are made longer before it comes to their
-    /// end.
+    /// Sets the playhead, seconds, so that walks are extended before it reaches their end.
     pub(crate) fn play_at(&mut self, now_secs: f64) {
         self.now_secs = now_secs;
     }
 
-    /// How much is done of what panes wait for, 0 to 1; `None` when they wait for nothing.
+    /// Returns the progress of the requested work, 0 to 1; `None` if panes wait for nothing.
     fn share_done(&self) -> Option<f64> {
         if self.stopped {
             return None;
@@ -192,7 +191,7 @@ impl Grapher {
         let wanted = self.next()?;
         let share = |progress: Progress| progress.done as f64 / progress.total.max(1) as f64;
         match self.makers.iter().find(|(known, _)| known == wanted) {
-            // That a walk gets longer is nothing to wait for.
+            // The extension of a walk is not waited for.
             Some((_, Ok(maker))) if maker.walk().is_some() && !maker.is_searching() => return None,
             Some((_, Ok(maker))) => return Some(0.85 + 0.15 * maker.progress()),
             _ if self.known(wanted.graph).is_some() => return Some(0.85),
@@ -219,7 +218,7 @@ impl Grapher {
                     return Some(0.1 * fitted + 0.75 * share(stream.progress()));
                 }
             },
-            // There the distances are seen when one looks for places to go over, and not before.
+            // In this mode the distances are computed by the search for candidates, not before.
             _ if self.is_streamed() => return Some(0.1 * fitted),
             _ => 0.0,
         };
@@ -239,12 +238,12 @@ impl Grapher {
         };
         let begins =
             |wanted: &&Wanted| !matches!(maker(wanted), Some(Ok(maker)) if maker.walk().is_some());
-        // What is seen for the first time goes before what gets longer.
+        // The first view of a walk takes precedence over the extension of another.
         let first = self.wanted.iter().filter(short).find(begins);
         first.or_else(|| self.wanted.iter().find(short))
     }
 
-    /// Other clips: nothing of what was made holds any more.
+    /// Discards everything for other clips.
     fn meet(&mut self, clips: Vec<(String, Arc<Motion>)>) {
         let same = clips.len() == self.clips.len()
             && clips.iter().zip(&self.clips).all(|(a, b)| a.0 == b.0 && Arc::ptr_eq(&a.1, &b.1));
@@ -253,11 +252,11 @@ impl Grapher {
         }
     }
 
-    /// Does a slice of what is needed next.
+    /// Does a slice of the most urgent work.
     fn step(&mut self, wanted: &Wanted) -> Result<(), LabError> {
         if let Some(guide) = &wanted.guide {
-            // Without it a walk would go by chance. One that cannot be made has told so: then there
-            // is nothing to go like.
+            // Without the walk to follow, this one would be random. If that one has failed, there
+            // is nothing to follow.
             let is_to_be_made = match self.maker(guide) {
                 Some(Ok(maker)) => maker.is_short(self.now_secs),
                 Some(Err(_)) => false,
@@ -317,7 +316,7 @@ impl Grapher {
         Ok(())
     }
 
-    /// The clips on one skeleton, one more in each slice.
+    /// Fits the clips to one skeleton, one in each slice.
     fn ready_cast(&mut self) -> Result<Option<Arc<Cast>>, LabError> {
         if let Some(cast) = &self.cast {
             return cast.clone().map(Some);
@@ -336,24 +335,24 @@ impl Grapher {
             }
             return Ok(None);
         }
-        if let Some(mut casting) = self.casting.take() {
-            if casting.advance() {
-                self.cast = Some(Ok(Arc::from(casting)));
+        if let Some(mut measuring_clips) = self.measuring_clips.take() {
+            if measuring_clips.advance() {
+                self.cast = Some(Ok(Arc::from(measuring_clips)));
             } else {
-                self.casting = Some(casting);
+                self.measuring_clips = Some(measuring_clips);
             }
             return Ok(None);
         }
         let names = self.clips.iter().map(|(name, _)| name.clone()).collect();
-        // Still as many as the clips: so far it has come.
+        // As many as the clips at this point.
         match Cast::new(names, self.fitted.clone()) {
-            Ok(cast) => self.casting = Some(Box::new(cast)),
+            Ok(cast) => self.measuring_clips = Some(Box::new(cast)),
             Err(problem) => self.cast = Some(Err(problem)),
         }
         Ok(None)
     }
 
-    /// A slice of the way to the places where one may go over; these where they are found.
+    /// Does a slice of the search for candidates; returns them when they are found.
     fn search_slice(
         &mut self,
         cast: &Arc<Cast>,
@@ -368,13 +367,13 @@ impl Grapher {
                     (known, stream)
                 }
                 _ => {
-                    let options = reaching(&key.options);
+                    let options = widened(&key.options);
                     (options, Box::new(CandidateStream::new(cast.set(), &options)?))
                 }
             };
             if stream.advance(1)?.is_complete() {
                 let (found, overview) = stream.finish()?;
-                // The same for every threshold: what is drawn of it stays.
+                // The same for every threshold, so that drawings of it stay valid.
                 if self.fields.iter().all(|field| field.window() != overview.window()) {
                     self.keep_field(Arc::new(Field::from_afar(overview)));
                 }
@@ -422,11 +421,11 @@ impl Grapher {
         let (options, mut search) = match self.search.take() {
             Some((known, Search::Held(search))) if serves(&known, &key.options) => (known, search),
             _ => {
-                let options = reaching(&key.options);
+                let options = widened(&key.options);
                 (options, Box::new(CandidateSearch::new(distances, &options)?))
             }
         };
-        // What was found is sorted in a slice of its own.
+        // Sorting the candidates takes a slice of its own.
         if search.progress().is_complete() {
             return Ok(Some(self.keep_found(options, search.finish())));
         }
@@ -435,13 +434,13 @@ impl Grapher {
         Ok(None)
     }
 
-    /// Whether the distances are not held.
+    /// Returns whether the distances are not kept in memory.
     fn is_streamed(&self) -> bool {
-        self.cast().is_some_and(|cast| cast.set().frames() > MOST_FRAMES)
+        self.cast().is_some_and(|cast| cast.set().frames() > MAX_FRAMES)
     }
 
-    /// The places to go over that are known and serve a graph, if the distances that are shown with
-    /// it are there, too.
+    /// Returns known candidates that serve a graph, if the distances that are shown with it are
+    /// also known.
     fn places(&self, options: &GraphOptions) -> Option<&Arc<Candidates>> {
         let is_shown = self.fields.iter().any(|field| field.window() == options.blend_window);
         let mut known = self.found.iter().filter(|(known, _)| is_shown && serves(known, options));
@@ -450,14 +449,14 @@ impl Grapher {
 
     fn keep_found(&mut self, options: GraphOptions, found: Candidates) -> Arc<Candidates> {
         let found = Arc::new(found);
-        // One that reaches farther serves for all that this one did.
+        // A search with a higher threshold serves all uses of a lower one.
         self.found.retain(|(known, _)| !serves(&options, known));
         self.found.push((options, Arc::clone(&found)));
         let count = |found: &[(GraphOptions, Arc<Candidates>)]| {
             found.iter().map(|(_, found)| found.found().len()).sum::<usize>()
         };
         while self.found.len() > 1
-            && (self.found.len() > MAX_PANES || count(&self.found) > MOST_FOUND)
+            && (self.found.len() > MAX_PANES || count(&self.found) > MAX_CANDIDATES)
         {
             self.found.remove(0);
         }
@@ -468,7 +467,7 @@ impl Grapher {
         self.fields.push(field);
         while self.fields.len() > MAX_PANES
             || (self.fields.len() > 1
-                && self.fields.iter().map(|field| field.cells()).sum::<usize>() > MOST_CELLS)
+                && self.fields.iter().map(|field| field.cells()).sum::<usize>() > MAX_CELLS)
         {
             self.fields.remove(0);
         }
@@ -478,7 +477,7 @@ impl Grapher {
         self.is_ready |= maker.is_err();
         self.makers.retain(|(known, _)| known != wanted);
         if self.makers.len() >= 2 * MAX_PANES {
-            // The one that waits longest, and not what a pane shows, or goes like.
+            // Drops the oldest walk that no pane shows and no walk follows.
             let unwanted = self.makers.iter().position(|(known, _)| !self.wanted.contains(known));
             drop(self.makers.remove(unwanted.unwrap_or(0)));
         }

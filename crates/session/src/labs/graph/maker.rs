@@ -15,38 +15,37 @@ use segue_motion::skeleton::Side;
 use segue_motion::transition::FootLocking;
 use std::sync::Arc;
 
-/// A walk is made so far ahead of the playhead, seconds.
-const AHEAD_SECS: f64 = 20.0;
-/// It does not get longer than this, seconds: at 60 frames per second and 31 joints that is 54 MB.
-const LONGEST_SECS: f64 = 1_800.0;
-/// Before and behind a single transition so much of both clips plays, seconds.
+/// The lead of a walk over the playhead, seconds.
+const LEAD_SECS: f64 = 20.0;
+/// The greatest duration of a walk, seconds: 54 MB at 60 frames per second and 31 joints.
+const MAX_SECS: f64 = 1_800.0;
+/// The duration of both clips before and after a single transition, seconds.
 const AROUND_JUMP_SECS: f64 = 1.2;
-/// Nodes that a search for a ground path looks at in all. It bounds what a link shows, on every
-/// machine the same.
+/// The number of nodes that a search for a ground path expands in all. It bounds the work for a
+/// link, equally on every machine.
 const PATH_BUDGET: usize = 60_000;
-/// Nodes in one slice, about two milliseconds.
+/// The number of nodes in one slice, about two milliseconds.
 const PATH_NODES: usize = 2_000;
-/// How long one waits for a search, seconds of work: then the best so far is walked, while the
-/// search goes on to its end, and so again and again. How long that takes changes nothing of the
-/// walk in the end.
+/// Work time after which the best path so far is previewed while the search continues, again and
+/// again. It does not affect the final result.
 const PATH_WAIT_SECS: f64 = 1.0;
-/// Frames that one slice puts together to be shown, about three milliseconds.
+/// The number of frames that one slice assembles to be shown, about three milliseconds.
 const PUBLISHED_FRAMES: usize = 10_000;
-/// Edges that one slice goes over for the expected run.
+/// The number of edges that one slice visits for the expected run.
 const RUN_EDGES: usize = 200_000;
 
-/// Frames that one slice holds the feet of, about four milliseconds.
+/// The number of frames whose feet one slice locks, about four milliseconds.
 const LOCKED_FRAMES: usize = 2_000;
-/// Frames that one slice measures the feet of, held and free, or the whole body, about four
-/// milliseconds.
+/// The number of frames that one slice measures, of the feet locked and unlocked or of the whole
+/// body, about four milliseconds.
 const MEASURED_FRAMES: usize = 1_000;
-/// Frames that one slice measures the artefacts of, about two milliseconds.
+/// The number of frames whose artefacts one slice measures, about two milliseconds.
 const METERED_FRAMES: usize = 500;
 
-/// A walk on its way to be shown. With held feet all of it is locked anew: a stance and what it
-/// moves around it are a matter of a second, and a walk ends far ahead of the playhead. What has
-/// played stays but for the plane in which a leg usually bends, which is a mean over the whole walk
-/// and counts where a leg is nearly straight.
+/// The stages from assembled pieces to a walk on screen. With locked feet, all of the walk is
+/// locked again: a stance and its surroundings last about a second, and a walk ends far ahead of
+/// the playhead. Frames that have played stay the same except for the plane in which a leg usually
+/// bends, which is a mean over the whole walk and matters only for nearly straight legs.
 #[derive(Debug)]
 enum Publishing {
     Assembling(Box<Assembling>),
@@ -54,8 +53,7 @@ enum Publishing {
     Measuring(Box<Measuring>),
 }
 
-/// What the joints and the feet of a walk do, and how far feet would slide if they were not held:
-/// of each motion so far.
+/// A measurement of a walk: its joints and feet, and its foot slide without the foot lock.
 #[derive(Debug)]
 struct Measuring {
     shown: Motion,
@@ -65,7 +63,7 @@ struct Measuring {
     free: Option<(Arc<Clip>, SlideMeter)>,
 }
 
-/// What was measured of a walk as it is shown.
+/// The measurements of a walk that is shown.
 #[derive(Debug)]
 struct Seen {
     trace: Arc<MotionTrace>,
@@ -73,7 +71,7 @@ struct Seen {
 }
 
 impl Measuring {
-    /// Nothing is measured yet; `free` is the walk without the foot lock, where there is one.
+    /// Begins a measurement; `free` is the walk without the foot lock, if there is one.
     fn new(shown: Motion, free: Option<Arc<Clip>>) -> Self {
         Self {
             meter: TraceMeter::new(shown.clip(), shown.roles()),
@@ -86,7 +84,7 @@ impl Measuring {
         }
     }
 
-    /// A slice. `false` when nothing is left to do.
+    /// Measures a slice. Returns `false` if nothing is left to do.
     fn advance(&mut self, frames: usize) -> bool {
         let (clip, contacts) = (self.shown.clip(), self.shown.contacts());
         let of_free =
@@ -107,7 +105,7 @@ impl Measuring {
     }
 }
 
-/// Makes a walk, stay by stay.
+/// The construction of a walk, stay by stay.
 #[derive(Debug)]
 pub(super) struct Maker {
     built: Arc<Built>,
@@ -116,9 +114,9 @@ pub(super) struct Maker {
     run: RunLength,
     run_is_known: bool,
     search: Option<(PathSearch, GroundPath)>,
-    /// Seconds of search since the best so far was shown.
+    /// Seconds of search since the best path so far was shown.
     searched_secs: f64,
-    /// Makes the walk that follows the path as far as it is known.
+    /// The walk that follows the path as far as it is known.
     preview: Option<Box<Self>>,
     trace: Option<Trace>,
     plan: Plan,
@@ -126,24 +124,24 @@ pub(super) struct Maker {
     meter: WalkMeter,
     metrics: Option<Vec<Metric>>,
     pieces: Vec<WalkPiece>,
-    /// Pieces that are measured, in so far as they are to be.
+    /// The number of pieces that are measured, as far as they are to be.
     metered: usize,
-    /// When left and right foot stand.
+    /// The frames in which the left and the right foot are planted.
     planted: [Vec<bool>; 2],
     frames: usize,
     ends: bool,
-    /// How long it is to be next.
+    /// The length to extend the walk to next, frames.
     goal: usize,
-    /// The walk to be shown, as far as it is put together.
+    /// The walk to be shown, as far as it is assembled.
     publishing: Option<Publishing>,
-    /// What was measured of the walk that was shown first.
+    /// The measurements of the walk that was shown first.
     seen: Option<Seen>,
     walk: Option<Arc<Walk>>,
 }
 
 impl Maker {
-    /// One that first looks for a way along the path that is wanted, where there is one. `others`
-    /// may know of the same graph what this one needs.
+    /// Begins a walk, with a search for a way along the requested path if there is one. `others`
+    /// may have results for the same graph that this one needs.
     pub(super) fn new<'a>(
         built: &Arc<Built>,
         wanted: &Wanted,
@@ -175,14 +173,14 @@ impl Maker {
         Ok(maker)
     }
 
-    /// One that goes by what has been found of the path so far.
+    /// Begins a walk along the path as far as it has been found.
     fn preview(&self, found: Followed, length_m: f64) -> Result<Self, LabError> {
         let mut maker = Self::like(self, &self.wanted)?;
         maker.follow(found, length_m, true);
         Ok(maker)
     }
 
-    /// One in the same graph with the same weights: how long it runs is known.
+    /// Begins a walk in the same graph with the same weights, whose expected run is known.
     fn like(other: &Self, wanted: &Wanted) -> Result<Self, LabError> {
         let mut maker =
             Self::idle(&other.built, wanted, Arc::clone(&other.choices), other.run.clone())?;
@@ -222,12 +220,12 @@ impl Maker {
         })
     }
 
-    /// As far as it was given out.
+    /// Returns the walk as far as it was published.
     pub(super) fn walk(&self) -> Option<&Arc<Walk>> {
         self.walk.as_ref()
     }
 
-    /// Its stays, for a walk that goes like it.
+    /// Returns its plan, for a walk that follows it.
     pub(super) fn plan(&mut self) -> &mut Plan {
         &mut self.plan
     }
@@ -236,23 +234,23 @@ impl Maker {
         self.built.cast.set().fps()
     }
 
-    /// Whether it should be longer while the playhead is there.
+    /// Returns whether the walk should be longer for this playhead.
     pub(super) fn is_short(&self, now_secs: f64) -> bool {
         let Some(walk) = self.walk.as_ref().filter(|_| self.search.is_none()) else {
             return true;
         };
         let secs = walk.motion.clip().frames() as f64 / self.fps();
-        !walk.ends && !walk.is_jump && secs < (now_secs + AHEAD_SECS).min(LONGEST_SECS)
+        !walk.ends && !walk.is_jump && secs < (now_secs + LEAD_SECS).min(MAX_SECS)
     }
 
-    /// How much of what is under way is done, 0 to 1.
+    /// Returns the progress of the work under way, 0 to 1.
     pub(super) fn progress(&self) -> f64 {
         let searched = self.search.as_ref().map_or(1.0, |(search, path)| search.progress(path));
         0.4 * searched + 0.6 * (self.frames as f64 / self.goal.max(1) as f64).min(1.0)
     }
 
-    /// One slice. `true` when there is a new walk to give out. `guide` is the walk that this one
-    /// goes like.
+    /// Does one slice. Returns `true` if there is a new walk to publish. `guide` is the walk that
+    /// this one follows.
     pub(super) fn step(
         &mut self,
         now_secs: f64,
@@ -298,16 +296,20 @@ impl Maker {
         }
     }
 
-    /// A walk to be shown, or what is left to measure of it.
-    fn unseen(&self, shown: Motion, free: Option<Arc<Clip>>) -> Result<Motion, Publishing> {
+    /// Returns a motion that is ready to be shown, or what is left to measure of it.
+    fn measured_or_pending(
+        &self,
+        shown: Motion,
+        free: Option<Arc<Clip>>,
+    ) -> Result<Motion, Publishing> {
         if self.seen.is_some() {
             return Ok(shown);
         }
         Err(Publishing::Measuring(Box::new(Measuring::new(shown, free))))
     }
 
-    /// A slice of what is between the pieces and a walk that is shown: the motion, or what is left
-    /// to do.
+    /// Does a slice from the pieces to a walk that is shown: returns the motion, or the remaining
+    /// work.
     fn published(
         &mut self,
         publishing: Publishing,
@@ -319,7 +321,7 @@ impl Maker {
                 }
                 let motion = self.motion(*assembling)?;
                 let Some(lock) = self.wanted.foot_lock else {
-                    return Ok(self.unseen(motion, None));
+                    return Ok(self.measured_or_pending(motion, None));
                 };
                 if let Some(locking) = locking(
                     Arc::clone(motion.clip()),
@@ -331,7 +333,7 @@ impl Maker {
                     Ok(Err(Publishing::Locking(Box::new(locking), Box::new(motion))))
                 } else {
                     let free = Arc::clone(motion.clip());
-                    Ok(self.unseen(motion, Some(free)))
+                    Ok(self.measured_or_pending(motion, Some(free)))
                 }
             }
             Publishing::Locking(mut locking, motion) => {
@@ -341,7 +343,7 @@ impl Maker {
                 let clip = Arc::new(locking.finish()?);
                 let free = Arc::clone(motion.clip());
                 let locked = motion.with_clip(clip, motion.ground_frames().to_vec());
-                Ok(self.unseen(locked, Some(free)))
+                Ok(self.measured_or_pending(locked, Some(free)))
             }
             Publishing::Measuring(mut measuring) => {
                 if measuring.advance(MEASURED_FRAMES) {
@@ -354,23 +356,23 @@ impl Maker {
         }
     }
 
-    /// Frames: what is measured at first, then as far as the playhead asks for, and a good part
-    /// more.
+    /// Returns the next length in frames: first the part that is measured, then as far as the
+    /// playhead requires, with a margin.
     fn next_goal(&self, now_secs: f64) -> usize {
         let mut secs = self.wanted.measured_secs;
         if let Some(walk) = &self.walk {
             secs = 1.25 * walk.motion.clip().frames() as f64 / self.fps();
         }
-        if now_secs + AHEAD_SECS > secs {
-            secs = now_secs + 2.0 * AHEAD_SECS;
+        if now_secs + LEAD_SECS > secs {
+            secs = now_secs + 2.0 * LEAD_SECS;
         }
-        // Tens of seconds: a walk that is kept says how long it is.
+        // In tens of seconds, because a kept walk stores its length.
         ((secs / 10.0).ceil() * 10.0)
-            .min(LONGEST_SECS.max(self.wanted.measured_secs))
+            .min(MAX_SECS.max(self.wanted.measured_secs))
             .mul_add(self.fps(), 0.5) as usize
     }
 
-    /// A slice of the search for a path, or of the walk that shows the best so far.
+    /// Does a slice of the search for a path, or of the walk that previews the best so far.
     fn seek(&mut self, now_secs: f64) -> Result<bool, LabError> {
         if let Some(mut preview) = self.preview.take() {
             if preview.step(now_secs, None)? {
@@ -391,7 +393,7 @@ impl Maker {
             if is_over {
                 self.search = None;
                 self.follow(found, length, false);
-                // What was shown meanwhile does not count.
+                // The preview is discarded.
                 self.walk = None;
             } else {
                 self.preview = Some(Box::new(self.preview(found, length)?));
@@ -400,19 +402,19 @@ impl Maker {
         Ok(false)
     }
 
-    /// Whether a path is searched for.
+    /// Returns whether a path is searched for.
     pub(super) fn is_searching(&self) -> bool {
         self.search.is_some()
     }
 
-    /// How long the last slice took, seconds.
+    /// Records the duration of the last slice, seconds.
     pub(super) fn took(&mut self, secs: f64) {
         if self.is_searching() && self.preview.is_none() {
             self.searched_secs += secs;
         }
     }
 
-    /// The walk takes what was found.
+    /// Makes the walk follow a path that was found.
     fn follow(&mut self, found: Followed, length_m: f64, is_searching: bool) {
         self.trace = Some(Trace {
             points: self.wanted.path.clone(),
@@ -426,7 +428,7 @@ impl Maker {
         self.stitcher.start_at(found.world_from_first);
     }
 
-    /// One stay more.
+    /// Adds one stay.
     fn stay(&mut self, guide: Option<&mut Plan>) -> Result<(), GraphError> {
         let Some(stay) = self.plan.stay(self.pieces.len(), guide) else {
             self.ends = true;
@@ -438,7 +440,7 @@ impl Maker {
         Ok(())
     }
 
-    /// Measures a slice of what is made, as much as is asked for. `false` when nothing is left to
+    /// Measures a slice of the walk, as much as is requested. Returns `false` if nothing is left to
     /// do.
     fn meter(&mut self) -> bool {
         let Some(piece) = self.pieces.get(self.metered).filter(|_| self.metrics.is_none()) else {
@@ -473,7 +475,7 @@ impl Maker {
         metrics.list().to_vec()
     }
 
-    /// What was assembled, as a motion.
+    /// Returns the assembled frames as a motion.
     fn motion(&self, assembling: Assembling) -> Result<Motion, GraphError> {
         let (clip, ground_frames) = assembling.finish()?;
         let planted = self.planted.clone().map(|mut flags| {
@@ -483,7 +485,7 @@ impl Maker {
         let motions = self.built.cast.motions();
         let first = motions.first();
         let roles = first.map(|motion| motion.roles().clone()).unwrap_or_default();
-        // The lowest: no foot is lifted off the ground that its own clip has.
+        // The lowest ground: no foot is lifted off the ground of its own clip.
         let ground_m = motions.iter().map(|motion| motion.ground_m()).min_by(f32::total_cmp);
         // Without seams: a walk is left anywhere, since all of it is transitions.
         Ok(Motion::with_ground_frames(clip, &roles, ground_frames)
@@ -492,7 +494,7 @@ impl Maker {
             .with_ground_m(ground_m.unwrap_or(0.0)))
     }
 
-    /// The walk as it is now.
+    /// Returns the walk in its current state.
     fn walk_of(&self, motion: Motion) -> Walk {
         let walked = match &self.metrics {
             Some(metrics) => metrics.clone(),
@@ -516,7 +518,7 @@ impl Maker {
         }
     }
 
-    /// The end of one clip, a transition, and the beginning of another.
+    /// Builds a walk from the end of one clip, a transition, and the beginning of another.
     fn jump(&mut self, leave: Place, enter: Place) -> Result<Walk, LabError> {
         let whole = Arc::clone(self.built.whole());
         let index = self.built.jump_of(leave, enter).ok_or_else(|| {
@@ -559,7 +561,7 @@ impl Maker {
             }
         };
         let mut walk = self.walk_of(motion);
-        // Of one transition these say nothing.
+        // These metrics do not apply to a single transition.
         walk.metrics.retain(|metric| !matches!(metric.id, "seams_per_min" | "variety"));
         Ok(walk)
     }

@@ -4,27 +4,27 @@ use petgraph::visit::EdgeRef;
 use segue_motion::graph::{Choices, GraphError, MotionGraph, Place, Stay, Walker};
 use std::sync::Arc;
 
-/// How far from another walk's transition one counts as the same, seconds at each end.
+/// The tolerance within which two transitions count as the same, seconds at each end.
 const GUIDE_SECS: f64 = 0.3;
-/// Stays of that walk among which it is looked for.
+/// The number of stays of the other walk that are searched for it.
 const GUIDE_STAYS: usize = 12;
 
-/// The stays of a walk, as far as anybody asked for them: found without a frame being made. A walk
-/// that goes like another one asks that one's plan for as much as it needs, so that it does not
-/// depend on how much of the other has been shown.
+/// The stays of a walk as far as they were requested, found without making frames. A walk that
+/// follows another one requests as much of that one's plan as it needs, so that it does not depend
+/// on how much of the other has been shown.
 #[derive(Clone, Debug)]
 pub(super) struct Plan {
     graph: Arc<MotionGraph>,
     walker: Walker,
     stays: Vec<Stay>,
-    /// Frames of these stays.
+    /// The number of frames of these stays.
     frames: usize,
-    /// When to set off for which clip, and how many of these visits were begun.
+    /// The times at which to leave for a clip, and the number of these visits that were begun.
     visits: Vec<(f64, usize)>,
     visited: usize,
-    /// Visits of clips to which no way led.
+    /// Visits of clips that cannot be reached.
     missed: Vec<(f64, usize)>,
-    /// Which stay of the walk that this one goes like plays now.
+    /// The stay that plays now in the walk that this one follows.
     guided: usize,
 }
 
@@ -52,8 +52,8 @@ impl Plan {
         self.walker.take(edges);
     }
 
-    /// A stay by its number; `None` behind the last one, where a walk comes to an end. `guide` is
-    /// the walk that this one goes like, if any; it is the same in every call.
+    /// Returns a stay by its number; `None` after the last one, where the walk ends. `guide` is the
+    /// walk that this one follows, if any; it is the same in every call.
     pub(super) fn stay(&mut self, number: usize, mut guide: Option<&mut Self>) -> Option<Stay> {
         while self.stays.len() <= number {
             if let Some(guide) = guide.as_deref_mut() {
@@ -66,12 +66,12 @@ impl Plan {
         self.stays.get(number).copied()
     }
 
-    /// Visits that came to nothing so far: when, and which clip.
+    /// Returns the visits that failed so far: time and clip.
     pub(super) fn missed(&self) -> &[(f64, usize)] {
         &self.missed
     }
 
-    /// The next stay, which ends early where a visit is due.
+    /// Returns the next stay, which ends early if a visit is due.
     fn next(&mut self) -> Option<Stay> {
         let fps = self.graph.set().fps();
         let mut next = self.walker.clone();
@@ -82,7 +82,7 @@ impl Plan {
                 break;
             }
             self.visited += 1;
-            // What plays before that has been seen: it stays.
+            // Frames that have played stay as they are.
             self.walker.go_on_to(stay.from + due.saturating_sub(self.frames));
             if self.walker.go_to_clip(clip) {
                 next = self.walker.clone();
@@ -95,17 +95,17 @@ impl Plan {
         Some(stay)
     }
 
-    /// The transition into a stay.
+    /// Returns the transition into a stay.
     fn seam(&mut self, number: usize) -> Option<[Place; 2]> {
         let stay = self.stay(number, None)?;
         let jump = self.graph.jumps().get(stay.jump?)?;
         Some([jump.leave, jump.enter])
     }
 
-    /// Takes the way that is most like the next transition of another walk; by chance where there
-    /// is none, and like it again as soon as both are in the same clip.
+    /// Takes the edge that is most like the next transition of another walk; a random one if there
+    /// is none, and follows it again once both are in the same clip.
     fn go_like(&mut self, guide: &mut Self) {
-        // To a clip that it was sent to: that is where it goes.
+        // A visit determines the way.
         if self.walker.has_way() {
             return;
         }

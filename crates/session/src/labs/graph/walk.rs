@@ -14,11 +14,11 @@ pub struct Passed {
     pub start: usize,
     /// One past its last frame.
     pub end: usize,
-    /// What plays.
+    /// The stay.
     pub stay: Stay,
     /// The transition into it.
     pub seam: Option<PieceSeam>,
-    /// Where its clip lies in the walk's world.
+    /// The placement of its clip in the walk's world.
     pub world_from_clip: Planar,
 }
 
@@ -34,90 +34,88 @@ impl Passed {
     }
 }
 
-/// What a walk shows at a time.
+/// The state of a walk at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct At {
     /// The number of the stay.
     pub stay: usize,
-    /// The frame of its clip.
+    /// The frame of the clip that plays.
     pub place: Place,
-    /// The frame of the clip that is left, while the transition lasts.
+    /// The frame of the clip that is left, during a transition.
     pub left: Option<Place>,
-    /// How much of the transition is over, 0 to 1; 1 behind it.
+    /// The progress of the transition, 0 to 1; 1 after it.
     pub share: f64,
 }
 
-/// A walk through a graph, as far as it is made.
+/// A walk through a graph, as far as it has been made.
 #[derive(Clone, Debug)]
 pub struct Walk {
     /// The graph.
     pub built: Arc<Built>,
-    /// The probabilities by which it went.
+    /// The probabilities of its choices.
     pub choices: Arc<Choices>,
-    /// Seconds from one transition to the next in a long walk; `None` where a walk comes to an end,
-    /// or never leaves its clip.
+    /// The expected time between transitions in a long walk, seconds; `None` if a walk ends, or
+    /// never leaves its clip.
     pub run_secs: Option<f64>,
     /// The motion so far.
     pub motion: Arc<Motion>,
-    /// What it is made of.
+    /// The stays that it consists of.
     pub passed: Arc<Vec<Passed>>,
-    /// Visits of clips that no way leads to from where the walk is at that time: when, seconds, and
-    /// the clip.
+    /// Visits of clips that cannot be reached: time, seconds, and clip.
     pub missed: Vec<(f64, usize)>,
-    /// Its artefacts.
+    /// Its metrics.
     pub metrics: Vec<Metric>,
-    /// What its joints, its hips and its feet do: of what was shown first, and `None` before that
+    /// The trace of its joints, hips and feet, for the part that was shown first; `None` before it
     /// is measured.
     pub trace: Option<Arc<MotionTrace>>,
-    /// It has come to a dead end.
+    /// Whether it ended in a dead end.
     pub ends: bool,
-    /// It is one transition, between a part of one clip and a part of another.
+    /// Whether it is a single transition between parts of two clips.
     pub is_jump: bool,
-    /// It goes like the walk of another pane, where it can.
+    /// Whether it follows the walk of another pane where it can.
     pub is_guided: bool,
-    /// The line that it follows, and how well: root of the mean square, and how far it came,
-    /// metres.
+    /// The path that it follows, and how well.
     pub followed: Option<Trace>,
 }
 
-/// A clip that a walk is made of, as a ghost.
+/// A clip of a walk, drawn as a ghost.
 #[derive(Clone, Copy, Debug)]
 pub struct WalkGhost<'a> {
     /// The clip.
     pub motion: &'a Arc<Motion>,
     /// Its time, seconds.
     pub secs: f64,
-    /// Where it lies in the walk's world.
+    /// The placement of the clip in the walk's world.
     pub world_from_clip: Planar,
-    /// How clear it is, 0 to 1.
+    /// The opacity, 0 to 1.
     pub clear: f64,
 }
 
-/// A line over the ground, and how a walk follows it.
+/// A path over the ground, and how closely a walk follows it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trace {
-    /// Points, (x, z) in metres.
+    /// The points, (x, z) in metres.
     pub points: Vec<DVec2>,
-    /// How far off the walk is by the search, metres: the root of the mean square.
+    /// The root mean square distance of the walk from the path, by the search, metres.
     pub rms_m: f64,
-    /// How far along the line it comes, metres.
+    /// The distance that the walk covers along the path, metres.
     pub along_m: f64,
-    /// How long the line is, metres.
+    /// The length of the path, metres.
     pub length_m: f64,
-    /// Nodes that were looked at.
+    /// The number of nodes expanded.
     pub looked_at: usize,
-    /// It is the best so far.
+    /// Whether it is the best so far.
     pub is_searching: bool,
 }
 
 impl Walk {
-    /// The frame of the walk at a time.
+    /// Returns the frame of the walk at a time.
     fn frame_at(&self, secs: f64) -> usize {
         let last = self.motion.clip().frames().saturating_sub(1);
         ((secs * self.motion.clip().fps()).max(0.0).round() as usize).min(last)
     }
 
-    /// What it shows at a time; `None` for a walk without frames.
+    /// Returns the state at a time; `None` for a walk without frames.
     #[must_use]
     pub fn at(&self, secs: f64) -> Option<At> {
         let frame = self.frame_at(secs);
@@ -133,15 +131,15 @@ impl Walk {
         })
     }
 
-    /// The distance of the transition into a stay, centimetres.
+    /// Returns the distance of the transition into a stay, centimetres.
     #[must_use]
     pub fn jump_cm(&self, passed: &Passed) -> Option<f64> {
         let graph = if self.is_jump { self.built.whole() } else { self.built.graph() };
         Some(graph.jumps().get(passed.stay.jump?)?.distance_cm)
     }
 
-    /// The clips that play in the transition about a time, the one that is left first. They fade in
-    /// before it and out behind it.
+    /// Returns the clips that play in the transition around a time, the one that is left first.
+    /// They fade in before it and out after it.
     #[must_use]
     pub fn ghosts_at(&self, secs: f64, fade_secs: f64) -> [Option<WalkGhost<'_>>; 2] {
         let fps = self.motion.clip().fps();
@@ -163,8 +161,8 @@ impl Walk {
         let inside = ((secs - start) / length).clamp(0.0, 1.0);
         let before = 1.0 - ((start - secs) / fade_secs).clamp(0.0, 1.0);
         let behind = 1.0 - ((secs - start - length) / fade_secs).clamp(0.0, 1.0);
-        // Where the walk meets its clips exactly: at the beginning the one that is left, at the end
-        // the one that is entered.
+        // The placement at which the walk equals its clips: at the beginning the clip that is left,
+        // at the end the one that is entered.
         let end = (passed.start + seam.frames).min(self.motion.clip().frames().saturating_sub(1));
         let laid = |place: Place, met: usize, walk_frame: usize, clear: f64| {
             let motion = self.built.cast().motions().get(place.clip)?;

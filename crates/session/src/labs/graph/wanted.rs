@@ -11,7 +11,7 @@ use segue_motion::graph::{
 use segue_motion::math::Decay;
 use segue_motion::transition::{Inertialization, Method, Mistake};
 
-/// What a walk depends on, besides the clips.
+/// A request for a walk, besides the clips.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Wanted {
     pub(super) graph: GraphKey,
@@ -19,21 +19,21 @@ pub(super) struct Wanted {
     pub(super) seed: u64,
     pub(super) discount: f64,
     pub(super) stitch: StitchOptions,
-    /// How planted feet are held, where they are.
+    /// The foot lock options, if feet are locked.
     pub(super) foot_lock: Option<Lock>,
-    /// How much of the walk is measured, seconds.
+    /// The duration that is measured, seconds.
     pub(super) measured_secs: f64,
-    /// When to set off for which clip: seconds, and its index.
+    /// Visits: the time to leave, seconds, and the index of the clip.
     pub(super) visits: Vec<(f64, usize)>,
-    /// A line over the ground to follow; empty for none.
+    /// A path over the ground to follow; empty for none.
     pub(super) path: Vec<DVec2>,
-    /// One transition in place of a walk.
+    /// A single transition instead of a walk.
     pub(super) jump: Option<[Place; 2]>,
-    /// The walk through another graph that this one goes like, where it can.
+    /// The walk through another graph that this one follows where it can.
     pub(super) guide: Option<Box<Self>>,
 }
 
-/// What a graph depends on, besides the clips.
+/// A request for a graph, besides the clips.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct GraphKey {
     pub(super) options: GraphOptions,
@@ -118,10 +118,10 @@ impl Wanted {
         })
     }
 
-    /// Likewise, like the walk of other parameters if only its transitions take longer or shorter.
-    /// Where one may go over is another matter: a graph of shorter segments, or up to a higher
-    /// threshold, has all places of the other one, and to go like that walk would show none of its
-    /// own. One that follows a line has its own way to go.
+    /// Returns the request that follows the walk of other parameters, if only the length of its
+    /// transitions differs. With shorter segments or a higher threshold, a graph contains all
+    /// places of the other one, and a walk that followed it would show none of its own. A walk
+    /// along a path has its own way to go.
     pub(super) fn guided(
         params: &Params,
         guide: Option<&Params>,
@@ -162,16 +162,15 @@ pub(crate) fn clips_of(listed: &[String]) -> Result<Vec<String>, LabError> {
     }
 }
 
-/// Says what is wrong with a list of clips for a graph, before anything is set.
+/// Checks a list of clips for a graph before it is set.
 ///
 /// # Errors
-/// [`LabError`] would stand in place of the result.
+/// The [`LabError`] that the graph would have.
 pub fn check_graph_clips(listed: &[String]) -> Result<(), LabError> {
     clips_of(listed).map(drop)
 }
 
-/// What is to be set for other clips. What tells clips by their place in the list means nothing any
-/// more.
+/// Returns the parameters to set for other clips. Those that refer to clips by index are reset.
 #[must_use]
 pub fn graph_of(ids: &[String]) -> Vec<(Key, Value)> {
     vec![

@@ -1,4 +1,4 @@
-//! Others that walk about, with the same clips and controllers of their own.
+//! Extra characters that wander about, with the same clips and controllers of their own.
 
 use crate::labs::LabError;
 use glam::DVec2;
@@ -8,14 +8,14 @@ use segue_motion::skeleton::Pose;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// A walker keeps its direction for so long, ticks.
-const STEADY: u64 = 3 * RATE as u64;
-/// Whoever is farther than this from the one who is driven comes back, metres.
-const FAR_M: f64 = 9.0;
-/// Between neighbours at the beginning, metres.
-const APART_M: f64 = 1.3;
+/// The time for which a character keeps its direction, ticks.
+const DIRECTION_TICKS: u64 = 3 * RATE as u64;
+/// The distance from the driven character at which they turn back, metres.
+const MAX_DISTANCE_M: f64 = 9.0;
+/// The distance between neighbours at the beginning, metres.
+const SPACING_M: f64 = 1.3;
 
-/// The others.
+/// A group of wandering characters.
 #[derive(Debug)]
 pub(crate) struct Crowd {
     database: Arc<Database>,
@@ -24,7 +24,7 @@ pub(crate) struct Crowd {
 }
 
 impl Crowd {
-    /// So many stand about a place, each looking its own way.
+    /// Places `count` characters around a point, each with its own facing.
     pub(crate) fn new(
         database: &Arc<Database>,
         options: ControllerOptions,
@@ -33,9 +33,9 @@ impl Crowd {
     ) -> Result<Self, LabError> {
         let options = ControllerOptions { candidates: 1, ..options };
         let walker = |index: usize| {
-            // A sunflower: as even as it is far from rows.
+            // A sunflower pattern: evenly spread without rows.
             let (turn, reach) =
-                (2.399_963 * (index + 1) as f64, APART_M * libm::sqrt((index + 1) as f64));
+                (2.399_963 * (index + 1) as f64, SPACING_M * libm::sqrt((index + 1) as f64));
             let shift = about.shift + DVec2::new(libm::sin(turn), libm::cos(turn)) * reach;
             let start = Planar { yaw: chance(index as u64, 0) * TAU, shift };
             Controller::new(Arc::clone(database), options, &start).map_err(LabError::from)
@@ -47,12 +47,12 @@ impl Crowd {
         })
     }
 
-    /// How many they are, and from which database.
+    /// Returns whether the crowd has this number of characters from this database.
     pub(crate) fn is_of(&self, database: &Arc<Database>, count: usize) -> bool {
         Arc::ptr_eq(&self.database, database) && self.walkers.len() == count
     }
 
-    /// Everybody takes over other options.
+    /// Changes the options of all controllers.
     pub(crate) fn change(&mut self, options: ControllerOptions) -> Result<(), LabError> {
         let options = ControllerOptions { candidates: 1, ..options };
         for walker in self.walkers.iter_mut().filter(|walker| *walker.options() != options) {
@@ -61,13 +61,13 @@ impl Crowd {
         Ok(())
     }
 
-    /// One tick: each goes its way, and comes back from far off.
+    /// Advances by one tick: each character continues its way, and comes back from far off.
     pub(crate) fn tick(&mut self, about: &Planar) {
         for (index, walker) in self.walkers.iter_mut().enumerate() {
-            // Not all at once.
-            let beat = (self.ticks + 7 * index as u64) / STEADY;
+            // Staggered, so that they do not all turn at once.
+            let beat = (self.ticks + 7 * index as u64) / DIRECTION_TICKS;
             let off = about.shift - walker.root().shift;
-            let direction = if off.length() > FAR_M {
+            let direction = if off.length() > MAX_DISTANCE_M {
                 off.normalize_or_zero()
             } else {
                 let turn = chance(index as u64, 2 * beat + 1) * TAU;
@@ -83,19 +83,19 @@ impl Crowd {
         self.ticks += 1;
     }
 
-    /// Where everybody is.
+    /// Returns the poses of all characters.
     pub(crate) fn poses(&self) -> impl Iterator<Item = &Pose> {
         self.walkers.iter().map(Controller::pose)
     }
 
-    /// Whose body they have.
+    /// Returns the database, which determines the skeleton.
     pub(crate) fn database(&self) -> &Arc<Database> {
         &self.database
     }
 }
 
-/// A number from 0 to 1 that is the same for everybody (Steele, Lea and Flood, "Fast splittable
-/// pseudorandom number generators", 2014).
+/// Returns a number from 0 to 1 that is the same on every machine (Steele, Lea and Flood, "Fast
+/// splittable pseudorandom number generators", 2014).
 fn chance(who: u64, when: u64) -> f64 {
     let mut z =
         (who.wrapping_mul(0x1_0000) ^ when).wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15);

@@ -1,4 +1,4 @@
-//! Builds databases and plays recorded input, slice by slice.
+//! Construction of databases and playback of recorded input, in slices.
 
 use super::super::sliced::{JobKind, Sliced};
 use super::tagging::{filter_of, tagged};
@@ -16,19 +16,19 @@ use segue_motion::matching::{
 use segue_motion::math::Planar;
 use std::sync::Arc;
 
-/// Ticks in one slice: about 2 ms in a browser.
+/// The number of ticks in one slice: about 2 ms in a browser.
 const TICKS: usize = 20;
 
-/// What a database is made of.
+/// The inputs of a database.
 #[derive(Clone, Debug)]
 pub(crate) struct Source {
-    /// The clips; those of the synthesiser where there are none.
+    /// The clips; the synthesised set if empty.
     clips: Vec<Arc<Motion>>,
     options: DatabaseOptions,
 }
 
 impl Source {
-    /// These clips, as the parameters say.
+    /// Returns the inputs for these clips and the parameters.
     pub(crate) fn new(clips: Vec<Arc<Motion>>, params: &Params) -> Self {
         let trajectory_secs = [Key::AheadNear, Key::AheadMiddle, Key::AheadFar]
             .map(|key| params.number(key))
@@ -49,7 +49,7 @@ impl Source {
         }
     }
 
-    /// Whether only the features differ.
+    /// Returns whether only the features differ.
     fn has_clips_of(&self, other: &Self) -> bool {
         (self.options.mirrored, self.options.cycles)
             == (other.options.mirrored, other.options.cycles)
@@ -64,7 +64,7 @@ impl PartialEq for Source {
     }
 }
 
-/// What a replay depends on.
+/// The inputs of a replay.
 #[derive(Clone, Debug)]
 struct Script {
     database: Arc<Database>,
@@ -82,7 +82,7 @@ impl PartialEq for Script {
     }
 }
 
-/// The result of recorded input. Equal inputs, equal result.
+/// The result of recorded input. Equal inputs give equal results.
 #[derive(Clone, Debug)]
 pub(crate) struct ReplayInputs(Arc<Outcome>);
 
@@ -98,7 +98,7 @@ impl LabInputs for ReplayInputs {
     }
 }
 
-/// Input on its way.
+/// A replay in progress.
 #[derive(Debug)]
 struct Playing {
     tracer: Tracer,
@@ -106,17 +106,17 @@ struct Playing {
     next: usize,
 }
 
-/// A database with tags by hand.
+/// A database with tags set by hand.
 #[derive(Debug)]
 struct Tagged {
-    /// What they were put on, and the ids of the clips that it was built from.
+    /// The database without these tags, and the ids of its clips.
     base: Arc<Database>,
     ids: Vec<String>,
     tags: Vec<HandTag>,
     made: Arc<Database>,
 }
 
-/// Builds databases and plays recordings, and keeps the last ones.
+/// A cache of databases and replays, with their work in slices.
 #[derive(Debug, Default)]
 pub(crate) struct Driver {
     made: Vec<Arc<Motion>>,
@@ -131,7 +131,7 @@ pub(crate) struct Driver {
 }
 
 impl Driver {
-    /// A database. `None` while it is built: [`work`](Self::work), then ask again.
+    /// Returns a database. `None` while it is built: call [`work`](Self::work), then ask again.
     fn database(&mut self, source: &Source) -> Result<Option<Arc<Database>>, LabError> {
         if let Some((_, known)) = self.databases.iter().find(|(known, _)| known == source) {
             return known.clone().map(Some);
@@ -152,8 +152,8 @@ impl Driver {
         Ok(database.map(|database| self.tagged(database, ids, params.tags().to_vec())))
     }
 
-    /// A database with tags by hand; `ids` are the clips that it was built from, none for the
-    /// synthesiser's set.
+    /// Returns a database with tags set by hand; `ids` are its clips, empty for the synthesised
+    /// set.
     fn tagged(
         &mut self,
         database: Arc<Database>,
@@ -177,7 +177,7 @@ impl Driver {
         made
     }
 
-    /// What recorded input gives. `None` while it is played.
+    /// Returns the result of recorded input. `None` while it is played.
     pub(crate) fn replay(
         &mut self,
         database: Arc<Database>,
@@ -323,8 +323,8 @@ impl Sliced for Driver {
     }
 }
 
-/// Input under the filter that is set; what was recorded under another one keeps it where none is
-/// set.
+/// Returns the input with the filter of the parameters; without one, it keeps the filter of the
+/// recording.
 fn filtered(control: Control, filter: TagFilter) -> Control {
     if filter == TagFilter::default() { control } else { control.with_filter(filter) }
 }

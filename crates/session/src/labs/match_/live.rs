@@ -1,4 +1,4 @@
-//! A character that is driven now.
+//! A character that is driven live.
 
 use super::trace::Tracer;
 use crate::labs::LabError;
@@ -9,14 +9,14 @@ use segue_motion::metrics::{Metric, ResultMetrics};
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// So much of what was done is kept for the eye, ticks: 5 s.
+/// The length of the history that is kept, ticks: 5 s.
 const KEPT: usize = 5 * RATE;
-/// Jumps are counted over this long, ticks: 30 s.
+/// The period over which jumps are counted, ticks: 30 s.
 const COUNTED: u64 = 30 * RATE as u64;
-/// Numbers are read four times a second, and no more often measured.
+/// The interval of measurements, ticks: four times a second, about as fast as one can read.
 const MEASURED: u64 = RATE as u64 / 4;
 
-/// A controller at the hand of the user, and the last seconds of what it did.
+/// A controller with live input, and the last seconds of its motion.
 #[derive(Debug)]
 pub(crate) struct Live {
     tracer: Tracer,
@@ -27,7 +27,7 @@ pub(crate) struct Live {
 }
 
 impl Live {
-    /// Stands at the origin.
+    /// Returns a character at the origin.
     pub(crate) fn new(
         database: &Arc<Database>,
         options: ControllerOptions,
@@ -38,7 +38,7 @@ impl Live {
         Ok(Self { tracer, jumps: VecDeque::new(), metrics: Vec::new(), found: None })
     }
 
-    /// Whether it plays the clips of that database.
+    /// Returns whether it plays the clips of a database.
     pub(crate) fn plays(&self, database: &Database) -> bool {
         let mine = self.tracer.controller.database().motions();
         // Tags may differ.
@@ -46,8 +46,8 @@ impl Live {
             && mine.iter().zip(database.motions()).all(|(a, b)| Arc::ptr_eq(a.clip(), b.clip()))
     }
 
-    /// Goes on with other options, and in a database of the same clips.
-    /// Says whether that is something else.
+    /// Continues with other options and a database of the same clips. Returns whether anything
+    /// changed.
     pub(crate) fn change(
         &mut self,
         database: &Arc<Database>,
@@ -65,7 +65,7 @@ impl Live {
         Ok(moves || differs)
     }
 
-    /// One tick.
+    /// Advances by one tick.
     pub(crate) fn tick(&mut self, control: &Control) {
         let before = self.tracer.controller.jumps();
         self.tracer.tick(control);
@@ -78,17 +78,17 @@ impl Live {
         }
     }
 
-    /// Where the character stands.
+    /// Returns the position of the character.
     pub(crate) fn root(&self) -> Planar {
         self.tracer.controller.root()
     }
 
-    /// How long what is kept is, seconds.
+    /// Returns the duration of the history, seconds.
     pub(crate) fn kept_secs(&self) -> f64 {
         self.tracer.frames().saturating_sub(1) as f64 / RATE as f64
     }
 
-    /// What was done last, with numbers: those that every lab has as soon as what it is made of is
+    /// Returns the history as an outcome, with metrics: those of every lab as soon as its clips are
     /// measured.
     pub(crate) fn outcome(&mut self, gauge: &mut Gauge) -> Result<Outcome, LabError> {
         let mut outcome = self.tracer.outcome(true)?;
@@ -96,7 +96,7 @@ impl Live {
         if ticks.is_multiple_of(MEASURED) || self.metrics.is_empty() {
             self.found = gauge.numbers_now(&outcome);
             self.metrics = self.tracer.metrics(&outcome.motion);
-            // Of what was seen last most turns have no beginning or no end.
+            // Most turns in the history have no beginning or no end.
             self.metrics.retain(|metric| metric.id != "match_turn");
             let over_secs = ticks.min(COUNTED) as f64 / RATE as f64;
             for metric in self.metrics.iter_mut().filter(|metric| metric.id == "match_seams") {

@@ -1,4 +1,4 @@
-//! From parameters to what the controller is told.
+//! Conversion of parameters to options of the controller.
 
 use super::tagging::clip_name;
 use crate::choices;
@@ -12,7 +12,7 @@ use segue_motion::matching::{
 use segue_motion::math::Decay;
 use segue_motion::transition::Inertialization;
 
-/// How the character searches, goes over, and follows.
+/// Returns the options of search, transitions and following.
 pub(crate) fn options_of(params: &Params) -> ControllerOptions {
     let number = |key| params.number(key);
     let usual = ControllerOptions::default();
@@ -67,7 +67,7 @@ pub(crate) fn options_of(params: &Params) -> ControllerOptions {
     }
 }
 
-/// The same with the clip of a database that is preferred while the input is still.
+/// Returns the options with the clip of a database that is preferred while there is no input.
 pub(crate) fn options_in(
     database: &Database,
     params: &Params,
@@ -85,7 +85,7 @@ pub(crate) fn options_in(
     Ok(ControllerOptions { prefer_source: Some(source), ..options })
 }
 
-/// The input that is played; `None` where the user drives.
+/// Returns the recorded input; `None` if the user drives.
 pub(crate) fn recording_of(params: &Params) -> Option<Recording> {
     match Scenario::find(params.choice::<choices::Scenario>().word()) {
         Some(scenario) => Some(scenario.recording()),

@@ -6,7 +6,7 @@ use crate::params::{HandTag, Key, Params};
 use segue_motion::matching::{Database, DatabaseClip, RATE, Tag, TagFilter, TagRange, TagSet};
 use std::sync::Arc;
 
-/// The words of one's own among tags, in the order in which they come.
+/// Returns the users' own tags, in order of appearance.
 #[must_use]
 pub fn own_words(tags: &[HandTag]) -> Vec<&str> {
     let mut words: Vec<&str> = Vec::new();
@@ -19,7 +19,7 @@ pub fn own_words(tags: &[HandTag]) -> Vec<&str> {
     words
 }
 
-/// What a word stands for.
+/// Returns the tag of a word.
 fn tag_of(word: &str, own: &[&str]) -> Option<Tag> {
     let fixed = Tag::FIXED.into_iter().find(|tag| tag.name() == word);
     fixed.or_else(|| {
@@ -28,7 +28,7 @@ fn tag_of(word: &str, own: &[&str]) -> Option<Tag> {
     })
 }
 
-/// Which frames may be found.
+/// Returns the filter for the frames that a search may find.
 pub(crate) fn filter_of(params: &Params) -> Result<TagFilter, LabError> {
     let own = own_words(params.tags());
     let set = |key: Key| {
@@ -42,14 +42,14 @@ pub(crate) fn filter_of(params: &Params) -> Result<TagFilter, LabError> {
     Ok(TagFilter { ask: set(Key::AskTag)?, forbid: set(Key::ForbidTag)? })
 }
 
-/// What a motion's clip is called in parameters: its id among those that the database was built
-/// from, its own name in the synthesiser's set.
+/// Returns the name of a motion's clip in parameters: its id if the database was built from clips,
+/// its own name in the synthesised set.
 pub(crate) fn clip_name<'a>(motion: &'a DatabaseClip, ids: &'a [String]) -> &'a str {
     ids.get(motion.source()).map_or(motion.clip().name(), String::as_str)
 }
 
-/// A database with tags by hand; `ids` are the clips that it was built from, none for the
-/// synthesiser's set. Clips that are not in it are passed over.
+/// Returns a database with tags set by hand; `ids` are its clips, empty for the synthesised set.
+/// Tags of clips that are not in it are skipped.
 pub(super) fn tagged(database: &Database, ids: &[String], tags: &[HandTag]) -> Database {
     let own = own_words(tags);
     let mut result = database.clone();
@@ -81,7 +81,7 @@ pub(super) fn tagged(database: &Database, ids: &[String], tags: &[HandTag]) -> D
     result
 }
 
-/// What is left of a range when a tag is taken away from a stretch.
+/// Returns the parts of a range that are left when a tag is removed from a stretch.
 fn without(range: TagRange, tag: Tag, from: usize, to: usize) -> Vec<TagRange> {
     if range.tag != tag {
         return vec![range];

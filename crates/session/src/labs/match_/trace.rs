@@ -1,4 +1,4 @@
-//! What a character did, tick by tick: its motion, and why it went where it went.
+//! The history of a driven character, tick by tick: its motion, and the reasons for its choices.
 
 use crate::labs::LabError;
 use crate::labs::{LabFacts, Outcome};
@@ -17,46 +17,46 @@ use std::sync::Arc;
 pub struct DriveMoment {
     /// The frame that played.
     pub place: Place,
-    /// Where the character stood: `world_from_character`.
+    /// The position of the character: `world_from_character`.
     pub root: Planar,
     /// The simulation object.
     pub simulation: Simulation,
-    /// The last search by then.
+    /// The most recent search.
     pub search: Option<Arc<SearchRecord>>,
-    /// Whether it went over to another frame in this tick.
+    /// Whether the character jumped to another frame in this tick.
     pub jumped: bool,
 }
 
-/// How a motion came to be: one moment for each of its frames.
+/// The history of a motion: one moment for each of its frames.
 #[derive(Clone, Debug)]
 pub struct Driven {
-    /// Where its frames were chosen from.
+    /// The database of its frames.
     pub database: Arc<Database>,
-    /// How the simulation object was steered.
+    /// The steering of the simulation object.
     pub steering: Steering,
-    /// Tick by tick.
+    /// The moments, tick by tick.
     pub moments: Vec<Arc<DriveMoment>>,
-    /// Whether it goes on: the motion is what was seen last.
+    /// Whether it is live: the motion is then the most recent history.
     pub is_live: bool,
 }
 
 impl Driven {
-    /// The moment at a time of the motion, seconds.
+    /// Returns the moment at a time of the motion, seconds.
     #[must_use]
     pub fn at(&self, secs: f64) -> Option<&DriveMoment> {
         let last = self.moments.len().checked_sub(1)?;
-        // The clamp turns what lies before, and NaN, into the first.
+        // The clamp maps earlier times and NaN to the first frame.
         let frame = (secs * RATE as f64).round().max(0.0).min(last as f64) as usize;
         self.moments.get(frame).map(|moment| &**moment)
     }
 
-    /// How far ahead trajectories are compared, seconds.
+    /// Returns the horizon of the compared trajectories, seconds.
     #[must_use]
     pub fn horizon_secs(&self) -> f64 {
         self.database.features().layout().horizon() as f64 / RATE as f64
     }
 
-    /// Where the simulation object will be, as asked for at that moment, `steps` and one places
+    /// Returns the predicted path of the simulation object at that moment, `steps` and one places
     /// from now to the horizon.
     #[must_use]
     pub fn asked_way(&self, moment: &DriveMoment, steps: usize) -> Vec<Planar> {
@@ -67,7 +67,7 @@ impl Driven {
             .collect()
     }
 
-    /// Where the clip that plays would lead, likewise.
+    /// Returns the path of the clip that plays, in the same places.
     #[must_use]
     pub fn matched_way(&self, moment: &DriveMoment, steps: usize) -> Vec<Planar> {
         let Some(motion) = self.database.motion(moment.place.motion) else {
@@ -83,27 +83,27 @@ impl Driven {
             .collect()
     }
 
-    /// The times of its jumps, seconds.
+    /// Returns the times of the jumps, seconds.
     pub fn jumps_secs(&self) -> impl Iterator<Item = f64> + '_ {
         let jumps = self.moments.iter().enumerate().filter(|(_, moment)| moment.jumped);
         jumps.map(|(frame, _)| frame as f64 / RATE as f64)
     }
 }
 
-/// A controller, and what it has done: all of it, or the last of it.
+/// A controller with its history: all of it, or the most recent part.
 #[derive(Debug)]
 pub(super) struct Tracer {
     pub(super) controller: Controller,
     poses: VecDeque<Pose>,
     planted: VecDeque<[bool; 2]>,
     moments: VecDeque<Arc<DriveMoment>>,
-    /// At most so many frames are kept.
+    /// The greatest number of frames that are kept.
     most: usize,
     search: Option<Arc<SearchRecord>>,
 }
 
 impl Tracer {
-    /// Nothing was done yet.
+    /// Returns a controller without history.
     pub(super) fn new(controller: Controller, most: usize) -> Self {
         Self {
             controller,
@@ -115,7 +115,7 @@ impl Tracer {
         }
     }
 
-    /// Goes on by a tick.
+    /// Advances by one tick.
     pub(super) fn tick(&mut self, control: &Control) {
         let jumps = self.controller.jumps();
         self.controller.tick(control);
@@ -126,7 +126,7 @@ impl Tracer {
         self.note(self.controller.jumps() > jumps);
     }
 
-    /// Remembers how it stands now.
+    /// Records the current state.
     pub(super) fn note(&mut self, jumped: bool) {
         if self.poses.len() >= self.most {
             self.poses.pop_front();
@@ -144,12 +144,12 @@ impl Tracer {
         }));
     }
 
-    /// Frames that are kept.
+    /// Returns the number of frames that are kept.
     pub(super) fn frames(&self) -> usize {
         self.poses.len()
     }
 
-    /// The motion with all that is known of it but its numbers.
+    /// Returns the motion with all facts about it except its metrics.
     pub(super) fn outcome(&self, is_live: bool) -> Result<Outcome, LabError> {
         let database = self.controller.database();
         let clip = Clip::from_poses(
@@ -181,7 +181,7 @@ impl Tracer {
         )
     }
 
-    /// The numbers of what is kept.
+    /// Returns the metrics of the history.
     pub(super) fn metrics(&self, motion: &Motion) -> Vec<Metric> {
         let database = self.controller.database();
         let (mut jumps, mut searches, mut visited, mut last) = (Vec::new(), 0, 0, None);
@@ -208,7 +208,7 @@ impl Tracer {
             visited,
         };
         let mut metrics = drive.metrics(database).list();
-        // A turn that was never made has no time.
+        // A turn that was never made has no duration.
         for metric in &mut metrics {
             metric.value = metric.value.filter(|value| value.is_finite());
         }

@@ -1,5 +1,5 @@
-//! Planting the feet of a motion on a path takes longer than a hand waits: it is done in slices
-//! when the hand rests.
+//! Locking of the feet of a motion on a path. It takes longer than a frame while dragging, and is
+//! therefore done in slices when dragging ends.
 
 use super::{PathInputs, free_motion};
 use crate::labs::LabError;
@@ -9,13 +9,13 @@ use segue_motion::metrics::SlideMeter;
 use segue_motion::transition::FootLocking;
 use std::sync::Arc;
 
-/// Frames in one slice of work: about 2 ms for 31 joints in a browser.
+/// The number of frames in one slice of work: about 2 ms for 31 joints in a browser.
 const PER_SLICE: usize = 500;
 
-/// The motion with its feet planted, and how far they slide now, centimetres.
+/// The motion with its feet locked, and their slide, centimetres.
 type Made = Result<(Arc<Clip>, Option<f64>), LabError>;
 
-/// What came of it.
+/// The result for one request.
 #[derive(Debug)]
 pub(super) struct Planted {
     of: PathInputs,
@@ -28,13 +28,13 @@ enum Stage {
     Measuring(Arc<Clip>, Contacts, SlideMeter),
 }
 
-/// Plants feet slice by slice, and keeps the last results.
+/// A cache of the last results, with their work in slices.
 #[derive(Debug, Default)]
 pub(super) struct Planter {
     done: Vec<Arc<Planted>>,
     wanted: Vec<PathInputs>,
     under_way: Option<(PathInputs, Stage)>,
-    /// Something has just been done, and nobody has asked for it yet.
+    /// Whether a requested result is available and has not been fetched yet.
     is_ready: bool,
 }
 
@@ -44,7 +44,7 @@ impl Planter {
         self.is_ready = false;
     }
 
-    /// What came of it, if that is known; else it is done as soon as there is time.
+    /// Returns the result if it is known; otherwise schedules it.
     pub(super) fn ask(&mut self, of: &PathInputs) -> Option<Arc<Planted>> {
         let known = self.done.iter().find(|planted| planted.of.makes_the_same(of));
         if known.is_none() {
@@ -65,9 +65,9 @@ impl Planter {
         share.or((!self.wanted.is_empty()).then_some(0.0))
     }
 
-    /// One slice. `false` when there was nothing to do.
+    /// Does one slice. Returns `false` if there was nothing to do.
     pub(super) fn work(&mut self) -> bool {
-        // What a hand has left behind nobody wants to see.
+        // Requests of a drag that has moved on are dropped.
         let wanted = |of: &PathInputs| self.wanted.iter().any(|wanted| wanted.makes_the_same(of));
         let under_way = self.under_way.take().filter(|(of, _)| wanted(of));
         let next = match (under_way, self.wanted.first()) {
@@ -103,7 +103,7 @@ fn begin(of: &PathInputs) -> Result<Stage, LabError> {
     })
 }
 
-/// The next stage, or what came of it all.
+/// Returns the next stage, or the final result.
 fn step(of: &PathInputs, stage: Stage) -> Result<Stage, Made> {
     match stage {
         Stage::Locking(mut locking, contacts) => {

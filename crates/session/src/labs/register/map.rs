@@ -4,10 +4,10 @@ use segue_motion::math::Planar;
 use segue_motion::registration::{DistanceMatrix, align, limb_weights};
 use std::sync::Arc;
 
-/// How far apart the frames of two clips are, with the clips.
+/// The distances between the frames of two clips, with the clips.
 ///
-/// A *pair* is a frame of A and a frame of B, both counted at A's rate; a cell of the matrix stands
-/// for the middle frames of its windows.
+/// A *pair* is a frame of A and a frame of B, both counted at A's rate; a cell of the matrix
+/// represents the middle frames of its windows.
 #[derive(Clone, Debug)]
 pub struct DistanceMap {
     matrix: DistanceMatrix,
@@ -27,36 +27,36 @@ impl DistanceMap {
         }
     }
 
-    /// The distances: A's windows in rows, B's in columns.
+    /// Returns the distances: A's windows in rows, B's in columns.
     #[must_use]
     pub fn matrix(&self) -> &DistanceMatrix {
         &self.matrix
     }
 
-    /// A, and B on the skeleton and at the rate of A.
+    /// Returns A, and B on the skeleton and at the rate of A.
     #[must_use]
     pub fn motions(&self) -> &[Arc<Motion>; 2] {
         &self.motions
     }
 
-    /// Frames per second of both.
+    /// Returns the frame rate of both, frames per second.
     #[must_use]
     pub fn fps(&self) -> f64 {
         self.motions[0].clip().fps()
     }
 
-    /// What turns metres of the matrix into centimetres per joint on a body of 1.75 m.
+    /// Returns the factor from metres of the matrix to centimetres per joint on a body of 1.75 m.
     #[must_use]
     pub fn cm_scale(&self) -> f64 {
         self.cm_scale
     }
 
-    /// From the first frame of a window to the one that it stands for.
+    /// Returns the offset from the first frame of a window to the one that it represents.
     pub(super) fn middle(&self) -> usize {
         (self.matrix.window().max(1) - 1) / 2
     }
 
-    /// The cell that is nearest to a pair; `None` for one that is in no clip, or where no window
+    /// Returns the cell that is nearest to a pair; `None` if the pair is in no clip, or no window
     /// fits.
     #[must_use]
     pub fn cell_of(&self, frames: [f64; 2]) -> Option<(usize, usize)> {
@@ -72,7 +72,7 @@ impl DistanceMap {
         cell(0).zip(cell(1))
     }
 
-    /// The pair that a cell stands for.
+    /// Returns the pair that a cell represents.
     #[must_use]
     pub fn pair_of(&self, (row, column): (usize, usize)) -> [f64; 2] {
         let (a, b) = self.matrix.frames(row, column);
@@ -80,15 +80,15 @@ impl DistanceMap {
         [a as f64 + half, b as f64 + half]
     }
 
-    /// How far apart a pair is: root mean square per joint over the windows, centimetres on a body
-    /// of 1.75 m.
+    /// Returns the distance of a pair: root mean square per joint over the windows, centimetres on
+    /// a body of 1.75 m.
     #[must_use]
     pub fn cm_at(&self, frames: [f64; 2]) -> Option<f64> {
         let (row, column) = self.cell_of(frames)?;
         Some(f64::from(self.matrix.get(row, column)?) * self.cm_scale)
     }
 
-    /// How B lies best on A about a pair: `a_world_from_b_world`.
+    /// Returns the best alignment of B with A around a pair: `a_world_from_b_world`.
     #[must_use]
     pub fn b_on_a(&self, frames: [f64; 2]) -> Option<Planar> {
         let (row, column) = self.cell_of(frames)?;

@@ -12,15 +12,15 @@ use segue_motion::registration::{
 };
 use std::sync::Arc;
 
-/// Up to so many pairs of frames everything is done at once: a few seconds of motion need no second
+/// The number of pairs of frames that are processed at once: a few seconds of motion need no second
 /// slice.
 const AT_ONCE: usize = 100_000;
-/// Pairs in one slice of work: about a millisecond for 31 joints.
+/// The number of pairs in one slice of work: about a millisecond for 31 joints.
 const PER_SLICE: usize = 60_000;
-/// More pairs than these are compared every few frames: 48 MiB of terms.
-const MOST_PAIRS: f64 = 4e6;
+/// Above this number of pairs, only every few frames are compared: 48 MiB of terms.
+const MAX_PAIRS: f64 = 4e6;
 
-/// What curves depend on, besides the two clips.
+/// A request for registration curves, besides the two clips.
 #[derive(Clone, Debug, PartialEq)]
 struct Wanted {
     window: usize,
@@ -28,16 +28,16 @@ struct Wanted {
     smoothing: usize,
 }
 
-/// What was found for two clips.
+/// The registration of two clips.
 #[derive(Clone, Debug)]
 pub(super) struct Found {
     pub(super) map: Arc<DistanceMap>,
     pub(super) registration: Arc<Registration>,
-    /// Both clips at their own speed from where the path begins.
+    /// Both clips at their own speed from the beginning of the path.
     pub(super) lockstep: Arc<Registration>,
 }
 
-/// Registers every clip of a blend to A.
+/// The registrations of all clips of a blend to A.
 #[derive(Debug, Default)]
 pub(crate) struct Registrars {
     b: Registrar,
@@ -45,8 +45,8 @@ pub(crate) struct Registrars {
 }
 
 impl Registrars {
-    /// Brings everything to the point where the result is a pure function; `also` are the further
-    /// clips with their weights. `None` when that takes longer than a frame: [`work`](Self::work),
+    /// Prepares the inputs, with which the result is a pure function; `also` are the further clips
+    /// with their weights. `None` if that takes longer than a frame: call [`work`](Self::work),
     /// then ask again.
     pub(crate) fn inputs(
         &mut self,
@@ -80,7 +80,7 @@ impl Registrars {
         }))
     }
 
-    /// The distances of A and B that were asked for last.
+    /// Returns the distances of A and B that were requested last.
     pub(crate) fn last_map(&self) -> Option<&Arc<DistanceMap>> {
         self.b.last_map()
     }
@@ -116,32 +116,32 @@ impl Sliced for Registrars {
     }
 }
 
-/// Registers clips slice by slice, and keeps what a change leaves as it is: products of frames for
-/// a new window, distances for a new path.
+/// Registers clips in slices, and caches what a change does not affect: products of frames for a
+/// new window, distances for a new path.
 #[derive(Debug, Default)]
 struct Registrar {
     pair: Option<Arc<Pair>>,
     terms: Option<PairTerms>,
     sweep: Option<PausedSweep>,
-    /// The last ones that were asked for, at most one for each pane.
+    /// The last ones requested, at most one for each pane.
     maps: Vec<Arc<DistanceMap>>,
     search: Option<(Wanted, PathSearch)>,
     found: Vec<(Wanted, Result<Arc<Found>, LabError>)>,
-    /// What panes wait for.
+    /// The requests of the panes.
     wanted: Vec<Wanted>,
-    /// All of that has just been found, and nobody has asked for it yet.
+    /// Whether all of them were found and not been fetched yet.
     is_ready: bool,
 }
 
 impl Registrar {
-    /// Nobody waits any more: everybody is about to ask again.
+    /// Clears the pending requests. Call before a refresh; each pane requests again what it needs.
     fn ask_anew(&mut self) {
         self.wanted.clear();
         self.is_ready = false;
     }
 
-    /// What is known of the two. `None` when that takes longer than a frame: [`work`](Self::work),
-    /// then ask again.
+    /// Returns the registration. `None` if that takes longer than a frame: call
+    /// [`work`](Self::work), then ask again.
     fn found(&mut self, pair: &Arc<Pair>, wanted: Wanted) -> Result<Option<Arc<Found>>, LabError> {
         self.meet(pair)?;
         let at_once =
@@ -158,12 +158,12 @@ impl Registrar {
         }
     }
 
-    /// The distances that were asked for last.
+    /// Returns the distances that were requested last.
     fn last_map(&self) -> Option<&Arc<DistanceMap>> {
         self.maps.last()
     }
 
-    /// One slice of what panes wait for. `false` when there was nothing to do.
+    /// Does one slice of the requested work. Returns `false` if there was nothing to do.
     fn work(&mut self) -> bool {
         let Some(wanted) = self.next().cloned() else {
             return false;
@@ -173,7 +173,7 @@ impl Registrar {
         true
     }
 
-    /// Whether what panes wait for is there, so that they should ask again.
+    /// Returns whether a requested result is available, so that its pane should ask again.
     fn is_ready(&self) -> bool {
         self.is_ready
     }
@@ -183,7 +183,7 @@ impl Registrar {
         self.wanted.iter().find(|wanted| !is_known(wanted))
     }
 
-    /// How much is done of what is worked on, 0 to 1; `None` when there is nothing.
+    /// Returns the progress of the work, 0 to 1; `None` if there is none.
     fn progress(&self) -> Option<f32> {
         let wanted = self.next()?;
         let share = |progress: segue_motion::registration::Progress| {
@@ -205,7 +205,7 @@ impl Registrar {
         *self = Self { wanted: std::mem::take(&mut self.wanted), ..Self::default() };
         let (a, b) = (pair.a.clip(), pair.incoming.clip());
         let pairs = a.frames() as f64 * b.frames() as f64;
-        let stride = (pairs / MOST_PAIRS).sqrt().ceil().max(1.0) as usize;
+        let stride = (pairs / MAX_PAIRS).sqrt().ceil().max(1.0) as usize;
         let weights = limb_weights(a.skeleton());
         let terms = PairTerms::new(a, 0..a.frames(), b, 0..b.frames(), &weights, stride);
         self.terms = Some(terms?);
@@ -213,7 +213,7 @@ impl Registrar {
         Ok(())
     }
 
-    /// Does a slice of what is needed next.
+    /// Does a slice of the most urgent work.
     fn step(&mut self, wanted: &Wanted) {
         let (Some(pair), Some(terms)) = (&self.pair, &mut self.terms) else {
             self.keep(wanted, Err(LabError::NothingToRegister));
@@ -298,13 +298,13 @@ fn wanted_of(pair: &Pair, params: &Params, pins: Vec<(usize, usize)>) -> Result<
     })
 }
 
-/// What is asked of a path, with its pins as cells in place of frames.
+/// Returns the options of a path with its pins as cells instead of frames.
 fn in_cells(path: &PathOptions, map: &DistanceMap) -> PathOptions {
     let cell = |pin: &(usize, usize)| map.cell_of([pin.0 as f64, pin.1 as f64]).unwrap_or(*pin);
     PathOptions { pins: path.pins.iter().map(cell).collect(), ..path.clone() }
 }
 
-/// The curves along a path through the distances.
+/// Returns the curves along a path through the distances.
 fn curves(
     terms: &PairTerms,
     map: &Arc<DistanceMap>,
@@ -326,7 +326,7 @@ fn curves(
     })
 }
 
-/// The error with the frames that its windows stand for.
+/// Returns the error with the frames that its windows represent.
 fn in_frames(error: PathError, middle: usize) -> LabError {
     let moved = |frames: (usize, usize)| (frames.0 + middle, frames.1 + middle);
     LabError::Warp(match error {
