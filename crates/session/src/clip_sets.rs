@@ -1,4 +1,4 @@
-//! Whose motion a lab works with: made, captured, or what the user brought.
+//! The set of clips of a lab: synthesised, captured, or the user's own.
 
 use super::labs::lab::Lab;
 use super::labs::{LabSet, lab_of};
@@ -8,20 +8,20 @@ use super::params::{Key, Kind, ListKind, Value};
 use super::samples::SUBJECT_16;
 use super::session::Session;
 
-/// A choice of clips for the whole lab.
+/// A set of clips for the whole lab.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ClipSet {
-    /// What the synthesiser makes: the lab's defaults.
+    /// Synthesised clips: the lab's defaults.
     Made,
     /// The bundled takes of one actor.
     Captured,
-    /// The user's own files, in labs that take any number of clips.
+    /// The user's own files, in labs with any number of clips.
     Own,
 }
 
 impl Session {
-    /// What is to be set so that the open lab works with these clips; `None` where it has nothing
-    /// to choose, or there are no such clips.
+    /// Returns the parameters that make the open lab use a set; `None` if it has no choice of sets,
+    /// or there are no such clips.
     #[must_use]
     pub fn clip_set(&self, set: ClipSet) -> Option<Vec<(Key, Value)>> {
         let lab = lab_of(self.params().lab());
@@ -33,13 +33,13 @@ impl Session {
             }),
             ClipSet::Own => {
                 let own = self.library().entries().iter().filter(|entry| is_own_motion(entry));
-                let ids: Vec<String> = own.map(|entry| entry.id.clone()).take(MOST_OWN).collect();
+                let ids: Vec<String> = own.map(|entry| entry.id.clone()).take(MAX_OWN).collect();
                 lab.with_clips(&ids).filter(|_| !ids.is_empty())
             }
         }
     }
 
-    /// Whether the open lab works with these clips.
+    /// Returns whether the open lab uses a set.
     #[must_use]
     pub fn uses_clip_set(&self, set: ClipSet) -> bool {
         let names_clips =
@@ -52,9 +52,9 @@ impl Session {
 }
 
 /// The Graph lab takes no more.
-const MOST_OWN: usize = 64;
+const MAX_OWN: usize = 64;
 
-/// What is to be set so that a lab works with the bundled captured clips.
+/// Returns the parameters that make a lab use the bundled captured clips.
 fn captured(lab: &dyn Lab<LabSet>) -> Option<Vec<(Key, Value)>> {
     let listed = || {
         let ids: Vec<String> = SUBJECT_16.iter().map(|sample| sample.id.to_owned()).collect();
@@ -63,7 +63,7 @@ fn captured(lab: &dyn Lab<LabSet>) -> Option<Vec<(Key, Value)>> {
     lab.captured_link().map(|query| link::read(query).values).or_else(listed)
 }
 
-/// Whether it is a file of the user's that moves: a skeleton or a character alone does not.
+/// Returns whether an entry is a moving file of the user's: a skeleton or a character alone is not.
 fn is_own_motion(entry: &Entry) -> bool {
     let moves = entry.motion.as_ref().is_some_and(|motion| motion.clip().frames() > 1);
     moves && matches!(entry.origin, Origin::File(_))

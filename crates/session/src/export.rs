@@ -9,10 +9,10 @@ use segue_formats::gltf::{GlbError, GlbOptions, write_character_glb, write_glb};
 use segue_motion::clip::{Clip, CurveKind, Motion, joint_curve};
 use segue_motion::skin::{Character, Drive};
 
-/// A kind of file that motions are saved as.
+/// A file format in which motions are saved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ExportFormat {
-    /// Skeleton and motion as text: what most programs read.
+    /// Skeleton and motion as text, which most programs read.
     #[default]
     Bvh,
     /// A table for spreadsheets and scripts.
@@ -22,10 +22,10 @@ pub enum ExportFormat {
 }
 
 impl ExportFormat {
-    /// All of them.
+    /// All formats.
     pub const ALL: [Self; 3] = [Self::Bvh, Self::Csv, Self::Glb];
 
-    /// Its name in the API, and the ending of its files.
+    /// Returns the name in the API, which is also the ending of files.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -35,13 +35,13 @@ impl ExportFormat {
         }
     }
 
-    /// The format of that name.
+    /// Returns the format of a name.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|format| format.name() == name)
     }
 
-    /// Its media type.
+    /// Returns the media type.
     #[must_use]
     pub const fn mime(self) -> &'static str {
         match self {
@@ -52,38 +52,38 @@ impl ExportFormat {
     }
 }
 
-/// What a person may want otherwise than the clip has it. A format takes what it can say: BVH all
-/// of it but the body, GLB frame rate and body, CSV nothing.
+/// Options of an export. A format uses those that it supports: BVH all but the body, GLB frame rate
+/// and body, CSV none.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ExportOptions {
-    /// The kind of file.
+    /// The file format.
     pub format: ExportFormat,
-    /// Metres per unit of length; those of the file that the clip came from where `None`.
+    /// Metres per unit of length; those of the clip's source file where `None`.
     pub metres_per_unit: Option<f64>,
-    /// One order for the rotations of all joints; those of the file where `None`.
+    /// One order for the rotations of all joints; those of the source file where `None`.
     pub rotation_order: Option<RotationOrder>,
     /// Frames per second; the clip's own where `None`.
     pub fps: Option<f64>,
-    /// Whose body the file has, where the format has bodies.
+    /// The body in the file, if the format has bodies.
     pub body: ExportBody,
 }
 
-/// Whose body a file has beside its motion.
+/// The body in an exported file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ExportBody {
-    /// That of the character on the stage, on its own skeleton, in its own size; where there is
-    /// none that the motion can move, the plain one.
+    /// The body of the character on the stage, on its own skeleton and in its own size; the plain
+    /// one if the motion moves none of its joints.
     #[default]
     Character,
-    /// One made around the clip's own skeleton.
+    /// A body generated around the clip's own skeleton.
     Plain,
 }
 
 impl ExportBody {
-    /// Both of them.
+    /// Both bodies.
     pub const ALL: [Self; 2] = [Self::Character, Self::Plain];
 
-    /// Its name in the API.
+    /// Returns the name in the API.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -92,18 +92,18 @@ impl ExportBody {
         }
     }
 
-    /// The body of that name.
+    /// Returns the body of a name.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|body| body.name() == name)
     }
 }
 
-/// A number per frame that goes into a table beside the joints, under its name.
+/// A column of a table beside the joints: its name and a number per frame.
 pub type Column = (String, Vec<f32>);
 
-/// Writes a motion as a file. `columns` go into a table only. `character` is who is on the stage in
-/// place of a plain body: see [`ExportBody`].
+/// Writes a motion as a file. `columns` are written to tables only. `character` is the character on
+/// the stage in place of a plain body: see [`ExportBody`].
 ///
 /// # Errors
 /// [`GlbError`] when the motion is too large for the format.
@@ -131,7 +131,8 @@ pub fn export(
         ExportFormat::Glb => {
             let how = GlbOptions { fps: options.fps, smooth: true };
             let character = character.filter(|_| options.body == ExportBody::Character);
-            match character.and_then(|character| Some((led(motion, character)?, character))) {
+            match character.and_then(|character| Some((retargeted(motion, character)?, character)))
+            {
                 Some((clip, character)) => write_character_glb(&clip, &character.mesh, &how),
                 None => write_glb(motion.clip(), &how),
             }
@@ -139,21 +140,20 @@ pub fn export(
     }
 }
 
-/// The motion as the character on the stage has it; `None` where it moves no joint of the
-/// character.
-fn led(motion: &Motion, character: &Character) -> Option<Clip> {
+/// Returns the motion on the character's skeleton; `None` if it moves no joint of the character.
+fn retargeted(motion: &Motion, character: &Character) -> Option<Clip> {
     Drive::new(motion.clip(), motion.roles(), character)?.clip(motion.clip()).ok()
 }
 
-/// The curve that is plotted of a clip: of the chosen joint, the chosen quantity. None where the
-/// clip has no such joint.
+/// Returns the plotted curve of a clip: the chosen quantity of the chosen joint. Empty if the clip
+/// has no such joint.
 #[must_use]
 pub fn plotted_of_clip(motion: &Motion, params: &Params) -> Vec<Column> {
     plotted(motion, "", params).into_iter().collect()
 }
 
-/// The curves that are plotted of a result: its own, and those of what it was made from, each at
-/// the result's time; no numbers where they do not play.
+/// Returns the plotted curves of a result: its own, and those of its source clips in the result's
+/// time, without values where they do not play.
 #[must_use]
 pub fn plotted_of_result(outcome: &Outcome, params: &Params) -> Vec<Column> {
     let own = plotted(&outcome.motion, "", params);
@@ -177,21 +177,21 @@ fn plotted(motion: &Motion, whose: &str, params: &Params) -> Option<Column> {
     Some((format!("{whose}{name}.{quantity}"), joint_curve(motion.clip(), joint, kind)))
 }
 
-/// The values of a source's frames at the frames of the result.
+/// Resamples the values of a source's frames at the frames of the result.
 fn in_time_of(result: &Motion, source: &PlacedClip, values: &[f32]) -> Vec<f32> {
     let fps = source.motion.clip().fps();
     let at = |frame: usize| ((result.clip().time_of(frame) - source.starts_at_secs) * fps).round();
     (0..result.clip().frames())
         .map(|frame| {
-            // A frame before the first is no index; a cast alone would make it 0.
+            // Cast directly, a negative frame would become 0.
             let inside = Some(at(frame)).filter(|at| *at >= 0.0);
             inside.and_then(|at| values.get(at as usize).copied()).unwrap_or(f32::NAN)
         })
         .collect()
 }
 
-/// Returns a name for a file that every system takes: letters, digits, spaces and `-_.~`, others
-/// replaced by `_`, at most 100 of them before the ending. Without any it is `motion`.
+/// Returns a file name that every system accepts: letters, digits, spaces and `-_.~`, others
+/// replaced by `_`, at most 100 of them before the ending. `motion` if nothing is left.
 #[must_use]
 pub fn file_name(stem: &str, ending: &str) -> String {
     let plain = |c: char| {
@@ -220,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn every_format_has_the_motion() {
+    fn export_in_every_format_contains_the_motion() {
         let session = blend();
         let motion = &session.main_outcome().unwrap().motion;
         for format in ExportFormat::ALL {
@@ -246,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_chosen_is_written() {
+    fn export_follows_its_options() {
         let session = blend();
         let motion = &session.main_outcome().unwrap().motion;
         let options = ExportOptions {
@@ -270,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn the_table_has_the_plotted_curves_in_the_results_time() {
+    fn export_as_a_table_contains_the_plotted_curves() {
         let mut session = blend();
         let outcome = session.main_outcome().unwrap().clone();
         let columns = plotted_of_result(&outcome, session.params());
@@ -281,8 +281,8 @@ mod tests {
         );
         assert!(columns.iter().all(|(_, values)| values.len() == outcome.motion.clip().frames()));
         let (a, b) = (&columns[1].1, &columns[2].1);
-        // Outside of the transition the result is the source: B plays to the end, and not before it
-        // was begun.
+        // Outside the transition the result is the source: B plays to the end, and not before it
+        // begins.
         let fps = outcome.motion.clip().fps();
         let transition = outcome.transition.unwrap();
         let before = (transition.start_secs * fps).round() as usize / 2;

@@ -1,4 +1,4 @@
-//! The clips that there are: built in, dropped, or made here.
+//! The library of clips: built in, dropped, or made in labs.
 
 use super::outside;
 use super::reading::{About, Companion, Content, LARGE_BYTES};
@@ -19,20 +19,20 @@ pub(crate) enum Arrival {
     ByLink,
 }
 
-/// Where a clip comes from.
+/// The origin of a clip.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Origin {
-    /// The synthesiser, by a preset's id.
+    /// The synthesiser, with the id of a preset.
     Preset,
-    /// A take that is bundled with the app and loaded when asked for.
+    /// A bundled take, loaded on request.
     Sample(&'static Sample),
     /// A file that was dropped, opened or fetched.
     File(SourceFile),
-    /// Made in the Make lab; its id says from what.
+    /// A kept result; its id is its recipe.
     Made,
 }
 
-/// A file as it came, kept so that it can be read again with other options and stored.
+/// A source file, kept so that it can be stored and read again with other options.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SourceFile {
     /// The file's name.
@@ -41,20 +41,20 @@ pub struct SourceFile {
     pub sha256: String,
     /// Its bytes.
     pub content: Content,
-    /// How many there are.
+    /// The number of its bytes.
     pub size: u64,
-    /// What it is.
+    /// Its format.
     pub kind: FileKind,
     /// The skeleton file that it was read with.
     pub companion: Option<Companion>,
-    /// Which of the clips in the file this is, from 0.
+    /// The index of the clip in the file.
     pub index: usize,
-    /// What the user says about unit, up axis and frame rate.
+    /// The options that the user set: unit, up axis and frame rate.
     pub options: ImportOptions,
 }
 
 impl SourceFile {
-    /// Whether it takes too long to be read between two frames.
+    /// Returns whether reading it takes longer than a frame.
     #[must_use]
     pub fn is_large(&self) -> bool {
         self.size > LARGE_BYTES || matches!(self.content, Content::Outside(_))
@@ -64,32 +64,32 @@ impl SourceFile {
 /// A clip in the library.
 #[derive(Clone, Debug)]
 pub struct Entry {
-    /// What links call it; unique.
+    /// The unique id, used in links.
     pub id: String,
-    /// What a person calls it.
+    /// The name on screen.
     pub name: String,
     /// What it was called when it came.
     pub own_name: Message,
-    /// Where it comes from.
+    /// The origin.
     pub origin: Origin,
-    /// The motion; `None` for a bundled take that has not come, a preset that was not needed yet,
-    /// and a file that is being read.
+    /// The motion; `None` for a bundled take that has not been loaded, a preset that has not been
+    /// used, and a file that is being read.
     pub motion: Option<Arc<Motion>>,
-    /// The mesh that the file has for the clip's skeleton.
+    /// The mesh of the file on the clip's skeleton.
     pub mesh: Option<Arc<SkinnedMesh>>,
-    /// Why there is no motion though the file is known: reading it failed or was stopped. It is
-    /// read again when that is asked for.
+    /// The reason why a known file has no motion: reading it failed or was stopped. It is read
+    /// again on request.
     pub unread: Option<Message>,
-    /// How its file was read; `None` for what comes from no file, and until it is read.
+    /// The report on reading its file; `None` without a file, and until it is read.
     pub about: Option<About>,
-    /// What was odd in the file, one sentence each.
+    /// The oddities of the file, one sentence each.
     pub warnings: Vec<Message>,
-    /// The roles, where they were corrected by hand.
+    /// The roles, if they were corrected by hand.
     pub roles_by_hand: Option<Roles>,
 }
 
 impl Entry {
-    /// An entry that nothing is known of yet but where it comes from.
+    /// Returns an entry of which only the origin is known.
     pub(super) fn new(id: impl Into<String>, name: impl Into<Message>, origin: Origin) -> Self {
         let own_name = name.into();
         Self {
@@ -117,7 +117,7 @@ impl Entry {
         }
     }
 
-    /// The format in the API.
+    /// Returns the format in the API.
     #[must_use]
     pub fn format(&self) -> &'static str {
         match &self.origin {
@@ -127,7 +127,7 @@ impl Entry {
         }
     }
 
-    /// Whether it is the motion of a skeleton that is not here.
+    /// Returns whether it is a motion whose skeleton is missing.
     #[must_use]
     pub fn awaits_skeleton(&self) -> bool {
         let motion_alone =
@@ -135,7 +135,7 @@ impl Entry {
         self.motion.is_none() && matches!(&self.origin, Origin::File(file) if motion_alone(file))
     }
 
-    /// The character that the file brought: its mesh on the clip's skeleton. `None` without a mesh,
+    /// Returns the character of the file: its mesh on the clip's skeleton. `None` without a mesh,
     /// and until the file is read.
     #[must_use]
     pub fn character(&self) -> Option<Character> {
@@ -147,7 +147,7 @@ impl Entry {
         })
     }
 
-    /// The whole SHA-256 of the file it came from, hexadecimal.
+    /// Returns the whole SHA-256 of its file, hexadecimal.
     #[must_use]
     pub fn sha256(&self) -> Option<&str> {
         if let Origin::File(file) = &self.origin { Some(&file.sha256) } else { None }
@@ -170,18 +170,18 @@ impl FromIterator<Entry> for Library {
     }
 }
 
-/// How many hexadecimal digits of the SHA-256 stand in a link.
+/// The number of hexadecimal digits of the SHA-256 in a link.
 const SHA_DIGITS: usize = 8;
 
 impl Library {
-    /// All clips in order.
+    /// Returns all clips in order.
     #[must_use]
     pub fn entries(&self) -> &[Arc<Entry>] {
         &self.entries
     }
 
-    /// The clip that a link means: by id, else by the SHA-256 prefix in it, else by a file's name
-    /// when only one has it.
+    /// Returns the clip of a reference in a link: by id, otherwise by its SHA-256 prefix, otherwise
+    /// by a file's name if that is unique.
     #[must_use]
     pub fn find(&self, reference: &str) -> Option<&Arc<Entry>> {
         if let Some(entry) = self.get(reference) {
@@ -196,22 +196,22 @@ impl Library {
             _ => false,
         });
         let found = matching.next();
-        // Two files of one name are not told apart by it.
+        // Two files of one name are ambiguous.
         if sha.is_empty() && matching.next().is_some() { None } else { found }
     }
 
-    /// The clip of exactly that id.
+    /// Returns the clip of exactly that id.
     #[must_use]
     pub fn get(&self, id: &str) -> Option<&Arc<Entry>> {
         self.entries.iter().find(|entry| entry.id == id)
     }
 
-    /// Adds a clip at the end, or puts it in the place of the one with the same id.
+    /// Adds a clip at the end, or replaces the one with the same id.
     pub fn put(&mut self, entry: Entry) {
         self.put_shared(Arc::new(entry));
     }
 
-    /// As [`Library::put`], for one that another library holds as well.
+    /// Adds or replaces a clip as [`Library::put`] does, shared with another library.
     pub fn put_shared(&mut self, entry: Arc<Entry>) {
         match self.entries.iter_mut().find(|old| old.id == entry.id) {
             Some(old) => *old = entry,
@@ -219,15 +219,15 @@ impl Library {
         }
     }
 
-    /// Takes a clip out; says whether it was there.
+    /// Removes a clip; returns whether it was there.
     pub fn remove(&mut self, id: &str) -> bool {
         let before = self.entries.len();
         self.entries.retain(|entry| entry.id != id);
         self.entries.len() < before
     }
 
-    /// Takes what is known of clips over that have no motion here, where the other library has them
-    /// read in the same way.
+    /// Takes the motions of clips that have none here from another library, where they were read
+    /// with the same options.
     pub fn take_motions_of(&mut self, other: &Self) {
         for entry in self.entries.iter_mut().filter(|entry| entry.motion.is_none()) {
             let known = other.get(&entry.id).filter(|known| {
@@ -248,7 +248,7 @@ impl Library {
         }
     }
 
-    /// Changes a clip in place, when it is there.
+    /// Changes a clip in place, if it is there.
     pub fn change(&mut self, id: &str, change: impl FnOnce(&mut Entry)) -> bool {
         let Some(slot) = self.entries.iter_mut().find(|entry| entry.id == id) else {
             return false;
@@ -258,8 +258,8 @@ impl Library {
     }
 }
 
-/// The id of the clip `index` of a file: `01_01~3fa9c1d2`, and `01_01~3fa9c1d2.2` for the second
-/// character in it. Of a long name it has the beginning.
+/// Returns the id of the clip `index` of a file: `01_01~3fa9c1d2`, and `01_01~3fa9c1d2.2` for the
+/// second character in it. A long name is truncated.
 #[must_use]
 pub fn file_id(name: &str, sha256: &str, index: usize) -> String {
     let sha = sha256.get(..SHA_DIGITS).unwrap_or(sha256);
@@ -267,7 +267,7 @@ pub fn file_id(name: &str, sha256: &str, index: usize) -> String {
     format!("{}~{sha}{suffix}", outside::for_id(file_stem(name)))
 }
 
-/// Name, SHA-256 prefix (empty where there is none) and index of a reference.
+/// Splits a reference into name, SHA-256 prefix (possibly empty) and index.
 #[must_use]
 pub fn split_reference(reference: &str) -> (&str, &str, usize) {
     let split = reference.rsplit_once('~').and_then(|(name, rest)| {
@@ -275,14 +275,14 @@ pub fn split_reference(reference: &str) -> (&str, &str, usize) {
             Some((sha, number)) => (sha, number.parse::<usize>().ok()?.saturating_sub(1)),
             None => (rest, 0),
         };
-        // The recipe of a result names files, too, and is none.
+        // The recipe of a result contains references to files, but is not one.
         let is_sha = !sha.is_empty() && sha.bytes().all(|digit| digit.is_ascii_hexdigit());
         is_sha.then_some((name, sha, index))
     });
     split.unwrap_or((reference, "", 0))
 }
 
-/// A file's name without folders and ending.
+/// Returns a file's name without folders and ending.
 #[must_use]
 pub(super) fn file_stem(name: &str) -> &str {
     let name = name.rsplit(['/', '\\']).next().unwrap_or(name);
@@ -320,7 +320,7 @@ mod tests {
     }
 
     #[test]
-    fn a_reference_finds_the_file_by_id_sha_or_name() {
+    fn find_by_id_sha_or_name_returns_the_clip() {
         let mut library = Library::default();
         library.put(dropped("a/01_01.bvh", "3fa9c1d2aa"));
         library.put(dropped("walk.bvh", "11111111aa"));
@@ -339,7 +339,7 @@ mod tests {
     }
 
     #[test]
-    fn references_come_apart() {
+    fn split_reference_returns_its_parts() {
         assert_eq!(split_reference("a~b~12.3"), ("a~b", "12", 2));
         for whole in ["walk", "blend(a:walk,b:spider~12ab34cd.2,enter_b:0.5)", "tilde~", "a~2 b~x"]
         {

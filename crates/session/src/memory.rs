@@ -1,4 +1,4 @@
-//! How much memory the page has, how much of it is in use, and what a file will need of it.
+//! Memory of the page: its size, the part in use, and the expected need of a file.
 
 use super::library::{Entry, Library, Origin};
 use super::reading::Content;
@@ -7,22 +7,22 @@ use segue_motion::clip::Clip;
 use segue_text::{Message, msg};
 use std::cmp::Reverse;
 
-/// What a page says of its memory, bytes. The memory of a WebAssembly grows and never shrinks: what
-/// was freed in it is used again.
+/// The memory of a page, bytes. The memory of a WebAssembly instance grows and never shrinks: freed
+/// memory is used again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PageMemory {
-    /// How large it is by now.
+    /// The current size.
     pub bytes: u64,
-    /// How large it may become.
+    /// The greatest size.
     pub limit: u64,
-    /// How much of it is set aside for clips that are on their way from a reader.
+    /// The part that is reserved for clips on their way from a reader.
     pub coming: u64,
 }
 
 impl PageMemory {
-    /// Returns how large the memory of a page may become, bytes: 3 GB of the 4 GiB that a
-    /// WebAssembly can address, since results and their pictures take memory beside the clips. Of a
-    /// device that has so many GiB, where its browser tells, no more than half.
+    /// Returns the greatest size of a page's memory, bytes: 3 GB of the 4 GiB that WebAssembly can
+    /// address, since results and their drawings need memory beside the clips; but at most half the
+    /// memory of the device, if the browser reports it.
     #[must_use]
     pub fn limit_of(device_gib: Option<f64>) -> u64 {
         let most = 3_000_000_000;
@@ -31,42 +31,42 @@ impl PageMemory {
     }
 }
 
-/// How much memory is in use, bytes.
+/// Memory in use, bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MemoryUse {
-    /// What is in use.
+    /// The part in use.
     pub used: u64,
-    /// What there may be in all.
+    /// The greatest total.
     pub limit: u64,
 }
 
 impl MemoryUse {
-    /// Returns what is left, bytes.
+    /// Returns the remaining memory, bytes.
     #[must_use]
     pub fn left(self) -> u64 {
         self.limit.saturating_sub(self.used)
     }
 
-    /// Returns the share that is in use, 0 to 1.
+    /// Returns the share in use, 0 to 1.
     #[must_use]
     pub fn share(self) -> f32 {
         (self.used as f64 / self.limit.max(1) as f64).min(1.0) as f32
     }
 }
 
-/// Follows the memory of a page. How much of it is free is not told anywhere, but what clips gave
-/// back since is.
+/// An estimate of the memory in use. The page does not report its free memory, but the memory that
+/// clips freed is known.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Memory {
     page: PageMemory,
-    /// What clips hold, bytes.
+    /// The memory of the library's clips, bytes.
     held: u64,
-    /// What clips have given back, bytes: the page is so much larger than what is in use.
+    /// The memory that clips freed, bytes: the difference between the page's size and its use.
     freed: u64,
 }
 
 impl Memory {
-    /// Takes what the page says, and what the clips of the library hold, bytes.
+    /// Updates the estimate from the page's size and the memory of the library's clips, bytes.
     pub(super) fn follow(before: Option<Self>, page: PageMemory, clips: u64) -> Self {
         let held = clips.saturating_add(page.coming);
         let freed = before
@@ -78,7 +78,7 @@ impl Memory {
         MemoryUse { used: self.page.bytes - self.freed, limit: self.page.limit }
     }
 
-    /// Whether the page is so large that motion which nobody sees is not kept.
+    /// Returns whether memory is so scarce that motions that are not shown are dropped.
     pub(super) fn is_scarce(&self) -> bool {
         self.page.bytes > self.page.limit / 2
     }
@@ -88,17 +88,17 @@ fn clip_bytes(clip: &Clip) -> u64 {
     motion_bytes(clip.frames(), clip.skeleton().len(), clip.translations().len())
 }
 
-/// How much memory a motion takes, bytes: a rotation for each joint, a place for the root and for
-/// each other joint that moves, the character's frame on the ground and the contacts of two feet.
+/// Returns the memory of a motion, bytes: a rotation for each joint, a position for the root and
+/// for each other joint that moves, the character's ground frame and the contacts of two feet.
 pub(super) fn motion_bytes(frames: usize, joints: usize, moving: usize) -> u64 {
     let per_frame =
         size_of::<Quat>() * joints + size_of::<Vec3>() * (moving + 1) + 3 * size_of::<f64>() + 2;
     (frames as u64).saturating_mul(per_frame as u64)
 }
 
-/// How much memory a file is expected to take once it is read, bytes, by its name and size alone.
-/// Of 30 BVH files of real motion the clips took 0.27 to 0.71 times the file; text packs to about a
-/// quarter, and what comes out of an archive is kept beside its clips.
+/// Returns the expected memory of a file's clips, bytes, from its name and size alone. The clips of
+/// 30 BVH files of captured motion took 0.27 to 0.71 times the file's size; text compresses to
+/// about a quarter, and files from an archive are kept beside their clips.
 pub(super) fn expected_bytes(name: &str, size: u64) -> u64 {
     let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending).to_ascii_lowercase();
     match ending.as_str() {
@@ -108,7 +108,7 @@ pub(super) fn expected_bytes(name: &str, size: u64) -> u64 {
     }
 }
 
-/// How much memory a library holds, bytes.
+/// Returns the memory of a library, bytes.
 pub(super) fn library_bytes(library: &Library) -> u64 {
     library.entries().iter().map(|entry| entry_bytes(entry)).sum()
 }
@@ -125,18 +125,18 @@ fn entry_bytes(entry: &Entry) -> u64 {
     motion + file
 }
 
-/// Returns megabytes as they are told, rounded up.
+/// Returns megabytes for messages, rounded up.
 fn megabytes(bytes: u64) -> u64 {
     bytes.div_ceil(1_000_000)
 }
 
-/// Of the clips that could be removed, so many are named.
-const MOST_NAMED: usize = 3;
-/// Clips that take less are not worth removing, bytes.
+/// The number of removable clips that a message names.
+const MAX_NAMED: usize = 3;
+/// The least size of a clip that is worth removing, bytes.
 const WORTH_REMOVING: u64 = 10_000_000;
 
-/// Says that there is no memory for a file of `size` bytes, which takes `needed`, and what to do
-/// about it.
+/// Returns the message that there is no memory for a file of `size` bytes, which needs `needed`,
+/// with the remedy.
 pub(super) fn refusal(
     name: &str,
     size: u64,
@@ -153,7 +153,7 @@ pub(super) fn refusal(
     large.sort_by_key(|(_, bytes)| Reverse(*bytes));
     let named: Vec<Message> = large
         .iter()
-        .take(MOST_NAMED)
+        .take(MAX_NAMED)
         .map(|(name, bytes)| {
             msg!("{name} ({mb} MB)", name = (*name).to_owned(), mb = megabytes(*bytes))
         })
@@ -182,7 +182,7 @@ mod tests {
 
     const GB: u64 = 1 << 30;
 
-    /// A library of files of these names and sizes, bytes.
+    /// Returns a library of files of these names and sizes, bytes.
     fn library_of<const N: usize>(files: [(&str, usize); N]) -> Library {
         let entry = |(name, size): (&str, usize)| {
             let file = SourceFile {
@@ -205,27 +205,27 @@ mod tests {
     }
 
     #[test]
-    fn memory_that_clips_gave_back_is_free_though_the_page_stays_as_large() {
+    fn memory_freed_by_clips_is_available() {
         let mut memory = Memory::follow(None, page(GB / 10, 0), 0);
         assert_eq!(memory.in_use().used, GB / 10);
-        // A clip of 2 GB is on its way, arrives, and is removed.
+        // A clip of 2 GB is transferred, arrives, and is removed.
         memory = Memory::follow(Some(memory), page(2 * GB + GB / 10, 2 * GB), 0);
         memory = Memory::follow(Some(memory), page(2 * GB + GB / 10, 0), 2 * GB);
         assert_eq!(memory.in_use().used, 2 * GB + GB / 10);
         assert!(memory.in_use().left() < GB && memory.is_scarce());
         memory = Memory::follow(Some(memory), page(2 * GB + GB / 10, 0), 0);
         assert_eq!(memory.in_use().used, GB / 10);
-        // The next one takes that room, and more.
+        // The next one uses that memory, and more.
         memory = Memory::follow(Some(memory), page(2 * GB + GB / 2, 0), 2 * GB + GB / 4);
         assert_eq!(memory.in_use().used, 2 * GB + GB / 2);
-        // One that was given up on its way leaves its room, too.
+        // A cancelled transfer frees its memory, too.
         memory = Memory::follow(Some(memory), page(3 * GB, GB / 2), 2 * GB + GB / 4);
         memory = Memory::follow(Some(memory), page(3 * GB, 0), 2 * GB + GB / 4);
         assert_eq!(memory.in_use().left(), GB / 2);
     }
 
     #[test]
-    fn limit_is_three_gigabytes_or_half_of_what_the_device_has() {
+    fn limit_is_three_gigabytes_or_half_of_the_device() {
         let limits = [None, Some(8.0), Some(4.0), Some(0.5), Some(0.0), Some(f64::NAN)]
             .map(PageMemory::limit_of);
         let most = 3_000_000_000;

@@ -1,74 +1,74 @@
-//! What Segue has to say, until it is read.
+//! Notices: messages to the user that stay until they are read or outdated.
 
 use super::outside::short;
 use segue_text::{Message, msg};
 
-/// How much it matters.
+/// The severity of a notice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Level {
-    /// Good to know; goes away by itself.
+    /// Information; disappears by itself.
     Info,
-    /// Something was read or done otherwise than asked; stays until dismissed.
+    /// A deviation from what was asked for; stays until dismissed.
     Warning,
-    /// Something did not work; stays until dismissed.
+    /// A failure; stays until dismissed.
     Error,
 }
 
-/// One message.
+/// A message to the user.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Notice {
-    /// Its number; dismissing names it.
+    /// Its number, by which it is dismissed.
     pub id: u64,
     /// How much it matters.
     pub level: Level,
-    /// What happened and what to do, in a sentence or two.
+    /// The event and the remedy, in a sentence or two.
     pub text: Message,
-    /// What it is about, in a word: a file, a key. Where a row has no room for more, this stands
-    /// for it.
+    /// The subject in a word: a file, a key. It replaces the text where a row has no room for more.
     pub about: String,
     /// Ids of the clips that can be read better: [`FileCommand::Mend`](super::FileCommand::Mend) does it.
     pub mends: Vec<String>,
-    /// The clip that it asks for.
+    /// The missing clip that it asks for.
     awaits: Option<String>,
     age_secs: f64,
 }
 
-/// The messages that are on screen, oldest first.
+/// The notices on screen, oldest first.
 #[derive(Clone, Debug, Default)]
 pub struct Notices {
     list: Vec<Notice>,
-    /// Errors for which there was no room. One of the list sums them up.
+    /// Errors for which there was no room. One entry of the list summarises them.
     more: Vec<Notice>,
-    /// The number of that one.
+    /// The number of that entry.
     sum: Option<u64>,
     next_id: u64,
 }
 
-/// How long an [`Level::Info`] stays, seconds: long enough to read two lines.
+/// The duration of an [`Level::Info`], seconds: long enough to read two lines.
 const INFO_SECS: f64 = 6.0;
-/// More than that many at once is no longer read.
-const MOST: usize = 6;
-/// Of these so many may stay until they are dismissed: there is always room for an [`Level::Info`].
-const MOST_LASTING: usize = MOST - 1;
-/// And of those so many may be errors, with the one that sums up the rest.
-const MOST_ERRORS: usize = MOST_LASTING - 1;
-/// More of what failed is counted and not named.
-const MOST_NAMED: usize = 24;
+/// The greatest number of notices at once.
+const MAX_NOTICES: usize = 6;
+/// The greatest number of notices that stay until dismissed: there is always room for an
+/// [`Level::Info`].
+const MAX_LASTING: usize = MAX_NOTICES - 1;
+/// The greatest number of errors among them, including the summary of the rest.
+const MAX_ERRORS: usize = MAX_LASTING - 1;
+/// The greatest number of failures that the summary names.
+const MAX_NAMED: usize = 24;
 
 impl Notices {
-    /// Says something. The same text again moves to the end instead of standing there twice.
+    /// Adds a notice. A repeated text moves to the end instead of appearing twice.
     pub fn say(&mut self, level: Level, text: impl Into<Message>) {
         let text = text.into();
         let about = text.subject().map_or_else(|| text.to_string(), str::to_owned);
         self.put(level, text, &about, None);
     }
 
-    /// Says something of a file or key.
+    /// Adds a notice about a file or key.
     pub fn say_of(&mut self, level: Level, about: &str, text: impl Into<Message>) {
         self.put(level, text.into(), about, None);
     }
 
-    /// Warns of clips, by their ids, that can be read better.
+    /// Adds a warning about clips, by id, that another import can fix.
     pub fn offer(&mut self, text: impl Into<Message>, clips: Vec<String>) {
         let about = clips.first().cloned().unwrap_or_default();
         self.put(Level::Warning, text.into(), &about, None);
@@ -77,23 +77,24 @@ impl Notices {
         }
     }
 
-    /// Takes away the message that offers to read clips better, and returns their ids.
+    /// Removes the notice that offers to fix clips, and returns their ids.
     pub fn take_offer(&mut self) -> Vec<String> {
         let at = self.list.iter().position(|notice| !notice.mends.is_empty());
         at.map(|at| self.list.remove(at).mends).unwrap_or_default()
     }
 
-    /// Says that a clip is missing. It stays until [`Notices::keep_missing`] finds that it is not.
+    /// Adds a notice that a clip is missing. It stays until [`Notices::keep_missing`] finds the
+    /// clip.
     pub fn miss(&mut self, reference: &str, text: impl Into<Message>) {
         self.put(Level::Warning, text.into(), reference, Some(reference.to_owned()));
     }
 
-    /// The clips that are asked for.
+    /// Returns the missing clips.
     pub fn awaited(&self) -> impl Iterator<Item = &str> {
         self.list.iter().filter_map(|notice| notice.awaits.as_deref())
     }
 
-    /// Takes away what asks for clips that are there by now, or that nobody wants any more.
+    /// Removes notices about clips that have arrived or are no longer needed.
     pub fn keep_missing(&mut self, is_missing: impl Fn(&str) -> bool) {
         self.list.retain(|notice| notice.awaits.as_deref().is_none_or(&is_missing));
     }
@@ -111,7 +112,7 @@ impl Notices {
             age_secs: 0.0,
         };
         self.next_id += 1;
-        if level == Level::Error && self.count(Level::Error) >= MOST_ERRORS {
+        if level == Level::Error && self.count(Level::Error) >= MAX_ERRORS {
             self.sum_up(notice);
             return;
         }
@@ -123,25 +124,25 @@ impl Notices {
         self.list.iter().filter(|notice| notice.level == level).count()
     }
 
-    /// Infos give way first, then warnings, the oldest of each; an error never does.
+    /// Removes infos first, then warnings, the oldest of each; never an error.
     fn make_room(&mut self) {
         let lasting = self.list.len() - self.count(Level::Info);
-        if lasting > MOST_LASTING {
+        if lasting > MAX_LASTING {
             self.drop_oldest(Level::Warning);
         }
-        while self.list.len() > MOST && self.drop_oldest(Level::Info) {}
+        while self.list.len() > MAX_NOTICES && self.drop_oldest(Level::Info) {}
     }
 
     fn drop_oldest(&mut self, level: Level) -> bool {
         let of_level = |notice: &Notice| notice.level == level;
-        // What can be mended at a press stays longest of its level.
+        // Notices with a fix stay longest within their level.
         let plain = self.list.iter().position(|notice| of_level(notice) && notice.mends.is_empty());
         let at = plain.or_else(|| self.list.iter().position(of_level));
         at.map(|at| self.list.remove(at)).is_some()
     }
 
-    /// An error for which there is no room: it and the last one that has a row, or those that are
-    /// summed up already, are one row from now on.
+    /// Adds an error for which there is no room to the summary, which replaces the last error with
+    /// an entry of its own.
     fn sum_up(&mut self, error: Notice) {
         let last = match self.sum {
             Some(sum) => self.list.iter().position(|notice| notice.id == sum),
@@ -151,8 +152,8 @@ impl Notices {
         self.more.extend(last.filter(|notice| Some(notice.id) != self.sum));
         self.more.push(error);
         let mut named: Vec<String> =
-            self.more.iter().take(MOST_NAMED).map(|notice| notice.about.clone()).collect();
-        if self.more.len() > MOST_NAMED {
+            self.more.iter().take(MAX_NAMED).map(|notice| notice.about.clone()).collect();
+        if self.more.len() > MAX_NAMED {
             named.push("…".to_owned());
         }
         let text = msg!("{count} more did not work: {named}.", count = self.more.len(), named);
@@ -169,7 +170,7 @@ impl Notices {
         self.next_id += 1;
     }
 
-    /// Takes a message away.
+    /// Removes a notice.
     pub fn dismiss(&mut self, id: u64) {
         self.list.retain(|notice| notice.id != id);
         if self.sum == Some(id) {
@@ -178,8 +179,8 @@ impl Notices {
         }
     }
 
-    /// Every error since the one of that number, with those for which there was no room, in the
-    /// order in which they came.
+    /// Returns all errors since the one with that number, including the summarised ones, in order
+    /// of arrival.
     #[must_use]
     pub fn errors_since(&self, id: u64) -> Vec<&Notice> {
         let of_list = self.list.iter().filter(|notice| Some(notice.id) != self.sum);
@@ -190,7 +191,7 @@ impl Notices {
         errors
     }
 
-    /// Lets time pass; says whether a message went away.
+    /// Advances the time; returns whether a notice disappeared.
     pub fn tick(&mut self, dt_secs: f64) -> bool {
         let before = self.list.len();
         for notice in &mut self.list {
@@ -200,14 +201,14 @@ impl Notices {
         self.list.len() < before
     }
 
-    /// Seconds until the next message goes away by itself.
+    /// Returns the seconds until the next notice disappears by itself.
     #[must_use]
     pub fn next_change_secs(&self) -> Option<f64> {
         let infos = self.list.iter().filter(|notice| notice.level == Level::Info);
         infos.map(|notice| (INFO_SECS - notice.age_secs).max(0.0)).min_by(f64::total_cmp)
     }
 
-    /// The messages, oldest first.
+    /// Returns the notices, oldest first.
     #[must_use]
     pub fn list(&self) -> &[Notice] {
         &self.list
@@ -223,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn infos_give_way_first_then_warnings() {
+    fn notices_without_room_drop_infos_then_warnings() {
         let mut notices = Notices::default();
         for (level, text) in [
             (Level::Error, "e1"),
@@ -248,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn no_error_is_lost() {
+    fn notices_keep_every_error() {
         let mut notices = Notices::default();
         let errors: Vec<Message> = (0..40)
             .map(|n| msg!("{file}:1:2: found `x`, expected `y`", file = format!("f{n}.bvh")))
@@ -268,14 +269,14 @@ mod tests {
                 );
             }
         }
-        assert!(notices.list().len() <= MOST);
+        assert!(notices.list().len() <= MAX_NOTICES);
         let sum = notices
             .list()
             .iter()
             .find(|notice| notice.text.to_string().starts_with("37 more"))
             .unwrap();
         assert!(sum.text.to_string().ends_with("f26.bvh, …."), "{}", sum.text);
-        // Listeners hear of each, once.
+        // Listeners receive each error once.
         let heard: Vec<&Message> =
             notices.errors_since(0).iter().map(|notice| &notice.text).collect();
         assert_eq!(heard, errors.iter().collect::<Vec<_>>());
@@ -290,7 +291,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_room_is_called_by_its_file_or_key() {
+    fn summary_names_files_and_keys() {
         let mut notices = Notices::default();
         for text in ["1", "2", "3", "4"] {
             notices.say(Level::Error, text);
@@ -310,7 +311,7 @@ mod tests {
     }
 
     #[test]
-    fn what_can_be_mended_outlasts_other_warnings() {
+    fn notices_with_a_fix_outlast_other_warnings() {
         let mut notices = Notices::default();
         notices.offer("too tall", vec!["x~12".to_owned()]);
         for n in 0..10 {
@@ -322,7 +323,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_missed_is_said_until_it_comes() {
+    fn notices_of_missing_clips_stay_until_they_arrive() {
         let mut notices = Notices::default();
         notices.miss("walk~1234", "drop walk");
         notices.miss("run~5678", "drop run");
@@ -334,7 +335,7 @@ mod tests {
     }
 
     #[test]
-    fn infos_go_and_errors_stay() {
+    fn tick_removes_infos_and_keeps_errors() {
         let mut notices = Notices::default();
         notices.say(Level::Info, "loaded");
         notices.say(Level::Error, "broken");

@@ -1,4 +1,4 @@
-//! The numbers of all panes side by side.
+//! The metrics of all panes as a table.
 
 use super::outside::markdown;
 use super::pane::Pane;
@@ -8,35 +8,35 @@ use segue_motion::metrics::{Better, Metric};
 use segue_text::{Message, msg};
 use std::fmt::Write as _;
 
-/// What stands above a result that is not compared to another one.
+/// The heading of a result that is not compared with another one.
 const RESULT: Message = Message::word("result");
 
-/// A row of numbers, one for each pane.
+/// A row of metrics, one for each pane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NumberRow {
-    /// What is measured.
+    /// The name of the metric.
     pub label: &'static str,
-    /// The unit, as written behind the number.
+    /// The unit, as written after the number.
     pub unit: &'static str,
-    /// What it means and how it is measured.
+    /// The definition of the metric.
     pub help: &'static str,
-    /// Which way it should go.
+    /// The direction in which it improves.
     pub better: Better,
-    /// The values, pane by pane; `None` where there is nothing to measure.
+    /// The values, pane by pane; `None` if there is nothing to measure.
     pub values: Vec<Option<f64>>,
 }
 
-/// The numbers of all panes, to be read and to be copied.
+/// The metrics of all panes, for display and for export.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct NumberTable {
-    /// What each pane is called: the value in which it differs.
+    /// The headings of the panes: the value in which each differs.
     pub panes: Vec<Message>,
     /// The numbers.
     pub rows: Vec<NumberRow>,
 }
 
 impl NumberTable {
-    /// The table of what is shown now.
+    /// Returns the table of the current panes.
     #[must_use]
     pub fn of(session: &Session) -> Self {
         let panes = session.panes();
@@ -70,7 +70,7 @@ impl NumberTable {
         Self { panes: panes.iter().map(name).collect(), rows }
     }
 
-    /// The table in Markdown.
+    /// Returns the table in Markdown.
     #[must_use]
     pub fn markdown(&self) -> String {
         let names: Vec<String> =
@@ -85,8 +85,8 @@ impl NumberTable {
         out
     }
 
-    /// The table as comma-separated values, in full precision. No cell is one that a spreadsheet
-    /// computes ([`csv::cell`]).
+    /// Returns the table as comma-separated values in full precision. Cells are escaped against
+    /// evaluation by spreadsheets ([`csv::cell`]).
     #[must_use]
     pub fn csv(&self) -> String {
         let head: Vec<String> = ["", "unit"]
@@ -115,7 +115,7 @@ impl NumberTable {
 }
 
 impl NumberRow {
-    /// What is measured, and in which unit.
+    /// Returns the name of the metric with its unit.
     #[must_use]
     pub fn heading(&self) -> Message {
         if self.unit.is_empty() {
@@ -125,7 +125,8 @@ impl NumberRow {
         }
     }
 
-    /// The best and the worst value; none where they are alike, and where none is better.
+    /// Returns the best and the worst value; `None` if they are equal, and if neither direction is
+    /// better.
     #[must_use]
     pub fn ends(&self) -> [Option<f64>; 2] {
         let values = || self.values.iter().flatten().copied();
@@ -142,7 +143,7 @@ impl NumberRow {
     }
 }
 
-/// A number with about three digits; a dash where there is none.
+/// Formats a number with about three digits; a dash for none.
 #[must_use]
 pub fn digits(value: Option<f64>) -> String {
     let Some(value) = value else {
@@ -167,7 +168,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_table_is_written_twice() {
+    fn number_table_is_written_as_markdown_and_csv() {
         let table = NumberTable {
             panes: vec!["=1+1".into(), "a|b".into()],
             rows: vec![NumberRow {

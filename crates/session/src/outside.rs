@@ -1,19 +1,19 @@
-//! Texts from outside (names of files, values of links) made fit to stand among the program's own:
-//! on one line, short, and without a meaning of their own in Markdown.
+//! Sanitising of texts from outside (names of files, values of links) for messages: on one line,
+//! short, and without a meaning in Markdown.
 
-/// The most letters of a value that a message quotes.
-const MOST_QUOTED: usize = 60;
-/// The most letters of a name.
-const MOST_OF_NAME: usize = 200;
-/// The most letters of a name in an id, which links carry.
-const MOST_OF_ID: usize = 100;
-/// What has no name.
+/// The greatest number of characters of a value that a message quotes.
+const MAX_QUOTED: usize = 60;
+/// The greatest number of characters of a name.
+const MAX_NAME: usize = 200;
+/// The greatest number of characters of a name in an id, which links contain.
+const MAX_ID_NAME: usize = 100;
+/// The name of nameless things.
 const UNNAMED: &str = "unnamed";
-/// The most letters of the ending of a file's name.
-const MOST_OF_ENDING: usize = 10;
+/// The greatest number of characters of a file's ending.
+const MAX_ENDING: usize = 10;
 
-/// Returns a text without what breaks a line, cannot be seen, or turns the direction in which the
-/// letters around it are read: line breaks and tabs become spaces, the rest goes.
+/// Returns a text without line breaks, invisible characters and changes of the reading direction:
+/// line breaks and tabs become spaces, the others are removed.
 #[must_use]
 pub fn on_one_line(text: &str) -> String {
     let letters = text.chars().filter_map(|letter| match letter {
@@ -24,8 +24,8 @@ pub fn on_one_line(text: &str) -> String {
     letters.collect()
 }
 
-/// The signs of Unicode's bidirectional algorithm (UAX #9, section 2), and the mark that tells the
-/// order of bytes.
+/// Returns whether a character is a control of Unicode's bidirectional algorithm (UAX #9, section
+/// 2), or a byte order mark.
 fn is_direction_sign(letter: char) -> bool {
     matches!(
         letter,
@@ -33,11 +33,11 @@ fn is_direction_sign(letter: char) -> bool {
     )
 }
 
-/// Returns a text as a message quotes it: on one line, and of a long one its first 60 letters and
-/// `…`.
+/// Returns a text for quotation in a message: on one line, and of a long one its first 60
+/// characters and `…`.
 #[must_use]
 pub fn short(text: &str) -> String {
-    cut(&on_one_line(text), MOST_QUOTED)
+    cut(&on_one_line(text), MAX_QUOTED)
 }
 
 fn cut(text: &str, most: usize) -> String {
@@ -47,17 +47,17 @@ fn cut(text: &str, most: usize) -> String {
     }
 }
 
-/// Returns the name of a clip as it is kept and shown: on one line, and of a long one its first
-/// letters and `…`.
+/// Returns the name of a clip for storage and display: on one line, and of a long one its first
+/// characters and `…`.
 #[must_use]
 pub fn clip_name(name: &str) -> String {
     let name = on_one_line(name);
-    let name = cut(name.trim(), MOST_OF_NAME);
+    let name = cut(name.trim(), MAX_NAME);
     if name.is_empty() { UNNAMED.to_owned() } else { name }
 }
 
-/// Returns a file's name, with the folders before it, as it is kept and shown: on one line, and of
-/// a long one its first letters, `…` and its ending.
+/// Returns a file's path for storage and display: on one line, and of a long one its first
+/// characters, `…` and its ending.
 #[must_use]
 pub fn file_name(path: &str) -> String {
     let path = on_one_line(path);
@@ -65,27 +65,27 @@ pub fn file_name(path: &str) -> String {
     let name = name.trim();
     let name = if name.is_empty() {
         UNNAMED.to_owned()
-    } else if name.chars().count() <= MOST_OF_NAME {
+    } else if name.chars().count() <= MAX_NAME {
         name.to_owned()
     } else {
         let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending);
-        let ending = if ending.chars().count() > MOST_OF_ENDING { "" } else { ending };
-        format!("{}.{ending}", cut(name, MOST_OF_NAME - MOST_OF_ENDING - 2))
+        let ending = if ending.chars().count() > MAX_ENDING { "" } else { ending };
+        format!("{}.{ending}", cut(name, MAX_NAME - MAX_ENDING - 2))
             .trim_end_matches('.')
             .to_owned()
     };
     if folders.is_empty() { name } else { format!("{folders}/{name}") }
 }
 
-/// Returns the beginning of a name that is long, for an id.
+/// Returns the beginning of a long name, for an id.
 #[must_use]
 pub fn for_id(name: &str) -> &str {
-    let end = name.char_indices().nth(MOST_OF_ID).map_or(name.len(), |(end, _)| end);
+    let end = name.char_indices().nth(MAX_ID_NAME).map_or(name.len(), |(end, _)| end);
     name.get(..end).unwrap_or(name)
 }
 
-/// Returns a text as Markdown shows it letter by letter, in a paragraph or in a cell of a table: no
-/// HTML, no link, no picture, no other cell.
+/// Returns a text escaped for Markdown, in a paragraph or in a cell of a table: no HTML, no link,
+/// no image, no other cell.
 #[must_use]
 pub fn markdown(text: &str) -> String {
     let text = on_one_line(text);
@@ -93,7 +93,7 @@ pub fn markdown(text: &str) -> String {
     let mut before = "";
     for (at, letter) in text.char_indices() {
         let (_, rest) = text.split_at(at);
-        // GitHub makes links of addresses that stand there as they are.
+        // GitHub turns bare addresses into links.
         let begins_address = (letter == ':' && rest.starts_with("://"))
             || (letter == '.' && before.to_ascii_lowercase().ends_with("www"));
         if begins_address
@@ -107,14 +107,14 @@ pub fn markdown(text: &str) -> String {
     escaped
 }
 
-/// Returns a text as code in Markdown, in a paragraph or in a cell of a table.
+/// Returns a text as inline code in Markdown, in a paragraph or in a cell of a table.
 #[must_use]
 pub fn markdown_code(text: &str) -> String {
     format!("`{}`", on_one_line(text).replace('`', "'").replace('|', "\\|"))
 }
 
-/// Returns a sentence of ours that quotes texts from outside in backticks, as Markdown: the quotes
-/// as code.
+/// Returns a sentence of Segue's that quotes texts from outside in backticks, as Markdown with the
+/// quotes as code.
 #[must_use]
 pub fn markdown_sentence(sentence: &str) -> String {
     let parts: Vec<&str> = sentence.split('`').collect();
@@ -132,28 +132,28 @@ mod tests {
     use super::*;
 
     #[test]
-    fn text_on_one_line_has_no_breaks_and_no_signs_that_cannot_be_seen() {
+    fn on_one_line_removes_breaks_and_invisible_characters() {
         assert_eq!(on_one_line("a\r\nb\tc\u{2028}d"), "a  b c d");
         assert_eq!(on_one_line("walk\0\u{202e}hvb.exe\u{2066}\u{feff}\u{1b}[1m"), "walkhvb.exe[1m");
-        // What scripts need stays.
+        // Characters that scripts need are kept.
         assert_eq!(on_one_line("क्‍ष Säule 走る 👩‍🚀"), "क्‍ष Säule 走る 👩‍🚀");
     }
 
     #[test]
-    fn long_text_is_cut_at_a_letter() {
+    fn short_of_a_long_text_ends_at_a_character() {
         assert_eq!(short(&"走".repeat(60)), "走".repeat(60));
         assert_eq!(short(&"走".repeat(61)), format!("{}…", "走".repeat(60)));
     }
 
     #[test]
-    fn long_name_keeps_its_ending_and_empty_one_gets_a_name() {
+    fn file_name_of_a_long_path_keeps_its_ending() {
         for name in [
             format!("a/{}.bvh", "x".repeat(4000)),
             format!("a/{}", "x".repeat(4000)),
             format!("{}.{}", "x".repeat(300), "y".repeat(300)),
         ] {
             let cut = file_name(&name);
-            assert!(cut.chars().count() <= MOST_OF_NAME + 2, "{cut}");
+            assert!(cut.chars().count() <= MAX_NAME + 2, "{cut}");
             let ends =
                 |name: &str| (name.rsplit('.').next() == Some("bvh"), name.starts_with("a/"));
             assert_eq!(ends(&cut), ends(&name));
@@ -166,11 +166,11 @@ mod tests {
             );
         }
         assert_eq!(file_name(" a\nb.bvh"), "a b.bvh");
-        assert_eq!(for_id(&"走".repeat(4000)).chars().count(), MOST_OF_ID);
+        assert_eq!(for_id(&"走".repeat(4000)).chars().count(), MAX_ID_NAME);
     }
 
     #[test]
-    fn name_in_markdown_is_its_letters_and_nothing_else() {
+    fn markdown_of_any_name_shows_its_characters() {
         for (name, escaped) in [
             ("<img src=x onerror=alert(1)>", "\\<img src=x onerror=alert(1)\\>"),
             ("![x](http://evil)", "!\\[x\\](http\\://evil)"),

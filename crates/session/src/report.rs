@@ -1,4 +1,4 @@
-//! What is shown, written down for others: a homework, a bug, a note.
+//! A written report of the current state: for homework, bug reports, notes.
 
 use super::labs::{recipe_ingredients, recipe_params};
 use super::library::{Entry, Origin};
@@ -9,26 +9,24 @@ use super::params::{Key, Kind, Value, format_number};
 use super::session::Session;
 use std::fmt::Write as _;
 
-/// What a report says beyond the document.
+/// Facts for a report beyond the document.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ReportFacts<'a> {
     /// The address that opens this state.
     pub link: &'a str,
-    /// The stage as an address of a picture (`data:image/jpeg;base64,…`); `None` where there is
-    /// none.
+    /// A picture of the stage as an address (`data:image/jpeg;base64,…`); `None` if there is none.
     pub picture: Option<&'a str>,
-    /// What else there is to know of the program: its version comes by itself, this is the graphics
-    /// it draws with.
+    /// The graphics backend. The version of Segue is added automatically.
     pub backend: &'a str,
 }
 
-/// The state as Markdown: a heading, the picture, the link, the clips, what was set, the numbers of
-/// all panes, and the versions. Of panes whose result cannot be made it says why.
+/// Returns the state as Markdown: a heading, the picture, the link, the clips, the parameters, the
+/// metrics of all panes, and the versions. Panes without a result say why.
 ///
 /// # Errors
-/// [`NoResult`] where no pane has a result, and while one of them is computed.
+/// [`NoResult`] if no pane has a result, and while one of them is computed.
 pub fn report(session: &Session, facts: &ReportFacts<'_>) -> Result<String, NoResult> {
-    // Nothing is under way then, and every pane is of the parameters as they are.
+    // After this, nothing is under way, and every pane shows the current parameters.
     session.first_result()?;
     let params = session.params();
     let lab = Key::Lab.param().spoken(params.get(Key::Lab));
@@ -84,8 +82,7 @@ pub fn report(session: &Session, facts: &ReportFacts<'_>) -> Result<String, NoRe
     Ok(out)
 }
 
-/// A clip by its name, and what tells it from another one of that name: the check sum of its file,
-/// or the recipe. As Markdown.
+/// Returns a clip's name and what identifies it, as Markdown: the hash of its file, or the recipe.
 fn clip_in_words(session: &Session, id: &str) -> String {
     let Some(entry) = session.library().find(id) else {
         return format!("{}, which is not here", markdown_code(id));
@@ -114,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn a_report_says_what_is_shown() {
+    fn report_contains_the_state() {
         let session = open("compare=blend_window:30,15,10&weight_law=linear");
         let report = report(
             &session,
@@ -143,14 +140,14 @@ mod tests {
     }
 
     #[test]
-    fn names_in_a_report_are_their_letters_and_nothing_else() {
+    fn report_escapes_names() {
         let mut session = open("lab=view&a=walk");
         let name = "<img src=x> [click](javascript:alert(1)) |";
         session.apply(Command::Rename("walk".into(), name.into())).unwrap();
         let said = report(&session, &ReportFacts::default()).unwrap();
         let row = said.lines().find(|line| line.starts_with("| A")).unwrap();
         assert!(row.contains("\\<img src=x\\> \\[click\\](javascript:alert(1)) \\| |"), "{row}");
-        // A clip that is not here is called as the link calls it.
+        // A missing clip has the name in the link.
         let session = open("lab=view&a=%60%3Cb%3E%7C");
         let reason = session.panes()[0].problem.clone();
         assert!(reason.is_some());
@@ -158,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn two_clips_side_by_side_have_the_same_table() {
+    fn report_of_two_clips_has_one_table() {
         let session = open("lab=view&compare=a:walk,run(turn_rate:20)");
         let report = report(&session, &ReportFacts::default()).unwrap();
         let head = report.lines().find(|line| line.starts_with("| | ")).unwrap();

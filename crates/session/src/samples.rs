@@ -1,4 +1,4 @@
-//! The takes that come with Segue. Each is a file of its own, fetched when somebody asks for it.
+//! The bundled takes. Each is a file of its own, fetched on request.
 
 /// A bundled take.
 #[derive(Debug, PartialEq, Eq)]
@@ -11,12 +11,12 @@ pub struct Sample {
     pub file: &'static str,
 }
 
-/// Bundled takes that belong together and are loaded together.
+/// A set of bundled takes that are loaded together.
 #[derive(Debug, PartialEq, Eq)]
 pub struct SampleSet {
     /// Its name on screen.
     pub label: &'static str,
-    /// The takes, in the order in which the library lists them. The first two are offered A and B.
+    /// The takes, in the order of the library. The first two are offered as A and B.
     pub samples: &'static [Sample],
 }
 
@@ -24,7 +24,7 @@ const fn sample(id: &'static str, label: &'static str, file: &'static str) -> Sa
     Sample { id, label, file }
 }
 
-/// Takes of different actors, one by one.
+/// Single takes of different actors.
 pub(super) static SINGLES: [Sample; 4] = [
     sample("cmu_jump", "CMU 01_01 · forward jumps", "01_01.bvh.gz"),
     sample("cmu_climb", "CMU 01_03 · climb", "01_03.bvh.gz"),
@@ -45,14 +45,14 @@ pub(super) static SUBJECT_16: [Sample; 9] = [
     sample("cmu16_run_stop", "CMU 16 · run, stop", "16_57.bvh.gz"),
 ];
 
-/// The sets.
+/// All sets.
 pub(super) static SETS: [SampleSet; 1] =
     [SampleSet { label: "CMU 16 · nine walks and runs", samples: &SUBJECT_16 }];
 
-/// The credit that goes with the bundled takes.
+/// The credit of the bundled takes.
 pub const SAMPLES_CREDIT: &str = "The data used in this project was obtained from mocap.cs.cmu.edu. The database was created with funding from NSF EIA-0196217.";
 
-/// All takes, those of sets as well.
+/// Returns all takes, including those of sets.
 pub(super) fn all() -> impl Iterator<Item = &'static Sample> {
     SINGLES.iter().chain(SETS.iter().flat_map(|set| set.samples))
 }

@@ -1,4 +1,4 @@
-//! What is stored of the work, so that it survives a reload. The files' bytes are stored beside it,
+//! The stored state of the work, which survives a reload. The bytes of files are stored separately,
 //! by their SHA-256.
 
 use super::library::{Entry, Origin};
@@ -8,7 +8,7 @@ use segue_motion::skeleton::Roles;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
-/// How far storing is.
+/// The progress of storing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Storing {
     /// Everything is stored.
@@ -20,7 +20,7 @@ pub enum Storing {
     Incomplete,
 }
 
-/// The work, without the bytes of its files.
+/// The work without the bytes of its files.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Saved {
     /// The parameters, as a link.
@@ -30,8 +30,8 @@ pub struct Saved {
 }
 
 impl Saved {
-    /// Keeps what `there`, stored at present, has from others: clips that are not among the
-    /// `known`. Whoever writes this never had them, so it was not them who took them away.
+    /// Keeps clips in `there`, the stored state, that other windows added: those that are not among
+    /// the `known`. This window never had them, so it cannot have removed them.
     #[must_use]
     pub fn with_others_of(mut self, there: &Self, known: &BTreeSet<String>) -> Self {
         let own: BTreeSet<&str> = self.entries.iter().map(|entry| entry.id.as_str()).collect();
@@ -42,7 +42,7 @@ impl Saved {
         self
     }
 
-    /// The SHA-256 of the files that its clips come from.
+    /// Returns the SHA-256 of the files of all clips.
     #[must_use]
     pub fn files(&self) -> BTreeSet<&str> {
         let files = self.entries.iter().filter_map(|entry| entry.file.as_ref());
@@ -57,12 +57,12 @@ pub struct SavedEntry {
     pub id: String,
     /// Its name.
     pub name: String,
-    /// The file it comes from; `None` for what Segue can make or fetch again by the id.
+    /// The source file; `None` for clips that Segue can make or fetch again by their id.
     pub file: Option<SavedFile>,
     /// Roles that were corrected by hand.
     pub roles: Option<Roles>,
-    /// Whether it is a bundled take. In what was stored without this mark, all takes are listed,
-    /// whether they were asked for or not.
+    /// Whether it is a bundled take. States that were stored without this field list all takes,
+    /// requested or not.
     #[serde(default)]
     pub is_sample: bool,
 }
@@ -72,24 +72,24 @@ pub struct SavedEntry {
 pub struct SavedFile {
     /// The file's name.
     pub name: String,
-    /// SHA-256 of its bytes, hexadecimal: where they are stored.
+    /// SHA-256 of its bytes, hexadecimal, which is the key of storage.
     pub sha256: String,
-    /// How many bytes it has.
+    /// The number of its bytes.
     #[serde(default)]
     pub size: u64,
-    /// What it is.
+    /// Its format.
     #[serde(default = "bvh")]
     pub kind: FileKind,
     /// The skeleton file that it is read with.
     #[serde(default)]
     pub companion: Option<Companion>,
-    /// Which of the clips in it.
+    /// The index of the clip in the file.
     pub index: usize,
-    /// How to read it.
+    /// The options of reading it.
     pub options: ImportOptions,
 }
 
-/// What there was before there were other kinds.
+/// Returns the only format of older states.
 fn bvh() -> FileKind {
     FileKind::Bvh
 }
@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn what_others_added_stays_and_what_was_removed_here_goes() {
+    fn saved_keeps_clips_of_other_windows_and_drops_removed_ones() {
         let known = ["walk", "x~11", "y~22"].map(str::to_owned).into();
         let here = saved("t=1", &["walk", "x~11"]);
         let there = saved("t=2", &["walk", "y~22", "theirs~33", "run(turn_rate:20)"]);
@@ -157,10 +157,10 @@ mod tests {
             ["walk of t=1", "x~11 of t=1", "theirs~33 of t=2", "run(turn_rate:20) of t=2"]
         );
         assert_eq!(written.files(), BTreeSet::from(["11", "33"]));
-        // Written once more, with nothing learned of the others: it is the same.
+        // Written again without news of the others, it stays the same.
         assert_eq!(here.clone().with_others_of(&written, &known), written);
         assert_eq!(here.clone().with_others_of(&Saved::default(), &known), here);
-        // Two windows write in turn: neither loses what the other has.
+        // Two windows write in turn: neither loses the other's clips.
         let theirs = there.with_others_of(&here, &["y~22".to_owned()].into());
         assert!(names(&theirs).contains(&"x~11 of t=1"));
     }

@@ -9,17 +9,17 @@ use std::any::Any;
 use std::fmt;
 use std::sync::Arc;
 
-/// The two places that a clip can take.
+/// One of the two clips of a lab.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Slot {
-    /// The first clip; warm.
+    /// The clip that plays first; drawn in a warm colour.
     A,
-    /// The second clip; cool.
+    /// The clip that follows; drawn in a cool colour.
     B,
 }
 
 impl Slot {
-    /// The letter on screen.
+    /// Returns the letter on screen.
     #[must_use]
     pub const fn label(self) -> &'static str {
         match self {
@@ -28,7 +28,7 @@ impl Slot {
         }
     }
 
-    /// The parameter that says which clip is in it.
+    /// Returns the parameter that names the clip in the slot.
     #[must_use]
     pub const fn key(self) -> Key {
         match self {
@@ -38,17 +38,17 @@ impl Slot {
     }
 }
 
-/// A clip that a result was made from, as it lies in the result's time and world.
+/// A clip that a result was made from, placed in the result's time and world.
 #[derive(Clone, Debug)]
 pub struct PlacedClip {
     /// Its slot.
     pub slot: Slot,
     /// The clip as it is in the library, on its own skeleton.
     pub motion: Arc<Motion>,
-    /// The time in the result at which its first frame plays, seconds; negative when it is entered
-    /// later than there.
+    /// The time in the result at which its first frame plays, seconds; negative if it is entered at
+    /// a later frame.
     pub starts_at_secs: f64,
-    /// Where it lies on the result's ground.
+    /// Its placement on the result's ground.
     pub world_from_clip: Planar,
 }
 
@@ -63,111 +63,111 @@ impl PlacedClip {
     }
 }
 
-/// Where one clip goes over into the other.
+/// The transition from one clip to the other.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transition {
     /// First time of the window in the result, seconds.
     pub start_secs: f64,
     /// Last time of the window in the result, seconds.
     pub end_secs: f64,
-    /// Where A is left, seconds in A.
+    /// The time at which A is left, seconds in A.
     pub leave_a_secs: f64,
-    /// Where B is entered, seconds in B.
+    /// The time at which B is entered, seconds in B.
     pub enter_b_secs: f64,
     /// The window's length in frames of the result.
     pub window_frames: usize,
-    /// How far apart the two windows are after the best alignment: root mean square per joint,
+    /// The distance of the two windows after the best alignment: root mean square per joint,
     /// centimetres at a body height of 1.75 m.
     pub distance_cm: f32,
-    /// How the place was searched for; `None` where no search for the best match found it.
+    /// The search for the place; `None` if it was not found by a search for the best match.
     pub search: Option<MatchSearch>,
 }
 
-/// How the frames at which A is left and B is entered were compared.
+/// A search for the frames at which A is left and B is entered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MatchSearch {
-    /// Whether single poses were compared, and not windows.
+    /// Whether single poses were compared instead of windows.
     pub by_pose: bool,
-    /// Frames of the windows.
+    /// The length of the windows, frames.
     pub window_frames: usize,
-    /// The windows are shorter than asked for: behind a frame set by hand no more is left of its
-    /// clip.
+    /// Whether the windows are shorter than asked for, because the clip ends soon after a frame
+    /// that was set by hand.
     pub is_shortened: bool,
-    /// A clip is too short for its half to hold a window behind it: all of it was searched.
+    /// Whether whole clips were searched, because half of one is too short for a window.
     pub is_widened: bool,
     /// The last times at which A can be left and B entered, seconds in each: a dissolve needs its
-    /// window behind both.
+    /// window after both.
     pub latest_secs: [f64; 2],
 }
 
-/// How B came onto a skeleton that is not its own.
+/// A report on retargeting B.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Retargeted {
-    /// The joints of A's skeleton that nothing of B moves, by name, parents first: they keep their
-    /// rest pose.
+    /// The joints of A's skeleton without a counterpart in B, by name, parents first: they keep
+    /// their rest pose.
     pub unmatched: Vec<String>,
 }
 
-/// The cycle of a result that loops.
+/// The cycle that a result repeats.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cycle {
-    /// How long one takes, seconds: a whole number of frames. The result is a whole number of
+    /// The length of a cycle, seconds: a whole number of frames. The result is a whole number of
     /// cycles long, and its last frame has the pose of its first.
     pub secs: f64,
-    /// What it was made of.
+    /// The origin of the cycle.
     pub made: CycleMade,
 }
 
-/// How a [`Cycle`] came to be.
+/// The origin of a [`Cycle`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum CycleMade {
-    /// Two gaits at a speed.
+    /// Two gaits blended to a speed.
     Gait {
-        /// What goes with the speed that was made.
+        /// Facts that follow from the speed of the result.
         facts: GaitFacts,
         /// The speed that was asked for, metres per second.
         asked_mps: f64,
-        /// How fast A and B go in the cycles that were taken of them, metres per second.
+        /// The speeds of A and B in the cycles that were cut from them, metres per second.
         clips_mps: [f64; 2],
-        /// Where these cycles begin and end, seconds in A and in B. A clip that is closed by its
-        /// own ends may end before its cycle does.
+        /// The beginnings and ends of these cycles, seconds in A and in B. A clip that is itself a
+        /// cycle may end before its cycle does.
         cuts_secs: [[f64; 2]; 2],
     },
-    /// A part of A whose ends were brought together.
+    /// A part of A whose ends were made to match.
     Cut {
-        /// Where it begins, seconds in A.
+        /// The beginning of the part, seconds in A.
         from_secs: f64,
-        /// Where it is over, seconds in A.
+        /// The end of the part, seconds in A.
         to_secs: f64,
-        /// How far apart the bodies at both ends are: root mean square per joint, centimetres at a
+        /// The distance of the bodies at both ends: root mean square per joint, centimetres at a
         /// body height of 1.75 m.
         distance_cm: f64,
     },
 }
 
-/// A result: a motion, and what is known about how it came to be.
+/// A result: a motion, and facts about its origin.
 #[derive(Clone, Debug)]
 pub struct Outcome {
     /// The motion that plays.
     pub motion: Arc<Motion>,
-    /// What it was made from; empty when it is a clip of the library itself.
+    /// The clips that it was made from; empty if it is a clip of the library itself.
     pub sources: Vec<PlacedClip>,
-    /// Where the transition is; `None` where there is none.
+    /// The transition in it; `None` if there is none.
     pub transition: Option<Transition>,
-    /// The cycle in which it loops; `None` where it has an end.
+    /// The cycle that it repeats; `None` if it does not loop.
     pub cycle: Option<Cycle>,
-    /// How B came onto the skeleton of A; `None` where both have the same one.
+    /// The retargeting of B to the skeleton of A; `None` if both have the same one.
     pub retargeted: Option<Arc<Retargeted>>,
     /// What only its lab knows of it.
     pub facts: LabFacts,
-    /// The artefacts, as numbers: those that every lab has, and its own behind them.
+    /// The artefact metrics: those of every lab, then those of its own.
     pub metrics: Vec<Metric>,
-    /// The clips that it is made of, on its skeleton: only what exceeds them is an artefact. None
-    /// for a clip as it is.
+    /// The clips that it was made from, on its skeleton: only what exceeds them is an artefact.
+    /// Empty for an unchanged clip.
     pub(crate) beside: Vec<Arc<Clip>>,
-    /// The motion that the metrics of every lab are measured of.
+    /// The motion on which the metrics of every lab are measured.
     pub(crate) measured: Measured,
-    /// Those numbers are known.
+    /// Whether these metrics are known.
     pub(crate) is_measured: bool,
 }
 
@@ -193,20 +193,20 @@ impl LabFacts {
     }
 }
 
-/// The motion that the metrics of every lab are measured of.
+/// The motion on which artefact metrics are measured.
 #[derive(Clone, Debug, Default)]
 pub(crate) enum Measured {
-    /// Its motion.
+    /// The motion of the result.
     #[default]
     Motion,
-    /// A clip that is shown elsewhere, or without its way over the ground.
+    /// A clip that is shown elsewhere, or without its root motion.
     Clip(Arc<Clip>),
-    /// What was taken of it while it was made.
+    /// A trace that was recorded while the result was made.
     Trace(Arc<MotionTrace>),
 }
 
 impl Outcome {
-    /// A result that is one clip as it is.
+    /// Returns an outcome that is one unchanged clip.
     pub(crate) fn plain(motion: Arc<Motion>) -> Self {
         Self {
             motion,
@@ -222,7 +222,7 @@ impl Outcome {
         }
     }
 
-    /// Returns whether there are rows for the metrics of every lab, and not yet their values.
+    /// Returns whether the metrics of every lab apply but are not yet known.
     pub(crate) fn awaits_numbers(&self) -> bool {
         let common = ResultMetrics::default().list();
         !self.is_measured
@@ -230,8 +230,8 @@ impl Outcome {
                 == common.len()
     }
 
-    /// Puts the numbers that every lab has before its own; without a value where they are not known
-    /// yet.
+    /// Puts the metrics of every lab before those of its own; without values if they are not yet
+    /// known.
     pub(crate) fn take_numbers(&mut self, found: Option<ResultMetrics>) {
         let common = found.unwrap_or_default().list();
         self.metrics.retain(|metric| common.iter().all(|other| other.id != metric.id));
@@ -239,14 +239,14 @@ impl Outcome {
         self.is_measured = found.is_some();
     }
 
-    /// Seconds from the first frame to the last.
+    /// Returns the duration from the first frame to the last, seconds.
     #[must_use]
     pub fn duration_secs(&self) -> f64 {
         self.motion.clip().duration_secs()
     }
 
-    /// Returns where a result that loops is at a time beyond its end: the time in its motion, and
-    /// the place of that. A result that has an end stays as it is.
+    /// Returns the time in the motion and the placement of the character at a time beyond the end
+    /// of a looping result. A result that does not loop holds its last frame.
     pub(crate) fn around(&self, secs: f64) -> (f64, Planar) {
         let duration = self.duration_secs();
         if self.cycle.is_none() || duration <= 0.0 || secs.is_nan() || secs <= duration {
@@ -258,7 +258,8 @@ impl Outcome {
         (secs - rounds * duration, place)
     }
 
-    /// Returns the step of the character from one time of the motion to another.
+    /// Returns the transform from the character's position at one time of the motion to that at
+    /// another.
     pub(crate) fn step(&self, from_secs: f64, to_secs: f64) -> Planar {
         self.motion.standing_at(to_secs).after(&self.motion.standing_at(from_secs).inverse())
     }

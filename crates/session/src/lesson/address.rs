@@ -1,15 +1,15 @@
-//! The addresses of links, and the entities that they and texts may hold.
+//! Addresses in links, and the entities that addresses and texts may contain.
 
-/// An address with more parentheses inside of each other is none.
-const MOST_PARENTHESES: usize = 32;
+/// The greatest nesting of parentheses in an address.
+const MAX_PARENTHESES: usize = 32;
 
-/// The entities that are known.
+/// The known entities.
 const ENTITIES: [(&str, char); 5] =
     [("&amp;", '&'), ("&lt;", '<'), ("&gt;", '>'), ("&quot;", '"'), ("&nbsp;", '\u{a0}')];
 
-/// Returns the host that an address with `://` leads to, with its port: as browsers read it, so
-/// that nothing before an `@` and nothing behind a slash of either kind passes for it. The address
-/// itself where it has none.
+/// Returns the host that an address with `://` leads to, with its port, as browsers read it: text
+/// before an `@` or after a slash of either kind is not the host. Returns the address itself if it
+/// has none.
 #[must_use]
 pub fn host_of(address: &str) -> &str {
     let rest = address.split_once("://").map_or(address, |(_, rest)| rest);
@@ -18,14 +18,14 @@ pub fn host_of(address: &str) -> &str {
     if host.is_empty() { address } else { host }
 }
 
-/// The sign that an entity at the beginning of a text stands for, and how many bytes the entity
-/// has.
+/// Returns the character of an entity at the beginning of a text, and the length of the entity in
+/// bytes.
 pub(super) fn entity(text: &str) -> Option<(char, usize)> {
     let (name, letter) = ENTITIES.iter().find(|(name, _)| text.starts_with(name))?;
     Some((*letter, name.len()))
 }
 
-/// The address that stands alone between `<` and `>`.
+/// Returns the address that stands alone between `<` and `>`.
 pub(super) fn bare_address(text: &str) -> Option<&str> {
     let inner = text.strip_prefix('<')?;
     if !(inner.starts_with("https://") || inner.starts_with("http://")) {
@@ -38,8 +38,7 @@ pub(super) fn bare_address(text: &str) -> Option<&str> {
     after.starts_with('>').then_some(address)
 }
 
-/// What stands behind `](` up to the `)` that belongs to it: the address, and the text after all
-/// that.
+/// Returns the address after `](` up to the matching `)`, and the text after that.
 pub(super) fn address(text: &str) -> Option<(String, &str)> {
     let text = text.trim_start();
     let (address, after) = match text.strip_prefix('<') {
@@ -63,7 +62,7 @@ fn address_len(text: &str) -> Option<usize> {
             '\\' => {
                 letters.next_if(|(_, letter)| letter.is_ascii_punctuation());
             }
-            '(' if open == MOST_PARENTHESES => return None,
+            '(' if open == MAX_PARENTHESES => return None,
             '(' => open += 1,
             ')' if open == 0 => return Some(at),
             ')' => open -= 1,
@@ -75,8 +74,8 @@ fn address_len(text: &str) -> Option<usize> {
     None
 }
 
-/// What follows on the words that browsers show over a link, if there are any: they are not shown
-/// here.
+/// Returns the text after the title of a link, if there is one: browsers show titles on hover,
+/// Segue does not.
 fn without_title(text: &str) -> Option<&str> {
     let Some(begin) = text.chars().next().filter(|begin| ['"', '\'', '('].contains(begin)) else {
         return Some(text);
@@ -91,7 +90,7 @@ fn without_title(text: &str) -> Option<&str> {
     Some(after.trim_start())
 }
 
-/// Where the first of these signs is that has no backslash before it.
+/// Returns the position of the first of some characters without a backslash before it.
 fn end_of(text: &str, ends: &[char]) -> Option<usize> {
     let mut letters = text.char_indices();
     while let Some((at, letter)) = letters.next() {
@@ -104,7 +103,7 @@ fn end_of(text: &str, ends: &[char]) -> Option<usize> {
     None
 }
 
-/// An address without backslashes before punctuation, and with entities read.
+/// Returns an address without backslashes before punctuation, and with entities decoded.
 fn unescaped(text: &str) -> String {
     let mut read = String::with_capacity(text.len());
     let mut rest = text;
@@ -132,7 +131,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn host_of_an_address_is_the_one_that_a_browser_asks() {
+    fn host_of_an_address_is_that_of_browsers() {
         for (address, host) in [
             ("https://example.org", "example.org"),
             ("https://example.org:8080/x?y#z", "example.org:8080"),

@@ -1,38 +1,39 @@
-//! A lesson's lines into headings, paragraphs, items of lists, and code. One pass, whose effort is
-//! in proportion to the text.
+//! Parsing of a lesson's lines into headings, paragraphs, list items, and code, in one pass and
+//! linear time.
 //!
-//! What a line is follows `CommonMark` (spec 0.31, sections 4 and 5) as far as `docs/lessons.md`
-//! says what a lesson may hold.
+//! Lines are classified by `CommonMark` (spec 0.31, sections 4 and 5), restricted to the features
+//! in `docs/lessons.md`.
 
 use super::html::Html;
 
-/// Lists inside of lists are read no further than that; a mark beyond is text.
-const MOST_LEVELS: usize = 16;
-/// What is set in so many columns further than its surroundings is code.
+/// The greatest nesting of lists; a deeper marker is text.
+const MAX_LEVELS: usize = 16;
+/// The indentation from which on a line is code, columns.
 const CODE_INDENT: usize = 4;
 
-/// A part of a file, its text still with marks in it.
+/// A block of a file, whose text still contains inline marks.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum Part {
-    /// How many `#` it has, 1 to 6, and its words.
+pub(super) enum RawBlock {
+    /// A heading: the number of `#`, 1 to 6, and its text.
     Heading(usize, String),
-    /// A paragraph, or the first of an item of a list. Lines end with `\n`.
+    /// A paragraph, or the first one of a list item. Lines end with `
+    /// `.
     Text(Option<Marker>, String),
-    /// Lines to be shown as they are.
+    /// Lines that are shown unchanged.
     Code(String),
 }
 
-/// The mark of an item.
+/// The marker of a list item.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Marker {
-    /// How many lists it stands inside of, without its own.
+    /// The number of lists around the item's own.
     pub(super) depth: usize,
-    /// Its number, in a list that counts.
+    /// Its number, in an ordered list.
     pub(super) number: Option<u64>,
 }
 
-/// The parts of a text, in their order.
-pub(super) fn parts_of(text: &str) -> Vec<Part> {
+/// Returns the blocks of a text, in order.
+pub(super) fn parts_of(text: &str) -> Vec<RawBlock> {
     let mut lines = Lines::default();
     for line in text.split('\n') {
         lines.take(line.strip_suffix('\r').unwrap_or(line));
@@ -44,15 +45,15 @@ pub(super) fn parts_of(text: &str) -> Vec<Part> {
 /// A list that is open.
 #[derive(Clone, Copy, Debug)]
 struct Level {
-    /// The sign that all its items begin with, or that follows their numbers.
+    /// The character that begins all its items, or follows their numbers.
     sign: char,
     /// The number of the next item.
     next: Option<u64>,
-    /// The column from which on a line belongs to the item that is open.
+    /// The least column of lines that belong to the open item.
     content: usize,
 }
 
-/// What the next line may go on with.
+/// The block that the next line may continue.
 #[derive(Debug, Default)]
 enum Open {
     #[default]
@@ -63,23 +64,23 @@ enum Open {
     Html(Html),
 }
 
-/// The line that code begins with.
+/// The opening line of a code block.
 #[derive(Clone, Copy, Debug)]
 struct Fence {
     sign: char,
     len: usize,
-    /// So many columns are taken off each line.
+    /// The number of columns that are removed from each line.
     column: usize,
 }
 
 #[derive(Debug, Default)]
 struct Lines {
-    parts: Vec<Part>,
+    parts: Vec<RawBlock>,
     levels: Vec<Level>,
-    /// Of the item whose first paragraph is yet to come.
+    /// The marker of an item whose first paragraph is yet to come.
     marker: Option<Marker>,
     open: Open,
-    /// Whether the line before stood in a quotation.
+    /// Whether the line before was in a quotation.
     quoted: bool,
 }
 
@@ -92,7 +93,7 @@ impl Lines {
         let reach = self.levels.iter().take_while(|level| start.column >= level.content).count();
         let left_item = reach < self.levels.len();
         if start.quoted != self.quoted {
-            // A paragraph goes on behind a quotation, as in mails whose lines were broken.
+            // A paragraph continues after a quotation, as in mails whose lines were broken.
             if start.quoted || !matches!(self.open, Open::Paragraph(_)) {
                 self.close();
             }
@@ -131,8 +132,7 @@ impl Lines {
         }
     }
 
-    /// Reads a line that goes on with a paragraph, or begins something. It lies inside of the first
-    /// `reach` lists.
+    /// Reads a line that continues a paragraph or begins a block, inside the first `reach` lists.
     fn begin(&mut self, line: &str, mut start: Start<'_>, mut reach: usize) {
         loop {
             let in_paragraph = matches!(self.open, Open::Paragraph(_));
@@ -150,7 +150,7 @@ impl Lines {
                 return self.leave(reach);
             }
             if let Some(item) = Item::of(start).filter(|item| {
-                reach < MOST_LEVELS
+                reach < MAX_LEVELS
                     && (!in_paragraph || reach < self.levels.len() || item.interrupts())
             }) {
                 self.item(item, reach);
@@ -164,7 +164,7 @@ impl Lines {
             }
             if let Some((level, words)) = heading(start.rest) {
                 self.leave(reach);
-                self.parts.push(Part::Heading(level, words.to_owned()));
+                self.parts.push(RawBlock::Heading(level, words.to_owned()));
                 return;
             }
             if let Some(fence) = Fence::of(start) {
@@ -185,7 +185,7 @@ impl Lines {
         }
     }
 
-    /// A line of text: it goes on with a paragraph that is open, however far it is set in.
+    /// Reads a line of text, which continues an open paragraph at any indentation.
     fn paragraph(&mut self, line: &str, reach: usize) {
         if let Open::Paragraph(text) = &mut self.open {
             text.extend(["\n", line]);
@@ -210,7 +210,7 @@ impl Lines {
         }
     }
 
-    /// Ends what is open, and all lists but the first `reach`.
+    /// Closes the open block, and all lists but the first `reach`.
     fn leave(&mut self, reach: usize) {
         self.close();
         if reach < self.levels.len() {
@@ -221,23 +221,23 @@ impl Lines {
 
     fn close(&mut self) {
         match std::mem::take(&mut self.open) {
-            Open::Paragraph(text) => self.parts.push(Part::Text(self.marker.take(), text)),
-            Open::Fence(_, code) | Open::Indented(code) => self.parts.push(Part::Code(code)),
+            Open::Paragraph(text) => self.parts.push(RawBlock::Text(self.marker.take(), text)),
+            Open::Fence(_, code) | Open::Indented(code) => self.parts.push(RawBlock::Code(code)),
             Open::Nothing | Open::Html(_) => {}
         }
     }
 }
 
-/// Where the text of a line begins.
+/// The beginning of a line's text.
 #[derive(Clone, Copy, Debug)]
 struct Start<'a> {
-    /// Columns before it; a tab goes on to the next that is a multiple of four.
+    /// The column of the text; tabs advance to multiples of four.
     column: usize,
-    /// The text, without spaces before it.
+    /// The text, without leading spaces.
     rest: &'a str,
-    /// Whether `>` stands before it.
+    /// Whether `>` precedes it.
     quoted: bool,
-    /// The column from which on spaces are counted.
+    /// The column from which spaces are counted.
     base: usize,
 }
 
@@ -272,7 +272,7 @@ impl<'a> Start<'a> {
         self.column >= base.max(self.base) + CODE_INDENT
     }
 
-    /// The line from a column on, or from where its text begins if that is before.
+    /// Returns the line from a column on, or from the beginning of its text if that is earlier.
     fn after_column(self, line: &'a str, column: usize) -> &'a str {
         let mut rest = line;
         let mut at = 0;
@@ -288,7 +288,7 @@ impl<'a> Start<'a> {
     }
 }
 
-/// The beginning of an item of a list.
+/// The beginning of a list item.
 #[derive(Clone, Copy, Debug)]
 struct Item<'a> {
     sign: char,
@@ -317,8 +317,8 @@ impl<'a> Item<'a> {
         Some(Self { sign, number: number.parse().ok(), content, start: inner })
     }
 
-    /// Whether it may stand right under a line of text. A number at the beginning of a line is
-    /// seldom meant as an item's, unless it is 1.
+    /// Returns whether the item may directly follow a line of text. A number at the beginning of a
+    /// line is seldom a list item, unless it is 1.
     fn interrupts(self) -> bool {
         !self.start.rest.is_empty() && self.number.is_none_or(|number| number == 1)
     }
@@ -344,12 +344,12 @@ impl Fence {
     }
 }
 
-/// The column that lines inside of all these lists begin at.
+/// Returns the column at which lines inside all these lists begin.
 fn base_of(levels: &[Level]) -> usize {
     levels.last().map_or(0, |level| level.content)
 }
 
-/// How many `#` a line begins with, and what follows them.
+/// Returns the number of `#` at the beginning of a line, and the text after them.
 fn heading(line: &str) -> Option<(usize, &str)> {
     let words = line.trim_start_matches('#');
     let level = line.len() - words.len();
@@ -357,13 +357,13 @@ fn heading(line: &str) -> Option<(usize, &str)> {
         return None;
     }
     let words = words.trim();
-    // `#` at the end, as in `## Try ##`, are for the looks of the file.
+    // A closing `#`, as in `## Try ##`, is decoration.
     let bare = words.trim_end_matches('#');
     let is_closed = bare.is_empty() || bare.ends_with([' ', '\t']);
     Some((level, if is_closed { bare.trim_end() } else { words }))
 }
 
-/// Whether a line is a rule between paragraphs, such as `---`.
+/// Returns whether a line is a rule between paragraphs, such as `---`.
 fn is_rule(line: &str) -> bool {
     let Some(sign) = line.chars().next().filter(|sign| ['-', '*', '_'].contains(sign)) else {
         return false;

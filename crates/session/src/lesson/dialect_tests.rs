@@ -1,4 +1,4 @@
-//! What marks mean, one line to each rule. Expected values are those of the `CommonMark` spec, or
+//! Tests of marks, one line for each rule. Expected values are those of the `CommonMark` spec, or
 //! say why not.
 
 use super::parse::parse;
@@ -9,7 +9,7 @@ fn page(text: &str) -> Page {
     parse(format!("# L\n\n{text}").as_bytes()).unwrap().remove(0)
 }
 
-/// Spans as a line: `<b|bold>`, `<i|italic>`, `<c|code>`, `<?query|link>`.
+/// Writes spans as a line: `<b|bold>`, `<i|italic>`, `<c|code>`, `<?query|link>`.
 fn line(spans: &[Span]) -> String {
     let mut line = String::new();
     for span in spans {
@@ -31,8 +31,8 @@ fn line(spans: &[Span]) -> String {
     line
 }
 
-/// The blocks of a text as lines: `= heading`, `- item`, `1. item`, two spaces to each list around
-/// it, `| code`.
+/// Writes the blocks of a text as lines: `= heading`, `- item`, `1. item`, two spaces for each
+/// surrounding list, `| code`.
 fn lines(text: &str) -> Vec<String> {
     let as_line = |block: &Block| match block {
         Block::Heading(words) => format!("= {words}"),
@@ -49,14 +49,14 @@ fn lines(text: &str) -> Vec<String> {
 #[track_caller]
 fn check(cases: &[(&str, &str)]) {
     for (text, expected) in cases {
-        // A word before it, as a paragraph that is a link alone would be the page's state.
+        // A word before it, because a paragraph that is only a link would be the page's state.
         let found = lines(&format!("So {text}"));
         assert_eq!(found, [format!("So {expected}")], "{text}");
     }
 }
 
 #[test]
-fn stars_are_bold_and_italic() {
+fn stars_in_pairs_are_bold_and_italic() {
     check(&[
         ("**bold** and *italic*", "<b|bold> and <i|italic>"),
         ("**bold *and italic* bold**", "<b|bold ><bi|and italic><b| bold>"),
@@ -74,7 +74,7 @@ fn stars_are_bold_and_italic() {
 }
 
 #[test]
-fn stars_that_mark_nothing_stay() {
+fn stars_without_a_pair_stay() {
     check(&[
         ("a * b", "a * b"),
         ("a lone *", "a lone *"),
@@ -82,7 +82,7 @@ fn stars_that_mark_nothing_stay() {
         ("*open", "*open"),
         ("**half*", "*<i|half>"),
         ("2 * 3 * 4", "2 * 3 * 4"),
-        // CommonMark would set the 3 italic and lose both signs.
+        // CommonMark would set the 3 in italics and lose both stars.
         ("2*3*4 and a*b*c", "2*3*4 and a*b*c"),
         ("x** y **", "x** y **"),
         ("\\*a\\* and \\**b*", "*a* and *<i|b>"),
@@ -91,18 +91,18 @@ fn stars_that_mark_nothing_stay() {
 }
 
 #[test]
-fn stars_stand_close_to_chinese_letters() {
+fn stars_beside_chinese_letters_are_bold() {
     check(&[
         ("這是*重點*嗎", "這是<i|重點>嗎"),
         ("**接縫**必須閉合", "<b|接縫>必須閉合"),
-        // CommonMark knows no bold here: full-width punctuation is no space.
+        // CommonMark has no bold here: full-width punctuation is not a space.
         ("方法**「精確」**很好", "方法<b|「精確」>很好"),
         ("方法**（精確）**，很好", "方法<b|（精確）>，很好"),
     ]);
 }
 
 #[test]
-fn underscores_are_letters() {
+fn underscores_stay() {
     check(&[
         ("blend_window and half_life", "blend_window and half_life"),
         ("_a_ and __init__", "_a_ and __init__"),
@@ -111,7 +111,7 @@ fn underscores_are_letters() {
 }
 
 #[test]
-fn code_is_shown_as_it_is() {
+fn code_stays_unchanged() {
     check(&[
         ("`a * b * c`", "<c|a * b * c>"),
         ("`` a`b ``", "<c|a`b>"),
@@ -128,7 +128,7 @@ fn code_is_shown_as_it_is() {
 }
 
 #[test]
-fn links_lead_where_they_say() {
+fn links_of_every_form_have_their_target() {
     check(&[
         ("[a](?a=run(turn_rate:20)&x=1)", "<?a=run(turn_rate:20)&x=1|a>"),
         ("[a](?a=run\\(&x=1)", "<?a=run(&x=1|a>"),
@@ -150,7 +150,7 @@ fn links_lead_where_they_say() {
 }
 
 #[test]
-fn brackets_that_lead_nowhere_stay() {
+fn brackets_without_a_target_stay() {
     check(&[
         ("[a]", "[a]"),
         ("[a] (?b)", "[a] (?b)"),
@@ -165,7 +165,7 @@ fn brackets_that_lead_nowhere_stay() {
 }
 
 #[test]
-fn entities_backslashes_and_line_ends() {
+fn entities_backslashes_and_line_ends_are_decoded() {
     check(&[
         ("&amp; &lt;b&gt; &quot;c&quot; 5&nbsp;m", "& <b> \"c\" 5\u{a0}m"),
         ("&amp &unknown; &", "&amp &unknown; &"),
@@ -179,7 +179,7 @@ fn entities_backslashes_and_line_ends() {
 }
 
 #[test]
-fn html_is_left_out() {
+fn html_is_removed() {
     check(&[
         ("a<br/>b <i class=\"x > y\">c</i>", "ab c"),
         ("a <!-- b <i> --> c", "a  c"),
@@ -192,7 +192,7 @@ fn html_is_left_out() {
 }
 
 #[test]
-fn blocks_are_told_apart() {
+fn blocks_of_every_kind_are_recognised() {
     let cases: [(&str, &[&str]); 16] = [
         ("a\nb\n\nc", &["a b", "c"]),
         ("## A ##\n### B # C\n#no\n#### D", &["= A", "= B # C", "#no", "= D"]),
@@ -219,9 +219,9 @@ fn blocks_are_told_apart() {
     assert_eq!(lines("-\tone\n\n\ttwo\n-\n\n- three"), ["- one", "two", "- three"]);
 }
 
-/// If what one mark costs grew with the text, these would take minutes, or all memory.
+/// If the cost of one mark grew with the text, these would take minutes, or all memory.
 #[test]
-fn marks_without_end_are_read_in_one_pass() {
+fn marks_without_end_are_read_in_linear_time() {
     let times = 200 * 1024;
     let pieces = [
         "*a ",
@@ -273,7 +273,7 @@ fn marks_without_end_are_read_in_one_pass() {
             assert!(page(&text).body.len() <= 400, "{piece}");
         }
     }
-    // The same number of backticks never comes twice.
+    // No number of backticks occurs twice.
     let ticks: String = (1..600).map(|len| "`".repeat(len) + "a").collect();
     assert_eq!(lines(&ticks), [ticks]);
     let address = "x".repeat(100_000);
@@ -285,15 +285,15 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(128))]
 
     #[test]
-    fn text_without_marks_stays(words in "[a-z對，.;:?(){}=+/%$^~_ ]{1,60}") {
+    fn text_without_marks_is_unchanged(words in "[a-z對，.;:?(){}=+/%$^~_ ]{1,60}") {
         let words = format!("a{}", words.trim_end());
         let plain: String = lines(&words).concat();
         prop_assert_eq!(plain.replace('\u{a0}', " "), words);
     }
 
     #[test]
-    fn letters_are_neither_lost_nor_doubled(text in "(\\*{1,3}|[\\[\\]!(`\\\\\n ]|\\]\\(|- |> ?|x|對){0,60}") {
-        // Without `)` there are no links whose addresses are not shown.
+    fn letters_with_any_marks_are_kept_once(text in "(\\*{1,3}|[\\[\\]!(`\\\\\n ]|\\]\\(|- |> ?|x|對){0,60}") {
+        // Without `)` there are no links whose addresses are hidden.
         let count = |text: &str| text.matches(['x', '對']).count();
         let shown: usize = lines(&text).iter().map(|line| count(line)).sum();
         let state = page(&text).state.map_or(0, |state| count(&state.label));

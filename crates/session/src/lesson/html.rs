@@ -1,8 +1,8 @@
-//! HTML in a lesson, so that it can be left out.
+//! Recognition of HTML in a lesson, to remove it.
 
-/// What such an element holds is no text, whatever blank lines are in it.
+/// Elements whose content is no text, even across blank lines.
 const OPAQUE: [&str; 4] = ["script", "style", "pre", "textarea"];
-/// Where such an element begins a line, all is left out up to the next blank line.
+/// Elements that remove all lines up to the next blank line.
 const BLOCKS: [&str; 44] = [
     "address",
     "article",
@@ -50,17 +50,17 @@ const BLOCKS: [&str; 44] = [
     "ul",
 ];
 
-/// Lines of HTML.
+/// A block of HTML lines.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Html {
-    /// What the last of them holds, in small letters; `None` where they go on up to a blank line.
+    /// The text that ends the block, in lower case; `None` if a blank line does.
     until: Option<String>,
-    /// Whether they end a paragraph.
+    /// Whether the block ends a paragraph.
     pub(super) interrupts: bool,
 }
 
 impl Html {
-    /// What begins with this line; `None` where it is text.
+    /// Returns the block that begins with this line; `None` if the line is text.
     pub(super) fn begins(line: &str) -> Option<Self> {
         let until = |end: &str| Some(Self { until: Some(end.to_owned()), interrupts: true });
         let inner = line.strip_prefix('<')?;
@@ -81,22 +81,22 @@ impl Html {
         (interrupts || alone).then_some(Self { until: None, interrupts })
     }
 
-    /// Whether a line is the last. The first may be that too.
+    /// Returns whether a line is the last of the block; the first line may be.
     pub(super) fn ends(&self, line: &str) -> bool {
         self.until.as_ref().is_some_and(|end| line.to_ascii_lowercase().contains(end.as_str()))
     }
 
-    /// Whether a blank line ends them.
+    /// Returns whether a blank line ends the block.
     pub(super) fn ends_when_blank(&self) -> bool {
         self.until.is_none()
     }
 }
 
-/// What is no element: how it goes on after `<`, and how it ends.
+/// Constructs other than elements: their text after `<`, and their end.
 const SPECIAL: [(&str, &str); 3] = [("!--", "-->"), ("?", "?>"), ("!", ">")];
 
-/// How many bytes the tag has that a text begins with. What lies between `<` and `>` holds no other
-/// `<`, so that no text is searched twice.
+/// Returns the length in bytes of the tag at the beginning of a text. A tag contains no `<` inside
+/// it, so that no text is searched twice.
 pub(super) fn tag_len(text: &str) -> Option<usize> {
     let inner = text.strip_prefix('<')?;
     let inner = inner.strip_prefix(['/', '!', '?']).unwrap_or(inner);

@@ -1,9 +1,9 @@
-//! The marks inside of a text: code, bold, italic, links. One pass, and one over the stars of each
+//! Parsing of inline marks: code, bold, italic, links. One pass, and one over the stars of each
 //! link, so that no text is searched twice.
 //!
-//! What marks mean follows `CommonMark` (spec 0.31, section 6) with three differences: `_` is a
-//! letter; a single star between two letters or digits, as in `2*3`, is a times sign; and
-//! full-width punctuation counts as a letter, or `**「腳」**` would not be bold inside of a sentence.
+//! Marks follow `CommonMark` (spec 0.31, section 6) with three differences: `_` is a letter; a
+//! single star between two letters or digits, as in `2*3`, is a multiplication sign; and full-width
+//! punctuation counts as a letter, since `**「腳」**` would otherwise not be bold inside a sentence.
 
 use super::address::{address, bare_address, entity};
 use super::html::tag_len;
@@ -11,7 +11,7 @@ use super::page::Span;
 use super::prose::Prose;
 use std::collections::BTreeMap;
 
-/// What a text says, without its marks. Its lines begin without spaces.
+/// Returns the spans of a text, without marks. Lines begin without spaces.
 pub(super) fn spans_of(text: &str) -> Vec<Span> {
     let mut marks = Marks::new(text.trim_end());
     while let Some(letter) = marks.next() {
@@ -39,7 +39,7 @@ pub(super) fn spans_of(text: &str) -> Vec<Span> {
     prose.end()
 }
 
-/// A part of a text, once its marks are understood.
+/// A parsed part of a text.
 #[derive(Debug)]
 enum Piece {
     Text(String),
@@ -50,7 +50,7 @@ enum Piece {
     Stars(Stars),
 }
 
-/// What a run of stars does, and how many of them are none of that.
+/// The marks that a run of stars stands for, and the number of its stars that stay text.
 #[derive(Debug, Default)]
 struct Stars {
     ends_strong: usize,
@@ -60,7 +60,7 @@ struct Stars {
     begins_emphasis: usize,
 }
 
-/// A run of stars that may find its other half.
+/// A run of stars that may have a counterpart.
 #[derive(Clone, Copy, Debug)]
 struct Run {
     piece: usize,
@@ -71,7 +71,8 @@ struct Run {
 }
 
 impl Run {
-    /// The rule of three: `*a**b*` is one run of italics, not two.
+    /// Returns whether two runs may match, by the rule of three: `*a**b*` is one run of italics,
+    /// not two.
     fn fits(self, end: Self) -> bool {
         let is_either = self.ends || end.begins;
         !is_either
@@ -79,22 +80,22 @@ impl Run {
             || (self.len.is_multiple_of(3) && end.len.is_multiple_of(3))
     }
 
-    /// Ends of the same class fit the same beginnings.
+    /// Returns the class of a closing run: all of one class match the same opening runs.
     fn class(self) -> usize {
         self.len % 3 + if self.begins { 3 } else { 0 }
     }
 }
 
-/// A `[` or `![` that may begin a link or a picture.
+/// A `[` or `![` that may begin a link or an image.
 #[derive(Clone, Copy, Debug)]
 struct Bracket {
     piece: usize,
-    /// How many runs of stars came before it.
+    /// The number of runs of stars before it.
     runs: usize,
     is_picture: bool,
 }
 
-/// Where the reading has got to.
+/// The state of the parser.
 struct Marks<'a> {
     text: &'a str,
     rest: &'a str,
@@ -103,12 +104,12 @@ struct Marks<'a> {
     pieces: Vec<Piece>,
     runs: Vec<Run>,
     brackets: Vec<Bracket>,
-    /// The brackets before that stand around a link, and begin none: links do not lie in each
-    /// other.
+    /// The number of brackets that enclose a link and can therefore not begin another: links do not
+    /// nest.
     links_from: usize,
-    /// Where runs of backticks begin, by their lengths.
+    /// The positions of runs of backticks, by length.
     backticks: BTreeMap<usize, Vec<usize>>,
-    /// Where the last comment of the text ends.
+    /// The end of the last comment in the text.
     last_comment_end: usize,
 }
 
@@ -136,7 +137,7 @@ impl<'a> Marks<'a> {
         }
     }
 
-    /// Goes on to the next sign that may be a mark.
+    /// Skips to the next character that may be a mark.
     fn next(&mut self) -> Option<char> {
         let end = self.rest.find(['\\', '`', '*', '[', ']', '!', '<', '&', '\n']);
         let (plain, rest) = self.rest.split_at_checked(end.unwrap_or(self.rest.len()))?;
@@ -149,7 +150,7 @@ impl<'a> Marks<'a> {
         self.text.len() - self.rest.len()
     }
 
-    /// The next `len` bytes, which are read then.
+    /// Consumes and returns the next `len` bytes.
     fn eat(&mut self, len: usize) -> &'a str {
         let (eaten, rest) = self.rest.split_at_checked(len).unwrap_or((self.rest, ""));
         self.rest = rest;
@@ -182,7 +183,7 @@ impl<'a> Marks<'a> {
         }
     }
 
-    /// What was read stands for itself.
+    /// Consumes characters as text.
     fn literal(&mut self, len: usize) {
         let eaten = self.eat(len);
         self.plain.push_str(eaten);
@@ -252,11 +253,11 @@ impl<'a> Marks<'a> {
         self.pieces.push(Piece::Stars(Stars { left: len, ..Stars::default() }));
     }
 
-    /// Finds the halves of all runs of stars from one on; none of them has another half outside.
+    /// Pairs all runs of stars from one on; none of them matches a run outside.
     fn pair(&mut self, from: usize) {
         let mut begun: Vec<Run> = Vec::new();
-        // Runs before that are known to fit no end of a class; without it, stars that begin and end
-        // nothing would take quadratic time.
+        // For each class of closing runs, the first run that may still match; without this, stars
+        // without counterparts would take quadratic time.
         let mut searched = [0; 6];
         for mut end in self.runs.split_off(from.min(self.runs.len())) {
             while end.ends && end.left > 0 {
@@ -323,7 +324,7 @@ impl<'a> Marks<'a> {
         let Some(piece) = self.pieces.get_mut(bracket.piece) else {
             return;
         };
-        // Of a picture, what it shows is left.
+        // Only the alternative text of an image is kept.
         if bracket.is_picture {
             *piece = Piece::Text(String::new());
         } else {
@@ -333,7 +334,7 @@ impl<'a> Marks<'a> {
         }
     }
 
-    /// An address, or HTML, which is left out.
+    /// Reads an address, or HTML, which is removed.
     fn angle(&mut self) {
         if let Some(address) = bare_address(self.rest) {
             self.push(Piece::Link(address.to_owned()));
@@ -355,7 +356,7 @@ fn run_len(text: &str, sign: char) -> usize {
     text.len() - text.trim_start_matches(sign).len()
 }
 
-/// Whether stars beside a sign can tell by it what they begin or end.
+/// Returns whether a character beside stars decides what they begin or end.
 fn is_punctuation(letter: char) -> bool {
     letter.is_ascii_punctuation()
         || matches!(letter, '\u{a1}'..='\u{bf}' | '×' | '÷' | '\u{2010}'..='\u{2bff}')

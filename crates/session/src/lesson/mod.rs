@@ -1,9 +1,9 @@
-//! Lessons: short guided pages. Each is a state of the document, a text, two or three things to
+//! Lessons: short guided pages. Each has a state of the document, a text, two or three things to
 //! try, and a question with its answer.
 //!
-//! A lesson is a Markdown file; `docs/lessons.md` says how one is written. What it holds becomes a
-//! [`Page`], which knows nothing of a screen. The lessons that come with Segue are fetched when
-//! they are opened, in the language that is set; a teacher's own are fetched from their address.
+//! A lesson is a Markdown file in the format of `docs/lessons.md`. It is parsed to [`Page`]s, which
+//! know nothing of a screen. The bundled lessons are fetched when they are opened, in the chosen
+//! language; a teacher's own are fetched from their address.
 
 mod address;
 mod blocks;

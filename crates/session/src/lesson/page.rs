@@ -3,83 +3,83 @@
 pub struct Page {
     /// Its heading.
     pub title: String,
-    /// What sets the page up, and what that is called; `None` where the page is about whatever is
-    /// open.
+    /// The state that the page sets, with its name; `None` if the page is about the current state.
     pub state: Option<Try>,
     /// The text.
     pub body: Vec<Block>,
-    /// What there is to try.
+    /// The things to try.
     pub tries: Vec<Try>,
     /// The question at the end; empty where there is none.
     pub question: Vec<Block>,
-    /// Its answer, not to be seen at once.
+    /// Its answer, hidden at first.
     pub answer: Vec<Block>,
 }
 
-/// A link that sets the state, and what is to be seen then.
+/// A link that sets a state, with a description of what to see.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Try {
-    /// A few words.
+    /// Its name, a few words.
     pub label: String,
     /// The query, without its question mark.
     pub query: String,
-    /// A sentence or two.
+    /// The description, a sentence or two.
     pub about: Vec<Span>,
 }
 
 /// A part of the text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Block {
-    /// A heading inside of the page.
+    /// A heading inside the page.
     Heading(String),
     /// A paragraph.
     Paragraph(Vec<Span>),
     /// An item of a list.
     Item {
-        /// How many lists it stands inside of, without its own.
+        /// The number of lists around the item's own.
         depth: usize,
-        /// Its number, in a list that counts.
+        /// Its number, in an ordered list.
         number: Option<u64>,
-        /// What it says.
+        /// Its text.
         spans: Vec<Span>,
     },
-    /// Lines to be shown as they are, such as a formula.
+    /// Lines that are shown unchanged, such as a formula.
     Code(String),
 }
 
-/// A run of text that looks the same.
+/// A run of text of one style.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Span {
-    /// What it says.
+    /// Its text.
     pub text: String,
-    /// Set bold.
+    /// Whether it is bold.
     pub strong: bool,
-    /// Set italic.
+    /// Whether it is italic.
     pub emphasis: bool,
-    /// A formula, a value or a key.
+    /// Whether it is a formula, a value or a key.
     pub code: bool,
-    /// Where it leads.
+    /// The target of its link; `None` for plain text.
     pub target: Option<Target>,
 }
 
-/// Where a link leads.
+/// The target of a link.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Target {
-    /// To a state of the document: a query without its question mark.
+    /// A state of the document: a query without its question mark.
     State(String),
-    /// To a page of the web: an address that starts with `https://` or `http://`.
+    /// A web page: an address that starts with `https://` or `http://`.
     Web(String),
 }
 
 impl Span {
-    /// Plain text.
+    /// Returns plain text.
     pub fn plain(text: impl Into<String>) -> Self {
         Self { text: text.into(), ..Self::default() }
     }
 }
 
 impl Page {
-    /// Of a page that lists lessons: the query, the name and the line about each.
+    /// Returns the entries of a page that lists lessons: the query, the name and the line about
+    /// each.
     pub fn entries(&self) -> impl Iterator<Item = Try> + '_ {
         self.body.iter().filter_map(|block| match block {
             Block::Item { spans, .. } => Try::of(spans),
@@ -89,7 +89,7 @@ impl Page {
 }
 
 impl Try {
-    /// What a line says that begins with a link to a state; `None` for any other.
+    /// Returns the entry of a line that begins with a link to a state; `None` for any other line.
     pub(super) fn of(spans: &[Span]) -> Option<Self> {
         let target = spans.first()?.target.as_ref()?;
         let Target::State(query) = target else {

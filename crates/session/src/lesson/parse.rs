@@ -1,48 +1,48 @@
-//! Markdown into pages. Nothing that a file holds can do more than be shown: its size is limited,
-//! HTML and pictures are left out, and a link that leads neither to a state nor to the web is text.
+//! Parsing of Markdown into pages. A file can do no more than be shown: its size is limited, HTML
+//! and images are removed, and a link to neither a state nor the web is text.
 
-use super::blocks::{Marker, Part, parts_of};
+use super::blocks::{Marker, RawBlock, parts_of};
 use super::inline::spans_of;
 use super::page::{Block, Page, Try};
 
-/// A lesson with more bytes than that is none.
+/// The greatest size of a lesson, bytes.
 pub const MOST_BYTES: usize = 256 * 1024;
-/// What lies beyond so many pages of one file is left out.
-const MOST_PAGES: usize = 200;
-/// Likewise of the blocks of one page.
-const MOST_BLOCKS: usize = 400;
-/// Lists inside of lists are set in no further than that.
-const DEEPEST: usize = 3;
+/// The greatest number of pages in a file; further ones are left out.
+const MAX_PAGES: usize = 200;
+/// The greatest number of blocks on a page; further ones are left out.
+const MAX_BLOCKS: usize = 400;
+/// The greatest nesting of lists that is shown.
+const MAX_DEPTH: usize = 3;
 
-/// The words under which a section is known, in every language that lessons come in.
+/// The headings of sections, in every language of the lessons.
 const SECTIONS: [(Section, &[&str]); 3] = [
     (Section::Try, &["try", "try it", "試試看"]),
     (Section::Question, &["question", "想一想"]),
     (Section::Answer, &["answer", "解答"]),
 ];
 
-/// Why a file is no lesson.
+/// The reason why a file is not a lesson.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error, segue_text::ToMessage)]
 pub enum LessonError {
-    /// Too large.
+    /// A file that is too large.
     #[error("it has {found} bytes, a lesson has at most {MOST_BYTES}")]
     TooLarge {
-        /// Its size.
+        /// Its size, bytes.
         found: usize,
     },
-    /// Not a text.
+    /// A file that is not UTF-8.
     #[error("it is not a text in UTF-8")]
     NotText,
-    /// No page begins.
+    /// A file without a page.
     #[error("no line in it begins with `# `: a page begins with its title")]
     NoTitle,
 }
 
-/// Reads the pages of a lesson: each begins with a heading of the first level. What stands before
-/// the first is left out.
+/// Reads the pages of a lesson: each begins with a heading of the first level. Text before the
+/// first is left out.
 ///
 /// # Errors
-/// [`LessonError`]; Markdown itself is never wrong.
+/// [`LessonError`] about the file; Markdown itself is never invalid.
 pub fn parse(bytes: &[u8]) -> Result<Vec<Page>, LessonError> {
     if bytes.len() > MOST_BYTES {
         return Err(LessonError::TooLarge { found: bytes.len() });
@@ -51,19 +51,19 @@ pub fn parse(bytes: &[u8]) -> Result<Vec<Page>, LessonError> {
     let mut reader = Reader::default();
     for part in parts_of(text.trim_start_matches('\u{feff}')) {
         reader.take(part);
-        if reader.pages.len() > MOST_PAGES {
+        if reader.pages.len() > MAX_PAGES {
             break;
         }
     }
     reader.end_page();
-    reader.pages.truncate(MOST_PAGES);
+    reader.pages.truncate(MAX_PAGES);
     if reader.pages.is_empty() {
         return Err(LessonError::NoTitle);
     }
     Ok(reader.pages)
 }
 
-/// What part of a page is being read.
+/// The section of a page that is being read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Section {
     #[default]
@@ -73,7 +73,7 @@ enum Section {
     Answer,
 }
 
-/// Where the reading has got to.
+/// The state of the parser.
 #[derive(Debug, Default)]
 struct Reader {
     pages: Vec<Page>,
@@ -82,15 +82,15 @@ struct Reader {
 }
 
 impl Reader {
-    fn take(&mut self, part: Part) {
+    fn take(&mut self, part: RawBlock) {
         match part {
-            Part::Heading(level, words) => self.heading(level, &words),
-            Part::Text(marker, text) => self.text(marker, &text),
-            Part::Code(code) => self.push(Block::Code(code.trim_end().to_owned())),
+            RawBlock::Heading(level, words) => self.heading(level, &words),
+            RawBlock::Text(marker, text) => self.text(marker, &text),
+            RawBlock::Code(code) => self.push(Block::Code(code.trim_end().to_owned())),
         }
     }
 
-    /// Puts a text where it belongs.
+    /// Adds a text to the section where it belongs.
     fn text(&mut self, marker: Option<Marker>, text: &str) {
         let Some(page) = &mut self.page else { return };
         let spans = spans_of(text);
@@ -105,12 +105,12 @@ impl Reader {
         match (link, marker) {
             (Some(link), None) if begins && link.about.is_empty() => page.state = Some(link),
             (Some(link), Some(_)) if self.section == Section::Try => {
-                if page.tries.len() < MOST_BLOCKS {
+                if page.tries.len() < MAX_BLOCKS {
                     page.tries.push(link);
                 }
             }
             (_, Some(Marker { depth, number })) => {
-                self.push(Block::Item { depth: depth.min(DEEPEST), number, spans });
+                self.push(Block::Item { depth: depth.min(MAX_DEPTH), number, spans });
             }
             (_, None) => self.push(Block::Paragraph(spans)),
         }
@@ -123,7 +123,7 @@ impl Reader {
             Section::Question => &mut page.question,
             Section::Answer => &mut page.answer,
         };
-        if blocks.len() < MOST_BLOCKS {
+        if blocks.len() < MAX_BLOCKS {
             blocks.push(block);
         }
     }

@@ -1,24 +1,25 @@
-//! Text becomes spans: lines are joined, and what looks and leads alike is one.
+//! Conversion of text to spans: lines are joined, and neighbours with the same style and target are
+//! merged.
 
 use super::page::{Span, Target};
 use super::shelf::lesson_of_file;
 
-/// A link that is longer looks the same from there on. Each span holds its address, so that a long
-/// address with many of them would fill the memory.
-const MOST_SPANS_OF_A_LINK: usize = 64;
+/// The greatest number of spans in a link; the rest of a longer one has a single style. Each span
+/// contains the address, so that a long address with many spans would fill the memory.
+const MAX_SPANS_OF_A_LINK: usize = 64;
 
-/// A block of text that is being put together.
+/// A block of text under construction.
 #[derive(Debug, Default)]
 pub(super) struct Prose {
     spans: Vec<Span>,
-    /// How many marks of each kind are open.
+    /// The numbers of open marks of each kind.
     pub(super) strong: usize,
     pub(super) emphasis: usize,
-    /// The link that is open: where it leads, or the address that is shown in its place.
+    /// The open link: its target, or the address that is shown instead.
     link: Option<Result<Target, String>>,
-    /// How many spans came before it.
+    /// The number of spans before it.
     link_from: usize,
-    /// A line ended: a space, unless it stands between signs that take none.
+    /// Whether a line ended: a space follows, unless the characters on both sides take none.
     line_ended: bool,
 }
 
@@ -52,7 +53,7 @@ impl Prose {
             }
         }
         let target = self.link.as_ref().and_then(|link| link.as_ref().ok());
-        let is_long = target.is_some() && self.spans.len() >= self.link_from + MOST_SPANS_OF_A_LINK;
+        let is_long = target.is_some() && self.spans.len() >= self.link_from + MAX_SPANS_OF_A_LINK;
         let look = (self.strong > 0, self.emphasis > 0, code, target);
         match self.spans.last_mut() {
             Some(last)
@@ -79,7 +80,7 @@ impl Prose {
     }
 }
 
-/// Where an address leads; an address that may not be opened is given back.
+/// Returns the target of an address; an address that may not be opened is returned as the error.
 fn target_of(address: &str) -> Result<Target, String> {
     if let Some(query) = address.strip_prefix('?') {
         Ok(Target::State(query.to_owned()))
@@ -92,12 +93,13 @@ fn target_of(address: &str) -> Result<Target, String> {
     }
 }
 
-/// Whether no space is set about a sign: Chinese and Japanese letters, and full-width punctuation.
+/// Returns whether a character takes no space beside it: Chinese and Japanese letters, and
+/// full-width punctuation.
 fn is_unspaced(letter: char) -> bool {
     matches!(letter, '\u{2e80}'..='\u{9fff}' | '\u{f900}'..='\u{faff}' | '\u{ff00}'..='\u{ffef}' | '\u{20000}'..='\u{3ffff}')
 }
 
-/// A text whose numbers are not torn from their units at the end of a line.
+/// Returns a text with non-breaking spaces between numbers and units.
 fn with_units_held(text: &str) -> String {
     const UNITS: [&str; 7] = ["%", "°", "cm", "mm", "m", "s", "ms"];
     let mut held = String::with_capacity(text.len());

@@ -3,7 +3,7 @@
 use crate::outside::short;
 use segue_text::{Message, msg};
 
-/// The lessons that come with Segue, in their order.
+/// The bundled lessons, in order.
 pub const LESSONS: [&str; 14] = [
     "alignment",
     "slerp",
@@ -21,19 +21,19 @@ pub const LESSONS: [&str; 14] = [
     "foot_skate",
 ];
 
-/// What the list of these lessons is called, in place of a lesson.
+/// The name of the table of contents, in place of a lesson.
 pub const CONTENTS: &str = "contents";
 
-/// Where the text of a lesson is.
+/// The source of a lesson's text.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Source {
-    /// A file among those that come with Segue, as in `en/01-alignment.md`.
+    /// A bundled file, as in `en/01-alignment.md`.
     BuiltIn(String),
     /// An address on the web.
     Web(String),
 }
 
-/// The file of a lesson that comes with Segue, as in `01-alignment.md`; of the list of all for
+/// Returns the file of a bundled lesson, as in `01-alignment.md`; the table of contents for
 /// [`CONTENTS`].
 #[must_use]
 pub fn file_name(lesson: &str) -> Option<String> {
@@ -44,18 +44,18 @@ pub fn file_name(lesson: &str) -> Option<String> {
     Some(format!("{:02}-{lesson}.md", at + 1))
 }
 
-/// The lesson that a file of that name holds.
+/// Returns the lesson in a bundled file.
 pub(super) fn lesson_of_file(name: &str) -> Option<&'static str> {
     let (_, lesson) = name.strip_suffix(".md")?.split_once('-')?;
     let lesson = LESSONS.iter().find(|known| **known == lesson)?;
     (file_name(lesson)? == name).then_some(lesson)
 }
 
-/// Where the text of what the parameter `lesson` names is, in a language, and which page of it,
-/// counted from 0.
+/// Returns the source of the text that the parameter `lesson` names, in a language, and the page of
+/// it, from 0.
 ///
 /// # Errors
-/// What was found in place of a lesson, and what there is.
+/// A message with the value found, and the valid ones.
 pub fn source_of(lesson: &str, lang: &str) -> Result<(Source, usize), Message> {
     if lesson.starts_with("https://") || lesson.starts_with("http://") {
         let (address, page) = lesson.split_once('#').unwrap_or((lesson, "1"));

@@ -38,12 +38,12 @@ pub struct LessonPage<'a> {
     pub next: Option<String>,
 }
 
-/// A text that was asked for.
+/// A text that was requested.
 #[derive(Clone, Debug)]
 enum Text {
     /// It is under way.
     Awaited,
-    /// It is here.
+    /// It is available.
     Here(Arc<[Page]>),
     /// It did not arrive, or is no lesson: why.
     Failed(Message),
@@ -52,7 +52,7 @@ enum Text {
 /// The texts of lessons that were asked for, and the lesson that is about to be set up.
 #[derive(Clone, Debug)]
 pub(crate) struct LessonState {
-    /// The folder of the lessons that come with Segue.
+    /// The folder of the bundled lessons in the current language.
     language: &'static str,
     texts: BTreeMap<Source, Text>,
     /// The lesson whose page sets the parameters once its text is here.

@@ -41,7 +41,7 @@ fn plain(spans: &[Span]) -> String {
 }
 
 #[test]
-fn a_lesson_is_pages_with_their_parts() {
+fn parse_of_a_lesson_gives_its_pages() {
     let pages = parse(LESSON.as_bytes()).unwrap();
     let [page, second] = pages.as_slice() else { panic!("{pages:?}") };
     assert_eq!((page.title.as_str(), second.title.as_str()), ("Steps", "Second"));
@@ -92,7 +92,7 @@ fn a_lesson_is_pages_with_their_parts() {
 }
 
 #[test]
-fn chinese_lines_are_joined_without_a_space() {
+fn parse_joins_chinese_lines_without_a_space() {
     let pages = parse(
         "# 對齊\n\n兩段動作\n沒有關係，A\nand B。\n\n## 想一想\n\n為什麼？\n\n## 解答\n\n因為。"
             .as_bytes(),
@@ -104,7 +104,7 @@ fn chinese_lines_are_joined_without_a_space() {
 }
 
 #[test]
-fn links_that_may_not_be_opened_are_text() {
+fn parse_of_forbidden_links_gives_text() {
     let text = "# L\n\n[a](javascript:alert(1)) [b](data:text/html,x) ![p](https://example.org/p.png) <script>x</script> [c](//evil)";
     let pages = parse(text.as_bytes()).unwrap();
     let [Block::Paragraph(spans)] = pages[0].body.as_slice() else { panic!("{:?}", pages[0].body) };
@@ -113,7 +113,7 @@ fn links_that_may_not_be_opened_are_text() {
 }
 
 #[test]
-fn what_is_no_lesson_is_refused() {
+fn parse_of_other_files_is_refused() {
     assert_eq!(parse(b"no title"), Err(LessonError::NoTitle));
     assert_eq!(parse(b"# \xff"), Err(LessonError::NotText));
     let found = MOST_BYTES + 1;
@@ -121,7 +121,7 @@ fn what_is_no_lesson_is_refused() {
 }
 
 #[test]
-fn hostile_lessons_are_cut_short() {
+fn parse_of_huge_lessons_is_limited() {
     let fill = |piece: &str, times: usize| {
         parse(format!("# L\n\n{}", piece.repeat(times)).as_bytes()).unwrap()
     };
@@ -141,7 +141,7 @@ fn hostile_lessons_are_cut_short() {
 }
 
 #[test]
-fn lessons_are_found_by_name_and_by_address() {
+fn source_of_names_and_addresses_is_found() {
     let built_in = |file: &str| Source::BuiltIn(file.to_owned());
     assert_eq!(source_of("contents", "en"), Ok((built_in("en/index.md"), 0)));
     assert_eq!(source_of("slerp", "zh-Hant"), Ok((built_in("zh-Hant/02-slerp.md"), 0)));
@@ -163,14 +163,14 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn no_text_panics(text in "(# |## Try|## Answer|\n|- |\\[a\\]\\(\\?|\\)|\\*\\*|`|>|對|\\PC){0,80}") {
+    fn parse_of_any_text_never_panics(text in "(# |## Try|## Answer|\n|- |\\[a\\]\\(\\?|\\)|\\*\\*|`|>|對|\\PC){0,80}") {
         if let Ok(pages) = parse(text.as_bytes()) {
             prop_assert!(!pages.is_empty());
         }
     }
 
     #[test]
-    fn no_bytes_panic(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
+    fn parse_of_any_bytes_never_panics(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
         let _pages = parse(&bytes);
     }
 }

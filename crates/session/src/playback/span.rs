@@ -3,15 +3,15 @@
 /// The part of a result that plays.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span {
-    /// Where playing begins, seconds.
+    /// The beginning, seconds.
     pub start: f64,
-    /// Where it ends, seconds; not before `start`.
+    /// The end, seconds; not before `start`.
     pub end: f64,
 }
 
 impl Span {
-    /// Returns the part of `[0, duration]` between two marks; a mark that is missing or outside is
-    /// the end of the result, and marks in the wrong order are taken the other way round.
+    /// Returns the part of `[0, duration]` between two marks. A mark that is missing or outside is
+    /// replaced by the end of the result; marks in the wrong order are swapped.
     #[must_use]
     pub fn between(in_mark: Option<f64>, out_mark: Option<f64>, duration: f64) -> Self {
         let start = in_mark.unwrap_or(0.0).clamp(0.0, duration);
@@ -21,7 +21,7 @@ impl Span {
 
     /// Returns the playhead after `dt_secs` of playing at `rate`, and whether it still moves.
     ///
-    /// A playhead outside the span enters at the start. With `repeat` it begins again; else it
+    /// A playhead outside the span enters at the start. With `repeat` it wraps around; otherwise it
     /// stops at the end.
     #[must_use]
     pub fn advance(&self, now: f64, dt_secs: f64, rate: f64, repeat: bool) -> (f64, bool) {
@@ -40,7 +40,7 @@ impl Span {
         }
     }
 
-    /// Returns how many times a playhead that repeats, as in [`Span::advance`], comes to the end.
+    /// Returns how many times a repeating playhead, as in [`Span::advance`], reaches the end.
     #[must_use]
     pub fn rounds(&self, now: f64, dt_secs: f64, rate: f64) -> usize {
         let length = self.end - self.start;
@@ -59,7 +59,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn goes_round_or_stops() {
+    fn advance_at_the_end_wraps_or_stops() {
         let span = Span::between(Some(1.0), None, 3.0);
         assert_eq!(span.advance(0.0, 0.1, 1.0, true), (1.1, true));
         assert_eq!(span.advance(2.5, 1.0, 1.0, true), (1.5, true));
@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn marks_in_the_wrong_order_are_taken_the_other_way_round() {
+    fn between_with_marks_in_the_wrong_order_swaps_them() {
         assert_eq!(Span::between(Some(2.0), Some(1.0), 3.0), Span { start: 1.0, end: 2.0 });
         assert_eq!(Span::between(Some(9.0), None, 3.0), Span { start: 3.0, end: 3.0 });
     }

@@ -1,5 +1,5 @@
-//! Reading files apart from the document: a pure function of names and bytes, so that a large file
-//! can be read by another thread or worker and handed over when it is done.
+//! Reading of files outside the document: a pure function of names and bytes, so that a thread or
+//! worker can read a large file.
 
 mod wire;
 
@@ -24,17 +24,17 @@ use std::sync::Arc;
 /// Files above this size are not read between two frames, bytes.
 pub const LARGE_BYTES: u64 = 1 << 20;
 
-/// Where the bytes of a file are.
+/// The location of a file's bytes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Content {
     /// In the document.
     Here(Arc<[u8]>),
-    /// With the platform, under this key: too large to be copied about. Once the file was read, the
-    /// key is its SHA-256.
+    /// With the platform, under this key, because they are too large to be copied. Once the file
+    /// was read, the key is its SHA-256.
     Outside(String),
 }
 
-/// What is to be read, and how.
+/// A file to be read, with options.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadTask {
     /// Its number.
@@ -43,27 +43,27 @@ pub struct ReadTask {
     pub name: String,
     /// Its bytes.
     pub content: Content,
-    /// How many there are.
+    /// The number of its bytes.
     pub size: u64,
-    /// How to read them.
+    /// The options of reading it.
     pub setup: ReadSetup,
 }
 
-/// How a file is to be read.
+/// Options of reading a file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ReadSetup {
-    /// What the user says about units, axes and the frame rate.
+    /// The options that the user set: unit, up axis and frame rate.
     pub options: ImportOptions,
-    /// Roles that were set by hand, by the number of the clip in the file.
+    /// Roles that were set by hand, by the index of the clip in the file.
     pub roles: BTreeMap<usize, Roles>,
-    /// Files that this one may lean on: skeletons for the motion of another file.
+    /// Files that it may depend on: skeletons for the motion of another file.
     pub companions: Vec<Companion>,
-    /// SHA-256 of the file's bytes, where it is known already; lower-case hexadecimal.
+    /// SHA-256 of the file's bytes, if it is known already; lower-case hexadecimal.
     #[serde(default)]
     pub sha256: Option<String>,
 }
 
-/// A small file that others lean on: the skeleton of a motion.
+/// A small file that others depend on: the skeleton of a motion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Companion {
     /// The file's name.
@@ -74,65 +74,65 @@ pub struct Companion {
     pub bytes: Arc<[u8]>,
 }
 
-/// What reading a file gave: one part for a motion file, several for an archive.
+/// The result of reading a file: one part for a motion file, several for an archive.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReadReport {
     /// The motion files.
     pub files: Vec<ReadFile>,
-    /// What is to be said of the whole, one sentence each.
+    /// Notes on the whole file, one sentence each.
     pub notes: Vec<Message>,
 }
 
 impl ReadReport {
-    /// Whether it is of one motion file that lay in no archive.
+    /// Returns whether it is a single motion file outside any archive.
     #[must_use]
     pub fn is_one_file(&self) -> bool {
         matches!(self.files.as_slice(), [file] if file.unpacked.is_none())
     }
 }
 
-/// One motion file.
+/// SingleFile motion file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadFile {
     /// The file's name.
     pub name: String,
     /// SHA-256 of its bytes, lower-case hexadecimal.
     pub sha256: String,
-    /// How many bytes it has.
+    /// The number of its bytes.
     pub size: u64,
-    /// What it is.
+    /// Its format.
     pub kind: FileKind,
-    /// Its bytes, where it came out of an archive: nobody else has them.
+    /// Its bytes, if it was unpacked from an archive: there is no other copy.
     pub unpacked: Option<Vec<u8>>,
-    /// Its clips, or why there are none.
+    /// Its clips, or the error.
     pub result: Result<ReadClips, ImportError>,
 }
 
 /// The clips of a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReadClips {
-    /// One for each character.
+    /// SingleFile for each character.
     pub clips: Vec<ReadClip>,
-    /// What was odd, one sentence each.
+    /// The oddities, one sentence each.
     pub warnings: Vec<Message>,
-    /// The skeleton file that the motion was read with.
+    /// The skeleton file that was used.
     pub companion: Option<Companion>,
-    /// Whether there are no clips because the skeleton file is not here.
+    /// Whether there are no clips because the skeleton file is missing.
     pub awaits_skeleton: bool,
 }
 
-/// A clip, with all that is derived from it.
+/// A clip with everything derived from it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadClip {
     /// The clip.
     pub motion: Motion,
-    /// How it was read.
+    /// The report on how it was read.
     pub about: About,
-    /// The mesh that the file has for the clip's skeleton; all clips of one character share it.
+    /// The mesh of the file on the clip's skeleton; all clips of one character share it.
     pub mesh: Option<Arc<SkinnedMesh>>,
 }
 
-/// How a clip was read: what the clip panel tells.
+/// A report on how a clip was read, shown in the clip panel.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct About {
     /// Unit, height and up axis, in words.
@@ -141,20 +141,19 @@ pub struct About {
     pub t_pose_first_row: bool,
     /// Whether that row was left out.
     pub t_pose_dropped: bool,
-    /// Metres per unit that would make the body as tall as a person, where it is of no size that
-    /// people have.
+    /// Metres per unit that would make the body as tall as a person, if its size is implausible.
     #[serde(default)]
     pub fitting_unit: Option<f64>,
-    /// Whether the root is far away in single rows.
+    /// Whether the root is far off in single rows.
     #[serde(default)]
     pub wild_rows: bool,
 }
 
-/// [`read`], or none of it.
+/// The type of [`read`], and of functions that replace it.
 pub type Reads = fn(&str, &[u8], &ReadSetup, &mut dyn FnMut(usize) -> bool) -> Option<ReadReport>;
 
-/// Reads a file, or all motion files of an archive. `progress` hears how much of it is done, in
-/// bytes, and says whether to go on; `None` when it said no.
+/// Reads a file, or all motion files of an archive. `progress` receives the bytes done and returns
+/// whether to continue; the result is `None` if it returned `false`.
 pub fn read(
     name: &str,
     bytes: &[u8],
@@ -179,11 +178,11 @@ pub fn read(
         FileKind::Gzip => unpack_gzip(name, bytes, most)
             .map(|bytes| (vec![(without_gz(name).to_owned(), bytes)], Vec::new())),
         kind => {
-            // Only a motion leans on them.
+            // Only motions depend on them.
             let companions = if kind == FileKind::Amc { setup.companions.as_slice() } else { &[] };
             let skeletons = skeletons_of(companions, &setup.options);
             let sha256 = setup.sha256.as_deref();
-            let file = One { name, bytes, kind, sha256 };
+            let file = SingleFile { name, bytes, kind, sha256 };
             return Some(ReadReport {
                 files: vec![file.read(setup, &skeletons, &|_| None, progress)?],
                 notes: Vec::new(),
@@ -206,7 +205,7 @@ pub fn read(
     }
 }
 
-/// Reads what came out of an archive of `packed` bytes.
+/// Reads the files of an archive of `packed` bytes.
 fn read_several(
     mut files: Vec<(String, Vec<u8>)>,
     notes: Vec<Message>,
@@ -228,13 +227,13 @@ fn read_several(
     let mut before = 0;
     let mut read = Vec::new();
     for (index, ((name, bytes), kind)) in files.iter().zip(kinds).enumerate() {
-        // What glTF files lean on is no motion.
+        // The buffers of glTF files are not motions.
         if kind == FileKind::Unknown {
             continue;
         }
         let mut scaled =
             |done: usize| progress(((before + done) as f64 / total * packed as f64) as usize);
-        let file = One { name, bytes, kind, sha256: None }.read(
+        let file = SingleFile { name, bytes, kind, sha256: None }.read(
             setup,
             &skeletons,
             &beside,
@@ -243,7 +242,7 @@ fn read_several(
         read.push((index, file));
         before += bytes.len();
     }
-    // A skeleton that has a motion is not looked at by itself.
+    // A skeleton that a motion uses is not imported by itself.
     let used: Vec<String> = (read.iter())
         .filter_map(|(_, file)| Some(file.result.as_ref().ok()?.companion.as_ref()?.sha256.clone()))
         .collect();
@@ -254,7 +253,7 @@ fn read_several(
     Some(ReadReport { files: read.into_iter().map(|(_, file)| file).collect(), notes })
 }
 
-/// The skeleton files that can be read.
+/// Returns the skeleton files that can be read.
 fn skeletons_of<'a>(
     companions: &'a [Companion],
     options: &ImportOptions,
@@ -266,15 +265,15 @@ fn skeletons_of<'a>(
     companions.iter().filter_map(read).collect()
 }
 
-/// A file that is no archive.
-struct One<'a> {
+/// A file that is not an archive.
+struct SingleFile<'a> {
     name: &'a str,
     bytes: &'a [u8],
     kind: FileKind,
     sha256: Option<&'a str>,
 }
 
-impl One<'_> {
+impl SingleFile<'_> {
     fn read(
         &self,
         setup: &ReadSetup,
@@ -291,9 +290,9 @@ impl One<'_> {
                 let best = acclaim::best_skeleton(name, bytes, &named)
                     .and_then(|index| skeletons.get(index));
                 match best {
-                    // It is one that waits for its skeleton, where it is one at all.
+                    // A motion without its skeleton, if it is valid.
                     None => acclaim::check_motion(name, bytes).map(|()| {
-                        warnings.extend(misfit(name, bytes, skeletons));
+                        warnings.extend(mismatch(name, bytes, skeletons));
                         None
                     }),
                     Some((own, skeleton)) => {
@@ -337,9 +336,9 @@ impl One<'_> {
     }
 }
 
-/// What is to be said where there are skeletons, and none is that of the motion: of the one that is
-/// most like it.
-fn misfit(
+/// Returns the error for a motion whose skeleton is not among those given, about the most similar
+/// one.
+fn mismatch(
     name: &str,
     bytes: &[u8],
     skeletons: &[(&Companion, AcclaimSkeleton)],
@@ -367,7 +366,7 @@ impl ReadClips {
 }
 
 impl Companion {
-    /// A file that was just read.
+    /// Returns the report on a file that was just read.
     #[must_use]
     pub fn new(name: &str, bytes: &[u8]) -> Self {
         Self { name: name.to_owned(), sha256: sha256_hex(bytes), bytes: Arc::from(bytes) }
@@ -401,10 +400,10 @@ impl ReadClip {
     }
 }
 
-/// SHA-256 in lower-case hexadecimal.
+/// Returns the SHA-256 in lower-case hexadecimal.
 fn sha256_hex(bytes: &[u8]) -> String {
     use std::fmt::Write as _;
-    // In pieces: browsers only optimise a function from one call to its next.
+    // In pieces, because browsers optimise a function only between calls.
     let mut digest = Sha256::new();
     bytes.chunks(1 << 16).for_each(|piece| digest.update(piece));
     digest.finalize().iter().fold(String::with_capacity(64), |mut hex, byte| {

@@ -1,5 +1,5 @@
-//! A report on its way from a worker: a head of JSON, and the long arrays as bytes in pieces, so
-//! that neither side copies for longer than a frame lasts.
+//! Transfer of a report from a worker: a JSON header, and the long arrays as bytes in pieces, so
+//! that neither side copies for longer than a frame.
 
 use super::{About, Companion, ReadClip, ReadClips, ReadFile, ReadReport};
 use crate::memory::motion_bytes;
@@ -15,34 +15,34 @@ use serde::{Deserialize, Serialize};
 use std::collections::TryReserveError;
 use std::sync::Arc;
 
-/// The length of a piece, bytes: a whole number of every kind of value below, and copied in well
+/// The length of a piece, bytes: a multiple of the size of every value below, and copied in well
 /// under a millisecond.
 const PIECE_BYTES: usize = 48 << 14;
 
-/// Why pieces do not make a report.
+/// The reason why pieces do not form a report.
 #[derive(Debug, thiserror::Error, segue_text::ToMessage)]
 pub enum WireError {
-    /// The head is not one.
+    /// An invalid header.
     #[error("the head of a report cannot be read: {why}", why = .0.to_string())]
     Head(#[from] serde_json::Error),
-    /// More or fewer bytes than the head tells of.
+    /// Another number of bytes than the header states.
     #[error("a report of {expected} bytes came with {found}")]
     Length {
-        /// What the head says.
+        /// The number in the header.
         expected: usize,
-        /// What came.
+        /// The number received.
         found: usize,
     },
-    /// There is no memory for it.
+    /// A report for which there is no memory.
     #[error("there is no memory for its {mb} MB: remove clips that you do not need", mb = .bytes.div_ceil(1_000_000))]
     NoRoom {
-        /// How many bytes it has.
+        /// The number of its bytes.
         bytes: usize,
     },
-    /// The arrays make no clip.
+    /// Arrays that do not form a clip.
     #[error(transparent)]
     Clip(#[from] ClipError),
-    /// The joints make no skeleton.
+    /// Joints that do not form a skeleton.
     #[error(transparent)]
     Skeleton(#[from] SkeletonError),
 }
@@ -59,7 +59,7 @@ struct FileHead {
     sha256: String,
     size: u64,
     kind: FileKind,
-    /// How many bytes of the file itself come along.
+    /// The number of bytes of the file itself, if they are included.
     unpacked: Option<usize>,
     result: Result<ClipsHead, ImportError>,
 }
@@ -90,7 +90,7 @@ struct ClipHead {
     #[serde(default)]
     ground_m: f32,
     about: About,
-    /// Which of the file's meshes is its own.
+    /// The index of its mesh among those of the file.
     #[serde(default)]
     mesh: Option<usize>,
 }
@@ -101,11 +101,11 @@ struct MeshHead {
     vertices: usize,
     triangles: usize,
     joints: usize,
-    /// Vertices with a colour: all or none.
+    /// The number of vertex colours: all vertices or none.
     colors: usize,
 }
 
-/// A report that is ready to travel.
+/// A report that is ready for transfer.
 #[derive(Debug)]
 pub struct Parcel {
     head: String,
@@ -116,7 +116,7 @@ impl Parcel {
     /// Packs a report.
     ///
     /// # Errors
-    /// [`WireError::Head`] when JSON cannot hold it.
+    /// [`WireError::Head`] when JSON cannot represent it.
     pub fn new(report: ReadReport) -> Result<Self, WireError> {
         let head = Head {
             files: report.files.iter().map(FileHead::of).collect(),
@@ -125,13 +125,13 @@ impl Parcel {
         Ok(Self { head: serde_json::to_string(&head)?, report })
     }
 
-    /// Everything but the arrays.
+    /// Returns the header: everything but the arrays.
     #[must_use]
     pub fn head(&self) -> &str {
         &self.head
     }
 
-    /// Hands out the arrays, piece by piece, in the order in which [`Unpacker::push`] wants them.
+    /// Sends the arrays piece by piece, in the order that [`Unpacker::push`] expects.
     pub fn pieces(&self, mut send: impl FnMut(&[u8])) {
         let mut piece = Piece { bytes: Vec::with_capacity(PIECE_BYTES), send: &mut send };
         for file in &self.report.files {
@@ -165,7 +165,7 @@ fn put_motion(piece: &mut Piece<'_>, motion: &Motion) {
     }
 }
 
-/// The meshes of clips, each once.
+/// Returns the meshes of clips, each once.
 fn meshes(clips: &[ReadClip]) -> Vec<&Arc<SkinnedMesh>> {
     let mut meshes: Vec<&Arc<SkinnedMesh>> = Vec::new();
     for mesh in clips.iter().filter_map(|clip| clip.mesh.as_ref()) {
@@ -189,14 +189,14 @@ fn put_mesh(piece: &mut Piece<'_>, mesh: &SkinnedMesh) {
     }
 }
 
-/// Gathers values up to the length of a piece; no value is cut.
+/// A buffer for the values of one piece; no value is split.
 struct Piece<'a> {
     bytes: Vec<u8>,
     send: &'a mut dyn FnMut(&[u8]),
 }
 
 impl Piece<'_> {
-    /// Puts values in the byte order of this machine, on which the other side runs, too.
+    /// Adds values in the byte order of this machine, which is also that of the receiver.
     fn put<T: NoUninit>(&mut self, mut values: &[T]) {
         while !values.is_empty() {
             let room = (PIECE_BYTES - self.bytes.len()) / size_of::<T>();
@@ -253,7 +253,7 @@ impl FileHead {
         self.result.as_ref().map_or(&[], |read| &read.meshes)
     }
 
-    /// How many bytes of arrays come with it.
+    /// Returns the number of bytes of its arrays.
     fn bytes(&self) -> usize {
         let clips: usize = self.clips().iter().map(ClipHead::bytes).sum();
         let meshes =
@@ -294,7 +294,7 @@ impl MeshHead {
         }
     }
 
-    /// How many bytes its arrays take.
+    /// Returns the number of bytes of its arrays.
     fn bytes(&self) -> usize {
         let vertices = self
             .vertices
@@ -305,7 +305,7 @@ impl MeshHead {
             .saturating_add(self.joints.saturating_mul(28))
     }
 
-    /// A mesh with the memory that its arrays need.
+    /// Returns an empty mesh with memory for its arrays.
     fn room(&self) -> Result<SkinnedMesh, TryReserveError> {
         let mut mesh = SkinnedMesh::default();
         mesh.positions.try_reserve_exact(self.vertices)?;
@@ -318,7 +318,7 @@ impl MeshHead {
         Ok(mesh)
     }
 
-    /// Takes what the mesh still needs from the front of `bytes`.
+    /// Moves what the mesh still needs from the front of `bytes`.
     fn take(&self, mesh: &mut SkinnedMesh, bytes: &mut &[u8]) {
         fill(&mut mesh.positions, self.vertices, bytes, |v| v);
         fill(&mut mesh.normals, self.vertices, bytes, |v| v);
@@ -335,7 +335,7 @@ impl MeshHead {
     }
 }
 
-/// The arrays of one clip, while they come in.
+/// The arrays of one clip during the transfer.
 #[derive(Default)]
 struct Arrays {
     rotations: Vec<Quat>,
@@ -346,7 +346,7 @@ struct Arrays {
 }
 
 impl Arrays {
-    /// Takes the memory that a clip needs.
+    /// Returns empty arrays with memory for a clip.
     fn with_room_for(head: &ClipHead) -> Result<Self, TryReserveError> {
         let mut arrays = Self::default();
         arrays.rotations.try_reserve_exact(head.frames.saturating_mul(head.joints.len()))?;
@@ -361,7 +361,7 @@ impl Arrays {
         Ok(arrays)
     }
 
-    /// Takes what it still needs from the front of `bytes`.
+    /// Moves what the arrays still need from the front of `bytes`.
     fn take(&mut self, head: &ClipHead, bytes: &mut &[u8]) {
         let frames = head.frames;
         fill(&mut self.rotations, frames.saturating_mul(head.joints.len()), bytes, |q| q);
@@ -403,8 +403,8 @@ impl Arrays {
     }
 }
 
-/// Moves values, made of what [`Piece::put`] wrote, from the front of `bytes` to `values` until
-/// there are `wanted` or no more bytes.
+/// Moves values written by [`Piece::put`] from the front of `bytes` to `values` until there are
+/// `wanted` or no more bytes.
 fn fill<T, P: AnyBitPattern>(
     values: &mut Vec<T>,
     wanted: usize,
@@ -418,18 +418,18 @@ fn fill<T, P: AnyBitPattern>(
     *bytes = later;
 }
 
-/// Puts the pieces of a report together again.
+/// A receiver that assembles the pieces of a report.
 pub struct Unpacker {
     head: Head,
     files: Vec<Incoming>,
-    /// How many bytes are expected.
+    /// The number of bytes expected.
     bytes: usize,
-    /// The file that comes in; those before it are complete.
+    /// The index of the file in transfer; those before it are complete.
     at: usize,
     found: usize,
 }
 
-/// A file that comes in.
+/// A file in transfer.
 #[derive(Default)]
 struct Incoming {
     unpacked: Vec<u8>,
@@ -447,12 +447,12 @@ impl std::fmt::Debug for Unpacker {
 }
 
 impl Unpacker {
-    /// Begins with the head, and takes all the memory that the arrays will need, up to `room`
-    /// bytes: nothing grows when the pieces come.
+    /// Reads the header and reserves all memory for the arrays, up to `room` bytes: nothing is
+    /// allocated when the pieces arrive.
     ///
     /// # Errors
-    /// [`WireError::Head`] when it is none, and [`WireError::NoRoom`] where there is no memory for
-    /// what it tells of.
+    /// [`WireError::Head`] if the header is invalid, and [`WireError::NoRoom`] if there is no
+    /// memory for the arrays.
     pub fn new(head: &str, room: u64) -> Result<Self, WireError> {
         let head: Head = serde_json::from_str(head)?;
         let bytes = (head.files.iter().map(FileHead::bytes)).fold(0, usize::saturating_add);
@@ -467,13 +467,13 @@ impl Unpacker {
         Ok(Self { head, files, bytes, at: 0, found: 0 })
     }
 
-    /// How many bytes the arrays take.
+    /// Returns the number of bytes of the arrays.
     #[must_use]
     pub fn bytes(&self) -> u64 {
         self.bytes as u64
     }
 
-    /// Takes the next piece.
+    /// Adds the next piece.
     pub fn push(&mut self, piece: &[u8]) {
         self.found += piece.len();
         let mut rest = piece;
@@ -482,17 +482,17 @@ impl Unpacker {
         {
             file.take(head, &mut rest);
             if rest.is_empty() {
-                // There may be more of this one.
+                // There may be more of this file.
                 return;
             }
             self.at += 1;
         }
     }
 
-    /// The report, once all pieces are in.
+    /// Returns the report once all pieces have arrived.
     ///
     /// # Errors
-    /// [`WireError`] when something is missing or makes no clip.
+    /// [`WireError`] if something is missing or does not form a clip.
     pub fn finish(self) -> Result<ReadReport, WireError> {
         if self.found != self.bytes {
             return Err(WireError::Length { expected: self.bytes, found: self.found });
@@ -505,7 +505,7 @@ impl Unpacker {
 }
 
 impl Incoming {
-    /// Takes the memory that a file needs.
+    /// Reserves memory for a file.
     fn with_room_for(head: &FileHead) -> Result<Self, TryReserveError> {
         let mut unpacked = Vec::new();
         unpacked.try_reserve_exact(head.unpacked.unwrap_or(0))?;
@@ -554,7 +554,7 @@ impl Incoming {
 }
 
 impl ClipHead {
-    /// How many bytes its arrays take.
+    /// Returns the number of bytes of its arrays.
     fn bytes(&self) -> usize {
         usize::try_from(motion_bytes(self.frames, self.joints.len(), self.moving.len()))
             .unwrap_or(usize::MAX)
@@ -569,7 +569,7 @@ mod tests {
     use segue_motion::synth::{Action, Params, synthesize};
 
     impl Unpacker {
-        /// How many values its arrays have room for.
+        /// Returns the capacities of its arrays.
         fn room(&self) -> Vec<usize> {
             let of_clip = |clip: &Arrays| {
                 let translations: usize = clip.translations.iter().map(Vec::capacity).sum();
@@ -610,7 +610,7 @@ mod tests {
     }
 
     #[test]
-    fn a_report_that_no_memory_holds_is_refused_at_its_head() {
+    fn unpacker_without_memory_is_refused_at_the_header() {
         let mut report = report(1.0);
         report.files[0].unpacked = Some(vec![7; 7]);
         let parcel = Parcel::new(report).unwrap();
@@ -621,14 +621,14 @@ mod tests {
         };
         assert!(matches!(error, WireError::NoRoom { .. }), "{error}");
         assert!(error.to_string().contains("remove clips"), "{error}");
-        // What there is room for is a matter of bytes.
+        // The memory that is needed is known in bytes.
         let bytes = Unpacker::new(parcel.head(), u64::MAX).unwrap().bytes();
         assert!(Unpacker::new(parcel.head(), bytes).is_ok());
         assert!(matches!(Unpacker::new(parcel.head(), bytes - 1), Err(WireError::NoRoom { .. })));
     }
 
     #[test]
-    fn what_is_sent_arrives_as_it_was() {
+    fn unpacker_returns_the_report_as_sent() {
         // Long enough for several pieces.
         let mut long = report(60.0);
         long.files
@@ -658,7 +658,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_lost_on_the_way_is_noticed() {
+    fn unpacker_with_missing_bytes_is_refused() {
         let parcel = Parcel::new(report(2.0)).unwrap();
         let mut unpacker = Unpacker::new(parcel.head(), u64::MAX).unwrap();
         parcel.pieces(|piece| unpacker.push(&piece[..piece.len() - 2]));
