@@ -1,7 +1,7 @@
-//! What happens while a hand drags the blend window: two clips of 3,000 frames and 31 joints.
+//! The work while the blend window is dragged: two clips of 3,000 frames and 31 joints.
 //!
-//! `window/cached terms` is what a new window costs: the distances between all windows on the
-//! search's grid. `registration.rs` holds that against the definition.
+//! `window/cached terms` is the cost of a new window: the distances between all windows on the
+//! search's grid. `registration.rs` compares that with the definition.
 
 mod common;
 

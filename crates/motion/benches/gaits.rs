@@ -1,4 +1,4 @@
-//! What happens while a hand drags a speed, a weight, or the switch of the foot lock: 600 frames.
+//! The work while a speed, a weight, or the switch of the foot lock is dragged: 600 frames.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use segue_motion::blend::{LayerOptions, layer};

@@ -1,6 +1,6 @@
-//! What a motion graph costs: 6,000 frames of 31 joints, windows of 30 frames. "Directly" is a
-//! thousandth of the same pairs straight from the definition of the distance, each counted once:
-//! the whole takes a thousand times as long.
+//! The cost of a motion graph: 6,000 frames of 31 joints, windows of 30 frames. "Directly" is a
+//! thousandth of the same pairs by the definition of the distance: the whole takes a thousand times
+//! as long.
 
 mod common;
 
@@ -20,7 +20,7 @@ const FRAMES: usize = 6_000;
 const WINDOW: usize = 30;
 const FPS: f64 = 60.0;
 
-/// Strides whose cadence sways.
+/// Returns strides whose cadence varies.
 fn set(frames: usize) -> Arc<FrameSet> {
     let skeleton = skeleton();
     let (mut rotations, mut roots) =

@@ -1,7 +1,7 @@
-//! What a search costs: 27 dimensions; 5,000, 50,000 and 500,000 frames; queries from a recorded
-//! drive through that database and from noise. The boxes against a plain scan, against boxes over
-//! 16 and 64 frames in order of time with early exit (the usual way, Holden 2020), and against the
-//! k-d tree of `kiddo`. What building costs; and what a crowd costs. Percentiles:
+//! The cost of a search: 27 dimensions; 5,000, 50,000 and 500,000 frames; queries from a recorded
+//! drive through the database and from noise. Segue's boxes are compared with a plain scan, with
+//! boxes over 16 and 64 frames in order of time with early exit (the usual way, Holden 2020), and
+//! with the k-d tree of `kiddo`. Also the cost of building a database, and of a crowd. Percentiles:
 //! `cargo xtask match-speed`.
 
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -50,7 +50,7 @@ fn building(c: &mut Criterion) {
     });
 }
 
-/// A second of sixty characters, each driven by a recording of its own.
+/// Simulates a second of sixty characters, each driven by a recording of its own.
 fn crowd(c: &mut Criterion) {
     let mut group = c.benchmark_group("matching/crowd");
     group.sample_size(10);

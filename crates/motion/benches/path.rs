@@ -1,4 +1,4 @@
-//! What happens while a hand drags a control point: a clip of 3,000 frames and 31 joints, laid on
+//! The work while a control point is dragged: a clip of 3,000 frames and 31 joints, carried to
 //! another path for every frame of the screen.
 
 use criterion::{Criterion, criterion_group, criterion_main};

@@ -1,6 +1,6 @@
-//! What registration curves cost: two clips of 1,500 frames and 31 joints, distances of windows of
-//! 30 frames. `distances/directly` is a fiftieth of the same matrix straight from its definition,
-//! O(N²JK): the whole takes fifty times as long.
+//! The cost of registration curves: two clips of 1,500 frames and 31 joints, distances of windows
+//! of 30 frames. `distances/directly` is a fiftieth of the same matrix by its definition, O(N²JK):
+//! the whole takes fifty times as long.
 
 mod common;
 
@@ -20,7 +20,7 @@ const FRAMES: usize = 1_500;
 const WINDOW: usize = 30;
 const FPS: f64 = 60.0;
 
-/// Strides that come at `cadence` and quicken and slow down by `sway`.
+/// Returns strides at `cadence` that speed up and slow down by `sway`.
 fn clip(skeleton: &Arc<Skeleton>, frames: usize, cadence: f32, sway: f32) -> Arc<Clip> {
     let (mut rotations, mut roots) =
         (Vec::with_capacity(frames * skeleton.len()), Vec::with_capacity(frames));

@@ -1,5 +1,5 @@
-//! What happens while a hand drags a half-life: two clips of 3,000 frames and 31 joints, joined
-//! anew for every frame of the screen.
+//! The work while a half-life is dragged: two clips of 3,000 frames and 31 joints, joined again for
+//! every frame of the screen.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use glam::{Quat, Vec3};
@@ -16,7 +16,7 @@ use std::sync::Arc;
 const FRAMES: usize = 3_000;
 const FPS: f64 = 120.0;
 
-/// A chain of 31 joints, as many as the CMU skeleton has.
+/// Returns a chain of 31 joints, as many as the CMU skeleton has.
 fn source(cadence: f32, speed: f32) -> Motion {
     let joint = |index: usize| Joint {
         name: format!("Joint{index}"),

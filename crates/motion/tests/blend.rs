@@ -1,4 +1,5 @@
-//! From two clips to a transition and its numbers, as a person would: all pairs of made motions.
+//! Transitions between all pairs of synthesised motions, with their metrics, by the public
+//! interface.
 
 use segue_motion::blend::{DissolveOptions, RootBlend, dissolve};
 use segue_motion::clip::Motion;
@@ -18,7 +19,7 @@ fn motions() -> Vec<(&'static str, Motion)> {
 }
 
 #[test]
-fn every_pair_of_made_motions_has_a_clean_transition() {
+fn transitions_of_all_synthesised_pairs_are_clean() {
     let motions = motions();
     let mut counted = 0;
     for (a_name, a) in &motions {

@@ -1,6 +1,5 @@
-//! What the search for transitions in 30,000 frames takes at its peak, beside the clips, by an
-//! allocator that counts. In a binary of its own, with one test, so that nothing else allocates
-//! meanwhile.
+//! Peak memory of the search for transitions in 30,000 frames, besides the clips, measured by a
+//! counting allocator. A binary of its own with one test, so that nothing else allocates.
 
 use glam::{Quat, Vec3};
 use peak_alloc::PeakAlloc;
@@ -17,19 +16,19 @@ const CLIPS: usize = 6;
 const FRAMES: usize = 5_000;
 const MAX_BYTES: usize = 300_000_000;
 
-/// Steps of the search that are done: all where the build is optimised. Otherwise the parts that
-/// the clips are cut into, which are held to the end, and some of the 7,600 tiles. What a tile
-/// takes is given back before the next, and all are of one size; the overview has its size from the
-/// first one on. What is found grows, but not beyond [`most_found_bytes`], which is added.
+/// The number of steps of the search: all of them in optimised builds. Otherwise the parts into
+/// which the clips are cut, which are kept to the end, and some of the 7,600 tiles. The memory of a
+/// tile is freed before the next, and all have the same size; the overview has its size from the
+/// first one on. Only the candidates grow, up to [`max_candidate_bytes`], which is added.
 const STEPS: usize = if cfg!(debug_assertions) { 500 } else { usize::MAX };
 
-/// At most 800,000 candidates are held at a time. A vector that grows holds twice of what is in it,
-/// and the half of that which it comes from.
-fn most_found_bytes() -> usize {
+/// Returns the greatest memory of the 800,000 candidates that are kept at a time. A growing vector
+/// has twice the capacity of its content, plus the old half while it moves.
+fn max_candidate_bytes() -> usize {
     800_000 * size_of::<Candidate>() * 3
 }
 
-/// Strides whose cadence sways, another one in every clip.
+/// Returns strides whose cadence varies, differently in every clip.
 fn clips() -> Arc<FrameSet> {
     let joint = |index: usize| {
         let (chain, link) = (index.div_ceil(5), (index + 4) % 5);
@@ -63,7 +62,7 @@ fn clips() -> Arc<FrameSet> {
 }
 
 #[test]
-fn thirty_thousand_frames_are_searched_in_300_mb() {
+fn search_in_30000_frames_takes_300_mb() {
     let set = clips();
     assert_eq!(set.frames(), 30_000);
     let before = ALLOCATOR.current_usage();
@@ -88,7 +87,7 @@ fn thirty_thousand_frames_are_searched_in_300_mb() {
         progress.total,
         12 * set.frames() * (set.frames() + 1) / 2
     );
-    // The points alone, so that the allocator is seen to count.
+    // The size of the points alone, to check that the allocator counts.
     assert!(searched > set.frames() * JOINTS * 12);
-    assert!(peak + if all_is_done { 0 } else { most_found_bytes() } < MAX_BYTES, "{peak}");
+    assert!(peak + if all_is_done { 0 } else { max_candidate_bytes() } < MAX_BYTES, "{peak}");
 }

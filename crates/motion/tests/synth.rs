@@ -1,4 +1,4 @@
-//! What the synthesiser promises, measured on the clips it makes.
+//! Properties of the synthesiser, measured on its clips.
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -30,7 +30,7 @@ fn joint(clip: &Clip, name: &str) -> usize {
     clip.skeleton().find(name).unwrap_or_else(|| panic!("no {name}"))
 }
 
-/// Heel, toe joint and toe tip of both feet in every frame.
+/// Returns heel, toe joint and toe tip of both feet in every frame.
 fn soles(made: &Synthesized, height_m: f32) -> Vec<[[Vec3; 3]; 2]> {
     let clip = &made.clip;
     let heel = heel_in_foot(height_m);
@@ -47,8 +47,8 @@ fn soles(made: &Synthesized, height_m: f32) -> Vec<[[Vec3; 3]; 2]> {
         .collect()
 }
 
-/// The farthest that a heel or a toe joint gets from where it was first planted, metres.
-fn worst_slip(made: &Synthesized, height_m: f32) -> f32 {
+/// Returns the greatest distance of a heel or a toe joint from where it was first planted, metres.
+fn max_slip(made: &Synthesized, height_m: f32) -> f32 {
     let soles = soles(made, height_m);
     let mut worst = 0.0_f32;
     for side in 0..2 {
@@ -65,14 +65,14 @@ fn worst_slip(made: &Synthesized, height_m: f32) -> f32 {
     worst
 }
 
-/// How far anything of a foot gets below the ground, metres.
-fn deepest(made: &Synthesized, height_m: f32) -> f32 {
+/// Returns the greatest depth of any point of a foot below the ground, metres.
+fn max_depth(made: &Synthesized, height_m: f32) -> f32 {
     soles(made, height_m).iter().flatten().flatten().map(|point| -point.y).fold(0.0, f32::max)
 }
 
-/// The largest change of any joint's local angular velocity from frame to frame, rad/s², with its
-/// frame and joint.
-fn worst_angular_acceleration(clip: &Clip) -> (f32, usize, usize) {
+/// Returns the largest change of any joint's local angular velocity from frame to frame, rad/s²,
+/// with its frame and joint.
+fn max_angular_acceleration(clip: &Clip) -> (f32, usize, usize) {
     let dt = clip.dt_secs();
     let velocity = |frame: usize, joint: usize| {
         quat::angular_velocity(clip.rotations(frame)[joint], clip.rotations(frame + 1)[joint], dt)
@@ -115,7 +115,7 @@ fn every_action() -> Vec<Params> {
 }
 
 #[test]
-fn presets_are_made_and_their_ids_fit_a_url() {
+fn presets_synthesise_and_have_ids_for_links() {
     let presets = presets();
     for preset in &presets {
         let made = made(&preset.params);
@@ -129,9 +129,9 @@ fn presets_are_made_and_their_ids_fit_a_url() {
 }
 
 #[test]
-fn planted_feet_stand_still() {
+fn feet_in_contact_stand_still() {
     for params in every_action() {
-        let slip = worst_slip(&made(&params), params.height_m);
+        let slip = max_slip(&made(&params), params.height_m);
         assert!(slip < 1e-3, "{slip} m in {params:?}");
     }
 }
@@ -139,13 +139,13 @@ fn planted_feet_stand_still() {
 #[test]
 fn feet_stay_above_the_ground() {
     for params in every_action() {
-        let depth = deepest(&made(&params), params.height_m);
+        let depth = max_depth(&made(&params), params.height_m);
         assert!(depth < 2e-3, "{depth} m in {params:?}");
     }
 }
 
-/// The shortest distance between the segments `a` and `b`, by sampling: good to a few millimetres
-/// on a foot.
+/// Returns the shortest distance between the segments `a` and `b`, by sampling: accurate to a few
+/// millimetres on a foot.
 fn distance(a: [Vec3; 2], b: [Vec3; 2]) -> f32 {
     let at = |segment: [Vec3; 2], i: u8| segment[0].lerp(segment[1], f32::from(i) / 16.0);
     let pairs = (0..=16).flat_map(|i| (0..=16).map(move |j| (i, j)));
@@ -153,7 +153,7 @@ fn distance(a: [Vec3; 2], b: [Vec3; 2]) -> f32 {
 }
 
 #[test]
-fn feet_do_not_go_through_each_other() {
+fn feet_never_intersect() {
     let mut all: Vec<Params> = presets().iter().map(|preset| preset.params).collect();
     all.extend(
         [-90.0, 45.0, 120.0]
@@ -169,7 +169,7 @@ fn feet_do_not_go_through_each_other() {
 }
 
 #[test]
-fn the_mean_speed_is_the_one_asked_for() {
+fn mean_speed_is_the_requested_one() {
     for turn_rate_dps in [0.0, 30.0, -90.0] {
         for speed in [0.4, 0.9, 1.4, 2.2] {
             check_speed(&Params { turn_rate_dps, ..walk(speed) });
@@ -182,8 +182,9 @@ fn the_mean_speed_is_the_one_asked_for() {
     }
 }
 
-/// Straight: from the displacement over whole cycles. Around a circle: the hips sway about it, so
-/// its radius is their mean distance from the centre, and speed = radius × turn rate.
+/// Checks the mean speed. On a line: from the displacement over whole cycles. On a circle: the hips
+/// sway about it, so its radius is their mean distance from the centre, and speed = radius × turn
+/// rate.
 fn check_speed(params: &Params) {
     let made = made(&Params { fps: 120.0, ..*params });
     let roots = made.clip.root_translations();
@@ -197,7 +198,7 @@ fn check_speed(params: &Params) {
         let radius =
             roots[..whole].iter().map(|root| root.with_y(0.0).distance(centre)).sum::<f32>()
                 / whole as f32;
-        // The whole pose turns as the path does, so the first and last frame differ by turn rate ×
+        // The whole pose turns with the path, so the first and last frame differ by turn rate ×
         // time.
         let [a, b] = [0, whole].map(|frame| made.clip.rotations(frame)[0]);
         let expected = glam::Quat::from_rotation_y(yaw_rate * secs) * a;
@@ -209,7 +210,7 @@ fn check_speed(params: &Params) {
 }
 
 #[test]
-fn walks_and_runs_end_in_the_pose_they_began_with() {
+fn walks_and_runs_are_cyclic() {
     let turning = Params { turn_rate_dps: 40.0, ..walk(1.2) };
     for params in
         [walk(1.4), walk(0.7), run(3.5), turning, Params { fps: 30.0, seed: 5, ..run(3.0) }]
@@ -229,7 +230,7 @@ fn walks_and_runs_end_in_the_pose_they_began_with() {
 }
 
 #[test]
-fn running_flies_and_walking_does_not() {
+fn flight_occurs_in_running_only() {
     let up = |params: &Params| {
         made(params).truth.contacts.iter().filter(|feet| !feet[0].any() && !feet[1].any()).count()
     };
@@ -238,8 +239,8 @@ fn running_flies_and_walking_does_not() {
     }
     let flights = [1.8, 2.5, 3.5, 5.0, 6.5].map(|speed| up(&Params { fps: 120.0, ..run(speed) }));
     assert!(flights.iter().all(|&frames| frames > 0), "{flights:?}");
-    // The share of a cycle that a foot is down: about 60 % in walking, below half in running, less
-    // the faster.
+    // The share of a cycle in which a foot is planted: about 60 % in walking, below half in
+    // running, decreasing with speed.
     let duty = |params: &Params| {
         let contacts = made(params).truth.contacts;
         contacts.iter().filter(|feet| feet[0].any()).count() as f32 / contacts.len() as f32
@@ -250,7 +251,7 @@ fn running_flies_and_walking_does_not() {
 }
 
 #[test]
-fn a_body_in_flight_falls_as_bodies_fall() {
+fn flight_follows_gravity() {
     for params in
         [Params { fps: 120.0, ..run(3.5) }, Params { fps: 120.0, ..Params::new(Action::Jump) }]
     {
@@ -276,7 +277,7 @@ fn a_body_in_flight_falls_as_bodies_fall() {
 }
 
 #[test]
-fn cadence_and_step_length_are_those_of_people() {
+fn cadence_and_step_length_match_the_literature() {
     // Adults of 1.75 m. Walking: Murray 1967, Perry and Burnfield 2010. Running: Cavanagh and Kram
     // 1989.
     for (speed, lowest, highest) in
@@ -298,7 +299,7 @@ fn cadence_and_step_length_are_those_of_people() {
 }
 
 #[test]
-fn phase_and_contacts_tell_the_same_story() {
+fn phase_and_contacts_agree() {
     for params in [walk(1.4), run(3.5), Params { fps: 100.0, ..walk(0.8) }] {
         let truth = made(&params).truth;
         let one_frame = 1.0 / (truth.cycle_secs * params.fps);
@@ -306,8 +307,8 @@ fn phase_and_contacts_tell_the_same_story() {
         for frame in 1..truth.contacts.len() {
             for side in 0..2 {
                 if truth.contacts[frame][side].any() && !truth.contacts[frame - 1][side].any() {
-                    // Left strikes at 0, right at a half; a strike shows in the first frame after
-                    // it.
+                    // The left foot strikes at 0, the right one at a half; a strike shows in the
+                    // first frame after it.
                     let late = (truth.phase[frame] - 0.5 * side as f32 + 0.5).rem_euclid(1.0) - 0.5;
                     assert!((-1e-3..one_frame * 1.01).contains(&late), "{late} at frame {frame}");
                     strikes += 1;
@@ -319,12 +320,12 @@ fn phase_and_contacts_tell_the_same_story() {
 }
 
 #[test]
-fn nothing_jerks() {
+fn angular_acceleration_is_bounded() {
     for params in every_action() {
-        let (worst, frame, joint) = worst_angular_acceleration(&made(&params).clip);
+        let (worst, frame, joint) = max_angular_acceleration(&made(&params).clip);
         // A runner's knee gains 1000°/s within a tenth of a cycle (Novacheck 1998); tight curves
-        // are quicker. Bodies of other size are alike at equal Froude number, and then quicker by
-        // 1/size.
+        // are faster. Bodies of other sizes move alike at equal Froude number, and are then faster
+        // by 1/size.
         let size = params.height_m / 1.75;
         let alike_mps = params.speed_mps / size.sqrt();
         let turning = 1.0 + params.turn_rate_dps.abs() / 200.0;
@@ -340,7 +341,7 @@ fn nothing_jerks() {
 }
 
 #[test]
-fn knees_bend_as_knees_do() {
+fn knee_flexion_matches_the_literature() {
     for (params, swing) in
         [(walk(1.4), 52.0..75.0), (walk(1.0), 48.0..72.0), (run(3.5), 85.0..130.0)]
     {
@@ -349,7 +350,7 @@ fn knees_bend_as_knees_do() {
         assert!(swing.contains(&peak), "{peak}° in {params:?}");
         assert!((2.0..25.0).contains(&least), "{least}° in {params:?}");
     }
-    // The wave of early stance in walking.
+    // The knee flexion of early stance in walking.
     let walked = made(&walk(1.4));
     let knees = knee_flexions(&walked.clip);
     let early = knees
@@ -367,7 +368,7 @@ fn knees_bend_as_knees_do() {
 }
 
 #[test]
-fn hips_rise_over_the_stance_foot_in_walking_and_sink_there_in_running() {
+fn hips_rise_in_mid_stance_of_walking_and_sink_in_running() {
     let rise = |params: &Params, middle: f32| {
         let made = made(params);
         let roots = made.clip.root_translations();
@@ -382,7 +383,7 @@ fn hips_rise_over_the_stance_foot_in_walking_and_sink_there_in_running() {
 }
 
 #[test]
-fn starts_and_stops_stand_with_feet_side_by_side() {
+fn starts_and_stops_stand_with_parallel_feet() {
     let (start, stop) = (made(&Params::new(Action::Start)), made(&Params::new(Action::Stop)));
     for (made, frame) in [(&start, 0), (&stop, stop.clip.frames() - 1)] {
         assert!(made.truth.contacts[frame].iter().all(FootContact::flat));
@@ -395,7 +396,7 @@ fn starts_and_stops_stand_with_feet_side_by_side() {
         let hips = world.positions[0];
         assert!((hips.x - 0.5 * (left.x + right.x)).abs() < 0.02, "{hips}");
     }
-    // Before the right foot lifts, the weight has gone over to the left one.
+    // Before the right foot lifts, the weight has shifted to the left one.
     let lift = start.truth.contacts.iter().position(|feet| !feet[1].any()).unwrap();
     assert!(start.clip.root_translations()[lift].x > 0.015);
     // They reach, and leave, the speed.
@@ -411,7 +412,7 @@ fn starts_and_stops_stand_with_feet_side_by_side() {
 }
 
 #[test]
-fn a_spin_turns_by_the_angle_in_place_and_never_lifts_both_feet() {
+fn spin_turns_in_place_without_flight() {
     for spin_degrees in [180.0, -180.0, 90.0, -45.0, 360.0] {
         let made = made(&Params { spin_degrees, duration_secs: 5.0, ..Params::new(Action::Spin) });
         let last = made.clip.frames() - 1;
@@ -429,7 +430,7 @@ fn a_spin_turns_by_the_angle_in_place_and_never_lifts_both_feet() {
 }
 
 #[test]
-fn a_jump_leaves_the_ground_and_comes_back_to_it() {
+fn jump_leaves_the_ground_and_lands() {
     let made = made(&Params::new(Action::Jump));
     let heights: Vec<f32> = made.clip.root_translations().iter().map(|root| root.y).collect();
     let standing = heights[0];
@@ -445,7 +446,7 @@ fn a_jump_leaves_the_ground_and_comes_back_to_it() {
 }
 
 #[test]
-fn idling_moves_a_little_and_never_a_foot() {
+fn idle_moves_the_body_but_not_the_feet() {
     let made = made(&Params::new(Action::Idle));
     assert!(made.truth.contacts.iter().flatten().all(FootContact::flat));
     let roots = made.clip.root_translations();
@@ -454,7 +455,7 @@ fn idling_moves_a_little_and_never_a_foot() {
 }
 
 #[test]
-fn a_seed_makes_another_person_and_the_same_seed_the_same() {
+fn seed_determines_the_clip() {
     let of = |seed| made(&Params { seed, ..walk(1.4) }).clip;
     assert_eq!(of(3), of(3));
     assert_ne!(of(3), of(4));
@@ -472,7 +473,7 @@ fn seed_zero_is_symmetric() {
 }
 
 #[test]
-fn what_cannot_be_made_is_refused_with_the_range() {
+fn params_out_of_range_are_refused_with_the_range() {
     let refused = |params: Params, words: &[&str]| {
         let error = synthesize(&params).unwrap_err();
         assert!(matches!(error, SynthError::OutOfRange { .. }));
@@ -491,7 +492,7 @@ fn what_cannot_be_made_is_refused_with_the_range() {
 }
 
 #[test]
-fn the_body_has_human_proportions() {
+fn body_has_human_proportions() {
     let skeleton = humanoid(1.75).unwrap();
     assert_eq!(skeleton.len(), 22);
     let index = |name: &str| skeleton.find(name).unwrap();
@@ -503,7 +504,7 @@ fn the_body_has_human_proportions() {
     assert!((at("LeftFoot").y / 1.75 - 0.039).abs() < 1e-3);
     assert!((at("LeftArm").y / 1.75 - 0.818).abs() < 0.02);
     assert!(at("LeftArm").x > 0.0 && at("LeftToe").z > 0.0);
-    // Fingertip to fingertip is about the height.
+    // The arm span is about the height.
     assert!((2.0 * end("LeftHand").x / 1.75 - 1.0).abs() < 0.1, "{}", end("LeftHand"));
 }
 
@@ -532,7 +533,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 160, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn every_valid_parameter_makes_a_sound_clip(params in any_params()) {
+    fn params_in_range_make_a_valid_clip(params in any_params()) {
         let made = made(&params);
         for frame in 0..made.clip.frames() {
             prop_assert!(made.clip.root_translations()[frame].is_finite());
@@ -541,8 +542,8 @@ proptest! {
             }
         }
         prop_assert!(made.truth.phase.iter().all(|phase| (0.0..=1.0).contains(phase)));
-        prop_assert!(worst_slip(&made, params.height_m) < 1e-3, "slip {}", worst_slip(&made, params.height_m));
-        prop_assert!(deepest(&made, params.height_m) < 2e-3, "depth {}", deepest(&made, params.height_m));
+        prop_assert!(max_slip(&made, params.height_m) < 1e-3, "slip {}", max_slip(&made, params.height_m));
+        prop_assert!(max_depth(&made, params.height_m) < 2e-3, "depth {}", max_depth(&made, params.height_m));
         // Nothing flips from one frame to the next, at any frame rate.
         let fastest = 62.0 * (1.75 / params.height_m).sqrt();
         for frame in 1..made.clip.frames() {

@@ -1,4 +1,4 @@
-//! Every method on every pair of made motions, with its numbers: what a shoot-out shows.
+//! Every transition method on every pair of synthesised motions, with its metrics.
 
 use segue_motion::blend::{RootBlend, WeightLaw};
 use segue_motion::clip::Motion;
@@ -37,7 +37,7 @@ const METHODS: [(&str, Method); 7] = [
 ];
 
 #[test]
-fn every_method_joins_every_pair_and_its_numbers_can_be_compared() {
+fn methods_on_all_pairs_have_comparable_metrics() {
     let motions = motions();
     for (a_name, a) in &motions {
         for (b_name, b) in &motions {
@@ -81,8 +81,8 @@ fn every_method_joins_every_pair_and_its_numbers_can_be_compared() {
             let pair = format!("{a_name} → {b_name} at {} {}", found.leave, found.enter);
             let deg = |metrics: TransitionMetrics| metrics.seam_deg.expect("joints turn");
             for (name, metrics) in &numbers[1..] {
-                // A dead pose differs from the motion that it came from, and is faded out: seen
-                // best where there is nothing to bridge.
+                // The extrapolated pose differs from its source and is faded out, which shows most
+                // where there is little to bridge.
                 let allowed = if *name == "dead" { 3.0 } else { 0.5 };
                 assert!(deg(*metrics) <= deg(of("cut")) + allowed, "{pair} {name} {metrics:?}");
                 assert!(
@@ -99,10 +99,10 @@ fn every_method_joins_every_pair_and_its_numbers_can_be_compared() {
     assert!(motions.len() >= 3);
 }
 
-/// Behind the last frame of A, in front of the second of B, unaligned or in the world: whatever a
-/// slider can ask for has numbers.
+/// After the last frame of A, before the second of B, unaligned or in the world: every setting of
+/// the sliders has metrics.
 #[test]
-fn there_are_numbers_at_the_ends_too() {
+fn metrics_at_the_ends_of_clips_exist() {
     let motions = motions();
     let ((_, a), (_, b)) = (&motions[0], &motions[1]);
     let (last_a, last_b) = (a.clip().frames(), b.clip().frames());

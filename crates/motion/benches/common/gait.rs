@@ -1,4 +1,4 @@
-//! The gaits that the benches plant on the ground.
+//! Gaits for the foot lock benches.
 
 use glam::Quat;
 use segue_motion::clip::Clip;
@@ -6,8 +6,8 @@ use segue_motion::skeleton::{Joint, Skeleton};
 use segue_motion::synth::{Action, Params, synthesize};
 use std::sync::Arc;
 
-/// So many frames of a made gait that turns, degrees per second, on a body of 31 joints: fingers
-/// are added.
+/// Returns `frames` frames of a synthesised gait that turns, degrees per second, on a body of 31
+/// joints: fingers are added.
 pub(crate) fn gait(action: Action, frames: usize, turn_rate_dps: f32) -> Clip {
     let params =
         Params { duration_secs: frames as f32 / 60.0 + 0.2, turn_rate_dps, ..Params::new(action) };

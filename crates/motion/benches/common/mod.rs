@@ -1,10 +1,10 @@
-//! The body that the benches move.
+//! The skeleton of the benches.
 
 use glam::{Quat, Vec3};
 use segue_motion::skeleton::{Joint, Skeleton};
 use std::sync::Arc;
 
-/// Six chains of five joints that hang from a root: 31 joints, as many as the CMU skeleton has.
+/// Returns six chains of five joints below a root: 31 joints, as many as the CMU skeleton has.
 pub(crate) fn skeleton() -> Arc<Skeleton> {
     let joint = |index: usize| {
         let (chain, link) = (index.div_ceil(5), (index + 4) % 5);

@@ -1,5 +1,5 @@
-//! Four searches over the same frames with the same queries: what `benches/matching.rs` and
-//! `tools/match_speed.rs` measure.
+//! Four search methods over the same frames with the same queries, measured by
+//! `benches/matching.rs` and `tools/match_speed.rs`.
 
 use glam::DVec2;
 use segue_motion::clip::Motion;
@@ -13,11 +13,11 @@ use segue_motion::skeleton::Roles;
 use segue_motion::synth::{Params, Style, synthesize};
 use std::sync::Arc;
 
-/// A generator of whole numbers (Knuth's constants) that every run shares.
-struct Chance(u64);
+/// A generator of pseudorandom numbers (Knuth's constants), the same in every run.
+struct Random(u64);
 
-impl Chance {
-    /// From 0 to 1.
+impl Random {
+    /// Returns a number from 0 to 1.
     fn next(&mut self) -> f64 {
         self.0 =
             self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -29,10 +29,10 @@ impl Chance {
     }
 }
 
-/// Clips of the synthesiser, each by another person in another manner, with so many frames when
-/// mirrored.
+/// Returns synthesised clips by different persons in different styles, of `frames` frames in all
+/// with their mirror images.
 pub(crate) fn clips(frames: usize) -> Vec<Arc<Motion>> {
-    let (mut chance, mut clips, mut made_frames) = (Chance(1), Vec::<Arc<Motion>>::new(), 0);
+    let (mut chance, mut clips, mut made_frames) = (Random(1), Vec::<Arc<Motion>>::new(), 0);
     for round in 0.. {
         for natural in made_params() {
             if 2 * made_frames >= frames {
@@ -74,9 +74,9 @@ pub(crate) fn clips(frames: usize) -> Vec<Arc<Motion>> {
     clips
 }
 
-/// A player who changes his mind every second or so.
+/// Returns the input of a player who changes direction every second or so.
 pub(crate) fn recording(seed: u64, ticks: u32) -> Recording {
-    let (mut chance, mut recording, mut yaw) = (Chance(seed), Recording::new(), 0.0f64);
+    let (mut chance, mut recording, mut yaw) = (Random(seed), Recording::new(), 0.0f64);
     while recording.ticks() < ticks as usize {
         let speed = [0.0, 1.4, 1.4, 1.4, 2.0, 3.2][(chance.next() * 6.0) as usize];
         yaw += chance.between(-2.0, 2.0);
@@ -87,10 +87,10 @@ pub(crate) fn recording(seed: u64, ticks: u32) -> Recording {
     recording
 }
 
-/// What was asked, and the frame that was playing.
-type Asked = (Vec<f32>, Option<Hit>);
+/// A query, and the frame that was playing.
+type Query = (Vec<f32>, Option<Hit>);
 
-fn driven(database: &Arc<Database>) -> Vec<Asked> {
+fn driven(database: &Arc<Database>) -> Vec<Query> {
     let mut controller =
         Controller::new(Arc::clone(database), ControllerOptions::default(), &Planar::IDENTITY)
             .expect("defaults");
@@ -111,9 +111,9 @@ fn driven(database: &Arc<Database>) -> Vec<Asked> {
     asked
 }
 
-fn noise(dims: usize) -> Vec<Asked> {
-    let mut chance = Chance(3);
-    // Twelve evenly spread numbers are nearly normally spread.
+fn noise(dims: usize) -> Vec<Query> {
+    let mut chance = Random(3);
+    // The sum of twelve uniform numbers is nearly normally distributed.
     let mut normal = || (0..12).map(|_| chance.next()).sum::<f64>() - 6.0;
     (0..500).map(|_| ((0..dims).map(|_| normal() as f32).collect(), None)).collect()
 }
@@ -198,25 +198,25 @@ impl TwoLevels {
     }
 }
 
-/// Where queries come from.
+/// The source of queries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Kind {
-    /// From a recorded drive through that database.
+    /// A recorded drive through the database.
     Drive,
-    /// From nowhere near it.
+    /// Random features, far from the database.
     Noise,
 }
 
-/// How one looks for the best frame.
+/// A method of searching for the best frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Method {
-    /// Segue's: boxes around frames that are alike.
+    /// Segue's: boxes around similar frames.
     Boxes,
     /// Boxes over 16 and 64 frames in order of time with early exit, the usual way (Holden 2020).
     TwoLevels,
     /// The k-d tree of `kiddo`.
     Tree,
-    /// One after the other.
+    /// A linear scan.
     Scan,
 }
 
@@ -244,17 +244,17 @@ impl Method {
     }
 }
 
-/// A database of the synthesiser's motions, what every method keeps of it, and queries.
+/// A database of synthesised motions, the data structure of every method, and queries.
 pub(crate) struct Trial {
     database: Arc<Database>,
     weights: Vec<f32>,
     two: TwoLevels,
     tree: TreeIndex,
-    asked: [Vec<Asked>; 2],
+    asked: [Vec<Query>; 2],
 }
 
 impl Trial {
-    /// About so many frames of 27 dimensions.
+    /// Returns a trial of about `frames` frames with 27 dimensions.
     pub(crate) fn new(frames: usize) -> Self {
         let database =
             Arc::new(Database::new(clips(frames), &DatabaseOptions::default()).expect("clips"));
@@ -269,17 +269,17 @@ impl Trial {
         }
     }
 
-    /// Frames that can be found.
+    /// Returns the number of frames that can be found.
     pub(crate) fn frames(&self) -> usize {
         self.database.valid().len()
     }
 
-    /// Queries of a kind.
+    /// Returns the number of queries of a kind.
     pub(crate) fn queries(&self, kind: Kind) -> usize {
         self.asked[kind as usize].len()
     }
 
-    /// The cost of the best frame, and how many frames the boxes looked at.
+    /// Returns the cost of the best frame, and the number of frames that the boxes visited.
     pub(crate) fn search(&self, method: Method, kind: Kind, query: usize) -> (f32, usize) {
         let (query, known) = &self.asked[kind as usize][query];
         let question = Question { query, weights: &self.weights, filter: TagFilter::default() };
