@@ -176,7 +176,7 @@ fn the_stage_has_its_own_colours_and_rows() {
         let mut harness = harness(size, Theme::default(), page);
         if name == "stage-desk" {
             press(text::STAGE, &mut harness);
-            harness.get_by_label("Twist of the hands").scroll_to_me();
+            harness.get_by_label("Hand twist").scroll_to_me();
             harness.run();
             harness.get_by_label("limbs").click();
             harness.run();

@@ -189,7 +189,7 @@ choices! {
     PathKeep of PathKeep {
         Speed "speed" "speed",
         Duration "duration" "duration",
-        Whole "whole" "whole way",
+        Whole "whole" "whole path",
     }
 
     /// The knots at the ends of a path.
@@ -234,7 +234,7 @@ choices! {
         Inverse "inverse" "1 / d",
         Exponential "exponential" "exp(−d)",
         Uniform "uniform" "uniform",
-        Proportional "proportional" "d, wrong",
+        Proportional "proportional" "d (wrong)",
     }
 
     /// How likely a walk is to go on in its clip.
@@ -265,9 +265,9 @@ choices! {
     /// How the alignment angle of a walk is computed; all but the first are mistakes.
     Atan of Atan {
         Atan2 "atan2" "atan2",
-        Atan "atan" "atan, wrong",
-        Degrees "degrees" "degrees, wrong",
-        Facing "facing" "rotation · Y, wrong",
+        Atan "atan" "atan (wrong)",
+        Degrees "degrees" "degrees (wrong)",
+        Facing "facing" "rotation · Y (wrong)",
     }
 
     /// Recorded input for the Match lab.

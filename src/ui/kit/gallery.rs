@@ -217,7 +217,7 @@ fn parameters_ui(mock: &mut Mock, ui: &mut Ui) {
         .unit("frames")
         .secondary(&seconds)
         .marks(&marks);
-    let row = row.help("How long A fades into B. Long drags, short bursts.");
+    let row = row.help("How long A fades into B. Longer is smoother but slower to respond; shorter is snappier but pops.");
     mock.window = slider_row_ui(mock.window, &row, ui).changed.unwrap_or(mock.window);
     let row = SliderRow::new("Leave A at", 0.0..=3.9, 2.0).step(0.01).unit("s");
     mock.leave = slider_row_ui(mock.leave, &row, ui).changed.unwrap_or(mock.leave);

@@ -147,7 +147,7 @@ fn construction_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let longest = session.graph_cast().map(|cast| cast.set().longest() as f64);
     let window = Detail {
         max: longest.map(|longest| (longest - 2.0).max(params.number(Key::BlendWindow))),
-        help: Some("How long a transition takes, and over which windows are compared. Long drags, short bursts.".into()),
+        help: Some("How long a transition takes, and the length of the windows that are compared. Longer is smoother but slower to respond; shorter is snappier but pops.".into()),
         ..Detail::default()
     };
     param_row_ui(Key::BlendWindow, &window, session, out, ui);
