@@ -56,6 +56,13 @@ const OUTSIDE: [&str; 12] = [
     "std::time::SystemTime",
 ];
 
+/// The folders of all Rust sources.
+const ALL_SOURCES: [&str; 7] =
+    ["src", "crates", "tests", "examples", "tools", "fuzz/fuzz_targets", "xtask/src"];
+
+/// The greatest width of a comment, columns; rows of tables and links may be wider.
+const MAX_COMMENT_COLUMNS: usize = 100;
+
 /// Marks of unfinished code, in halves so that this file does not contain them.
 const UNFINISHED: [&str; 4] = [
     concat!("#[ign", "ore"),
@@ -111,19 +118,7 @@ fn labs_are_named_in_their_own_files_only() {
 
 #[test]
 fn sources_contain_nothing_unfinished() {
-    let sources: Vec<_> = [
-        "src",
-        "crates",
-        "tests",
-        "benches",
-        "examples",
-        "tools",
-        "fuzz/fuzz_targets",
-        "xtask/src",
-    ]
-    .into_iter()
-    .flat_map(sources)
-    .collect();
+    let sources: Vec<_> = ALL_SOURCES.into_iter().flat_map(sources).collect();
     let tests = test_modules(&sources);
     let mut violations_found = Vec::new();
     for (path, text) in &sources {
@@ -133,6 +128,28 @@ fn sources_contain_nothing_unfinished() {
         }
     }
     assert!(violations_found.is_empty(), "\n{}", violations_found.join("\n"));
+}
+
+#[test]
+fn sources_begin_with_a_module_line_and_have_narrow_comments() {
+    let sources: Vec<_> = ALL_SOURCES.into_iter().flat_map(sources).collect();
+    let violations_found: Vec<_> =
+        sources.iter().flat_map(|(path, text)| unreadable(path, text)).collect();
+    assert!(sources.len() > 300, "only {} sources found", sources.len());
+    assert!(violations_found.is_empty(), "\n{}", violations_found.join("\n"));
+}
+
+#[test]
+fn unreadable_sources_are_reported() {
+    let found = |text: &str| unreadable(Path::new("src/a.rs"), text);
+    let wide = "x ".repeat(50);
+    assert_eq!(found("//! Summary.\n\nfn a() {}\n"), [""; 0]);
+    assert_eq!(found("#![no_main]\n//! Summary.\n"), [""; 0]);
+    assert_eq!(found("fn a() {}\n"), ["src/a.rs:1: does not begin with a `//!` line"]);
+    let comment = format!("//! Summary.\n    /// {wide}\n");
+    assert_eq!(found(&comment), ["src/a.rs:2: a comment of 108 columns"]);
+    let allowed = format!("//! | {wide} |\n//! [a]: https://example.org/{}\n", "x".repeat(90));
+    assert_eq!(found(&allowed), [""; 0]);
 }
 
 #[test]
@@ -452,6 +469,26 @@ fn unfinished(path: &Path, text: &str) -> Vec<String> {
     for (index, line) in text.lines().enumerate() {
         for mark in UNFINISHED.iter().filter(|mark| line.contains(**mark)) {
             found.push(format!("{}:{}: `{mark}`", path.display(), index + 1));
+        }
+    }
+    found
+}
+
+/// Returns the violations of a source against the form of files: a `//!` line at the beginning, and
+/// narrow comments.
+fn unreadable(path: &Path, text: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    let first = text.lines().find(|line| !line.starts_with("#!["));
+    if !first.is_some_and(|line| line.starts_with("//! ")) {
+        found.push(format!("{}:1: does not begin with a `//!` line", path.display()));
+    }
+    for (index, line) in text.lines().enumerate() {
+        let (line, columns) = (line.trim_start(), line.chars().count());
+        let words = line.trim_start_matches(['/', '!']).trim_start();
+        let may_be_wide = words.starts_with('|') || words.contains("://");
+        if line.starts_with("//") && columns > MAX_COMMENT_COLUMNS && !may_be_wide {
+            let path = path.display();
+            found.push(format!("{path}:{}: a comment of {columns} columns", index + 1));
         }
     }
     found

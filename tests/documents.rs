@@ -50,10 +50,8 @@ fn table() -> String {
 }
 
 /// Folders of the repository by which a code span is recognised as a path.
-const FOLDERS: [&str; 11] = [
-    ".ci", ".github", "assets", "benches", "crates", "docs", "examples", "fuzz", "src", "tests",
-    "tools",
-];
+const FOLDERS: [&str; 10] =
+    [".ci", ".github", "assets", "crates", "docs", "examples", "fuzz", "src", "tests", "tools"];
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))

@@ -1,3 +1,5 @@
+//! Incoming answers of the platform, in order of arrival.
+
 use super::{FileBytes, LargeFile, ReadNews, Stored};
 use eframe::egui;
 use segue_session::lesson::Source;

@@ -1,3 +1,5 @@
+//! Storage of large files by key.
+
 use super::{FileBytes, LargeFile, StoredFiles};
 use segue_session::reading::Content;
 use std::collections::BTreeMap;

@@ -94,8 +94,8 @@ impl StageEncoder<'_> {
         complete
     }
 
-    /// Draws all panes. Returns `false` where something is left out because its pipeline is yet to be
-    /// made.
+    /// Draws all panes. Returns `false` where something is left out because its pipeline is yet to
+    /// be made.
     pub(super) fn encode(&self, encoder: &mut wgpu::CommandEncoder) -> bool {
         let view = self.view;
         let is_lit = view.drawn.panes.iter().any(|pane| pane.lit.is_some());
@@ -153,8 +153,8 @@ impl StageEncoder<'_> {
         complete
     }
 
-    /// Draws one pane. Returns `false` where something is left out because its pipeline is yet to be
-    /// made.
+    /// Draws one pane. Returns `false` where something is left out because its pipeline is yet to
+    /// be made.
     fn encode_pane(&self, pass: &mut wgpu::RenderPass<'_>, pane: &PaneDraw) -> bool {
         let view = self.view;
         let (Some(limbs), Some(strokes), Some(rings)) =

@@ -1,8 +1,8 @@
 //! The last step of a build: files that belong together get names that rule out mixing versions,
 //! the page gets its policy, and the service worker its list of files.
 //!
-//! `cargo xtask serve` ends with it, and Trunk calls it as a hook (Trunk.toml), so that both make the
-//! same folder.
+//! `cargo xtask serve` ends with it, and Trunk calls it as a hook (Trunk.toml), so that both make
+//! the same folder.
 
 use std::fs;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};

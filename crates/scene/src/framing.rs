@@ -26,8 +26,8 @@ pub(crate) fn figure_height(params: &Params) -> f32 {
     (params.number(Key::FigureHeight) as f32).max(0.1)
 }
 
-/// Returns the camera that the parameters describe, around a figure that is shown `shown_size` times
-/// as large as its motion (see [`shown_size`]). Its target is the default one.
+/// Returns the camera that the parameters describe, around a figure that is shown `shown_size`
+/// times as large as its motion (see [`shown_size`]). Its target is the default one.
 #[must_use]
 pub fn camera_of(params: &Params, shown_size: f32) -> Camera {
     let from_above = params.choice::<choices::Camera>() == choices::Camera::Top;

@@ -1,3 +1,5 @@
+//! Options of analysing a motion, from the parameters.
+
 use crate::choices::Curve;
 use crate::params::{Key, Params, Value};
 use segue_motion::clip::{ContactOptions, CurveKind, FootOptions, Motion};

@@ -25,7 +25,8 @@ pub struct Notice {
     pub text: Message,
     /// The subject in a word: a file, a key. It replaces the text where a row has no room for more.
     pub about: String,
-    /// Ids of the clips that can be read better: [`FileCommand::Mend`](super::FileCommand::Mend) does it.
+    /// Ids of the clips that can be read better: [`FileCommand::Mend`](super::FileCommand::Mend)
+    /// does it.
     pub mends: Vec<String>,
     /// The missing clip that it asks for.
     awaits: Option<String>,

@@ -41,8 +41,8 @@ impl Table {
         Writer { table: Some(self) }.message(message)
     }
 
-    /// Checks that a translation tells what the English template tells: both use the same names, and
-    /// the translation may choose forms by any of them.
+    /// Checks that a translation tells what the English template tells: both use the same names,
+    /// and the translation may choose forms by any of them.
     ///
     /// # Errors
     /// [`TemplateError`] with the first name that is on one side only.

@@ -1,3 +1,5 @@
+//! Gamepads of a desktop window: none.
+
 use crate::platform::Gamepad;
 
 /// A gamepad that is there. Windows have none: that would be a crate of its own for each system.

@@ -47,7 +47,8 @@
 //! let height = f64::from(roles.body_height(walk.skeleton()));
 //! let found = best_transition(&walk, &run, &weights, height, &SearchOptions::new(30))?;
 //!
-//! let (a, b) = (Motion::with_roles(Arc::clone(&walk), &roles), Motion::with_roles(Arc::clone(&run), &roles));
+//! let a = Motion::with_roles(Arc::clone(&walk), &roles);
+//! let b = Motion::with_roles(Arc::clone(&run), &roles);
 //! let options = DissolveOptions { window: 30, ..DissolveOptions::default() };
 //! let out = dissolve(&a, found.leave, &b, found.enter, &options)?;
 //! assert_eq!(out.clip.pose(found.leave - 1), walk.pose(found.leave - 1));

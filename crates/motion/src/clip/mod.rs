@@ -28,13 +28,14 @@
 //! one value to enter contact and a looser one to leave it: about a single limit a trembling foot
 //! would flicker.
 //!
-//! A clip that goes in place ([`take_in_place`]) has its way over the ground in its feet: what stands
-//! goes backward under the body, and [`way_from_feet`] adds that up.
+//! A clip that goes in place ([`take_in_place`]) has its way over the ground in its feet: what
+//! stands goes backward under the body, and [`way_from_feet`] adds that up.
 //!
 //! # Example
 //!
 //! ```
-//! use segue_motion::clip::{ContactOptions, Contacts, Interpolation, character_frames, ground_speed};
+//! use segue_motion::clip::{ContactOptions, Contacts, Interpolation};
+//! use segue_motion::clip::{character_frames, ground_speed};
 //! use segue_motion::skeleton::{Roles, Side};
 //! use segue_motion::synth::{Action, Params, synthesize};
 //!

@@ -17,7 +17,9 @@ const MAX_FPS: f64 = 1000.0;
 /// use segue_motion::clip::{Clip, Interpolation, resample};
 /// use segue_motion::skeleton::{Joint, Skeleton};
 ///
-/// let ball = Skeleton::new(vec![Joint { name: "ball".into(), parent: None, offset: Vec3::ZERO, end_site: None, channels: vec![] }])?;
+/// let name = "ball".into();
+/// let joint = Joint { name, parent: None, offset: Vec3::ZERO, end_site: None, channels: vec![] };
+/// let ball = Skeleton::new(vec![joint])?;
 /// let rolls = (0..=30).map(|i| Vec3::X * i as f32).collect();
 /// let clip = Clip::new("ball", ball.into(), 30.0, vec![Quat::IDENTITY; 31], rolls)?;
 /// let finer = resample(&clip, 120.0, Interpolation::Linear)?;

@@ -49,7 +49,8 @@
 //! let mut all = AllPairs::new(Arc::clone(&set))?;
 //! while !all.advance(100_000)?.is_complete() {}
 //! let window = 12;
-//! let options = GraphOptions { blend_window: window, edge_threshold_cm: 20.0, ..Default::default() };
+//! let options =
+//!     GraphOptions { blend_window: window, edge_threshold_cm: 20.0, ..Default::default() };
 //! let candidates = Candidates::find(&all, &all.distances(window)?, &options)?;
 //! let graph = Arc::new(MotionGraph::new(&set, &candidates, &options)?.pruned()?);
 //! assert!(graph.dead_ends().is_empty() && graph.jumps().len() > 20);

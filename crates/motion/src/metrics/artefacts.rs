@@ -157,8 +157,8 @@ impl MotionTrace {
     }
 }
 
-/// Returns the events, in order of time, that are preceded by more than [`MAX_FLASH_GAP_FRAMES`] frames
-/// without one.
+/// Returns the events, in order of time, that are preceded by more than [`MAX_FLASH_GAP_FRAMES`]
+/// frames without one.
 fn separate_events<T>(events: Vec<T>, frame: impl Fn(&T) -> usize) -> Vec<T> {
     let mut last = None;
     let begins = |event: &T| {

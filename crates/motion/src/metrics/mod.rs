@@ -18,8 +18,10 @@
 //! | skating | cm/s | the mean speed of low feet over the ground |
 //!
 //! ```text
-//! pose jump     = max over joints of  max over steps |ω| / fps - max over the clips' steps |ω| / fps
-//! velocity jump = max over joints of  max over frames |ω(t, t + T) - ω(t - T, t)| - the same of the clips,  T = 1/30 s
+//! pose jump     = max over joints of
+//!     max over steps |ω| / fps - max over the clips' steps |ω| / fps
+//! velocity jump = max over joints of
+//!     max over frames |ω(t, t + T) - ω(t - T, t)| - the same of the clips,  T = 1/30 s
 //! spin          = max over frames |yaw(t + 0.2 s) - yaw(t)| - the same of the clips
 //! ```
 //!
@@ -56,7 +58,8 @@
 //! use segue_motion::clip::Motion;
 //! use segue_motion::metrics::TransitionMetrics;
 //! use segue_motion::synth::{Action, Params, synthesize};
-//! use segue_motion::transition::{Method, Mistake, TransitionOptions, concatenate, concatenate_mistaken};
+//! use segue_motion::transition::{Method, Mistake, TransitionOptions};
+//! use segue_motion::transition::{concatenate, concatenate_mistaken};
 //!
 //! let a = Motion::analyze(synthesize(&Params::new(Action::Walk))?.clip);
 //! let b = Motion::analyze(synthesize(&Params::new(Action::Run))?.clip);

@@ -61,8 +61,8 @@ pub struct TransitionMetrics {
     /// transition, the largest change of a joint's angular velocity (a vector in the parent's
     /// frame) from one step to the next, minus the usual value for that joint.
     pub seam_dps: Option<f64>,
-    /// Position jump, centimetres: the largest step of the character over the ground, minus the usual
-    /// one.
+    /// Position jump, centimetres: the largest step of the character over the ground, minus the
+    /// usual one.
     pub jump_cm: Option<f64>,
     /// Yaw of the blend, degrees. With `r`, `a`, `b` the yaw of a step of the result and of the
     /// sources: the largest sum, over any run of consecutive steps of the transition, of

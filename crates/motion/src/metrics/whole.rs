@@ -16,8 +16,8 @@ pub struct ClipMetrics {
     /// Foot slide, centimetres: [`foot_slide_cm`](super::foot_slide_cm). `None` without feet or
     /// stances.
     pub foot_slide_cm: Option<f64>,
-    /// Position jump, centimetres: the largest step of the character over the ground, minus the 99th
-    /// percentile of its steps.
+    /// Position jump, centimetres: the largest step of the character over the ground, minus the
+    /// 99th percentile of its steps.
     pub jump_cm: Option<f64>,
     /// Penetration, centimetres: the depth of the deepest joint or end site below the ground.
     pub penetration_cm: Option<f64>,

@@ -38,7 +38,8 @@
 //!
 //! ```
 //! use segue_motion::math::Planar;
-//! use segue_motion::registration::{PairTerms, Registration, RegistrationOptions, align, limb_weights};
+//! use segue_motion::registration::{PairTerms, Registration, RegistrationOptions};
+//! use segue_motion::registration::{align, limb_weights};
 //! use segue_motion::synth::{Action, Params, synthesize};
 //!
 //! let walk = |speed_mps| synthesize(&Params { speed_mps, ..Params::new(Action::Walk) });

@@ -36,7 +36,8 @@
 //! let body = humanoid(1.75)?;
 //! let roles = Roles::detect(&body);
 //! let joint = |role| roles.get(role).ok_or("not found");
-//! let (hip, knee, ankle) = (joint(Role::LeftThigh)?, joint(Role::LeftShin)?, joint(Role::LeftFoot)?);
+//! let (hip, knee) = (joint(Role::LeftThigh)?, joint(Role::LeftShin)?);
+//! let ankle = joint(Role::LeftFoot)?;
 //! let standing = Pose {
 //!     root_translation: body.joints()[0].offset,
 //!     rotations: vec![Quat::IDENTITY; body.len()],

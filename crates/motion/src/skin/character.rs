@@ -105,8 +105,10 @@ impl Character {
 /// let child = Character { skeleton, roles, mesh };
 ///
 /// let walk = synthesize(&Params::new(Action::Walk))?.clip;
-/// let drive = Drive::new(&walk, &Roles::detect(walk.skeleton()), &child).expect("two people have joints in common");
-/// let (mut pose, mut transforms, mut positions, mut normals) = (WorldPose::default(), vec![], vec![], vec![]);
+/// let roles = Roles::detect(walk.skeleton());
+/// let drive = Drive::new(&walk, &roles, &child).expect("two people have joints in common");
+/// let (mut pose, mut transforms) = (WorldPose::default(), vec![]);
+/// let (mut positions, mut normals) = (vec![], vec![]);
 /// drive.pose(&walk.world_pose(30), &mut pose);
 /// child.mesh.joint_transforms(&pose, &mut transforms);
 /// linear_blend(&child.mesh, &transforms, &mut positions, &mut normals);

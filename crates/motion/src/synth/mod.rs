@@ -34,7 +34,8 @@
 //! let toe = made.clip.skeleton().find("LeftToe").ok_or("no toe")?;
 //! let at = |frame: usize| made.clip.world_pose(frame).positions[toe];
 //! let stands = |frame: usize| made.truth.contacts[frame][0].toe;
-//! let standing: Vec<usize> = (1..made.clip.frames()).filter(|&f| stands(f - 1) && stands(f)).collect();
+//! let standing: Vec<usize> =
+//!     (1..made.clip.frames()).filter(|&f| stands(f - 1) && stands(f)).collect();
 //! assert!(standing.len() > 60 && standing.iter().all(|&f| at(f).distance(at(f - 1)) < 1e-3));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

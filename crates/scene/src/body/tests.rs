@@ -1,3 +1,5 @@
+//! Tests of bodies generated around skeletons.
+
 use super::*;
 use crate::{Pane, rgb};
 use glam::{Quat, Vec3};

@@ -1,5 +1,5 @@
-//! The Match lab: where the character was asked to be, where it is asked to go, where the frame that
-//! plays would lead, and the crowd around it.
+//! The Match lab: where the character was asked to be, where it is asked to go, where the frame
+//! that plays would lead, and the crowd around it.
 
 use crate::context::{DrawContext, Shown};
 use crate::extra_characters::add_character;

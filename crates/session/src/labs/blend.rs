@@ -1,3 +1,5 @@
+//! The Blend lab and the Transition lab: from one clip to another.
+
 use super::feet::{Lock, slide, slide_before, with_feet};
 use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs};
 use super::pair::{Pair, Pairs};

@@ -18,8 +18,8 @@ pub(crate) trait Lab<S>: Sync {
         self.more_clips(params).unwrap_or_default()
     }
 
-    /// Returns the parameters to set so that the lab no longer uses a clip; empty if it does not use
-    /// it.
+    /// Returns the parameters to set so that the lab no longer uses a clip; empty if it does not
+    /// use it.
     fn without_clip(&self, _params: &Params, _id: &str) -> Vec<(Key, Value)> {
         Vec::new()
     }

@@ -1,3 +1,5 @@
+//! The Layers lab: a part of one clip over another.
+
 use super::feet::{Lock, slide, slide_before, with_feet};
 use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs};
 use super::pair::{Pair, Pairs};

@@ -1,3 +1,5 @@
+//! The Make lab: motion synthesised from parameters.
+
 use super::Outcome;
 use super::feet::{Lock, slide, slide_before, with_feet};
 use super::lab::{Inputs, Lab, LabClips, LabInputs, counts};

@@ -1,3 +1,5 @@
+//! Two clips on one skeleton and at one frame rate.
+
 use super::Retargeted;
 use crate::labs::LabError;
 use segue_motion::clip::{Clip, Interpolation, Motion, resample, retarget_onto};

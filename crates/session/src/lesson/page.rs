@@ -1,3 +1,5 @@
+//! Pages of lessons, as data.
+
 /// One page of a lesson.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Page {

@@ -1,3 +1,5 @@
+//! Tests of lessons and their sources.
+
 use super::parse::{LessonError, MOST_BYTES, parse};
 use super::*;
 use proptest::prelude::*;

@@ -60,8 +60,8 @@ const RESUME_SHARE: f32 = 0.25;
 /// The greatest clearance of a foot that is moved over the ground, metres for a body of 1.75 m:
 /// enough to look like a step instead of a slide.
 const MAX_CLEARANCE_M: f32 = 0.04;
-/// The speed of the foot at which that clearance is reached, metres per second; below [`MIN_CLEARANCE_MPS`]
-/// it is 0.
+/// The speed of the foot at which that clearance is reached, metres per second; below
+/// [`MIN_CLEARANCE_MPS`] it is 0.
 const FULL_CLEARANCE_MPS: f32 = 0.5;
 const MIN_CLEARANCE_MPS: f32 = 0.05;
 /// The greatest amount by which the hips are lowered, metres for a body of 1.75 m, where a leg

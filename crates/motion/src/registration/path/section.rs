@@ -113,8 +113,8 @@ impl Row {
         self.saved(self.states[1..=slope_limit].iter().chain([&self.not_rows, &self.any]))
     }
 
-    /// Returns some of the values where the row is set; with all states, [`SavedRow::choice`] can be
-    /// computed.
+    /// Returns some of the values where the row is set; with all states, [`SavedRow::choice`] can
+    /// be computed.
     fn saved<'a>(&self, parts: impl Iterator<Item = &'a Vec<f64>>) -> SavedRow {
         let mut values = Vec::with_capacity((self.states.len() + 1) * self.used.len());
         for part in parts {

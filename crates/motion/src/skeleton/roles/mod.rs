@@ -37,8 +37,16 @@ struct Assigned {
 /// ```
 /// use segue_motion::skeleton::{Joint, Role, Roles, Skeleton};
 ///
-/// let joint = |name: &str, parent| Joint { name: name.into(), parent, offset: glam::Vec3::NEG_Y, end_site: None, channels: vec![] };
-/// let leg = Skeleton::new(vec![joint("Hips", None), joint("LeftUpLeg", Some(0)), joint("LeftLeg", Some(1)), joint("LeftFoot", Some(2))])?;
+/// let joint = |name: &str, parent| {
+///     let offset = glam::Vec3::NEG_Y;
+///     Joint { name: name.into(), parent, offset, end_site: None, channels: vec![] }
+/// };
+/// let leg = Skeleton::new(vec![
+///     joint("Hips", None),
+///     joint("LeftUpLeg", Some(0)),
+///     joint("LeftLeg", Some(1)),
+///     joint("LeftFoot", Some(2)),
+/// ])?;
 /// let roles = Roles::detect(&leg);
 /// assert_eq!(roles.get(Role::LeftShin), Some(2));
 /// assert_eq!(roles.get(Role::RightShin), None);

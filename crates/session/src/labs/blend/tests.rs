@@ -1,3 +1,5 @@
+//! Tests of frames set by hand, and of the match.
+
 use crate::session::Session;
 use crate::{Command, Transition};
 use segue_motion::clip::Clip;

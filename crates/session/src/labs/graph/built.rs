@@ -1,3 +1,5 @@
+//! Motion graphs and distance fields of the Graph lab.
+
 use super::Cast;
 use super::wanted::GraphKey;
 use petgraph::graph::NodeIndex;

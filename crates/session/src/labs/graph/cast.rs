@@ -1,3 +1,5 @@
+//! The clips of a motion graph, fitted to one skeleton.
+
 use crate::labs::LabError;
 use crate::labs::Retargeted;
 use segue_motion::clip::Motion;

@@ -1,3 +1,5 @@
+//! Scheduling and caching of motion graphs and walks.
+
 use super::super::sliced::{JobKind, Sliced};
 use super::built::Building;
 use super::cast::Fitted;

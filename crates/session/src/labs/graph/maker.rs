@@ -1,3 +1,5 @@
+//! Construction of a walk in slices, ahead of the playhead.
+
 use super::plan::Plan;
 use super::walk::Trace;
 use super::wanted::Wanted;

@@ -1,3 +1,5 @@
+//! The plan of a walk: its stays, without frames.
+
 use super::wanted::Wanted;
 use petgraph::graph::EdgeIndex;
 use petgraph::visit::EdgeRef;

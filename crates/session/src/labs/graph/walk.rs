@@ -1,3 +1,5 @@
+//! Walks through a motion graph, as far as they have been made.
+
 use super::Built;
 use crate::labs::outcome::Outcome;
 use glam::DVec2;

@@ -1,3 +1,5 @@
+//! Requests for graphs and walks, from the parameters.
+
 use crate::choices;
 use crate::labs::blend::{align_by, root_blend, weight_law};
 use crate::labs::error::{LabError, MOST_CLIPS};

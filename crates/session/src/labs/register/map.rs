@@ -1,3 +1,5 @@
+//! Distances between the frames of two clips.
+
 use crate::labs::pair::Pair;
 use segue_motion::clip::Motion;
 use segue_motion::math::Planar;

@@ -1,3 +1,5 @@
+//! Scheduling and caching of registrations.
+
 use super::super::sliced::{JobKind, Sliced};
 use super::{Also, DistanceMap, Made, RegisterInputs};
 use crate::choices;
