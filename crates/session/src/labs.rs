@@ -28,7 +28,8 @@ pub use blend::mistake_shows;
 pub use error::LabError;
 pub(super) use gauge::Gauge;
 pub use graph::{
-    At, Built, Cast, Distances, Field, Passed, Trace, Walk, WalkGhost, check_graph_clips, graph_of,
+    BuiltGraph, DistanceField, Distances, GraphClips, Trace, Walk, WalkGhost, WalkMoment, WalkStay,
+    check_graph_clips, graph_of,
 };
 pub(super) use graph::{clips_of, visits_of};
 pub(super) use lab::{Inputs, LabClips, MoreClip, slots_of};

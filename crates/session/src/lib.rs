@@ -107,10 +107,11 @@ pub use extra_characters::ExtraCharacter;
 pub use files::{Job, Loaded};
 pub use labs::LabError;
 pub use labs::{
-    At, Built, Cast, Distances, Field, Passed, Trace, Walk, WalkGhost, check_graph_clips, graph_of,
+    Beat, DistanceMap, DriveMoment, Driven, FittedMotion, OnPath, Registered, spline_ends,
 };
 pub use labs::{
-    Beat, DistanceMap, DriveMoment, Driven, FittedMotion, OnPath, Registered, spline_ends,
+    BuiltGraph, DistanceField, Distances, GraphClips, Trace, Walk, WalkGhost, WalkMoment, WalkStay,
+    check_graph_clips, graph_of,
 };
 pub use labs::{
     Cycle, CycleMade, LayerFacts, LayerFit, MatchSearch, Outcome, PlacedClip, Retargeted, Slot,

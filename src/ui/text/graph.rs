@@ -1,6 +1,6 @@
 //! The texts of the Graph lab.
 
-use segue_session::{Built, Cast, Trace};
+use segue_session::{BuiltGraph, GraphClips, Trace};
 use segue_text::{Message, msg};
 
 /// What the Graph lab does.
@@ -113,7 +113,7 @@ pub(crate) const GRAPH_EXPERIMENTS: &[Experiment] = &[
 ];
 
 /// What the limit of ways out has left out; `None` where that is nothing.
-pub(crate) fn ways_left_out(built: &Built) -> Option<Message> {
+pub(crate) fn ways_left_out(built: &BuiltGraph) -> Option<Message> {
     let count = built.whole().left_out();
     (count > 0).then(|| {
         msg!(
@@ -125,7 +125,7 @@ pub(crate) fn ways_left_out(built: &Built) -> Option<Message> {
 }
 
 /// What there is of a graph.
-pub(crate) fn graph_in_words(built: &Built, run_secs: Option<f64>) -> Message {
+pub(crate) fn graph_in_words(built: &BuiltGraph, run_secs: Option<f64>) -> Message {
     const NAMED: usize = 4;
     let first = msg!(
         "{jumps, plural, one {# transition} other {# transitions}}, {dead, plural, =0 {no dead end} one {# dead end} other {# dead ends}}.",
@@ -184,7 +184,10 @@ pub(crate) fn windows_apart([leave, enter]: [Message; 2], cm: Option<f64>) -> Me
 }
 
 /// Which clips were moved onto the skeleton of the first; `None` where all are on it.
-pub(crate) fn moved_onto_first(cast: &Cast, title: impl Fn(&str) -> Message) -> Option<Message> {
+pub(crate) fn moved_onto_first(
+    cast: &GraphClips,
+    title: impl Fn(&str) -> Message,
+) -> Option<Message> {
     let moved: Vec<Message> = (cast.names().iter().enumerate())
         .filter(|(clip, _)| cast.retargeted(*clip).is_some())
         .map(|(_, name)| title(name))

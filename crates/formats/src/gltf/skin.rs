@@ -355,7 +355,7 @@ fn triangles(indices: &[u32], mode: Mode) -> Vec<[u32; 3]> {
     }
 }
 
-/// Converts a channel of a linear colour to sRGB (IEC 61966-2-1).
+/// Converts a channel of a linear colour to `sRGB` (IEC 61966-2-1).
 fn encoded(linear: f32) -> f32 {
     if !linear.is_finite() || linear >= 1.0 {
         1.0

@@ -228,7 +228,7 @@ fn picked<T: Copy + Default>(values: &[T], vertices: &[u32]) -> Vec<T> {
     vertices.iter().map(value).collect()
 }
 
-/// Converts a channel of an sRGB colour to linear (IEC 61966-2-1).
+/// Converts a channel of an `sRGB` colour to linear (IEC 61966-2-1).
 fn decoded(encoded: f32) -> f32 {
     if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }

@@ -5,13 +5,13 @@ use crate::context::{DrawContext, GHOST_FADE_SECS, Shown};
 use crate::{Layer, Pane, with_alpha};
 use glam::Vec3;
 use segue_motion::graph::Place;
-use segue_session::{Built, Walk};
+use segue_session::{BuiltGraph, Walk};
 
 /// Adds both windows of a transition where the result stands: their first, middle and last frame.
 pub(crate) fn add_jump(
     shown: &Shown<'_>,
     [leave, enter]: [Place; 2],
-    built: &Built,
+    built: &BuiltGraph,
     context: &mut DrawContext<'_>,
     pane: &mut Pane,
 ) {

@@ -120,7 +120,7 @@ struct Place {
 
 /// A request for a match, besides the two clips.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Wanted {
+struct MatchRequest {
     window: usize,
     /// The number of frames that a clip must have from a frame set by hand on, that frame included.
     behind: usize,
@@ -240,7 +240,7 @@ pub(crate) struct Blender {
     poses: Option<PoseSearch>,
     /// The last matches with their requests: panes share one or have one each, and most changes
     /// leave them valid.
-    found: VecDeque<(Wanted, Place)>,
+    found: VecDeque<(MatchRequest, Place)>,
     progress: f32,
     /// Whether all distances have been computed and not been fetched yet.
     is_ready: bool,
@@ -302,7 +302,7 @@ impl Blender {
                 rotation: params.number(Key::MatchRotation),
                 velocity: params.number(Key::MatchVelocity),
             });
-        let wanted = Wanted { window: match_window, behind, leave, enter, weights };
+        let wanted = MatchRequest { window: match_window, behind, leave, enter, weights };
         let place = self.place(pair, wanted)?;
         Ok(BlendInputs {
             pair: Arc::clone(pair),
@@ -357,12 +357,12 @@ impl Blender {
 
     /// Returns the frames that the user set, and the best match for the others. Until the distances
     /// are known, the middle of the allowed range.
-    fn place(&mut self, pair: &Pair, wanted: Wanted) -> Result<Place, LabError> {
+    fn place(&mut self, pair: &Pair, wanted: MatchRequest) -> Result<Place, LabError> {
         if wanted.weights.is_some() && self.poses.is_none() {
             self.poses = Some(pose_search(pair)?);
             self.compare_rows(ROWS_AT_ONCE);
         }
-        let Wanted { window, leave, enter, .. } = wanted;
+        let MatchRequest { window, leave, enter, .. } = wanted;
         let (frames_a, frames_b) = (pair.a.clip().frames(), pair.incoming.clip().frames());
         if self.is_searching() {
             return Ok(Place {

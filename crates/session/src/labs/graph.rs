@@ -12,10 +12,10 @@ mod plan;
 mod walk;
 mod wanted;
 
-pub use built::{Built, Distances, Field};
-pub use cast::Cast;
+pub use built::{BuiltGraph, DistanceField, Distances};
+pub use cast::GraphClips;
 pub(crate) use grapher::Grapher;
-pub use walk::{At, Passed, Trace, Walk, WalkGhost};
+pub use walk::{Trace, Walk, WalkGhost, WalkMoment, WalkStay};
 pub use wanted::{check_graph_clips, graph_of};
 pub(crate) use wanted::{clips_of, visits_of};
 

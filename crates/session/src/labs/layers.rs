@@ -70,7 +70,7 @@ pub struct LayerFacts {
 #[derive(Clone, Debug)]
 pub(crate) struct LayerInputs {
     pair: Arc<Pair>,
-    timed: Arc<Timed>,
+    timed: Arc<TimedLayer>,
     options: LayerOptions,
     foot_lock: Option<Lock>,
 }
@@ -94,7 +94,7 @@ struct Reading {
 
 /// B in A's time.
 #[derive(Debug)]
-struct Timed {
+struct TimedLayer {
     pair: Arc<Pair>,
     /// The chosen fit, and the start in seconds.
     wanted: (choices::LayerFit, f64),
@@ -111,7 +111,7 @@ pub(crate) struct Layerer {
     /// B in step with A, if both have steps.
     in_step: Option<(Arc<Pair>, Option<Reading>)>,
     /// The last ones requested, at most one for each pane.
-    timed: Vec<Arc<Timed>>,
+    timed: Vec<Arc<TimedLayer>>,
 }
 
 impl Layerer {
@@ -129,7 +129,7 @@ impl Layerer {
         })
     }
 
-    fn timed(&mut self, pair: &Arc<Pair>, params: &Params) -> Result<Arc<Timed>, LabError> {
+    fn timed(&mut self, pair: &Arc<Pair>, params: &Params) -> Result<Arc<TimedLayer>, LabError> {
         let wanted = (params.choice(), params.number(Key::LayerStart));
         let known = self
             .timed
@@ -150,7 +150,7 @@ impl Layerer {
         &mut self,
         pair: &Arc<Pair>,
         wanted: (choices::LayerFit, f64),
-    ) -> Result<Timed, LabError> {
+    ) -> Result<TimedLayer, LabError> {
         let (a, b) = (pair.a.clip(), pair.incoming.clip());
         let times =
             || Arc::new((0..a.frames()).map(|frame| a.time_of(frame)).collect::<Vec<f64>>());
@@ -178,7 +178,7 @@ impl Layerer {
         let shown = layer_timed(a, roles, &reading.over, &whole, &reading.times)?;
         let shown =
             Arc::new(Motion::with_roles(shown.with_name(b.name()), roles).with_feet(pair.b.feet()));
-        Ok(Timed {
+        Ok(TimedLayer {
             pair: Arc::clone(pair),
             wanted,
             reading,

@@ -55,7 +55,7 @@ impl<S: HasPart<CycleFinder>> Lab<S> for LoopLab {
 /// The inputs of a loop. Equal inputs give equal results.
 #[derive(Clone, Debug)]
 pub(crate) struct LoopInputs {
-    found: Arc<Found>,
+    found: Arc<FoundCycle>,
     options: LoopOptions,
     foot_lock: Option<Lock>,
 }
@@ -70,7 +70,7 @@ impl PartialEq for LoopInputs {
 
 /// The ends of a cycle, and the request for them.
 #[derive(Debug)]
-struct Found {
+struct FoundCycle {
     motion: Arc<Motion>,
     /// The ends that the user set.
     given: [Option<usize>; 2],
@@ -80,7 +80,7 @@ struct Found {
 /// A cache of the last search for a cycle.
 #[derive(Debug, Default)]
 pub(crate) struct CycleFinder {
-    known: Option<Arc<Found>>,
+    known: Option<Arc<FoundCycle>>,
 }
 
 impl CycleFinder {
@@ -110,7 +110,7 @@ impl CycleFinder {
         &mut self,
         motion: &Arc<Motion>,
         given: [Option<usize>; 2],
-    ) -> Result<Arc<Found>, LabError> {
+    ) -> Result<Arc<FoundCycle>, LabError> {
         if let Some(found) = &self.known
             && Arc::ptr_eq(&found.motion, motion)
             && found.given == given
@@ -120,7 +120,7 @@ impl CycleFinder {
         let search =
             CycleSearch { start: given[0], end: given[1], ..CycleSearch::new(motion.clip().fps()) };
         let cut = find_cycle(motion, &search)?;
-        let found = Arc::new(Found { motion: Arc::clone(motion), given, cut });
+        let found = Arc::new(FoundCycle { motion: Arc::clone(motion), given, cut });
         self.known = Some(Arc::clone(&found));
         Ok(found)
     }
@@ -144,7 +144,7 @@ fn options(params: &Params) -> LoopOptions {
 
 impl LabInputs for LoopInputs {
     fn run(&self) -> Result<Outcome, LabError> {
-        let Found { motion, cut, .. } = &*self.found;
+        let FoundCycle { motion, cut, .. } = &*self.found;
         let looped = close_loop(motion, cut.cycle.clone(), &self.options)?;
         let (fps, frames) = (looped.clip.fps(), cut.cycle.len());
         // Four repetitions, cropped to three and the first frame of the fourth.

@@ -14,7 +14,7 @@ use super::feet::{Lock, slide, slide_before, with_feet};
 use super::pair::{Pair, Pairs};
 use super::{LabFacts, Outcome, PlacedClip, Slot, Transition};
 use crate::choices;
-use registrar::Found;
+use registrar::FoundRegistration;
 use segue_motion::blend::{
     DissolveOptions, FrameMix, Partner, RegisteredBlend, WeightCurve, WeightLaw, dissolve,
     registered_blend, registered_join,
@@ -147,7 +147,7 @@ fn stands(contacts: &Contacts, side: Side, frame: f64) -> bool {
 
 /// The kind of result of two registered clips.
 #[derive(Clone, Debug, PartialEq)]
-enum Made {
+enum RegisteredKind {
     /// Both clips at once.
     Blend {
         /// The weight of B.
@@ -162,7 +162,7 @@ enum Made {
     },
 }
 
-impl Made {
+impl RegisteredKind {
     fn of(params: &Params) -> Self {
         if params.choice::<choices::WarpMode>() == choices::WarpMode::Join {
             return Self::Join {
@@ -190,22 +190,22 @@ pub fn weight_curve(keys: &[(usize, usize)]) -> WeightCurve {
 #[derive(Clone, Debug)]
 pub(crate) struct RegisterInputs {
     pair: Arc<Pair>,
-    found: Arc<Found>,
-    also: Vec<Also>,
-    made: Made,
+    found: Arc<FoundRegistration>,
+    also: Vec<ExtraClip>,
+    made: RegisteredKind,
     is_plain: bool,
     foot_lock: Option<Lock>,
 }
 
 /// A further clip of a blend, registered to A.
 #[derive(Clone, Debug)]
-struct Also {
+struct ExtraClip {
     pair: Arc<Pair>,
-    found: Arc<Found>,
+    found: Arc<FoundRegistration>,
     weight: f64,
 }
 
-impl PartialEq for Also {
+impl PartialEq for ExtraClip {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.pair, &other.pair)
             && Arc::ptr_eq(&self.found, &other.found)
@@ -213,7 +213,7 @@ impl PartialEq for Also {
     }
 }
 
-impl Found {
+impl FoundRegistration {
     /// Returns the registration that a result follows.
     fn way(&self, is_plain: bool) -> &Registration {
         if is_plain { &self.lockstep } else { &self.registration }
@@ -437,8 +437,8 @@ impl LabInputs for RegisterInputs {
         let pair = &self.pair;
         let fps = pair.a.clip().fps();
         let (draft, part, is_join) = match &self.made {
-            Made::Blend { weight } => (self.blend(weight)?, self.span(), false),
-            Made::Join { part_secs, law } => {
+            RegisteredKind::Blend { weight } => (self.blend(weight)?, self.span(), false),
+            RegisteredKind::Join { part_secs, law } => {
                 let part = self.part(*part_secs)?;
                 (self.join(part, *law)?, part.map(|frame| frame as f64), true)
             }

@@ -71,7 +71,7 @@ const PER_SLICE: usize = 500;
 #[derive(Clone, Debug)]
 pub(crate) struct ViewInputs {
     motion: Arc<Motion>,
-    viewed: Option<Arc<Viewed>>,
+    viewed: Option<Arc<ViewResult>>,
     ground: Ground,
 }
 
@@ -173,7 +173,7 @@ impl Ground {
 
 /// The result for one clip.
 #[derive(Debug)]
-struct Viewed {
+struct ViewResult {
     of: Arc<Motion>,
     lock: Option<Lock>,
     made: Result<Outcome, LabError>,
@@ -183,14 +183,14 @@ struct Viewed {
 #[derive(Debug, Default)]
 pub(crate) struct Viewer {
     /// The results, the newest last.
-    known: Vec<Arc<Viewed>>,
-    under_way: Vec<UnderWay>,
+    known: Vec<Arc<ViewResult>>,
+    under_way: Vec<PendingView>,
     /// Whether a requested result is available and has not been fetched yet.
     is_ready: bool,
 }
 
 #[derive(Debug)]
-struct UnderWay {
+struct PendingView {
     motion: Arc<Motion>,
     lock: Option<Lock>,
     is_wanted: bool,
@@ -243,19 +243,20 @@ impl Viewer {
         })
     }
 
-    fn known(&self, motion: &Arc<Motion>, lock: Option<Lock>) -> Option<Arc<Viewed>> {
-        let is_it = |viewed: &&Arc<Viewed>| Arc::ptr_eq(&viewed.of, motion) && viewed.lock == lock;
+    fn known(&self, motion: &Arc<Motion>, lock: Option<Lock>) -> Option<Arc<ViewResult>> {
+        let is_it =
+            |viewed: &&Arc<ViewResult>| Arc::ptr_eq(&viewed.of, motion) && viewed.lock == lock;
         self.known.iter().find(is_it).cloned()
     }
 
     /// Begins the work unless it is under way; returns its index among the work under way.
     fn begin(&mut self, motion: &Arc<Motion>, lock: Option<Lock>) -> usize {
-        let is_it = |at: &UnderWay| Arc::ptr_eq(&at.motion, motion) && at.lock == lock;
+        let is_it = |at: &PendingView| Arc::ptr_eq(&at.motion, motion) && at.lock == lock;
         if let Some(index) = self.under_way.iter().position(is_it) {
             self.under_way[index].is_wanted = true;
             return index;
         }
-        self.under_way.push(UnderWay {
+        self.under_way.push(PendingView {
             motion: Arc::clone(motion),
             lock,
             is_wanted: true,
@@ -268,14 +269,15 @@ impl Viewer {
     }
 
     fn step(&mut self, index: usize) {
-        let UnderWay { motion, lock, is_wanted, stage } = self.under_way.remove(index);
+        let PendingView { motion, lock, is_wanted, stage } = self.under_way.remove(index);
         match next(&motion, stage) {
             Step::On(stage) => {
-                self.under_way.insert(index, UnderWay { motion, lock, is_wanted, stage: *stage });
+                self.under_way
+                    .insert(index, PendingView { motion, lock, is_wanted, stage: *stage });
             }
             Step::Done(made) => {
                 let made = *made;
-                self.known.push(Arc::new(Viewed { of: motion, lock, made }));
+                self.known.push(Arc::new(ViewResult { of: motion, lock, made }));
                 let surplus = self.known.len().saturating_sub(MAX_PANES);
                 self.known.drain(..surplus);
             }

@@ -3,7 +3,7 @@
 use super::Session;
 use crate::labs::lab::Beside;
 use crate::labs::lab_of;
-use crate::labs::{Built, Cast, Field, Walk, clips_of, visits_of};
+use crate::labs::{BuiltGraph, DistanceField, GraphClips, Walk, clips_of, visits_of};
 use crate::params::Key;
 use glam::DVec2;
 use std::sync::Arc;
@@ -22,21 +22,21 @@ impl Session {
     /// Returns the clips of the graph, on one skeleton; `None` outside of the Graph lab and while
     /// they are made ready.
     #[must_use]
-    pub fn graph_cast(&self) -> Option<&Arc<Cast>> {
+    pub fn graph_cast(&self) -> Option<&Arc<GraphClips>> {
         self.labs.grapher.cast().filter(|_| self.is_graph_lab())
     }
 
     /// Returns the distances of the first pane's window, or the last ones while these are computed;
     /// `None` outside of the Graph lab.
     #[must_use]
-    pub fn graph_field(&self) -> Option<&Arc<Field>> {
+    pub fn graph_field(&self) -> Option<&Arc<DistanceField>> {
         self.labs.grapher.field().filter(|_| self.is_graph_lab())
     }
 
     /// Returns the graph of the first pane: that of the present parameters where it is made, else
     /// that of the walk.
     #[must_use]
-    pub fn graph_built(&self) -> Option<&Arc<Built>> {
+    pub fn graph_built(&self) -> Option<&Arc<BuiltGraph>> {
         let walked = || self.graph_walk().map(|walk| &walk.built);
         self.labs.grapher.built().or_else(walked).filter(|_| self.is_graph_lab())
     }
@@ -50,7 +50,7 @@ impl Session {
     /// Returns how long it took to make a graph, seconds, as far as [`Session::work_took`] was
     /// told.
     #[must_use]
-    pub fn graph_build_secs(&self, built: &Built) -> Option<f64> {
+    pub fn graph_build_secs(&self, built: &BuiltGraph) -> Option<f64> {
         self.labs.grapher.build_secs(built)
     }
 

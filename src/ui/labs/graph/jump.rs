@@ -4,7 +4,7 @@ use crate::ui::out::Out;
 use crate::ui::state::UiState;
 use crate::ui::text;
 use segue_motion::graph::Place;
-use segue_session::{Built, Command, Key, List, PlaybackCommand, Session, Value, Walk};
+use segue_session::{BuiltGraph, Command, Key, List, PlaybackCommand, Session, Value, Walk};
 use segue_text::Message;
 
 /// Returns whether the lab shows one transition in place of the walk.
@@ -29,19 +29,19 @@ pub(super) fn close_jump(state: &UiState, out: &mut Out) {
 }
 
 /// Returns the name of a clip of a graph.
-pub(super) fn clip_title(built: &Built, clip: usize, session: &Session) -> Message {
+pub(super) fn clip_title(built: &BuiltGraph, clip: usize, session: &Session) -> Message {
     let name = built.cast().names().get(clip);
     name.map(|name| session.clip_title(name)).unwrap_or_default()
 }
 
 /// Returns a clip's name and the frame.
-pub(super) fn named(built: &Built, place: Place, session: &Session) -> Message {
+pub(super) fn named(built: &BuiltGraph, place: Place, session: &Session) -> Message {
     text::frame_in_words(clip_title(built, place.clip, session), place.frame)
 }
 
 /// Describes a transition, with its probability where it is walked.
 pub(super) fn jump_words(
-    built: &Built,
+    built: &BuiltGraph,
     walk: Option<&Walk>,
     ends: [Place; 2],
     session: &Session,
@@ -72,6 +72,6 @@ pub(super) fn point_at(ends: [Place; 2], walk: Option<&Walk>, state: &mut UiStat
 }
 
 /// Describes why a visit was not possible.
-pub(super) fn no_way(built: &Built, (secs, clip): (f64, usize), session: &Session) -> Message {
+pub(super) fn no_way(built: &BuiltGraph, (secs, clip): (f64, usize), session: &Session) -> Message {
     text::no_way(clip_title(built, clip, session), secs)
 }

@@ -11,7 +11,7 @@ use crate::ui::theme::{palette_of, space, theme_of};
 use eframe::egui::{Color32, ColorImage, Id, ScrollArea, TextureHandle, TextureOptions, Ui};
 use segue_motion::graph::{Choices, DistanceDetail, Place};
 use segue_session::LabId;
-use segue_session::{Built, Distances, Field, Session, Walk};
+use segue_session::{BuiltGraph, DistanceField, Distances, Session, Walk};
 use segue_text::Message;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -36,7 +36,7 @@ pub(crate) fn map_panel_ui(session: &Session, state: &mut UiState, out: &mut Out
 
 /// What is drawn of a graph, by the indices of the whole graph's transitions.
 pub(crate) struct Drawn {
-    built: Arc<Built>,
+    built: Arc<BuiltGraph>,
     choices: Option<Arc<Choices>>,
     pub(super) ends: Vec<[Place; 2]>,
     marks: Vec<MatrixMark>,
@@ -46,7 +46,7 @@ pub(crate) struct Drawn {
 
 impl Drawn {
     /// Made anew when the graph or its probabilities have changed.
-    pub(super) fn of(built: &Arc<Built>, walk: Option<&Walk>, ui: &Ui) -> Arc<Self> {
+    pub(super) fn of(built: &Arc<BuiltGraph>, walk: Option<&Walk>, ui: &Ui) -> Arc<Self> {
         let id = Id::unique("graph drawn");
         let choices = walk.filter(|walk| Arc::ptr_eq(&walk.built, built)).map(|walk| &walk.choices);
         let known: Option<Arc<Self>> = ui.data(|data| data.get_temp(id));
@@ -64,7 +64,7 @@ impl Drawn {
         drawn
     }
 
-    fn new(built: &Arc<Built>, choices: Option<&Arc<Choices>>) -> Self {
+    fn new(built: &Arc<BuiltGraph>, choices: Option<&Arc<Choices>>) -> Self {
         let (whole, graph, set) = (built.whole(), built.graph(), built.cast().set());
         let mut probable: BTreeMap<[Place; 2], f64> = BTreeMap::new();
         for edge in graph.graph().edge_indices() {
@@ -211,7 +211,7 @@ pub(crate) fn map_ui(
 /// The tiles that were made of a field in the colours of a theme.
 #[derive(Clone)]
 struct Tiles {
-    field: Arc<Field>,
+    field: Arc<DistanceField>,
     heat: [Color32; 5],
     made: Vec<(Tile, TextureHandle)>,
     /// A tile that is computed over several frames, and whether it is still seen.
@@ -230,7 +230,7 @@ const PER_FRAME: usize = 500_000;
 const COMPUTED: usize = 250_000;
 
 impl Tiles {
-    fn of(field: &Arc<Field>, ui: &Ui) -> Self {
+    fn of(field: &Arc<DistanceField>, ui: &Ui) -> Self {
         let heat = palette_of(ui).heat;
         let known: Option<Self> = ui.data(|data| data.get_temp(kit::tiles_id()));
         if let Some(mut known) = known

@@ -16,7 +16,7 @@ use petgraph::graph::NodeIndex;
 use segue_session::JobKind;
 use segue_session::LabId;
 use segue_session::choices;
-use segue_session::{Built, Command, Key, List, Session, Value, graph_of, link};
+use segue_session::{BuiltGraph, Command, Key, List, Session, Value, graph_of, link};
 use segue_text::{Message, ToMessage, msg};
 use std::sync::Arc;
 
@@ -320,7 +320,7 @@ fn reached(session: &Session, ui: &Ui) -> Arc<Vec<bool>> {
 /// The clips that can be reached from a node.
 #[derive(Clone)]
 struct Reached {
-    built: Arc<Built>,
+    built: Arc<BuiltGraph>,
     node: Option<NodeIndex>,
     clips: Arc<Vec<bool>>,
 }

@@ -1,6 +1,6 @@
 //! Motion graphs and distance fields of the Graph lab.
 
-use super::Cast;
+use super::GraphClips;
 use super::wanted::GraphKey;
 use petgraph::graph::NodeIndex;
 use petgraph::visit::Dfs;
@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 /// The distances of all windows of one length.
 #[derive(Debug)]
-pub struct Field {
+pub struct DistanceField {
     distances: Distances,
     /// The histogram of the stored distances.
     histogram: Vec<u32>,
@@ -28,7 +28,7 @@ pub enum Distances {
     FromAfar(Box<DistanceOverview>),
 }
 
-impl Field {
+impl DistanceField {
     /// Returns a field whose distances are yet to be counted.
     pub(super) fn held(distances: FrameDistances) -> Self {
         Self { distances: Distances::Held(distances), histogram: vec![0; DistanceOverview::BINS] }
@@ -108,8 +108,8 @@ impl Field {
 
 /// A graph, and facts about it.
 #[derive(Debug)]
-pub struct Built {
-    pub(super) cast: Arc<Cast>,
+pub struct BuiltGraph {
+    pub(super) cast: Arc<GraphClips>,
     pub(super) key: GraphKey,
     whole: Arc<MotionGraph>,
     graph: Arc<MotionGraph>,
@@ -125,7 +125,8 @@ pub struct Built {
     is_walked: Vec<bool>,
 }
 
-/// The construction of a [`Built`] in slices, because very many transitions take milliseconds each.
+/// The construction of a [`BuiltGraph`] in slices, because very many transitions take milliseconds
+/// each.
 #[derive(Debug)]
 pub(super) enum Building {
     /// Candidates for transitions are known.
@@ -140,9 +141,9 @@ impl Building {
     /// Does the next slice; returns the remaining work, or the graph.
     pub(super) fn advance(
         self,
-        cast: &Arc<Cast>,
+        cast: &Arc<GraphClips>,
         key: GraphKey,
-    ) -> Result<ControlFlow<Built, Self>, GraphError> {
+    ) -> Result<ControlFlow<BuiltGraph, Self>, GraphError> {
         Ok(match self {
             Self::Found(candidates) => {
                 let lacks_some = !candidates.are_all_within(key.options.edge_threshold_cm);
@@ -154,16 +155,16 @@ impl Building {
                 ControlFlow::Continue(Self::Parted(Arc::new(whole), lacks_some, components))
             }
             Self::Parted(whole, lacks_some, components) => {
-                let built = Built::new(cast, whole, &components, key)?;
-                ControlFlow::Break(Built { lacks_some, ..built })
+                let built = BuiltGraph::new(cast, whole, &components, key)?;
+                ControlFlow::Break(BuiltGraph { lacks_some, ..built })
             }
         })
     }
 }
 
-impl Built {
+impl BuiltGraph {
     fn new(
-        cast: &Arc<Cast>,
+        cast: &Arc<GraphClips>,
         whole: Arc<MotionGraph>,
         components: &[Vec<NodeIndex>],
         key: GraphKey,
@@ -212,7 +213,7 @@ impl Built {
 
     /// Returns the clips.
     #[must_use]
-    pub fn cast(&self) -> &Arc<Cast> {
+    pub fn cast(&self) -> &Arc<GraphClips> {
         &self.cast
     }
 

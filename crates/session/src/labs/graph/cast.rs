@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 /// The clips of a graph, on the skeleton and at the frame rate of the first.
 #[derive(Debug)]
-pub struct Cast {
+pub struct GraphClips {
     names: Vec<String>,
     motions: Vec<Arc<Motion>>,
     retargeted: Vec<Option<Arc<Retargeted>>>,
@@ -23,7 +23,7 @@ const JOINT_FRAMES: usize = 12_000;
 /// A clip that was fitted to the first, and the report on its retargeting.
 pub(super) type Fitted = (Arc<Motion>, Option<Arc<Retargeted>>);
 
-impl Cast {
+impl GraphClips {
     /// Returns the clips in order; further measurements are made by [`Self::advance`].
     pub(super) fn new(names: Vec<String>, fitted: Vec<Fitted>) -> Result<Self, LabError> {
         let (motions, retargeted): (Vec<_>, Vec<_>) = fitted.into_iter().unzip();

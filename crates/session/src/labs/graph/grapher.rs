@@ -3,9 +3,9 @@
 use super::super::sliced::{JobKind, Sliced};
 use super::built::Building;
 use super::cast::Fitted;
-use super::maker::Maker;
-use super::wanted::{GraphKey, Wanted};
-use super::{Built, Cast, Field, GraphInputs};
+use super::maker::WalkBuilder;
+use super::wanted::{GraphKey, WalkRequest};
+use super::{BuiltGraph, DistanceField, GraphClips, GraphInputs};
 use crate::labs::LabError;
 use crate::labs::pair::fitted;
 use crate::params::{MAX_PANES, Params};
@@ -37,23 +37,23 @@ pub(crate) struct Grapher {
     clips: Vec<(String, Arc<Motion>)>,
     fitted: Vec<Fitted>,
     /// The clips while they are measured.
-    measuring_clips: Option<Box<Cast>>,
-    cast: Option<Result<Arc<Cast>, LabError>>,
+    measuring_clips: Option<Box<GraphClips>>,
+    cast: Option<Result<Arc<GraphClips>, LabError>>,
     all: Option<AllPairs>,
     sweep: Option<PausedAllSweep>,
     /// A distance field that is being counted, and the progress.
-    counting: Option<(Field, CountedTo)>,
+    counting: Option<(DistanceField, CountedTo)>,
     /// One field for each window that was requested last.
-    fields: Vec<Arc<Field>>,
+    fields: Vec<Arc<DistanceField>>,
     /// The search in progress, with the options whose threshold it covers.
     search: Option<(GraphOptions, Search)>,
     /// The last candidates, with their options.
     found: Vec<(GraphOptions, Arc<Candidates>)>,
     building: Option<(GraphKey, Building)>,
-    built: Vec<(GraphKey, Result<Arc<Built>, LabError>)>,
-    makers: Vec<(Wanted, Result<Maker, LabError>)>,
+    built: Vec<(GraphKey, Result<Arc<BuiltGraph>, LabError>)>,
+    makers: Vec<(WalkRequest, Result<WalkBuilder, LabError>)>,
     /// The requests of the panes, the first pane's first.
-    wanted: Vec<Wanted>,
+    wanted: Vec<WalkRequest>,
     now_secs: f64,
     /// Whether there is something new to show.
     is_ready: bool,
@@ -110,7 +110,7 @@ impl Grapher {
         params: &Params,
     ) -> Result<Option<GraphInputs>, LabError> {
         self.meet(clips);
-        let wanted = Wanted::guided(params, self.guide.as_ref(), self.clips.len())?;
+        let wanted = WalkRequest::guided(params, self.guide.as_ref(), self.clips.len())?;
         let known = self.makers.iter().find(|(known, _)| *known == wanted);
         let found = match (known, &self.cast) {
             (_, Some(Err(problem))) | (Some((_, Err(problem))), _) => Err(problem.clone()),
@@ -127,29 +127,29 @@ impl Grapher {
     }
 
     /// Returns the clips, if they are ready.
-    pub(crate) fn cast(&self) -> Option<&Arc<Cast>> {
+    pub(crate) fn cast(&self) -> Option<&Arc<GraphClips>> {
         self.cast.as_ref()?.as_ref().ok()
     }
 
     /// Returns the distances that the first pane requested, or the last ones while it waits.
-    pub(crate) fn field(&self) -> Option<&Arc<Field>> {
+    pub(crate) fn field(&self) -> Option<&Arc<DistanceField>> {
         let window = self.wanted.first().map(|wanted| wanted.graph.options.blend_window);
         let asked = self.fields.iter().find(|field| Some(field.window()) == window);
         asked.or(self.fields.last())
     }
 
     /// Returns the graph that the first pane requested, if it is ready.
-    pub(crate) fn built(&self) -> Option<&Arc<Built>> {
+    pub(crate) fn built(&self) -> Option<&Arc<BuiltGraph>> {
         let key = self.wanted.first()?.graph;
         self.known(key)?.as_ref().ok()
     }
 
-    fn known(&self, key: GraphKey) -> Option<&Result<Arc<Built>, LabError>> {
+    fn known(&self, key: GraphKey) -> Option<&Result<Arc<BuiltGraph>, LabError>> {
         self.built.iter().find(|(known, _)| *known == key).map(|(_, built)| built)
     }
 
     /// Returns the time that building a graph took, seconds; `None` if it was not measured.
-    pub(crate) fn build_secs(&self, built: &Built) -> Option<f64> {
+    pub(crate) fn build_secs(&self, built: &BuiltGraph) -> Option<f64> {
         self.took.iter().find(|(key, _)| *key == built.key).map(|(_, secs)| *secs)
     }
 
@@ -227,19 +227,18 @@ impl Grapher {
         Some(0.1 * fitted + 0.4 * pairs + 0.25 * swept + 0.1 * searched)
     }
 
-    fn maker(&self, wanted: &Wanted) -> Option<&Result<Maker, LabError>> {
+    fn maker(&self, wanted: &WalkRequest) -> Option<&Result<WalkBuilder, LabError>> {
         self.makers.iter().find(|(known, _)| known == wanted).map(|(_, maker)| maker)
     }
 
-    fn next(&self) -> Option<&Wanted> {
-        let maker = |wanted: &Wanted| self.maker(wanted);
-        let short = |wanted: &&Wanted| match maker(wanted) {
+    fn next(&self) -> Option<&WalkRequest> {
+        let maker = |wanted: &WalkRequest| self.maker(wanted);
+        let short = |wanted: &&WalkRequest| match maker(wanted) {
             Some(Ok(maker)) => maker.is_short(self.now_secs),
             Some(Err(_)) => false,
             None => true,
         };
-        let begins =
-            |wanted: &&Wanted| !matches!(maker(wanted), Some(Ok(maker)) if maker.walk().is_some());
+        let begins = |wanted: &&WalkRequest| !matches!(maker(wanted), Some(Ok(maker)) if maker.walk().is_some());
         // The first view of a walk takes precedence over the extension of another.
         let first = self.wanted.iter().filter(short).find(begins);
         first.or_else(|| self.wanted.iter().find(short))
@@ -255,7 +254,7 @@ impl Grapher {
     }
 
     /// Does a slice of the most urgent work.
-    fn step(&mut self, wanted: &Wanted) -> Result<(), LabError> {
+    fn step(&mut self, wanted: &WalkRequest) -> Result<(), LabError> {
         if let Some(guide) = &wanted.guide {
             // Without the walk to follow, this one would be random. If that one has failed, there
             // is nothing to follow.
@@ -292,7 +291,7 @@ impl Grapher {
         if let Some(built) = self.known(wanted.graph) {
             let built = Arc::clone(built.as_ref().map_err(LabError::clone)?);
             let like = self.makers.iter().filter_map(|(_, maker)| maker.as_ref().ok());
-            let maker = Maker::new(&built, wanted, like);
+            let maker = WalkBuilder::new(&built, wanted, like);
             self.settle(wanted, maker);
             return Ok(());
         }
@@ -319,7 +318,7 @@ impl Grapher {
     }
 
     /// Fits the clips to one skeleton, one in each slice.
-    fn ready_cast(&mut self) -> Result<Option<Arc<Cast>>, LabError> {
+    fn ready_cast(&mut self) -> Result<Option<Arc<GraphClips>>, LabError> {
         if let Some(cast) = &self.cast {
             return cast.clone().map(Some);
         }
@@ -347,7 +346,7 @@ impl Grapher {
         }
         let names = self.clips.iter().map(|(name, _)| name.clone()).collect();
         // As many as the clips at this point.
-        match Cast::new(names, self.fitted.clone()) {
+        match GraphClips::new(names, self.fitted.clone()) {
             Ok(cast) => self.measuring_clips = Some(Box::new(cast)),
             Err(problem) => self.cast = Some(Err(problem)),
         }
@@ -357,7 +356,7 @@ impl Grapher {
     /// Does a slice of the search for candidates; returns them when they are found.
     fn search_slice(
         &mut self,
-        cast: &Arc<Cast>,
+        cast: &Arc<GraphClips>,
         key: GraphKey,
     ) -> Result<Option<Arc<Candidates>>, GraphError> {
         if let Some(found) = self.places(&key.options) {
@@ -377,7 +376,7 @@ impl Grapher {
                 let (found, overview) = stream.finish()?;
                 // The same for every threshold, so that drawings of it stay valid.
                 if self.fields.iter().all(|field| field.window() != overview.window()) {
-                    self.keep_field(Arc::new(Field::from_afar(overview)));
+                    self.keep_field(Arc::new(DistanceField::from_afar(overview)));
                 }
                 return Ok(Some(self.keep_found(options, found)));
             }
@@ -414,7 +413,7 @@ impl Grapher {
                 None => all.sweep(window)?,
             };
             if sweep.advance(CELLS.div_ceil(cast.set().longest().max(1)))?.is_complete() {
-                self.counting = Some((Field::held(sweep.finish()?), CountedTo::default()));
+                self.counting = Some((DistanceField::held(sweep.finish()?), CountedTo::default()));
             } else {
                 self.sweep = Some(sweep.pause());
             }
@@ -465,7 +464,7 @@ impl Grapher {
         found
     }
 
-    fn keep_field(&mut self, field: Arc<Field>) {
+    fn keep_field(&mut self, field: Arc<DistanceField>) {
         self.fields.push(field);
         while self.fields.len() > MAX_PANES
             || (self.fields.len() > 1
@@ -475,7 +474,7 @@ impl Grapher {
         }
     }
 
-    fn settle(&mut self, wanted: &Wanted, maker: Result<Maker, LabError>) {
+    fn settle(&mut self, wanted: &WalkRequest, maker: Result<WalkBuilder, LabError>) {
         self.is_ready |= maker.is_err();
         self.makers.retain(|(known, _)| known != wanted);
         if self.makers.len() >= 2 * MAX_PANES {

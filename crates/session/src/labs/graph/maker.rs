@@ -2,8 +2,8 @@
 
 use super::plan::Plan;
 use super::walk::Trace;
-use super::wanted::Wanted;
-use super::{Built, Passed, Walk};
+use super::wanted::WalkRequest;
+use super::{BuiltGraph, Walk, WalkStay};
 use crate::labs::LabError;
 use crate::labs::feet::{locking, slide, slide_before};
 use petgraph::graph::NodeIndex;
@@ -67,7 +67,7 @@ struct Measuring {
 
 /// The measurements of a walk that is shown.
 #[derive(Debug)]
-struct Seen {
+struct WalkMeasurements {
     trace: Arc<MotionTrace>,
     slides: Vec<Metric>,
 }
@@ -97,9 +97,9 @@ impl Measuring {
         self.meter.advance(clip, frames)
     }
 
-    fn finish(self) -> (Motion, Seen) {
+    fn finish(self) -> (Motion, WalkMeasurements) {
         let before = self.free.map(|(_, meter)| slide_before(meter.worst_cm()));
-        let seen = Seen {
+        let seen = WalkMeasurements {
             trace: Arc::new(self.meter.finish(self.shown.clip())),
             slides: std::iter::once(slide(self.slide.worst_cm())).chain(before).collect(),
         };
@@ -109,9 +109,9 @@ impl Measuring {
 
 /// The construction of a walk, stay by stay.
 #[derive(Debug)]
-pub(super) struct Maker {
-    built: Arc<Built>,
-    wanted: Wanted,
+pub(super) struct WalkBuilder {
+    built: Arc<BuiltGraph>,
+    wanted: WalkRequest,
     choices: Arc<Choices>,
     run: RunLength,
     run_is_known: bool,
@@ -137,16 +137,16 @@ pub(super) struct Maker {
     /// The walk to be shown, as far as it is assembled.
     publishing: Option<Publishing>,
     /// The measurements of the walk that was shown first.
-    seen: Option<Seen>,
+    seen: Option<WalkMeasurements>,
     walk: Option<Arc<Walk>>,
 }
 
-impl Maker {
+impl WalkBuilder {
     /// Begins a walk, with a search for a way along the requested path if there is one. `others`
     /// may have results for the same graph that this one needs.
     pub(super) fn new<'a>(
-        built: &Arc<Built>,
-        wanted: &Wanted,
+        built: &Arc<BuiltGraph>,
+        wanted: &WalkRequest,
         mut others: impl Iterator<Item = &'a Self>,
     ) -> Result<Self, LabError> {
         let knows = |other: &&Self| {
@@ -183,7 +183,7 @@ impl Maker {
     }
 
     /// Begins a walk in the same graph with the same weights, whose expected run is known.
-    fn like(other: &Self, wanted: &Wanted) -> Result<Self, LabError> {
+    fn like(other: &Self, wanted: &WalkRequest) -> Result<Self, LabError> {
         let mut maker =
             Self::idle(&other.built, wanted, Arc::clone(&other.choices), other.run.clone())?;
         maker.run_is_known = true;
@@ -191,8 +191,8 @@ impl Maker {
     }
 
     fn idle(
-        built: &Arc<Built>,
-        wanted: &Wanted,
+        built: &Arc<BuiltGraph>,
+        wanted: &WalkRequest,
         choices: Arc<Choices>,
         run: RunLength,
     ) -> Result<Self, LabError> {
@@ -508,7 +508,7 @@ impl Maker {
             built: Arc::clone(&self.built),
             choices: Arc::clone(&self.choices),
             run_secs: run_secs.filter(|_| self.built.is_pruned() || self.built.dead_ends() == 0),
-            passed: Arc::new(self.pieces.iter().map(Passed::of).collect()),
+            passed: Arc::new(self.pieces.iter().map(WalkStay::of).collect()),
             missed: self.plan.missed().to_vec(),
             metrics: slides.copied().chain(walked).collect(),
             trace: self.seen.as_ref().map(|seen| Arc::clone(&seen.trace)),

@@ -1,6 +1,6 @@
 //! The plan of a walk: its stays, without frames.
 
-use super::wanted::Wanted;
+use super::wanted::WalkRequest;
 use petgraph::graph::EdgeIndex;
 use petgraph::visit::EdgeRef;
 use segue_motion::graph::{Choices, GraphError, MotionGraph, Place, Stay, Walker};
@@ -34,7 +34,7 @@ impl Plan {
     pub(super) fn new(
         graph: &Arc<MotionGraph>,
         choices: &Arc<Choices>,
-        wanted: &Wanted,
+        wanted: &WalkRequest,
     ) -> Result<Self, GraphError> {
         let walker = Walker::new(Arc::clone(graph), Arc::clone(choices), wanted.seed);
         Ok(Self {

@@ -1,6 +1,6 @@
 //! Walks through a motion graph, as far as they have been made.
 
-use super::Built;
+use super::BuiltGraph;
 use crate::labs::outcome::Outcome;
 use glam::DVec2;
 use segue_motion::clip::Motion;
@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// A stay in one clip, in the walk's time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Passed {
+pub struct WalkStay {
     /// The walk's frame at which it begins.
     pub start: usize,
     /// One past its last frame.
@@ -24,7 +24,7 @@ pub struct Passed {
     pub world_from_clip: Planar,
 }
 
-impl Passed {
+impl WalkStay {
     pub(super) fn of(piece: &WalkPiece) -> Self {
         Self {
             start: piece.start,
@@ -38,7 +38,7 @@ impl Passed {
 
 /// The state of a walk at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct At {
+pub struct WalkMoment {
     /// The number of the stay.
     pub stay: usize,
     /// The frame of the clip that plays.
@@ -53,7 +53,7 @@ pub struct At {
 #[derive(Clone, Debug)]
 pub struct Walk {
     /// The graph.
-    pub built: Arc<Built>,
+    pub built: Arc<BuiltGraph>,
     /// The probabilities of its choices.
     pub choices: Arc<Choices>,
     /// The expected time between transitions in a long walk, seconds; `None` if a walk ends, or
@@ -62,7 +62,7 @@ pub struct Walk {
     /// The motion so far.
     pub motion: Arc<Motion>,
     /// The stays that it consists of.
-    pub passed: Arc<Vec<Passed>>,
+    pub passed: Arc<Vec<WalkStay>>,
     /// Visits of clips that cannot be reached: time, seconds, and clip.
     pub missed: Vec<(f64, usize)>,
     /// Its metrics.
@@ -119,13 +119,13 @@ impl Walk {
 
     /// Returns the state at a time; `None` for a walk without frames.
     #[must_use]
-    pub fn at(&self, secs: f64) -> Option<At> {
+    pub fn at(&self, secs: f64) -> Option<WalkMoment> {
         let frame = self.frame_at(secs);
         let stay = self.passed.partition_point(|passed| passed.start <= frame).checked_sub(1)?;
         let passed = self.passed.get(stay)?;
         let into = frame - passed.start;
         let seam = passed.seam.filter(|seam| into < seam.frames);
-        Some(At {
+        Some(WalkMoment {
             stay,
             place: Place { clip: passed.stay.clip, frame: passed.stay.from + into },
             left: seam.map(|seam| Place { frame: seam.leave.frame + into, ..seam.leave }),
@@ -135,7 +135,7 @@ impl Walk {
 
     /// Returns the distance of the transition into a stay, centimetres.
     #[must_use]
-    pub fn jump_cm(&self, passed: &Passed) -> Option<f64> {
+    pub fn jump_cm(&self, passed: &WalkStay) -> Option<f64> {
         let graph = if self.is_jump { self.built.whole() } else { self.built.graph() };
         Some(graph.jumps().get(passed.stay.jump?)?.distance_cm)
     }
@@ -145,7 +145,7 @@ impl Walk {
     #[must_use]
     pub fn ghosts_at(&self, secs: f64, fade_secs: f64) -> [Option<WalkGhost<'_>>; 2] {
         let fps = self.motion.clip().fps();
-        let near = |passed: &&Passed| {
+        let near = |passed: &&WalkStay| {
             let (Some(seam), start) = (passed.seam, passed.start as f64 / fps) else {
                 return false;
             };

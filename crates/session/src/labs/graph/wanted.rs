@@ -15,7 +15,7 @@ use segue_motion::transition::{Inertialization, Method, Mistake};
 
 /// A request for a walk, besides the clips.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Wanted {
+pub(super) struct WalkRequest {
     pub(super) graph: GraphKey,
     pub(super) weights: WeightOptions,
     pub(super) seed: u64,
@@ -42,7 +42,7 @@ pub(super) struct GraphKey {
     pub(super) pruned: bool,
 }
 
-impl Wanted {
+impl WalkRequest {
     pub(super) fn of(params: &Params, clips: usize) -> Result<Self, LabError> {
         let window = params.number(Key::BlendWindow) as usize;
         let of_transform = match params.choice::<choices::Transform>() {

@@ -13,13 +13,13 @@ use std::sync::Arc;
 const PER_SLICE: usize = 500;
 
 /// The motion with its feet locked, and their slide, centimetres.
-type Made = Result<(Arc<Clip>, Option<f64>), LabError>;
+type LockedMotion = Result<(Arc<Clip>, Option<f64>), LabError>;
 
 /// The result for one request.
 #[derive(Debug)]
-pub(super) struct Planted {
+pub(super) struct LockedFeet {
     of: PathInputs,
-    pub(super) made: Made,
+    pub(super) made: LockedMotion,
 }
 
 #[derive(Debug)]
@@ -31,7 +31,7 @@ enum Stage {
 /// A cache of the last results, with their work in slices.
 #[derive(Debug, Default)]
 pub(super) struct Planter {
-    done: Vec<Arc<Planted>>,
+    done: Vec<Arc<LockedFeet>>,
     wanted: Vec<PathInputs>,
     under_way: Option<(PathInputs, Stage)>,
     /// Whether a requested result is available and has not been fetched yet.
@@ -45,7 +45,7 @@ impl Planter {
     }
 
     /// Returns the result if it is known; otherwise schedules it.
-    pub(super) fn ask(&mut self, of: &PathInputs) -> Option<Arc<Planted>> {
+    pub(super) fn ask(&mut self, of: &PathInputs) -> Option<Arc<LockedFeet>> {
         let known = self.done.iter().find(|planted| planted.of.makes_the_same(of));
         if known.is_none() {
             self.wanted.push(of.clone());
@@ -86,7 +86,7 @@ impl Planter {
                 if self.done.len() >= MAX_PANES {
                     self.done.remove(0);
                 }
-                self.done.push(Arc::new(Planted { of, made }));
+                self.done.push(Arc::new(LockedFeet { of, made }));
                 self.is_ready = true;
             }
         }
@@ -104,7 +104,7 @@ fn begin(of: &PathInputs) -> Result<Stage, LabError> {
 }
 
 /// Returns the next stage, or the final result.
-fn step(of: &PathInputs, stage: Stage) -> Result<Stage, Made> {
+fn step(of: &PathInputs, stage: Stage) -> Result<Stage, LockedMotion> {
     match stage {
         Stage::Locking(mut locking, contacts) => {
             if locking.advance(PER_SLICE) {

@@ -1,7 +1,7 @@
 //! Scheduling and caching of registrations.
 
 use super::super::sliced::{JobKind, Sliced};
-use super::{Also, DistanceMap, Made, RegisterInputs};
+use super::{DistanceMap, ExtraClip, RegisterInputs, RegisteredKind};
 use crate::choices;
 use crate::labs::LabError;
 use crate::labs::feet::Lock;
@@ -24,7 +24,7 @@ const MAX_PAIRS: f64 = 4e6;
 
 /// A request for registration curves, besides the two clips.
 #[derive(Clone, Debug, PartialEq)]
-struct Wanted {
+struct RegistrationRequest {
     window: usize,
     path: PathOptions,
     smoothing: usize,
@@ -32,7 +32,7 @@ struct Wanted {
 
 /// The registration of two clips.
 #[derive(Clone, Debug)]
-pub(super) struct Found {
+pub(super) struct FoundRegistration {
     pub(super) map: Arc<DistanceMap>,
     pub(super) registration: Arc<Registration>,
     /// Both clips at their own speed from the beginning of the path.
@@ -58,8 +58,8 @@ impl Registrars {
     ) -> Result<Option<RegisterInputs>, LabError> {
         let pins = params.pins().to_vec();
         let found = self.b.found(pair, wanted_of(pair, params, pins)?)?;
-        let made = Made::of(params);
-        let also = if matches!(made, Made::Join { .. }) { &[] } else { also };
+        let made = RegisteredKind::of(params);
+        let also = if matches!(made, RegisteredKind::Join { .. }) { &[] } else { also };
         self.also.resize_with(also.len(), Default::default);
         let mut more = Vec::with_capacity(also.len());
         for ((motion, weight), (pairs, registrar)) in also.iter().zip(&mut self.also) {
@@ -67,7 +67,7 @@ impl Registrars {
             // Pins are pairs of A and B.
             let wanted = wanted_of(&pair, params, Vec::new())?;
             let found = registrar.found(&pair, wanted)?;
-            more.push(found.map(|found| Also { pair, found, weight: *weight }));
+            more.push(found.map(|found| ExtraClip { pair, found, weight: *weight }));
         }
         let Some((found, also)) = found.zip(more.into_iter().collect::<Option<Vec<_>>>()) else {
             return Ok(None);
@@ -127,10 +127,10 @@ struct Registrar {
     sweep: Option<PausedSweep>,
     /// The last ones requested, at most one for each pane.
     maps: Vec<Arc<DistanceMap>>,
-    search: Option<(Wanted, PathSearch)>,
-    found: Vec<(Wanted, Result<Arc<Found>, LabError>)>,
+    search: Option<(RegistrationRequest, PathSearch)>,
+    found: Vec<(RegistrationRequest, Result<Arc<FoundRegistration>, LabError>)>,
     /// The requests of the panes.
-    wanted: Vec<Wanted>,
+    wanted: Vec<RegistrationRequest>,
     /// Whether all of them were found and not been fetched yet.
     is_ready: bool,
 }
@@ -144,7 +144,11 @@ impl Registrar {
 
     /// Returns the registration. `None` if that takes longer than a frame: call
     /// [`work`](Self::work), then ask again.
-    fn found(&mut self, pair: &Arc<Pair>, wanted: Wanted) -> Result<Option<Arc<Found>>, LabError> {
+    fn found(
+        &mut self,
+        pair: &Arc<Pair>,
+        wanted: RegistrationRequest,
+    ) -> Result<Option<Arc<FoundRegistration>>, LabError> {
         self.meet(pair)?;
         let at_once =
             pair.a.clip().frames().saturating_mul(pair.incoming.clip().frames()) <= AT_ONCE;
@@ -180,8 +184,9 @@ impl Registrar {
         self.is_ready
     }
 
-    fn next(&self) -> Option<&Wanted> {
-        let is_known = |wanted: &&Wanted| self.found.iter().any(|(known, _)| known == *wanted);
+    fn next(&self) -> Option<&RegistrationRequest> {
+        let is_known =
+            |wanted: &&RegistrationRequest| self.found.iter().any(|(known, _)| known == *wanted);
         self.wanted.iter().find(|wanted| !is_known(wanted))
     }
 
@@ -216,7 +221,7 @@ impl Registrar {
     }
 
     /// Does a slice of the most urgent work.
-    fn step(&mut self, wanted: &Wanted) {
+    fn step(&mut self, wanted: &RegistrationRequest) {
         let (Some(pair), Some(terms)) = (&self.pair, &mut self.terms) else {
             self.keep(wanted, Err(LabError::NothingToRegister));
             return;
@@ -266,7 +271,7 @@ impl Registrar {
         }
     }
 
-    fn keep(&mut self, wanted: &Wanted, found: Result<Found, LabError>) {
+    fn keep(&mut self, wanted: &RegistrationRequest, found: Result<FoundRegistration, LabError>) {
         if self.found.len() >= 2 * MAX_PANES {
             drop(self.found.remove(0));
         }
@@ -274,7 +279,11 @@ impl Registrar {
     }
 }
 
-fn wanted_of(pair: &Pair, params: &Params, pins: Vec<(usize, usize)>) -> Result<Wanted, LabError> {
+fn wanted_of(
+    pair: &Pair,
+    params: &Params,
+    pins: Vec<(usize, usize)>,
+) -> Result<RegistrationRequest, LabError> {
     let window = params.number(Key::RegistrationWindow) as usize;
     let slack = params.number(Key::EndSlack) / 100.0;
     let end = if params.choice::<choices::Ends>() == choices::Ends::Corner {
@@ -287,7 +296,7 @@ fn wanted_of(pair: &Pair, params: &Params, pins: Vec<(usize, usize)>) -> Result<
         return Err(LabError::PinBeyond { a: *a, b: *b, frames_a, frames_b });
     }
     let usual = RegistrationOptions::new(pair.a.clip().fps()).smoothing;
-    Ok(Wanted {
+    Ok(RegistrationRequest {
         window,
         path: PathOptions {
             slope_limit: params.number(Key::SlopeLimit) as usize,
@@ -312,7 +321,7 @@ fn curves(
     map: &Arc<DistanceMap>,
     path: RegistrationPath,
     smoothing: usize,
-) -> Result<Found, PathError> {
+) -> Result<FoundRegistration, PathError> {
     let matrix = map.matrix();
     let registration = Registration::along(terms, matrix, path, smoothing)?;
     let (row, column) = registration.path().cells.first().copied().unwrap_or_default();
@@ -321,7 +330,7 @@ fn curves(
     let sum: f64 = cells.iter().filter_map(|cell| matrix.get(cell.0, cell.1)).map(f64::from).sum();
     let diagonal = RegistrationPath { pins: Vec::new(), mean_m: sum / steps.max(1) as f64, cells };
     let lockstep = Registration::along(terms, matrix, diagonal, smoothing)?;
-    Ok(Found {
+    Ok(FoundRegistration {
         map: Arc::clone(map),
         registration: Arc::new(registration),
         lockstep: Arc::new(lockstep),
