@@ -62,7 +62,7 @@ pub(super) fn edge_value(edge: Edge, secs: f64, outcome: &Outcome) -> (Key, f64)
 }
 
 pub(super) fn blend_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    kit::section_header_ui(&lab_label(session), ui);
+    kit::section_header_ui(lab_label(session), ui);
     let fps = pair_ui(session, out, ui);
     let duration = |slot| Some(session.slot(slot)?.motion.as_ref()?.clip().duration_secs());
     let window = session.params().number(Key::BlendWindow);

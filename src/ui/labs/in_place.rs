@@ -29,7 +29,7 @@ fn title(shown: &Shown<'_>) -> Title {
 
 /// All rows of the lab.
 fn in_place_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    kit::section_header_ui(&lab_label(session), ui);
+    kit::section_header_ui(lab_label(session), ui);
     kit::note_ui(text::IN_PLACE_ABOUT, palette_of(ui).muted, ui);
     clip_sets_ui(session, out, ui);
     slot_row_ui(Slot::A, session, out, ui);

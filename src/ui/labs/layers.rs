@@ -33,7 +33,7 @@ fn title(shown: &Shown<'_>) -> Title {
 
 /// All rows of the lab.
 pub(super) fn layers_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    kit::section_header_ui(&lab_label(session), ui);
+    kit::section_header_ui(lab_label(session), ui);
     pair_ui(session, out, ui);
     let params = session.params();
     let plain = Detail::default();

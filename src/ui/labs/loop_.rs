@@ -38,7 +38,7 @@ const POOR_ENDS_CM: f64 = 8.0;
 
 /// A clip that becomes a cycle.
 pub(super) fn loop_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    kit::section_header_ui(&lab_label(session), ui);
+    kit::section_header_ui(lab_label(session), ui);
     kit::note_ui(text::LOOP_ABOUT, palette_of(ui).muted, ui);
     clip_sets_ui(session, out, ui);
     slot_row_ui(Slot::A, session, out, ui);

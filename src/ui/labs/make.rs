@@ -37,7 +37,7 @@ pub(crate) fn made_name(params: &Params) -> Option<Message> {
 }
 
 pub(super) fn make_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    kit::section_header_ui(&lab_label(session), ui);
+    kit::section_header_ui(lab_label(session), ui);
     for param in PARAMS.iter().filter(|param| param.group == Group::Lab(LabId::Make)) {
         // What the chosen motion does not have is not offered.
         if session.made_motion_has(param.key) {

@@ -54,7 +54,7 @@ const MOST_WARNINGS: usize = 3;
 /// All rows of the lab.
 pub(super) fn path_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let palette = palette_of(ui);
-    kit::section_header_ui(&lab_label(session), ui);
+    kit::section_header_ui(lab_label(session), ui);
     kit::note_ui(text::PATH_ABOUT, palette.muted, ui);
     clip_sets_ui(session, out, ui);
     slot_row_ui(Slot::A, session, out, ui);

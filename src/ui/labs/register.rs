@@ -72,7 +72,7 @@ const FIRST_SHARE: f64 = 0.25;
 
 /// All rows of the lab.
 pub(super) fn register_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    kit::section_header_ui(&lab_label(session), ui);
+    kit::section_header_ui(lab_label(session), ui);
     kit::note_ui(text::REGISTER_ABOUT, palette_of(ui).muted, ui);
     clip_sets_ui(session, out, ui);
     pair_ui(session, out, ui);

@@ -42,7 +42,7 @@ const SLIDER_BEYOND: f64 = 1.6;
 
 /// Two gaits at a speed.
 pub(super) fn speed_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    kit::section_header_ui(&lab_label(session), ui);
+    kit::section_header_ui(lab_label(session), ui);
     kit::note_ui(text::SPEED_ABOUT, palette_of(ui).muted, ui);
     clip_sets_ui(session, out, ui);
     pair_ui(session, out, ui);

@@ -70,7 +70,7 @@ pub(super) fn edge_value(
 
 /// What the methods of the lab have to set, and what they share.
 pub(super) fn transition_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    kit::section_header_ui(&lab_label(session), ui);
+    kit::section_header_ui(lab_label(session), ui);
     let fps = pair_ui(session, out, ui);
     let params = session.params();
     param_row_ui(Key::Method, &Detail::default(), session, out, ui);

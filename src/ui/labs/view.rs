@@ -42,7 +42,7 @@ pub(crate) fn compare_clips(reference: &str, other: &str, out: &mut Out) {
 }
 
 pub(super) fn view_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
-    kit::section_header_ui(&lab_label(session), ui);
+    kit::section_header_ui(lab_label(session), ui);
     compared_clips_ui(session, out, ui);
     foot_rows_ui(session, out, ui);
     for key in [Key::RootMotion, Key::PlaceX, Key::PlaceZ, Key::PlaceHeading] {

@@ -162,11 +162,10 @@ pub(crate) fn graph_in_words(built: &BuiltGraph, run_secs: Option<f64>) -> Messa
 /// A transition: from where to where, how far apart, how probable.
 pub(crate) fn jump_in_words(ends: [Message; 2], cm: f64, probability: Option<f64>) -> Message {
     let [leave, enter] = ends;
-    match probability {
-        Some(p) => {
-            msg!("{leave} → {enter} · {cm:.1} cm · p {p:.2}", leave, enter, cm, p)
-        }
-        None => msg!("{leave} → {enter} · {cm:.1} cm", leave, enter, cm),
+    if let Some(p) = probability {
+        msg!("{leave} → {enter} · {cm:.1} cm · p {p:.2}", leave, enter, cm, p)
+    } else {
+        msg!("{leave} → {enter} · {cm:.1} cm", leave, enter, cm)
     }
 }
 
@@ -177,9 +176,10 @@ pub(crate) fn frame_in_words(name: Message, frame: usize) -> Message {
 
 /// A pair of windows that is no transition.
 pub(crate) fn windows_apart([leave, enter]: [Message; 2], cm: Option<f64>) -> Message {
-    match cm {
-        Some(cm) => msg!("{leave} | {enter}: {cm:.1} cm apart", leave, enter, cm),
-        None => msg!("{leave} | {enter}: no window starts here", leave, enter),
+    if let Some(cm) = cm {
+        msg!("{leave} | {enter}: {cm:.1} cm apart", leave, enter, cm)
+    } else {
+        msg!("{leave} | {enter}: no window starts here", leave, enter)
     }
 }
 

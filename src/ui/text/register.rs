@@ -37,9 +37,10 @@ pub(crate) const FEET_OF_RESULT: &str = "Result";
 
 /// How far apart a pair of frames is.
 pub(crate) fn pair_apart([a, b]: [f64; 2], cm: Option<f64>) -> Message {
-    match cm {
-        Some(cm) => msg!("A {a:.2} s, B {b:.2} s: {cm:.1} cm per joint", a, b, cm),
-        None => msg!("A {a:.2} s, B {b:.2} s", a, b),
+    if let Some(cm) = cm {
+        msg!("A {a:.2} s, B {b:.2} s: {cm:.1} cm per joint", a, b, cm)
+    } else {
+        msg!("A {a:.2} s, B {b:.2} s", a, b)
     }
 }
 

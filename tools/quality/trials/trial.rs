@@ -608,6 +608,9 @@ fn lab_uses(draw: Draw, path_code: Option<&str>) -> Vec<LabUse> {
     for method in LOOPS {
         add("loop", Of::First, method.to_owned(), format!("loop_method={method}"), false);
     }
+    // Without root motion feet slide by design: only the rebuilt motion is bound by its source.
+    let (rebuilt, query) = ("put_back".to_owned(), "root_way=put_back".to_owned());
+    add("in_place", Of::First, rebuilt, query, false);
     for mode in LAYERS {
         add("layers", Of::Both, mode.to_owned(), format!("layer_mode={mode}"), false);
     }

@@ -16,6 +16,11 @@ const STANDING_MPS: f64 = 0.15;
 const MIN_BACKWARD_SHARE: f64 = 0.6;
 /// The velocity at either end of a flight is a mean over this time, seconds.
 const FLIGHT_SECS: f64 = 0.1;
+/// Displacements are smoothed by a triangle that reaches this time to both sides, seconds.
+const SHIFT_SMOOTHING_SECS: f64 = 0.05;
+/// Turns are smoothed by a triangle that reaches this time to both sides, seconds: heel and tip are
+/// close together, so that a foot that rolls seems to turn.
+const TURN_SMOOTHING_SECS: f64 = 0.15;
 /// Number of refinements of the first estimate.
 const ROUNDS: usize = 3;
 
@@ -63,7 +68,8 @@ pub enum RootWayError {
 /// move backward at 0.6 of it belongs to a foot that swings low, and is left out; this is repeated
 /// three times. Where nothing carries the body, as in the flight of a run, its velocity is
 /// interpolated from the last known to the next. With `turns` the body also turns against the turn
-/// of the feet that carry it, where ankle and tip both do.
+/// of the feet that carry it, where ankle and tip both do. Displacements are smoothed over 0.1 s
+/// and turns over 0.3 s, because a foot that begins or ceases to carry changes them in one frame.
 ///
 /// Each foot counts by its point that moves backward fastest: the others roll about it.
 ///
@@ -96,9 +102,12 @@ pub fn way_from_feet(
         .map(|(frame, velocity)| feet.step(&carries, &contacts, *velocity, frame, turns))
         .collect();
     bridge(&mut steps, (FLIGHT_SECS * clip.fps()).round() as usize);
+    let frames_of = |secs: f64| (secs * clip.fps()).round() as usize;
+    let shifts = smoothed(&steps, frames_of(SHIFT_SMOOTHING_SECS));
+    let turns = smoothed(&steps, frames_of(TURN_SMOOTHING_SECS));
+    let mut steps = turns.iter().zip(shifts).map(|(turn, shift)| Planar { yaw: turn.yaw, ..shift });
     let mut place = taken.first().map_or(Planar::IDENTITY, Planar::inverse);
     let mut world_from_clip = Vec::with_capacity(clip.frames());
-    let mut steps = steps.into_iter().flatten();
     for taken in &taken {
         world_from_clip.push(place.after(taken));
         place = steps.next().map_or(place, |step| place.after(&step));
@@ -307,6 +316,25 @@ fn bridge(steps: &mut [Option<Planar>], reach: usize) {
     }
 }
 
+/// Returns the steps as means over the steps around them, weighted by a triangle of `reach` steps
+/// to both sides: a foot that begins or ceases to carry the body changes its step in one frame.
+/// Unknown steps count as none.
+fn smoothed(steps: &[Option<Planar>], reach: usize) -> Vec<Planar> {
+    let mean = |frame: usize| {
+        let window = frame.saturating_sub(reach)..(frame + reach + 1).min(steps.len());
+        let (mut sum, mut total) = (Planar::IDENTITY, 0.0);
+        for at in window {
+            let weight = (reach + 1 - at.abs_diff(frame)) as f64;
+            let step = steps[at].unwrap_or_default();
+            sum.yaw += weight * step.yaw;
+            sum.shift += weight * step.shift;
+            total += weight;
+        }
+        Planar { yaw: sum.yaw / total, shift: sum.shift / total }
+    };
+    (0..steps.len()).map(mean).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -397,6 +425,16 @@ mod tests {
         let found: Vec<f64> = steps.iter().map(|step| step.expect("bridged").shift.x).collect();
         assert_eq!(found, [1.0, 1.0, 2.0, 3.0, 4.0, 4.0]);
         assert!((steps[2].expect("bridged").yaw - 0.2).abs() < 1e-12);
+    }
+
+    #[test]
+    fn step_that_begins_in_one_frame_is_spread_over_its_neighbours() {
+        let step = |frame| Some(Planar::new(0.0, if frame < 10 { 0.0 } else { 1.0 }, 0.0));
+        let steps: Vec<_> = (0..20).map(step).collect();
+        let found: Vec<f64> = smoothed(&steps, 3).iter().map(|step| step.shift.x).collect();
+        assert_eq!((found[0], found[19]), (0.0, 1.0));
+        assert!(found.windows(2).all(|pair| (0.0..=0.251).contains(&(pair[1] - pair[0]))));
+        assert!((found.iter().sum::<f64>() - 10.0).abs() < 1e-9, "the distance is kept");
     }
 
     #[test]

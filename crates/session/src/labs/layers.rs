@@ -273,7 +273,6 @@ impl LabInputs for LayerInputs {
             .map(|share| share * options.weight)
             .collect();
         let root_share = shares.first().copied().unwrap_or(0.0);
-        let _walks_as_b = options.mode == LayerMode::Override && root_share > 0.5;
         let ground_m = if root_share == 0.0 { a.ground_m() } else { pair.ground_m() };
         // Legs that the layer does not touch keep their contacts.
         let contacts = if root_share == 0.0 {

@@ -164,7 +164,7 @@ enum Feet {
     Free,
     AtOnce,
     Awaited,
-    LockedFeet(Arc<LockedFeet>),
+    Locked(Arc<LockedFeet>),
 }
 
 /// The number of frames whose feet are locked during dragging: about 3 ms for 31 joints in a
@@ -185,7 +185,7 @@ impl PartialEq for PathInputs {
     fn eq(&self, other: &Self) -> bool {
         self.makes_the_same(other)
             && match (&self.feet, &other.feet) {
-                (Feet::LockedFeet(a), Feet::LockedFeet(b)) => Arc::ptr_eq(a, b),
+                (Feet::Locked(a), Feet::Locked(b)) => Arc::ptr_eq(a, b),
                 (a, b) => std::mem::discriminant(a) == std::mem::discriminant(b),
             }
     }
@@ -222,7 +222,7 @@ impl Paths {
             inputs.feet = if motion.clip().frames() <= AT_ONCE {
                 Feet::AtOnce
             } else {
-                self.planter.ask(&inputs).map_or(Feet::Awaited, Feet::LockedFeet)
+                self.planter.ask(&inputs).map_or(Feet::Awaited, Feet::Locked)
             };
         }
         Ok(inputs)
@@ -338,7 +338,7 @@ impl LabInputs for PathInputs {
                 let slide_cm = foot_slide_cm(&clip, fitted.motion.roles(), &made.contacts);
                 (clip, slide_cm)
             }
-            Feet::LockedFeet(planted) => planted.made.clone()?,
+            Feet::Locked(planted) => planted.made.clone()?,
         };
         let mut metrics = vec![
             slide(slide_cm),
@@ -378,7 +378,7 @@ impl LabInputs for PathInputs {
                 "Places where curvature times speed is beyond what the original does.",
             ),
         ];
-        if matches!(self.feet, Feet::AtOnce | Feet::LockedFeet(_)) {
+        if matches!(self.feet, Feet::AtOnce | Feet::Locked(_)) {
             metrics.push(slide_before(made.slide_cm.carried));
         }
         if self.edited.is_some() {

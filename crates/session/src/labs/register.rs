@@ -409,7 +409,6 @@ impl RegisterInputs {
         &self,
         [clip, free]: [&Clip; 2],
         contacts: &Contacts,
-        _beats: &[Beat],
         mixed: &Range<usize>,
         distance_cm: Option<f64>,
     ) -> Vec<Metric> {
@@ -474,7 +473,7 @@ impl LabInputs for RegisterInputs {
             distance_cm: distance_cm.unwrap_or(f64::NAN) as f32,
             search: None,
         });
-        let metrics = self.measured([&clip, &free], &contacts, &beats, &mixed, distance_cm);
+        let metrics = self.measured([&clip, &free], &contacts, &mixed, distance_cm);
         let seams = self.seams(&beats, is_join.then_some(&mixed));
         let sources = vec![
             PlacedClip::new(Slot::A, &pair.a, 0.0, Planar::IDENTITY),

@@ -91,7 +91,7 @@ impl ReadReport {
     }
 }
 
-/// SingleFile motion file.
+/// A motion file that was read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReadFile {
     /// The file's name.
@@ -111,7 +111,7 @@ pub struct ReadFile {
 /// The clips of a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReadClips {
-    /// SingleFile for each character.
+    /// One clip for each character.
     pub clips: Vec<ReadClip>,
     /// The oddities, one sentence each.
     pub warnings: Vec<Message>,

@@ -23,7 +23,7 @@ use std::sync::Arc;
 /// All rows of the lab.
 pub(crate) fn graph_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let palette = palette_of(ui);
-    kit::section_header_ui(&lab_label(session), ui);
+    kit::section_header_ui(lab_label(session), ui);
     kit::note_ui(text::GRAPH_ABOUT, palette.muted, ui);
     clip_sets_ui(session, out, ui);
     progress_ui(session, out, ui);

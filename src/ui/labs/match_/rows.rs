@@ -21,7 +21,7 @@ use segue_text::{Message, ToMessage};
 /// All rows of the lab.
 pub(crate) fn drive_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let palette = palette_of(ui);
-    kit::section_header_ui(&lab_label(session), ui);
+    kit::section_header_ui(lab_label(session), ui);
     kit::note_ui(text::MATCH_ABOUT, palette.muted, ui);
     clip_sets_ui(session, out, ui);
     if let Some(problem) = session.panes().first().and_then(|pane| pane.problem.as_ref()) {

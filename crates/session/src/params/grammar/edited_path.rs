@@ -10,6 +10,7 @@ pub(super) fn read(text: &str) -> Result<Option<GroundSpline>, Misread> {
     Ok(Some(GroundSpline::from_code(text)?))
 }
 
+#[expect(clippy::ref_option, reason = "writers of all lists take a reference to their value")]
 pub(super) fn write(path: &Option<GroundSpline>) -> String {
     path.as_ref().map_or_else(String::new, GroundSpline::to_code)
 }

@@ -18,6 +18,7 @@ pub(super) fn read(text: &str) -> Result<Option<[Place; 2]>, Misread> {
     })
 }
 
+#[expect(clippy::ref_option, reason = "writers of all lists take a reference to their value")]
 pub(super) fn write(jump: &Option<[Place; 2]>) -> String {
     jump.as_ref().map_or_else(String::new, |[leave, enter]| {
         format!("{}:{}-{}:{}", leave.clip, leave.frame, enter.clip, enter.frame)

@@ -17,6 +17,7 @@ pub(super) fn read(text: &str) -> Result<Option<Recording>, Misread> {
     Ok(Some(recording))
 }
 
+#[expect(clippy::ref_option, reason = "writers of all lists take a reference to their value")]
 pub(super) fn write(recording: &Option<Recording>) -> String {
     recording.as_ref().map_or_else(String::new, Recording::to_text)
 }
