@@ -4,6 +4,11 @@
 //! [`Message`](segue_text::Message). Both are written out in the language of the interface where
 //! they are drawn.
 
+#![expect(
+    clippy::needless_pass_by_value,
+    reason = "a message takes over the parts that it is made of"
+)]
+
 mod graph;
 mod lessons;
 mod loop_;
