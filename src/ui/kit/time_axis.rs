@@ -30,7 +30,8 @@ pub(super) fn hovered_time(axis: TimeAxis, plot: Rect, response: &Response) -> O
     response.hover_pos().filter(|pos| plot.contains(*pos)).map(|pos| axis.time_at(pos.x))
 }
 
-/// Returns the step of 1, 2 or 5 times a power of ten that divides `span` into at most `most` pieces.
+/// Returns the step of 1, 2 or 5 times a power of ten that divides `span` into at most `most`
+/// pieces.
 pub(super) fn nice_step(span: f64, most: f64) -> f64 {
     let rough = span / most.max(1.0);
     if !(rough.is_finite() && rough > 0.0) {

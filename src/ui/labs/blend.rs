@@ -39,8 +39,8 @@ pub(crate) fn welcome(session: &Session) -> Option<&'static str> {
     is_welcome(session).then_some(text::WELCOME_HINT)
 }
 
-/// Returns whether the hint for first visitors is about what is on the stage: the windows of the built-in walk and
-/// run.
+/// Returns whether the hint for first visitors is about what is on the stage: the windows of the
+/// built-in walk and run.
 fn is_welcome(session: &Session) -> bool {
     let shown = |key, id| session.params().text(key) == id;
     session.params().lab() == LabId::Blend

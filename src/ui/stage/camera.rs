@@ -9,7 +9,8 @@ use segue_session::{Key, Session, Value};
 /// Degrees that the camera turns when the pointer moves by a point.
 const TURN_PER_POINT: f64 = 0.35;
 
-/// Turns, moves and zooms the camera: drag; Shift or another button, or two fingers; wheel or pinch.
+/// Turns, moves and zooms the camera: drag; Shift or another button, or two fingers; wheel or
+/// pinch.
 pub(super) fn camera_input(
     session: &Session,
     response: &Response,
@@ -60,8 +61,8 @@ struct CameraKeys {
 /// Points of a drag that a press of a key, or its repetition, stands for.
 const POINTS_PER_KEY: f32 = 16.0;
 
-/// Reads the keys of the camera: W, A, S, D turn it (with Shift they move it), the page keys zoom. A
-/// widget with the focus keeps its keys.
+/// Reads the keys of the camera: W, A, S, D turn it (with Shift they move it), the page keys zoom.
+/// A widget with the focus keeps its keys.
 fn camera_keys(ui: &Ui) -> CameraKeys {
     let mut keys = CameraKeys { drag: Vec2::ZERO, panning: false, nearer: 1.0 };
     if ui.ctx().memory(|memory| memory.focused().is_some()) {
@@ -89,8 +90,8 @@ fn camera_keys(ui: &Ui) -> CameraKeys {
     keys
 }
 
-/// Returns how far the pointer, or two fingers, moved, and whether that moves the camera instead of turning
-/// it.
+/// Returns how far the pointer, or two fingers, moved, and whether that moves the camera instead of
+/// turning it.
 fn drag_of(response: &Response, ui: &Ui) -> (Vec2, bool) {
     if let Some(touch) = ui.input(egui::InputState::multi_touch)
         && response.rect.contains(touch.center_pos)
