@@ -55,7 +55,7 @@ pub(super) fn assemble(
             _ => stem(name).to_owned(),
         };
         let clip = raw
-            .into_clip(clip_name, fps, &measure)
+            .into_clip(clip_name, fps, measure.provenance)
             .map_err(|error| Fault::new(0, error.to_message(), "a skeleton with a motion"))?;
         clips.push(ImportedClip {
             clip,

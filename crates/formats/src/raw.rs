@@ -2,7 +2,6 @@
 //! checked.
 
 use super::error::Fault;
-use super::measure::Measure;
 use glam::{Quat, Vec3};
 use segue_motion::clip::{Clip, ClipError, JointTranslations, Provenance, UpAxis};
 use segue_motion::skeleton::{Joint, Skeleton, SkeletonError, WorldPose, world_pose_into};
@@ -120,9 +119,9 @@ impl RawMotion {
         mut self,
         name: String,
         fps: f64,
-        measure: &Measure,
+        provenance: Provenance,
     ) -> Result<Clip, RawError> {
-        let Provenance { metres_per_unit, up } = measure.provenance;
+        let Provenance { metres_per_unit, up } = provenance;
         let length = |v: Vec3| {
             let v = (v.as_dvec3() * metres_per_unit).as_vec3();
             match up {
@@ -153,7 +152,7 @@ impl RawMotion {
             .collect();
         let skeleton = Arc::new(Skeleton::new(self.joints)?);
         let clip = Clip::new(name, skeleton, fps, self.rotations, self.root_translations)?;
-        Ok(clip.with_translations(tracks)?.with_provenance(measure.provenance).folded()?)
+        Ok(clip.with_translations(tracks)?.with_provenance(provenance).folded()?)
     }
 }
 

@@ -3,7 +3,7 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use segue_motion::skeleton::Roles;
-use segue_motion::skin::{Sculptor, SkinnedMesh};
+use segue_motion::skin::{SkinBuilder, SkinnedMesh};
 use segue_motion::synth::humanoid;
 use segue_scene::{Director, StageOptions, Viewport};
 use segue_session::{Command, Session};
@@ -36,11 +36,11 @@ fn mesh(c: &mut Criterion) {
     c.bench_function("a body about a skeleton", |bench| {
         bench.iter(|| SkinnedMesh::around(black_box(&skeleton), &roles, 1.0));
     });
-    let mut sculptor = Sculptor::new(&skeleton, &roles, &skeleton.rest_pose());
-    let sculpture =
-        std::iter::from_fn(|| Some(sculptor.advance())).find_map(|done| done).expect("a body");
+    let mut skin_builder = SkinBuilder::new(&skeleton, &roles, &skeleton.rest_pose());
+    let procedural_skin =
+        std::iter::from_fn(|| Some(skin_builder.advance())).find_map(|done| done).expect("a body");
     c.bench_function("another girth of that body", |bench| {
-        bench.iter(|| sculpture.with_girth(black_box(1.3)));
+        bench.iter(|| procedural_skin.with_girth(black_box(1.3)));
     });
 }
 

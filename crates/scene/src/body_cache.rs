@@ -5,7 +5,7 @@ use crate::Body;
 use segue_motion::clip::Motion;
 use segue_motion::clip::reference_pose;
 use segue_motion::skeleton::{Roles, Skeleton, WorldPose};
-use segue_motion::skin::{Character, Drive, Sculptor, Sculpture, SkinnedMesh};
+use segue_motion::skin::{Character, Drive, ProceduralSkin, SkinBuilder, SkinnedMesh};
 use segue_session::choices;
 use segue_session::{Key, Params, Session};
 use std::sync::{Arc, Weak};
@@ -43,8 +43,8 @@ struct CachedSkin {
 /// How far the building of a skin is.
 #[derive(Debug)]
 enum SkinState {
-    Building(Box<Sculptor>),
-    Built(Box<Sculpture>),
+    Building(Box<SkinBuilder>),
+    Built(Box<ProceduralSkin>),
 }
 
 /// How bodies look that are made around bones.
@@ -156,10 +156,11 @@ impl BodyCache {
                 && (Arc::ptr_eq(&known.skeleton, skeleton) || known.skeleton == *skeleton)
         };
         if let Some(known) = self.skins.iter_mut().find(fits) {
-            let SkinState::Built(sculpture) = &known.state else {
+            let SkinState::Built(procedural_skin) = &known.state else {
                 return None;
             };
-            let mesh = known.mesh.get_or_insert_with(|| Arc::new(sculpture.with_girth(girth)));
+            let mesh =
+                known.mesh.get_or_insert_with(|| Arc::new(procedural_skin.with_girth(girth)));
             return Some(Arc::clone(mesh));
         }
         if self.skins.len() >= MAX_SKINS {
@@ -168,7 +169,7 @@ impl BodyCache {
         self.skins.push(CachedSkin {
             skeleton: Arc::clone(skeleton),
             roles: roles.clone(),
-            state: SkinState::Building(Box::new(Sculptor::new(skeleton, roles, reference))),
+            state: SkinState::Building(Box::new(SkinBuilder::new(skeleton, roles, reference))),
             mesh: None,
         });
         None
@@ -182,14 +183,14 @@ impl BodyCache {
     /// Advances the building of a skin by one step. Returns whether there was one to build.
     pub(crate) fn work(&mut self) -> bool {
         let building = self.skins.iter_mut().find_map(|skin| match &mut skin.state {
-            SkinState::Building(sculptor) => Some((sculptor.advance(), &mut skin.state)),
+            SkinState::Building(skin_builder) => Some((skin_builder.advance(), &mut skin.state)),
             SkinState::Built(_) => None,
         });
-        let Some((sculpture, state)) = building else {
+        let Some((procedural_skin, state)) = building else {
             return false;
         };
-        if let Some(sculpture) = sculpture {
-            *state = SkinState::Built(Box::new(sculpture));
+        if let Some(procedural_skin) = procedural_skin {
+            *state = SkinState::Built(Box::new(procedural_skin));
             // Bodies that had limbs in the meantime get the skin.
             self.bodies.clear();
         }

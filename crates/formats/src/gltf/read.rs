@@ -240,7 +240,7 @@ impl Context<'_> {
     /// carrier follow the carrier.
     fn folded(mut mesh: SkinnedMesh, rest: &RawMotion) -> SkinnedMesh {
         let measure = measure(rest, Some(1.0), Some(UpAxis::Y));
-        if let Ok(clip) = rest.clone().into_clip(String::new(), 1.0, &measure)
+        if let Ok(clip) = rest.clone().into_clip(String::new(), 1.0, measure.provenance)
             && let Some(above) = clip.skeleton().folded_chain()
         {
             let bind = above
@@ -369,7 +369,7 @@ impl Context<'_> {
             _ => name.to_owned(),
         };
         let clip = raw
-            .into_clip(name, fps, &measure)
+            .into_clip(name, fps, measure.provenance)
             .map_err(|error| self.document.error(error.to_message(), "a skeleton with a motion"))?;
         Ok(ImportedClip { clip, t_pose_first_row, t_pose_dropped, measure, mendable, mesh: None })
     }

@@ -3,7 +3,7 @@
 
 use glam::DVec2;
 use segue_motion::clip::Motion;
-use segue_motion::matching::search::{Question, TreeIndex, scan};
+use segue_motion::matching::search::{Query, TreeIndex, scan};
 use segue_motion::matching::{
     Control, Controller, ControllerOptions, Database, DatabaseOptions, Hit, RATE, Recording,
     TagFilter, made_params,
@@ -88,9 +88,9 @@ pub(crate) fn recording(seed: u64, ticks: u32) -> Recording {
 }
 
 /// A query, and the frame that was playing.
-type Query = (Vec<f32>, Option<Hit>);
+type DrivenQuery = (Vec<f32>, Option<Hit>);
 
-fn driven(database: &Arc<Database>) -> Vec<Query> {
+fn driven(database: &Arc<Database>) -> Vec<DrivenQuery> {
     let mut controller =
         Controller::new(Arc::clone(database), ControllerOptions::default(), &Planar::IDENTITY)
             .expect("defaults");
@@ -111,7 +111,7 @@ fn driven(database: &Arc<Database>) -> Vec<Query> {
     asked
 }
 
-fn noise(dims: usize) -> Vec<Query> {
+fn noise(dims: usize) -> Vec<DrivenQuery> {
     let mut chance = Random(3);
     // The sum of twelve uniform numbers is nearly normally distributed.
     let mut normal = || (0..12).map(|_| chance.next()).sum::<f64>() - 6.0;
@@ -250,7 +250,7 @@ pub(crate) struct Trial {
     weights: Vec<f32>,
     two: TwoLevels,
     tree: TreeIndex,
-    asked: [Vec<Query>; 2],
+    asked: [Vec<DrivenQuery>; 2],
 }
 
 impl Trial {
@@ -282,7 +282,7 @@ impl Trial {
     /// Returns the cost of the best frame, and the number of frames that the boxes visited.
     pub(crate) fn search(&self, method: Method, kind: Kind, query: usize) -> (f32, usize) {
         let (query, known) = &self.asked[kind as usize][query];
-        let question = Question { query, weights: &self.weights, filter: TagFilter::default() };
+        let question = Query { query, weights: &self.weights, filter: TagFilter::default() };
         let cost = |hit: Option<Hit>| hit.map_or(f32::NAN, |hit| hit.cost);
         match method {
             Method::Boxes => {

@@ -39,7 +39,7 @@ pub fn take_in_place(character_frames: &[Planar], turns: bool) -> Vec<Planar> {
 
 /// The root motion of a clip that moves in place.
 #[derive(Clone, Debug, PartialEq)]
-pub struct RootWay {
+pub struct RootMotion {
     /// The transform of each frame, for [`Clip::transformed_by_frame`]; the first frame keeps its
     /// place.
     pub world_from_clip: Vec<Planar>,
@@ -49,7 +49,7 @@ pub struct RootWay {
 
 /// Error computing root motion from planted feet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error, segue_text::ToMessage)]
-pub enum RootWayError {
+pub enum RootMotionError {
     /// The skeleton has no known feet.
     #[error("No foot of this body is known: set its roles, then try again.")]
     NoFeet,
@@ -78,23 +78,23 @@ pub enum RootWayError {
 /// than the ground. A foot that slides in the source is taken as standing. O(frames × joints).
 ///
 /// # Errors
-/// [`RootWayError`]
-pub fn way_from_feet(
+/// [`RootMotionError`]
+pub fn root_motion_from_feet(
     clip: &Clip,
     roles: &Roles,
     options: &ContactOptions,
     turns: bool,
-) -> Result<RootWay, RootWayError> {
+) -> Result<RootMotion, RootMotionError> {
     let taken = take_in_place(&character_frames(clip, roles), turns);
     let clip = &clip.transformed_by_frame(&taken);
     let feet = Feet::of(clip, roles, options);
     if feet.points.is_empty() {
-        return Err(RootWayError::NoFeet);
+        return Err(RootMotionError::NoFeet);
     }
     let carries = feet.carrying(clip.fps());
     let contacts = feet.contacts(&carries, options, clip.fps());
     if Side::BOTH.into_iter().all(|side| contacts.intervals(side).is_empty()) {
-        return Err(RootWayError::NoContacts);
+        return Err(RootMotionError::NoContacts);
     }
     let velocities = feet.velocities(&carries, clip.fps());
     let mut steps: Vec<Option<Planar>> = (velocities.iter().enumerate())
@@ -112,7 +112,7 @@ pub fn way_from_feet(
         world_from_clip.push(place.after(taken));
         place = steps.next().map_or(place, |step| place.after(&step));
     }
-    Ok(RootWay { world_from_clip, contacts })
+    Ok(RootMotion { world_from_clip, contacts })
 }
 
 /// The points of both feet, frame by frame.
@@ -350,7 +350,8 @@ mod tests {
     }
 
     fn put_back(clip: &Clip, roles: &Roles, turns: bool) -> Vec<Planar> {
-        let way = way_from_feet(clip, roles, &ContactOptions::default(), turns).expect("a way");
+        let way =
+            root_motion_from_feet(clip, roles, &ContactOptions::default(), turns).expect("a way");
         assert_eq!(way.world_from_clip.len(), clip.frames());
         assert_eq!(way.contacts.frames(), clip.frames());
         let back = clip.transformed_by_frame(&way.world_from_clip);
@@ -441,7 +442,8 @@ mod tests {
     fn single_frame_stays_where_it_is() {
         let (clip, roles, _) = made(&Params::new(Action::Walk));
         let one = clip.crop(0..1).expect("a frame");
-        let way = way_from_feet(&one, &roles, &ContactOptions::default(), true).expect("a way");
+        let way =
+            root_motion_from_feet(&one, &roles, &ContactOptions::default(), true).expect("a way");
         let [stays] = way.world_from_clip[..] else { panic!("one frame") };
         assert!(stays.shift.length() < 1e-9 && stays.yaw.abs() < 1e-9, "{stays:?}");
     }
@@ -449,8 +451,9 @@ mod tests {
     #[test]
     fn body_without_feet_is_refused() {
         let (clip, _, _) = made(&Params::new(Action::Walk));
-        let refused = way_from_feet(&clip, &Roles::default(), &ContactOptions::default(), true);
-        assert_eq!(refused, Err(RootWayError::NoFeet));
+        let refused =
+            root_motion_from_feet(&clip, &Roles::default(), &ContactOptions::default(), true);
+        assert_eq!(refused, Err(RootMotionError::NoFeet));
     }
 
     proptest! {

@@ -29,7 +29,7 @@
 //! would flicker.
 //!
 //! A clip that goes in place ([`take_in_place`]) has its way over the ground in its feet: what
-//! stands goes backward under the body, and [`way_from_feet`] adds that up.
+//! stands goes backward under the body, and [`root_motion_from_feet`] adds that up.
 //!
 //! # Example
 //!
@@ -108,7 +108,7 @@ pub use contacts::{ContactOptions, Contacts};
 pub(crate) use contacts::{stillest_point, stillest_step};
 pub use curves::{CurveKind, joint_curve};
 pub use ground::estimate_ground;
-pub use in_place::{RootWay, RootWayError, take_in_place, way_from_feet};
+pub use in_place::{RootMotion, RootMotionError, root_motion_from_feet, take_in_place};
 pub(crate) use jolts::{JoltScan, jolts, turn_change};
 pub use mirror::{MirrorError, mirror};
 pub use motion::{FootOptions, Motion};

@@ -1,6 +1,6 @@
 //! Playback of a gait at a variable speed.
 
-use super::{GaitFacts, SpeedBlend};
+use super::{GaitClip, GaitError, GaitFacts, SpeedBlend};
 use crate::math::{Planar, spring};
 use crate::skeleton::Pose;
 
@@ -78,5 +78,27 @@ impl SpeedPlayer {
     #[must_use]
     pub fn planted(&self, blend: &SpeedBlend) -> [bool; 2] {
         blend.planted(self.facts(blend).weight, self.phase)
+    }
+}
+
+impl SpeedBlend {
+    /// Returns a motion of variable speed: `speed_mps` returns the requested speed at a time
+    /// (seconds), and the motion follows it as a [`SpeedPlayer`] does.
+    ///
+    /// # Errors
+    /// [`GaitError::Option`] when `secs` is not between 0 and 600.
+    pub fn clip_along(
+        &self,
+        secs: f64,
+        speed_mps: impl Fn(f64) -> f64,
+    ) -> Result<GaitClip, GaitError> {
+        let (steps, fps) = (self.steps_in(secs)?, self.fps());
+        let mut player = SpeedPlayer::new(self, speed_mps(0.0));
+        let mut phases = vec![(player.facts(self).weight, player.phase())];
+        for step in 1..=steps {
+            player.go(self, fps.recip(), speed_mps(step as f64 / fps));
+            phases.push((player.facts(self).weight, player.phase()));
+        }
+        self.made(player.facts(self), phases.into_iter())
     }
 }

@@ -1,7 +1,7 @@
 //! Blending of two gaits to a given speed.
 
 use super::phase::{Events, Part, PhaseAlignment};
-use super::{GaitCycle, GaitError, SpeedPlayer};
+use super::{GaitCycle, GaitError};
 use crate::blend::{Assembly, moving_joints, translation_of};
 use crate::clip::{Clip, Contacts};
 use crate::math::{Planar, quat, wrap_angle};
@@ -327,33 +327,18 @@ impl SpeedBlend {
         self.made(facts, (0..=steps).map(|step| (facts.weight, step as f64 * per_step)))
     }
 
-    /// Returns a motion of variable speed: `speed_mps` returns the requested speed at a time
-    /// (seconds), and the motion follows it as a [`SpeedPlayer`] does.
-    ///
-    /// # Errors
-    /// [`GaitError::Option`] when `secs` is not between 0 and 600.
-    pub fn clip_along(
-        &self,
-        secs: f64,
-        speed_mps: impl Fn(f64) -> f64,
-    ) -> Result<GaitClip, GaitError> {
-        let (steps, fps) = (self.steps_in(secs)?, self.gaits[0].clip.fps());
-        let mut player = SpeedPlayer::new(self, speed_mps(0.0));
-        let mut phases = vec![(player.facts(self).weight, player.phase())];
-        for step in 1..=steps {
-            player.go(self, fps.recip(), speed_mps(step as f64 / fps));
-            phases.push((player.facts(self).weight, player.phase()));
-        }
-        self.made(player.facts(self), phases.into_iter())
+    /// Returns the frame rate of the gaits and of all that is made of them.
+    pub(super) fn fps(&self) -> f64 {
+        self.gaits[0].clip.fps()
     }
 
-    fn steps_in(&self, secs: f64) -> Result<usize, GaitError> {
+    pub(super) fn steps_in(&self, secs: f64) -> Result<usize, GaitError> {
         checked("duration (s)", secs, MAX_SECS)?;
-        Ok((secs * self.gaits[0].clip.fps()).round() as usize)
+        Ok((secs * self.fps()).round() as usize)
     }
 
     /// Returns frames at these weights and (rising) phases.
-    fn made(
+    pub(super) fn made(
         &self,
         facts: GaitFacts,
         phases: impl Iterator<Item = (f64, f64)>,

@@ -104,7 +104,7 @@ pub struct Followed {
 ///
 /// The limit is a number of nodes and not a time, so that every machine finds the same walk, and a
 /// link that holds a path shows the same everywhere. For a preview before the end use
-/// [`PathSearch::so_far`].
+/// [`FollowSearch::so_far`].
 ///
 /// Clips are aligned as by a [`Stitcher`] with these options, so that its walk has the planned
 /// trajectory. Overlapping transitions are planned from the clip that is left; there the trajectory
@@ -117,14 +117,14 @@ pub fn follow(
     budget: usize,
     options: &StitchOptions,
 ) -> Followed {
-    let mut search = PathSearch::new(graph, start, path, budget, options);
+    let mut search = FollowSearch::new(graph, start, path, budget, options);
     while !search.advance(graph, path, usize::MAX) {}
     search.so_far(graph, path)
 }
 
 /// The search of [`follow`] in slices of a number of nodes. The slices do not change the result.
 #[derive(Clone, Debug)]
-pub struct PathSearch {
+pub struct FollowSearch {
     stitcher: Stitcher,
     /// The transforms of entered clips by visited transitions, by their indices:
     /// `left_from_entered`.
@@ -139,7 +139,7 @@ pub struct PathSearch {
     is_over: bool,
 }
 
-impl PathSearch {
+impl FollowSearch {
     /// Begins the search at the start; the arguments are those of [`follow`].
     #[must_use]
     pub fn new(

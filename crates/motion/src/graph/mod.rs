@@ -123,7 +123,7 @@ pub use build::{Construction, GraphOptions, Jump, MotionGraph, Stretch, Way};
 pub use candidates::{Candidate, CandidateSearch, Candidates};
 pub use distances::{AllPairs, AllSweep, CountedTo, FrameDistances, PausedAllSweep};
 pub use error::GraphError;
-pub use follow::{Followed, GroundPath, PathSearch, follow};
+pub use follow::{FollowSearch, Followed, GroundPath, follow};
 pub use frames::{FrameSet, JoltSearch, Place};
 pub use measure::{Seam, WalkMeter, WalkMetrics, WalkProfile};
 pub use overview::{DistanceDetail, DistanceOverview};

@@ -810,7 +810,7 @@ fn a_path_is_followed() {
     assert_eq!(follow(&graph, start, &path, 60_000, &stitched), found);
     // In slices the same, with a best so far that comes ever farther.
     for nodes in [1, 700] {
-        let mut search = PathSearch::new(&graph, start, &path, 60_000, &stitched);
+        let mut search = FollowSearch::new(&graph, start, &path, 60_000, &stitched);
         let (mut before, mut slices) = (0.0, 0);
         while !search.advance(&graph, &path, nodes) {
             slices += 1;

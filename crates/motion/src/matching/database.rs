@@ -3,7 +3,7 @@
 use super::features::{FeatureOptions, RATE};
 use super::motion::DatabaseClip;
 use super::pace::Pace;
-use super::search::{BoxIndex, BoxMasks, Candidates, Question};
+use super::search::{BoxIndex, BoxMasks, Candidates, Query};
 use super::tags::{self, TagRange, TagSet};
 use super::{Block, DatabaseBuilder, Features, MatchError, Weights};
 use crate::clip::Motion;
@@ -219,7 +219,7 @@ impl Database {
         Block::ALL.map(|block| {
             let range = self.features.layout().range(block);
             let weights = vec![weights.of(block); range.len()];
-            let part = Question {
+            let part = Query {
                 query: query.get(range.clone()).unwrap_or(&[]),
                 weights: &weights,
                 filter: super::TagFilter::default(),

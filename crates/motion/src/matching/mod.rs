@@ -35,7 +35,7 @@
 //!
 //! ```
 //! use segue_motion::clip::Motion;
-//! use segue_motion::matching::search::{Question, scan};
+//! use segue_motion::matching::search::{Query, scan};
 //! use segue_motion::matching::{Control, Controller, ControllerOptions, Database, DatabaseOptions};
 //! use segue_motion::matching::{TagFilter, Weights};
 //! use segue_motion::math::Planar;
@@ -60,7 +60,7 @@
 //! let weights = Weights::default().spread(database.features().layout());
 //! let row = database.features().row(700).ok_or("no such frame")?;
 //! let query: Vec<f32> = row.iter().map(|x| x + 0.02).collect();
-//! let question = Question { query: &query, weights: &weights, filter: TagFilter::default() };
+//! let question = Query { query: &query, weights: &weights, filter: TagFilter::default() };
 //! let slow = scan(&database.candidates(), &question);
 //! let fast = database.index().search(database.masks(), &question, None);
 //! assert!(slow.best == fast.best && fast.visited < slow.visited / 2);
@@ -96,6 +96,7 @@ mod desired;
 mod drive;
 mod error;
 mod features;
+mod foot_state;
 mod made;
 mod motion;
 mod pace;
@@ -107,7 +108,7 @@ mod tags;
 pub use builder::DatabaseBuilder;
 pub use control::{Control, Recording, RecordingError};
 pub use controller::{
-    Candidate, Controller, ControllerOptions, Following, FootPlanting, HoldReason, Hysteresis,
+    Candidate, Controller, ControllerOptions, FollowOptions, FootPlanting, HoldReason, Hysteresis,
     SearchMethod, SearchReason, SearchRecord,
 };
 pub use database::{Database, DatabaseOptions, Place};

@@ -1,8 +1,8 @@
 //! The clips of a database.
 
-use super::controller::FootState;
 use super::cycle::{cycle_frame, cycle_power};
 use super::features::{BODY, Layout, RATE};
+use super::foot_state::FootState;
 use super::pace::Pace;
 use super::simulation::simulation_roots_of_cycle;
 use super::tags::TagRange;

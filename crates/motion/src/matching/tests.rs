@@ -1,6 +1,6 @@
 //! Tests of databases and controllers.
 
-use super::search::{Question, scan};
+use super::search::{Query, scan};
 use super::*;
 use crate::clip::{Clip, Contacts, Interpolation, Motion, resample};
 use crate::gait::GaitCycle;
@@ -190,7 +190,7 @@ fn database_with_other_rates_times_and_tags_differs_as_documented() {
     }
     let excluded = usual.retagged(0, &[TagRange { tag: Tag::Exclude, frames: 0..usual.frames() }]);
     let query = vec![0.0; 27];
-    let question = Question { query: &query, weights: &[1.0; 27], filter: TagFilter::default() };
+    let question = Query { query: &query, weights: &[1.0; 27], filter: TagFilter::default() };
     assert_eq!(excluded.index().search(excluded.masks(), &question, None).best, None);
     assert!(scan(&usual.candidates(), &question).best.is_some());
     for number in (0..database.frames()).step_by(997) {

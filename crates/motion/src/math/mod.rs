@@ -76,10 +76,12 @@ mod decay;
 mod monotone;
 mod planar;
 pub mod quat;
+mod response;
 pub mod spring;
 pub mod stats;
 
-pub use decay::{Decay, Response};
+pub use decay::Decay;
 pub use monotone::MonotoneCurve;
 pub(crate) use planar::unwrap_near;
 pub use planar::{Planar, wrap_angle};
+pub use response::Response;

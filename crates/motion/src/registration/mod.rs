@@ -112,7 +112,7 @@ pub use clouds::{PointClouds, PointCloudsBuilder};
 pub use curves::{Registration, RegistrationOptions};
 pub use distance::DistanceMatrix;
 pub use path::{
-    MAX_SLOPE_LIMIT, PathEnd, PathOptions, PathSearch, RegistrationPath, optimal_path,
+    MAX_SLOPE_LIMIT, PathEnd, PathOptions, RegistrationPath, TimeWarpSearch, optimal_path,
     path_in_corridor,
 };
 pub use path_error::PathError;

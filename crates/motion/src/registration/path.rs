@@ -3,7 +3,7 @@
 mod search;
 mod section;
 
-pub use search::PathSearch;
+pub use search::TimeWarpSearch;
 
 use super::{DistanceMatrix, PathError};
 
@@ -83,7 +83,7 @@ pub fn optimal_path(
     matrix: &DistanceMatrix,
     options: &PathOptions,
 ) -> Result<RegistrationPath, PathError> {
-    PathSearch::new(matrix, options)?.finish(matrix)
+    TimeWarpSearch::new(matrix, options)?.finish(matrix)
 }
 
 /// Returns an approximation of [`optimal_path`] for long clips: the path is found in a matrix of
@@ -101,7 +101,7 @@ pub fn path_in_corridor(
     factor: usize,
     radius: usize,
 ) -> Result<RegistrationPath, PathError> {
-    PathSearch::in_corridor(matrix, options, factor, radius)?.finish(matrix)
+    TimeWarpSearch::in_corridor(matrix, options, factor, radius)?.finish(matrix)
 }
 
 /// Returns the pins in order, each strictly after the one before in both clips.

@@ -1,9 +1,42 @@
 //! Distances of windows as running sums along diagonals.
 
-use super::DistanceMatrix;
 use super::terms::{PairTerms, Progress, TermRow, centre_product};
+use super::{DistanceMatrix, RegistrationError};
 use glam::DVec2;
 use std::ops::Range;
+
+impl PairTerms {
+    /// Returns the computation of the distances between all windows of `window` frames that start
+    /// in `sources` and `targets` (frames of the clips; clamped to the compared part), in slices.
+    /// Windows that would cross an end are left out: the matrix may be empty.
+    ///
+    /// # Errors
+    /// [`RegistrationError::Unfinished`] before all rows are compared.
+    pub fn sweep(
+        &self,
+        window: usize,
+        sources: &Range<usize>,
+        targets: &Range<usize>,
+    ) -> Result<Sweep<'_>, RegistrationError> {
+        self.complete()?;
+        let window = window.max(1);
+        let [rows, columns] = self.starts(window, sources, targets);
+        Ok(Sweep::new(self, window, rows, columns))
+    }
+
+    /// Computes [`Self::sweep`] in one call.
+    ///
+    /// # Errors
+    /// [`RegistrationError::Unfinished`] before all rows are compared.
+    pub fn distances(
+        &self,
+        window: usize,
+        sources: &Range<usize>,
+        targets: &Range<usize>,
+    ) -> Result<DistanceMatrix, RegistrationError> {
+        Ok(self.sweep(window, sources, targets)?.finish())
+    }
+}
 
 /// The computation of the distances of all windows of one length, by running sums along the
 /// diagonals, row by row.

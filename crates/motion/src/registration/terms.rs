@@ -3,7 +3,6 @@
 use super::align::{Alignment, PairMoments};
 use super::cloud::{Cloud, LANES, Shares, Spread, tile};
 use super::points::checked_sum;
-use super::sweep::Sweep;
 use super::{DistanceMatrix, PointClouds, RegistrationError, align};
 use crate::clip::Clip;
 use glam::DVec2;
@@ -304,36 +303,18 @@ impl PairTerms {
         if done < total { Err(RegistrationError::Unfinished { done, total }) } else { Ok(()) }
     }
 
-    /// Returns the computation of the distances between all windows of `window` frames that start
-    /// in `sources` and `targets` (frames of the clips; clamped to the compared part), in slices.
-    /// Windows that would cross an end are left out: the matrix may be empty.
-    ///
-    /// # Errors
-    /// [`RegistrationError::Unfinished`] before all rows are compared.
-    pub fn sweep(
+    /// Returns the samples at which the windows of `window` frames start that start in `sources`, and
+    /// those that start in `targets` (frames of the clips).
+    pub(super) fn starts(
         &self,
         window: usize,
         sources: &Range<usize>,
         targets: &Range<usize>,
-    ) -> Result<Sweep<'_>, RegistrationError> {
-        self.complete()?;
-        let window = window.max(1);
-        let rows = self.source.starts(sources, window, self.stride);
-        let columns = self.target.starts(targets, window, self.stride);
-        Ok(Sweep::new(self, window, rows, columns))
-    }
-
-    /// Computes [`Self::sweep`] in one call.
-    ///
-    /// # Errors
-    /// [`RegistrationError::Unfinished`] before all rows are compared.
-    pub fn distances(
-        &self,
-        window: usize,
-        sources: &Range<usize>,
-        targets: &Range<usize>,
-    ) -> Result<DistanceMatrix, RegistrationError> {
-        Ok(self.sweep(window, sources, targets)?.finish())
+    ) -> [Range<usize>; 2] {
+        [
+            self.source.starts(sources, window, self.stride),
+            self.target.starts(targets, window, self.stride),
+        ]
     }
 
     /// Returns the alignment of the windows of `window` frames that start at the samples next to

@@ -31,10 +31,10 @@ const FAIRING_ROUNDS: usize = 8;
 /// How often the ways that vertices take with the girth are.
 const REACH_ROUNDS: usize = 8;
 
-/// The body of a skeleton as it comes to be: [`Sculptor::advance`] makes a little more of it, so
+/// The body of a skeleton as it comes to be: [`SkinBuilder::advance`] makes a little more of it, so
 /// that a page can go on meanwhile.
 #[derive(Clone, Debug)]
-pub struct Sculptor {
+pub struct SkinBuilder {
     pose: WorldPose,
     /// The power of the girth that each joint's vertices grow with.
     powers: Vec<f32>,
@@ -42,7 +42,7 @@ pub struct Sculptor {
     paths: Vec<Vec<(f32, usize)>>,
     /// The shells that are still to be made, the next one last.
     shells: Vec<Shell>,
-    done: Sculpture,
+    done: ProceduralSkin,
 }
 
 /// A body that any girth can be given in a moment.
@@ -50,7 +50,7 @@ pub struct Sculptor {
 /// A mesh for the girth 1, and how its vertices move for another: away from the axis of the limb
 /// that they lie on, as limbs grow.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Sculpture {
+pub struct ProceduralSkin {
     mesh: SkinnedMesh,
     /// From the axis of its limb to each vertex, metres, smooth over the surface.
     reach: Vec<Vec3>,
@@ -73,7 +73,7 @@ enum Stage {
     Sharing(Contour, Neighbours, Sharing),
 }
 
-impl Sculptor {
+impl SkinBuilder {
     /// Begins the body of a skeleton: a mannequin of human proportions where the roles are those of
     /// a human, else limbs along the bones. It is made on the skeleton's [`canonical_stance`], for
     /// which `reference` is a pose that shows how its bones lie to each other
@@ -86,11 +86,11 @@ impl Sculptor {
         let rest = standing.rest_positions();
         let mut shapes = limb_shapes(standing, &rest, Some(roles));
         shapes.retain(|shape| u16::try_from(shape.a.joint.max(shape.b.joint)).is_ok());
-        let mut sculptor = Self {
+        let mut skin_builder = Self {
             powers: powers(standing, roles),
             paths: Vec::new(),
             shells: Vec::new(),
-            done: Sculpture::default(),
+            done: ProceduralSkin::default(),
             pose: bind::bind_pose(standing, roles, &stance),
         };
         let is_blended = shapes.len() <= MAX_BLENDED;
@@ -102,11 +102,12 @@ impl Sculptor {
         let shapes: Vec<Shape> =
             shapes.into_iter().map(|shape| shape.in_axes_of(&stance)).collect();
         if is_blended {
-            sculptor.begin_shells(standing, roles, &shapes);
+            skin_builder.begin_shells(standing, roles, &shapes);
         } else {
-            (sculptor.done.mesh, sculptor.done.reach) = capsules(&shapes, &sculptor.pose);
+            (skin_builder.done.mesh, skin_builder.done.reach) =
+                capsules(&shapes, &skin_builder.pose);
         }
-        sculptor
+        skin_builder
     }
 
     /// A field around the shapes: one for those that may flow into each other, and one for each
@@ -149,7 +150,7 @@ impl Sculptor {
 
     /// Makes a little more of it: a millisecond's work, or two in a browser. The body, once it is
     /// whole; after that an empty one.
-    pub fn advance(&mut self) -> Option<Sculpture> {
+    pub fn advance(&mut self) -> Option<ProceduralSkin> {
         let Some(Shell { members, cones, stage }) = self.shells.last_mut() else {
             return Some(self.finished());
         };
@@ -184,7 +185,7 @@ impl Sculptor {
         None
     }
 
-    fn finished(&mut self) -> Sculpture {
+    fn finished(&mut self) -> ProceduralSkin {
         let mut done = std::mem::take(&mut self.done);
         done.mesh.bind = bind::joint_from_bind(&self.pose);
         if done.powers.len() < done.mesh.joints.len() {
@@ -197,7 +198,7 @@ impl Sculptor {
     }
 }
 
-impl Sculpture {
+impl ProceduralSkin {
     /// Adds a finished surface.
     fn add(
         &mut self,

@@ -8,7 +8,7 @@
 //! written here plainly, one vertex after the other; the renderer does the same on the GPU.
 //!
 //! [`SkinnedMesh::around_clip`] makes a mesh for any skeleton, a mannequin where the roles of a
-//! human are known. A [`Sculptor`] makes it in slices, and the resulting [`Sculpture`] takes any
+//! human are known. A [`SkinBuilder`] makes it in slices, and the resulting [`ProceduralSkin`] takes any
 //! girth at once. A mesh that was read from a file is a [`SkinnedMesh`], too.
 //!
 //! A motion with weights `w` that sum to 1 takes a point `p` of the bind pose to
@@ -54,7 +54,7 @@ mod field;
 pub mod shapes;
 mod weights;
 
-pub use around::{Sculptor, Sculpture};
+pub use around::{ProceduralSkin, SkinBuilder};
 pub use character::{Character, Drive};
 pub use deform::{RigidTransform, dual_quaternion, linear_blend};
 pub use weights::normals;
@@ -85,24 +85,27 @@ pub struct SkinnedMesh {
 }
 
 impl SkinnedMesh {
-    /// Makes a body for a skeleton from its rest pose alone: see [`Sculptor::new`] and, for the
-    /// girth, [`Sculpture::with_girth`]. The same input gives the same mesh.
+    /// Makes a body for a skeleton from its rest pose alone: see [`SkinBuilder::new`] and, for the
+    /// girth, [`ProceduralSkin::with_girth`]. The same input gives the same mesh.
     #[must_use]
     pub fn around(skeleton: &Skeleton, roles: &Roles, girth: f32) -> Self {
-        Self::sculpted(Sculptor::new(skeleton, roles, &skeleton.rest_pose()), girth)
+        Self::sculpted(SkinBuilder::new(skeleton, roles, &skeleton.rest_pose()), girth)
     }
 
     /// Makes a body for the skeleton of a clip. Where its rest pose is implausible, the reference
     /// pose of the clip is used instead ([`reference_pose`]).
     #[must_use]
     pub fn around_clip(clip: &Clip, roles: &Roles, girth: f32) -> Self {
-        Self::sculpted(Sculptor::new(clip.skeleton(), roles, &reference_pose(clip, roles)), girth)
+        Self::sculpted(
+            SkinBuilder::new(clip.skeleton(), roles, &reference_pose(clip, roles)),
+            girth,
+        )
     }
 
-    fn sculpted(mut sculptor: Sculptor, girth: f32) -> Self {
+    fn sculpted(mut skin_builder: SkinBuilder, girth: f32) -> Self {
         loop {
-            if let Some(sculpture) = sculptor.advance() {
-                return sculpture.with_girth(girth);
+            if let Some(procedural_skin) = skin_builder.advance() {
+                return procedural_skin.with_girth(girth);
             }
         }
     }

@@ -70,6 +70,7 @@ mod make;
 mod params;
 mod path;
 mod plan;
+mod planner;
 mod posture;
 mod spot;
 mod track;

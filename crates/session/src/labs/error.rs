@@ -2,7 +2,7 @@
 
 use segue_formats::ImportError;
 use segue_motion::blend::{BlendError, LayerError};
-use segue_motion::clip::{ClipError, RetargetError, RootWayError};
+use segue_motion::clip::{ClipError, RetargetError, RootMotionError};
 use segue_motion::gait::GaitError;
 use segue_motion::graph::GraphError;
 use segue_motion::matching::MatchError;
@@ -205,7 +205,7 @@ pub enum LabError {
     Retarget(#[from] RetargetError),
     /// An error of extracting root motion.
     #[error(transparent)]
-    RootWay(#[from] RootWayError),
+    RootWay(#[from] RootMotionError),
     /// An error of finding gaits.
     #[error(transparent)]
     Gait(#[from] GaitError),

@@ -6,7 +6,7 @@ use super::{Measured, Outcome};
 use crate::choices::RootWay;
 use crate::labs::LabError;
 use crate::params::{Key, Params};
-use segue_motion::clip::{Clip, Motion, take_in_place, way_from_feet};
+use segue_motion::clip::{Clip, Motion, root_motion_from_feet, take_in_place};
 use segue_motion::math::Planar;
 use segue_motion::metrics::{Metric, foot_slide_cm};
 use segue_text::{Message, msg};
@@ -77,7 +77,8 @@ impl LabInputs for InPlaceInputs {
             }
             RootWay::PutBack => {
                 let options = &source.feet().contacts;
-                let found = way_from_feet(source.clip(), source.roles(), options, self.turns)?;
+                let found =
+                    root_motion_from_feet(source.clip(), source.roles(), options, self.turns)?;
                 (found.world_from_clip, found.contacts)
             }
         };

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::clip::{Motion, character_frames, ground_speed, resample, stillest_step};
+use crate::gait::SpeedPlayer;
 use crate::registration::fixtures::Walk;
 use crate::synth::{Action, Params, synthesize};
 use crate::transition::{FootLockOptions, foot_lock};

@@ -1,9 +1,10 @@
 //! Foot planting during playback.
 
 use super::super::Database;
+use super::super::foot_state::FootState;
 use super::options::FootPlanting;
 use crate::math::curve::smoothstep;
-use crate::math::{Planar, quat, spring};
+use crate::math::{quat, spring};
 use crate::registration::REFERENCE_HEIGHT_M;
 use crate::skeleton::{Pose, Side, Skeleton, WorldPose, world_pose_of};
 use crate::transition::Leg;
@@ -79,32 +80,6 @@ const LIFT_HALF_LIFE_SECS: f64 = 0.04;
 /// The speed that planting may add to a joint, as a share of the speed that the joint usually does
 /// not exceed.
 const ADDED_SPEED: f32 = 0.75;
-
-/// The state of a foot in the clip, in the frame that plays.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(in super::super) struct FootState {
-    /// Whether it is planted.
-    pub(in super::super) planted: bool,
-    /// The number of frames for which it stays planted, including this one; shortly before it
-    /// lands, the length of the next stance. 0 otherwise.
-    pub(in super::super) stance_frames: usize,
-    /// The height of its lowest point above the usual height of a planted foot, metres.
-    pub(in super::super) above_m: f32,
-    /// The amount by which its lowest point comes down in the next frames, metres.
-    pub(in super::super) descent_m: f32,
-    /// The index of the point that moves least over the ground in the clip; while the foot is
-    /// pulled along, another point may seem to stand.
-    pub(in super::super) stillest: usize,
-    /// The velocity of that point in the frame of the character, metres per second.
-    pub(in super::super) velocity_mps: Vec3,
-}
-
-impl FootState {
-    /// Returns the state with its velocity in the world.
-    pub(super) fn turned(self, world_from_character: &Planar) -> Self {
-        Self { velocity_mps: world_from_character.apply_vector(self.velocity_mps), ..self }
-    }
-}
 
 /// Steps a number as [`spring::towards`] does, in single precision.
 fn towards_f32(

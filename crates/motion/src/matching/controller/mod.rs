@@ -5,7 +5,7 @@ mod options;
 mod record;
 mod seek;
 
-pub use options::{ControllerOptions, Following, FootPlanting, Hysteresis, SearchMethod};
+pub use options::{ControllerOptions, FollowOptions, FootPlanting, Hysteresis, SearchMethod};
 pub use record::{Candidate, HoldReason, SearchReason, SearchRecord};
 
 use super::control::Control;
@@ -19,7 +19,6 @@ use crate::math::{Planar, quat, spring, wrap_angle};
 use crate::skeleton::Pose;
 use crate::transition::{Inertializer, MovingPose};
 use feet::Feet;
-pub(super) use feet::FootState;
 use glam::{DVec2, Vec3};
 use std::sync::Arc;
 

@@ -45,7 +45,7 @@ pub enum SearchMethod {
 
 /// How the character follows the simulation object.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Following {
+pub struct FollowOptions {
     /// Half-life with which the character is pulled towards the simulation object, seconds.
     pub half_life_secs: f64,
     /// The greatest speed of the pull as a share of the character's own speed, so that a standing
@@ -89,7 +89,7 @@ pub struct ControllerOptions {
     /// The steering of the simulation object.
     pub steering: Steering,
     /// How the character follows it; `None` leaves root motion to the clips.
-    pub following: Option<Following>,
+    pub following: Option<FollowOptions>,
     /// Foot planting; `None` leaves feet unchanged.
     pub planting: Option<FootPlanting>,
     /// The number of candidates in the record of each search, at most 32. More than one costs a
@@ -108,7 +108,7 @@ impl Default for ControllerOptions {
             prefer_source: None,
             transition: Inertialization::Offset(Decay::Spring { half_life_secs: 0.1 }),
             steering: Steering { velocity_half_life_secs: 0.28, facing_half_life_secs: 0.3 },
-            following: Some(Following {
+            following: Some(FollowOptions {
                 half_life_secs: 0.1,
                 max_share: 0.5,
                 max_distance_m: 0.35,

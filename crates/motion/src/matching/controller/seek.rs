@@ -2,7 +2,7 @@
 
 use super::super::features::{MAX_DIMS, RATE};
 use super::super::motion::{DatabaseClip, write_trajectory};
-use super::super::search::{Hit, Question, SearchResult, TreeIndex, scan};
+use super::super::search::{Hit, Query, SearchResult, TreeIndex, scan};
 use super::super::{Place, TagFilter};
 use super::record::{Candidate, HoldReason, SearchReason, SearchRecord};
 use super::{Controller, Hysteresis, LastInput, SearchMethod, TICK_SECS};
@@ -69,7 +69,7 @@ impl Controller {
         filter: TagFilter,
         known: Option<Hit>,
     ) -> SearchResult {
-        let question = Question { query, weights: &self.weights, filter };
+        let question = Query { query, weights: &self.weights, filter };
         let candidates = self.database.candidates();
         match self.options.method {
             SearchMethod::Boxes => {
@@ -93,7 +93,7 @@ impl Controller {
         let query = self.query();
         let here = self.database.number(self.place).unwrap_or(0);
         let cost = |frame: usize| {
-            let question = Question { query: &query, weights: &self.weights, filter };
+            let question = Query { query: &query, weights: &self.weights, filter };
             self.database.features().row(frame).map_or(f32::INFINITY, |row| question.cost(row))
         };
         let current = Hit { frame: here, cost: cost(here) };
@@ -170,7 +170,7 @@ impl Controller {
     /// all including the preference; otherwise that one.
     fn preferred(&self, query: &[f32], filter: TagFilter, best: Option<Hit>) -> Option<Hit> {
         let best = best?;
-        let question = Question { query, weights: &self.weights, filter };
+        let question = Query { query, weights: &self.weights, filter };
         let database = &self.database;
         let frames = (0..database.motions().len())
             .filter(|&motion| self.is_preferred(motion))
@@ -262,7 +262,7 @@ impl Controller {
     /// Returns the best frames that cost no more than those next to them in their clip, the best
     /// first.
     fn best(&self, query: &[f32], filter: TagFilter) -> Vec<Hit> {
-        let question = Question { query, weights: &self.weights, filter };
+        let question = Query { query, weights: &self.weights, filter };
         let database = &self.database;
         let cost = |frame: usize| {
             let row =

@@ -1,7 +1,7 @@
 //! Exact search by bounding boxes.
 
 use super::super::tags::{TagFilter, TagSet};
-use super::{Hit, Question, SearchResult};
+use super::{Hit, Query, SearchResult};
 
 /// Number of values that are computed side by side.
 pub(super) const LANES: usize = 8;
@@ -133,7 +133,7 @@ impl BoxIndex {
     pub fn search(
         &self,
         masks: &BoxMasks,
-        question: &Question<'_>,
+        question: &Query<'_>,
         known: Option<Hit>,
     ) -> SearchResult {
         if !question.is_sound(self.dims) || self.ids.is_empty() {
@@ -155,7 +155,7 @@ impl BoxIndex {
 struct Search<'a> {
     index: &'a BoxIndex,
     masks: &'a BoxMasks,
-    question: &'a Question<'a>,
+    question: &'a Query<'a>,
     filtered: bool,
     best: Option<Hit>,
     visited: usize,
@@ -272,7 +272,7 @@ const DIMS_PER_CHECK: usize = 9;
 
 /// Returns the costs of eight frames; `None` as soon as all are above `limit`.
 #[inline]
-fn frame_costs(cells: &[f32], question: &Question<'_>, limit: f32) -> Option<Lane> {
+fn frame_costs(cells: &[f32], question: &Query<'_>, limit: f32) -> Option<Lane> {
     let mut costs = [0.0; LANES];
     let parts = cells
         .chunks(DIMS_PER_CHECK * LANES)
@@ -293,7 +293,7 @@ fn frame_costs(cells: &[f32], question: &Question<'_>, limit: f32) -> Option<Lan
 
 /// Returns lower bounds of the costs in eight boxes: exact unless all are above `limit`.
 #[inline]
-fn box_bounds(cells: &[f32], question: &Question<'_>, limit: f32) -> Lane {
+fn box_bounds(cells: &[f32], question: &Query<'_>, limit: f32) -> Lane {
     let mut bounds = [0.0; LANES];
     let parts = (cells.chunks(DIMS_PER_CHECK * 2 * LANES))
         .zip(question.query.chunks(DIMS_PER_CHECK).zip(question.weights.chunks(DIMS_PER_CHECK)));

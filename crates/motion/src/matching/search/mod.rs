@@ -37,7 +37,7 @@ impl Hit {
 
 /// A query.
 #[derive(Clone, Copy, Debug)]
-pub struct Question<'a> {
+pub struct Query<'a> {
     /// A normalised row.
     pub query: &'a [f32],
     /// One factor for each dimension.
@@ -56,7 +56,7 @@ pub struct SearchResult {
     pub visited: usize,
 }
 
-impl Question<'_> {
+impl Query<'_> {
     /// Returns the cost of a row of features.
     #[must_use]
     pub fn cost(&self, row: &[f32]) -> f32 {

@@ -1,10 +1,10 @@
 //! The slow, obvious search.
 
-use super::{Candidates, Hit, Question, SearchResult};
+use super::{Candidates, Hit, Query, SearchResult};
 
 /// Scans every admitted frame. O(frames × dimensions).
 #[must_use]
-pub fn scan(candidates: &Candidates<'_>, question: &Question<'_>) -> SearchResult {
+pub fn scan(candidates: &Candidates<'_>, question: &Query<'_>) -> SearchResult {
     let mut found = SearchResult::default();
     if !question.is_sound(candidates.features.layout().dims()) {
         return found;

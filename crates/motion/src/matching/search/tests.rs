@@ -114,7 +114,7 @@ fn searches_of_ten_thousand_queries_agree() {
                 let query: Vec<f32> = (near.iter())
                     .map(|x| if kind % 4 == 0 { 0.0 } else { *x } + noise * number(&mut random))
                     .collect();
-                let question = Question { query: &query, weights: &weights, filter };
+                let question = Query { query: &query, weights: &weights, filter };
                 let oracle = scan(&candidates, &question);
                 let boxes = index.search(&masks, &question, None);
                 assert_eq!(boxes.best, oracle.best, "{round} {set} {kind}");
@@ -148,7 +148,7 @@ fn box_search_near_a_frame_visits_few_frames() {
     let mut visited = 0;
     for frame in (0..20_000).step_by(501) {
         let query: Vec<f32> = field.features.row(frame).unwrap().iter().map(|x| x + 0.02).collect();
-        let question = Question { query: &query, weights: &weights, filter: TagFilter::default() };
+        let question = Query { query: &query, weights: &weights, filter: TagFilter::default() };
         visited += index.search(&masks, &question, None).visited;
     }
     assert!(visited / 40 < 3_000, "{}", visited / 40);
@@ -161,13 +161,13 @@ fn search_of_an_invalid_query_finds_nothing() {
     let masks = index.masks(&field.tags);
     let weights = vec![1.0; 27];
     for query in [vec![0.0; 26], vec![f32::NAN; 27], vec![f32::INFINITY; 27], vec![]] {
-        let question = Question { query: &query, weights: &weights, filter: TagFilter::default() };
+        let question = Query { query: &query, weights: &weights, filter: TagFilter::default() };
         assert_eq!(scan(&candidates, &question), SearchResult::default());
         assert_eq!(index.search(&masks, &question, None), SearchResult::default());
     }
     // Costs that overflow are all equal.
     let far = vec![1e30; 27];
-    let question = Question { query: &far, weights: &weights, filter: TagFilter::default() };
+    let question = Query { query: &far, weights: &weights, filter: TagFilter::default() };
     assert_eq!(index.search(&masks, &question, None).best, scan(&candidates, &question).best);
     let empty = Candidates { valid: &[], ..candidates };
     assert!(TreeIndex::new(&empty, &weights, TagFilter::default()).is_none());
@@ -178,7 +178,7 @@ fn search_of_an_invalid_query_finds_nothing() {
     let valid: Vec<u32> = (0..5_000).collect();
     let candidates = Candidates { features: &same, tags: &[], valid: &valid };
     let query = vec![0.5; 27];
-    let question = Question { query: &query, weights: &weights, filter: TagFilter::default() };
+    let question = Query { query: &query, weights: &weights, filter: TagFilter::default() };
     let index = BoxBuilder::new(&valid, &[]).finish(&same);
     assert_eq!(index.search(&index.masks(&[]), &question, None).best.map(|hit| hit.frame), Some(0));
     let tree = TreeIndex::new(&candidates, &weights, TagFilter::default());

@@ -1,6 +1,6 @@
 //! Exact search by a k-d tree.
 
-use super::{Candidates, Hit, Question, SearchResult};
+use super::{Candidates, Hit, Query, SearchResult};
 use crate::matching::TagFilter;
 use crate::matching::features::MAX_DIMS;
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
@@ -67,7 +67,7 @@ impl TreeIndex {
     /// tree does not report the frames that it visits: `visited` counts those that were evaluated
     /// again.
     #[must_use]
-    pub fn search(&self, candidates: &Candidates<'_>, question: &Question<'_>) -> SearchResult {
+    pub fn search(&self, candidates: &Candidates<'_>, question: &Query<'_>) -> SearchResult {
         let mut found = SearchResult::default();
         if !question.is_sound(candidates.features.layout().dims())
             || !self.fits(question.weights, question.filter)

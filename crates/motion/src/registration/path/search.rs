@@ -20,7 +20,7 @@ const MAX_ROUNDS: usize = 32;
 /// The search of [`optimal_path`](super::optimal_path), a few rows at a time. Every call must be
 /// given the same matrix.
 #[derive(Clone, Debug)]
-pub struct PathSearch {
+pub struct TimeWarpSearch {
     options: PathOptions,
     /// Block size of the coarse matrix, and radius of the corridor, in cells.
     corridor: (usize, usize),
@@ -38,7 +38,7 @@ enum Stage {
     Whole(Rounds),
 }
 
-impl PathSearch {
+impl TimeWarpSearch {
     /// Begins the search.
     ///
     /// # Errors

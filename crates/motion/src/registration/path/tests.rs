@@ -209,7 +209,8 @@ fn search_with_an_estimate_finds_the_same_path() {
             end: PathEnd::Border { slack },
             ..PathOptions::default()
         };
-        let plain = PathSearch::without_estimate(&field, &options).unwrap().finish(&field).unwrap();
+        let plain =
+            TimeWarpSearch::without_estimate(&field, &options).unwrap().finish(&field).unwrap();
         let quick = optimal_path(&field, &options).unwrap();
         assert!((plain.mean_m - quick.mean_m).abs() < 1e-9, "{} {}", plain.mean_m, quick.mean_m);
         assert_eq!(plain.cells, quick.cells);

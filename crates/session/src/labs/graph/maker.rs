@@ -9,7 +9,7 @@ use crate::labs::feet::{locking, slide, slide_before};
 use petgraph::graph::NodeIndex;
 use segue_motion::clip::{Clip, Contacts, Motion};
 use segue_motion::graph::{
-    Assembling, Choices, Followed, GraphError, GroundPath, PathSearch, Place, RunLength, Stay,
+    Assembling, Choices, FollowSearch, Followed, GraphError, GroundPath, Place, RunLength, Stay,
     Stitcher, WalkMeter, WalkMetrics, WalkPiece,
 };
 use segue_motion::metrics::{Metric, MotionTrace, SlideMeter, TraceMeter};
@@ -115,7 +115,7 @@ pub(super) struct WalkBuilder {
     choices: Arc<Choices>,
     run: RunLength,
     run_is_known: bool,
-    search: Option<(PathSearch, GroundPath)>,
+    search: Option<(FollowSearch, GroundPath)>,
     /// Seconds of search since the best path so far was shown.
     searched_secs: f64,
     /// The walk that follows the path as far as it is known.
@@ -163,7 +163,7 @@ impl WalkBuilder {
         };
         if !wanted.path.is_empty() && wanted.jump.is_none() {
             let path = GroundPath::new(&wanted.path)?;
-            let search = PathSearch::new(
+            let search = FollowSearch::new(
                 built.graph(),
                 NodeIndex::new(0),
                 &path,

@@ -6,7 +6,7 @@ use crate::labs::LabError;
 use crate::outside::short;
 use crate::params::{Key, Params};
 use segue_motion::matching::{
-    ControllerOptions, Database, Following, FootPlanting, Hysteresis, Recording, Scenario,
+    ControllerOptions, Database, FollowOptions, FootPlanting, Hysteresis, Recording, Scenario,
     SearchMethod, Steering, Weights,
 };
 use segue_motion::math::Decay;
@@ -56,7 +56,7 @@ pub(crate) fn options_of(params: &Params) -> ControllerOptions {
             velocity_half_life_secs: number(Key::VelocityHalfLife),
             facing_half_life_secs: number(Key::FacingHalfLife),
         },
-        following: params.is_on(Key::Adjust).then(|| Following {
+        following: params.is_on(Key::Adjust).then(|| FollowOptions {
             half_life_secs: number(Key::AdjustHalfLife),
             max_share: number(Key::AdjustShare),
             max_distance_m: number(Key::ClampDistance),

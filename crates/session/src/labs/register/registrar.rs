@@ -9,8 +9,8 @@ use crate::labs::pair::{Pair, Pairs};
 use crate::params::{Key, MAX_PANES, Params};
 use segue_motion::clip::Motion;
 use segue_motion::registration::{
-    PairTerms, PathEnd, PathError, PathOptions, PathSearch, PausedSweep, Registration,
-    RegistrationOptions, RegistrationPath, limb_weights,
+    PairTerms, PathEnd, PathError, PathOptions, PausedSweep, Registration, RegistrationOptions,
+    RegistrationPath, TimeWarpSearch, limb_weights,
 };
 use std::sync::Arc;
 
@@ -127,7 +127,7 @@ struct Registrar {
     sweep: Option<PausedSweep>,
     /// The last ones requested, at most one for each pane.
     maps: Vec<Arc<DistanceMap>>,
-    search: Option<(RegistrationRequest, PathSearch)>,
+    search: Option<(RegistrationRequest, TimeWarpSearch)>,
     found: Vec<(RegistrationRequest, Result<Arc<FoundRegistration>, LabError>)>,
     /// The requests of the panes.
     wanted: Vec<RegistrationRequest>,
@@ -237,7 +237,7 @@ impl Registrar {
             self.maps.push(Arc::clone(&map));
             let search = match self.search.take().filter(|(of, _)| of == wanted) {
                 Some((_, search)) => Ok(search),
-                None => PathSearch::new(map.matrix(), &in_cells(&wanted.path, &map)),
+                None => TimeWarpSearch::new(map.matrix(), &in_cells(&wanted.path, &map)),
             };
             let found = search.and_then(|mut search| {
                 let path = search.advance(map.matrix(), rows)?;
