@@ -303,8 +303,8 @@ impl PairTerms {
         if done < total { Err(RegistrationError::Unfinished { done, total }) } else { Ok(()) }
     }
 
-    /// Returns the samples at which the windows of `window` frames start that start in `sources`, and
-    /// those that start in `targets` (frames of the clips).
+    /// Returns the samples at which the windows of `window` frames start that start in `sources`,
+    /// and those that start in `targets` (frames of the clips).
     pub(super) fn starts(
         &self,
         window: usize,

@@ -1,5 +1,5 @@
-//! The plan of an action: gaits in steady motion, starts and stops, standing, and the actions on the
-//! spot.
+//! The plan of an action: gaits in steady motion, starts and stops, standing, and the actions on
+//! the spot.
 
 use super::body::Body;
 use super::foot::{Plant, Swing};
