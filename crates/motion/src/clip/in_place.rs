@@ -17,7 +17,7 @@ const MIN_BACKWARD_SHARE: f64 = 0.6;
 /// The velocity at either end of a flight is a mean over this time, seconds.
 const FLIGHT_SECS: f64 = 0.1;
 /// Displacements are smoothed by a triangle that reaches this time to both sides, seconds.
-const SHIFT_SMOOTHING_SECS: f64 = 0.05;
+const SHIFT_SMOOTHING_SECS: f64 = 0.02;
 /// Turns are smoothed by a triangle that reaches this time to both sides, seconds: heel and tip are
 /// close together, so that a foot that rolls seems to turn.
 const TURN_SMOOTHING_SECS: f64 = 0.15;
@@ -68,7 +68,7 @@ pub enum RootMotionError {
 /// move backward at 0.6 of it belongs to a foot that swings low, and is left out; this is repeated
 /// three times. Where nothing carries the body, as in the flight of a run, its velocity is
 /// interpolated from the last known to the next. With `turns` the body also turns against the turn
-/// of the feet that carry it, where ankle and tip both do. Displacements are smoothed over 0.1 s
+/// of the feet that carry it, where ankle and tip both do. Displacements are smoothed over 0.04 s
 /// and turns over 0.3 s, because a foot that begins or ceases to carry changes them in one frame.
 ///
 /// Each foot counts by its point that moves backward fastest: the others roll about it.
