@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { Buffer } from "node:buffer";
 import { onBackend, onBothBackends } from "./harness.mjs";
-import { elsewhere } from "./help.mjs";
+import { elsewhere, linkStored, stored, until } from "./help.mjs";
 
 /** A small file to bring along: a hip with one bone that turns. */
 function bvh(frames = 60, bone = "Spine") {
@@ -13,16 +13,6 @@ function bvh(frames = 60, bone = "Spine") {
     `JOINT ${bone}`, "{", "OFFSET 0 0.5 0", "CHANNELS 3 Zrotation Yrotation Xrotation", "End Site", "{", "OFFSET 0 0.5 0", "}", "}", "}",
     "MOTION", `Frames: ${frames}`, "Frame Time: 0.0166667", ...rows, "",
   ].join("\n"));
-}
-
-/** Waits until `check` holds of what the API's member returns. */
-async function until({ segue, page }, member, check, what) {
-  for (const deadline = Date.now() + 20_000; ; ) {
-    const value = await segue(member);
-    if (check(value)) return value;
-    if (Date.now() > deadline) assert.fail(`${what}; last: ${JSON.stringify(value)}`);
-    await page.waitForTimeout(100);
-  }
 }
 
 const brought = (clips) => clips.filter((clip) => clip.sha256).map((clip) => clip.name);
@@ -72,16 +62,16 @@ onBothBackends("time runs, stops and is set; a still page draws nothing", async 
   assert.equal(await segue("time"), 0.25);
   // First the cameras settle, presets are made, the address is written, the work is stored.
   const frames = async () => (await segue("stats")).frames;
-  for (let tries = 0, before = -1, quiet = 0; quiet < 2; tries++) {
-    assert.ok(tries < 15, "nothing moves, yet frames are drawn");
+  let [before, quiet] = [-1, 0];
+  await until("nothing moves, and no frame is drawn for two seconds", async () => {
     await page.waitForTimeout(1000);
     const now = await frames();
     quiet = now === before ? quiet + 1 : 0;
     before = now;
-  }
+    return quiet === 2;
+  });
   await segue("play");
-  await page.waitForTimeout(1500);
-  assert.notEqual(await segue("time"), 0.25);
+  await until("time runs", async () => (await segue("time")) !== 0.25);
   await segue("pause");
   const stopped = await segue("time");
   await page.waitForTimeout(500);
@@ -89,8 +79,7 @@ onBothBackends("time runs, stops and is set; a still page draws nothing", async 
 });
 
 onBackend("webgl2", "files come by drop and by call, bad ones are told and change nothing", async ({ open }) => {
-  const opened = await open("lab=view&play=off");
-  const { page, segue, load, dropFile } = opened;
+  const { page, segue, load, dropFile } = await open("lab=view&play=off");
   await page.evaluate(() => {
     window.heard = [];
     window.segue.on("error", ({ message }) => window.heard.push(message));
@@ -103,21 +92,21 @@ onBackend("webgl2", "files come by drop and by call, bad ones are told and chang
 
   await assert.rejects(load("broken.bvh", Buffer.from("HIERARCHY\nROOT Hips\nnonsense")), /broken\.bvh:3:\d+: found .*expected/);
   await dropFile("other.bvh", bvh(30, "Chest"));
-  await until(opened, "clips", (clips) => brought(clips).length === 2, "the dropped file is in the library");
+  await until("the dropped file is in the library", async () => brought(await segue("clips")).length === 2);
   await dropFile("notes.txt", Buffer.from("hello"));
   await page.waitForFunction(() => window.heard.some((message) => message.includes("notes.txt")));
   assert.equal(brought(await segue("clips")).length, 2);
 });
 
 onBackend("webgl2", "several files in one drop arrive in order", async ({ open }) => {
-  const opened = await open("play=off");
-  await opened.page.evaluate((texts) => {
+  const { page, segue } = await open("play=off");
+  await page.evaluate((texts) => {
     const dataTransfer = new DataTransfer();
     for (const [name, text] of texts) dataTransfer.items.add(new File([text], name));
     document.getElementById("segue").dispatchEvent(new DragEvent("drop", { bubbles: true, cancelable: true, dataTransfer }));
   }, [["one.bvh", bvh(240).toString()], ["two.bvh", bvh(30, "Chest").toString()]]);
-  await until(opened, "clips", (clips) => brought(clips).length === 2, "both are in the library");
-  const { a, b } = await opened.segue("params");
+  await until("both are in the library", async () => brought(await segue("clips")).length === 2);
+  const { a, b } = await segue("params");
   assert.match(a, /^one~/);
   assert.match(b, /^two~/);
 });
@@ -139,7 +128,7 @@ onBackend("webgl2", "the address follows the state and leads back to it", async 
     history.pushState(null, "", "?blend_window=9&play=off");
     history.back();
   });
-  await until(opened, "params", ({ blend_window }) => blend_window === 7, "going back opens that link");
+  await until("going back opens that link", async () => (await segue("params")).blend_window === 7);
 });
 
 onBackend("webgl2", "work survives a reload, and only what is in the library is kept", async ({ open }) => {
@@ -148,26 +137,10 @@ onBackend("webgl2", "work survives a reload, and only what is in the library is 
   await load("kept.bvh", bvh());
   await load("also.bvh", bvh(30, "Chest"));
   await segue("set", { blend_window: 33, play: false });
-  const stored = () => page.evaluate(() => new Promise((resolve, reject) => {
-    const request = indexedDB.open("segue");
-    request.onerror = () => reject(request.error);
-    request.onsuccess = () => {
-      const transaction = request.result.transaction(["work", "files"]);
-      const work = transaction.objectStore("work").get("latest");
-      const files = transaction.objectStore("files").getAllKeys();
-      transaction.oncomplete = () => { request.result.close(); resolve({ work: work.result && JSON.parse(work.result), files: files.result }); };
-    };
-  }));
   const hashes = (await segue("clips")).map((clip) => clip.sha256).filter(Boolean).sort();
-  for (let tries = 0; ; tries++) {
-    const { work, files } = await stored();
-    if (work?.query.includes("blend_window=33") && files.length === 2) {
-      assert.deepEqual(files.sort(), hashes);
-      break;
-    }
-    assert.ok(tries < 100, "the work was not stored");
-    await page.waitForTimeout(100);
-  }
+  await linkStored(page, "blend_window=33");
+  await until("both files are stored", async () => (await stored(page)).files.length === 2);
+  assert.deepEqual((await stored(page)).files.sort(), hashes);
 
   // Without a query: what comes back comes from storage alone.
   await page.goto(page.url().split("?")[0]);
@@ -188,7 +161,7 @@ onBackend("webgl2", "work survives a reload, and only what is in the library is 
   assert.equal(brought(await segue("clips")).length, 0);
   await segue("set", { blend_window: 7 });
   await page.waitForTimeout(1500);
-  assert.match((await stored()).work.query, /blend_window=33/, "a link that was only looked at is not stored, nor is a frame");
+  assert.match((await stored(page)).query, /blend_window=33/, "a link that was only looked at is not stored, nor is a frame");
 });
 
 onBackend("webgl2", "files are fetched in the order of the link, and refusals are explained", async ({ open }) => {
@@ -200,9 +173,8 @@ onBackend("webgl2", "files are fetched in the order of the link, and refusals ar
     "/shut.bvh": { status: 403 },
   };
   await elsewhere(answers, async (far) => {
-    const opened = await open(`src=${far}/slow.bvh%20${far}/fast.bvh&play=off`);
-    const { page, segue } = opened;
-    await until(opened, "clips", (clips) => brought(clips).length === 2, "both files are in the library");
+    const { page, segue } = await open(`src=${far}/slow.bvh%20${far}/fast.bvh&play=off`);
+    await until("both files are in the library", async () => brought(await segue("clips")).length === 2);
     const { a, b } = await segue("params");
     assert.match(a, /^slow~/);
     assert.match(b, /^fast~/);
@@ -220,9 +192,7 @@ onBackend("webgl2", "files are fetched in the order of the link, and refusals ar
       ["ftp://somewhere/x.bvh", /expected an address that starts with https/],
     ]) {
       await segue("set", { src: address }); // resolves once the file is there, or refused
-      await page.waitForTimeout(100);
-      const heard = await page.evaluate(() => window.heard);
-      assert.ok(heard.some((message) => reason.test(message)), `${reason} among\n${heard.join("\n")}`);
+      await until(`an error like ${reason}`, async () => (await page.evaluate(() => window.heard)).some((message) => reason.test(message)));
     }
     assert.equal(brought(await segue("clips")).length, 2);
   });
@@ -238,8 +208,7 @@ onBothBackends("a lost graphics device is replaced and the state stays", async (
       };
     }
   });
-  const opened = await open("blend_window=24&play=off", { prepare });
-  const { page, segue, pixels } = opened;
+  const { page, segue, pixels } = await open("blend_window=24&play=off", { prepare });
   await page.evaluate(() => { window.firstCanvas = document.getElementById("segue"); });
   await segue("set", { blend_window: 31 });
   for (let time = 0; time < 2; time++) {
@@ -255,7 +224,7 @@ onBothBackends("a lost graphics device is replaced and the state stays", async (
     // Frames of before the loss do not count, nor does the device that is gone.
     const { frames } = await segue("stats");
     if (backend === "webgpu") await page.waitForFunction(() => window.device !== window.lost);
-    await until(opened, "stats", (stats) => stats.frames > frames, "it draws again");
+    await until("it draws again", async () => (await segue("stats")).frames > frames);
     await page.evaluate(() => { window.firstCanvas = document.getElementById("segue"); });
   }
   assert.equal(await page.locator(".veil").count(), 0);
@@ -303,8 +272,7 @@ onBackend("webgl2", "where WebGPU promises more than it holds, WebGL 2 draws", a
     window.firstCanvas.getContext("webgl2").getExtension("WEBGL_lose_context").loseContext();
   });
   await page.waitForFunction(() => document.getElementById("segue") !== window.firstCanvas);
-  await page.waitForTimeout(1500);
-  assert.ok((await pixels()).colours() > 50);
+  await until("the new canvas shows the character", async () => (await pixels()).colours() > 50);
 });
 
 onBackend("webgl2", "copying puts the link into the clipboard, and says so only then", async ({ open }) => {
@@ -312,16 +280,15 @@ onBackend("webgl2", "copying puts the link into the clipboard, and says so only 
   await page.context().grantPermissions(["clipboard-read", "clipboard-write"]);
   await page.locator("#segue").focus();
   await page.keyboard.press("Control+c");
-  await page.waitForTimeout(500);
-  assert.equal(await page.evaluate(() => navigator.clipboard.readText()), await segue("url"));
+  const url = await segue("url");
+  await until("the link is in the clipboard", async () => (await page.evaluate(() => navigator.clipboard.readText())) === url);
 });
 
 onBothBackends("a panic in the middle of a frame is told, and a reload brings the work back", async ({ open }) => {
-  const opened = await open("lab=blend&play=off");
-  const { page, segue, load, problems } = opened;
+  const { page, segue, load, problems } = await open("lab=blend&play=off");
   const { clips } = await load("turn.bvh", bvh());
   await segue("set", { blend_window: 24 });
-  await page.waitForTimeout(1500); // the work is stored once it is quiet
+  await linkStored(page, "blend_window=24");
   await segue("play");
   // Without a clock the app's very next frame panics, as it would over a mistake of its own.
   await page.evaluate(() => void Object.defineProperty(window, "performance", { configurable: true, value: undefined }));
@@ -333,7 +300,7 @@ onBothBackends("a panic in the middle of a frame is told, and a reload brings th
 
   await page.getByRole("button", { name: "Reload with this state" }).click();
   await page.waitForFunction(() => window.segue && window.performance);
-  await until(opened, "clips", (all) => brought(all).includes(clips[0].name), "the file is there again");
+  await until("the file is there again", async () => brought(await segue("clips")).includes(clips[0].name));
   const { a, blend_window } = await segue("params");
   assert.deepEqual({ a, blend_window }, { a: clips[0].id, blend_window: 24 });
 });

@@ -15,7 +15,7 @@ import { BACKENDS, close, openSegue } from "./segue.mjs";
 after(close);
 
 /** A browser that stops for good fails its test, and the others go on. */
-const TEST_TIMEOUT_MS = 300_000;
+const TEST_TIMEOUT_MS = 900_000;
 
 /** Registers the test once per backend. `body` is given `{ backend, open, t }`; what it opens is closed behind it. */
 export function onBothBackends(name, body) {

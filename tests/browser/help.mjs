@@ -2,9 +2,10 @@
 
 import http from "node:http";
 import { setTimeout as pause } from "node:timers/promises";
+import { PATIENCE_MS } from "./segue.mjs";
 
-/** Asks until the answer is true, or `what` has not come to be. Software rendering is slow, so no test counts on a time. */
-export async function until(what, ask, limitMs = 30_000) {
+/** Asks until the answer is true, and fails with `what` where it never is. Software rendering is slow, so no test depends on a time. */
+export async function until(what, ask, limitMs = PATIENCE_MS) {
   const end = Date.now() + limitMs;
   for (;;) {
     const answer = await ask();
@@ -13,6 +14,19 @@ export async function until(what, ask, limitMs = 30_000) {
     await pause(60);
   }
 }
+
+/** What the browser keeps: the stored link, the ids of the clips, the SHA-256 of the files. */
+export const stored = (page) => page.evaluate(async () => {
+  const database = await new Promise((resolve, reject) => Object.assign(indexedDB.open("segue"), { onsuccess: (event) => resolve(event.target.result), onerror: reject }));
+  const all = (name, what, ...args) => new Promise((resolve) => { database.transaction(name).objectStore(name)[what](...args).onsuccess = (event) => resolve(event.target.result); });
+  const [work, files] = [await all("work", "get", "latest"), await all("files", "getAllKeys")];
+  database.close();
+  const { query, entries } = work ? JSON.parse(work) : { query: "", entries: [] };
+  return { query, ids: entries.map(({ id }) => id), files };
+});
+
+/** Waits until the stored link contains `part`. */
+export const linkStored = (page, part) => until(`a link with ${part} is stored`, async () => (await stored(page)).query.includes(part));
 
 /** Numbers from 0 to 1, the same for the same seed (mulberry32). */
 export function random(seed) {

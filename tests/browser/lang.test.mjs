@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { onBackend, onBothBackends } from "./harness.mjs";
-import { until } from "./help.mjs";
+import { linkStored, until } from "./help.mjs";
 
 const isOfLanguage = (url) => url.pathname.includes("/lang/");
 
@@ -55,7 +55,7 @@ onBackend("webgl2", "a reader of Chinese is spoken to in Chinese, and the link s
   // Chosen by hand, it is there on the next visit, whatever link that begins with.
   await segue("set", { lang: "en" });
   await spoken(page, "en");
-  await page.waitForTimeout(1500); // the work is stored once it has been quiet
+  await linkStored(page, "lang=en");
   await page.goto(page.url().replace(/\?.*/, "?lab=blend"), { waitUntil: "commit" });
   await ready();
   assert.equal((await segue("params")).lang, "en");

@@ -5,7 +5,7 @@ import { existsSync, readFileSync } from "node:fs";
 import process from "node:process";
 import { fileURLToPath } from "node:url";
 import { onBackend, onBothBackends } from "./harness.mjs";
-import { apart, striding, until } from "./help.mjs";
+import { apart, striding, stored, until } from "./help.mjs";
 
 const SMALL = { viewport: [960, 640] };
 /** Clips that were loaded from files, in the order in which they came. */
@@ -151,16 +151,6 @@ onBackend("webgl2", "60,000 empty files in a zip do not stop the frames, and the
   t.diagnostic(`longest gap between frames: ${Math.round(longest)} ms`);
   assert.ok(longest < 2000, `${longest} ms between two frames`);
   assert.deepEqual(await segue("clips"), before);
-});
-
-/** What the browser keeps: the stored link, the ids of the clips, the SHA-256 of the files. */
-const stored = (page) => page.evaluate(async () => {
-  const database = await new Promise((resolve, reject) => Object.assign(indexedDB.open("segue"), { onsuccess: (event) => resolve(event.target.result), onerror: reject }));
-  const all = (name, what, ...args) => new Promise((resolve) => { database.transaction(name).objectStore(name)[what](...args).onsuccess = (event) => resolve(event.target.result); });
-  const [work, files] = [await all("work", "get", "latest"), await all("files", "getAllKeys")];
-  database.close();
-  const { query, entries } = work ? JSON.parse(work) : { query: "", entries: [] };
-  return { query, ids: entries.map(({ id }) => id), files };
 });
 
 // Fails when the library, the parameters or the bytes of the files do not come back from where the browser keeps them.

@@ -92,12 +92,12 @@ onBothBackends("a page at rest draws nothing", async ({ open }) => {
     await pause(ms);
     return (await segue("stats")).frames - frames;
   };
-  await until("it comes to rest", async () => (await drawnIn(1500)) === 0, 30_000);
+  await until("it comes to rest", async () => (await drawnIn(1500)) === 0);
   assert.equal(await drawnIn(1500), 0);
   await segue("play");
   await until("it draws again when it plays", async () => (await drawnIn(300)) > 0);
   await segue("pause");
-  await until("and rests again", async () => (await drawnIn(1500)) === 0, 15_000);
+  await until("and rests again", async () => (await drawnIn(1500)) === 0);
 });
 
 // Fails when a phone gets the columns of a desk, all three panes, or something that is wider than it.

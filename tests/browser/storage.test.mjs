@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { onBackend } from "./harness.mjs";
-import { random, striding, until } from "./help.mjs";
+import { linkStored, random, striding, until } from "./help.mjs";
 
 const SMALL = { viewport: [960, 640] };
 /** The ids of clips that were loaded from files, in the order in which they came. */
@@ -63,7 +63,7 @@ for (const [seed, [end, bringAbout]] of Object.entries(ENDS).entries()) {
       await until(`all ${expected.length} files are there, ${wait.toFixed(0)} ms after the first`, async () => {
         const there = new Set(await clips());
         return expected.every((id) => there.has(id));
-      }, 10_000).catch(async (error) => {
+      }).catch(async (error) => {
         const there = new Set(await clips());
         throw new Error(`${error.message}; missing: ${expected.filter((id) => !there.has(id))}`);
       });
@@ -139,7 +139,7 @@ onBackend("webgl2", "a full storage keeps what has room and names the rest", asy
   assert.match(told, /storage is full: huge\.bvh will not be here/);
   await until("the rest is stored", async () => (await keysOf(page, "files")).length === 2);
   await segue("set", { blend_window: 19 });
-  await page.waitForTimeout(3000);
+  await linkStored(page, "blend_window=19");
   await page.reload({ waitUntil: "commit" });
   await ready();
   await segue("set", {});
