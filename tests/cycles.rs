@@ -148,7 +148,7 @@ fn single_cycles_of_a_course_blend_to_a_speed() {
         let shown = outcome
             .metrics
             .iter()
-            .find(|metric| metric.id == "speed_mps")
+            .find(|metric| metric.id.name() == "speed_mps")
             .and_then(|metric| metric.value)
             .unwrap();
         eprintln!(

@@ -2,6 +2,7 @@
 //! every entry there is one that the program says. Read from the text of the sources, so that a new
 //! sentence cannot be forgotten.
 
+use segue_session::metrics::METRICS;
 use segue_session::{Kind, PARAMS};
 use segue_text::Table;
 use std::collections::{BTreeMap, BTreeSet};
@@ -29,6 +30,13 @@ const NOT_SHOWN: [&str; 12] = [
 /// Where words stand alone: elsewhere a word without a space is taken for a key.
 const WORDS: [&str; 2] = ["src/ui/text/", "src/ui/kit/words.rs"];
 
+/// The tables whose rows are data: they are read as such, not by their sources.
+const TABLES: [&str; 3] = [
+    "crates/session/src/params/table.rs",
+    "crates/session/src/metrics/table.rs",
+    "crates/session/src/choices.rs",
+];
+
 /// What stands before a literal that nobody sees: reasons for the next programmer, the log, names
 /// of widgets.
 const UNSEEN: [&str; 17] = [
@@ -53,7 +61,7 @@ const UNSEEN: [&str; 17] = [
 
 /// Literals that look like sentences and are none: names of files, of joints and of widgets'
 /// memory, and what only the tests of a library read.
-const NO_SENTENCE: [&str; 30] = [
+const NO_SENTENCE: [&str; 29] = [
     "{} and {}",
     "{} and {} registered",
     "{} loop",
@@ -64,7 +72,6 @@ const NO_SENTENCE: [&str; 30] = [
     "node {index}",
     "(prefers-reduced-motion: reduce)",
     "try it",
-    "variety",
     "End Site",
     "Library/Application Support",
     "motion graph.json",
@@ -288,10 +295,8 @@ fn every_sentence_has_its_translation() {
     let mut missing = BTreeSet::new();
     let mut seen = 0;
     for (path, source) in sources().iter().filter(|(path, _)| !NOT_SHOWN.contains(&path.as_str())) {
-        // The rows of the table, and the words of its choices, are looked at below.
-        if ["crates/session/src/params/table.rs", "crates/session/src/choices.rs"]
-            .contains(&path.as_str())
-        {
+        // The rows of the tables, and the words of choices, are looked at below.
+        if TABLES.contains(&path.as_str()) {
             continue;
         }
         for text in shown(path, source) {
@@ -307,6 +312,13 @@ fn every_sentence_has_its_translation() {
         for text in texts.chain(choices.iter().map(|choice| choice.label)) {
             if is_two_letters(text) && !keys.contains(text) {
                 missing.insert(format!("{}: {text:?}", param.name));
+            }
+        }
+    }
+    for metric in METRICS {
+        for text in [metric.label, metric.help].into_iter().chain(metric.short) {
+            if is_two_letters(text) && !keys.contains(text) {
+                missing.insert(format!("{}: {text:?}", metric.name));
             }
         }
     }

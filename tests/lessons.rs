@@ -167,7 +167,8 @@ fn check_bounds(what: &str, session: &Session, bounds: &[(usize, &str, f64, f64)
             wrong.push(format!("{what}: pane {index}: {:?}", pane.problem));
             continue;
         };
-        let values = outcome.metrics.iter().filter_map(|metric| Some((metric.id, metric.value?)));
+        let values =
+            outcome.metrics.iter().filter_map(|metric| Some((metric.id.name(), metric.value?)));
         for (id, value) in values.clone() {
             eprintln!("{what}: pane {index}: {id} {value:.2}");
             if !value.is_finite() {
@@ -375,8 +376,9 @@ fn check_numbers(lesson: &str, query: &str, session: &Session, wrong: &mut Vec<S
     let said = QUOTED.iter().filter(|quoted| (quoted.0, quoted.1) == (lesson, query));
     said.map(|&(_, _, pane, id, words)| {
         let outcome = session.panes().get(pane).and_then(|pane| pane.outcome.as_ref());
-        let metric = outcome
-            .and_then(|outcome| outcome.metrics.iter().find(|metric| metric.id == id)?.value);
+        let metric = outcome.and_then(|outcome| {
+            outcome.metrics.iter().find(|metric| metric.id.name() == id)?.value
+        });
         if !metric.is_some_and(|value| is_rounded(words, value)) {
             wrong.push(format!("{lesson}: {query}: {id} is {metric:?}, not {words}"));
         }

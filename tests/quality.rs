@@ -113,7 +113,8 @@ fn walk_through_captured_motion_has_no_spins_and_flashes() {
     let walk = outcome.walk().expect("it is a walk");
     assert!(walk.passed.len() > 60, "{} stays", walk.passed.len());
     for id in ["spins", "flashes"] {
-        let metric = outcome.metrics.iter().find(|metric| metric.id == id).expect("it is measured");
+        let metric =
+            outcome.metrics.iter().find(|metric| metric.id.name() == id).expect("it is measured");
         assert_eq!(metric.value, Some(0.0), "{metric:?}");
     }
 }

@@ -55,7 +55,7 @@ fn graph(session: &Session, pane: usize) -> &MotionGraph {
 
 fn number(session: &Session, pane: usize, id: &str) -> f64 {
     let metrics = &outcome(session, pane).metrics;
-    let metric = metrics.iter().find(|metric| metric.id == id);
+    let metric = metrics.iter().find(|metric| metric.id.name() == id);
     metric.and_then(|metric| metric.value).unwrap_or_else(|| panic!("no {id}"))
 }
 

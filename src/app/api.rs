@@ -15,12 +15,12 @@ use eframe::wgpu::Backend;
 use glam::{Quat, Vec3};
 use segue_motion::clip::Motion;
 use segue_motion::math::Planar;
-use segue_motion::metrics::{Better, Metric};
 use segue_motion::skeleton::Side;
 use segue_scene::pose_at;
 use segue_session::export::{
     ExportBody, ExportFormat, ExportOptions, export, file_name, plotted_of_clip, plotted_of_result,
 };
+use segue_session::metrics::MetricId;
 use segue_session::outside;
 use segue_session::reading::Content;
 use segue_session::{
@@ -279,24 +279,21 @@ impl Segue {
     /// The artefacts of the results, by name.
     pub(crate) fn metrics(&self) -> Result<BTreeMap<&'static str, MetricInfo>, String> {
         let panes = self.session.panes();
-        let of_pane = |pane: &Pane, id| {
-            let metrics = &pane.result().ok()?.outcome.metrics;
-            metrics.iter().find(|metric| metric.id == id).and_then(|metric| metric.value)
-        };
+        let of_pane = |pane: &Pane, id| pane.result().ok()?.outcome.metric(id)?.value;
         let main = self.session.first_result().map_err(|reason| reason.to_string())?;
-        let info = |metric: &Metric| MetricInfo {
-            label: metric.label,
-            value: panes.first().and_then(|pane| of_pane(pane, metric.id)),
-            unit: metric.unit,
-            panes: panes.iter().map(|pane| of_pane(pane, metric.id)).collect(),
-            better: match metric.better {
-                Better::Lower => "lower",
-                Better::Higher => "higher",
-                Better::Neutral => "neutral",
-            },
-            help: metric.help,
+        let info = |id: MetricId| {
+            let row = id.row();
+            let info = MetricInfo {
+                label: row.label,
+                value: panes.first().and_then(|pane| of_pane(pane, id)),
+                unit: row.unit.text(),
+                panes: panes.iter().map(|pane| of_pane(pane, id)).collect(),
+                better: row.better.name(),
+                help: row.help,
+            };
+            (row.name, info)
         };
-        Ok(main.outcome.metrics.iter().map(|metric| (metric.id, info(metric))).collect())
+        Ok(main.outcome.metrics.iter().map(|metric| info(metric.id)).collect())
     }
 
     /// A motion as a file of that format. `which` as in [`Self::pose`]; `body` says whose body a

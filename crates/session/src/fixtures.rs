@@ -8,6 +8,7 @@ pub(crate) use crate::command::{
 pub(crate) use crate::labs::{Outcome, Slot};
 pub(crate) use crate::library::{Entry, Origin};
 pub(crate) use crate::link;
+pub(crate) use crate::metrics::MetricId;
 pub(crate) use crate::notice::Level;
 pub(crate) use crate::params::{Key, Value};
 pub(crate) use crate::reading::Content;

@@ -81,6 +81,7 @@ pub mod lesson;
 mod library;
 pub mod link;
 mod memory;
+pub mod metrics;
 mod missing;
 mod motion;
 mod notice;

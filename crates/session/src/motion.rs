@@ -103,6 +103,7 @@ pub fn frame_at(motion: &Motion, secs: f64) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::metrics::MetricId;
     use crate::{Command, Outcome, Session};
     use segue_motion::skeleton::Side;
 
@@ -126,8 +127,7 @@ mod tests {
         let raised = outcome("lab=view&a=walk&ground=5");
         assert!((raised.motion.ground_m() - 0.05).abs() < 1e-6);
         let sunk = |outcome: &Outcome| {
-            let metric =
-                outcome.metrics.iter().find(|metric| metric.id == "clip_penetration_cm").unwrap();
+            let metric = outcome.metric(MetricId::ClipPenetration).unwrap();
             metric.value.unwrap()
         };
         // The lowest points of this body are toe tips, which stand 1 cm above the soles.

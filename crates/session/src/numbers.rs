@@ -1,27 +1,21 @@
 //! The metrics of all panes as a table.
 
+use super::metrics::{Better, Metric, MetricId, Unit};
 use super::outside::markdown;
 use super::pane::Pane;
 use super::session::Session;
 use segue_formats::csv;
-use segue_motion::metrics::{Better, Metric};
 use segue_text::{Message, msg};
 use std::fmt::Write as _;
 
 /// The heading of a result that is not compared with another one.
 const RESULT: Message = Message::word("result");
 
-/// A row of metrics, one for each pane.
+/// The values of a metric, one for each pane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NumberRow {
-    /// The name of the metric.
-    pub label: &'static str,
-    /// The unit, as written after the number.
-    pub unit: &'static str,
-    /// The definition of the metric.
-    pub help: &'static str,
-    /// The direction in which it improves.
-    pub better: Better,
+    /// What is measured.
+    pub metric: MetricId,
     /// The values, pane by pane; `None` if there is nothing to measure.
     pub values: Vec<Option<f64>>,
 }
@@ -41,17 +35,11 @@ impl NumberTable {
     pub fn of(session: &Session) -> Self {
         let panes = session.panes();
         let name = |pane: &Pane| session.variant_name(pane).unwrap_or(RESULT);
-        let of_pane = |pane: &Pane, id: &str| {
-            let made = pane.result().ok()?;
-            made.outcome.metrics.iter().find(|metric| metric.id == id)?.value
-        };
+        let of_pane = |pane: &Pane, id| pane.result().ok()?.outcome.metric(id)?.value;
         let first = panes.iter().find_map(|pane| pane.result().ok());
         let metrics = first.map_or(&[][..], |made| made.outcome.metrics.as_slice());
         let row = |metric: &Metric| NumberRow {
-            label: metric.label,
-            unit: metric.unit,
-            help: metric.help,
-            better: metric.better,
+            metric: metric.id,
             values: panes.iter().map(|pane| of_pane(pane, metric.id)).collect(),
         };
         let mut rows: Vec<NumberRow> = metrics.iter().map(row).collect();
@@ -59,13 +47,7 @@ impl NumberTable {
         if panes.iter().any(|pane| walk(pane).is_some()) {
             let built =
                 panes.iter().map(|pane| session.graph_build_secs(&walk(pane)?.built)).collect();
-            rows.push(NumberRow {
-                label: "Build time",
-                unit: "s",
-                help: "What it took here to compare the clips, as far as that was not done before, and to make the graph.",
-                better: Better::Neutral,
-                values: built,
-            });
+            rows.push(NumberRow { metric: MetricId::BuildTime, values: built });
         }
         Self { panes: panes.iter().map(name).collect(), rows }
     }
@@ -101,13 +83,9 @@ impl NumberTable {
                 .iter()
                 .map(|value| value.map_or_else(String::new, |value| value.to_string()))
                 .collect();
-            let written = writeln!(
-                out,
-                "{},{},{}",
-                csv::cell(row.label),
-                csv::cell(row.unit),
-                values.join(",")
-            );
+            let metric = row.metric.row();
+            let (label, unit) = (csv::cell(metric.label), csv::cell(metric.unit.text()));
+            let written = writeln!(out, "{label},{unit},{}", values.join(","));
             debug_assert!(written.is_ok(), "a string takes all");
         }
         out
@@ -118,10 +96,10 @@ impl NumberRow {
     /// Returns the name of the metric with its unit.
     #[must_use]
     pub fn heading(&self) -> Message {
-        if self.unit.is_empty() {
-            self.label.into()
-        } else {
-            msg!("{label}, {unit}", label = self.label, unit = self.unit)
+        let metric = self.metric.row();
+        match metric.unit {
+            Unit::Count => metric.label.into(),
+            unit => msg!("{label}, {unit}", label = metric.label, unit = unit.text()),
         }
     }
 
@@ -131,7 +109,7 @@ impl NumberRow {
     pub fn ends(&self) -> [Option<f64>; 2] {
         let values = || self.values.iter().flatten().copied();
         let (low, high) = (values().min_by(f64::total_cmp), values().max_by(f64::total_cmp));
-        match (low, high, self.better) {
+        match (low, high, self.metric.row().better) {
             (Some(low), Some(high), Better::Lower) if high - low > 0.05 * high.abs() => {
                 [Some(low), Some(high)]
             }
@@ -171,13 +149,7 @@ mod tests {
     fn number_table_is_written_as_markdown_and_csv() {
         let table = NumberTable {
             panes: vec!["=1+1".into(), "a|b".into()],
-            rows: vec![NumberRow {
-                label: "Lag",
-                unit: "s",
-                help: "",
-                better: Better::Lower,
-                values: vec![Some(0.416), None],
-            }],
+            rows: vec![NumberRow { metric: MetricId::Lag, values: vec![Some(0.416), None] }],
         };
         assert_eq!(table.markdown(), "| | =1+1 | a\\|b |\n|---|---|---|\n| Lag, s | 0.42 | – |\n");
         assert_eq!(table.csv(), ",unit,'=1+1,a|b\nLag,s,0.416,\n");

@@ -11,6 +11,7 @@ use crate::ui::state::UiState;
 use crate::ui::text;
 use crate::ui::theme::{palette_of, space};
 use eframe::egui::Ui;
+use segue_session::metrics::MetricId;
 use segue_session::{Compare, CycleMade, Key, Session, Value};
 use segue_text::{Message, msg};
 
@@ -26,8 +27,8 @@ pub(super) const LAB: LabUi = LabUi {
 fn title(shown: &Shown<'_>) -> Title {
     // The speed that was reached, as the numbers have it: a cycle of whole frames is not always as
     // fast as was asked.
-    let metrics = shown.pane.outcome.iter().flat_map(|outcome| &outcome.metrics);
-    let reached = metrics.filter(|metric| metric.id == "speed_mps").find_map(|metric| metric.value);
+    let outcome = shown.pane.outcome.as_ref();
+    let reached = outcome.and_then(|outcome| outcome.metric(MetricId::Speed)?.value);
     Title {
         strong: shown.name(Key::A),
         text: msg!("~ {clip}", clip = shown.name(Key::B)),

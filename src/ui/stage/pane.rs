@@ -7,7 +7,7 @@ use crate::ui::language::say;
 use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, radius, space, theme_of};
 use eframe::egui::{self, Align2, Frame, Rect, Ui, UiBuilder, pos2};
-use segue_motion::metrics::Better;
+use segue_session::metrics::{METRICS, MetricRow, Unit};
 use segue_session::{Kind, Pane, Session, Value};
 use segue_text::{Message, ToMessage, msg};
 
@@ -57,20 +57,14 @@ pub(super) fn pane_ui(
         return rect.bottom();
     };
     let panes = session.panes();
-    let room = if rect.width() < 280.0 * theme.scale() { 6 } else { text::METRICS.len() };
-    let shown = text::METRICS
+    let room = if rect.width() < 280.0 * theme.scale() { 6 } else { METRICS.len() };
+    let shown = METRICS
         .iter()
-        .filter_map(|(id, label)| {
-            Some((outcome.metrics.iter().find(|metric| metric.id == *id)?, label))
-        })
+        .filter_map(|row| Some((row, outcome.metric(row.id)?, row.short?)))
         .take(room);
     let numbers: Vec<(String, &str, Rank, &str)> = shown
-        .map(|(metric, &label)| {
-            let ranks = if metric.better == Better::Neutral {
-                Verdicts::default()
-            } else {
-                ranking(panes, metric.id)
-            };
+        .map(|(row, metric, label)| {
+            let ranks = ranking(panes, row.id);
             let rank = if ranks.best == Some(index) {
                 Rank::Best
             } else if ranks.worst == Some(index) {
@@ -78,7 +72,7 @@ pub(super) fn pane_ui(
             } else {
                 Rank::Middle
             };
-            (written(metric), label, rank, metric.help)
+            (written(row, metric.value), label, rank, row.help)
         })
         .collect();
     let strip: Vec<Metric<'_>> = numbers
@@ -112,19 +106,13 @@ fn problem_ui(problem: &Message, rect: Rect, ui: &mut Ui) -> f32 {
     shown.inner.response.rect.top()
 }
 
-/// Returns a metric's number as it is read at a glance.
-fn written(metric: &segue_motion::metrics::Metric) -> String {
-    let Some(value) = metric.value else {
+/// Returns the value of a metric as it is read at a glance.
+fn written(row: &MetricRow, value: Option<f64>) -> String {
+    let Some(value) = value else {
         return "–".to_owned();
     };
-    let decimals = match metric.unit {
-        "s" | "m" | "m/s" | "ms" => 2,
-        "cm" => 1,
-        // Numbers without a unit are counts.
-        "%" | "frames" | "bends" | "" => 0,
-        _ => usize::from(value < 9.95),
-    };
-    let degree = if metric.unit == "°" { "°" } else { "" };
+    let decimals = row.unit.decimals(value);
+    let degree = if row.unit == Unit::Degrees { "°" } else { "" };
     let digits = format!("{value:.decimals$}");
     // A number that rounds to zero has no sign.
     let is_zero = digits.bytes().all(|byte| matches!(byte, b'-' | b'0' | b'.'));

@@ -1,7 +1,7 @@
 //! Which pane is the best and which the worst.
 
-use segue_motion::metrics::{Better, Metric};
 use segue_session::Pane;
+use segue_session::metrics::{Better, MetricId};
 
 /// The best and the worst pane, by the velocity jump, which an eye calls smooth or rough; of
 /// registered clips by foot skating. Where that is alike, the next of these numbers decides.
@@ -13,9 +13,8 @@ pub(super) struct Verdicts {
 
 /// Returns a number of a pane's result; `None` for an earlier result, which is compared with
 /// nothing.
-fn metric_of<'a>(pane: &'a Pane, id: &str) -> Option<&'a Metric> {
-    let made = pane.result().ok()?;
-    made.outcome.metrics.iter().find(|metric| metric.id == id)
+fn value_of(pane: &Pane, id: MetricId) -> Option<f64> {
+    pane.result().ok()?.outcome.metric(id)?.value
 }
 
 /// Compares all panes.
@@ -25,9 +24,9 @@ pub(super) fn verdicts(panes: &[Pane]) -> Verdicts {
         .filter_map(|pane| pane.outcome.as_ref())
         .any(|outcome| outcome.registered().is_some());
     let looked_at = if is_registered {
-        ["skating_cmps", "velocity_jump_dps", "pose_jump_deg"]
+        [MetricId::Skating, MetricId::VelocityJump, MetricId::PoseJump]
     } else {
-        ["velocity_jump_dps", "pose_jump_deg", "skating_cmps"]
+        [MetricId::VelocityJump, MetricId::PoseJump, MetricId::Skating]
     };
     looked_at
         .map(|id| ranking(panes, id))
@@ -36,29 +35,19 @@ pub(super) fn verdicts(panes: &[Pane]) -> Verdicts {
         .unwrap_or_default()
 }
 
-/// Returns the smallest difference between panes that is ranked, by unit.
-fn least_difference(unit: &str) -> f64 {
-    match unit {
-        "°/s" => 5.0,
-        "°" => 1.0,
-        "s" => 0.05,
-        _ => 0.5,
-    }
-}
-
 /// Returns which panes have the lowest and the highest value; none where they hardly differ.
-pub(super) fn ranking(panes: &[Pane], id: &str) -> Verdicts {
+pub(super) fn ranking(panes: &[Pane], id: MetricId) -> Verdicts {
+    let metric = id.row();
+    // A number that only describes has no best value.
+    if metric.better != Better::Lower {
+        return Verdicts::default();
+    }
     let values: Vec<(usize, f64)> = panes
         .iter()
         .enumerate()
-        .filter_map(|(index, pane)| Some((index, metric_of(pane, id)?.value?)))
+        .filter_map(|(index, pane)| Some((index, value_of(pane, id)?)))
         .collect();
-    let metric = panes.iter().find_map(|pane| metric_of(pane, id));
-    // A number that only describes has no best value.
-    let Some(metric) = metric.filter(|metric| metric.better == Better::Lower) else {
-        return Verdicts::default();
-    };
-    let least = least_difference(metric.unit);
+    let least = metric.unit.least_difference();
     let best = values.iter().copied().min_by(|x, y| x.1.total_cmp(&y.1));
     let worst = values.iter().copied().max_by(|x, y| x.1.total_cmp(&y.1));
     match (best, worst) {

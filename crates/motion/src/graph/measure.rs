@@ -4,7 +4,6 @@ use super::stitch::PieceSeam;
 use super::{FrameSet, MotionGraph, Place, WalkPiece};
 use crate::clip::{Clip, stillest_step, turn_change};
 use crate::math::{Planar, quat, stats, wrap_angle};
-use crate::metrics::{Better, Metric};
 use crate::skeleton::{Side, WorldPose};
 use glam::{DVec2, Quat, Vec3};
 use std::ops::Range;
@@ -177,53 +176,18 @@ impl WalkMetrics {
         self.seams.iter().filter(|seam| seam.flash > FLASH).count()
     }
 
-    /// What there is to say of a walk beyond what is measured of every result
-    /// ([`ResultMetrics`](crate::metrics::ResultMetrics)), in the order in which it is shown.
+    /// Returns the number of transitions in a minute; `None` for an empty walk.
     #[must_use]
-    pub fn list(&self) -> [Metric; 5] {
-        let median = |values: Vec<f32>| stats::percentile(&values, 0.5).map(f64::from);
-        let per_minute = (self.secs > 0.0).then(|| self.seams.len() as f64 * 60.0 / self.secs);
-        let lags = self.seams.iter().filter_map(|seam| seam.lag_s.map(|lag| lag as f32)).collect();
-        [
-            Metric::fact(
-                "seams_per_min",
-                "Seams",
-                per_minute,
-                "/min",
-                "How many transitions a minute of the walk has.",
-            ),
-            Metric::lower(
-                "spins",
-                "Spins",
-                Some(self.spins() as f64),
-                "",
-                "Transitions in which the character turns by more than 30° in 0.2 s and neither clip does.",
-            ),
-            Metric::lower(
-                "flashes",
-                "Flashes",
-                Some(self.flashes() as f64),
-                "",
-                "Transitions in which the root or a joint jumps more than twice as far as in all but one in a thousand frames of the clips.",
-            ),
-            Metric::lower(
-                "lag_s",
-                "Lag",
-                median(lags),
-                "s",
-                "How long it takes until the velocity over the ground has come 90 % of the way to the incoming clip's; of several transitions the median.",
-            ),
-            Metric {
-                better: Better::Higher,
-                ..Metric::fact(
-                    "variety",
-                    "Variety",
-                    Some(self.variety * 100.0),
-                    "%",
-                    "How much of the clips the walk has shown.",
-                )
-            },
-        ]
+    pub fn seams_per_minute(&self) -> Option<f64> {
+        (self.secs > 0.0).then(|| self.seams.len() as f64 * 60.0 / self.secs)
+    }
+
+    /// Returns the median lag of the transitions, seconds; `None` if none has a lag.
+    #[must_use]
+    pub fn median_lag_s(&self) -> Option<f64> {
+        let lags: Vec<f32> =
+            self.seams.iter().filter_map(|seam| seam.lag_s.map(|lag| lag as f32)).collect();
+        stats::percentile(&lags, 0.5).map(f64::from)
     }
 }
 

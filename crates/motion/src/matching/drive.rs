@@ -6,7 +6,7 @@ use super::features::RATE;
 use super::{Candidate, Controller, ControllerOptions, MatchError, SearchReason};
 use crate::clip::{Clip, Contacts, character_frames};
 use crate::math::{Planar, wrap_angle};
-use crate::metrics::{Better, Metric, foot_slides_cm};
+use crate::metrics::foot_slides_cm;
 use std::sync::Arc;
 
 /// The motion of a controller for a recording, and the desired motion.
@@ -159,57 +159,5 @@ impl Drive {
             }
         };
         asked.iter().enumerate().map(turn).reduce(f64::max)
-    }
-}
-
-impl DriveMetrics {
-    /// Returns the metrics with their labels and help texts.
-    #[must_use]
-    pub fn list(&self) -> Vec<Metric> {
-        let metric = |id, label, value, unit, help| Metric {
-            id,
-            label,
-            value,
-            unit,
-            better: Better::Lower,
-            help,
-        };
-        vec![
-            metric(
-                "match_error",
-                "position error",
-                Some(self.error_cm),
-                "cm",
-                "Mean distance of the character from where the player steers it: the simulation object.",
-            ),
-            metric(
-                "match_worst_error",
-                "largest position error",
-                Some(self.worst_error_cm),
-                "cm",
-                "The largest distance of the character from where the player steers it.",
-            ),
-            metric(
-                "match_turn",
-                "time to turn",
-                self.turn_secs,
-                "s",
-                "The longest time from asking for a turn until the body faces within 20° of it and stays there.",
-            ),
-            metric(
-                "foot_slide_cm",
-                "Foot slide",
-                self.worst_skate_cm,
-                "cm",
-                "How far a planted foot slides in the worst stance.",
-            ),
-            metric(
-                "match_seams",
-                "seams per minute",
-                Some(self.seams_per_minute),
-                "/min",
-                "How often the character goes over from one place of the clips to another.",
-            ),
-        ]
     }
 }

@@ -98,63 +98,8 @@ mod transition;
 mod whole;
 
 pub use artefacts::{Artefacts, Flash, MotionTrace, TraceMeter};
-pub use deviation::deviations;
+pub use deviation::Deviations;
 pub use result::{JointFrame, ResultMetrics};
 pub use slide::{SlideMeter, foot_slide_cm, foot_slides_cm};
-pub use transition::{TransitionMetrics, penetration};
+pub use transition::{TransitionMetrics, penetration_cm};
 pub use whole::{ClipMeter, ClipMetrics};
-
-/// The direction in which a metric improves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-pub enum Better {
-    /// Smaller is better; 0 is perfect.
-    Lower,
-    /// Larger is better.
-    Higher,
-    /// Neither: the number only describes.
-    Neutral,
-}
-
-/// One measured number, with its label, unit and help text.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Metric {
-    /// The key in links, exports and comparisons; never changes.
-    pub id: &'static str,
-    /// The name on screen.
-    pub label: &'static str,
-    /// The number; `None` where there is nothing to measure (no feet, no foot on the ground, no
-    /// change of speed).
-    pub value: Option<f64>,
-    /// The unit, as written after the number.
-    pub unit: &'static str,
-    /// The direction in which it improves.
-    pub better: Better,
-    /// One or two sentences: its meaning and how it is measured.
-    pub help: &'static str,
-}
-
-impl Metric {
-    /// Returns a metric that should be small; 0 is perfect.
-    #[must_use]
-    pub fn lower(
-        id: &'static str,
-        label: &'static str,
-        value: impl Into<Option<f64>>,
-        unit: &'static str,
-        help: &'static str,
-    ) -> Self {
-        Self { better: Better::Lower, ..Self::fact(id, label, value, unit, help) }
-    }
-
-    /// Returns a metric that only describes.
-    #[must_use]
-    pub fn fact(
-        id: &'static str,
-        label: &'static str,
-        value: impl Into<Option<f64>>,
-        unit: &'static str,
-        help: &'static str,
-    ) -> Self {
-        Self { id, label, value: value.into(), unit, better: Better::Neutral, help }
-    }
-}

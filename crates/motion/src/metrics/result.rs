@@ -1,7 +1,7 @@
 //! Metrics of any result, compared with the clips from which it was made.
 
+use super::MotionTrace;
 use super::artefacts::{JointTrace, Statistics};
-use super::{Metric, MotionTrace};
 use crate::math::stats;
 
 /// The percentile of the turn of the hips that counts as usual for a clip without sources.
@@ -86,42 +86,6 @@ impl ResultMetrics {
             spin_at: spin.filter(|(deg, _)| *deg > 0.0).map(|(_, frame)| frame),
             skating_cm_per_sec: result.skating_cm_per_sec(),
         }
-    }
-
-    /// Returns all metrics with their labels, units and help texts, in the order in which they are
-    /// shown.
-    #[must_use]
-    pub fn list(&self) -> [Metric; 4] {
-        [
-            Metric::lower(
-                "pose_jump_deg",
-                "Pose jump",
-                self.pose_jump_deg,
-                "°",
-                "How far a joint turns in one frame, beyond the most that it does in the clips: the worst. Of a clip by itself, beyond all but one in a hundred of its frames.",
-            ),
-            Metric::lower(
-                "velocity_jump_dps",
-                "Velocity jump",
-                self.velocity_jump_dps,
-                "°/s",
-                "How much a joint's angular velocity changes within 1/30 s, beyond the most that it does in the clips: the worst. Of a clip by itself, beyond all but one in a hundred of its frames.",
-            ),
-            Metric::lower(
-                "spin_deg",
-                "Spin",
-                self.spin_deg,
-                "°",
-                "How far the character turns within 0.2 s at most, beyond the most that it does in the clips. Of a clip by itself, beyond what it does three quarters of the time.",
-            ),
-            Metric::lower(
-                "skating_cmps",
-                "Skating",
-                self.skating_cm_per_sec,
-                "cm/s",
-                "How fast the feet move over the ground while they are within 2.5 cm of it, the more the lower: the mean of all frames, for a body of 1.7 m.",
-            ),
-        ]
     }
 }
 

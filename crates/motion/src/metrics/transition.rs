@@ -1,6 +1,5 @@
 //! Metrics of one transition, measured at its seam.
 
-use super::Metric;
 use super::lowest::LowPoints;
 use crate::blend::Concatenation;
 use crate::clip::{Clip, Motion, UsualMotion, facing, stillest_step, turn, turn_change};
@@ -123,57 +122,23 @@ impl TransitionMetrics {
             lag_s: lag(subject, &steps, &around),
         }
     }
-
-    /// Returns the metrics of a transition beyond those of every result
-    /// ([`ResultMetrics`](super::ResultMetrics)), in the order in which they are shown.
-    #[must_use]
-    pub fn list(&self) -> [Metric; 3] {
-        [
-            Metric::lower(
-                "jump_cm",
-                "Position jump",
-                self.jump_cm,
-                "cm",
-                "How far the character moves over the ground in one frame at the transition, beyond its usual step.",
-            ),
-            penetration_metric(self.penetration_cm),
-            Metric::lower(
-                "lag_s",
-                "Lag",
-                self.lag_s,
-                "s",
-                "How long it takes until the velocity over the ground has come 90 % of the way to the incoming clip's; of several transitions the median.",
-            ),
-        ]
-    }
 }
 
-/// Returns the penetration in some frames of a clip, as a row of a list: the depth of the deepest
-/// joint or end site below the ground. Frames that do not exist are left out.
+/// Returns the penetration in some frames of a clip, centimetres: the depth of the deepest joint or
+/// end site below the ground. Frames that do not exist are left out; `None` if none is left.
 #[must_use]
-pub fn penetration(clip: &Clip, frames: Range<usize>, ground_m: f32) -> Metric {
+pub fn penetration_cm(clip: &Clip, frames: Range<usize>, ground_m: f32) -> Option<f64> {
     let low_points = LowPoints::of(clip.skeleton());
     let mut world = WorldPose::default();
     let lowest = (frames.start..frames.end.min(clip.frames())).filter_map(|frame| {
         clip.world_pose_into(frame, &mut world);
         low_points.lowest(&world)
     });
-    let lowest = lowest.min_by(f32::total_cmp);
-    penetration_metric(lowest.map(|lowest| depth_cm(lowest, ground_m)))
+    lowest.min_by(f32::total_cmp).map(|lowest| depth_cm(lowest, ground_m))
 }
 
 fn depth_cm(lowest: f32, ground_m: f32) -> f64 {
     f64::from((ground_m - lowest).max(0.0)) * 100.0
-}
-
-fn penetration_metric(value: Option<f64>) -> Metric {
-    Metric::lower(
-        "penetration_cm",
-        "Penetration",
-        value,
-        "cm",
-        "How deep the lowest point of the body is below the ground during the transition.",
-    )
 }
 
 impl Subject<'_> {

@@ -1,7 +1,7 @@
 //! Metrics of a clip without sources.
 
+use super::SlideMeter;
 use super::lowest::LowPoints;
-use super::{Metric, SlideMeter};
 use crate::clip::{Clip, Contacts};
 use crate::math::{Planar, stats};
 use crate::skeleton::{Roles, WorldPose};
@@ -38,28 +38,6 @@ impl ClipMetrics {
         let mut meter = ClipMeter::new(clip, roles, ground_m);
         while meter.advance(clip, contacts, usize::MAX) {}
         meter.finish(ground_frames)
-    }
-
-    /// Returns the metrics, in the order in which they are shown, without the slide of the feet,
-    /// which is labelled where it is shown.
-    #[must_use]
-    pub fn list(&self) -> [Metric; 2] {
-        [
-            Metric::lower(
-                "clip_penetration_cm",
-                "Deepest point",
-                self.penetration_cm,
-                "cm",
-                "How deep the lowest point of the body is below the ground.",
-            ),
-            Metric::lower(
-                "clip_jump_cm",
-                "Largest position jump",
-                self.jump_cm,
-                "cm",
-                "How far the character moves over the ground in one frame, beyond all but one in a hundred frames of the clip: the worst.",
-            ),
-        ]
     }
 }
 

@@ -6,6 +6,7 @@ use super::pair::{Pair, Pairs};
 use super::sliced::{JobKind, Sliced};
 use super::{MatchSearch, Outcome, PlacedClip, Slot, Transition};
 use crate::labs::LabError;
+use crate::metrics::{Metric, MetricId};
 use crate::params::{Key, MAX_PANES, Params};
 use crate::{LabId, choices};
 use segue_motion::blend::{AlignBy, RootBlend, WeightLaw};
@@ -494,7 +495,11 @@ impl LabInputs for BlendInputs {
             metrics.push(slide_before(slid(&free)));
         }
         let at_seam = TransitionMetrics::measure(from, to, &made);
-        metrics.extend(at_seam.list());
+        metrics.extend([
+            Metric::new(MetricId::PositionJump, at_seam.jump_cm),
+            Metric::new(MetricId::Penetration, at_seam.penetration_cm),
+            Metric::new(MetricId::Lag, at_seam.lag_s),
+        ]);
         let sources = vec![
             PlacedClip::new(Slot::A, &pair.a, 0.0, Planar::IDENTITY),
             PlacedClip::new(

@@ -1,9 +1,9 @@
 //! Locking of planted feet, and the distance that they slide.
 
 use crate::labs::LabError;
+use crate::metrics::{Metric, MetricId};
 use crate::params::{Key, Params};
 use segue_motion::clip::{Clip, Contacts};
-use segue_motion::metrics::Metric;
 use segue_motion::skeleton::Roles;
 use segue_motion::transition::{FootLockError, FootLockOptions, FootLocking};
 use std::sync::Arc;
@@ -70,24 +70,12 @@ pub(super) fn with_feet(
 /// Returns the metric of foot slide over a whole result, in all labs as
 /// [`foot_slide_cm`](segue_motion::metrics::foot_slide_cm) defines it.
 pub(super) fn slide(cm: Option<f64>) -> Metric {
-    Metric::lower(
-        "foot_slide_cm",
-        "Foot slide",
-        cm,
-        "cm",
-        "How far a planted foot slides in the worst stance.",
-    )
+    Metric::new(MetricId::FootSlide, cm)
 }
 
 /// Returns the metric of foot slide without the foot lock.
 pub(super) fn slide_before(cm: Option<f64>) -> Metric {
-    Metric::fact(
-        "foot_slide_before_cm",
-        "Foot slide before the lock",
-        cm,
-        "cm",
-        "How far a planted foot slides in the worst stance without the foot lock.",
-    )
+    Metric::new(MetricId::FootSlideBefore, cm)
 }
 
 #[cfg(test)]

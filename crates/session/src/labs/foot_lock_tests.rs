@@ -34,13 +34,11 @@ fn foot_lock_stills_the_feet_and_tells_what_it_did() {
     session.apply(Command::OpenLink("lab=transition&half_life=0.3&foot_lock=on".into())).unwrap();
     settle(&mut session);
     let outcome = session.main_outcome().unwrap();
-    let value =
-        |id: &str| outcome.metrics.iter().find(|metric| metric.id == id).unwrap().value.unwrap();
-    let (before, after) = (value("foot_slide_before_cm"), value("foot_slide_cm"));
+    let value = |id: MetricId| outcome.metric(id).unwrap().value.unwrap();
+    let (before, after) = (value(MetricId::FootSlideBefore), value(MetricId::FootSlide));
     assert!(before > 3.0 && after < 0.1 * before, "{before} cm, {after} cm");
     session.apply(Command::Set(vec![(Key::FootLock, Value::Switch(false))])).unwrap();
-    let skate =
-        session.main_outcome().unwrap().metrics.iter().find(|metric| metric.id == "foot_slide_cm");
+    let skate = session.main_outcome().unwrap().metric(MetricId::FootSlide);
     assert_eq!(skate.unwrap().value, Some(before));
 }
 
@@ -131,12 +129,10 @@ fn one_switch_holds_the_feet_in_every_lab() {
         let mut session = Session::new();
         session.apply(Command::OpenLink(format!("{lab}&foot_lock=on"))).unwrap();
         settle(&mut session);
-        let metrics = &session.main_outcome().unwrap().metrics;
-        let value = |wanted: &str| {
-            metrics.iter().find(|metric| metric.id.starts_with(wanted)).unwrap().value.unwrap()
-        };
-        let before = value("foot_slide_before_cm");
-        let after = value("foot_slide_cm");
+        let outcome = session.main_outcome().unwrap();
+        let value = |id: MetricId| outcome.metric(id).unwrap().value.unwrap();
+        let before = value(MetricId::FootSlideBefore);
+        let after = value(MetricId::FootSlide);
         assert!(after <= before && after < 1.0, "{lab}: {before} cm, {after} cm");
     }
 }
@@ -189,7 +185,7 @@ fn a_long_clip_is_held_in_slices_while_the_free_one_stays() {
         foot_lock(motion.clip(), motion.roles(), motion.contacts(), &FootLockOptions::default())
             .unwrap();
     assert_eq!(**held.motion.clip(), whole);
-    let before = held.metrics.iter().find(|metric| metric.id == "foot_slide_before_cm");
+    let before = held.metric(MetricId::FootSlideBefore);
     assert_eq!(
         before.unwrap().value,
         foot_slide_cm(motion.clip(), motion.roles(), motion.contacts())

@@ -5,10 +5,11 @@ use super::lab::{Inputs, Lab, LabClips, LabInputs};
 use super::{Measured, Outcome};
 use crate::choices::RootWay;
 use crate::labs::LabError;
+use crate::metrics::{Metric, MetricId};
 use crate::params::{Key, Params};
 use segue_motion::clip::{Clip, Motion, root_motion_from_feet, take_in_place};
 use segue_motion::math::Planar;
-use segue_motion::metrics::{Metric, foot_slide_cm};
+use segue_motion::metrics::foot_slide_cm;
 use segue_text::{Message, msg};
 use std::sync::Arc;
 
@@ -101,13 +102,7 @@ impl LabInputs for InPlaceInputs {
         let slid = |clip| foot_slide_cm(clip, source.roles(), &contacts);
         let mut metrics = way_metrics(frames, source.clip().fps()).to_vec();
         metrics.push(slide(slid(&going)));
-        metrics.push(Metric::fact(
-            "foot_slide_in_place_cm",
-            "Foot slide in place",
-            slid(&standing),
-            "cm",
-            "How far a planted foot moves in the worst stance without root motion.",
-        ));
+        metrics.push(Metric::new(MetricId::FootSlideInPlace, slid(&standing)));
         Ok(Outcome {
             metrics,
             beside: vec![Arc::clone(source.clip())],
@@ -125,32 +120,15 @@ fn way_metrics(frames: &[Planar], fps: f64) -> [Metric; 3] {
     let way_m: f64 = steps().map(|step| step.shift.length()).sum();
     let secs = frames.len().saturating_sub(1).max(1) as f64 / fps;
     [
-        Metric::fact(
-            "root_way_m",
-            "Distance travelled",
-            way_m,
-            "m",
-            "The distance that the body travels over the ground: what is removed, or rebuilt.",
-        ),
-        Metric::fact(
-            "root_way_mps",
-            "Mean speed",
-            way_m / secs,
-            "m/s",
-            "The distance travelled, divided by its duration.",
-        ),
-        Metric::fact(
-            "root_way_turn_deg",
-            "Total turn",
-            steps().map(|step| step.yaw).sum::<f64>().to_degrees(),
-            "°",
-            "How far the body turns over the clip, to the left.",
-        ),
+        Metric::new(MetricId::Distance, way_m),
+        Metric::new(MetricId::MeanSpeed, way_m / secs),
+        Metric::new(MetricId::TotalTurn, steps().map(|step| step.yaw).sum::<f64>().to_degrees()),
     ]
 }
 
 #[cfg(test)]
 mod tests {
+    use crate::metrics::MetricId;
     use crate::{Command, Session};
 
     fn opened(link: &str) -> Session {
@@ -160,10 +138,9 @@ mod tests {
         session
     }
 
-    fn number(session: &Session, id: &str) -> f64 {
+    fn number(session: &Session, id: MetricId) -> f64 {
         let outcome = session.main_outcome().expect("a result");
-        let metric = outcome.metrics.iter().find(|metric| metric.id == id).expect("a number");
-        metric.value.expect("a value")
+        outcome.metric(id).expect("a number").value.expect("a value")
     }
 
     /// Returns the distance between the first and the last position on the ground, metres.
@@ -177,15 +154,15 @@ mod tests {
         let walk = opened("lab=view&a=walk");
         let mut session = opened("lab=in_place&a=walk");
         assert!(way_m(&session) < 1e-3, "{} m", way_m(&session));
-        assert!((number(&session, "root_way_m") - way_m(&walk)).abs() < 0.2);
-        assert!(number(&session, "foot_slide_in_place_cm") > 40.0);
+        assert!((number(&session, MetricId::Distance) - way_m(&walk)).abs() < 0.2);
+        assert!(number(&session, MetricId::FootSlideInPlace) > 40.0);
         session.apply(Command::Keep(0)).expect("kept");
 
         let back = opened("lab=in_place&a=in_place(a:walk)&root_way=put_back");
         let (wanted, found) = (way_m(&walk), way_m(&back));
         assert!((found - wanted).abs() < 0.02 * wanted, "{found} m of {wanted} m");
-        assert!(number(&back, "foot_slide_cm") < 2.0, "{}", number(&back, "foot_slide_cm"));
-        assert!(number(&back, "foot_slide_in_place_cm") > 40.0);
+        assert!(number(&back, MetricId::FootSlide) < 2.0, "{}", number(&back, MetricId::FootSlide));
+        assert!(number(&back, MetricId::FootSlideInPlace) > 40.0);
     }
 
     #[test]

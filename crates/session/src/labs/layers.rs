@@ -6,6 +6,7 @@ use super::pair::{Pair, Pairs};
 use super::{LabFacts, Outcome, PlacedClip, Slot};
 use crate::choices;
 use crate::labs::LabError;
+use crate::metrics::{Metric, MetricId};
 use crate::params::{Key, MAX_PANES, Params};
 use segue_motion::blend::{
     BodyPart, LayerMode, LayerOptions, LayerTime, Reference, layer_timed, mask,
@@ -13,7 +14,7 @@ use segue_motion::blend::{
 use segue_motion::clip::{Clip, Contacts, Motion};
 use segue_motion::gait::{GaitCycle, strike_phases};
 use segue_motion::math::Planar;
-use segue_motion::metrics::{deviations, foot_slide_cm, penetration};
+use segue_motion::metrics::{Deviations, foot_slide_cm, penetration_cm};
 use segue_motion::transition::{Loop, LoopOptions, close_loop};
 use segue_text::{Message, msg};
 use std::sync::Arc;
@@ -286,8 +287,15 @@ impl LabInputs for LayerInputs {
         if self.foot_lock.is_some() {
             metrics.push(slide_before(slid(&free)));
         }
-        metrics.push(penetration(&clip, 0..clip.frames(), ground_m));
-        metrics.extend(deviations(&clip, a.clip(), &roles));
+        let depth_cm = penetration_cm(&clip, 0..clip.frames(), ground_m);
+        let off_a = Deviations::measure(&clip, a.clip(), &roles);
+        metrics.extend([
+            Metric::new(MetricId::Penetration, depth_cm),
+            Metric::new(MetricId::ArmsOffA, off_a.arms_deg),
+            Metric::new(MetricId::SpineOffA, off_a.spine_deg),
+            Metric::new(MetricId::HeadOffA, off_a.head_deg),
+            Metric::new(MetricId::LegsOffA, off_a.legs_deg),
+        ]);
         let motion = Motion::with_roles(clip, &roles)
             .with_feet(a.feet())
             .with_contacts(contacts)

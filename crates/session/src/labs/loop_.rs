@@ -6,10 +6,10 @@ use super::rounds::{Rounds, repeated, rounds};
 use super::{Cycle, CycleMade, Outcome, PlacedClip, Slot};
 use crate::choices;
 use crate::labs::LabError;
+use crate::metrics::{Metric, MetricId};
 use crate::params::{Key, Params};
 use segue_motion::clip::Motion;
 use segue_motion::math::Planar;
-use segue_motion::metrics::Metric;
 use segue_motion::transition::{
     CutPoints, CycleSearch, LoopMethod, LoopOptions, close_loop, find_cycle,
 };
@@ -159,52 +159,16 @@ impl LabInputs for LoopInputs {
             .first()
             .map_or(Planar::IDENTITY, |first| first.inverse().after(&looped.cycle.after(first)));
         let mut metrics = vec![
-            Metric::lower(
-                "loop_seam_deg",
-                "Seam",
-                looped.seam.turn_deg,
-                "°",
-                "The largest angle of a joint between the end of the cycle and its beginning.",
-            ),
-            Metric::lower(
-                "loop_seam_dps",
-                "Velocity seam",
-                looped.seam.turn_dps,
-                "°/s",
-                "The largest difference of a joint's angular velocities there.",
-            ),
+            Metric::new(MetricId::LoopSeam, looped.seam.turn_deg),
+            Metric::new(MetricId::LoopVelocitySeam, looped.seam.turn_dps),
         ];
         metrics.append(&mut slides);
         metrics.extend([
-            Metric::fact(
-                "loop_before_deg",
-                "Seam of the bare cut",
-                looped.before.turn_deg,
-                "°",
-                "The angle that was to be bridged: the same number if nothing were done.",
-            ),
-            Metric::fact("cycle_s", "Cycle", secs(frames), "s", "How long one cycle takes."),
-            Metric::fact(
-                "cycle_frames",
-                "Cycle",
-                frames as f64,
-                "frames",
-                "The same in frames of A.",
-            ),
-            Metric::fact(
-                "cycle_m",
-                "Way of a cycle",
-                step.shift.length(),
-                "m",
-                "How far one cycle goes.",
-            ),
-            Metric::fact(
-                "cycle_turn_deg",
-                "Turn of a cycle",
-                step.yaw.to_degrees(),
-                "°",
-                "How far one cycle turns, to the left: the loop walks on in this curve.",
-            ),
+            Metric::new(MetricId::BareSeam, looped.before.turn_deg),
+            Metric::new(MetricId::CycleTime, secs(frames)),
+            Metric::new(MetricId::CycleFrames, frames as f64),
+            Metric::new(MetricId::CycleLength, step.shift.length()),
+            Metric::new(MetricId::CycleTurn, step.yaw.to_degrees()),
         ]);
         Ok(Outcome {
             sources: vec![PlacedClip::new(

@@ -1,10 +1,11 @@
 //! The result of a lab: a motion, and what is known about it.
 
+use crate::metrics::{self, Metric, MetricId};
 use crate::params::Key;
 use segue_motion::clip::{Clip, Motion};
 use segue_motion::gait::GaitFacts;
 use segue_motion::math::Planar;
-use segue_motion::metrics::{Metric, MotionTrace, ResultMetrics};
+use segue_motion::metrics::{MotionTrace, ResultMetrics};
 use std::any::Any;
 use std::fmt;
 use std::sync::Arc;
@@ -224,7 +225,7 @@ impl Outcome {
 
     /// Returns whether the metrics of every lab apply but are not yet known.
     pub(crate) fn awaits_numbers(&self) -> bool {
-        let common = ResultMetrics::default().list();
+        let common = metrics::of_result(&ResultMetrics::default());
         !self.is_measured
             && self.metrics.iter().zip(&common).filter(|(own, common)| own.id == common.id).count()
                 == common.len()
@@ -233,10 +234,16 @@ impl Outcome {
     /// Puts the metrics of every lab before those of its own; without values if they are not yet
     /// known.
     pub(crate) fn take_numbers(&mut self, found: Option<ResultMetrics>) {
-        let common = found.unwrap_or_default().list();
+        let common = metrics::of_result(&found.unwrap_or_default());
         self.metrics.retain(|metric| common.iter().all(|other| other.id != metric.id));
         self.metrics.splice(..0, common);
         self.is_measured = found.is_some();
+    }
+
+    /// Returns a metric; `None` where the result has none of that name.
+    #[must_use]
+    pub fn metric(&self, id: MetricId) -> Option<Metric> {
+        self.metrics.iter().copied().find(|metric| metric.id == id)
     }
 
     /// Returns the duration from the first frame to the last, seconds.

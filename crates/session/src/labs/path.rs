@@ -6,11 +6,12 @@ use super::sliced::{JobKind, Sliced};
 use super::{LabFacts, Outcome, PlacedClip, Slot};
 use crate::choices;
 use crate::labs::LabError;
+use crate::metrics::{Metric, MetricId};
 use crate::params::{Key, List, MAX_PANES, Params, Value};
 use planter::{LockedFeet, Planter};
 use segue_motion::clip::{Clip, Contacts, Motion};
 use segue_motion::math::Planar;
-use segue_motion::metrics::{Metric, foot_slide_cm};
+use segue_motion::metrics::foot_slide_cm;
 use segue_motion::path::{
     CarryOptions, EditedMotion, FitError, FitOptions, FittedPath, GroundSpline, HardTurn,
     MotionOptions, Offset, Orientation, PathEditor, Road, SplineEnds, Timing, Waypoint,
@@ -342,53 +343,17 @@ impl LabInputs for PathInputs {
         };
         let mut metrics = vec![
             slide(slide_cm),
-            Metric::fact(
-                "foot_slide_original_cm",
-                "Foot slide of the original",
-                made.slide_cm.original,
-                "cm",
-                "How far a planted foot slides in the worst stance before the path was edited.",
-            ),
-            Metric::fact(
-                "fit_rms_cm",
-                "Fit error",
-                fitted.error.rms_cm,
-                "cm",
-                "How far the hips are from the fitted path: the root of the mean squared distance. It is carried along, not lost.",
-            ),
-            Metric::fact(
-                "fit_most_cm",
-                "Largest fit error",
-                fitted.error.most_cm,
-                "cm",
-                "The same where it is largest.",
-            ),
-            Metric::fact(
-                "path_m",
-                "Length of the path",
-                road.length_m(),
-                "m",
-                "The edited path from its start to its end.",
-            ),
-            Metric::lower(
-                "hard_turns",
-                "Hard turns",
-                made.hard_turns.len() as f64,
-                "bends",
-                "Places where curvature times speed is beyond what the original does.",
-            ),
+            Metric::new(MetricId::FootSlideOriginal, made.slide_cm.original),
+            Metric::new(MetricId::FitError, fitted.error.rms_cm),
+            Metric::new(MetricId::LargestFitError, fitted.error.most_cm),
+            Metric::new(MetricId::PathLength, road.length_m()),
+            Metric::new(MetricId::HardTurns, made.hard_turns.len() as f64),
         ];
         if matches!(self.feet, Feet::AtOnce | Feet::Locked(_)) {
             metrics.push(slide_before(made.slide_cm.carried));
         }
         if self.edited.is_some() {
-            metrics.push(Metric::fact(
-                "path_original_m",
-                "Length of the original path",
-                fitted.road.length_m(),
-                "m",
-                "The fitted path from its start to its end.",
-            ));
+            metrics.push(Metric::new(MetricId::OriginalPathLength, fitted.road.length_m()));
         }
         let (frames, before) = (clip.frames(), fitted.motion.clip().frames().max(1));
         let seams = fitted.motion.seams_at(|frame| frame * frames / before);

@@ -2,6 +2,7 @@
 
 use super::lab::{Beside, HasPart, Inputs, Lab, LabClips, LabInputs};
 use crate::labs::LabError;
+use crate::metrics::{Metric, MetricId};
 use crate::params::{Key, Params};
 mod map;
 mod registrar;
@@ -21,7 +22,7 @@ use segue_motion::blend::{
 };
 use segue_motion::clip::{Clip, Contacts, Motion};
 use segue_motion::math::Planar;
-use segue_motion::metrics::{Metric, foot_slide_cm, penetration};
+use segue_motion::metrics::{foot_slide_cm, penetration_cm};
 use segue_motion::registration::Registration;
 use segue_motion::skeleton::Side;
 use segue_text::{Message, msg};
@@ -418,15 +419,12 @@ impl RegisterInputs {
         if self.foot_lock.is_some() {
             metrics.push(slide_before(slid(free)));
         }
-        metrics.push(Metric::lower(
-            "apart_cm",
-            "Distance",
-            distance_cm,
-            "cm",
-            "How far apart the frames that are mixed are, in the mean: root mean square per joint, after the best alignment.",
-        ));
+        metrics.push(Metric::new(MetricId::FrameDistance, distance_cm));
         let frames = mixed.start.saturating_sub(1)..mixed.end.saturating_add(1);
-        metrics.push(penetration(clip, frames, self.ground_m()));
+        metrics.push(Metric::new(
+            MetricId::Penetration,
+            penetration_cm(clip, frames, self.ground_m()),
+        ));
         metrics
     }
 }

@@ -2,8 +2,9 @@
 
 use super::feet::{Lock, slide, slide_before, with_feet};
 use crate::labs::LabError;
+use crate::metrics::Metric;
 use segue_motion::clip::{Clip, Contacts, Motion, character_frames};
-use segue_motion::metrics::{Metric, foot_slide_cm};
+use segue_motion::metrics::foot_slide_cm;
 use segue_motion::skeleton::{Roles, Side};
 use segue_motion::transition::repeat_clip;
 use std::sync::Arc;

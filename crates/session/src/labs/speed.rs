@@ -6,10 +6,10 @@ use super::pair::{Pair, Pairs};
 use super::rounds::{Rounds, rounds};
 use super::{Cycle, CycleMade, Outcome};
 use crate::labs::LabError;
+use crate::metrics::{Metric, MetricId};
 use crate::params::{Key, Kind, Params};
 use segue_motion::clip::ground_speed;
 use segue_motion::gait::{GaitCycle, PhaseAlignment, SpeedBlend, SpeedOptions};
-use segue_motion::metrics::Metric;
 use segue_text::{Message, msg};
 use std::sync::Arc;
 
@@ -154,34 +154,10 @@ impl LabInputs for SpeedInputs {
         )?;
         let measured = f64::from(ground_speed(motion.ground_frames(), fps));
         let mut metrics = vec![
-            Metric::fact(
-                "speed_mps",
-                "Speed",
-                measured,
-                "m/s",
-                "The way over the ground by its time, measured on the result.",
-            ),
-            Metric::fact(
-                "stride_m",
-                "Stride",
-                facts.stride_m,
-                "m",
-                "The way of one cycle: two steps.",
-            ),
-            Metric::fact(
-                "cadence_spm",
-                "Cadence",
-                facts.cadence_spm,
-                "steps/min",
-                "Steps per minute.",
-            ),
-            Metric::fact(
-                "weight_percent",
-                "Weight of B",
-                100.0 * facts.weight,
-                "%",
-                "How much of B is in the pose: 0 at the speed of A, 100 at that of B, beyond it outside of both.",
-            ),
+            Metric::new(MetricId::Speed, measured),
+            Metric::new(MetricId::Stride, facts.stride_m),
+            Metric::new(MetricId::Cadence, facts.cadence_spm),
+            Metric::new(MetricId::WeightOfB, 100.0 * facts.weight),
         ];
         metrics.append(&mut slides);
         Ok(Outcome {

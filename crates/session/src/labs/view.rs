@@ -6,11 +6,12 @@ use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs, counts};
 use super::sliced::{JobKind, Sliced};
 use super::{Measured, Outcome};
 use crate::labs::LabError;
+use crate::metrics::{Metric, MetricId};
 use crate::params::{Key, Kind, MAX_PANES, PARAMS, Param, Params};
 use crate::{LabId, choices};
 use segue_motion::clip::{Motion, take_in_place};
 use segue_motion::math::Planar;
-use segue_motion::metrics::{ClipMeter, Metric, SlideMeter};
+use segue_motion::metrics::{ClipMeter, SlideMeter};
 use segue_motion::path::{FitOptions, FittedPath};
 use segue_motion::transition::FootLocking;
 use segue_text::{Message, msg};
@@ -362,8 +363,12 @@ fn next(of: &Arc<Motion>, stage: Stage) -> Step {
             }
             let found = meter.finish(motion.ground_frames());
             let slides = std::iter::once(slide(found.foot_slide_cm)).chain(before);
+            let faults = [
+                Metric::new(MetricId::ClipPenetration, found.penetration_cm),
+                Metric::new(MetricId::ClipPositionJump, found.jump_cm),
+            ];
             Step::Done(Box::new(Ok(Outcome {
-                metrics: slides.chain(found.list()).collect(),
+                metrics: slides.chain(faults).collect(),
                 ..Outcome::plain(motion)
             })))
         }

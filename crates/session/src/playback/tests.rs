@@ -18,9 +18,9 @@ fn set(session: &mut Session, key: Key, value: f64) {
     session.apply(Command::Set(vec![(key, Value::Number(value))])).unwrap();
 }
 
-fn metric(session: &Session, pane: usize, id: &str) -> f64 {
+fn metric(session: &Session, pane: usize, id: MetricId) -> f64 {
     let outcome = session.panes()[pane].outcome.as_ref().unwrap();
-    outcome.metrics.iter().find(|metric| metric.id == id).unwrap().value.unwrap()
+    outcome.metric(id).unwrap().value.unwrap()
 }
 
 fn cycle(session: &Session) -> Cycle {
@@ -65,17 +65,17 @@ fn the_speed_asked_for_is_measured_over_the_whole_range() {
             let speed = 1.4 + 0.15 * f64::from(step);
             set(&mut session, Key::Speed, speed);
             assert_eq!(session.panes()[0].problem, None);
-            let measured = metric(&session, 0, "speed_mps");
+            let measured = metric(&session, 0, MetricId::Speed);
             assert!((measured / speed - 1.0).abs() < 0.02, "{speed}: {measured}");
             let (stride, cadence) =
-                (metric(&session, 0, "stride_m"), metric(&session, 0, "cadence_spm"));
+                (metric(&session, 0, MetricId::Stride), metric(&session, 0, MetricId::Cadence));
             assert!((stride * cadence / 120.0 / speed - 1.0).abs() < 0.02, "{stride} {cadence}");
             let CycleMade::Gait { facts, .. } = cycle(&session).made else { panic!() };
             assert!(!facts.limited && !facts.extrapolated, "{speed} {facts:?}");
         }
     }
     let (before, after) =
-        (metric(&session, 0, "foot_slide_before_cm"), metric(&session, 0, "foot_slide_cm"));
+        (metric(&session, 0, MetricId::FootSlideBefore), metric(&session, 0, MetricId::FootSlide));
     assert!(after < 0.5 * before && after < 1.0, "{before} {after}");
     set(&mut session, Key::Speed, 3.9);
     assert!(
@@ -90,7 +90,7 @@ fn speeds_stand_side_by_side() {
     let mut session = open("lab=speed&compare=speed:1.4,2.2,3.5");
     assert_eq!(session.panes().len(), 3);
     for (pane, speed) in [1.4, 2.2, 3.5].into_iter().enumerate() {
-        assert!((metric(&session, pane, "speed_mps") / speed - 1.0).abs() < 0.02);
+        assert!((metric(&session, pane, MetricId::Speed) / speed - 1.0).abs() < 0.02);
     }
     // The shorter ones go round until the longest is through.
     let duration = session.duration_secs();
@@ -156,7 +156,7 @@ fn a_speed_that_is_set_at_once_is_taken_on_little_by_little() {
         let (before, height, at) = shown(&session);
         set(&mut session, Key::Speed, to);
         // The numbers are those of the speed asked for, and on the stage nothing has moved.
-        assert!((metric(&session, 0, "speed_mps") / to - 1.0).abs() < 0.02);
+        assert!((metric(&session, 0, MetricId::Speed) / to - 1.0).abs() < 0.02);
         let (after, height_after, at_after) = shown(&session);
         assert!(
             turned(&before, &after) < 0.5
@@ -290,19 +290,20 @@ fn the_frames_of_every_cycle_are_those_of_the_first() {
 #[test]
 fn the_classic_ways_to_close_a_loop_leave_what_the_exact_one_does_not() {
     let session = open("lab=loop&compare=loop_method:exact,end,both");
-    let [exact, end, both] = [0, 1, 2].map(|pane| metric(&session, pane, "loop_seam_deg"));
+    let [exact, end, both] = [0, 1, 2].map(|pane| metric(&session, pane, MetricId::LoopSeam));
     assert!(exact < 1e-2 && end > 10.0 * exact && both > 10.0 * exact, "{exact} {end} {both}");
-    let before = metric(&session, 0, "loop_before_deg");
+    let before = metric(&session, 0, MetricId::BareSeam);
     assert!(
-        (0..3).all(|pane| metric(&session, pane, "loop_before_deg") == before)
+        (0..3).all(|pane| metric(&session, pane, MetricId::BareSeam) == before)
             && before > end.max(both)
     );
-    assert!(metric(&session, 0, "loop_seam_dps") < 1.0);
+    assert!(metric(&session, 0, MetricId::LoopVelocitySeam) < 1.0);
     let place = |pane: usize| session.panes()[pane].outcome.as_ref().unwrap().cycle.unwrap().made;
     assert_eq!(place(0), place(2));
-    let (secs, frames) = (metric(&session, 0, "cycle_s"), metric(&session, 0, "cycle_frames"));
+    let (secs, frames) =
+        (metric(&session, 0, MetricId::CycleTime), metric(&session, 0, MetricId::CycleFrames));
     assert!((secs * session.main_outcome().unwrap().motion.clip().fps() - frames).abs() < 1e-9);
-    assert!((metric(&session, 0, "cycle_m") / secs / 1.4 - 1.0).abs() < 0.05);
+    assert!((metric(&session, 0, MetricId::CycleLength) / secs / 1.4 - 1.0).abs() < 0.05);
     // A half-life belongs to loops, too.
     assert_eq!(open("lab=loop&compare=half_life:0.1,0.4").panes().len(), 2);
 }

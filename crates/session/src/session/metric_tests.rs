@@ -1,12 +1,15 @@
 //! The numbers that every lab has.
 
+use crate::NumberTable;
 use crate::fixtures::*;
 use crate::labs::sliced::Sliced as _;
 use crate::labs::{Gauge, Measured};
-use crate::params::Kind;
-use glam::Quat;
+use crate::metrics::{Better, METRICS, Metric, of_result};
+use crate::params::{Kind, List};
+use glam::{DVec2, Quat};
 use segue_motion::clip::Clip;
-use segue_motion::metrics::{Better, Metric, ResultMetrics};
+use segue_motion::metrics::ResultMetrics;
+use segue_motion::path::{PathEdit, Pins};
 use std::collections::BTreeSet;
 use std::f32::consts::PI;
 
@@ -28,6 +31,10 @@ const LABS: [&str; 14] = [
     "lab=in_place&root_way=put_back",
 ];
 
+/// The names of the metrics that results of every lab have.
+const METRICS_OF_ALL: [&str; 4] =
+    ["pose_jump_deg", "velocity_jump_dps", "spin_deg", "skating_cmps"];
+
 fn opened(link: &str) -> Session {
     let mut session = Session::new();
     session.apply(Command::OpenLink(link.into())).unwrap();
@@ -47,16 +54,10 @@ fn every_lab_has_the_same_numbers_first_and_a_clean_result_shows_nothing() {
         LABS.iter().map(|link| link[4..].split('&').next().unwrap()).collect();
     let Kind::Choice(all) = Key::Lab.param().kind else { panic!() };
     assert_eq!(labs, all.iter().map(|choice| choice.key).collect());
-    let expected = ResultMetrics::default().list();
-    assert_eq!(
-        expected.map(|metric| (metric.id, metric.label, metric.unit)),
-        [
-            ("pose_jump_deg", "Pose jump", "°"),
-            ("velocity_jump_dps", "Velocity jump", "°/s"),
-            ("spin_deg", "Spin", "°"),
-            ("skating_cmps", "Skating", "cm/s"),
-        ]
-    );
+    let expected = of_result(&ResultMetrics::default());
+    assert_eq!(expected.map(|metric| metric.id.name()), METRICS_OF_ALL);
+    assert!(expected.iter().all(|metric| metric.id.row().better == Better::Lower));
+    let mut seen = BTreeSet::new();
     for link in LABS {
         let mut session = opened(link);
         if session.is_driven() {
@@ -73,18 +74,36 @@ fn every_lab_has_the_same_numbers_first_and_a_clean_result_shows_nothing() {
         let found = common(&session);
         for (found, expected) in found.iter().zip(expected) {
             assert_eq!(Metric { value: None, ..*found }, expected, "{link}");
-            assert_eq!(found.better, Better::Lower);
         }
         let values: Vec<f64> = found.iter().map(|metric| metric.value.unwrap()).collect();
         let [jump, _, spin, skating] = values[..] else { panic!("{values:?}") };
         assert!(jump < 6.0 && spin < 4.0 && skating < 15.0, "{link}: {values:?}");
         // A slide has one name and one measure wherever it stands, and each number stands once.
         let metrics = &session.main_outcome().unwrap().metrics;
-        let ids: BTreeSet<&str> = metrics.iter().map(|metric| metric.id).collect();
+        let ids: BTreeSet<MetricId> = metrics.iter().map(|metric| metric.id).collect();
         assert_eq!(ids.len(), metrics.len(), "{link}");
-        let slides = metrics.iter().filter(|metric| metric.label == "Foot slide");
-        assert_eq!(slides.map(|metric| metric.id).collect::<Vec<_>>(), ["foot_slide_cm"], "{link}");
+        let slides = metrics.iter().filter(|metric| metric.id.row().label == "Foot slide");
+        assert_eq!(
+            slides.map(|metric| metric.id).collect::<Vec<_>>(),
+            [MetricId::FootSlide],
+            "{link}"
+        );
+        seen.extend(ids);
+        seen.extend(NumberTable::of(&session).rows.iter().map(|row| row.metric));
     }
+    let locked = opened("lab=make&foot_lock=on");
+    let mut edited = opened("lab=path&a=walk_left");
+    let spline = edited.main_outcome().unwrap().path().unwrap().fitted.road().spline().clone();
+    let step = PathEdit::Move { index: 1, to: spline.points()[1] + DVec2::X };
+    let path = List::EditedPath(spline.edited(&step, Pins::default()).ok());
+    edited.apply(Command::Set(vec![(Key::Path, path.into())])).unwrap();
+    settle(&mut edited);
+    for session in [locked, edited] {
+        seen.extend(session.main_outcome().unwrap().metrics.iter().map(|metric| metric.id));
+    }
+    let unused: Vec<&str> =
+        METRICS.iter().filter(|row| !seen.contains(&row.id)).map(|row| row.name).collect();
+    assert!(unused.is_empty(), "no lab has {unused:?}");
 }
 
 /// A result whose frames are something else.
@@ -160,7 +179,7 @@ fn long_results_are_shown_at_once_and_measured_in_slices() {
     session.apply(shorter).unwrap();
     let outcome = Arc::clone(session.main_outcome().unwrap());
     assert!(outcome.motion.clip().frames() > 2_000);
-    assert_eq!(outcome.metrics[0], ResultMetrics::default().list()[0]);
+    assert_eq!(outcome.metrics[0], of_result(&ResultMetrics::default())[0]);
     assert!(session.panes()[0].result().is_err() && session.jobs().is_empty());
     let mut slices = 0;
     while session.panes()[0].result().is_err() {

@@ -103,9 +103,7 @@ fn methods_are_compared_on_one_transition() {
     let places: Vec<_> = outcomes.iter().map(|outcome| outcome.transition.unwrap()).collect();
     assert!(places.windows(2).all(|pair| (pair[0].leave_a_secs, pair[0].enter_b_secs)
         == (pair[1].leave_a_secs, pair[1].enter_b_secs)));
-    let seam = |outcome: &Arc<Outcome>| {
-        outcome.metrics.iter().find(|metric| metric.id == "pose_jump_deg").unwrap().value.unwrap()
-    };
+    let seam = |outcome: &Arc<Outcome>| outcome.metric(MetricId::PoseJump).unwrap().value.unwrap();
     assert!(seam(&outcomes[3]) > 4.0 * seam(&outcomes[0]), "a cut jumps, inertialization does not");
     // What the slider changes shows at once, and the match stays.
     session.apply(Command::OpenLink("lab=transition".into())).unwrap();
@@ -143,9 +141,8 @@ fn opened(link: &str) -> Session {
     session
 }
 
-fn number_of(outcome: &Outcome, id: &str) -> f64 {
-    let metric = outcome.metrics.iter().find(|metric| metric.id == id);
-    metric.and_then(|metric| metric.value).unwrap_or(f64::NAN)
+fn number_of(outcome: &Outcome, id: MetricId) -> f64 {
+    outcome.metric(id).and_then(|metric| metric.value).unwrap_or(f64::NAN)
 }
 
 #[test]
@@ -158,7 +155,7 @@ fn right_and_wrong_stand_side_by_side() {
     // No mistake is the transition itself, bit for bit.
     assert_eq!(outcome(&right, 0).motion, outcome(&both, 0).motion);
     assert_eq!(outcome(&right, 0).metrics, outcome(&both, 0).metrics);
-    let seam = |pane| number_of(&outcome(&both, pane), "velocity_jump_dps");
+    let seam = |pane| number_of(&outcome(&both, pane), MetricId::VelocityJump);
     assert!(
         seam(1) > 10.0 * seam(0) && seam(2) > 3.0 * seam(0),
         "{} {} {}",
@@ -168,9 +165,9 @@ fn right_and_wrong_stand_side_by_side() {
     );
     let others = opened("lab=transition&compare=mistake:none,degrees,atan");
     let of = |pane, id| number_of(&outcome(&others, pane), id);
-    let jumps = [0, 1].map(|pane| of(pane, "velocity_jump_dps"));
+    let jumps = [0, 1].map(|pane| of(pane, MetricId::VelocityJump));
     assert!(jumps[1] > 10.0 * jumps[0], "{jumps:?}");
-    let spins = [0, 2].map(|pane| of(pane, "spin_deg"));
+    let spins = [0, 2].map(|pane| of(pane, MetricId::Spin));
     assert!(spins[0] < 5.0 && spins[1] > 60.0, "{spins:?}");
     // The other labs know nothing of mistakes.
     let [plain, spoiled] =

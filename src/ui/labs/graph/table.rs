@@ -25,7 +25,8 @@ pub(crate) fn table_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         }
         ui.end_row();
         for row in &table.rows {
-            ui.label(small(&row.heading(), palette.muted, ui)).on_hover_text(tr(row.help, ui));
+            ui.label(small(&row.heading(), palette.muted, ui))
+                .on_hover_text(tr(row.metric.row().help, ui));
             let [best, worst] = row.ends();
             for value in &row.values {
                 let color = match value {

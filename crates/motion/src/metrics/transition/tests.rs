@@ -331,17 +331,10 @@ fn metrics_of_unusual_subjects_are_finite() {
             for enter in [0, 19, 20, usize::MAX] {
                 for (a, b) in [(&a, &a), (&empty, &a), (&a, &empty)] {
                     let metrics = measure(&result, transition.clone(), enter, a, b);
-                    assert!(
-                        metrics
-                            .list()
-                            .iter()
-                            .all(|m| m.value.is_none_or(|v| v.is_finite() && v >= 0.0))
-                    );
+                    let numbers = [metrics.jump_cm, metrics.penetration_cm, metrics.lag_s];
+                    assert!(numbers.into_iter().flatten().all(|v| v.is_finite() && v >= 0.0));
                 }
             }
         }
     }
-    let ids: std::collections::BTreeSet<_> =
-        TransitionMetrics::default().list().map(|m| m.id).into();
-    assert_eq!(ids.len(), 3);
 }

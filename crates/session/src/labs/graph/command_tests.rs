@@ -32,10 +32,9 @@ fn walk_of(session: &Session, pane: usize) -> &Arc<Walk> {
     pane.outcome.as_ref().unwrap().walk().unwrap()
 }
 
-fn number(session: &Session, pane: usize, id: &str) -> f64 {
+fn number(session: &Session, pane: usize, id: MetricId) -> f64 {
     let outcome = session.panes()[pane].outcome.as_ref().unwrap();
-    let metric = outcome.metrics.iter().find(|metric| metric.id == id);
-    metric.and_then(|metric| metric.value).unwrap_or(f64::NAN)
+    outcome.metric(id).and_then(|metric| metric.value).unwrap_or(f64::NAN)
 }
 
 /// Clips, in the order in which they play, with the frame at which each is entered.
@@ -61,9 +60,15 @@ fn a_walk_goes_through_the_built_in_clips_without_a_jump() {
     let walk = walk(&session);
     assert_eq!(walk.motion.clip().frames(), 3600);
     assert_eq!(walk.motion.ground_frames().len(), 3600);
-    assert_eq!((number(&session, 0, "spins"), number(&session, 0, "flashes")), (0.0, 0.0));
-    assert!(number(&session, 0, "seams_per_min") > 10.0 && number(&session, 0, "variety") > 30.0);
-    let slide = number(&session, 0, "foot_slide_cm");
+    assert_eq!(
+        (number(&session, 0, MetricId::Spins), number(&session, 0, MetricId::Flashes)),
+        (0.0, 0.0)
+    );
+    assert!(
+        number(&session, 0, MetricId::SeamsPerMinute) > 10.0
+            && number(&session, 0, MetricId::Variety) > 30.0
+    );
+    let slide = number(&session, 0, MetricId::FootSlide);
     assert!(slide < 15.0, "{slide}");
     assert!(walk.built.rings()[0] > 0.6, "one large component: {:?}", walk.built.rings());
     assert!(walk.run_secs.unwrap() > 0.5);
@@ -97,8 +102,9 @@ fn the_same_seed_is_the_same_walk_and_it_grows_while_it_plays() {
     assert_eq!(way(&first), way(walk(&opened(SMALL))));
     assert_ne!(way(&first), way(walk(&opened(&format!("{SMALL}&seed=8")))));
     assert!(!session.work() && session.jobs().is_empty());
-    let numbers: Vec<f64> =
-        ["spins", "lag_s", "variety"].map(|id| number(&session, 0, id)).to_vec();
+    let numbers: Vec<f64> = [MetricId::Spins, MetricId::Lag, MetricId::Variety]
+        .map(|id| number(&session, 0, id))
+        .to_vec();
     for _ in 0..20 * 30 {
         assert!(session.tick(1.0 / 20.0));
         while session.work() {}
@@ -113,7 +119,12 @@ fn the_same_seed_is_the_same_walk_and_it_grows_while_it_plays() {
     assert_eq!(way(now)[..way(&first).len() - 1], way(&first)[..way(&first).len() - 1]);
     let frames = first.motion.clip().frames();
     assert_eq!(now.motion.ground_frames()[..frames], first.motion.ground_frames()[..frames]);
-    assert_eq!(["spins", "lag_s", "variety"].map(|id| number(&session, 0, id)).to_vec(), numbers);
+    assert_eq!(
+        [MetricId::Spins, MetricId::Lag, MetricId::Variety]
+            .map(|id| number(&session, 0, id))
+            .to_vec(),
+        numbers
+    );
     // A link to a time beyond what is measured shows that time.
     let later = opened(&format!("{SMALL}&play=off&t=61"));
     assert!(later.now_secs() == 61.0 && walk(&later).motion.clip().duration_secs() > 80.0);
@@ -178,10 +189,14 @@ fn a_change_is_made_in_slices_from_what_is_known_and_can_be_given_up() {
 fn the_mistakes_spin_on_the_same_walk() {
     let session = opened(&format!("{SMALL}&compare=atan:atan2,atan"));
     assert_eq!(way(walk_of(&session, 0)), way(walk_of(&session, 1)));
-    assert!(number(&session, 0, "spins") == 0.0 && number(&session, 1, "spins") > 0.0);
+    assert!(
+        number(&session, 0, MetricId::Spins) == 0.0 && number(&session, 1, MetricId::Spins) > 0.0
+    );
     let session = opened(&format!("{SMALL}&compare=transform:whole,first"));
     assert_eq!(way(walk_of(&session, 0)), way(walk_of(&session, 1)));
-    assert!(number(&session, 0, "spins") == 0.0 && number(&session, 1, "spins") > 0.0);
+    assert!(
+        number(&session, 0, MetricId::Spins) == 0.0 && number(&session, 1, MetricId::Spins) > 0.0
+    );
     let both = opened(&format!("{SMALL}&atan=atan&transform=first"));
     assert!(both.panes()[0].problem.as_ref().unwrap().to_string().contains("Two mistakes at once"));
 }
@@ -215,7 +230,8 @@ fn other_segments_and_thresholds_have_walks_of_their_own() {
         let session = opened(&link);
         assert!(!walk_of(&session, 1).is_guided);
         assert_ne!(way(walk_of(&session, 0)), way(walk_of(&session, 1)), "{link}");
-        assert_ne!(number(&session, 0, "skate"), number(&session, 1, "skate"), "{link}");
+        let slides = [0, 1].map(|pane| number(&session, pane, MetricId::FootSlide));
+        assert_ne!(slides[0], slides[1], "{link}");
         // As if each stood alone.
         let alone = opened(
             &link
@@ -328,7 +344,7 @@ fn one_transition_plays_alone() {
         let off = stands.shift.distance(outcome.motion.standing_at(secs).shift);
         assert!(off < 0.25, "{off} m");
     }
-    assert!(number(&session, 0, "variety").is_nan());
+    assert!(number(&session, 0, MetricId::Variety).is_nan());
     let none = [0, 1].map(|clip| Place { clip, frame: 1 });
     set(&mut session, Key::Jump, List::Jump(Some(none)).into());
     let pane = &session.panes()[0];
@@ -464,16 +480,16 @@ fn a_walk_can_set_off_at_any_time() {
                 .find(|passed| passed.stay.clip == clip && passed.end > due)
                 .unwrap();
             assert!(there.start < due + 9 * 60, "{link}: {due} {there:?}");
-            assert_eq!(number(&session, 0, "spins"), 0.0, "{link}: {secs}");
+            assert_eq!(number(&session, 0, MetricId::Spins), 0.0, "{link}: {secs}");
             // What a transition does wherever one comes to it is none of the visit's.
-            let flashes = number(&session, 0, "flashes");
+            let flashes = number(&session, 0, MetricId::Flashes);
             let mut alone = 0.0;
             for seam in now.passed.iter().filter_map(|passed| passed.seam) {
                 let jump = List::Jump(Some([seam.leave, seam.enter]));
                 let text = jump.write();
                 if !known.contains_key(&text) {
                     set(&mut session, Key::Jump, jump.into());
-                    known.insert(text.clone(), number(&session, 0, "flashes"));
+                    known.insert(text.clone(), number(&session, 0, MetricId::Flashes));
                 }
                 alone += known[&text];
             }

@@ -1,18 +1,19 @@
 //! Construction of a walk in slices, ahead of the playhead.
 
 use super::plan::Plan;
-use super::walk::Trace;
+use super::walk::{Trace, of_walk};
 use super::wanted::WalkRequest;
 use super::{BuiltGraph, Walk, WalkStay};
 use crate::labs::LabError;
 use crate::labs::feet::{locking, slide, slide_before};
+use crate::metrics::{Metric, MetricId};
 use petgraph::graph::NodeIndex;
 use segue_motion::clip::{Clip, Contacts, Motion};
 use segue_motion::graph::{
     Assembling, Choices, FollowSearch, Followed, GraphError, GroundPath, Place, RunLength, Stay,
-    Stitcher, WalkMeter, WalkMetrics, WalkPiece,
+    Stitcher, WalkMeter, WalkPiece,
 };
-use segue_motion::metrics::{Metric, MotionTrace, SlideMeter, TraceMeter};
+use segue_motion::metrics::{MotionTrace, SlideMeter, TraceMeter};
 use segue_motion::skeleton::Side;
 use segue_motion::transition::FootLocking;
 use std::sync::Arc;
@@ -473,8 +474,7 @@ impl WalkBuilder {
     }
 
     fn measured(&self) -> Vec<Metric> {
-        let metrics: WalkMetrics = self.meter.metrics(self.built.cast.profile());
-        metrics.list().to_vec()
+        of_walk(&self.meter.metrics(self.built.cast.profile())).to_vec()
     }
 
     /// Returns the assembled frames as a motion.
@@ -564,7 +564,8 @@ impl WalkBuilder {
         };
         let mut walk = self.walk_of(motion);
         // These metrics do not apply to a single transition.
-        walk.metrics.retain(|metric| !matches!(metric.id, "seams_per_min" | "variety"));
+        walk.metrics
+            .retain(|metric| !matches!(metric.id, MetricId::SeamsPerMinute | MetricId::Variety));
         Ok(walk)
     }
 }

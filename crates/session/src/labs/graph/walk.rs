@@ -2,11 +2,12 @@
 
 use super::BuiltGraph;
 use crate::labs::outcome::Outcome;
+use crate::metrics::{Metric, MetricId};
 use glam::DVec2;
 use segue_motion::clip::Motion;
-use segue_motion::graph::{Choices, PieceSeam, Place, Stay, WalkPiece};
+use segue_motion::graph::{Choices, PieceSeam, Place, Stay, WalkMetrics, WalkPiece};
 use segue_motion::math::Planar;
-use segue_motion::metrics::{Metric, MotionTrace};
+use segue_motion::metrics::MotionTrace;
 use std::sync::Arc;
 
 /// A stay in one clip, in the walk's time.
@@ -185,6 +186,18 @@ impl Walk {
             ),
         ]
     }
+}
+
+/// Returns the metrics of a walk beyond those of every result, in the order in which they are
+/// listed.
+pub(super) fn of_walk(found: &WalkMetrics) -> [Metric; 5] {
+    [
+        Metric::new(MetricId::SeamsPerMinute, found.seams_per_minute()),
+        Metric::new(MetricId::Spins, found.spins() as f64),
+        Metric::new(MetricId::Flashes, found.flashes() as f64),
+        Metric::new(MetricId::Lag, found.median_lag_s()),
+        Metric::new(MetricId::Variety, found.variety * 100.0),
+    ]
 }
 
 impl Outcome {

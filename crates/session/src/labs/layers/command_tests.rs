@@ -11,9 +11,8 @@ fn opened(link: &str) -> Session {
     session
 }
 
-fn number_of(outcome: &Outcome, id: &str) -> f64 {
-    let metric = outcome.metrics.iter().find(|metric| metric.id == id);
-    metric.and_then(|metric| metric.value).unwrap_or(f64::NAN)
+fn number_of(outcome: &Outcome, id: MetricId) -> f64 {
+    outcome.metric(id).and_then(|metric| metric.value).unwrap_or(f64::NAN)
 }
 
 #[test]
@@ -29,12 +28,12 @@ fn the_layers_lab_opens_with_a_run_on_walking_legs() {
     assert_eq!(outcome.motion.contacts(), walk.contacts());
     let slide = foot_slide_cm(walk.clip(), walk.roles(), walk.contacts());
     assert_eq!(
-        (number_of(outcome, "foot_slide_cm"), number_of(outcome, "off_legs_deg")),
+        (number_of(outcome, MetricId::FootSlide), number_of(outcome, MetricId::LegsOffA)),
         (slide.unwrap(), 0.0)
     );
-    let jump = number_of(outcome, "velocity_jump_dps");
+    let jump = number_of(outcome, MetricId::VelocityJump);
     assert!(jump < 60.0, "{jump}");
-    assert!(number_of(outcome, "off_arms_deg") > 10.0);
+    assert!(number_of(outcome, MetricId::ArmsOffA) > 10.0);
     // B's track and A's have the length of A.
     assert!(
         outcome.sources.iter().all(|source| source.motion.clip().frames() == walk.clip().frames())
@@ -72,13 +71,16 @@ fn layers_are_live_and_say_how_their_time_goes() {
         let session = opened(link);
         let layer = session.main_outcome().unwrap().layer().cloned().unwrap();
         assert_eq!((layer.fit, layer.has_no_steps), (fit, has_no_steps), "{link}");
-        assert!(number_of(session.main_outcome().unwrap(), "velocity_jump_dps") < 400.0, "{link}");
+        assert!(
+            number_of(session.main_outcome().unwrap(), MetricId::VelocityJump) < 400.0,
+            "{link}"
+        );
     }
     let mut session = opened("lab=layers&compare=layer_weight:0,0.5,1");
     let arms: Vec<f64> = session
         .panes()
         .iter()
-        .map(|pane| number_of(pane.outcome.as_ref().unwrap(), "off_arms_deg"))
+        .map(|pane| number_of(pane.outcome.as_ref().unwrap(), MetricId::ArmsOffA))
         .collect();
     assert!(arms[0] == 0.0 && arms[1] > 0.3 * arms[2] && arms[1] < 0.7 * arms[2], "{arms:?}");
     // What did not change is not computed again, in any pane, whatever they differ in.
@@ -105,7 +107,7 @@ fn layers_are_live_and_say_how_their_time_goes() {
     let off = |reference: &str| {
         let session =
             opened(&format!("lab=layers&layer_mode=additive&layer_reference={reference}"));
-        number_of(session.main_outcome().unwrap(), "off_arms_deg")
+        number_of(session.main_outcome().unwrap(), MetricId::ArmsOffA)
     };
     assert!(
         off("mean") > 1.0 && off("mean") < 0.5 * off("rest"),

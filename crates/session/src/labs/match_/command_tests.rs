@@ -44,7 +44,7 @@ fn a_scenario_by_link_is_what_the_core_makes_of_it() {
     // The trajectory times of the sliders are hundredths of a second, and come to the same frames.
     assert_eq!(outcome.motion.clip().root_translations(), played.clip.root_translations());
     assert_eq!(outcome.motion.clip().rotations(200), played.clip.rotations(200));
-    let metrics = played.metrics(&database).list();
+    let metrics = super::trace::of_drive(&played.metrics(&database));
     // Behind those that every lab has.
     assert_eq!(outcome.metrics[4..][..metrics.len()], metrics);
     assert!(

@@ -3,9 +3,10 @@
 use super::trace::Tracer;
 use crate::labs::LabError;
 use crate::labs::{Gauge, Outcome};
+use crate::metrics::{Metric, MetricId};
 use segue_motion::matching::{Control, Controller, ControllerOptions, Database, RATE};
 use segue_motion::math::Planar;
-use segue_motion::metrics::{Metric, ResultMetrics};
+use segue_motion::metrics::ResultMetrics;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
@@ -97,9 +98,10 @@ impl Live {
             self.found = gauge.numbers_now(&outcome);
             self.metrics = self.tracer.metrics(&outcome.motion);
             // Most turns in the history have no beginning or no end.
-            self.metrics.retain(|metric| metric.id != "match_turn");
+            self.metrics.retain(|metric| metric.id != MetricId::TurnTime);
             let over_secs = ticks.min(COUNTED) as f64 / RATE as f64;
-            for metric in self.metrics.iter_mut().filter(|metric| metric.id == "match_seams") {
+            let jumps = |metric: &&mut Metric| metric.id == MetricId::JumpsPerMinute;
+            for metric in self.metrics.iter_mut().filter(jumps) {
                 metric.value =
                     (over_secs > 1.0).then(|| self.jumps.len() as f64 * 60.0 / over_secs);
             }

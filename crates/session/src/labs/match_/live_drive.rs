@@ -8,9 +8,9 @@ use crate::labs::answer::Answer;
 use crate::labs::error::LabError;
 use crate::labs::gauge::Gauge;
 use crate::labs::outcome::Outcome;
+use crate::metrics::{Metric, MetricId};
 use crate::params::Params;
 use segue_motion::matching::{Control, ControllerOptions, Database, RATE, Recording, TagFilter};
-use segue_motion::metrics::Metric;
 use segue_motion::skeleton::Pose;
 use std::sync::Arc;
 
@@ -142,13 +142,7 @@ impl LiveDrive {
         let outcome = |live: &mut Option<Live>| {
             // Where the outcome fails, the pane stays as it was until the next tick.
             let mut outcome = live.as_mut()?.outcome(gauge).ok()?;
-            outcome.metrics.push(Metric::fact(
-                "match_tick_ms",
-                "time per tick",
-                tick_ms,
-                "ms",
-                "How long a sixtieth of a second of all characters takes to compute, searches included.",
-            ));
+            outcome.metrics.push(Metric::new(MetricId::TickTime, tick_ms));
             Some(outcome)
         };
         self.lives.iter_mut().map(outcome).collect()

@@ -2,12 +2,13 @@
 
 use crate::labs::LabError;
 use crate::labs::{LabFacts, Outcome};
+use crate::metrics::{Metric, MetricId};
 use segue_motion::clip::{Clip, Contacts, Motion};
 use segue_motion::matching::{
-    Control, Controller, Database, Drive, Jump, Place, RATE, SearchRecord, Simulation, Steering,
+    Control, Controller, Database, Drive, DriveMetrics, Jump, Place, RATE, SearchRecord,
+    Simulation, Steering,
 };
 use segue_motion::math::Planar;
-use segue_motion::metrics::Metric;
 use segue_motion::skeleton::Pose;
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -207,21 +208,27 @@ impl Tracer {
             searches,
             visited,
         };
-        let mut metrics = drive.metrics(database).list();
+        let mut metrics = of_drive(&drive.metrics(database)).to_vec();
         // A turn that was never made has no duration.
         for metric in &mut metrics {
             metric.value = metric.value.filter(|value| value.is_finite());
         }
         let mean = visited as f64 / searches.max(1) as f64;
-        metrics.push(Metric::fact(
-            "match_visited",
-            "frames visited",
-            (searches > 0).then_some(mean),
-            "frames",
-            "How many frames a search looked at, on average.",
-        ));
+        metrics.push(Metric::new(MetricId::FramesVisited, (searches > 0).then_some(mean)));
         metrics
     }
+}
+
+/// Returns the metrics of a drive beyond those of every result, in the order in which they are
+/// listed.
+pub(super) fn of_drive(found: &DriveMetrics) -> [Metric; 5] {
+    [
+        Metric::new(MetricId::PositionError, found.error_cm),
+        Metric::new(MetricId::LargestPositionError, found.worst_error_cm),
+        Metric::new(MetricId::TurnTime, found.turn_secs),
+        Metric::new(MetricId::FootSlide, found.worst_skate_cm),
+        Metric::new(MetricId::JumpsPerMinute, found.seams_per_minute),
+    ]
 }
 
 impl Outcome {

@@ -19,9 +19,9 @@ fn path(session: &Session) -> &OnPath {
     session.main_outcome().unwrap().path().map(|fact| &**fact).unwrap()
 }
 
-fn metric(session: &Session, id: &str) -> f64 {
+fn metric(session: &Session, id: MetricId) -> f64 {
     let outcome = session.main_outcome().unwrap();
-    outcome.metrics.iter().find(|metric| metric.id == id).unwrap().value.unwrap()
+    outcome.metric(id).unwrap().value.unwrap()
 }
 
 /// The present path with one point elsewhere.
@@ -56,7 +56,8 @@ fn a_path_that_nobody_edited_gives_the_clip_back() {
             assert!(stands < 1e-4, "{keep}, frame {frame}: {stands} m");
         }
         assert!(
-            (metric(&session, "foot_slide_cm") - metric(&session, "foot_slide_original_cm")).abs()
+            (metric(&session, MetricId::FootSlide) - metric(&session, MetricId::FootSlideOriginal))
+                .abs()
                 < 0.05
         );
     }
@@ -137,7 +138,7 @@ fn what_is_no_path_says_so_and_loses_nothing() {
     let closed = eight.edited(&PathEdit::Close, Pins::default()).unwrap();
     set(&mut session, Key::Path, List::EditedPath(Some(closed)).into());
     assert!(path(&session).road.spline().is_closed());
-    assert!(metric(&session, "path_m") > 5.0);
+    assert!(metric(&session, MetricId::PathLength) > 5.0);
 }
 
 #[test]
@@ -158,7 +159,7 @@ fn a_hairpin_is_told_in_place_and_time() {
     let value = moved(&session, 4, DVec2::new(0.2, -2.5));
     set(&mut session, Key::Path, value);
     assert!(!path(&session).hard_turns.is_empty());
-    assert!(metric(&session, "hard_turns") >= 1.0);
+    assert!(metric(&session, MetricId::HardTurns) >= 1.0);
     assert!(path(&session).hard_turns[0].turn_dps > path(&session).hard_turns[0].limit_dps);
 }
 
@@ -271,14 +272,14 @@ fn the_feet_of_a_long_walk_are_planted_when_the_hand_rests() {
     let value = moved(&session, 3, DVec2::new(0.8, 0.0));
     set(&mut session, Key::Path, value);
     assert!(path(&session).awaits_feet, "at once, without");
-    let free = metric(&session, "foot_slide_cm");
+    let free = metric(&session, MetricId::FootSlide);
     while session.work() {}
     assert!(!path(&session).awaits_feet);
-    assert!((metric(&session, "foot_slide_before_cm") - free).abs() < 1e-9);
+    assert!((metric(&session, MetricId::FootSlideBefore) - free).abs() < 1e-9);
     assert!(
-        metric(&session, "foot_slide_cm") < 0.5 * free,
+        metric(&session, MetricId::FootSlide) < 0.5 * free,
         "{} of {free}",
-        metric(&session, "foot_slide_cm")
+        metric(&session, MetricId::FootSlide)
     );
     assert!(session.jobs().is_empty());
     // The same as done at once.

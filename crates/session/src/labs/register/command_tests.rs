@@ -15,9 +15,8 @@ fn opened(link: &str) -> Session {
     session
 }
 
-fn number_of(outcome: &Outcome, id: &str) -> f64 {
-    let metric = outcome.metrics.iter().find(|metric| metric.id == id);
-    metric.and_then(|metric| metric.value).unwrap_or(f64::NAN)
+fn number_of(outcome: &Outcome, id: MetricId) -> f64 {
+    outcome.metric(id).and_then(|metric| metric.value).unwrap_or(f64::NAN)
 }
 
 fn registered(session: &Session) -> &Registered {
@@ -43,9 +42,10 @@ fn a_walk_is_registered_to_a_run_at_once() {
     let session = opened("lab=register");
     assert_eq!(session.panes()[0].problem, None);
     let plain = opened("lab=register&warp_with=plain");
-    let skate = |session: &Session| number_of(session.main_outcome().unwrap(), "foot_slide_cm");
+    let skate = |session: &Session| number_of(session.main_outcome().unwrap(), MetricId::FootSlide);
     assert!(skate(&session) < 0.5 * skate(&plain), "{} {}", skate(&session), skate(&plain));
-    let cm = |session: &Session| number_of(session.main_outcome().unwrap(), "apart_cm");
+    let cm =
+        |session: &Session| number_of(session.main_outcome().unwrap(), MetricId::FrameDistance);
     assert!(cm(&session) < 0.7 * cm(&plain), "{} {}", cm(&session), cm(&plain));
     // Every step of the result is one of A and one of B. Without the warp they come apart.
     let worst = |session: &Session| {
@@ -99,7 +99,7 @@ fn a_join_is_a_then_b_with_less_sliding_than_a_dissolve() {
     let session = opened("lab=register&warp_mode=join&compare=warp_with:registered,plain");
     let outcomes: Vec<_> =
         session.panes().iter().map(|pane| pane.outcome.clone().unwrap()).collect();
-    let skate = |pane: usize| number_of(&outcomes[pane], "foot_slide_cm");
+    let skate = |pane: usize| number_of(&outcomes[pane], MetricId::FootSlide);
     assert!(skate(0) < 0.5 * skate(1), "{} {}", skate(0), skate(1));
     for outcome in &outcomes {
         let (registered, transition) = (outcome.registered().unwrap(), outcome.transition.unwrap());
