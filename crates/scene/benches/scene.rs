@@ -1,5 +1,5 @@
-//! A frame of the screen with a hundred characters: everything on the processor up to what the
-//! graphics card is told.
+//! The time of a frame with up to a hundred characters on the processor: everything up to the draw
+//! list.
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use segue_motion::skeleton::Roles;

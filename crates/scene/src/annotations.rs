@@ -7,13 +7,13 @@ use segue_motion::clip::Motion;
 use segue_motion::skeleton::{Role, Side, WorldPose};
 use segue_session::{Key, joint_of};
 
-/// A planted foot that moves faster than this slides.
+/// Speed over the ground above which a planted foot is shown as sliding, metres per second.
 const SLIDE_MPS: f32 = 0.08;
-/// Radius of the ring around the chosen joint, as a share of the distance that it is seen from: it
-/// is of one size wherever the camera stands.
+/// Radius of the ring around the chosen joint, as a share of its distance from the camera: its size
+/// on the screen is constant.
 const MARK_RADIUS: f32 = 0.011;
 
-/// Marks the chosen joint of a result. The pane has its camera by now.
+/// Marks the chosen joint of a result. Called after the pane has its camera.
 pub(crate) fn add_joint_mark(shown: &Shown<'_>, context: &mut DrawContext<'_>, pane: &mut Pane) {
     let motion = &shown.outcome.motion;
     let Some(joint) = joint_of(motion, context.params.text(Key::Joint)) else {
@@ -25,7 +25,7 @@ pub(crate) fn add_joint_mark(shown: &Shown<'_>, context: &mut DrawContext<'_>, p
     }
 }
 
-/// Adds the way of a joint of the figure, a second before and behind the present.
+/// Adds the trajectory of a joint of the figure around the present.
 pub(crate) fn add_joint_trail(
     shown: &Shown<'_>,
     body: &Body,
@@ -33,7 +33,7 @@ pub(crate) fn add_joint_trail(
     color: Color,
     pane: &mut Pane,
 ) {
-    /// How much of the way is shown, before and after the present.
+    /// Time before and after the present that is shown, seconds.
     const REACH_SECS: f64 = 1.0;
     const STEPS: i32 = 60;
     let motion = &shown.outcome.motion;
@@ -49,8 +49,8 @@ pub(crate) fn add_joint_trail(
     pane.add_path(points, 1.75, Layer::Space);
 }
 
-/// Adds a dot in a ring over everything, turned to the camera, both with an edge that sets them off
-/// from the body.
+/// Adds a dot in a ring on top of everything, facing the camera. Both have an outline that
+/// separates them from the body.
 fn add_mark(at: Vec3, color: Color, edge: Color, pane: &mut Pane) {
     const CORNERS: u16 = 28;
     let [right, up, _] = pane.camera.axes();
@@ -64,7 +64,7 @@ fn add_mark(at: Vec3, color: Color, edge: Color, pane: &mut Pane) {
         at + (right * angle.cos() + up * angle.sin()) * radius
     };
     for (color, wider) in [(edge, 1.5), (color, 0.0)] {
-        // The dot is a line so short that only its round ends are seen.
+        // The dot is a line so short that only its round ends are visible.
         pane.add_line(at, at + right * (radius * 1e-3), color, 4.5 + wider, Layer::Over);
         pane.add_path((0..=CORNERS).map(|index| (corner(index), color)), 2.0 + wider, Layer::Over);
     }
@@ -107,7 +107,7 @@ pub(crate) fn add_axes(world: &WorldPose, colors: &Colors, pane: &mut Pane) {
     }
 }
 
-/// Adds a ring under each planted foot of the figure, red where it slides.
+/// Adds a ring under each planted foot of the figure, in the colour of an error where it slides.
 pub(crate) fn add_contacts(shown: &Shown<'_>, body: &Body, colors: &Colors, pane: &mut Pane) {
     let (motion, now) = (&shown.outcome.motion, shown.now);
     let frame = segue_session::frame_at(motion, now);

@@ -25,11 +25,11 @@ fn set_balls_apart(shapes: &mut [Shape]) {
     }
 }
 
-/// The shapes of one skeleton's body, made once and posed every frame.
+/// The shapes of one skeleton's body, generated once and posed every frame.
 ///
 /// With the roles of a human it becomes a mannequin of human proportions (segment lengths are the
 /// skeleton's own; girths follow the body height). Any other tree gets one tapered limb per bone,
-/// each as thick as what hangs on it asks for.
+/// whose girth grows with the length of all bones below it.
 #[derive(Clone, Debug, Default)]
 pub struct Body {
     shapes: Vec<Shape>,
@@ -38,29 +38,30 @@ pub struct Body {
     size: Option<f32>,
 }
 
-/// How poses of another skeleton move a body.
+/// The mapping by which poses of another skeleton move a body.
 #[derive(Clone, Debug)]
 struct Retargeting {
     drive: Drive,
-    /// The skeleton of the body itself, and what its joints are for.
+    /// The body's own skeleton and the roles of its joints.
     skeleton: Arc<Skeleton>,
     roles: Roles,
-    /// The joint that each joint of the other skeleton drives, else the one that its parent does.
+    /// For each joint of the other skeleton, the joint of the body that it drives; where it drives
+    /// none, the one that its parent drives.
     joints_of: Vec<usize>,
-    /// For each of its joints the joint of the other skeleton that gives it its colour.
+    /// For each joint of the body, the joint of the other skeleton that gives it its colour.
     colors_of: Vec<usize>,
 }
 
 impl Body {
-    /// Makes the body of a skeleton of which nothing is known but its rest pose. `roles` may be
-    /// missing or belong to another skeleton: the body is then plainer.
+    /// Makes the body of a skeleton from its rest pose alone. Without `roles`, or with those of
+    /// another skeleton, the body consists of one limb per bone.
     #[must_use]
     pub fn new(skeleton: &Skeleton, roles: Option<&Roles>) -> Self {
         Self::standing(skeleton, roles, &skeleton.rest_pose())
     }
 
-    /// Makes the body of a skeleton on its [`canonical_stance`]; `reference` shows how the bones
-    /// lie to each other ([`segue_motion::clip::reference_pose`]).
+    /// Makes the body of a skeleton on its [`canonical_stance`]. `reference` is a pose that shows
+    /// the directions of the bones ([`segue_motion::clip::reference_pose`]).
     #[must_use]
     pub fn standing(skeleton: &Skeleton, roles: Option<&Roles>, reference: &WorldPose) -> Self {
         let stance = roles.map_or_else(
@@ -72,14 +73,14 @@ impl Body {
         let mut shapes = limb_shapes(skeleton, &rest, roles);
         shapes.retain(|shape| !shape.soft);
         set_balls_apart(&mut shapes);
-        // The renderer lets only the first few of a body shade the others: the big ones come first.
+        // The renderer computes the shade of the first few limbs only, so the largest come first.
         shapes.sort_by(|x, y| y.weight(&rest).total_cmp(&x.weight(&rest)));
         let shapes = shapes.into_iter().map(|shape| shape.in_axes_of(&stance)).collect();
         Self { shapes, skin: None, retargeting: None, size: None }
     }
 
-    /// Makes the body of a character that poses of another skeleton, `source` with those roles,
-    /// move through `drive`.
+    /// Makes the body of a character that poses of the skeleton `source` with the roles
+    /// `roles` move through `drive`.
     #[must_use]
     pub fn retargeted(
         character: &Character,
@@ -115,8 +116,8 @@ impl Body {
         }
     }
 
-    /// Writes the pose of the body's own skeleton for a pose of the one that moves it to `out`, and
-    /// returns it; `None` where both are the same.
+    /// Returns the pose of the body's own skeleton for a pose of the skeleton that moves it, stored
+    /// in `out`; `None` where both are the same skeleton.
     pub(crate) fn retargeted_pose<'a>(
         &self,
         pose: &WorldPose,
@@ -135,21 +136,21 @@ impl Body {
         Cow::Borrowed(pose)
     }
 
-    /// Returns the body as one that is by itself `size` times as large as it is drawn.
+    /// Returns the body with another [`size`](Self::size).
     #[must_use]
     pub fn of_size(mut self, size: f32) -> Self {
         self.size = Some(size);
         self
     }
 
-    /// Returns how many times as large as it is drawn the body is by itself.
+    /// Returns the ratio of the body's own size to the size in which it is drawn.
     #[must_use]
     pub fn size(&self) -> f32 {
         self.size.unwrap_or(1.0)
     }
 
-    /// Returns the skeleton of the drawn figure, and the roles of its joints: its own where another
-    /// skeleton moves the body.
+    /// Returns the skeleton of the drawn figure and the roles of its joints: the body's own where
+    /// another skeleton moves it.
     pub(crate) fn drawn_rig<'a>(
         &'a self,
         moving: (&'a Skeleton, &'a Roles),
@@ -157,20 +158,20 @@ impl Body {
         self.retargeting.as_ref().map_or(moving, |own| (&own.skeleton, &own.roles))
     }
 
-    /// Returns the joint of the drawn figure for one of the skeleton that moves the body.
+    /// Returns the joint of the drawn figure for a joint of the skeleton that moves the body.
     pub(crate) fn drawn_joint(&self, joint: usize) -> usize {
         let own = self.retargeting.as_ref().and_then(|own| own.joints_of.get(joint));
         own.copied().unwrap_or(joint)
     }
 
-    /// Returns the joint of the skeleton that moves the body which gives one of the body's own
-    /// joints its colour.
+    /// Returns the joint of the skeleton that moves the body from which a joint of the body takes
+    /// its colour.
     pub(crate) fn color_joint(&self, joint: usize) -> usize {
         let moving = self.retargeting.as_ref().and_then(|own| own.colors_of.get(joint));
         moving.copied().unwrap_or(joint)
     }
 
-    /// Returns the body with girths `girth` times as wide.
+    /// Returns the body with all girths multiplied by `girth`.
     #[must_use]
     pub fn with_girth(mut self, girth: f32) -> Self {
         for shape in &mut self.shapes {
@@ -180,26 +181,26 @@ impl Body {
         self
     }
 
-    /// Returns the body with a skin, which is seen in place of the limbs; those still shade the
-    /// ground. The mesh must be one of the same skeleton.
+    /// Returns the body with a skin, which is drawn in place of the limbs; the limbs still shade
+    /// the ground. The mesh must be bound to the same skeleton.
     #[must_use]
     pub fn with_skin(self, mesh: Arc<SkinnedMesh>) -> Self {
         Self { skin: Some(mesh), ..self }
     }
 
-    /// Returns the mesh over the limbs.
+    /// Returns the mesh that is drawn in place of the limbs.
     #[must_use]
     pub fn skin(&self) -> Option<&Arc<SkinnedMesh>> {
         self.skin.as_ref()
     }
 
-    /// Returns the number of limbs that [`Body::limbs`] adds at most.
+    /// Returns the greatest number of limbs that [`Body::limbs`] adds.
     #[must_use]
     pub fn limb_count(&self) -> usize {
         self.shapes.len()
     }
 
-    /// Appends the limbs of the body in a pose. Joints that the pose does not have are left out.
+    /// Appends the limbs of the body in a pose. Limbs whose joints the pose lacks are left out.
     pub fn limbs(&self, pose: &WorldPose, color: Color, out: &mut Vec<Limb>) {
         self.colored_limbs(pose, |_| color, out);
     }

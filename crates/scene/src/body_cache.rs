@@ -1,5 +1,5 @@
-//! The bodies of skeletons: made when first seen, kept as long as the skeleton is. A skin takes a
-//! while to build: until it is there, the body consists of limbs.
+//! The bodies of skeletons: generated on first use, and dropped with their skeleton. A skin takes a
+//! while to build; until then the body consists of limbs.
 
 use crate::Body;
 use segue_motion::clip::Motion;
@@ -10,20 +10,20 @@ use segue_session::choices;
 use segue_session::{Key, Params, Session};
 use std::sync::{Arc, Weak};
 
-/// Skins that are kept, at most, whether they are shown or not.
+/// The greatest number of skins that are kept, shown or not.
 const MAX_SKINS: usize = 16;
 
-/// Smallest and largest size of a character in relation to its motion: beyond them nothing could be
-/// seen.
+/// The smallest and largest size of a character relative to its motion; outside of this range
+/// nothing would be visible.
 const SIZES: (f32, f32) = (0.02, 50.0);
 
-/// The bodies in the present style.
+/// The bodies in the current style.
 #[derive(Debug, Default)]
 pub(crate) struct BodyCache {
     style: BodyStyle,
     character: Option<Character>,
-    /// The character in the sizes that it is drawn in, each with how many times as large it is
-    /// itself.
+    /// The character in every size in which it is drawn, with the ratio of its own size to that
+    /// size.
     sizes: Vec<(f32, Character)>,
     bodies: Vec<(Weak<Skeleton>, Roles, Arc<Body>)>,
     /// One for all skeletons that are equal, so that they are drawn together; the oldest first.
@@ -36,18 +36,18 @@ struct CachedSkin {
     skeleton: Arc<Skeleton>,
     roles: Roles,
     state: SkinState,
-    /// The skin with the present girth.
+    /// The skin with the current girth.
     mesh: Option<Arc<SkinnedMesh>>,
 }
 
-/// How far the building of a skin is.
+/// The progress of building a skin.
 #[derive(Debug)]
 enum SkinState {
     Building(Box<SkinBuilder>),
     Built(Box<ProceduralSkin>),
 }
 
-/// How bodies look that are made around bones.
+/// The style of bodies that are generated around bones.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct BodyStyle {
     /// Whether they have a skin.
@@ -61,13 +61,13 @@ fn shows_skin(params: &Params) -> bool {
     params.choice::<choices::Look>() != choices::Look::Limbs
 }
 
-/// Returns the character that is shown in place of bodies made around bones.
+/// Returns the character that is shown in place of generated bodies.
 pub(crate) fn shown_character(session: &Session) -> Option<Character> {
     session.character().filter(|_| shows_skin(session.params()))
 }
 
-/// Returns how many times as large as the motion a character is by itself; `None` where the motion
-/// cannot move it.
+/// Returns the ratio of a character's own size to that of a motion; `None` where the motion cannot
+/// move it.
 pub(crate) fn size_beside(character: &Character, motion: &Motion) -> Option<f32> {
     let size = character.size_beside(motion.clip().skeleton(), motion.roles())?;
     Some(size.clamp(SIZES.0, SIZES.1))
@@ -99,7 +99,7 @@ impl BodyCache {
         self.bodies.retain(|(skeleton, ..)| skeleton.strong_count() > 0);
     }
 
-    /// Returns the body of a motion's skeleton, and makes it where it is new.
+    /// Returns the body of a motion's skeleton; generates it on first use.
     pub(crate) fn body(&mut self, motion: &Motion) -> Arc<Body> {
         let skeleton = motion.clip().skeleton();
         let known = |(known, roles, _): &&(Weak<Skeleton>, Roles, Arc<Body>)| {
@@ -114,9 +114,9 @@ impl BodyCache {
         body
     }
 
-    /// Makes a body of the character, where there is one that the motion can move. It is drawn in
-    /// the size of the motion, so that it stands where all else of the motion is drawn; the world
-    /// is shown smaller by as much.
+    /// Makes a body of the character, if there is one and the motion can move it. The body is
+    /// scaled to the size of the motion, so that it coincides with everything else that is drawn of
+    /// the motion; the world is shown smaller by the same factor.
     fn retargeted_character(&mut self, motion: &Motion) -> Option<Body> {
         let skeleton = motion.clip().skeleton();
         let character = self.character.as_ref()?;
@@ -131,7 +131,7 @@ impl BodyCache {
         Some(Body::retargeted(&sized, drive, skeleton, motion.roles()).of_size(size))
     }
 
-    /// Makes a body around the bones.
+    /// Generates a body around the bones.
     fn procedural_body(&mut self, motion: &Motion) -> Body {
         let BodyStyle { skin, girth } = self.style;
         let skeleton = motion.clip().skeleton();
@@ -143,7 +143,7 @@ impl BodyCache {
         }
     }
 
-    /// Returns the skin of a skeleton; `None` while it is being built, which the first call begins.
+    /// Returns the skin of a skeleton; `None` while it is being built. The first call starts that.
     fn skin(
         &mut self,
         skeleton: &Arc<Skeleton>,
@@ -180,7 +180,7 @@ impl BodyCache {
         self.skins.iter().any(|skin| matches!(skin.state, SkinState::Building(_)))
     }
 
-    /// Advances the building of a skin by one step. Returns whether there was one to build.
+    /// Advances the building of a skin by one step. Returns `false` when there was none to build.
     pub(crate) fn work(&mut self) -> bool {
         let building = self.skins.iter_mut().find_map(|skin| match &mut skin.state {
             SkinState::Building(skin_builder) => Some((skin_builder.advance(), &mut skin.state)),
@@ -191,7 +191,7 @@ impl BodyCache {
         };
         if let Some(procedural_skin) = procedural_skin {
             *state = SkinState::Built(Box::new(procedural_skin));
-            // Bodies that had limbs in the meantime get the skin.
+            // Bodies that consisted of limbs so far are made again, with the skin.
             self.bodies.clear();
         }
         true
@@ -203,7 +203,7 @@ mod tests {
     use crate::{Director, StageOptions, Viewport};
     use segue_session::{Command, Key, Session, Value};
 
-    /// Returns half the width of the waist of the skin; none while the body consists of limbs.
+    /// Returns half the width of the skin's waist; `None` while the body consists of limbs.
     fn width(director: &mut Director, session: &Session) -> Option<f32> {
         let panes = [(0, Viewport::default())];
         let options = StageOptions { panes: &panes, ..StageOptions::default() };

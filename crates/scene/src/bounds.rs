@@ -1,4 +1,4 @@
-//! Boxes around what is to be seen.
+//! Axis-aligned bounding boxes.
 
 use glam::Vec3;
 use segue_motion::skeleton::WorldPose;
@@ -19,16 +19,16 @@ impl Default for Bounds {
 }
 
 impl Bounds {
-    /// Contains nothing.
+    /// The empty box.
     pub const EMPTY: Self = Self { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
 
-    /// Whether no point was included yet.
+    /// Returns whether no point has been included.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         !self.min.cmple(self.max).all()
     }
 
-    /// Grows to contain `point`. Points that are not finite are left out.
+    /// Extends the box to a point. A point that is not finite is ignored.
     pub fn include(&mut self, point: Vec3) {
         if point.is_finite() {
             self.min = self.min.min(point);
@@ -36,26 +36,26 @@ impl Bounds {
         }
     }
 
-    /// Grows to contain every joint of a pose.
+    /// Extends the box to every joint of a pose.
     pub fn include_pose(&mut self, pose: &WorldPose) {
         for &position in &pose.positions {
             self.include(position);
         }
     }
 
-    /// The box with `margin` metres added on every side.
+    /// Returns the box extended by `margin` metres on every side.
     #[must_use]
     pub fn grown(&self, margin: f32) -> Self {
         Self { min: self.min - margin, max: self.max + margin }
     }
 
-    /// The middle; the origin where the box is empty.
+    /// Returns the centre; the origin for an empty box.
     #[must_use]
     pub fn center(&self) -> Vec3 {
         if self.is_empty() { Vec3::ZERO } else { (self.min + self.max) * 0.5 }
     }
 
-    /// The eight corners.
+    /// Returns the eight corners.
     #[must_use]
     pub fn corners(&self) -> [Vec3; 8] {
         std::array::from_fn(|i| {
@@ -74,7 +74,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn grows_by_points_and_ignores_what_is_not_finite() {
+    fn bounds_of_points_contain_the_finite_ones() {
         let mut bounds = Bounds::default();
         assert!(bounds.is_empty());
         assert_eq!(bounds.center(), Vec3::ZERO);

@@ -5,28 +5,29 @@ use glam::camera::rh::{proj::directx, view::look_to_mat4};
 use glam::{Mat4, Vec2, Vec3};
 use std::f32::consts::{FRAC_PI_2, PI};
 
-/// How depth is drawn.
+/// The projection of a camera.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Lens {
-    /// Farther is smaller.
+    /// Distant objects appear smaller.
     #[default]
     Perspective,
-    /// Sizes do not depend on depth: distances on the ground can be read off the picture.
+    /// Apparent size does not depend on depth, so that distances on the ground can be measured in
+    /// the picture.
     Orthographic,
 }
 
 /// A half-line in the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Where it starts, metres.
+    /// Its origin, metres.
     pub origin: Vec3,
-    /// Where it goes, unit length.
+    /// Its direction, unit length.
     pub direction: Vec3,
 }
 
 impl Ray {
-    /// Where the ray meets the ground plane `y = 0`; `None` where it runs level, away from it, or
-    /// meets it farther than 10 km off.
+    /// Returns the intersection of the ray with the ground plane `y = 0`; `None` for a ray that is
+    /// level, points away from the ground, or meets it more than 10 km away.
     #[must_use]
     pub fn ground_hit(&self) -> Option<Vec3> {
         let t = -self.origin.y / self.direction.y;
@@ -35,25 +36,25 @@ impl Ray {
     }
 }
 
-/// An orbit camera: it looks at a point from a direction and a distance.
+/// An orbit camera, described by its target, direction and distance.
 ///
-/// At yaw 0 it stands on the +Z side of its target, so that it sees the face of a character that
-/// faces +Z. Positive yaw moves it to the left of that character, positive pitch upwards; at a
-/// pitch of π/2 it looks straight down with the far side up.
+/// At yaw 0 it is on the +Z side of its target, in front of a character that faces +Z. Positive yaw
+/// moves it to the left of that character, positive pitch upwards; at a pitch of π/2 it looks
+/// straight down, with the far side at the top of the picture.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Camera {
-    /// The point in the middle of the picture, metres.
+    /// The point in the centre of the picture, metres.
     pub target: Vec3,
     /// Direction from the target to the camera about +Y, radians.
     pub yaw: f32,
-    /// Height angle of the camera above its target, radians in `[-π/2, π/2]`.
+    /// Elevation of the camera above its target, radians in `[-π/2, π/2]`.
     pub pitch: f32,
     /// Distance from the target, metres.
     pub distance: f32,
-    /// Vertical angle of view, radians. An orthographic picture is as high as a perspective one at
-    /// the target.
+    /// Vertical field of view, radians. An orthographic picture shows the same height as a
+    /// perspective one at the target.
     pub fov_y: f32,
-    /// Perspective or orthographic.
+    /// The projection.
     pub lens: Lens,
 }
 
@@ -70,15 +71,15 @@ impl Default for Camera {
     }
 }
 
-/// Distances the camera keeps, metres.
+/// The range of the distance from the target, metres.
 const DISTANCES: std::ops::RangeInclusive<f32> = 0.2..=300.0;
-/// The lowest pitch that [`Camera::orbit`] reaches: a little below the horizon, so that soles can
-/// be looked at.
-const LOWEST_PITCH: f32 = -0.12;
+/// The lowest pitch that [`Camera::orbit`] reaches: a little below the horizon, so that soles are
+/// visible.
+const MIN_PITCH: f32 = -0.12;
 
 impl Camera {
-    /// The camera's axes: right, up, and back (from the target to the camera). Unit and orthogonal,
-    /// also when it looks straight down.
+    /// Returns the camera's axes: right, up, and back (from the target to the camera). They are
+    /// orthonormal, also when it looks straight down.
     #[must_use]
     pub fn axes(&self) -> [Vec3; 3] {
         let (sin_yaw, cos_yaw) = self.yaw.sin_cos();
@@ -88,26 +89,26 @@ impl Camera {
         [right, back.cross(right), back]
     }
 
-    /// Where the camera stands.
+    /// Returns the position of the camera.
     #[must_use]
     pub fn eye(&self) -> Vec3 {
         self.target + self.axes()[2] * self.distance
     }
 
-    /// `view_from_world`: right-handed, Y up, the camera looks along -Z.
+    /// Returns `view_from_world`: right-handed, Y up, with the camera looking along -Z.
     #[must_use]
     pub fn view(&self) -> Mat4 {
         let [_, up, back] = self.axes();
         look_to_mat4(self.eye(), -back, up)
     }
 
-    /// Half the height of the picture at the target's depth, metres.
+    /// Returns half the height of the picture at the target's depth, metres.
     #[must_use]
     pub fn half_height(&self) -> f32 {
         self.distance * (self.fov_y * 0.5).tan()
     }
 
-    /// Nearest and farthest depth that is drawn, metres.
+    /// Returns the nearest and farthest depth that is drawn, metres.
     #[must_use]
     pub fn depth_range(&self) -> [f32; 2] {
         match self.lens {
@@ -116,7 +117,8 @@ impl Camera {
         }
     }
 
-    /// `clip_from_view` for a picture of the given width over height; depths run from 0 to 1.
+    /// Returns `clip_from_view` for a picture with the aspect ratio `aspect` (width over height);
+    /// depths are from 0 to 1.
     #[must_use]
     pub fn projection(&self, aspect: f32) -> Mat4 {
         let aspect = if aspect.is_finite() && aspect > 0.0 { aspect } else { 1.0 };
@@ -130,29 +132,29 @@ impl Camera {
         }
     }
 
-    /// Turns around the target. The pitch stays between a little below the horizon and straight
+    /// Orbits around the target. The pitch stays between a little below the horizon and straight
     /// down.
     pub fn orbit(&mut self, yaw_radians: f32, pitch_radians: f32) {
         self.yaw = (self.yaw + yaw_radians + PI).rem_euclid(2.0 * PI) - PI;
-        self.pitch = (self.pitch + pitch_radians).clamp(LOWEST_PITCH.min(self.pitch), FRAC_PI_2);
+        self.pitch = (self.pitch + pitch_radians).clamp(MIN_PITCH.min(self.pitch), FRAC_PI_2);
     }
 
-    /// Drags the picture by `delta` pixels (right, down) in a viewport `height` pixels high: what
-    /// lies at the target's depth stays under the pointer.
+    /// Moves the camera for a drag by `delta` pixels (right, down) in a viewport `height` pixels
+    /// high: points at the target's depth stay under the pointer.
     pub fn pan(&mut self, delta: Vec2, height: f32) {
         let [right, up, _] = self.axes();
         let metres_per_pixel = 2.0 * self.half_height() / height.max(1.0);
         self.target += (up * delta.y - right * delta.x) * metres_per_pixel;
     }
 
-    /// Divides the distance by `factor`: above 1 comes closer.
+    /// Divides the distance by `factor`; a factor above 1 moves the camera closer.
     pub fn zoom(&mut self, factor: f32) {
         if factor.is_finite() && factor > 0.0 {
             self.distance = (self.distance / factor).clamp(*DISTANCES.start(), *DISTANCES.end());
         }
     }
 
-    /// Zooms so that what lies at the target's depth under `pixel` stays there.
+    /// Zooms so that the point at the target's depth under `pixel` stays there.
     pub fn zoom_at(&mut self, factor: f32, pixel: Vec2, viewport: Vec2) {
         let [right, up, _] = self.axes();
         let before = self.half_height();
@@ -162,20 +164,20 @@ impl Camera {
         self.target += (right * from_middle.x - up * from_middle.y) * shift;
     }
 
-    /// Moves camera and target along the ground, forwards as seen in the picture, by `metres`.
+    /// Moves camera and target over the ground by `metres` in the viewing direction.
     pub fn dolly(&mut self, metres: f32) {
         let (sin, cos) = self.yaw.sin_cos();
         self.target -= Vec3::new(sin, 0.0, cos) * metres;
     }
 
-    /// Looks straight down through an orthographic lens, at the same place and scale.
+    /// Changes to an orthographic view from above of the same place at the same scale.
     pub fn look_from_top(&mut self) {
         self.pitch = FRAC_PI_2;
         self.lens = Lens::Orthographic;
     }
 
-    /// Keeps the direction and moves so that the whole box is seen, with a margin of 6 %. Does
-    /// nothing for an empty box.
+    /// Moves the camera without turning it so that the whole box is visible, with a margin of 6 %.
+    /// Does nothing for an empty box.
     pub fn frame(&mut self, bounds: &Bounds, aspect: f32) {
         if bounds.is_empty() {
             return;
@@ -195,7 +197,7 @@ impl Camera {
             distance.into_iter().fold(0.0, f32::max).clamp(*DISTANCES.start(), *DISTANCES.end());
     }
 
-    /// The ray through a pixel (from the top left corner) of a viewport of the given size.
+    /// Returns the ray through a pixel (from the top left corner) of a viewport of the given size.
     #[must_use]
     pub fn ray(&self, pixel: Vec2, viewport: Vec2) -> Ray {
         let [right, up, back] = self.axes();
@@ -218,8 +220,8 @@ impl Camera {
         }
     }
 
-    /// The pixel (from the top left corner) where a point is drawn; `None` where it lies behind the
-    /// camera.
+    /// Returns the pixel (from the top left corner) at which a point is drawn; `None` for a point
+    /// behind the camera.
     #[must_use]
     pub fn project(&self, point: Vec3, viewport: Vec2) -> Option<Vec2> {
         let clip =
@@ -228,8 +230,8 @@ impl Camera {
         (clip.w > 0.0 && ndc.is_finite()).then(|| (ndc * Vec2::new(0.5, -0.5) + 0.5) * viewport)
     }
 
-    /// How many pixels one metre covers at `point` in a viewport `height` pixels high; 0 behind the
-    /// camera.
+    /// Returns the number of pixels per metre at `point` in a viewport `height` pixels high; 0
+    /// behind the camera.
     #[must_use]
     pub fn pixels_per_metre(&self, point: Vec3, height: f32) -> f32 {
         let depth = match self.lens {
@@ -262,7 +264,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn the_ray_through_a_pixel_projects_back_to_it(camera in camera(), x in 5.0f32..635.0, y in 5.0f32..475.0, depth in 0.7f32..9.0) {
+        fn ray_through_a_pixel_projects_back_to_it(camera in camera(), x in 5.0f32..635.0, y in 5.0f32..475.0, depth in 0.7f32..9.0) {
             let pixel = Vec2::new(x, y);
             let ray = camera.ray(pixel, VIEWPORT);
             let back = camera.project(ray.origin + ray.direction * depth, VIEWPORT).unwrap();
@@ -270,7 +272,7 @@ mod tests {
         }
 
         #[test]
-        fn framing_shows_all_corners_and_not_much_more(camera in camera(), w in 0.1f32..6.0, h in 0.1f32..3.0) {
+        fn framing_of_a_box_shows_all_corners_with_a_small_margin(camera in camera(), w in 0.1f32..6.0, h in 0.1f32..3.0) {
             let mut camera = camera;
             let bounds = Bounds { min: Vec3::new(-w, 0.0, -1.0), max: Vec3::new(w, h, 1.0) };
             camera.frame(&bounds, VIEWPORT.x / VIEWPORT.y);
@@ -280,7 +282,7 @@ mod tests {
         }
 
         #[test]
-        fn panning_and_zooming_keep_what_is_under_the_pointer(camera in camera(), x in 5.0f32..635.0, y in 5.0f32..475.0, factor in 0.5f32..2.0) {
+        fn panning_and_zooming_keep_the_point_under_the_pointer(camera in camera(), x in 5.0f32..635.0, y in 5.0f32..475.0, factor in 0.5f32..2.0) {
             let at = Vec2::new(x, y);
             let on_target_plane = |camera: &Camera| {
                 let ray = camera.ray(at, VIEWPORT);
@@ -298,7 +300,7 @@ mod tests {
     }
 
     #[test]
-    fn looks_at_the_face_at_yaw_zero_with_left_on_the_right() {
+    fn camera_at_yaw_zero_shows_the_face_with_its_left_on_the_right() {
         let camera = Camera { target: Vec3::Y, yaw: 0.0, pitch: 0.0, ..Camera::default() };
         assert!(camera.eye().z > 1.0);
         let left_hand = camera.project(Vec3::new(0.5, 1.0, 0.0), VIEWPORT).unwrap();
@@ -308,7 +310,7 @@ mod tests {
     }
 
     #[test]
-    fn the_top_view_hits_the_ground_below_the_pixel() {
+    fn ray_of_the_top_view_hits_the_ground_below_the_pixel() {
         let mut camera = Camera { yaw: 0.0, ..Camera::default() };
         camera.look_from_top();
         let hit = camera.ray(Vec2::new(480.0, 240.0), VIEWPORT).ground_hit().unwrap();
@@ -318,7 +320,7 @@ mod tests {
     }
 
     #[test]
-    fn a_ray_that_rises_hits_no_ground() {
+    fn ray_that_rises_misses_the_ground() {
         assert_eq!(Ray { origin: Vec3::Y, direction: Vec3::Y }.ground_hit(), None);
         assert_eq!(Ray { origin: Vec3::Y, direction: Vec3::X }.ground_hit(), None);
     }

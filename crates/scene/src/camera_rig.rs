@@ -1,18 +1,18 @@
-//! A camera that moves smoothly.
+//! A camera that moves smoothly to its goal.
 
 use crate::Camera;
 use glam::Vec3;
 use segue_motion::math::spring;
 use std::f32::consts::PI;
 
-/// A camera that comes smoothly to where it should be.
+/// A camera that moves smoothly to its goal.
 ///
-/// Change `goal` (from the pointer, by framing, by following a body) and call [`CameraRig::update`]
-/// once a frame. The way there is that of a critically damped spring (Holden, "Spring-It-On", with
-/// its half-life), which overshoots nothing and does not depend on the frame rate.
+/// Change `goal` (by the pointer, by framing, by following a body) and call [`CameraRig::update`]
+/// once per frame. The camera moves as a critically damped spring (Holden, "Spring-It-On", with its
+/// half-life): without overshoot, and independent of the frame rate.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CameraRig {
-    /// Where the camera should be.
+    /// The camera that is approached.
     pub goal: Camera,
     shown: Camera,
     target_velocity: Vec3,
@@ -22,46 +22,46 @@ pub struct CameraRig {
 }
 
 impl CameraRig {
-    /// A rig that stands still at `camera`.
+    /// Returns a rig at rest at `camera`.
     #[must_use]
     pub fn new(camera: Camera) -> Self {
         Self { goal: camera, shown: camera, ..Self::default() }
     }
 
-    /// The camera to draw with.
+    /// Returns the camera to draw with.
     #[must_use]
     pub fn camera(&self) -> &Camera {
         &self.shown
     }
 
-    /// Stands at the goal at once.
+    /// Moves the camera to the goal at once.
     pub fn jump(&mut self) {
         *self = Self::new(self.goal);
     }
 
-    /// Whether there is nothing left to move: nothing need be drawn again for the camera's sake.
+    /// Returns whether the camera is at rest, so that no further frame is needed for it.
     #[must_use]
     pub fn is_still(&self) -> bool {
         self.shown == self.goal
     }
 
-    /// Takes direction, distance and lens of the goal at once; only the target stays on its way.
-    /// For a hand that turns the camera: what it does is not to be smoothed, what the camera
-    /// follows is.
+    /// Takes over direction, distance and projection of the goal at once; only the target remains
+    /// smoothed. Used while the pointer turns the camera: its movements are not smoothed, but the
+    /// camera follows a body smoothly.
     pub fn turn_at_once(&mut self) {
         self.shown = Camera { target: self.shown.target, ..self.goal };
         (self.yaw_velocity, self.pitch_velocity, self.zoom_velocity) = (0.0, 0.0, 0.0);
     }
 
-    /// Moves on by `dt_secs`; half of the distance to the goal is left after 1.2 half-lives. A
-    /// half-life of 0 jumps.
+    /// Advances by `dt_secs`; half of the distance to the goal is left after 1.2 half-lives. A
+    /// half-life of 0 moves the camera at once.
     pub fn update(&mut self, half_life_secs: f32, dt_secs: f32) {
         if self.is_still() || half_life_secs <= 0.0 || !dt_secs.is_finite() {
             self.jump();
             return;
         }
         let goal = self.goal;
-        // What is left of an offset.
+        // The rest of an offset after this step.
         let left = |offset, velocity| {
             spring::towards_point(
                 offset,
@@ -73,7 +73,7 @@ impl CameraRig {
         };
         let (target, target_velocity) = left(self.shown.target - goal.target, self.target_velocity);
         let yaw_offset = (self.shown.yaw - goal.yaw + PI).rem_euclid(2.0 * PI) - PI;
-        // Zooming is even when the logarithm of the distance is.
+        // A zoom appears even when the logarithm of the distance changes evenly.
         let zoom_offset = (self.shown.distance / goal.distance).ln();
         let (turn, turn_velocity) = left(
             Vec3::new(yaw_offset, self.shown.pitch - goal.pitch, zoom_offset),
@@ -104,7 +104,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn arrives_without_overshoot_the_short_way_round_at_any_frame_rate() {
+    fn camera_rig_at_any_frame_rate_arrives_by_the_shorter_way_without_overshoot() {
         let start = Camera { yaw: 3.0, distance: 2.0, ..Camera::default() };
         let mut at_60 = CameraRig::new(start);
         let mut at_15 = at_60;
@@ -123,7 +123,7 @@ mod tests {
             let x = at_60.camera().target.x;
             assert!(x > previous && x <= 1.0);
             previous = x;
-            // From 3 to -3 the short way leads over π, not over 0.
+            // From 3 to -3 the shorter way passes π, not 0.
             assert!((at_60.camera().yaw.abs() - PI).abs() < 0.15);
         }
         for _ in 0..600 {

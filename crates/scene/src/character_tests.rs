@@ -1,4 +1,5 @@
-//! Tests that everything drawn lies at the figure that is shown, for characters of any size.
+//! Tests that everything is drawn at the position of the visible figure, for characters of any
+//! size.
 
 use crate::{
     Director, Highlights, Layer, Pane, PathMarks, StageOptions, Viewport, pose_at, shown_size,
@@ -13,7 +14,7 @@ use segue_session::export::{ExportBody, ExportFormat, ExportOptions, export};
 use segue_session::{Command, Key, Session, Value};
 use std::sync::Arc;
 
-/// A file of another program: a character on a rig of its own with legs of so many metres.
+/// Returns a file of another program: a character on a rig of its own, with legs of a given length.
 fn character_file(leg_metres: f32) -> Arc<[u8]> {
     let skeleton = fixtures::cmu_bvh();
     let factor = leg_metres / fixtures::roles(&skeleton).leg_length(&skeleton).unwrap();
@@ -28,7 +29,7 @@ fn character_file(leg_metres: f32) -> Arc<[u8]> {
     bytes.into()
 }
 
-/// A page with a character whose legs are `size` times as long as those of the clips.
+/// Returns a session with a character whose legs are `size` times as long as those of the clips.
 fn session(link: &str, size: f32) -> Session {
     let mut session = Session::new();
     session.apply(Command::OpenLink(link.into())).unwrap();
@@ -54,7 +55,7 @@ fn staged_by(director: &mut Director, session: &Session, highlights: Highlights)
     stage.panes[0].clone()
 }
 
-/// Where a joint of the first figure is drawn: where its mesh is moved to there.
+/// Returns the position at which a joint of the first figure is drawn: where its mesh is moved to.
 fn drawn(pane: &Pane, character: &Character, role: Role) -> Vec3 {
     let skin = pane.figures[0].skin.as_ref().unwrap();
     let joint = character.roles.get(role).unwrap();
@@ -62,7 +63,7 @@ fn drawn(pane: &Pane, character: &Character, role: Role) -> Vec3 {
     (pane.joints[skin.joints.start + joint] * bound).translation
 }
 
-/// How far a point of the ground is from the lines that are painted on it.
+/// Returns the distance of a point of the ground from the lines that are painted on it.
 fn distance_to_ground_lines(pane: &Pane, point: Vec3) -> f32 {
     let to_line = |from: Vec3, to: Vec3| {
         let (from, along) = (from.xz(), (to - from).xz());
@@ -79,7 +80,7 @@ fn set(session: &mut Session, key: Key, value: Value) {
     while session.work() {}
 }
 
-/// Everything that is drawn lies at the figure at some times of what plays.
+/// Checks at several times that everything is drawn at the position of the figure.
 fn assert_drawn_together(session: &mut Session, size: f32, what: &str) {
     let character = session.character().unwrap();
     let mut rings = 0;
@@ -102,14 +103,14 @@ fn assert_drawn_together(session: &mut Session, size: f32, what: &str) {
         for ring in &pane.rings {
             let from =
                 left.xz().distance(ring.center.xz()).min(right.xz().distance(ring.center.xz()));
-            // The ring of what is steered in the Match lab is no foot's.
+            // The ring of the simulation object in the Match lab does not belong to a foot.
             assert!(from < 2e-3 || ring.radius > 0.15, "{what}: a ring {from} m beside the foot");
             rings += 1;
         }
         let leg = motion.roles().leg_length(motion.clip().skeleton()).unwrap();
         let head = drawn(&pane, &character, Role::Head);
         assert!((1.3..2.4).contains(&(head.y / leg)), "{what}: {head} on legs of {leg} m");
-        // The hips sway about the curve that is fitted to their way.
+        // The hips sway about the curve that is fitted to their trajectory.
         let line = distance_to_ground_lines(&pane, hips);
         assert!(
             line < if what.contains("path") { 0.25 } else { 0.02 },
@@ -135,7 +136,7 @@ fn assert_drawn_together(session: &mut Session, size: f32, what: &str) {
 }
 
 #[test]
-fn rings_trail_and_camera_belong_to_a_character_of_any_size() {
+fn annotations_of_a_character_of_any_size_are_at_its_figure() {
     for size in [1.6, 0.6] {
         let others = "camera_distance=4&follow_half_life=0&trail=on&contacts=on";
         for lab in ["view", "blend", "transition", "loop", "path"] {
@@ -150,7 +151,7 @@ fn rings_trail_and_camera_belong_to_a_character_of_any_size() {
 }
 
 #[test]
-fn handles_of_the_path_lie_along_the_way_of_the_character() {
+fn path_handles_of_a_character_of_any_size_lie_along_its_trajectory() {
     let mut session = session("lab=path&a=walk&camera_distance=4&follow_half_life=0&trail=on", 1.6);
     let character = session.character().unwrap();
     let mut director = Director::default();
@@ -167,19 +168,19 @@ fn handles_of_the_path_lie_along_the_way_of_the_character() {
             dots.map(|dot| dot.from.xz().distance(hips.xz())).fold(f32::INFINITY, f32::min);
         farthest = farthest.max(nearest);
     }
-    // Handles stand about a metre apart.
+    // Handles are about a metre apart.
     assert!(farthest < 1.0, "{farthest} m from the nearest handle");
 }
 
 #[test]
-fn an_exported_character_is_the_one_on_the_stage() {
+fn exported_character_equals_the_one_on_the_stage() {
     for size in [1.6, 0.6] {
         let mut session = session("lab=blend&a=walk&b=run&camera_distance=4", size);
         let outcome = Arc::clone(session.main_outcome().unwrap());
         let motion = &outcome.motion;
         let mut character = session.character().unwrap();
         let options = ExportOptions { format: ExportFormat::Glb, ..ExportOptions::default() };
-        // Trousers.
+        // Trousers in another colour.
         let mut mesh = SkinnedMesh::clone(&character.mesh);
         let (blue, red) = ([0.1, 0.2, 0.8, 1.0], [0.8, 0.3, 0.2, 1.0]);
         let middle = character.skeleton.joints()[0].offset.y;
@@ -193,7 +194,7 @@ fn an_exported_character_is_the_one_on_the_stage() {
             skeleton.joints().iter().map(|joint| joint.name.clone()).collect::<Vec<_>>()
         };
         assert_eq!(names(skeleton), names(&character.skeleton));
-        // The same triangles, in the order of their colours; weights are bytes.
+        // The same triangles, in the order of their colours; weights are stored as bytes.
         let corners = |mesh: &SkinnedMesh, vertex: u32| {
             let vertex = vertex as usize;
             let [x, y, z] =
@@ -222,7 +223,7 @@ fn an_exported_character_is_the_one_on_the_stage() {
             };
             assert!(mesh.colors.iter().filter(|known| is_near(known)).count() > 500);
         }
-        // And where the stage has it, in its own size.
+        // The exported character has its own size, and the stage shows the same pose.
         assert_eq!(back.clip.frames(), motion.clip().frames());
         let shown = shown_size(&session, motion);
         let mut director = Director::default();

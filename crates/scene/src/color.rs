@@ -1,11 +1,11 @@
-//! Colours, and those that the theme gives to the parts of a motion.
+//! Colours, and the colours of the parts of a motion.
 
 use segue_session::Slot;
 
-/// Red, green, blue, alpha, each 0–1; sRGB-encoded as in a palette, alpha straight.
+/// Red, green, blue, alpha, each 0–1; sRGB-encoded as in a palette, with straight alpha.
 pub type Color = [f32; 4];
 
-/// An opaque colour from its hexadecimal form: `rgb(0x0f1115)`.
+/// Returns an opaque colour from its hexadecimal form: `rgb(0x0f1115)`.
 #[must_use]
 pub const fn rgb(hex: u32) -> Color {
     [
@@ -16,39 +16,39 @@ pub const fn rgb(hex: u32) -> Color {
     ]
 }
 
-/// The colour with another alpha.
+/// Returns the colour with another alpha.
 #[must_use]
 pub const fn with_alpha(color: Color, alpha: f32) -> Color {
     [color[0], color[1], color[2], alpha]
 }
 
-/// An opaque colour between two.
+/// Returns the opaque colour between two at `share`.
 pub(crate) fn mixed(from: Color, to: Color, share: f32) -> Color {
     let between = |channel: usize| from[channel] + (to[channel] - from[channel]) * share;
     [between(0), between(1), between(2), 1.0]
 }
 
-/// The colours of what is made from A, from B, and from both, in the theme of the page.
+/// The colours of A, B and results in the theme of the page.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Colors {
-    /// A's ghost and path.
+    /// The ghost and the path of A.
     pub a: Color,
-    /// B's ghost and path.
+    /// The ghost and the path of B.
     pub b: Color,
-    /// The result's path, and the ring of a planted foot.
+    /// The path of the result, and the ring of a planted foot.
     pub result: Color,
     /// The ring of a foot that slides.
     pub bad: Color,
-    /// Where a path turns faster than the motion on it can.
+    /// The parts of a path that turn faster than the motion on it can.
     pub warning: Color,
-    /// The extra characters, and those of a crowd, in turn.
+    /// Extra characters and those of a crowd, in turn.
     pub others: [Color; 4],
-    /// How much a ghost covers, 0 to 1.
+    /// The opacity of a ghost, 0 to 1.
     pub ghost_alpha: f32,
 }
 
 impl Colors {
-    /// Returns the colour of what is made from the clip in a slot.
+    /// Returns the colour of the clip in a slot.
     pub(crate) fn of_slot(&self, slot: Slot) -> Color {
         match slot {
             Slot::A => self.a,
@@ -62,7 +62,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn hex_is_exact() {
+    fn rgb_of_a_hexadecimal_number_is_exact() {
         assert_eq!(rgb(0x0f_11_15), [15.0 / 255.0, 17.0 / 255.0, 21.0 / 255.0, 1.0]);
     }
 }

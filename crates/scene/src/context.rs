@@ -1,4 +1,4 @@
-//! What the contents of a pane are made from.
+//! The data from which the contents of a pane are drawn.
 
 use crate::body_cache::BodyCache;
 use crate::{Color, Colors, Highlights, Look, Pane, pose_at, with_alpha};
@@ -7,10 +7,10 @@ use segue_motion::math::Planar;
 use segue_motion::skeleton::WorldPose;
 use segue_session::{Outcome, Params, Session};
 
-/// A ghost fades in before the transition and out behind it, over this long.
+/// Duration of a ghost's fade-in before a transition and of its fade-out after it, seconds.
 pub(crate) const GHOST_FADE_SECS: f64 = 0.3;
 
-/// Everything that the contents of a pane are made from.
+/// The data from which the contents of a pane are drawn.
 pub(crate) struct DrawContext<'a> {
     pub(crate) session: &'a Session,
     pub(crate) params: &'a Params,
@@ -20,14 +20,14 @@ pub(crate) struct DrawContext<'a> {
     pub(crate) bodies: &'a mut BodyCache,
 }
 
-/// A result as it is shown now.
+/// A result in its current pose.
 pub(crate) struct Shown<'a> {
     pub(crate) outcome: &'a Outcome,
-    /// The time in its motion, seconds.
+    /// The current time in its motion, seconds.
     pub(crate) now: f64,
-    /// Where the motion lies in the world.
+    /// The placement of the motion: `world_from_clip`.
     pub(crate) place: Planar,
-    /// The pose.
+    /// The pose in the world.
     pub(crate) world: WorldPose,
 }
 
@@ -38,14 +38,14 @@ impl<'a> Shown<'a> {
         Some(Self { outcome, now, place, world: pose_at(&outcome.motion, now, &place)? })
     }
 
-    /// Returns where the result stands now.
+    /// Returns the current ground frame of the character.
     pub(crate) fn standing(&self) -> Planar {
         self.place.after(&self.outcome.motion.standing_at(self.now))
     }
 }
 
 impl DrawContext<'_> {
-    /// Adds the ghost of a motion at a time, where the motion lies at `world_from_clip`.
+    /// Adds the ghost of a motion at a time; the motion is placed by `world_from_clip`.
     pub(crate) fn add_ghost(
         &mut self,
         motion: &Motion,
@@ -59,9 +59,9 @@ impl DrawContext<'_> {
         }
     }
 
-    /// Returns the colour of a ghost that stands alone: clearer than beside a result.
+    /// Returns the colour of a ghost without a result beside it, which is more opaque.
     pub(crate) fn lone_ghost(&self, color: Color, clear: f32) -> Color {
-        /// How many times as much as a ghost beside a result it covers.
+        /// The factor on the opacity of a ghost beside a result.
         const ALPHA: f32 = 1.8;
         with_alpha(color, (ALPHA * clear * self.colors.ghost_alpha).min(0.9))
     }

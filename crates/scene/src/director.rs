@@ -1,4 +1,4 @@
-//! From the session to the stage, frame after frame.
+//! Conversion of a session to a stage, frame by frame.
 
 mod cameras;
 
@@ -13,18 +13,18 @@ use segue_session::choices;
 use segue_session::{Key, Session};
 use std::sync::Arc;
 
-/// How a session is shown: where its panes lie, in which colours, and what is highlighted.
+/// Options of the stage: the placement of panes, colours, and highlights.
 #[derive(Clone, Debug)]
 pub struct StageOptions<'a> {
-    /// The panes that are shown: index in the session, and place in physical pixels.
+    /// The visible panes: index in the session, and rectangle in physical pixels.
     pub panes: &'a [(usize, Viewport)],
-    /// Physical pixels per point: widths of lines are in points.
+    /// Physical pixels per point. Line widths are in points.
     pub pixels_per_point: f32,
     /// Colours and light of the empty stage.
     pub look: Look,
     /// Colours of the motions.
     pub colors: Colors,
-    /// What the pointer highlights.
+    /// The elements that are highlighted.
     pub highlights: Highlights,
 }
 
@@ -40,8 +40,8 @@ impl Default for StageOptions<'_> {
     }
 }
 
-/// Makes the stage from the session, and keeps what goes on from frame to frame: cameras on their
-/// way, and the bodies of skeletons.
+/// Makes the stage from the session, and holds its state between frames: moving cameras, and the
+/// bodies of skeletons.
 #[derive(Debug, Default)]
 pub struct Director {
     stage: Arc<Stage>,
@@ -50,7 +50,7 @@ pub struct Director {
 }
 
 impl Director {
-    /// Returns everything that is to be seen now. `dt_secs` moves the cameras on.
+    /// Returns the stage for the current state of the session. `dt_secs` advances the cameras.
     pub fn stage(
         &mut self,
         session: &Session,
@@ -58,7 +58,7 @@ impl Director {
         dt_secs: f32,
     ) -> Arc<Stage> {
         let now = session.now_secs();
-        // Taken out, so that memory is kept where the last stage is not drawn any longer.
+        // Panes are reused, so that their memory is kept.
         let mut panes = std::mem::take(&mut Arc::make_mut(&mut self.stage).panes);
         panes.resize_with(options.panes.len(), Pane::default);
         self.rigs.resize_with(session.panes().len(), CameraRig::default);
@@ -114,25 +114,26 @@ impl Director {
         Arc::clone(&self.stage)
     }
 
-    /// Does a millisecond or two of what takes longer than a frame: the skins of skeletons that
-    /// were seen. Until a skin is there, a body consists of limbs. Returns whether more is left.
+    /// Does a millisecond or two of the work that takes longer than a frame: building the skins of
+    /// visible skeletons. Until a skin is complete, a body consists of limbs. Returns whether more
+    /// is left.
     pub fn work(&mut self) -> bool {
         self.bodies.work()
     }
 
-    /// Returns whether a skin that will be seen is being made.
+    /// Returns whether a skin is being built.
     #[must_use]
     pub fn is_at_work(&self) -> bool {
         self.bodies.is_at_work()
     }
 
-    /// Returns whether a camera is still on its way, so that another frame is needed.
+    /// Returns whether a camera is moving, so that another frame is needed.
     #[must_use]
     pub fn is_moving(&self) -> bool {
         self.rigs.iter().any(|rig| !rig.is_still())
     }
 
-    /// Returns the camera of a pane, as it was drawn last.
+    /// Returns the camera of a pane in the last frame.
     #[must_use]
     pub fn camera(&self, pane: usize) -> Option<&Camera> {
         self.rigs.get(pane).map(CameraRig::camera)
@@ -157,8 +158,8 @@ fn add_contents(index: usize, shown: &Shown<'_>, context: &mut DrawContext<'_>, 
     }
 }
 
-/// Returns how the skins of a pane follow their joints: the pane's own way where that is compared,
-/// else the parameters'.
+/// Returns the skinning method of a pane: that of the pane where methods are compared, otherwise
+/// that of the parameters.
 fn skinning_of(session: &Session, pane: usize) -> Skinning {
     let compared = session.panes().get(pane).and_then(|pane| match &pane.variant {
         Some((Key::Skinning, value)) => value.choice(),

@@ -1,4 +1,4 @@
-//! The characters that play beside the result.
+//! Characters that play beside the result.
 
 use crate::annotations::add_bones;
 use crate::color::mixed;
@@ -11,10 +11,10 @@ use segue_motion::skeleton::WorldPose;
 use segue_session::Key;
 use segue_session::choices::Look;
 
-/// Share of its own colour in the clay of an extra character.
+/// Share of its own colour in the body colour of an extra character.
 const COLOR_SHARE: f32 = 0.55;
 
-/// Adds the extra characters, each on its way.
+/// Adds the extra characters, each on its own trajectory.
 pub(crate) fn add_extra_characters(context: &mut DrawContext<'_>, pane: &mut Pane) {
     let (session, colors) = (context.session, context.colors);
     for (index, character) in session.extra_characters().iter().enumerate() {
@@ -40,7 +40,7 @@ pub(crate) fn add_extra_characters(context: &mut DrawContext<'_>, pane: &mut Pan
     }
 }
 
-/// Adds a character in a colour of its own, which shows through the clay by a share.
+/// Adds a character whose body colour is tinted with a colour of its own.
 pub(crate) fn add_character(
     motion: &Motion,
     world: &WorldPose,

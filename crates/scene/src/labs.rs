@@ -1,4 +1,4 @@
-//! What single labs show beside a result.
+//! Elements that single labs draw beside a result.
 
 pub(crate) mod graph;
 pub(crate) mod layers;

@@ -1,22 +1,22 @@
-//! What is to be seen, as plain data: cameras, limbs, lines and rings. It knows no GPU; the
-//! renderer knows no session.
+//! The draw list of a session as plain data: cameras, limbs, lines and rings. The crate does not
+//! depend on a GPU, and a renderer does not depend on the session.
 //!
 //! # The idea
 //!
 //! A [`Stage`] is one rectangle of the page with one or several [`Pane`]s in it. A pane has a
 //! [`Camera`] and lists what it shows; the [`Director`] makes the list from a
 //! [`segue_session::Session`] and a time. Every skeleton has a [`Body`] from its bones' lengths
-//! alone, a rounded cone along each bone, so that whatever loads can be seen at once.
+//! alone, a rounded cone along each bone, so that every file that loads is visible at once.
 //!
-//! The camera goes round its target on a globe: yaw along the equator, pitch up to the pole.
+//! The camera orbits its target on a sphere: yaw along the equator, pitch up to the pole.
 //!
 //! ```text
 //! eye   = target + distance · (sin yaw cos pitch, sin pitch, cos yaw cos pitch)
 //! pixel → ray from the eye → ground:  t = -origin.y / direction.y
 //! ```
 //!
-//! At yaw 0 it sees the face of a character that faces +Z, whose left hand is then on the right of
-//! the picture. A [`CameraRig`] draws it to its goal as a critically damped spring does.
+//! At yaw 0 it looks at the face of a character that faces +Z, whose left hand is then on the right
+//! of the picture. A [`CameraRig`] moves it to its goal as a critically damped spring.
 //!
 //! Colours here are `[red, green, blue, alpha]` in 0–1 as written in a palette (sRGB-encoded, alpha
 //! straight); see [`rgb`].
@@ -54,14 +54,14 @@
 //!
 //! # Accuracy and cost
 //!
-//! The ray through a pixel comes back to that pixel within a tenth of one; a framed box fills the
-//! picture with a margin of 6 %; the rig's way does not depend on the frame rate. A stage is
-//! O(limbs shown) per frame.
+//! The ray through a pixel projects back to that pixel within a tenth of one; a framed box fills
+//! the picture with a margin of 6 %; the motion of a rig does not depend on the frame rate. A stage
+//! is O(limbs shown) per frame.
 //!
 //! # What it does not do
 //!
-//! No meshes of its own: limbs are rounded cones. No light and no shadows are computed here: a
-//! [`Figure`] only says how strongly it darkens the ground.
+//! It makes no meshes: limbs are rounded cones. It computes neither light nor shadows: a [`Figure`]
+//! only has the strength of its shadow on the ground.
 
 mod annotations;
 mod body;

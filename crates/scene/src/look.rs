@@ -9,33 +9,33 @@ pub struct Look {
     pub background_top: Color,
     /// Background at the bottom of a pane.
     pub background_bottom: Color,
-    /// The ground where the light falls.
+    /// The lit part of the ground.
     pub floor: Color,
     /// Radius of the lit part of the ground, metres.
     pub floor_radius: f32,
-    /// Lines of the grid, one metre apart; the alpha says how clear they are.
+    /// Lines of the grid, one metre apart. The alpha is their opacity.
     pub grid: Color,
-    /// How dark the ground gets under a body, 0–1.
+    /// Darkness of the ground under a body, 0–1.
     pub shadow: f32,
-    /// How much of the light on the ground is the main one's, which throws the shadow of the whole
-    /// body, 0–1.
+    /// Share of the light on the ground that comes from the main light, which casts the shadow of
+    /// the whole body, 0–1.
     pub key_shadow: f32,
-    /// The neutral clay for the bodies that are the result.
+    /// The neutral colour of the bodies of results.
     pub clay: Color,
-    /// Thin lines where one limb passes before another; the alpha says how clear they are.
+    /// Outlines where a limb is in front of another. The alpha is their opacity.
     pub edge: Color,
-    /// Their width in points.
+    /// Width of outlines, points.
     pub edge_width: f32,
-    /// How much limbs darken towards their silhouette, 0–1.
+    /// Darkening of limbs towards their silhouette, 0–1.
     pub rim: f32,
-    /// How much light from behind there is on a silhouette.
+    /// Strength of the light from behind on a silhouette.
     pub rim_light: f32,
-    /// Two tones with a line between them, and shadows with a hard edge: for print.
+    /// Whether bodies have two tones with a line between them, and hard shadows: for print.
     pub flat: bool,
 }
 
 impl Look {
-    /// For the dark theme.
+    /// The look of the dark theme.
     pub const DARK: Self = Self {
         background_top: rgb(0x0f_11_15),
         background_bottom: rgb(0x0c_0d_11),
@@ -52,7 +52,7 @@ impl Look {
         flat: false,
     };
 
-    /// For the light theme.
+    /// The look of the light theme.
     pub const LIGHT: Self = Self {
         background_top: rgb(0xee_f0_f4),
         background_bottom: rgb(0xe4_e7_ee),
@@ -69,7 +69,7 @@ impl Look {
         flat: false,
     };
 
-    /// For print and for a bright lecture hall: black lines and two flat tones on white.
+    /// The look for print and for bright lecture halls: black lines and two flat tones on white.
     pub const PAPER: Self = Self {
         background_top: rgb(0xff_ff_ff),
         background_bottom: rgb(0xff_ff_ff),

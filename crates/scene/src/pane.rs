@@ -1,4 +1,4 @@
-//! One view of the stage: its camera, and the list of all that it shows.
+//! A view of the stage: its camera, and everything that it shows.
 
 use crate::primitives::{Figure, Layer, Limb, Ring, Skin, Skinning, Stroke};
 use crate::{Body, Camera, Color, Viewport};
@@ -7,24 +7,24 @@ use segue_motion::skeleton::WorldPose;
 use segue_motion::skin::RigidTransform;
 use std::sync::Arc;
 
-/// One view of the stage.
+/// A view of the stage.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Pane {
-    /// Where it lies in the stage.
+    /// Its rectangle in the stage.
     pub viewport: Viewport,
-    /// What it looks through.
+    /// Its camera.
     pub camera: Camera,
-    /// Middle of the lit part of the ground; follow the body with it.
+    /// Centre of the lit part of the ground; it should follow the body.
     pub focus: Vec3,
     /// All limbs, body by body.
     pub limbs: Vec<Limb>,
     /// The bodies.
     pub figures: Vec<Figure>,
-    /// The joints of all skins.
+    /// The joint transforms of all skins.
     pub joints: Vec<RigidTransform>,
-    /// A colour for each of them.
+    /// A colour for each joint in [`Self::joints`].
     pub joint_colors: Vec<Color>,
-    /// How skins follow their joints.
+    /// The skinning method.
     pub skinning: Skinning,
     /// Lines.
     pub strokes: Vec<Stroke>,
@@ -33,7 +33,7 @@ pub struct Pane {
 }
 
 impl Pane {
-    /// Takes everything out that is to be seen; the memory stays.
+    /// Removes all contents; their memory is kept.
     pub fn clear(&mut self) {
         self.limbs.clear();
         self.figures.clear();
@@ -43,12 +43,12 @@ impl Pane {
         self.rings.clear();
     }
 
-    /// Adds a body in a pose, solid, with its full shadow.
+    /// Adds a solid body in a pose, with its full shadow.
     pub fn add_body(&mut self, body: &Body, pose: &WorldPose, color: Color) {
         self.add_figure(body, pose, color, None, false, 1.0);
     }
 
-    /// Adds a body in a pose, solid, each limb in the colour of the joint that moves it.
+    /// Adds a solid body in a pose, with each limb in the colour of the joint that moves it.
     pub fn add_colored_body(
         &mut self,
         body: &Body,
@@ -58,13 +58,12 @@ impl Pane {
         self.add_figure(body, pose, [1.0; 4], Some(&color_of), false, 1.0);
     }
 
-    /// Adds a translucent body; its shadow is as strong as the colour's alpha.
+    /// Adds a translucent body, whose shadow is as strong as the colour's alpha.
     pub fn add_ghost(&mut self, body: &Body, pose: &WorldPose, color: Color) {
         self.add_figure(body, pose, color, None, true, color[3]);
     }
 
-    /// Adds a body that is seen through, as a ghost is, and that keeps off the light as a solid one
-    /// does.
+    /// Adds a translucent body whose shadow is that of a solid one.
     pub fn add_glass(&mut self, body: &Body, pose: &WorldPose, color: Color) {
         self.add_figure(body, pose, color, None, true, 1.0);
     }
@@ -112,8 +111,8 @@ impl Pane {
         });
     }
 
-    /// Adds a line through `points`, each with its colour, with its pieces joined. Points that
-    /// repeat are skipped.
+    /// Adds a line through `points`, each with its colour, with joined segments. Repeated points
+    /// are skipped.
     pub fn add_path(
         &mut self,
         points: impl IntoIterator<Item = (Vec3, Color)>,
@@ -154,7 +153,7 @@ impl Pane {
         }
     }
 
-    /// Adds a dashed line through `points`; dashes and gaps are equally long along the line.
+    /// Adds a dashed line through `points`. Dashes and gaps have equal lengths along the line.
     pub fn add_dashed_path(
         &mut self,
         points: impl IntoIterator<Item = Vec3>,
@@ -172,7 +171,7 @@ impl Pane {
                 if !length.is_finite() || length > dash * 1e4 {
                     continue;
                 }
-                // Cut the piece where dashes begin and end.
+                // The segment is cut where dashes begin and end.
                 let mut at = 0.0;
                 while at < length {
                     let phase = (walked + at).rem_euclid(2.0 * dash);
@@ -197,8 +196,8 @@ impl Pane {
         }
     }
 
-    /// Adds a ring of 12 cm on the ground about a planted foot. That of a foot which slides is
-    /// heavier: its colour is not all that tells it.
+    /// Adds a ring of 12 cm on the ground around a planted foot. The ring of a sliding foot is also
+    /// thicker, so that it does not differ in colour alone.
     pub fn add_contact(&mut self, foot: Vec3, color: Color, slides: bool) {
         let (width, fill) = if slides { (0.032, 0.32) } else { (0.014, 0.1) };
         self.rings.push(Ring { center: foot, radius: 0.12, width, color, fill });
@@ -211,7 +210,7 @@ mod tests {
     use crate::rgb;
 
     #[test]
-    fn a_path_joins_its_pieces_and_skips_repeats() {
+    fn path_of_repeated_points_skips_them_and_joins_its_segments() {
         let mut pane = Pane::default();
         let points = [Vec3::ZERO, Vec3::X, Vec3::X, Vec3::new(1.0, 0.0, 1.0)];
         pane.add_line(Vec3::ZERO, Vec3::Y, rgb(0), 1.0, Layer::Over);
@@ -223,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn dashes_cover_half_of_the_way_also_round_corners() {
+    fn dashes_of_a_path_with_corners_cover_half_of_it() {
         let mut pane = Pane::default();
         pane.add_dashed_path(
             [Vec3::ZERO, Vec3::X * 0.55, Vec3::new(0.55, 0.0, 3.45)],

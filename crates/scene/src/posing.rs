@@ -6,7 +6,7 @@ use segue_motion::clip::Motion;
 use segue_motion::math::Planar;
 use segue_motion::skeleton::{Role, Side, WorldPose, world_pose};
 
-/// Returns the pose of a motion at a time, in the world where it lies at `world_from_clip`.
+/// Returns the pose of a motion at a time, in the world; the motion is placed by `world_from_clip`.
 #[must_use]
 pub fn pose_at(motion: &Motion, secs: f64, world_from_clip: &Planar) -> Option<WorldPose> {
     let pose = motion.clip().sample(secs, Interpolation::Linear)?;
@@ -17,7 +17,7 @@ pub fn pose_at(motion: &Motion, secs: f64, world_from_clip: &Planar) -> Option<W
     Some(world)
 }
 
-/// Returns the pose with both hands turned about their forearms, by degrees; `None` for none.
+/// Returns the pose with both hands twisted about their forearms, degrees; `None` for 0.
 pub(crate) fn twisted(motion: &Motion, world: &WorldPose, degrees: f64) -> Option<WorldPose> {
     let (skeleton, mut world) =
         (motion.clip().skeleton(), (degrees != 0.0).then(|| world.clone())?);
@@ -35,7 +35,7 @@ pub(crate) fn twisted(motion: &Motion, world: &WorldPose, degrees: f64) -> Optio
             continue;
         };
         let turn = Quat::from_axis_angle(axis, degrees.to_radians() as f32);
-        // The hand and its descendants: parents come first.
+        // The hand and its descendants; parents come first.
         let mut moved = vec![false; skeleton.len()];
         for joint in hand..skeleton.len() {
             moved[joint] =

@@ -1,4 +1,4 @@
-//! The parts of a picture: limbs, skins, lines and rings.
+//! The elements of a picture: limbs, skins, lines and rings.
 
 use crate::color::Color;
 use glam::Vec3;
@@ -6,54 +6,56 @@ use segue_motion::skin::SkinnedMesh;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A rounded cone: two balls and their common hull. With `a == b` a ball.
+/// A rounded cone: two balls and their convex hull. With `a == b` it is a ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limb {
     /// Centre of the first ball, metres.
     pub a: Vec3,
     /// Centre of the second ball, metres.
     pub b: Vec3,
-    /// Radius about `a`, metres.
+    /// Radius of the first ball, metres.
     pub radius_a: f32,
-    /// Radius about `b`, metres.
+    /// Radius of the second ball, metres.
     pub radius_b: f32,
-    /// Unit direction in which the cross-section is scaled; the part of it across the axis counts.
+    /// Unit direction in which the cross-section is scaled; only its part perpendicular to the axis
+    /// has an effect.
     pub flat: Vec3,
-    /// The scale in that direction: 1 is round, 0.5 half as thick.
+    /// The scale in that direction: 1 is round, 0.5 is half as thick.
     pub flatness: f32,
-    /// Colour; for a ghost the alpha says how much of it is seen.
+    /// Colour. The alpha of a ghost is its opacity.
     pub color: Color,
 }
 
-/// One body.
+/// A body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
     /// Its limbs, a range of [`Pane::limbs`].
     pub limbs: Range<usize>,
-    /// The skin that is seen in their place: then they only shade the ground.
+    /// The skin that is drawn in place of the limbs, which then only shade the ground.
     pub skin: Option<Skin>,
-    /// Translucent: only its front is seen, and bodies behind it shine through.
+    /// Whether it is translucent: only its front is drawn, and bodies behind it are visible through
+    /// it.
     pub ghost: bool,
-    /// How strongly it darkens the ground near it, 0 (not at all) to 1: what is that strong also
-    /// keeps off the main light.
+    /// Strength of its shadow on the ground, from 0 (none) to 1. A body of strength 1 also blocks
+    /// the main light.
     pub shadow: f32,
 }
 
 /// A skinned mesh in a pose.
 #[derive(Clone, Debug)]
 pub struct Skin {
-    /// The mesh; many figures may share one.
+    /// The mesh, which figures may share.
     pub mesh: Arc<SkinnedMesh>,
     /// Its joints' `world_from_bind`, a range of [`Pane::joints`].
     pub joints: Range<usize>,
-    /// Colour; for a ghost the alpha says how much of it is seen. Where the mesh has colours of its
-    /// own, a solid body shows those.
+    /// Colour. The alpha of a ghost is its opacity. A mesh with colours of its own shows those on a
+    /// solid body.
     pub color: Color,
-    /// Whether every joint has a colour of its own instead, in [`Pane::joint_colors`].
+    /// Whether every joint has its own colour, in [`Pane::joint_colors`].
     pub colored: bool,
 }
 
-/// Meshes are large: one is itself and no other.
+/// Meshes are large, so they are compared by identity.
 impl PartialEq for Skin {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.mesh, &other.mesh)
@@ -63,60 +65,60 @@ impl PartialEq for Skin {
     }
 }
 
-/// How a skin follows its joints.
+/// The method by which a skin follows its joints.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Skinning {
-    /// The mean of the joints' motions, as dual quaternions: a twisted limb keeps its girth.
+    /// Dual quaternion skinning: the mean of the joints' motions. A twisted limb keeps its girth.
     #[default]
     Dual,
-    /// The mean of where each joint would take the point: a twisted limb collapses.
+    /// Linear blend skinning: the mean of the points moved by each joint. A twisted limb collapses.
     Linear,
 }
 
-/// Where a line is in the depth of the picture.
+/// The depth of a line in the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Layer {
-    /// Painted on the ground: behind every body.
+    /// On the ground, behind every body.
     #[default]
     Ground,
-    /// In space: hidden by the bodies before it.
+    /// In space, hidden by the bodies in front of it.
     Space,
     /// On top of everything.
     Over,
 }
 
-/// One straight piece of a line, of even width on the screen.
+/// A straight segment of a line, of constant width on the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stroke {
-    /// Where the piece before it starts; `from` itself where none is. It shapes the joint.
+    /// The start of the previous segment, which determines the joint; `from` if there is none.
     pub before: Vec3,
     /// Start, metres.
     pub from: Vec3,
     /// End, metres.
     pub to: Vec3,
-    /// Where the piece after it ends; `to` itself where none is.
+    /// The end of the next segment; `to` if there is none.
     pub after: Vec3,
     /// Colour at the start.
     pub color_from: Color,
     /// Colour at the end.
     pub color_to: Color,
-    /// Width in points (see [`Stage::pixels_per_point`]).
+    /// Width, points (see [`Stage::pixels_per_point`]).
     pub width: f32,
-    /// On the ground, in space, or over everything.
+    /// Depth in the picture.
     pub layer: Layer,
 }
 
 /// A ring on the ground: a planted foot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ring {
-    /// Its middle; the height is ignored.
+    /// Its centre; the height is ignored.
     pub center: Vec3,
     /// Radius of the middle of its line, metres.
     pub radius: f32,
-    /// Width of its line, metres; at least one and a half points are drawn.
+    /// Width of its line, metres; it is drawn at least one and a half points wide.
     pub width: f32,
     /// Colour of the line.
     pub color: Color,
-    /// How much of the colour fills the inside, 0–1.
+    /// Opacity of the inside, 0–1.
     pub fill: f32,
 }

@@ -1,4 +1,4 @@
-//! A result: its figure, the ghosts before and behind it, and the marks on it.
+//! A result: its figure, ghosts of earlier and later frames, and annotations.
 
 use crate::annotations::{add_axes, add_bones, add_contacts, add_joint_trail};
 use crate::context::{DrawContext, Shown};
@@ -8,10 +8,10 @@ use crate::{Pane, labs, sources, with_alpha};
 use segue_session::choices::Look;
 use segue_session::{Key, joint_of};
 
-/// How much of a body is seen where its bones shine through.
+/// Opacity of a body whose bones are shown.
 const GLASS_ALPHA: f32 = 0.5;
 
-/// Adds a result as it is now, with all that the parameters show of it.
+/// Adds a result in its current pose, with everything that the parameters show of it.
 pub(crate) fn add_result(shown: &Shown<'_>, context: &mut DrawContext<'_>, pane: &mut Pane) {
     let Shown { outcome, now, .. } = shown;
     let (params, look, colors) = (context.params, context.look, context.colors);
@@ -56,7 +56,7 @@ pub(crate) fn add_result(shown: &Shown<'_>, context: &mut DrawContext<'_>, pane:
     }
 }
 
-/// Adds the ghosts of the result a few steps earlier and later.
+/// Adds the ghosts of the result at some earlier and later times.
 fn add_onion_skin(shown: &Shown<'_>, context: &mut DrawContext<'_>, pane: &mut Pane) {
     let Shown { outcome, now, place, .. } = shown;
     let (params, colors) = (context.params, context.colors);

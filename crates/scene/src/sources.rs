@@ -1,4 +1,4 @@
-//! The clips that a result is made of, as ghosts.
+//! The source clips of a result, as ghosts.
 
 use crate::context::{DrawContext, GHOST_FADE_SECS, Shown};
 use crate::{Pane, labs, with_alpha};
@@ -30,8 +30,8 @@ pub(crate) fn add_sources(shown: &Shown<'_>, context: &mut DrawContext<'_>, pane
             Slot::A => inside * (1.0 - behind),
             Slot::B => (1.0 - inside) * (1.0 - before),
         };
-        // Half of the way there a ghost is as clear as it gets: only where it lies on the result it
-        // must not be seen.
+        // A ghost has its full opacity from half of the way on: only where it coincides with the
+        // result it must be invisible.
         let share = (2.0 * share).clamp(0.0, 1.0) as f32;
         if share < 0.02 || !(0.0..=source.motion.clip().duration_secs()).contains(&at) {
             continue;
@@ -41,7 +41,7 @@ pub(crate) fn add_sources(shown: &Shown<'_>, context: &mut DrawContext<'_>, pane
     }
 }
 
-/// Adds the clips that a result could not be made of, in its place.
+/// Adds the clips of a result that could not be made, in its place.
 pub(crate) fn add_stand_ins(
     refused: &segue_session::Pane,
     now: f64,

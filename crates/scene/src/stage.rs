@@ -2,14 +2,14 @@
 
 use crate::{Look, Pane};
 
-/// Everything that is to be seen in one rectangle of the page.
+/// Everything that is drawn in one rectangle of the page.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stage {
     /// The views, drawn in order.
     pub panes: Vec<Pane>,
     /// Colours and light.
     pub look: Look,
-    /// Physical pixels per point: widths of lines are in points.
+    /// Physical pixels per point. Line widths are in points.
     pub pixels_per_point: f32,
     /// Width of a cell of the grid on the ground, metres of the scene.
     pub grid_metres: f32,

@@ -1,4 +1,4 @@
-//! Where a pane lies in the picture.
+//! The rectangle of a pane.
 
 /// A rectangle in physical pixels, from the top left corner of its stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -11,7 +11,7 @@ pub struct Viewport {
 }
 
 impl Viewport {
-    /// Width over height; 1 for an empty one.
+    /// Returns width over height; 1 for an empty rectangle.
     #[must_use]
     pub fn aspect(&self) -> f32 {
         if self.width == 0 || self.height == 0 {
@@ -21,13 +21,13 @@ impl Viewport {
         }
     }
 
-    /// Width and height as a vector, pixels.
+    /// Returns width and height as a vector, pixels.
     #[must_use]
     pub fn size(&self) -> glam::Vec2 {
         glam::Vec2::new(self.width as f32, self.height as f32)
     }
 
-    /// `count` panes side by side in a stage of the given size, `gap` pixels apart.
+    /// Returns `count` rectangles side by side in a stage of the given size, `gap` pixels apart.
     pub fn columns(width: u32, height: u32, count: u32, gap: u32) -> impl Iterator<Item = Self> {
         let count = count.max(1);
         let inner = width.saturating_sub(gap * (count - 1));
@@ -43,7 +43,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn columns_fill_the_stage() {
+    fn columns_of_any_number_fill_the_stage() {
         let panes: Vec<_> = Viewport::columns(1000, 500, 3, 2).collect();
         assert_eq!(panes.len(), 3);
         assert_eq!(panes[2].x + panes[2].width, 1000);

@@ -69,7 +69,7 @@ fn lowest(limbs: &[Limb]) -> f32 {
 }
 
 #[test]
-fn an_adult_is_as_high_and_wide_as_an_adult_and_the_same_on_both_sides() {
+fn body_of_an_adult_has_its_height_and_width_and_is_symmetric() {
     let skeleton = adult();
     let body = Body::new(&skeleton, Some(&Roles::detect(&skeleton)));
     let limbs = rest_limbs(&skeleton, &body);
@@ -98,7 +98,7 @@ fn an_adult_is_as_high_and_wide_as_an_adult_and_the_same_on_both_sides() {
 }
 
 #[test]
-fn the_body_scales_with_the_skeleton_and_moves_with_it() {
+fn body_of_a_scaled_and_moved_skeleton_is_scaled_and_moved() {
     let skeleton = adult();
     let half = Skeleton::new(
         skeleton.joints().iter().map(|j| Joint { offset: j.offset * 0.5, ..j.clone() }).collect(),
@@ -127,8 +127,8 @@ fn the_body_scales_with_the_skeleton_and_moves_with_it() {
 }
 
 #[test]
-fn legs_that_rest_upside_down_get_the_same_shapes() {
-    // Some files let every bone of the resting skeleton point along one axis; a pose turns the legs
+fn body_with_legs_upside_down_at_rest_has_the_same_shapes() {
+    // In some files all bones of the resting skeleton point along one axis, and poses turn the legs
     // down. Knees and feet must look the same.
     let upright = adult();
     let mut joints = upright.joints().to_vec();
@@ -159,7 +159,7 @@ fn legs_that_rest_upside_down_get_the_same_shapes() {
 }
 
 #[test]
-fn any_tree_has_a_body_thicker_towards_its_root() {
+fn body_of_any_tree_is_thicker_towards_its_root() {
     let skeleton = adult();
     let limbs = rest_limbs(&skeleton, &Body::new(&skeleton, None));
     let radius_from = |a: Vec3| {
@@ -180,7 +180,7 @@ fn any_tree_has_a_body_thicker_towards_its_root() {
 }
 
 #[test]
-fn degenerate_skeletons_have_a_body_too() {
+fn body_of_a_degenerate_skeleton_is_finite() {
     let point = skeleton(&[("root", None, [0.0; 3])]);
     assert_eq!(rest_limbs(&point, &Body::new(&point, Some(&Roles::detect(&point)))).len(), 1);
     let flat = skeleton(&[
@@ -190,8 +190,7 @@ fn degenerate_skeletons_have_a_body_too() {
     ]);
     let limbs = rest_limbs(&flat, &Body::new(&flat, Some(&Roles::detect(&flat))));
     assert!(!limbs.is_empty() && limbs.iter().all(|l| l.radius_a > 0.0 && l.a.is_finite()));
-    // A pose with fewer joints than the body leaves the rest out, and one with numbers that are
-    // none too.
+    // A pose with fewer joints than the body, or with numbers that are not finite, has fewer limbs.
     let body = Body::new(&adult(), None);
     let mut out = Vec::new();
     body.limbs(
@@ -233,7 +232,7 @@ fn retargeted_character_follows_another_skeleton_and_takes_its_colours() {
     let hand = character.roles.get(Role::LeftHand).unwrap();
     assert_eq!(pane.joints.len(), character.skeleton.len());
     assert_eq!(pane.joint_colors[hand], gray(roles.get(Role::LeftHand).unwrap()));
-    // It goes where the clip goes, on its own legs.
+    // It follows the clip over the ground, on its own legs.
     let hips = character.roles.get(Role::Hips).unwrap();
     let there = walk.world_pose(10).positions[roles.get(Role::Hips).unwrap()];
     assert!(pane.joints[hips].translation.distance(there) < 0.3);
@@ -241,7 +240,7 @@ fn retargeted_character_follows_another_skeleton_and_takes_its_colours() {
 }
 
 #[test]
-fn girth_widens_and_lengthens_nothing() {
+fn girth_above_one_widens_limbs_and_keeps_their_lengths() {
     let skeleton = adult();
     let roles = Roles::detect(&skeleton);
     let limbs =

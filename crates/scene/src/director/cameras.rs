@@ -1,4 +1,4 @@
-//! Where the cameras of the panes go.
+//! The positions of the panes' cameras.
 
 use crate::context::{DrawContext, Shown};
 use crate::framing::{camera_of, middle_height};
@@ -9,24 +9,24 @@ use segue_motion::skeleton::Role;
 use segue_session::choices::Follow;
 use segue_session::{Key, Slot, joint_of};
 
-/// Half-life with which a camera that follows nothing comes to a new view, seconds.
+/// Half-life with which a camera that follows no character approaches a new view, seconds.
 const VIEW_HALF_LIFE_SECS: f32 = 0.06;
-/// The camera cuts to a followed character that jumped farther than this (a loop began again), and
-/// does not chase it.
+/// The distance within one frame from which a camera cuts to the followed character instead of
+/// moving there, metres: the motion has started again.
 const CUT_METRES: f32 = 1.5;
 
-/// What the camera of a pane is aimed at.
+/// The target of a pane's camera.
 pub(super) struct Aim {
-    /// The point that it follows; `None` when it follows nothing.
+    /// The point that it follows; `None` where it follows none.
     pub(super) followed: Option<Vec3>,
-    /// Where it rests otherwise.
+    /// The target where it follows none.
     pub(super) rest: Vec3,
-    /// How many times as large as its motion the figure is shown.
+    /// The ratio of the figure's visible size to that of its motion.
     pub(super) shown_size: f32,
 }
 
-/// Moves a pane's camera on to where the parameters want it: after the followed point, or to where
-/// it rests.
+/// Advances a pane's camera towards the view of the parameters: at the followed point, or at the
+/// resting target.
 pub(super) fn aim(
     rig: &mut CameraRig,
     aim: &Aim,
@@ -46,7 +46,7 @@ pub(super) fn aim(
     };
     let first = *rig == CameraRig::default();
     if context.highlights.path.is_held && !first {
-        // The ground must not move under the hand.
+        // The ground must not move while the user drags on it.
         pane.camera = *rig.camera();
         pane.focus = rig.goal.target.with_y(0.0);
         return;
@@ -61,7 +61,7 @@ pub(super) fn aim(
         } else {
             VIEW_HALF_LIFE_SECS
         };
-        // The hand turns and zooms at once; only what the camera follows is smoothed.
+        // The user's turns and zooms apply at once; only the followed point is smoothed.
         rig.update(half_life, dt_secs);
         rig.turn_at_once();
     }
@@ -69,7 +69,7 @@ pub(super) fn aim(
     pane.focus = goal.target.with_y(0.0);
 }
 
-/// Returns the point of the figure that the camera stays with; `None` when it follows nothing.
+/// Returns the point of the figure that the camera follows; `None` where it follows none.
 pub(super) fn followed_point(shown: &Shown<'_>, context: &mut DrawContext<'_>) -> Option<Vec3> {
     let (session, params, outcome) = (context.session, context.params, shown.outcome);
     let wanted = match params.choice::<Follow>() {
@@ -85,7 +85,7 @@ pub(super) fn followed_point(shown: &Shown<'_>, context: &mut DrawContext<'_>) -
     });
     let source_pose;
     let (motion, world) = match source {
-        // A character that is not on the stage is not followed; the result is, in its place.
+        // Where the followed character is not on the stage, the result is followed.
         None => match other.flatten() {
             None => (&outcome.motion, &shown.world),
             Some(motion) => {
@@ -104,7 +104,7 @@ pub(super) fn followed_point(shown: &Shown<'_>, context: &mut DrawContext<'_>) -
     let joint = joint_of(motion, params.text(Key::FollowJoint)).unwrap_or(0);
     let point = *body.drawn_pose(world).positions.get(body.drawn_joint(joint))?;
     let hips = motion.roles().get(Role::Hips).unwrap_or(0);
-    // Bobbing with every step makes an audience seasick: hips are followed over the ground, at the
-    // height of a standing body's middle.
+    // A view that bobs with every step is unpleasant: hips are followed over the ground, at a
+    // constant height.
     Some(if joint == hips { point.with_y(middle_height(motion)) } else { point })
 }

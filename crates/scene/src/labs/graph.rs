@@ -1,5 +1,5 @@
-//! The Graph lab: the windows of a transition, the clips that a walk is made of, and the line that
-//! it follows.
+//! The Graph lab: the windows of a transition, the clips of a walk, and the line that it is to
+//! follow.
 
 use crate::context::{DrawContext, GHOST_FADE_SECS, Shown};
 use crate::{Layer, Pane, with_alpha};
@@ -7,7 +7,8 @@ use glam::Vec3;
 use segue_motion::graph::Place;
 use segue_session::{BuiltGraph, Walk};
 
-/// Adds both windows of a transition where the result stands: their first, middle and last frame.
+/// Adds both windows of a transition at the position of the result: their first, middle and last
+/// frame.
 pub(crate) fn add_jump(
     shown: &Shown<'_>,
     [leave, enter]: [Place; 2],
@@ -40,7 +41,7 @@ pub(crate) fn add_jump(
     }
 }
 
-/// Adds the clips that a walk is made of around a transition.
+/// Adds the clips of a walk around a transition.
 pub(crate) fn add_walk_sources(
     shown: &Shown<'_>,
     walk: &Walk,
@@ -57,7 +58,7 @@ pub(crate) fn add_walk_sources(
     }
 }
 
-/// Adds the line that a walk is asked to follow.
+/// Adds the line that a walk is to follow.
 pub(crate) fn add_asked_path(context: &DrawContext<'_>, pane: &mut Pane) {
     let points = context.session.graph_path().iter().copied();
     let points = points.map(|point| Vec3::new(point.x as f32, 0.006, point.y as f32));

@@ -6,10 +6,10 @@ use crate::{Pane, with_alpha};
 use segue_motion::math::Planar;
 use segue_session::{DistanceMap, Key, Slot};
 
-/// The sources of a registered result walk this far to its left and right.
+/// Distance to the left and right of a registered result at which its sources are shown, metres.
 const BESIDE_METRES: f64 = 0.8;
 
-/// Adds a frame of A with one of B laid on it, where the result stands.
+/// Adds a frame of A and a frame of B aligned with it, at the position of the result.
 pub(crate) fn add_pair(
     shown: &Shown<'_>,
     frames: [f64; 2],
@@ -33,8 +33,7 @@ pub(crate) fn add_pair(
     }
 }
 
-/// Adds both sources beside a registered result, in the frames that it is made of, near the
-/// transition.
+/// Adds both sources beside a registered result near the transition, in the frames that it mixes.
 pub(crate) fn add_sources_beside(
     shown: &Shown<'_>,
     context: &mut DrawContext<'_>,
