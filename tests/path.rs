@@ -11,8 +11,8 @@ use segue_motion::clip::{Clip, ContactOptions, Contacts, Motion};
 use segue_motion::math::{Planar, quat};
 use segue_motion::metrics::MotionTrace;
 use segue_motion::path::{
-    Carried, CarryOptions, FitOptions, FittedPath, GroundSpline, MotionOptions, Offset,
-    Orientation, PathEdit, PathEditError, PathEditor, Pins, Road, SplineEnds, Timing, carry,
+    ArcLengthPath, Carried, CarryOptions, FitOptions, FittedPath, GroundSpline, MotionOptions,
+    Offset, Orientation, PathEdit, PathEditError, PathEditor, Pins, SplineEnds, Timing, carry,
     hard_turns,
 };
 use segue_motion::skeleton::Roles;
@@ -100,7 +100,7 @@ fn captured() -> Vec<Clip> {
 
 fn assert_same(path: &FittedPath, what: &str) {
     for options in every_option() {
-        let out = carry(path, path.road(), &options).expect("it is a path");
+        let out = carry(path, path.curve(), &options).expect("it is a path");
         let (far, turned) = difference(&out.clip, path.source().clip());
         assert!(far < 1e-4 && turned < 1e-4, "{what} {options:?}: {far} m, {turned} rad");
         assert!(hard_turns(path, &out).is_empty(), "{what}");
@@ -125,7 +125,7 @@ fn path_without_edits_keeps_the_motion() {
     for clip in captured() {
         let (source, _) = source(clip);
         let path = FittedPath::new(Arc::clone(&source), &options(8)).expect("it goes somewhere");
-        println!("{}: {:?}, {:.2} m", source.clip().name(), path.error(), path.road().length_m());
+        println!("{}: {:?}, {:.2} m", source.clip().name(), path.error(), path.curve().length_m());
         assert_same(&path, source.clip().name());
     }
 }
@@ -140,8 +140,8 @@ proptest! {
         let (source, _) = made(&presets()[preset].params);
         let path = FittedPath::new(source, &options(control_points)).unwrap();
         let planar = Planar::new(yaw, x, z);
-        let points = path.road().spline().points().iter().map(|&p| planar.apply_ground(p)).collect();
-        let moved = Road::new(GroundSpline::uniform(points).unwrap()).unwrap();
+        let points = path.curve().spline().points().iter().map(|&p| planar.apply_ground(p)).collect();
+        let moved = ArcLengthPath::new(GroundSpline::uniform(points).unwrap()).unwrap();
         let expected = path.source().clip().transformed(&planar);
         for timing in TIMINGS {
             let out = carry(&path, &moved, &CarryOptions { timing, ..CarryOptions::default() }).unwrap();
@@ -157,10 +157,10 @@ proptest! {
         let (source, _) = walk();
         let path = FittedPath::new(source, &options(6)).unwrap();
         let mut spline = GroundSpline::uniform(points.into_iter().map(DVec2::from).collect()).unwrap();
-        if let Ok(ring) = spline.edited(&PathEdit::Close, FREE).and_then(|ring| Road::new(ring.clone()).map(|_| ring)) && closed {
+        if let Ok(ring) = spline.edited(&PathEdit::Close, FREE).and_then(|ring| ArcLengthPath::new(ring.clone()).map(|_| ring)) && closed {
             spline = ring;
         }
-        let Ok(edited) = Road::new(spline) else { return Ok(()) };
+        let Ok(edited) = ArcLengthPath::new(spline) else { return Ok(()) };
         let original = path.source().clip();
         for options in every_option() {
             let out = carry(&path, &edited, &options).unwrap();
@@ -177,13 +177,13 @@ proptest! {
 }
 
 /// Returns a walk, its path, and the path with its middle dragged sideways.
-fn bow(by: f64) -> (FittedPath, Roles, Road) {
+fn bow(by: f64) -> (FittedPath, Roles, ArcLengthPath) {
     let (source, roles) = walk();
     let path = FittedPath::new(source, &options(8)).expect("a walk goes somewhere");
-    let spline = path.road().spline();
+    let spline = path.curve().spline();
     let to = spline.points()[4] + DVec2::new(by, 0.0);
     let edited = spline.edited(&PathEdit::Move { index: 4, to }, FREE).expect("the point is there");
-    (path, roles, Road::new(edited).expect("it has a length"))
+    (path, roles, ArcLengthPath::new(edited).expect("it has a length"))
 }
 
 /// The slow implementation beside the fast one: lengths by many chords, frames by small steps along
@@ -208,7 +208,7 @@ fn timing_by_metres_keeps_distances() {
         let place = spline.position(u);
         Planar::new(way.x.atan2(way.y), place.x, place.y)
     };
-    let (old, new) = (path.road().spline(), edited.spline());
+    let (old, new) = (path.curve().spline(), edited.spline());
     let (old_along, new_along) = (walked(old), walked(new));
     let clip = path.source().clip();
     for frame in (1..clip.frames() - 1).step_by(13) {
@@ -219,14 +219,14 @@ fn timing_by_metres_keeps_distances() {
         let expected = planar.apply(clip.root_translations()[frame]);
         assert!(out.clip.root_translations()[frame].distance(expected) < 1e-3, "{frame}");
     }
-    assert!((out.taken_m().end - out.taken_m().start - path.road().length_m()).abs() < 1e-6);
+    assert!((out.taken_m().end - out.taken_m().start - path.curve().length_m()).abs() < 1e-6);
     assert_eq!(out.clip.frames(), clip.frames());
 }
 
 #[test]
 fn timing_keeps_speed_or_duration() {
     let (path, _, edited) = bow(3.0);
-    assert!(edited.length_m() > 1.1 * path.road().length_m());
+    assert!(edited.length_m() > 1.1 * path.curve().length_m());
     let with = |timing| {
         let options = CarryOptions { timing, ..CarryOptions::default() };
         carry(&path, &edited, &options).unwrap()
@@ -236,7 +236,7 @@ fn timing_keeps_speed_or_duration() {
     assert!(whole(&speed) && whole(&duration));
     assert_eq!(duration.clip.frames(), path.source().clip().frames());
     let grown = speed.clip.frames() as f64 / duration.clip.frames() as f64;
-    assert!((grown - edited.length_m() / path.road().length_m()).abs() < 0.02, "{grown}");
+    assert!((grown - edited.length_m() / path.curve().length_m()).abs() < 0.02, "{grown}");
     // Frame by frame as fast as the original at the same moment.
     let fps = speed.clip.fps();
     for frame in 1..speed.clip.frames() {
@@ -299,7 +299,7 @@ fn path_with_unclamped_ends_is_the_same() {
                 ..Params::new(Action::Walk)
             });
             let options = FitOptions { ends, ..options(count) };
-            FittedPath::new(source, &options).unwrap().road().spline().clone()
+            FittedPath::new(source, &options).unwrap().curve().spline().clone()
         };
         let (clamped, uniform) = (with(SplineEnds::Clamped), with(SplineEnds::Uniform));
         assert_eq!((clamped.ends(), uniform.ends()), (SplineEnds::Clamped, SplineEnds::Uniform));
@@ -354,13 +354,14 @@ fn foot_lock_on_an_edited_path_plants_the_feet() {
         let (source, roles) = source(clip);
         let contacts = Contacts::detect(source.clip(), &roles, &ContactOptions::default());
         let path = FittedPath::new(source, &options(6)).unwrap();
-        let spline = path.road().spline();
+        let spline = path.curve().spline();
         // At right angles to the line between the ends.
         let way = spline.points()[5] - spline.points()[0];
         let to =
-            spline.points()[3] + way.perp().normalize_or_zero() * 0.15 * path.road().length_m();
+            spline.points()[3] + way.perp().normalize_or_zero() * 0.15 * path.curve().length_m();
         let edited =
-            Road::new(spline.edited(&PathEdit::Move { index: 3, to }, FREE).unwrap()).unwrap();
+            ArcLengthPath::new(spline.edited(&PathEdit::Move { index: 3, to }, FREE).unwrap())
+                .unwrap();
         let name = path.source().clip().name().to_owned();
         let editor = PathEditor::new(path, &roles, contacts);
         for timing in TIMINGS {
@@ -390,7 +391,7 @@ fn foot_lock_on_a_bent_path_keeps_the_yaw_of_feet() {
         let (source, roles) = made(&params);
         let contacts = Contacts::detect(source.clip(), &roles, &ContactOptions::default());
         let path = FittedPath::new(Arc::clone(&source), &options(6)).unwrap();
-        let spline = path.road().spline();
+        let spline = path.curve().spline();
         let way = spline.points()[5] - spline.points()[0];
         let edited =
             [(2, 0.25), (4, -0.25)].into_iter().fold(spline.clone(), |spline, (index, share)| {
@@ -402,7 +403,7 @@ fn foot_lock_on_a_bent_path_keeps_the_yaw_of_feet() {
             ..MotionOptions::default()
         };
         let editor = PathEditor::new(path, &roles, contacts);
-        let bent = editor.motion(&Road::new(edited).unwrap(), &options).unwrap();
+        let bent = editor.motion(&ArcLengthPath::new(edited).unwrap(), &options).unwrap();
         let skating = |clip: &Clip| MotionTrace::new(clip, &roles).skating_cm_per_sec().unwrap();
         let (original, locked) = (skating(source.clip()), skating(&bent.clip));
         assert!(locked < original.max(0.5), "{:?}: {original} → {locked} cm/s", params.action);
@@ -423,8 +424,8 @@ fn motion_beyond_the_end_of_a_path_continues() {
     (params.style.arm_swing, params.style.bounce) = (0.65, 0.25);
     let (source, _) = made(&params);
     let path = FittedPath::new(Arc::clone(&source), &FitOptions::default()).unwrap();
-    let shorter = path.road().spline().edited(&PathEdit::Scale { factor: 0.9 }, FREE).unwrap();
-    let shorter = Road::new(shorter).unwrap();
+    let shorter = path.curve().spline().edited(&PathEdit::Scale { factor: 0.9 }, FREE).unwrap();
+    let shorter = ArcLengthPath::new(shorter).unwrap();
     let carried = carry(&path, &shorter, &CarryOptions::default()).unwrap();
     let behind: Vec<usize> = (0..source.clip().frames())
         .filter(|&frame| path.places()[frame].along_m > shorter.length_m())
@@ -484,8 +485,8 @@ fn path_of_a_degenerate_motion_works_or_is_refused() {
     assert!(path.error().most_cm < 20.0, "{:?}", path.error());
     // A walk on a closed path continues around it.
     let (path, _, _) = bow(0.0);
-    let ring = path.road().spline().edited(&PathEdit::Scale { factor: 0.4 }, FREE).unwrap();
-    let ring = Road::new(ring.edited(&PathEdit::Close, FREE).unwrap()).unwrap();
+    let ring = path.curve().spline().edited(&PathEdit::Scale { factor: 0.4 }, FREE).unwrap();
+    let ring = ArcLengthPath::new(ring.edited(&PathEdit::Close, FREE).unwrap()).unwrap();
     let out = carry(&path, &ring, &CarryOptions::default()).unwrap();
     assert!(out.taken_m().end > 2.0 * ring.length_m());
     let steps = out.clip.root_translations().windows(2).map(|pair| pair[0].distance(pair[1]));

@@ -330,7 +330,7 @@ fn the_motion_without_its_path_stays_in_place_and_faces_one_way() {
 fn four_control_points_make_a_path_whose_residual_is_carried_along() {
     let session = opened("lab=path&a=walk_left&control_points=4");
     let own = outcome(&session, 0).path().expect("a path");
-    assert_eq!(own.road.spline().points().len(), 4);
+    assert_eq!(own.curve.spline().points().len(), 4);
     let error = number(&session, 0, "fit_rms_cm");
     let finer = number(&opened("lab=path&a=walk_left&control_points=16"), 0, "fit_rms_cm");
     assert!(finer < error);
@@ -458,7 +458,7 @@ fn the_path_of_an_unclamped_basis_begins_beside_its_first_control_point() {
     let link = "lab=path&a=walk_left&control_points=4&compare=path_spline:clamped,uniform";
     let session = opened(link);
     let [clamped, uniform] =
-        [0, 1].map(|pane| outcome(&session, pane).path().expect("a path").road.spline().clone());
+        [0, 1].map(|pane| outcome(&session, pane).path().expect("a path").curve.spline().clone());
     assert_eq!(uniform.ends(), SplineEnds::Uniform);
     assert_eq!(clamped.position(0.0), clamped.points()[0]);
     let p = uniform.points();

@@ -5,8 +5,8 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use glam::DVec2;
 use segue_motion::clip::{ContactOptions, Contacts, Motion};
 use segue_motion::path::{
-    CarryOptions, FitOptions, FittedPath, MotionOptions, PathEdit, PathEditor, Pins, Road, Timing,
-    carry,
+    ArcLengthPath, CarryOptions, FitOptions, FittedPath, MotionOptions, PathEdit, PathEditor, Pins,
+    Timing, carry,
 };
 use segue_motion::skeleton::Roles;
 use segue_motion::synth::Action;
@@ -32,13 +32,13 @@ fn dragging(c: &mut Criterion) {
         });
     });
     let path = FittedPath::new(source, &fit).expect("a walk goes somewhere");
-    let spline = path.road().spline().clone();
+    let spline = path.curve().spline().clone();
     let to = spline.points()[9] + DVec2::new(1.0, 0.5);
     let edited = || {
         let moved = spline
             .edited(&PathEdit::Move { index: 9, to: black_box(to) }, Pins::default())
             .expect("the point is there");
-        Road::new(moved).expect("it has a length")
+        ArcLengthPath::new(moved).expect("it has a length")
     };
     let editor = PathEditor::new(path, &roles, contacts);
     for (name, timing) in

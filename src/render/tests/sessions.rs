@@ -115,7 +115,7 @@ fn a_path_lies_on_the_stage_with_its_points_and_those_who_play_along() {
             while session.work() {}
             if name != "path-fitted" {
                 let outcome = Arc::clone(session.main_outcome().unwrap());
-                let spline = outcome.path().unwrap().road.spline();
+                let spline = outcome.path().unwrap().curve.spline();
                 let to = spline.points()[4] + glam::DVec2::new(-1.4, -1.9);
                 let edited =
                     spline.edited(&PathEdit::Move { index: 4, to }, Pins::default()).unwrap();

@@ -66,7 +66,7 @@ pub(super) fn path_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
     ui.add_space(space::S);
     let edited = path.filter(|path| path.is_edited);
     let detail = Detail {
-        help: edited.map(|path| text::own_points(path.road.spline().points().len())),
+        help: edited.map(|path| text::own_points(path.curve.spline().points().len())),
         ..Detail::default()
     };
     param_row_ui(Key::ControlPoints, &detail, session, out, ui);
@@ -142,7 +142,7 @@ fn points_ui(path: &OnPath, session: &Session, state: &mut UiState, out: &mut Ou
             }
         }
     });
-    let points = path.road.spline().points();
+    let points = path.curve.spline().points();
     let chosen = state.labs.path.chosen.and_then(|index| Some((index, *points.get(index)?)));
     let words = chosen.map_or_else(
         || text::POINTS_HELP.into(),
@@ -156,7 +156,7 @@ fn whole_ui(path: &OnPath, session: &Session, state: &mut UiState, out: &mut Out
     ui.label(RichText::new(tr(text::WHOLE_PATH, ui)).font(theme_of(ui).font(Type::Label)));
     let turn = |degrees: f64| PathEdit::Rotate { radians: degrees.to_radians() };
     let grid_m = session.params().number(Key::PathGrid);
-    let spline = path.road.spline();
+    let spline = path.curve.spline();
     let mut edits = vec![
         (text::TURN_LEFT, turn(TURN_DEG)),
         (text::TURN_RIGHT, turn(-TURN_DEG)),

@@ -28,7 +28,7 @@ pub(crate) fn framing(
     let extra = session.extra_characters().iter().filter_map(|extra| extra.motion.as_ref().ok());
     let extra = extra.flat_map(|motion| motion.ground_frames().iter().map(Planar::origin));
     let paths = session.panes().iter().filter_map(|pane| pane.outcome.as_ref()?.path());
-    let points = paths.flat_map(|path| path.road.spline().points());
+    let points = paths.flat_map(|path| path.curve.spline().points());
     let points = points.map(|point| Vec3::new(point.x as f32, 0.0, point.y as f32));
     let all = places.chain(extra).chain(points);
     let (low, high) =

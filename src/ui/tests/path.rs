@@ -11,7 +11,7 @@ fn path(harness: &Harness<'_, Page>) -> Arc<OnPath> {
 }
 
 fn points(harness: &Harness<'_, Page>) -> Vec<DVec2> {
-    path(harness).road.spline().points().to_vec()
+    path(harness).curve.spline().points().to_vec()
 }
 
 /// The page until the cameras of its panes are known, and the path is in sight.
@@ -233,7 +233,7 @@ fn buttons_edit_the_whole_path_and_reset_brings_it_back() {
         press(label, &mut harness);
         assert_ne!(points(&harness), before, "{label}");
     }
-    assert!(path(&harness).road.spline().is_closed());
+    assert!(path(&harness).curve.spline().is_closed());
     harness.get_by_label(text::OPEN_LOOP);
     picture("path-loop-dark", &mut harness);
     press("Pin the start", &mut harness);

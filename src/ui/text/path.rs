@@ -124,7 +124,7 @@ pub(crate) fn path_keep(word: PathKeep) -> &'static str {
 
 /// How long the path is, and was.
 pub(crate) fn path_lengths(path: &OnPath) -> Message {
-    let (now, before) = (path.road.length_m(), path.fitted.road().length_m());
+    let (now, before) = (path.curve.length_m(), path.fitted.curve().length_m());
     if path.is_edited {
         msg!("{now:.2} m, was {before:.2} m", now, before)
     } else {

@@ -434,12 +434,12 @@ impl<'a> TrialSession<'a> {
             return None;
         }
         let fitted = self.open(|ids| format!("lab=path&a={}", encoded(&ids[0]))).made.ok()?;
-        let road = &fitted.path()?.road;
-        let spline = road.spline();
+        let curve = &fitted.path()?.curve;
+        let spline = curve.spline();
         let points = spline.points();
         let chord = *points.last()? - *points.first()?;
         let aside = chord.perp().try_normalize().unwrap_or(glam::DVec2::X)
-            * (BULGE * road.length_m()).min(MAX_BULGE_M);
+            * (BULGE * curve.length_m()).min(MAX_BULGE_M);
         let last = (points.len() - 1) as f64;
         let moved = points.iter().enumerate().map(|(index, point)| {
             let share = index as f64 / last;

@@ -1,6 +1,6 @@
 //! Motion carried from its own path to an edited one.
 
-use super::{FittedPath, PathEditError, Road, Waypoint};
+use super::{ArcLengthPath, FittedPath, PathEditError, Waypoint};
 use crate::clip::{Clip, Contacts, JointTranslations};
 use crate::math::{Planar, curve, quat};
 use crate::skeleton::Side;
@@ -90,7 +90,7 @@ const WHOLE: f64 = 1e-6;
 /// [`PathEditError`] when the path has no length, or the result is not a valid clip.
 pub fn carry(
     path: &FittedPath,
-    edited: &Road,
+    edited: &ArcLengthPath,
     options: &CarryOptions,
 ) -> Result<Carried, PathEditError> {
     let clip = path.source().clip();
@@ -104,7 +104,7 @@ pub fn carry(
     for &frame in &frames {
         let (index, part) = path.between(frame);
         let parameter = path.parameter(frame);
-        let old = if part == 0.0 { path.places()[index] } else { path.road().at(parameter) };
+        let old = if part == 0.0 { path.places()[index] } else { path.curve().at(parameter) };
         let place = match options.timing {
             Timing::Metres if is_behind(edited, &old) => behind(path, edited, &old),
             Timing::Metres => edited.at_length_near(old.along_m, parameter),
@@ -137,16 +137,16 @@ pub fn carry(
 
 /// Returns whether a waypoint of the old path is farther from the start than the new path is long;
 /// a closed one has no end.
-fn is_behind(edited: &Road, old: &Waypoint) -> bool {
+fn is_behind(edited: &ArcLengthPath, old: &Waypoint) -> bool {
     !edited.spline().is_closed() && old.along_m > edited.length_m()
 }
 
 /// Returns the waypoint on the rest of the old path, joined to the end of the new one. If the path
 /// continued straight, a body that walks ahead would turn with every bend of the old path: fitted
 /// paths follow the sway of the hips, above all at their ends.
-fn behind(path: &FittedPath, edited: &Road, old: &Waypoint) -> Waypoint {
+fn behind(path: &FittedPath, edited: &ArcLengthPath, old: &Waypoint) -> Waypoint {
     let length = edited.length_m();
-    let (end, left) = (edited.at_length(length), path.road().at_length(length));
+    let (end, left) = (edited.at_length(length), path.curve().at_length(length));
     Waypoint { frame: end.frame.after(&left.frame.inverse()).after(&old.frame), ..*old }
 }
 
@@ -169,7 +169,7 @@ impl Carried {
 }
 
 /// Returns the frames of the original when speed is kept on the edited path.
-fn at_speed(path: &FittedPath, edited: &Road) -> Vec<f64> {
+fn at_speed(path: &FittedPath, edited: &ArcLengthPath) -> Vec<f64> {
     let fps = path.source().clip().fps();
     let along: Vec<f64> = path.parameters().iter().map(|&u| edited.length_at(u)).collect();
     // The time of every frame of the original on the new path, in frames.

@@ -1,7 +1,7 @@
 //! Edits of paths.
 
 use super::fit::{FitOptions, fit_with_knots};
-use super::{GroundSpline, PathEditError, Road, SplineEnds};
+use super::{ArcLengthPath, GroundSpline, PathEditError, SplineEnds};
 use crate::math::wrap_angle;
 use glam::DVec2;
 use std::f64::consts::TAU;
@@ -261,7 +261,7 @@ impl GroundSpline {
     /// Returns the direction from the start to the end; that of the start where they coincide.
     fn overall_yaw(&self) -> f64 {
         let way = self.points()[self.points().len() - 1] - self.points()[0];
-        if way.length() > super::road::MIN_LENGTH_M {
+        if way.length() > super::arc_length::MIN_LENGTH_M {
             way.x.atan2(way.y)
         } else {
             self.heading(0.0)
@@ -282,8 +282,8 @@ impl GroundSpline {
             (false, true) => all(&|p| p + (end - to)),
             (true, true) => {
                 let (way, own) = (end - start, to - from);
-                if way.length() < super::road::MIN_LENGTH_M
-                    || own.length() < super::road::MIN_LENGTH_M
+                if way.length() < super::arc_length::MIN_LENGTH_M
+                    || own.length() < super::arc_length::MIN_LENGTH_M
                 {
                     return all(&|p| p + (start - from));
                 }
@@ -302,13 +302,13 @@ impl GroundSpline {
         heading: impl Fn(f64, f64, f64) -> f64,
         to_loop: bool,
     ) -> Result<Self, PathEditError> {
-        let road = Road::new(self.clone())?;
+        let curve = ArcLengthPath::new(self.clone())?;
         let steps = self.points().len() * SAMPLES;
-        let along = |k: f64| road.length_m() * k / steps as f64;
+        let along = |k: f64| curve.length_m() * k / steps as f64;
         // Directions apply to the middle of each step.
         let mut headings: Vec<f64> = Vec::with_capacity(steps);
         for k in 0..steps {
-            let own = road.at_length(along(k as f64 + 0.5)).frame.yaw;
+            let own = curve.at_length(along(k as f64 + 0.5)).frame.yaw;
             headings.push(headings.last().map_or(own, |before| before + wrap_angle(own - before)));
         }
         let mean = headings.iter().sum::<f64>() / steps as f64;
@@ -325,7 +325,7 @@ impl GroundSpline {
         }
         // Each point keeps its parameter, so that frames stay in place.
         let parameters: Vec<f64> =
-            (0..=steps).map(|k| road.parameter_at(along(k as f64))).collect();
+            (0..=steps).map(|k| curve.parameter_at(along(k as f64))).collect();
         fit_with_knots(&points, &parameters, self.inner_knots(), &pinned_fit())
     }
 
@@ -338,16 +338,16 @@ impl GroundSpline {
             return Err(PathEditError::TooFewToClose { points: count, least: MIN_CLOSED });
         }
         let gap = self.points()[0] - self.points()[last];
-        if pins.start && pins.end && gap.length() > super::road::MIN_LENGTH_M {
+        if pins.start && pins.end && gap.length() > super::arc_length::MIN_LENGTH_M {
             return Err(PathEditError::Pinned);
         }
-        let road = Road::new(self.clone())?;
-        let near = gap.length() < NEARLY_CLOSED * road.length_m();
+        let curve = ArcLengthPath::new(self.clone())?;
+        let near = gap.length() < NEARLY_CLOSED * curve.length_m();
         let bent = if near {
             let g = self.greville();
             self.with_points(self.points().iter().zip(&g).map(|(&p, &g)| p + gap * g).collect())?
         } else {
-            let turn = road.total_turn();
+            let turn = curve.total_turn();
             let whole = (turn / TAU).round();
             let wanted = if whole == 0.0 { TAU.copysign(turn) } else { whole * TAU };
             self.bent(|heading, along, _| heading + (wanted - turn) * along, true)?
@@ -371,7 +371,7 @@ impl GroundSpline {
     }
 }
 
-impl Road {
+impl ArcLengthPath {
     /// Returns the total turn of the path from its start to its end, radians, positive to the left.
     fn total_turn(&self) -> f64 {
         let places = self.evenly(self.spline().points().len() * SAMPLES);

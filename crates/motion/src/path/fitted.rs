@@ -1,7 +1,7 @@
 //! A motion and the path fitted to it.
 
 use super::fit::{FitOptions, chord_parameters, extent, fit_spline};
-use super::{PathEditError, Road};
+use super::{ArcLengthPath, PathEditError};
 use crate::clip::Motion;
 use crate::math::{Planar, wrap_angle};
 use glam::DVec2;
@@ -17,7 +17,7 @@ const STANDS_M: f64 = 0.2;
 #[derive(Clone, Debug)]
 pub struct FittedPath {
     source: Arc<Motion>,
-    road: Road,
+    curve: ArcLengthPath,
     parameters: Vec<f64>,
     places: Vec<super::Waypoint>,
 }
@@ -58,9 +58,9 @@ impl FittedPath {
             return Err(PathEditError::Stands { extent_m });
         }
         let (parameters, _) = chord_parameters(&calm);
-        let road = Road::new(fit_spline(&way, &parameters, options)?)?;
-        let places = parameters.iter().map(|&u| road.at(u)).collect();
-        Ok(Self { source, road, parameters, places })
+        let curve = ArcLengthPath::new(fit_spline(&way, &parameters, options)?)?;
+        let places = parameters.iter().map(|&u| curve.at(u)).collect();
+        Ok(Self { source, curve, parameters, places })
     }
 
     /// Returns the motion.
@@ -71,8 +71,8 @@ impl FittedPath {
 
     /// Returns the path.
     #[must_use]
-    pub fn road(&self) -> &Road {
-        &self.road
+    pub fn curve(&self) -> &ArcLengthPath {
+        &self.curve
     }
 
     /// Returns the parameter of each frame on the path; not descending.

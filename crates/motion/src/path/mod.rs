@@ -25,7 +25,9 @@
 //! ```
 //! use glam::DVec2;
 //! use segue_motion::clip::{Clip, Motion};
-//! use segue_motion::path::{CarryOptions, FitOptions, FittedPath, PathEdit, Pins, Road, carry};
+//! use segue_motion::path::{
+//!     ArcLengthPath, CarryOptions, FitOptions, FittedPath, PathEdit, Pins, carry,
+//! };
 //! use segue_motion::skeleton::Roles;
 //! use segue_motion::synth::{Action, Params, synthesize};
 //! use std::sync::Arc;
@@ -37,15 +39,15 @@
 //! assert!(path.error().rms_cm < 5.0);
 //!
 //! // On its own path the walk is itself.
-//! let same = carry(&path, path.road(), &CarryOptions::default())?.clip;
+//! let same = carry(&path, path.curve(), &CarryOptions::default())?.clip;
 //! let mut pairs = same.root_translations().iter().zip(walk.root_translations());
 //! assert!(pairs.all(|(p, q)| p.distance(*q) < 1e-4));
 //!
 //! // The fourth control point half a metre to the left: the walk makes a curve.
-//! let spline = path.road().spline();
+//! let spline = path.curve().spline();
 //! let to = spline.points()[3] + DVec2::new(0.5, 0.0);
 //! let bow = spline.edited(&PathEdit::Move { index: 3, to }, Pins::default())?;
-//! let out = carry(&path, &Road::new(bow)?, &CarryOptions::default())?.clip;
+//! let out = carry(&path, &ArcLengthPath::new(bow)?, &CarryOptions::default())?.clip;
 //! let left = |clip: &Clip| clip.root_translations().iter().map(|p| p.x).fold(0.0, f32::max);
 //! assert!(left(&walk) < 0.05 && left(&out) > 0.25 && out.frames() == walk.frames());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -73,22 +75,22 @@
 use crate::clip::ClipError;
 use crate::transition::FootLockError;
 
+mod arc_length;
 mod carry;
 mod code;
 mod edit;
 mod fit;
 mod fitted;
 mod motion;
-mod road;
 mod spline;
 mod turning;
 
+pub use arc_length::{ArcLengthPath, Waypoint};
 pub use carry::{Carried, CarryOptions, Offset, Orientation, Timing, carry};
 pub use edit::{PathEdit, Pins};
 pub use fit::{FitOptions, MAX_SMOOTHING, drawn_path, fit_spline};
 pub use fitted::{FitError, FittedPath};
 pub use motion::{EditedMotion, MotionOptions, PathEditor, Slide};
-pub use road::{Road, Waypoint};
 pub use spline::{FARTHEST_M, GroundSpline, Jet, MAX_POINTS, MIN_POINTS, SplineEnds};
 pub use turning::{HardTurn, hard_turns, turn_rates};
 

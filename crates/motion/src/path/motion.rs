@@ -1,6 +1,8 @@
 //! The motion of an edited path.
 
-use super::{CarryOptions, FittedPath, HardTurn, PathEditError, Road, Waypoint, carry, hard_turns};
+use super::{
+    ArcLengthPath, CarryOptions, FittedPath, HardTurn, PathEditError, Waypoint, carry, hard_turns,
+};
 use crate::clip::{Clip, Contacts};
 use crate::math::Planar;
 use crate::metrics::foot_slide_cm;
@@ -83,7 +85,7 @@ impl PathEditor {
     /// of range, or the result is not a valid clip.
     pub fn motion(
         &self,
-        edited: &Road,
+        edited: &ArcLengthPath,
         options: &MotionOptions,
     ) -> Result<EditedMotion, PathEditError> {
         let carried = carry(&self.path, edited, &options.carry)?;

@@ -13,8 +13,8 @@ use segue_motion::clip::{Clip, Contacts, Motion};
 use segue_motion::math::Planar;
 use segue_motion::metrics::foot_slide_cm;
 use segue_motion::path::{
-    CarryOptions, EditedMotion, FitError, FitOptions, FittedPath, GroundSpline, HardTurn,
-    MotionOptions, Offset, Orientation, PathEditor, Road, SplineEnds, Timing, Waypoint,
+    ArcLengthPath, CarryOptions, EditedMotion, FitError, FitOptions, FittedPath, GroundSpline,
+    HardTurn, MotionOptions, Offset, Orientation, PathEditor, SplineEnds, Timing, Waypoint,
 };
 use segue_motion::transition::FootLocking;
 use segue_text::{Message, msg};
@@ -73,7 +73,7 @@ pub struct FittedMotion {
     motion: Arc<Motion>,
     options: FitOptions,
     editor: PathEditor,
-    road: Arc<Road>,
+    curve: Arc<ArcLengthPath>,
     error: FitError,
     errors_cm: Vec<[f64; 2]>,
 }
@@ -85,7 +85,7 @@ impl FittedMotion {
         Ok(Self {
             motion: Arc::clone(motion),
             options,
-            road: Arc::new(path.road().clone()),
+            curve: Arc::new(path.curve().clone()),
             error: path.error(),
             errors_cm: path
                 .places()
@@ -106,8 +106,8 @@ impl FittedMotion {
 
     /// Returns the fitted path.
     #[must_use]
-    pub fn road(&self) -> &Arc<Road> {
-        &self.road
+    pub fn curve(&self) -> &Arc<ArcLengthPath> {
+        &self.curve
     }
 
     /// Returns the place on the fitted path for every frame of the motion.
@@ -136,7 +136,7 @@ pub struct OnPath {
     /// The motion before it was edited.
     pub fitted: Arc<FittedMotion>,
     /// The edited path.
-    pub road: Arc<Road>,
+    pub curve: Arc<ArcLengthPath>,
     /// Whether it differs from the fitted path.
     pub is_edited: bool,
     /// The place on the path for every frame of the result.
@@ -295,15 +295,15 @@ fn carry_options(params: &Params) -> CarryOptions {
 }
 
 /// Returns the path, and the motion on it without foot lock.
-fn free_motion(inputs: &PathInputs) -> Result<(Arc<Road>, EditedMotion), LabError> {
+fn free_motion(inputs: &PathInputs) -> Result<(Arc<ArcLengthPath>, EditedMotion), LabError> {
     let fitted = &inputs.fitted;
-    let road = match &inputs.edited {
-        Some(edited) => Arc::new(Road::new(edited.clone())?),
-        None => Arc::clone(&fitted.road),
+    let curve = match &inputs.edited {
+        Some(edited) => Arc::new(ArcLengthPath::new(edited.clone())?),
+        None => Arc::clone(&fitted.curve),
     };
     let options = MotionOptions { carry: inputs.carry, foot_lock: None };
-    let made = fitted.editor.motion(&road, &options)?;
-    Ok((road, made))
+    let made = fitted.editor.motion(&curve, &options)?;
+    Ok((curve, made))
 }
 
 impl PathInputs {
@@ -326,7 +326,7 @@ impl PathInputs {
 
 impl LabInputs for PathInputs {
     fn run(&self) -> Result<Outcome, LabError> {
-        let (road, made) = free_motion(self)?;
+        let (curve, made) = free_motion(self)?;
         let fitted = &self.fitted;
         let free = Arc::new(made.clip);
         let (clip, slide_cm) = match &self.feet {
@@ -346,14 +346,14 @@ impl LabInputs for PathInputs {
             Metric::new(MetricId::FootSlideOriginal, made.slide_cm.original),
             Metric::new(MetricId::FitError, fitted.error.rms_cm),
             Metric::new(MetricId::LargestFitError, fitted.error.most_cm),
-            Metric::new(MetricId::PathLength, road.length_m()),
+            Metric::new(MetricId::PathLength, curve.length_m()),
             Metric::new(MetricId::HardTurns, made.hard_turns.len() as f64),
         ];
         if matches!(self.feet, Feet::AtOnce | Feet::Locked(_)) {
             metrics.push(slide_before(made.slide_cm.carried));
         }
         if self.edited.is_some() {
-            metrics.push(Metric::new(MetricId::OriginalPathLength, fitted.road.length_m()));
+            metrics.push(Metric::new(MetricId::OriginalPathLength, fitted.curve.length_m()));
         }
         let (frames, before) = (clip.frames(), fitted.motion.clip().frames().max(1));
         let seams = fitted.motion.seams_at(|frame| frame * frames / before);
@@ -366,7 +366,7 @@ impl LabInputs for PathInputs {
             sources: vec![PlacedClip::new(Slot::A, &fitted.motion, 0.0, Planar::IDENTITY)],
             facts: LabFacts::of(Arc::new(OnPath {
                 fitted: Arc::clone(fitted),
-                road,
+                curve,
                 is_edited: self.edited.is_some(),
                 places: made.places,
                 hard_turns: made.hard_turns,

@@ -4,7 +4,7 @@ use crate::ui::out::Out;
 use crate::ui::text;
 use glam::DVec2;
 use segue_motion::path::{
-    FitOptions, GroundSpline, PathEdit, PathEditError, Pins, Road, SplineEnds, drawn_path,
+    ArcLengthPath, FitOptions, GroundSpline, PathEdit, PathEditError, Pins, SplineEnds, drawn_path,
 };
 use segue_session::LabId;
 use segue_session::{Command, Key, List, OnPath, Pane, Session, Value, spline_ends};
@@ -80,11 +80,11 @@ impl PathHand {
         out: &mut Out,
     ) -> bool {
         // What the link can hold is what is shown.
-        let edited = edited.and_then(|spline| spline.rounded()).and_then(Road::new);
+        let edited = edited.and_then(|spline| spline.rounded()).and_then(ArcLengthPath::new);
         match edited {
-            Ok(road) => {
-                if session.params().edited_path() != Some(road.spline()) {
-                    out.set(Key::Path, List::EditedPath(Some(road.spline().clone())).into());
+            Ok(curve) => {
+                if session.params().edited_path() != Some(curve.spline()) {
+                    out.set(Key::Path, List::EditedPath(Some(curve.spline().clone())).into());
                 }
                 self.said = None;
                 true
@@ -120,7 +120,7 @@ impl PathHand {
 
     /// One more control point: behind the chosen one, or where there is most room.
     pub(crate) fn add_point(&mut self, path: &OnPath, session: &Session, out: &mut Out) {
-        let spline = path.road.spline();
+        let spline = path.curve.spline();
         let ends = spline.with_ends(SplineEnds::Clamped).greville();
         let gaps = || ends.windows(2).enumerate();
         let widest = gaps()
@@ -144,7 +144,7 @@ impl PathHand {
             self.said = Some(text::CHOOSE_POINT.into());
             return;
         };
-        let spline = path.road.spline();
+        let spline = path.curve.spline();
         if self.edit_once(spline, &PathEdit::Remove { index }, session, out) {
             self.chosen = Some(index.min(spline.points().len().saturating_sub(2)));
         }

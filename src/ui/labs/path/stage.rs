@@ -45,7 +45,7 @@ pub(crate) fn handles_ui(
         return;
     };
     let view = View { camera: &camera, rect };
-    let spline = path.road.spline();
+    let spline = path.curve.spline();
     let count = spline.points().len();
     state.labs.path.chosen = state.labs.path.chosen.filter(|&chosen| chosen < count);
     // Both ends of a loop are one point.
@@ -97,7 +97,7 @@ impl Handle<'_> {
             hand.held = Some(Held {
                 index,
                 pane,
-                start: path.road.spline().clone(),
+                start: path.curve.spline().clone(),
                 grip: pressed.map_or(DVec2::ZERO, |pressed| point - pressed),
             });
         }
@@ -151,7 +151,7 @@ impl Handle<'_> {
             let (sin, cos) = yaw.sin_cos();
             let by = DVec2::new(cos, -sin) * steps.x - DVec2::new(sin, cos) * steps.y;
             let to = snapped(point + by * step, session);
-            let spline = path.road.spline();
+            let spline = path.curve.spline();
             state.labs.path.edit_once(spline, &PathEdit::Move { index, to }, session, out);
         }
         if pressed(Modifiers::NONE, Keyboard::Delete)

@@ -27,7 +27,7 @@ fn line(points: usize) -> GroundSpline {
 }
 
 fn length(spline: &GroundSpline) -> f64 {
-    Road::new(spline.clone()).unwrap().length_m()
+    ArcLengthPath::new(spline.clone()).unwrap().length_m()
 }
 
 /// The largest distance between two paths at the same parameter.
@@ -179,7 +179,7 @@ fn an_eight_stays_an_eight() {
     let eight = path(&points);
     let closed = eight.edited(&PathEdit::Close, FREE).unwrap();
     assert!(apart(&eight, &closed) < 0.6, "{}", apart(&eight, &closed));
-    assert!(Road::new(closed).unwrap().total_turn().abs() < 0.5);
+    assert!(ArcLengthPath::new(closed).unwrap().total_turn().abs() < 0.5);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Tests of path fits.
 
 use super::*;
-use crate::path::Road;
+use crate::path::ArcLengthPath;
 use proptest::prelude::*;
 use std::collections::BTreeMap;
 
@@ -71,7 +71,7 @@ fn least_squares_are_those_of_scipy() {
 fn places_derivatives_lengths_and_inserted_knots_are_those_of_scipy() {
     for curve in golden().curves {
         let spline = GroundSpline::uniform(points(&curve.points)).unwrap();
-        let road = Road::new(spline.clone()).unwrap();
+        let path = ArcLengthPath::new(spline.clone()).unwrap();
         let near = |own: DVec2, other: [f64; 2], tolerance: f64| {
             own.distance(DVec2::from(other)) < tolerance
         };
@@ -88,7 +88,7 @@ fn places_derivatives_lengths_and_inserted_knots_are_those_of_scipy() {
             );
             let length = curve.length[k];
             assert!(
-                (road.length_at(at) - length).abs() < 1e-6 * (1.0 + length),
+                (path.length_at(at) - length).abs() < 1e-6 * (1.0 + length),
                 "{} {at} {length}",
                 curve.name
             );

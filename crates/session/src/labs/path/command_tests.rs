@@ -26,7 +26,7 @@ fn metric(session: &Session, id: MetricId) -> f64 {
 
 /// The present path with one point elsewhere.
 fn moved(session: &Session, index: usize, by: DVec2) -> Value {
-    let spline = path(session).road.spline();
+    let spline = path(session).curve.spline();
     let to = spline.points()[index] + by;
     List::EditedPath(spline.edited(&PathEdit::Move { index, to }, Pins::default()).ok()).into()
 }
@@ -70,7 +70,7 @@ fn a_dragged_point_takes_the_character_with_it_and_is_one_step() {
     let fitted = Arc::clone(&path(&session).fitted);
     for step in 1..=5 {
         let value = {
-            let spline = fitted.road().spline();
+            let spline = fitted.curve().spline();
             let to = spline.points()[4] + DVec2::new(0.2 * f64::from(step), 0.0);
             let edited = spline.edited(&PathEdit::Move { index: 4, to }, Pins::default());
             List::EditedPath(edited.ok()).into()
@@ -137,7 +137,7 @@ fn what_is_no_path_says_so_and_loses_nothing() {
     let eight = GroundSpline::uniform(eight.map(DVec2::from).to_vec()).unwrap();
     let closed = eight.edited(&PathEdit::Close, Pins::default()).unwrap();
     set(&mut session, Key::Path, List::EditedPath(Some(closed)).into());
-    assert!(path(&session).road.spline().is_closed());
+    assert!(path(&session).curve.spline().is_closed());
     assert!(metric(&session, MetricId::PathLength) > 5.0);
 }
 

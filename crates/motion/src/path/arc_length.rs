@@ -33,7 +33,7 @@ const SAME_M: f64 = 1e-8;
 /// of five nodes per piece, bisected until both halves agree with the whole to a micrometre. Only
 /// the tip of a hairpin, where the speed nearly vanishes, needs more parts.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Road {
+pub struct ArcLengthPath {
     spline: GroundSpline,
     /// The end of each part.
     parameters: Vec<f64>,
@@ -54,7 +54,7 @@ pub struct Waypoint {
     pub along_m: f64,
 }
 
-impl Road {
+impl ArcLengthPath {
     /// Measures a path.
     ///
     /// # Errors
