@@ -124,7 +124,7 @@ struct Feet {
 
 struct FootPoint {
     side: Side,
-    /// Over the ground, (x, z) in metres.
+    /// Trajectory over the ground, (x, z) in metres.
     way: Vec<DVec2>,
     /// Share of the body that it may carry by its height alone, 0 to 1.
     lows: Vec<f64>,
@@ -187,7 +187,7 @@ impl Feet {
                 (sum - weight * point.velocity(frame, fps), total + weight)
             })
         };
-        // Running sums, so that the time does not grow with the width.
+        // Prefix sums, so that the cost does not depend on the width of the mean.
         let mut sums = vec![(DVec2::ZERO, 0.0)];
         for frame in 0..frames {
             let (sum, total) = sums[frame];
@@ -204,7 +204,7 @@ impl Feet {
     }
 
     fn contacts(&self, carries: &[Vec<f64>], options: &ContactOptions, fps: f64) -> Contacts {
-        // At the height at which a foot comes down.
+        // The height below which a foot touches down.
         let share = options.enter_height_m / options.leave_height_m.max(options.enter_height_m);
         let least = (1.0 - f64::from(share)).powi(2).max(1e-6);
         let frames = self.points.first().map_or(0, |point| point.way.len());
@@ -258,7 +258,8 @@ impl Feet {
             yaw = if weights > 0.0 { sum / weights } else { 0.0 };
         }
         let turn = Planar { yaw, shift: DVec2::ZERO };
-        // Of each foot the point that goes backward most: it stands, while others roll about it.
+        // Of each foot the point that moves backward fastest: it stands, while the others roll
+        // about it.
         let step = |point: &FootPoint| point.way[frame] - turn.apply_ground(point.way[frame + 1]);
         let feet = Side::BOTH.into_iter().filter_map(|side| {
             let own = carrying().filter(|(point, _)| point.side == side);
@@ -284,8 +285,9 @@ impl FootPoint {
     }
 }
 
-/// Fills gaps between known steps evenly, from the mean of up to `reach` steps before to that of
-/// the steps behind; before the first known step and behind the last the body goes on in this way.
+/// Interpolates unknown steps between known ones, from the mean of up to `reach` steps before the
+/// gap to that of up to `reach` steps after it. Before the first known step and after the last one
+/// the body continues with the nearest such mean.
 fn bridge(steps: &mut [Option<Planar>], reach: usize) {
     let known = steps.to_vec();
     let mean = |run: &mut dyn Iterator<Item = &Option<Planar>>| {
@@ -302,7 +304,7 @@ fn bridge(steps: &mut [Option<Planar>], reach: usize) {
         let end = end.map_or(known.len(), |length| start + length);
         let before = mean(&mut known.iter().take(start).rev());
         let behind = mean(&mut known.iter().skip(end));
-        // A body whose feet only touch for a frame has no velocity.
+        // A body whose feet only touch the ground for a frame has no velocity.
         let (a, b) = (before.or(behind).unwrap_or_default(), behind.or(before).unwrap_or_default());
         let length = (end - start + 1) as f64;
         for (frame, step) in steps.iter_mut().enumerate().take(end).skip(start) {
@@ -317,8 +319,8 @@ fn bridge(steps: &mut [Option<Planar>], reach: usize) {
 }
 
 /// Returns the steps as means over the steps around them, weighted by a triangle of `reach` steps
-/// to both sides: a foot that begins or ceases to carry the body changes its step in one frame.
-/// Unknown steps count as none.
+/// to both sides, because the step of the body changes abruptly when a foot starts or stops
+/// carrying it. Unknown steps do not count.
 fn smoothed(steps: &[Option<Planar>], reach: usize) -> Vec<Planar> {
     let mean = |frame: usize| {
         let window = frame.saturating_sub(reach)..(frame + reach + 1).min(steps.len());
@@ -358,7 +360,7 @@ mod tests {
         character_frames(&back, roles)
     }
 
-    /// How far and how much turned the last frame is from the first, as seen from the first.
+    /// Returns the transform of the last frame relative to the first.
     fn whole(frames: &[Planar]) -> Planar {
         let (first, last) = (frames.first().expect("frames"), frames.last().expect("frames"));
         first.inverse().after(last)
@@ -458,7 +460,7 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(12))]
-        /// Where the clip in place lies, and what it faces, changes nothing of the way.
+        /// The position and facing of the clip in place do not change the trajectory.
         #[test]
         fn way_goes_with_the_place(yaw in -3.0f64..3.0, x in -5.0f64..5.0, z in -5.0f64..5.0) {
             let (clip, roles, frames) = made(&Params::new(Action::Walk));

@@ -35,7 +35,7 @@ pub struct Motion {
 }
 
 impl PartialEq for Motion {
-    /// What was not used yet is computed for the comparison.
+    /// Quantities that are computed on demand are computed here if necessary.
     fn eq(&self, other: &Self) -> bool {
         self.clip == other.clip
             && self.roles == other.roles
@@ -71,8 +71,8 @@ impl Motion {
         }
     }
 
-    /// Returns the motion of a clip whose ground frames ([`character_frames`]) are known, one per
-    /// frame. Where some are missing the last one stays; surplus ones are dropped.
+    /// Returns the motion of a clip with known ground frames ([`character_frames`]), one per frame.
+    /// Missing ones repeat the last one; surplus ones are ignored.
     #[must_use]
     pub fn with_ground_frames(
         clip: impl Into<Arc<Clip>>,
@@ -110,8 +110,8 @@ impl Motion {
         Self { seams, ..self }
     }
 
-    /// Returns the motion of a changed clip: one of as many frames, with these ground frames, in
-    /// which the same feet are planted on the same ground.
+    /// Returns the motion of a changed clip with as many frames: its ground frames are given, and
+    /// contacts and ground height are those of this motion.
     #[must_use]
     pub fn with_clip(&self, clip: impl Into<Arc<Clip>>, ground_frames: Vec<Planar>) -> Self {
         Self::with_ground_frames(clip, &self.roles, ground_frames)
@@ -127,7 +127,7 @@ impl Motion {
         Self::with_ground_frames(clip, &self.roles, ground_frames).with_feet(self.feet)
     }
 
-    /// Returns the same motion elsewhere on the ground ([`Clip::transformed`]).
+    /// Returns the same motion moved over the ground ([`Clip::transformed`]).
     #[must_use]
     pub fn moved(&self, world_from_clip: &Planar) -> Self {
         let frames =
@@ -140,8 +140,8 @@ impl Motion {
         }
     }
 
-    /// Returns the same motion with corrected roles. Roles that name joints that the skeleton does
-    /// not have, as those of another version of the clip may, are ignored.
+    /// Returns the same motion with corrected roles. Roles of joints that the skeleton does not
+    /// have, as they may be stored for another version of the clip, are ignored.
     #[must_use]
     pub fn with_corrected_roles(self, roles: &Roles) -> Self {
         let joints = self.clip.skeleton().len();
@@ -172,7 +172,7 @@ impl Motion {
         self.ground_frames.get_or_init(|| character_frames(&self.clip, &self.roles))
     }
 
-    /// Returns how its feet are read.
+    /// Returns the options by which its feet are read.
     #[must_use]
     pub fn feet(&self) -> FootOptions {
         self.feet
@@ -203,8 +203,8 @@ impl Motion {
         self.roles.body_height(self.clip.skeleton())
     }
 
-    /// Returns the frames in which one clip becomes another, in order: where a result was joined
-    /// from clips.
+    /// Returns the frames at which a result changes from one of its source clips to the next, in
+    /// order.
     #[must_use]
     pub fn seams(&self) -> &[Range<usize>] {
         &self.seams
@@ -231,8 +231,8 @@ impl Motion {
         self.seams.iter().map(|seam| frame(seam.start)..frame(seam.end)).collect()
     }
 
-    /// Returns the seams of a motion that is this one up to the seam `own`, then `next`, whose
-    /// frame `enter` plays where `own` begins.
+    /// Returns the seams of a motion that is this one up to frame `own`, followed by `next` from
+    /// its frame `enter` on.
     #[must_use]
     pub fn seams_joined(&self, own: &Range<usize>, next: &Self, enter: usize) -> Vec<Range<usize>> {
         let before = self.seams.iter().filter(|seam| seam.start < own.start);

@@ -9,28 +9,30 @@ use glam::{DVec2, Quat, Vec3};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// A spin is more yaw than this, degrees, in [`SPIN_SECS`].
+/// The least excess of yaw within [`SPIN_SECS`] that counts as a spin, degrees.
 const SPIN_DEG: f64 = 30.0;
-/// Seconds.
+/// The time within which spins are measured, seconds.
 const SPIN_SECS: f64 = 0.2;
-/// A flash is a step this many times as large as all but one in a thousand of the clips' own.
+/// The factor over the 99.9th percentile of the clips' own steps from which on a step counts as a
+/// flash.
 const FLASH: f32 = 2.0;
-/// Below this a joint is still, radians: what single precision and a capture at rest make of it.
+/// The least rotation per frame that counts as a movement of a joint, radians: less is rounding in
+/// single precision, or noise of a capture at rest.
 const STILL_RADIANS: f32 = 2e-3;
-/// Below this a root is still, metres.
+/// The least step that counts as a movement of a root, metres.
 const STILL_M: f32 = 5e-4;
-/// Below this difference of velocities, metres per second, there is no change of speed to wait for.
+/// The least difference of velocities for which a lag is measured, metres per second.
 const MIN_CHANGE_MPS: f64 = 0.1;
 
-/// What is usual in the clips of a set, measured once.
+/// The usual values of the clips of a set, measured once.
 #[derive(Clone, Debug)]
 pub struct WalkProfile {
     set: Arc<FrameSet>,
-    /// Per joint, 99th and 99.9th percentile of the turn from one frame to the next, radians.
+    /// Per joint, the 99th and 99.9th percentile of the turn from one frame to the next, radians.
     turns: Vec<[f32; 2]>,
-    /// Per joint, 99th percentile of the change of that turn.
+    /// Per joint, the 99th percentile of the change of that turn, radians.
     changes: Vec<f32>,
-    /// 99.9th percentile of the root's step, metres.
+    /// The 99.9th percentile of the root's step, metres.
     step: f32,
 }
 
@@ -43,8 +45,8 @@ impl WalkProfile {
         profile
     }
 
-    /// Likewise, with all joints still to be measured: call [`advance`](Self::advance) until it is
-    /// complete.
+    /// Returns a profile of which no joint is measured yet: call [`advance`](Self::advance) until
+    /// it is complete.
     #[must_use]
     pub fn begun(set: Arc<FrameSet>) -> Self {
         let steps = |clip: &Clip| -> Vec<f32> {
@@ -59,7 +61,7 @@ impl WalkProfile {
         }
     }
 
-    /// Measures up to so many more joints; `true` when all are measured.
+    /// Measures up to `joints` more joints; returns `true` when all are measured.
     pub fn advance(&mut self, joints: usize) -> bool {
         let set = &self.set;
         let all = set.clips().first().map_or(0, |source| source.clip().skeleton().len());
@@ -89,7 +91,7 @@ impl WalkProfile {
         })
     }
 
-    /// The character's step into a frame of a clip; behind its end, the last one.
+    /// Returns the character's step into a frame of a clip; after its end, the last step.
     fn step_into(&self, place: Place) -> Planar {
         let last = self.set.frames_of(place.clip).saturating_sub(1);
         self.set
@@ -98,50 +100,50 @@ impl WalkProfile {
     }
 }
 
-/// One transition of a walk, measured.
+/// The measurements of one transition of a walk.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Seam {
     /// The frame of the walk at which it begins.
     pub at: usize,
-    /// Frames that it takes.
+    /// Number of its frames.
     pub frames: usize,
-    /// The largest turn of a joint in one step, less the 99th percentile of that joint's in the
-    /// clips or what they do in the very frame, degrees.
+    /// The largest turn of a joint in one step, degrees, beyond the 99th percentile of that joint
+    /// in the clips or the turn in the clips' very frames, whichever is larger.
     pub turn_deg: f32,
-    /// Likewise the largest change of a joint's angular velocity from one step to the next, degrees
-    /// per second.
+    /// The largest change of a joint's angular velocity from one step to the next, degrees per
+    /// second, beyond the 99th percentile of that joint in the clips or the change in the clips'
+    /// very frames, whichever is larger.
     pub change_dps: f32,
-    /// The most yaw in 0.2 s or less that neither clip turns meanwhile, degrees.
+    /// The largest yaw within 0.2 s beyond that of both clips in the same time, degrees.
     pub spin_deg: f64,
-    /// The largest step of the root or turn of a joint, over the 99.9th percentile of the clips'
-    /// own, or what they do in the very frame if that is more: a jump that was recorded is none of
-    /// the walk's.
+    /// The largest step of the root or turn of a joint, as a multiple of the 99.9th percentile of
+    /// the clips' own or of the value in the clips' very frames, whichever is larger: a jump that
+    /// the capture contains is not attributed to the walk.
     pub flash: f32,
-    /// The joint of it; none where it is the root's step.
+    /// The joint of [`flash`](Self::flash); `None` where it is the root's step.
     pub flash_joint: Option<usize>,
-    /// How far a foot slides in the worst stance that touches it, centimetres; none where no foot
-    /// stands.
+    /// The slide of a foot in the worst stance that overlaps the transition, centimetres; `None`
+    /// without such stances.
     pub skate_cm: Option<f32>,
-    /// Seconds until the velocity has come 90 % of the way to the entered clip's; none where the
-    /// two are alike.
+    /// Seconds until the velocity has covered 90 % of the difference to the entered clip's; `None`
+    /// where the two are nearly equal.
     pub lag_s: Option<f64>,
 }
 
-/// A walk in numbers.
+/// The metrics of a walk.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 pub struct WalkMetrics {
-    /// Seconds that it takes.
+    /// Duration, seconds.
     pub secs: f64,
     /// The share of the set's frames that it plays at least once.
     pub variety: f64,
     /// Its transitions.
     pub seams: Vec<Seam>,
-    /// How far feet slide in stances that no transition touches, centimetres: the median, for
-    /// comparison.
+    /// The median slide of a foot in stances without a transition, centimetres, for comparison.
     pub own_skate_cm: Option<f32>,
 }
 
-/// What is read of a walk, frame by frame.
+/// The quantities of a walk that are read frame by frame.
 #[derive(Clone, Debug, Default)]
 struct Walked {
     steps: Vec<Planar>,
@@ -163,14 +165,14 @@ impl WalkMetrics {
         meter.metrics(profile)
     }
 
-    /// Transitions with more than 30° of yaw in 0.2 s that neither clip has.
+    /// Returns the number of transitions with more than 30° of yaw within 0.2 s beyond both clips.
     #[must_use]
     pub fn spins(&self) -> usize {
         self.seams.iter().filter(|seam| seam.spin_deg > SPIN_DEG).count()
     }
 
-    /// Transitions with a step of the root or of a joint of more than twice the 99.9th percentile
-    /// of the clips' own.
+    /// Returns the number of transitions with a step of the root or turn of a joint above twice the
+    /// 99.9th percentile of the clips' own.
     #[must_use]
     pub fn flashes(&self) -> usize {
         self.seams.iter().filter(|seam| seam.flash > FLASH).count()
@@ -195,29 +197,29 @@ fn turn(from: Quat, to: Quat) -> Vec3 {
     quat::log(to * from.conjugate())
 }
 
-/// Measures a walk piece by piece, as it is made.
+/// The measurement of a walk, piece by piece as it is made.
 #[derive(Clone, Debug)]
 pub struct WalkMeter {
     walked: Walked,
-    /// The first frame of the walk that is measured.
+    /// The first measured frame of the walk.
     first: Option<usize>,
-    /// Where each transition begins, and which it is.
+    /// The transitions, and the frames at which they begin.
     seams: Vec<(usize, PieceSeam)>,
-    /// Frames of a piece that is not measured to its end.
+    /// Number of frames that are measured of an incomplete piece.
     within: usize,
-    /// Per frame of the set.
+    /// Whether each frame of the set was played.
     seen: Vec<bool>,
     feet: [Vec<Vec3>; 2],
-    /// Per side: the first frame of the stance, and how far it has slid at most and by now.
+    /// Per side: the first frame of the stance, its greatest slide and its current slide, metres.
     stances: [Option<(usize, f32, Vec3)>; 2],
-    /// The last frame: where the character stands, its joints, its root.
+    /// The previous frame: ground frame, local rotations of the joints, and position of the root.
     before: Option<(Planar, Vec<Quat>, Vec3)>,
     turned: Vec<Vec3>,
     world_from_last: Planar,
 }
 
 impl WalkMeter {
-    /// Nothing is measured yet.
+    /// Returns a meter that has measured nothing yet.
     #[must_use]
     pub fn new(set: &FrameSet) -> Self {
         Self {
@@ -234,13 +236,13 @@ impl WalkMeter {
         }
     }
 
-    /// The next piece. O(frames × joints).
+    /// Measures the next piece. O(frames × joints).
     pub fn add(&mut self, piece: &WalkPiece, profile: &WalkProfile) {
         while !self.advance(piece, profile, usize::MAX) {}
     }
 
-    /// Up to so many frames more of a piece, at least one; `true` when all of it is measured. Until
-    /// then the next call is given the same piece.
+    /// Measures up to `frames` more frames of a piece, at least one; returns `true` when the piece
+    /// is complete. Until then every call must be given the same piece.
     pub fn advance(&mut self, piece: &WalkPiece, profile: &WalkProfile, frames: usize) -> bool {
         if self.within == 0 {
             self.begin(piece, profile);
@@ -313,8 +315,8 @@ impl WalkMeter {
         }
     }
 
-    /// What is known of the last piece is brought into the next one: nothing is compared far from
-    /// the origin.
+    /// Converts the last frame of the previous piece to the frame of reference of the next one, so
+    /// that nothing is compared far from the origin.
     fn bring_over(&mut self, here_from_last: &Planar) {
         for point in self.feet.iter_mut().flatten() {
             *point = here_from_last.apply(*point);
@@ -334,13 +336,14 @@ impl WalkMeter {
         }
     }
 
-    /// How many frames are measured.
+    /// Returns the number of measured frames.
     #[must_use]
     pub fn frames(&self) -> usize {
         self.walked.steps.len()
     }
 
-    /// What was measured so far. `profile` is the one that the pieces were measured by.
+    /// Returns the metrics of the frames measured so far. `profile` is the one with which the
+    /// pieces were measured.
     #[must_use]
     pub fn metrics(&self, profile: &WalkProfile) -> WalkMetrics {
         let fps = profile.set.fps();
@@ -371,7 +374,7 @@ impl WalkMeter {
 }
 
 impl Walked {
-    /// The step into a frame.
+    /// Measures the step into a frame.
     fn step(
         &mut self,
         before: Option<&(Planar, Vec<Quat>, Vec3)>,
@@ -395,7 +398,7 @@ impl Walked {
                 };
                 let (length, changed) =
                     (turn.length(), turned.get(joint).map_or(0.0, |before| before.distance(*turn)));
-                // What the clips do themselves is looked at only where it matters.
+                // The clips' own values are evaluated only where they matter.
                 if length / p999.max(STILL_RADIANS) > flash.0 {
                     let unusual = length / p999.max(STILL_RADIANS).max(sources.turn(joint));
                     if unusual > flash.0 {
@@ -440,7 +443,7 @@ impl<'a> Sources<'a> {
         found.fold(0.0, f32::max)
     }
 
-    /// The root's step into the frame, metres.
+    /// Returns the larger of the clips' own steps of the root into the frame, metres.
     fn step(&self) -> f32 {
         self.most(|clip, frame| {
             let roots = clip.root_translations();
@@ -448,7 +451,7 @@ impl<'a> Sources<'a> {
         })
     }
 
-    /// A joint's turn in the step into the frame, radians.
+    /// Returns the larger of the clips' own turns of a joint in the step into the frame, radians.
     fn turn(&self, joint: usize) -> f32 {
         self.most(|clip, frame| {
             let at = |frame: usize| clip.rotations(frame).get(joint).copied();
@@ -456,7 +459,7 @@ impl<'a> Sources<'a> {
         })
     }
 
-    /// How much that turn changes from the step before, radians.
+    /// Returns the larger of the clips' own changes of that turn from the step before, radians.
     fn change(&self, joint: usize) -> f32 {
         self.most(|clip, frame| turn_change(clip, frame.checked_sub(1)?, joint))
     }
@@ -498,8 +501,8 @@ fn seam(
     }
 }
 
-/// The most that the first turns beyond both others over any run of at most `longest` steps,
-/// radians.
+/// Returns the largest turn of the first beyond both others, over any run of at most `longest`
+/// steps, radians.
 fn spin(steps: &[[Planar; 3]], longest: usize) -> f64 {
     let mut worst = 0.0_f64;
     for start in 0..steps.len() {

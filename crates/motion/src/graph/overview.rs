@@ -7,33 +7,34 @@ use crate::registration::{DistanceMatrix, Progress};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The most cells of an overview to a side: 8 MB.
+/// The greatest number of cells of an overview to a side: 8 MB.
 const MAX_CELLS: usize = 2_000;
 
-/// All distances of a set from afar: of every square of [`block`](Self::block) × `block` windows
-/// the smallest, and how many pairs are how far apart. What is left of the matrix of all distances
-/// where that is not held; a [`CandidateStream`](super::CandidateStream) gives it.
+/// A coarse picture of all distances of a set: for every square of [`block`](Self::block) × `block`
+/// windows the smallest distance, and a histogram of all of them. It replaces the matrix of all
+/// distances where that does not fit into memory; a [`CandidateStream`](super::CandidateStream)
+/// makes it.
 ///
-/// Nearer by, a [`DistanceDetail`] is computed when it is looked at.
+/// A [`DistanceDetail`] computes the distances of a part of the matrix on demand.
 #[derive(Clone, Debug)]
 pub struct DistanceOverview {
     parts: Arc<Parts>,
     block: usize,
     side: usize,
-    /// Of blocks (row, column) with row ≤ column, row by row, metres; infinity where no window
-    /// starts.
+    /// Smallest distances of the blocks (row, column) with row ≤ column, row by row, metres;
+    /// infinity where no window starts.
     nearest_m: Vec<f32>,
-    /// They do not go beyond what fits: 93,000 frames have more pairs than that.
+    /// Counts saturate: 93,000 frames have more pairs than 32 bits can count.
     counts: Vec<u32>,
 }
 
 impl DistanceOverview {
     /// Width of a bin of the histogram, centimetres.
     pub const BIN_CM: f64 = 0.5;
-    /// Bins of the histogram; the last takes what is farther.
+    /// Number of bins of the histogram; the last one also counts all larger distances.
     pub const BINS: usize = 120;
 
-    /// Nothing is known yet.
+    /// Returns an overview without distances.
     pub(super) fn new(parts: Arc<Parts>) -> Self {
         let frames = parts.set().frames();
         let block = frames.div_ceil(MAX_CELLS).next_power_of_two();
@@ -47,12 +48,12 @@ impl DistanceOverview {
         }
     }
 
-    /// The distances of the windows of two parts a ≤ b.
+    /// Includes the distances of the windows of two parts a ≤ b.
     pub(super) fn take(&mut self, a: &Part, b: &Part, distances: &DistanceMatrix) {
         let bins_per_m = (self.set().cm_per_m() / Self::BIN_CM) as f32;
         let last = self.counts.len().saturating_sub(1);
         for (row, i) in a.numbers().zip(a.starts.start - a.from..) {
-            // Of a part with itself one half.
+            // Of a part with itself only one half counts.
             let first = b.number.max(row);
             let cells = distances
                 .row(i)
@@ -78,44 +79,44 @@ impl DistanceOverview {
         }
     }
 
-    /// Where a block with row ≤ column is kept.
+    /// Returns the index of the block (row, column), row ≤ column.
     fn at(&self, row: usize, column: usize) -> usize {
         row * (2 * self.side - row).saturating_sub(1) / 2 + column
     }
 
-    /// The frames that are compared.
+    /// Returns the frames that are compared.
     #[must_use]
     pub fn set(&self) -> &Arc<FrameSet> {
         self.parts.set()
     }
 
-    /// Frames of each window.
+    /// Returns the number of frames of each window.
     #[must_use]
     pub fn window(&self) -> usize {
         self.parts.window()
     }
 
-    /// Frames of a cell to a side, a power of two.
+    /// Returns the number of frames of a cell to a side, a power of two.
     #[must_use]
     pub fn block(&self) -> usize {
         self.block
     }
 
-    /// Cells that are held.
+    /// Returns the number of cells in memory.
     #[must_use]
     pub fn cells(&self) -> usize {
         self.nearest_m.len()
     }
 
-    /// How many pairs of windows lie in each of [`Self::BINS`] ranges of [`Self::BIN_CM`]. Every
-    /// pair counts once, a window with itself not.
+    /// Returns the number of pairs of windows in each of [`Self::BINS`] ranges of [`Self::BIN_CM`].
+    /// Every pair counts once; a window with itself does not count.
     #[must_use]
     pub fn histogram(&self) -> &[u32] {
         &self.counts
     }
 
-    /// The distance of the windows that start at two frames, centimetres, straight from the clips;
-    /// `None` where a window crosses the end of its clip.
+    /// Returns the distance of the windows that start at two frames, centimetres, computed from the
+    /// clips; `None` where a window crosses the end of its clip.
     #[must_use]
     pub fn cm(&self, a: Place, b: Place) -> Option<f64> {
         let (set, window) = (self.set(), self.window());
@@ -129,10 +130,10 @@ impl DistanceOverview {
         Some(set.rounded_cm(found.rms_m() as f32))
     }
 
-    /// A picture of a part of the matrix: `rows` and `columns` are frames of the set, every value
-    /// is the smallest distance (centimetres) in a square of `factor` × `factor` of them,
-    /// row-major; NaN where no window starts. It knows no more than the blocks do: squares that are
-    /// not made of whole blocks take all that they touch.
+    /// Returns a picture of a part of the matrix: `rows` and `columns` are frames of the set, every
+    /// value is the smallest distance (centimetres) in a square of `factor` × `factor` of them,
+    /// row-major; NaN where no window starts. Its resolution is that of the blocks: a square that
+    /// is not made of whole blocks includes all blocks that it overlaps.
     #[must_use]
     pub fn picture(&self, rows: Range<usize>, columns: Range<usize>, factor: usize) -> Vec<f32> {
         let (frames, scale) = (self.set().frames(), self.set().cm_per_m() as f32);
@@ -156,8 +157,8 @@ impl DistanceOverview {
         picture
     }
 
-    /// A picture as [`Self::picture`] gives it, made of the distances themselves. Nothing is
-    /// computed yet: call [`DistanceDetail::advance`].
+    /// Returns the computation of a picture as [`Self::picture`] describes it, from the distances
+    /// themselves. Nothing is computed yet: call [`DistanceDetail::advance`].
     #[must_use]
     pub fn detail(
         &self,
@@ -183,13 +184,13 @@ impl DistanceOverview {
     }
 }
 
-/// Frames `factor` by `factor`.
+/// Returns the number of squares of `factor` × `factor` frames.
 fn squares(of: Range<usize>, factor: usize, frames: usize) -> impl Iterator<Item = Range<usize>> {
     let (factor, end) = (factor.max(1), of.end.min(frames));
     (of.start.min(end)..end).step_by(factor).map(move |from| from..(from + factor).min(end))
 }
 
-/// A part of the matrix of all distances, computed tile by tile when it is looked at.
+/// The computation of a part of the matrix of all distances, tile by tile, on demand.
 #[derive(Clone, Debug)]
 pub struct DistanceDetail {
     parts: Arc<Parts>,
@@ -204,11 +205,11 @@ pub struct DistanceDetail {
 }
 
 impl DistanceDetail {
-    /// Computes up to `tiles` more tiles of at most 256 × 256 distances, 1.5 ms each, and says how
-    /// many are done.
+    /// Computes up to `tiles` more tiles of at most 256 × 256 distances, 1.5 ms each, and returns
+    /// the number of completed tiles.
     ///
     /// # Errors
-    /// [`GraphError::Registration`]; not for an overview that a stream gave.
+    /// [`GraphError::Registration`]; not for an overview that a stream made.
     pub fn advance(&mut self, tiles: usize) -> Result<Progress, GraphError> {
         let total = self.tiles.len();
         let end = self.done.saturating_add(tiles).min(total);
@@ -219,7 +220,8 @@ impl DistanceDetail {
         Ok(Progress { done: self.done, total })
     }
 
-    /// As far as it is computed, row-major; NaN where nothing is known, or no window starts.
+    /// Returns the computed part of the picture, row-major; NaN for squares without computed
+    /// distances or windows.
     #[must_use]
     pub fn picture(&self) -> &[f32] {
         &self.picture
@@ -229,7 +231,7 @@ impl DistanceDetail {
         let Some(&(a, b)) = self.tiles.get(at) else {
             return Ok(());
         };
-        // One tile stands for both of its places in the matrix.
+        // One tile covers both of its places in the symmetric matrix.
         let (Some(p), Some(q)) = (self.parts.made().get(a.min(b)), self.parts.made().get(a.max(b)))
         else {
             return Ok(());
@@ -246,14 +248,14 @@ impl DistanceDetail {
             let start = (row - self.rows.start) / self.factor * self.width;
             for column in columns.clone() {
                 let j = column - across.number + (across.starts.start - across.from);
-                // Of a part with itself, too, the two halves are the same.
+                // Of a part with itself the two halves are also equal.
                 let (i, j) = if row <= column { (i, j) } else { (j, i) };
                 let found = distances.get(i, j).map(|distance| distance * scale);
                 if let (Some(texel), Some(found)) = (
                     self.picture.get_mut(start + (column - self.columns.start) / self.factor),
                     found,
                 ) {
-                    // The smaller of the two, and not what is no number.
+                    // The smaller of the two; `min` ignores NaN.
                     *texel = texel.min(found);
                 }
             }

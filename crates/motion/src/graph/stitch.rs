@@ -10,79 +10,78 @@ use crate::transition::{
 use std::ops::Range;
 use std::sync::Arc;
 
-/// How much of what has played is kept for the next transition, seconds: a stride, over which its
-/// speed is taken.
+/// Duration of the played motion that is kept for the next transition, seconds: a stride, over
+/// which the steady velocity is averaged.
 const PAST_SECS: f64 = 1.0;
-/// How far beyond a transition the clip that is left is made for it, seconds, if the transition
-/// does not ask for more.
+/// The least time for which the clip that is left continues after a transition, seconds.
 const AHEAD_SECS: f64 = 0.5;
 
-/// A classic mistake in laying one clip on the other, for experiments.
+/// A classic mistake in aligning one clip with the other, for experiments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
 pub enum WalkMistake {
-    /// Only the entered clip's first frame is turned, in place of the whole clip: it begins in the
-    /// right place, and goes on in the direction in which it was recorded.
+    /// Only the entered clip's first frame is rotated, instead of the whole clip: it begins at the
+    /// right position and continues in the direction in which it was recorded.
     FirstFrameOnly,
-    /// The transform is applied to the entered clip's first frame alone: all others stay in the
-    /// place and the direction in which they were recorded, and the character goes back there.
+    /// The transform is applied to the entered clip's first frame only: all other frames keep their
+    /// recorded position and direction, and the character jumps back there.
     FirstFrameThenRecorded,
-    /// That of a single transition, made at each.
+    /// A mistake of a single transition, made at each one.
     Transition(Mistake),
 }
 
-/// How transitions are made.
+/// Options of the transitions of a walk.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct StitchOptions {
     /// The method.
     pub method: Method,
-    /// By what a clip is laid on the one that is left.
+    /// The alignment of the entered clip with the one that is left.
     pub align_by: AlignBy,
-    /// How the way over the ground is made.
+    /// The blending of root motion.
     pub root: RootBlend,
-    /// A mistake to be made.
+    /// A deliberate mistake.
     pub mistake: Option<WalkMistake>,
 }
 
 impl StitchOptions {
-    /// A method, with nothing wrong.
+    /// Returns the options of a method without mistakes.
     #[must_use]
     pub fn new(method: Method) -> Self {
         Self { method, align_by: AlignBy::default(), root: RootBlend::default(), mistake: None }
     }
 
-    /// A dissolve over the graph's blend window.
+    /// Returns the options of a dissolve over the graph's blend window.
     #[must_use]
     pub fn dissolve(window: usize) -> Self {
         Self::new(Method::Dissolve { window, law: WeightLaw::default() })
     }
 
-    /// Inertialization by a spring.
+    /// Returns the options of inertialization by a spring.
     #[must_use]
     pub fn inertialize(half_life_secs: f64) -> Self {
         Self::new(Method::Inertialize(Inertialization::Offset(Decay::Spring { half_life_secs })))
     }
 }
 
-/// A piece of a walk, from where one clip is entered to where the next is.
+/// A piece of a walk, from the entry of one clip to the entry of the next.
 #[derive(Clone, Debug)]
 pub struct WalkPiece {
-    /// The motion, near where its clip was recorded: a walk may go far, and single precision does
-    /// not.
+    /// The motion, near the recorded position of its clip, because single precision does not
+    /// suffice far from the origin.
     pub clip: Clip,
-    /// Where the piece lies in the walk's world, accumulated in double precision.
+    /// The transform of the piece, accumulated in double precision.
     pub world_from_piece: Planar,
-    /// Where the character stands and faces in every frame (`piece_from_character`).
+    /// The ground frame of the character in every frame (`piece_from_character`).
     pub frames: Vec<Planar>,
-    /// The number of its first frame in the walk.
+    /// The number in the walk of its first frame.
     pub start: usize,
-    /// What it plays.
+    /// The stay that it plays.
     pub stay: Stay,
-    /// The transition that it begins with; none in the first piece.
+    /// The transition with which it begins; `None` for the first piece.
     pub seam: Option<PieceSeam>,
 }
 
 impl WalkPiece {
-    /// The frame of a clip that has the greater part in a frame of the piece.
+    /// Returns the frame of a clip that has the greater weight in a frame of the piece.
     #[must_use]
     pub fn shown_at(&self, frame: usize) -> Place {
         match self.seam.filter(|seam| frame < seam.handover) {
@@ -95,20 +94,20 @@ impl WalkPiece {
 /// The transition at the start of a piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PieceSeam {
-    /// Where the last clip was left.
+    /// The frame at which the last clip was left.
     pub leave: Place,
-    /// Where this one was entered.
+    /// The frame at which this clip was entered.
     pub enter: Place,
-    /// Frames of the transition; they may reach into the next piece.
+    /// Number of frames of the transition, which may continue in the next piece.
     pub frames: usize,
-    /// The frame of the piece from which its own clip has the greater part.
+    /// The frame of the piece from which on its own clip has the greater weight.
     pub handover: usize,
 }
 
-/// Makes motion of the stays of a walk, piece by piece and without end.
+/// Conversion of the stays of a walk to motion, piece by piece and without end.
 ///
-/// A transition starts from what plays, not from the clip that is left: transitions may follow each
-/// other so fast that they overlap.
+/// A transition starts from the motion that is playing, not from the clip that is left, because
+/// transitions may overlap when they follow each other quickly.
 #[derive(Clone, Debug)]
 pub struct Stitcher {
     set: Arc<FrameSet>,
@@ -118,39 +117,39 @@ pub struct Stitcher {
     world_from_first: Planar,
 }
 
-/// What has played of the last piece, and what would have played on.
+/// The end of the last piece, with its continuation.
 #[derive(Clone, Debug)]
 struct Tail {
     source: Motion,
-    /// The first of its frames that has not been given out.
+    /// The first of its frames that has not been returned.
     leave: usize,
     world_from_here: Planar,
-    /// The frame of its clip that it would show next.
+    /// The frame of its clip that would be played next.
     place: Place,
 }
 
 impl Stitcher {
-    /// Nothing has played yet.
+    /// Returns a stitcher that has played nothing yet.
     #[must_use]
     pub fn new(set: Arc<FrameSet>, options: &StitchOptions) -> Self {
         Self { set, options: *options, playing: None, made: 0, world_from_first: Planar::IDENTITY }
     }
 
-    /// Where the first piece's clip lies in the walk's world, which it otherwise lies in as it was
-    /// recorded. For a stitcher that has made nothing yet.
+    /// Sets the transform of the first piece's clip; otherwise it keeps its recorded position. Must
+    /// be called before the first piece is made.
     pub fn start_at(&mut self, world_from_first: Planar) {
         self.world_from_first = world_from_first;
     }
 
-    /// The next piece. Stays come in the order in which a walk gives them; `graph` is the one it
-    /// goes through.
+    /// Returns the next piece. Stays must be passed in the order in which a walk returns them;
+    /// `graph` is the graph of that walk.
     ///
     /// # Errors
-    /// [`GraphError`] when a stay is none of the graph's, or a half-life is none.
+    /// [`GraphError`] when a stay is not part of the graph, or a half-life is out of range.
     pub fn stitch(&mut self, graph: &MotionGraph, stay: &Stay) -> Result<WalkPiece, GraphError> {
         let source = self.set.clip(stay.clip).ok_or(GraphError::NoClips)?;
         let frames = source.clip().frames();
-        // Checks the stay, too.
+        // This also checks the stay.
         source.clip().crop(stay.from..stay.to)?;
         let ahead = (AHEAD_SECS * self.set.fps()).round() as usize;
         let until = stay.to + ahead.max(graph.options().blend_window).min(frames - stay.to);
@@ -199,12 +198,12 @@ impl Stitcher {
         Ok(piece)
     }
 
-    /// Where the clip that a transition enters comes to lie on the one that it leaves, both as they
-    /// were recorded: `left_from_entered`. In a walk in which the clip that is left has played for
-    /// a while, that is where [`stitch`](Self::stitch) lays it, too.
+    /// Returns the transform by which a transition aligns the clip that it enters with the clip
+    /// that it leaves, both as recorded: `left_from_entered`. [`stitch`](Self::stitch) uses the
+    /// same one if the clip that is left has played for a while.
     ///
     /// # Errors
-    /// As [`stitch`](Self::stitch).
+    /// The same as for [`stitch`](Self::stitch).
     pub(super) fn placing(&self, jump: &Jump) -> Result<Planar, GraphError> {
         let secs = |secs: f64| (secs * self.set.fps()).round() as usize;
         let source = |place: Place| self.set.clip(place.clip).ok_or(GraphError::NoClips);
@@ -221,7 +220,7 @@ impl Stitcher {
         Ok(self.joined(&tail, &incoming, enter)?.tail_from_piece)
     }
 
-    /// Where the walk would go on in its present clip; none before the first piece.
+    /// Returns the next frame of the current clip; `None` before the first piece.
     #[must_use]
     pub fn place(&self) -> Option<Place> {
         self.playing.as_ref().map(|tail| tail.place)
@@ -277,15 +276,15 @@ impl Stitcher {
 }
 
 struct Joined {
-    /// The tail and the incoming clip, where the latter was recorded.
+    /// The tail and the incoming clip, as recorded.
     source: Motion,
     tail_from_piece: Planar,
     frames: usize,
     handover: usize,
 }
 
-/// Where the incoming clip comes to lie if only its first frame is turned: in the right place, and
-/// in the direction in which it was recorded.
+/// Returns the transform of the incoming clip if only its first frame is rotated: the right
+/// position and the recorded direction.
 fn first_frame_only(tail: &Tail, incoming: &Motion, enter: usize) -> Planar {
     let (Some(here), Some(there)) =
         (tail.source.ground_frames().get(tail.leave), incoming.ground_frames().get(enter))
@@ -297,8 +296,8 @@ fn first_frame_only(tail: &Tail, incoming: &Motion, enter: usize) -> Planar {
     Planar { shift, ..turned }
 }
 
-/// The incoming clip with the transform on its frames up to the one where it is entered, and where
-/// it was recorded from the next one on.
+/// Returns the incoming clip with the transform on its frames up to the one at which it is entered,
+/// and the following frames as recorded.
 fn first_frame_then_recorded(
     incoming: &Motion,
     enter: usize,
@@ -316,14 +315,14 @@ fn first_frame_then_recorded(
     incoming.same_body(clip.transformed_by_frame(&moves), frames.collect())
 }
 
-/// Some frames of a clip, with what is known of it.
+/// Returns some frames of a clip as a motion.
 fn part(source: &Motion, frames: Range<usize>) -> Result<Motion, GraphError> {
     let clip = source.clip().crop(frames.clone())?;
     Ok(source.same_body(clip, source.ground_frames().get(frames).unwrap_or_default().to_vec()))
 }
 
-/// The pieces as one clip in the walk's world, and where the character stands in each frame. `None`
-/// for no pieces.
+/// Returns the pieces as one clip in the walk's world, and the character's ground frame in each of
+/// its frames. `None` without pieces.
 ///
 /// # Errors
 /// [`GraphError::Clip`]; not for pieces of one walk.
@@ -335,20 +334,20 @@ pub fn assembled(pieces: &[WalkPiece]) -> Result<Option<(Clip, Vec<Planar>)>, Gr
     assembling.finish().map(Some)
 }
 
-/// [`assembled`] in slices. Between them it does not hold the pieces: every call is given the same
-/// ones.
+/// The computation of [`assembled`] in slices. It does not hold the pieces: every call must be
+/// given the same ones.
 #[derive(Debug)]
 pub struct Assembling {
     made: Assembly,
     frames: Vec<Planar>,
-    /// Frames in all.
+    /// Number of frames.
     count: usize,
-    /// The piece, and its frame, that come next.
+    /// The next piece, and the next frame in it.
     next: (usize, usize),
 }
 
 impl Assembling {
-    /// For the first `most` frames of the pieces; `None` for no pieces.
+    /// Begins the assembly of the first `most` frames of the pieces; `None` without pieces.
     #[must_use]
     pub fn new(pieces: &[WalkPiece], most: usize) -> Option<Self> {
         let count = pieces.iter().map(|piece| piece.clip.frames()).sum::<usize>().min(most);
@@ -364,8 +363,8 @@ impl Assembling {
         })
     }
 
-    /// Up to so many frames more, at least one; `true` when nothing is left to do. 10,000 frames of
-    /// 31 joints take about 3 ms.
+    /// Processes up to `frames` more frames, at least one; returns `true` when nothing is left to
+    /// do. 10,000 frames of 31 joints take about 3 ms.
     pub fn advance(&mut self, pieces: &[WalkPiece], frames: usize) -> bool {
         let mut left = frames.max(1).min(self.count - self.frames.len());
         while let (1.., Some(piece)) = (left, pieces.get(self.next.0)) {
@@ -384,7 +383,7 @@ impl Assembling {
         self.frames.len() >= self.count || self.next.0 >= pieces.len()
     }
 
-    /// What is assembled.
+    /// Returns the assembled clip and its ground frames.
     ///
     /// # Errors
     /// [`GraphError::Clip`]; not for pieces of one walk.

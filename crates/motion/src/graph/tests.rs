@@ -26,7 +26,7 @@ fn set_of(walks: &[Walk]) -> Arc<FrameSet> {
     Arc::new(FrameSet::new(sources.collect(), HEIGHT).unwrap())
 }
 
-/// A walk, a faster one that turns, and one that begins elsewhere and faces elsewhere.
+/// Returns a walk, a faster one that turns, and one with another position and facing.
 fn three(frames: [usize; 3]) -> Arc<FrameSet> {
     let walk = Walk::default();
     set_of(&[
@@ -108,7 +108,7 @@ fn frames_are_numbered_through() {
     ));
 }
 
-/// The overview is what one finds by looking at all distances, and so are its details.
+/// Checks that the overview and its details equal those computed from all distances.
 fn overview_is_of(overview: &DistanceOverview, all: &FrameDistances) {
     let (frames, block) = (all.set().frames(), overview.block());
     assert_eq!(overview.window(), all.window());
@@ -134,7 +134,7 @@ fn overview_is_of(overview: &DistanceOverview, all: &FrameDistances) {
     let same = |found: &[f32], wanted: &[f32], what: &str| {
         assert_eq!(found.len(), wanted.len(), "{what}");
         for (at, (found, wanted)) in found.iter().zip(wanted).enumerate() {
-            // The points lie about other centres: see the accuracy of `PairTerms`.
+            // The points are relative to other centres: see the accuracy of `PairTerms`.
             let alike = (found * found - wanted * wanted).abs() < 4e-3 + 2e-3 * wanted;
             assert!(alike || (found.is_nan() && wanted.is_nan()), "{what} {at}: {found} {wanted}");
         }
@@ -162,7 +162,7 @@ fn overview_is_of(overview: &DistanceOverview, all: &FrameDistances) {
     let off: usize = counts.0.iter().zip(&counts.1).map(|(a, b)| a.abs_diff(*b) as usize).sum();
     let total: usize = counts.0.iter().map(|&count| count as usize).sum();
     assert_eq!(total, counts.1.iter().map(|&count| count as usize).sum::<usize>());
-    // At the edge of a bin a last digit decides.
+    // At the edge of a bin the last digit decides.
     assert!(off * 200 <= total + 200, "{off} of {total}");
     for (a, b) in [(0, frames - 1), (frames / 2, 3), (4, 4)] {
         let (a, b) = (all.set().place(a).unwrap(), all.set().place(b).unwrap());
@@ -202,7 +202,7 @@ proptest! {
                 let fits = [p, q].iter().all(|place| place.frame + window <= set.frames_of(place.clip));
                 let found = distances.cm(p, q);
                 prop_assert_eq!(found.is_some(), fits);
-                // One in seven is enough.
+                // One candidate in seven is sufficient.
                 let Some(found) = found.filter(|_| (a + 3 * b) % 7 == 0) else { continue };
                 let source = |place: Place| set.clip(place.clip).unwrap().clip();
                 let direct = align_onto(source(p), p.frame, source(q), q.frame, window, set.weights(), 0.0).unwrap();
@@ -238,7 +238,7 @@ proptest! {
             prop_assert!((a.distance_cm - b.distance_cm).abs() < 0.0021);
         }
         if segment.is_none() {
-            // The slow way: every pair, and its neighbours.
+            // The slow way: every pair, compared with its neighbours.
             let distances = all.distances(window).unwrap();
             for found in held.found() {
                 let (a, b) = (found.leave, found.enter);
@@ -275,14 +275,14 @@ fn long_clips_are_tiled_without_a_gap() {
         .iter()
         .filter(|a| streamed.found().iter().any(|b| (a.leave, a.enter) == (b.leave, b.enter)))
         .count();
-    // Equal neighbours may change places by a last digit.
+    // Equal neighbours may swap places because of the last digit.
     assert!(
         same * 100 >= held.found().len() * 98
             && held.found().len().abs_diff(streamed.found().len()) * 100 <= held.found().len()
     );
 }
 
-/// What a sentence tells one to do, as options.
+/// Returns the options that an error message suggests.
 fn remedies(error: &GraphError, options: &GraphOptions) -> Vec<(&'static str, GraphOptions)> {
     let segments = |segment_size| GraphOptions {
         construction: Construction::Segments { segment_size },
@@ -320,8 +320,8 @@ fn remedies(error: &GraphError, options: &GraphOptions) -> Vec<(&'static str, Gr
     }
 }
 
-/// For every segment size and blend window there is a graph that can be walked, or a sentence; and
-/// what the sentence says does it.
+/// Every segment size and blend window gives a graph without dead ends, or an error whose advice
+/// leads to one.
 #[test]
 fn any_setting_answers() {
     let set = three([34, 25, 9]);
@@ -336,7 +336,7 @@ fn any_setting_answers() {
     for segment_size in 0..=36 {
         for blend_window in 1..=36 {
             for (threshold, min_jump_secs) in [(0.0, 0.05), (6.0, 0.05), (60.0, 0.05), (6.0, 0.6)] {
-                // 0 stands for the other construction.
+                // 0 stands for the construction by minima.
                 let construction = match segment_size {
                     0 => Construction::Minima,
                     segment_size => Construction::Segments { segment_size },
@@ -372,7 +372,8 @@ fn any_setting_answers() {
                             });
                             assert!(!is_same, "{sentence}: {remedy} {mended:?} {again:?}");
                         }
-                        // Each of them is named, and nothing is named that was not tried.
+                        // The message names each remedy that works, and only remedies that were
+                        // tried.
                         for word in ["lower", "raise", "cut"] {
                             let tried = mended
                                 .iter()
@@ -403,7 +404,7 @@ fn any_setting_answers() {
     assert!(kinds.len() >= 5, "{kinds:?}");
 }
 
-/// One short clip: the window leaves no room for the jump.
+/// With one short clip the window leaves no room for a jump.
 #[test]
 fn one_short_clip_is_told_what_would_do() {
     let set = set_of(&[Walk { frames: 60, ..Walk::default() }]);
@@ -457,7 +458,7 @@ fn a_long_walk_is_as_curious_as_a_short_one() {
         walker.visits().iter().zip(seen).map(|(now, seen)| now - seen).max().unwrap()
     };
     let (plain, early, late) = (most_seen(1.0, 30_000), most_seen(0.7, 0), most_seen(0.7, 30_000));
-    // By chance alone some place is seen again and again.
+    // A random walk without discounts visits some places again and again.
     assert!(late <= early && 10 * late < 7 * plain, "{plain} {early} {late}");
 }
 
@@ -597,8 +598,8 @@ fn a_constant_weight_of_going_on_stays_less_often_the_more_ways_lead_out() {
         of_nodes.sort_by(|a, b| a.0.total_cmp(&b.0));
         of_nodes
     };
-    // With the same constant, the more there is to choose from the less often the clip goes on;
-    // with 1,000 it nearly always does.
+    // With a constant weight, the probability to continue falls with the number of transitions;
+    // with a weight of 1,000 it is nearly 1.
     let (one, thousand) = (shares(1.0), shares(1_000.0));
     assert!(one.first().unwrap().1 > 1.5 * one.last().unwrap().1, "{one:?}");
     assert!(
@@ -644,7 +645,7 @@ fn a_pruned_graph_has_no_end_and_a_seed_gives_one_walk() {
     };
     assert_eq!(edges(5), edges(5));
     assert_ne!(edges(5), edges(6));
-    // A walk over the whole graph comes to an end, and stays there.
+    // A walk through the unpruned graph ends, and stays at its end.
     let whole = Arc::new(whole);
     let mut walker = walker(
         &whole,
@@ -679,7 +680,7 @@ fn a_clip_can_be_gone_to_and_what_was_seen_can_be_avoided() {
     };
     assert!(unseen(0.3) < unseen(1.0), "{} {}", unseen(0.3), unseen(1.0));
     assert!(self::walker(&graph, &weights, 4).with_visited_discount(1.5).is_err());
-    // Nothing of it is left, and still there is a way.
+    // All transitions are discounted to 0, and still a way is chosen.
     let mut all_seen = self::walker(&graph, &weights, 4).with_visited_discount(0.0).unwrap();
     assert!((0..500).all(|_| all_seen.next_edge().is_some()));
 }
@@ -703,7 +704,7 @@ fn pieces_follow_each_other_without_a_jump() {
                 (start, piece.stay.to - piece.stay.from)
             );
             start += piece.clip.frames();
-            // Behind the transition it is the clip itself, where it was recorded.
+            // After the transition it is the clip itself, as recorded.
             let settled = piece.seam.map_or(0, |seam| seam.frames);
             if let StitchOptions { method: crate::transition::Method::Dissolve { .. }, .. } = stitch
             {
@@ -809,7 +810,7 @@ fn a_path_is_followed() {
         found.looked_at
     );
     assert_eq!(follow(&graph, start, &path, 60_000, &stitched), found);
-    // In slices the same, with a best so far that comes ever farther.
+    // Slices give the same result, and the best walk so far gets longer.
     for nodes in [1, 700] {
         let mut search = FollowSearch::new(&graph, start, &path, 60_000, &stitched);
         let (mut before, mut slices) = (0.0, 0);
@@ -833,7 +834,7 @@ fn a_path_is_followed() {
             [pair[0], pair[1]].map(|edge| graph.graph().edge_endpoints(edge).unwrap());
         assert_eq!(before.1, after.0);
     }
-    // What is made of the way lies where the way was planned.
+    // The resulting motion follows the planned trajectory.
     for options in [StitchOptions::dissolve(12), StitchOptions::inertialize(0.1)] {
         let found = follow(&graph, start, &path, 6_000, &options);
         let mut stitcher = Stitcher::new(Arc::clone(graph.set()), &options);
@@ -854,7 +855,7 @@ fn a_path_is_followed() {
         let rms_m = f64::sqrt(square / frames);
         assert!((rms_m - found.rms_m).abs() < 0.05 * found.rms_m, "{rms_m} {}", found.rms_m);
     }
-    // A small budget gives a way, too, and hardly goes beyond.
+    // A small budget also gives a walk, and is hardly exceeded.
     let hasty = follow(&graph, start, &path, 40, &stitched);
     assert!(!hasty.edges.is_empty() && hasty.looked_at < 1_000);
     assert!(
@@ -931,7 +932,7 @@ fn a_clip_whose_first_frame_alone_is_moved_goes_back_to_where_it_was_recorded() 
             );
         }
     }
-    // In the frame of the seam it stands where the last clip does.
+    // In the frame of the seam it is at the position of the previous clip.
     let (_, frames) = assembled(&pieces).unwrap().unwrap();
     for piece in pieces.iter().filter(|piece| piece.seam.is_some()) {
         let step = frames[piece.start - 1].shift.distance(frames[piece.start].shift);
@@ -960,7 +961,7 @@ fn transitions_beyond_the_most_ways_out_are_counted() {
             .map(|jump| jump.distance_cm)
             .collect::<Vec<_>>();
         assert!(jumps.len() <= 2);
-        // The closest stay.
+        // The stay that comes closest.
         let mut of_all = graph
             .graph()
             .edges(node)

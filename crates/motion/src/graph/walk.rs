@@ -23,7 +23,7 @@ pub struct Stay {
     pub from: usize,
     /// One past the last frame: where the next transition leaves it.
     pub to: usize,
-    /// The transition into it, its index in [`MotionGraph::jumps`]; none for the first stay.
+    /// The transition into it, its index in [`MotionGraph::jumps`]; `None` for the first stay.
     pub jump: Option<usize>,
 }
 
@@ -116,7 +116,8 @@ impl Walker {
         };
         self.ahead.clear();
         for pair in nodes.windows(2) {
-            // Of several transitions between the same two nodes the closest, which was added first.
+            // Of several transitions between the same two nodes the closest is taken, which was
+            // added first.
             let between = graph.edges_connecting(pair[0], pair[1]).map(|edge| edge.id());
             let shortest = between.min_by_key(|&edge| (self.graph.frames_of(edge), edge));
             self.ahead.extend(shortest);

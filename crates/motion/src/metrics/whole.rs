@@ -159,7 +159,7 @@ mod tests {
         let (clip, roles) = walk();
         let half = clip.frames() / 2;
         let before = measured(&clip, &roles);
-        // A step aside of 10 cm, and sunk by 3 cm from there on.
+        // A step of 10 cm to the side, and 3 cm lower from there on.
         let sunk = changed(&clip, |frame, root| {
             if frame >= half {
                 *root += Vec3::new(0.1, -0.03, 0.0);

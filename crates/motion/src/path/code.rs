@@ -144,7 +144,7 @@ fn read(bytes: &mut impl Iterator<Item = u8>) -> Result<u64, PathEditError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::path::FARTHEST_M;
+    use crate::path::MAX_DISTANCE_M;
     use proptest::prelude::*;
 
     proptest! {
@@ -175,7 +175,7 @@ mod tests {
         #[test]
         fn from_code_of_any_text_does_not_panic(word in "[A-Za-z0-9_-]{0,60}") {
             if let Ok(path) = GroundSpline::from_code(&word) {
-                prop_assert!(path.points().iter().all(|p| p.abs().max_element() <= FARTHEST_M));
+                prop_assert!(path.points().iter().all(|p| p.abs().max_element() <= MAX_DISTANCE_M));
             }
         }
     }

@@ -91,7 +91,7 @@ pub use edit::{PathEdit, Pins};
 pub use fit::{FitOptions, MAX_SMOOTHING, drawn_path, fit_spline};
 pub use fitted::{FitError, FittedPath};
 pub use motion::{EditedMotion, MotionOptions, PathEditor, Slide};
-pub use spline::{FARTHEST_M, GroundSpline, Jet, MAX_POINTS, MIN_POINTS, SplineEnds};
+pub use spline::{GroundSpline, Jet, MAX_DISTANCE_M, MAX_POINTS, MIN_POINTS, SplineEnds};
 pub use turning::{HardTurn, hard_turns, turn_rates};
 
 /// Error fitting, editing or following a path.
@@ -122,7 +122,7 @@ pub enum PathEditError {
         points: usize,
     },
     /// A point that is not finite, or too far from the origin.
-    #[error("point {index} is not within {FARTHEST_M} m of the origin")]
+    #[error("point {index} is not within {MAX_DISTANCE_M} m of the origin")]
     Point {
         /// Index of the point.
         index: usize,

@@ -5,65 +5,67 @@ use glam::DVec2;
 
 /// The degree of every path.
 const DEGREE: usize = 3;
-/// The fewest control points that a cubic has.
+/// The least number of control points of a cubic.
 pub const MIN_POINTS: usize = DEGREE + 1;
-/// The most control points of a path: far more than a hand can hold apart, and few enough for a
-/// link.
+/// The greatest number of control points of a path: more than can be told apart on screen, and few
+/// enough for a link.
 pub const MAX_POINTS: usize = 256;
-/// The farthest that a control point may lie from the origin, metres.
-pub const FARTHEST_M: f64 = 10_000.0;
-/// Two knots are at least this far apart, in the parameter.
+/// The greatest distance of a control point from the origin, metres.
+pub const MAX_DISTANCE_M: f64 = 10_000.0;
+/// The least distance between two knots, in the parameter.
 const MIN_SPAN: f64 = 1e-4;
-/// A new knot keeps farther away, so that the rounding of a link does not bring it too close.
+/// The least distance of a new knot from others: a little more, so that rounding in a link does not
+/// bring it too close.
 const MIN_INSERT: f64 = 1e-3;
-/// A shorter derivative has no direction of its own, metres per unit of the parameter.
+/// A shorter derivative does not determine a direction, metres per unit of the parameter.
 const MIN_SPEED: f64 = 1e-6;
 
-/// Where a path lies beside its first and its last control point.
+/// The position of a path relative to its first and its last control point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum SplineEnds {
-    /// It begins in the first and ends in the last: the outer knots coincide.
+    /// It starts in the first and ends in the last control point: the outer knots coincide.
     #[default]
     Clamped,
-    /// It begins and ends between three points: the knots go on evenly beyond its ends, and every
-    /// piece has the same matrix (1, 4, 1)/6.
+    /// It starts and ends between three control points: the knots continue evenly beyond its ends,
+    /// and every piece has the same matrix (1, 4, 1)/6.
     Uniform,
 }
 
 /// A path over the ground: a cubic B-spline in (x, z), metres, over the parameter `[0, 1]`.
 ///
-/// Clamped, which is how it is fitted and edited, it starts in its first control point and ends in
-/// its last; [`Self::with_ends`] gives the same curve the control points of an unclamped one. Knots
-/// are uniform as fitted; [`PathEdit::Insert`](super::PathEdit::Insert) adds one where it is asked
-/// to. Position, direction and curvature are continuous (C²). A *closed* path ends where it starts,
-/// in the same direction (C¹ there). Source: de Boor, A Practical Guide to Splines, chapters IX and
-/// X.
+/// It is fitted and edited in clamped form, in which it starts in its first control point and ends
+/// in its last; [`Self::with_ends`] returns the control points of the same curve in unclamped form.
+/// Knots are uniform after a fit; [`PathEdit::Insert`](super::PathEdit::Insert) adds one at any
+/// parameter. Position, direction and curvature are continuous (C²). A *closed* path ends at its
+/// start, in the same direction (C¹ there). Source: de Boor, A Practical Guide to Splines, chapters
+/// IX and X.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroundSpline {
     points: Vec<DVec2>,
-    /// All knots: four up to 0, the inner ones, four from 1 on.
+    /// All knots: four at most 0, the inner ones, four at least 1.
     knots: Vec<f64>,
     closed: bool,
-    /// The same curve piece by piece, made of the points and knots.
+    /// The same curve as polynomials, computed from points and knots.
     pieces: Vec<Piece>,
 }
 
-/// A polynomial piece of a path: what is asked for many times under a moving hand.
+/// A polynomial piece of a path, stored because it is evaluated many times while the path is
+/// dragged.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Piece {
-    /// The parameter at which it begins.
+    /// The parameter at its start.
     start: f64,
-    /// Place, derivatives by the parameter there, each divided by its factorial.
+    /// Position and derivatives by the parameter at its start, each divided by its factorial.
     powers: [DVec2; 4],
 }
 
 impl Piece {
-    /// The piece from knot `span` on.
+    /// Returns the piece that starts at knot `span`.
     fn new(points: &[DVec2], knots: &[f64], span: usize) -> Self {
         let t = &knots[span + 1 - DEGREE..=span + DEGREE];
         let p = &points[span - DEGREE..=span];
-        // Differences of the control points are the control points of the derivatives, of lower
-        // degree.
+        // Differences of the control points are the control points of the derivatives, which have a
+        // lower degree.
         let d = |i: usize| (p[i + 1] - p[i]) * (3.0 / (t[i + 3] - t[i]).max(f64::MIN_POSITIVE));
         let first = [d(0), d(1), d(2)];
         let dd = |i: usize| {
@@ -85,14 +87,14 @@ impl Piece {
         }
     }
 
-    /// The polar form of the piece: the control point of a B-spline whose three inner knots these
-    /// are (Ramshaw, Blossoms are Polar Forms, 1989).
+    /// Returns the polar form of the piece: the control point of a B-spline with these three inner
+    /// knots (Ramshaw, Blossoms are Polar Forms, 1989).
     fn blossom(&self, knots: [f64; 3]) -> DVec2 {
         let ([r, s, t], [a, b, c, d]) = (knots.map(|knot| knot - self.start), self.powers);
         a + b * ((r + s + t) / 3.0) + c * ((r * s + s * t + t * r) / 3.0) + d * (r * s * t)
     }
 
-    /// The first derivative by the parameter.
+    /// Returns the first derivative by the parameter.
     pub(super) fn first(&self, parameter: f64) -> DVec2 {
         let (s, [_, b, c, d]) = (parameter - self.start, self.powers);
         b + (c * 2.0 + d * (3.0 * s)) * s
@@ -108,7 +110,7 @@ impl Piece {
     }
 }
 
-/// A place on a path, and how the path runs there.
+/// Position and derivatives at a point of a path.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Jet {
     /// (x, z), metres.
@@ -120,7 +122,7 @@ pub struct Jet {
 }
 
 impl Jet {
-    /// The curvature, 1/m, positive to the left (about +Y); 0 where the path stands.
+    /// Returns the curvature, 1/m, positive to the left (about +Y); 0 where the speed is 0.
     #[must_use]
     pub fn curvature(&self) -> f64 {
         let speed = self.first.length();
@@ -131,21 +133,22 @@ impl Jet {
 }
 
 impl GroundSpline {
-    /// The path of these control points with uniform knots.
+    /// Returns the path of these control points with uniform knots.
     ///
     /// # Errors
-    /// [`PathEditError`] for fewer than [`MIN_POINTS`], more than [`MAX_POINTS`], or a point
-    /// that is farther away than [`FARTHEST_M`] or no number.
+    /// [`PathEditError`] for fewer than [`MIN_POINTS`] or more than [`MAX_POINTS`] points, and for
+    /// a point that is not finite or farther from the origin than [`MAX_DISTANCE_M`].
     pub fn uniform(points: Vec<DVec2>) -> Result<Self, PathEditError> {
         let knots = uniform_knots(points.len());
         Self::with_knots(points, &knots)
     }
 
-    /// The path of these control points with these inner knots, which rise strictly between 0 and
-    /// 1: four fewer than points.
+    /// Returns the path of these control points with these inner knots: four fewer than points,
+    /// strictly increasing between 0 and 1.
     ///
     /// # Errors
-    /// As [`Self::uniform`], and for knots that do not fit or come too close to each other.
+    /// The same as for [`Self::uniform`], and for knots that do not fit or are too close to each
+    /// other.
     pub fn with_knots(points: Vec<DVec2>, inner_knots: &[f64]) -> Result<Self, PathEditError> {
         check_count(points.len())?;
         if let Some(index) = points.iter().position(|point| !is_place(*point)) {
@@ -166,25 +169,25 @@ impl GroundSpline {
         Self { points, knots, closed, pieces }
     }
 
-    /// The control points, (x, z) in metres.
+    /// Returns the control points, (x, z) in metres.
     #[must_use]
     pub fn points(&self) -> &[DVec2] {
         &self.points
     }
 
-    /// The knots between the two ends.
+    /// Returns the knots between the two ends.
     #[must_use]
     pub fn inner_knots(&self) -> &[f64] {
         &self.knots[DEGREE + 1..self.points.len()]
     }
 
-    /// The path ends where it starts, and goes round.
+    /// Returns whether the path ends at its start.
     #[must_use]
     pub fn is_closed(&self) -> bool {
         self.closed
     }
 
-    /// The same knots with other points; a closed path stays closed.
+    /// Returns the path with the same knots and other points; a closed path stays closed.
     pub(super) fn with_points(&self, points: Vec<DVec2>) -> Result<Self, PathEditError> {
         let spline = Self::with_knots(points, self.inner_knots())?;
         Ok(match self.ends() {
@@ -194,14 +197,14 @@ impl GroundSpline {
         })
     }
 
-    /// Where the path lies beside its outer control points.
+    /// Returns the form of the control points.
     #[must_use]
     pub fn ends(&self) -> SplineEnds {
         if self.knots[0] < self.knots[DEGREE] { SplineEnds::Uniform } else { SplineEnds::Clamped }
     }
 
-    /// The same curve with control points for other ends; a closed path is clamped whatever is
-    /// asked for. Exact but for rounding.
+    /// Returns the same curve in another form; a closed path is always clamped. Exact except for
+    /// rounding.
     #[must_use]
     pub fn with_ends(&self, ends: SplineEnds) -> Self {
         if self.closed || ends == self.ends() {
@@ -209,7 +212,7 @@ impl GroundSpline {
         }
         let knots = all_knots(self.inner_knots(), ends);
         let points = (0..self.points.len()).map(|i| {
-            // On every piece that a control point has a say in, the polar form gives the same.
+            // The polar form is the same on every piece that depends on the control point.
             self.pieces[i.saturating_sub(DEGREE)].blossom([
                 knots[i + 1],
                 knots[i + 2],
@@ -219,7 +222,7 @@ impl GroundSpline {
         Self::of(points.collect(), knots, false)
     }
 
-    /// The path of unclamped control points.
+    /// Returns the path of unclamped control points.
     pub(super) fn unclamped(
         points: Vec<DVec2>,
         inner_knots: &[f64],
@@ -228,8 +231,8 @@ impl GroundSpline {
         Ok(Self::of(checked.points, all_knots(inner_knots, SplineEnds::Uniform), false))
     }
 
-    /// Closed: both ends are put where the path goes on through them without a step in its
-    /// derivative, between their neighbours.
+    /// Returns the path with both ends moved to the point between their neighbours at which the
+    /// derivative of the closed path is continuous.
     pub(super) fn joined(mut self) -> Self {
         let last = self.points.len() - 1;
         let [first_span, last_span] = self.end_spans();
@@ -239,32 +242,32 @@ impl GroundSpline {
         Self::of(self.points, self.knots, true)
     }
 
-    /// The parameter that the first and the last piece take.
+    /// Returns the lengths of the first and the last piece in the parameter.
     pub(super) fn end_spans(&self) -> [f64; 2] {
         let inner = self.inner_knots();
         [inner.first().copied().unwrap_or(1.0), 1.0 - inner.last().copied().unwrap_or(0.0)]
     }
 
-    /// Where along the parameter each control point has its say: the mean of its three knots
-    /// (Greville). A path whose points are these numbers is the parameter itself.
+    /// Returns the Greville abscissa of each control point: the mean of its three knots. A path
+    /// whose points are these numbers is the parameter itself.
     #[must_use]
     pub fn greville(&self) -> Vec<f64> {
         let mean = |i: usize| (self.knots[i + 1] + self.knots[i + 2] + self.knots[i + 3]) / 3.0;
         (0..self.points.len()).map(mean).collect()
     }
 
-    /// The ends of the polynomial pieces, from 0 to 1.
+    /// Returns the ends of the polynomial pieces, from 0 to 1.
     pub(super) fn breaks(&self) -> &[f64] {
         &self.knots[DEGREE..=self.points.len()]
     }
 
-    /// Place and derivatives at `parameter`, which is clamped to the path.
+    /// Returns position and derivatives at `parameter`, which is clamped to the path.
     #[must_use]
     pub fn jet(&self, parameter: f64) -> Jet {
         let u = unit(parameter);
         let jet = self.piece(u).jet(u);
         match self.points.last() {
-            // The path ends in its last point, without a digit lost on the way there.
+            // The path ends exactly in its last point, without rounding.
             Some(&position) if u == 1.0 && self.ends() == SplineEnds::Clamped => {
                 Jet { position, ..jet }
             }
@@ -272,26 +275,27 @@ impl GroundSpline {
         }
     }
 
-    /// The piece that holds a parameter from 0 to 1.
+    /// Returns the piece that holds a parameter from 0 to 1.
     pub(super) fn piece(&self, parameter: f64) -> &Piece {
         &self.pieces[self.inner_knots().partition_point(|&knot| knot <= parameter)]
     }
 
-    /// The place at `parameter`, (x, z) in metres.
+    /// Returns the position at `parameter`, (x, z) in metres.
     #[must_use]
     pub fn position(&self, parameter: f64) -> DVec2 {
         self.jet(parameter).position
     }
 
-    /// The first of the four control points that have a say at `parameter`, and their shares.
+    /// Returns the index of the first of the four control points on which the path depends at
+    /// `parameter`, and their shares.
     pub(super) fn shares(&self, parameter: f64) -> (usize, [f64; 4]) {
         let (span, u) = self.span(parameter);
         (span - DEGREE, basis(&self.knots[span + 1 - DEGREE..=span + DEGREE], u))
     }
 
-    /// The direction of the path at `parameter`, radians about +Y, 0 along +Z. Where the path
-    /// stands for a moment (control points that coincide) it is that of the path behind, else
-    /// before that place; 0 for a path without length.
+    /// Returns the direction of the path at `parameter`, radians about +Y, 0 along +Z. Where the
+    /// speed is 0 (coinciding control points) it is the direction of the following part of the
+    /// path, at its end that of the part before; 0 for a path without length.
     #[must_use]
     pub fn heading(&self, parameter: f64) -> f64 {
         self.heading_of(parameter, &self.jet(parameter))
@@ -309,12 +313,12 @@ impl GroundSpline {
         if moves(first) { first.x.atan2(first.y) } else { 0.0 }
     }
 
-    /// The same curve with one more control point and a knot at `parameter` (Boehm 1980).
+    /// Returns the same curve with a further control point and a knot at `parameter` (Boehm 1980).
     pub(super) fn refined(&self, parameter: f64) -> Result<Self, PathEditError> {
         check_count(self.points.len() + 1)?;
         let (span, u) = self.span(parameter);
         let near = u - self.knots[span] < MIN_INSERT || self.knots[span + 1] - u < MIN_INSERT;
-        // NaN compares as not near.
+        // NaN passes this comparison.
         if near || !parameter.is_finite() {
             return Err(PathEditError::Knots);
         }
@@ -329,8 +333,8 @@ impl GroundSpline {
         Ok(Self::of(points, knots, self.closed))
     }
 
-    /// The index of the last knot at or below `parameter`, which is clamped to the path; the last
-    /// piece at the end.
+    /// Returns the index of the last knot at or below `parameter`, which is clamped to the path; at
+    /// the end, that of the last piece.
     fn span(&self, parameter: f64) -> (usize, f64) {
         let u = unit(parameter);
         let inner = self.inner_knots().partition_point(|&knot| knot <= u);
@@ -338,13 +342,14 @@ impl GroundSpline {
     }
 }
 
-/// Inner knots, evenly spaced, of a path of `points` control points.
+/// Returns the evenly spaced inner knots of a path of `points` control points.
 pub(super) fn uniform_knots(points: usize) -> Vec<f64> {
     let pieces = points.saturating_sub(DEGREE);
     (1..pieces).map(|k| k as f64 / pieces as f64).collect()
 }
 
-/// The inner knots with the four up to 0 and the four from 1 on.
+/// Returns the inner knots with four knots before and four after them: at 0 and 1, or continuing
+/// evenly.
 fn all_knots(inner: &[f64], ends: SplineEnds) -> Vec<f64> {
     let (first, last) = match ends {
         SplineEnds::Clamped => (0.0, 0.0),
@@ -357,13 +362,13 @@ fn all_knots(inner: &[f64], ends: SplineEnds) -> Vec<f64> {
     before.chain(inner.iter().copied()).chain(behind).collect()
 }
 
-/// A parameter brought into `[0, 1]`; 0 for NaN.
+/// Returns a parameter clamped to `[0, 1]`; 0 for NaN.
 pub(super) fn unit(parameter: f64) -> f64 {
     if parameter > 0.0 { parameter.min(1.0) } else { 0.0 }
 }
 
 fn is_place(point: DVec2) -> bool {
-    let near = -FARTHEST_M..=FARTHEST_M;
+    let near = -MAX_DISTANCE_M..=MAX_DISTANCE_M;
     near.contains(&point.x) && near.contains(&point.y)
 }
 
@@ -375,13 +380,13 @@ pub(super) fn check_count(points: usize) -> Result<(), PathEditError> {
     }
 }
 
-/// The corners of the box around points; zero for none.
+/// Returns the corners of the bounding box of points; zero for none.
 pub(super) fn bounds(points: &[DVec2]) -> (DVec2, DVec2) {
     let first = points.first().copied().unwrap_or_default();
     points.iter().fold((first, first), |(low, high), &p| (low.min(p), high.max(p)))
 }
 
-/// Quadratic shares at u in `[t2, t3]`.
+/// Returns the quadratic shares at u in `[t2, t3]`.
 fn quadratic(t: &[f64], u: f64) -> [f64; 3] {
     let share = |from: f64, to: f64| (u - from) / (to - from);
     let upper = share(t[2], t[3]);
@@ -389,8 +394,8 @@ fn quadratic(t: &[f64], u: f64) -> [f64; 3] {
     [(1.0 - upper) * (1.0 - left), (1.0 - upper) * left + upper * (1.0 - right), upper * right]
 }
 
-/// Cubic shares at u in `[t2, t3]`: the recurrence of Cox and de Boor. `t` are the three knots up
-/// to the piece and the three behind it.
+/// Returns the cubic shares at u in `[t2, t3]`: the recurrence of Cox and de Boor. `t` are three
+/// knots up to the start of the piece and three from its end on.
 fn basis(t: &[f64], u: f64) -> [f64; 4] {
     let share = |from: f64, to: f64| (u - from) / (to - from);
     let [a, b, c] = quadratic(t, u);

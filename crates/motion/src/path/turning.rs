@@ -6,29 +6,29 @@ use glam::DVec2;
 use std::fmt;
 use std::ops::Range;
 
-/// Everyone who walks can turn this fast, radians per second: a motion that goes straight ahead
-/// does not forbid every bend.
+/// The turn rate that is allowed on any path, radians per second: every character can turn this
+/// fast, even if its motion is straight.
 const ALWAYS_RADIANS_PER_SEC: f64 = 0.35;
-/// Beyond the original by this share a turn is told.
+/// The least excess over the original's turn rate that is reported, as a share.
 const MARGIN: f64 = 1.05;
-/// The share of the original's frames that turn at most as fast as is usual in it: the tip of a
-/// hairpin is not.
+/// The share of the original's frames from which its usual turn rate is computed: the tip of a
+/// hairpin does not belong to them.
 const USUAL: f32 = 0.99;
-/// Hurried places that are nearer to each other than this are one, seconds.
+/// Hard turns with less time than this between them count as one, seconds.
 const MERGED_SECS: f64 = 0.25;
 
-/// A place where the new path asks for more than the original motion does.
+/// A part of the new path that turns faster than the original motion does.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HardTurn {
     /// The frames of the result.
     pub frames: Range<usize>,
     /// The frame that turns fastest.
     pub worst: usize,
-    /// Where that is, (x, z) in metres.
+    /// The position of that frame on the path, (x, z) in metres.
     pub place: DVec2,
-    /// Curvature × speed there, degrees per second.
+    /// Curvature × speed in that frame, degrees per second.
     pub turn_dps: f64,
-    /// What the original holds, degrees per second.
+    /// The greatest turn rate of the original, degrees per second.
     pub limit_dps: f64,
 }
 
@@ -44,17 +44,17 @@ impl fmt::Display for HardTurn {
     }
 }
 
-/// How fast the path turns under the motion in the step into each frame: curvature × speed, radians
-/// per second, positive to the left. 0 in frame 0.
+/// Returns the turn rate of the path in the step into each frame: curvature × speed, radians per
+/// second, positive to the left. 0 in frame 0.
 #[must_use]
 pub fn turn_rates(places: &[Waypoint], fps: f64) -> Vec<f64> {
     let step = |pair: &[Waypoint]| wrap_angle(pair[1].frame.yaw - pair[0].frame.yaw) * fps;
     std::iter::repeat_n(0.0, places.len().min(1)).chain(places.windows(2).map(step)).collect()
 }
 
-/// Where the new path asks for faster turns than the motion does on the path that it was fitted
-/// with: beyond the 99th percentile of curvature × speed, and beyond 20°/s. In the order of time;
-/// neighbours within a quarter of a second are one.
+/// Returns the parts of the new path that turn faster than the path that was fitted to the motion:
+/// beyond the 99th percentile of its curvature × speed, and beyond 20°/s. In order of time; parts
+/// with less than a quarter of a second between them are merged.
 #[must_use]
 pub fn hard_turns(path: &FittedPath, carried: &Carried) -> Vec<HardTurn> {
     let fps = path.source().clip().fps();
@@ -65,7 +65,7 @@ pub fn hard_turns(path: &FittedPath, carried: &Carried) -> Vec<HardTurn> {
     let merged = (MERGED_SECS * fps) as usize;
     let mut found: Vec<HardTurn> = Vec::new();
     let rates = turn_rates(&carried.places, fps);
-    // What the original does at the same moment it can do here as well.
+    // The turn rate of the original in the same frame is possible here, too.
     let held = |frame: f64| own.get(frame.round() as usize).map_or(0.0, |&own| f64::from(own));
     for (frame, (&rate, &at)) in rates.iter().zip(&carried.frames).enumerate() {
         if rate.abs() <= limit.max(held(at)) * MARGIN {

@@ -1,5 +1,5 @@
-//! A smooth body around any skeleton: its shapes, one surface around those that may flow into each
-//! other, and weights along the tree. All of it is made piece by piece.
+//! A smooth body around any skeleton: its shapes, one surface around those that may blend with each
+//! other, and weights along the tree. It is built in slices.
 
 use super::capsules::capsules;
 use super::contour::{Contour, Contouring};
@@ -11,54 +11,55 @@ use crate::skeleton::{Role, Roles, Side, Skeleton, WorldPose, canonical_stance};
 use glam::Vec3;
 use std::collections::BTreeMap;
 
-/// Cells of the surface are at most this large, as a share of what is thin there.
+/// The greatest size of a cell of the surface, as a share of the thinnest part there.
 const CELL_SHARE: f32 = 0.5;
-/// And at most this large, as a share of the body's height: 1.9 cm on an adult.
-const LARGEST_CELL: f32 = 0.0108;
-/// Vertices of the whole mesh, about; cells become larger where it would be more.
+/// The greatest size of a cell, as a share of the body's height: 1.9 cm on an adult.
+const MAX_CELL: f32 = 0.0108;
+/// The approximate greatest number of vertices of the whole mesh; cells become larger where there
+/// would be more.
 const MAX_VERTICES: f32 = 14_000.0;
-/// Skeletons of more shapes get one surface for each.
+/// Skeletons with more shapes than this get one surface for each shape.
 const MAX_BLENDED: usize = 400;
-/// Of even more, only the largest are shown.
+/// The greatest number of shapes; of more, only the largest are used.
 const MAX_SHAPES: usize = 4000;
-/// A joint and its ancestor this many steps above are near enough in the tree to flow into each
+/// The greatest number of steps between a joint and its ancestor whose shapes may blend with each
 /// other.
 const NEAR_STEPS: usize = 2;
-/// Cells of a contour that are looked at in one piece of work.
+/// Number of cells of a contour that are processed in one slice.
 const CELLS_AT_ONCE: usize = 400;
-/// How often the surface is smoothed.
+/// Number of smoothing passes over the surface.
 const FAIRING_ROUNDS: usize = 8;
-/// How often the ways that vertices take with the girth are.
+/// Number of smoothing passes over the vertices' distances from the axes of their limbs.
 const REACH_ROUNDS: usize = 8;
 
-/// The body of a skeleton as it comes to be: [`SkinBuilder::advance`] makes a little more of it, so
-/// that a page can go on meanwhile.
+/// The construction of a skeleton's body in slices: each call of [`SkinBuilder::advance`] does a
+/// part of it.
 #[derive(Clone, Debug)]
 pub struct SkinBuilder {
     pose: WorldPose,
-    /// The power of the girth that each joint's vertices grow with.
+    /// The power of the girth by which the vertices of each joint grow.
     powers: Vec<f32>,
-    /// For each shape the joints along it: see [`path`].
+    /// The joints along each shape: see [`path`].
     paths: Vec<Vec<(f32, usize)>>,
-    /// The shells that are still to be made, the next one last.
+    /// The remaining shells, the next one last.
     shells: Vec<Shell>,
     done: ProceduralSkin,
 }
 
-/// A body that any girth can be given in a moment.
+/// A body whose girth can be changed at once.
 ///
-/// A mesh for the girth 1, and how its vertices move for another: away from the axis of the limb
-/// that they lie on, as limbs grow.
+/// A mesh for the girth 1, and the displacement of its vertices for another girth: away from the
+/// axis of the limb on which they lie.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ProceduralSkin {
     mesh: SkinnedMesh,
-    /// From the axis of its limb to each vertex, metres, smooth over the surface.
+    /// The vector from the axis of its limb to each vertex, metres, smooth over the surface.
     reach: Vec<Vec3>,
-    /// The power of the girth that each vertex grows with.
+    /// The power of the girth by which each vertex grows.
     powers: Vec<f32>,
 }
 
-/// A surface around shapes that may flow into each other.
+/// A surface around shapes that may blend with each other.
 #[derive(Clone, Debug)]
 struct Shell {
     members: Vec<usize>,
@@ -75,10 +76,10 @@ enum Stage {
 
 impl SkinBuilder {
     /// Begins the body of a skeleton: a mannequin of human proportions where the roles are those of
-    /// a human, else limbs along the bones. It is made on the skeleton's [`canonical_stance`], for
-    /// which `reference` is a pose that shows how its bones lie to each other
+    /// a human, otherwise limbs along the bones. It is built on the skeleton's
+    /// [`canonical_stance`]; `reference` is a pose that shows the directions of its bones
     /// ([`crate::clip::reference_pose`]). The joints of the mesh are those of the skeleton (at most
-    /// the first 65,536 of them).
+    /// the first 65,536).
     #[must_use]
     pub fn new(skeleton: &Skeleton, roles: &Roles, reference: &WorldPose) -> Self {
         let stance = canonical_stance(skeleton, roles, reference);
@@ -110,8 +111,8 @@ impl SkinBuilder {
         skin_builder
     }
 
-    /// A field around the shapes: one for those that may flow into each other, and one for each
-    /// shell that must not.
+    /// Begins a field for the shapes that may blend with each other, and one for each shell that
+    /// must not.
     fn begin_shells(&mut self, skeleton: &Skeleton, roles: &Roles, shapes: &[Shape]) {
         let placed: Vec<(&Shape, PlacedShape)> =
             (shapes.iter()).filter_map(|shape| Some((shape, shape.placed(&self.pose)?))).collect();
@@ -119,13 +120,13 @@ impl SkinBuilder {
         self.paths = (placed.iter())
             .map(|(shape, placed)| path(skeleton, shape, placed, &self.pose))
             .collect();
-        let largest = LARGEST_CELL * roles.body_height(skeleton);
-        // Cells are halved and halved again, so sizes are rounded to that.
+        let largest = MAX_CELL * roles.body_height(skeleton);
+        // Cells are halved repeatedly, so sizes are rounded accordingly.
         let size = |cone: &Cone| {
             largest * (CELL_SHARE * cone.thinness() / largest).clamp(0.2, 1.0).log2().round().exp2()
         };
         let sizes: Vec<f32> = cones.iter().map(size).collect();
-        // A surface passes through about 1.5 cells for each square of a cell's size.
+        // A surface passes through about 1.5 cells for each square of the size of a cell.
         let vertices: f32 =
             cones.iter().zip(&sizes).map(|(cone, size)| 0.8 * cone.area() / (size * size)).sum();
         let coarser = (vertices / MAX_VERTICES).max(1.0).sqrt();
@@ -148,8 +149,8 @@ impl SkinBuilder {
         }
     }
 
-    /// Makes a little more of it: a millisecond's work, or two in a browser. The body, once it is
-    /// whole; after that an empty one.
+    /// Processes one slice of a millisecond, or two in a browser. Returns the body once it is
+    /// complete; after that an empty one.
     pub fn advance(&mut self) -> Option<ProceduralSkin> {
         let Some(Shell { members, cones, stage }) = self.shells.last_mut() else {
             return Some(self.finished());
@@ -189,7 +190,7 @@ impl SkinBuilder {
         let mut done = std::mem::take(&mut self.done);
         done.mesh.bind = bind::joint_from_bind(&self.pose);
         if done.powers.len() < done.mesh.joints.len() {
-            // Plain capsules: each vertex follows one joint.
+            // Plain capsules, of which each vertex follows one joint.
             let power_of =
                 |joints: &[u16; 4]| self.powers.get(usize::from(joints[0])).copied().unwrap_or(1.0);
             done.powers = done.mesh.joints.iter().map(power_of).collect();
@@ -213,7 +214,7 @@ impl ProceduralSkin {
         let mut reach: Vec<Vec3> = (surface.positions.iter().zip(&surface.owners))
             .map(|(position, owner)| axis_of(owner).map_or(Vec3::ZERO, |axis| *position - axis))
             .collect();
-        // Where one limb goes over into another the axis changes at once; the skin must not tear
+        // The axis changes abruptly where one limb ends and another begins; the skin must not tear
         // there.
         for _ in 0..REACH_ROUNDS {
             reach = drawn_together(&reach, neighbours, 0.5);
@@ -235,9 +236,9 @@ impl ProceduralSkin {
         self.mesh.triangles.extend(corners);
     }
 
-    /// The mesh of a body so stout beside an average adult, 0.4 to 2.5 (1 is average, and taken for
-    /// what is no number): the trunk so many times as wide, arms and legs less so, head, hands and
-    /// feet hardly.
+    /// Returns the mesh of a body with this girth relative to an average adult, 0.4 to 2.5 (1 is
+    /// average, and is used for NaN): the trunk is wider by this factor, arms and legs by less,
+    /// head, hands and feet hardly.
     #[must_use]
     pub fn with_girth(&self, girth: f32) -> SkinnedMesh {
         let girth = if girth.is_nan() { 1.0 } else { girth.clamp(0.4, 2.5) };
@@ -255,8 +256,8 @@ impl ProceduralSkin {
     }
 }
 
-/// The power of the girth that the radii at each joint grow with: a stout body has a stout trunk,
-/// but not as much larger a head, hands and feet.
+/// Returns the power of the girth by which the radii at each joint grow: a stout body has a stout
+/// trunk, but head, hands and feet of nearly the usual size.
 fn powers(skeleton: &Skeleton, roles: &Roles) -> Vec<f32> {
     let power = |joint: usize| {
         let role = roles.role_of(joint)?;
@@ -278,8 +279,8 @@ fn powers(skeleton: &Skeleton, roles: &Roles) -> Vec<f32> {
     powers
 }
 
-/// The joints along a shape, each from where on (0 at its start to 1 at its end) it moves what lies
-/// there.
+/// Returns the joints along a shape, each with the position on the axis (0 at its start to 1 at its
+/// end) from which on it moves the surface.
 fn path(
     skeleton: &Skeleton,
     shape: &Shape,
@@ -310,7 +311,7 @@ fn path(
 }
 
 fn joint_at(path: &[(f32, usize)], share: f32) -> usize {
-    // What lies at the very end belongs to the bone that leads there.
+    // The very end belongs to the bone that leads there.
     path.iter()
         .take_while(|(from, _)| *from <= share && *from < 1.0)
         .last()
@@ -318,8 +319,8 @@ fn joint_at(path: &[(f32, usize)], share: f32) -> usize {
         .map_or(0, |(_, joint)| *joint)
 }
 
-/// Whether two shapes lie on one way along the tree: joints of theirs are one, or the one is a
-/// little above the other.
+/// Returns whether two shapes are on one path along the tree: they have a joint in common, or a
+/// joint of one is a little above a joint of the other.
 fn are_near(skeleton: &Skeleton, one: &[(f32, usize)], other: &[(f32, usize)]) -> bool {
     let is_above = |above: usize, below: usize| {
         std::iter::successors(Some(below), |&joint| skeleton.parent(joint))

@@ -1,23 +1,23 @@
-//! The pose in which a mesh is made: limbs away from each other and from the trunk.
+//! The pose in which a mesh is built: limbs apart from each other and from the trunk.
 
 use super::RigidTransform;
 use crate::math::quat;
 use crate::skeleton::{Role, Roles, Side, Skeleton, WorldPose};
 use glam::{Quat, Vec3};
 
-/// Arms hang so far from the side, radians (40° under level): between where they are most often and
-/// where they can go, so that the shoulders bend least.
+/// The angle of the arms below level, radians (40°): between their most frequent position and the
+/// extreme ones, so that the shoulders deform least.
 const ARMS_DOWN: f32 = 0.70;
-/// Legs stand so far out, radians (7°): the thighs part below the crotch.
+/// The angle of the legs from the vertical, radians (7°): the thighs separate below the crotch.
 const LEGS_OUT: f32 = 0.12;
 
-/// The bind pose of a skeleton that rests in `stance`, with its joints' own axes: limbs that roles
-/// tell are spread, all else is as in the stance. The root stands at the origin.
+/// Returns the bind pose of a skeleton that rests in `stance`, with its joints' own axes: limbs
+/// with known roles are spread, and everything else is as in the stance. The root is at the origin.
 pub(super) fn bind_pose(skeleton: &Skeleton, roles: &Roles, stance: &WorldPose) -> WorldPose {
     let rest = skeleton.rest_positions();
     let joint = |role| roles.get_within(role, rest.len());
     let at = |role| joint(role).map(|joint| rest[joint]);
-    // How far each joint turns against its rest, in the world; the rest of the limb follows.
+    // The rotation of each joint against its rest, in the world; the rest of the limb follows.
     let mut turns: Vec<Option<Quat>> = vec![None; rest.len()];
     if let Some((left, up)) = axes(&rest, roles) {
         for (side, sign) in [(Side::Left, 1.0), (Side::Right, -1.0)] {
@@ -56,7 +56,8 @@ pub(super) fn bind_pose(skeleton: &Skeleton, roles: &Roles, stance: &WorldPose) 
     world
 }
 
-/// The turn from one direction to another; half a turn is one about `left`, as legs bend.
+/// Returns the rotation from one direction to another; half a turn is made about `left`, as legs
+/// bend.
 fn turn(from: Vec3, to: Vec3, left: Vec3) -> Quat {
     if from.dot(to) < -0.99 {
         let half = Quat::from_axis_angle(left, std::f32::consts::PI);
@@ -65,8 +66,8 @@ fn turn(from: Vec3, to: Vec3, left: Vec3) -> Quat {
     quat::between_directions(from, to)
 }
 
-/// From right to left, and up the back: unit vectors at right angles. `None` where the roles do not
-/// tell.
+/// Returns the directions from right to left and up the back: orthogonal unit vectors. `None` where
+/// roles are missing.
 fn axes(rest: &[Vec3], roles: &Roles) -> Option<(Vec3, Vec3)> {
     let at = |role| roles.get_within(role, rest.len()).map(|joint| rest[joint]);
     let across = |role: fn(Side) -> Role| Some(at(role(Side::Left))? - at(role(Side::Right))?);
@@ -79,7 +80,7 @@ fn axes(rest: &[Vec3], roles: &Roles) -> Option<(Vec3, Vec3)> {
     Some((left, up))
 }
 
-/// `joint_from_bind` of every joint.
+/// Returns `joint_from_bind` of every joint.
 pub(super) fn joint_from_bind(bind: &WorldPose) -> Vec<RigidTransform> {
     let joints = bind.positions.iter().zip(&bind.rotations);
     joints

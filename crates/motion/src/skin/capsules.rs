@@ -1,5 +1,4 @@
-//! One closed surface per shape, side by side: what is left for skeletons of too many bones for a
-//! common surface.
+//! One closed surface per shape, for skeletons with too many bones for a common surface.
 
 use super::SkinnedMesh;
 use super::shapes::Shape;
@@ -7,13 +6,13 @@ use crate::skeleton::WorldPose;
 use glam::Vec3;
 use std::f32::consts::{FRAC_PI_2, TAU};
 
-/// Corners around a shape.
+/// Number of vertices around a shape.
 const SIDES: u32 = 8;
-/// Rings of corners over each end, the pole apart.
+/// Number of rings of vertices over each end, without the pole.
 const RINGS: u32 = 2;
 
-/// A rounded cone for each shape, in the bind pose; each end follows the joint of its anchor. With
-/// it how far each vertex is from its shape's axis.
+/// Returns a rounded cone for each shape in the bind pose, whose ends follow the joints of their
+/// anchors, and the vector from the shape's axis to each vertex.
 pub(super) fn capsules(shapes: &[Shape], bind: &WorldPose) -> (SkinnedMesh, Vec<Vec3>) {
     let mut mesh = SkinnedMesh::default();
     let mut reach = Vec::new();
@@ -37,8 +36,8 @@ pub(super) fn capsules(shapes: &[Shape], bind: &WorldPose) -> (SkinnedMesh, Vec<
             mesh.joints.push([joint, 0, 0, 0]);
             mesh.weights.push([1.0, 0.0, 0.0, 0.0]);
         };
-        // From the pole at `a` to the pole at `b`; the waist lies as high on both balls as their
-        // cone touches them.
+        // From the pole at `a` to the pole at `b`; the waist of both balls is where their cone
+        // touches them.
         let lean = ((placed.radius_a - placed.radius_b) / placed.a.distance(placed.b).max(1e-6))
             .clamp(-0.9, 0.9)
             .asin();

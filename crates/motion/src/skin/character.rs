@@ -1,4 +1,4 @@
-//! A character of a file, moved by clips of other skeletons.
+//! Characters from files, moved by clips of other skeletons.
 
 use super::{RigidTransform, SkinnedMesh};
 use crate::clip::{Clip, ClipError, stance_for_rest};
@@ -10,17 +10,16 @@ use crate::skeleton::{
 use glam::Vec3;
 use std::sync::Arc;
 
-/// Frames of a clip that are looked at for where its ground is.
+/// Number of frames of a clip from which the height of its ground is computed.
 const SAMPLES: usize = 48;
-/// So many parts of limbs make a figure that others' clips move.
+/// The least number of parts of limbs of a figure that clips of other bodies can move.
 const MIN_LIMBS: usize = 2;
-/// Vertices of the sole that are looked at.
+/// Number of vertices of the sole that are evaluated.
 const SOLE_VERTICES: usize = 32;
-/// The lowest point of a clip's feet lies within this share of the leg's length of the ground where
-/// the clip stands on it.
+/// The greatest distance of a clip's lowest foot points from the ground on which it stands, as a
+/// share of the leg's length.
 const NEAR_GROUND: f32 = 0.2;
-/// The share of frames, per cent, in which a foot is lower than what counts as its ground: slips of
-/// single frames.
+/// The percentage of frames in which a foot may be below its ground: outliers in single frames.
 const GROUND_PERCENTILE: f32 = 5.0;
 
 /// A skeleton with a mesh of its own.
@@ -28,23 +27,23 @@ const GROUND_PERCENTILE: f32 = 5.0;
 pub struct Character {
     /// The skeleton.
     pub skeleton: Arc<Skeleton>,
-    /// What its joints are for.
+    /// The roles of its joints.
     pub roles: Roles,
     /// The mesh, bound to `skeleton`.
     pub mesh: Arc<SkinnedMesh>,
 }
 
 impl Character {
-    /// Whether it has limbs that clips of other bodies can move: parts of two, such as thigh and
-    /// shin.
+    /// Returns whether it has limbs that clips of other bodies can move: parts of two, such as
+    /// thigh and shin.
     #[must_use]
     pub fn has_limbs(&self) -> bool {
         self.limbs().count() >= MIN_LIMBS
     }
 
-    /// Whether the poses of a skeleton move it to more than a place: its own, one with parts of
-    /// limbs in common, or one that moves half of its joints by their names. A figure that only has
-    /// its hips carried about stands stiffly where the motion is.
+    /// Returns whether the poses of a skeleton move it as a body: its own skeleton, one with parts
+    /// of limbs in common, or one that moves half of its joints by their names. A figure of which
+    /// only the hips are moved would stand stiffly.
     #[must_use]
     pub fn is_moved_by(&self, skeleton: &Arc<Skeleton>, roles: &Roles) -> bool {
         if Arc::ptr_eq(skeleton, &self.skeleton) || *skeleton == self.skeleton {
@@ -65,7 +64,7 @@ impl Character {
             .filter_map(|role| self.roles.get_within(role, self.skeleton.len()))
     }
 
-    /// Returns how many times as large the character is as a body of another skeleton, as
+    /// Returns the ratio of its size to that of a body of another skeleton, as
     /// [`Retargeting::scale`] measures it; `None` where the two have no joint in common.
     #[must_use]
     pub fn size_beside(&self, skeleton: &Arc<Skeleton>, roles: &Roles) -> Option<f32> {
@@ -120,17 +119,17 @@ impl Character {
 pub struct Drive {
     source: Arc<Skeleton>,
     target: Arc<Skeleton>,
-    /// `None` where both have the same skeleton.
+    /// `None` where both skeletons are equal.
     way: Option<Retargeting>,
-    /// What is added to the height of all joints, metres.
+    /// The height added to all joints, metres.
     lift: f32,
 }
 
 impl Drive {
-    /// Prepares the way from the skeleton of `clip` to the character; `None` when it is not moved
-    /// by it ([`Character::is_moved_by`]). Some frames of the clip are looked at, so that the
-    /// character's soles stand where the clip's feet stand: on the ground. The clip may be any that
-    /// is like those to come.
+    /// Prepares retargeting from the skeleton of `clip` to the character; `None` when the skeleton
+    /// does not move it ([`Character::is_moved_by`]). Some frames of the clip are read, so that the
+    /// character's soles are on the ground where the clip's feet are; `clip` may be any clip
+    /// similar to those that are retargeted later.
     #[must_use]
     pub fn new(clip: &Clip, roles: &Roles, character: &Character) -> Option<Self> {
         let (source, target) = (clip.skeleton(), &character.skeleton);
@@ -159,8 +158,8 @@ impl Drive {
         Some(drive)
     }
 
-    /// Returns the character's joint that a joint of the clip's skeleton drives; `None` where it
-    /// drives none.
+    /// Returns the character's joint that a joint of the clip's skeleton drives; `None` for a joint
+    /// that drives none.
     #[must_use]
     pub fn joint_driven_by(&self, source: usize) -> Option<usize> {
         match &self.way {
@@ -171,7 +170,7 @@ impl Drive {
         }
     }
 
-    /// The pose of the character for a pose of the clip's skeleton; both in the world.
+    /// Returns the pose of the character for a pose of the clip's skeleton; both are in the world.
     pub fn pose(&self, source: &WorldPose, out: &mut WorldPose) {
         let Some(way) = &self.way else {
             out.clone_from(source);
@@ -190,11 +189,11 @@ impl Drive {
         }
     }
 
-    /// Returns the motion of the character that a clip moves: a clip of the character's skeleton,
-    /// frame by frame as [`Drive::pose`] has it.
+    /// Returns the motion of the character for a clip: on the character's skeleton, with the pose
+    /// of [`Drive::pose`] in every frame.
     ///
     /// # Errors
-    /// [`ClipError`] when the clip is not one of the skeleton that the drive was prepared for.
+    /// [`ClipError`] when the clip is not on the skeleton for which the drive was prepared.
     pub fn clip(&self, clip: &Clip) -> Result<Clip, ClipError> {
         let Some(way) = &self.way else {
             return Ok(clip.clone());
@@ -207,7 +206,7 @@ impl Drive {
             .with_provenance(clip.provenance()))
     }
 
-    /// The transforms that move the character's mesh for a pose of the clip's skeleton:
+    /// Returns the transforms that move the character's mesh for a pose of the clip's skeleton:
     /// [`Drive::pose`], then [`SkinnedMesh::joint_transforms`].
     pub fn transforms(
         &self,
@@ -273,11 +272,11 @@ impl Sole {
                 feet.contains(&joint).then_some((joint, in_joint))
             })
             .collect();
-        // Joints rest without rotation, so down is down in all of their frames; the lowest at rest,
-        // over all of the foot.
+        // Joints have no rotation at rest, so the direction down is the same in all of their
+        // frames; the lowest vertices at rest, over the whole foot.
         let rest = character.skeleton.rest_positions();
         points.sort_by(|x, y| (rest[x.0] + x.1).y.total_cmp(&(rest[y.0] + y.1).y));
-        // Every so often one, over the lower half: heel, ball and tips.
+        // Evenly spaced ones of the lower half: heel, ball and tips.
         points.truncate(points.len() / 2);
         let step = points.len().div_ceil(SOLE_VERTICES).max(1);
         Self { points: points.into_iter().step_by(step).collect() }

@@ -1,10 +1,10 @@
-//! From a field to a closed mesh: dual contouring on an octree that is as fine as what is thin
-//! there (Ju, Losasso, Schaefer, Warren, "Dual Contouring of Hermite Data", 2002), with vertices on
-//! the field's zero instead of at features: nothing here has sharp edges.
+//! Meshing of a field: dual contouring on an octree whose cells are small where shapes are thin
+//! (Ju, Losasso, Schaefer, Warren, "Dual Contouring of Hermite Data", 2002). Vertices lie on the
+//! field's zero instead of on features, because the field has no sharp edges.
 //!
-//! Each cell that an edge with a change of sign touches has one vertex; the cells around such an
-//! edge are one face. An edge is looked at where it is smallest, so cells of different sizes meet
-//! without a crack.
+//! Each cell that touches an edge with a change of sign has one vertex; the cells around such an
+//! edge form one face. An edge is processed in its smallest cell, so that cells of different sizes
+//! meet without a crack.
 
 use super::field::{Field, Measured};
 use glam::{IVec3, Vec3};
@@ -12,7 +12,7 @@ use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
 use std::sync::Arc;
 
-/// Levels of the tree, at most: coordinates in the finest cells fit into 16 bits.
+/// The greatest number of levels of the tree: coordinates in the finest cells fit into 16 bits.
 const MAX_LEVELS: u32 = 12;
 
 /// Vertices on the zero of a field, and the faces between them.
@@ -21,29 +21,31 @@ pub(super) struct Contour {
     pub(super) positions: Vec<Vec3>,
     /// Counter-clockwise from outside.
     pub(super) triangles: Vec<[u32; 3]>,
-    /// For each vertex the shape of the field that it is nearest to, and where along its axis.
+    /// For each vertex the shape of the field that is nearest to it, and the position along its
+    /// axis.
     pub(super) owners: Vec<(usize, f32)>,
 }
 
-/// Meshes a field, a few cells at a time.
+/// The meshing of a field in slices.
 #[derive(Clone, Debug)]
 pub(super) struct Contouring {
     tree: Octree,
-    /// Cells of the tree that are still to be looked at: corner, level, and the shapes that matter
-    /// to the cell they are in.
+    /// Cells of the tree that are not processed yet: corner, level, and the shapes that affect the
+    /// parent cell.
     growing: Vec<(IVec3, u32, Arc<[u16]>)>,
-    /// Leaves that the surface may pass through, and how many of them were looked at; none while
-    /// the tree grows.
+    /// Leaves through which the surface may pass, and the number of those that are processed;
+    /// `None` while the tree grows.
     open: Option<Vec<usize>>,
     seen: usize,
     rings: Vec<[usize; 4]>,
-    /// Leaves that have their vertex, where they have one.
+    /// The number of leaves whose vertices are placed, if they have one.
     placed: usize,
     contour: Contour,
 }
 
 impl Contouring {
-    /// `sizes` holds for each shape how large a cell may be where its surface is, metres, above 0.
+    /// Begins the meshing. `sizes` has for each shape the greatest size of a cell at its surface,
+    /// metres, above 0.
     pub(super) fn new(field: Field, sizes: Vec<f32>) -> Self {
         let finest = sizes.iter().copied().fold(f32::INFINITY, f32::min);
         let [low, high] = field.bounds().unwrap_or_default();
@@ -76,7 +78,7 @@ impl Contouring {
         }
     }
 
-    /// Looks at so many more cells. The mesh, once all of it is there.
+    /// Processes up to `cells` more cells. Returns the mesh once it is complete.
     pub(super) fn advance(&mut self, cells: usize) -> Option<Contour> {
         for _ in 0..cells {
             if let Some((at, level, near)) = self.growing.pop() {
@@ -102,7 +104,7 @@ impl Contouring {
     }
 }
 
-/// Hashes of small keys: one multiplication (Fibonacci hashing).
+/// A hasher for small keys: one multiplication (Fibonacci hashing).
 #[derive(Clone, Copy, Debug, Default)]
 struct KeyHasher(u64);
 
@@ -136,7 +138,7 @@ struct Octree {
     field: Field,
     sizes: Vec<f32>,
     origin: Vec3,
-    /// Edge of the finest cells, metres.
+    /// Edge length of the finest cells, metres.
     cell: f32,
     /// The largest of `sizes`.
     coarsest: f32,
@@ -144,7 +146,7 @@ struct Octree {
     /// Leaves by corner and level.
     cells: Map<u32>,
     leaves: Vec<Leaf>,
-    /// The shapes that matter to leaves, one list after the other.
+    /// The shapes that affect the leaves, one list after the other.
     near: Vec<u16>,
     /// Values at corners.
     corners: Map<f32>,
@@ -156,9 +158,9 @@ struct Leaf {
     at: IVec3,
     level: u32,
     near: (u32, u32),
-    /// Whether the surface may pass through it: it is looked at, or will be.
+    /// Whether the surface may pass through it, so that it is or will be processed.
     is_open: bool,
-    /// The sum and number of the points where the surface crosses an edge of the cell.
+    /// The sum and the number of the intersections of the surface with the cell's edges.
     crossings: Vec3,
     count: f32,
     vertex: u32,
@@ -169,7 +171,7 @@ impl Octree {
         self.origin + at.as_vec3() * self.cell
     }
 
-    /// Divides a cell, or makes it a leaf. The parts of a divided one are put on `growing`.
+    /// Divides a cell, or makes it a leaf. The children of a divided cell are put on `growing`.
     fn grow(
         &mut self,
         at: IVec3,
@@ -185,7 +187,7 @@ impl Octree {
             self.field.narrowed(center, reach, near, &self.sizes, &mut narrowed, &mut self.scratch);
         let is_near = around.least <= 1.1 * reach
             && self.field.sample(center, &narrowed, &mut self.scratch).value.abs() <= 1.6 * reach;
-        // Where no single surface is near there may still be the blend of two.
+        // Where no single surface is near, there may still be the blend of two.
         let wanted = if around.size.is_finite() { around.size } else { self.coarsest };
         if is_near && level > 0 && size > 1.01 * wanted {
             let half = 1 << (level - 1);
@@ -230,15 +232,15 @@ impl Octree {
         value
     }
 
-    /// The leaf that a finest cell lies in.
+    /// Returns the leaf that contains a finest cell.
     fn leaf_of(&self, cell: IVec3) -> Option<usize> {
         (0..=self.levels)
             .find_map(|level| self.cells.get(&key(cell & IVec3::splat(-(1 << level)), level)))
             .map(|&leaf| leaf as usize)
     }
 
-    /// Finds where the surface crosses the edges of a leaf: `rings` are given the leaves around
-    /// each such edge, `open` all that have a part of it.
+    /// Finds the intersections of the surface with the edges of a leaf. The leaves around each such
+    /// edge are added to `rings`, and those that share a part of it to `open`.
     fn cross_edges(&mut self, leaf: usize, open: &mut Vec<usize>, rings: &mut Vec<[usize; 4]>) {
         let (at, level) = (self.leaves[leaf].at, self.leaves[leaf].level);
         let values: [f32; 8] = std::array::from_fn(|c| {
@@ -250,7 +252,7 @@ impl Octree {
         }
         for axis in 0..3 {
             for quadrant in 0..4 {
-                // The edge lies at this side of the cell in each of the other two directions.
+                // The edge is at this side of the cell in each of the other two directions.
                 let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
                 let (side_u, side_v) = (quadrant & 1, quadrant >> 1);
                 let low = side_u << u | side_v << v;
@@ -262,8 +264,8 @@ impl Octree {
                 let Some(ring) = self.ring(leaf, axis, side, 0) else {
                     continue;
                 };
-                // The surface passes here, whatever the bounds said: all that have the edge are
-                // looked at.
+                // The surface passes here, whatever the bounds are: all leaves that share the edge
+                // are processed.
                 for (place, other) in ring.into_iter().enumerate() {
                     let smaller =
                         if self.leaves[other].level < level { 1..1 << level } else { 1..1 };
@@ -277,8 +279,7 @@ impl Octree {
                         }
                     }
                 }
-                // An edge is taken where it is smallest, and of those that have it so, by the
-                // first.
+                // An edge is processed by its smallest leaf, and by the first of equal ones.
                 let is_first = ring.iter().all(|&other| {
                     let (theirs, ours) = (self.leaves[other].level, level);
                     theirs > ours || (theirs == ours && other >= leaf)
@@ -295,8 +296,9 @@ impl Octree {
         }
     }
 
-    /// The leaves around an edge of a leaf, counter-clockwise as seen from its far end. Where
-    /// smaller ones lie along it, those `step` of the finest cells from its near end.
+    /// Returns the leaves around an edge of a leaf, counter-clockwise as seen from its far end.
+    /// Where smaller leaves share the edge, those at `step` finest cells from its near end are
+    /// returned.
     fn ring(&self, leaf: usize, axis: usize, side: [i32; 2], step: i32) -> Option<[usize; 4]> {
         let (at, level) = (self.leaves[leaf].at, self.leaves[leaf].level);
         let size = 1 << level;
@@ -312,7 +314,7 @@ impl Octree {
         Some(ring)
     }
 
-    /// Notes with the leaves around an edge where the surface crosses it.
+    /// Adds the intersection of the surface with an edge to the leaves around it.
     fn cross(
         &mut self,
         leaf: usize,
@@ -335,7 +337,7 @@ impl Octree {
         }
     }
 
-    /// Gives a leaf its vertex, where the surface passes through it.
+    /// Places the vertex of a leaf through which the surface passes.
     fn place_vertex(&mut self, leaf: usize, contour: &mut Contour) {
         let Leaf { crossings, count, level, .. } = self.leaves[leaf];
         if count == 0.0 {
@@ -356,7 +358,7 @@ impl Octree {
         contour.owners.push(self.field.nearest(point, self.near_of(leaf)).unwrap_or_default());
     }
 
-    /// Makes faces of the rings of leaves.
+    /// Makes faces from the rings of leaves.
     fn close(&self, rings: &[[usize; 4]], contour: &mut Contour) {
         for ring in rings {
             let [a, b, c, d] = ring.map(|leaf| self.leaves[leaf].vertex);

@@ -1,4 +1,4 @@
-//! How a mesh follows its joints: the two ways of skinning, one vertex after the other.
+//! The two methods of skinning, one vertex after the other.
 
 use super::SkinnedMesh;
 use crate::math::quat;
@@ -21,16 +21,16 @@ impl Default for RigidTransform {
 }
 
 impl RigidTransform {
-    /// What moves nothing.
+    /// The identity.
     pub const IDENTITY: Self = Self { rotation: Quat::IDENTITY, translation: Vec3::ZERO };
 
-    /// Where a point goes.
+    /// Transforms a point.
     #[must_use]
     pub fn point(self, point: Vec3) -> Vec3 {
         self.rotation * point + self.translation
     }
 
-    /// The way back.
+    /// Returns the inverse transform.
     #[must_use]
     pub fn inverse(self) -> Self {
         let rotation = self.rotation.conjugate();
@@ -38,7 +38,7 @@ impl RigidTransform {
     }
 }
 
-/// The transform on the right first.
+/// Applies the transform on the right first.
 impl Mul for RigidTransform {
     type Output = Self;
 
@@ -50,8 +50,8 @@ impl Mul for RigidTransform {
     }
 }
 
-/// The transforms that move a vertex, each with its weight above 0. A joint without a transform
-/// moves nothing.
+/// Returns the transforms that move a vertex, each with its weight above 0. Joints without a
+/// transform are left out.
 fn influences<'a>(
     mesh: &'a SkinnedMesh,
     world_from_bind: &'a [RigidTransform],
@@ -65,11 +65,12 @@ fn influences<'a>(
     })
 }
 
-/// Linear blend skinning: each vertex is the weighted mean of where its joints would take it.
+/// Applies linear blend skinning: each vertex is the weighted mean of its positions moved by each
+/// joint.
 ///
-/// `world_from_bind` is what [`SkinnedMesh::joint_transforms`] gives; `positions` (metres) and
-/// `normals` (unit) are overwritten, one of each per vertex. Rotations need not be of unit length.
-/// The mean of two rotations half a turn apart is no rotation but a flattening: a limb that is
+/// `world_from_bind` are those of [`SkinnedMesh::joint_transforms`]; `positions` (metres) and
+/// `normals` (unit) are overwritten, one of each per vertex. Rotations need not have unit length.
+/// The mean of two rotations half a turn apart is not a rotation but flattens: a limb that is
 /// twisted by 180° collapses to its axis.
 pub fn linear_blend(
     mesh: &SkinnedMesh,
@@ -93,13 +94,13 @@ pub fn linear_blend(
     });
 }
 
-/// Dual quaternion skinning (Kavan, Collins, Žára, O'Sullivan, "Skinning with Dual Quaternions",
-/// I3D 2007, algorithm 1): the mean is taken of the motions, as unit dual quaternions, and is a
+/// Applies dual quaternion skinning (Kavan, Collins, Žára, O'Sullivan, "Skinning with Dual
+/// Quaternions", I3D 2007, algorithm 1): the mean of the motions, as unit dual quaternions, is a
 /// rigid motion again.
 ///
-/// Arguments as of [`linear_blend`]. `q` and `-q` are one rotation: all are brought into the
-/// hemisphere of the joint with the greatest weight first (ibid., section 4.1). Where what is left
-/// has no length, that joint alone moves the vertex.
+/// The arguments are those of [`linear_blend`]. `q` and `-q` are one rotation: all are first
+/// brought into the hemisphere of the joint with the greatest weight (ibid., section 4.1). Where
+/// the sum has no length, that joint alone moves the vertex.
 pub fn dual_quaternion(
     mesh: &SkinnedMesh,
     world_from_bind: &[RigidTransform],
@@ -129,14 +130,14 @@ pub fn dual_quaternion(
     });
 }
 
-/// The dual part of the motion that turns by `rotation` and then moves by `translation`: `½ t q`.
+/// Returns the dual part of a rotation followed by a translation: `½ t q`.
 fn dual_part(rotation: Quat, translation: Vec3) -> Quat {
     Quat::from_xyzw(translation.x, translation.y, translation.z, 0.0) * rotation * 0.5
 }
 
-/// The translation of a dual quaternion with a real part of unit length: the vector part of
-/// `2 dual real*`. What of the dual part is not at right angles to the real one ends up in the
-/// scalar part, and is dropped.
+/// Returns the translation of a dual quaternion whose real part has unit length: the vector part of
+/// `2 dual real*`. The part of `dual` that is not orthogonal to the real part results in a scalar,
+/// and is ignored.
 fn translation(real: Quat, dual: Quat) -> Vec3 {
     (dual * real.conjugate() * 2.0).xyz()
 }

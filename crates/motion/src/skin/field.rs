@@ -1,50 +1,50 @@
-//! The surface around a set of rounded cones, as the zero of a field: negative inside, about metres
-//! of distance near the surface.
+//! The surface around a set of rounded cones, as the zero of a field: negative inside, and
+//! approximately the distance in metres near the surface.
 //!
-//! Where two shapes meet they flow into each other (the quadratic smooth minimum of Quilez, "Smooth
-//! minimum"), but only those that are neighbours in the tree, and only as far as their surfaces
-//! differ in direction: two pieces of one straight limb must not swell where they meet (the idea of
+//! Shapes blend with each other where they meet (the quadratic smooth minimum of Quilez, "Smooth
+//! minimum"), but only neighbours in the tree, and only as far as their surfaces differ in
+//! direction, because two parts of one straight limb must not bulge where they meet (the idea of
 //! Gourmel et al., "A Gradient-Based Implicit Blend", 2013).
 
 use super::shapes::PlacedShape;
 use glam::Vec3;
 
-/// How wide the surfaces of two neighbours flow into each other, in radii of the thinner one.
+/// The width over which the surfaces of two neighbours blend, in radii of the thinner one.
 const BLEND: f32 = 0.75;
-/// Surfaces whose normals differ by this (1 − cosine; 70°) flow together fully.
+/// The difference of normals from which on surfaces blend fully (1 − cosine; 70°).
 const FULL_BLEND: f32 = 0.66;
-/// The field says at most this many times the distance from a squashed shape, and never less than
-/// one part in this.
-const FLATTEST: f32 = 0.1;
+/// The least flatness of a shape, and the inverse of the greatest. The field is at most the
+/// distance from a flattened shape divided by this, and at least the distance times this.
+const MIN_FLATNESS: f32 = 0.1;
 
-/// One rounded cone, ready to be measured.
+/// A rounded cone with precomputed measures.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cone {
     a: Vec3,
-    /// Unit vector from `a` to `b`, and the distance.
+    /// Unit vector from `a` to `b`, and their distance.
     along: Vec3,
     length: f32,
     radius_a: f32,
-    /// By how much the radius falls from `a` to `b`.
+    /// The decrease of the radius from `a` to `b`.
     fall: f32,
-    /// Tangent of the cone's lean.
+    /// Tangent of the angle between the surface and the axis.
     lean: f32,
     flat: Vec3,
     flatness: f32,
 }
 
-/// How far a point is from a shape.
+/// The distance of a point from a shape.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Measured {
-    /// Metres, negative inside; to first order.
+    /// Metres, negative inside; accurate to first order.
     pub(super) distance: f32,
     /// Unit vector away from the shape.
     pub(super) normal: Vec3,
-    /// The radius where the point is nearest.
+    /// The radius at the nearest point.
     radius: f32,
-    /// No more than the distance, whatever the shape.
+    /// A lower bound of the distance, for any flatness.
     at_least: f32,
-    /// Where along the axis the point is nearest, 0 at `a` to 1 at `b`.
+    /// The position of the nearest point along the axis, 0 at `a` to 1 at `b`.
     pub(super) share: f32,
 }
 
@@ -54,7 +54,7 @@ impl Cone {
             .try_normalize()
             .map_or((Vec3::Y, 0.0), |along| (along, shape.a.distance(shape.b)));
         let fall = shape.radius_a - shape.radius_b;
-        // One ball within the other: the greater one is all there is to see.
+        // If one ball contains the other, only the larger one is visible.
         let (a, length, radius_a, fall) = if fall.abs() >= 0.98 * length {
             let a = if fall > 0.0 { shape.a } else { shape.b };
             (a, 0.0, shape.radius_a.max(shape.radius_b), 0.0)
@@ -73,27 +73,28 @@ impl Cone {
             fall,
             lean: sine / (1.0 - sine * sine).sqrt(),
             flat: flat.unwrap_or(Vec3::ZERO),
-            flatness: flat.map_or(1.0, |_| shape.flatness.clamp(FLATTEST, FLATTEST.recip())),
+            flatness: flat
+                .map_or(1.0, |_| shape.flatness.clamp(MIN_FLATNESS, MIN_FLATNESS.recip())),
         }
     }
 
-    /// Half of its thickness in the middle, where it is thinnest across.
+    /// Returns half of the thickness in the middle, in the thinnest direction.
     pub(super) fn thinness(&self) -> f32 {
         (self.radius_a - 0.5 * self.fall) * self.flatness.min(1.0)
     }
 
-    /// The greatest radius.
+    /// Returns the greatest radius.
     fn thickest(&self) -> f32 {
         self.radius_a.max(self.radius_a - self.fall)
     }
 
-    /// About how large the surface is, square metres.
+    /// Returns the approximate area of the surface, square metres.
     pub(super) fn area(&self) -> f32 {
         let radius = self.radius_a - 0.5 * self.fall;
         std::f32::consts::TAU * radius * (self.length + 2.0 * radius)
     }
 
-    /// A box around it: corners with the least and the greatest coordinates.
+    /// Returns the bounding box: corners with the least and the greatest coordinates.
     fn bounds(&self) -> [Vec3; 2] {
         let b = self.a + self.along * self.length;
         let [reach_a, reach_b] = [self.radius_a, self.radius_a - self.fall]
@@ -101,14 +102,14 @@ impl Cone {
         [(self.a - reach_a).min(b - reach_b), (self.a + reach_a).max(b + reach_b)]
     }
 
-    /// The point of the axis at a share of its way.
+    /// Returns the point of the axis at a share of its length.
     pub(super) fn at(&self, share: f32) -> Vec3 {
         self.a + self.along * (self.length * share)
     }
 
     pub(super) fn measure(&self, point: Vec3) -> Measured {
         let offset = point - self.a;
-        // In a space where the shape is round.
+        // In a space in which the shape is round.
         let stretch = self.flatness.recip() - 1.0;
         let round = offset + self.flat * (offset.dot(self.flat) * stretch);
         let up = round.dot(self.along);
@@ -131,20 +132,21 @@ impl Cone {
     }
 }
 
-/// Cones, and who flows into whom.
+/// Cones, and the pairs that may blend.
 #[derive(Clone, Debug)]
 pub(super) struct Field {
     pub(super) cones: Vec<Cone>,
-    /// For each two of them whether they are neighbours, row by row.
+    /// For each pair of cones whether they are neighbours, row by row.
     neighbours: Vec<bool>,
 }
 
-/// What is known of the field around a point.
+/// Bounds of the field around a point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Around {
-    /// The field at the point is no less, metres.
+    /// A lower bound of the field at the point, metres.
     pub(super) least: f32,
-    /// The smallest of the sizes of shapes whose surface is near; infinite where none is.
+    /// The smallest of the sizes of shapes with a surface near the point; infinite where there is
+    /// none.
     pub(super) size: f32,
 }
 
@@ -157,7 +159,8 @@ pub(super) struct Sample {
 }
 
 impl Field {
-    /// `are_neighbours` is asked once for each two indices into `cones`.
+    /// Returns the field of these cones. `are_neighbours` is called once for each pair of indices
+    /// into `cones`.
     pub(super) fn new(
         cones: Vec<Cone>,
         mut are_neighbours: impl FnMut(usize, usize) -> bool,
@@ -174,21 +177,22 @@ impl Field {
         Self { cones, neighbours }
     }
 
-    /// A box around the surface: corners with the least and the greatest coordinates; `None`
-    /// without a shape.
+    /// Returns the bounding box of the surface: corners with the least and the greatest
+    /// coordinates; `None` without shapes.
     pub(super) fn bounds(&self) -> Option<[Vec3; 2]> {
         let [low, high] = self
             .cones
             .iter()
             .map(Cone::bounds)
             .reduce(|[low, high], [a, b]| [low.min(a), high.max(b)])?;
-        // A blend may rise over both of its shapes.
+        // A blend may extend beyond both of its shapes.
         let blend =
             Vec3::splat(0.25 * BLEND * self.cones.iter().map(Cone::thickest).fold(0.0, f32::max));
         Some([low - blend, high + blend])
     }
 
-    /// The field, where no shapes but those in `near` matter. `scratch` is room to work in.
+    /// Returns the field at a point, computed from the shapes in `near` alone. `scratch` is a
+    /// reusable buffer.
     pub(super) fn sample(
         &self,
         point: Vec3,
@@ -219,8 +223,8 @@ impl Field {
         best
     }
 
-    /// What matters within `reach` of `center`: the shapes of `near` that do are put into `out`.
-    /// `scratch` is room to work in.
+    /// Returns bounds of the field within `reach` of `center`, and puts the shapes of `near` that
+    /// affect it there into `out`. `scratch` is a reusable buffer.
     pub(super) fn narrowed(
         &self,
         center: Vec3,
@@ -254,7 +258,7 @@ impl Field {
         around
     }
 
-    /// The shape whose surface a point is nearest to, and where along its axis.
+    /// Returns the shape with the surface nearest to a point, and the position along its axis.
     pub(super) fn nearest(&self, point: Vec3, near: &[u16]) -> Option<(usize, f32)> {
         let measured = near
             .iter()
@@ -267,7 +271,7 @@ impl Field {
 fn smooth_min(a: Sample, b: Measured, width: f32) -> Sample {
     let overlap =
         if width > 1e-9 { (width - (a.value - b.distance).abs()).max(0.0) / width } else { 0.0 };
-    // The share of `b`: all of it where it is nearer by the width, half where both are as near.
+    // The share of `b`: 1 where it is nearer by the width, a half where both are equally near.
     let share = if width > 1e-9 {
         (0.5 + 0.5 * (a.value - b.distance) / width).clamp(0.0, 1.0)
     } else {

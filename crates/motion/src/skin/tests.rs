@@ -1,5 +1,5 @@
-//! Skinning against numbers of another program and closed forms; bodies against what every body
-//! must be.
+//! Tests of skinning against another program and closed forms, and of properties that every body
+//! must have.
 
 use super::*;
 use crate::clip::Clip;
@@ -62,8 +62,8 @@ fn both_ways_agree_with_numpy() {
     }
 }
 
-/// A tube along X about two joints, at 0 and at 0.3 m, of 4 cm radius: weights go over evenly from
-/// 0.25 to 0.35 m.
+/// Returns a tube along X about two joints, at 0 and at 0.3 m, with a radius of 4 cm. Its weights
+/// change evenly from 0.25 to 0.35 m.
 fn tube() -> SkinnedMesh {
     let mut mesh = SkinnedMesh::default();
     for ring in 0..=60 {
@@ -92,7 +92,7 @@ fn tube() -> SkinnedMesh {
 fn a_forearm_twisted_by_half_a_turn_collapses_under_linear_blend_and_keeps_its_girth_under_dual_quaternions()
  {
     let mesh = tube();
-    // Just short of a half turn, where both ways round would be as near.
+    // Just below half a turn, where both directions are nearly equally short.
     let twist = Quat::from_rotation_x(std::f32::consts::PI - 1e-3);
     let pose = WorldPose {
         positions: vec![Vec3::ZERO, Vec3::new(0.3, 0.0, 0.0)],
@@ -138,7 +138,7 @@ fn the_wrist_of_the_mannequin_shows_the_candy_wrapper() {
         (roles.get(Role::LeftForearm).unwrap(), roles.get(Role::LeftHand).unwrap());
     let mut twisted = rest.clone();
     twisted.rotations[wrist] = Quat::from_rotation_x(3.1);
-    // The section of the arm where hand and forearm share: its mean distance from the axis of the
+    // The section of the arm that hand and forearm share: its mean distance from the axis of the
     // arm, at rest and twisted.
     let shared: Vec<usize> = (0..mesh.positions.len())
         .filter(|&vertex| {
@@ -171,7 +171,7 @@ fn the_wrist_of_the_mannequin_shows_the_candy_wrapper() {
     assert!((dual - before).abs() < 0.05 * before, "dual quaternions: {dual} of {before} m");
 }
 
-/// What every mesh must be.
+/// Checks the properties of every mesh.
 fn check(name: &str, skeleton: &Skeleton, mesh: &SkinnedMesh) {
     let count = mesh.positions.len();
     assert!(count > 0, "{name}");
@@ -197,7 +197,7 @@ fn check(name: &str, skeleton: &Skeleton, mesh: &SkinnedMesh) {
             "{name}: {weights:?}"
         );
     }
-    // Closed: every edge is in as many triangles one way as the other.
+    // The surface is closed: every edge occurs equally often in both directions.
     let mut edges: HashMap<(u32, u32), i32> = HashMap::new();
     for &[a, b, c] in &mesh.triangles {
         assert!(a.max(b).max(c) < count as u32 && a != b && b != c && c != a, "{name}");
@@ -231,7 +231,7 @@ fn rigs_of_all_kinds_have_a_closed_body() {
             mesh.positions.len()
         );
     }
-    // Without roles, the same bones have a plainer body.
+    // Without roles, the same bones get a plainer body.
     let skeleton = fixtures::lafan();
     check("no roles", &skeleton, &SkinnedMesh::around(&skeleton, &Roles::default(), 1.0));
 }
@@ -339,7 +339,7 @@ fn a_character_of_another_rig_stands_where_the_clip_stands() {
             character.mesh.joint_transforms(&pose, &mut transforms);
             linear_blend(&character.mesh, &transforms, &mut positions, &mut normals);
             lowest = positions.iter().map(|p| p.y).fold(lowest, f32::min);
-            // Arms and legs lie as the clip's do.
+            // Arms and legs have the directions of the clip's.
             for role in [Role::LeftShin, Role::RightForearm] {
                 let direction = |skeleton: &Skeleton, roles: &Roles, world: &WorldPose| {
                     let (start, end) = if role == Role::LeftShin {
@@ -365,7 +365,7 @@ fn a_character_of_another_rig_stands_where_the_clip_stands() {
     let mut pose = WorldPose::default();
     Drive::new(&walk, &roles, &own).unwrap().pose(&walk.world_pose(3), &mut pose);
     assert_eq!(pose, walk.world_pose(3));
-    // Nothing in common: no way.
+    // Skeletons without anything in common.
     let rope = Arc::new(chain(3, Vec3::Y));
     let mesh = Arc::new(SkinnedMesh::around(&rope, &Roles::default(), 1.0));
     let rope = Character { skeleton: rope, roles: Roles::default(), mesh };
@@ -396,7 +396,7 @@ proptest! {
     }
 }
 
-/// The vertices of a mesh in a pose.
+/// Returns the vertices of a mesh in a pose.
 fn posed(mesh: &SkinnedMesh, pose: &WorldPose) -> Vec<Vec3> {
     let (mut transforms, mut positions, mut normals) = (vec![], vec![], vec![]);
     mesh.joint_transforms(pose, &mut transforms);
@@ -420,7 +420,7 @@ fn a_body_does_not_depend_on_how_a_file_writes_joint_axes() {
             check(name, clip.skeleton(), &mesh);
             posed(&mesh, &clip.world_pose(0))
         });
-        // Every so many of the points of one body lie near the other.
+        // Evenly chosen points of one body are near the other.
         let nearest = |point: &Vec3| {
             expected.iter().map(|other| other.distance(*point)).fold(f32::INFINITY, f32::min)
         };

@@ -1,12 +1,12 @@
-//! Which joints move a vertex: each vertex begins with the one whose bone it lies on, and
-//! neighbours share.
+//! Weights of vertices: initially that of the joint on whose bone the vertex lies, then diffused to
+//! neighbours.
 
 use glam::Vec3;
 
-/// How often neighbours share: joints reach about three vertices to each side, and vertices are as
-/// near to each other as the limb is thin.
+/// Number of diffusion rounds: weights reach about three vertices to each side, and vertices are as
+/// close to each other as the limb is thin.
 const ROUNDS: usize = 10;
-/// Joints that a vertex keeps while it shares.
+/// Number of joints that a vertex keeps during diffusion.
 const KEPT: usize = 6;
 
 /// The neighbours of each vertex along the edges of triangles.
@@ -27,8 +27,8 @@ impl Neighbours {
         for vertex in 0..vertices {
             starts[vertex + 1] += starts[vertex];
         }
-        // On a closed surface every edge is in one triangle in each direction: each gives its
-        // corner the next one.
+        // On a closed surface every edge is in one triangle in each direction: each triangle gives
+        // a corner its next one.
         let mut free = starts.clone();
         let mut neighbours = vec![0u32; triangles.len() * 3];
         for &[a, b, c] in triangles {
@@ -45,10 +45,10 @@ impl Neighbours {
     }
 }
 
-/// Weights of joints, the greatest first; unused places have weight 0.
+/// Weights of joints, the greatest first; unused entries have weight 0.
 type Shares = [(u16, f32); KEPT];
 
-/// The joints and weights of each vertex, from the joint that it begins with; round by round.
+/// The diffusion of weights from the joint of each vertex to its neighbours, round by round.
 #[derive(Clone, Debug)]
 pub(super) struct Sharing {
     now: Vec<Shares>,
@@ -64,14 +64,14 @@ impl Sharing {
         Self { next: now.clone(), now, rounds: 0 }
     }
 
-    /// One more round; `true` when none is left.
+    /// Does one more round; returns `true` when none is left.
     pub(super) fn advance(&mut self, neighbours: &Neighbours) -> bool {
         let now = &self.now;
         let mut sum: Vec<(u16, f32)> = Vec::new();
         for (vertex, out) in self.next.iter_mut().enumerate() {
             let around = neighbours.of_vertex(vertex);
             let own = now[vertex];
-            // Far from every joint there is nothing to share.
+            // Far from every joint all weights are equal.
             if own[0].1 == 1.0 && around.iter().all(|&other| now[other as usize][0] == own[0]) {
                 *out = own;
                 continue;
@@ -96,7 +96,7 @@ impl Sharing {
         self.rounds >= ROUNDS
     }
 
-    /// The four greatest of each vertex.
+    /// Returns the four greatest weights of each vertex.
     pub(super) fn shares(&self) -> impl Iterator<Item = ([u16; 4], [f32; 4])> {
         self.now.iter().map(|shares| {
             let joints = std::array::from_fn(|i| shares[i].0);
@@ -106,7 +106,7 @@ impl Sharing {
     }
 }
 
-/// The greatest weights, scaled to the sum 1.
+/// Returns the greatest weights, scaled to the sum 1.
 fn greatest(sum: &mut [(u16, f32)]) -> Shares {
     sum.sort_unstable_by(|(joint, weight), (other, than)| {
         than.total_cmp(weight).then(joint.cmp(other))
@@ -127,7 +127,7 @@ pub(super) fn fair(positions: &mut Vec<Vec3>, neighbours: &Neighbours) {
     }
 }
 
-/// Each value, by this share on the way to the mean of its neighbours'.
+/// Moves each value by a share towards the mean of its neighbours.
 pub(super) fn drawn_together(values: &[Vec3], neighbours: &Neighbours, share: f32) -> Vec<Vec3> {
     let drawn = values.iter().enumerate().map(|(vertex, &own)| {
         let around = neighbours.of_vertex(vertex);

@@ -24,7 +24,7 @@ proptest! {
         prop_assert!(curve.at(u).frame.shift.distance(curve.at_length(along).frame.shift) < 1e-9);
     }
 
-    /// Beside the quadrature stand twenty thousand chords, which cut off the tip of a hairpin.
+    /// The quadrature is compared with twenty thousand chords, which cut off the tip of a hairpin.
     #[test]
     fn the_length_is_that_of_many_chords(way in prop::collection::vec((-3.0f64..3.0, -3.0f64..3.0), 4..12)) {
         let curve = curve(&way);
@@ -52,7 +52,8 @@ proptest! {
     }
 }
 
-/// A path that turns back almost in a point: fixed parts measured it 3 mm short in 3.6 m.
+/// A path that turns back almost in a point. A quadrature with fixed parts was 3 mm too short in
+/// 3.6 m.
 #[test]
 fn a_hairpin_has_the_length_of_its_chords() {
     let curve = curve(&[
@@ -91,7 +92,7 @@ fn an_open_path_goes_straight_on_and_a_closed_one_round() {
     assert!(crate::math::wrap_angle(after.frame.yaw - before.frame.yaw).abs() < 1e-5);
 }
 
-/// Control points that coincide: the path stands for a moment, and has a direction all the same.
+/// Where control points coincide the speed of the path is 0, and it still has a direction.
 #[test]
 fn where_a_path_stands_it_has_the_direction_behind() {
     let doubled = curve(&[(0.0, 0.0), (0.0, 0.0), (0.0, 0.0), (1.0, 0.0), (2.0, 0.0)]);

@@ -12,7 +12,7 @@ fn path(points: &[(f64, f64)]) -> GroundSpline {
     GroundSpline::uniform(points.iter().map(|&p| DVec2::from(p)).collect()).unwrap()
 }
 
-/// A path that goes ahead in bends.
+/// Returns a path ahead with bends.
 fn winding() -> impl Strategy<Value = GroundSpline> {
     prop::collection::vec(-1.0f64..1.0, 6..12).prop_map(|sides| {
         let points = sides.iter().enumerate().map(|(k, &x)| (x, 0.8 * k as f64));
@@ -30,7 +30,7 @@ fn length(spline: &GroundSpline) -> f64 {
     ArcLengthPath::new(spline.clone()).unwrap().length_m()
 }
 
-/// The largest distance between two paths at the same parameter.
+/// Returns the largest distance between two paths at the same parameter.
 fn apart(a: &GroundSpline, b: &GroundSpline) -> f64 {
     (0..=200)
         .map(|k| f64::from(k) / 200.0)
@@ -60,7 +60,8 @@ proptest! {
         }
     }
 
-    /// Only the pieces that a point has a say in move with it, and none by more than the point.
+    /// A moved point changes only the pieces that depend on it, and no point of these moves farther
+    /// than it does.
     #[test]
     fn a_point_moves_its_own_pieces(path in winding(), index in 0usize..6, x in -2.0f64..2.0) {
         let to = path.points()[index] + DVec2::new(x, 0.3);
@@ -169,7 +170,7 @@ fn a_straight_line_closes_into_a_circle() {
     assert!((length(&closed) - 6.0).abs() < 0.1);
 }
 
-/// Ends that are near each other are joined where they are.
+/// Ends that are near each other are joined in place.
 #[test]
 fn an_eight_stays_an_eight() {
     let points: Vec<(f64, f64)> = (0..=20)

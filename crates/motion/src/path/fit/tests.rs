@@ -103,7 +103,7 @@ fn places_derivatives_lengths_and_inserted_knots_are_those_of_scipy() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
-    /// What is left over is square to every share: no other points are nearer.
+    /// The residual is orthogonal to the basis functions: no other control points are closer.
     #[test]
     fn the_rest_is_square_to_the_shares(way in prop::collection::vec((-3.0f64..3.0, -3.0f64..3.0), 12..60), control_points in 4usize..9) {
         let way: Vec<DVec2> = way.into_iter().map(DVec2::from).collect();
@@ -119,8 +119,8 @@ proptest! {
         prop_assert!(sums.iter().all(|sum| sum.length() < 1e-10), "{sums:?}");
     }
 
-    /// A path is fitted by itself, and a straight way by a straight path however strong the
-    /// smoothing.
+    /// A path is reproduced by its fit, and a straight trajectory gives a straight path however
+    /// strong the smoothing is.
     #[test]
     fn what_is_a_path_is_found_again(way in prop::collection::vec((-3.0f64..3.0, -3.0f64..3.0), 4..9), smoothing in 0.0f64..1e4, pin_ends: bool) {
         let control: Vec<DVec2> = way.into_iter().map(DVec2::from).collect();

@@ -4,20 +4,21 @@ use super::{Anchor, Shape};
 use crate::skeleton::Skeleton;
 use glam::Vec3;
 
-/// Girth grows with the length of everything that hangs on a bone, to this power (1/2 would keep
-/// the cross-section areas of a forking tree).
+/// The power by which girth grows with the length of all bones below a bone (1/2 would preserve the
+/// cross-section areas of a forking tree).
 const GIRTH_POWER: f32 = 0.6;
-/// Radius of a bone that carries the whole skeleton, per metre of its total length.
+/// Radius of a bone with the whole skeleton below it, per metre of the skeleton's total length.
 const GIRTH: f32 = 0.04;
-/// No bone is thicker than this part of its length, so that short bones do not become balls.
-const THICKEST: f32 = 0.42;
+/// The greatest radius of a bone as a share of its length, so that short bones do not become balls.
+const MAX_RADIUS_SHARE: f32 = 0.42;
 
-/// Radius of a bone that carries `below` metres of bones, in a skeleton of `total` metres.
+/// Returns the radius of a bone with `below` metres of bones below it, in a skeleton of `total`
+/// metres.
 fn radius(below: f32, total: f32) -> f32 {
     GIRTH * total.powf(1.0 - GIRTH_POWER) * below.powf(GIRTH_POWER)
 }
 
-/// One shape per bone that has a length.
+/// Returns one shape per bone that has a length.
 pub(super) fn shapes(skeleton: &Skeleton, rest: &[Vec3]) -> Vec<Shape> {
     let joints = skeleton.joints();
     // The length of all bones below each joint.
@@ -30,7 +31,7 @@ pub(super) fn shapes(skeleton: &Skeleton, rest: &[Vec3]) -> Vec<Shape> {
     let total = below[0];
     let mut shapes = Vec::with_capacity(joints.len());
     if !(total.is_finite() && total > 0.0) {
-        // A single point, or joints at one place: a ball of 5 cm says that something is there.
+        // A single point, or joints at one position: a ball of 5 cm makes them visible.
         let root = Anchor { joint: 0, point: Vec3::ZERO };
         shapes.push(Shape::round(root, 0.05, root, 0.05));
         return shapes;
@@ -41,7 +42,7 @@ pub(super) fn shapes(skeleton: &Skeleton, rest: &[Vec3]) -> Vec<Shape> {
         if let Some(parent) = joint.parent {
             let length = joint.offset.length();
             if length > shortest {
-                let limit = length * THICKEST;
+                let limit = length * MAX_RADIUS_SHARE;
                 let thick = radius(below[index] + length, total).min(limit);
                 let thin = radius(below[index] + 0.25 * length, total).min(limit);
                 shapes.push(Shape::round(
@@ -55,7 +56,7 @@ pub(super) fn shapes(skeleton: &Skeleton, rest: &[Vec3]) -> Vec<Shape> {
         if let Some(end) = joint.end_site {
             let length = end.length();
             if length > shortest {
-                let limit = length * THICKEST;
+                let limit = length * MAX_RADIUS_SHARE;
                 let tip = Anchor { joint: index, point: end };
                 shapes.push(Shape::round(
                     here,
@@ -66,7 +67,7 @@ pub(super) fn shapes(skeleton: &Skeleton, rest: &[Vec3]) -> Vec<Shape> {
             }
         }
     }
-    // A trunk: the root carries everything, also where its bones are short.
+    // A trunk: everything is below the root, also where its bones are short.
     let root = Anchor { joint: 0, point: Vec3::ZERO };
     let nearest =
         skeleton.children(0).map(|child| rest[child].length()).fold(f32::INFINITY, f32::min);

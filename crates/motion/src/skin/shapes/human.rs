@@ -1,6 +1,6 @@
 //! The mannequin: girths and landmarks of an adult, scaled to the skeleton.
 //!
-//! Lengths along the body are the skeleton's. Girths and the place of landmarks off the bones
+//! Lengths along the body are the skeleton's. Girths and the positions of landmarks off the bones
 //! (heel, chin, calf) are those of an adult of 1.75 m, rounded from the tables in Winter,
 //! "Biomechanics and Motor Control of Human Movement", and scaled with the body height.
 
@@ -8,8 +8,8 @@ use super::{Anchor, Shape};
 use crate::skeleton::{Role, Roles, Side, Skeleton};
 use glam::Vec3;
 
-/// The body axes at rest, where all joint frames agree: left and up span the trunk, forward is out
-/// of the chest.
+/// The body axes at rest, where all joint frames agree: left and up span the trunk, forward points
+/// out of the chest.
 struct Axes {
     left: Vec3,
     up: Vec3,
@@ -21,14 +21,15 @@ struct Human<'a> {
     rest: &'a [Vec3],
     roles: &'a Roles,
     axes: Axes,
-    /// Body height in units of the adult that the numbers below are for.
+    /// Body height relative to the adult for whom the numbers below apply.
     scale: f32,
-    /// Joints that the shapes of the mannequin speak for.
+    /// Whether the shapes of the mannequin represent each joint.
     covered: Vec<bool>,
     shapes: Vec<Shape>,
 }
 
-/// The shapes, or `None` where the roles do not make a human with two legs, two arms and a head.
+/// Returns the shapes, or `None` where the roles are not those of a human with two legs, two arms
+/// and a head.
 pub(super) fn shapes(skeleton: &Skeleton, rest: &[Vec3], roles: &Roles) -> Option<Vec<Shape>> {
     let joint = |role| roles.get_within(role, rest.len());
     let at = |role| Some(rest[joint(role)?]);
@@ -79,7 +80,7 @@ impl Human<'_> {
         self.roles.get_within(role, self.rest.len())
     }
 
-    /// A point that lies at `rest` when the skeleton rests and moves with `joint`.
+    /// Returns an anchor that is at `rest` in the rest pose and moves with `joint`.
     fn anchor(&self, joint: usize, rest: Vec3) -> Anchor {
         Anchor { joint, point: rest - self.rest[joint] }
     }
@@ -88,12 +89,12 @@ impl Human<'_> {
         Anchor { joint, point: offset * self.scale }
     }
 
-    /// Adds a shape whose radii are those of the adult.
+    /// Adds a shape with radii of the adult.
     fn add(&mut self, a: Anchor, radius_a: f32, b: Anchor, radius_b: f32) {
         self.shapes.push(Shape::round(a, radius_a * self.scale, b, radius_b * self.scale));
     }
 
-    /// Likewise, for a surface that flows into its neighbours only.
+    /// Adds a shape that is used only for surfaces that blend with their neighbours.
     fn add_soft(&mut self, a: Anchor, radius_a: f32, b: Anchor, radius_b: f32) {
         self.add(a, radius_a, b, radius_b);
         if let Some(shape) = self.shapes.last_mut() {
@@ -101,7 +102,7 @@ impl Human<'_> {
         }
     }
 
-    /// The joints from `joint` up to the root.
+    /// Returns the joints from `joint` up to the root.
     fn ancestors(&self, joint: usize) -> impl Iterator<Item = usize> + '_ {
         std::iter::successors(Some(joint), |&j| self.skeleton.parent(j))
     }
@@ -112,7 +113,7 @@ impl Human<'_> {
         }
     }
 
-    /// The joint that carries both arms.
+    /// Returns the joint from which both arms hang.
     fn chest(&self) -> Option<usize> {
         let (left, right) = (self.joint(Role::LeftUpperArm)?, self.joint(Role::RightUpperArm)?);
         self.ancestors(left)
@@ -131,7 +132,7 @@ impl Human<'_> {
         let shoulder_middle = (self.rest[arm_left] + self.rest[arm_right]) * 0.5;
         let half_hips = self.rest[hip_left].distance(self.rest[hip_right]) * 0.5 / s;
         let half_shoulders = self.rest[arm_left].distance(self.rest[arm_right]) * 0.5 / s;
-        // Half of the width is an adult's, half is the skeleton's own.
+        // Half of the width is that of an adult, half the skeleton's own.
         let pelvis = (0.076 + (half_hips + 0.06) * 0.5).clamp(0.11, 0.19);
         let ribs = (0.074 + (half_shoulders - 0.03) * 0.5).clamp(0.11, 0.2);
         let waist = 0.5 * (pelvis + ribs) * 0.87;
@@ -162,7 +163,7 @@ impl Human<'_> {
         self.add(lower_ribs, ribs * 0.90, upper_ribs, ribs);
         self.flatten_last(forward, 0.70);
 
-        // Seat, and the plate of the chest, from side to side.
+        // The seat and the rib cage, from side to side.
         let seat = |this: &Self, hip: usize| {
             this.anchor(
                 hips,
@@ -172,7 +173,7 @@ impl Human<'_> {
         let (seat_left, seat_right) = (seat(self, hip_left), seat(self, hip_right));
         self.add(seat_left, 0.083, seat_right, 0.083);
         for hip in [hip_left, hip_right] {
-            // Half of the seat, and how it goes over into the thigh.
+            // Half of the seat, and its transition to the thigh.
             let knee = self
                 .skeleton
                 .children(hip)
@@ -201,7 +202,7 @@ impl Human<'_> {
             let girdle =
                 self.anchor(chest, shoulder_middle + left * (side * 0.05 * s) - up * (0.022 * s));
             self.add(girdle, 0.066, Anchor { joint: arm, point: Vec3::ZERO }, 0.056);
-            // The hollow of the armpit, filled.
+            // The hollow of the armpit is filled.
             let flank = self.anchor(
                 chest,
                 shoulder_middle + left * (side * 0.075 * s)
@@ -211,7 +212,7 @@ impl Human<'_> {
             let armpit =
                 self.anchor(chest, self.rest[arm].lerp(shoulder_middle, 0.16) - up * (0.028 * s));
             self.add(flank, 0.060, armpit, 0.046);
-            // The muscle of the chest, and the broad one of the back that narrows to the waist.
+            // The muscle of the chest, and that of the back, which narrows towards the waist.
             let at = |this: &Self, share: f32, down: f32, ahead: f32| {
                 this.anchor(
                     chest,
@@ -239,7 +240,7 @@ impl Human<'_> {
         let throat = if neck == head { chest } else { neck };
         let base = self
             .anchor(throat, shoulders.lerp(self.rest[head], 0.10) - forward * (0.004 * self.scale));
-        // Where the crown is: the file's own, or that of a joint at the base of the skull.
+        // The top of the head: from the file, or estimated for a joint at the base of the skull.
         let told =
             self.skeleton.joints()[head].end_site.map_or(0.0, |end| end.dot(up) / self.scale);
         let crown = if (0.12..0.26).contains(&told) { told } else { 0.19 };
@@ -340,7 +341,8 @@ impl Human<'_> {
                 if let Some(end) = self.skeleton.joints()[joint].end_site {
                     self.add(zero(joint), 0.0092, Anchor { joint, point: end }, 0.007);
                 }
-                // A finger is a shell of its own; what lies between wrist and finger is the palm.
+                // Each finger is a shell of its own; everything between wrist and finger is the
+                // palm.
                 let finger =
                     self.ancestors(joint).take_while(|&j| j != wrist).last().unwrap_or(joint);
                 for shape in self.shapes.iter_mut().skip(before + usize::from(parent == wrist)) {
@@ -367,8 +369,7 @@ impl Human<'_> {
         );
         let zero = |joint| Anchor { joint, point: Vec3::ZERO };
         let down = (self.rest[ankle] - self.rest[hip]).normalize_or(-self.axes.up);
-        // Out of the knee, in the frames of the leg. In some files the legs of the resting skeleton
-        // point up.
+        // Forward from the knee, in the frames of the leg. In some files the legs point up at rest.
         let ahead = down.cross(self.axes.left).normalize_or(self.axes.forward);
         let thigh =
             self.anchor(hip, self.rest[hip].lerp(self.rest[knee], 0.36) + ahead * (0.010 * s));
@@ -400,8 +401,8 @@ impl Human<'_> {
                 .unwrap_or((ahead * 0.13 + down * 0.06) * s),
         };
         let along = bone.normalize_or(ahead);
-        // The sole is level where the resting leg stands on it, and else lies as under an adult's
-        // foot: 27° off the bone over it.
+        // The sole is level where the resting leg stands on it, and otherwise as under an adult's
+        // foot: 27° from the bone above it.
         let rise = along.cross(self.axes.left).normalize_or(-down);
         let slope = along.dot(down);
         let (sin, cos) = if (0.05..0.9).contains(&slope) {
@@ -411,7 +412,7 @@ impl Human<'_> {
         };
         let forward = along * cos + rise * sin;
         let up = rise * cos - along * sin;
-        // The middle of the ball of the foot lies 2.2 cm over the sole.
+        // The centre of the ball of the foot is 2.2 cm above the sole.
         let ball_over_ankle = bone.dot(up) / s;
         let ball = forward * (bone.dot(forward) / s) + up * ball_over_ankle;
         let heel = -forward * 0.030 + up * (ball_over_ankle + 0.012);
@@ -424,7 +425,7 @@ impl Human<'_> {
             0.043,
         );
         self.flatten_last(up, 0.52);
-        // The instep falls from the ankle to the ball.
+        // The instep descends from the ankle to the ball.
         let (instep, ball_top) = (
             self.on(ankle, forward * 0.010 - up * 0.002),
             self.on(ankle, ball - forward * 0.008 + up * 0.007),
@@ -448,8 +449,8 @@ impl Human<'_> {
         Some(())
     }
 
-    /// Bones that no part of a human speaks for: tails, bags, swords. What lies within the head
-    /// stays within.
+    /// Adds limbs for bones that no part of a human represents: tails, bags, swords. Bones inside
+    /// the head are left out.
     fn whatever_else(&mut self) {
         let head = self.joint(Role::Head);
         for joint in 1..self.rest.len() {
@@ -471,8 +472,8 @@ impl Human<'_> {
         }
     }
 
-    /// Whether a joint with a role lies below: then it is part of a chain that the mannequin has
-    /// already.
+    /// Returns whether a joint with a role is below; the joint then belongs to a chain that the
+    /// mannequin has already.
     fn between_roles(&self, joint: usize) -> bool {
         Role::ALL
             .into_iter()

@@ -1,8 +1,8 @@
-//! What a skeleton looks like: tapered limbs from nothing but its bones, and a mannequin's where
-//! the roles of a human are known.
+//! The shapes of a body: tapered limbs from the bones alone, and a mannequin where the roles of a
+//! human are known.
 //!
-//! One table for both bodies: the limbs that are drawn as they are (`scene`), and the smooth mesh
-//! that is made around them.
+//! The same shapes are drawn as limbs and used as the surface around which the smooth mesh is
+//! built.
 
 mod bones;
 mod human;
@@ -35,11 +35,11 @@ pub struct Shape {
     pub flat: Vec3,
     /// Factor on the shape's size along `flat`: 1 is round.
     pub flatness: f32,
-    /// Shapes of different shells never flow into each other, however near they are: fingers. 0 is
-    /// the body's.
+    /// The shell of the shape. Shapes of different shells never blend, however near they are:
+    /// fingers. 0 is that of the body.
     pub shell: usize,
-    /// Whether the shape is only for surfaces that flow into each other: by itself it would be a
-    /// lump.
+    /// Whether the shape is only for surfaces that blend with their neighbours; alone it would look
+    /// like a lump.
     pub soft: bool,
 }
 
@@ -111,9 +111,9 @@ pub struct PlacedShape {
     pub flatness: f32,
 }
 
-/// Returns the shapes of a skeleton whose joints rest at `rest` (metres, the root at the origin): a
-/// mannequin's where the roles are those of a human, else one per bone. None of them has a number
-/// that is not finite.
+/// Returns the shapes of a skeleton whose joints rest at `rest` (metres, the root at the origin):
+/// those of a mannequin where the roles are those of a human, otherwise one per bone. All of their
+/// numbers are finite.
 #[must_use]
 pub fn limb_shapes(skeleton: &Skeleton, rest: &[Vec3], roles: Option<&Roles>) -> Vec<Shape> {
     let mut shapes = roles
