@@ -21,7 +21,7 @@ mod read;
 mod turns;
 mod write;
 
-// What reading text takes in any format.
+// Limits and readers shared by all text formats.
 pub(super) use convert::{FIRST_ROWS, MEMORY_FLOOR, MEMORY_PER_BYTE};
 pub(super) use hierarchy::MAX_DEPTH;
 pub(super) use number::{Scan, scan};

@@ -34,7 +34,6 @@ enum End {
 /// A line that holds exactly one row makes lines count: a shorter last row is then dropped and any
 /// other wrong row is refused. If no line holds exactly one row, numbers are read one after the
 /// other.
-/// other.
 pub(super) fn rows(
     lexer: &mut Lexer<'_>,
     first_row: Vec<f64>,

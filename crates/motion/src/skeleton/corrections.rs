@@ -152,7 +152,7 @@ impl<'a> Bones<'a> {
     }
 }
 
-/// What is known about the direction of a joint's bone at rest.
+/// The known direction of a joint's bone at rest.
 enum Bone {
     /// Corresponding bones, not of unit length.
     Direction { target: Vec3, source: Vec3 },

@@ -1,4 +1,4 @@
-//! The arms: swung against the legs, elbows bent as the gait asks for, hands loose.
+//! The arms: swing against the legs, bend of the elbows by the gait, relaxed hands.
 
 use super::params::Params;
 use super::plan::Plan;
@@ -10,11 +10,11 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 /// Angles of one arm, radians.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Arm {
-    /// Upper arm forwards from hanging.
+    /// Flexion of the upper arm from hanging, forwards.
     pub(super) flexion: f64,
-    /// Upper arm away from the body.
+    /// Abduction of the upper arm from the body.
     pub(super) abduction: f64,
-    /// Upper arm about itself, inwards.
+    /// Inward rotation of the upper arm about its own axis.
     pub(super) inward: f64,
     pub(super) elbow: f64,
     pub(super) wrist: f64,
@@ -24,9 +24,9 @@ fn degrees(value: f64) -> f64 {
     value.to_radians()
 }
 
-/// Swing and elbows after Murray, Sepic and Barnard 1967 (walking: 24° back to 8° forward at a free
-/// speed, elbow 15 to 45°) and Hinrichs 1987 (running: elbow near 90°, the hand crossing towards
-/// the middle in front).
+/// Returns swing and elbows after Murray, Sepic and Barnard 1967 (walking: 24° back to 8° forward
+/// at a free speed, elbow 15 to 45°) and Hinrichs 1987 (running: elbow near 90°, the hand crossing
+/// towards the middle in front).
 pub(super) fn arm(plan: &Plan, posture: &Posture, params: &Params, side: usize, secs: f64) -> Arm {
     let gait = &plan.gait;
     let going = plan.going(secs);
@@ -102,8 +102,8 @@ pub(super) fn arm(plan: &Plan, posture: &Posture, params: &Params, side: usize, 
 }
 
 impl Arm {
-    /// The upper arm in the frame that the arms hang in, from the T-pose. Turns about its own axis
-    /// are alike on both sides, for the T-pose is mirrored in x.
+    /// Returns the rotation of the upper arm in the frame of the trunk, from the T-pose. Rotations
+    /// about its own axis are equal on both sides, because the T-pose is symmetric in x.
     pub(super) fn upper(&self, side: usize) -> Quat {
         let mirror = if side == 0 { 1.0 } else { -1.0 };
         Quat::from_rotation_x(-self.flexion as f32)
@@ -111,13 +111,14 @@ impl Arm {
             * Quat::from_rotation_x(self.inward as f32)
     }
 
-    /// The forearm in the frame of the upper arm.
+    /// Returns the rotation of the forearm in the frame of the upper arm.
     pub(super) fn fore(&self, side: usize) -> Quat {
         let mirror = if side == 0 { 1.0 } else { -1.0 };
         Quat::from_rotation_y((-mirror * self.elbow) as f32)
     }
 
-    /// The hand in the frame of the forearm: a little towards the palm, turned a little in.
+    /// Returns the rotation of the hand in the frame of the forearm: slightly towards the palm, and
+    /// slightly inwards.
     pub(super) fn hand(&self, side: usize) -> Quat {
         let mirror = if side == 0 { 1.0 } else { -1.0 };
         Quat::from_rotation_z((-mirror * self.wrist) as f32) * Quat::from_rotation_x(-0.25)

@@ -1,4 +1,4 @@
-//! Where the hips go over the ground: they balance on the feet as an inverted pendulum does.
+//! The trajectory of the hips over the ground: they balance on the feet as an inverted pendulum.
 
 use super::body::Body;
 use super::foot::{Foot, foot_at};
@@ -9,13 +9,13 @@ use super::plan::Plan;
 use super::posture::Posture;
 use glam::{DVec2, Vec3};
 
-/// The hips over the grid of a plan.
+/// The positions of the hips on the grid of a plan.
 pub(super) struct Hips {
     pub(super) feet: Vec<[Foot; 2]>,
     pub(super) positions: Vec<Vec3>,
 }
 
-/// Moves the hips over planned feet.
+/// Computes the positions of the hips over planned feet.
 pub(super) fn hips(plan: &Plan, posture: &Posture, params: &Params, body: &Body) -> Option<Hips> {
     let feet: Option<Vec<[Foot; 2]>> = (0..plan.len())
         .map(|step| {
@@ -34,13 +34,13 @@ pub(super) fn hips(plan: &Plan, posture: &Posture, params: &Params, body: &Body)
     Some(Hips { feet, positions })
 }
 
-/// The way of the hips over the ground (x, z).
+/// Returns the trajectory of the hips over the ground (x, z).
 ///
 /// The body is a linear inverted pendulum on the centre of pressure p: ẍ = ω²(x - p). Its only
-/// bounded motion is p seen through the kernel ω/2·e^(-ω|t|), which looks ahead as far as back (the
-/// preview of Kajita et al. 2003, in closed form): the sway over the stance foot, the shift of
-/// weight before a first step and the lean before a stop are all in it. What is filtered is how far
-/// p is from the foothold that the planned way itself calls for, so that a steady gait keeps its
+/// bounded motion is p convolved with the kernel ω/2·e^(-ω|t|), which looks ahead as far as back
+/// (the preview of Kajita et al. 2003, in closed form). It contains the sway over the stance foot,
+/// the shift of weight before a first step and the lean before a stop. Only the difference of p to
+/// the foothold that follows from the planned path is filtered, so that a steady gait keeps its
 /// speed and its circle exactly.
 fn over_the_ground(
     plan: &Plan,
@@ -68,8 +68,8 @@ fn over_the_ground(
             *sway -= mean;
         }
     }
-    // The hips sway farther than the centre of mass, for the trunk leans the other way (Orendurff
-    // et al. 2004 find the hips' 20 to 40 % larger).
+    // The hips sway farther than the centre of mass, because the trunk leans the other way
+    // (Orendurff et al. 2004 measure 20 to 40 % more for the hips).
     let gain = DVec2::new(if plan.gait.running { 0.8 } else { 1.3 }, 1.0);
     (swayed.iter().zip(&places).enumerate())
         .map(|(step, (sway, place))| {
@@ -78,7 +78,8 @@ fn over_the_ground(
         .collect()
 }
 
-/// Fills gaps (flight) on the straight line between their ends; gaps at the ends are held.
+/// Fills gaps (flight) linearly between their ends; gaps at the ends are filled with the nearest
+/// value.
 fn bridge(values: &mut [Option<DVec2>]) {
     let mut known: Option<(usize, DVec2)> = None;
     for i in 0..values.len() {
@@ -94,7 +95,7 @@ fn bridge(values: &mut [Option<DVec2>]) {
     }
 }
 
-/// The two-sided exponential mean: one pass forwards, one backwards, and half of each.
+/// Returns the two-sided exponential mean: half the sum of a forward and a backward pass.
 fn two_sided(values: &[DVec2], keep: f64) -> Vec<DVec2> {
     let mut out = vec![DVec2::ZERO; values.len()];
     let mut state = values.first().copied().unwrap_or_default();

@@ -37,14 +37,14 @@ const BALL_AHEAD: f32 = 0.078;
 const TOES: f32 = 0.038;
 const HEEL_BEHIND: f32 = 0.036;
 
-/// Measures of a body that the motion is planned with, metres.
+/// Measures of a body for planning its motion, metres.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Body {
     /// Hip joint to knee.
     pub(super) thigh: f32,
     /// Knee to ankle.
     pub(super) shank: f32,
-    /// Hip joints in the frame of the hips, left then right.
+    /// Hip joints in the frame of the hips: left, right.
     pub(super) hip_in_hips: [Vec3; 2],
     /// The joint of the toes in the frame of the foot.
     pub(super) ball_in_foot: Vec3,
@@ -52,7 +52,7 @@ pub(super) struct Body {
     pub(super) tip_in_toes: Vec3,
     /// The contact point of the heel in the frame of the foot.
     pub(super) heel_in_foot: Vec3,
-    /// Height over that of the reference adult of 1.75 m.
+    /// Ratio of the height to that of the reference adult of 1.75 m.
     pub(super) scale: f32,
 }
 
@@ -73,34 +73,34 @@ impl Body {
         }
     }
 
-    /// The leg stretched out, hip joint to ankle.
+    /// Returns the length of the straight leg from hip joint to ankle.
     pub(super) fn leg(&self) -> f32 {
         self.thigh + self.shank
     }
 
-    /// Height of the ankle over the sole.
+    /// Returns the height of the ankle above the sole.
     pub(super) fn ankle_height(&self) -> f32 {
         -self.heel_in_foot.y
     }
 
-    /// Height of the hip joints of a body that stands straight: the leg length of the gait
-    /// literature.
+    /// Returns the height of the hip joints of a body that stands straight: the leg length of the
+    /// gait literature.
     pub(super) fn hip_height(&self) -> f32 {
         self.leg() + self.ankle_height()
     }
 
-    /// Hip to ankle when the knee is flexed by `radians`.
+    /// Returns the distance from hip joint to ankle when the knee is flexed by `radians`.
     pub(super) fn reach_at_flexion(&self, radians: f32) -> f32 {
         let (a, b) = (self.thigh, self.shank);
         (a * a + b * b + 2.0 * a * b * radians.cos()).max(0.0).sqrt()
     }
 }
 
-/// The contact point of the heel in the frame of `LeftFoot` and `RightFoot` of [`humanoid`],
-/// metres.
+/// Returns the contact point of the heel in the frame of `LeftFoot` and `RightFoot` of
+/// [`humanoid`], metres.
 ///
-/// No joint lies there; with the joints `LeftToe` and `RightToe` it is what stands still while
-/// [`super::FootContact`] says so.
+/// No joint is there. This point and the joints `LeftToe` and `RightToe` stand still in the frames
+/// given by [`super::FootContact`].
 #[must_use]
 pub fn heel_in_foot(height_m: f32) -> Vec3 {
     Body::new(height_m).heel_in_foot

@@ -1,11 +1,12 @@
-//! One foot through time: planted and rolling from heel to ball, then swung to the next place.
+//! The motion of one foot over time: planted and rolling from heel to ball, then swinging to the
+//! next plant.
 
 use super::body::Body;
 use super::track::{Spline, State, cubic_start_acceleration, quintic, ramp};
 use glam::{DVec2, DVec3, Quat, Vec3};
 
-/// A foot on the ground: where, when, and how it arrives and leaves. Times in seconds, `±∞` for a
-/// foot that stands.
+/// A plant of a foot: its time, position, and how the foot arrives and leaves. Times in seconds,
+/// `±∞` for a foot that keeps standing.
 ///
 /// The foot rolls over two rockers (Perry and Burnfield 2010, chapter 3): about the heel from
 /// `from` to `flat_from`, flat on the ground to `flat_to`, and about the ball, with the toes flat,
@@ -16,9 +17,9 @@ pub(super) struct Plant {
     pub(super) flat_from: f64,
     pub(super) flat_to: f64,
     pub(super) to: f64,
-    /// The ankle over the flat foot, world (x, z).
+    /// Position of the ankle over the flat foot, world (x, z).
     pub(super) ankle: DVec2,
-    /// Where the toes point, about +Y.
+    /// Direction of the toes about +Y.
     pub(super) yaw: f64,
     /// Pitch at `from` and `to`, radians, positive with the heel up.
     pub(super) strike_pitch: f64,
@@ -26,37 +27,37 @@ pub(super) struct Plant {
     /// The ankle's distance from the middle of the body across its heading, metres; positive on
     /// either side.
     pub(super) half_width: f64,
-    /// How the weight comes and goes, seconds after `from` and before `to`.
+    /// Durations of loading after `from` and of unloading before `to`, seconds.
     pub(super) load_secs: f64,
-    /// The share of a stance that one second is, for feet that stand for ever.
+    /// Stances per second, for feet that stand without end.
     pub(super) stances_per_sec: f64,
-    /// How the foot gets from here to its next place.
+    /// The swing from here to the next plant.
     pub(super) swing: Swing,
 }
 
-/// The way of a foot through the air. Times are shares of the swing; heights are those of the ball
-/// over its height on the ground, metres.
+/// The swing of a foot. Times are shares of the swing; heights are those of the ball above its
+/// height on the ground, metres.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Swing {
     pub(super) peak: (f64, f64),
     pub(super) low: (f64, f64),
     /// Pitch knots after the release: (share, radians).
     pub(super) pitch: [(f64, f64); 2],
-    /// Pitch shortly before the strike, over that at the strike.
+    /// Pitch shortly before the strike, relative to that at the strike.
     pub(super) toes_up: f64,
-    /// How much of the least bending way's acceleration the foot starts and ends with, over the
-    /// ground.
+    /// Horizontal acceleration at the start and end of the swing, as a multiple of that of the
+    /// curve that bends least.
     pub(super) eager: f64,
     pub(super) late: f64,
-    /// What the way over the ground bulges by in the middle, world (x, z), metres: around the other
-    /// leg on a curve, where the chord would go through it.
+    /// Lateral displacement of the trajectory in the middle, world (x, z), metres: around the other
+    /// leg on a curve, where the chord would pass through it.
     pub(super) aside: DVec2,
-    /// Rate of the ball straight up at its start and end, m/s; not 0 only where it leaves the
+    /// Vertical velocity of the ball at the start and end, m/s; not 0 only where it leaves the
     /// ground with the whole body.
     pub(super) spring: f64,
 }
 
-/// A foot at one moment.
+/// The state of a foot at one moment.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Foot {
     pub(super) ankle: Vec3,
@@ -70,7 +71,7 @@ pub(super) struct Foot {
     pub(super) load: f64,
     /// 0 at the strike to 1 at the release; the share of the swing while in the air.
     pub(super) progress: f64,
-    /// Where the ground pushes, world (x, z).
+    /// Centre of pressure, world (x, z).
     pub(super) pressure: DVec2,
 }
 
@@ -80,7 +81,8 @@ impl Foot {
     }
 }
 
-/// (along, up) of a vector of the foot's side view after a pitch, and its derivative by the pitch.
+/// Returns (along, up) of a vector of the foot's side view after a pitch, and its derivative by the
+/// pitch.
 fn pitched(v: Vec3, pitch: f64) -> (DVec2, DVec2) {
     let (y, z) = (f64::from(v.y), f64::from(v.z));
     let (sin, cos) = pitch.sin_cos();
@@ -94,7 +96,7 @@ fn along(yaw: f64) -> DVec2 {
     DVec2::new(yaw.sin(), yaw.cos())
 }
 
-/// The ball of a planted foot at a pitch, and how it moves as the pitch changes.
+/// Returns the ball of a planted foot at a pitch, and its derivative by the pitch.
 fn planted_ball(plant: &Plant, body: &Body, pitch: f64) -> (DVec3, DVec3) {
     let flat_ball = f64::from(body.ball_in_foot.z);
     let ball_height = f64::from(body.ankle_height() + body.ball_in_foot.y);
@@ -136,7 +138,8 @@ impl Plant {
         }
     }
 
-    /// Progress through the stance; a foot that stands for ever is in the middle of it.
+    /// Returns the progress through the stance; a foot that stands without end is in the middle of
+    /// it.
     fn progress(&self, secs: f64) -> f64 {
         let since = (secs - self.from) * self.stances_per_sec;
         let left = (self.to - secs) * self.stances_per_sec;
@@ -149,7 +152,7 @@ impl Plant {
     }
 }
 
-/// The foot that follows `plants` (in order of time, at least one) at `secs`.
+/// Returns the state at `secs` of the foot that follows `plants` (in order of time, at least one).
 pub(super) fn foot_at(plants: &[Plant], body: &Body, secs: f64) -> Option<Foot> {
     let index = plants.partition_point(|plant| plant.from <= secs).saturating_sub(1);
     let plant = plants.get(index)?;
@@ -170,8 +173,8 @@ pub(super) fn foot_at(plants: &[Plant], body: &Body, secs: f64) -> Option<Foot> 
     let down = next.is_none();
     let rotation = Quat::from_rotation_y(yaw as f32) * Quat::from_rotation_x(pitch as f32);
     let ankle = ball.as_vec3() - rotation * body.ball_in_foot;
-    // The centre of pressure runs from the heel to the ball: early in stance behind the middle of
-    // the foot, late in front of it.
+    // The centre of pressure moves from the heel to the ball: early in stance it is behind the
+    // middle of the foot, late in front of it.
     let scale = f64::from(body.scale);
     let roll = 0.05 - 0.07 * (1.0 - ramp(secs, plant.from, plant.from + 2.0 * plant.load_secs))
         + 0.07 * ramp(secs, plant.to - 3.0 * plant.load_secs, plant.to);
@@ -193,7 +196,7 @@ pub(super) fn foot_at(plants: &[Plant], body: &Body, secs: f64) -> Option<Foot> 
     })
 }
 
-/// Ball, yaw, pitch, pitch of the toes, and share of the swing.
+/// Returns ball, yaw, pitch, pitch of the toes, and share of the swing.
 fn swing_at(plant: &Plant, next: &Plant, body: &Body, secs: f64) -> (DVec3, f64, f64, f64, f64) {
     let swing = &plant.swing;
     let span = next.from - plant.to;
@@ -202,8 +205,8 @@ fn swing_at(plant: &Plant, next: &Plant, body: &Body, secs: f64) -> (DVec3, f64,
     let (start, _) = planted_ball(plant, body, plant.release_pitch);
     let (end, end_turn) = planted_ball(next, body, next.strike_pitch);
     let end_rate = end_turn * next.strike_rate();
-    // Over the ground: from rest to the rate of the heel rocker, quicker off than a curve of least
-    // jerk.
+    // Over the ground: from rest to the velocity of the heel rocker, faster at first than a curve
+    // of least jerk.
     let mut from = State { value: start.with_y(0.0), rate: DVec3::ZERO, acceleration: DVec3::ZERO };
     let mut to =
         State { value: end.with_y(0.0), rate: end_rate.with_y(0.0), acceleration: DVec3::ZERO };
@@ -247,8 +250,8 @@ fn swing_at(plant: &Plant, next: &Plant, body: &Body, secs: f64) -> (DVec3, f64,
     let in_line = ramp(share, 0.0, 0.5) * (1.0 - landing);
     let toe_pitch = pitch * in_line + pitch.min(0.0) * (1.0 - in_line);
     let yaw = plant.yaw + (next.yaw - plant.yaw) * ramp(share, 0.05, 0.92);
-    // Whatever the knots say, heel and toes clear the ground: a lift that begins with no slope and
-    // makes up for most of what is missing.
+    // Heel and toes clear the ground for any knots: the ball is raised with no initial slope by
+    // most of the missing height.
     let ball = height.at(now);
     let heel = ball + pitched(body.heel_in_foot - body.ball_in_foot, pitch).0.y;
     let tip = ball + pitched(body.tip_in_toes, toe_pitch).0.y;

@@ -1,41 +1,42 @@
-//! How people walk and run at a speed: published timing, and the angles that go with it.
+//! Walking and running at a speed: timing and angles from the literature.
 
 use super::body::Body;
 use super::params::Style;
 
 const GRAVITY: f64 = 9.81;
-/// Hip height of the adult of 1.75 m that the speeds below refer to.
+/// Hip height of the adult of 1.75 m to whom the speeds below apply.
 const REFERENCE_LEG: f64 = 0.530 * 1.75;
 
-/// One way of going at one speed. Angles in radians; a foot's pitch is positive when its heel is
-/// higher than its ball.
+/// Timing and angles of a gait at one speed. Angles in radians; a foot's pitch is positive when its
+/// heel is higher than its ball.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Gait {
     pub(super) running: bool,
-    /// Left heel strike to the next one, seconds.
+    /// Duration from a left heel strike to the next one, seconds.
     pub(super) cycle_secs: f64,
-    /// The share of a cycle that one foot is on the ground.
+    /// The share of a cycle in which a foot is on the ground.
     pub(super) duty: f64,
-    /// Left to right ankle across the heading, half of it, metres.
+    /// Half of the distance between the ankles across the heading, metres.
     pub(super) half_width: f64,
-    /// Heel strike to flat foot, share of a cycle.
+    /// Time from heel strike to flat foot, share of a cycle.
     pub(super) flat_from: f64,
-    /// Heel strike to heel off, share of a cycle.
+    /// Time from heel strike to heel off, share of a cycle.
     pub(super) flat_to: f64,
     pub(super) strike_pitch: f64,
     pub(super) release_pitch: f64,
-    /// The speed of an adult of 1.75 m that is dynamically alike (equal Froude number), m/s.
+    /// The dynamically similar speed (equal Froude number) of an adult of 1.75 m, m/s.
     pub(super) alike_mps: f64,
 }
 
 impl Gait {
-    /// Walking.
+    /// Returns the gait of walking.
     ///
     /// Cadence: step length over cadence (the walk ratio) is the same at all comfortable speeds,
     /// 0.0065 to 0.0072 m per step/min (Inman, Ralston and Todd 1981; Sekiya and Nagasaki 1998),
     /// which is the square-root law of Grieve and Gear 1966. Stance falls from 68 % of the cycle in
     /// slow to 57 % in fast walking (Murray 1967; Perry and Burnfield 2010: 62 % at a free speed).
-    /// Bodies of other size: equal Froude number v²/gl, times as √(l/g) (Alexander and Jayes 1983).
+    /// Bodies of other sizes: equal Froude number v²/gl, times proportional to √(l/g) (Alexander
+    /// and Jayes 1983).
     pub(super) fn walk(speed_mps: f64, body: &Body, style: &Style) -> Self {
         let size = f64::from(body.hip_height()) / REFERENCE_LEG;
         let alike = speed_mps / size.sqrt();
@@ -56,7 +57,7 @@ impl Gait {
         }
     }
 
-    /// Running.
+    /// Returns the gait of running.
     ///
     /// Stride rate: nearly constant at slow speeds and rising with the square of fast ones, 1.39
     /// strides/s at 3.5 m/s (Cavanagh and Kram 1989; Luhtanen and Komi 1978). Contact time falls
@@ -66,8 +67,8 @@ impl Gait {
         let size = f64::from(body.hip_height()) / REFERENCE_LEG;
         let alike = speed_mps / size.sqrt();
         let strides_per_sec = 1.2 + 0.025 * alike + 0.008 * alike * alike;
-        // A bouncier runner spends less of the cycle on the ground and so flies higher; gravity is
-        // not for sale.
+        // A bouncier runner has a shorter contact and therefore a higher flight; gravity does not
+        // change.
         let contact_secs =
             0.45 * alike.max(1.0).powf(-0.64) * (1.12 - 0.12 * f64::from(style.bounce));
         let quick = ((alike - 1.8) / 4.7).clamp(0.0, 1.0);
@@ -86,24 +87,24 @@ impl Gait {
         }
     }
 
-    /// 0 at the slowest run to 1 at the fastest.
+    /// Returns 0 for the slowest run to 1 for the fastest.
     pub(super) fn quick_run(&self) -> f64 {
         ((self.alike_mps - 1.8) / 4.7).clamp(0.0, 1.0)
     }
 
-    /// Steps per minute.
+    /// Returns steps per minute.
     pub(super) fn cadence(&self) -> f64 {
         120.0 / self.cycle_secs
     }
 }
 
-/// Height of the centre of mass, metres: 0.56 of body height (Winter, table 4.1). The length of the
-/// inverted pendulum.
+/// Returns the height of the centre of mass, metres: 0.56 of body height (Winter, table 4.1). It is
+/// the length of the inverted pendulum.
 pub(super) fn pendulum_height(height_m: f32) -> f64 {
     0.56 * f64::from(height_m)
 }
 
-/// Gravity, m/s².
+/// Returns gravity, m/s².
 pub(super) const fn gravity() -> f64 {
     GRAVITY
 }

@@ -1,4 +1,4 @@
-//! How high the hips are: as high as the legs let them in walking, as gravity has it in running and
+//! The height of the hips: as high as the legs allow in walking, and by gravity in running and
 //! jumping.
 
 use super::body::Body;
@@ -10,18 +10,19 @@ use super::posture::Posture;
 use super::track::{State, quintic};
 use glam::DVec2;
 
-/// The longest a swinging leg gets, as a share of its length: a knee is never quite straight (4°
-/// are left).
-pub(super) const LONGEST: f32 = 0.9994;
+/// The greatest length of a swinging leg, as a share of its straight length: a knee is never fully
+/// straight (4° are left).
+pub(super) const MAX_SWING_LENGTH_SHARE: f32 = 0.9994;
 
-/// The least flexion of the knee of a planted leg, radians. It is about 5° in walking (Perry and
-/// Burnfield 2010); runners land and leave with more.
+/// Returns the least flexion of the knee of a planted leg, radians. It is about 5° in walking
+/// (Perry and Burnfield 2010), and more at strike and release in running.
 pub(super) fn least_flexion(running: bool) -> f32 {
     if running { 15.0_f32.to_radians() } else { 6.0_f32.to_radians() }
 }
 
-/// How long a leg may be while it bears, and shortly before and after; a leg that pushes off or has
-/// just left is bent by nearly 20° at least, for its foot trails behind.
+/// Returns the greatest length of a leg during stance, and shortly before and after. A leg that
+/// pushes off or has just left the ground is bent by nearly 20° at least, because its foot trails
+/// behind.
 fn longest_bearing(foot: &Foot, running: bool, body: &Body) -> Option<f64> {
     let least = least_flexion(running);
     let pushing = 0.35;
@@ -35,7 +36,8 @@ fn longest_bearing(foot: &Foot, running: bool, body: &Body) -> Option<f64> {
     Some(f64::from(body.reach_at_flexion(flexion)))
 }
 
-/// The height of the hips at every step of the grid, metres, over their way `ground` (x, z).
+/// Returns the height of the hips at every step of the grid, metres, for their trajectory `ground`
+/// (x, z).
 pub(super) fn heights(
     plan: &Plan,
     feet: &[[Foot; 2]],
@@ -52,18 +54,18 @@ pub(super) fn heights(
     }
 }
 
-/// One leg at one moment, as far as the height of the hips needs it.
+/// The state of one leg at one moment that determines the height of the hips.
 #[derive(Clone, Copy)]
 struct Leg {
     planted: bool,
-    /// How long this leg may be, metres; `None` in the air.
+    /// The greatest length of this leg, metres; `None` in the air.
     longest: Option<f64>,
     load: f64,
     progress: f64,
-    /// From the hips' height to this hip joint's.
+    /// Height of this hip joint above the hips.
     hip_rise: f64,
     ankle_height: f64,
-    /// Hip joint to ankle over the ground, metres.
+    /// Horizontal distance from hip joint to ankle, metres.
     across: f64,
 }
 
@@ -103,15 +105,15 @@ impl<'a> Legs<'a> {
         Self { body, steps }
     }
 
-    /// The height of the hips at which this leg is `reach` long; `None` where the leg is too short
-    /// to reach at all.
+    /// Returns the height of the hips at which this leg has the length `reach`; `None` where the
+    /// leg is too short.
     fn height_at(leg: &Leg, reach: f64) -> Option<f64> {
         let up = reach * reach - leg.across * leg.across;
         (up > 0.0).then(|| leg.ankle_height + up.sqrt() - leg.hip_rise)
     }
 
-    /// The greatest height that the legs on the ground, and those about to leave or meet it, allow
-    /// at a step.
+    /// Returns the greatest height at a step that is possible for the legs on the ground, and for
+    /// those about to leave or reach it.
     fn ceiling(&self, step: usize) -> f64 {
         (self.steps[step].iter())
             .filter_map(|leg| {
@@ -120,8 +122,8 @@ impl<'a> Legs<'a> {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// The height at which the loaded legs have the wanted knee flexion (radians, by progress of
-    /// stance), weighted by load; `None` in flight.
+    /// Returns the height at which the loaded legs have a given knee flexion (radians, by progress
+    /// of stance), weighted by load; `None` in flight.
     fn wanted(
         &self,
         step: usize,
@@ -142,8 +144,8 @@ impl<'a> Legs<'a> {
     }
 }
 
-/// A mean over a compact window whose weights fall smoothly to 0 (raised cosine), `half` steps to
-/// either side; the ends are held.
+/// Returns means over `half` steps to either side, with weights that fall smoothly to 0 (raised
+/// cosine). Beyond the ends the first or last value is used.
 fn smoothed(values: &[f64], half: usize) -> Vec<f64> {
     let span = (half + 1) as f64;
     let weights: Vec<f64> =
@@ -161,7 +163,7 @@ fn smoothed(values: &[f64], half: usize) -> Vec<f64> {
 }
 
 /// Lowers `heights` to below `ceiling` everywhere, smoothly: the excess, widened and then smoothed
-/// over the same window, is never less than itself.
+/// over the same window, is never less than the excess itself.
 fn kept_below(heights: &mut [f64], ceiling: impl Fn(usize) -> f64, half: usize) {
     let excess: Vec<f64> =
         heights.iter().enumerate().map(|(i, h)| (h - ceiling(i)).max(0.0)).collect();
@@ -182,17 +184,17 @@ fn kept_below(heights: &mut [f64], ceiling: impl Fn(usize) -> f64, half: usize) 
     }
 }
 
-/// Rise and fall of the hips in walking from lowest to highest, metres: 2.7 cm at 0.7 m/s and 4.8
-/// cm at 1.6 m/s (Orendurff et al. 2004).
+/// Returns the vertical range of the hips in walking, metres: 2.7 cm at 0.7 m/s and 4.8 cm at 1.6
+/// m/s (Orendurff et al. 2004).
 fn walking_rise(alike_mps: f64) -> f64 {
     (0.006 + 0.0265 * alike_mps).max(0.0)
 }
 
-/// The hips ride as high as the legs let them, on a wave that is lowest just after a heel strike
-/// and highest over the stance foot: what knees and heels have to make up for (Saunders, Inman and
-/// Eberhart 1953) then follows from the feet.
+/// Returns the heights in walking: as high as the legs allow, with a wave that is lowest just after
+/// a heel strike and highest over the stance foot. The compensating motion of knees and heels
+/// (Saunders, Inman and Eberhart 1953) then follows from the feet.
 fn walking(plan: &Plan, legs: &Legs, params: &Params) -> Vec<f64> {
-    const LOWEST: f64 = 0.03;
+    const LOWEST_CYCLES: f64 = 0.03;
     const STANDING_FLEXION: f64 = 6.0;
     let cycle = plan.gait.cycle_secs;
     let mut level = f64::from(legs.body.hip_height());
@@ -218,15 +220,16 @@ fn walking(plan: &Plan, legs: &Legs, params: &Params) -> Vec<f64> {
                 - 0.5
                     * rise
                     * plan.going(secs)
-                    * (2.0 * std::f64::consts::TAU * (plan.cycles(secs) - LOWEST)).cos()
+                    * (2.0 * std::f64::consts::TAU * (plan.cycles(secs) - LOWEST_CYCLES)).cos()
         })
         .collect();
-    // Over a whole step, so that the level gives way and the wave stays.
+    // Over a whole step, so that the mean height is lowered and the wave is kept.
     kept_below(&mut heights, |step| legs.ceiling(step), steps_of(0.25));
     heights
 }
 
-/// Height over a step of running, from the strike, over the height at the strike; `m` metres.
+/// Returns the height over a step of running, from the strike, relative to the height at the
+/// strike, metres.
 ///
 /// In flight gravity alone acts. On the ground the force is half a sine (Alexander, Maloiy, Hunter,
 /// Jayes and Nturibi 1979; Blickhan 1989), which must carry the weight of the whole step: a =
@@ -238,8 +241,8 @@ fn spring_mass(secs: f64, step_secs: f64, contact_secs: f64) -> f64 {
     if secs < contact_secs {
         let (c, w) = (contact_secs, std::f64::consts::PI / contact_secs);
         let peak = 0.5 * std::f64::consts::PI * step_secs / c;
-        // Twice integrated with the rate `down` at the strike; symmetric about the middle, so the
-        // release is the strike reversed.
+        // Integrated twice with the velocity `down` at the strike; symmetric about the middle, so
+        // that the release mirrors the strike.
         let from_force = g * peak * (secs / w - (w * secs).sin() / (w * w));
         down * secs + from_force - 0.5 * g * secs * secs
     } else {
@@ -279,7 +282,8 @@ fn running(plan: &Plan, legs: &Legs) -> Vec<f64> {
     shape.into_iter().map(|height| level + height).collect()
 }
 
-/// Stand, dip, push, fly under gravity, land, absorb, stand.
+/// Returns the heights of a jump: stand, dip, push, flight under gravity, landing, absorption,
+/// stand.
 fn jumping(plan: &Plan, legs: &Legs, times: &JumpTimes) -> Vec<f64> {
     let g = gravity();
     let leg = f64::from(legs.body.leg());
@@ -297,8 +301,8 @@ fn jumping(plan: &Plan, legs: &Legs, times: &JumpTimes) -> Vec<f64> {
     let air = times.land - times.off;
     let off = at_flexion(times.off - plan.dt_secs, 30.0);
     let up = 0.5 * g * air;
-    // It lands as high as it leaves, plus what is asked of the knees there: the rate at take-off
-    // follows from both heights.
+    // The height of landing is that of take-off plus the difference of knee flexion: the velocity
+    // at take-off follows from both heights.
     let land = at_flexion(times.land + plan.dt_secs, 34.0);
     let up = up + (land - off) / air;
     let down = up - g * air;
@@ -353,7 +357,7 @@ fn jumping(plan: &Plan, legs: &Legs, times: &JumpTimes) -> Vec<f64> {
         },
         half,
     );
-    // Nothing bends the flight.
+    // The flight is a parabola.
     let flight = flight.start..flight.end.min(free.len());
     heights[flight.clone()].copy_from_slice(&free[flight]);
     heights

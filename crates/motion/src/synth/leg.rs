@@ -1,14 +1,14 @@
-//! Two bones from the hip to a given ankle.
+//! Two-bone inverse kinematics from the hip to a given ankle.
 
 use crate::skeleton::two_bone_ik;
 use glam::{Mat3, Quat, Vec3};
 
-/// World rotations of thigh and shank that bring the ankle to its place, the knee bent about
-/// `hinge` as nearly as the ankle allows.
+/// Returns the world rotations of thigh and shank that bring the ankle to its position, with the
+/// knee bent about `hinge` as nearly as the ankle allows.
 ///
-/// Both bones point down -Y at rest and the knee bends about +X, the left side of the body. A
-/// target out of reach is pointed at with the leg straight. Only a leg stretched out sideways would
-/// have no plane to bend in; a thigh may be lifted to any height.
+/// Both bones point down -Y at rest and the knee bends about +X, the left side of the body. For a
+/// target out of reach the leg is straight and points at it. Only a leg that is stretched out
+/// sideways has no plane to bend in; a thigh may be lifted to any height.
 pub(super) fn leg(hip: Vec3, ankle: Vec3, thigh: f32, shank: f32, hinge: Vec3) -> (Quat, Quat) {
     let bones = two_bone_ik(ankle - hip, thigh, shank, hinge);
     let rotation =

@@ -1,10 +1,10 @@
-//! From a plan to frames.
+//! Conversion of a plan to frames.
 
 use super::arms::arm;
 use super::balance::hips;
 use super::body::{Body, humanoid, joint};
 use super::foot::Foot;
-use super::height::{LONGEST, least_flexion};
+use super::height::{MAX_SWING_LENGTH_SHARE, least_flexion};
 use super::leg::leg;
 use super::params::{Action, Params, SynthError};
 use super::plan::Plan;
@@ -17,14 +17,14 @@ use crate::math::curve::soft_limit;
 use crate::math::quat::{exp, log, renormalize};
 use glam::{Quat, Vec3};
 
-/// Makes the motion that `params` describe.
+/// Synthesises the motion of `params`.
 ///
-/// The clip begins at the origin, facing +Z, with its left heel striking if it walks or runs. Walks
-/// and runs hold whole cycles and end in the pose that they began with. The same parameters give
+/// The clip begins at the origin, facing +Z, with a left heel strike if it walks or runs. Walks and
+/// runs consist of whole cycles and end in the pose in which they began. The same parameters give
 /// the same clip.
 ///
 /// # Errors
-/// [`SynthError::OutOfRange`] names the first parameter that lies outside its range.
+/// [`SynthError::OutOfRange`] names the first parameter outside its range.
 pub fn synthesize(params: &Params) -> Result<Synthesized, SynthError> {
     params.validate()?;
     let skeleton = humanoid(params.height_m)?;
@@ -47,7 +47,7 @@ pub fn synthesize(params: &Params) -> Result<Synthesized, SynthError> {
             let foot = &moved.feet[step][side];
             let hip = moved.positions[step] + trunk.pelvis * body.hip_in_hips[side];
             let ankle = given_way(&body, foot, hip, plan.gait.running);
-            // The knee points between where the hips and where the toes point.
+            // The knee points between the directions of hips and toes.
             let hinge = trunk.pelvis * Vec3::X * 0.45
                 + Quat::from_rotation_y(foot.yaw as f32) * Vec3::X * 0.55;
             let (thigh, shank) = leg(hip, ankle, body.thigh, body.shank, hinge);
@@ -107,7 +107,7 @@ fn name(params: &Params) -> &'static str {
     }
 }
 
-/// The share `t` of a rotation.
+/// Returns the share `t` of a rotation.
 fn share(rotation: Quat, t: f32) -> Quat {
     exp(log(rotation) * t)
 }
@@ -124,7 +124,7 @@ fn pose_trunk(trunk: &Trunk, local: &mut [Quat; joint::COUNT]) {
     local[joint::HEAD] = share(look, 0.55);
 }
 
-/// The collar bone goes a little with the arm, and up with the breath.
+/// Returns the rotation of the collar bone: slightly with the arm, and up with the breath.
 fn shoulder(flexion: f64, breath: f64, side: usize) -> Quat {
     let mirror = if side == 0 { 1.0 } else { -1.0 };
     let raised = 0.10 * (flexion - 0.9).max(0.0) + 0.008 * breath;
@@ -132,8 +132,8 @@ fn shoulder(flexion: f64, breath: f64, side: usize) -> Quat {
         * Quat::from_rotation_z((mirror * (raised - 0.05)) as f32)
 }
 
-/// The rotation of a foot against its shank, kept to what an ankle can do while the foot is well
-/// off the ground.
+/// Returns the rotation of a foot relative to its shank, limited to the range of an ankle while the
+/// foot is well above the ground.
 fn bent_ankle(rotation: Quat, foot: &Foot, ankle_height: f32) -> Quat {
     if foot.planted() {
         return rotation;
@@ -146,20 +146,20 @@ fn bent_ankle(rotation: Quat, foot: &Foot, ankle_height: f32) -> Quat {
     exp(turn * (1.0 + free * (soft_limit(angle, 0.5, 0.9) / angle.max(1e-6) - 1.0)))
 }
 
-/// The ankle that a leg can reach: in the air the foot gives way before the knee locks; close to
-/// the ground it does as planned.
+/// Returns the ankle that a leg can reach: in the air the foot deviates from the plan before the
+/// knee is fully straight; close to the ground it does not.
 fn given_way(body: &Body, foot: &Foot, hip: Vec3, running: bool) -> Vec3 {
     if foot.planted() {
         return foot.ankle;
     }
     let line = foot.ankle - hip;
     let length = line.length();
-    let (from, to) = if running { (0.955, 0.993) } else { (0.985, LONGEST) };
+    let (from, to) = if running { (0.955, 0.993) } else { (0.985, MAX_SWING_LENGTH_SHARE) };
     let limited = soft_limit(length, from * body.leg(), to * body.leg());
     let share = ramp(foot.progress, 0.0, 0.14) * (1.0 - ramp(foot.progress, 0.84, 0.98));
     let given = length + (limited - length) * share as f32;
-    // Planted legs are never longer than this second limit leaves alone, so that nothing jumps as
-    // the foot meets the ground.
+    // Planted legs are never longer than the range that this second limit leaves unchanged, so that
+    // nothing jumps when the foot touches the ground.
     let longest = soft_limit(
         given,
         body.reach_at_flexion(least_flexion(running)),

@@ -18,7 +18,7 @@
 //! Legs are two bones between hip and ankle; trunk, arms and head move against them. Bodies of
 //! different size walk alike at equal Froude number `v² / gl`.
 //!
-//! Everything that was decided on the way is kept in [`Truth`]: synthesised clips are the reference
+//! All decisions of the plan are returned in [`Truth`]: synthesised clips are the reference
 //! by which detectors of contacts, phase and speed are tested.
 //!
 //! # Example

@@ -3,7 +3,7 @@
 use crate::clip::ClipError;
 use crate::skeleton::SkeletonError;
 
-/// What the made person does.
+/// The action of a synthesised motion.
 #[derive(
     Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize,
 )]
@@ -31,19 +31,19 @@ impl Action {
         [Self::Walk, Self::Run, Self::Idle, Self::Start, Self::Stop, Self::Spin, Self::Jump];
 }
 
-/// Sliders of manner, each from 0 to 2; 1 is natural.
+/// Parameters of style, each from 0 to 2; 1 is natural.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(default)]
 pub struct Style {
-    /// How far the body rises and falls.
+    /// Factor on the rise and fall of the body.
     pub bounce: f32,
-    /// How far the arms swing.
+    /// Factor on the swing of the arms.
     pub arm_swing: f32,
-    /// How far apart the feet are set.
+    /// Factor on the distance between the feet.
     pub stance_width: f32,
-    /// How much hips and shoulders turn and how high the feet are lifted.
+    /// Factor on the rotation of hips and shoulders, and on the lift of the feet.
     pub energy: f32,
-    /// How far the trunk leans forward, and how deep into curves.
+    /// Factor on the forward lean of the trunk, and on the lean into curves.
     pub lean: f32,
 }
 
@@ -53,28 +53,28 @@ impl Default for Style {
     }
 }
 
-/// Everything that a made motion depends on: the same parameters give the same clip, bit for bit.
+/// The parameters of a synthesised motion: the same parameters give the same clip, bit for bit.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(default)]
 pub struct Params {
-    /// What is done.
+    /// The action.
     pub action: Action,
     /// Speed over the ground, metres per second. Ignored by [`Action::Idle`] and [`Action::Spin`].
     pub speed_mps: f32,
-    /// How fast the path turns, degrees per second, positive to the left. Ignored by
+    /// Turn rate of the path, degrees per second, positive to the left. Ignored by
     /// [`Action::Idle`], [`Action::Spin`] and [`Action::Jump`].
     pub turn_rate_dps: f32,
-    /// How far [`Action::Spin`] turns, degrees, positive to the left.
+    /// Angle of [`Action::Spin`], degrees, positive to the left.
     pub spin_degrees: f32,
     /// Body height, metres.
     pub height_m: f32,
-    /// Manner.
+    /// Style.
     pub style: Style,
-    /// Which person: 0 is perfectly regular and symmetric, any other number differs slightly in
-    /// posture and between left and right.
+    /// Number of the person: 0 is perfectly regular and symmetric, any other number differs
+    /// slightly in posture and between left and right.
     pub seed: u32,
-    /// Length that is asked for, seconds. Walks and runs take the nearest number of whole cycles,
-    /// at least one.
+    /// Requested duration, seconds. Walks and runs have the nearest number of whole cycles, at
+    /// least one.
     pub duration_secs: f32,
     /// Frames per second.
     pub fps: f32,
@@ -87,7 +87,7 @@ impl Default for Params {
 }
 
 impl Params {
-    /// Natural parameters of an action.
+    /// Returns natural parameters of an action.
     #[must_use]
     pub fn new(action: Action) -> Self {
         let (speed_mps, duration_secs) = match action {
@@ -112,7 +112,7 @@ impl Params {
         }
     }
 
-    /// The speeds that an action can be made at, metres per second; `None` where it has none.
+    /// Returns the range of speeds of an action, metres per second; `None` where it has none.
     #[must_use]
     pub const fn speed_range(action: Action) -> Option<(f32, f32)> {
         match action {
@@ -123,7 +123,7 @@ impl Params {
         }
     }
 
-    /// The shortest and longest clip of an action, seconds.
+    /// Returns the range of durations of an action, seconds.
     #[must_use]
     pub const fn duration_range(action: Action) -> (f32, f32) {
         match action {
@@ -138,7 +138,7 @@ impl Params {
     /// [`SynthError::OutOfRange`] for the first one that does not, or is not a number.
     pub fn validate(&self) -> Result<(), SynthError> {
         let check = |what, value: f32, min, max, unit| {
-            // A NaN lies in no range.
+            // NaN is in no range.
             if (min..=max).contains(&value) {
                 Ok(())
             } else {
@@ -166,7 +166,7 @@ impl Params {
     }
 }
 
-/// Why no motion was made.
+/// Error synthesising a motion.
 #[derive(Clone, Debug, PartialEq, thiserror::Error, segue_text::ToMessage)]
 pub enum SynthError {
     /// A parameter outside its range, or not a number.
@@ -176,11 +176,11 @@ pub enum SynthError {
         what: &'static str,
         /// Its value.
         value: f32,
-        /// Smallest value that works.
+        /// The smallest valid value.
         min: f32,
-        /// Largest value that works.
+        /// The greatest valid value.
         max: f32,
-        /// Unit of the three numbers, with a space where one belongs.
+        /// Unit of the three numbers, with a space before it where needed.
         unit: &'static str,
     },
     /// The frames do not make a clip; a defect of this module.
@@ -191,18 +191,18 @@ pub enum SynthError {
     Skeleton(#[from] SkeletonError),
 }
 
-/// A motion that comes with the program.
+/// A built-in motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Preset {
-    /// Short, stable, fit for a URL.
+    /// A short, stable id that is fit for a URL.
     pub id: &'static str,
-    /// What a menu shows.
+    /// The title in menus.
     pub title: &'static str,
-    /// What to give to [`super::synthesize`].
+    /// The argument of [`super::synthesize`].
     pub params: Params,
 }
 
-/// The built-in motions.
+/// Returns the built-in motions.
 #[must_use]
 pub fn presets() -> Vec<Preset> {
     let of = |id, title, action, speed_mps: Option<f32>, turn_rate_dps| {

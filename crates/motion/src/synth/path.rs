@@ -1,8 +1,8 @@
-//! The way over the ground: where the body is meant to be and what it faces, at every moment.
+//! The planned path over the ground: position and heading of the body over time.
 
 use glam::DVec2;
 
-/// One moment of a way.
+/// One moment of a path.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Place {
     /// (x, z), metres.
@@ -18,43 +18,43 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// The heading as (x, z).
+    /// Returns the heading as (x, z).
     pub(super) fn forward(&self) -> DVec2 {
         DVec2::new(self.yaw.sin(), self.yaw.cos())
     }
 
-    /// The direction to the left as (x, z).
+    /// Returns the direction to the left as (x, z).
     pub(super) fn left(&self) -> DVec2 {
         DVec2::new(self.yaw.cos(), -self.yaw.sin())
     }
 
-    /// Acceleration over the ground: thrust along the heading, centripetal across it.
+    /// Returns the acceleration over the ground: thrust along the heading, centripetal across it.
     pub(super) fn acceleration(&self) -> DVec2 {
         self.forward() * self.thrust + self.left() * (self.speed * self.yaw_rate)
     }
 
-    /// How far a body leans here, as the tangent of the angle, world (x, z): acceleration over
-    /// gravity. True up to a good quarter of g and never more than 21°: who runs faster into a
-    /// curve would slip.
+    /// Returns the lean of the body as the tangent of its angle, world (x, z): acceleration over
+    /// gravity. Exact up to a good quarter of g, and never more than 21°, beyond which the feet
+    /// would slip.
     pub(super) fn lean(&self, gravity: f64) -> DVec2 {
-        const MOST: f64 = 0.38;
+        const MAX_TANGENT: f64 = 0.38;
         let lean = self.acceleration() / gravity;
-        lean / (1.0 + (lean.length_squared() / (MOST * MOST)).powi(2)).sqrt().sqrt()
+        lean / (1.0 + (lean.length_squared() / (MAX_TANGENT * MAX_TANGENT)).powi(2)).sqrt().sqrt()
     }
 
-    /// (left, forward) of this place to world (x, z).
+    /// Converts (left, forward) of this place to world (x, z).
     pub(super) fn to_world(self, v: DVec2) -> DVec2 {
         self.left() * v.x + self.forward() * v.y
     }
 
-    /// World (x, z) to (left, forward) of this place.
+    /// Converts world (x, z) to (left, forward) of this place.
     pub(super) fn to_local(self, v: DVec2) -> DVec2 {
         DVec2::new(self.left().dot(v), self.forward().dot(v))
     }
 }
 
-/// A way sampled at equal steps of time; between samples it is an arc, before and after it goes on
-/// as at its ends.
+/// A path sampled at equal time steps; between samples it is an arc, before and after them it
+/// continues as at its ends.
 #[derive(Clone, Debug)]
 pub(super) struct Path {
     start_secs: f64,
@@ -62,8 +62,8 @@ pub(super) struct Path {
     places: Vec<Place>,
 }
 
-/// The chord of an arc of length `speed × dt` that turns by `yaw_rate × dt`, from heading `yaw`.
-/// Exact for constant rates.
+/// Returns the chord of an arc of length `speed × dt` that turns by `yaw_rate × dt`, from heading
+/// `yaw`. Exact for constant rates.
 fn arc(yaw: f64, speed: f64, yaw_rate: f64, dt: f64) -> DVec2 {
     let half_turn = 0.5 * yaw_rate * dt;
     let sinc = if half_turn.abs() < 1e-6 {
@@ -106,7 +106,7 @@ impl Path {
         path
     }
 
-    /// The place at any time; `±∞` give the ends.
+    /// Returns the place at any time; `±∞` give the ends.
     pub(super) fn at(&self, secs: f64) -> Place {
         let Some(last) = self.places.len().checked_sub(1) else {
             return Place::default();

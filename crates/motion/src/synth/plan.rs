@@ -1,4 +1,4 @@
-//! What is going to happen: the way over the ground, and when and where each foot is set down.
+//! A plan: the path over the ground, and the plants of each foot.
 
 use super::body::Body;
 use super::foot::Plant;
@@ -7,8 +7,8 @@ use super::params::{Action, Params};
 use super::path::{Path, Place};
 use glam::DVec2;
 
-/// How far the ankles of a standing adult of 1.75 m are behind the middle of the body, metres: it
-/// rests over the middle of the feet.
+/// Distance of the ankles of a standing adult of 1.75 m behind the middle of the body, metres: the
+/// body is over the middle of the feet.
 pub(super) const STANDING_BEHIND: f64 = 0.05;
 
 /// The times of a jump, seconds.
@@ -22,7 +22,7 @@ pub(super) struct JumpTimes {
     pub(super) stood: f64,
 }
 
-/// A plan on a grid of time steps of which every `substeps`th is a frame.
+/// A plan on a grid of time steps, of which every `substeps`th is a frame.
 #[derive(Clone, Debug)]
 pub(super) struct Plan {
     pub(super) action: Action,
@@ -33,11 +33,11 @@ pub(super) struct Plan {
     pub(super) frames: usize,
     pub(super) substeps: usize,
     pub(super) dt_secs: f64,
-    /// Grid steps before frame 0 and after the last frame.
+    /// Number of grid steps before frame 0 and after the last frame.
     pub(super) margin: usize,
-    /// Grid steps of one cycle, where the motion repeats exactly.
+    /// Number of grid steps of one cycle, where the motion repeats exactly.
     pub(super) period: Option<usize>,
-    /// When the left heel strikes, and between when the phase runs.
+    /// The time of a left heel strike, and the interval in which the phase advances.
     pub(super) phase_zero: f64,
     pub(super) moving: (f64, f64),
     /// 0 standing to 1 going at full speed.
@@ -46,27 +46,28 @@ pub(super) struct Plan {
 }
 
 impl Plan {
-    /// Number of grid steps.
+    /// Returns the number of grid steps.
     pub(super) fn len(&self) -> usize {
         (self.frames - 1) * self.substeps + 1 + 2 * self.margin
     }
 
-    /// Time of a grid step; 0 at frame 0.
+    /// Returns the time of a grid step; 0 at frame 0.
     pub(super) fn secs(&self, step: usize) -> f64 {
         (step as f64 - self.margin as f64) * self.dt_secs
     }
 
-    /// The grid step of a frame.
+    /// Returns the grid step of a frame.
     pub(super) fn step_of(&self, frame: usize) -> usize {
         self.margin + frame * self.substeps
     }
 
-    /// Cycles since the left heel strike at `phase_zero`; stands still while the feet do.
+    /// Returns the number of cycles since the left heel strike at `phase_zero`; constant while the
+    /// feet stand.
     pub(super) fn cycles(&self, secs: f64) -> f64 {
         (secs.clamp(self.moving.0, self.moving.1) - self.phase_zero) / self.gait.cycle_secs
     }
 
-    /// How much of a gait is going on, 0 to 1.
+    /// Returns the intensity of the gait, 0 to 1.
     pub(super) fn going(&self, secs: f64) -> f64 {
         if self.top_speed > 0.0 && self.jump.is_none() {
             (self.path.at(secs).speed / self.top_speed).clamp(0.0, 1.0)
@@ -77,13 +78,13 @@ impl Plan {
 }
 
 impl Plan {
-    /// Integrates the way over the whole grid.
+    /// Integrates the path over the whole grid.
     pub(super) fn set_path(&mut self, rates: impl Fn(f64) -> (f64, f64)) {
         self.path = Path::integrate(self.secs(0), self.dt_secs, self.len(), rates);
     }
 
-    /// Where the foot of a body belongs that stands at the place of `secs`: wider apart, and under
-    /// the body.
+    /// Returns the foothold of a body that stands at the place of `secs`: farther to the side, and
+    /// under the body.
     pub(super) fn standing_foothold(
         &self,
         side: usize,
@@ -98,9 +99,9 @@ impl Plan {
             - place.forward() * (STANDING_BEHIND * f64::from(body.scale))
     }
 
-    /// Where the foot of a side belongs while the body passes the place of `secs`: to its side,
-    /// and, since an inverted pendulum accelerates away from its foot by ω²(x - foot), away from
-    /// where the body is heading.
+    /// Returns the foothold of a side while the body passes the place of `secs`: to its side, and,
+    /// since an inverted pendulum accelerates away from its foot by ω²(x - foot), opposite to the
+    /// body's acceleration.
     pub(super) fn foothold(
         &self,
         side: usize,
@@ -113,7 +114,7 @@ impl Plan {
     }
 }
 
-/// Where the foot of a side belongs while the body passes `place`; see [`Plan::foothold`].
+/// Returns the foothold of a side while the body passes `place`; see [`Plan::foothold`].
 fn foothold_at(
     place: &Place,
     side: usize,
@@ -123,7 +124,7 @@ fn foothold_at(
     body: &Body,
 ) -> DVec2 {
     let outward = if side == 0 { half_width } else { -half_width };
-    // Half of speeding up and slowing down is done by the ankles and by the sway of the trunk.
+    // Ankles and the sway of the trunk contribute half of the acceleration.
     let eased = Place { thrust: 0.5 * place.thrust, ..*place };
     let support = eased.lean(gravity()) * -pendulum_height(params.height_m);
     let behind =
@@ -132,8 +133,8 @@ fn foothold_at(
 }
 
 impl Plan {
-    /// Bends the way of every swing around the other leg: half-way, the foot is as far to its side
-    /// of the body as on the ground, and a little farther where it turns on the spot.
+    /// Bends the trajectory of every swing around the other leg: in the middle, the foot is as far
+    /// to its side of the body as on the ground, and slightly farther when it turns on the spot.
     pub(super) fn keep_legs_apart(&mut self, params: &Params, body: &Body) {
         let spinning = self.action == Action::Spin;
         let room = if spinning { 0.06 * f64::from(body.scale) } else { 0.0 };
@@ -157,12 +158,12 @@ impl Plan {
     }
 }
 
-/// Half the distance of standing feet, metres.
+/// Returns half the distance of standing feet, metres.
 pub(super) fn standing_half_width(params: &Params, body: &Body) -> f64 {
     f64::from(body.scale) * 0.085 * f64::from(0.4 + 0.6 * params.style.stance_width)
 }
 
-/// Out-toeing, radians: about 7° per foot in walking (Murray 1967), less in running.
+/// Returns the out-toeing, radians: about 7° per foot in walking (Murray 1967), less in running.
 pub(super) fn toe_out(side: usize, running: bool) -> f64 {
     let angle = if running { 3.0_f64 } else { 6.5 };
     if side == 0 { angle.to_radians() } else { -angle.to_radians() }

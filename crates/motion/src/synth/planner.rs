@@ -1,5 +1,4 @@
-//! The plan of an action: gaits in steady motion, starts and stops, standing, and the actions on
-//! the spot.
+//! Plans of actions: gaits in steady motion, starts and stops, standing, and actions on the spot.
 
 use super::body::Body;
 use super::foot::{Plant, Swing};
@@ -10,16 +9,16 @@ use super::plan::{Plan, standing_half_width, toe_out};
 use super::track::ramp;
 use glam::DVec2;
 
-/// Seconds that are made before and after the clip, so that filters see what comes and came:
-/// e^(-3.2 × 3) of an edge's centimetres is left.
+/// Time that is planned before and after the clip, seconds, so that filters have data on both
+/// sides: e^(-3.2 × 3) of a discontinuity of centimetres is left.
 const MARGIN_SECS: f64 = 3.0;
-/// The coarsest time step that is planned with.
-const COARSEST_SECS: f64 = 1.0 / 110.0;
+/// The greatest time step of a plan.
+const MAX_STEP_SECS: f64 = 1.0 / 110.0;
 
 /// Plans the motion of valid parameters.
 pub(super) fn plan(params: &Params, body: &Body) -> Plan {
     let fps = f64::from(params.fps);
-    let substeps = ((fps * COARSEST_SECS).recip().ceil() as usize).max(1);
+    let substeps = ((fps * MAX_STEP_SECS).recip().ceil() as usize).max(1);
     let dt_secs = 1.0 / (fps * substeps as f64);
     let margin = (MARGIN_SECS / dt_secs).ceil() as usize;
     let speed = f64::from(params.speed_mps);
@@ -31,7 +30,8 @@ pub(super) fn plan(params: &Params, body: &Body) -> Plan {
         Gait::walk(speed.max(0.4), body, &params.style)
     };
     if running {
-        // Nobody keeps such a curve; a shorter contact keeps the legs from being torn apart by it.
+        // No person can run along such a tight curve. With a shorter contact the legs stay within
+        // their reach.
         gait.duty /= 1.0 + 0.6 * ramp(sideways(params), 0.0, 1.2);
         gait.flat_from = gait.flat_from.min(0.25 * gait.duty);
         gait.flat_to = gait.flat_to.min(0.5 * gait.duty);
@@ -39,8 +39,8 @@ pub(super) fn plan(params: &Params, body: &Body) -> Plan {
     let mut frames = asked as usize + 1;
     let mut period = None;
     if matches!(params.action, Action::Walk | Action::Run) {
-        // Whole cycles are whole frames: the cadence gives way by less than half a frame per clip,
-        // the speed does not.
+        // Whole cycles have a whole number of frames: the cadence is changed by less than half a
+        // frame per clip, the speed is not.
         let cycles = (asked / (gait.cycle_secs * fps)).round().max(1.0);
         let whole = (cycles * gait.cycle_secs * fps).round();
         gait.cycle_secs = whole / (cycles * fps);
@@ -73,7 +73,7 @@ pub(super) fn plan(params: &Params, body: &Body) -> Plan {
     plan
 }
 
-/// Acceleration into the curve over gravity.
+/// Returns the acceleration into the curve over gravity.
 fn sideways(params: &Params) -> f64 {
     f64::from((params.speed_mps * params.turn_rate_dps.to_radians()).abs()) / gravity()
 }
@@ -84,7 +84,7 @@ fn swing_of(gait: &Gait, share: f64, params: &Params, body: &Body) -> Swing {
     let degrees = f64::to_radians;
     if gait.running {
         let quick = gait.quick_run();
-        // Deep in a curve there is less room under the hips.
+        // In a tight curve the hips are lower.
         let lateral = sideways(params);
         let lift = (0.17 + 0.13 * quick) * (0.7 + 0.3 * energy) / (1.0 + lateral * lateral);
         return Swing {
@@ -114,8 +114,8 @@ fn swing_of(gait: &Gait, share: f64, params: &Params, body: &Body) -> Swing {
     }
 }
 
-/// The plant of a regular gait that begins at `from`; `share` of the full step (0 to 1) tempers its
-/// angles.
+/// Returns the plant of a regular gait that begins at `from`; its angles are scaled by `share` of
+/// the full step (0 to 1).
 fn regular(plan: &Plan, side: usize, from: f64, share: f64, params: &Params, body: &Body) -> Plant {
     let gait = &plan.gait;
     let cycle = gait.cycle_secs;
@@ -153,7 +153,7 @@ fn steady(plan: &mut Plan, params: &Params, body: &Body) {
     }
 }
 
-/// A plant that has stood since ever (`from` = -∞) or will for ever (`to` = ∞).
+/// Returns a plant without a beginning (`from` = -∞) or without an end (`to` = ∞).
 fn standing(
     mut plant: Plant,
     plan: &Plan,
@@ -206,8 +206,8 @@ fn stop(plan: &mut Plan, params: &Params, body: &Body) {
     let (speed, yaw_rate) =
         (f64::from(params.speed_mps), f64::from(params.turn_rate_dps).to_radians());
     let (cycle, duty) = (plan.gait.cycle_secs, plan.gait.duty);
-    // The right foot closes up last, 1.2 s before the end; the speed is lost over the two steps
-    // before (Jaeger and Vanitchatchavan 1992).
+    // The right foot takes the last step, 1.2 s before the end; the speed is lost over the two
+    // steps before (Jaeger and Vanitchatchavan 1992).
     let end = plan.secs(plan.step_of(plan.frames - 1));
     let closed = end - 1.2;
     plan.phase_zero = closed - 0.5 * cycle;

@@ -1,4 +1,4 @@
-//! How the trunk is held: tilt, list and turn of the pelvis, the counter-turn of the chest, the
+//! The posture of the trunk: tilt, list and rotation of the pelvis, counter-rotation of the chest,
 //! steady head.
 
 use super::gait::gravity;
@@ -13,11 +13,11 @@ pub(super) struct Trunk {
     pub(super) pelvis: Quat,
     pub(super) chest: Quat,
     pub(super) head: Quat,
-    /// What the arms hang in: turned with the chest, but more upright.
+    /// The frame of the arms: rotated with the chest, but more upright.
     pub(super) arms: Quat,
 }
 
-/// Everything about the trunk that does not change with time.
+/// The parameters of the trunk that do not change with time.
 pub(super) struct Posture {
     running: bool,
     idle: bool,
@@ -31,7 +31,7 @@ pub(super) struct Posture {
     period_secs: f64,
 }
 
-/// Four numbers in -1..1 that depend on a seed; all 0 for seed 0.
+/// Returns four numbers in -1..1 determined by a seed; all 0 for seed 0.
 pub(super) fn person(seed: u32, salt: u32) -> [f64; 4] {
     if seed == 0 {
         return [0.0; 4];
@@ -51,12 +51,12 @@ fn turn(radians: f64) -> Quat {
     Quat::from_rotation_y(radians as f32)
 }
 
-/// To the left side up is positive.
+/// Returns a rotation to the side, positive with the left side up.
 fn list(radians: f64) -> Quat {
     Quat::from_rotation_z(radians as f32)
 }
 
-/// Forwards is positive.
+/// Returns a rotation forwards, positive forwards.
 fn bow(radians: f64) -> Quat {
     Quat::from_rotation_x(radians as f32)
 }
@@ -100,14 +100,14 @@ impl Posture {
         }
     }
 
-    /// How many times something that takes about `secs` fits into a clip that loops.
+    /// Returns the number of repetitions of an event of about `secs` that fits into a looping clip.
     fn looped(&self, secs: f64, at: f64) -> f64 {
         let whole = (self.period_secs / secs).round().max(1.0);
         TAU * if self.loops { at * whole / self.period_secs } else { at / secs }
     }
 
-    /// Slow sway of a standing body, (left, forward), metres: a few millimetres in quiet stance,
-    /// centimetres when the weight is shifted.
+    /// Returns the slow sway of a standing body, (left, forward), metres: a few millimetres in
+    /// quiet stance, centimetres when the weight is shifted.
     pub(super) fn drift(&self, secs: f64) -> DVec2 {
         if !self.idle {
             return DVec2::ZERO;
@@ -120,7 +120,8 @@ impl Posture {
         ) * self.size
     }
 
-    /// Rise of the chest in breathing, -1..1: 14 breaths a minute, in quicker than out.
+    /// Returns the rise of the chest in breathing, -1..1: 14 breaths a minute, with inspiration
+    /// faster than expiration.
     pub(super) fn breath(&self, secs: f64) -> f64 {
         let phase = self.looped(4.2, secs);
         (phase + 0.35 * phase.sin()).sin()
@@ -209,7 +210,7 @@ impl Posture {
         a
     }
 
-    /// World rotation of the hips.
+    /// Returns the world rotation of the hips.
     pub(super) fn pelvis(&self, plan: &Plan, secs: f64) -> Quat {
         let a = self.angles(plan, secs);
         turn(a.heading)
@@ -219,7 +220,7 @@ impl Posture {
             * bow(a.pelvis_tilt)
     }
 
-    /// World rotations of pelvis, chest and head.
+    /// Returns the world rotations of pelvis, chest and head.
     pub(super) fn trunk(&self, plan: &Plan, secs: f64) -> Trunk {
         let a = self.angles(plan, secs);
         let leaning = list(-a.into_curve);

@@ -1,4 +1,4 @@
-//! Plans of what is done on the spot: standing, turning around, jumping.
+//! Plans of actions on the spot: standing, turning around, jumping.
 
 use super::body::Body;
 use super::foot::{Plant, Swing};
@@ -26,7 +26,8 @@ fn stand(plan: &Plan, side: usize, params: &Params, body: &Body) -> Plant {
     }
 }
 
-/// Standing, and turning on the spot in steps of which none turns a foot by more than about 100°.
+/// Plans standing, and turning on the spot in steps of which none rotates a foot by more than about
+/// 100°.
 pub(super) fn on_the_spot(plan: &mut Plan, params: &Params, body: &Body) {
     plan.top_speed = 0.0;
     plan.moving = (0.0, 0.0);
@@ -40,8 +41,7 @@ pub(super) fn on_the_spot(plan: &mut Plan, params: &Params, body: &Body) {
         plan.plants = [0, 1].map(|side| vec![stand(plan, side, params, body)]);
         return;
     }
-    // Each foot takes the same number of steps; the one on the inner side opens first, the other
-    // closes up.
+    // Both feet take the same number of steps; the inner one steps first, the other one last.
     let degrees = angle.abs().to_degrees();
     let pairs = if degrees <= 60.0 { 1.0 } else { (degrees / 100.0).ceil().max(2.0) };
     let steps = 2 * pairs as usize;
@@ -58,8 +58,8 @@ pub(super) fn on_the_spot(plan: &mut Plan, params: &Params, body: &Body) {
         let side = if step % 2 == 0 { inner } else { 1 - inner };
         let off = lift + period * step as f64;
         let on = off + air;
-        // A foot is set down where the body will face when it lifts again, less for the first and
-        // all of it for the last steps.
+        // A foot is set down in the direction that the body will face when it lifts again; less for
+        // the first and fully for the last steps.
         let share = if step + 2 >= steps {
             1.0
         } else {
@@ -77,8 +77,8 @@ pub(super) fn on_the_spot(plan: &mut Plan, params: &Params, body: &Body) {
             aside: DVec2::ZERO,
             spring: 0.0,
         };
-        // On the way the feet are set wider, the leading one farther ahead and the trailing one
-        // farther back, so that no toe comes to stand on a heel.
+        // During the turn the feet are set wider, the leading one farther ahead and the trailing
+        // one farther back, so that no toe is set on a heel.
         let passing = if step + 2 >= steps { 0.0 } else { f64::from(body.scale) };
         let outward = outward * (1.0 + 0.5 * passing);
         let behind = STANDING_BEHIND * f64::from(body.scale)
@@ -102,11 +102,11 @@ pub(super) fn on_the_spot(plan: &mut Plan, params: &Params, body: &Body) {
     plan.plants = plants;
 }
 
-/// Pitch of the feet when they leave and meet the ground in a jump.
+/// Pitch of the feet when they leave and reach the ground in a jump.
 const OFF_PITCH: f64 = 0.80;
 const LAND_PITCH: f64 = 0.42;
 
-/// A jump from both feet, forward at the given speed.
+/// Plans a jump from both feet, forward at the given speed.
 pub(super) fn jump(plan: &mut Plan, params: &Params, body: &Body) {
     plan.top_speed = 0.0;
     plan.moving = (0.0, 0.0);
@@ -135,7 +135,7 @@ pub(super) fn jump(plan: &mut Plan, params: &Params, body: &Body) {
         (speed * go * (1.0 - ramp(t, land, times.stood - 0.15)), 0.0)
     });
     plan.jump = Some(times);
-    // The feet land ahead of the body, which comes to rest over them.
+    // The feet land ahead of the body, which comes to rest above them.
     for side in 0..2 {
         let first = stand(plan, side, params, body);
         let ankle = plan.standing_foothold(side, f64::INFINITY, params, body);

@@ -11,14 +11,14 @@ pub(super) struct State<V> {
 }
 
 impl<V: Default> State<V> {
-    /// At rest at a value.
+    /// Returns the state at rest at a value.
     pub(super) fn rest(value: V) -> Self {
         Self { value, rate: V::default(), acceleration: V::default() }
     }
 }
 
-/// The polynomial of degree five that takes `from` to `to` in `span_secs`, at `secs` from its start
-/// (clamped to the piece).
+/// Returns the polynomial of degree five from `from` to `to` in `span_secs`, at `secs` from its
+/// start (clamped to the piece).
 pub(super) fn quintic<V>(from: State<V>, to: State<V>, span_secs: f64, secs: f64) -> V
 where
     V: Copy + Add<Output = V> + Sub<Output = V> + Mul<f64, Output = V>,
@@ -37,8 +37,8 @@ where
     from.value + (v0 + (a0 * 0.5 + (c3 + (c4 + c5 * t) * t) * t) * t) * t
 }
 
-/// The acceleration at the start of the cubic that takes `from` to `to` in `span_secs`: the
-/// smallest bend that gets there.
+/// Returns the acceleration at the start of the cubic from `from` to `to` in `span_secs`, which is
+/// the curve of least bending.
 pub(super) fn cubic_start_acceleration<V>(from: State<V>, to: State<V>, span_secs: f64) -> V
 where
     V: Copy + Add<Output = V> + Sub<Output = V> + Mul<f64, Output = V>,
@@ -60,7 +60,8 @@ pub(super) struct Spline {
 }
 
 impl Spline {
-    /// `knots` are (time, value) in rising order of time; more than ten are cut off.
+    /// Returns the spline through `knots` (time, value) in rising order of time; more than ten are
+    /// cut off.
     pub(super) fn clamped(knots: &[(f64, f64)], start_slope: f64, end_slope: f64) -> Self {
         let count = knots.len().min(MAX_KNOTS);
         let mut spline =
@@ -93,7 +94,7 @@ impl Spline {
         spline
     }
 
-    /// The value at a time, held beyond the ends.
+    /// Returns the value at a time, constant beyond the ends.
     pub(super) fn at(&self, secs: f64) -> f64 {
         if self.count == 0 {
             return 0.0;
@@ -114,7 +115,8 @@ impl Spline {
     }
 }
 
-/// 0 before `from`, 1 after `to`, smooth to the second derivative between; also for infinite ends.
+/// Returns 0 before `from`, 1 after `to`, and a curve that is smooth to the second derivative
+/// between; also for infinite ends.
 pub(super) fn ramp(secs: f64, from: f64, to: f64) -> f64 {
     if secs <= from {
         return 0.0;
