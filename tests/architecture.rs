@@ -90,7 +90,7 @@ fn dependencies_follow_the_order_of_folders() {
 const NAMES_LABS: [&str; 6] = [
     "crates/session/src/labs.rs",
     "crates/session/src/labs/",
-    "crates/session/src/choices.rs",
+    "crates/session/src/params/choices.rs",
     "crates/session/src/params/table.rs",
     "src/ui/labs.rs",
     "src/ui/labs/",

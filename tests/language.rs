@@ -34,7 +34,7 @@ const WORDS: [&str; 2] = ["src/ui/text/", "src/ui/kit/words.rs"];
 const TABLES: [&str; 3] = [
     "crates/session/src/params/table.rs",
     "crates/session/src/metrics/table.rs",
-    "crates/session/src/choices.rs",
+    "crates/session/src/params/choices.rs",
 ];
 
 /// What stands before a literal that nobody sees: reasons for the next programmer, the log, names

@@ -64,7 +64,6 @@
 //! SHA-256, and who opens the link must have that file.
 
 mod built_in;
-pub mod choices;
 mod clip_info;
 mod clip_resolver;
 mod clip_sets;
@@ -97,7 +96,6 @@ mod samples;
 mod saved;
 mod session;
 
-pub use choices::{LabId, Selected};
 pub use clip_info::ClipInfo;
 pub use clip_sets::ClipSet;
 pub use command::{
@@ -126,6 +124,7 @@ pub use motion::{curve_kind, foot_options, frame_at, joint_of, word_of_joint};
 pub use notice::{Level, Notice, Notices};
 pub use numbers::{NumberRow, NumberTable, digits};
 pub use pane::{Made, NoResult, Pane, Shown};
+pub use params::choices::{self, LabId, Selected};
 pub use params::{
     Choice, Compare, Group, HandTag, Key, Kind, List, ListKind, MAX_PANES, MAX_WEIGHTED_CLIPS,
     Mark, Misread, PARAMS, Param, Params, Value, ValueError, decimals_of, format_number, write_ids,

@@ -1,9 +1,10 @@
 //! The current value of every parameter.
 
+use super::choices::{LabId, Selected};
+use super::key::Key;
 use super::param::{Kind, Param, Start};
-use super::table::{Key, PARAMS};
+use super::rows::PARAMS;
 use super::value::{Compare, Value, ValueError};
-use crate::{LabId, Selected};
 use std::fmt;
 use std::sync::LazyLock;
 
@@ -11,8 +12,8 @@ use std::sync::LazyLock;
 #[derive(Clone, PartialEq)]
 pub struct Params(Vec<Value>);
 
-/// What every parameter is in a new document.
-pub(super) static DEFAULTS: LazyLock<Params> =
+/// The values in a new document.
+static DEFAULTS: LazyLock<Params> =
     LazyLock::new(|| Params(PARAMS.iter().map(start_value).collect()));
 
 fn start_value(param: &Param) -> Value {
@@ -140,5 +141,13 @@ impl Params {
     /// Returns the parameters that differ from their default, in the order of the table.
     pub fn changed(&self) -> impl Iterator<Item = (&'static Param, &Value)> {
         PARAMS.iter().zip(&self.0).filter(|(param, _)| self.is_changed(param.key))
+    }
+}
+
+impl Param {
+    /// Returns the value that the parameter has in a new document.
+    #[must_use]
+    pub fn default_value(&self) -> Value {
+        DEFAULTS.get(self.key).clone()
     }
 }

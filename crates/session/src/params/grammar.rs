@@ -1,8 +1,8 @@
-//! The grammars of parameters that hold a list: one a file, with `read`, which names the place of
-//! what it cannot read, and `write`, which writes what `read` reads.
+//! The grammars of parameters that hold a list, one a file: `read` names the place of an entry that
+//! it cannot read, and `write` writes what `read` reads.
 //!
-//! A list is read once, when a link, a command or an id is; labs and panels take its values. What
-//! was read is written as it stood there, but for spaces and the form of numbers.
+//! A list is read once, together with the link, the command or the id that holds it. Labs and
+//! panels get its values. A list is written as it was read, but for spaces and the form of numbers.
 
 mod clip_ids;
 mod edited_path;
@@ -22,53 +22,50 @@ pub(crate) use clip_ids::{escaped, is_recipe, parts, read_id};
 pub use tags::HandTag;
 pub use weighted_clips::MAX_WEIGHTED_CLIPS;
 
-use super::current::Params;
-use super::table::Key;
-use super::value::Value;
 use crate::outside::short;
 use glam::DVec2;
 use segue_motion::graph::Place;
 use segue_motion::matching::{Recording, RecordingError};
 use segue_motion::path::{GroundSpline, PathEditError};
 
-/// What of a text is not as a list has it.
+/// Why a text is not a list.
 #[derive(Clone, Debug, PartialEq, thiserror::Error, segue_text::ToMessage)]
 pub enum Misread {
-    /// The text as a whole.
+    /// The text cannot be read as a whole.
     #[error("found `{found}`, expected {expected}", found = short(.found))]
     Text {
-        /// What was there.
+        /// The text that was found.
         found: String,
-        /// What would do.
+        /// A description of a valid text.
         expected: &'static str,
     },
-    /// One of its entries.
+    /// An entry cannot be read.
     #[error("entry {number}: found `{found}`, expected {expected}", found = short(.found))]
     Entry {
-        /// Which, counted from 1.
+        /// Its number, counted from 1.
         number: usize,
-        /// What was there.
+        /// The text that was found.
         found: String,
-        /// What would do.
+        /// A description of a valid text.
         expected: &'static str,
     },
-    /// It is too long.
+    /// There are too many entries.
     #[error("found {count} entries, expected {max} at most")]
     TooMany {
-        /// How many there are.
+        /// The number of entries.
         count: usize,
-        /// How many there may be.
+        /// The greatest number of entries.
         max: usize,
     },
-    /// No path.
+    /// The text is not a path.
     #[error(transparent)]
     Path(#[from] PathEditError),
-    /// No recording.
+    /// The text is not a recording.
     #[error(transparent)]
     Recording(#[from] RecordingError),
 }
 
-/// Reads each of a list's entries, of which there are at most `max`.
+/// Reads every entry of a list of at most `max` entries.
 fn entries<'a, T>(
     texts: impl IntoIterator<Item = &'a str>,
     max: usize,
@@ -86,12 +83,12 @@ fn entries<'a, T>(
     numbered.map(read).collect()
 }
 
-/// Returns the entries between commas, without spaces about them and without empty ones.
+/// Returns the entries between commas, without the spaces around them, and without empty entries.
 fn between_commas(text: &str) -> impl Iterator<Item = &str> {
     text.split(',').map(str::trim).filter(|entry| !entry.is_empty())
 }
 
-/// Writes entries with commas between them.
+/// Writes the entries of a list, separated by commas.
 fn joined<T>(entries: &[T], write: impl Fn(&T) -> String) -> String {
     entries.iter().map(write).collect::<Vec<_>>().join(",")
 }
@@ -99,13 +96,13 @@ fn joined<T>(entries: &[T], write: impl Fn(&T) -> String) -> String {
 macro_rules! lists {
     ($(
         $(#[$doc:meta])*
-        $kind:ident($list:ty) in $grammar:ident, $getter:ident($($name:ident: $key_type:ty)?) at $key:expr, $slice:ident() -> $slices:ty, else $none:expr;
+        $kind:ident($list:ty) in $grammar:ident, else $none:expr;
     )*) => {
-        /// What a list holds: its grammar is in the file of that name.
+        /// The kinds of lists. The grammar of each is in a file of its own.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum ListKind { $($(#[$doc])* $kind),* }
 
-        /// A list.
+        /// The value of a parameter that is a list.
         #[derive(Clone, Debug, PartialEq)]
         pub enum List { $($(#[$doc])* $kind($list)),* }
 
@@ -126,62 +123,44 @@ macro_rules! lists {
         }
 
         impl List {
-            /// Returns what it holds.
+            /// Returns the kind of the list.
             #[must_use]
             pub const fn kind(&self) -> ListKind {
                 match self { $(Self::$kind(_) => ListKind::$kind),* }
             }
 
-            /// Writes it as [`ListKind::read`] reads it.
+            /// Writes the list as [`ListKind::read`] reads it.
             #[must_use]
             pub fn write(&self) -> String {
                 match self { $(Self::$kind(list) => $grammar::write(list)),* }
             }
         }
-
-        impl Params {$(
-            $(#[$doc])*
-            #[must_use]
-            pub fn $getter(&self $(, $name: $key_type)?) -> $slices {
-                static NONE: $list = $none;
-                match self.get($key) {
-                    Value::List(List::$kind(list)) => list.$slice(),
-                    _ => NONE.$slice(),
-                }
-            }
-        )*}
     };
 }
 
 lists! {
     /// Ids of clips, as in `walk,blend(a:walk,b:run)`.
-    ClipIds(Vec<String>) in clip_ids, clip_ids(key: Key) at key, as_slice() -> &[String], else Vec::new();
+    ClipIds(Vec<String>) in clip_ids, else Vec::new();
     /// Clips and their weights, as in `0.3:run,0.2:fast_walk`.
-    WeightedClips(Vec<(String, f64)>) in weighted_clips, weighted_clips() at Key::WarpAlso, as_slice() -> &[(String, f64)], else Vec::new();
+    WeightedClips(Vec<(String, f64)>) in weighted_clips, else Vec::new();
     /// A weight over the course of a blend: per cent of the blend and per cent of B, as in
     /// `0-0,50-100`.
-    WeightCurve(Vec<(usize, usize)>) in weight_curve, weight_curve() at Key::WarpCurve, as_slice() -> &[(usize, usize)], else Vec::new();
+    WeightCurve(Vec<(usize, usize)>) in weight_curve, else Vec::new();
     /// Frames of A and B that must meet, as in `12-30,50-71`.
-    Pins(Vec<(usize, usize)>) in pins, pins() at Key::Pins, as_slice() -> &[(usize, usize)], else Vec::new();
+    Pins(Vec<(usize, usize)>) in pins, else Vec::new();
     /// An edited path, by its control points; `None` for the fitted one.
-    EditedPath(Option<GroundSpline>) in edited_path, edited_path() at Key::Path, as_ref() -> Option<&GroundSpline>, else None;
+    EditedPath(Option<GroundSpline>) in edited_path, else None;
     /// When to set off for which clip: seconds and the clip's index, as in `12.5:3,40:0`.
-    Visits(Vec<(f64, usize)>) in visits, visits() at Key::GoTo, as_slice() -> &[(f64, usize)], else Vec::new();
+    Visits(Vec<(f64, usize)>) in visits, else Vec::new();
     /// A line over the ground, x and z in metres, as in `0:0,1.5:4`.
-    GroundPath(Vec<DVec2>) in ground_path, ground_path() at Key::WalkPath, as_slice() -> &[DVec2], else Vec::new();
+    GroundPath(Vec<DVec2>) in ground_path, else Vec::new();
     /// A transition of a graph: where one clip is left and where another one entered, as in
     /// `0:52-3:14`; `None` for none.
-    Jump(Option<[Place; 2]>) in jump, jump() at Key::Jump, as_ref() -> Option<&[Place; 2]>, else None;
+    Jump(Option<[Place; 2]>) in jump, else None;
     /// Recorded input; `None` for none.
-    Recording(Option<Recording>) in recording, recording() at Key::Drive, as_ref() -> Option<&Recording>, else None;
+    Recording(Option<Recording>) in recording, else None;
     /// Tags set by hand, as in `walk:0.2-1.5:exclude,run:0-1:-turn`.
-    Tags(Vec<HandTag>) in tags, tags() at Key::Tags, as_slice() -> &[HandTag], else Vec::new();
-}
-
-impl From<List> for Value {
-    fn from(list: List) -> Self {
-        Self::List(list)
-    }
+    Tags(Vec<HandTag>) in tags, else Vec::new();
 }
 
 #[cfg(test)]

@@ -1,10 +1,8 @@
-//! What a row of the table says of its parameter.
+//! The columns of the table of parameters.
 
-use super::current::DEFAULTS;
+use super::choices::{Choice, LabId};
 use super::grammar::ListKind;
-use super::table::Key;
-use super::value::Value;
-use crate::LabId;
+use super::key::Key;
 
 /// What a parameter belongs to: the lab whose panel shows it, or the part of the page that does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -39,15 +37,6 @@ impl Group {
     pub const fn is_of_lab(self) -> bool {
         matches!(self, Self::Lab(_))
     }
-}
-
-/// One of the choices of a [`Kind::Choice`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Choice {
-    /// The word in the link.
-    pub key: &'static str,
-    /// The word on screen.
-    pub label: &'static str,
 }
 
 /// What values a parameter takes.
@@ -160,7 +149,7 @@ pub enum Mark {
     ByPointer,
 }
 
-/// A [`Value`] that can stand in a constant.
+/// A default, as a [`Value`](super::Value) that can stand in a constant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Start {
     Auto,
@@ -171,12 +160,6 @@ pub(super) enum Start {
 }
 
 impl Param {
-    /// Returns the value that it has in a new document.
-    #[must_use]
-    pub fn default_value(&self) -> Value {
-        DEFAULTS.get(self.key).clone()
-    }
-
     /// Returns whether it has a mark.
     #[must_use]
     pub fn has(&self, mark: Mark) -> bool {

@@ -1,78 +1,12 @@
-//! The rows of the table of parameters.
-
-use super::grammar::ListKind;
-use super::param::{Group, Kind, Mark, Param, Start};
-use crate::choices::{
-    AlignBy, Atan, Backdrop, Camera, Construction, Curve, EdgeWeight, Ends, Follow, GoingOn,
-    Hysteresis, JumpMethod, LabId, LayerFit, LayerMode, LayerReference, Look, LoopMethod,
-    MadeAction, Mask, MatchBy, Mistake, Normalisation, PageLanguage, PageTheme, PathFacing,
-    PathKeep, PathOffset, PathSpline, RootMotion, RootWay, Scenario, SearchBy, Skinning, Transform,
-    TransitionMethod, WalkMethod, WarpMode, WarpWith, WeightLaw,
-};
-
-/// Labs that a row names behind `in`.
-macro_rules! labs {
-    () => { &[] };
-    ([$($lab:ident),*]) => { &[$(LabId::$lab),*] };
-    ($labs:ident) => { $labs };
-}
-
-macro_rules! parameters {
-    ($($key:ident $name:literal $label:literal $group:ident$(($lab:ident))?, $kind:expr, $default:expr, $unit:literal, $help:literal $([$($mark:ident),*])? $(in $labs:tt)?;)*) => {
-        /// The name of a parameter inside the program; its row is [`Key::param`].
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-        #[expect(missing_docs, reason = "the help sentence of the row says it")]
-        pub enum Key { $($key),* }
-
-        /// Every parameter, in the order in which links and panels show them.
-        pub static PARAMS: &[Param] = &[$(Param {
-            key: Key::$key, name: $name, label: $label, kind: $kind, unit: $unit, group: Group::$group$((LabId::$lab))?, help: $help, marks: &[$($(Mark::$mark),*)?], shared_with: labs!($($labs)?), default: $default,
-        }),*];
-    };
-}
-
-const fn number(min: f64, max: f64, step: f64) -> Kind {
-    Kind::Number { min, max, step, auto: false, logarithmic: false }
-}
-const fn auto(min: f64, max: f64, step: f64) -> Kind {
-    Kind::Number { min, max, step, auto: true, logarithmic: false }
-}
-const fn logarithmic(min: f64, max: f64, step: f64) -> Kind {
-    Kind::Number { min, max, step, auto: false, logarithmic: true }
-}
-
-/// The labs that make a result of the clip in A.
-const OF_A: &[LabId] = &[
-    LabId::View,
-    LabId::Blend,
-    LabId::Transition,
-    LabId::Speed,
-    LabId::Loop,
-    LabId::Layers,
-    LabId::Register,
-    LabId::Path,
-    LabId::InPlace,
-];
-/// The labs that make a result of the clip in B.
-const OF_B: &[LabId] =
-    &[LabId::Blend, LabId::Transition, LabId::Speed, LabId::Layers, LabId::Register];
-/// The labs that read the feet of their clips, and can hold them.
-const OF_FEET: &[LabId] = &[
-    LabId::View,
-    LabId::Make,
-    LabId::Transition,
-    LabId::Speed,
-    LabId::Loop,
-    LabId::Layers,
-    LabId::Register,
-    LabId::Path,
-    LabId::Graph,
-    LabId::InPlace,
-];
+//! The table of parameters, one row each.
+//!
+//! [`Key`](super::Key) and [`PARAMS`](super::PARAMS) are made from it, in files of their own: the
+//! types of the columns name keys, and the rows name those types.
 
 // Key, name in the link, label, group, values, default, unit, help; [marks] and `in` the labs that
-// share it, where there are any.
-parameters! {
+// share it, where there are any. The lists of labs stand in `choices.rs`.
+macro_rules! parameters {
+    ($expand:ident) => { $expand! {
     Lab "lab" "Lab" Page, Kind::Choice(LabId::CHOICES), Start::Choice(LabId::Blend.word()), "", "Which experiment is open." [State];
     A "a" "A" Page, Kind::Clip, Start::Text("walk"), "", "The clip that plays first." [State] in OF_A;
     B "b" "B" Page, Kind::Clip, Start::Text("run"), "", "The clip that follows." [State] in OF_B;
@@ -270,18 +204,7 @@ parameters! {
     Embed "embed" "Embed" Page, Kind::Switch, Start::Switch(false), "", "Shows only the stage and the parameters that the link names.";
     Lesson "lesson" "Lesson" Page, Kind::Text, Start::Text(""), "", "The lesson that is open: its name, `contents` for the list of all, or the address of a Markdown file of your own.";
     Src "src" "Source" Page, Kind::Text, Start::Text(""), "", "Addresses of motion files to load, separated by spaces.";
+    } };
 }
 
-impl Key {
-    /// The row of this parameter.
-    #[must_use]
-    pub fn param(self) -> &'static Param {
-        &PARAMS[self as usize]
-    }
-
-    /// The parameter of that name in the link.
-    #[must_use]
-    pub fn from_name(name: &str) -> Option<Self> {
-        PARAMS.iter().find(|param| param.name == name).map(|param| param.key)
-    }
-}
+pub(super) use parameters;

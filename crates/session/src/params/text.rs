@@ -1,8 +1,9 @@
 //! Values as text: in links, in ids of kept results, in the page's API.
 
+use super::choices::Choice;
 use super::grammar::{parts, read_id, write_ids};
-use super::param::{Choice, Kind, Param};
-use super::table::Key;
+use super::key::Key;
+use super::param::{Kind, Param};
 use super::value::{Compare, MAX_PANES, Value, ValueError};
 use crate::outside::short;
 use segue_text::{Message, msg};

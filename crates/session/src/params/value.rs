@@ -1,8 +1,8 @@
 //! Values of parameters, and why one does not fit.
 
+use super::choices::Selected;
 use super::grammar::{List, Misread};
-use super::table::Key;
-use crate::Selected;
+use super::key::Key;
 use crate::outside::short;
 use segue_text::{Message, msg};
 
@@ -46,6 +46,12 @@ impl Value {
             Self::Choice(word) => C::from_word(word),
             _ => None,
         }
+    }
+}
+
+impl From<List> for Value {
+    fn from(list: List) -> Self {
+        Self::List(list)
     }
 }
 

@@ -4,8 +4,7 @@
 //! entry is percent-encoded.
 
 use super::Misread;
-use crate::Selected;
-use crate::choices::{LabId, MadeAction};
+use crate::params::choices::{LabId, MadeAction, Selected};
 use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, utf8_percent_encode};
 
 /// What would end an id, and what says that something is written otherwise.

@@ -1,7 +1,16 @@
 //! The choices of parameters that take one of a few words, as types:
 //! `params.choice::<TransitionMethod>()`.
 
-use super::params::{Choice, Key};
+use super::key::Key;
+
+/// One of the words that a parameter takes; see [`Kind::Choice`](super::Kind::Choice).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Choice {
+    /// The word in the link.
+    pub key: &'static str,
+    /// The word on screen.
+    pub label: &'static str,
+}
 
 /// A type whose values are the choices of one parameter.
 pub trait Selected: Copy + PartialEq + 'static {
@@ -380,3 +389,34 @@ choices! {
         ZhHant "zh-Hant" "繁體中文",
     }
 }
+
+/// The labs that make a result of the clip in A.
+pub(super) const OF_A: &[LabId] = &[
+    LabId::View,
+    LabId::Blend,
+    LabId::Transition,
+    LabId::Speed,
+    LabId::Loop,
+    LabId::Layers,
+    LabId::Register,
+    LabId::Path,
+    LabId::InPlace,
+];
+
+/// The labs that make a result of the clip in B.
+pub(super) const OF_B: &[LabId] =
+    &[LabId::Blend, LabId::Transition, LabId::Speed, LabId::Layers, LabId::Register];
+
+/// The labs that read the feet of their clips, and can hold them.
+pub(super) const OF_FEET: &[LabId] = &[
+    LabId::View,
+    LabId::Make,
+    LabId::Transition,
+    LabId::Speed,
+    LabId::Loop,
+    LabId::Layers,
+    LabId::Register,
+    LabId::Path,
+    LabId::Graph,
+    LabId::InPlace,
+];

@@ -1,0 +1,103 @@
+//! The lists of a document, by their values.
+
+use super::current::Params;
+use super::grammar::{HandTag, List};
+use super::key::Key;
+use super::value::Value;
+use glam::DVec2;
+use segue_motion::graph::Place;
+use segue_motion::matching::Recording;
+use segue_motion::path::GroundSpline;
+
+impl Params {
+    /// Returns the ids of clips that a parameter lists; none for a parameter of another kind.
+    #[must_use]
+    pub fn clip_ids(&self, key: Key) -> &[String] {
+        match self.get(key) {
+            Value::List(List::ClipIds(ids)) => ids,
+            _ => &[],
+        }
+    }
+
+    /// Returns the further clips of a registered blend, each with its weight.
+    #[must_use]
+    pub fn weighted_clips(&self) -> &[(String, f64)] {
+        match self.get(Key::WarpAlso) {
+            Value::List(List::WeightedClips(clips)) => clips,
+            _ => &[],
+        }
+    }
+
+    /// Returns the weight of B over a registered blend: per cent of the blend and per cent of B.
+    #[must_use]
+    pub fn weight_curve(&self) -> &[(usize, usize)] {
+        match self.get(Key::WarpCurve) {
+            Value::List(List::WeightCurve(points)) => points,
+            _ => &[],
+        }
+    }
+
+    /// Returns the frames of A and B that must meet in a registration.
+    #[must_use]
+    pub fn pins(&self) -> &[(usize, usize)] {
+        match self.get(Key::Pins) {
+            Value::List(List::Pins(pins)) => pins,
+            _ => &[],
+        }
+    }
+
+    /// Returns the edited path; `None` for the fitted one.
+    #[must_use]
+    pub fn edited_path(&self) -> Option<&GroundSpline> {
+        match self.get(Key::Path) {
+            Value::List(List::EditedPath(path)) => path.as_ref(),
+            _ => None,
+        }
+    }
+
+    /// Returns when a walk sets off for which clip: seconds and the clip's index.
+    #[must_use]
+    pub fn visits(&self) -> &[(f64, usize)] {
+        match self.get(Key::GoTo) {
+            Value::List(List::Visits(visits)) => visits,
+            _ => &[],
+        }
+    }
+
+    /// Returns the line over the ground that a walk follows, x and z in metres.
+    #[must_use]
+    pub fn ground_path(&self) -> &[DVec2] {
+        match self.get(Key::WalkPath) {
+            Value::List(List::GroundPath(points)) => points,
+            _ => &[],
+        }
+    }
+
+    /// Returns where the chosen transition of a graph leaves a clip and where it enters one; `None`
+    /// if none is chosen.
+    #[must_use]
+    pub fn jump(&self) -> Option<&[Place; 2]> {
+        match self.get(Key::Jump) {
+            Value::List(List::Jump(ends)) => ends.as_ref(),
+            _ => None,
+        }
+    }
+
+    /// Returns the recorded input of the Match lab; `None` if there is none.
+    #[must_use]
+    pub fn recording(&self) -> Option<&Recording> {
+        match self.get(Key::Drive) {
+            Value::List(List::Recording(recording)) => recording.as_ref(),
+            _ => None,
+        }
+    }
+
+    /// Returns the tags that are set by hand.
+    #[must_use]
+    pub fn tags(&self) -> &[HandTag] {
+        match self.get(Key::Tags) {
+            Value::List(List::Tags(tags)) => tags,
+            _ => &[],
+        }
+    }
+}

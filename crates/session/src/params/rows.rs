@@ -1,0 +1,55 @@
+//! The rows of the table of parameters as values.
+
+use super::choices::{
+    AlignBy, Atan, Backdrop, Camera, Construction, Curve, EdgeWeight, Ends, Follow, GoingOn,
+    Hysteresis, JumpMethod, LabId, LayerFit, LayerMode, LayerReference, Look, LoopMethod,
+    MadeAction, Mask, MatchBy, Mistake, Normalisation, OF_A, OF_B, OF_FEET, PageLanguage,
+    PageTheme, PathFacing, PathKeep, PathOffset, PathSpline, RootMotion, RootWay, Scenario,
+    SearchBy, Skinning, Transform, TransitionMethod, WalkMethod, WarpMode, WarpWith, WeightLaw,
+};
+use super::grammar::ListKind;
+use super::key::Key;
+use super::param::{Group, Kind, Mark, Param, Start};
+use super::table::parameters;
+
+/// Labs that a row names behind `in`.
+macro_rules! labs {
+    () => { &[] };
+    ([$($lab:ident),*]) => { &[$(LabId::$lab),*] };
+    ($labs:ident) => { $labs };
+}
+
+macro_rules! rows {
+    ($($key:ident $name:literal $label:literal $group:ident$(($lab:ident))?, $kind:expr, $default:expr, $unit:literal, $help:literal $([$($mark:ident),*])? $(in $labs:tt)?;)*) => {
+        /// Every parameter, in the order in which links and panels show them.
+        pub static PARAMS: &[Param] = &[$(Param {
+            key: Key::$key, name: $name, label: $label, kind: $kind, unit: $unit, group: Group::$group$((LabId::$lab))?, help: $help, marks: &[$($(Mark::$mark),*)?], shared_with: labs!($($labs)?), default: $default,
+        }),*];
+    };
+}
+
+const fn number(min: f64, max: f64, step: f64) -> Kind {
+    Kind::Number { min, max, step, auto: false, logarithmic: false }
+}
+const fn auto(min: f64, max: f64, step: f64) -> Kind {
+    Kind::Number { min, max, step, auto: true, logarithmic: false }
+}
+const fn logarithmic(min: f64, max: f64, step: f64) -> Kind {
+    Kind::Number { min, max, step, auto: false, logarithmic: true }
+}
+
+parameters!(rows);
+
+impl Key {
+    /// The row of this parameter.
+    #[must_use]
+    pub fn param(self) -> &'static Param {
+        &PARAMS[self as usize]
+    }
+
+    /// The parameter of that name in the link.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        PARAMS.iter().find(|param| param.name == name).map(|param| param.key)
+    }
+}
