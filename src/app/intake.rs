@@ -5,7 +5,7 @@ use super::{Event, Segue};
 use crate::platform::{self, FileBytes, Incoming, LargeFile, ReadNews};
 use crate::ui;
 use segue_session::reading::Content;
-use segue_session::{Command, Key, Level, Request, Value};
+use segue_session::{Command, Key, Level, List, Request};
 use segue_text::{Message, msg};
 
 impl Segue {
@@ -186,9 +186,8 @@ impl Segue {
                 }
             }
         }
-        let wanted = self.session.params().text(Key::Src);
-        self.downloads
-            .keep_only(|address| wanted.split_whitespace().any(|source| source == address));
+        let wanted = self.session.params().source_addresses();
+        self.downloads.keep_only(|address| wanted.iter().any(|source| source == address));
     }
 
     /// Stops waiting for lessons: whoever opens one waits for that one alone.
@@ -205,10 +204,9 @@ impl Segue {
         if self.downloads.lessons_under_way().any(|lesson| lesson == name) {
             return self.stop_lessons();
         }
-        let sources = self.session.params().text(Key::Src).split_whitespace();
-        let rest: Vec<&str> =
-            sources.filter(|address| platform::file_name_of(address) != *name).collect();
-        let rest = Value::Text(rest.join(" "));
-        self.obey(Command::Set(vec![(Key::Src, rest)]));
+        let sources = self.session.params().source_addresses().iter();
+        let rest = sources.filter(|address| platform::file_name_of(address) != *name);
+        let rest = List::Addresses(rest.cloned().collect());
+        self.obey(Command::Set(vec![(Key::Src, rest.into())]));
     }
 }

@@ -167,8 +167,11 @@ impl Document {
     /// Takes over the parameters of a link that names some of them. Returns the addresses of files
     /// that were not named before.
     pub(crate) fn replace_params(&mut self, params: Params, named: &[Key]) -> Vec<String> {
-        let had = std::mem::replace(&mut self.params, params).text(Key::Src).to_owned();
-        let new_sources = self.sources_beyond(&had);
+        let before = std::mem::replace(&mut self.params, params);
+        let known = before.source_addresses();
+        let addresses = self.params.source_addresses().iter();
+        let new_sources: Vec<String> =
+            addresses.filter(|address| !known.contains(address)).cloned().collect();
         self.note_named_slots(named, !new_sources.is_empty());
         new_sources
     }
@@ -177,12 +180,6 @@ impl Document {
     pub(crate) fn note_link(&mut self, named: &[Key]) {
         self.named_slots = [false; 2];
         self.keys_of_link = named.to_vec();
-    }
-
-    /// Returns the addresses of files that `had`, the parameter as it was, does not name.
-    fn sources_beyond(&self, had: &str) -> Vec<String> {
-        let is_new = |address: &&str| had.split_whitespace().all(|known| known != *address);
-        self.params.text(Key::Src).split_whitespace().filter(is_new).map(str::to_owned).collect()
     }
 }
 

@@ -133,19 +133,8 @@ impl FileIntake {
                 ),
             );
         }
-        for address in addresses.into_iter().take(MAX_SOURCES) {
-            if address.starts_with("https://") || address.starts_with("http://") {
-                self.requests.push(Request::Fetch(address));
-            } else {
-                notices.say(
-                    Level::Error,
-                    msg!(
-                        "src: found `{address}`, expected an address that starts with https://.",
-                        address = outside::short(&address)
-                    ),
-                );
-            }
-        }
+        let requests = addresses.into_iter().take(MAX_SOURCES).map(Request::Fetch);
+        self.requests.extend(requests);
     }
 
     /// Reads a file and puts its clips into the library: at once, or, where it is large or all

@@ -4,6 +4,7 @@
 //! A list is read once, together with the link, the command or the id that holds it. Labs and
 //! panels get its values. A list is written as it was read, but for spaces and the form of numbers.
 
+mod addresses;
 mod clip_ids;
 mod edited_path;
 mod frame_pairs;
@@ -161,6 +162,8 @@ lists! {
     Recording(Option<Recording>) in recording, else None;
     /// Tags set by hand, as in `walk:0.2-1.5:exclude,run:0-1:-turn`.
     Tags(Vec<HandTag>) in tags, else Vec::new();
+    /// Addresses of files on the web, separated by spaces.
+    Addresses(Vec<String>) in addresses, else Vec::new();
 }
 
 #[cfg(test)]
@@ -168,7 +171,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    const KINDS: [ListKind; 10] = [
+    const KINDS: [ListKind; 11] = [
         ListKind::ClipIds,
         ListKind::WeightedClips,
         ListKind::WeightCurve,
@@ -179,6 +182,7 @@ mod tests {
         ListKind::Jump,
         ListKind::Recording,
         ListKind::Tags,
+        ListKind::Addresses,
     ];
 
     #[test]
@@ -202,6 +206,7 @@ mod tests {
             (ListKind::Jump, "0:52-1:14"),
             (ListKind::Recording, "3c.0.s_1o.0.0"),
             (ListKind::Tags, "walk:0.2-1.5:exclude,run:0-1:-turn"),
+            (ListKind::Addresses, "https://example.org/a.bvh http://example.org/b.bvh"),
         ] {
             assert_eq!(kind.read(text).map(|list| list.write()), Ok(text.to_owned()));
         }

@@ -100,4 +100,13 @@ impl Params {
             _ => &[],
         }
     }
+
+    /// Returns the addresses of the motion files that are loaded with the link.
+    #[must_use]
+    pub fn source_addresses(&self) -> &[String] {
+        match self.get(Key::Src) {
+            Value::List(List::Addresses(addresses)) => addresses,
+            _ => &[],
+        }
+    }
 }

@@ -203,7 +203,7 @@ macro_rules! parameters {
     Projector "projector" "Projector" Page, Kind::Switch, Start::Switch(false), "", "Larger text for projectors.";
     Embed "embed" "Embed" Page, Kind::Switch, Start::Switch(false), "", "Shows only the stage and the parameters that the link names.";
     Lesson "lesson" "Lesson" Page, Kind::Text, Start::Text(""), "", "The lesson that is open: its name, `contents` for the list of all, or the address of a Markdown file of your own.";
-    Src "src" "Source" Page, Kind::Text, Start::Text(""), "", "Addresses of motion files to load, separated by spaces.";
+    Src "src" "Source" Page, Kind::List(ListKind::Addresses), Start::Text(""), "", "Addresses of motion files to load, separated by spaces.";
     } };
 }
 
