@@ -174,7 +174,7 @@ impl Segue {
                     } else if let Some(bytes) = self.vault.bytes_of(&task.content) {
                         self.reader.start(task, bytes);
                     } else {
-                        let gone = Err("it is not here any more, drop it again".to_owned());
+                        let gone = Err("it is no longer available: drop it again".to_owned());
                         self.hear_of_reading(task.id, ReadNews::Done(gone));
                     }
                 }

@@ -145,7 +145,7 @@ fn overrides_ui(
 }
 
 fn as_found(value: impl Into<Message>, is_found: bool) -> Message {
-    if is_found { msg!("{value}, found", value = value.into()) } else { text::AS_FOUND.into() }
+    if is_found { msg!("{value}, detected", value = value.into()) } else { text::AS_FOUND.into() }
 }
 
 /// What is chosen in the list of frame rates.

@@ -151,21 +151,21 @@ const WITH_KEYS: [UiCommand; 25] = [
 
 const HELP: &[HelpRow] = &[
     HelpRow::Commands(&[UiCommand::TogglePlay], "play or pause"),
-    HelpRow::Commands(&[UiCommand::StepBack, UiCommand::StepOn], "one frame back or on"),
-    HelpRow::Commands(&[UiCommand::TenBack, UiCommand::TenOn], "ten frames"),
+    HelpRow::Commands(&[UiCommand::StepBack, UiCommand::StepOn], "one frame back or forward"),
+    HelpRow::Commands(&[UiCommand::TenBack, UiCommand::TenOn], "ten frames back or forward"),
     HelpRow::Commands(&[UiCommand::ToBeginning], "to the beginning"),
     HelpRow::Commands(
         &[UiCommand::Mark(Key::In), UiCommand::Mark(Key::Out)],
-        "set the in or out mark here; Shift takes it away",
+        "set the in or out mark here; Shift clears it",
     ),
     HelpRow::Commands(&[UiCommand::Slower, UiCommand::Faster], "slower, faster"),
     HelpRow::Commands(&[UiCommand::ToggleLoop], "loop"),
     HelpRow::Commands(&[UiCommand::ToggleCompare], "compare full, half, third"),
     HelpRow::Commands(&[UiCommand::ToggleLessons], "lessons; Esc closes them"),
-    HelpRow::Labs("the labs, from left to right"),
-    HelpRow::Commands(&[UiCommand::ToggleTopView], "from above"),
-    HelpRow::Commands(&[UiCommand::FrameEverything], "frame everything"),
-    HelpRow::Commands(&[UiCommand::ToggleFollow], "camera follows or stands"),
+    HelpRow::Labs("the labs, in order"),
+    HelpRow::Commands(&[UiCommand::ToggleTopView], "top view"),
+    HelpRow::Commands(&[UiCommand::FrameEverything], "frame all"),
+    HelpRow::Commands(&[UiCommand::ToggleFollow], "camera follow on or off"),
     HelpRow::Commands(&[UiCommand::NextLook], "body, bones, both"),
     HelpRow::Gesture(
         "W A S D, arrows",
@@ -176,7 +176,7 @@ const HELP: &[HelpRow] = &[
     HelpRow::Commands(&[UiCommand::CopyLink], "copy the link, when nothing else is selected"),
     HelpRow::Commands(&[UiCommand::ToggleHelp], "this list"),
     HelpRow::Gesture("drag", "turn the camera; with Shift or the right button, move it"),
-    HelpRow::Gesture("W A S D", "the same, outside of the Match lab"),
+    HelpRow::Gesture("W A S D", "the same, except in the Match lab"),
     HelpRow::Gesture("wheel, pinch", "zoom"),
     HelpRow::Gesture("Page up, down", "zoom"),
 ];
@@ -520,13 +520,13 @@ mod tests {
             line.map(|(keys, _)| keys.as_str()).unwrap()
         };
         assert_eq!(keys("play or pause"), "Space");
-        assert_eq!(keys("ten frames"), "Shift ← →");
-        assert_eq!(keys("one frame back or on"), "← →");
+        assert_eq!(keys("ten frames back or forward"), "Shift ← →");
+        assert_eq!(keys("one frame back or forward"), "← →");
         assert_eq!(keys("slower, faster"), "[ ]");
         assert_eq!(keys("redo"), "Ctrl Shift Z");
         assert_eq!(keys("copy the link, when nothing else is selected"), "Ctrl C");
         assert_eq!(keys("this list"), "?");
-        assert_eq!(keys("the labs, from left to right"), "1 … 9, 0, -, =");
+        assert_eq!(keys("the labs, in order"), "1 … 9, 0, -, =");
         assert!(list.iter().all(|(keys, what)| !keys.is_empty() && !what.is_empty()));
     }
 

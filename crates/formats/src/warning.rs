@@ -249,7 +249,7 @@ impl ToMessage for ImportWarning {
                     "{count, plural, one {# joint} other {# joints}} without OFFSET{place}; placed on the parent"
                 )
             }
-            WarningKind::NoFrames => msg!("the file holds a skeleton and no motion"),
+            WarningKind::NoFrames => msg!("the file has a skeleton but no animation"),
             WarningKind::FrameCount { declared, found } => {
                 msg!(
                     "the header says {declared} frames{place}, the file holds {found}; the rows count"
@@ -375,17 +375,17 @@ impl ToMessage for ImportWarning {
             ),
             WarningKind::Textures => {
                 msg!(
-                    "{count, plural, one {# texture} other {# textures}} left out; the plain colour was taken"
+                    "imported without {count, plural, one {# texture} other {# textures}}: the plain colour is used"
                 )
             }
             WarningKind::MorphTargets => {
                 msg!(
-                    "{count, plural, one {# surface} other {# surfaces}} with morph targets; they keep their shape"
+                    "imported without the morph targets of {count, plural, one {# mesh} other {# meshes}}"
                 )
             }
             WarningKind::BrokenMesh { why } => {
                 msg!(
-                    "{count, plural, one {# surface} other {# surfaces}} left out; the first has {why}"
+                    "imported without {count, plural, one {# mesh} other {# meshes}}; the first has {why}"
                 )
             }
             WarningKind::UncertainUp { up } => {
@@ -472,7 +472,7 @@ mod tests {
             lines,
             [
                 "2 missing spaces between numbers (first: line 2); split before the sign",
-                "the file holds a skeleton and no motion"
+                "the file has a skeleton but no animation"
             ]
         );
     }

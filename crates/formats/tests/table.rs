@@ -128,7 +128,7 @@ fn braces_on_any_line_are_read() {
         warnings,
         [
             "1 joint without OFFSET (line 4); placed on the parent",
-            "the file holds a skeleton and no motion"
+            "the file has a skeleton but no animation"
         ]
     );
 }
@@ -408,7 +408,7 @@ fn clip_of_no_frames_is_a_skeleton() {
         assert_eq!((found.clip.frames(), found.clip.skeleton().len()), (0, 3));
         assert_eq!(
             warnings.last().map(String::as_str),
-            Some("the file holds a skeleton and no motion")
+            Some("the file has a skeleton but no animation")
         );
         assert!((found.measure.height_metres() - 1.64).abs() < 1e-5);
     }

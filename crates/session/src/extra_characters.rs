@@ -77,13 +77,15 @@ pub(crate) fn apply(
     panes: &Panes,
 ) -> Result<(), CommandError> {
     let mut ids = ids(document);
-    let nobody = CommandError::NotPossible("nobody is in this place of the list");
+    let nobody = CommandError::NotPossible("this place of the list is empty");
     let mut params = document.params.clone();
     match command {
         ExtraCharacterCommand::Add(_) | ExtraCharacterCommand::AddResult(_)
             if ids.len() >= MAX_CHARACTERS =>
         {
-            return Err(CommandError::NotPossible("the stage is full: six play along already"));
+            return Err(CommandError::NotPossible(
+                "the stage is full: it already has six extra characters",
+            ));
         }
         ExtraCharacterCommand::Add(id) => {
             let id = document.clip(&id)?.id.clone();

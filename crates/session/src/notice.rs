@@ -157,7 +157,7 @@ impl Notices {
         if self.more.len() > MAX_NAMED {
             named.push("…".to_owned());
         }
-        let text = msg!("{count} more did not work: {named}.", count = self.more.len(), named);
+        let text = msg!("{count} more failed: {named}.", count = self.more.len(), named);
         self.sum = Some(self.next_id);
         self.list.push(Notice {
             id: self.next_id,
@@ -265,8 +265,7 @@ mod tests {
                     "the first ones stand there as they are"
                 );
                 assert!(
-                    texts(&notices)
-                        .contains(&"3 more did not work: f3.bvh, f4.bvh, f5.bvh.".to_owned())
+                    texts(&notices).contains(&"3 more failed: f3.bvh, f4.bvh, f5.bvh.".to_owned())
                 );
             }
         }
@@ -288,7 +287,7 @@ mod tests {
         notices.say_of(Level::Error, "x.bvh", "x.bvh could not be read: gone.");
         assert_eq!(notices.errors_since(0).len(), 4);
         notices.say_of(Level::Error, "y.bvh", "y.bvh: gone.");
-        assert!(texts(&notices).contains(&"2 more did not work: x.bvh, y.bvh.".to_owned()));
+        assert!(texts(&notices).contains(&"2 more failed: x.bvh, y.bvh.".to_owned()));
     }
 
     #[test]
@@ -308,7 +307,7 @@ mod tests {
         notices.say(Level::Error, msg!("No result: {inner}."));
         let sum = texts(&notices).pop().unwrap();
         let long = short(&"y".repeat(500));
-        assert_eq!(sum, format!("4 more did not work: 4, walk.bvh, a/b.bvh, {long}."));
+        assert_eq!(sum, format!("4 more failed: 4, walk.bvh, a/b.bvh, {long}."));
     }
 
     #[test]

@@ -356,7 +356,7 @@ impl Session {
             0 => self.say(
                 Level::Warning,
                 msg!(
-                    "The link was used, but for this: {problems}.",
+                    "The link was opened, except for: {problems}.",
                     problems = Message::joined(problems, "; ")
                 ),
             ),
@@ -365,7 +365,7 @@ impl Session {
                 self.say(
                     Level::Warning,
                     msg!(
-                        "The link was used, but for this: {first}; and {more} more like these.",
+                        "The link was opened, except for: {first}; and {more} similar problems.",
                         first = Message::joined(first.to_vec(), "; ")
                     ),
                 );

@@ -98,7 +98,7 @@ impl Call {
     fn lateness(&self, address: &str, name: &str) -> Option<Message> {
         let said = || {
             msg!(
-                "{host} has sent nothing for {secs} s: {name} is not waited for any longer. Try again later.",
+                "{host} has sent nothing for {secs} s, so loading {name} was stopped. Try again later.",
                 host = host_of(address).to_owned(),
                 secs = PATIENCE_MS / 1000,
                 name = name.to_owned()
@@ -256,14 +256,14 @@ async fn get(
         200..=299 => {}
         404 | 410 => {
             return Err(msg!(
-                "There is no file at {address} (answer {status}).",
+                "There is no file at {address} (status {status}).",
                 address = short(address),
                 status = response.status()
             ));
         }
         401 | 403 => {
             return Err(msg!(
-                "{host} does not give {name} to everybody (answer {status}).",
+                "{host} does not allow everyone to load {name} (status {status}).",
                 host = host_of(address).to_owned(),
                 name = name.to_string(),
                 status = response.status()
@@ -271,7 +271,7 @@ async fn get(
         }
         status => {
             return Err(msg!(
-                "{host} answered {status} instead of {name}. Try again later.",
+                "{host} answered with status {status} instead of {name}. Try again later.",
                 host = host_of(address).to_owned(),
                 status,
                 name = name.to_string()

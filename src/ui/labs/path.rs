@@ -294,7 +294,7 @@ fn company_ui(
     let clips = titles.iter().map(String::as_str).enumerate();
     let options: Vec<(usize, &str)> =
         std::iter::once((usize::MAX, text::CHOOSE_CLIP)).chain(clips).collect();
-    let picked = kit::choice_row_ui(text::JOIN_CLIP, usize::MAX, &options, ui);
+    let picked = kit::choice_row_ui(text::ADD_CLIP, usize::MAX, &options, ui);
     if let Some(entry) = picked.and_then(|index| entries.get(index)) {
         out.commands.push(Command::ExtraCharacters(ExtraCharacterCommand::Add(entry.id.clone())));
     }

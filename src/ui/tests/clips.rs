@@ -79,7 +79,7 @@ fn the_clip_panel_tells_what_was_read() {
         ("view-phone-light", PHONE, LIGHT),
     ] {
         let mut harness = harness(size, theme, with_file("lab=view&play=off"));
-        for label in ["Unit", "Up axis", "Leave out the T-pose", "GLB", "Body parts"] {
+        for label in ["Unit", "Up axis", "Skip the T-pose", "GLB", "Body parts"] {
             harness.get_by_label(label);
         }
         harness.get_by_label(&format!("Joints: {joints} "));
@@ -109,7 +109,7 @@ fn what_is_said_by_hand_reads_the_file_again() {
     assert_eq!(choose("Unit", "inch").metres_per_unit, Some(0.0254));
     assert_eq!(choose("Up axis", "Z").up, Some(segue_motion::clip::UpAxis::Z));
     assert_eq!(choose("Frame rate", "25").fps, Some(25.0));
-    press("Leave out the T-pose", &mut harness);
+    press("Skip the T-pose", &mut harness);
     let command = harness.state_mut().out.commands.pop();
     assert!(
         matches!(command, Some(Command::File(FileCommand::Reimport(_, options))) if !options.drop_t_pose),
@@ -231,7 +231,7 @@ fn a_motion_is_saved_as_it_is_wanted() {
     press("Save the file", &mut harness);
     press("GLB", &mut harness);
     press("Save the file", &mut harness);
-    harness.get_by_label("End the recording and save it").click();
+    harness.get_by_label("Stop recording and save").click();
     press("Save the stage as a picture", &mut harness);
     harness.get_by_label("Recording, 1:07");
     let actions = &harness.state().out.actions;
@@ -268,7 +268,7 @@ fn a_clip_without_a_motion_says_why() {
     let given_up = Entry { unread: Some("Reading large.bvh was stopped.".into()), ..being_read };
     assert_eq!(text::status(&given_up), text::UNREAD);
     let mut harness = harness(DESK, DARK, page);
-    harness.get_by_label_contains("alone, waits for its skeleton");
+    harness.get_by_label_contains("alone, needs its skeleton");
     picture("waits-desk-dark", &mut harness);
 }
 
@@ -284,7 +284,7 @@ fn a_clip_of_another_skeleton_is_said_to_be_moved() {
         .expect("a page as the tests need it");
     while page.session.work() {}
     let harness = harness(DESK, DARK, page);
-    harness.get_by_label_contains("Moved onto the skeleton of Walk:");
+    harness.get_by_label_contains("Retargeted to the skeleton of Walk:");
     let alone = self::page(
         "lab=graph&clips=idle&construction=segments&segment_size=20&blend_window=30&play=off",
     );

@@ -159,12 +159,12 @@ fn what_was_driven_is_played_again_and_one_may_drive_anew() {
     harness.key_down(Keyboard::W);
     play(40, &mut harness);
     harness.key_up(Keyboard::W);
-    press("Play it again", &mut harness);
+    press("Replay", &mut harness);
     while harness.state_mut().session.work() {}
     harness.run();
     assert!(!harness.state().session.is_driven());
     assert!(harness.state().session.query().contains("drive="));
-    press("Drive yourself", &mut harness);
+    press("Take control", &mut harness);
     while harness.state_mut().session.work() {}
     harness.run();
     assert!(
@@ -198,7 +198,7 @@ fn the_lab_has_room_on_every_page() {
             harness.state_mut().session.tick(1.0 / 60.0);
         }
         harness.run();
-        harness.get_by_label("All clips, and the frame that plays");
+        harness.get_by_label("All clips, with the current frame");
         assert!(driven(&harness).jumps_secs().count() > 0, "{name}");
         picture(name, &mut harness);
     }

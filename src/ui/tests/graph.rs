@@ -72,7 +72,7 @@ fn the_graph_lab_does_what_is_pressed() {
     assert!(harness.state().session.graph_walk().is_some_and(|walk| !walk.is_jump));
     // Clips come and go.
     press("Clips of the graph: 3", &mut harness);
-    press("Leave Walk, turn left out", &mut harness);
+    press("Remove Walk, turn left", &mut harness);
     done(&mut harness);
     assert_eq!(text_of(&harness, Key::Clips), "walk,walk_right");
     press(text::ADD_CLIP, &mut harness);
@@ -153,7 +153,8 @@ fn whoever_sends_the_walk_where_no_way_leads_is_told() {
         harness.run();
         let walk = harness.state().session.graph_walk().unwrap();
         assert_eq!(walk.missed, [(0.0, 3)]);
-        let sentence = "No way leads to Stand from where the walk is at 0.0 s: a higher threshold may make one.";
+        let sentence =
+            "Stand cannot be reached from the walk at 0.0 s: a higher threshold may connect them.";
         assert!(harness.query_all_by_label(sentence).count() > 0);
         picture(
             if theme == DARK { "graph-no-way-dark" } else { "graph-no-way-light" },

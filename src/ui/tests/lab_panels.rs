@@ -10,7 +10,7 @@ fn a_blend_of_two_skeletons_says_what_was_not_matched() {
         [("retarget-desk-light", DESK, LIGHT), ("retarget-phone-dark", PHONE, DARK)]
     {
         let mut harness = harness(size, theme, with_file("lab=blend&b=run&play=off"));
-        harness.get_by_label("B's motion is moved onto A's skeleton; not matched: Tail.");
+        harness.get_by_label("B is retargeted to A's skeleton; not matched: Tail.");
         picture(name, &mut harness);
     }
     assert!(outcome(&self::page("lab=blend&play=off")).retargeted.is_none());
@@ -28,13 +28,13 @@ fn a_gait_takes_any_speed_and_says_when_that_is_a_guess() {
         let mut harness = harness(size, theme, page(link));
         harness.get_by_label(text::SPEED_ABOUT);
         assert_eq!(
-            harness.query_all_by_label_contains("Too far beyond both clips").count(),
+            harness.query_all_by_label_contains("Too far outside the speeds").count(),
             usize::from(link.contains("speed=9"))
         );
         picture(name, &mut harness);
     }
     let mut harness = harness(DESK, DARK, page("lab=speed&play=off"));
-    press("A, half way, B", &mut harness);
+    press("A, midway, B", &mut harness);
     assert_eq!(compared(&harness), "speed:1.4,2.45,3.5");
     let back = harness.get_by_label("One pane").rect();
     assert!(
@@ -79,14 +79,14 @@ fn a_loop_says_where_it_was_cut_and_what_its_method_does() {
         ("loop-phone-dark", PHONE, DARK, "lab=loop&play=off"),
     ] {
         let mut harness = harness(size, theme, page(link));
-        harness.get_by_label_contains("Makes a seamless cycle");
+        harness.get_by_label_contains("Makes a seamless loop");
         picture(name, &mut harness);
     }
     let mut harness = harness(DESK, DARK, page("lab=loop&play=off"));
-    harness.get_by_label_contains("solved so that pose and velocity close");
-    press("Exact against classic", &mut harness);
+    harness.get_by_label_contains("solved so that pose and velocity match");
+    press("Compare methods", &mut harness);
     assert_eq!(harness.state().session.panes().len(), 3);
-    press("Exact against classic", &mut harness);
+    press("Compare methods", &mut harness);
     assert_eq!(harness.state().session.panes().len(), 1);
     // The keys follow the tabs.
     harness.key_press(Keyboard::Num5);
@@ -105,7 +105,7 @@ fn the_layers_lab_says_how_time_goes_and_where_the_layer_is() {
         let page = page(link);
         let sentence = text::fit(outcome(&page).layer().expect("a layer")).to_string();
         let additive = link.contains("additive");
-        assert_eq!(sentence.starts_with("No steps"), additive, "{sentence}");
+        assert_eq!(sentence.starts_with("There are no steps"), additive, "{sentence}");
         let mut harness = harness(size, theme, page);
         harness.get_by_label(&sentence);
         // What does not concern the kind of layer is not offered.
@@ -130,7 +130,7 @@ fn a_mistake_is_chosen_explained_and_held_against_the_right_way() {
     let mut harness = harness(DESK, DARK, page("lab=transition&play=off&t=2.3"));
     assert!(harness.query_by_label(text::RIGHT_AND_WRONG).is_none());
     press("Break it", &mut harness);
-    press("Euler angles mixed", &mut harness);
+    press("Euler angles blended", &mut harness);
     harness.get_by_label(text::mistake(Mistake::Euler));
     picture("break-desk-dark", &mut harness);
     press(text::RIGHT_AND_WRONG, &mut harness);

@@ -150,6 +150,6 @@ fn the_map_is_pointed_at_pressed_and_pinned() {
     assert!(harness.query_all_by_label_contains("exclude each other").count() >= 1);
     assert!(harness.state().session.main_outcome().is_none());
     picture("register-problem-dark", &mut harness);
-    press("Registered beside plain", &mut harness);
+    press("Compare registered and plain", &mut harness);
     assert_eq!(harness.state().session.panes().len(), 2);
 }

@@ -4,38 +4,38 @@ use segue_session::{BuiltGraph, GraphClips, Trace};
 use segue_text::{Message, msg};
 
 /// What the Graph lab does.
-pub(crate) const GRAPH_ABOUT: &str = "Several clips, and every place where one may go over into another. A walk through them never ends: the seed says where it goes.";
+pub(crate) const GRAPH_ABOUT: &str = "A motion graph: the transitions between clips, and an endless random walk through them, set by the seed.";
 /// Over the stage.
 pub(crate) const GRAPH_HINT: &str =
     "Point at a ring or an arc to see both poses. Click it to play that transition alone.";
 /// Of the seed, in place of what it does for a made motion.
 pub(crate) const GRAPH_SEED_HELP: &str =
-    "Another seed, another way through the graph; the same seed, the same walk on every machine.";
+    "Each seed gives another walk; the same seed gives the same walk on every machine.";
 /// Why a visit came to nothing.
 pub(crate) fn no_way(name: Message, secs: f64) -> Message {
     msg!(
-        "No way leads to {name} from where the walk is at {secs:.1} s: a higher threshold may make one.",
+        "{name} cannot be reached from the walk at {secs:.1} s: a higher threshold may connect them.",
         name,
         secs
     )
 }
 
 pub(crate) const GRAPH_LACKS_SOME: &str =
-    "More transitions lie below the threshold than can be held: the closest are.";
-/// Adds one.
+    "There are too many transitions below the threshold: the closest are kept.";
+/// The label of a menu that adds a clip.
 pub(crate) const ADD_CLIP: &str = "Add a clip";
 /// While it is computed.
-pub(crate) const GRAPHING: &str = "Making graph and walk";
+pub(crate) const GRAPHING: &str = "Building graph and walk";
 /// After it was given up.
-pub(crate) const GO_ON: &str = "Go on";
+pub(crate) const GO_ON: &str = "Continue";
 /// Of the parameters that say where the walk goes.
 pub(crate) const WALK: &str = "The walk";
 /// The picture of the distances.
 pub(crate) const ALL_DISTANCES: &str = "Distances of all windows";
 /// Below it.
-pub(crate) const MATRIX_HELP: &str = "Down: where a clip is left. Across: where one is entered. Rings are transitions. Wheel: closer; drag: move.";
+pub(crate) const MATRIX_HELP: &str = "Rows: the frame left. Columns: the frame entered. Rings: transitions. Scroll to zoom, drag to pan.";
 /// The histogram's name.
-pub(crate) const ALL_HISTOGRAM: &str = "How many pairs of windows are how far apart";
+pub(crate) const ALL_HISTOGRAM: &str = "Histogram of window distances";
 /// The strip's name.
 pub(crate) const GRAPH_STRIP: &str = "The graph: clips and transitions";
 /// Of the links to what is worth a look.
@@ -43,11 +43,11 @@ pub(crate) const EXPERIMENTS: &str = "Experiments";
 /// Chooses a clip to go to.
 pub(crate) const GO_TO_CLIP: &str = "Go to a clip from here";
 /// Takes that back.
-pub(crate) const FORGET_VISITS: &str = "By chance again";
+pub(crate) const FORGET_VISITS: &str = "Resume random walk";
 /// Draws a line to follow.
 pub(crate) const DRAW_PATH: &str = "Draw a path on the ground";
 /// While it is drawn.
-pub(crate) const DRAWING: &str = "Press on the ground and draw. The walk starts at its beginning.";
+pub(crate) const DRAWING: &str = "Draw on the ground. The walk starts where the path starts.";
 /// Takes it away.
 pub(crate) const REMOVE_PATH: &str = "Remove the path";
 /// Back from one transition.
@@ -61,10 +61,10 @@ pub(crate) const COPY_MARKDOWN: &str = "Copy as Markdown";
 /// Copies it.
 pub(crate) const COPY_CSV: &str = "Copy as CSV";
 /// What is said then.
-pub(crate) const TABLE_COPIED: &str = "The table is in the clipboard.";
+pub(crate) const TABLE_COPIED: &str = "Table copied.";
 /// A row of it.
 /// A mark of the walk.
-pub(crate) const SEAM: &str = "Into another clip";
+pub(crate) const SEAM: &str = "Transition to another clip";
 
 /// What is opened by a click: its name, what it does, and the values that it sets.
 pub(crate) struct Experiment {
@@ -77,37 +77,37 @@ pub(crate) struct Experiment {
 pub(crate) const GRAPH_EXPERIMENTS: &[Experiment] = &[
     Experiment {
         name: "Windows: full, half, third",
-        help: "A long one drags, a short one bursts.",
+        help: "Longer is smoother but slower to respond; shorter is snappier but pops.",
         query: "construction=segments&segment_size=60&blend_window=30&compare=blend_window:30,15,10",
     },
     Experiment {
         name: "Segments: full, half, third",
-        help: "Long segments repeat little, short ones never come to rest. A third is no longer than the window: nothing is left of a segment, and many programs crash.",
+        help: "Long segments rarely repeat; short ones change clips all the time. A third is no longer than the window: nothing is left of a segment, and many programs crash.",
         query: "construction=segments&blend_window=20&segment_size=60&compare=segment_size:60,30,20",
     },
     Experiment {
-        name: "Continuity: low, middle, high",
-        help: "How long a clip is left unbroken.",
+        name: "Continuity: low, medium, high",
+        help: "How long a clip plays without a transition.",
         query: "going_on=share&compare=continuity:0.3,0.8,0.98",
     },
     Experiment {
-        name: "Weight of going on: 1 and 1000",
-        help: "One constant beside the distances: the more ways lead out, the less it holds.",
+        name: "Continuation weight: 1 and 1000",
+        help: "A constant weight beside those of the transitions: the more transitions leave a segment, the less likely the clip continues.",
         query: "going_on=constant&edge_weight=proportional&compare=continuity_weight:1,1000",
     },
     Experiment {
         name: "atan for atan2",
-        help: "Every clip is laid on with its back to the front, as if it faced the other way in its file: spins.",
+        help: "Every clip is aligned back to front, as if it faced the other way in its file: the character spins.",
         query: "transform=whole&compare=atan:atan2,atan",
     },
     Experiment {
         name: "Degrees for radians",
-        help: "A turn in degrees that is taken for radians: every clip goes off in a direction of its own.",
+        help: "An angle in degrees used as radians: every clip moves off in a wrong direction.",
         query: "transform=whole&compare=atan:atan2,degrees",
     },
     Experiment {
         name: "First frame only",
-        help: "The clip starts in the right place and goes off as it was recorded, or flies back to where it was recorded.",
+        help: "The clip starts at the right position, then continues in its recorded direction, or jumps back to its recorded position.",
         query: "atan=atan2&compare=transform:whole,first,teleport",
     },
 ];
@@ -117,7 +117,7 @@ pub(crate) fn ways_left_out(built: &BuiltGraph) -> Option<Message> {
     let count = built.whole().left_out();
     (count > 0).then(|| {
         msg!(
-            "{count, plural, one {# transition is left out: no more than {most} leave one stretch. Raise the ways out to have it.} other {# transitions are left out: no more than {most} leave one stretch. Raise the ways out to have them.}}",
+            "{count, plural, one {# transition is left out} other {# transitions are left out}}: at most {most} may leave a segment. Raise the transitions per segment to include more.",
             count,
             most = built.options().most_ways_out
         )
@@ -134,13 +134,13 @@ pub(crate) fn graph_in_words(built: &BuiltGraph, run_secs: Option<f64>) -> Messa
     );
     let percent = |share: &f64| msg!("{percent:.0} %", percent = 100.0 * share);
     let components = match built.rings() {
-        [] => "Nothing leads back: every walk comes to an end.".into(),
+        [] => "The graph has no cycle: every walk ends.".into(),
         [one] => msg!("One component, with {share} of all frames.", share = percent(one)),
         rings => {
             let mut shares: Vec<Message> = rings.iter().take(NAMED).map(percent).collect();
             shares.extend((rings.len() > NAMED).then_some("…".into()));
             msg!(
-                "{count} components that do not reach each other, with {shares} of all frames: a higher threshold joins them.",
+                "{count} separate components, with {shares} of all frames: a higher threshold may connect them.",
                 count = rings.len(),
                 shares
             )
@@ -148,13 +148,12 @@ pub(crate) fn graph_in_words(built: &BuiltGraph, run_secs: Option<f64>) -> Messa
     };
     let pruned = built.is_pruned().then(|| {
         msg!(
-            "The walk keeps to the largest: {jumps, plural, one {# transition} other {# transitions}}.",
+            "The walk stays in the largest: {jumps, plural, one {# transition} other {# transitions}}.",
             jumps = built.graph().jumps().len()
         )
     });
-    let run = run_secs.map(|secs| {
-        msg!("A clip runs for {secs:.1} s on average until the next transition.", secs)
-    });
+    let run = run_secs
+        .map(|secs| msg!("A clip plays for {secs:.1} s on average between transitions.", secs));
     let sentences = [first, components].into_iter().chain(pruned).chain(run).collect();
     Message::joined(sentences, " ")
 }
@@ -193,7 +192,11 @@ pub(crate) fn moved_onto_first(
         .map(|(_, name)| title(name))
         .collect();
     let first = cast.names().first().filter(|_| !moved.is_empty())?;
-    Some(msg!("Moved onto the skeleton of {first}: {names}.", first = title(first), names = moved))
+    Some(msg!(
+        "Retargeted to the skeleton of {first}: {names}.",
+        first = title(first),
+        names = moved
+    ))
 }
 
 /// How a walk follows its line.
@@ -201,7 +204,7 @@ pub(crate) fn followed(trace: &Trace) -> Message {
     let &Trace { along_m, length_m, rms_m, looked_at, .. } = trace;
     if trace.is_searching {
         msg!(
-            "So far {along_m:.1} of {length_m:.1} m of the path are followed, {rms_m:.2} m off it on average; {looked_at} ways were looked at.",
+            "Searching: the walk follows {along_m:.1} of {length_m:.1} m of the path so far, {rms_m:.2} m away on average; {looked_at} walks compared.",
             along_m,
             length_m,
             rms_m,
@@ -209,7 +212,7 @@ pub(crate) fn followed(trace: &Trace) -> Message {
         )
     } else {
         msg!(
-            "Follows {along_m:.1} of {length_m:.1} m of the path, {rms_m:.2} m off it on average; {looked_at} ways were looked at.",
+            "The walk follows {along_m:.1} of {length_m:.1} m of the path, {rms_m:.2} m away on average; {looked_at} walks compared.",
             along_m,
             length_m,
             rms_m,
@@ -221,7 +224,7 @@ pub(crate) fn followed(trace: &Trace) -> Message {
 /// That a walk has an end.
 pub(crate) fn dead_end(secs: f64) -> Message {
     msg!(
-        "The walk comes to a dead end after {secs:.1} s. Keep to the largest component, and it never does.",
+        "The walk reaches a dead end after {secs:.1} s. Switch on Largest component only to avoid it.",
         secs
     )
 }

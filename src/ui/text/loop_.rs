@@ -5,12 +5,12 @@ use segue_text::{Message, msg};
 
 /// What the Loop lab does.
 pub(crate) const LOOP_ABOUT: &str =
-    "Makes a seamless cycle of a part of A: the difference between its ends is spread over it.";
+    "Makes a seamless loop from a part of A: the difference between its ends is spread over it.";
 /// What the half-life does to a loop.
 pub(crate) const LOOP_HALF_LIFE: &str =
     "How far into the cycle the correction reaches from its ends.";
 /// Several methods on the same cycle.
-pub(crate) const LOOP_SHOOT_OUT: &str = "Exact against classic";
+pub(crate) const LOOP_SHOOT_OUT: &str = "Compare methods";
 /// What the button opens.
 pub(crate) const LOOP_SHOOT_OUT_QUERY: &str = "loop_method:exact,both,end";
 
@@ -18,34 +18,34 @@ pub(crate) const LOOP_SHOOT_OUT_QUERY: &str = "loop_method:exact,both,end";
 pub(crate) fn loop_method(method: LoopMethod) -> &'static str {
     match method {
         LoopMethod::Both => {
-            "Springs from both ends, as they are: what has not died away at the other end stays as a seam."
+            "Independent springs from both ends: what has not decayed at the other end remains as a seam."
         }
         LoopMethod::Crossed => {
-            "As with both ends, but the beginning takes the other share of the velocity's difference. With a ratio of 0.5 it is the same."
+            "As both ends, but the shares of the velocity difference are swapped. With a ratio of 0.5 they are the same."
         }
-        LoopMethod::Start => "A spring at the beginning alone takes all of the difference.",
-        LoopMethod::End => "A spring at the end alone takes all of the difference.",
+        LoopMethod::Start => "A spring at the start takes the whole difference.",
+        LoopMethod::End => "A spring at the end takes the whole difference.",
         LoopMethod::Linear => {
-            "Evenly over the whole cycle: the pose closes, its velocity does not."
+            "Spread evenly over the cycle: poses match at the ends, velocities do not."
         }
         LoopMethod::Cubic => {
-            "A cubic over the whole cycle: pose and velocity close, and every pose bends a little."
+            "A cubic over the whole cycle: pose and velocity match at the ends, and every pose changes a little."
         }
         LoopMethod::Exact => {
-            "Springs from both ends, solved so that pose and velocity close exactly."
+            "Springs from both ends, solved so that pose and velocity match exactly."
         }
     }
 }
 
 /// How the ends of a cycle were found.
 pub(crate) fn ends_found(distance_cm: f64) -> Message {
-    msg!("Found automatically: the ends that fit best, {cm:.1} cm apart.", cm = distance_cm)
+    msg!("Found automatically: the best-matching ends, {cm:.1} cm apart.", cm = distance_cm)
 }
 
 /// That the ends of a cycle that was found hardly fit.
 pub(crate) fn poor_ends(distance_cm: f64) -> Message {
     msg!(
-        "The best ends that were found are {cm:.1} cm apart: this clip hardly repeats itself. Choose a steadier clip, or set the ends by hand.",
+        "The best-matching ends are {cm:.1} cm apart: this clip hardly repeats itself. Choose a steadier clip, or set the ends by hand.",
         cm = distance_cm
     )
 }

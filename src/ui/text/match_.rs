@@ -6,9 +6,9 @@ use segue_session::choices::Hysteresis;
 use segue_text::{Message, msg};
 
 /// What the Match lab does.
-pub(crate) const MATCH_ABOUT: &str = "Drive the character: W A S D or arrows, Shift to run, Q to strafe. Ten times a second the frame of all clips that fits best is looked for.";
+pub(crate) const MATCH_ABOUT: &str = "Drive the character: W A S D or arrows, Shift to run, Q to strafe. Several times a second, all clips are searched for the best-matching frame.";
 /// The same over the stage.
-pub(crate) const MATCH_HINT: &str = "Drive with W A S D or the arrows, Shift to run, or the stick. Orange: where you ask it to go. Blue: where the frame that plays leads.";
+pub(crate) const MATCH_HINT: &str = "Drive with W A S D or the arrows, Shift to run, or the stick. Orange: the requested trajectory. Blue: the trajectory of the current frame.";
 /// Over a pane whose character the user drives.
 pub(crate) const LIVE: &str = "Yours";
 /// The stick on the screen.
@@ -20,60 +20,59 @@ pub(crate) const RUN_HELP: &str = "The stick runs instead of walking";
 /// A section.
 pub(crate) const WHY: &str = "Why this frame";
 /// Before there was a search.
-pub(crate) const NO_SEARCH: &str = "Nothing was searched yet.";
+pub(crate) const NO_SEARCH: &str = "No search yet.";
 /// How candidates are looked at.
-pub(crate) const GHOST_HELP: &str =
-    "Point at a frame to see it as a ghost; press to keep it there.";
+pub(crate) const GHOST_HELP: &str = "Point at a frame to show it as a ghost; click to keep it.";
 /// A section.
-pub(crate) const WEIGHTS: &str = "What counts";
+pub(crate) const WEIGHTS: &str = "Feature weights";
 /// A section.
 pub(crate) const HYSTERESIS: &str = "Hysteresis";
 /// A section.
 pub(crate) const SEARCHING: &str = "Search and tags";
 /// A section.
-pub(crate) const GOING_OVER: &str = "Transition and way";
+pub(crate) const GOING_OVER: &str = "Transition and trajectory";
 /// A section.
 pub(crate) const MATCH_CLIPS: &str = "Clips and characters";
 /// A button.
-pub(crate) const REPLAY: &str = "Play it again";
+pub(crate) const REPLAY: &str = "Replay";
 /// What it does.
 pub(crate) const REPLAY_HELP: &str =
-    "Plays the same input from the start, exactly; the link then holds it";
+    "Replays the same input exactly, from the start; the link then includes it";
 /// A button.
 pub(crate) const START_OVER: &str = "Start over";
 /// What it does.
-pub(crate) const START_OVER_HELP: &str = "Back to the origin; nothing is remembered";
+pub(crate) const START_OVER_HELP: &str = "Returns to the origin and clears the recorded input";
 /// A button.
-pub(crate) const DRIVE_YOURSELF: &str = "Drive yourself";
+pub(crate) const DRIVE_YOURSELF: &str = "Take control";
 /// While written input plays.
 pub(crate) const RECORDED: &str =
-    "Recorded input: the same for everybody. Change what counts and see what becomes of it.";
+    "Recorded input, the same for everyone. Change the weights and compare the results.";
 /// A button.
-pub(crate) const HYSTERESES: &str = "None beside bias and votes";
+pub(crate) const HYSTERESES: &str = "Compare hysteresis: none, bias, votes";
 /// What it opens.
 pub(crate) const HYSTERESES_QUERY: &str = "hysteresis:none,bias,votes";
 /// Of the clips.
 pub(crate) const MADE_SET: &str =
-    "The synthesiser's set: standing, walks and runs, turns, starts, stops and spins.";
+    "The synthesised set: standing, walks and runs, turns, starts, stops and spins.";
 /// The strip's name.
-pub(crate) const CLIP_STRIP: &str = "All clips, and the frame that plays";
+pub(crate) const CLIP_STRIP: &str = "All clips, with the current frame";
 /// Of the curves.
 pub(crate) const COST: &str = "cost";
 /// Likewise.
-pub(crate) const COST_GOING_ON: &str = "going on";
+pub(crate) const COST_GOING_ON: &str = "continuing";
 /// Likewise.
 pub(crate) const COST_BEST: &str = "best frame";
 /// A mark on the timeline.
-pub(crate) const JUMP: &str = "Goes over to another frame";
+pub(crate) const JUMP: &str = "Jump to another frame";
 
 /// What a block of features is called below the bars.
 pub(crate) const fn block(block: Block) -> &'static str {
     match block {
         Block::TrajectoryPosition => "path ahead",
         Block::TrajectoryDirection => "facing ahead",
-        Block::FootPosition => "feet, where",
-        Block::FootVelocity => "feet, how fast",
-        Block::HipVelocity => "hips, how fast",
+        Block::FootPosition => "foot position",
+        Block::FootVelocity => "foot velocity",
+        Block::HipVelocity => "hip velocity",
     }
 }
 
@@ -88,7 +87,7 @@ pub(crate) fn frame_of_clip(name: Message, mirrored: bool, secs: f64) -> Message
 
 /// The frame that played when the search was made.
 pub(crate) fn going_on(place: Message) -> Message {
-    msg!("Going on: {place}", place)
+    msg!("Continuing: {place}", place)
 }
 
 /// How long was driven.
@@ -100,26 +99,26 @@ pub(crate) fn driven_for(secs: f64) -> Message {
 /// What a way to hold on does.
 pub(crate) fn hysteresis(word: Hysteresis) -> &'static str {
     match word {
-        Hysteresis::None => "The best frame is taken, however little better it is: many jumps.",
-        Hysteresis::Time => "After a jump it stays for a while, whatever comes.",
-        Hysteresis::Votes => "Three searches in a row must want to go.",
+        Hysteresis::None => "Always takes the best frame, however small the gain: many jumps.",
+        Hysteresis::Time => "Waits a minimum time after each jump.",
+        Hysteresis::Votes => "Jumps when three searches in a row find a better frame.",
         Hysteresis::ClipVotes => {
-            "Three searches in a row must want to go to another clip; within its clip it jumps at once."
+            "Jumps to another clip when three searches in a row find a better frame there; within a clip it jumps at once."
         }
-        Hysteresis::Bias => "Going on counts as better than it is.",
+        Hysteresis::Bias => "Favours continuing the current clip.",
     }
 }
 
 /// Whether a search led anywhere.
 fn held(held: Option<HoldReason>) -> &'static str {
     match held {
-        None => "went over to the best frame",
-        Some(HoldReason::Same) => "stayed: it plays the best frame already",
-        Some(HoldReason::Bias) => "stayed: not better by the bias",
-        Some(HoldReason::MinimumTime) => "stayed: the last jump is too recent",
-        Some(HoldReason::Votes) => "stayed: not three votes yet",
-        Some(HoldReason::CurrentClip) => "stayed in its clip: the input is still",
-        Some(HoldReason::Nothing) => "stayed: no frame has the tags that are asked for",
+        None => "jumped to the best match",
+        Some(HoldReason::Same) => "stayed: already at the best match",
+        Some(HoldReason::Bias) => "stayed: improvement below the bias",
+        Some(HoldReason::MinimumTime) => "stayed: too soon after the last jump",
+        Some(HoldReason::Votes) => "stayed: fewer than 3 votes in a row",
+        Some(HoldReason::CurrentClip) => "stayed in its clip: constant input",
+        Some(HoldReason::Nothing) => "stayed: no frame has the requested tags",
     }
 }
 
@@ -132,12 +131,12 @@ pub(crate) fn outcome_of_search(search: &SearchRecord, is_live: bool) -> Message
 /// What a search came to, and what it took.
 pub(crate) fn searched(search: &SearchRecord, frames: usize) -> Message {
     let why = match search.reason {
-        SearchReason::Interval => "It was time to search",
-        SearchReason::ClipEnd => "The clip came to its end",
-        SearchReason::InputChange => "The input changed",
+        SearchReason::Interval => "Regular search",
+        SearchReason::ClipEnd => "Search at the end of a clip",
+        SearchReason::InputChange => "Search at a change of input",
     };
     msg!(
-        "{why}; {what}. {visited} of {frames} frames were looked at.",
+        "{why}: {what}. Compared {visited} of {frames} frames.",
         why,
         what = held(search.held),
         visited = search.visited,
@@ -148,7 +147,7 @@ pub(crate) fn searched(search: &SearchRecord, frames: usize) -> Message {
 /// How large a database is.
 pub(crate) fn database(database: &Database) -> Message {
     msg!(
-        "{motions} motions, {frames} frames ({minutes:.1} min), {valid} of them can be gone to.",
+        "{motions} motions, {frames} frames ({minutes:.1} min), {valid} of them searchable.",
         motions = database.motions().len(),
         frames = database.frames(),
         minutes = database.frames() as f64 / (60 * RATE) as f64,
@@ -158,7 +157,7 @@ pub(crate) fn database(database: &Database) -> Message {
 
 /// The name of a button.
 pub(crate) fn leave_clip_out(name: Message) -> Message {
-    msg!("Leave {name} out", name)
+    msg!("Remove {name}", name)
 }
 
 /// A tag that was set by hand, or taken away.
@@ -166,7 +165,7 @@ pub(crate) fn hand_tag(clip: Message, tag: &HandTag) -> Message {
     let [from, to] = tag.secs;
     let word = tag_name(&tag.word);
     if tag.takes_away {
-        msg!("{clip}, {from:.2} to {to:.2} s: no longer {word}", clip, from, to, word)
+        msg!("{clip}, {from:.2} to {to:.2} s: not {word}", clip, from, to, word)
     } else {
         msg!("{clip}, {from:.2} to {to:.2} s: {word}", clip, from, to, word)
     }

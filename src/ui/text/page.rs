@@ -20,36 +20,35 @@ pub(crate) const MEND: &str = "Correct it";
 pub(crate) const MEND_ALL: &str = "Correct all";
 /// In a frame of another page.
 pub(crate) const HOST_READS: &str =
-    "The page around this frame can read and save what you open here.";
+    "The page that embeds Segue can read and save what you open here.";
 pub(crate) const COMPARE: &str = "Compare";
 pub(crate) const COMPARE_OFF: &str = "One pane";
 /// Of what several values stand side by side, and nothing of the kind.
-pub(crate) const SIDE_BY_SIDE: &str = "Side by side";
-pub(crate) const COMPARE_NOTHING: &str = "one value of each";
-pub(crate) const PANE_MORE: &str = "One more pane";
-pub(crate) const PANE_LESS: &str = "One pane fewer";
+pub(crate) const SIDE_BY_SIDE: &str = "Compare values";
+pub(crate) const COMPARE_NOTHING: &str = "off";
+pub(crate) const PANE_MORE: &str = "Add a pane";
+pub(crate) const PANE_LESS: &str = "Remove a pane";
 pub(crate) const COMPARE_HELP: &str = "Full, half and a third of the value side by side";
 pub(crate) const FULL_HALF_THIRD: &str = "full, half, third";
 pub(crate) const COPY_LINK: &str = "Copy link";
 pub(crate) const LINK: &str = "Link";
-pub(crate) const LINK_COPIED: &str = "The link is in the clipboard. It opens exactly this state.";
+pub(crate) const LINK_COPIED: &str = "Link copied. It opens exactly this state.";
 pub(crate) const COPY_REPORT: &str = "Copy a report: picture, settings, numbers, link";
 pub(crate) const REPORT: &str = "Copy a report";
-pub(crate) const REPORT_COPIED: &str =
-    "The report is in the clipboard: Markdown, with the picture in it.";
+pub(crate) const REPORT_COPIED: &str = "Report copied as Markdown, with the picture.";
 pub(crate) const COMPARE_WITH_A: &str = "Compare with A";
 pub(crate) const COMPARE_CLIPS: &str = "Compare with B";
 pub(crate) const COMPARE_CLIPS_HELP: &str =
-    "A and B as they are, side by side, with the same numbers for both";
+    "A and B unchanged, side by side, with the same metrics";
 pub(crate) const BLEND_MORE: &str = "Blend in another clip";
 pub(crate) const TAGS: &str = "Tags";
-pub(crate) const TAGS_HELP: &str = "Speed and turn rate suggest tags. Drag along a clip in the strip below the stage to tag a stretch of it by hand.";
-pub(crate) const TAG_WHAT_PLAYS: &str = "Choose what plays now";
-pub(crate) const STRETCH_FROM: &str = "Stretch from";
-pub(crate) const STRETCH_TO: &str = "Stretch to";
-pub(crate) const OWN_WORD: &str = "A word of your own";
-pub(crate) const TYPE_A_WORD: &str = "type it and press Enter";
-pub(crate) const TAKE_TAG_AWAY: &str = "Take this tag away";
+pub(crate) const TAGS_HELP: &str = "Speed and turn rate suggest tags. To tag part of a clip by hand, drag along it in the strip below the stage.";
+pub(crate) const TAG_WHAT_PLAYS: &str = "Select what is playing";
+pub(crate) const STRETCH_FROM: &str = "Range start";
+pub(crate) const STRETCH_TO: &str = "Range end";
+pub(crate) const OWN_WORD: &str = "Custom tag";
+pub(crate) const TYPE_A_WORD: &str = "type it, then press Enter";
+pub(crate) const TAKE_TAG_AWAY: &str = "Remove this tag";
 pub(crate) const THEME: &str = "Dark or light";
 pub(crate) const PROJECTOR: &str = "Projector: larger type";
 pub(crate) const LARGER: &str = "Aa";
@@ -75,14 +74,14 @@ pub(crate) const ROTATION_ORDER: &str = "Rotation order";
 pub(crate) const FILE_FORMAT: &str = "File format";
 pub(crate) const SAVE_PICTURE: &str = "Save the stage as a picture";
 pub(crate) const RECORD: &str = "Record a video of the page";
-pub(crate) const STOP_RECORDING: &str = "End the recording and save it";
+pub(crate) const STOP_RECORDING: &str = "Stop recording and save";
 pub(crate) const RECORDING: &str = "Recording";
 pub(crate) const USE_AS_A: &str = "Use as A";
 pub(crate) const USE_AS_B: &str = "Use as B";
 pub(crate) const LOADING: &str = "loading…";
 pub(crate) const LOADING_SAMPLES: &str = "Loading samples";
-pub(crate) const FRAME_ALL: &str = "Frame everything";
-pub(crate) const TOP_VIEW: &str = "From above";
+pub(crate) const FRAME_ALL: &str = "Frame all";
+pub(crate) const TOP_VIEW: &str = "Top view";
 pub(crate) const FOLLOW: &str = "Camera follows";
 pub(crate) const KEEP: &str = "Keep in library";
 pub(crate) const STAGE: &str = "Stage";
@@ -95,33 +94,33 @@ pub(crate) const FRAME_RATE: &str = "Frame rate";
 pub(crate) const BODY_HEIGHT: &str = "Body height";
 pub(crate) const GROUND: &str = "Ground";
 /// Of a body whose feet cannot be held.
-pub(crate) const NO_LEGS: &str = "Its feet are not held: this skeleton has no leg with thigh, shin and foot. Choose these joints under Body parts in the View lab.";
+pub(crate) const NO_LEGS: &str = "The foot lock does nothing: this skeleton has no leg with thigh, shin and foot. Assign these joints under Body parts in the View lab.";
 pub(crate) const FEET: &str = "Feet and ground";
 pub(crate) const MEAN_SPEED: &str = "Mean speed";
 pub(crate) const JOINTS: &str = "Joints";
 pub(crate) const JOINT_TREE: &str = "Joints of the clip";
-pub(crate) const MADE_BODY: &str = "made around the bones";
+pub(crate) const MADE_BODY: &str = "generated from the skeleton";
 pub(crate) const BODY_PARTS: &str = "Body parts";
 pub(crate) const BODY_PARTS_HELP: &str =
-    "Which joint is which part of the body. Found by name or by shape; correct what is wrong.";
+    "The joint of each body part, found by name or by shape. Change what is wrong.";
 pub(crate) const UNIT: &str = "Unit";
 pub(crate) const UP_AXIS: &str = "Up axis";
-pub(crate) const AS_FOUND: &str = "as found";
+pub(crate) const AS_FOUND: &str = "as detected";
 pub(crate) const AS_FILE: &str = "as in the file";
-pub(crate) const AS_IT_IS: &str = "as it is";
+pub(crate) const AS_IT_IS: &str = "unchanged";
 pub(crate) const OTHER: &str = "other…";
 pub(crate) const TYPED_RATE: &str = "Frames per second";
-pub(crate) const DROP_T_POSE: &str = "Leave out the T-pose";
+pub(crate) const DROP_T_POSE: &str = "Skip the T-pose";
 pub(crate) const NOBODY: &str = "none";
 pub(crate) const FOUND: &str = "Found automatically";
 pub(crate) const BY_HAND: &str =
     "Set by hand; double-click the label to find the best match again.";
 pub(crate) const SMOOTHEST: &str = "smoothest";
 pub(crate) const ROUGHEST: &str = "roughest";
-pub(crate) const WELCOME_HINT: &str = "Same walk, same instant. Watch the feet and the hips: the shorter the window, the harder the burst into the run.";
+pub(crate) const WELCOME_HINT: &str = "The same walk, in sync. Watch the feet and hips: the shorter the blend window, the more abrupt the change to the run.";
 pub(crate) const EMPTY_PANE: &str = "Nothing to show yet";
 /// On a pane that still shows an earlier result.
-pub(crate) const OUTDATED: &str = "computing the new one";
+pub(crate) const OUTDATED: &str = "updating…";
 /// Below a button that keeps and rows that save.
 pub(crate) const NOTHING_TO_KEEP: &str = "There is no result to keep or save.";
 pub(crate) const STILL_COMPUTED: &str = "The result is still being computed.";
@@ -130,11 +129,11 @@ pub(crate) const STILL_COMPUTED: &str = "The result is still being computed.";
 pub(crate) fn under_way(job: &Job) -> Message {
     let percent = 100.0 * job.progress;
     match &job.kind {
-        JobKind::Matching => msg!("Looking for the best match {percent:.0} %", percent),
+        JobKind::Matching => msg!("Finding the best match {percent:.0} %", percent),
         JobKind::Registering => msg!("Registering the clips {percent:.0} %", percent),
         JobKind::BuildingGraph => msg!("Building the graph {percent:.0} %", percent),
-        JobKind::HoldingFeet => msg!("Holding the feet {percent:.0} %", percent),
-        JobKind::Driving => msg!("Driving {percent:.0} %", percent),
+        JobKind::HoldingFeet => msg!("Locking feet {percent:.0} %", percent),
+        JobKind::Driving => msg!("Simulating {percent:.0} %", percent),
         JobKind::BuildingDatabase => msg!("Building the database {percent:.0} %", percent),
         JobKind::Reading(file) => msg!("{file} {percent:.0} %", file = file.clone(), percent),
     }
@@ -144,11 +143,11 @@ pub(crate) const CLOSE: &str = "Close";
 
 pub(crate) const READING: &str = "being read…";
 /// Of a bundled take that did not come: a notice said why.
-pub(crate) const NOT_LOADED: &str = "not loaded: choose it again";
+pub(crate) const NOT_LOADED: &str = "not loaded: select it again";
 /// Likewise, when reading it failed or was stopped: a notice said why.
 pub(crate) const UNREAD: &str = "not read: drop the file again";
 /// Likewise.
-pub(crate) const AWAITS_SKELETON: &str = "waits for its skeleton: drop the .asf file";
+pub(crate) const AWAITS_SKELETON: &str = "needs its skeleton: drop the .asf file";
 
 /// What keeps a clip from being played; empty where nothing does.
 pub(crate) fn status(entry: &Entry) -> &'static str {
@@ -199,10 +198,10 @@ pub(crate) fn others(count: usize) -> Message {
 /// A set of clips, and what its button does.
 pub(crate) const fn clip_set(set: ClipSet) -> (&'static str, &'static str) {
     match set {
-        ClipSet::Made => ("Synthesised motion", "The clips that this lab begins with"),
+        ClipSet::Made => ("Synthesised motion", "The default clips of this lab"),
         ClipSet::Captured => {
             ("Real motion (CMU 16)", "Captured walks and runs of one actor, from the CMU database")
         }
-        ClipSet::Own => ("My clips", "All motions of the files that you have dropped or opened"),
+        ClipSet::Own => ("My clips", "All clips from the files that you opened"),
     }
 }

@@ -6,30 +6,30 @@ use segue_session::choices::PathKeep;
 use segue_text::{Message, msg};
 
 /// What the Path lab does.
-pub(crate) const PATH_ABOUT: &str = "A curve is fitted to the path of the hips. Drag its points: the path bends, and the character follows with what the curve left over.";
+pub(crate) const PATH_ABOUT: &str = "The path of the hips is fitted with a spline. Drag its control points to reshape it; the character follows and keeps its local motion.";
 /// The same over the stage.
-pub(crate) const PATH_HINT: &str = "Drag a point: the path bends, and the character follows. Double-click the path for one more point.";
+pub(crate) const PATH_HINT: &str =
+    "Drag a point to bend the path; the character follows. Double-click the path to add a point.";
 /// A button.
 pub(crate) const DRAW: &str = "Draw";
 /// Its hint.
 pub(crate) const DRAW_HELP: &str =
-    "Draw a path on the ground with one stroke; back to where it began makes a loop";
+    "Draw a path on the ground in one stroke; end at its start to make a loop";
 /// Over the stage, until something was drawn.
-pub(crate) const DRAW_HINT: &str =
-    "Draw the path on the ground in one stroke. Esc leaves it as it is.";
+pub(crate) const DRAW_HINT: &str = "Draw the path on the ground in one stroke. Esc cancels.";
 /// A button.
-pub(crate) const ADD_POINT: &str = "Add a point";
+pub(crate) const ADD_POINT: &str = "Add point";
 /// Its hint.
 pub(crate) const ADD_POINT_HELP: &str =
-    "One more control point behind the chosen one; the path stays as it is";
+    "Adds a control point after the selected one; the path keeps its shape";
 /// A button.
-pub(crate) const REMOVE_POINT: &str = "Take it out";
+pub(crate) const REMOVE_POINT: &str = "Remove point";
 /// Its hint.
-pub(crate) const REMOVE_POINT_HELP: &str = "Takes the chosen control point out of the path";
+pub(crate) const REMOVE_POINT_HELP: &str = "Removes the selected control point from the path";
 /// While no point is chosen.
-pub(crate) const POINTS_HELP: &str = "Points on the stage: drag, or choose one and use the arrow keys, Shift for more, Delete to take it out, Tab for the next.";
+pub(crate) const POINTS_HELP: &str = "Drag points on the stage, or select one: arrow keys move it (Shift: farther), Delete removes it, Tab selects the next.";
 /// When none is chosen.
-pub(crate) const CHOOSE_POINT: &str = "Choose a control point on the stage first.";
+pub(crate) const CHOOSE_POINT: &str = "Select a control point on the stage first.";
 /// Over the buttons that follow.
 pub(crate) const WHOLE_PATH: &str = "Whole path";
 /// A button.
@@ -53,10 +53,10 @@ pub(crate) const OPEN_LOOP: &str = "Open the loop";
 /// Likewise.
 pub(crate) const SNAP_ALL: &str = "Snap all points";
 /// Likewise.
-pub(crate) const RESET_PATH: &str = "Reset the path";
+pub(crate) const RESET_PATH: &str = "Reset path";
 /// Its hint.
 pub(crate) const RESET_PATH_HELP: &str =
-    "Back to the path as it was fitted; undo brings the edited one back";
+    "Restores the fitted path; undo brings the edited one back";
 /// Over what belongs to the fit.
 pub(crate) const FIT: &str = "Fit";
 /// A button that opens panes.
@@ -64,25 +64,23 @@ pub(crate) const FOUR_EIGHT_SIXTEEN: &str = "4, 8, 16 points";
 /// What it opens.
 pub(crate) const FOUR_EIGHT_SIXTEEN_QUERY: &str = "control_points:4,8,16";
 /// A chip over a pane whose path turns harder than the motion can.
-pub(crate) const TOO_HARD: &str = "turns too hard";
+pub(crate) const TOO_HARD: &str = "turns too sharply";
 /// Where that is, on the timeline.
 pub(crate) const HARD_MOMENT: &str = "The path turns faster than the original";
 /// Over the list of those who play along.
-pub(crate) const COMPANY: &str = "On the stage together";
+pub(crate) const COMPANY: &str = "Also on stage";
 /// A button.
-pub(crate) const JOIN: &str = "This one joins";
+pub(crate) const JOIN: &str = "Add to stage";
 /// Its hint.
 pub(crate) const JOIN_HELP: &str =
-    "Leaves this character on the stage as it is, so that another path can be made beside it";
-/// A list of clips.
-pub(crate) const JOIN_CLIP: &str = "A clip joins";
+    "Keeps this character on the stage, so that you can edit another path beside it";
 /// Which clip is preferred while none is chosen.
-pub(crate) const THE_CLIP_THAT_PLAYS: &str = "the one that plays";
+pub(crate) const THE_CLIP_THAT_PLAYS: &str = "the current one";
 /// While none is chosen.
 pub(crate) const CHOOSE_CLIP: &str = "choose…";
 /// What that is for.
 pub(crate) const COMPANY_HELP: &str =
-    "Each on its own path and in its own colour, all in the same time. The link carries them.";
+    "Each has its own path and colour; all play in sync. Links include them.";
 
 /// What a screen reader says of a control point.
 pub(crate) fn control_point(index: usize, count: usize, place: glam::DVec2) -> Message {
@@ -99,7 +97,7 @@ pub(crate) fn control_point(index: usize, count: usize, place: glam::DVec2) -> M
 pub(crate) fn chosen_point(index: usize, count: usize, place: glam::DVec2) -> Message {
     let [x, z] = [place.x, place.y].map(|metres| format!("{metres:.2}").replace('-', "−"));
     msg!(
-        "Point {number} of {count} at x {x} m, z {z} m: arrow keys move it, Delete takes it out.",
+        "Point {number} of {count} at x {x} m, z {z} m: arrow keys move it, Delete removes it.",
         number = index + 1,
         count,
         x,
@@ -111,13 +109,13 @@ pub(crate) fn chosen_point(index: usize, count: usize, place: glam::DVec2) -> Me
 pub(crate) fn path_keep(word: PathKeep) -> &'static str {
     match word {
         PathKeep::Duration => {
-            "It takes the whole path in the time that it took before: faster on a longer one, and feet slide."
+            "Keeps the duration: a longer path is travelled faster, and feet may slide."
         }
         PathKeep::Whole => {
-            "It takes the whole path at its speed: a longer one takes longer, with longer strides."
+            "Keeps the speed and travels the whole path: a longer path takes longer, with longer strides."
         }
         PathKeep::Speed => {
-            "Speed and strides stay: on a longer path it does not come to the end, on a closed one it goes round."
+            "Keeps speed and stride: the clip ends before a longer path does, and goes round a closed one."
         }
     }
 }
@@ -135,7 +133,7 @@ pub(crate) fn path_lengths(path: &OnPath) -> Message {
 /// How well the path follows the hips.
 pub(crate) fn fit_error(rms_cm: f64, most_cm: f64, along_m: f64) -> Message {
     msg!(
-        "Hips beside the path: {rms_cm:.1} cm on average (root mean square), at most {most_cm:.1} cm at {along_m:.1} m.",
+        "Distance from the hips to the path: {rms_cm:.1} cm (root mean square), at most {most_cm:.1} cm at {along_m:.1} m.",
         rms_cm,
         most_cm,
         along_m
@@ -145,7 +143,7 @@ pub(crate) fn fit_error(rms_cm: f64, most_cm: f64, along_m: f64) -> Message {
 /// That an edited path does not change with the slider.
 pub(crate) fn own_points(count: usize) -> Message {
     msg!(
-        "The edited path keeps its own {count} points; this is the path that it is measured against.",
+        "The edited path keeps its {count} points; this number changes only the fitted path that it is compared with.",
         count
     )
 }
@@ -154,7 +152,7 @@ pub(crate) fn own_points(count: usize) -> Message {
 pub(crate) fn hard_turn(turn: &HardTurn, fps: f64) -> Message {
     let secs = |frame: usize| frame as f64 / fps;
     msg!(
-        "At {from:.1} to {to:.1} s the path turns by up to {dps:.0}°/s, and the original by {limit:.0}: widen the bend or slow down.",
+        "{from:.1}–{to:.1} s: the path turns at up to {dps:.0}°/s, the original clip at {limit:.0}°/s at most. Widen the bend or slow down.",
         from = secs(turn.frames.start),
         to = secs(turn.frames.end),
         dps = turn.turn_dps,
@@ -165,20 +163,20 @@ pub(crate) fn hard_turn(turn: &HardTurn, fps: f64) -> Message {
 /// How many more there are.
 pub(crate) fn more_hard_turns(count: usize) -> Message {
     msg!(
-        "{count, plural, one {One more bend is as hard.} other {# more bends are as hard.}}",
+        "{count, plural, one {One more bend is too sharp.} other {# more bends are too sharp.}}",
         count
     )
 }
 
 /// While the feet of a long motion are not planted yet.
-pub(crate) const FEET_LATER: &str = "A long motion: its feet are planted when the hand rests.";
+pub(crate) const FEET_LATER: &str = "Long clip: the foot lock is applied when you stop dragging.";
 
 /// A button beside a companion.
 pub(crate) fn edit_companion(name: Message) -> Message {
-    msg!("Edit the path of {name}; the present one takes its place", name)
+    msg!("Edit the path of {name}; it changes places with the current one", name)
 }
 
 /// Likewise.
 pub(crate) fn companion_leaves(name: Message) -> Message {
-    msg!("{name} leaves the stage", name)
+    msg!("Remove {name} from the stage", name)
 }

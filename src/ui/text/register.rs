@@ -3,9 +3,10 @@
 use segue_text::{Message, msg};
 
 /// What the Register lab does, and where to look.
-pub(crate) const REGISTER_ABOUT: &str = "Bends B's time so that alike frames meet. Watch the feet on the timeline: A, B and the result strike together.";
+pub(crate) const REGISTER_ABOUT: &str = "Time-warps B so that matching poses line up. Watch the foot contacts on the timeline: A, B and the result strike together.";
 /// The same over the stage.
-pub(crate) const REGISTER_HINT: &str = "A and B go beside what is made of them, in step. Compare with plain: there steps double and feet slide.";
+pub(crate) const REGISTER_HINT: &str =
+    "A and B play beside the result, in sync. Compare with plain: steps double, and feet slide.";
 /// What makes the weight of a registered blend a curve.
 pub(crate) const WEIGHT_OVER_TIME: &str = "Draw over time";
 /// And a number again.
@@ -16,14 +17,13 @@ pub(crate) const ALL_B: &str = "all B";
 pub(crate) const ALL_A: &str = "all A";
 /// How the curve is worked.
 pub(crate) const WEIGHT_CURVE_HELP: &str =
-    "Drag a key to move it; double-click to add one, or to take one away.";
+    "Drag a key to move it; double-click to add or remove one.";
 /// Opens both beside each other.
-pub(crate) const REGISTERED_AND_PLAIN: &str = "Registered beside plain";
+pub(crate) const REGISTERED_AND_PLAIN: &str = "Compare registered and plain";
 /// The map's name.
 pub(crate) const DISTANCES: &str = "Distances between A and B";
 /// What can be done with the map.
-pub(crate) const MAP_HELP: &str =
-    "Point: both poses. Click: go there. Drag: a pin; drag it out or double-click it to remove it.";
+pub(crate) const MAP_HELP: &str = "Hover: shows both poses. Click: goes there. Drag: adds a pin; drag it out or double-click it to remove it.";
 /// A button.
 pub(crate) const REMOVE_PINS: &str = "Remove pins";
 /// Of the parameters below the map.

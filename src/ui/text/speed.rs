@@ -9,9 +9,9 @@ pub(crate) const IN_PLACE_ABOUT: &str =
 /// What the Speed lab does.
 pub(crate) const SPEED_ABOUT: &str = "Blends two gaits, such as a walk and a run, to any speed between them. Drag the speed while it plays.";
 /// Opens the speeds of A and B and the one between.
-pub(crate) const THREE_SPEEDS: &str = "A, half way, B";
+pub(crate) const THREE_SPEEDS: &str = "A, midway, B";
 /// A chip over a pane whose speed lies beyond both clips.
-pub(crate) const BEYOND: &str = "beyond both clips";
+pub(crate) const BEYOND: &str = "extrapolated";
 
 /// How fast both clips go, and where.
 pub(crate) fn gaits([a, b]: [f64; 2], [[from_a, to_a], [from_b, to_b]]: [[f64; 2]; 2]) -> Message {
@@ -31,14 +31,14 @@ pub(crate) fn beyond_gaits(facts: &GaitFacts, [a, b]: [f64; 2]) -> Option<Messag
     let (low, high) = (a.min(b), a.max(b));
     if facts.limited {
         Some(msg!(
-            "Too far beyond both clips ({low:.2} to {high:.2} m/s): this is {mps:.2} m/s, the nearest that can be made of them.",
+            "Too far outside the speeds of both clips ({low:.2} to {high:.2} m/s): limited to {mps:.2} m/s.",
             low,
             high,
             mps = facts.speed_mps
         ))
     } else if facts.extrapolated {
         Some(msg!(
-            "Beyond both clips ({low:.2} to {high:.2} m/s): the pose is a guess, and may bend what does not bend.",
+            "Outside the speeds of both clips ({low:.2} to {high:.2} m/s), so that poses are extrapolated: joints may bend unnaturally.",
             low,
             high
         ))
@@ -48,4 +48,4 @@ pub(crate) fn beyond_gaits(facts: &GaitFacts, [a, b]: [f64; 2]) -> Option<Messag
 }
 
 /// A mark on the timeline.
-pub(crate) const CYCLE_BEGINS: &str = "The cycle begins again";
+pub(crate) const CYCLE_BEGINS: &str = "Start of a cycle";

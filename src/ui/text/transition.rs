@@ -25,7 +25,9 @@ pub(crate) fn place_found(transition: &Transition, automatic: [bool; 2]) -> Mess
     };
     match automatic {
         _ if search.is_widened => {
-            said.push("A clip is too short for its half to be searched: all of it was.".into());
+            said.push(
+                "A clip is too short to search one half only: all of it was searched.".into(),
+            );
         }
         [true, true] => said.push("Searched: A's second half and B's first half.".into()),
         [true, false] => said.push("Searched: A's second half.".into()),
@@ -34,7 +36,7 @@ pub(crate) fn place_found(transition: &Transition, automatic: [bool; 2]) -> Mess
     }
     if search.is_shortened && !search.by_pose {
         said.push(msg!(
-            "Compared over {frames, plural, one {# frame} other {# frames}}: the clip ends there.",
+            "Only {frames, plural, one {# frame is} other {# frames are}} compared: the clip ends there.",
             frames = search.window_frames
         ));
     }
@@ -49,10 +51,10 @@ pub(crate) fn retargeted(retargeted: &Retargeted) -> Message {
     let count = unmatched.len();
     let names: Vec<String> = unmatched.iter().take(NAMED).cloned().collect();
     match count {
-        0 => "B's motion is moved onto A's skeleton.".into(),
-        1..=NAMED => msg!("B's motion is moved onto A's skeleton; not matched: {names}.", names),
+        0 => "B is retargeted to A's skeleton.".into(),
+        1..=NAMED => msg!("B is retargeted to A's skeleton; not matched: {names}.", names),
         _ => msg!(
-            "B's motion is moved onto A's skeleton; not matched: {names}, … ({count}).",
+            "B is retargeted to A's skeleton; not matched: {names}, … ({count}).",
             names,
             count
         ),
@@ -73,69 +75,71 @@ pub(crate) fn resampled(from: f64, to: f64) -> Message {
 pub(crate) fn mistake(key: Mistake) -> &'static str {
     match key {
         Mistake::Hemisphere => {
-            "Limbs swing the long way round: half of B's quaternions come with the other sign, the same rotations, and nobody took the nearer one."
+            "Limbs rotate the long way round: half of B's quaternions have the opposite sign, which is the same rotation, and the shorter arc was not chosen."
         }
         Mistake::Euler => {
-            "Limbs twist and flip, forearms first: three angles mixed one by one are no rotation on the way from A to B."
+            "Limbs twist and flip, forearms first: Euler angles interpolated one by one leave the rotation from A to B."
         }
         Mistake::Degrees => {
-            "Limbs whirl: an angle in degrees taken for radians is 57 times too large."
+            "Limbs whirl: an angle in degrees used as radians is 57 times too large."
         }
         Mistake::Atan => {
-            "B arrives turned by half a turn and goes off backwards: atan cannot tell a direction from its opposite."
+            "B enters turned by 180° and moves off backwards: atan cannot tell a direction from its opposite."
         }
         Mistake::TransformDegrees => {
-            "B goes off in a direction of its own: its turn in degrees was taken for radians."
+            "B moves off in a wrong direction: its angle in degrees was used as radians."
         }
         Mistake::Facing => {
-            "B is turned to wherever the hips happen to tilt: the root's Y axis points up, and its shadow on the ground is no facing."
+            "B turns to where the hips tilt: the root's Y axis points up, and its projection on the ground is not the facing."
         }
-        Mistake::Alignment => "The character flies to where B's file has it: nobody laid B on A.",
+        Mistake::Alignment => {
+            "B was not aligned to A, so that the character jumps to B's recorded position."
+        }
         Mistake::Velocity => {
-            "Everything that moved stops dead at the seam and starts anew: the velocities are thousands of times too small."
+            "All motion stops dead at the seam and starts again: the velocities are thousands of times too small."
         }
         Mistake::WorldRoot => {
-            "The feet slide and the pace surges: where A and B stand is mixed, not how they go."
+            "Feet slide and the speed surges: the positions of A and B are blended, not their velocities."
         }
         Mistake::None => "",
     }
 }
 
 /// Of `velocity` where the method is a dissolve, which has no other velocity.
-pub(crate) const VELOCITY_IN_DISSOLVE: &str = "The character treads on the spot through the window and then goes on: its velocity over the ground is thousands of times too small.";
+pub(crate) const VELOCITY_IN_DISSOLVE: &str = "The character steps on the spot during the window, then moves on: its root velocity is thousands of times too small.";
 /// For a method that the mistake cannot be made in.
 pub(crate) const MISTAKE_IDLE: &str =
-    "A cut mixes nothing, so there is nothing to see: choose another method.";
+    "A cut blends nothing, so the bug has no effect: choose another method.";
 /// What a comparison opens that shows the mistake.
-pub(crate) const RIGHT_AND_WRONG: &str = "Right beside wrong";
+pub(crate) const RIGHT_AND_WRONG: &str = "Compare with and without the bug";
 
 /// How B's time goes in a layer.
 pub(crate) fn fit(layer: &LayerFacts) -> Message {
     let how = Message::word(match layer.fit {
-        LayerFit::InStep => "One cycle of B keeps step with A.",
-        LayerFit::Looped => "B loops, its ends brought together.",
+        LayerFit::InStep => "One cycle of B is synchronised with A.",
+        LayerFit::Looped => "B loops, with its ends blended.",
         LayerFit::Once => "B is long enough to play once.",
-        LayerFit::Held => "B stays in its last frame when it is over.",
+        LayerFit::Held => "B holds its last frame at its end.",
     });
     if layer.has_no_steps {
-        Message::joined(vec!["No steps to keep in time with.".into(), how], " ")
+        Message::joined(vec!["There are no steps to synchronise with.".into(), how], " ")
     } else {
         how
     }
 }
 
 /// Several methods on the same transition.
-pub(crate) const SHOOT_OUT: &str = "Shoot-out of methods";
+pub(crate) const SHOOT_OUT: &str = "Compare methods";
 /// What the button opens.
 pub(crate) const SHOOT_OUT_QUERY: &str = "method:inertialize,smooth,dead";
 /// The rows of the half-life ruler.
-pub(crate) const HALF_LEFT: &str = "Half is left after";
+pub(crate) const HALF_LEFT: &str = "50 % remains after";
 /// Likewise.
-pub(crate) const TENTH_LEFT: &str = "A tenth";
+pub(crate) const TENTH_LEFT: &str = "10 %";
 /// Likewise.
-pub(crate) const HUNDREDTH_LEFT: &str = "A hundredth";
+pub(crate) const HUNDREDTH_LEFT: &str = "1 %";
 /// The dissolve with as much of A in it.
-pub(crate) const ALIKE_WINDOW: &str = "Dissolve that feels alike";
+pub(crate) const ALIKE_WINDOW: &str = "Equivalent blend window";
 
 #[cfg(test)]
 mod tests {
@@ -149,11 +153,11 @@ mod tests {
             })
             .to_string()
         };
-        assert_eq!(told(&[]), "B's motion is moved onto A's skeleton.");
-        assert_eq!(told(&["Tail"]), "B's motion is moved onto A's skeleton; not matched: Tail.");
+        assert_eq!(told(&[]), "B is retargeted to A's skeleton.");
+        assert_eq!(told(&["Tail"]), "B is retargeted to A's skeleton; not matched: Tail.");
         assert_eq!(
             told(&["a", "b", "c", "d", "e"]),
-            "B's motion is moved onto A's skeleton; not matched: a, b, c, d, … (5)."
+            "B is retargeted to A's skeleton; not matched: a, b, c, d, … (5)."
         );
     }
 }

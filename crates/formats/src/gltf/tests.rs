@@ -179,7 +179,7 @@ fn written_clip_reads_back_equal() {
     );
     let still = write_glb(&clip.crop(0..0).unwrap(), &GlbOptions::default()).unwrap();
     let imported = read("x.glb", &still, &|_| None, &ImportOptions::default()).unwrap();
-    assert_eq!(sentences(&imported), ["the file holds a skeleton and no motion"]);
+    assert_eq!(sentences(&imported), ["the file has a skeleton but no animation"]);
     assert_eq!((only(&imported).frames(), only(&imported).name()), (1, "x"));
 }
 
@@ -322,7 +322,7 @@ fn characters_and_animations_each_give_a_clip() {
         .map(|found| (found.clip.name(), found.clip.skeleton().len(), found.clip.frames()))
         .collect();
     assert_eq!(clips, [("walk (A)", 2, 31), ("builder 2 (A)", 2, 31), ("builder (B)", 2, 1)]);
-    assert_eq!(sentences(&imported), ["the file holds a skeleton and no motion"]);
+    assert_eq!(sentences(&imported), ["the file has a skeleton but no animation"]);
 }
 
 #[test]
@@ -405,7 +405,7 @@ fn oddities_of_a_file_give_warnings() {
         sentences(&imported),
         [
             "the body is far too large for metres; units of 0.01 m are taken",
-            "the file holds a skeleton and no motion"
+            "the file has a skeleton but no animation"
         ]
     );
     assert_eq!(only(&imported).root_translations()[0], Vec3::Y * 0.9);

@@ -282,7 +282,7 @@ fn motion_without_its_skeleton_is_refused() {
     assert!(error.hint.is_some());
     let imported = import("some/toy.asf", ASF.as_bytes(), &options).unwrap();
     let warnings: Vec<String> = imported.warnings.iter().map(ToString::to_string).collect();
-    assert_eq!(warnings, ["the file holds a skeleton and no motion"]);
+    assert_eq!(warnings, ["the file has a skeleton but no animation"]);
     let clip = &imported.clips[0].clip;
     assert_eq!((clip.name(), clip.frames(), clip.skeleton().len()), ("toy", 0, 5));
     assert_eq!(clip.skeleton(), clip_of(ASF, amc(1)).0.skeleton());

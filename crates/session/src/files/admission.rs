@@ -60,7 +60,7 @@ impl FileIntake {
                         .is_some_and(|character| !character.has_limbs())
                     {
                         loaded.warnings.push(
-                            "its figure has no limbs that are known: only its own clips move it"
+                            "its character has no recognised limbs: only its own clips can animate it"
                                 .into(),
                         );
                     }
@@ -99,7 +99,7 @@ impl FileIntake {
                 }
             }
             if more > 0 {
-                told.push(msg!("{more} more remarks stand with the clips."));
+                told.push(msg!("{more} more warnings are listed with the clips."));
             }
             let text = Message::joined(told, " ");
             // A T-pose in front is how the takes of whole databases come: good to know, and nothing
@@ -263,7 +263,7 @@ fn file_entries(
     let mut warnings = read.warnings;
     if read.awaits_skeleton {
         warnings.push(msg!(
-            "{name} waits for its skeleton: drop the .asf file that belongs to it.",
+            "{name} needs its skeleton: drop the .asf file that belongs to it.",
             name = source.name
         ));
         let id = file_id(&source.name, &source.sha256, 0);

@@ -27,7 +27,7 @@ pub(super) fn offer_mends(
             named.push("…".to_owned());
         }
         msg!(
-            "{count} clips are of a size or at a place that cannot be right: {named}.",
+            "{count} clips have a size or position that cannot be right: {named}.",
             count = all.len()
         )
     };

@@ -25,7 +25,7 @@ pub(super) fn tell_all_unread(notices: &mut Notices, errors: &[ImportError]) {
         if rest.len() > named.len() {
             named.push("…".to_owned());
         }
-        notices.say(Level::Error, msg!("{count} more did not work: {named}.", count = rest.len()));
+        notices.say(Level::Error, msg!("{count} more failed: {named}.", count = rest.len()));
     }
 }
 
@@ -33,7 +33,7 @@ pub(super) fn tell_all_unread(notices: &mut Notices, errors: &[ImportError]) {
 pub(super) fn in_the_library(names: &[String]) -> Option<Message> {
     match names {
         [] => None,
-        [name] => Some(msg!("{name} is in the library.")),
-        several => Some(msg!("{count} files are in the library.", count = several.len())),
+        [name] => Some(msg!("Added to the library: {name}.")),
+        several => Some(msg!("Added {count} files to the library.", count = several.len())),
     }
 }

@@ -295,7 +295,7 @@ fn what_waits_for_its_other_half_says_so_until_that_has_come() {
             let texts: Vec<String> =
                 session.notices().list().iter().map(|notice| notice.text.to_string()).collect();
             assert!(
-                !texts.iter().any(|text| text.contains("no motion") || text.contains("waits")),
+                !texts.iter().any(|text| text.contains("no animation") || text.contains("needs")),
                 "{texts:?}"
             );
         }
@@ -481,7 +481,7 @@ fn a_figure_that_no_clip_moves_is_not_cast_for_others() {
         loaded
             .warnings
             .iter()
-            .any(|warning| warning.to_string().contains("only its own clips move it")),
+            .any(|warning| warning.to_string().contains("only its own clips can animate it")),
         "{:?}",
         loaded.warnings
     );
@@ -498,7 +498,7 @@ fn a_figure_that_no_clip_moves_is_not_cast_for_others() {
     assert_eq!(show(&mut session, &spider_id), (true, None));
     let (is_moved, note) = show(&mut session, "walk");
     assert!(!is_moved);
-    assert!(note.unwrap().to_string().contains("cannot be moved by this clip"));
+    assert!(note.unwrap().to_string().contains("This clip cannot animate"));
 
     // A person that was there stays.
     let mut session = Session::new();
@@ -525,7 +525,7 @@ fn a_motion_file_without_a_motion_waits_for_nothing() {
                 .notices()
                 .list()
                 .iter()
-                .all(|notice| !notice.text.to_string().contains("waits")),
+                .all(|notice| !notice.text.to_string().contains("needs")),
             "{text}"
         );
     }
@@ -585,7 +585,7 @@ fn files_of_an_archive_that_cannot_be_read_are_counted_before_they_are_told() {
     assert_eq!(errors.len(), MAX_NAMED + 1, "{errors:#?}");
     assert_eq!(
         errors[MAX_NAMED],
-        "197 more did not work: many.zip/003.bvh, many.zip/004.bvh, many.zip/005.bvh, …."
+        "197 more failed: many.zip/003.bvh, many.zip/004.bvh, many.zip/005.bvh, …."
     );
     assert_eq!(loaded.warnings.len(), 200, "whoever loads it by the API is told of each");
 }
@@ -719,7 +719,7 @@ fn several_absurd_clips_are_mended_at_once_whether_they_come_packed_or_one_by_on
             let text = offer(&session).text;
             assert_eq!(
                 text.to_string(),
-                "3 clips are of a size or at a place that cannot be right: tiny, huge, wild."
+                "3 clips have a size or position that cannot be right: tiny, huge, wild."
             );
         }
         let notice = offer(&session);

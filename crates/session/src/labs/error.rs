@@ -43,7 +43,7 @@ pub enum LabError {
         id: String,
     },
     /// A motion without its skeleton.
-    #[error("{file} waits for its skeleton: drop its .asf file.")]
+    #[error("{file} needs its skeleton: drop its .asf file.")]
     AwaitsSkeleton {
         /// The motion's file.
         file: String,
@@ -93,7 +93,7 @@ pub enum LabError {
     #[error("the cycle has no frames")]
     EmptyCycle,
     /// A computation that the user stopped.
-    #[error("Stopped. Change anything, or go on.")]
+    #[error("Stopped. Change any setting, or continue.")]
     Stopped,
     /// A graph without clips.
     #[error("A motion graph needs a clip: add at least one.")]
@@ -132,7 +132,7 @@ pub enum LabError {
         to: String,
     },
     /// A replay without input.
-    #[error("Nothing was driven yet.")]
+    #[error("Nothing is recorded yet.")]
     NothingDriven,
     /// A preferred clip that is not in the database.
     #[error(

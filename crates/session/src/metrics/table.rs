@@ -49,9 +49,9 @@ metrics! {
     Variety "variety" "Variety", Some("variety %"), Percent, Higher,
         "How much of the clips the walk has shown.";
     Speed "speed_mps" "Speed", Some("m/s"), MetresPerSec, Neutral,
-        "The way over the ground by its time, measured on the result.";
+        "The distance travelled over the ground, divided by the time, measured on the result.";
     Stride "stride_m" "Stride", Some("stride m"), Metres, Neutral,
-        "The way of one cycle: two steps.";
+        "The distance travelled in one cycle, which is two steps.";
     Cadence "cadence_spm" "Cadence", Some("steps/min"), StepsPerMinute, Neutral,
         "Steps per minute.";
     WeightOfB "weight_percent" "Weight of B", Some("B %"), Percent, Neutral,
@@ -59,7 +59,7 @@ metrics! {
     PositionError "match_error" "position error", Some("error cm"), Centimetres, Lower,
         "Mean distance of the character from where the player steers it: the simulation object.";
     JumpsPerMinute "match_seams" "seams per minute", Some("jumps/min"), PerMinute, Lower,
-        "How often the character goes over from one place of the clips to another.";
+        "How often the character jumps from one place of the clips to another.";
     FramesVisited "match_visited" "frames visited", Some("visited"), Frames, Neutral,
         "How many frames a search looked at, on average.";
     TickTime "match_tick_ms" "time per tick", Some("ms/tick"), Millisecs, Neutral,
@@ -99,15 +99,15 @@ metrics! {
     ClipPositionJump "clip_jump_cm" "Largest position jump", Some("position jump cm"), Centimetres, Lower,
         "How far the character moves over the ground in one frame, beyond all but one in a hundred frames of the clip: the worst.";
     BareSeam "loop_before_deg" "Seam of the bare cut", Some("bare seam"), Degrees, Neutral,
-        "The angle that was to be bridged: the same number if nothing were done.";
+        "The seam without any correction: the angle that the method had to close.";
     CycleTime "cycle_s" "Cycle", Some("cycle s"), Secs, Neutral,
         "How long one cycle takes.";
     CycleFrames "cycle_frames" "Cycle", Some("frames"), Frames, Neutral,
         "The same in frames of A.";
-    CycleLength "cycle_m" "Way of a cycle", Some("travelled m"), Metres, Neutral,
-        "How far one cycle goes.";
-    CycleTurn "cycle_turn_deg" "Turn of a cycle", Some("turn"), Degrees, Neutral,
-        "How far one cycle turns, to the left: the loop walks on in this curve.";
+    CycleLength "cycle_m" "Distance per cycle", Some("travelled m"), Metres, Neutral,
+        "The distance that one cycle travels.";
+    CycleTurn "cycle_turn_deg" "Turn per cycle", Some("turn"), Degrees, Neutral,
+        "The turn of one cycle, to the left: the loop follows this curve.";
     Distance "root_way_m" "Distance travelled", Some("travelled m"), Metres, Neutral,
         "The distance that the body travels over the ground: what is removed, or rebuilt.";
     MeanSpeed "root_way_mps" "Mean speed", Some("m/s"), MetresPerSec, Neutral,

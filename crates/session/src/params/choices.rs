@@ -134,14 +134,14 @@ choices! {
     Mistake of Mistake {
         None "none" "no mistake",
         Hemisphere "hemisphere" "no hemisphere check",
-        Euler "euler" "Euler angles mixed",
+        Euler "euler" "Euler angles blended",
         Degrees "degrees" "degrees for radians",
         Atan "atan" "atan for atan2",
         TransformDegrees "transform_degrees" "transform in degrees",
         Facing "facing" "wrong facing axis",
         Alignment "alignment" "no alignment",
         Velocity "velocity" "velocity divided twice",
-        WorldRoot "world_root" "root mixed in the world",
+        WorldRoot "world_root" "root blended in world space",
     }
 
     /// How a layer joins the motion below it.
@@ -358,7 +358,7 @@ choices! {
         Result "result" "result",
         A "a" "A",
         B "b" "B",
-        Other "other" "one of the others",
+        Other "other" "an extra character",
     }
 
     /// The kind of camera.

@@ -68,7 +68,7 @@ macro_rules! parameters {
     WarpAlso "warp_also" "More clips" Lab(Register), Kind::List(ListKind::WeightedClips), Start::Text(""), "", "Further clips in a blend, registered to A like B, each with its weight, as in 0.3:run,0.2:fast_walk. A has the remaining weight.";
     WarpCurve "warp_curve" "Weight over time" Lab(Register), Kind::List(ListKind::WeightCurve), Start::Text(""), "", "The weight of B over the blend: per cent of the blend and per cent of B, as in 0-0,50-100,100-0. Empty: a constant weight.";
     WarpFrom "warp_from" "Leave A at" Lab(Register), auto(0.0, 600.0, 0.01), Start::Auto, "s", "The time in A at which a join begins." [PlaceInA];
-    WarpTo "warp_to" "All B at" Lab(Register), auto(0.0, 600.0, 0.01), Start::Auto, "s", "The time in A at which a join reaches B." [PlaceInA];
+    WarpTo "warp_to" "Reach B at" Lab(Register), auto(0.0, 600.0, 0.01), Start::Auto, "s", "The time in A at which a join reaches B." [PlaceInA];
     RegistrationWindow "registration_window" "Window" Lab(Register), number(1.0, 121.0, 1.0), Start::Number(5.0), "frames", "The number of frames around each pair that are compared. One frame compares poses only; more frames also compare how they move." [InSeconds];
     SlopeLimit "slope_limit" "Slope limit" Lab(Register), number(1.0, 16.0, 1.0), Start::Number(2.0), "steps", "The number of consecutive steps that one clip may advance alone. Higher: stronger time warps.";
     Ends "ends" "Ends" Lab(Register), Kind::Choice(Ends::CHOICES), Start::Choice(Ends::Free.word()), "", "Corner: the first frames match, and the last. Free: a clip may begin or end inside the other.";
@@ -179,7 +179,7 @@ macro_rules! parameters {
     Curve "curve" "Curve" Stage, Kind::Choice(Curve::CHOICES), Start::Choice(Curve::Speed.word()), "", "The quantity of the chosen joint that is plotted.";
     Contacts "contacts" "Foot contacts" Stage, Kind::Switch, Start::Switch(true), "", "A ring under a planted foot, red where it slides.";
     Follow "follow" "Follow" Camera, Kind::Choice(Follow::CHOICES), Start::Choice(Follow::Result.word()), "", "The character that the camera follows.";
-    FollowOther "follow_other" "Which other" Camera, number(1.0, 6.0, 1.0), Start::Number(1.0), "", "The extra character that the camera follows, by order.";
+    FollowOther "follow_other" "Extra character" Camera, number(1.0, 6.0, 1.0), Start::Number(1.0), "", "The extra character that the camera follows, by order.";
     FollowJoint "follow_joint" "Follow joint" Camera, Kind::Joint, Start::Text("hips"), "", "The joint that the camera follows.";
     FollowHalfLife "follow_half_life" "Camera half-life" Camera, logarithmic(0.02, 2.0, 0.01), Start::Number(0.2), "s", "How slowly the camera follows. Longer is smoother.";
     Camera "camera" "Camera" Camera, Kind::Choice(Camera::CHOICES), Start::Choice(Camera::Orbit.word()), "", "From the side, or from above.";

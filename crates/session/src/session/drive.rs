@@ -58,7 +58,7 @@ impl Session {
             DriveCommand::Restart => self.drive.restart(),
             DriveCommand::Replay => {
                 if self.drive.recording().ticks() == 0 {
-                    return Err(CommandError::NotPossible("nothing was driven yet"));
+                    return Err(CommandError::NotPossible("nothing is recorded yet"));
                 }
                 let recording = List::Recording(Some(self.drive.recording().clone()));
                 self.set_as_step(vec![

@@ -16,7 +16,7 @@ impl Session {
             (self.with_recording(made.params.clone()), Arc::clone(made.outcome));
         if outcome.walk().is_some_and(|walk| walk.is_guided) {
             return Err(CommandError::NotPossible(
-                "this walk goes like the one in the first pane: open it alone to keep it",
+                "this walk is the same as the one in the first pane: open it alone to keep it",
             ));
         }
         let is_whole = !outcome.awaits_feet() && !self.is_driven();
@@ -35,10 +35,10 @@ impl Session {
             return Err(known);
         }
         let recipe = recipe_params(&id).ok_or(CommandError::NotPossible(
-            "it is made of results of results, more than a link can hold: save it as a file, and open that",
+            "it is made of results of results, which do not fit into a link: save it as a file, and open that",
         ))?;
         let name = recipe_name(&recipe);
-        let said = msg!("{name} is in the library now: choose it as A or B.");
+        let said = msg!("Saved to the library: {name}. Choose it as A or B.");
         self.document.add(Entry {
             motion: is_whole.then(|| Arc::clone(&outcome.motion)),
             ..Entry::new(id, name, Origin::Made)

@@ -127,7 +127,7 @@ impl Session {
         let is_left_out = motions.any(|motion| !moves(motion));
         is_left_out.then(|| {
             msg!(
-                "{name} cannot be moved by this clip: they have no limbs in common. The clip has a body of its own.",
+                "This clip cannot animate {name}: they have no limbs in common. The clip is shown on its own body.",
                 name = entry.title()
             )
         })

@@ -90,7 +90,7 @@ fn mesh_has_its_colour_and_computed_normals() {
         "{:?}",
         mesh.colors[0]
     );
-    assert_eq!(sentences(&imported), ["the file holds a skeleton and no motion"]);
+    assert_eq!(sentences(&imported), ["the file has a skeleton but no animation"]);
 }
 
 #[test]
@@ -169,9 +169,9 @@ fn mesh_parts_that_are_ignored_give_warnings() {
     assert_eq!(
         sentences(&builder.read()),
         [
-            "1 surface with morph targets; they keep their shape",
-            "1 texture left out; the plain colour was taken",
-            "the file holds a skeleton and no motion"
+            "imported without the morph targets of 1 mesh",
+            "imported without 1 texture: the plain colour is used",
+            "the file has a skeleton but no animation"
         ]
     );
 }
@@ -233,7 +233,7 @@ fn invalid_meshes_are_left_out_and_the_motion_is_kept() {
         assert_eq!(imported.clips[0].clip.skeleton().len(), 2, "{name}");
         let told = sentences(&imported);
         assert!(
-            told.iter().any(|text| text.starts_with("1 surface left out; the first has ")),
+            told.iter().any(|text| text.starts_with("imported without 1 mesh; the first has ")),
             "{name}: {told:?}"
         );
     }
