@@ -75,6 +75,8 @@ fn the_graph_lab_does_what_is_pressed() {
     press("Remove Walk, turn left", &mut harness);
     done(&mut harness);
     assert_eq!(text_of(&harness, Key::Clips), "walk,walk_right");
+    let add = harness.get_by_label(text::ADD_CLIP);
+    assert_eq!(add.value().as_deref(), Some(text::CHOOSE_CLIP), "no clip is chosen yet");
     press(text::ADD_CLIP, &mut harness);
     press("Slow walk", &mut harness);
     done(&mut harness);

@@ -115,11 +115,12 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         }
     });
     let titles = clip_titles(session, ui);
-    let free: Vec<(usize, &str)> = (entries.iter().zip(&titles).enumerate())
+    let free = (entries.iter().zip(&titles).enumerate())
         .filter(|(_, (entry, _))| !ids.contains(&entry.id))
-        .map(|(index, (_, title))| (index, title.as_str()))
-        .collect();
-    if let Some(entry) = kit::choice_row_ui(text::ADD_CLIP, usize::MAX, &free, ui)
+        .map(|(index, (_, title))| (index, title.as_str()));
+    let options: Vec<(usize, &str)> =
+        std::iter::once((usize::MAX, text::CHOOSE_CLIP)).chain(free).collect();
+    if let Some(entry) = kit::choice_row_ui(text::ADD_CLIP, usize::MAX, &options, ui)
         .and_then(|index| entries.get(index))
     {
         let mut all = ids.clone();
