@@ -119,5 +119,5 @@ metrics! {
     FootSlideInPlace "foot_slide_in_place_cm" "Foot slide in place", None, Centimetres, Neutral,
         "How far a planted foot moves in the worst stance without root motion.";
     BuildTime "graph_build_s" "Build time", None, Secs, Neutral,
-        "What it took here to compare the clips, as far as that was not done before, and to make the graph.";
+        "The time to compare the clips, unless that was done before, and to build the graph, on this machine.";
 }

@@ -93,7 +93,7 @@ fn every_lab_has_the_same_numbers_first_and_a_clean_result_shows_nothing() {
     }
     let locked = opened("lab=make&foot_lock=on");
     let mut edited = opened("lab=path&a=walk_left");
-    let spline = edited.main_outcome().unwrap().path().unwrap().fitted.road().spline().clone();
+    let spline = edited.main_outcome().unwrap().path().unwrap().fitted.curve().spline().clone();
     let step = PathEdit::Move { index: 1, to: spline.points()[1] + DVec2::X };
     let path = List::EditedPath(spline.edited(&step, Pins::default()).ok());
     edited.apply(Command::Set(vec![(Key::Path, path.into())])).unwrap();
