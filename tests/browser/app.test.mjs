@@ -184,16 +184,16 @@ onBackend("webgl2", "files are fetched in the order of the link, and refusals ar
       window.segue.on("error", ({ message }) => window.heard.push(message));
     });
     for (const [address, reason] of [
-      [`${far}/gone.bvh`, /^There is no file at .*gone\.bvh \(answer 404\)/],
-      [`${far}/shut.bvh`, /^127\.0\.0\.1:\d+ does not give shut\.bvh to everybody/],
+      [`${far}/gone.bvh`, /^There is no file at .*gone\.bvh \(status 404\)/],
+      [`${far}/shut.bvh`, /^127\.0\.0\.1:\d+ does not allow everyone to load shut\.bvh/],
       [`${far}/page.html`, /is a web page, not a motion file/],
       [`${far}/closed.bvh`, /^127\.0\.0\.1:\d+ does not allow other pages to read its files \(CORS\)\. Download the file and drop it here\./],
       ["http://127.0.0.1:1/nobody.bvh", /^127\.0\.0\.1:1 cannot be reached/],
-      ["ftp://somewhere/x.bvh", /expected an address that starts with https/],
     ]) {
       await segue("set", { src: address }); // resolves once the file is there, or refused
       await until(`an error like ${reason}`, async () => (await page.evaluate(() => window.heard)).some((message) => reason.test(message)));
     }
+    await assert.rejects(segue("set", { src: "ftp://somewhere/x.bvh" }), /expected an address that starts with https/);
     assert.equal(brought(await segue("clips")).length, 2);
   });
 });
