@@ -135,7 +135,7 @@ onBackend("webgl2", "what never answers is given up, by hand or by itself", asyn
     await assert.rejects(segue("stop", "walk.bvh"), /stop: found `walk\.bvh`, expected the name of a file that is under way/);
     await Promise.all([segue("set", { src: `${far}/run.bvh` }), segue("set", { lesson: `${far}/other.md` })]);
     const errors = await page.evaluate(() => window.errors);
-    assert.ok(errors.some((message) => /127\.0\.0\.1:\d+ has sent nothing for 20 s: run\.bvh is not waited for/.test(message)), errors.join("\n"));
+    assert.ok(errors.some((message) => /127\.0\.0\.1:\d+ has sent nothing for 20 s, so loading run\.bvh was stopped/.test(message)), errors.join("\n"));
     assert.deepEqual(await names(), []);
   });
 });
