@@ -137,7 +137,7 @@ impl MetricId {
 /// One measured number.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Metric {
-    /// What is measured.
+    /// The metric.
     pub id: MetricId,
     /// The number; `None` where there is nothing to measure (no feet, no foot on the ground, no
     /// change of speed).

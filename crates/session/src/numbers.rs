@@ -14,7 +14,7 @@ const RESULT: Message = Message::word("result");
 /// The values of a metric, one for each pane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NumberRow {
-    /// What is measured.
+    /// The metric.
     pub metric: MetricId,
     /// The values, pane by pane; `None` if there is nothing to measure.
     pub values: Vec<Option<f64>>,

@@ -122,7 +122,8 @@ impl FileIntake {
         Ok(())
     }
 
-    /// Asks for the files at addresses that a link names.
+    /// Asks for the files at addresses that a link names. An address that cannot be fetched is
+    /// refused by itself.
     pub(crate) fn fetch(&mut self, addresses: Vec<String>, notices: &mut Notices) {
         if addresses.len() > MAX_SOURCES {
             notices.say(
@@ -133,8 +134,19 @@ impl FileIntake {
                 ),
             );
         }
-        let requests = addresses.into_iter().take(MAX_SOURCES).map(Request::Fetch);
-        self.requests.extend(requests);
+        for address in addresses.into_iter().take(MAX_SOURCES) {
+            if address.starts_with("https://") || address.starts_with("http://") {
+                self.requests.push(Request::Fetch(address));
+            } else {
+                notices.say(
+                    Level::Error,
+                    msg!(
+                        "src: found `{address}`, expected an address that starts with https://.",
+                        address = outside::short(&address)
+                    ),
+                );
+            }
+        }
     }
 
     /// Reads a file and puts its clips into the library: at once, or, where it is large or all

@@ -62,24 +62,32 @@ fn a_link_to_a_dropped_file_waits_for_it() {
 }
 
 #[test]
-fn addresses_of_a_link_are_fetched() {
+fn addresses_are_asked_for_and_others_are_refused() {
     let mut session = Session::new();
-    let query = "src=https://example.org/a.bvh%20http://x/b.bvh";
-    session.apply(Command::OpenLink(query.into())).unwrap();
-    let fetched = ["https://example.org/a.bvh", "http://x/b.bvh"];
-    assert_eq!(session.take_requests(), fetched.map(|address| Request::Fetch(address.into())));
+    session
+        .apply(Command::OpenLink("src=https://example.org/a.bvh%20ftp://x/b.bvh".into()))
+        .unwrap();
+    assert_eq!(session.take_requests(), [Request::Fetch("https://example.org/a.bvh".into())]);
+    assert!(
+        session
+            .notices()
+            .list()
+            .iter()
+            .any(|notice| notice.text.to_string().contains("ftp://x/b.bvh"))
+    );
 }
 
 #[test]
-fn addresses_with_one_of_another_scheme_are_refused_with_its_place() {
+fn addresses_beyond_the_limit_are_left_out_and_told() {
     let mut session = Session::new();
-    let query = "src=https://example.org/a.bvh%20ftp://x/b.bvh&blend_window=24";
-    session.apply(Command::OpenLink(query.into())).unwrap();
-    assert_eq!(session.take_requests(), []);
-    assert_eq!(session.params().number(Key::BlendWindow), 24.0);
-    let said = "src: entry 2: found `ftp://x/b.bvh`, expected an address that starts with https://";
+    let addresses: Vec<String> =
+        (0..300).map(|number| format!("https://example.org/{number}.bvh")).collect();
+    session.apply(Command::OpenLink(format!("src={}", addresses.join("%20")))).unwrap();
+    let fetched = addresses[..16].iter().cloned().map(Request::Fetch);
+    assert_eq!(session.take_requests(), fetched.collect::<Vec<_>>());
     let notices = session.notices().list();
-    assert!(notices.iter().any(|notice| notice.text.to_string().contains(said)));
+    let told = "The link names 300 files; the first 16 are loaded.";
+    assert!(notices.iter().any(|notice| notice.text.to_string() == told));
 }
 
 /// The task that the session has just asked for.
