@@ -5,6 +5,7 @@
 
 use super::Misread;
 
+#[expect(clippy::unnecessary_wraps, reason = "the signature of all grammars")]
 pub(super) fn read(text: &str) -> Result<Vec<String>, Misread> {
     Ok(text.split_whitespace().map(str::to_owned).collect())
 }

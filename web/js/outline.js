@@ -1,0 +1,196 @@
+// Elements for screen readers and the Tab key: what the app draws on its canvas, as elements of the page over it, unseen.
+//
+// The app tells what has changed after each frame (`handle.setOutline`). What a reader does with an element goes back to it
+// (`handle.act`). A pointer goes through the elements to the canvas.
+//
+// The keyboard: Tab moves through the elements as through any page's, in reading order. The element that has the focus has it
+// in the app, too, and the other way round. All other keys are passed on to the app.
+
+/** Which keys have no effect of the browser's own on an element of ours: the app has taken them. */
+const KEEPS = /^(F\d+|Tab)$/;
+
+export class Outline {
+  #handle;
+  #canvas;
+  #root = document.createElement("div");
+  /** The elements by their numbers, and what the app has told of each. */
+  #elements = new Map();
+  #told = new Map();
+  /** The number of the element that has the focus in the app; 0 for none. */
+  #focus = 0;
+  /** Set while the focus follows that of the app. */
+  #follows = false;
+
+  /** @param canvas returns the app's present canvas: one that is lost is replaced */
+  constructor(handle, canvas) {
+    this.#handle = handle;
+    this.#canvas = canvas;
+    this.#root.id = "outline";
+    canvas().after(this.#root);
+    canvas().tabIndex = -1;
+    this.#root.addEventListener("focusin", ({ target }) => this.#focused(target));
+    this.#root.addEventListener("focusout", () => this.#handle.setOutlineFocus(false));
+    this.#root.addEventListener("click", ({ target }) => this.#clicked(target));
+    this.#root.addEventListener("input", ({ target }) => this.#act(target, "value", Number(target.value)));
+    for (const type of ["keydown", "keyup"]) {
+      this.#root.addEventListener(type, (event) => this.#key(event));
+      document.addEventListener(type, (event) => this.#tab(event), { capture: true });
+    }
+    handle.setOutline((text) => this.#update(JSON.parse(text)));
+  }
+
+  #update({ elements, gone, focus, top }) {
+    for (const told of elements) this.#show(told);
+    // Only now: a parent may name a child that comes after it.
+    for (const { number, children = [] } of elements) arrange(this.#elements.get(number), children.map((child) => this.#elements.get(child)));
+    for (const number of gone) {
+      this.#elements.get(number)?.remove();
+      this.#elements.delete(number);
+      this.#told.delete(number);
+    }
+    arrange(this.#root, top.map((number) => this.#elements.get(number)));
+    const modal = top.findLast((number) => this.#told.get(number).modal);
+    for (const number of top) this.#elements.get(number).inert = modal !== undefined && number !== modal;
+    if (focus !== this.#focus) this.#follow(focus);
+    this.#nameEditor();
+  }
+
+  /** Makes an element as the app tells. */
+  #show(told) {
+    const { number, role, name = "", description = "", value = "", range, state, expanded, popup, level, disabled, focusable, modal, place } = told;
+    let element = this.#elements.get(number);
+    const tag = TAGS[role] ?? "div";
+    if (element?.localName !== tag || this.#told.get(number).role !== role) {
+      const old = element;
+      element = document.createElement(tag);
+      element.dataset.number = number;
+      old?.replaceWith(element);
+      this.#elements.set(number, element);
+      if (!(role in TAGS)) element.setAttribute("role", role);
+    }
+    this.#told.set(number, told);
+
+    const set = (attribute, value) => {
+      if (value === undefined || value === "" || value === false) element.removeAttribute(attribute);
+      else element.setAttribute(attribute, value);
+    };
+    const isText = ["text", "alert", "status"].includes(role) && !told.children;
+    if (isText) setText(element, name);
+    set("aria-label", isText ? "" : name);
+    set("aria-description", description);
+    set("tabindex", focusable ? 0 : undefined);
+    set("aria-disabled", disabled && "true");
+    set("aria-expanded", expanded?.toString());
+    set("aria-haspopup", popup);
+    set("aria-level", role === "heading" ? (level ?? 2) : level);
+    set("aria-modal", modal && "true");
+    for (const attribute of ["aria-checked", "aria-pressed", "aria-selected"]) set(attribute, state?.[0] === attribute ? state[1] : undefined);
+    if (role === "slider") {
+      const { min = 0, max = 1, now = 0, step } = range ?? {};
+      Object.assign(element, { type: "range", min, max, step: step ?? "any" });
+      element.value = now;
+      set("aria-valuetext", value);
+    } else if (role === "edit") {
+      element.type = "text";
+      element.value = value;
+    } else if (range) {
+      set("aria-valuenow", range.now.toString());
+      set("aria-valuemin", range.min?.toString());
+      set("aria-valuemax", range.max?.toString());
+      set("aria-valuetext", value);
+    } else if (value && !isText) {
+      // What no attribute holds is said with the name, as of a box that shows its choice.
+      set("aria-label", `${name}: ${value}`);
+    }
+    const [left, top, width, height] = place;
+    const style = `left:${left}px;top:${top}px;width:${width}px;height:${height}px`;
+    if (element.getAttribute("style") !== style) element.setAttribute("style", style);
+  }
+
+  /** The app has moved the focus. */
+  #follow(focus) {
+    this.#focus = focus;
+    const element = this.#elements.get(focus);
+    const active = document.activeElement;
+    const isHere = active === this.#canvas() || active === document.body || this.#root.contains(active);
+    if (!isHere || element === active) return;
+    this.#follows = true;
+    // A text is edited in the app's own field, which gets the keyboard from the canvas.
+    if (!element || element.localName === "input" && element.type === "text") this.#canvas().focus({ preventScroll: true });
+    else element.focus({ preventScroll: true });
+    this.#follows = false;
+  }
+
+  #focused(element) {
+    this.#handle.setOutlineFocus(true);
+    if (this.#follows) return;
+    this.#act(element, "focus");
+    if (element.type === "text") this.#canvas().focus({ preventScroll: true });
+  }
+
+  /** Only what assistive technology does: a pointer's clicks are the canvas's, and keys are passed on. */
+  #clicked(element) {
+    this.#act(element.closest("[data-number]"), "click");
+  }
+
+  #act(element, action, value) {
+    const number = Number(element?.dataset.number);
+    if (number) this.#handle.act(number, action, value);
+  }
+
+  /** Passes a key on to the app. */
+  #key(event) {
+    const { key, code, type, shiftKey, ctrlKey, altKey, metaKey } = event;
+    const command = ctrlKey || metaKey;
+    // The browser tells whom the keyboard belongs to what was copied, cut or pasted.
+    if (command && /^[cvx]$/i.test(key)) this.#canvas().focus({ preventScroll: true });
+    if (KEEPS.test(key) || event.isComposing) return;
+    if (!command || /^[opsyz,]$/i.test(key)) event.preventDefault();
+    this.#handle.press(key, code, type === "keydown", shiftKey, ctrlKey, altKey, metaKey);
+  }
+
+  /** Tab goes on from where the app's focus is, also where the canvas has the keyboard, or the field in which the app edits text. */
+  #tab(event) {
+    const { key, type, shiftKey, ctrlKey, altKey, metaKey, target } = event;
+    if (key !== "Tab" || ctrlKey || altKey || metaKey) return;
+    if (target !== this.#canvas() && target !== this.#editor() && target !== document.body) return;
+    event.stopImmediatePropagation();
+    event.preventDefault();
+    if (type === "keyup") return;
+    const all = [...this.#root.querySelectorAll("[tabindex='0']:not([inert] *)")];
+    const at = all.indexOf(this.#elements.get(this.#focus));
+    const next = at < 0 && shiftKey ? all.length - 1 : at + (shiftKey ? -1 : 1);
+    (all[next] ?? this.#canvas()).focus({ preventScroll: true });
+  }
+
+  /** The unseen field in which the app edits text: it stands behind the canvas. */
+  #editor() {
+    return this.#canvas().parentElement.querySelector(":scope > input");
+  }
+
+  #nameEditor() {
+    const editor = this.#editor();
+    if (!editor) return;
+    const name = this.#told.get(this.#focus)?.name || "Segue";
+    if (editor.getAttribute("aria-label") !== name) editor.setAttribute("aria-label", name);
+    editor.tabIndex = -1;
+  }
+}
+
+/** Which roles are elements of HTML; all others are `div`s with that role. */
+const TAGS = { text: "span", slider: "input", edit: "input" };
+
+function setText(element, text) {
+  if (element.textContent !== text) element.textContent = text;
+}
+
+/** Gives an element these children in this order, and moves only what is out of place: what is moved loses the focus. */
+function arrange(parent, children) {
+  const kept = new Set(children);
+  for (const child of [...parent.children]) if (!kept.has(child)) child.remove();
+  let next = parent.firstElementChild;
+  for (const child of children) {
+    if (child === next) next = next.nextElementSibling;
+    else parent.insertBefore(child, next);
+  }
+}
