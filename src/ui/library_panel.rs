@@ -8,6 +8,7 @@ use super::out::{Action, Out};
 use super::state::{Typing, UiState};
 use super::text;
 use super::theme::{Type, palette_of, space, theme_of};
+use eframe::egui::accesskit::Role;
 use eframe::egui::{self, Frame, Id, Key as Keyboard, Margin, Panel, RichText, ScrollArea, Ui};
 use segue_session::export::{ExportFormat, ExportOptions};
 use segue_session::{Command, Entry, FileCommand, Key, Origin, Session, Slot};
@@ -50,12 +51,18 @@ pub(crate) fn library_list_ui(session: &Session, state: &mut UiState, out: &mut 
     let seen: Option<Option<String>> = ui.data(|data| data.get_temp(seen_id));
     let arrived = newest.clone().filter(|_| seen.is_some_and(|seen| seen != newest));
     ui.data_mut(|data| data.insert_temp(seen_id, newest));
-    for entry in ordered {
-        let row = ui.push_id(&entry.id, |ui| entry_ui(entry, session, state, out, ui)).response;
-        if arrived.as_ref() == Some(&entry.id) {
-            row.scroll_to_me(None);
+    ui.scope(|ui| {
+        kit::set_role(Role::List, text::LIBRARY, ui);
+        for entry in ordered {
+            let row = ui.push_id(&entry.id, |ui| {
+                kit::set_role(Role::ListItem, "", ui);
+                entry_ui(entry, session, state, out, ui);
+            });
+            if arrived.as_ref() == Some(&entry.id) {
+                row.response.scroll_to_me(None);
+            }
         }
-    }
+    });
 }
 
 /// Where files are dropped or asked for, and the bundled takes.

@@ -13,6 +13,7 @@ use super::text;
 use super::theme::{palette_of, space, theme_of};
 use super::timeline::{CurveCache, timeline_panel_ui};
 use super::top_bar;
+use eframe::egui::accesskit::Role;
 use eframe::egui::{self, Frame, Margin, Panel, ScrollArea, Stroke, Ui};
 use segue_session::{Key, Session};
 
@@ -87,15 +88,16 @@ fn desk_ui(
     let scale = theme_of(ui).scale();
     let height = ui.available_height();
     let frame = panel_frame(ui, space::L, space::S);
-    Panel::top("top bar")
-        .exact_size(48.0 * scale)
-        .frame(frame)
-        .show(ui, |ui| top_bar::top_bar_ui(session, layout, state, out, ui));
+    Panel::top("top bar").exact_size(48.0 * scale).frame(frame).show(ui, |ui| {
+        kit::set_role(Role::Banner, text::TOP_BAR, ui);
+        top_bar::top_bar_ui(session, layout, state, out, ui);
+    });
     Panel::bottom("timeline")
         .exact_size((214.0 * scale).min(0.31 * height).round())
         .frame(panel_frame(ui, space::L, space::S))
         .resizable(false)
         .show(ui, |ui| {
+            kit::set_role(Role::Region, text::TIMELINE, ui);
             timeline_panel_ui(session, layout, curves, state, out, ui);
         });
     let side = |ui: &Ui| panel_frame(ui, space::M, space::M);
@@ -105,7 +107,10 @@ fn desk_ui(
             .exact_size(lessons_panel::width(ui.available_width(), scale))
             .frame(scrolling_frame(ui, space::L, space::M))
             .resizable(false)
-            .show(ui, |ui| lessons_panel::lessons_panel_ui(session, state, out, ui));
+            .show(ui, |ui| {
+                kit::set_role(Role::Complementary, text::LESSON, ui);
+                lessons_panel::lessons_panel_ui(session, state, out, ui);
+            });
     }
     // A lesson, and the map of the graph, take the library's room.
     let drawer = layout == Layout::Tablet || lesson || labs::has_side_panel(session);
@@ -113,6 +118,7 @@ fn desk_ui(
         Panel::left("library").exact_size(244.0 * scale).frame(side(ui)).resizable(false).show(
             ui,
             |ui| {
+                kit::set_role(Role::Complementary, text::LIBRARY, ui);
                 library_panel::library_panel_ui(session, state, out, ui);
             },
         );
@@ -124,6 +130,7 @@ fn desk_ui(
         .frame(scrolling_frame(ui, space::L, space::M))
         .resizable(false)
         .show(ui, |ui| {
+            kit::set_role(Role::Form, text::PARAMETERS, ui);
             if shared {
                 lessons_panel::lesson_or_parameters_ui(state, ui);
                 if !state.lesson_behind {
@@ -142,9 +149,13 @@ fn desk_ui(
             .exact_size((labs::side_panel_share(session) * ui.available_width()).round())
             .frame(panel_frame(ui, space::M, space::M))
             .resizable(false)
-            .show(ui, |ui| labs::side_panel_ui(session, state, out, ui));
+            .show(ui, |ui| {
+                kit::set_role(Role::Region, text::MAP, ui);
+                labs::side_panel_ui(session, state, out, ui);
+            });
     }
     egui::CentralPanel::default().frame(Frame::new()).show(ui, |ui| {
+        kit::set_role(Role::Main, text::STAGE, ui);
         stage_panel_ui(session, layout, state, out, paint, ui);
     });
 }
@@ -168,6 +179,7 @@ fn slim_time_ui(
         panel.default_size(136.0 * scale)
     };
     panel.frame(panel_frame(ui, margin, space::S)).show(ui, |ui| {
+        kit::set_role(Role::Region, text::TIMELINE, ui);
         timeline_panel_ui(session, Layout::Phone, curves, state, out, ui);
     });
 }
@@ -183,20 +195,27 @@ fn phone_ui(
 ) {
     let scale = theme_of(ui).scale();
     let frame = panel_frame(ui, space::M, space::S);
-    Panel::top("top bar")
-        .exact_size(48.0 * scale)
-        .frame(frame)
-        .show(ui, |ui| top_bar::top_bar_ui(session, Layout::Phone, state, out, ui));
+    Panel::top("top bar").exact_size(48.0 * scale).frame(frame).show(ui, |ui| {
+        kit::set_role(Role::Banner, text::TOP_BAR, ui);
+        top_bar::top_bar_ui(session, Layout::Phone, state, out, ui);
+    });
     let lesson = lessons_panel::is_open(session);
     let height = ui.available_height();
     Panel::top("stage")
         .exact_size((height * if lesson { 0.42 } else { 0.5 }).round())
         .frame(Frame::new())
         .show(ui, |ui| {
+            kit::set_role(Role::Main, text::STAGE, ui);
             stage_panel_ui(session, Layout::Phone, state, out, paint, ui);
         });
     slim_time_ui(Panel::top("timeline"), space::L, session, state, curves, out, ui);
     egui::CentralPanel::default().frame(scrolling_frame(ui, space::L, space::M)).show(ui, |ui| {
+        let part = if state.library_open {
+            (Role::Complementary, text::LIBRARY)
+        } else {
+            (Role::Form, text::PARAMETERS)
+        };
+        kit::set_role(part.0, part.1, ui);
         if lesson && !state.library_open {
             lessons_panel::lesson_or_parameters_ui(state, ui);
             if !state.lesson_behind {
@@ -237,12 +256,14 @@ fn embedded_ui(
     slim_time_ui(Panel::bottom("timeline"), space::M, session, state, curves, out, ui);
     if labs::has_named_params(session) {
         let frame = panel_frame(ui, space::M, space::S).stroke(Stroke::NONE);
-        Panel::bottom("parameters")
-            .frame(frame)
-            .show(ui, |ui| labs::named_params_ui(session, out, ui));
+        Panel::bottom("parameters").frame(frame).show(ui, |ui| {
+            kit::set_role(Role::Form, text::PARAMETERS, ui);
+            labs::named_params_ui(session, out, ui);
+        });
     }
     let layout = if ui.available_width() < 480.0 * scale { Layout::Phone } else { Layout::Desk };
     egui::CentralPanel::default().frame(Frame::new()).show(ui, |ui| {
+        kit::set_role(Role::Main, text::STAGE, ui);
         stage_panel_ui(session, layout, state, out, paint, ui);
     });
 }

@@ -175,7 +175,10 @@ fn the_stage_has_its_own_colours_and_rows() {
         let page = page("lab=view&a=walk&play=off&stage=paper&theme=dark");
         let mut harness = harness(size, Theme::default(), page);
         if name == "stage-desk" {
-            press(text::STAGE, &mut harness);
+            harness.get_by_role_and_label(Role::Button, text::STAGE).scroll_to_me();
+            harness.run();
+            harness.get_by_role_and_label(Role::Button, text::STAGE).click();
+            harness.run();
             harness.get_by_label("Hand twist").scroll_to_me();
             harness.run();
             harness.get_by_label("limbs").click();
@@ -209,7 +212,9 @@ fn an_embedded_page_shows_all_of_its_timeline() {
             picture(&format!("embed-{lab}-{name}"), &mut harness);
             let [slider, play] =
                 ["Blend window", "Play"].map(|label| harness.get_by_label(label).rect());
-            let last = harness.query_by_label("Timeline").map_or(play, |timeline| timeline.rect());
+            let last = harness
+                .query_by_role_and_label(Role::Slider, "Timeline")
+                .map_or(play, |timeline| timeline.rect());
             let stage = harness.state().stage;
             assert!(
                 stage.height() > 150.0 && stage.bottom() <= slider.top(),

@@ -91,7 +91,7 @@ pub(crate) fn clip_row_ui(row: ClipRow<'_>, ui: &mut Ui) -> ClipRowResponse {
     focus_ring(rect.shrink(2.0), radius::M, &response, ui);
     response.widget_info(|| {
         WidgetInfo::selected(
-            Role::ListItem,
+            Role::Button,
             ui.is_enabled(),
             row.selected,
             format!("{}, {}", row.name, row.detail),

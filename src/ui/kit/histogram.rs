@@ -1,10 +1,9 @@
 //! How often values occur, with a line that is dragged: what lies before it counts.
 
+use super::assistive::{Adjustable, requested};
 use super::paint::{Run, focus_ring, full_width, line_of, put};
 use crate::ui::theme::{Type, palette_of, radius, theme_of};
-use eframe::egui::{
-    Align2, CursorIcon, EventFilter, Key, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2,
-};
+use eframe::egui::{Align2, CursorIcon, EventFilter, Key, Rect, Sense, Stroke, Ui, pos2};
 
 /// What it shows.
 #[derive(Clone, Copy, Debug)]
@@ -48,12 +47,9 @@ pub(crate) fn histogram_ui(histogram: &Histogram<'_>, ui: &mut Ui) -> HistogramR
     let response = ui
         .interact(plot, id, Sense::click_and_drag())
         .on_hover_cursor(CursorIcon::ResizeHorizontal);
-    response.widget_info(|| {
-        let mut info = WidgetInfo::labeled(Role::Slider, true, histogram.label);
-        info.value = Some(histogram.value);
-        info
-    });
-    let mut out = HistogramResponse::default();
+    let range = histogram.step..=end;
+    let asked = requested(id, histogram.value, &range, histogram.step, ui);
+    let mut out = HistogramResponse { changed: asked, settled: asked.is_some() };
     if let Some(pos) =
         response.interact_pointer_pos().filter(|_| response.dragged() || response.clicked())
     {
@@ -62,7 +58,7 @@ pub(crate) fn histogram_ui(histogram: &Histogram<'_>, ui: &mut Ui) -> HistogramR
         out.changed =
             Some(wanted).filter(|wanted| (wanted - histogram.value).abs() > 0.25 * histogram.step);
     }
-    out.settled = response.drag_stopped() || response.clicked();
+    out.settled |= response.drag_stopped() || response.clicked();
     if response.has_focus() {
         let filter = EventFilter { horizontal_arrows: true, ..EventFilter::default() };
         ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));
@@ -76,6 +72,15 @@ pub(crate) fn histogram_ui(histogram: &Histogram<'_>, ui: &mut Ui) -> HistogramR
         }
     }
     let value = out.changed.unwrap_or(histogram.value);
+    let adjustable = Adjustable {
+        name: histogram.label,
+        value,
+        range,
+        step: histogram.step,
+        said: format!("{value:.1} {}", histogram.unit).trim_end().to_owned(),
+        help: String::new(),
+    };
+    adjustable.describe(&response, ui);
 
     let most = f64::from(histogram.counts.iter().take(bins).copied().max().unwrap_or(0).max(1));
     let wide = plot.width() / bins as f32;

@@ -8,6 +8,7 @@
 //! A row keeps its identity by its label (a drag or the focus survives when rows above come and
 //! go), so labels are unique within a `Ui`; use `push_id` where two panes show the same ones.
 
+mod assistive;
 mod button;
 mod chip;
 mod clip_row;
@@ -45,6 +46,7 @@ mod tree;
 mod weight_curve;
 mod words;
 
+pub(crate) use assistive::set_role;
 pub(crate) use button::{Button, button_ui, icon_button_ui};
 pub(crate) use chip::{Mood, Part, recording_ui};
 pub(crate) use clip_row::{ClipRow, clip_row_ui};

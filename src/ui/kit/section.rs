@@ -5,7 +5,8 @@ use super::paint::{Run, full_width, line_of, put};
 use crate::ui::language::tr;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{
-    Align, Align2, CollapsingHeader, Color32, Layout, Rect, RichText, Ui, UiBuilder, vec2,
+    Align, Align2, CollapsingHeader, Color32, Layout, Rect, RichText, Role, Sense, Ui, UiBuilder,
+    WidgetInfo, vec2,
 };
 
 /// The heading of a section, set in quiet capitals. Returns the line it stands on, for a button at
@@ -16,6 +17,9 @@ pub(crate) fn section_header_ui(title: &str, ui: &mut Ui) -> Rect {
     let galley =
         line_of(&[Run::new(&capitals, Type::Caps, palette_of(ui).muted)], rect.width(), ui);
     put(ui.painter(), rect.left_center(), Align2::LEFT_CENTER, galley);
+    let id = ui.make_persistent_id(("heading", title));
+    ui.interact(rect, id, Sense::hover())
+        .widget_info(|| WidgetInfo::labeled(Role::Heading, true, title));
     rect
 }
 

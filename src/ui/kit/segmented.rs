@@ -1,11 +1,12 @@
 //! One of a few, all of them visible: cut | dissolve | inertialize.
 
+use super::assistive::set_role;
 use super::paint::{Run, faded, focus_ring, full_width, line_of, put};
 use super::words::Words;
 use crate::ui::language::tr;
 use crate::ui::theme::{Type, palette_of, radius, theme_of};
 use eframe::egui::{
-    Align2, Color32, CursorIcon, EventFilter, Key, Label, Rect, RichText, Role, Sense, Stroke,
+    Align2, Color32, CursorIcon, EventFilter, Id, Key, Label, Rect, RichText, Role, Sense, Stroke,
     StrokeKind, Ui, WidgetInfo, pos2, vec2,
 };
 
@@ -27,14 +28,26 @@ pub(crate) fn segmented_ui<T: Copy + PartialEq>(
     options: &[(T, &str)],
     ui: &mut Ui,
 ) -> Option<T> {
-    let (theme, palette) = (theme_of(ui), palette_of(ui));
-    let enabled = ui.is_enabled();
-    let height = (30.0 * theme.scale()).round();
-    let id = ui.make_persistent_id(label);
-    let well = full_width(height, ui);
     if options.is_empty() {
         return None;
     }
+    let id = ui.make_persistent_id(label);
+    let picked = ui.scope(|ui| {
+        set_role(Role::RadioGroup, label, ui);
+        segments_ui(id, chosen, options, ui)
+    });
+    picked.inner.filter(|&value| value != chosen)
+}
+
+fn segments_ui<T: Copy + PartialEq>(
+    id: Id,
+    chosen: T,
+    options: &[(T, &str)],
+    ui: &mut Ui,
+) -> Option<T> {
+    let (theme, palette) = (theme_of(ui), palette_of(ui));
+    let enabled = ui.is_enabled();
+    let well = full_width((30.0 * theme.scale()).round(), ui);
     let line = Stroke::new(theme.hairline(), palette.line);
     ui.painter().rect(well, radius::M, palette.panel_raised, line, StrokeKind::Inside);
 
@@ -107,5 +120,5 @@ pub(crate) fn segmented_ui<T: Copy + PartialEq>(
             );
         }
     }
-    picked.filter(|&value| value != chosen)
+    picked
 }

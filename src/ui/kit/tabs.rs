@@ -1,5 +1,6 @@
 //! The labs, side by side; behind a menu where there is no room for all.
 
+use super::assistive::set_role;
 use super::button::{Button, button_ui};
 use super::icon::Icon;
 use super::menu::{MenuItem, menu_item_ui, menu_ui};
@@ -41,8 +42,9 @@ pub(crate) fn tabs_ui<T: Copy + PartialEq>(
         picked = menu_of(&opener, chosen, options.iter().copied());
         return picked.filter(|&value| value != chosen);
     }
+    ui.spacing_mut().item_spacing.x = GAP;
     ui.scope(|ui| {
-        ui.spacing_mut().item_spacing.x = GAP;
+        set_role(Role::TabList, name, ui);
         for &index in &shown {
             let (Some(&(value, text)), Some(&width)) = (options.get(index), widths.get(index))
             else {
@@ -52,13 +54,12 @@ pub(crate) fn tabs_ui<T: Copy + PartialEq>(
                 picked = Some(value);
             }
         }
-        if shown.len() < options.len() {
-            let opener = button_ui(Button::icon_only(Icon::ChevronDown, more).quiet(), ui);
-            let rest =
-                options.iter().copied().enumerate().filter(|(index, _)| !shown.contains(index));
-            picked = picked.or(menu_of(&opener, chosen, rest.map(|(_, option)| option)));
-        }
     });
+    if shown.len() < options.len() {
+        let opener = button_ui(Button::icon_only(Icon::ChevronDown, more).quiet(), ui);
+        let rest = options.iter().copied().enumerate().filter(|(index, _)| !shown.contains(index));
+        picked = picked.or(menu_of(&opener, chosen, rest.map(|(_, option)| option)));
+    }
     picked.filter(|&value| value != chosen)
 }
 

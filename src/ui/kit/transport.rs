@@ -1,5 +1,6 @@
 //! The row above the timeline: play, where we are, and how fast.
 
+use super::assistive::readable_ui;
 use super::button::{Button, button_ui, icon_button_ui};
 use super::icon::{Icon, paint_icon};
 use super::menu::{MenuItem, menu_item_ui, menu_ui};
@@ -93,7 +94,8 @@ pub(crate) fn transport_ui(transport: &Transport<'_>, ui: &mut Ui) -> Option<Tra
         }
         let galley = line_of(&runs, f32::INFINITY, ui);
         // As wide as the widest it becomes, so that what follows holds still.
-        let (_, rect) = ui.allocate_space(vec2(galley.size().x, height));
+        let (id, rect) = ui.allocate_space(vec2(galley.size().x, height));
+        readable_ui(&format!("{time}, {frame}"), rect, id, ui);
         put(ui.painter(), rect.left_center(), Align2::LEFT_CENTER, galley);
         rect.right()
     };
@@ -138,7 +140,8 @@ pub(crate) fn play_button_ui(playing: bool, ui: &mut Ui) -> bool {
 fn speed_ui(speed: f64, ui: &mut Ui) -> Option<f64> {
     let words = Words::of(ui);
     let said = format!("{speed}×");
-    let opener = button_ui(Button::new(&said).quiet().name(words.speed).hint(words.speed), ui);
+    let name = format!("{}: {said}", tr(words.speed, ui));
+    let opener = button_ui(Button::new(&said).quiet().name(&name).hint(words.speed), ui);
     let mut picked = None;
     menu_ui(&opener, RectAlign::TOP_START, |ui| {
         for value in SPEEDS {

@@ -1,6 +1,7 @@
 //! The texts and letters of a language, and how a context comes to show them, as
 //! [`theme_of`](crate::ui::theme::theme_of) is its theme.
 
+use crate::ui::text;
 use eframe::egui::output::OutputEvent;
 use eframe::egui::{Context, FontData, FullOutput, Id, Plugin, Role, Ui};
 use segue_text::{Message, Table, ToMessage};
@@ -73,9 +74,23 @@ impl LanguagePack {
 
     /// Shows the texts of this context in this language from now on.
     pub(crate) fn activate(&self, ctx: &Context) {
-        ctx.add_plugin(Labels);
+        translate_labels(ctx);
         ctx.data_mut(|data| data.insert_temp(texts_id(), Some(self.texts.clone())));
     }
+}
+
+/// Has the labels that screen readers are told translated from now on. What reads them out of the
+/// output is added after this.
+pub(crate) fn translate_labels(ctx: &Context) {
+    ctx.add_plugin(Labels);
+}
+
+/// Returns the words of the link to the parameters that is the first element of the page.
+#[cfg(any(test, target_arch = "wasm32"))]
+pub(crate) fn skip_words(ctx: &Context) -> String {
+    let texts = texts_of(ctx);
+    let found = texts.as_ref().and_then(|texts| texts.find(text::SKIP_TO_PARAMETERS));
+    found.unwrap_or(text::SKIP_TO_PARAMETERS).to_owned()
 }
 
 /// Shows the texts of this context in English from now on, as they are written.

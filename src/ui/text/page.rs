@@ -6,6 +6,11 @@ use segue_text::{Message, msg};
 
 pub(crate) const APP: &str = "Segue";
 pub(crate) const LIBRARY: &str = "Library";
+/// Names of parts of the page, for a screen reader.
+pub(crate) const TOP_BAR: &str = "Top bar";
+pub(crate) const TIMELINE: &str = "Timeline";
+pub(crate) const MAP: &str = "Map";
+pub(crate) const SKIP_TO_PARAMETERS: &str = "Skip to the parameters";
 pub(crate) const SAVED: &str = "Saved";
 pub(crate) const SAVING: &str = "Saving…";
 pub(crate) const NOT_ALL_SAVED: &str = "Not all saved";

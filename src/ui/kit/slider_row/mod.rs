@@ -7,11 +7,12 @@ mod track;
 pub(crate) use self::row::{Mark, SliderResponse, SliderRow, Source};
 
 use self::head::head_ui;
-use self::track::{assistive, drag, keys, paint_track};
+use self::track::{drag, keys, paint_track};
+use super::assistive::{Adjustable, requested};
 use super::paint::{faded, full_width, paragraph, put};
 use crate::ui::language::tr;
 use crate::ui::theme::{self, Type, palette_of, space, theme_of};
-use eframe::egui::{Align2, Rect, Sense, Ui, WidgetInfo, accesskit::Action, pos2};
+use eframe::egui::{Align2, Rect, Sense, Ui, pos2};
 
 /// A parameter: label, value and unit on one line, the track below, and a sentence of help where
 /// there is one.
@@ -43,7 +44,9 @@ pub(crate) fn slider_row_ui(value: f64, row: &SliderRow<'_>, ui: &mut Ui) -> Sli
     };
     drag(value, row, track_hit, &mut out, ui);
     keys(value, row, &mut out, ui);
-    assistive(value, row, &mut out, ui);
+    if let Some(asked) = requested(id, value, &row.range, row.step, ui) {
+        out.changed = Some(row.snapped(asked, row.fine));
+    }
     let label = head_ui(value, row, head, id, &mut out, ui);
     if label.double_clicked() || out.response.double_clicked() {
         out.reset = true;
@@ -56,17 +59,15 @@ pub(crate) fn slider_row_ui(value: f64, row: &SliderRow<'_>, ui: &mut Ui) -> Sli
 
     let shown = out.changed.unwrap_or(value);
     paint_track(shown, row, track_area, &out.response, ui);
-    out.response.widget_info(|| WidgetInfo::slider(enabled, shown, row.label));
-    let spoken = spoken(shown, row, ui);
-    out.response.ctx.accesskit_node_builder(id, |node| {
-        node.set_min_numeric_value(*row.range.start());
-        node.set_max_numeric_value(*row.range.end());
-        node.set_numeric_value_step(row.step);
-        node.set_value(spoken);
-        node.add_action(Action::SetValue);
-        node.add_action(Action::Increment);
-        node.add_action(Action::Decrement);
-    });
+    let adjustable = Adjustable {
+        name: row.label,
+        value: shown,
+        range: row.range.clone(),
+        step: row.step,
+        said: spoken(shown, row, ui),
+        help: tr(row.help, ui).into_owned(),
+    };
+    adjustable.describe(&out.response, ui);
 
     if !row.help.is_empty() {
         let galley = paragraph(

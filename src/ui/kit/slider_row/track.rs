@@ -4,11 +4,7 @@ use super::super::keys::keys_pressed;
 use super::super::paint::{faded, focus_ring};
 use super::row::{SliderResponse, SliderRow, Source};
 use crate::ui::theme::{palette_of, theme_of};
-use eframe::egui::{
-    EventFilter, Key, Pos2, Rect, Response, Stroke, Ui, Vec2,
-    accesskit::{Action, ActionData},
-    pos2, vec2,
-};
+use eframe::egui::{EventFilter, Key, Pos2, Rect, Response, Stroke, Ui, Vec2, pos2, vec2};
 
 /// Where the pointer holds the handle, kept between frames: unclamped, so that the way back from
 /// beyond an end is as long as the way there.
@@ -93,25 +89,6 @@ pub(super) fn keys(value: f64, row: &SliderRow<'_>, out: &mut SliderResponse, ui
     if next != value {
         out.changed = Some(next);
     }
-}
-
-/// What screen readers ask for.
-pub(super) fn assistive(value: f64, row: &SliderRow<'_>, out: &mut SliderResponse, ui: &Ui) {
-    let id = out.response.id;
-    ui.input(|input| {
-        let up = input.num_accesskit_action_requests(id, Action::Increment) as f64;
-        let down = input.num_accesskit_action_requests(id, Action::Decrement) as f64;
-        if up != down {
-            out.changed = Some(row.snapped(value + (up - down) * row.step, row.step));
-        }
-        for request in input.accesskit_action_requests(id, Action::SetValue) {
-            if let Some(ActionData::NumericValue(asked)) = request.data
-                && asked.is_finite()
-            {
-                out.changed = Some(asked.clamp(*row.range.start(), *row.range.end()));
-            }
-        }
-    });
 }
 
 /// The line along which the middle of the handle moves.

@@ -1,13 +1,13 @@
 //! What can be dragged along the timeline: the edges of the transition, the ends of the loop.
 
+use super::super::assistive::{Adjustable, requested};
 use super::super::keys::keys_pressed;
 use super::super::paint::focus_ring;
 use super::super::time_axis::TimeAxis;
 use super::content::{Timeline, TimelineEvent};
 use crate::ui::theme::{HIT, palette_of, radius, theme_of};
 use eframe::egui::{
-    CursorIcon, EventFilter, Id, Key, Rangef, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo,
-    pos2, vec2,
+    CursorIcon, EventFilter, Id, Key, Rangef, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2,
 };
 
 /// Things on the timeline that can be dragged along it.
@@ -136,11 +136,14 @@ impl Handles {
         if response.drag_stopped() {
             events.push(TimelineEvent::EditEnded);
         }
+        let frame = if timeline.fps > 0.0 { 1.0 / timeline.fps } else { timeline.duration / 100.0 };
+        let range = 0.0..=timeline.duration.max(0.0);
+        if let Some(asked) = requested(response.id, time, &range, frame, ui) {
+            events.push(event(asked));
+        }
         if response.has_focus() {
             let filter = EventFilter { horizontal_arrows: true, ..EventFilter::default() };
             ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
-            let frame =
-                if timeline.fps > 0.0 { 1.0 / timeline.fps } else { timeline.duration / 100.0 };
             let frames = keys_pressed(ui).into_iter().map(|(key, modifiers)| {
                 let frames = if modifiers.shift { 10.0 } else { 1.0 };
                 frames
@@ -152,7 +155,9 @@ impl Handles {
                 events.push(event((time + presses * frame).clamp(0.0, timeline.duration)));
             }
         }
-        response.widget_info(|| WidgetInfo::slider(ui.is_enabled(), time, name));
+        let (said, help) = (format!("{time:.2} s"), String::new());
+        let adjustable = Adjustable { name, value: time, range, step: frame, said, help };
+        adjustable.describe(&response, ui);
         focus_ring(hit, radius::S, &response, ui);
         response
     }

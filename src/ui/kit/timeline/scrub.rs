@@ -1,13 +1,11 @@
 //! How pointer, keys and screen readers move the playhead.
 
+use super::super::assistive::{Adjustable, requested};
 use super::super::keys::keys_pressed;
 use super::super::time_axis::TimeAxis;
 use super::super::words::Words;
 use super::content::{Timeline, TimelineEvent};
-use eframe::egui::{
-    EventFilter, Key, Pos2, Response, Ui, WidgetInfo,
-    accesskit::{Action, ActionData},
-};
+use eframe::egui::{EventFilter, Key, Pos2, Response, Ui};
 
 /// Moves `now` as it was asked to, and says so in `events`.
 pub(super) fn scrub_ui(
@@ -54,32 +52,20 @@ pub(super) fn scrub_ui(
             };
         }
     }
-    ui.input(|input| {
-        let up = input.num_accesskit_action_requests(scrub.id, Action::Increment) as f64;
-        let down = input.num_accesskit_action_requests(scrub.id, Action::Decrement) as f64;
-        asked += (up - down) * frame;
-        for request in input.accesskit_action_requests(scrub.id, Action::SetValue) {
-            if let Some(ActionData::NumericValue(value)) = request.data
-                && value.is_finite()
-            {
-                asked = value;
-            }
-        }
-    });
+    let range = 0.0..=timeline.duration.max(0.0);
+    asked = requested(scrub.id, asked, &range, frame, ui).unwrap_or(asked);
     asked = asked.clamp(0.0, timeline.duration.max(0.0));
     if asked != *now {
         events.push(TimelineEvent::Seek(asked));
         *now = asked;
     }
-    let (said, enabled, name) = (*now, ui.is_enabled(), Words::of(ui).timeline);
-    scrub.widget_info(|| WidgetInfo::slider(enabled, said, name));
-    ui.ctx().accesskit_node_builder(scrub.id, |node| {
-        node.set_min_numeric_value(0.0);
-        node.set_max_numeric_value(timeline.duration);
-        node.set_numeric_value_step(frame);
-        node.set_value(format!("{said:.2} s"));
-        node.add_action(Action::SetValue);
-        node.add_action(Action::Increment);
-        node.add_action(Action::Decrement);
-    });
+    let adjustable = Adjustable {
+        name: Words::of(ui).timeline,
+        value: *now,
+        range,
+        step: frame,
+        said: format!("{now:.2} s"),
+        help: String::new(),
+    };
+    adjustable.describe(scrub, ui);
 }
