@@ -382,10 +382,6 @@ impl Segue {
             secs: self.film.as_ref().map(platform::Film::secs),
         };
         let out = ui::show(&self.session, &mut self.panels, &mut self.curves, &mut reserve, ui);
-        let said = ui.ctx().output(egui::PlatformOutput::events_description);
-        if !said.is_empty() {
-            platform::announce(&said);
-        }
         for command in out.commands {
             self.obey(command);
         }

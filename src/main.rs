@@ -5,6 +5,8 @@
     expect(dead_code, reason = "the page's API needs more of it than the window does")
 )]
 mod app;
+#[cfg(any(test, target_arch = "wasm32"))]
+mod outline;
 mod platform;
 mod render;
 mod ui;

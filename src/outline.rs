@@ -14,15 +14,12 @@ use serde::Serialize;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Landmarks whose upper edges are this near, points, are read from left to right.
-const ROW: f64 = 24.0;
-
 /// The tree of one window, shared by the window and the page. Clones are the same tree.
 #[derive(Clone, Default)]
 pub(crate) struct Outline(Arc<Mutex<Tree>>);
 
 /// Something that a reader does with an element.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Deed {
     Click,
     Focus,
@@ -118,6 +115,7 @@ impl Plugin for OutlinePlugin {
             return;
         };
         let changes = self.outline.tree().changes(&update, f64::from(ctx.zoom_factor()));
+        let changes = changes.map(|changes| Changes { skip: ui::skip_words(ctx), ..changes });
         if let Some(changes) = changes
             && let Ok(text) = serde_json::to_string(&changes)
         {
@@ -151,6 +149,8 @@ struct Changes {
     focus: u32,
     /// The numbers of the outermost elements, in reading order.
     top: Vec<u32>,
+    /// The words of the link that goes past the other parts to the parameters.
+    skip: String,
 }
 
 /// An element of the page, in the terms of ARIA.
@@ -215,7 +215,7 @@ impl Tree {
             update.nodes.iter().map(|(id, node)| (*id, node)).collect();
         let mut found = Found { all: &all, zoom, elements: Vec::new() };
         let mut top = found.children_of(root, self);
-        found.sort(&mut top);
+        found.sort_parts(&mut top);
         let elements = found.elements;
 
         let mut changes = Changes { top, ..Changes::default() };
@@ -277,13 +277,16 @@ impl Found<'_> {
                 continue;
             }
             let inner = self.children_of(child_id, tree);
-            match self.element(child, inner.clone()) {
-                Some(element) => {
-                    let number = tree.number_of(child_id);
-                    self.elements.push(Element { number, ..element });
-                    numbers.push(number);
+            if let Some(mut element) = self.element(child, inner.clone()) {
+                element.number = tree.number_of(child_id);
+                if element.role == "banner" {
+                    self.sort_line(&mut element.children);
                 }
-                None => numbers.extend(inner),
+                numbers.push(element.number);
+                self.elements.push(element);
+            } else {
+                self.describe(&inner, child.description());
+                numbers.extend(inner);
             }
         }
         numbers
@@ -294,7 +297,9 @@ impl Found<'_> {
         let is_text = node.role() == Role::Label;
         let name = if is_text { node.value().or(node.label()) } else { node.label() };
         let name = name.map_or_else(|| self.labels(node), str::to_owned);
-        let role = aria_role(node, !name.is_empty())?;
+        // A container that has nothing but a hint stands for what lies in it.
+        let is_hint = node.description() == Some(&name) && node.role() == Role::GenericContainer;
+        let role = aria_role(node, !name.is_empty() && !is_hint)?;
         if (is_text || role == "group") && name.is_empty() && children.is_empty() {
             return None;
         }
@@ -304,15 +309,19 @@ impl Found<'_> {
             max: node.max_numeric_value(),
             step: node.numeric_value_step(),
         });
-        let place = node.bounds().map_or([0; 4], |at| {
-            [at.x0, at.y0, at.x1 - at.x0, at.y1 - at.y0]
-                .map(|points| (points * self.zoom).round() as i32)
-        });
+        let place = node.bounds().filter(|at| at.width() > 0.0 && at.height() > 0.0).map_or_else(
+            || self.around(&children),
+            |at| {
+                [at.x0, at.y0, at.width(), at.height()]
+                    .map(|points| (points * self.zoom).round() as i32)
+            },
+        );
+        let description = node.description().filter(|&description| description != name);
         Some(Element {
             number: 0,
             role,
             name,
-            description: node.description().unwrap_or_default().to_owned(),
+            description: description.unwrap_or_default().to_owned(),
             value: if is_text { "" } else { node.value().unwrap_or_default() }.to_owned(),
             range,
             state: state(node, role),
@@ -323,7 +332,6 @@ impl Found<'_> {
                 HasPopup::Tree => "tree",
                 HasPopup::Grid => "grid",
                 HasPopup::Dialog => "dialog",
-                _ => "true",
             }),
             level: node.level(),
             disabled: node.is_disabled(),
@@ -334,6 +342,33 @@ impl Found<'_> {
         })
     }
 
+    /// Gives the hint of a container to the first thing in it that can be worked, where that has
+    /// none of its own.
+    fn describe(&mut self, inner: &[u32], hint: Option<&str>) {
+        let Some(hint) = hint else {
+            return;
+        };
+        let takes_hint = |element: &&mut Element| {
+            let is_worked = element.focusable || element.role == "radiogroup";
+            is_worked && inner.contains(&element.number)
+        };
+        if let Some(element) = self.elements.iter_mut().find(takes_hint)
+            && element.description.is_empty()
+        {
+            hint.clone_into(&mut element.description);
+        }
+    }
+
+    /// Returns the place of the smallest rectangle around some elements.
+    fn around(&self, numbers: &[u32]) -> [i32; 4] {
+        let within = self.elements.iter().filter(|element| numbers.contains(&element.number));
+        let corners = within.map(|element| element.place).filter(|place| place[2] > 0);
+        let corners = corners.map(|[x, y, width, height]| [x, y, x + width, y + height]);
+        let around =
+            corners.reduce(|a, b| [a[0].min(b[0]), a[1].min(b[1]), a[2].max(b[2]), a[3].max(b[3])]);
+        around.map_or([0; 4], |[x0, y0, x1, y1]| [x0, y0, x1 - x0, y1 - y0])
+    }
+
     /// Returns the texts of the nodes that label this one.
     fn labels(&self, node: &Node) -> String {
         let labels = node.labelled_by().iter().filter_map(|id| self.all.get(id));
@@ -341,17 +376,33 @@ impl Found<'_> {
         texts.join(" ")
     }
 
-    /// Puts the outermost elements into reading order: row by row, from left to right, and what
-    /// lies over the page last.
-    fn sort(&self, numbers: &mut [u32]) {
-        let of: HashMap<u32, &Element> =
-            self.elements.iter().map(|element| (element.number, element)).collect();
+    /// Puts the parts of the page into the order in which they are read: from the bar at the top to
+    /// the timeline, and what lies over the page last.
+    fn sort_parts(&self, numbers: &mut [u32]) {
+        let of = self.by_number();
         numbers.sort_by_key(|number| {
             let element = of[number];
-            let is_over = matches!(element.role, "dialog" | "menu" | "tooltip" | "alert");
-            let row = (f64::from(element.place[1]) / (ROW * self.zoom)).round() as i32;
-            (is_over, row, element.place[0])
+            let rank = match element.role {
+                "banner" => 0,
+                "complementary" => 1,
+                "main" => 2,
+                "form" => 3,
+                "region" => 4,
+                "dialog" | "menu" | "tooltip" | "alert" => 6,
+                _ => 5,
+            };
+            (rank, element.place[1], element.place[0])
         });
+    }
+
+    /// Puts the elements of a line in order, from left to right.
+    fn sort_line(&self, numbers: &mut [u32]) {
+        let of = self.by_number();
+        numbers.sort_by_key(|number| of[number].place[0]);
+    }
+
+    fn by_number(&self) -> HashMap<u32, &Element> {
+        self.elements.iter().map(|element| (element.number, element)).collect()
     }
 }
 
@@ -378,9 +429,8 @@ fn aria_role(node: &Node, has_name: bool) -> Option<&'static str> {
         Role::Tab => "tab",
         Role::TabList => "tablist",
         Role::Menu => "menu",
-        Role::MenuItem if node.toggled().is_some() => "menuitemradio",
-        Role::MenuItem => "menuitem",
-        Role::MenuItemRadio => "menuitemradio",
+        Role::MenuItem if node.toggled().is_none() => "menuitem",
+        Role::MenuItem | Role::MenuItemRadio => "menuitemradio",
         Role::MenuItemCheckBox => "menuitemcheckbox",
         Role::List => "list",
         Role::ListItem => "listitem",
@@ -427,4 +477,179 @@ fn state(node: &Node, role: &str) -> Option<(&'static str, &'static str)> {
         _ => return None,
     };
     Some((attribute, value))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use eframe::egui::{self, Modifiers, RawInput, Ui};
+    use std::cell::RefCell;
+
+    thread_local! {
+        /// The changes that the page was told, as JSON.
+        static TOLD: RefCell<Vec<serde_json::Value>> = const { RefCell::new(Vec::new()) };
+    }
+
+    fn tell(changes: &str) {
+        let changes = serde_json::from_str(changes).expect("JSON");
+        TOLD.with_borrow_mut(|told| told.push(changes));
+    }
+
+    /// Runs a frame, and returns what the page was told of it.
+    fn frame(ctx: &Context, mut show: impl FnMut(&mut Ui)) -> Option<serde_json::Value> {
+        let mut output = ctx.run_ui(RawInput::default(), &mut show);
+        output.textures_delta.clear();
+        TOLD.with_borrow_mut(Vec::pop)
+    }
+
+    fn told_outline() -> (Context, Outline) {
+        let (ctx, outline) = (Context::default(), Outline::default());
+        outline.install(&ctx, tell);
+        outline.enable();
+        (ctx, outline)
+    }
+
+    /// Returns the element of a role and name among some changes.
+    fn find<'a>(
+        changes: &'a serde_json::Value,
+        role: &str,
+        name: &str,
+    ) -> Option<&'a serde_json::Value> {
+        let elements = changes["elements"].as_array()?;
+        elements.iter().find(|element| element["role"] == role && element["name"] == name)
+    }
+
+    fn number_of(changes: &serde_json::Value, role: &str, name: &str) -> u32 {
+        let element = find(changes, role, name).expect("an element of this role and name");
+        element["number"].as_u64().and_then(|number| number.try_into().ok()).expect("a number")
+    }
+
+    #[test]
+    fn disabled_outline_tells_nothing() {
+        let (ctx, outline) = (Context::default(), Outline::default());
+        outline.install(&ctx, tell);
+        assert_eq!(frame(&ctx, |ui| drop(ui.button("Play"))), None);
+    }
+
+    #[test]
+    fn widgets_are_told_once_and_then_their_changes() {
+        let (ctx, _outline) = told_outline();
+        let show = |value: f64, is_on: bool, ui: &mut Ui| {
+            let mut value = value;
+            let mut on = is_on;
+            ui.checkbox(&mut on, "Foot lock");
+            ui.add(egui::Slider::new(&mut value, 0.0..=10.0).text("Blend window"));
+            ui.label("12 frames");
+        };
+        let first = frame(&ctx, |ui| show(3.0, false, ui)).expect("all elements");
+        assert_eq!(find(&first, "checkbox", "Foot lock").unwrap()["state"][1], "false");
+        assert!(find(&first, "text", "12 frames").is_some());
+        let slider = first["elements"].as_array().unwrap().iter();
+        let slider = slider.into_iter().find(|element| element["role"] == "slider").unwrap();
+        assert_eq!((&slider["range"]["now"], &slider["range"]["max"]), (&3.0.into(), &10.0.into()));
+        // egui's own widgets settle in their second frame.
+        frame(&ctx, |ui| show(3.0, false, ui));
+        assert_eq!(frame(&ctx, |ui| show(3.0, false, ui)), None);
+        let second = frame(&ctx, |ui| show(3.0, true, ui)).expect("one element");
+        assert_eq!(second["elements"].as_array().unwrap().len(), 1);
+        assert_eq!(second["elements"][0]["state"][1], "true");
+        let number = number_of(&first, "checkbox", "Foot lock");
+        assert_eq!(second["elements"][0]["number"], number);
+    }
+
+    #[test]
+    fn widget_that_leaves_is_gone() {
+        let (ctx, _outline) = told_outline();
+        let first = frame(&ctx, |ui| drop(ui.button("Play"))).expect("all elements");
+        let number = number_of(&first, "button", "Play");
+        let second = frame(&ctx, |_| {}).expect("one element less");
+        assert_eq!(second["gone"], serde_json::json!([number]));
+        assert_eq!(second["top"], serde_json::json!([]));
+    }
+
+    #[test]
+    fn parts_are_in_reading_order_whatever_is_drawn_first() {
+        let (ctx, _outline) = told_outline();
+        let part = |role: Role, name: &str, ui: &mut Ui| {
+            ui.push_id(name, |ui| {
+                ui.ctx().accesskit_node_builder(ui.unique_id(), |node| {
+                    node.set_role(role);
+                    node.set_label(name);
+                });
+                ui.label("text");
+            });
+        };
+        let changes = frame(&ctx, |ui| {
+            part(Role::Region, "Timeline", ui);
+            part(Role::Main, "Stage", ui);
+            part(Role::Banner, "Top bar", ui);
+        });
+        let changes = changes.expect("all elements");
+        let order = [("banner", "Top bar"), ("main", "Stage"), ("region", "Timeline")];
+        let order = order.map(|(role, name)| number_of(&changes, role, name));
+        assert_eq!(changes["top"], serde_json::json!(order));
+    }
+
+    #[test]
+    fn container_with_a_hint_gives_it_to_its_control() {
+        let (ctx, _outline) = told_outline();
+        let changes = frame(&ctx, |ui| {
+            let row = ui.scope(|ui| drop(ui.checkbox(&mut false, "Foot lock")));
+            let hint = "Holds planted feet in place.";
+            ui.ctx().accesskit_node_builder(row.response.id, |node| {
+                node.set_label(hint);
+                node.set_description(hint);
+            });
+        });
+        let changes = changes.expect("all elements");
+        assert_eq!(changes["elements"].as_array().unwrap().len(), 1, "{changes}");
+        assert_eq!(changes["elements"][0]["description"], "Holds planted feet in place.");
+    }
+
+    #[test]
+    fn click_and_value_of_an_element_reach_its_widget() {
+        let (ctx, outline) = told_outline();
+        let (mut clicks, mut value) = (0, 3.0);
+        let show = |clicks: &mut i32, value: &mut f64, ui: &mut Ui| {
+            *clicks += i32::from(ui.button("Play").clicked());
+            ui.add(egui::Slider::new(value, 0.0..=10.0).text("Blend window"));
+        };
+        let first = frame(&ctx, |ui| show(&mut clicks, &mut value, ui)).expect("all elements");
+        outline.request(number_of(&first, "button", "Play"), Deed::Click);
+        let slider = first["elements"].as_array().unwrap().iter();
+        let slider = slider.into_iter().find(|element| element["role"] == "slider").unwrap();
+        let slider = slider["number"].as_u64().and_then(|number| number.try_into().ok()).unwrap();
+        outline.request(slider, Deed::SetValue(7.0));
+        outline.request(9999, Deed::Click);
+        frame(&ctx, |ui| show(&mut clicks, &mut value, ui));
+        assert_eq!((clicks, value), (1, 7.0));
+    }
+
+    #[test]
+    fn focus_and_keys_of_an_element_reach_its_widget() {
+        let (ctx, outline) = told_outline();
+        let mut clicks = 0;
+        let mut show = |ui: &mut Ui| clicks += i32::from(ui.button("Play").clicked());
+        let first = frame(&ctx, &mut show).expect("all elements");
+        let play = number_of(&first, "button", "Play");
+        outline.set_has_keyboard(true);
+        outline.request(play, Deed::Focus);
+        let second = frame(&ctx, &mut show).expect("the focus");
+        assert_eq!(second["focus"], play);
+        for pressed in [true, false] {
+            outline.press("Enter", "Enter", pressed, Modifiers::NONE);
+        }
+        outline.press("Dead", "Nowhere", true, Modifiers::NONE);
+        frame(&ctx, &mut show);
+        assert_eq!(clicks, 1);
+    }
+
+    #[test]
+    fn keys_have_the_names_of_the_browser() {
+        assert_eq!(key_of("ArrowLeft"), Some(Key::ArrowLeft));
+        assert_eq!(key_of(" "), Some(Key::Space));
+        assert_eq!(key_of("KeyA"), Some(Key::A));
+        assert_eq!(key_of("Digit7"), Some(Key::Num7));
+        assert_eq!(key_of("Unidentified"), None);
+    }
 }

@@ -2,11 +2,13 @@
 //! say what they expect of it.
 
 use crate::app::{Event, Segue, Shared, View, api};
+use crate::outline::{Deed, Outline};
 use crate::platform::{
     Area, FileBytes, Inbox, LargeFile, area_of, ask_before_leaving_while, inline_picture, listen,
     next_frame, now_ms, page_bytes, sleep, snapshot, turn, wanted_backend, watch_folders,
     watch_hiding, words_of, workers_are_made_by,
 };
+use eframe::egui::Modifiers;
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use eframe::wgpu::Backends;
 use eframe::{WebOptions, WebRunner};
@@ -34,8 +36,24 @@ pub struct SegueHandle {
     inbox: Inbox,
     canvas: Rc<RefCell<HtmlCanvasElement>>,
     listener: Rc<RefCell<Option<Function>>>,
+    outline: Outline,
     /// When a WebGPU device that replaced a lost one began to draw, milliseconds.
     replaced_ms: Rc<Cell<Option<f64>>>,
+}
+
+thread_local! {
+    /// Takes the changes of the outline. The window's plugin may be on any thread, as far as its
+    /// type says, and holds no JavaScript.
+    static OUTLINE_LISTENER: RefCell<Option<Function>> = const { RefCell::new(None) };
+}
+
+fn show_outline(changes: &str) {
+    let listener = OUTLINE_LISTENER.with_borrow(Clone::clone);
+    if let Some(listener) = listener
+        && let Err(error) = listener.call1(&JsValue::NULL, &JsValue::from_str(changes))
+    {
+        log::error!("the outline could not be shown: {}", words_of(&error));
+    }
 }
 
 /// WebGL 2 is taken when a WebGPU device that replaced a lost one is lost itself within this time
@@ -66,6 +84,7 @@ impl SegueHandle {
             inbox,
             canvas: Rc::new(RefCell::new(canvas.clone())),
             listener: Rc::default(),
+            outline: Outline::default(),
             replaced_ms: Rc::default(),
         };
         handle.run(canvas).await?;
@@ -133,6 +152,42 @@ impl SegueHandle {
     #[wasm_bindgen(js_name = setListener)]
     pub fn set_listener(&self, listener: Function) {
         self.listener.replace(Some(listener));
+    }
+
+    /// Tells `listener(changes)` after each frame how the elements of the page have to change to be
+    /// those that are drawn; see `web/js/outline.js`.
+    #[wasm_bindgen(js_name = setOutline)]
+    pub fn set_outline(&self, listener: Function) {
+        OUTLINE_LISTENER.replace(Some(listener));
+        self.outline.enable();
+        self.inbox.wake();
+    }
+
+    /// Says whether one of those elements has the keyboard.
+    #[wasm_bindgen(js_name = setOutlineFocus)]
+    pub fn set_outline_focus(&self, has_keyboard: bool) {
+        self.outline.set_has_keyboard(has_keyboard);
+    }
+
+    /// Does something with one of those elements: `click`, `focus`, or `value` with a number.
+    pub fn act(&self, number: u32, action: &str, value: Option<f64>) {
+        let deed = match (action, value) {
+            ("click", _) => Deed::Click,
+            ("focus", _) => Deed::Focus,
+            ("value", Some(value)) => Deed::SetValue(value),
+            _ => return,
+        };
+        self.outline.request(number, deed);
+        self.inbox.wake();
+    }
+
+    /// Passes a key on that was pressed or released on one of those elements. `modifiers` is the sum
+    /// of 1 for Shift, 2 for Control, 4 for Alt and 8 for Command.
+    pub fn press(&self, key: &str, code: &str, pressed: bool, modifiers: u8) {
+        let [shift, ctrl, alt, mac_cmd] = [1, 2, 4, 8].map(|bit| modifiers & bit != 0);
+        let modifiers = Modifiers { alt, ctrl, shift, mac_cmd, command: ctrl || mac_cmd };
+        self.outline.press(key, code, pressed, modifiers);
+        self.inbox.wake();
     }
 
     /// Whether the link says that the page is embedded: the frame then answers the page around it,
@@ -411,7 +466,9 @@ impl SegueHandle {
             ..WebOptions::default()
         };
         let (segue, listener) = (Rc::clone(&self.segue), Rc::clone(&self.listener));
+        let outline = self.outline.clone();
         let create: eframe::AppCreator<'static> = Box::new(move |cc| {
+            outline.install(&cc.egui_ctx, show_outline);
             Ok(Box::new(View::new(segue, cc, move |events| tell(&listener, events))))
         });
         self.canvas.replace(canvas.clone());

@@ -68,6 +68,8 @@ async function start(jsUrl, wasmUrl) {
   window.segue = api;
   answerParent(api, life.handle.isEmbedded());
   keepForLater();
+  // After the first frame, so that nothing waits for it.
+  import("./outline.js").then(({ Outline }) => new Outline(life.handle, canvas), (reason) => console.error(reason));
   return api;
 }
 

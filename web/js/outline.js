@@ -16,8 +16,12 @@ export class Outline {
   /** The elements by their numbers, and what the app has told of each. */
   #elements = new Map();
   #told = new Map();
+  /** Shown while it has the focus: past all other parts to the parameters. */
+  #skip = document.createElement("button");
   /** The number of the element that has the focus in the app; 0 for none. */
   #focus = 0;
+  /** The element that had the focus last: Tab goes on from there when nothing has it. */
+  #last;
   /** Set while the focus follows that of the app. */
   #follows = false;
 
@@ -26,7 +30,10 @@ export class Outline {
     this.#handle = handle;
     this.#canvas = canvas;
     this.#root.id = "outline";
-    canvas().after(this.#root);
+    this.#skip.id = "skip";
+    this.#skip.type = "button";
+    this.#skip.addEventListener("click", () => this.#stops("[role='form']")[0]?.focus({ preventScroll: true }));
+    canvas().after(this.#skip, this.#root);
     canvas().tabIndex = -1;
     this.#root.addEventListener("focusin", ({ target }) => this.#focused(target));
     this.#root.addEventListener("focusout", () => this.#handle.setOutlineFocus(false));
@@ -39,7 +46,8 @@ export class Outline {
     handle.setOutline((text) => this.#update(JSON.parse(text)));
   }
 
-  #update({ elements, gone, focus, top }) {
+  #update({ elements, gone, focus, top, skip }) {
+    setText(this.#skip, skip);
     for (const told of elements) this.#show(told);
     // Only now: a parent may name a child that comes after it.
     for (const { number, children = [] } of elements) arrange(this.#elements.get(number), children.map((child) => this.#elements.get(child)));
@@ -80,7 +88,8 @@ export class Outline {
     set("aria-description", description);
     set("tabindex", focusable ? 0 : undefined);
     set("aria-disabled", disabled && "true");
-    set("aria-expanded", expanded?.toString());
+    // A box with a menu says at all times whether that is open.
+    set("aria-expanded", (expanded ?? (role === "combobox" ? false : undefined))?.toString());
     set("aria-haspopup", popup);
     set("aria-level", role === "heading" ? (level ?? 2) : level);
     set("aria-modal", modal && "true");
@@ -103,8 +112,8 @@ export class Outline {
       set("aria-label", `${name}: ${value}`);
     }
     const [left, top, width, height] = place;
-    const style = `left:${left}px;top:${top}px;width:${width}px;height:${height}px`;
-    if (element.getAttribute("style") !== style) element.setAttribute("style", style);
+    // Not as an attribute: the page's policy forbids styles in its markup.
+    Object.assign(element.style, { left: `${left}px`, top: `${top}px`, width: `${width}px`, height: `${height}px` });
   }
 
   /** The app has moved the focus. */
@@ -122,6 +131,7 @@ export class Outline {
   }
 
   #focused(element) {
+    this.#last = element;
     this.#handle.setOutlineFocus(true);
     if (this.#follows) return;
     this.#act(element, "focus");
@@ -146,7 +156,8 @@ export class Outline {
     if (command && /^[cvx]$/i.test(key)) this.#canvas().focus({ preventScroll: true });
     if (KEEPS.test(key) || event.isComposing) return;
     if (!command || /^[opsyz,]$/i.test(key)) event.preventDefault();
-    this.#handle.press(key, code, type === "keydown", shiftKey, ctrlKey, altKey, metaKey);
+    const modifiers = [shiftKey, ctrlKey, altKey, metaKey].reduce((sum, on, bit) => sum + (on ? 2 ** bit : 0), 0);
+    this.#handle.press(key, code, type === "keydown", modifiers);
   }
 
   /** Tab goes on from where the app's focus is, also where the canvas has the keyboard, or the field in which the app edits text. */
@@ -157,10 +168,15 @@ export class Outline {
     event.stopImmediatePropagation();
     event.preventDefault();
     if (type === "keyup") return;
-    const all = [...this.#root.querySelectorAll("[tabindex='0']:not([inert] *)")];
-    const at = all.indexOf(this.#elements.get(this.#focus));
+    const all = [this.#skip, ...this.#stops()];
+    const at = all.indexOf(this.#elements.get(this.#focus) ?? this.#last);
     const next = at < 0 && shiftKey ? all.length - 1 : at + (shiftKey ? -1 : 1);
     (all[next] ?? this.#canvas()).focus({ preventScroll: true });
+  }
+
+  /** Where Tab stops, within the elements that `within` selects. */
+  #stops(within = "") {
+    return [...this.#root.querySelectorAll(`${within} [tabindex='0']:not([inert] *)`)];
   }
 
   /** The unseen field in which the app edits text: it stands behind the canvas. */

@@ -38,9 +38,6 @@ pub(crate) fn location_query() -> String {
         .map_or_else(String::new, |query| address::state_of(&query))
 }
 
-/// A window's widgets are known to the system's screen reader by themselves.
-pub(crate) fn announce(_words: &str) {}
-
 /// Whether [`between_frames`] does anything.
 pub(crate) const WORKS_BETWEEN_FRAMES: bool = false;
 

@@ -19,10 +19,9 @@ pub(crate) use folders::watch_folders;
 pub(crate) use gamepad::gamepad;
 pub(crate) use pace::Pace;
 pub(crate) use page::{
-    READS_ELSEWHERE, WORKS_BETWEEN_FRAMES, announce, ask_before_leaving_while, between_frames,
-    full_link, is_framed, languages, listen, location_query, next_frame, now_ms, open_page,
-    prefers_stillness, replace_query, sleep, tell_language, turn, wanted_backend, watch_hiding,
-    watch_navigation,
+    READS_ELSEWHERE, WORKS_BETWEEN_FRAMES, ask_before_leaving_while, between_frames, full_link,
+    is_framed, languages, listen, location_query, next_frame, now_ms, open_page, prefers_stillness,
+    replace_query, sleep, tell_language, turn, wanted_backend, watch_hiding, watch_navigation,
 };
 pub(crate) use reader::{LargeFile, Reader, follow_memory, page_bytes, workers_are_made_by};
 pub(crate) use snapshot::{Area, area_of, inline_picture, snapshot};

@@ -140,13 +140,6 @@ pub(crate) fn ask_before_leaving_while(is_unsafe: impl Fn() -> bool + 'static) {
     });
 }
 
-/// Has a screen reader say something: what is drawn on a canvas it cannot read.
-pub(crate) fn announce(words: &str) {
-    if let Some(spoken) = document().and_then(|document| document.get_element_by_id("spoken")) {
-        spoken.set_text_content(Some(words));
-    }
-}
-
 /// Whether the user has asked their system for little motion.
 pub(crate) fn prefers_stillness() -> bool {
     let asked = window()
