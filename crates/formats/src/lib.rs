@@ -23,7 +23,7 @@
 //! |---|---|---|
 //! | [`bvh`] | yes | [`bvh::write`] |
 //! | [`acclaim`] (ASF, AMC) | yes, a motion with its skeleton | |
-//! | [`gltf`] (GLB) | yes, motion only | [`gltf::write_glb`] |
+//! | [`gltf`] (glTF, GLB) | yes, motion and skinned meshes | [`gltf::write_glb`] |
 //! | [`csv`] | | [`csv::write_csv`] |
 //! | [`archive`] (zip), gzip | file by file, [`unpack_gzip`] | |
 //!

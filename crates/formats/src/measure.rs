@@ -28,7 +28,7 @@ const UNITS: [(f64, f64, f64); 7] = [
 /// The ratio of a body's lengths along two axes from which on the longer one is up.
 const CLEAR_RATIO: f32 = 1.25;
 
-/// The unit and up axis of a file, and how they are known.
+/// The unit and up axis of a file, and the source of each.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measure {
     /// The unit and the up axis with which the clip was read.
@@ -41,7 +41,7 @@ pub struct Measure {
     pub unit_detected: bool,
     /// Whether the height fits no unit, so that centimetres were assumed.
     pub unit_unknown: bool,
-    /// How the up axis is known.
+    /// The source of the up axis.
     pub up_known: UpKnown,
 }
 
@@ -113,9 +113,9 @@ impl ToMessage for Measure {
 
 /// Measures a motion in file units and axes. Given values are used unchanged.
 ///
-/// Where names give the legs, nothing depends on the rest pose, which may be implausible: the
-/// height follows from bone lengths, and the up axis is the one along which limbs and head point
-/// over all frames, and on whose floor the body moves ([`Evidence`]).
+/// If names give the legs, nothing depends on the rest pose, which may be implausible: the height
+/// follows from bone lengths, and the up axis is the one along which limbs and head point over all
+/// frames, and on whose floor the body moves ([`Evidence`]).
 pub(super) fn measure(
     raw: &RawMotion,
     metres_per_unit: Option<f64>,
@@ -154,7 +154,7 @@ pub(super) fn measure(
 /// Returns the height of a body without known roles: that of its rest pose, or of the median frame
 /// where the rest pose lies flat.
 fn extent_along(axis: usize, raw: &RawMotion, rest: &Body, frames: &[Body]) -> f32 {
-    // A rest pose that lies flat (bones along their own axes) says nothing about height; the frames
+    // A rest pose that lies flat (bones along their own axes) does not show the height; the frames
     // do.
     let upright = rest.extent()[axis] > 0.35 * rest.extent().max_element();
     let mut heights: Vec<f32> = frames.iter().map(|body| body.extent()[axis]).collect();
@@ -187,8 +187,8 @@ struct Named<'a> {
 /// The evidence that an axis points up.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Evidence {
-    /// How far limbs and head point along it, −1 to 1: from feet to hips, from hands to shoulders,
-    /// from hips to head.
+    /// The component along it of the mean direction of limbs and head, −1 to 1: from feet to hips,
+    /// from hands to shoulders, from hips to head.
     limbs: f32,
     /// 0 to 1: the lowest point of the body stays at one level near 0, as on a floor.
     floor: f32,
@@ -345,7 +345,7 @@ fn up_axis(rest_points: &[Vec3], rest: &Body, frames: &[Body]) -> UpAxis {
 /// Returns which of Y and Z is up by a body's size along both, when they are clearly different and
 /// the arms do not run along one of them.
 fn longer_axis(extent: Vec3, lateral: Option<usize>) -> Option<UpAxis> {
-    // For a body that lies along X the other axes say nothing.
+    // A body that lies along X gives no evidence for the other axes.
     if extent.y.max(extent.z) < 0.35 * extent.x {
         return None;
     }

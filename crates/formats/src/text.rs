@@ -51,7 +51,7 @@ pub(super) fn is_space(b: u8) -> bool {
 /// Returns line and column (in characters) of a byte offset, both from 1.
 pub(super) fn position(text: &[u8], at: usize) -> (usize, usize) {
     let before = &text[..at.min(text.len())];
-    // Of CRLF only the LF counts.
+    // CRLF is counted at its LF.
     let ends_line =
         |&index: &usize| text.get(index) == Some(&b'\n') || text.get(index + 1) != Some(&b'\n');
     let line = 1 + memchr::memchr2_iter(b'\n', b'\r', before).filter(ends_line).count();

@@ -29,7 +29,7 @@ pub(crate) fn add_ground_path(shown: &Shown<'_>, colors: &Colors, pane: &mut Pan
     let now = *now;
     let frames = outcome.motion.ground_frames();
     let fps = outcome.motion.clip().fps();
-    // Of a long walk only the part around the present is drawn.
+    // Only the part of a long walk around the present is drawn.
     let near = match outcome.walk() {
         Some(walk) if !walk.is_jump && walk.followed.is_none() => {
             let frame = |secs: f64| ((secs.max(0.0) * fps) as usize).min(frames.len());

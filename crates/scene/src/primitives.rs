@@ -102,7 +102,7 @@ pub struct Stroke {
     pub color_from: Color,
     /// Colour at the end.
     pub color_to: Color,
-    /// Width, points (see [`Stage::pixels_per_point`]).
+    /// Width, points (see [`Stage::pixels_per_point`](crate::Stage::pixels_per_point)).
     pub width: f32,
     /// Depth in the picture.
     pub layer: Layer,

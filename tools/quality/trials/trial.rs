@@ -78,7 +78,7 @@ struct LabUse {
     jumps: bool,
 }
 
-/// The takes that a use takes.
+/// The takes of a use.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Of {
     /// A and B.
@@ -182,7 +182,7 @@ impl Trial {
 }
 
 /// Runs all labs on `pairs` pairs of one rig and as many of two, and on half as many sets of four
-/// takes, draw by `seed`.
+/// takes, drawn by `seed`.
 #[must_use]
 pub fn try_all(motions: &Motions, pairs: usize, seed: u64) -> Vec<Trial> {
     let draw = draw(motions, pairs, seed);
@@ -205,7 +205,7 @@ fn draw(motions: &Motions, pairs: usize, seed: u64) -> Vec<(Draw, Vec<usize>)> {
     ];
     for (what, size, count) in wanted {
         let first = draw.len();
-        // With fewer takes than requested, all of them are draw eventually.
+        // With fewer takes than requested, all of them are drawn eventually.
         for _ in 0..count * 200 {
             if draw.len() - first == count || takes.is_empty() {
                 break;

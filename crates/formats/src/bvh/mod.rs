@@ -1,5 +1,5 @@
-//! BVH: a text format for skeletons and motions (Biovision, 1990s), for which there is no standard
-//! but what files do.
+//! BVH: a text format for skeletons and motions (Biovision, 1990s). There is no standard beyond the
+//! practice of programs.
 //!
 //! A HIERARCHY section lists joints with their OFFSET from the parent and their CHANNELS; a MOTION
 //! section has one number per channel and frame. Rotations are degrees about the joint's own axes,
@@ -7,7 +7,7 @@
 //! Position channels replace the OFFSET. Names are the rest of their line, and case does not matter
 //! in keywords.
 //!
-//! What is not in the file (the unit of length and the up axis) is found by [`super::Measure`].
+//! The unit of length and the up axis are not in the file; they are inferred ([`super::Measure`]).
 
 mod convert;
 mod decimal;
@@ -29,7 +29,7 @@ pub(super) use number::{Scan, scan};
 pub use read::{read, read_with_progress};
 pub use write::{RotationOrder, WriteOptions, write};
 
-/// Whether the first word is one that BVH files start with.
+/// Returns whether the first word is one with which BVH files start.
 pub(super) fn starts_like_bvh(text: &[u8]) -> bool {
     let token = lexer::Lexer::new(text, false).peek();
     token.eq_ignore_ascii_case(b"HIERARCHY") || token.eq_ignore_ascii_case(b"ROOT")

@@ -106,7 +106,7 @@ impl HalfAngles {
     /// Sets four angles below 1e9, degrees.
     #[inline]
     fn set(&mut self, degrees: [f64; LANES]) {
-        // Adding this rounds to an integer, for magnitudes below 2⁵¹.
+        // Adding this rounds to an integer in double precision, for magnitudes below 2⁵¹.
         const ROUND: f64 = 6_755_399_441_055_744.0;
         let Self { quarters, rests } = self;
         for ((quarters, rest), degrees) in quarters.iter_mut().zip(rests).zip(degrees) {
@@ -120,7 +120,7 @@ impl HalfAngles {
     /// Returns sines and cosines, to within 1e-7, the precision of `f32`.
     #[inline]
     fn sin_cos(&self) -> (Vec4, Vec4) {
-        // As above, in single precision and for magnitudes below 2²².
+        // Adding this rounds to an integer in single precision, for magnitudes below 2²².
         const ROUND: Vec4 = Vec4::splat(12_582_912.0);
         let (x, quarters) = (Vec4::from_array(self.rests), Vec4::from_array(self.quarters));
         let x2 = x * x;

@@ -28,17 +28,16 @@ use std::sync::Arc;
 /// metres and Y up. A character without animation is a clip of one frame, its rest pose.
 ///
 /// `name` is the file's name: for errors, and for clips whose animation has no name. `resolve`
-/// gives the bytes of files that lie beside it, by the name that stands in it (the `.bin` of a
-/// `.gltf`).
+/// returns the bytes of a file beside this one (the `.bin` of a `.gltf`) by the name in its JSON.
 ///
-/// Keys are sampled at the lowest rate at which each is a frame, or at 30 frames per second where
-/// there is none; `options.fps` overrides that and does not change how long an animation takes.
-/// Lengths are metres unless that makes giants of more than ten metres: centimetres then, or
-/// millimetres.
+/// Keys are sampled at the lowest rate at which each is a frame, or at 30 frames per second if
+/// there is none; `options.fps` overrides that rate and does not change the duration of an
+/// animation. Lengths are metres. If a character would be taller than ten metres, they are taken as
+/// centimetres, and above a thousand metres as millimetres.
 ///
 /// # Errors
-/// [`ImportError`] when the file is no glTF 2.0, is cut off, holds nothing that moves, or asks for
-/// more memory than `options.max_bytes`.
+/// [`ImportError`] when the file is not glTF 2.0, is truncated, contains neither a skeleton nor an
+/// animation, or asks for more memory than `options.max_bytes`.
 pub fn read(
     name: &str,
     bytes: &[u8],

@@ -127,7 +127,7 @@ fn legs_of_another_length_give_a_warning() {
             .find(|warning| matches!(warning.kind, WarningKind::OffGround { .. }))
     };
     assert_eq!(warning_of(&text), None);
-    // Of the four long bones of the legs the first digit is 7.
+    // The lengths of the four long bones of the legs begin with 7.
     let longer = warning_of(&text.replace("length 7.", "length 9.")).unwrap().to_string();
     assert!(
         longer.contains("cm below the ground; the skeleton may be that of another person"),

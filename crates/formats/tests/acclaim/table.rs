@@ -79,7 +79,7 @@ fn comments_and_separators_of_any_kind_are_read() {
 
 #[test]
 fn units_of_length_are_used_if_plausible() {
-    // Units that say nothing: the height of the body decides.
+    // Without usable units the height of the body decides.
     for units in [
         "",
         ":units\n mass 1\n",

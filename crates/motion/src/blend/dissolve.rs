@@ -44,8 +44,8 @@ pub struct DissolveOptions {
     /// The curve of A's weight.
     pub law: WeightLaw,
     /// Whether B is first aligned with A. Without alignment, B stays at its own position, and roots
-    /// are blended in the world whatever `root` says: the character glides to B's position during
-    /// the window, or jumps there at a cut.
+    /// are blended in the world for any value of `root`: the character glides to B's position
+    /// during the window, or jumps there at a cut.
     pub align: bool,
     /// The features by which it is aligned.
     pub align_by: AlignBy,

@@ -184,9 +184,9 @@ pub(crate) fn stillest_point(before: &[Vec3], after: &[Vec3]) -> Option<(usize, 
 
 /// World positions of the points of the feet and of the hips, frame by frame.
 pub(super) struct FootTracks {
-    /// Of ankles, toe joints and toe tips, for each side that has them.
+    /// Positions of ankles, toe joints and toe tips, for each side that has them.
     pub(super) feet: [Vec<(Side, Vec<Vec3>)>; 3],
-    /// Of the hips.
+    /// Positions of the hips.
     body: Vec<Vec3>,
 }
 

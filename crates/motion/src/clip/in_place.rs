@@ -258,7 +258,7 @@ impl Feet {
             yaw = if weights > 0.0 { sum / weights } else { 0.0 };
         }
         let turn = Planar { yaw, shift: DVec2::ZERO };
-        // Of each foot the point that moves backward fastest: it stands, while the others roll
+        // The point of each foot that moves backward fastest: it stands, while the others roll
         // about it.
         let step = |point: &FootPoint| point.way[frame] - turn.apply_ground(point.way[frame + 1]);
         let feet = Side::BOTH.into_iter().filter_map(|side| {

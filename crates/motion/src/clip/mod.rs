@@ -24,12 +24,13 @@
 //! ([`Clip::unfolded`]). A lever between root and hips would otherwise be blended by its angles,
 //! and swing the body.
 //!
-//! [`Contacts`] say when a foot is on the ground: it is low *and* slow. Each limit has hysteresis,
-//! one value to enter contact and a looser one to leave it: about a single limit a trembling foot
-//! would flicker.
+//! [`Contacts`] hold the frames in which a foot is on the ground: it is low *and* slow. Each limit
+//! has hysteresis, one value to enter contact and a looser one to leave it: about a single limit a
+//! trembling foot would flicker.
 //!
-//! A clip that goes in place ([`take_in_place`]) has its way over the ground in its feet: what
-//! stands goes backward under the body, and [`root_motion_from_feet`] adds that up.
+//! The root motion of a clip that moves in place ([`take_in_place`]) follows from its feet: a
+//! standing foot moves backward under the body, and [`root_motion_from_feet`] integrates this
+//! motion.
 //!
 //! # Example
 //!

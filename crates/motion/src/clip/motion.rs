@@ -6,10 +6,10 @@ use crate::skeleton::{Role, Roles};
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-/// How the feet of a clip are read: when they are planted, and where the ground is.
+/// Options for the feet of a clip: the contacts, and the height of the ground.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FootOptions {
-    /// When a foot counts as planted.
+    /// The thresholds for planted feet.
     pub contacts: ContactOptions,
     /// The height of the ground, metres; `None` to estimate it from the planted feet.
     pub ground_m: Option<f32>,

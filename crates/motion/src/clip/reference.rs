@@ -1,4 +1,4 @@
-//! Reference poses: how a clip's body stands, whatever its rest pose is.
+//! Reference poses: the standing body of a clip, independent of its rest pose.
 
 use super::Clip;
 use crate::math::quat;
@@ -20,8 +20,8 @@ const MAX_MEAN_ANGLE: f32 = 0.7;
 /// frame in which the body is most upright. Of frames that are about as upright, the one in which
 /// head, hands and feet are closest to their mean rotations is taken.
 ///
-/// Where roles are missing, it is the rest pose, unless the clip's joints are rotated far from it:
-/// then the frame in which they are farthest apart.
+/// If roles are missing, it is the rest pose, or, if the clip's joints are rotated far from that,
+/// the frame in which they are farthest apart.
 #[must_use]
 pub fn reference_pose(clip: &Clip, roles: &Roles) -> WorldPose {
     let skeleton = clip.skeleton();

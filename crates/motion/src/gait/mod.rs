@@ -18,7 +18,7 @@
 //! both legs, so each leg has a phase of its own, from its own events ([`PhaseAlignment::Feet`]).
 //! Picture two wheels with spokes of uneven spacing, bent until the spokes coincide. The trajectory
 //! over the ground is made of the cycles' own steps in the character's frame. [`SpeedPlayer`] lets
-//! the speed change during playback: the phase continues whatever the speed does.
+//! the speed change during playback: the phase is continuous at any change of speed.
 //!
 //! # Example
 //!

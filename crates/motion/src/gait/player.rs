@@ -6,7 +6,7 @@ use crate::skeleton::Pose;
 
 /// A gait that plays while its speed changes.
 ///
-/// The phase is continuous whatever the speed does, and the speed follows the requested one as a
+/// The phase is continuous at any change of speed, and the speed follows the requested one as a
 /// critically damped spring, so that a walk becomes a run without a jump. The player holds no
 /// clips: every call is given the blend, which may be replaced between calls.
 #[derive(Clone, Copy, Debug, PartialEq)]

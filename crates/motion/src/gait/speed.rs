@@ -14,8 +14,8 @@ use std::ops::RangeInclusive;
 pub struct SpeedOptions {
     /// The alignment of the gaits in phase.
     pub alignment: PhaseAlignment,
-    /// The time in which a [`SpeedPlayer`] changes its speed: the half-life of a critically damped
-    /// spring, seconds. 0 is at once.
+    /// The time in which a [`SpeedPlayer`](super::SpeedPlayer) changes its speed: the half-life of
+    /// a critically damped spring, seconds. 0 is at once.
     pub half_life_secs: f64,
 }
 

@@ -9,9 +9,9 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// How far the search looks ahead before it commits itself, seconds.
+/// The time over which the search looks ahead, seconds.
 const HORIZON_SECS: f64 = 4.0;
-/// The part of its result that it then keeps, seconds.
+/// The duration of the beginning of a search's result that is kept, seconds.
 const COMMITTED_SECS: f64 = 1.0;
 /// The cost of a second on the path itself, m²·s⁻¹: without it standing still would be best.
 const STANDSTILL_COST: f64 = 0.05;
@@ -150,7 +150,7 @@ impl FollowSearch {
         options: &StitchOptions,
     ) -> Self {
         let world_from_first = first_place(graph, start, path);
-        // A mistake belongs to the walk, not to the plan.
+        // Deliberate mistakes are made when the walk is stitched, not in its plan.
         let options = StitchOptions { mistake: None, ..*options };
         Self {
             stitcher: Stitcher::new(Arc::clone(graph.set()), &options),
@@ -344,7 +344,7 @@ impl Ahead {
             self.trail.pop();
             return;
         }
-        // The most promising first, for a good bound early.
+        // The most promising way is searched first, for a good bound early.
         ways.sort_by_key(|(bound, edge, _)| (*bound, *edge));
         let ways: Vec<_> = ways.into_iter().map(|(_, edge, next)| (edge, next)).collect();
         self.levels.push(ways.into_iter());

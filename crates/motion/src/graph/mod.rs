@@ -1,4 +1,4 @@
-//! Motion graphs: clips of one skeleton, cut into stretches, with transitions wherever two windows
+//! Motion graphs: clips of one skeleton, cut into stretches, with transitions between windows that
 //! are alike. A walk through the graph is an endless motion.
 //!
 //! # The idea
@@ -94,9 +94,9 @@
 //! # What it does not do
 //!
 //! It makes no motion that is not in the clips: a clip without a transition below the threshold is
-//! not reached, and [`GraphError`] says what to change. It does not know what a clip means: an idle
-//! stretch is as good a place to stay as any. It reacts at the next switch, not at once; for that
-//! see [`crate::matching`].
+//! not reached, and [`GraphError`] says what to change. The content of a clip has no meaning for
+//! it: a walk may stay in an idle stretch as long as in any other. It reacts at the next switch,
+//! not at once; for that see [`crate::matching`].
 //!
 //! # Sources
 //!

@@ -53,7 +53,7 @@ impl DistanceOverview {
         let bins_per_m = (self.set().cm_per_m() / Self::BIN_CM) as f32;
         let last = self.counts.len().saturating_sub(1);
         for (row, i) in a.numbers().zip(a.starts.start - a.from..) {
-            // Of a part with itself only one half counts.
+            // Distances within one part are symmetric: only those above the diagonal are counted.
             let first = b.number.max(row);
             let cells = distances
                 .row(i)
@@ -248,7 +248,7 @@ impl DistanceDetail {
             let start = (row - self.rows.start) / self.factor * self.width;
             for column in columns.clone() {
                 let j = column - across.number + (across.starts.start - across.from);
-                // Of a part with itself the two halves are also equal.
+                // Distances within one part are symmetric too.
                 let (i, j) = if row <= column { (i, j) } else { (j, i) };
                 let found = distances.get(i, j).map(|distance| distance * scale);
                 if let (Some(texel), Some(found)) = (

@@ -148,7 +148,7 @@ impl CandidateStream {
                     continue;
                 };
                 let enter = Place { clip: b.clip, frame: j };
-                // Of a clip with itself only one half counts.
+                // Distances within one clip are symmetric: each pair is offered once.
                 if leave < enter
                     && picker.is_worth(distance)
                     && (only_minima || options.is_end(set, enter))

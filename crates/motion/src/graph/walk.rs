@@ -116,8 +116,7 @@ impl Walker {
         };
         self.ahead.clear();
         for pair in nodes.windows(2) {
-            // Of several transitions between the same two nodes the closest is taken, which was
-            // added first.
+            // The closest of several transitions between the same two nodes was added first.
             let between = graph.edges_connecting(pair[0], pair[1]).map(|edge| edge.id());
             let shortest = between.min_by_key(|&edge| (self.graph.frames_of(edge), edge));
             self.ahead.extend(shortest);

@@ -64,7 +64,7 @@ pub enum Normalisation {
     /// Those of each [`Block`]: sideways positions that hardly vary have a small part in the cost.
     #[default]
     Block,
-    /// None: each dimension is scaled by itself, so that all vary by as much (the standard score).
+    /// Each dimension on its own, so that all vary by the same amount (the standard score).
     Dimension,
 }
 

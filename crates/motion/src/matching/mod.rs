@@ -77,9 +77,9 @@
 //!
 //! # What it does not do
 //!
-//! It knows one ground plane, no obstacles, and no other characters. It looks one second ahead and
-//! plans nothing: motion that is not in the clips does not appear. Retargeted clips keep their feet
-//! planted only as well as [`crate::clip::retarget`] does.
+//! It assumes one ground plane, without obstacles and other characters. It looks one second ahead
+//! and plans nothing: motion that is not in the clips does not appear. Retargeted clips keep their
+//! feet planted only as well as [`crate::clip::retarget`] does.
 //!
 //! # Sources
 //!

@@ -176,7 +176,7 @@ fn database_with_other_rates_times_and_tags_differs_as_documented() {
     // The same motion at another rate gives the same features.
     let clip = synthesize(&Params::new(Action::Walk)).unwrap().clip;
     let finer = resample(&clip, 120.0, Interpolation::Cubic).unwrap();
-    // As a clip that ends: a repetition has a whole number of frames, which differ between rates.
+    // The clips end here: a repetition has a whole number of frames, which differs between rates.
     let [usual, fine] = [clip, finer].map(|clip| {
         Database::new(vec![Arc::new(Motion::analyze(clip))], &cycle_options(false)).unwrap()
     });
@@ -312,7 +312,8 @@ fn jumps_have_continuous_poses_and_velocities() {
         // It starts with the velocity that it had; the pull of an offset of half a radian in one
         // tick is 0.03.
         let (before, at) = (step(jump.frame.saturating_sub(1)), step(jump.frame));
-        // That is the step that the old clip makes next, which may be longer than the one before.
+        // The velocity is that of the old clip's next step, which may be longer than the step
+        // before.
         let motion = &small_database().motions()[jump.from.place.motion];
         let next = motion.next(jump.from.place.frame).unwrap_or(jump.from.place.frame);
         let own = (motion.clip().rotations(jump.from.place.frame).iter())

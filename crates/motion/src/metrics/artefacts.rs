@@ -31,7 +31,7 @@ const MIN_SPIN_DEG: f32 = 30.0;
 const LOW_M: f32 = 0.04;
 /// The least duration of a stance, seconds: a low foot at a median speed below [`STANDING_MPS`].
 const MIN_STANCE_SECS: f64 = 0.1;
-/// See [`MIN_STANCE_SECS`], metres per second.
+/// The greatest median speed of a stance, metres per second.
 const STANDING_MPS: f32 = 0.6;
 /// Skating is measured below this height above the 2nd percentile of the foot's heights, metres.
 const SKATING_M: f32 = 0.025;

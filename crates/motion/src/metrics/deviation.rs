@@ -14,18 +14,18 @@ const ARMS: &[BodyPart] = &[BodyPart::LeftArm, BodyPart::RightArm];
 /// known roles.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Deviations {
-    /// Of the joints of both arms.
+    /// The deviation of both arms.
     pub arms_deg: Option<f64>,
-    /// Of the joints of the spine.
+    /// The deviation of the spine.
     pub spine_deg: Option<f64>,
-    /// Of neck and head.
+    /// The deviation of neck and head.
     pub head_deg: Option<f64>,
-    /// Of hips and legs.
+    /// The deviation of hips and legs.
     pub legs_deg: Option<f64>,
 }
 
 impl Deviations {
-    /// Measures how far the joints of `result` are turned from those of `base`.
+    /// Measures the angles between the joints of `result` and those of `base`.
     #[must_use]
     pub fn measure(result: &Clip, base: &Clip, roles: &Roles) -> Self {
         let frames = result.frames().min(base.frames());

@@ -124,7 +124,7 @@ impl ArcLengthPath {
                 right = u;
             }
             let next = u + missing / self.spline.jet(u).first.length();
-            // Where the speed is 0 the step is not finite, and the middle is taken.
+            // If the speed is 0 the step is not finite, and the middle is taken.
             u = if next > left && next < right { next } else { 0.5 * (left + right) };
         }
         u

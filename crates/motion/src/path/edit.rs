@@ -287,7 +287,7 @@ impl GroundSpline {
                 {
                     return all(&|p| p + (start - from));
                 }
-                // As complex numbers: the quotient of the two chords rotates and scales.
+                // The quotient of the two chords, as complex numbers, rotates and scales.
                 let quotient = DVec2::new(way.dot(own), own.perp_dot(way)) / own.length_squared();
                 all(&|p| start + quotient.rotate(p - from))
             }

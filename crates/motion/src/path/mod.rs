@@ -16,9 +16,9 @@
 //!
 //! Picture a dancer in a tram: bend the rails, and the dance goes along. When the path changes,
 //! every frame is moved with the frame of the path that it belongs to ([`carry`]), and the feet are
-//! planted again ([`PathEditor`]). [`Timing`] says what happens to time where a path becomes
-//! longer: distance, speed or duration is kept. [`hard_turns`] reports turns that are sharper
-//! than those of the original motion (curvature × speed).
+//! planted again ([`PathEditor`]). [`Timing`] determines whether distance, speed or duration is
+//! kept when a path becomes longer. [`hard_turns`] reports turns that are sharper than those of the
+//! original motion (curvature × speed).
 //!
 //! # Example
 //!
@@ -63,8 +63,8 @@
 //! # What it does not do
 //!
 //! It bends motions, and neither adds nor removes steps: a path of twice the length is walked
-//! halfway, or with strides twice as long, as [`Timing`] says. A motion in place has no path.
-//! Balance is not maintained: a character on a hairpin does not lean.
+//! halfway, or with strides twice as long, by [`Timing`]. A motion in place has no path. Balance is
+//! not maintained: a character on a hairpin does not lean.
 //!
 //! # Sources
 //!

@@ -163,10 +163,10 @@ const MIN_RATE: f64 = 0.05;
 ///
 /// Both clips are treated symmetrically: the lead v = j - i is a function of the mean u = (i +
 /// j)/2, which rises with every step. It is smoothed over `smoothing` frames to either side, less
-/// towards a fixed point, which stays; i = u - v/2 and j = u + v/2 both rise while |dv/du| < 2.
-/// Where a run of steps makes it steeper than a twentieth less than that, the part between its
-/// fixed points is drawn towards the straight line. Then a monotone cubic is put through knots, two
-/// for every width of smoothing.
+/// towards a fixed point, which stays; i = u - v/2 and j = u + v/2 both rise while |dv/du| < 2. If
+/// a run of steps makes it steeper than a twentieth less than that, the part between its fixed
+/// points is drawn towards the straight line. Then a monotone cubic is put through knots, two for
+/// every width of smoothing.
 fn time_warp(path: &[(f64, f64)], fixed: &[(f64, f64)], smoothing: f64) -> Option<MonotoneCurve> {
     let (mean, lead) = path.iter().map(|&(i, j)| (0.5 * (i + j), j - i)).unzip();
     let lead = Smoothed::new(mean, lead);

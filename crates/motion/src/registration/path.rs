@@ -158,7 +158,7 @@ fn no_path(
         from: start.map(|cell| matrix.frames(cell.0, cell.1)),
         to: to.map(|cell| matrix.frames(cell.0, cell.1)),
         slope_limit: options.slope_limit,
-        // Where a run continues across a pin, the lengths of the sides are not sufficient.
+        // If a run continues across a pin, the lengths of the sides are not sufficient.
         needed: needed.unwrap_or_default().max(options.slope_limit + 1),
     }
 }

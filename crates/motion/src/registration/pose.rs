@@ -80,11 +80,11 @@ const CALM_REACH_SECS: f64 = 0.05;
 /// comparison. Pairs are compared every `max(⌈fps / 60⌉, ⌈frames / 1000⌉)` frames, in slices; the
 /// eight lowest minima are searched again at every frame, within one stride or 0.05 s.
 ///
-/// Of pairs that are nearly as good as the best, within 3 % of a mean pair's cost, the result is
-/// the first that is calm: none of its joints has a jolt that is rare in its clip, since a jolt at
-/// the seam would be taken over as a velocity, and swing the joint out. The result's cost is within
-/// 5 % of a mean pair's cost of the smallest over all pairs (tested against them), and is exact for
-/// the pair returned.
+/// The result is the first calm one of the pairs that are nearly as good as the best, within 3 % of
+/// a mean pair's cost: none of its joints has a jolt that is rare in its clip, since a jolt at the
+/// seam would be taken over as a velocity, and swing the joint out. The result's cost is within 5 %
+/// of a mean pair's cost of the smallest over all pairs (tested against them), and is exact for the
+/// pair returned.
 #[derive(Clone, Debug)]
 pub struct PoseSearch {
     outgoing: Poses,
@@ -286,8 +286,8 @@ impl PoseSearch {
                     .extend(around(j, &enter).map(|j| (cost(&factors, &self.compare(i, j)), i, j)));
             }
         }
-        // Of equal pairs the earliest frames come first, whatever the order in which candidates
-        // were found.
+        // Equal pairs are sorted by their frames, independent of the order in which they were
+        // found.
         pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
         let lowest = pairs.first().map_or(f64::INFINITY, |pair| pair.0);
         let alike = pairs.iter().take_while(|pair| pair.0 <= lowest + lowest.min(CALM_COST));

@@ -276,7 +276,12 @@ fn exact(
     super::align(&a.world_positions(i..i + window), &b.world_positions(j..j + window), weights, 0.0)
 }
 
-/// Returns the best transition in one call; see [`TransitionSearch`].
+/// Returns the pair of windows with the smallest distance per point after the best alignment on the
+/// ground, and that alignment: the search of [`TransitionSearch`] in one call.
+///
+/// `weights` has one weight per joint ([`super::limb_weights`]), `body_height` (metres,
+/// [`crate::skeleton::Roles::body_height`]) scales the distance to centimetres on the reference
+/// body, and `options` give the length of the windows and the regions in which they may start.
 ///
 /// # Errors
 /// [`RegistrationError`] when the clips cannot be compared or the window does not fit.

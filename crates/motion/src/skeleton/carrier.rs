@@ -72,8 +72,8 @@ fn first_branching(skeleton: &Skeleton) -> usize {
     carrier
 }
 
-/// The joints that a file has above the carrier, and how they move with it: all that an exporter
-/// needs to write them again.
+/// The joints that a file has above the carrier, and their motion: the data from which an exporter
+/// writes them again.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct FoldedChain {
     /// From the file's root to the parent of the carrier; each is the parent of the next.
@@ -85,7 +85,7 @@ pub struct FoldedChain {
     pub(crate) beside: Vec<ChainChild>,
     /// For each joint of the skeleton, its index in the file.
     pub(crate) file_index: Vec<usize>,
-    /// How the chain moves.
+    /// The motion of the chain.
     pub(crate) follows: ChainMotion,
 }
 
@@ -113,7 +113,7 @@ pub(crate) struct ChainChild {
     pub(crate) offset: Vec3,
 }
 
-/// How the joints above a carrier move with it.
+/// The motion of the joints above a carrier.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(crate) enum ChainMotion {
     /// They stand still.

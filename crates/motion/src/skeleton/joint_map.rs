@@ -119,7 +119,7 @@ impl Landmarks {
             [Some(left), Some(right)] => above(left).find(|&joint| ancestry.is_below(right, joint)),
             _ => None,
         };
-        // A chest that is the hips says nothing about a back.
+        // If the chest is the hips, there is no back between them.
         let chest = chest.filter(|&chest| roles.role_of(chest) != Some(Role::Hips) && chest > 0);
         let collar = |arm: Option<usize>| {
             above(arm?).take_while(|&joint| Some(joint) != chest).last().filter(|_| chest.is_some())

@@ -14,7 +14,7 @@
 //!
 //! A turn of the hip therefore carries the whole leg along, and no bone changes its length.
 //!
-//! Files name joints as they like. [`Roles`] say which joint is the left knee: by its name,
+//! The names of joints differ from file to file. [`Roles`] identify the left knee: by its name,
 //! otherwise by the shape of the skeleton at rest, otherwise by hand. No other code looks at names.
 //! With the roles of both skeletons a pose can be retargeted ([`Retargeting`]): a joint takes the
 //! *world* rotation of its source joint, corrected by how the two bones differ at rest.

@@ -156,7 +156,7 @@ impl Retargeting {
         for (joint, parent) in self.target.joints().iter().map(|j| j.parent).enumerate() {
             let above = parent.map_or(Quat::IDENTITY, |parent| worlds[parent]);
             let turned = self.world_rotation(joint, &world);
-            // Where the axes of the whole body differ, the root has their rotation at rest.
+            // If the axes of the whole body differ, the root has their rotation at rest.
             let rest = if parent.is_none() { self.whole_body } else { Quat::IDENTITY };
             let computed =
                 || turned.map_or(rest, |turned| quat::renormalize(above.conjugate() * turned));

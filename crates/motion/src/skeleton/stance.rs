@@ -153,7 +153,7 @@ impl Landmark {
         let hips = legs[0].start - legs[1].start;
         let across =
             hips + arms.as_ref().map_or(Vec3::ZERO, |[left, right]| left.start - right.start);
-        // Where the shoulders are turned half round against the hips, the sum is 0.
+        // If the shoulders are turned half round against the hips, the sum is 0.
         let left = [across, hips]
             .into_iter()
             .find_map(|across| across.reject_from_normalized(up).try_normalize())?;

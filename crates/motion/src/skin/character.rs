@@ -90,7 +90,8 @@ impl Character {
     }
 }
 
-/// How the poses of one skeleton move a [`Character`], rest poses considered (see [`Retargeting`]).
+/// The mapping by which poses of one skeleton move a [`Character`], with rest poses taken into
+/// account (see [`Retargeting`]).
 ///
 /// ```
 /// use segue_motion::skeleton::{Roles, WorldPose};

@@ -187,7 +187,7 @@ impl Octree {
             self.field.narrowed(center, reach, near, &self.sizes, &mut narrowed, &mut self.scratch);
         let is_near = around.least <= 1.1 * reach
             && self.field.sample(center, &narrowed, &mut self.scratch).value.abs() <= 1.6 * reach;
-        // Where no single surface is near, there may still be the blend of two.
+        // If no single surface is near, the blend of two may still be.
         let wanted = if around.size.is_finite() { around.size } else { self.coarsest };
         if is_near && level > 0 && size > 1.01 * wanted {
             let half = 1 << (level - 1);
@@ -296,9 +296,8 @@ impl Octree {
         }
     }
 
-    /// Returns the leaves around an edge of a leaf, counter-clockwise as seen from its far end.
-    /// Where smaller leaves share the edge, those at `step` finest cells from its near end are
-    /// returned.
+    /// Returns the leaves around an edge of a leaf, counter-clockwise as seen from its far end. If
+    /// smaller leaves share the edge, those at `step` finest cells from its near end are returned.
     fn ring(&self, leaf: usize, axis: usize, side: [i32; 2], step: i32) -> Option<[usize; 4]> {
         let (at, level) = (self.leaves[leaf].at, self.leaves[leaf].level);
         let size = 1 << level;

@@ -37,9 +37,9 @@
 //! assert!(apart > 0.0 && apart < 0.03, "{apart}");
 //! ```
 //!
-//! Making a body takes about 0.1 s, in slices of a millisecond; posing it takes a millisecond here,
-//! in one thread, and next to nothing on the GPU. Hands have no separate fingers where the skeleton
-//! has none, and there are no collisions.
+//! Making a body takes about 0.1 s, in slices of a millisecond. Posing it with the functions of
+//! this module takes a millisecond, on the GPU next to nothing. Hands have no separate fingers
+//! where the skeleton has none, and there are no collisions.
 //!
 //! Sources: Kavan, Collins, Žára, O'Sullivan, "Skinning with Dual Quaternions", 2007; Ju, Losasso,
 //! Schaefer, Warren, "Dual Contouring of Hermite Data", 2002.

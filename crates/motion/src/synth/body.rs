@@ -106,8 +106,8 @@ pub fn heel_in_foot(height_m: f32) -> Vec3 {
     Body::new(height_m).heel_in_foot
 }
 
-/// A person of `height_m` metres: 22 joints named as in `LaFAN1`, in a T-pose that faces +Z, +Y up,
-/// left on +X.
+/// Returns the skeleton of a person of `height_m` metres: 22 joints named as in `LaFAN1`, in a
+/// T-pose that faces +Z, +Y up, left on +X.
 ///
 /// Proportions after Drillis and Contini 1966 (Winter, "Biomechanics and Motor Control of Human
 /// Movement", figure 4.1). Channels as in most BVH files: position and ZYX rotation for the root,

@@ -5,8 +5,8 @@ use super::body::Body;
 use super::track::{Spline, State, cubic_start_acceleration, quintic, ramp};
 use glam::{DVec2, DVec3, Quat, Vec3};
 
-/// A plant of a foot: its time, position, and how the foot arrives and leaves. Times in seconds,
-/// `±∞` for a foot that keeps standing.
+/// A plant of a foot: its times, its position, and the pitch with which the foot arrives and
+/// leaves. Times are seconds, `-∞` for a plant without a beginning and `∞` for one without an end.
 ///
 /// The foot rolls over two rockers (Perry and Burnfield 2010, chapter 3): about the heel from
 /// `from` to `flat_from`, flat on the ground to `flat_to`, and about the ball, with the toes flat,
@@ -17,9 +17,9 @@ pub(super) struct Plant {
     pub(super) flat_from: f64,
     pub(super) flat_to: f64,
     pub(super) to: f64,
-    /// Position of the ankle over the flat foot, world (x, z).
+    /// Position of the ankle while the foot is flat, world (x, z), metres.
     pub(super) ankle: DVec2,
-    /// Direction of the toes about +Y.
+    /// Direction of the toes about +Y, radians.
     pub(super) yaw: f64,
     /// Pitch at `from` and `to`, radians, positive with the heel up.
     pub(super) strike_pitch: f64,
@@ -29,32 +29,36 @@ pub(super) struct Plant {
     pub(super) half_width: f64,
     /// Durations of loading after `from` and of unloading before `to`, seconds.
     pub(super) load_secs: f64,
-    /// Stances per second, for feet that stand without end.
+    /// Inverse of the duration of a stance, per second: the rate of its progress, also for a plant
+    /// without a beginning or an end.
     pub(super) stances_per_sec: f64,
     /// The swing from here to the next plant.
     pub(super) swing: Swing,
 }
 
 /// The swing of a foot. Times are shares of the swing; heights are those of the ball above its
-/// height on the ground, metres.
+/// height at the release, metres.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Swing {
+    /// The highest point: (share, height).
     pub(super) peak: (f64, f64),
+    /// The low point before the strike: (share, height).
     pub(super) low: (f64, f64),
     /// Pitch knots after the release: (share, radians).
     pub(super) pitch: [(f64, f64); 2],
-    /// Pitch shortly before the strike, relative to that at the strike.
+    /// Pitch at the share 0.88, relative to that at the strike, radians; negative with the toes
+    /// higher.
     pub(super) toes_up: f64,
-    /// Horizontal acceleration at the start and end of the swing, as a multiple of that of the
-    /// curve that bends least.
-    pub(super) eager: f64,
-    pub(super) late: f64,
-    /// Lateral displacement of the trajectory in the middle, world (x, z), metres: around the other
-    /// leg on a curve, where the chord would pass through it.
-    pub(super) aside: DVec2,
-    /// Vertical velocity of the ball at the start and end, m/s; not 0 only where it leaves the
-    /// ground with the whole body.
-    pub(super) spring: f64,
+    /// Horizontal acceleration at the start and the end of the swing, as multiples of those of the
+    /// cubic between the same positions and velocities, which is the curve of least bending.
+    pub(super) start_acceleration: f64,
+    pub(super) end_acceleration: f64,
+    /// Displacement of the trajectory in the middle of the swing, world (x, z), metres: around the
+    /// other leg, through which the straight way would pass on a curve.
+    pub(super) sideways: DVec2,
+    /// Upward speed of the ball at the start of the swing, and downward speed at its end, m/s.
+    /// Above 0 only in jumps, in which the foot leaves the ground with the whole body.
+    pub(super) lift_off_mps: f64,
 }
 
 /// The state of a foot at one moment.
@@ -71,7 +75,7 @@ pub(super) struct Foot {
     pub(super) load: f64,
     /// 0 at the strike to 1 at the release; the share of the swing while in the air.
     pub(super) progress: f64,
-    /// Centre of pressure, world (x, z).
+    /// Centre of pressure, world (x, z), metres; in the air that of the last plant.
     pub(super) pressure: DVec2,
 }
 
@@ -81,8 +85,8 @@ impl Foot {
     }
 }
 
-/// Returns (along, up) of a vector of the foot's side view after a pitch, and its derivative by the
-/// pitch.
+/// Returns a vector of the foot's side view after a pitch, as (along, up), and its derivative by
+/// the pitch.
 fn pitched(v: Vec3, pitch: f64) -> (DVec2, DVec2) {
     let (y, z) = (f64::from(v.y), f64::from(v.z));
     let (sin, cos) = pitch.sin_cos();
@@ -92,11 +96,14 @@ fn pitched(v: Vec3, pitch: f64) -> (DVec2, DVec2) {
     )
 }
 
+/// Returns the direction of a yaw over the ground, (x, z).
 fn along(yaw: f64) -> DVec2 {
     DVec2::new(yaw.sin(), yaw.cos())
 }
 
-/// Returns the ball of a planted foot at a pitch, and its derivative by the pitch.
+/// Returns the world position of the ball of a planted foot at a pitch, and its derivative by the
+/// pitch. With the heel up the foot turns about the ball, which stays; with the toes up it turns
+/// about the heel.
 fn planted_ball(plant: &Plant, body: &Body, pitch: f64) -> (DVec3, DVec3) {
     let flat_ball = f64::from(body.ball_in_foot.z);
     let ball_height = f64::from(body.ankle_height() + body.ball_in_foot.y);
@@ -114,11 +121,15 @@ fn planted_ball(plant: &Plant, body: &Body, pitch: f64) -> (DVec3, DVec3) {
 }
 
 impl Plant {
+    /// Returns the rate of the pitch at the strike, radians per second: 1.1 times its mean until
+    /// the foot is flat.
     fn strike_rate(&self) -> f64 {
         let span = self.flat_from - self.from;
         if span.is_finite() && span > 0.0 { -1.1 * self.strike_pitch / span } else { 0.0 }
     }
 
+    /// Returns the rate of the pitch at the release, radians per second: 1.9 times its mean since
+    /// the foot was flat.
     fn release_rate(&self) -> f64 {
         let span = self.to - self.flat_to;
         if span.is_finite() && span > 0.0 { 1.9 * self.release_pitch / span } else { 0.0 }
@@ -138,8 +149,8 @@ impl Plant {
         }
     }
 
-    /// Returns the progress through the stance; a foot that stands without end is in the middle of
-    /// it.
+    /// Returns the progress through the stance. Without an end it stops at the middle, and without
+    /// a beginning it starts there.
     fn progress(&self, secs: f64) -> f64 {
         let since = (secs - self.from) * self.stances_per_sec;
         let left = (self.to - secs) * self.stances_per_sec;
@@ -173,8 +184,8 @@ pub(super) fn foot_at(plants: &[Plant], body: &Body, secs: f64) -> Option<Foot> 
     let down = next.is_none();
     let rotation = Quat::from_rotation_y(yaw as f32) * Quat::from_rotation_x(pitch as f32);
     let ankle = ball.as_vec3() - rotation * body.ball_in_foot;
-    // The centre of pressure moves from the heel to the ball: early in stance it is behind the
-    // middle of the foot, late in front of it.
+    // The centre of pressure moves from the heel to the ball: for an adult from 2 cm behind the
+    // ankle at the strike over 5 cm in front of it to 12 cm at the release.
     let scale = f64::from(body.scale);
     let roll = 0.05 - 0.07 * (1.0 - ramp(secs, plant.from, plant.from + 2.0 * plant.load_secs))
         + 0.07 * ramp(secs, plant.to - 3.0 * plant.load_secs, plant.to);
@@ -205,8 +216,8 @@ fn swing_at(plant: &Plant, next: &Plant, body: &Body, secs: f64) -> (DVec3, f64,
     let (start, _) = planted_ball(plant, body, plant.release_pitch);
     let (end, end_turn) = planted_ball(next, body, next.strike_pitch);
     let end_rate = end_turn * next.strike_rate();
-    // Over the ground: from rest to the velocity of the heel rocker, faster at first than a curve
-    // of least jerk.
+    // Over the ground the ball moves from rest to the velocity of the heel rocker. Accelerations at
+    // both ends make it faster there than the curve of least jerk, which has none.
     let mut from = State { value: start.with_y(0.0), rate: DVec3::ZERO, acceleration: DVec3::ZERO };
     let mut to =
         State { value: end.with_y(0.0), rate: end_rate.with_y(0.0), acceleration: DVec3::ZERO };
@@ -215,11 +226,11 @@ fn swing_at(plant: &Plant, next: &Plant, body: &Body, secs: f64) -> (DVec3, f64,
         cubic_start_acceleration(from, to, span),
         cubic_start_acceleration(reversed.0, reversed.1, span),
     );
-    from.acceleration = a0 * swing.eager;
-    to.acceleration = a1 * swing.late;
+    from.acceleration = a0 * swing.start_acceleration;
+    to.acceleration = a1 * swing.end_acceleration;
     let bulge = 16.0 * (share * (1.0 - share)).powi(2);
     let ground =
-        quintic(from, to, span, now) + DVec3::new(swing.aside.x, 0.0, swing.aside.y) * bulge;
+        quintic(from, to, span, now) + DVec3::new(swing.sideways.x, 0.0, swing.sideways.y) * bulge;
     let timed = |(share, value): (f64, f64)| (share * span, value);
     let height = Spline::clamped(
         &[
@@ -228,8 +239,8 @@ fn swing_at(plant: &Plant, next: &Plant, body: &Body, secs: f64) -> (DVec3, f64,
             timed((swing.low.0, start.y + swing.low.1)),
             (span, end.y),
         ],
-        swing.spring,
-        if swing.spring > 0.0 { -swing.spring } else { end_rate.y },
+        swing.lift_off_mps,
+        if swing.lift_off_mps > 0.0 { -swing.lift_off_mps } else { end_rate.y },
     );
     let [a, b] = swing.pitch;
     let pitch = Spline::clamped(
@@ -244,14 +255,14 @@ fn swing_at(plant: &Plant, next: &Plant, body: &Body, secs: f64) -> (DVec3, f64,
         next.strike_rate(),
     )
     .at(now);
-    // The toes leave the ground flat, come into line with the foot, and are flat again where the
-    // ball lands first.
+    // The toes leave the ground flat, come into line with the foot, and are flat again at the
+    // strike if the ball lands first.
     let landing = if next.strike_pitch > 0.0 { ramp(share, 0.55, 1.0) } else { 0.0 };
     let in_line = ramp(share, 0.0, 0.5) * (1.0 - landing);
     let toe_pitch = pitch * in_line + pitch.min(0.0) * (1.0 - in_line);
     let yaw = plant.yaw + (next.yaw - plant.yaw) * ramp(share, 0.05, 0.92);
-    // Heel and toes clear the ground for any knots: the ball is raised with no initial slope by
-    // most of the missing height.
+    // Heel and toes clear the ground for any knots: the ball is raised by most of the missing
+    // height, smoothly from 0 on.
     let ball = height.at(now);
     let heel = ball + pitched(body.heel_in_foot - body.ball_in_foot, pitch).0.y;
     let tip = ball + pitched(body.tip_in_toes, toe_pitch).0.y;

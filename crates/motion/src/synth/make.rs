@@ -46,7 +46,7 @@ pub fn synthesize(params: &Params) -> Result<Synthesized, SynthError> {
         for side in 0..2 {
             let foot = &moved.feet[step][side];
             let hip = moved.positions[step] + trunk.pelvis * body.hip_in_hips[side];
-            let ankle = given_way(&body, foot, hip, plan.gait.running);
+            let ankle = reachable_ankle(&body, foot, hip, plan.gait.running);
             // The knee points between the directions of hips and toes.
             let hinge = trunk.pelvis * Vec3::X * 0.45
                 + Quat::from_rotation_y(foot.yaw as f32) * Vec3::X * 0.55;
@@ -146,9 +146,9 @@ fn bent_ankle(rotation: Quat, foot: &Foot, ankle_height: f32) -> Quat {
     exp(turn * (1.0 + free * (soft_limit(angle, 0.5, 0.9) / angle.max(1e-6) - 1.0)))
 }
 
-/// Returns the ankle that a leg can reach: in the air the foot deviates from the plan before the
-/// knee is fully straight; close to the ground it does not.
-fn given_way(body: &Body, foot: &Foot, hip: Vec3, running: bool) -> Vec3 {
+/// Returns the position of the ankle that a leg can reach: in the air the foot deviates from the
+/// plan before the knee is fully straight, close to the ground it does not.
+fn reachable_ankle(body: &Body, foot: &Foot, hip: Vec3, running: bool) -> Vec3 {
     if foot.planted() {
         return foot.ankle;
     }

@@ -152,7 +152,7 @@ impl Plan {
                 let wanted = foothold_at(&facing, side, half_width, self.gait, params, body);
                 let left = facing.left();
                 let missing = (wanted - 0.5 * (from.ankle + to.ankle)).dot(left);
-                self.plants[side][index - 1].swing.aside = left * missing;
+                self.plants[side][index - 1].swing.sideways = left * missing;
             }
         }
     }

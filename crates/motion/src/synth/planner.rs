@@ -92,10 +92,10 @@ fn swing_of(gait: &Gait, share: f64, params: &Params, body: &Body) -> Swing {
             low: (0.66, scale * (0.07 + 0.04 * quick)),
             pitch: [(0.28, degrees(84.0 + 28.0 * quick)), (0.60, degrees(38.0))],
             toes_up: degrees(-2.0),
-            eager: 0.65,
-            late: 1.4,
-            aside: DVec2::ZERO,
-            spring: 0.0,
+            start_acceleration: 0.65,
+            end_acceleration: 1.4,
+            sideways: DVec2::ZERO,
+            lift_off_mps: 0.0,
         };
     }
     let quick = (gait.alike_mps / 1.4).clamp(0.25, 1.6) * share;
@@ -107,10 +107,10 @@ fn swing_of(gait: &Gait, share: f64, params: &Params, body: &Body) -> Swing {
             (0.58, degrees(4.0)),
         ],
         toes_up: degrees(-3.0),
-        eager: 1.2,
-        late: 0.7,
-        aside: DVec2::ZERO,
-        spring: 0.0,
+        start_acceleration: 1.2,
+        end_acceleration: 0.7,
+        sideways: DVec2::ZERO,
+        lift_off_mps: 0.0,
     }
 }
 

@@ -72,10 +72,10 @@ pub(super) fn on_the_spot(plan: &mut Plan, params: &Params, body: &Body) {
             low: (0.72, 0.040 * f64::from(body.scale)),
             pitch: [(0.2, 0.50), (0.6, 0.12)],
             toes_up: -0.05,
-            eager: 0.3,
-            late: 0.3,
-            aside: DVec2::ZERO,
-            spring: 0.0,
+            start_acceleration: 0.3,
+            end_acceleration: 0.3,
+            sideways: DVec2::ZERO,
+            lift_off_mps: 0.0,
         };
         // During the turn the feet are set wider, the leading one farther ahead and the trailing
         // one farther back, so that no toe is set on a heel.
@@ -103,7 +103,7 @@ pub(super) fn on_the_spot(plan: &mut Plan, params: &Params, body: &Body) {
 }
 
 /// Pitch of the feet when they leave and reach the ground in a jump.
-const OFF_PITCH: f64 = 0.80;
+const RELEASE_PITCH: f64 = 0.80;
 const LAND_PITCH: f64 = 0.42;
 
 /// Plans a jump from both feet, forward at the given speed.
@@ -144,13 +144,18 @@ pub(super) fn jump(plan: &mut Plan, params: &Params, body: &Body) {
             low: (0.80, 0.62 * rise),
             pitch: [(0.15, 1.05), (0.5, 0.75)],
             toes_up: 0.12,
-            eager: 0.8,
-            late: 0.6,
-            aside: DVec2::ZERO,
-            spring: 0.3 * gravity() * air * 0.5,
+            start_acceleration: 0.8,
+            end_acceleration: 0.6,
+            sideways: DVec2::ZERO,
+            lift_off_mps: 0.3 * gravity() * air * 0.5,
         };
-        let away =
-            Plant { flat_to: off - 0.2 * size, to: off, release_pitch: OFF_PITCH, swing, ..first };
+        let away = Plant {
+            flat_to: off - 0.2 * size,
+            to: off,
+            release_pitch: RELEASE_PITCH,
+            swing,
+            ..first
+        };
         let back = Plant {
             from: land,
             flat_from: land + 0.10 * size,

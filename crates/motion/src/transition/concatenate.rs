@@ -33,7 +33,7 @@ pub struct TransitionOptions {
     /// The method.
     pub method: Method,
     /// Whether B is first aligned with A, in ground position and facing. Without alignment, B stays
-    /// at its own position, and roots are joined in the world whatever `root` says.
+    /// at its own position, and roots are joined in the world for any value of `root`.
     pub align: bool,
     /// The features by which it is aligned.
     pub align_by: AlignBy,

@@ -356,7 +356,8 @@ mod tests {
         }
     }
 
-    /// As in the last step of a run that stops, where one foot stands while the body still moves.
+    /// A foot is dragged in the last step of a run that stops: it stands while the body still
+    /// moves.
     #[test]
     fn find_cycle_avoids_dragged_feet() {
         let walk = Motion::analyze(Walk { frames: 400, cadence: 1.0, ..Walk::default() }.clip());
@@ -370,7 +371,7 @@ mod tests {
         };
         let cycle = finds(&contacts, &search);
         assert!(cycle.clone().any(|frame| !contacts.planted(Side::Right, frame)), "{cycle:?}");
-        // Where every cycle drags a foot, or the ends are given, it is accepted all the same.
+        // If every cycle drags a foot, or the ends are given, a cycle is found all the same.
         let always = Contacts::from_flags([
             (0..400).map(|frame| frame % 60 < 36).collect(),
             vec![true; 400],

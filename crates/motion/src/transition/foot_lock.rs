@@ -155,7 +155,7 @@ impl FootLocking {
         Ok(Self { clip, state })
     }
 
-    /// Sets by how much the whole body was turned in every frame, as on a bent path, radians;
+    /// Sets the yaw by which the whole body was turned in every frame, as on a bent path, radians;
     /// missing frames count as 0. A planted foot does not turn with the body: in its stances it is
     /// turned back, by up to 30°, about the vertical. Its own rotation stays.
     ///

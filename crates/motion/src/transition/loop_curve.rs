@@ -210,7 +210,7 @@ mod tests {
             assert!(LoopCurve::new(method, 1.0, 2.0).at(2.0).xx.abs() < 1e-9);
             assert!((LoopCurve::new(method, f64::NAN, 2.0).at(2.0).xx + 1.0).abs() < 1e-9);
         }
-        // However slow the spring is, the numbers stay finite and the loop closes.
+        // For a very slow spring, too, the numbers stay finite and the loop closes.
         let slow = LoopCurve::new(LoopMethod::Exact { half_life_secs: 1e9 }, 0.3, 0.1);
         let (x, v) = seam(&slow, 0.1, 1.0, 2.0);
         assert!(x.abs() < 1e-9 && v.abs() < 1e-9, "{x} {v}");

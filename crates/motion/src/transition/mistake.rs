@@ -372,7 +372,7 @@ fn standing_by_y(source: &Motion, frame: usize) -> Planar {
 /// Returns the alignment of a program that gets the yaw wrong: the correct one, with the point
 /// cloud rotated about its middle by another angle.
 fn with_wrong_yaw(right: &Planar, middle: DVec2, wrong: fn(f64) -> f64) -> Planar {
-    // As if B's file had it face the other way: then no mistake is hidden.
+    // B is treated as facing the other way if the mistake would otherwise have no effect.
     let facing = if right.yaw.cos() > 0.0 { PI } else { 0.0 };
     let mistaken = wrong(right.yaw - facing) + facing;
     let turned = |yaw: f64| Planar { yaw, shift: DVec2::ZERO };

@@ -82,9 +82,9 @@
 //!
 //! # What it does not do
 //!
-//! An offset knows nothing of the body: between very different poses a limb may pass through
+//! Offsets do not take the body into account: between very different poses a limb may pass through
 //! another. Inertialization plans nothing, so feet slide while the difference in speed decays. The
-//! foot lock knows one flat ground, and stretches no leg beyond its reach: a foot beyond that
+//! foot lock assumes one flat ground, and stretches no leg beyond its reach: a foot beyond that
 //! slides.
 //!
 //! # Sources

@@ -21,8 +21,8 @@ pub struct MovingPose {
     /// Velocity of the character over the ground, in its own frame: (sideways m/s, yaw rate rad/s,
     /// forward m/s).
     pub travel: Vec3,
-    /// That velocity without the sway of the stride: its mean over about a second. A transition
-    /// hands it over, whereas sway returns to 0. Equal to `travel` without sway.
+    /// Velocity over the ground without the sway of the stride: the mean of `travel` over about a
+    /// second. A transition hands it over, whereas sway returns to 0.
     pub steady_travel: Vec3,
 }
 

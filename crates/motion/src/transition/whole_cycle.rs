@@ -31,8 +31,8 @@ pub struct WholeCycle {
     /// Root mean square distance between the joints of both ends, which [`close_loop`] has to
     /// bridge, centimetres.
     pub gap_cm: f64,
-    /// That distance as a share of the greatest distance of any frame of the clip to its first one.
-    /// Small for a cycle; 1 where the clip leads away.
+    /// The distance between both ends as a share of the greatest distance of any frame of the clip
+    /// to its first one. Small for a cycle; 1 where the clip leads away.
     pub gap_share: f64,
 }
 

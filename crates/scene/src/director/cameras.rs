@@ -85,7 +85,7 @@ pub(super) fn followed_point(shown: &Shown<'_>, context: &mut DrawContext<'_>) -
     });
     let source_pose;
     let (motion, world) = match source {
-        // Where the followed character is not on the stage, the result is followed.
+        // The result is followed if the wanted character is not on the stage.
         None => match other.flatten() {
             None => (&outcome.motion, &shown.world),
             Some(motion) => {

@@ -67,7 +67,7 @@ proptest! {
         prop_assert!(largest_distance(&clip, &back) < 1e-5);
     }
 
-    /// Whatever the proportions and the rest pose, the limbs have the directions of the source's.
+    /// The limbs have the directions of the source's for any proportions and rest pose.
     #[test]
     fn retarget_between_rigs_keeps_limb_directions(from in 0usize..11, to in 0usize..11, seed in 0u64..1000, radians in 0.0f32..0.6) {
         let (_, source, _) = fixtures::all().swap_remove(from);
@@ -128,8 +128,8 @@ fn retarget_to_another_size_keeps_rotations_and_scales_translations() {
     }
 }
 
-/// From arms stretched out at rest to arms hanging at rest, and to a rest pose that lies on its
-/// side: the motion looks the same.
+/// The motion looks the same on a body with arms that hang at rest instead of stretching out, and
+/// on one whose rest pose lies on its side.
 #[test]
 fn retarget_to_another_rest_pose_keeps_positions() {
     let source = fixtures::mixamo();
@@ -173,8 +173,8 @@ fn retarget_to_another_rest_pose_keeps_positions() {
     }
 }
 
-/// Legs that point up along the back at rest, as in rigs whose bones all lie along one axis: knees
-/// still bend backwards.
+/// In rigs whose bones all lie along one axis the legs point up along the back at rest. Knees still
+/// bend backwards.
 #[test]
 fn retarget_from_legs_folded_at_rest_bends_knees_backwards() {
     let source = fixtures::lafan();
@@ -217,7 +217,7 @@ fn retarget_keeps_the_height_of_feet() {
     let there = retarget(&clip, &source_roles, &target, &target_roles).unwrap();
     let scale =
         target_roles.leg_length(&target).unwrap() / source_roles.leg_length(&source).unwrap();
-    // By the points that both feet have: one of these rigs has no toe tips.
+    // Measured by the points that both feet have: one of these rigs has no toe tips.
     let level = |clip: &Clip, roles: &Roles| {
         let joints = [Role::LeftFoot, Role::RightFoot, Role::LeftToe, Role::RightToe]
             .map(|role| roles.get(role).unwrap());
@@ -240,8 +240,8 @@ fn retarget_keeps_the_height_of_feet() {
     assert!((ours - theirs).length() < 1e-4);
 }
 
-/// A body without toes and one with toe tips: an ankle stands higher than a tip, and must not be
-/// compared with it.
+/// An ankle stands higher than a toe tip and must not be compared with it, as between a body
+/// without toes and one with toe tips.
 #[test]
 fn retarget_between_feet_with_and_without_toes_keeps_their_height() {
     let with_toes = fixtures::lafan();
@@ -411,8 +411,8 @@ fn retarget_of_unusual_trees_succeeds() {
     }
 }
 
-/// An implausible rest pose says nothing about the twist of bones: a collar bone came out rotated
-/// by half a turn.
+/// An implausible rest pose does not determine the twist of bones. A collar bone must not come out
+/// rotated by half a turn.
 #[test]
 fn retarget_with_implausible_rest_pose_equals_the_plain_one() {
     let clip = synthesize(&Params::new(Action::Walk)).unwrap().clip;

@@ -18,7 +18,7 @@ use glam::{Quat, Vec3};
 /// from its own velocity. A foot that would be held too far from its animated position is released
 /// until it is lifted. Points below the ground are lifted above it.
 ///
-/// Where a leg cannot reach the position of its planted foot, the hips are lowered.
+/// If a leg cannot reach the position of its planted foot, the hips are lowered.
 ///
 /// No correction turns a joint of the leg faster, in addition to its own motion, than three
 /// quarters of the speed that it usually does not exceed: a leg that is nearly straight would snap

@@ -8,7 +8,7 @@ use crate::transition::Inertialization;
 /// The conditions that suppress jumps to frames that are only a little better.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Hysteresis {
-    /// None: the best frame is always taken.
+    /// No condition: the best frame is always taken.
     None,
     /// The cost of the frame that is playing is reduced by a share from 0 to 1, and by a constant.
     ContinuingBias {
@@ -43,7 +43,7 @@ pub enum SearchMethod {
     Scan,
 }
 
-/// How the character follows the simulation object.
+/// Options of the pull of the character towards the simulation object.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct FollowOptions {
     /// Half-life with which the character is pulled towards the simulation object, seconds.
@@ -88,7 +88,7 @@ pub struct ControllerOptions {
     pub transition: Inertialization,
     /// The steering of the simulation object.
     pub steering: Steering,
-    /// How the character follows it; `None` leaves root motion to the clips.
+    /// The pull towards the simulation object; `None` leaves root motion to the clips.
     pub following: Option<FollowOptions>,
     /// Foot planting; `None` leaves feet unchanged.
     pub planting: Option<FootPlanting>,

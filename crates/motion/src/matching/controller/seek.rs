@@ -1,4 +1,4 @@
-//! When to search, the query, and the decision to jump.
+//! The times of searches, their queries, and the decision to jump.
 
 use super::super::features::{MAX_DIMS, RATE};
 use super::super::motion::{DatabaseClip, write_trajectory};
@@ -279,7 +279,7 @@ impl Controller {
                 other.and_then(|other| costs.get(other)).copied().unwrap_or(f32::INFINITY)
             };
             let hit = Hit { frame: frame as usize, cost };
-            // Of equal neighbours the first.
+            // The first of equal neighbours is taken.
             if !cost.is_finite()
                 || next_to(at.checked_sub(1), 1) <= cost
                 || next_to(Some(at + 1), 1) < cost

@@ -65,7 +65,8 @@ pub struct BoxMasks {
     levels: Vec<Vec<(TagSet, TagSet)>>,
     /// Tags of the frames in the order of leaves.
     frames: Vec<TagSet>,
-    /// Whether no frame of the database is excluded: without a filter nothing is tested.
+    /// Whether no frame of the database is excluded, so that a query without a filter needs no
+    /// tests.
     free: bool,
 }
 

@@ -52,7 +52,7 @@ proptest! {
     }
 }
 
-/// A path that turns back almost in a point. A quadrature with fixed parts was 3 mm too short in
+/// The path turns back almost in a point. A quadrature with fixed parts would be 3 mm too short in
 /// 3.6 m.
 #[test]
 fn a_hairpin_has_the_length_of_its_chords() {
@@ -92,7 +92,7 @@ fn an_open_path_goes_straight_on_and_a_closed_one_round() {
     assert!(crate::math::wrap_angle(after.frame.yaw - before.frame.yaw).abs() < 1e-5);
 }
 
-/// Where control points coincide the speed of the path is 0, and it still has a direction.
+/// The speed of a path is 0 at coinciding control points, and it still has a direction there.
 #[test]
 fn where_a_path_stands_it_has_the_direction_behind() {
     let doubled = curve(&[(0.0, 0.0), (0.0, 0.0), (0.0, 0.0), (1.0, 0.0), (2.0, 0.0)]);

@@ -19,7 +19,7 @@ fn registered(a: &Clip, b: &Clip, window: usize, options: &RegistrationOptions) 
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200))]
-    /// For any steps of a path, with pins anywhere on it.
+    /// The path has any steps, and pins anywhere on it.
     #[test]
     fn time_warp_increases_through_its_fixed_points(
         steps in prop::collection::vec(0u8..3, 1..80), pins in prop::collection::vec(0usize..80, 0..4), smoothing in 0.0f64..20.0
@@ -52,7 +52,7 @@ proptest! {
     }
 }
 
-/// A walk registered to itself at another playback speed: the warp has that slope.
+/// The warp of a walk registered to itself at another playback speed has that slope.
 #[test]
 fn warp_of_a_slower_clip_has_its_speed() {
     let (fast, slow) = (
@@ -74,8 +74,8 @@ fn warp_of_a_slower_clip_has_its_speed() {
     assert!(found.path().mean_m < 0.01, "{}", found.path().mean_m);
 }
 
-/// One walks straight on, the other in circles: the yaw between them grows over whole turns, and
-/// the transform aligns one with the other everywhere.
+/// One character walks straight on, the other in circles. The yaw between them grows over whole
+/// turns, and the transform aligns one with the other everywhere.
 #[test]
 fn alignment_of_a_circling_clip_is_unwrapped() {
     let straight = Walk { frames: 500, ..Walk::default() }.clip();
@@ -121,8 +121,8 @@ fn warp_with_pins_passes_through_them() {
     assert!(matches!(Registration::new(&terms, &matrix, &options), Err(PathError::Pins { .. })));
 }
 
-/// A clip registered to itself, moved: the warp is the identity and the alignment the inverse
-/// transform.
+/// The warp of a clip registered to its moved copy is the identity, and the alignment is the
+/// inverse transform.
 #[test]
 fn alignment_of_a_moved_clip_is_the_inverse_transform() {
     let walk = Walk { frames: 120, turning: 0.8, ..Walk::default() }.clip();

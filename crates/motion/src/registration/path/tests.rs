@@ -169,7 +169,7 @@ fn optimal_path_that_is_impossible_is_refused() {
     }
 }
 
-/// Two walks whose speeds vary differently: strides make parallel valleys.
+/// Returns the distances of two walks whose speeds vary differently: strides make parallel valleys.
 fn strides(rows: usize, columns: usize) -> DistanceMatrix {
     let phase = |t: f64, bend: f64| t * 20.0 + bend * (t * 7.0).sin();
     matrix(rows, columns, |row, column| {
@@ -269,7 +269,7 @@ fn cheapest_through(
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
-    /// Enough rows that the trace goes through many blocks of rows.
+    /// The matrix has so many rows that the trace goes through many blocks of rows.
     #[test]
     fn optimal_path_traced_over_many_blocks_is_the_cheapest(
         rows in 70usize..140, columns in 70usize..140, seed in any::<u32>(), slope_limit in 1usize..6, pin in (0.1f64..0.9, 0.1f64..0.9)

@@ -11,7 +11,7 @@ use glam::Vec3;
 use std::collections::BTreeMap;
 pub(crate) use tokens::{Tokens, are_counterparts, read};
 
-/// How the joint of a role was found; the most trustworthy first.
+/// The evidence by which the joint of a role was found; the most trustworthy first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Found {
     /// Chosen by the user.

@@ -71,7 +71,7 @@ pub(super) fn shapes(skeleton: &Skeleton, rest: &[Vec3], roles: &Roles) -> Optio
         human.arm(side)?;
         human.leg(side)?;
     }
-    human.whatever_else();
+    human.add_other_bones();
     Some(human.shapes)
 }
 
@@ -241,9 +241,9 @@ impl Human<'_> {
         let base = self
             .anchor(throat, shoulders.lerp(self.rest[head], 0.10) - forward * (0.004 * self.scale));
         // The top of the head: from the file, or estimated for a joint at the base of the skull.
-        let told =
+        let from_file =
             self.skeleton.joints()[head].end_site.map_or(0.0, |end| end.dot(up) / self.scale);
-        let crown = if (0.12..0.26).contains(&told) { told } else { 0.19 };
+        let crown = if (0.12..0.26).contains(&from_file) { from_file } else { 0.19 };
         self.add(base, 0.055, self.on(head, up * (crown - 0.13) - forward * 0.004), 0.049);
         for side in Side::BOTH {
             // From the side of the neck down to the shoulder.
@@ -449,9 +449,9 @@ impl Human<'_> {
         Some(())
     }
 
-    /// Adds limbs for bones that no part of a human represents: tails, bags, swords. Bones inside
+    /// Adds limbs for bones that are not part of a human body: tails, bags, swords. Bones inside
     /// the head are left out.
-    fn whatever_else(&mut self) {
+    fn add_other_bones(&mut self) {
         let head = self.joint(Role::Head);
         for joint in 1..self.rest.len() {
             let Some(parent) = self.skeleton.parent(joint) else {

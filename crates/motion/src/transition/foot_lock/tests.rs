@@ -364,7 +364,7 @@ fn foot_lock_never_flips_knees() {
     }
 }
 
-/// A leg that is stretched evenly, as before the heel of a long step comes down.
+/// The leg is stretched evenly, as before the heel of a long step comes down.
 #[test]
 fn foot_lock_of_a_stretched_leg_does_not_snap() {
     let leg = LegPose {

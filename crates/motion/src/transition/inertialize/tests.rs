@@ -73,8 +73,8 @@ proptest! {
         }
     }
 
-    /// However far apart the rotations are, and also when the next jump comes while the offsets of
-    /// the last one are still decaying.
+    /// The rotations are any angle apart, and the next jump comes while the offsets of the last one
+    /// are still decaying.
     #[test]
     fn inertializer_over_several_jumps_has_continuous_velocities(clips in [steady(), steady(), steady()], between in 0.01f32..0.4) {
         for how in KINDS {
