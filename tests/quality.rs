@@ -8,7 +8,8 @@ mod trials;
 
 use segue_session::{Command, write_ids};
 use trials::folder::{Motions, encoded};
-use trials::trial::{Draw, Numbers, Trial, TrialResult, try_all};
+use trials::session::try_all;
+use trials::trial::{Draw, Numbers, Trial, TrialResult};
 
 /// Labs whose results on close pairs, and on sets of takes, have no artefact of their own.
 const SMOOTH: [&str; 7] = ["blend", "transition", "speed", "loop", "layers", "register", "match"];

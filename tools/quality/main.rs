@@ -10,7 +10,7 @@ use std::error::Error;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use trials::folder::Motions;
-use trials::{guard, table, trial};
+use trials::{guard, session, table};
 
 struct Arguments {
     folder: Option<PathBuf>,
@@ -68,7 +68,7 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
         motions.refused.len(),
         motions.panics.len()
     );
-    let trials = trial::try_all(&motions, arguments.pairs, arguments.seed);
+    let trials = session::try_all(&motions, arguments.pairs, arguments.seed);
     println!("{}", table::markdown(&motions, &trials));
     if let Some(path) = &arguments.json {
         std::fs::write(path, serde_json::to_vec_pretty(&table::json(&motions, &trials))?)?;

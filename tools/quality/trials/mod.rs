@@ -9,5 +9,8 @@
 
 pub mod folder;
 pub mod guard;
+mod lab_uses;
+mod measured;
+pub mod session;
 pub mod table;
 pub mod trial;

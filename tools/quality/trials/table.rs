@@ -1,7 +1,8 @@
 //! The outcomes of the trials, in Markdown and as JSON.
 
 use super::folder::Motions;
-use super::trial::{Draw, Numbers, Trial, TrialResult, median};
+use super::measured::median;
+use super::trial::{Draw, Numbers, Trial, TrialResult};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 

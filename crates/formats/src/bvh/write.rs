@@ -404,5 +404,4 @@ fn number(out: &mut String, value: f64, decimals: usize) {
 }
 
 #[cfg(test)]
-#[path = "write_tests.rs"]
 mod tests;

@@ -1,6 +1,7 @@
 //! Tests of meshes with a skin, built and damaged here.
 
 use super::*;
+use glam::{DMat4, DVec3};
 use segue_motion::skeleton::Roles;
 use segue_motion::skin::{SkinnedMesh, linear_blend};
 

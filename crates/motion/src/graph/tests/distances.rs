@@ -1,0 +1,237 @@
+//! Tests of the distances between all windows, and of the candidates for transitions.
+
+use super::*;
+use crate::blend::align_onto;
+use crate::math::Planar;
+use crate::registration::rms_cm;
+use proptest::prelude::*;
+
+#[test]
+fn frame_set_of_clips_numbers_frames_consecutively() {
+    let set = three([30, 20, 25]);
+    assert_eq!((set.frames(), set.longest(), set.fps()), (75, 30, 60.0));
+    for number in 0..75 {
+        assert_eq!(set.number(set.place(number).unwrap()), Some(number));
+    }
+    assert_eq!(set.place(30), Some(Place { clip: 1, frame: 0 }));
+    assert_eq!((set.place(75), set.number(Place { clip: 1, frame: 20 })), (None, None));
+    assert_eq!(FrameSet::new(vec![], HEIGHT), Err(GraphError::NoClips));
+    let faster = Walk { fps: 30.0, ..Walk::default() };
+    let sources = [Walk::default(), faster].map(|walk| Arc::new(Motion::analyze(walk.clip())));
+    assert!(matches!(FrameSet::new(sources.to_vec(), HEIGHT), Err(GraphError::Blend(_))));
+    assert!(matches!(
+        FrameSet::new(sources[..1].to_vec(), f64::NAN),
+        Err(GraphError::Setting { .. })
+    ));
+}
+
+/// Checks that the overview and its details equal those computed from all distances.
+fn assert_overview_equals(overview: &DistanceOverview, all: &FrameDistances) {
+    let (frames, block) = (all.set().frames(), overview.block());
+    assert_eq!(overview.window(), all.window());
+    let held = all.picture(0..frames, 0..frames, 1);
+    let nearest = |rows: std::ops::Range<usize>,
+                   columns: std::ops::Range<usize>,
+                   factor: usize|
+     -> Vec<f32> {
+        let mut picture = Vec::new();
+        for row in rows.clone().step_by(factor) {
+            for column in columns.clone().step_by(factor) {
+                let cells = (row..(row + factor).min(rows.end)).flat_map(|row| {
+                    let columns = column..(column + factor).min(columns.end);
+                    columns.map(move |column| (row, column))
+                });
+                picture.push(
+                    cells.map(|(row, column)| held[row * frames + column]).fold(f32::NAN, f32::min),
+                );
+            }
+        }
+        picture
+    };
+    let same = |found: &[f32], wanted: &[f32], what: &str| {
+        assert_eq!(found.len(), wanted.len(), "{what}");
+        for (at, (found, wanted)) in found.iter().zip(wanted).enumerate() {
+            // The points are relative to other centres: see the accuracy of `PairTerms`.
+            let alike = (found * found - wanted * wanted).abs() < 4e-3 + 2e-3 * wanted;
+            assert!(alike || (found.is_nan() && wanted.is_nan()), "{what} {at}: {found} {wanted}");
+        }
+    };
+    for factor in [block, 4 * block] {
+        let last = frames / factor * factor;
+        let (rows, columns) = (0..frames, (last / 2 / factor * factor)..frames);
+        same(
+            &overview.picture(rows.clone(), columns.clone(), factor),
+            &nearest(rows, columns, factor),
+            "from afar",
+        );
+    }
+    for (rows, columns, factor) in [
+        (0..frames, 0..frames, 2),
+        (frames / 3..frames / 2, frames / 4..frames, 1),
+        (5..6, 0..frames, 3),
+    ] {
+        let mut detail = overview.detail(rows.clone(), columns.clone(), factor);
+        while !detail.advance(1).unwrap().is_complete() {}
+        same(detail.picture(), &nearest(rows, columns, factor), "nearby");
+    }
+    let counts =
+        (overview.histogram(), all.histogram(DistanceOverview::BIN_CM, DistanceOverview::BINS));
+    let off: usize = counts.0.iter().zip(&counts.1).map(|(a, b)| a.abs_diff(*b) as usize).sum();
+    let total: usize = counts.0.iter().map(|&count| count as usize).sum();
+    assert_eq!(total, counts.1.iter().map(|&count| count as usize).sum::<usize>());
+    // At the edge of a bin the last digit decides.
+    assert!(off * 200 <= total + 200, "{off} of {total}");
+    for (a, b) in [(0, frames - 1), (frames / 2, 3), (4, 4)] {
+        let (a, b) = (all.set().place(a).unwrap(), all.set().place(b).unwrap());
+        let (found, wanted) = (overview.cm(a, b), all.cm(a, b));
+        assert_eq!(found.is_some(), wanted.is_some());
+        if let (Some(found), Some(wanted)) = (found, wanted) {
+            assert!(
+                (found * found - wanted * wanted).abs() < 4e-3 + 2e-3 * wanted,
+                "{found} {wanted}"
+            );
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+    #[test]
+    fn all_pairs_agree_with_direct_alignment(frames in [5usize..40, 5usize..40, 5usize..40], window in 1usize..12, slice in 1usize..900) {
+        let set = three(frames);
+        let mut all = AllPairs::new(Arc::clone(&set)).unwrap();
+        prop_assert!(all.distances(window).is_err());
+        let mut before = 0;
+        while !all.advance(slice).unwrap().is_complete() {
+            prop_assert!(all.progress().done > before);
+            before = all.progress().done;
+        }
+        prop_assert_eq!(all.progress().total, {
+            let all: usize = frames.iter().sum();
+            250 * all + all * (all + 1) / 2
+        });
+        let mut sweep = all.sweep(window).unwrap();
+        while !sweep.advance(7).unwrap().is_complete() {}
+        let distances = sweep.finish().unwrap();
+        for a in 0..set.frames() {
+            for b in 0..set.frames() {
+                let (p, q) = (set.place(a).unwrap(), set.place(b).unwrap());
+                let fits = [p, q].iter().all(|place| place.frame + window <= set.frames_of(place.clip));
+                let found = distances.cm(p, q);
+                prop_assert_eq!(found.is_some(), fits);
+                // One candidate in seven is sufficient.
+                let Some(found) = found.filter(|_| (a + 3 * b) % 7 == 0) else { continue };
+                let source = |place: Place| set.clip(place.clip).unwrap().clip();
+                let direct = align_onto(source(p), p.frame, source(q), q.frame, window, set.weights(), 0.0).unwrap();
+                let wanted = rms_cm(direct.distance, direct.weight, HEIGHT);
+                prop_assert!((found * found - wanted * wanted).abs() < 4e-3 + 2e-3 * wanted, "{:?} {:?} {} {}", p, q, found, wanted);
+                let aligned = all.alignment(p, q, window).unwrap();
+                if !direct.turn_is_free && !aligned.turn_is_free && wanted < 30.0 {
+                    let off = aligned.transform.inverse().after(&direct.transform);
+                    prop_assert!(off.yaw.abs() < 1e-3 && off.shift.length() < 1e-2, "{:?}", off);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn candidate_stream_finds_the_candidates_of_all_pairs(
+        frames in [20usize..90, 20usize..90, 20usize..90], window in 1usize..18, segment in prop::option::of(19usize..20), threshold in 0.5f64..30.0
+    ) {
+        let set = three(frames);
+        let construction = segment.map_or(Construction::Minima, |segment_size| Construction::Segments { segment_size });
+        let options = options(construction, window, threshold);
+        let all = compared(&set);
+        let held = Candidates::find(&all, &all.distances(window).unwrap(), &options).unwrap();
+        let (streamed, overview) = CandidateStream::new(&set, &options).unwrap().finish().unwrap();
+        assert_overview_equals(&overview, &all.distances(window).unwrap());
+        let places = |of: &Candidates| {
+            let mut places: Vec<_> = of.found().iter().map(|found| (found.leave, found.enter)).collect();
+            places.sort_unstable();
+            places
+        };
+        prop_assert_eq!(places(&held), places(&streamed));
+        for (a, b) in held.found().iter().zip(streamed.found()) {
+            prop_assert!((a.distance_cm - b.distance_cm).abs() < 0.0021);
+        }
+        if segment.is_none() {
+            // The slow way: every pair, compared with its neighbours.
+            let distances = all.distances(window).unwrap();
+            for found in held.found() {
+                let (a, b) = (found.leave, found.enter);
+                let here = distances.cm(a, b).unwrap();
+                prop_assert!(here <= threshold && a.frame >= 1 && b.frame + window < set.frames_of(b.clip));
+                for (da, db) in [(-1i64, 0i64), (1, 0), (0, -1), (0, 1), (1, 1), (-1, -1), (1, -1), (-1, 1)] {
+                    let moved = |place: Place, by: i64| Place { frame: (place.frame as i64 + by) as usize, ..place };
+                    if a.frame as i64 + da >= 0
+                        && b.frame as i64 + db >= 0
+                        && let Some(there) = distances.cm(moved(a, da), moved(b, db))
+                    {
+                        prop_assert!(there >= here, "{:?} {} {}", found, here, there);
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn candidate_stream_of_long_clips_has_no_gap() {
+    let set = three([2_600, 530, 40]);
+    let options = options(Construction::Minima, 20, 12.0);
+    let all = compared(&set);
+    let held = Candidates::find(&all, &all.distances(20).unwrap(), &options).unwrap();
+    let mut stream = CandidateStream::new(&set, &options).unwrap();
+    let total = stream.advance(1).unwrap().total;
+    // 2,581, 511 and 21 windows, in parts that end at every 256th of all frames: 11, 3 and one.
+    assert_eq!(total, 15 + 15 * 16 / 2);
+    let (streamed, overview) = stream.finish().unwrap();
+    assert_eq!(overview.block(), 2);
+    assert_overview_equals(&overview, &all.distances(20).unwrap());
+    assert!(held.found().len() > 100, "{}", held.found().len());
+    let same = held
+        .found()
+        .iter()
+        .filter(|a| streamed.found().iter().any(|b| (a.leave, a.enter) == (b.leave, b.enter)))
+        .count();
+    // Equal neighbours may swap places because of the last digit.
+    assert!(
+        same * 100 >= held.found().len() * 98
+            && held.found().len().abs_diff(streamed.found().len()) * 100 <= held.found().len()
+    );
+}
+
+#[test]
+fn jolt_search_in_slices_equals_jolts_on_demand() {
+    let (ahead, plain) = (three([60, 50, 40]), three([60, 50, 40]));
+    let mut search = JoltSearch::default();
+    let slices = (0..1_000).take_while(|_| !search.advance(&ahead, 100)).count();
+    assert!(slices > 5 && search.advance(&ahead, 100), "{slices}");
+    for clip in 0..4 {
+        assert_eq!(ahead.jolts(clip), plain.jolts(clip));
+    }
+}
+
+#[test]
+fn histogram_and_picture_include_every_pair() {
+    let set = three([30, 22, 18]);
+    let all = compared(&set);
+    let distances = all.distances(5).unwrap();
+    let windows = 26 + 18 + 14;
+    let counts = distances.histogram(2.0, 10);
+    assert_eq!(counts.iter().sum::<u32>() as usize, windows * (windows - 1) / 2);
+    let picture = distances.picture(0..70, 20..70, 10);
+    assert_eq!(picture.len(), 7 * 5);
+    let one = distances.picture(3..4, 40..41, 1)[0];
+    assert!(
+        (f64::from(one)
+            - distances.cm(Place { clip: 0, frame: 3 }, Place { clip: 1, frame: 10 }).unwrap())
+        .abs()
+            < 1e-3
+    );
+    assert!(distances.picture(27..28, 0..1, 1)[0].is_nan());
+    let _: Planar = all
+        .alignment(Place { clip: 1, frame: 3 }, Place { clip: 0, frame: 4 }, 5)
+        .unwrap()
+        .transform;
+}

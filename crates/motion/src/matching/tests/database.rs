@@ -1,0 +1,120 @@
+//! Tests of databases: input, tags and mirror images.
+
+use super::super::search::{Query, scan};
+use super::*;
+use crate::clip::{Contacts, Interpolation, resample};
+use glam::Quat;
+
+#[test]
+fn database_of_invalid_clips_is_refused() {
+    let options = DatabaseOptions::default();
+    assert_eq!(Database::new(vec![], &options), Err(MatchError::NoClips));
+    let walk = Motion::analyze(synthesize(&Params::new(Action::Walk)).unwrap().clip);
+    let with = |clip: Clip| Arc::new(Motion::with_roles(clip, walk.roles()));
+    let short = with(walk.clip().crop(0..35).unwrap());
+    let alone = Database::new(vec![short.clone()], &options);
+    assert!(matches!(alone, Err(MatchError::NoValidFrame { clips: 1, .. })), "{alone:?}");
+    assert!(alone.unwrap_err().to_string().contains("0.57 s"));
+    // With a longer clip it is left out.
+    let both = Database::new(vec![short, Arc::new(walk.clone())], &options).unwrap();
+    assert!(matches!(both.skipped(), [MatchError::TooShort { .. }]) && both.motions().len() == 2);
+    assert_eq!(both.motions()[0].source(), 1);
+    let footless = Arc::new(Motion::with_roles(Arc::clone(walk.clip()), &Roles::default()));
+    let error = Database::new(vec![footless], &options).unwrap_err();
+    assert!(error.to_string().contains("hips"), "{error}");
+    let endless = Clip::new(
+        "endless",
+        walk.clip().skeleton().clone(),
+        1e-5,
+        vec![Quat::IDENTITY; 2 * walk.clip().skeleton().len()],
+        vec![Vec3::Y; 2],
+    );
+    assert!(matches!(
+        Database::new(vec![with(endless.unwrap())], &options),
+        Err(MatchError::TooManyFrames { .. })
+    ));
+    let mut broken = walk.clip().root_translations().to_vec();
+    broken[7].x = f32::NAN;
+    let rotations =
+        (0..walk.clip().frames()).flat_map(|frame| walk.clip().rotations(frame).to_vec()).collect();
+    let broken =
+        with(Clip::new("broken", walk.clip().skeleton().clone(), 60.0, rotations, broken).unwrap());
+    assert!(matches!(Database::new(vec![broken], &options), Err(MatchError::NotFinite { .. })));
+}
+
+#[test]
+fn database_with_other_rates_times_and_tags_differs_as_documented() {
+    let database = small_database();
+    let features = FeatureOptions { trajectory_secs: vec![0.25, 0.5], ..FeatureOptions::default() };
+    let retimed = DatabaseBuilder::retimed(database, &features).unwrap().finish().unwrap();
+    assert_eq!((retimed.frames(), retimed.features().layout().dims()), (database.frames(), 23));
+    assert!(retimed.valid().len() > database.valid().len());
+    assert!(Arc::ptr_eq(&retimed.motions()[3], &database.motions()[3]));
+    // The same motion at another rate gives the same features.
+    let clip = synthesize(&Params::new(Action::Walk)).unwrap().clip;
+    let finer = resample(&clip, 120.0, Interpolation::Cubic).unwrap();
+    // The clips end here: a repetition has a whole number of frames, which differs between rates.
+    let [usual, fine] = [clip, finer].map(|clip| {
+        Database::new(vec![Arc::new(Motion::analyze(clip))], &cycle_options(false)).unwrap()
+    });
+    assert_eq!(usual.frames(), fine.frames());
+    assert!(usual.valid().iter().all(|&frame| usual.tags(frame as usize).has(Tag::Walk)));
+    for &frame in usual.valid() {
+        let rows = [&usual, &fine].map(|database| database.features().row(frame as usize).unwrap());
+        for (a, b) in rows[0].iter().zip(rows[1]) {
+            assert!((a - b).abs() < 2e-3, "{frame}: {a} {b}");
+        }
+    }
+    let excluded = usual.retagged(0, &[TagRange { tag: Tag::Exclude, frames: 0..usual.frames() }]);
+    let query = vec![0.0; 27];
+    let question = Query { query: &query, weights: &[1.0; 27], filter: TagFilter::default() };
+    assert_eq!(excluded.index().search(excluded.masks(), &question, None).best, None);
+    assert!(scan(&usual.candidates(), &question).best.is_some());
+    for number in (0..database.frames()).step_by(997) {
+        assert_eq!(database.number(database.place(number).unwrap()), Some(number));
+    }
+    assert_eq!(
+        (
+            database.place(database.frames()),
+            database.pose(Place { motion: 999, frame: 0 }, &Planar::IDENTITY)
+        ),
+        (None, None)
+    );
+}
+
+/// A mirrored copy has the mirrored features.
+#[test]
+fn mirrored_motion_has_mirrored_features() {
+    let database = small_database();
+    let layout = database.features().layout();
+    for motion in (0..database.motions().len()).step_by(2) {
+        for frame in [5, 70] {
+            let row = |motion| {
+                let mut row = vec![0.0; layout.dims()];
+                database.motion(motion).unwrap().write_row(layout, frame, &mut row);
+                row
+            };
+            let (row, image) = (row(motion), row(motion + 1));
+            for place in 0..6 {
+                assert!(
+                    (row[2 * place] + image[2 * place]).abs() < 1e-3
+                        && (row[2 * place + 1] - image[2 * place + 1]).abs() < 1e-3
+                );
+            }
+            for (from, to) in [(12, 15), (15, 12), (18, 21), (21, 18), (24, 24)] {
+                assert!(
+                    (row[from] + image[to]).abs() < 5e-3
+                        && (row[from + 2] - image[to + 2]).abs() < 5e-3,
+                    "{motion} {frame} {from}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn mirrored_contacts_are_swapped() {
+    let contacts = Contacts::from_flags([vec![true, false, true], vec![false, false, true]]);
+    let swapped = Contacts::from_flags([vec![false, false, true], vec![true, false, true]]);
+    assert_eq!(motion::mirrored_contacts(&contacts), swapped);
+}
