@@ -366,7 +366,7 @@ mod tests {
         first.inverse().after(last)
     }
 
-    fn came_back(params: &Params) -> (Planar, Planar) {
+    fn rebuilt(params: &Params) -> (Planar, Planar) {
         let (clip, roles, frames) = made(params);
         let still = clip.transformed_by_frame(&take_in_place(&frames, true));
         (whole(&frames), whole(&put_back(&still, &roles, true)))
@@ -387,7 +387,7 @@ mod tests {
     }
 
     #[test]
-    fn walks_and_runs_come_back_from_their_feet() {
+    fn root_motion_of_made_gaits_is_rebuilt_from_their_feet() {
         for (action, speed_mps, turn_rate_dps) in [
             (Action::Walk, 0.7, 0.0),
             (Action::Walk, 1.3, 0.0),
@@ -397,7 +397,7 @@ mod tests {
             (Action::Run, 4.5, 0.0),
         ] {
             let params = Params { speed_mps, turn_rate_dps, ..Params::new(action) };
-            let (wanted, found) = came_back(&params);
+            let (wanted, found) = rebuilt(&params);
             let (way, off) = (wanted.shift.length(), wanted.shift.distance(found.shift));
             let turn = wrap_angle(found.yaw - wanted.yaw).to_degrees();
             let share = if action == Action::Walk { 0.01 } else { 0.07 };
@@ -407,7 +407,7 @@ mod tests {
     }
 
     #[test]
-    fn way_of_a_recorded_clip_is_found_anew() {
+    fn root_motion_of_a_clip_with_root_motion_is_rebuilt() {
         let (clip, roles, frames) = made(&Params::new(Action::Walk));
         let (wanted, found) = (whole(&frames), whole(&put_back(&clip, &roles, true)));
         let off = wanted.shift.distance(found.shift);
@@ -415,13 +415,13 @@ mod tests {
     }
 
     #[test]
-    fn standing_body_stays() {
-        let (_, found) = came_back(&Params::new(Action::Idle));
+    fn root_motion_of_a_standing_body_is_small() {
+        let (_, found) = rebuilt(&Params::new(Action::Idle));
         assert!(found.shift.length() < 0.02 && found.yaw.abs() < 0.03, "{found:?}");
     }
 
     #[test]
-    fn flight_goes_on_evenly_between_two_steps() {
+    fn bridge_of_a_flight_continues_evenly() {
         let step = |x: f64| Some(Planar::new(0.1 * x, x, 0.0));
         let mut steps = [None, step(1.0), None, None, step(4.0), None];
         bridge(&mut steps, 1);
@@ -431,7 +431,7 @@ mod tests {
     }
 
     #[test]
-    fn step_that_begins_in_one_frame_is_spread_over_its_neighbours() {
+    fn smoothed_step_is_spread_over_its_neighbours() {
         let step = |frame| Some(Planar::new(0.0, if frame < 10 { 0.0 } else { 1.0 }, 0.0));
         let steps: Vec<_> = (0..20).map(step).collect();
         let found: Vec<f64> = smoothed(&steps, 3).iter().map(|step| step.shift.x).collect();
@@ -441,7 +441,7 @@ mod tests {
     }
 
     #[test]
-    fn single_frame_stays_where_it_is() {
+    fn root_motion_of_a_single_frame_is_the_identity() {
         let (clip, roles, _) = made(&Params::new(Action::Walk));
         let one = clip.crop(0..1).expect("a frame");
         let way =
@@ -451,7 +451,7 @@ mod tests {
     }
 
     #[test]
-    fn body_without_feet_is_refused() {
+    fn root_motion_without_feet_is_refused() {
         let (clip, _, _) = made(&Params::new(Action::Walk));
         let refused =
             root_motion_from_feet(&clip, &Roles::default(), &ContactOptions::default(), true);
@@ -462,7 +462,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(12))]
         /// The position and facing of the clip in place do not change the trajectory.
         #[test]
-        fn way_goes_with_the_place(yaw in -3.0f64..3.0, x in -5.0f64..5.0, z in -5.0f64..5.0) {
+        fn root_motion_does_not_depend_on_the_position_of_the_clip(yaw in -3.0f64..3.0, x in -5.0f64..5.0, z in -5.0f64..5.0) {
             let (clip, roles, frames) = made(&Params::new(Action::Walk));
             let still = clip.transformed_by_frame(&take_in_place(&frames, true));
             let there = Planar::new(yaw, x, z);

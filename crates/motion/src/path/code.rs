@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn code_is_short() {
+    fn code_of_a_path_is_short() {
         let points = (0..8).map(|k| DVec2::new(f64::from(k).sin(), 1.3 * f64::from(k))).collect();
         let path = GroundSpline::uniform(points).unwrap();
         assert!(path.to_code().len() <= 48, "{}", path.to_code());

@@ -25,7 +25,7 @@ struct Golden {
 }
 
 #[test]
-fn both_ways_agree_with_numpy() {
+fn skinning_by_both_methods_agrees_with_numpy() {
     let golden: Golden =
         serde_json::from_str(include_str!("../../tests/oracles/skinning.json")).unwrap();
     let transforms: Vec<RigidTransform> = (golden.rotations.iter().zip(&golden.translations))
@@ -89,8 +89,7 @@ fn tube() -> SkinnedMesh {
 }
 
 #[test]
-fn a_forearm_twisted_by_half_a_turn_collapses_under_linear_blend_and_keeps_its_girth_under_dual_quaternions()
- {
+fn twisted_forearm_collapses_by_linear_blend_and_keeps_its_girth_by_dual_quaternions() {
     let mesh = tube();
     // Just below half a turn, where both directions are nearly equally short.
     let twist = Quat::from_rotation_x(std::f32::consts::PI - 1e-3);
@@ -126,7 +125,7 @@ fn a_forearm_twisted_by_half_a_turn_collapses_under_linear_blend_and_keeps_its_g
 }
 
 #[test]
-fn the_wrist_of_the_mannequin_shows_the_candy_wrapper() {
+fn mannequin_wrist_collapses_by_linear_blend_alone() {
     let skeleton = humanoid(1.75).unwrap();
     let roles = Roles::detect(&skeleton);
     let mesh = SkinnedMesh::around(&skeleton, &roles, 1.0);
@@ -221,7 +220,7 @@ fn check(name: &str, skeleton: &Skeleton, mesh: &SkinnedMesh) {
 }
 
 #[test]
-fn rigs_of_all_kinds_have_a_closed_body() {
+fn body_of_every_rig_is_closed() {
     for (name, skeleton, _) in fixtures::all() {
         let mesh = SkinnedMesh::around(&skeleton, &Roles::detect(&skeleton), 1.0);
         check(name, &skeleton, &mesh);
@@ -237,7 +236,7 @@ fn rigs_of_all_kinds_have_a_closed_body() {
 }
 
 #[test]
-fn a_rigid_motion_of_all_joints_moves_the_mesh_rigidly() {
+fn rigid_motion_of_all_joints_moves_the_mesh_rigidly() {
     let skeleton = fixtures::cmu_bvh();
     let mesh = SkinnedMesh::around(&skeleton, &Roles::detect(&skeleton), 1.0);
     let motion = RigidTransform {
@@ -261,7 +260,7 @@ fn a_rigid_motion_of_all_joints_moves_the_mesh_rigidly() {
 }
 
 #[test]
-fn girth_thickens() {
+fn girth_above_one_thickens_the_body() {
     let skeleton = humanoid(1.75).unwrap();
     let roles = Roles::detect(&skeleton);
     let around = |girth| SkinnedMesh::around(&skeleton, &roles, girth);
@@ -277,7 +276,7 @@ fn girth_thickens() {
 }
 
 #[test]
-fn left_and_right_are_alike() {
+fn body_of_a_symmetric_skeleton_is_symmetric() {
     let skeleton = humanoid(1.75).unwrap();
     let mesh = SkinnedMesh::around(&skeleton, &Roles::detect(&skeleton), 1.0);
     let [left, right] = [1.0, -1.0].map(|sign| {
@@ -305,7 +304,7 @@ fn chain(joints: usize, offset: Vec3) -> Skeleton {
 }
 
 #[test]
-fn odd_skeletons_have_a_body_of_bounded_size() {
+fn body_of_an_unusual_skeleton_is_bounded_in_size() {
     for (name, skeleton) in [
         ("a point", chain(1, Vec3::ZERO)),
         ("all at one place", chain(30, Vec3::ZERO)),
@@ -321,7 +320,7 @@ fn odd_skeletons_have_a_body_of_bounded_size() {
 }
 
 #[test]
-fn a_character_of_another_rig_stands_where_the_clip_stands() {
+fn character_of_another_rig_stands_where_the_clip_stands() {
     let walk = synthesize(&Params::new(Action::Walk)).unwrap().clip;
     let roles = Roles::detect(walk.skeleton());
     for (name, skeleton, _) in
@@ -375,7 +374,7 @@ fn a_character_of_another_rig_stands_where_the_clip_stands() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
     #[test]
-    fn random_trees_have_bodies(seed in any::<u64>(), joints in 2usize..16, scale in -2.0f32..2.0) {
+    fn body_of_a_random_tree_is_valid(seed in any::<u64>(), joints in 2usize..16, scale in -2.0f32..2.0) {
         let mut next = fixtures::noise(seed);
         let list = (0..joints).map(|index| Joint {
             name: format!("j{index}"),
@@ -405,7 +404,7 @@ fn posed(mesh: &SkinnedMesh, pose: &WorldPose) -> Vec<Vec3> {
 }
 
 #[test]
-fn a_body_does_not_depend_on_how_a_file_writes_joint_axes() {
+fn body_does_not_depend_on_joint_axes() {
     for (name, skeleton) in [("mixamo", fixtures::mixamo()), ("games105", fixtures::games105())] {
         let roles = fixtures::roles(&skeleton);
         let step = fixtures::step(&skeleton, &roles);

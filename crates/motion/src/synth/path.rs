@@ -130,7 +130,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_steady_turn_is_a_circle_through_the_origin() {
+    fn path_of_a_steady_turn_is_a_circle_through_the_origin() {
         let path = Path::integrate(-2.0, 0.01, 1000, |_| (1.4, 0.5));
         let radius = 1.4 / 0.5;
         for secs in [-2.0, -0.013, 0.0, 1.237, 7.5] {
@@ -147,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn speeding_up_covers_the_integral_of_the_speed() {
+    fn path_of_rising_speed_covers_the_integral_of_the_speed() {
         let path = Path::integrate(0.0, 0.01, 201, |t| (t, 0.0));
         assert!((path.at(2.0).position.y - 2.0).abs() < 1e-6);
         assert!((path.at(1.0).thrust - 1.0).abs() < 1e-9);

@@ -133,7 +133,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_quintic_meets_both_ends() {
+    fn quintic_meets_both_ends() {
         let from = State { value: 1.0, rate: -2.0, acceleration: 3.0 };
         let to = State { value: 4.0, rate: 0.5, acceleration: -1.0 };
         let f = |t: f64| quintic(from, to, 0.8, t);
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn a_clamped_spline_reproduces_a_cubic() {
+    fn clamped_spline_reproduces_a_cubic() {
         let cubic = |t: f64| 2.0 - t + 0.5 * t * t - 0.3 * t * t * t;
         let slope = |t: f64| -1.0 + t - 0.9 * t * t;
         let knots: Vec<_> = [0.0, 0.4, 0.5, 1.3, 2.0].iter().map(|&t| (t, cubic(t))).collect();
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn ramps_accept_infinity() {
+    fn ramp_with_infinite_ends_is_0_or_1() {
         assert_eq!(ramp(0.0, f64::NEG_INFINITY, f64::NEG_INFINITY), 1.0);
         assert_eq!(ramp(0.0, f64::INFINITY, f64::INFINITY), 0.0);
         assert_eq!(ramp(0.5, 0.0, 1.0), 0.5);

@@ -15,7 +15,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
 
     #[test]
-    fn lengths_and_parameters_are_each_others_inverse(way in prop::collection::vec((-3.0f64..3.0, -3.0f64..3.0), 4..12), share in 0.0f64..1.0) {
+    fn length_and_parameter_are_inverse(way in prop::collection::vec((-3.0f64..3.0, -3.0f64..3.0), 4..12), share in 0.0f64..1.0) {
         let curve = curve(&way);
         let along = curve.length_m() * share;
         let u = curve.parameter_at(along);
@@ -26,7 +26,7 @@ proptest! {
 
     /// The quadrature is compared with twenty thousand chords, which cut off the tip of a hairpin.
     #[test]
-    fn the_length_is_that_of_many_chords(way in prop::collection::vec((-3.0f64..3.0, -3.0f64..3.0), 4..12)) {
+    fn length_agrees_with_many_chords(way in prop::collection::vec((-3.0f64..3.0, -3.0f64..3.0), 4..12)) {
         let curve = curve(&way);
         let mut chords = 0.0;
         for k in 0..20_000 {
@@ -38,7 +38,7 @@ proptest! {
 
     /// The frame's +Z runs along the path, and the curvature is the turn per metre.
     #[test]
-    fn frames_run_along_the_path(way in prop::collection::vec((-3.0f64..3.0, -3.0f64..3.0), 4..12), share in 0.01f64..0.99) {
+    fn waypoints_run_along_the_path(way in prop::collection::vec((-3.0f64..3.0, -3.0f64..3.0), 4..12), share in 0.01f64..0.99) {
         let curve = curve(&way);
         let (step, along) = (1e-5 * curve.length_m(), share * curve.length_m());
         let [before, here, after] = [-1.0, 0.0, 1.0].map(|k| curve.at_length(along + k * step));
@@ -55,7 +55,7 @@ proptest! {
 /// The path turns back almost in a point. A quadrature with fixed parts would be 3 mm too short in
 /// 3.6 m.
 #[test]
-fn a_hairpin_has_the_length_of_its_chords() {
+fn length_of_a_hairpin_agrees_with_its_chords() {
     let curve = curve(&[
         (2.136_294_058_034_753, 1.723_512_390_519_103),
         (0.0, -2.877_905_455_329_102_6),
@@ -72,7 +72,7 @@ fn a_hairpin_has_the_length_of_its_chords() {
 }
 
 #[test]
-fn an_open_path_goes_straight_on_and_a_closed_one_round() {
+fn path_beyond_its_ends_is_straight_or_repeats() {
     let line = curve(&[(0.0, 0.0), (0.0, 1.0), (0.0, 2.0), (0.0, 3.0)]);
     assert!((line.length_m() - 3.0).abs() < 1e-12);
     assert!(line.at_length(5.0).frame.shift.distance(DVec2::new(0.0, 5.0)) < 1e-9);
@@ -94,7 +94,7 @@ fn an_open_path_goes_straight_on_and_a_closed_one_round() {
 
 /// The speed of a path is 0 at coinciding control points, and it still has a direction there.
 #[test]
-fn where_a_path_stands_it_has_the_direction_behind() {
+fn heading_at_coinciding_points_is_that_of_the_next_part() {
     let doubled = curve(&[(0.0, 0.0), (0.0, 0.0), (0.0, 0.0), (1.0, 0.0), (2.0, 0.0)]);
     assert!((doubled.at(0.0).frame.yaw - FRAC_PI_2).abs() < 1e-6);
     assert_eq!(doubled.at(0.0).curvature, 0.0);

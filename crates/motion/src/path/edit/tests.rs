@@ -46,7 +46,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
 
     #[test]
-    fn a_point_that_is_added_changes_nothing_and_goes_again(path in winding(), at in 0.01f64..0.99) {
+    fn inserted_point_keeps_the_curve_and_is_removed_again(path in winding(), at in 0.01f64..0.99) {
         prop_assume!(path.inner_knots().iter().all(|knot| (knot - at).abs() > 0.01));
         let more = path.edited(&PathEdit::Insert { at }, BOTH).unwrap();
         prop_assert_eq!(more.points().len(), path.points().len() + 1);
@@ -63,7 +63,7 @@ proptest! {
     /// A moved point changes only the pieces that depend on it, and no point of these moves farther
     /// than it does.
     #[test]
-    fn a_point_moves_its_own_pieces(path in winding(), index in 0usize..6, x in -2.0f64..2.0) {
+    fn moved_point_changes_its_own_pieces_alone(path in winding(), index in 0usize..6, x in -2.0f64..2.0) {
         let to = path.points()[index] + DVec2::new(x, 0.3);
         let moved = path.edited(&PathEdit::Move { index, to }, FREE).unwrap();
         let pieces = (path.points().len() - 3) as f64;
@@ -77,7 +77,7 @@ proptest! {
     }
 
     #[test]
-    fn turning_and_moving_are_rigid_and_growing_is_not(path in winding(), radians in -3.0f64..3.0, factor in 0.2f64..4.0) {
+    fn rotation_and_shift_are_rigid_and_scaling_is_not(path in winding(), radians in -3.0f64..3.0, factor in 0.2f64..4.0) {
         for pins in [FREE, START, Pins { start: false, end: true }] {
             let turned = path.edited(&PathEdit::Rotate { radians }, pins).unwrap();
             prop_assert!((length(&turned) - length(&path)).abs() < 1e-9);
@@ -98,7 +98,7 @@ proptest! {
     }
 
     #[test]
-    fn a_path_is_straightened_at_its_length_and_between_its_pins(path in winding()) {
+    fn straightened_path_keeps_its_length_and_its_pins(path in winding()) {
         let straight = path.edited(&PathEdit::Straighten { share: 1.0 }, START).unwrap();
         prop_assert!((length(&straight) - length(&path)).abs() < 0.02 * length(&path), "{} {}", length(&straight), length(&path));
         prop_assert!((ends(&straight)[1].distance(ends(&straight)[0]) - length(&straight)).abs() < 1e-3);
@@ -110,7 +110,7 @@ proptest! {
     }
 
     #[test]
-    fn any_path_closes_smoothly(path in winding(), index in 0usize..6, x in -1.0f64..1.0) {
+    fn closed_path_is_smooth_at_its_start(path in winding(), index in 0usize..6, x in -1.0f64..1.0) {
         let closed = path.edited(&PathEdit::Close, START).unwrap();
         prop_assert!(ends(&closed)[0].distance(ends(&path)[0]) < 1e-9);
         let smooth = |closed: &GroundSpline| {
@@ -136,7 +136,7 @@ proptest! {
     }
 
     #[test]
-    fn no_number_panics(path in winding(), value in prop::num::f64::ANY, index: usize) {
+    fn edits_by_any_numbers_do_not_panic(path in winding(), value in prop::num::f64::ANY, index: usize) {
         let point = DVec2::new(value, 1.0);
         for edit in [
             PathEdit::Move { index, to: point },
@@ -158,7 +158,7 @@ proptest! {
 }
 
 #[test]
-fn a_straight_line_closes_into_a_circle() {
+fn closed_straight_line_is_a_circle() {
     let closed = line(12).edited(&PathEdit::Close, START).unwrap();
     let radius = 6.0 / (2.0 * PI);
     for k in 0..=60 {
@@ -172,7 +172,7 @@ fn a_straight_line_closes_into_a_circle() {
 
 /// Ends that are near each other are joined in place.
 #[test]
-fn an_eight_stays_an_eight() {
+fn closed_figure_eight_keeps_its_shape() {
     let points: Vec<(f64, f64)> = (0..=20)
         .map(|k| f64::from(k) / 20.0 * 1.95 * PI)
         .map(|a| (2.0 * a.sin(), (2.0 * a).sin()))
@@ -184,7 +184,7 @@ fn an_eight_stays_an_eight() {
 }
 
 #[test]
-fn smoothing_and_snapping_do_what_they_say() {
+fn smoothed_and_snapped_points_are_as_documented() {
     let zigzag = path(&[(0.0, 0.0), (1.0, 1.0), (-1.0, 2.0), (1.0, 3.0), (-1.0, 4.0), (0.0, 5.0)]);
     let smooth = zigzag.edited(&PathEdit::Smooth { share: 0.7 }, BOTH).unwrap();
     assert!(length(&smooth) < length(&zigzag) && ends(&smooth) == ends(&zigzag));
@@ -197,7 +197,7 @@ fn smoothing_and_snapping_do_what_they_say() {
 }
 
 #[test]
-fn what_cannot_be_done_is_said() {
+fn impossible_edits_are_refused() {
     let path = path(&[(0.0, 0.0), (0.0, 1.0), (1.0, 2.0), (0.0, 3.0)]);
     let edited = |edit, pins| path.edited(&edit, pins).unwrap_err();
     let to = DVec2::ONE;

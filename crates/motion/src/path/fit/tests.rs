@@ -44,7 +44,7 @@ fn points(list: &[[f64; 2]]) -> Vec<DVec2> {
 }
 
 #[test]
-fn least_squares_are_those_of_scipy() {
+fn fit_agrees_with_scipy() {
     let golden = golden();
     let mut worst: f64 = 0.0;
     for fit in &golden.fits {
@@ -68,7 +68,7 @@ fn least_squares_are_those_of_scipy() {
 }
 
 #[test]
-fn places_derivatives_lengths_and_inserted_knots_are_those_of_scipy() {
+fn spline_agrees_with_scipy() {
     for curve in golden().curves {
         let spline = GroundSpline::uniform(points(&curve.points)).unwrap();
         let path = ArcLengthPath::new(spline.clone()).unwrap();
@@ -105,7 +105,7 @@ proptest! {
 
     /// The residual is orthogonal to the basis functions: no other control points are closer.
     #[test]
-    fn the_rest_is_square_to_the_shares(way in prop::collection::vec((-3.0f64..3.0, -3.0f64..3.0), 12..60), control_points in 4usize..9) {
+    fn fit_residual_is_orthogonal_to_the_basis(way in prop::collection::vec((-3.0f64..3.0, -3.0f64..3.0), 12..60), control_points in 4usize..9) {
         let way: Vec<DVec2> = way.into_iter().map(DVec2::from).collect();
         let parameters: Vec<f64> = (0..way.len()).map(|k| k as f64 / (way.len() - 1) as f64).collect();
         let spline = fit_spline(&way, &parameters, &FitOptions { control_points, ..FitOptions::default() }).unwrap();
@@ -122,7 +122,7 @@ proptest! {
     /// A path is reproduced by its fit, and a straight trajectory gives a straight path however
     /// strong the smoothing is.
     #[test]
-    fn what_is_a_path_is_found_again(way in prop::collection::vec((-3.0f64..3.0, -3.0f64..3.0), 4..9), smoothing in 0.0f64..1e4, pin_ends: bool) {
+    fn fit_of_a_path_reproduces_it(way in prop::collection::vec((-3.0f64..3.0, -3.0f64..3.0), 4..9), smoothing in 0.0f64..1e4, pin_ends: bool) {
         let control: Vec<DVec2> = way.into_iter().map(DVec2::from).collect();
         let spline = GroundSpline::uniform(control.clone()).unwrap();
         let parameters: Vec<f64> = (0..=100).map(|k| f64::from(k) / 100.0).collect();
@@ -141,7 +141,7 @@ proptest! {
 }
 
 #[test]
-fn smoothing_trades_distance_for_straightness() {
+fn fit_with_smoothing_is_straighter_and_farther_off() {
     let way = points(&golden().ways["wander"]);
     let (parameters, _) = chord_parameters(&way);
     let mut before = 0.0;
@@ -159,7 +159,7 @@ fn smoothing_trades_distance_for_straightness() {
 
 /// Three points and fourteen control points; gaps between points; all points in two places.
 #[test]
-fn missing_points_leave_the_path_straight() {
+fn fit_with_missing_points_is_straight_there() {
     let options = FitOptions { control_points: 14, ..FitOptions::default() };
     let few = [DVec2::ZERO, DVec2::new(0.0, 1.0), DVec2::new(0.0, 3.0)];
     let spline = drawn_path(&few, &options).unwrap();
@@ -178,7 +178,7 @@ fn missing_points_leave_the_path_straight() {
 }
 
 #[test]
-fn what_cannot_be_fitted_is_said() {
+fn impossible_fits_are_refused() {
     let (way, u) = ([DVec2::ZERO, DVec2::ONE], [0.0, 1.0]);
     let with = |control_points, smoothing| {
         let options = FitOptions { control_points, smoothing, ..FitOptions::default() };
