@@ -9,7 +9,6 @@ use segue_motion::clip::Motion;
 use segue_motion::graph::{AllPairs, Candidates, Choices, FrameSet, GraphOptions, MotionGraph};
 use segue_motion::graph::{StitchOptions, Stitcher, Walker, WeightOptions, assembled};
 use segue_motion::metrics::{MotionTrace, ResultMetrics};
-use segue_motion::skeleton::Roles;
 use segue_motion::synth::{presets, synthesize};
 use std::error::Error;
 use std::sync::Arc;
@@ -17,14 +16,10 @@ use std::sync::Arc;
 fn main() -> Result<(), Box<dyn Error>> {
     let mut clips = Vec::new();
     for preset in presets().iter().filter(|preset| preset.id.contains("walk")) {
-        clips.push(Arc::new(synthesize(&preset.params)?.clip));
+        clips.push(Arc::new(Motion::analyze(synthesize(&preset.params)?.clip)));
     }
-    let skeleton = clips.first().ok_or("no preset is a walk")?.skeleton();
-    let roles = Roles::detect(skeleton);
-    let height = f64::from(roles.body_height(skeleton));
-    let sources =
-        clips.iter().map(|clip| Arc::new(Motion::with_roles(Arc::clone(clip), &roles))).collect();
-    let set = Arc::new(FrameSet::new(sources, height)?);
+    let first = Arc::clone(clips.first().ok_or("no preset is a walk")?);
+    let set = Arc::new(FrameSet::new(clips.clone(), f64::from(first.body_height()))?);
 
     // The distance of every window of frames to every other one; its minima are the transitions.
     let options =
@@ -53,9 +48,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let (walk, _) = assembled(&pieces)?.ok_or("the walk is empty")?;
     let traces: Vec<MotionTrace> =
-        clips.iter().map(|clip| MotionTrace::new(clip, &roles)).collect();
+        clips.iter().map(|motion| MotionTrace::new(motion.clip(), motion.roles())).collect();
     let metrics = ResultMetrics::measure(
-        &MotionTrace::new(&walk, &roles),
+        &MotionTrace::new(&walk, first.roles()),
         &traces.iter().collect::<Vec<_>>(),
     );
     let jump = metrics.pose_jump_deg.ok_or("the walk is too short to measure")?;

@@ -10,21 +10,14 @@ use segue_motion::blend::WeightLaw;
 use segue_motion::clip::Motion;
 use segue_motion::math::Decay;
 use segue_motion::metrics::{MotionTrace, ResultMetrics};
-use segue_motion::skeleton::Roles;
 use segue_motion::synth::{Action, Params, synthesize};
 use segue_motion::transition::{Inertialization, Method, TransitionOptions, concatenate};
 use std::error::Error;
-use std::sync::Arc;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let walk = Arc::new(synthesize(&Params::new(Action::Walk))?.clip);
-    let run = Arc::new(synthesize(&Params::new(Action::Run))?.clip);
-    let roles = Roles::detect(walk.skeleton());
-    let (a, b) = (
-        Motion::with_roles(Arc::clone(&walk), &roles),
-        Motion::with_roles(Arc::clone(&run), &roles),
-    );
-    let traces = [&walk, &run].map(|clip| MotionTrace::new(clip, &roles));
+    let walk = Motion::analyze(synthesize(&Params::new(Action::Walk))?.clip);
+    let run = Motion::analyze(synthesize(&Params::new(Action::Run))?.clip);
+    let traces = [&walk, &run].map(|motion| MotionTrace::new(motion.clip(), motion.roles()));
 
     let spring =
         Method::Inertialize(Inertialization::Offset(Decay::Spring { half_life_secs: 0.2 }));
@@ -37,9 +30,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         ("inertialize", spring),
     ];
     for (name, method) in methods {
-        let result = concatenate(&a, 100, &b, 20, &TransitionOptions::new(method))?.clip;
+        let result = concatenate(&walk, 100, &run, 20, &TransitionOptions::new(method))?.clip;
         let metrics =
-            ResultMetrics::measure(&MotionTrace::new(&result, &roles), &traces.each_ref());
+            ResultMetrics::measure(&MotionTrace::new(&result, walk.roles()), &traces.each_ref());
         let pose = metrics.pose_jump_deg.ok_or("the clips are too short to measure")?;
         let velocity = metrics.velocity_jump_dps.ok_or("the clips are too short to measure")?;
         println!("{name:12} pose jump {pose:5.1} °, velocity jump {velocity:5.0} °/s");

@@ -34,21 +34,18 @@
 //! use segue_motion::clip::Motion;
 //! use segue_motion::blend::{BodyPart, DissolveOptions, LayerOptions, dissolve, layer};
 //! use segue_motion::registration::{SearchOptions, best_transition, limb_weights};
-//! use segue_motion::skeleton::{Role, Roles};
+//! use segue_motion::skeleton::Role;
 //! use segue_motion::synth::{Action, Params, synthesize};
-//! use std::sync::Arc;
 //!
-//! let [walk, run] = [Action::Walk, Action::Run].map(|action| synthesize(&Params::new(action)));
-//! let (walk, run) = (Arc::new(walk?.clip), Arc::new(run?.clip));
-//! let roles = Roles::detect(walk.skeleton());
-//! let weights = limb_weights(walk.skeleton());
+//! let a = Motion::analyze(synthesize(&Params::new(Action::Walk))?.clip);
+//! let b = Motion::analyze(synthesize(&Params::new(Action::Run))?.clip);
+//! let (walk, run, roles) = (a.clip(), b.clip(), a.roles());
 //!
 //! // Find where half a second of walking and of running look most alike.
-//! let height = f64::from(roles.body_height(walk.skeleton()));
-//! let found = best_transition(&walk, &run, &weights, height, &SearchOptions::new(30))?;
+//! let weights = limb_weights(walk.skeleton());
+//! let height = f64::from(a.body_height());
+//! let found = best_transition(walk, run, &weights, height, &SearchOptions::new(30))?;
 //!
-//! let a = Motion::with_roles(Arc::clone(&walk), &roles);
-//! let b = Motion::with_roles(Arc::clone(&run), &roles);
 //! let options = DissolveOptions { window: 30, ..DissolveOptions::default() };
 //! let out = dissolve(&a, found.leave, &b, found.enter, &options)?;
 //! assert_eq!(out.clip.pose(found.leave - 1), walk.pose(found.leave - 1));
@@ -60,7 +57,7 @@
 //!
 //! // The arms of the run over the legs of the walk: the knees are the walk's, bit for bit.
 //! let upper_body = LayerOptions { parts: vec![BodyPart::UpperBody], ..LayerOptions::default() };
-//! let mixed = layer(&walk, &roles, &run, &upper_body)?;
+//! let mixed = layer(walk, roles, run, &upper_body)?;
 //! let knee = roles.get(Role::LeftShin).ok_or("no knee")?;
 //! let elbow = roles.get(Role::LeftForearm).ok_or("no elbow")?;
 //! assert_eq!(mixed.rotations(40)[knee], walk.rotations(40)[knee]);

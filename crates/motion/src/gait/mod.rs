@@ -34,7 +34,7 @@
 //! let jog = blend.cycle_at(2.5)?;
 //! assert!(jog.facts.weight > 0.4 && jog.facts.weight < 0.6 && !jog.facts.extrapolated);
 //! // The speed is the one asked for; strides and cadence lie between those of the gaits.
-//! let jog_motion = Motion::with_roles(jog.clip.clone(), walk.roles());
+//! let jog_motion = Motion::analyze(jog.clip.clone());
 //! let measured = ground_speed(jog_motion.ground_frames(), jog.clip.fps());
 //! assert!((measured - 2.5).abs() < 0.02 * 2.5);
 //! let [walk, run] = blend.speeds_mps().map(|speed| blend.facts(speed));

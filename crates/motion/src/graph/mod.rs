@@ -35,16 +35,13 @@
 //! use segue_motion::clip::Motion;
 //! use segue_motion::graph::{AllPairs, Candidates, Choices, FrameSet, GraphOptions, MotionGraph};
 //! use segue_motion::graph::{StitchOptions, Stitcher, Walker, WeightOptions};
-//! use segue_motion::skeleton::Roles;
 //! use segue_motion::synth::{Action, Params, synthesize};
 //! use std::sync::Arc;
 //!
-//! let [walk, run] = [Action::Walk, Action::Run].map(|action| synthesize(&Params::new(action)));
-//! let (walk, run) = (Arc::new(walk?.clip), Arc::new(run?.clip));
-//! let roles = Roles::detect(walk.skeleton());
-//! let height = f64::from(roles.body_height(walk.skeleton()));
-//! let sources = [walk, run].map(|clip| Arc::new(Motion::with_roles(clip, &roles)));
-//! let set = Arc::new(FrameSet::new(sources.to_vec(), height)?);
+//! let walk = Motion::analyze(synthesize(&Params::new(Action::Walk))?.clip);
+//! let run = Motion::analyze(synthesize(&Params::new(Action::Run))?.clip);
+//! let height = f64::from(walk.body_height());
+//! let set = Arc::new(FrameSet::new(vec![Arc::new(walk), Arc::new(run)], height)?);
 //!
 //! let mut all = AllPairs::new(Arc::clone(&set))?;
 //! while !all.advance(100_000)?.is_complete() {}

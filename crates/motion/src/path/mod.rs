@@ -28,14 +28,12 @@
 //! use segue_motion::path::{
 //!     ArcLengthPath, CarryOptions, FitOptions, FittedPath, PathEdit, Pins, carry,
 //! };
-//! use segue_motion::skeleton::Roles;
 //! use segue_motion::synth::{Action, Params, synthesize};
 //! use std::sync::Arc;
 //!
 //! let walk = Arc::new(synthesize(&Params::new(Action::Walk))?.clip);
-//! let roles = Roles::detect(walk.skeleton());
 //! let fit = FitOptions { control_points: 6, ..FitOptions::default() };
-//! let path = FittedPath::new(Arc::new(Motion::with_roles(Arc::clone(&walk), &roles)), &fit)?;
+//! let path = FittedPath::new(Arc::new(Motion::analyze(Arc::clone(&walk))), &fit)?;
 //! assert!(path.error().rms_cm < 5.0);
 //!
 //! // On its own path the walk is itself.

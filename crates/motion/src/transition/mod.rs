@@ -35,16 +35,12 @@
 //! ```
 //! use segue_motion::clip::{Clip, Motion};
 //! use segue_motion::math::Decay;
-//! use segue_motion::skeleton::Roles;
 //! use segue_motion::synth::{Action, Params, synthesize};
 //! use segue_motion::transition::{Inertialization, Method, TransitionOptions, concatenate};
 //! use segue_motion::transition::{LoopCurve, LoopMethod, LoopOptions, close_loop};
-//! use std::sync::Arc;
 //!
-//! let [walk, run] = [Action::Walk, Action::Run].map(|action| synthesize(&Params::new(action)));
-//! let (walk, run) = (Arc::new(walk?.clip), Arc::new(run?.clip));
-//! let roles = Roles::detect(walk.skeleton());
-//! let (a, b) = (Motion::with_roles(walk, &roles), Motion::with_roles(run, &roles));
+//! let a = Motion::analyze(synthesize(&Params::new(Action::Walk))?.clip);
+//! let b = Motion::analyze(synthesize(&Params::new(Action::Run))?.clip);
 //!
 //! // The largest turn of a joint from the last frame of A to the next one.
 //! let spring = Inertialization::Offset(Decay::Spring { half_life_secs: 0.15 });

@@ -151,12 +151,9 @@ pub(super) fn with_travel(step: &Planar, travel: Vec3, secs: f64) -> Planar {
 mod tests {
     use super::*;
     use crate::registration::fixtures::Walk;
-    use crate::skeleton::Roles;
 
     fn source_of(walk: &Walk) -> Motion {
-        let clip = walk.clip();
-        let roles = Roles::detect(clip.skeleton());
-        Motion::with_roles(clip, &roles)
+        Motion::analyze(walk.clip())
     }
 
     fn free(source: &Motion) -> View<'_> {

@@ -215,12 +215,9 @@ fn with_added_frames(source: &Motion, added_frames: usize) -> Option<Motion> {
 mod tests {
     use super::*;
     use crate::registration::fixtures::Walk;
-    use crate::skeleton::Roles;
 
     fn source_of(walk: &Walk) -> Motion {
-        let clip = walk.clip();
-        let roles = Roles::detect(clip.skeleton());
-        Motion::with_roles(clip, &roles)
+        Motion::analyze(walk.clip())
     }
 
     /// Returns a walk whose stride takes 60 frames, cut to `frames`.
@@ -270,8 +267,7 @@ mod tests {
         use crate::synth::{Action, Params, synthesize};
         for action in [Action::Spin, Action::Start, Action::Stop, Action::Jump] {
             let clip = synthesize(&Params::new(action)).unwrap().clip;
-            let roles = Roles::detect(clip.skeleton());
-            assert!(WholeCycle::of(&Motion::with_roles(clip, &roles)).is_none(), "{action:?}");
+            assert!(WholeCycle::of(&Motion::analyze(clip)).is_none(), "{action:?}");
         }
     }
 

@@ -3,12 +3,9 @@
 use super::*;
 use crate::registration::fixtures::Walk;
 use crate::registration::{PairTerms, RegistrationOptions, limb_weights};
-use crate::skeleton::Roles;
 
 fn source(walk: Walk) -> Motion {
-    let clip = walk.clip();
-    let roles = Roles::detect(clip.skeleton());
-    Motion::with_roles(clip, &roles)
+    Motion::analyze(walk.clip())
 }
 
 fn register(a: &Motion, b: &Motion) -> Registration {

@@ -4,7 +4,6 @@ use super::*;
 use crate::clip::{Clip, Interpolation, JointTranslations, Motion, resample};
 use crate::math::Decay;
 use crate::registration::fixtures::Walk;
-use crate::skeleton::Roles;
 use glam::Quat;
 use proptest::prelude::*;
 use std::sync::Arc;
@@ -20,8 +19,7 @@ const ROOT_OPTIONS: [(bool, RootBlend); 3] =
     [(true, RootBlend::Velocity), (true, RootBlend::World), (false, RootBlend::Velocity)];
 
 fn source_of(clip: Clip) -> Motion {
-    let roles = Roles::detect(clip.skeleton());
-    Motion::with_roles(clip, &roles)
+    Motion::analyze(clip)
 }
 
 fn source(walk: Walk) -> Motion {

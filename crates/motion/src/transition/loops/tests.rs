@@ -15,8 +15,7 @@ const METHODS: [LoopMethod; 4] = [
 ];
 
 fn source_of(clip: Clip) -> Motion {
-    let roles = Roles::detect(clip.skeleton());
-    Motion::with_roles(clip, &roles)
+    Motion::analyze(clip)
 }
 
 /// Returns a walk; a stride is 66.7 frames.
