@@ -29,7 +29,7 @@ pub struct Limb {
 /// A body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
-    /// Its limbs, a range of [`Pane::limbs`].
+    /// Its limbs, a range of [`Pane::limbs`](crate::Pane::limbs).
     pub limbs: Range<usize>,
     /// The skin that is drawn in place of the limbs, which then only shade the ground.
     pub skin: Option<Skin>,
@@ -46,12 +46,13 @@ pub struct Figure {
 pub struct Skin {
     /// The mesh, which figures may share.
     pub mesh: Arc<SkinnedMesh>,
-    /// Its joints' `world_from_bind`, a range of [`Pane::joints`].
+    /// Its joints' `world_from_bind`, a range of [`Pane::joints`](crate::Pane::joints).
     pub joints: Range<usize>,
     /// Colour. The alpha of a ghost is its opacity. A mesh with colours of its own shows those on a
     /// solid body.
     pub color: Color,
-    /// Whether every joint has its own colour, in [`Pane::joint_colors`].
+    /// Whether every joint has its own colour, in
+    /// [`Pane::joint_colors`](crate::Pane::joint_colors).
     pub colored: bool,
 }
 

@@ -73,7 +73,7 @@ pub enum TrialResult {
 pub struct Numbers {
     /// Whether anything in it is not finite.
     pub not_finite: bool,
-    /// Counts as in [`Artefacts`].
+    /// Counts as in [`segue_motion::metrics::Artefacts`].
     pub spins: usize,
     pub flashes: usize,
     pub new_flashes: usize,

@@ -235,8 +235,8 @@ impl Context<'_> {
         Ok(())
     }
 
-    /// Moves the mesh to the joints of its clips ([`Clip::folded`]): vertices of a joint above the
-    /// carrier follow the carrier.
+    /// Moves the mesh to the joints of its clips ([`segue_motion::clip::Clip::folded`]): vertices
+    /// of a joint above the carrier follow the carrier.
     fn folded(mut mesh: SkinnedMesh, rest: &RawMotion) -> SkinnedMesh {
         let measure = measure(rest, Some(1.0), Some(UpAxis::Y));
         if let Ok(clip) = rest.clone().into_clip(String::new(), 1.0, measure.provenance)

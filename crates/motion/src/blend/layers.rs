@@ -89,7 +89,7 @@ pub enum LayerTime {
 pub struct LayerOptions {
     /// The parts of the body that the layer affects.
     pub parts: Vec<BodyPart>,
-    /// Number of joints over which each part fades in ([`mask`]).
+    /// Number of joints over which each part fades in ([`mask()`]).
     pub feather: usize,
     /// The weight of the layer, 0 to 1.
     pub weight: f32,

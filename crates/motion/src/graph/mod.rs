@@ -22,8 +22,8 @@
 //! [`Choices`] hold the probability of each way out of a stretch, a [`Walker`] walks through the
 //! graph by a seed, and a [`Stitcher`] makes the walk's motion. Each step is quick compared with
 //! the one before it, and can be repeated alone: a new blend window needs new running sums, a new
-//! threshold new candidates, another weight law other choices. [`follow`] searches for a walk along
-//! a path on the ground.
+//! threshold new candidates, another weight law other choices. [`follow()`] searches for a walk
+//! along a path on the ground.
 //!
 //! A transition leaves clip A at frame `leave` and enters clip B at frame `enter`;
 //! `A[leave..leave + window)` and `B[enter..enter + window)` overlap. Distances are

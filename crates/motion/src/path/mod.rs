@@ -15,8 +15,8 @@
 //! ```
 //!
 //! Picture a dancer in a tram: bend the rails, and the dance goes along. When the path changes,
-//! every frame is moved with the frame of the path that it belongs to ([`carry`]), and the feet are
-//! planted again ([`PathEditor`]). [`Timing`] determines whether distance, speed or duration is
+//! every frame is moved with the frame of the path that it belongs to ([`carry()`]), and the feet
+//! are planted again ([`PathEditor`]). [`Timing`] determines whether distance, speed or duration is
 //! kept when a path becomes longer. [`hard_turns`] reports turns that are sharper than those of the
 //! original motion (curvature × speed).
 //!

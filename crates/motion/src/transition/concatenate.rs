@@ -59,7 +59,7 @@ impl TransitionOptions {
 ///
 /// Inertialization starts from the frame before: the differences of pose and velocity are those
 /// between A at `leave - 1` and B at `enter - 1`, each velocity being that of the step into the
-/// next frame ([`MovingPose`](super::MovingPose)), and frame `leave + p` of the result has the rest
+/// next frame ([`MovingPose`]), and frame `leave + p` of the result has the rest
 /// of them after `(p + 1) / fps` seconds. The frame before the transition is therefore all A, as in
 /// a dissolve, and a clip that is entered at the frame where it is left continues unchanged (except
 /// for dead blending, which damps it all the same). Before its first frame and after its last one a

@@ -77,11 +77,11 @@ impl Mistake {
     }
 }
 
-/// Makes a transition as [`concatenate`] does, with one mistake. A method that the mistake does not
-/// [concern](Mistake::concerns) gives the correct result.
+/// Makes a transition as [`concatenate()`] does, with one mistake. A method that the mistake does
+/// not [concern](Mistake::concerns) gives the correct result.
 ///
 /// # Errors
-/// The same as for [`concatenate`].
+/// The same as for [`concatenate()`].
 pub fn concatenate_mistaken(
     a: &Motion,
     leave: usize,

@@ -13,9 +13,9 @@
 //! q(t) = exp(decay(x, v; t)) · q_new(t)             decay: spring, cubic or quintic
 //! ```
 //!
-//! [`concatenate`] is one entry point for all methods, with one meaning of "leave" and "enter", so
-//! that they can be compared; [`Inertializer`] does the same frame by frame during playback. Dead
-//! blending extrapolates the old *pose* with decaying velocity, and fades from that to the new
+//! [`concatenate()`] is one entry point for all methods, with one meaning of "leave" and "enter",
+//! so that they can be compared; [`Inertializer`] does the same frame by frame during playback.
+//! Dead blending extrapolates the old *pose* with decaying velocity, and fades from that to the new
 //! clip: safer for poses that are far apart.
 //!
 //! [`close_loop`] makes a cycle: the difference between its ends, D in pose and V in velocity, is
@@ -27,7 +27,7 @@
 //!
 //! With X = D and W = V, as is usual, each spring has `(1 + yT) e^(-yT)` of its offset left at the
 //! other end; [`LoopCurve`] solves for the X and W that close exactly. [`find_cycle`] searches for
-//! ends that differ little. [`foot_lock`] plants feet that slide. [`concatenate_mistaken`] makes
+//! ends that differ little. [`foot_lock()`] plants feet that slide. [`concatenate_mistaken`] makes
 //! the classic mistakes, one at a time.
 //!
 //! # Example
