@@ -61,7 +61,7 @@ pub struct Unpacked {
 
 /// Returns whether the bytes start as those of a zip archive.
 #[must_use]
-pub fn is_zip(bytes: &[u8]) -> bool {
+pub(crate) fn is_zip(bytes: &[u8]) -> bool {
     // The second one is an archive without files.
     bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"PK\x05\x06")
 }

@@ -91,11 +91,6 @@ impl AcclaimSkeleton {
         stem(&self.file)
     }
 
-    /// Returns the names of the joints, parents first.
-    pub fn joint_names(&self) -> impl Iterator<Item = &str> {
-        self.joints.iter().map(|joint| joint.name.as_str())
-    }
-
     /// Returns the joint of a bone's name; the exact case takes precedence.
     pub(super) fn find(&self, bone: &str) -> Option<usize> {
         let lowercase = || self.by_lowercase_name.get(&bone.to_lowercase());

@@ -27,7 +27,7 @@ pub use write::{GlbError, GlbOptions, write_character_glb, write_glb};
 
 /// Returns whether the bytes are a `.glb` file, or JSON that may be a `.gltf` file.
 #[must_use]
-pub fn is_gltf(bytes: &[u8]) -> bool {
+pub(crate) fn is_gltf(bytes: &[u8]) -> bool {
     let is_json = || {
         let text = super::text::decode(bytes.get(..1 << 12).unwrap_or(bytes));
         text.iter().find(|b| !super::text::is_space(**b)) == Some(&b'{')

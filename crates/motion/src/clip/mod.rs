@@ -113,7 +113,8 @@ pub use in_place::{RootMotion, RootMotionError, root_motion_from_feet, take_in_p
 pub(crate) use jolts::{JoltScan, jolts, turn_change};
 pub use mirror::{MirrorError, mirror};
 pub use motion::{FootOptions, Motion};
-pub use reference::{reference_pose, stance_for_rest};
+pub use reference::reference_pose;
+pub(crate) use reference::stance_for_rest;
 pub use resample::resample;
 pub use retarget::{RetargetError, retarget, retarget_onto};
 pub use root_motion::{character_frames, facing, ground_speed};

@@ -43,7 +43,7 @@ pub fn reference_pose(clip: &Clip, roles: &Roles) -> WorldPose {
 /// Returns the stance that replaces the rest pose of a clip's skeleton: its [`canonical_stance`]
 /// where the rest pose is implausible. `None` where it is plausible, and where roles are missing.
 #[must_use]
-pub fn stance_for_rest(clip: &Clip, roles: &Roles) -> Option<WorldPose> {
+pub(crate) fn stance_for_rest(clip: &Clip, roles: &Roles) -> Option<WorldPose> {
     let is_strange = rest_is_plausible(clip.skeleton(), roles) == Some(false);
     is_strange.then(|| canonical_stance(clip.skeleton(), roles, &reference_pose(clip, roles)))
 }

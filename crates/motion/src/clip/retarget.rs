@@ -39,7 +39,8 @@ pub fn retarget(
 }
 
 /// Retargets a clip, as [`retarget`] does, to the skeleton of another clip. If that skeleton has an
-/// implausible rest pose, its stance is taken from the clip ([`stance_for_rest`]).
+/// implausible rest pose, its stance is taken from the clip
+/// ([`reference_pose`](super::reference_pose)).
 ///
 /// # Errors
 /// The same as for [`retarget`].

@@ -271,7 +271,7 @@ impl Clip {
     ///
     /// # Panics
     /// When there is no such frame.
-    pub fn world_pose_of(&self, frame: usize, joints: &[usize], world: &mut WorldPose) {
+    pub(crate) fn world_pose_of(&self, frame: usize, joints: &[usize], world: &mut WorldPose) {
         let moved = self.translations.iter().map(|track| (track.joint, track.values[frame]));
         let root = self.root_translations[frame];
         world_pose_of(&self.skeleton, root, self.rotations(frame), moved, joints, world);

@@ -138,7 +138,7 @@ impl FrameSet {
     /// a last digit of the middle between two roundings may still be rounded either way, where the
     /// clips themselves differ by a last digit.
     #[must_use]
-    pub fn rounded_cm(&self, rms_m: f32) -> f64 {
+    pub(crate) fn rounded_cm(&self, rms_m: f32) -> f64 {
         (f64::from(rms_m) * self.cm_per_m() * 1_000.0).round() / 1_000.0
     }
 

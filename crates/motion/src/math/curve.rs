@@ -9,14 +9,6 @@ pub fn smoothstep(t: f32) -> f32 {
     t * t * (3.0 - 2.0 * t)
 }
 
-/// Returns 6t⁵ - 15t⁴ + 10t³: from 0 to 1 with neither slope nor curvature at either end (C²;
-/// Perlin 2002). `t` is clamped.
-#[must_use]
-pub fn smootherstep(t: f32) -> f32 {
-    let t = t.clamp(0.0, 1.0);
-    t * t * t * (t * (t * 6.0 - 15.0) + 10.0)
-}
-
 /// Returns `value` up to `from`, and above it a smooth curve (C¹) that never exceeds `to`.
 #[must_use]
 pub fn soft_limit(value: f32, from: f32, to: f32) -> f32 {
@@ -37,7 +29,7 @@ pub fn catmull_rom(p0: Vec3, p1: Vec3, p2: Vec3, p3: Vec3, t: f32) -> Vec3 {
 /// Evaluates the cubic Hermite curve from `p0` with slope `m0` (per unit of `t`) to `p1` with slope
 /// `m1`.
 #[must_use]
-pub fn hermite(p0: Vec3, m0: Vec3, p1: Vec3, m1: Vec3, t: f32) -> Vec3 {
+fn hermite(p0: Vec3, m0: Vec3, p1: Vec3, m1: Vec3, t: f32) -> Vec3 {
     let (t2, t3) = (t * t, t * t * t);
     p0 * (2.0 * t3 - 3.0 * t2 + 1.0)
         + m0 * (t3 - 2.0 * t2 + t)

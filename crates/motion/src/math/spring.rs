@@ -8,7 +8,7 @@
 
 use super::{Response, quat};
 use glam::{Quat, Vec3};
-use std::f64::consts::{E, LN_2};
+use std::f64::consts::LN_2;
 
 /// Returns half the damping of a critically damped spring, per second: `y = 2 ln 2 / h`. Below a
 /// nanosecond (and for NaN) `h` counts as a nanosecond: the spring is then at rest at once.
@@ -108,21 +108,13 @@ pub fn equivalent_window_secs(half_life_secs: f64) -> f64 {
     4.0 / rate(half_life_secs)
 }
 
-/// Returns the peak of an offset that starts at 0 with velocity 1: its time, seconds, and its size,
-/// seconds (times the velocity): `1 / y` and `1 / (e y)`, that is 0.721 h and 0.265 h.
-#[must_use]
-pub fn peak_of_velocity(half_life_secs: f64) -> (f64, f64) {
-    let y = rate(half_life_secs);
-    (y.recip(), (E * y).recip())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use proptest::prelude::*;
 
     #[test]
-    fn secs_until_and_peak_agree_with_the_closed_form() {
+    fn secs_until_agrees_with_the_closed_form() {
         assert!((response(1.0, 1.0).xx - 0.596_573_590).abs() < 1e-9);
         for (share, half_lives) in [(0.5, 1.210_671_44), (0.1, 2.805_84), (0.01, 4.788_558_8)] {
             assert!((secs_until(0.2, share) - 0.2 * half_lives).abs() < 1e-6, "{share}");
@@ -131,14 +123,6 @@ mod tests {
         assert_eq!(secs_until(0.2, 1.0), 0.0);
         assert_eq!(secs_until(0.2, f64::INFINITY), 0.0);
         assert!(secs_until(0.2, 0.0) > secs_until(0.2, 1e-11));
-        let (when, how_far) = peak_of_velocity(0.3);
-        assert!((how_far - 0.265_370 * 0.3).abs() < 1e-6 && (when - 0.721_348 * 0.3).abs() < 1e-6);
-        let at = |t: f64| response(0.3, t).xv;
-        assert!(
-            (at(when) - how_far).abs() < 1e-12
-                && at(when - 1e-3) < how_far
-                && at(when + 1e-3) < how_far
-        );
     }
 
     #[test]

@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// Every `stride`-th frame of a part of a clip as a cloud of weighted points, built once and
 /// compared with many others.
 #[derive(Clone, Debug)]
-pub struct PointClouds {
+pub(crate) struct PointClouds {
     pub(super) cloud: Arc<Cloud>,
     pub(super) shares: Shares,
     /// Σw of one frame.
@@ -27,7 +27,7 @@ impl PointClouds {
     /// # Errors
     /// [`RegistrationError`] when the part is empty, the number of weights differs from that of the
     /// joints, or a position is not finite.
-    pub fn new(
+    pub(crate) fn new(
         clip: &Clip,
         frames: Range<usize>,
         weights: &[f64],
@@ -42,7 +42,7 @@ impl PointClouds {
     ///
     /// # Errors
     /// [`RegistrationError::Weights`] when the number of weights differs from that of the joints.
-    pub fn level_m(clip: &Clip, weights: &[f64]) -> Result<f64, RegistrationError> {
+    pub(crate) fn level_m(clip: &Clip, weights: &[f64]) -> Result<f64, RegistrationError> {
         let sum = checked_sum(weights, clip.skeleton().len())?;
         if clip.frames() == 0 {
             return Ok(0.0);
@@ -52,7 +52,7 @@ impl PointClouds {
 
     /// Returns the number of samples.
     #[must_use]
-    pub fn samples(&self) -> usize {
+    pub(crate) fn samples(&self) -> usize {
         self.cloud.samples
     }
 }
@@ -60,7 +60,7 @@ impl PointClouds {
 /// The construction of [`PointClouds`] in slices. It does not hold the clip: every call must be
 /// given the same one.
 #[derive(Clone, Debug)]
-pub struct PointCloudsBuilder {
+pub(crate) struct PointCloudsBuilder {
     cloud: Cloud,
     shares: Shares,
     frame_weight: f64,
@@ -74,7 +74,7 @@ impl PointCloudsBuilder {
     /// # Errors
     /// [`RegistrationError`] when the part is empty, or the number of weights differs from that of
     /// the joints.
-    pub fn new(
+    pub(crate) fn new(
         clip: &Clip,
         frames: Range<usize>,
         weights: &[f64],
@@ -98,7 +98,7 @@ impl PointCloudsBuilder {
 
     /// Returns the number of samples whose points are known.
     #[must_use]
-    pub fn done(&self) -> usize {
+    pub(crate) fn done(&self) -> usize {
         self.cloud.done()
     }
 
@@ -107,7 +107,11 @@ impl PointCloudsBuilder {
     ///
     /// # Errors
     /// [`RegistrationError::NotFinite`].
-    pub fn advance(&mut self, clip: &Clip, samples: usize) -> Result<Progress, RegistrationError> {
+    pub(crate) fn advance(
+        &mut self,
+        clip: &Clip,
+        samples: usize,
+    ) -> Result<Progress, RegistrationError> {
         self.cloud.advance(clip, self.stride, &self.shares, self.level_m, samples)?;
         Ok(Progress { done: self.cloud.done(), total: self.cloud.samples })
     }
@@ -116,7 +120,7 @@ impl PointCloudsBuilder {
     ///
     /// # Errors
     /// [`RegistrationError::NotFinite`].
-    pub fn finish(mut self, clip: &Clip) -> Result<PointClouds, RegistrationError> {
+    pub(crate) fn finish(mut self, clip: &Clip) -> Result<PointClouds, RegistrationError> {
         self.advance(clip, usize::MAX)?;
         Ok(PointClouds {
             cloud: Arc::new(self.cloud),

@@ -108,7 +108,7 @@ mod terms;
 mod transition;
 
 pub use align::{Alignment, align};
-pub use clouds::{PointClouds, PointCloudsBuilder};
+pub(crate) use clouds::{PointClouds, PointCloudsBuilder};
 pub use curves::{Registration, RegistrationOptions};
 pub use distance::DistanceMatrix;
 pub use path::{
@@ -118,7 +118,7 @@ pub use path::{
 pub use path_error::PathError;
 pub use points::{REFERENCE_HEIGHT_M, limb_weights, rms_cm, uniform_weights};
 pub use pose::{PoseMatch, PoseSearch, PoseWeights};
-pub use self_terms::{PausedSelfSweep, SelfSweep, SelfTerms, SymmetricDistances};
+pub(crate) use self_terms::{PausedSelfSweep, SelfSweep, SelfTerms, SymmetricDistances};
 pub use sweep::{PausedSweep, Sweep};
 pub(crate) use terms::MAX_PAIRS;
 pub use terms::{PairTerms, Progress, distances_directly};

@@ -9,7 +9,7 @@ use super::{Alignment, PairTerms, PointClouds, Progress, RegistrationError};
 /// Only pairs (i, j) with j ≥ i, on and above the diagonal, are stored; so are all pairs that a
 /// window adds to them: (i + 1, j + 1) and on.
 #[derive(Clone, Debug)]
-pub struct SelfTerms(PairTerms);
+pub(crate) struct SelfTerms(PairTerms);
 
 impl SelfTerms {
     /// Prepares the comparison. Nothing is compared yet: call [`advance`](Self::advance). Memory: 6
@@ -17,19 +17,19 @@ impl SelfTerms {
     ///
     /// # Errors
     /// [`RegistrationError::TooManyPairs`] above 11,500 samples.
-    pub fn new(clouds: &PointClouds) -> Result<Self, RegistrationError> {
+    pub(crate) fn new(clouds: &PointClouds) -> Result<Self, RegistrationError> {
         Ok(Self(PairTerms::of_itself(clouds)?))
     }
 
     /// Compares at least `rows` more frames with the following ones (in groups of four rows), and
     /// returns the progress. Rows get shorter and shorter.
-    pub fn advance(&mut self, rows: usize) -> Progress {
+    pub(crate) fn advance(&mut self, rows: usize) -> Progress {
         self.0.advance(rows)
     }
 
     /// Returns the progress.
     #[must_use]
-    pub fn progress(&self) -> Progress {
+    pub(crate) fn progress(&self) -> Progress {
         self.0.progress()
     }
 
@@ -38,7 +38,7 @@ impl SelfTerms {
     ///
     /// # Errors
     /// [`RegistrationError::Unfinished`] before all rows are compared.
-    pub fn sweep(&self, window: usize) -> Result<SelfSweep<'_>, RegistrationError> {
+    pub(crate) fn sweep(&self, window: usize) -> Result<SelfSweep<'_>, RegistrationError> {
         let all = 0..usize::MAX;
         let rows = self.0.source.starts(&all, window.max(1), self.0.stride()).len();
         Ok(SelfSweep { sweep: self.0.sweep(window, &all, &all)?, rows })
@@ -50,7 +50,7 @@ impl SelfTerms {
     /// # Errors
     /// [`RegistrationError`] before all rows are compared, or when a window crosses the end of the
     /// compared part.
-    pub fn alignment(
+    pub(crate) fn alignment(
         &self,
         source: usize,
         target: usize,
@@ -67,14 +67,14 @@ impl SelfTerms {
 
 /// A [`Sweep`] of a clip with itself.
 #[derive(Clone, Debug)]
-pub struct SelfSweep<'a> {
+pub(crate) struct SelfSweep<'a> {
     sweep: Sweep<'a>,
     rows: usize,
 }
 
 /// A [`SelfSweep`] that does not borrow the terms until it is resumed.
 #[derive(Clone, Debug)]
-pub struct PausedSelfSweep {
+pub(crate) struct PausedSelfSweep {
     sweep: PausedSweep,
     rows: usize,
 }
@@ -82,7 +82,7 @@ pub struct PausedSelfSweep {
 impl PausedSelfSweep {
     /// Resumes the sweep. `terms` are those from which it was made.
     #[must_use]
-    pub fn resume(self, terms: &SelfTerms) -> SelfSweep<'_> {
+    pub(crate) fn resume(self, terms: &SelfTerms) -> SelfSweep<'_> {
         SelfSweep { sweep: self.sweep.resume(&terms.0), rows: self.rows }
     }
 }
@@ -90,18 +90,18 @@ impl PausedSelfSweep {
 impl SelfSweep<'_> {
     /// Stops borrowing the terms, so that the rest can be computed later.
     #[must_use]
-    pub fn pause(self) -> PausedSelfSweep {
+    pub(crate) fn pause(self) -> PausedSelfSweep {
         PausedSelfSweep { sweep: self.sweep.pause(), rows: self.rows }
     }
 
     /// Computes up to `rows` more rows, and returns the progress.
-    pub fn advance(&mut self, rows: usize) -> Progress {
+    pub(crate) fn advance(&mut self, rows: usize) -> Progress {
         self.sweep.advance(rows)
     }
 
     /// Computes the remaining rows and returns the distances.
     #[must_use]
-    pub fn finish(self) -> SymmetricDistances {
+    pub(crate) fn finish(self) -> SymmetricDistances {
         SymmetricDistances { rows: self.rows, rms_m: self.sweep.finish_packed() }
     }
 }
@@ -109,7 +109,7 @@ impl SelfSweep<'_> {
 /// Distances between windows of a clip and windows of the same clip; only those on and above the
 /// diagonal are stored.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SymmetricDistances {
+pub(crate) struct SymmetricDistances {
     rows: usize,
     rms_m: Vec<f32>,
 }
@@ -117,20 +117,20 @@ pub struct SymmetricDistances {
 impl SymmetricDistances {
     /// Returns the number of rows, which is that of columns.
     #[must_use]
-    pub fn rows(&self) -> usize {
+    pub(crate) fn rows(&self) -> usize {
         self.rows
     }
 
     /// Returns one root-mean-square distance per point, metres, the same for (a, b) and (b, a);
     /// `None` outside the matrix.
     #[must_use]
-    pub fn get(&self, a: usize, b: usize) -> Option<f32> {
+    pub(crate) fn get(&self, a: usize, b: usize) -> Option<f32> {
         self.row(a.min(b)).get(a.abs_diff(b)).copied()
     }
 
     /// Returns the distances of one row from its own column on, metres; empty outside the matrix.
     #[must_use]
-    pub fn row(&self, row: usize) -> &[f32] {
+    pub(crate) fn row(&self, row: usize) -> &[f32] {
         if row >= self.rows {
             return &[];
         }

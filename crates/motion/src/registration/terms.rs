@@ -181,7 +181,7 @@ impl PairTerms {
     ///
     /// # Errors
     /// [`RegistrationError::TooManyPairs`] when there are more than 67 million pairs.
-    pub fn of_clouds(
+    pub(crate) fn of_clouds(
         source: &PointClouds,
         target: &PointClouds,
     ) -> Result<Self, RegistrationError> {

@@ -63,7 +63,7 @@ pub fn world_pose_into(
 /// Computes forward kinematics of `joints` alone, as [`world_pose_into`] does for all: in rising
 /// order and with all their ancestors, as [`Skeleton::with_ancestors`] returns them. The entries of
 /// other joints are undefined. Indices out of range are ignored.
-pub fn world_pose_of(
+pub(crate) fn world_pose_of(
     skeleton: &Skeleton,
     root_translation: Vec3,
     rotations: &[Quat],

@@ -23,7 +23,7 @@
 //! world_target = world_source · C      C takes the target's bone at rest to the source's
 //! ```
 //!
-//! [`Mirror`] swaps the sides in the same way, and [`two_bone_ik`] bends a leg so that its ankle
+//! [`Mirror`] swaps the sides in the same way, and [`two_bone_ik()`] bends a leg so that its ankle
 //! reaches a given point (two-bone inverse kinematics).
 //!
 //! # Example
@@ -105,12 +105,14 @@ mod two_bone_ik;
 pub(crate) use carrier::{ChainChild, ChainJoint, ChainMotion};
 pub use carrier::{FoldedChain, carrier};
 pub use joint_map::JointMap;
-pub use kinematics::{WorldPose, local_pose, world_pose, world_pose_into, world_pose_of};
+pub(crate) use kinematics::world_pose_of;
+pub use kinematics::{WorldPose, local_pose, world_pose, world_pose_into};
 pub use mirror::{Mirror, NoCounterparts};
 pub use pose::Pose;
 pub use retarget::Retargeting;
 pub use role::{Role, Side};
 pub use roles::{Found, Roles};
-pub use stance::{canonical_stance, rest_is_plausible, uprightness};
+pub use stance::canonical_stance;
+pub(crate) use stance::{rest_is_plausible, uprightness};
 pub use tree::{Channel, Joint, Skeleton, SkeletonError};
 pub use two_bone_ik::{TwoBoneIk, two_bone_ik};

@@ -130,7 +130,7 @@ impl Retargeting {
     /// Returns whether the skeletons differ only in the order of their joints, and in joints that
     /// one of them lacks at its ends.
     #[must_use]
-    pub fn is_same_rig(&self) -> bool {
+    pub(crate) fn is_same_rig(&self) -> bool {
         self.same_rig
     }
 

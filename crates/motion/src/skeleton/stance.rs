@@ -50,7 +50,7 @@ impl Skeleton {
 ///
 /// Files may have any rest pose: all bones along one axis, or every joint rotated by a constant.
 #[must_use]
-pub fn rest_is_plausible(skeleton: &Skeleton, roles: &Roles) -> Option<bool> {
+pub(crate) fn rest_is_plausible(skeleton: &Skeleton, roles: &Roles) -> Option<bool> {
     let rest = skeleton.rest_positions();
     let body = Landmark::of(&rest, roles)?;
     Some(body.stands_on_two() || body.stands_on_four())
@@ -60,7 +60,7 @@ pub fn rest_is_plausible(skeleton: &Skeleton, roles: &Roles) -> Option<bool> {
 /// trunk and legs of the cosine of their angle to the vertical, a bent leg counting for less.
 /// `None` where roles are missing.
 #[must_use]
-pub fn uprightness(pose: &WorldPose, roles: &Roles) -> Option<f32> {
+pub(crate) fn uprightness(pose: &WorldPose, roles: &Roles) -> Option<f32> {
     let body = Landmark::of(&pose.positions, roles)?;
     let legs: f32 =
         body.legs.iter().map(|leg| (leg.start - leg.end).y / leg.length().max(1e-6)).sum();

@@ -145,7 +145,7 @@ impl Skeleton {
     /// Returns these joints, all their ancestors and the root, in rising order: the joints that
     /// their kinematics need. Indices out of range are left out.
     #[must_use]
-    pub fn with_ancestors(&self, joints: impl IntoIterator<Item = usize>) -> Vec<usize> {
+    pub(crate) fn with_ancestors(&self, joints: impl IntoIterator<Item = usize>) -> Vec<usize> {
         let mut needed = vec![false; self.len()];
         for joint in joints.into_iter().chain([0]) {
             let mut next = Some(joint).filter(|&joint| joint < self.len());
