@@ -1,6 +1,6 @@
-//! Every sentence that reaches the screen has a Chinese one in `assets/lang/zh-Hant.json`, and
-//! every entry there is one that the program says. Read from the text of the sources, so that a new
-//! sentence cannot be forgotten.
+//! Every sentence on screen has a Chinese one in `assets/lang/zh-Hant.json`, and every entry there
+//! is used by the program. The sentences are read from the sources, so that a new one cannot be
+//! forgotten.
 
 use segue_session::metrics::METRICS;
 use segue_session::{Kind, PARAMS};
@@ -9,9 +9,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
-/// Where no sentence is for the screen: what is drawn is named for graphics tools there, files and
-/// reports get their keywords and names, the page's API and the programs that test it are spoken to
-/// in English.
+/// Sources without sentences for the screen: names for graphics tools, keywords of files and
+/// reports, and the page's API and its test programs, whose messages are English.
 const NOT_SHOWN: [&str; 12] = [
     "crates/session/src/report.rs",
     "src/app/api.rs",
@@ -27,18 +26,17 @@ const NOT_SHOWN: [&str; 12] = [
     "src/render/targets.rs",
 ];
 
-/// Where words stand alone: elsewhere a word without a space is taken for a key.
+/// Sources in which single words are texts; elsewhere a word without a space is taken for a key.
 const WORDS: [&str; 2] = ["src/ui/text/", "src/ui/kit/words.rs"];
 
-/// The tables whose rows are data: they are read as such, not by their sources.
+/// The tables whose rows are data: they are read as such, not from their sources.
 const TABLES: [&str; 3] = [
     "crates/session/src/params/table.rs",
     "crates/session/src/metrics/table.rs",
     "crates/session/src/params/choices.rs",
 ];
 
-/// What stands before a literal that nobody sees: reasons for the next programmer, the log, names
-/// of widgets.
+/// Code before a literal that users do not see: reasons for programmers, the log, names of widgets.
 const UNSEEN: [&str; 17] = [
     "reason = ",
     "expect(",
@@ -59,8 +57,8 @@ const UNSEEN: [&str; 17] = [
     "include_str!(",
 ];
 
-/// Literals that look like sentences and are none: names of files, of joints and of widgets'
-/// memory, and what only the tests of a library read.
+/// Literals that look like sentences and are not: names of files, of joints and of widgets' memory,
+/// and texts that only the tests of a library read.
 const NO_SENTENCE: [&str; 29] = [
     "{} and {}",
     "{} and {} registered",
@@ -97,7 +95,7 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The catalogue's text, and its entries.
+/// Returns the text of the translations, and its entries.
 fn catalogue() -> (String, BTreeMap<String, String>) {
     let text = fs::read_to_string(root().join("assets/lang/zh-Hant.json"))
         .expect("the catalogue is there");
@@ -106,14 +104,14 @@ fn catalogue() -> (String, BTreeMap<String, String>) {
     (text, sections.into_values().flatten().collect())
 }
 
-/// A string literal: what stands before it, what it says, what stands behind it.
+/// A string literal, with the code before and after it.
 struct Literal<'a> {
     before: &'a str,
     text: String,
     after: &'a str,
 }
 
-/// The string literals of a source, without those of comments and tests.
+/// Returns the string literals of a source, without those of comments and tests.
 fn literals(source: &str) -> Vec<Literal<'_>> {
     let mut found = Vec::new();
     let bytes = source.as_bytes();
@@ -127,7 +125,7 @@ fn literals(source: &str) -> Vec<Literal<'_>> {
             found.push(Literal { before: &source[..at], text, after: &source[end..] });
             at = end;
         } else if bytes[at] == b'\'' {
-            // A letter, not a lifetime.
+            // A character literal, not a lifetime.
             let letter = rest[1..].chars().next();
             let closes = |skip: usize| rest[skip..].find('\'').filter(|&close| close <= 10);
             at += match letter {
@@ -147,7 +145,7 @@ fn literals(source: &str) -> Vec<Literal<'_>> {
     found
 }
 
-/// The text of the literal that begins at a byte, and where it is over.
+/// Returns the text of the literal that begins at a byte, and the position of its end.
 fn quoted(source: &str, from: usize) -> (String, usize) {
     let mut text = String::new();
     let mut letters = source[from..].char_indices();
@@ -170,7 +168,7 @@ fn quoted(source: &str, from: usize) -> (String, usize) {
     panic!("a literal without an end at byte {from}");
 }
 
-/// A source without its items for tests; its other lines stay as they are.
+/// Returns a source without its items for tests; its other lines stay the same.
 fn without_tests(source: &str) -> String {
     let mut code = String::new();
     let mut end: Option<String> = None;
@@ -197,7 +195,7 @@ fn without_tests(source: &str) -> String {
     code
 }
 
-/// The sources of the program, by their paths; not those for tests.
+/// Returns the sources of the program, by their paths, without those for tests.
 fn sources() -> Vec<(String, String)> {
     let mut open = ["src", "crates/motion/src", "crates/formats/src", "crates/session/src"]
         .map(|folder| root().join(folder))
@@ -230,7 +228,7 @@ fn sources() -> Vec<(String, String)> {
     found
 }
 
-/// A template without the places in it.
+/// Returns a template without its arguments.
 fn without_places(template: &str) -> String {
     let mut depth = 0_usize;
     let words = template.chars().filter(|letter| {
@@ -246,7 +244,7 @@ fn is_two_letters(text: &str) -> bool {
     text.as_bytes().windows(2).any(|pair| pair.iter().all(u8::is_ascii_alphabetic))
 }
 
-/// The sentences and words of a source that reach the screen.
+/// Returns the sentences and words of a source that are shown on screen.
 fn shown(path: &str, source: &str) -> Vec<String> {
     let words = WORDS.iter().any(|folder| path.starts_with(folder));
     literals(source)
@@ -282,7 +280,7 @@ fn shown(path: &str, source: &str) -> Vec<String> {
         .collect()
 }
 
-/// Whether what comes next is inside of a call of the log or of an assertion.
+/// Returns whether the code that follows is inside a call of the log or of an assertion.
 fn in_log(before: &str) -> bool {
     let statement = before.rfind([';', '{', '}']).map_or(before, |at| &before[at..]);
     ["log::", "debug_assert"].iter().any(|call| statement.contains(call))
@@ -295,7 +293,7 @@ fn every_sentence_has_its_translation() {
     let mut missing = BTreeSet::new();
     let mut seen = 0;
     for (path, source) in sources().iter().filter(|(path, _)| !NOT_SHOWN.contains(&path.as_str())) {
-        // The rows of the tables, and the words of choices, are looked at below.
+        // The rows of the tables and the words of choices are checked below.
         if TABLES.contains(&path.as_str()) {
             continue;
         }
@@ -332,13 +330,13 @@ fn every_sentence_has_its_translation() {
 }
 
 #[test]
-fn no_translation_is_of_something_that_is_not_said() {
+fn every_translation_is_used() {
     let (text, entries) = catalogue();
     let mut said: BTreeSet<String> = BTreeSet::new();
     for (_, source) in sources() {
         said.extend(literals(&source).into_iter().map(|literal| literal.text));
     }
-    // What is put together from several literals.
+    // Texts that are composed of several literals.
     said.extend(MADE.map(str::to_owned));
     let unused: Vec<&String> = entries.keys().filter(|key| !said.contains(*key)).collect();
     assert!(unused.is_empty(), "nothing says {unused:#?}");
@@ -348,7 +346,7 @@ fn no_translation_is_of_something_that_is_not_said() {
     assert_eq!(lines, entries.len(), "an entry stands in two sections");
 }
 
-/// Names of keys, which are put together, and a sentence that a script says.
+/// Names of keys, which are composed, and a sentence in a script.
 const MADE: [&str; 7] = [
     "Ctrl C",
     "Ctrl Shift Z",
@@ -360,17 +358,17 @@ const MADE: [&str; 7] = [
 ];
 
 #[test]
-fn places_of_a_text_are_named_in_both_languages() {
+fn arguments_of_a_text_are_the_same_in_both_languages() {
     let (_, entries) = catalogue();
     for (english, translation) in entries {
         assert_eq!(Table::check(&english, &translation), Ok(()), "{english:?}");
     }
 }
 
-/// Characters and words of Simplified Chinese or of the mainland's usage, which a reader in Taiwan
-/// stumbles over.
+/// Characters and words of Simplified Chinese, or of usage in mainland China, which is unusual in
+/// Taiwan.
 #[test]
-fn the_translation_is_taiwanese() {
+fn translation_follows_taiwanese_usage() {
     const ELSEWHERE: [&str; 26] = [
         "幀",
         "鼠標",
@@ -406,9 +404,10 @@ fn the_translation_is_taiwanese() {
     }
 }
 
-/// Whatever sets text by itself asks for the translation: the kit does for all that it is given.
+/// Checks that code that lays out text by itself asks for the translation; the kit translates all
+/// that it is given.
 #[test]
-fn nothing_is_shown_past_the_catalogue() {
+fn every_shown_text_is_translated() {
     let sinks = [
         "RichText::new(",
         "on_hover_text(",
@@ -448,7 +447,7 @@ fn nothing_is_shown_past_the_catalogue() {
 }
 
 #[test]
-fn what_is_missing_is_seen() {
+fn missing_translations_are_found() {
     let source = "/// \"A comment.\"\n#[error(\"lost: {0}\")]\nfn f() { log::warn!(\"not shown at all\"); say(\"It is \\\n    so {much:.1}.\"); g('\"', \"x\") }\n#[cfg(test)]\nmod tests {\n    \"In a test.\"\n}\n";
     assert_eq!(shown("src/a.rs", &without_tests(source)), ["lost: {0}", "It is so {much:.1}."]);
     assert_eq!(

@@ -150,7 +150,7 @@ proptest! {
         }
     }
 
-    /// Whatever the path, in every frame the body is that of the original moved over the ground;
+    /// In every frame the body is that of the original, moved over the ground, whatever the path;
     /// and the result is deterministic.
     #[test]
     fn path_of_any_shape_keeps_the_body(points in prop::collection::vec((-3.0f64..3.0, -3.0f64..3.0), 4..10), closed: bool) {
@@ -186,8 +186,8 @@ fn bow(by: f64) -> (FittedPath, Roles, ArcLengthPath) {
     (path, roles, ArcLengthPath::new(edited).expect("it has a length"))
 }
 
-/// The slow implementation beside the fast one: lengths by many chords, frames by small steps along
-/// the path.
+/// The slow implementation of the timing: lengths by many chords, frames by small steps along the
+/// path.
 #[test]
 fn timing_by_metres_keeps_distances() {
     let (path, _, edited) = bow(1.0);

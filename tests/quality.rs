@@ -66,7 +66,7 @@ fn skating_below_visibility_is_no_fault() {
         };
         trial.faults()
     };
-    // Feet that stand: the ratio of two tiny numbers means nothing.
+    // Feet that stand still: the ratio of two tiny numbers has no meaning.
     assert!(faults(0.07, 0.06).is_empty() && faults(0.01, 0.0).is_empty());
     assert_eq!(faults(0.64, 0.05), ["skating"]);
     assert!(faults(10.4, 10.0).is_empty());

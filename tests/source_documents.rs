@@ -1,9 +1,9 @@
-//! Each experiment of the four documents that Segue was made to show again, as one link, with what
-//! the document reports of it: a course report on motion graphs, a program for motion path editing,
+//! The experiments of the four documents that Segue reproduces, each as one link, with the results
+//! that the document reports: a course report on motion graphs, a program for motion path editing,
 //! homework on blending and motion matching, and an article on Gleicher's motion path editing.
 //!
-//! Motions are synthesised. Where the homework's own files lie beside the project they are used as
-//! well.
+//! Motions are synthesised. The homework's own files are used as well, if they are beside the
+//! project.
 
 #[path = "../crates/formats/tests/common/mod.rs"]
 mod common;
@@ -19,12 +19,12 @@ use segue_scene::{Director, StageOptions, Viewport};
 use segue_session::{Command, CycleMade, Key, Level, Outcome, Pane, Session, Slot, Value, Walk};
 use std::sync::Arc;
 
-/// An angle by the shorter way round, radians.
+/// Returns an angle in the range from -π to π.
 fn wrap_angle(angle: f64) -> f64 {
     angle.sin().atan2(angle.cos())
 }
 
-/// A link, opened, with all its work done.
+/// Returns a session with an opened link and all its work done.
 fn opened(link: &str) -> Session {
     let mut session = Session::new();
     session.apply(Command::OpenLink(link.to_owned())).expect("a link is never refused");
@@ -59,7 +59,7 @@ fn number(session: &Session, pane: usize, id: &str) -> f64 {
     metric.and_then(|metric| metric.value).unwrap_or_else(|| panic!("no {id}"))
 }
 
-/// The number in every pane.
+/// Returns a metric in every pane.
 fn numbers(session: &Session, id: &str) -> Vec<f64> {
     (0..session.panes().len()).map(|pane| number(session, pane, id)).collect()
 }
@@ -76,7 +76,7 @@ fn is_rising(values: &[f64]) -> bool {
 // The course report: motion graphs.
 
 #[test]
-fn transform_sets_the_first_frame_in_a_place_and_takes_the_whole_clip_along() {
+fn transform_places_the_first_frame_and_moves_the_whole_clip() {
     let mut session = opened("lab=view&a=walk_left&place_x=2&place_z=-1&place_heading=90");
     let first = motion(&session, 0).ground_frames()[0];
     assert!(
@@ -96,7 +96,7 @@ fn transform_sets_the_first_frame_in_a_place_and_takes_the_whole_clip_along() {
 }
 
 #[test]
-fn a_blend_in_the_world_slerps_joints_and_mixes_roots_by_the_weight() {
+fn blend_in_the_world_slerps_joints_and_mixes_roots() {
     let link =
         "lab=blend&a=walk&b=run&blend_window=30&root_blend=off&weight_law=linear&align_by=first";
     let session = opened(link);
@@ -108,7 +108,7 @@ fn a_blend_in_the_world_slerps_joints_and_mixes_roots_by_the_weight() {
     let (leave, enter, window) =
         (frame(transition.leave_a_secs), frame(transition.enter_b_secs), transition.window_frames);
     assert_eq!(window, 30);
-    // The first posture of B stands where A's does, and faces there.
+    // The first pose of B is placed where A's is, with the same facing.
     let placed = b.world_from_clip.after(&b.motion.ground_frames()[enter]);
     let stands = a.motion.ground_frames()[leave];
     assert!(
@@ -124,7 +124,7 @@ fn a_blend_in_the_world_slerps_joints_and_mixes_roots_by_the_weight() {
         assert!(root.distance(made.motion.clip().root_translations()[leave + p]) < 1e-4);
         let (qa, qb) = (clip_a.rotations(leave + p), clip_b.rotations(enter + p));
         for (joint, &found) in made.motion.clip().rotations(leave + p).iter().enumerate() {
-            // Toward the nearer of a rotation's two quaternions.
+            // Towards the nearer of the two quaternions of a rotation.
             let near = if qa[joint].dot(qb[joint]) < 0.0 { -qa[joint] } else { qa[joint] };
             assert!(
                 quat::angle_between(found, qb[joint].slerp(near, weight)) < 1e-3,
@@ -137,7 +137,7 @@ fn a_blend_in_the_world_slerps_joints_and_mixes_roots_by_the_weight() {
 const SEGMENTS: &str = "lab=graph&construction=segments&segment_size=60&blend_window=15";
 
 #[test]
-fn segments_have_an_edge_to_the_next_and_to_all_that_are_near() {
+fn segments_have_edges_to_the_next_and_to_all_similar_ones() {
     let session =
         opened(&format!("{SEGMENTS}&prune=off&clips=walk,walk_left,walk_right&edge_threshold=10"));
     let whole = walk(&session, 0).built.whole();
@@ -157,7 +157,7 @@ fn segments_have_an_edge_to_the_next_and_to_all_that_are_near() {
 }
 
 #[test]
-fn a_weight_by_the_distance_itself_prefers_what_fits_worst() {
+fn weight_proportional_to_distance_prefers_the_worst_transition() {
     let link = format!("{SEGMENTS}&segment_size=30&edge_threshold=20&continuity=0&edge_weight=");
     let [right, wrong] = ["inverse", "proportional"].map(|law| opened(&format!("{link}{law}")));
     let graph = graph(&wrong, 0);
@@ -181,7 +181,7 @@ fn a_weight_by_the_distance_itself_prefers_what_fits_worst() {
 }
 
 #[test]
-fn a_constant_weight_of_the_consecutive_edge_holds_a_clip_the_less_the_more_ways_lead_out() {
+fn constant_weight_of_the_consecutive_edge_leaves_a_clip_with_many_edges_sooner() {
     let link = format!(
         "{SEGMENTS}&edge_weight=proportional&going_on=constant&compare=continuity_weight:1,1000"
     );
@@ -209,7 +209,7 @@ fn a_constant_weight_of_the_consecutive_edge_holds_a_clip_the_less_the_more_ways
 }
 
 #[test]
-fn a_long_window_drags_and_a_short_one_bursts() {
+fn long_window_lags_and_short_window_jumps() {
     let session =
         opened("lab=graph&construction=segments&segment_size=60&compare=blend_window:30,15,10");
     let (lag, burst) = (numbers(&session, "lag_s"), numbers(&session, "velocity_jump_dps"));
@@ -218,13 +218,13 @@ fn a_long_window_drags_and_a_short_one_bursts() {
 }
 
 #[test]
-fn a_third_of_the_segment_leaves_nothing_beside_the_window_and_is_refused() {
+fn segments_as_long_as_the_window_are_refused() {
     let session = opened(
         "lab=graph&construction=segments&blend_window=20&segment_size=60&compare=segment_size:60,30,20",
     );
     let built = [0, 1].map(|pane| walk(&session, pane).built.clone());
     let jumps = [0, 1].map(|pane| built[pane].whole().jumps().len());
-    // What there is to compare and to choose from grows.
+    // Shorter segments give more to compare and to choose from.
     assert!(jumps[1] > 2 * jumps[0]);
     assert_eq!(
         session.panes()[2].problem.as_ref().map(ToString::to_string).as_deref(),
@@ -235,14 +235,14 @@ fn a_third_of_the_segment_leaves_nothing_beside_the_window_and_is_refused() {
 }
 
 #[test]
-fn the_higher_the_weight_of_going_on_the_longer_a_clip_stays() {
+fn higher_weight_of_continuing_keeps_a_clip_longer() {
     let session = opened("lab=graph&compare=continuity:0.3,0.8,0.98");
     let per_min = numbers(&session, "seams_per_min");
     assert!(per_min[0] > per_min[1] && per_min[1] > per_min[2], "{per_min:?}");
 }
 
 #[test]
-fn a_wrong_angle_spins() {
+fn wrong_angle_spins() {
     let session = opened("lab=graph&compare=atan:atan2,atan,degrees");
     let spins = numbers(&session, "spins");
     assert_eq!(spins[0], 0.0);
@@ -250,14 +250,14 @@ fn a_wrong_angle_spins() {
 }
 
 #[test]
-fn a_transform_of_the_first_frame_alone_flashes() {
+fn transform_of_the_first_frame_alone_flashes() {
     let session = opened("lab=graph&compare=transform:whole,first,teleport");
     let [flashes, spins, slides] =
         ["flashes", "spins", "foot_slide_cm"].map(|id| numbers(&session, id));
     assert_eq!((flashes[0], spins[0]), (0.0, 0.0));
     assert!(flashes[1] > 0.0 && flashes[2] > 0.0);
     assert!(slides[2] > slides[0] && slides[1] > slides[0]);
-    // Whatever is literally left as it was recorded stands where it was recorded.
+    // The clip that is not transformed stays where it was recorded.
     let walk = walk(&session, 2);
     for passed in walk.passed.iter() {
         let settled = passed.start + passed.seam.map_or(0, |seam| seam.frames);
@@ -271,7 +271,7 @@ fn a_transform_of_the_first_frame_alone_flashes() {
 }
 
 #[test]
-fn a_walk_has_the_root_and_the_weight_that_it_is_asked_for() {
+fn walk_has_the_requested_root_blend_and_weight_law() {
     let link = "lab=graph&clips=walk,walk_left,walk_right&walk_seconds=30&continuity=0.5";
     let sessions = ["", "&root_blend=off", "&root_blend=off&align_by=first", "&weight_law=linear"]
         .map(|more| opened(&format!("{link}{more}")));
@@ -292,7 +292,7 @@ fn a_walk_has_the_root_and_the_weight_that_it_is_asked_for() {
 // The program for path editing.
 
 #[test]
-fn the_motion_without_its_path_stays_in_place_and_faces_one_way() {
+fn motion_without_its_path_stays_in_place_with_constant_facing() {
     let mut session = opened("lab=view&a=walk_left&compare=root_motion:world,in_place,residual");
     let own = clip(&mut session, "walk_left");
     assert!(Arc::ptr_eq(motion(&session, 0).clip(), own.clip()));
@@ -303,7 +303,7 @@ fn the_motion_without_its_path_stays_in_place_and_faces_one_way() {
             assert!(stands.shift.length() < 1e-3 && stands.yaw.abs() < 1e-3, "{stands:?}");
         }
     }
-    // Beside its path the hips sway, and stay within a few centimetres.
+    // Relative to the path the hips sway by a few centimetres.
     let residual = motion(&session, 2).ground_frames();
     let far =
         residual.iter().map(|frame| (frame.shift - residual[0].shift).length()).fold(0.0, f64::max);
@@ -312,7 +312,7 @@ fn the_motion_without_its_path_stays_in_place_and_faces_one_way() {
         .map(|frame| wrap_angle(frame.yaw - residual[0].yaw).abs())
         .fold(0.0, f64::max);
     assert!(far > 0.005 && far < 0.25 && turned < 0.6);
-    // Heights and the body's own pose stay.
+    // Heights and the pose relative to the character are unchanged.
     for pane in [1, 2] {
         let there = motion(&session, pane).clip();
         for frame in (0..there.frames()).step_by(13) {
@@ -327,14 +327,14 @@ fn the_motion_without_its_path_stays_in_place_and_faces_one_way() {
 }
 
 #[test]
-fn four_control_points_make_a_path_whose_residual_is_carried_along() {
+fn path_with_four_control_points_carries_its_residual() {
     let session = opened("lab=path&a=walk_left&control_points=4");
     let own = outcome(&session, 0).path().expect("a path");
     assert_eq!(own.curve.spline().points().len(), 4);
     let error = number(&session, 0, "fit_rms_cm");
     let finer = number(&opened("lab=path&a=walk_left&control_points=16"), 0, "fit_rms_cm");
     assert!(finer < error);
-    // Not edited, it is the recording.
+    // Without edits, the result is the recording.
     let recorded = outcome(&session, 0).sources[0].motion.clip();
     let made = motion(&session, 0).clip();
     let off = made
@@ -346,7 +346,7 @@ fn four_control_points_make_a_path_whose_residual_is_carried_along() {
 }
 
 #[test]
-fn a_timewarp_compares_five_frames_and_rises_by_at_most_two_in_a_row() {
+fn time_warp_compares_five_frames_with_a_slope_limit_of_two() {
     let session = opened("lab=register&a=walk&b=slow_walk");
     let params = session.params();
     assert_eq!(
@@ -372,14 +372,14 @@ fn a_timewarp_compares_five_frames_and_rises_by_at_most_two_in_a_row() {
 }
 
 #[test]
-fn a_join_goes_over_by_time_in_a_straight_line_where_it_shall() {
+fn join_has_a_linear_weight_over_the_requested_part() {
     let of = |law: &str| {
         let session = opened(&format!("lab=register&a=walk&b=run&warp_mode=join&weight_law={law}"));
         let made = outcome(&session, 0).clone();
         let transition = made.transition.expect("a transition");
         let from = (transition.start_secs * made.motion.clip().fps()).round() as usize;
         let beats = &made.registered().expect("a registration").beats;
-        // Where on A's clock each frame of the transition is, and B's weight there.
+        // The frames of A in the transition, with B's weight in each.
         beats[from..from + transition.window_frames]
             .iter()
             .map(|beat| (beat.frames[0], beat.weights[1]))
@@ -404,7 +404,7 @@ fn a_join_goes_over_by_time_in_a_straight_line_where_it_shall() {
 }
 
 #[test]
-fn the_camera_stays_with_any_character_that_plays_along() {
+fn camera_follows_any_extra_character() {
     let link = "lab=path&a=walk&others=walk_left,walk_right&play=off&t=2&follow=";
     for (follow, other) in [
         ("other&follow_other=1", Some(0)),
@@ -430,7 +430,7 @@ fn the_camera_stays_with_any_character_that_plays_along() {
 const CURVE: &str = "lab=path&a=walk&path=AAgAABB-MHRKZmJQdDZ8Fn4J";
 
 #[test]
-fn an_offset_that_stays_in_the_world_is_no_longer_to_the_left_of_the_path() {
+fn offset_in_the_world_leaves_its_side_of_the_path() {
     let session = opened(&format!("{CURVE}&compare=path_offset:path,world"));
     let mut most: f64 = 0.0;
     for (pane, is_local) in [(0, true), (1, false)] {
@@ -454,7 +454,7 @@ fn an_offset_that_stays_in_the_world_is_no_longer_to_the_left_of_the_path() {
 }
 
 #[test]
-fn the_path_of_an_unclamped_basis_begins_beside_its_first_control_point() {
+fn path_of_an_unclamped_basis_begins_beside_its_first_control_point() {
     let link = "lab=path&a=walk_left&control_points=4&compare=path_spline:clamped,uniform";
     let session = opened(link);
     let [clamped, uniform] =
@@ -474,7 +474,7 @@ fn the_path_of_an_unclamped_basis_begins_beside_its_first_control_point() {
 }
 
 #[test]
-fn a_body_faces_along_an_edited_path_or_as_it_did() {
+fn body_faces_along_an_edited_path_or_as_recorded() {
     let session = opened(&format!("{CURVE}&compare=path_facing:path,world"));
     let turned = |pane: usize| {
         let frames = motion(&session, pane).ground_frames();
@@ -499,12 +499,12 @@ fn two_gaits_blend_to_one_and_a_half_metres_per_second() {
 }
 
 #[test]
-fn springs_from_both_ends_close_a_loop_but_for_what_is_left_of_them() {
+fn springs_from_both_ends_leave_a_known_seam() {
     let session = opened(
         "lab=loop&a=walk&loop_from=0.5&loop_to=1.4&half_life=0.2&loop_ratio=0.5&compare=loop_method:exact,both",
     );
     let (before, seam) = (numbers(&session, "loop_before_deg"), numbers(&session, "loop_seam_deg"));
-    // The springs reach the other end: (1 + yT) exp(-yT) of the difference is left there.
+    // A share (1 + yT) exp(-yT) of the difference is left at the other end.
     let left = |secs: f64| {
         let yt = 2.0 * std::f64::consts::LN_2 / 0.2 * secs;
         (1.0 + yt) * (-yt).exp()
@@ -513,9 +513,9 @@ fn springs_from_both_ends_close_a_loop_but_for_what_is_left_of_them() {
 }
 
 #[test]
-fn a_half_life_leaves_six_tenths() {
-    // (1 + ln 4 · t/h · …): what a critically damped spring has left at its half-life, and when it
-    // has half.
+fn half_life_leaves_six_tenths() {
+    // (1 + y t) exp(-y t) with y = 2 ln 2 / h: the share that a critically damped spring has left
+    // at its half-life, and the time at which half is left.
     let left = |t: f64| {
         (1.0 + 2.0 * std::f64::consts::LN_2 * t) * (-2.0 * std::f64::consts::LN_2 * t).exp()
     };
@@ -527,20 +527,20 @@ fn a_half_life_leaves_six_tenths() {
 }
 
 #[test]
-fn a_frame_by_hand_slides_and_a_foot_lock_mends_it() {
+fn frame_set_by_hand_slides_and_foot_lock_corrects_it() {
     let link = "lab=transition&a=walk&b=run&half_life=0.27&mix_frame_b=20";
     let [free, held] = ["", "&foot_lock=on"].map(|more| opened(&format!("{link}{more}")));
     let entered = outcome(&free, 0).transition.expect("a transition").enter_b_secs;
     assert!((entered * 60.0 - 20.0).abs() < 1e-6);
     let slides = [&free, &held].map(|session| number(session, 0, "foot_slide_cm"));
     assert!(slides[1] < 0.5 * slides[0], "{slides:?}");
-    // The homework weighs positions by 0.6 and rotations by 0.4.
+    // The homework weights positions by 0.6 and rotations by 0.4.
     let params = free.params();
     assert_eq!((params.number(Key::MatchPosition), params.number(Key::MatchRotation)), (0.6, 0.4));
 }
 
 #[test]
-fn velocities_divided_by_the_rate_stop_what_moves() {
+fn velocities_divided_by_the_rate_stop_the_motion() {
     let session =
         opened("lab=transition&a=walk&b=run&half_life=0.27&compare=mistake:none,velocity");
     let seams = numbers(&session, "velocity_jump_dps");
@@ -548,7 +548,7 @@ fn velocities_divided_by_the_rate_stop_what_moves() {
 }
 
 #[test]
-fn a_character_that_is_driven_turns_as_the_stick_does() {
+fn driven_character_turns_with_the_stick() {
     let link = "lab=match&hysteresis=votes&search_by=tree&scenario=";
     for (scenario, degrees) in [("spin", 180.0), ("left", 90.0), ("right", -90.0)] {
         let session = opened(&format!("{link}{scenario}"));
@@ -558,7 +558,7 @@ fn a_character_that_is_driven_turns_as_the_stick_does() {
             turned += wrap_angle(pair[1].yaw - pair[0].yaw).to_degrees();
             farthest = if turned.abs() > farthest.abs() { turned } else { farthest };
         }
-        // Half a turn may be made either way round.
+        // Half a turn may be made in either direction.
         let off = if scenario == "spin" { farthest.abs() - degrees } else { farthest - degrees };
         assert!(off.abs() < 25.0, "{scenario}: {farthest}");
     }
@@ -573,9 +573,9 @@ fn every_search_finds_the_same_frames() {
     assert!(first.len() > 100 && made[1..].iter().all(|other| roots(other) == first));
 }
 
-/// The homework's own files, where they are.
+/// Uses the homework's own files, if they are there.
 #[test]
-fn the_homeworks_own_files_are_shown_in_place_and_on_a_path() {
+fn files_of_the_homework_are_shown_in_place_and_on_a_path() {
     let Some(data) = common::shared_data() else {
         return;
     };

@@ -1,4 +1,5 @@
-//! Where labs get their clips: from the library, made, made again by their recipe, or asked for.
+//! Resolution of the clips that labs use: found in the library, synthesised, made again from a
+//! recipe, or requested from the app.
 
 use crate::document::Document;
 use crate::files::FileIntake;
@@ -11,7 +12,7 @@ use crate::params::{Compare, Key, Params, Value};
 use segue_motion::clip::Motion;
 use std::sync::Arc;
 
-/// The parts of a session that bring in the clips of labs, and run them.
+/// The parts of a session that provide labs with clips, and run the labs.
 pub(crate) struct ClipResolver<'a> {
     pub(crate) document: &'a mut Document,
     pub(crate) files: &'a mut FileIntake,
@@ -22,7 +23,7 @@ impl ClipResolver<'_> {
     /// Makes one built-in clip that was not needed yet, so that the library can describe it.
     /// Returns `false` when all are made.
     pub(crate) fn make_next(&mut self) -> bool {
-        // What another lab made takes its time, and is made when it is used.
+        // Results of other labs take longer, and are made when they are used.
         let is_quick = |entry: &Entry| match entry.origin {
             Origin::Preset => true,
             Origin::Made => {
@@ -36,7 +37,7 @@ impl ClipResolver<'_> {
         next.is_some_and(|id| self.motion(&id).is_ok())
     }
 
-    /// Returns the motion of a clip with its feet read as the parameters ask for.
+    /// Returns the motion of a clip, with its feet read as the parameters say.
     fn motion_with_feet(
         &mut self,
         reference: &str,
@@ -46,10 +47,10 @@ impl ClipResolver<'_> {
         Ok(self.labs.feet.read(&motion, foot_options(params)))
     }
 
-    /// Returns the motion of a clip. Makes it or asks for it where it is not there yet.
+    /// Returns the motion of a clip. Makes or requests it if it is not available yet.
     ///
     /// # Errors
-    /// Says why there is none, or none yet.
+    /// [`LabError`] with the reason why there is no motion, or none yet.
     pub(crate) fn motion(&mut self, reference: &str) -> Result<Arc<Motion>, LabError> {
         let Some(entry) = self.document.library.find(reference) else {
             return Err(LabError::MissingClip {
@@ -100,7 +101,7 @@ impl ClipResolver<'_> {
         Ok(motion)
     }
 
-    /// Returns the motions of several clips with their feet read as the parameters ask for.
+    /// Returns the motions of several clips, with their feet read as the parameters say.
     fn motions_with_feet(
         &mut self,
         ids: &[String],
@@ -111,8 +112,8 @@ impl ClipResolver<'_> {
         Ok(motions.iter().map(|motion| self.labs.feet.read(motion, reading)).collect())
     }
 
-    /// Returns the motions of several clips. Makes or asks for all that are not there yet before it
-    /// fails with the first that is missing.
+    /// Returns the motions of several clips. Makes or requests all that are not available yet
+    /// before it fails with the first missing one.
     fn motions(&mut self, ids: &[String]) -> Result<Vec<Arc<Motion>>, LabError> {
         let motion = |id: &String| {
             self.document.bring(id);
@@ -122,7 +123,7 @@ impl ClipResolver<'_> {
         motions.into_iter().collect()
     }
 
-    /// Makes a result again from its recipe: its clips may have to be made themselves, or loaded.
+    /// Makes a result again from its recipe. Its clips may in turn have to be made or loaded.
     fn make_again(&mut self, params: &Params) -> Result<Arc<Motion>, LabError> {
         for key in [Key::A, Key::B] {
             let reference = params.text(key).to_owned();
@@ -136,8 +137,8 @@ impl ClipResolver<'_> {
         }
     }
 
-    /// Returns the clips that the lab of the parameters makes its result from. Asks for all of them
-    /// before it fails with the first that is missing: files are fetched together.
+    /// Returns the clips that the lab of the parameters makes its result from. Requests all of them
+    /// before it fails with the first missing one, so that files are fetched together.
     pub(crate) fn lab_clips(&mut self, params: &Params) -> Result<LabClips, LabError> {
         let lab = lab_of(params.lab());
         let slots: Vec<_> = slots_of(params.lab())
@@ -162,14 +163,14 @@ impl ClipResolver<'_> {
         Ok(LabClips { slots, more: more.collect() })
     }
 
-    /// Returns what a pane's result depends on; `None` while that is still being computed.
+    /// Returns the inputs of a pane's result; `None` while they are being computed.
     fn inputs(&mut self, params: &Params, match_window: usize) -> Result<Option<Inputs>, LabError> {
         let clips = self.lab_clips(params)?;
         lab_of(params.lab()).inputs(self.labs, clips, params, match_window)
     }
 
-    /// Returns the answer to the parameters of a pane; `shown` is what its present result was made
-    /// from.
+    /// Returns the answer to the parameters of a pane; `shown` are the inputs of its present
+    /// result.
     pub(crate) fn answer(
         &mut self,
         params: &Params,

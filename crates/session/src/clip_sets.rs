@@ -51,7 +51,7 @@ impl Session {
     }
 }
 
-/// The Graph lab takes no more.
+/// The greatest number of own clips: the limit of the Graph lab.
 const MAX_OWN: usize = 64;
 
 /// Returns the parameters that make a lab use the bundled captured clips.
@@ -63,7 +63,7 @@ fn captured(lab: &dyn Lab<LabSet>) -> Option<Vec<(Key, Value)>> {
     lab.captured_link().map(|query| link::read(query).values).or_else(listed)
 }
 
-/// Returns whether an entry is a moving file of the user's: a skeleton or a character alone is not.
+/// Returns whether an entry is a motion file of the user's. A skeleton or a character alone is not.
 fn is_own_motion(entry: &Entry) -> bool {
     let moves = entry.motion.as_ref().is_some_and(|motion| motion.clip().frames() > 1);
     moves && matches!(entry.origin, Origin::File(_))

@@ -1,5 +1,5 @@
-//! The commands that change a session, why one cannot be carried out, and what the session asks of
-//! the app.
+//! The commands that change a session, the reasons why one cannot be carried out, and the session's
+//! requests to the app.
 
 use super::labs::Slot;
 use super::lesson::Source;
@@ -12,17 +12,17 @@ use segue_formats::{ImportError, ImportOptions};
 use segue_motion::matching::Control;
 use segue_motion::skeleton::Role;
 
-/// Everything that can be done to the document. Buttons, shortcuts, links and the page's API all
-/// end here.
+/// A change of the document. Buttons, shortcuts, links and the page's API all end here.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Command {
     /// Sets parameters, all or none.
     Set(Vec<(Key, Value)>),
     /// Brings one parameter back to its default.
     Reset(Key),
-    /// Ends a gesture: what a slider did since it was taken is one step for undo.
+    /// Ends a gesture: all changes of a slider since it was pressed are one step for undo.
     Settle,
-    /// Takes over what a query string says; what it does not name goes back to its default.
+    /// Replaces the parameters by those of a query string; those that it does not name return to
+    /// their defaults.
     OpenLink(String),
     /// Puts a clip into a slot.
     Assign(Slot, String),
@@ -40,19 +40,19 @@ pub enum Command {
     Drive(DriveCommand),
     /// Changes the clips that play beside the result.
     ExtraCharacters(ExtraCharacterCommand),
-    /// Opens several values of a parameter side by side: of a number the full, half and a third, of
-    /// a choice those there are.
+    /// Opens several values of a parameter side by side: full, half and a third of a number; the
+    /// alternatives of a choice.
     Compare(Key),
-    /// Lays a link of the open lesson over the state of its page; an empty one is the page's own
+    /// Applies a link of the open lesson to the state of its page; an empty link restores that
     /// state.
     Try(String),
-    /// Takes the last step back.
+    /// Takes back the last step.
     Undo,
-    /// Does it again.
+    /// Makes the step again that was taken back last.
     Redo,
-    /// Takes a message away.
+    /// Removes a notice, by its number.
     Dismiss(u64),
-    /// Gives up making the graph and the walk that are under way, or goes on with them.
+    /// Stops the construction of the graph and the walk, or resumes it.
     StopGraph(bool),
 }
 
@@ -85,7 +85,7 @@ pub enum PlaybackCommand {
 pub enum DriveCommand {
     /// Changes the input from now on.
     Steer(Control),
-    /// Puts the characters at the origin again, and forgets the recorded input.
+    /// Puts the characters back at the origin, and discards the recorded input.
     Restart,
     /// Plays the recorded input again: it becomes the parameter `drive`.
     Replay,
@@ -100,13 +100,13 @@ pub enum FileCommand {
     CorrectRole(String, Role, Option<usize>),
     /// Reads a clip's file again with other options.
     Reimport(String, ImportOptions),
-    /// Reads the clips better that a notice offers to mend, as one step, and takes the notice away.
+    /// Reads the clips of a notice again with better options, as one step, and removes the notice.
     Mend(u64),
-    /// Gives up reading a file, by the number of its task.
+    /// Stops reading a file, by the number of its task.
     StopReading(u64),
 }
 
-/// Why a command could not be carried out. Nothing is changed then.
+/// The reason why a command could not be carried out. The session is unchanged.
 #[derive(Clone, Debug, PartialEq, thiserror::Error, segue_text::ToMessage)]
 pub enum CommandError {
     /// A value that does not fit.
@@ -126,24 +126,24 @@ pub enum CommandError {
     NotPossible(&'static str),
 }
 
-/// Something that the session asks of the app.
+/// A request of the session to the app.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Request {
-    /// A bundled take; hand its packed bytes to [`super::Session::load_sample`], or say to
-    /// [`super::Session::fail_sample`] why there are none.
+    /// A bundled take: hand its packed bytes to [`super::Session::load_sample`], or the reason why
+    /// there are none to [`super::Session::fail_sample`].
     Sample(&'static Sample),
     /// A file at an address; hand its bytes to [`super::Session::load_fetched`].
     Fetch(String),
     /// The text of a lesson; hand its bytes to [`super::Session::finish_lesson`].
     Lesson(Source),
-    /// A file that is not to be read between two frames; read it elsewhere and hand the report to
-    /// [`super::Session::finish_reading`].
+    /// A file that takes too long to be read between two frames: read it elsewhere, and hand the
+    /// report to [`super::Session::finish_reading`].
     Read(ReadTask),
-    /// A task that was given up.
+    /// A task that was stopped.
     StopReading {
         /// The task's number.
         task: u64,
-        /// The key of a file outside that is no longer needed.
+        /// The key of a file outside the document that is no longer needed.
         forget: Option<String>,
     },
 }

@@ -1,11 +1,11 @@
-//! What is compared: the panes that a parameter begins with, and one pane more.
+//! The values that a comparison begins with, and one more value on request.
 
 use crate::params::{Choice, Compare, Key, Kind, MAX_PANES, Value};
 
 impl Compare {
-    /// The experiment of the course: the full value, half of it and a third. Where the range (the
-    /// parameter's own, or a narrower one) does not hold all three apart, both its ends and its
-    /// middle. `None` for a parameter that is no number or cannot be compared.
+    /// Returns the experiment of the course: the full value, half of it and a third. If the range
+    /// (the parameter's own, or a narrower one) does not keep the three apart, returns both its
+    /// ends and its middle. `None` for a parameter that is not a number or cannot be compared.
     #[must_use]
     pub fn full_half_third(key: Key, full: f64, range: Option<(f64, f64)>) -> Option<Self> {
         let Kind::Number { min, max, .. } = key.param().kind else {
@@ -22,8 +22,8 @@ impl Compare {
         key.param().is_comparable().then_some(Self { key, values })
     }
 
-    /// A choice and the others that there are, as many as fit. `None` for a parameter that is no
-    /// choice or cannot be compared.
+    /// Returns a choice and the alternatives to it, as many as fit. `None` for a parameter that is
+    /// not a choice or cannot be compared.
     #[must_use]
     pub fn choices(key: Key, chosen: &Value) -> Option<Self> {
         let Kind::Choice(choices) = key.param().kind else {
@@ -37,10 +37,10 @@ impl Compare {
             .then(|| Self { key, values: values.map(|choice| Value::Choice(choice.key)).collect() })
     }
 
-    /// The same with one value more, if there is room: of choices the next that is not there yet;
-    /// of numbers the share of the first that comes next, a quarter after a third. Where the range
-    /// (the parameter's own, or a narrower one) ends before that, the middle of the widest gap
-    /// between those that are there.
+    /// Returns the comparison with one more value, if there is room: the next choice that is not in
+    /// it, or the next share of its first number, a quarter after a third. If the range (the
+    /// parameter's own, or a narrower one) ends before that, the middle of the widest gap between
+    /// its values.
     #[must_use]
     pub fn with_one_more(&self, range: Option<(f64, f64)>) -> Self {
         let mut more = self.clone();
@@ -81,14 +81,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn reads_what_it_writes() {
+    fn comparison_reads_back_as_written() {
         let compare = Compare::parse("blend_window: 30, 15,10").unwrap();
         assert_eq!(compare.to_string(), "blend_window:30,15,10");
         assert_eq!(Compare::full_half_third(Key::BlendWindow, 30.0, None), Some(compare.clone()));
         let four = compare.with_one_more(None);
         assert_eq!(four.to_string(), "blend_window:30,15,10,8");
         assert_eq!(four.with_one_more(None), four);
-        // A kept clip's id has commas of its own, and so may a file's name.
+        // The id of a kept clip contains commas, and so may the name of a file.
         let clips = Compare::parse("a:walk,blend(a:walk,b:run),my%2C walk.bvh~0a1b2c3d").unwrap();
         assert_eq!(clips.values[2], Value::Text("my, walk.bvh~0a1b2c3d".into()));
         assert_eq!(Compare::parse(&clips.to_string()), Ok(clips));
@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn values_stay_apart_and_in_range() {
+    fn comparison_of_a_number_has_distinct_values_in_range() {
         let of = |key, full, range| Compare::full_half_third(key, full, range).unwrap().to_string();
         // No run is as slow as a third of its speed.
         assert_eq!(of(Key::GaitSpeed, 3.5, Some((1.8, 6.5))), "gait_speed:6.5,4.15,1.8");
@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn says_what_is_wrong() {
+    fn invalid_comparison_is_refused_with_a_reason() {
         for (text, part) in [
             ("blend_window", "key:value"),
             ("align:1,2", "not `align`"),

@@ -14,13 +14,13 @@ use history::History;
 use places::forget_places;
 use std::sync::Arc;
 
-/// The state that a link and undo bring back, and the steps between its versions.
+/// The state that a link and undo restore, and the steps between its versions.
 #[derive(Debug)]
 pub(crate) struct Document {
     pub(crate) params: Params,
     pub(crate) library: Library,
     history: History,
-    /// Grows with every change of library content.
+    /// A number that grows with every change of library content.
     pub(crate) library_revision: u64,
     /// Whether A and B were named together with the addresses of the link, or since.
     named_slots: [bool; 2],
@@ -28,7 +28,7 @@ pub(crate) struct Document {
     keys_of_link: Vec<Key>,
 }
 
-/// The difference that a command has made to the parameters.
+/// The changes that a command made to the parameters.
 #[derive(Debug)]
 pub(crate) struct Changes {
     /// The parameters that have another value than before.
@@ -56,33 +56,33 @@ impl Document {
         self.library.find(self.params.text(slot.key()))
     }
 
-    /// Returns whether the link that was opened names this parameter, be it with its default.
+    /// Returns whether the opened link names this parameter, even with its default.
     pub(crate) fn link_names(&self, key: Key) -> bool {
         self.keys_of_link.contains(&key)
     }
 
-    /// Remembers the state before a change, as a step for undo. With `key`, changes of one
-    /// parameter in one gesture are one step.
+    /// Records the state before a change, as a step for undo. With `key`, changes of one parameter
+    /// in one gesture are one step.
     pub(crate) fn remember(&mut self, key: Option<Key>) {
         self.history.before_change(&self.params, &self.library, key);
     }
 
-    /// Remembers an earlier library as the state before a change.
+    /// Records an earlier library as the state before a change.
     pub(crate) fn remember_library(&mut self, library: &Library) {
         self.history.before_change(&self.params, library, None);
     }
 
-    /// Forgets all steps of undo and redo.
+    /// Discards all steps of undo and redo.
     pub(crate) fn forget_steps(&mut self) {
         self.history = History::default();
     }
 
-    /// Adds clips to every step that lacks them: undo does not remove them.
+    /// Adds clips to every step that lacks them, so that undo does not remove them.
     pub(crate) fn add_to_steps(&mut self, entries: &[Arc<Entry>]) {
         self.history.add_to_all(entries);
     }
 
-    /// Drops the motions of files that only steps of undo hold. Returns whether there were any.
+    /// Drops the motions of files that only steps of undo contain. Returns whether there were any.
     pub(crate) fn drop_motions_of_steps(&mut self) -> bool {
         self.history.drop_motions_outside(&self.library)
     }
@@ -92,7 +92,7 @@ impl Document {
         self.history.can_undo()
     }
 
-    /// Returns whether there is a step to do again.
+    /// Returns whether there is a step to make again.
     pub(crate) fn can_redo(&self) -> bool {
         self.history.can_redo()
     }
@@ -102,30 +102,30 @@ impl Document {
         self.history.settle();
     }
 
-    /// Takes the last step back. Returns whether there was one.
+    /// Takes back the last step. Returns whether there was one.
     pub(crate) fn undo(&mut self) -> bool {
         let is_undone = self.history.undo(&mut self.params, &mut self.library);
         self.library_revision += u64::from(is_undone);
         is_undone
     }
 
-    /// Does the step again that was taken back last. Returns whether there was one.
+    /// Makes the step again that was taken back last. Returns whether there was one.
     pub(crate) fn redo(&mut self) -> bool {
         let is_redone = self.history.redo(&mut self.params, &mut self.library);
         self.library_revision += u64::from(is_redone);
         is_redone
     }
 
-    /// Sets a value that is known to fit.
+    /// Sets a value that is known to be valid.
     pub(crate) fn set_unchecked(&mut self, key: Key, value: Value) {
         let result = self.params.set(key, value);
         debug_assert!(result.is_ok(), "{result:?}");
     }
 
-    /// Sets parameters, all or none, as a step for undo where one of them has its place there.
+    /// Sets parameters, all or none, as a step for undo if any of them takes part in undo.
     ///
     /// # Errors
-    /// [`ValueError`] says which value does not fit.
+    /// [`ValueError`] names the invalid value.
     pub(crate) fn set(&mut self, values: Vec<(Key, Value)>) -> Result<Changes, ValueError> {
         let mut params = self.params.clone();
         let named: Vec<Key> = values.iter().map(|(key, _)| *key).collect();
@@ -139,14 +139,14 @@ impl Document {
         for slot in chosen.into_iter().flatten() {
             let before = self.slot(slot).map(|entry| &entry.id);
             let now = self.library.find(params.text(slot.key())).map(|entry| &entry.id);
-            // Another name of the same clip changes nothing.
+            // Another reference to the same clip changes nothing.
             if before.is_none() || before != now {
                 changed.extend(forget_places(&mut params, slot, &named));
             }
         }
         let mut undoable = changed.iter().copied().filter(|key| !key.param().has(Mark::NoUndo));
         if let Some(first) = undoable.next() {
-            // A slider that is dragged changes one parameter again and again: one step.
+            // Dragging a slider changes one parameter again and again: one step.
             let alone = undoable.next().is_none();
             self.remember(alone.then_some(first));
         }
@@ -164,8 +164,8 @@ impl Document {
         Ok(Changes { keys: changed, new_sources })
     }
 
-    /// Takes over the parameters of a link that names some of them. Returns the addresses of files
-    /// that were not named before.
+    /// Replaces the parameters by those of a link, some of which it names. Returns the addresses of
+    /// files that were not named before.
     pub(crate) fn replace_params(&mut self, params: Params, named: &[Key]) -> Vec<String> {
         let before = std::mem::replace(&mut self.params, params);
         let known = before.source_addresses();
@@ -176,7 +176,7 @@ impl Document {
         new_sources
     }
 
-    /// Notes which parameters a link names that is about to replace all of them.
+    /// Records the parameters that a link names, before it replaces all of them.
     pub(crate) fn note_link(&mut self, named: &[Key]) {
         self.named_slots = [false; 2];
         self.keys_of_link = named.to_vec();

@@ -58,11 +58,11 @@ impl ExportFormat {
 pub struct ExportOptions {
     /// The file format.
     pub format: ExportFormat,
-    /// Metres per unit of length; those of the clip's source file where `None`.
+    /// Metres per unit of length; `None` for the unit of the clip's source file.
     pub metres_per_unit: Option<f64>,
-    /// One order for the rotations of all joints; those of the source file where `None`.
+    /// One order for the rotations of all joints; `None` for those of the source file.
     pub rotation_order: Option<RotationOrder>,
-    /// Frames per second; the clip's own where `None`.
+    /// Frames per second; `None` for the clip's own rate.
     pub fps: Option<f64>,
     /// The body in the file, if the format has bodies.
     pub body: ExportBody,

@@ -13,7 +13,7 @@ use crate::{LabId, Selected};
 use segue_motion::clip::Motion;
 use std::sync::Arc;
 
-/// The most extra characters.
+/// The greatest number of extra characters.
 const MAX_CHARACTERS: usize = 6;
 
 /// A clip that plays beside the result.
@@ -23,12 +23,12 @@ pub struct ExtraCharacter {
     pub id: String,
     /// The clip's name on screen.
     pub name: String,
-    /// The motion, or why there is none.
+    /// The motion, or the reason why there is none.
     pub motion: Result<Arc<Motion>, LabError>,
 }
 
 impl ExtraCharacter {
-    /// Returns the duration of the motion, seconds; `None` where there is none.
+    /// Returns the duration of the motion, seconds; `None` if there is none.
     #[must_use]
     pub fn duration_secs(&self) -> Option<f64> {
         self.motion.as_ref().ok().map(|motion| motion.clip().duration_secs())
@@ -38,7 +38,7 @@ impl ExtraCharacter {
 /// The clips that play beside the result.
 #[derive(Debug, Default)]
 pub(crate) struct ExtraCharacters {
-    /// In the order of the parameter's list; none in other labs.
+    /// The characters, in the order of the parameter's list; none in other labs.
     pub(crate) list: Vec<ExtraCharacter>,
 }
 
@@ -128,7 +128,7 @@ fn result_entry(panes: &Panes, pane: usize) -> Result<Entry, CommandError> {
     })
 }
 
-/// Puts an entry into the library, if it is not there. Returns its id.
+/// Adds an entry to the library, if it is not there. Returns its id.
 fn put(document: &mut Document, entry: Entry) -> String {
     let id = entry.id.clone();
     if document.library.find(&id).is_none() {
@@ -138,8 +138,8 @@ fn put(document: &mut Document, entry: Entry) -> String {
     id
 }
 
-/// Sets the parameters to those of a clip: to its recipe, where the lab with extra characters made
-/// it, else to the clip as that lab opens it.
+/// Sets the parameters to those of a clip: to its recipe if the lab with extra characters made it,
+/// otherwise to the clip as that lab opens it.
 fn edit(params: &mut Params, id: &str) -> Result<(), ValueError> {
     let has_characters = |lab: &LabId| lab_of(*lab).has(Beside::ExtraCharacters);
     let Some(lab) = LabId::ALL.iter().copied().find(has_characters) else {

@@ -1,4 +1,4 @@
-//! Files on their way into the library: read at once or elsewhere, bundled takes, and the memory
+//! Files that are added to the library: read at once or elsewhere, bundled takes, and the memory
 //! that the page has for them.
 
 mod admission;

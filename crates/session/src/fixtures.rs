@@ -1,5 +1,5 @@
-//! Shared by the tests that drive a session by commands: the names that they use, small files, and
-//! the work around a session.
+//! Fixtures of the tests that drive a session by commands: the names that they use, small files,
+//! and the work around a session.
 
 pub(crate) use crate::command::{
     Command, CommandError, DriveCommand, FileCommand, PlaybackCommand, Request,
@@ -53,7 +53,7 @@ pub(crate) const ASF: &str = "\
 /// A motion of [`ASF`] with two frames.
 pub(crate) const AMC: &str = ":FULLY-SPECIFIED\n:DEGREES\n1\nroot 0 85 0 0 0 0\nthigh 10\nspine 1\n2\nroot 0 85 1 0 0 0\nthigh 20\nspine 2\n";
 
-/// Does all work that is left over.
+/// Does all remaining work.
 pub(crate) fn settle(session: &mut Session) {
     while session.work() {}
 }
@@ -84,8 +84,7 @@ pub(crate) fn files(session: &Session) -> Vec<(String, &'static str, usize)> {
     infos.map(|info| (info.name, info.format, info.frames)).collect()
 }
 
-/// Reads what the session asks to have read, as a worker does: in order, with the setup that it was
-/// asked with.
+/// Reads the requested files as a worker does: in order, with the setup of the request.
 pub(crate) fn serve(session: &mut Session) {
     loop {
         let asked: Vec<_> = (session.take_requests().into_iter())

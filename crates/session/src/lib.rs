@@ -1,5 +1,5 @@
-//! The document: the library, the parameters, what is made from them, and everything that can be
-//! done to it.
+//! The document: the library, the parameters, the results made from them, and the commands that
+//! change them.
 //!
 //! # The idea
 //!
@@ -9,22 +9,21 @@
 //! link, slider, API → Command → Session::apply → recipe (inputs → clip, numbers) → panes → scene
 //! ```
 //!
-//! One table ([`PARAMS`]) says what parameters there are: their keys in the link, ranges, steps,
-//! defaults and help. Sliders, link, API, comparison and undo come from it. A *recipe* is a pure
-//! function of clips and parameters; its inputs are remembered with its result, so that what did
-//! not change is not computed again. Picture a spreadsheet: a cell is touched, and only what hangs
-//! on it is reckoned anew.
+//! One table ([`PARAMS`]) defines the parameters: their keys in the link, ranges, steps, defaults
+//! and help. Sliders, link, API, comparison and undo are made from it. A *recipe* is a pure function
+//! of clips and parameters. Its inputs are stored with its result, so that unchanged results are not
+//! computed again, as in a spreadsheet, where a change recomputes only the cells that depend on it.
 //!
-//! What takes longer than a frame is cut into slices ([`Session::work`]). What the document needs
-//! from outside, a file or an address, it asks for ([`Request`]) and is handed; nothing here knows
-//! a screen, a file system or a clock. Time comes in by [`Session::tick`].
+//! Work that takes longer than a frame is cut into slices ([`Session::work`]). Files and texts from
+//! outside are requested from the app ([`Request`]) and handed over; nothing here depends on a
+//! screen, a file system or a clock. Time is advanced by [`Session::tick`].
 //!
 //! # Example
 //!
 //! ```
 //! use segue_session::{Command, Key, Session, Value};
 //!
-//! // What a first visitor sees: one blend in three panes, with windows of 30, 15 and 10 frames.
+//! // The first visit shows one blend in three panes, with windows of 30, 15 and 10 frames.
 //! let mut session = Session::new();
 //! while session.work() {}
 //! assert_eq!(session.panes().len(), 3);
@@ -37,11 +36,11 @@
 //! assert_eq!(transition.map(|transition| transition.window_frames), Some(12));
 //! assert_eq!(session.query(), "blend_window=12");
 //!
-//! // What does not fit is refused with a sentence, and changes nothing.
+//! // An invalid value is refused with a sentence, and changes nothing.
 //! let error = session.apply(window(1000.0)).err().ok_or("it was taken")?;
 //! assert!(error.to_string().contains("1 to 240") && session.query() == "blend_window=12");
 //!
-//! // The link is the state: another session makes the same motion of it. And there is a way back.
+//! // The link is the state: another session makes the same motion from it. Undo takes steps back.
 //! let mut other = Session::new();
 //! other.apply(Command::OpenLink(session.query()))?;
 //! let clip = |session: &Session| session.main_outcome().map(|made| made.motion.clip().clone());
@@ -54,14 +53,14 @@
 //! # Accuracy and cost
 //!
 //! The same link gives the same motion; numbers in it are whole multiples of their parameter's
-//! step. A change costs what the recipe costs that depends on it: a camera that turns makes nothing
-//! anew.
+//! step. A change costs as much as the recipes that depend on it: turning the camera recomputes
+//! nothing.
 //!
 //! # What it does not do
 //!
-//! It draws nothing, plays nothing by itself, and stores nothing: [`Saved`] is what an app may
-//! keep. A link carries parameters, not data: it names a file, with the first digits of its
-//! SHA-256, and who opens the link must have that file.
+//! It draws nothing, plays nothing by itself, and stores nothing: [`Saved`] is the state that an app
+//! may store. A link contains parameters, not data: it names a file by its name and the first digits
+//! of its SHA-256, and the reader of the link must have that file.
 
 mod built_in;
 mod clip_info;

@@ -68,7 +68,7 @@ pub struct Entry {
     pub id: String,
     /// The name on screen.
     pub name: String,
-    /// What it was called when it came.
+    /// Its name when it was added.
     pub own_name: Message,
     /// The origin.
     pub origin: Origin,
@@ -106,8 +106,8 @@ impl Entry {
         }
     }
 
-    /// Returns what the clip is called on screen. The name of a built-in clip and of a result is
-    /// the program's own, and is translated; a name that was given by hand or by a file is data.
+    /// Returns the name on screen. The name of a built-in clip and of a result is the program's
+    /// own, and is translated; a name that was given by hand or by a file is data.
     #[must_use]
     pub fn title(&self) -> Message {
         if self.name == self.own_name.to_string() {

@@ -1,12 +1,12 @@
-//! The link: what a query string can carry of the state, and back.
+//! Links: the state of a session as a query string.
 
 use super::outside::short;
 use super::params::{Key, Param, Params, Value};
 use percent_encoding::{AsciiSet, CONTROLS, utf8_percent_encode};
 use segue_text::{Message, ToMessage, msg};
 
-/// What a query string must escape. Colons, commas, slashes and parentheses stay readable; every
-/// browser takes them as they are.
+/// The characters that a query string must escape. Colons, commas, slashes and parentheses stay
+/// readable, because every browser accepts them.
 const ESCAPED: &AsciiSet = &CONTROLS
     .add(b' ')
     .add(b'"')
@@ -19,7 +19,7 @@ const ESCAPED: &AsciiSet = &CONTROLS
     .add(b'=')
     .add(b'`');
 
-/// What a link says, and what of it could not be used.
+/// The content of a link, and the parts of it that could not be used.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Link {
     /// The values that were understood, in the order of the link.
@@ -51,14 +51,15 @@ pub fn read(query: &str) -> Link {
     link
 }
 
-/// Returns what a link names: the parameters that differ from their defaults, in the order of the
-/// table. The playhead is left out while `playing`.
+/// Returns the parameters that a link contains: those that differ from their defaults, in the order
+/// of the table. The playhead is left out during playback.
 pub(crate) fn named(params: &Params) -> impl Iterator<Item = (&'static Param, &Value)> {
     let is_playing = params.is_on(Key::Play);
     params.changed().filter(move |(param, _)| param.key != Key::Time || !is_playing)
 }
 
-/// Writes the query string without `?`: what [`named`] returns.
+/// Writes the parameters that differ from their defaults as a query string without `?`, in the
+/// order of the table. The playhead is left out during playback.
 #[must_use]
 pub fn write(params: &Params) -> String {
     let mut query = String::new();
@@ -115,7 +116,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_state_survives_its_link(values in (0..PARAMS.len()).map(any_value).collect::<Vec<_>>()) {
+        fn every_state_reads_back_from_its_link(values in (0..PARAMS.len()).map(any_value).collect::<Vec<_>>()) {
             let mut params = Params::default();
             for (key, value) in values {
                 params.set(key, value).unwrap();
@@ -131,7 +132,7 @@ mod tests {
         }
 
         #[test]
-        fn no_query_panics(query in ".{0,200}") {
+        fn any_query_is_read_without_a_panic(query in ".{0,200}") {
             let _link = read(&query);
         }
     }
@@ -202,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_used_is_named_and_the_rest_is_used() {
+    fn invalid_parts_of_a_link_are_named_and_the_rest_is_used() {
         let link = read("?blend_window=24&colour=red&weight_law=steep&align=off");
         assert_eq!(
             link.values,

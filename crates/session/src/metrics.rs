@@ -1,4 +1,4 @@
-//! The metrics that results have: everything that is known of one stands in its row of the table.
+//! The metrics of results. All facts about a metric are in its row of the table.
 
 mod table;
 
@@ -99,7 +99,7 @@ impl Unit {
     }
 }
 
-/// Everything that is known of a metric: a row of [`METRICS`].
+/// All facts about a metric: a row of [`METRICS`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MetricRow {
     /// The metric.
@@ -123,7 +123,7 @@ impl MetricId {
     /// Returns the row of the metric.
     #[must_use]
     pub fn row(self) -> &'static MetricRow {
-        // The rows are in the order of the names, which are made of them.
+        // The rows are in the order of the enum, which is made from them.
         &METRICS[self as usize]
     }
 
@@ -152,7 +152,7 @@ impl Metric {
     }
 }
 
-/// Returns the metrics that results of every lab have, in the order in which they are listed.
+/// Returns the metrics that results of every lab have, in the order of the lists.
 pub(crate) fn of_result(found: &ResultMetrics) -> [Metric; 4] {
     [
         Metric::new(MetricId::PoseJump, found.pose_jump_deg),

@@ -1,5 +1,4 @@
-//! Clips that the parameters name and the library does not have: the user is told which file to
-//! drop.
+//! Clips that the parameters name and the library does not have: a notice says which file to drop.
 
 use crate::document::Document;
 use crate::labs::Slot;
@@ -8,8 +7,8 @@ use crate::notice::Notices;
 use crate::outside;
 use segue_text::msg;
 
-/// Brings in every clip that the parameters name, and asks the user for those that cannot be
-/// brought in.
+/// Adds every clip that the parameters name to the library, and asks the user for those that are
+/// not available.
 pub(crate) fn look_for_clips(document: &mut Document, notices: &mut Notices) {
     for slot in [Slot::A, Slot::B] {
         let reference = document.params.text(slot.key()).to_owned();
@@ -40,8 +39,7 @@ fn look_for(document: &mut Document, notices: &mut Notices, what: &'static str, 
     notices.miss(reference, text);
 }
 
-/// Takes the notices away that ask for clips which have arrived since, or which are no longer
-/// named.
+/// Removes the notices about clips that have arrived since, or are no longer named.
 pub(crate) fn dismiss_found(document: &Document, notices: &mut Notices) {
     let slots = [Slot::A, Slot::B].map(|slot| document.params.text(slot.key()).to_owned());
     let others = document.params.weighted_clips().iter().map(|(reference, _)| reference.clone());

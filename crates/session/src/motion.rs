@@ -7,12 +7,12 @@ use segue_motion::skeleton::Role;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// Returns how the parameters ask to read the feet of a clip. A foot leaves the ground above 1.75
-/// times the height and twice the speed at which it comes down.
+/// Returns the options of the parameters for reading the feet of a clip. A foot leaves the ground
+/// above 1.75 times the height and twice the speed at which it lands.
 #[must_use]
 pub fn foot_options(params: &Params) -> FootOptions {
     let usual = ContactOptions::default();
-    // Unchanged parameters are exactly the usual options: clips need not be read again.
+    // Default parameters give exactly the default options, so that clips need not be read again.
     let share = |key: Key| match key.param().default_value() {
         Value::Number(default) => (params.number(key) / default) as f32,
         _ => 1.0,
@@ -30,15 +30,15 @@ pub fn foot_options(params: &Params) -> FootOptions {
     }
 }
 
-/// Reads the feet of clips otherwise than usual, and keeps the last readings.
+/// A cache of clips whose feet were read with options other than the defaults.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FeetReader(VecDeque<(Arc<Motion>, Arc<Motion>)>);
 
 impl FeetReader {
-    /// More clips than that are not in one graph.
+    /// The greatest number of clips in one graph.
     const KEPT: usize = 64;
 
-    /// Returns a motion with its feet read in this way.
+    /// Returns a motion with its feet read with these options.
     pub(super) fn read(&mut self, motion: &Arc<Motion>, feet: FootOptions) -> Arc<Motion> {
         if motion.feet() == feet {
             return Arc::clone(motion);
@@ -55,7 +55,8 @@ impl FeetReader {
     }
 }
 
-/// The joint that a user names: a body part ("right foot") or a joint's name, whatever the case.
+/// Returns the joint that a user names: a body part ("right foot") or a joint's name, in upper or
+/// lower case.
 #[must_use]
 pub fn joint_of(motion: &Motion, name: &str) -> Option<usize> {
     let role = Role::ALL.into_iter().find(|role| role.name().eq_ignore_ascii_case(name));
@@ -70,7 +71,8 @@ pub fn joint_of(motion: &Motion, name: &str) -> Option<usize> {
     })
 }
 
-/// What a person calls a joint, and [`joint_of`] understands: its body part, else its own name.
+/// Returns the word for a joint that users know and [`joint_of`] accepts: its body part, otherwise
+/// its own name.
 #[must_use]
 pub fn word_of_joint(motion: &Motion, joint: usize) -> &str {
     match motion.roles().role_of(joint) {
@@ -81,7 +83,7 @@ pub fn word_of_joint(motion: &Motion, joint: usize) -> &str {
     }
 }
 
-/// The curve that a word of the parameter `curve` means.
+/// Returns the curve of a value of the parameter `curve`.
 #[must_use]
 pub fn curve_kind(curve: Curve) -> CurveKind {
     match curve {
@@ -92,11 +94,11 @@ pub fn curve_kind(curve: Curve) -> CurveKind {
     }
 }
 
-/// The frame that is nearest to a time. 0 for a clip without frames.
+/// Returns the frame that is nearest to a time; 0 for a clip without frames.
 #[must_use]
 pub fn frame_at(motion: &Motion, secs: f64) -> usize {
     let last = motion.clip().frames().saturating_sub(1) as f64;
-    // The clamp turns a negative time into frame 0, and NaN too: `max` returns the other operand.
+    // The clamp maps negative times and NaN to frame 0: `max` returns the other operand.
     (secs * motion.clip().fps()).round().max(0.0).min(last) as usize
 }
 
@@ -120,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn feet_are_read_as_the_parameters_ask() {
+    fn feet_are_read_with_the_options_of_the_parameters() {
         let usual = outcome("lab=view&a=walk");
         assert_eq!((usual.motion.ground_m(), usual.motion.feet()), (0.0, FootOptions::default()));
         assert_eq!(foot_options(&Params::default()), FootOptions::default());

@@ -1,4 +1,4 @@
-//! A pane of the stage: a result, and what it is to the present parameters.
+//! A pane of the stage: a result, and its relation to the present parameters.
 
 use crate::labs::{Answer, Gauge, Inputs, LabError, Outcome, PlacedClip};
 use crate::params::{Key, Params, Value};
@@ -10,7 +10,7 @@ use std::sync::Arc;
 /// One pane of the stage: a result under one value of the compared parameter.
 ///
 /// While a result is computed, an older one may stay on the stage. Clips, files, numbers and
-/// reports are made of [`Pane::result`], and never of what is on the stage.
+/// reports are made from [`Pane::result`], never from the outcome on the stage.
 #[derive(Clone, Debug, Default)]
 pub struct Pane {
     /// The compared parameter and this pane's value; `None` when there is nothing to compare.
@@ -18,16 +18,16 @@ pub struct Pane {
     /// The result on the stage: the present one, or, while that is computed, an earlier one
     /// ([`Pane::is_outdated`]). Always `None` beside a [`problem`](Self::problem).
     pub outcome: Option<Arc<Outcome>>,
-    /// Why the result cannot be made, and what to do.
+    /// The reason why the result cannot be made, with the remedy.
     pub problem: Option<LabError>,
-    /// The clips that the result would have been made of, as they lie on the stage in its place.
-    /// Empty where there is no problem.
+    /// The clips from which the result would have been made, placed on the stage in its stead.
+    /// Empty without a problem.
     pub sources: Vec<PlacedClip>,
     /// The parameters that `outcome` was made from.
     made_from: Option<Arc<Params>>,
     standing: Standing,
     pub(crate) inputs: Option<Inputs>,
-    /// Where a result that loops has got to: it lies there in the world that is shown.
+    /// The placement in the shown world that a looping result has reached.
     pub(crate) place: Planar,
     /// A gait that has not reached the speed of the result yet.
     pub(crate) ramp: Option<SpeedRamp>,
@@ -36,13 +36,13 @@ pub struct Pane {
 /// How the outcome of a pane relates to the present parameters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Standing {
-    /// It is of earlier parameters; the result of the present ones is being computed.
+    /// It has earlier parameters; the result of the present ones is being computed.
     #[default]
     Earlier,
-    /// It is of the present parameters, and not finished: its place is not found yet, or its feet
-    /// are not planted.
+    /// It has the present parameters, and is not finished: its place is not found yet, or its feet
+    /// are not locked.
     Draft,
-    /// It is the result.
+    /// It is the final result.
     Finished,
 }
 
@@ -57,17 +57,17 @@ impl Standing {
 pub struct Made<'a> {
     /// The result.
     pub outcome: &'a Arc<Outcome>,
-    /// The parameters under which it is made again.
+    /// The parameters by which it is made again.
     pub params: &'a Params,
 }
 
-/// Why a pane has no result to hand on.
+/// The reason why a pane has no result to pass on.
 #[derive(Clone, Debug, PartialEq, thiserror::Error, ToMessage)]
 pub enum NoResult {
-    /// It cannot be made, for that reason.
+    /// It cannot be made.
     #[error("{problem}", problem = .0.to_sentence())]
     Refused(LabError),
-    /// It is not there yet.
+    /// It is not available yet.
     #[error("the result is still being computed")]
     Awaited,
 }
@@ -75,11 +75,11 @@ pub enum NoResult {
 /// The content of a pane at some time.
 #[derive(Clone, Copy, Debug)]
 pub struct Shown<'a> {
-    /// The pane's result; a gait on its way to it, where the speed has just been changed.
+    /// The pane's result; a gait that approaches it, if the speed has just been changed.
     pub outcome: &'a Arc<Outcome>,
     /// The time in its motion, seconds.
     pub secs: f64,
-    /// Where the motion lies in the world that is shown.
+    /// The placement of the motion in the shown world.
     pub place: Planar,
 }
 
@@ -87,8 +87,8 @@ impl Pane {
     /// Returns the result of the present parameters, to be kept, saved, measured or described.
     ///
     /// # Errors
-    /// [`NoResult`] where it cannot be made, and while it is computed: the stage shows a result of
-    /// earlier parameters then, or a draft.
+    /// [`NoResult`] if it cannot be made, and while it is computed: the stage then shows a result
+    /// of earlier parameters, or a draft.
     pub fn result(&self) -> Result<Made<'_>, NoResult> {
         if let Some(problem) = &self.problem {
             return Err(NoResult::Refused(problem.clone()));
@@ -96,8 +96,8 @@ impl Pane {
         self.made().filter(|_| self.standing == Standing::Finished).ok_or(NoResult::Awaited)
     }
 
-    /// Returns the result for uses that make it again from its parameters. As [`Pane::result`], but
-    /// its feet may still have to be planted.
+    /// Returns the result for uses that make it again from its parameters: like [`Pane::result`],
+    /// but its feet may still have to be locked.
     pub(crate) fn recipe(&self) -> Result<Made<'_>, NoResult> {
         let drafted = self
             .made()
@@ -105,36 +105,34 @@ impl Pane {
         drafted.map_or_else(|| self.result(), Ok)
     }
 
-    /// Returns what is on the stage, and what it was made from.
+    /// Returns the outcome on the stage, and the parameters that it was made from.
     fn made(&self) -> Option<Made<'_>> {
         let (outcome, params) = (self.outcome.as_ref()?, self.made_from.as_deref()?);
         Some(Made { outcome, params })
     }
 
-    /// Returns the parameters that the result on the stage was made from; `None` where there is
-    /// none.
+    /// Returns the parameters that the outcome on the stage was made from; `None` if there is none.
     #[must_use]
     pub fn made_from(&self) -> Option<&Params> {
         self.made().map(|made| made.params)
     }
 
-    /// Returns the compared parameter and its value in the result on the stage; without one, its
-    /// value in the present parameters.
+    /// Returns the compared parameter and its value in the outcome on the stage; without an
+    /// outcome, its value in the present parameters.
     #[must_use]
     pub fn compared(&self) -> Option<(Key, &Value)> {
         let (key, value) = self.variant.as_ref()?;
         Some((*key, self.made_from().map_or(value, |from| from.get(*key))))
     }
 
-    /// Returns whether the result on the stage is of earlier parameters: that of the present ones
-    /// is being computed.
+    /// Returns whether the outcome on the stage has earlier parameters, while that of the present
+    /// ones is being computed.
     #[must_use]
     pub fn is_outdated(&self) -> bool {
         self.outcome.is_some() && self.standing == Standing::Earlier
     }
 
-    /// Takes the answer to what `params` ask for. Where there can be no result, an earlier one
-    /// goes.
+    /// Applies the answer to `params`. If there can be no result, an earlier one is removed.
     pub(crate) fn take(&mut self, answer: Answer, params: &Arc<Params>) {
         self.problem = None;
         self.sources.clear();
@@ -151,7 +149,7 @@ impl Pane {
             }
             Answer::Awaited => {
                 self.standing = Standing::Earlier;
-                // An earlier result stays until there is a newer one, but for that of another lab.
+                // An earlier result of the same lab stays until there is a newer one.
                 if self.made_from().is_some_and(|from| from.get(Key::Lab) != params.get(Key::Lab)) {
                     self.clear();
                 }
@@ -163,8 +161,8 @@ impl Pane {
         }
     }
 
-    /// Puts the metrics that every lab has first in the list of a new result. Until they are
-    /// measured it is a draft.
+    /// Adds the metrics of every lab at the front of a new result's list. Until they are measured
+    /// it is a draft.
     pub(crate) fn measure(&mut self, gauge: &mut Gauge) {
         let Some(outcome) = self.outcome.as_mut().filter(|_| self.standing != Standing::Earlier)
         else {
@@ -182,7 +180,7 @@ impl Pane {
         }
     }
 
-    /// Shows a driven character a moment later.
+    /// Shows a later moment of a driven character.
     pub(crate) fn show_next(&mut self, outcome: Outcome) {
         self.outcome = Some(Arc::new(outcome));
     }
@@ -203,8 +201,8 @@ impl Pane {
         self.standing = Standing::Earlier;
     }
 
-    /// Returns what is shown at a time of the timeline; `None` while there is no result. A result
-    /// that loops and is shorter than the timeline begins again, and walks on from where it is.
+    /// Returns the content at a time of the timeline; `None` without a result. A result that loops
+    /// and is shorter than the timeline begins again, and continues from where the character is.
     #[must_use]
     pub fn shown_at(&self, secs: f64) -> Option<Shown<'_>> {
         let own = self.outcome.as_ref()?;

@@ -23,7 +23,7 @@ impl Panes {
         self.list.get(index).ok_or(CommandError::NotPossible("there is no such pane"))
     }
 
-    /// Returns the first result that there is.
+    /// Returns the first result.
     pub(crate) fn first_result(&self) -> Result<Made<'_>, NoResult> {
         let (mut found, mut refused) = (None, None);
         for result in self.list.iter().map(Pane::result) {
@@ -36,7 +36,7 @@ impl Panes {
         found.ok_or(refused.unwrap_or(NoResult::Awaited))
     }
 
-    /// Returns what is on the stage in the first pane.
+    /// Returns the outcome on the stage in the first pane.
     pub(crate) fn main_outcome(&self) -> Option<&Arc<Outcome>> {
         self.list.first().and_then(|pane| pane.outcome.as_ref())
     }
@@ -51,7 +51,7 @@ impl Panes {
             .fold(0.0, f64::max)
     }
 
-    /// Shows the driven characters a moment later.
+    /// Shows a later moment of the driven characters.
     pub(crate) fn show_next(&mut self, outcomes: Vec<Option<Outcome>>) {
         for (pane, outcome) in self.list.iter_mut().zip(outcomes) {
             if let Some(outcome) = outcome {
@@ -98,8 +98,7 @@ impl Panes {
         }
     }
 
-    /// Brings the driven characters in step with the parameters; there are none where the user does
-    /// not drive.
+    /// Adapts the driven characters to the parameters; there are none if the user does not drive.
     pub(crate) fn refresh_driven(&mut self, drive: &mut LiveDrive, clips: &mut ClipResolver<'_>) {
         if !is_driven_by_user(&clips.document.params) {
             drive.restart();
@@ -120,7 +119,7 @@ impl Panes {
         }
     }
 
-    /// Puts the clips on the stage, as far as they are there, of which a result cannot be made.
+    /// Shows the available clips of results that cannot be made.
     pub(crate) fn show_sources(&mut self, clips: &mut ClipResolver<'_>) {
         for pane in self.list.iter_mut().filter(|pane| pane.problem.is_some()) {
             let params = pane.params_in(&clips.document.params);
@@ -131,13 +130,14 @@ impl Panes {
     }
 }
 
-/// Returns whether the user drives in the lab of the parameters, now or as soon as there is a
-/// database.
+/// Returns whether the user drives in the lab of the parameters, now or when a database is
+/// available.
 pub(crate) fn is_driven_by_user(params: &Params) -> bool {
     lab_of(params.lab()).is_own_drive(params)
 }
 
-/// Returns whether a parameter makes a difference in a lab. Parameters of the view do in every lab.
+/// Returns whether a parameter has an effect in a lab. Parameters of the view have one in every
+/// lab.
 fn uses(lab: crate::LabId, key: Key) -> bool {
     let is_clip = |key: Key| recipe_ingredients(lab).any(|ingredient| ingredient == key);
     if key.param().group.is_of_lab() {
@@ -147,10 +147,10 @@ fn uses(lab: crate::LabId, key: Key) -> bool {
     }
 }
 
-/// Places clips on the stage, the first on the left of the second, as seen from behind; one alone
-/// lies where its file has it.
+/// Places clips on the stage, the first to the left of the second, seen from behind; a single one
+/// stays where its file has it.
 fn beside_each_other(clips: Vec<(Slot, Arc<Motion>)>) -> Vec<PlacedClip> {
-    /// From the middle to either side, metres.
+    /// The distance from the middle to either side, metres.
     const ASIDE_METRES: f64 = 0.6;
     let Some(stands) = clips.first().map(|(_, first)| first.standing_at(0.0)) else {
         return Vec::new();

@@ -1,5 +1,5 @@
-//! Playback: the playhead, and results that loop. A loop walks on when the playhead begins again,
-//! and keeps its phase when it gives way to another one.
+//! Playback: the playhead, and results that loop. When the playhead wraps, a loop continues from
+//! where the character is; when another loop replaces it, its phase is kept.
 
 mod span;
 pub(crate) mod speed_ramp;
@@ -14,7 +14,7 @@ pub use span::Span;
 use speed_ramp::{SpeedRamp, cycle_durations, differ_in_speed_alone};
 use std::sync::Arc;
 
-/// The time in which the panes play.
+/// The time of the panes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Timeline {
     /// The duration of the longest result, seconds.
@@ -26,7 +26,7 @@ pub(crate) struct Timeline {
 }
 
 impl Timeline {
-    /// Returns where the playhead is, seconds.
+    /// Returns the position of the playhead, seconds.
     pub(crate) fn now_secs(&self, params: &Params) -> f64 {
         self.driven_secs.unwrap_or_else(|| params.number(Key::Time).min(self.duration_secs))
     }
@@ -36,7 +36,7 @@ impl Timeline {
         Span::between(params.optional(Key::In), params.optional(Key::Out), self.duration_secs)
     }
 
-    /// Carries out a command. Steps of a driven character are left to who drives it.
+    /// Carries out a command. Steps of a driven character are made by its owner.
     pub(crate) fn apply(&self, command: PlaybackCommand, params: &mut Params) {
         match command {
             PlaybackCommand::Seek(_) if self.driven_secs.is_some() => {}
@@ -64,7 +64,7 @@ impl Timeline {
         }
     }
 
-    /// Moves the playhead. Returns `false` when it comes to its end and stops.
+    /// Moves the playhead. Returns `false` if it reaches its end and stops.
     pub(crate) fn advance(&self, params: &mut Params, panes: &mut [Pane], dt_secs: f64) -> bool {
         let (span, before, rate) =
             (self.span(params), self.now_secs(params), params.number(Key::Rate));
@@ -81,7 +81,7 @@ impl Timeline {
     }
 }
 
-/// Sets a value that is known to fit.
+/// Sets a value that is known to be valid.
 fn set(params: &mut Params, key: Key, value: Value) {
     let result = params.set(key, value);
     debug_assert!(result.is_ok(), "{result:?}");
@@ -100,13 +100,13 @@ pub(crate) struct PlaybackState {
 struct PaneState {
     outcome: Arc<Outcome>,
     inputs: Option<Inputs>,
-    /// The gait on the stage, on its way to the result or at its speed.
+    /// The gait on the stage, which has the speed of the result or approaches it.
     ramp: SpeedRamp,
     world_from_character: Planar,
 }
 
 impl PlaybackState {
-    /// Notes the playback of the panes.
+    /// Records the playback of the panes.
     pub(crate) fn of(timeline: &Timeline, params: &Params, panes: &[Pane]) -> Self {
         let now_secs = timeline.now_secs(params);
         let state = |pane: &Pane| {
@@ -121,9 +121,9 @@ impl PlaybackState {
         Self { time: params.number(Key::Time), now_secs, panes: panes.iter().map(state).collect() }
     }
 
-    /// Continues from this state after a change. Where a cycle gave way to another, the playhead
-    /// keeps its phase and the character its place, and a gait that plays changes its speed from
-    /// the present one. Where the playhead was moved, results begin where it is.
+    /// Continues from this state after a change. If a cycle replaced another, the playhead keeps
+    /// its phase and the character its place, and a gait that plays changes its speed from the
+    /// present one. If the playhead was moved, results begin where it is.
     pub(crate) fn resume(&self, timeline: &Timeline, params: &mut Params, panes: &mut [Pane]) {
         let is_moved = params.number(Key::Time) != self.time;
         let is_playing = params.is_on(Key::Play);
@@ -158,15 +158,14 @@ impl PlaybackState {
     }
 }
 
-/// Puts every result where it was made: a link shows the same to everybody.
+/// Places every result where it was made, so that a link shows the same to everybody.
 pub(crate) fn restart(panes: &mut [Pane]) {
     for pane in panes {
         (pane.place, pane.ramp) = (Planar::IDENTITY, None);
     }
 }
 
-/// Brings gaits that are on their way to another speed nearer to it. Returns whether there were
-/// any.
+/// Advances the gaits that approach another speed. Returns whether there were any.
 pub(crate) fn advance_ramps(
     timeline: &Timeline,
     params: &Params,
@@ -181,9 +180,9 @@ pub(crate) fn advance_ramps(
     any
 }
 
-/// Begins the span again that the playhead has played to its end, `rounds` times. The character
-/// goes on from there if the camera follows it; if the camera stands, or several panes run against
-/// each other, it goes back to the start.
+/// Restarts the span after the playhead has reached its end `rounds` times. The character continues
+/// from there if the camera follows it; with a fixed camera or several panes it returns to the
+/// start.
 fn wrap_playhead(params: &Params, panes: &mut [Pane], span: Span, rounds: usize) {
     let walks_on = panes.len() == 1 && params.choice::<Follow>() != Follow::Off;
     for pane in panes {
@@ -200,13 +199,13 @@ fn wrap_playhead(params: &Params, panes: &mut [Pane], span: Span, rounds: usize)
 }
 
 impl Pane {
-    /// Returns where the character is in the world that is shown.
+    /// Returns the placement of the character in the shown world.
     fn world_from_character(&self, secs: f64) -> Option<Planar> {
         let shown = self.shown_at(secs)?;
         Some(shown.place.after(&shown.outcome.motion.standing_at(shown.secs)))
     }
 
-    /// Places what is shown so that the character is there at this time.
+    /// Places the result so that the character is there at this time.
     fn place_character(&mut self, secs: f64, world_from_character: &Planar) {
         self.place = Planar::IDENTITY;
         if let Some(present) = self.world_from_character(secs) {
@@ -214,7 +213,7 @@ impl Pane {
         }
     }
 
-    /// Brings a gait on its way nearer to its speed. A paused one takes on its speed at once.
+    /// Advances the gait that approaches another speed. A paused one takes that speed at once.
     /// Returns whether there was one.
     fn advance_ramp(&mut self, now_secs: f64, dt_secs: f64, is_playing: bool) -> bool {
         let character = self.world_from_character(now_secs);

@@ -9,7 +9,7 @@ use super::params::{Key, Kind, Value, format_number};
 use super::session::Session;
 use std::fmt::Write as _;
 
-/// Facts for a report beyond the document.
+/// Facts for a report that the document does not contain.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ReportFacts<'a> {
     /// The address that opens this state.
@@ -26,7 +26,7 @@ pub struct ReportFacts<'a> {
 /// # Errors
 /// [`NoResult`] if no pane has a result, and while one of them is computed.
 pub fn report(session: &Session, facts: &ReportFacts<'_>) -> Result<String, NoResult> {
-    // After this, nothing is under way, and every pane shows the current parameters.
+    // From here on, nothing is in progress, and every pane shows the current parameters.
     session.first_result()?;
     let params = session.params();
     let lab = Key::Lab.param().spoken(params.get(Key::Lab));

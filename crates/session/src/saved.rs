@@ -157,7 +157,7 @@ mod tests {
             ["walk of t=1", "x~11 of t=1", "theirs~33 of t=2", "run(turn_rate:20) of t=2"]
         );
         assert_eq!(written.files(), BTreeSet::from(["11", "33"]));
-        // Written again without news of the others, it stays the same.
+        // Written again without changes by the others, it stays the same.
         assert_eq!(here.clone().with_others_of(&written, &known), written);
         assert_eq!(here.clone().with_others_of(&Saved::default(), &known), here);
         // Two windows write in turn: neither loses the other's clips.

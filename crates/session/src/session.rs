@@ -30,10 +30,10 @@ use std::sync::Arc;
 /// The link of the first visit: a blend with three windows side by side.
 const WELCOME: &str = "compare=blend_window:30,15,10";
 
-/// The most problems of a link that are named; further ones are counted.
+/// The greatest number of problems of a link that are named; further ones are counted.
 const MAX_PROBLEMS: usize = 6;
 
-/// The document, and all that is made from it. [`Session::apply`] changes it.
+/// The document, and everything that is made from it. [`Session::apply`] changes it.
 #[derive(Debug)]
 pub struct Session {
     pub(crate) document: Document,
@@ -60,7 +60,7 @@ impl Session {
         Self::with_reader(Some(read))
     }
 
-    /// Returns a session that asks for every file to be read elsewhere ([`Request::Read`]), however
+    /// Returns a session that requests every file to be read elsewhere ([`Request::Read`]), however
     /// small. A page that only has such a session needs no code that reads files.
     #[must_use]
     pub fn with_external_reader() -> Self {
@@ -115,23 +115,23 @@ impl Session {
         &self.extra_characters.list
     }
 
-    /// Returns the first result that there is, for what describes all panes at once.
+    /// Returns the first result, for descriptions of all panes at once.
     ///
     /// # Errors
-    /// [`NoResult`] where no pane has one, and while one of them is computed.
+    /// [`NoResult`] if no pane has one, and while one of them is computed.
     pub fn first_result(&self) -> Result<Made<'_>, NoResult> {
         self.panes.first_result()
     }
 
-    /// Returns what is on the stage in the first pane, which stands for all where only one can. As
-    /// [`Pane::outcome`], it may be of earlier parameters.
+    /// Returns the outcome on the stage in the first pane, for uses that need a single one. Like
+    /// [`Pane::outcome`], it may have earlier parameters.
     #[must_use]
     pub fn main_outcome(&self) -> Option<&Arc<Outcome>> {
         self.panes.main_outcome()
     }
 
-    /// Returns a number that grows with every change of library content; tells storage when to
-    /// save.
+    /// Returns a number that grows with every change of library content, so that storage knows when
+    /// to save.
     #[must_use]
     pub fn library_revision(&self) -> u64 {
         self.document.library_revision
@@ -149,26 +149,26 @@ impl Session {
         self.document.can_undo()
     }
 
-    /// Returns whether there is a step to do again.
+    /// Returns whether there is a step to make again.
     #[must_use]
     pub fn can_redo(&self) -> bool {
         self.document.can_redo()
     }
 
-    /// Returns what is asked of the app since the last call.
+    /// Returns the requests to the app since the last call.
     pub fn take_requests(&mut self) -> Vec<Request> {
         let lessons = self.lessons.take_requests().into_iter().map(Request::Lesson);
         self.files.take_requests().into_iter().chain(lessons).collect()
     }
 
-    /// Returns the duration of what is on the stage, seconds: of the longest result, of the clips
-    /// that stand in for one that cannot be made, or of an extra character.
+    /// Returns the duration of the content of the stage, seconds: of the longest result, of the
+    /// clips that replace one that cannot be made, or of an extra character.
     #[must_use]
     pub fn duration_secs(&self) -> f64 {
         self.panes.duration_secs().max(self.extra_characters.duration_secs())
     }
 
-    /// Returns where the playhead is, seconds.
+    /// Returns the position of the playhead, seconds.
     #[must_use]
     pub fn now_secs(&self) -> f64 {
         self.timeline().now_secs(&self.document.params)
@@ -180,8 +180,8 @@ impl Session {
         self.timeline().span(&self.document.params)
     }
 
-    /// Returns whether the playhead or a driven character moves. A stage without anything on it
-    /// keeps playing: a result that arrives plays then.
+    /// Returns whether the playhead or a driven character moves. An empty stage keeps playing, so
+    /// that a result plays when it arrives.
     #[must_use]
     pub fn is_playing(&self) -> bool {
         self.document.params.is_on(Key::Play) && (self.is_driven() || self.duration_secs() > 0.0)
@@ -195,19 +195,19 @@ impl Session {
         }
     }
 
-    /// Tells the user something.
+    /// Adds a notice.
     pub fn say(&mut self, level: Level, text: impl Into<Message>) {
         self.notices.say(level, text);
         self.revision += 1;
     }
 
-    /// Tells the user something about a file or key.
+    /// Adds a notice about a file or key.
     pub fn say_of(&mut self, level: Level, about: &str, text: impl Into<Message>) {
         self.notices.say_of(level, about, text);
         self.revision += 1;
     }
 
-    /// Lets time pass: moves the playhead while playing. Returns whether anything moved.
+    /// Advances the time: moves the playhead during playback. Returns whether anything moved.
     pub fn tick(&mut self, dt_secs: f64) -> bool {
         let mut is_changed = self.notices.tick(dt_secs);
         let played_secs = dt_secs * self.document.params.number(Key::Rate);
@@ -225,13 +225,13 @@ impl Session {
         playback::advance_ramps(&timeline, &self.document.params, panes, played_secs) || is_changed
     }
 
-    /// Carries a command out and recomputes what depends on it.
+    /// Carries out a command, and recomputes what depends on it.
     ///
     /// # Errors
-    /// [`CommandError`] says what does not fit; the document is then as it was.
+    /// [`CommandError`] with the reason; the document is then unchanged.
     pub fn apply(&mut self, command: Command) -> Result<(), CommandError> {
         if let Command::Drive(DriveCommand::Steer(control)) = command {
-            // Nothing that is shown depends on it until time passes.
+            // Nothing that is shown depends on it until time advances.
             self.steer(control);
             return Ok(());
         }
@@ -248,7 +248,7 @@ impl Session {
         Ok(())
     }
 
-    /// Hands a command to the part that it is for.
+    /// Passes a command to the part that carries it out.
     fn route(&mut self, command: Command) -> Result<(), CommandError> {
         match command {
             Command::Set(values) => self.set(values)?,
@@ -289,7 +289,7 @@ impl Session {
         Ok(())
     }
 
-    /// Takes a step back or does it again, and reads the files that it brings back.
+    /// Takes back a step or makes it again, and reads the files that it restores.
     fn take_step(&mut self, step: fn(&mut Document) -> bool) {
         if step(&mut self.document) {
             self.files.read_stored(&mut self.document, &mut self.notices, Vec::new());
@@ -335,7 +335,7 @@ impl Session {
         let link = link::read(query);
         let mut params = Params::default();
         let named: Vec<Key> = link.values.iter().map(|(key, _)| *key).collect();
-        // A language is the reader's own until a link names another one.
+        // The language stays the reader's own until a link names another one.
         params.copy_from(&self.document.params, Key::Lang);
         for (key, value) in link.values {
             let result = params.set(key, value);
@@ -346,8 +346,7 @@ impl Session {
         self.note_lesson(&named);
     }
 
-    /// Replaces all parameters by those of a link: tells what is wrong with it and which clips are
-    /// missing.
+    /// Replaces all parameters by those of a link. Reports its problems and the missing clips.
     fn replace_params(&mut self, new: NewParams) {
         let NewParams { params, named, problems } = new;
         let new_sources = self.document.replace_params(params, &named);
@@ -380,7 +379,7 @@ impl Session {
         ClipResolver { document: &mut self.document, files: &mut self.files, labs: &mut self.labs }
     }
 
-    /// Recomputes what depends on the document, where its inputs have changed.
+    /// Recomputes everything that depends on the document and whose inputs have changed.
     fn refresh(&mut self) {
         self.revision += 1;
         self.lessons.ask_for_text(&self.document.params);
@@ -414,7 +413,7 @@ impl Session {
         self.make_next()
     }
 
-    /// Makes one built-in clip that was not needed yet. Returns `false` when all are made.
+    /// Makes one built-in clip that was not needed yet. Returns `false` if all are made.
     fn make_next(&mut self) -> bool {
         let is_made = self.clips().make_next();
         self.revision += u64::from(is_made);
@@ -426,7 +425,7 @@ impl Session {
         while self.make_next() {}
     }
 
-    /// Returns the work that is under way.
+    /// Returns the work in progress.
     #[must_use]
     pub fn jobs(&self) -> Vec<Job> {
         let computed = self.labs.progress().into_iter().map(|(kind, progress)| Job {
@@ -438,7 +437,7 @@ impl Session {
         self.files.jobs().chain(computed).collect()
     }
 
-    /// Returns what a parameter is compared by at first.
+    /// Returns the comparison that a parameter begins with.
     fn comparison(&self, key: Key) -> Result<Compare, CommandError> {
         let params = &self.document.params;
         let full = params.optional(key).or_else(|| self.automatic_value(key)).unwrap_or_default();

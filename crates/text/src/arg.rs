@@ -1,4 +1,4 @@
-//! What the names of a template stand for.
+//! The arguments of messages.
 
 use crate::{Message, ToMessage};
 use serde::{Deserialize, Serialize};
@@ -14,9 +14,9 @@ pub enum Arg {
     Count(i64),
     /// A number.
     Number(f64),
-    /// What is translated in turn.
+    /// A message, translated in turn.
     Message(Message),
-    /// Several, with a comma, a semicolon or a space between them.
+    /// Several arguments, with a comma, a semicolon or a space between them.
     Joined(Vec<Arg>, Cow<'static, str>),
     /// A note, `the rest pose was taken`, as a sentence.
     Note(Message),
@@ -37,7 +37,7 @@ impl Arg {
     }
 }
 
-/// What can be an argument of a [`Message`].
+/// A type whose values can be arguments of a [`Message`].
 pub trait ToArg {
     /// Returns the argument.
     fn to_arg(&self) -> Arg;
@@ -74,7 +74,7 @@ impl ToArg for f64 {
 }
 
 impl ToArg for f32 {
-    /// As the shortest number that reads as this one: 0.1 stays 0.1.
+    /// Uses the shortest number that reads as this one: 0.1 stays 0.1.
     fn to_arg(&self) -> Arg {
         Arg::Number(self.to_string().parse().unwrap_or(f64::from(*self)))
     }

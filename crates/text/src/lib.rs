@@ -2,25 +2,25 @@
 //!
 //! # The idea
 //!
-//! What a program says is a [`Message`]: an English template and what its names stand for, each
-//! with its type. Where it is shown, the [`Table`] of a language has a template of its own for it,
-//! with its own order, plural forms and digits. The English template is the key, as with gettext:
-//! a message without a translation is still an English sentence.
+//! A text of the program is a [`Message`]: an English template and its arguments, each with its
+//! type. The [`Table`] of a language has its own template for it, with its own order, plural forms
+//! and digits. The English template is the key, as with gettext: a message without a translation is
+//! still an English sentence.
 //!
 //! # Templates
 //!
-//! | | what is put in |
+//! | | inserted text |
 //! |---|---|
 //! | `{name}` | the argument |
-//! | `{cm:.1}` | a number, rounded to so many digits behind the point |
-//! | `{secs:02}` | a number with zeros before it, to so many digits |
-//! | `{n, plural, one {# bone} other {# bones}}` | by a count: `=0` and the like for one number, `one` for 1, `other` for the rest; `#` is the count |
-//! | `{side, select, left {…} other {…}}` | by a word |
+//! | `{cm:.1}` | a number, rounded to this many decimals |
+//! | `{secs:02}` | a number with leading zeros, with this many digits |
+//! | `{n, plural, one {# bone} other {# bones}}` | a form by a count: `=0` and the like for one number, `one` for 1, `other` for the rest; `#` is the count |
+//! | `{side, select, left {…} other {…}}` | a form by a word |
 //! | `{{`, `}}` | a brace |
 //!
 //! # Arguments
 //!
-//! | type | what it is |
+//! | type | meaning |
 //! |---|---|
 //! | `String`, `Arc<str>` | data, such as the name of a file: shown as it is |
 //! | `&'static str` | a word of the program: a message of its own |
@@ -30,7 +30,8 @@
 //!
 //! # Example
 //!
-//! Text and fields of an error stand once: `thiserror` and [`ToMessage`] read the same attribute.
+//! The text and the fields of an error are written once: `thiserror` and [`ToMessage`] read the
+//! same attribute.
 //!
 //! ```
 //! use segue_text::{Table, ToMessage, msg};
@@ -59,8 +60,8 @@
 //!
 //! # What it does not do
 //!
-//! Plurals are told apart as English does, `one` and `other`; a language with more forms needs its
-//! rule here. Dates, currencies and right-to-left text are not looked after.
+//! Plurals have the English forms `one` and `other`; a language with more forms needs its rule in
+//! this crate. Dates, currencies and right-to-left text are not supported.
 
 mod arg;
 mod table;
@@ -70,14 +71,14 @@ pub use arg::{Arg, ToArg};
 pub use segue_text_derive::{ToMessage, msg};
 pub use table::{Table, TemplateError};
 
-// So that the macros' paths hold in this crate's own tests, too.
+// The macros' paths must also hold in this crate's own tests.
 extern crate self as segue_text;
 
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::fmt;
 
-/// Something that is told, before it is written out.
+/// A text of the program that is not written out yet.
 ///
 /// Its `Display` is the English text.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -113,7 +114,7 @@ impl Message {
         Self::new("{parts}", vec![(Cow::Borrowed("parts"), joined)])
     }
 
-    /// Returns the first data in the message, such as the name of the file that it is about.
+    /// Returns the first data in the message, such as the name of a file.
     #[must_use]
     pub fn subject(&self) -> Option<&str> {
         self.args.iter().find_map(|(_, arg)| match arg {
@@ -129,19 +130,19 @@ impl Message {
         Self::new("{note}", vec![(Cow::Borrowed("note"), Arg::Note(self))])
     }
 
-    /// Whether there is nothing to say.
+    /// Returns whether the message has no text.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.template.is_empty()
     }
 
-    /// The template, which is the key of its translations.
+    /// Returns the template, which is the key of its translations.
     #[must_use]
     pub fn template(&self) -> &str {
         &self.template
     }
 
-    /// Returns the templates that the message is made of: its own, and those of its arguments.
+    /// Returns all templates of the message: its own, and those of its arguments.
     #[must_use]
     pub fn templates(&self) -> Vec<&str> {
         let mut found = vec![self.template()];
@@ -174,12 +175,12 @@ impl fmt::Display for Message {
     }
 }
 
-/// What can be told as a [`Message`]. Errors derive it.
+/// A type that can be written as a [`Message`]. Errors derive it.
 pub trait ToMessage {
-    /// Returns what is told.
+    /// Returns the message.
     fn to_message(&self) -> Message;
 
-    /// Returns it as a sentence of its own.
+    /// Returns the message as a sentence of its own.
     fn to_sentence(&self) -> Message {
         self.to_message().sentence()
     }
@@ -252,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn data_is_never_translated() {
+    fn message_of_data_is_never_translated() {
         let table = Table::new([("Walk", "走"), ("{name} is here.", "{name} 在這裡。")]);
         let told = |message: &Message| table.write(message);
         assert_eq!(told(&Message::data("Walk")), "Walk");
@@ -262,7 +263,7 @@ mod tests {
     }
 
     #[test]
-    fn message_survives_its_way_through_json() {
+    fn message_reads_back_from_json() {
         let inner = Inner::Joint(3);
         let message = msg!("{name}: {inner}, {cm:.2}", name = "a".to_owned(), cm = 0.5, inner);
         let json = serde_json::to_string(&message).expect("a message is JSON");
@@ -270,7 +271,7 @@ mod tests {
     }
 
     #[test]
-    fn sentences_stand_behind_each_other_by_the_rule_of_the_language() {
+    fn sentences_are_joined_by_the_rule_of_the_language() {
         let message = Message::joined(vec!["It is so.".into(), "It is not.".into()], " ");
         assert_eq!(message.to_string(), "It is so. It is not.");
         let table = Table::new([("It is so.", "是。"), ("It is not.", "不是。"), (" ", "")]);

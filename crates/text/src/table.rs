@@ -1,4 +1,4 @@
-//! A language's templates, and how messages are written out.
+//! The templates of a language, and the writing of messages.
 
 use crate::template::{Digits, Part, names, parts};
 use crate::{Arg, Message};
@@ -10,19 +10,19 @@ pub struct Table {
     rows: BTreeMap<String, String>,
 }
 
-/// Why a template is not the translation of another.
+/// The reason why a template is not a translation of another.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum TemplateError {
-    /// It names what the other one does not have.
+    /// It has a name that the other one does not have.
     Unknown(String),
-    /// It leaves out what the other one tells.
+    /// It lacks a name of the other one.
     Missing(String),
 }
 
 impl Table {
     /// Returns a table of rows: the English template, and that of the language. The rows `", "`,
-    /// `"; "`, `" "` and `"."` are what stands between the entries of a list, between clauses,
-    /// between sentences, and at the end of one.
+    /// `"; "`, `" "` and `"."` are the signs between the entries of a list, between clauses,
+    /// between sentences, and at the end of a sentence.
     #[must_use]
     pub fn new<K: Into<String>, V: Into<String>>(rows: impl IntoIterator<Item = (K, V)>) -> Self {
         let rows = rows.into_iter().map(|(english, own)| (english.into(), own.into()));
@@ -35,14 +35,14 @@ impl Table {
         self.rows.get(english).map(String::as_str)
     }
 
-    /// Returns a message in this language. What has no row is English.
+    /// Returns a message in this language. Parts without a row stay English.
     #[must_use]
     pub fn write(&self, message: &Message) -> String {
         Writer { table: Some(self) }.message(message)
     }
 
-    /// Checks that a translation tells what the English template tells: both use the same names,
-    /// and the translation may choose forms by any of them.
+    /// Checks that a translation has the same names as the English template. The translation may
+    /// choose forms by any of them.
     ///
     /// # Errors
     /// [`TemplateError`] with the first name that is on one side only.
@@ -96,7 +96,7 @@ impl Writer<'_> {
                 }
                 Part::Forms(name, forms) => {
                     let Some(arg) = message.arg(name) else { continue };
-                    // A choice goes by the English word, whatever its translation.
+                    // A form is chosen by the English word, whatever its translation.
                     let word = ENGLISH.arg(arg, Digits::default());
                     let exact = format!("={word}");
                     let is_one = matches!(arg, Arg::Count(1));
@@ -127,7 +127,7 @@ impl Writer<'_> {
     }
 }
 
-/// A note, `the rest pose was taken`, as a sentence: `The rest pose was taken.`
+/// Returns a note, `the rest pose was taken`, as a sentence: `The rest pose was taken.`
 fn sentence(note: &str, stop: &str) -> String {
     let mut letters = note.chars();
     let first = letters.next().map_or_else(String::new, |first| first.to_uppercase().to_string());
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn choice_goes_by_the_english_word() {
+    fn form_is_chosen_by_the_english_word() {
         let table = Table::new([
             ("the {side} foot", "{side, select, left {左腳} other {{side}的腳}}"),
             ("left", "左"),

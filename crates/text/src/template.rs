@@ -1,22 +1,22 @@
-//! A template by its parts.
+//! Parsing of templates.
 
 /// A part of a template.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Part<'a> {
-    /// What stands there as it is.
+    /// Text that is written unchanged.
     Words(&'a str),
-    /// An argument, with the digits that it is written with.
+    /// An argument, with its number format.
     Value(&'a str, Digits),
     /// One of several forms, by an argument.
     Forms(&'a str, Forms<'a>),
 }
 
-/// How a number is written.
+/// The format of a number.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Digits {
-    /// Behind the point; as many as it takes where there is no number.
+    /// The number of decimals; as many as needed if `None`.
     pub(crate) behind: Option<usize>,
-    /// At least so many in all, with zeros before it.
+    /// The least number of digits in all, with leading zeros.
     pub(crate) least: usize,
 }
 
@@ -24,7 +24,7 @@ pub(crate) struct Digits {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Forms<'a>(&'a str);
 
-/// The parts of a template. What is not one is words.
+/// Returns the parts of a template. Invalid parts are text.
 pub(crate) fn parts(template: &str) -> impl Iterator<Item = Part<'_>> {
     let mut rest = template;
     std::iter::from_fn(move || {
@@ -50,7 +50,7 @@ pub(crate) fn parts(template: &str) -> impl Iterator<Item = Part<'_>> {
     })
 }
 
-/// What stands between a brace and the one that closes it.
+/// Returns the text up to the brace that closes it.
 fn inside(text: &str) -> Option<&str> {
     let mut depth = 0_usize;
     for (at, letter) in text.char_indices() {
@@ -83,7 +83,7 @@ fn placeholder(inside: &str) -> Part<'_> {
 }
 
 impl<'a> Forms<'a> {
-    /// The forms by their keys, in order.
+    /// Returns the forms with their keys, in order.
     pub(crate) fn iter(self) -> impl Iterator<Item = (&'a str, &'a str)> {
         let mut rest = self.0;
         std::iter::from_fn(move || {
@@ -94,7 +94,7 @@ impl<'a> Forms<'a> {
         })
     }
 
-    /// The first form that has one of these keys.
+    /// Returns the first form that has one of these keys.
     pub(crate) fn find(self, keys: &[&str]) -> Option<&'a str> {
         keys.iter()
             .find_map(|key| self.iter().find(|(known, _)| known == key))
@@ -102,7 +102,7 @@ impl<'a> Forms<'a> {
     }
 }
 
-/// The names in a template, each as often as it stands there; those in forms, too.
+/// Returns the names in a template, including those in forms, each as often as it occurs.
 pub(crate) fn names(template: &str) -> Vec<&str> {
     parts(template)
         .flat_map(|part| match part {

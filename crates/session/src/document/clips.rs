@@ -1,4 +1,4 @@
-//! Clips that parameters name: found in the library, or brought into it by their id.
+//! Clips that parameters name: found in the library, or added to it by their id.
 
 use super::Document;
 use crate::built_in::{built_in_entries, sample_entry};
@@ -47,13 +47,13 @@ impl Document {
         true
     }
 
-    /// Returns the built-in clip of that id, where it is not in the library.
+    /// Returns the built-in clip with that id, if it is not in the library.
     pub(super) fn removed_built_in(&self, id: &str) -> Option<Entry> {
         let is_gone = self.library.get(id).is_none();
         is_gone.then(|| built_in_entries().find(|entry| entry.id == id)).flatten()
     }
 
-    /// Puts a built-in clip back that was removed from the library. Returns whether it did.
+    /// Restores a built-in clip that was removed from the library. Returns whether it did.
     pub(crate) fn bring_back(&mut self, id: &str) -> bool {
         let Some(entry) = self.removed_built_in(id) else {
             return false;
@@ -63,7 +63,7 @@ impl Document {
         true
     }
 
-    /// Puts back what the open lab's own list of clips names.
+    /// Restores the built-in clips in the open lab's own list.
     pub(crate) fn bring_back_listed(&mut self) {
         for id in lab_of(self.params.lab()).listed(&self.params) {
             self.bring_back(&id);

@@ -1,4 +1,4 @@
-//! Changes of the library's clips by hand.
+//! Edits of the library's clips by hand.
 
 use super::Document;
 use super::places::forget_places;
@@ -15,7 +15,7 @@ impl Document {
     /// Returns a clip of the library.
     ///
     /// # Errors
-    /// [`CommandError::NoClip`] where there is none of that name.
+    /// [`CommandError::NoClip`] if there is none of that name.
     pub(crate) fn clip(&self, reference: &str) -> Result<&Arc<Entry>, CommandError> {
         self.library.find(reference).ok_or_else(|| CommandError::NoClip(reference.to_owned()))
     }
@@ -42,7 +42,7 @@ impl Document {
         Ok(())
     }
 
-    /// Removes a clip from the library and from all that names it. Returns its name.
+    /// Removes a clip from the library and from everything that names it. Returns its name.
     pub(crate) fn remove(&mut self, id: &str) -> Result<String, CommandError> {
         let entry = Arc::clone(self.clip(id)?);
         self.remember(None);

@@ -1,4 +1,4 @@
-//! The states that undo and redo bring back.
+//! The states that undo and redo restore.
 
 use crate::library::{Entry, Library, Origin};
 use crate::params::{Key, Mark, PARAMS, Params};
@@ -12,13 +12,13 @@ struct State {
     library: Library,
 }
 
-/// The steps that can be taken back, and those that were.
+/// The steps that can be taken back, and those that were taken back.
 #[derive(Clone, Debug, Default)]
 pub(super) struct History {
     past: Vec<State>,
     future: Vec<State>,
-    /// The parameter that the last step changed, while its slider is still held: more of the same
-    /// joins that step.
+    /// The parameter that the last step changed, while its slider is held: further changes of it
+    /// join that step.
     open: Option<Key>,
 }
 
@@ -26,7 +26,7 @@ pub(super) struct History {
 const MOST_STEPS: usize = 200;
 
 impl History {
-    /// Remembers the state before a change. With `key`, changes of one parameter in one gesture are
+    /// Records the state before a change. With `key`, changes of one parameter in one gesture are
     /// one step.
     pub(super) fn before_change(&mut self, params: &Params, library: &Library, key: Option<Key>) {
         if key.is_some() && self.open == key {
@@ -45,7 +45,7 @@ impl History {
         self.open = None;
     }
 
-    /// Adds clips to every state that lacks them: they were there all along, and only came late.
+    /// Adds clips to every state that lacks them: they belong to all states, and only arrived late.
     pub(super) fn add_to_all(&mut self, entries: &[Arc<Entry>]) {
         for state in self.past.iter_mut().chain(&mut self.future) {
             for entry in entries
@@ -59,8 +59,8 @@ impl History {
         }
     }
 
-    /// Lets go of the motions of files that `library` does not hold; says whether there were any.
-    /// They are read again when a step brings them back.
+    /// Drops the motions of files that `library` does not contain; returns whether there were any.
+    /// They are read again when a step restores them.
     pub(super) fn drop_motions_outside(&mut self, library: &Library) -> bool {
         let held: BTreeSet<_> = library
             .entries()
@@ -96,12 +96,12 @@ impl History {
         !self.future.is_empty()
     }
 
-    /// Swaps the present for the state before the last step; says whether there was one.
+    /// Swaps the present for the state before the last step; returns whether there was one.
     pub(super) fn undo(&mut self, params: &mut Params, library: &mut Library) -> bool {
         Self::swap(&mut self.past, &mut self.future, &mut self.open, params, library)
     }
 
-    /// Swaps the present for the state that was last taken back.
+    /// Swaps the present for the state that was taken back last; returns whether there was one.
     pub(super) fn redo(&mut self, params: &mut Params, library: &mut Library) -> bool {
         Self::swap(&mut self.future, &mut self.past, &mut self.open, params, library)
     }

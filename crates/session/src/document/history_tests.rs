@@ -1,9 +1,9 @@
-//! Steps of undo.
+//! Tests of the steps of undo.
 
 use crate::fixtures::*;
 
 #[test]
-fn a_drag_is_one_step_of_undo() {
+fn drag_of_a_slider_is_one_step() {
     let mut session = Session::new();
     for frames in [31.0, 32.0, 40.0] {
         blend_window(&mut session, frames);
@@ -20,7 +20,7 @@ fn a_drag_is_one_step_of_undo() {
 }
 
 #[test]
-fn undo_leaves_the_playhead_and_the_camera_alone() {
+fn undo_keeps_playhead_and_camera() {
     let mut session = Session::new();
     blend_window(&mut session, 20.0);
     session.apply(Command::Playback(PlaybackCommand::Seek(1.0))).unwrap();
@@ -31,7 +31,7 @@ fn undo_leaves_the_playhead_and_the_camera_alone() {
 }
 
 #[test]
-fn undo_takes_back_marks_speed_and_what_the_camera_follows() {
+fn undo_restores_marks_speed_and_camera_target() {
     let mut session = Session::new();
     let values = [
         (Key::In, Value::Number(1.0)),

@@ -1,10 +1,10 @@
-//! Parameters that are places in a clip: they mean nothing in another one.
+//! Parameters that are places in a clip, and have no meaning in another one.
 
 use crate::labs::Slot;
 use crate::params::{Key, Mark, PARAMS, Params};
 
-/// Sets back the parameters that are places in a slot's clip, but for those `given` for the clip
-/// that is there now: they mean nothing in another clip. Returns the parameters that have changed.
+/// Resets the parameters that are places in a slot's clip, except those `given` for the new clip.
+/// Returns the parameters that changed.
 pub(super) fn forget_places(params: &mut Params, slot: Slot, given: &[Key]) -> Vec<Key> {
     let mark = match slot {
         Slot::A => Mark::PlaceInA,
@@ -13,8 +13,7 @@ pub(super) fn forget_places(params: &mut Params, slot: Slot, given: &[Key]) -> V
     reset_marked(params, mark, given)
 }
 
-/// Sets back the parameters that have a mark, but for those `given`. Returns those that have
-/// changed.
+/// Resets the parameters with a mark, except those `given`. Returns those that changed.
 pub(super) fn reset_marked(params: &mut Params, mark: Mark, given: &[Key]) -> Vec<Key> {
     let places = PARAMS.iter().filter(|param| param.has(mark)).map(|param| param.key);
     let mut changed = Vec::new();

@@ -1,4 +1,4 @@
-//! Which clips take A and B, and what becomes of the places in those that were there.
+//! Tests of the clips that take A and B, and of the places in the clips before them.
 
 use crate::fixtures::*;
 use crate::reading::Content;
@@ -26,11 +26,11 @@ fn set(session: &mut Session, link: &str) {
 }
 
 #[test]
-fn a_fetched_file_takes_what_the_link_does_not_name() {
+fn fetched_file_takes_slots_that_the_link_does_not_name() {
     let mut session = opened("src=https://example.org/x.bvh&a=walk");
     let id = session.load_fetched("x.bvh", made_bvh(1.0)).unwrap().ids.remove(0);
     assert_eq!(ids(&session), ["walk", &id], "A is named, though it is what it would be anyway");
-    // Chosen while the file is under way.
+    // Chosen while the file is being fetched.
     let mut session = opened("src=https://example.org/x.bvh");
     session.apply(Command::Assign(Slot::A, "idle".into())).unwrap();
     let id = session.load_fetched("x.bvh", made_bvh(1.0)).unwrap().ids.remove(0);
@@ -39,18 +39,17 @@ fn a_fetched_file_takes_what_the_link_does_not_name() {
     let [x, y] =
         [1.0, 2.0].map(|seed| session.load_fetched("x.bvh", made_bvh(seed)).unwrap().ids.remove(0));
     assert_eq!(ids(&session), [x, y]);
-    // What is dropped takes a built-in clip, named or not.
+    // A dropped file takes the slot of a built-in clip, named or not.
     let mut session = opened("a=walk&b=run");
     let id = session.load("x.bvh", made_bvh(1.0)).unwrap().ids.remove(0);
     assert_eq!(ids(&session), [&id, "run"]);
-    // A large one that is read elsewhere, likewise.
-    // Where files are read elsewhere, likewise.
+    // A fetched file that is read elsewhere leaves named slots alone, too.
     let mut session = Session::with_external_reader();
     session.apply(Command::OpenLink("src=https://example.org/x.bvh&a=walk&b=run".into())).unwrap();
     session.load_fetched("x.bvh", made_bvh(1.0)).unwrap();
     serve(&mut session);
     assert!(files(&session).len() == 1 && ids(&session) == ["walk", "run"]);
-    // And a motion whose skeleton comes behind it.
+    // So does a motion whose skeleton arrives after it.
     for (link, wanted) in [("a=walk", ["walk", "01_02"]), ("lab=view&a=walk", ["walk", "01_02"])] {
         for mut session in [Session::new(), Session::with_external_reader()] {
             session.apply(Command::OpenLink(format!("src=https://example.org/x&{link}"))).unwrap();
@@ -68,7 +67,7 @@ fn a_fetched_file_takes_what_the_link_does_not_name() {
 }
 
 #[test]
-fn an_address_that_is_given_up_leaves_the_others_as_they_are() {
+fn address_removed_from_a_link_leaves_the_others_as_they_are() {
     let mut session =
         opened("src=https://example.org/x.bvh%20https://example.org/y.bvh&a=walk&b=run");
     session.take_requests();
@@ -88,7 +87,7 @@ fn an_address_that_is_given_up_leaves_the_others_as_they_are() {
 }
 
 #[test]
-fn a_slot_waits_for_its_clip_and_no_other() {
+fn slot_that_waits_for_a_clip_takes_no_other() {
     let mut sender = Session::new();
     let awaited = sender.load("mine.bvh", made_bvh(4.0)).unwrap().ids.remove(0);
     for lab in ["blend", "view"] {
@@ -104,7 +103,7 @@ fn a_slot_waits_for_its_clip_and_no_other() {
 }
 
 #[test]
-fn what_is_fetched_again_after_a_reload_takes_no_slot() {
+fn file_fetched_again_after_a_reload_takes_no_slot() {
     let link = "src=https://example.org/x.bvh";
     let mut session = opened(link);
     let id = session.load_fetched("x.bvh", made_bvh(1.0)).unwrap().ids.remove(0);
@@ -117,7 +116,7 @@ fn what_is_fetched_again_after_a_reload_takes_no_slot() {
 }
 
 #[test]
-fn a_file_that_comes_again_leaves_what_was_said_of_it() {
+fn file_loaded_again_keeps_what_was_set_by_hand() {
     let mut session = Session::new();
     let bytes = made_bvh(1.0);
     let id = session.load("x.bvh", Arc::clone(&bytes)).unwrap().ids.remove(0);
@@ -140,14 +139,14 @@ fn a_file_that_comes_again_leaves_what_was_said_of_it() {
     };
     assert_eq!(told(session.library().get(&id).unwrap()), told(&before));
 
-    // One that could not be read is read as it was said.
+    // A clip that could not be read is read with these roles and this name.
     session.document.library.change(&id, |entry| entry.motion = None);
     session.load("x.bvh", bytes).unwrap();
     assert_eq!(told(session.library().get(&id).unwrap()), told(&before));
 }
 
 #[test]
-fn another_clip_forgets_the_places_in_the_one_before() {
+fn slot_with_another_clip_resets_the_places_in_the_last_one() {
     let places = "leave_a=1&enter_b=0.5&mix_frame_a=70&mix_frame_b=20&loop_from=0.5&loop_to=1.5&warp_from=0.5&warp_to=1&pins=12-30\
                   &path=AAUAAADIAfAByAF3yAF3rAI";
     let of_b = "blend_window=12&enter_b=0.5&mix_frame_b=20";
@@ -166,11 +165,11 @@ fn another_clip_forgets_the_places_in_the_one_before() {
             .all(|key| left.contains(key)),
         "{left}"
     );
-    // Places that are given with the clip are in that clip.
+    // Places that are set together with the clip are in that clip.
     set(&mut session, "a=run&leave_a=0.75");
     assert_eq!(session.params().optional(Key::LeaveA), Some(0.75));
     assert_eq!(session.params().optional(Key::LoopFrom), None);
-    // The same clip again, and what a file brings.
+    // The same clip again keeps the places; a file's clip resets them.
     session.apply(Command::Assign(Slot::A, "run".into())).unwrap();
     assert_eq!(session.params().optional(Key::LeaveA), Some(0.75));
     set(&mut session, "pins=1-2");
@@ -180,10 +179,10 @@ fn another_clip_forgets_the_places_in_the_one_before() {
 }
 
 #[test]
-fn a_built_in_clip_that_was_removed_comes_back_when_it_is_asked_for() {
+fn built_in_clip_that_was_removed_returns_when_named() {
     let sample = Session::samples()[2].id;
     let mut session = Session::new();
-    // A take is not in the library until somebody asks for it.
+    // A take is not in the library until it is named.
     for id in ["run", "idle"] {
         session.apply(Command::Remove(id.into())).unwrap();
     }
@@ -201,7 +200,7 @@ fn a_built_in_clip_that_was_removed_comes_back_when_it_is_asked_for() {
     session.apply(Command::OpenLink("lab=graph&clips=walk,idle".into())).unwrap();
     assert!(has(&session, "idle"));
 
-    // Nobody asked: a reload leaves it where it is.
+    // Without a link that names it, a removed clip stays removed after a reload.
     session.apply(Command::OpenLink("lab=blend".into())).unwrap();
     session.apply(Command::Remove("idle".into())).unwrap();
     let mut restored = Session::new();

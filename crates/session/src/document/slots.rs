@@ -1,4 +1,4 @@
-//! What A and B hold: chosen by hand or by a link, or brought by a file.
+//! The clips in A and B: chosen by hand or by a link, or brought by a file.
 
 use super::Document;
 use super::places::{forget_places, reset_marked};
@@ -11,12 +11,12 @@ impl Document {
     /// Returns the id of a clip that may be put into a slot: one of the library, or a built-in one
     /// that was removed from it.
     pub(crate) fn assignable(&self, id: String) -> Result<String, CommandError> {
-        // Asked first: a file that is called like the built-in clip is not meant.
+        // The built-in clip comes first: a file of the same name is not meant.
         if self.removed_built_in(&id).is_some() { Ok(id) } else { Ok(self.clip(&id)?.id.clone()) }
     }
 
-    /// Offers a clip that just arrived the slot where a user expects it: in View that of the clip
-    /// on the stage; else A, then B, as long as they hold built-in clips.
+    /// Offers a slot to a clip that just arrived: in View that of the clip on the stage; otherwise
+    /// A, then B, if they hold built-in clips.
     pub(crate) fn offer(&mut self, id: &str, arrival: Arrival) {
         if [Slot::A, Slot::B]
             .iter()
@@ -35,8 +35,8 @@ impl Document {
         }
     }
 
-    /// Offers clips that arrived together the slots in turn: in View that of the clip on the stage;
-    /// else those with built-in clips.
+    /// Offers slots to clips that arrived together, in turn: in View that of the clip on the stage;
+    /// otherwise those with built-in clips.
     pub(crate) fn offer_together<'a>(&mut self, ids: impl IntoIterator<Item = &'a str>) {
         let slots = if lab_of(self.params.lab()).shows_clip() {
             vec![Slot::A]
@@ -55,8 +55,8 @@ impl Document {
         reset_marked(&mut self.params, Mark::PlaceInResult, &[]);
     }
 
-    /// Returns whether a clip that arrives may take a slot. A slot that waits for a clip keeps
-    /// waiting: that clip and no other completes the link.
+    /// Returns whether an arriving clip may take a slot. A slot that waits for a clip keeps
+    /// waiting: only that clip completes the link.
     fn is_free(&self, slot: Slot, arrival: Arrival) -> bool {
         match self.slot(slot) {
             Some(entry) => {
@@ -67,8 +67,8 @@ impl Document {
         }
     }
 
-    /// Remembers which slots were named, so that clips from the link's own addresses leave them
-    /// alone. New addresses begin anew.
+    /// Records which slots were named, so that clips from the link's own addresses leave them
+    /// alone. New addresses reset this.
     pub(super) fn note_named_slots(&mut self, named: &[Key], has_new_sources: bool) {
         for slot in [Slot::A, Slot::B] {
             let before = self.named_slots[slot as usize] && !has_new_sources;

@@ -1,4 +1,4 @@
-//! Clips of files that were read, into the library.
+//! Admission of the clips of read files to the library.
 
 use super::intake::{FileIntake, Loaded};
 use super::mends::{mend_of, offer_mends};
@@ -15,11 +15,11 @@ use segue_formats::{FileKind, ImportError, ImportOptions};
 use segue_text::{Message, ToMessage, msg};
 use std::sync::Arc;
 
-/// The most remarks on files that one notice holds.
+/// The greatest number of remarks on files in one notice.
 const MAX_REMARKS: usize = 6;
 
 impl FileIntake {
-    /// Puts the clips of a report into the library, as a step for undo.
+    /// Adds the clips of a report to the library, as a step for undo.
     pub(super) fn admit(
         &mut self,
         document: &mut Document,
@@ -29,7 +29,7 @@ impl FileIntake {
         setup: &ReadSetup,
         arrival: Arrival,
     ) -> Result<Loaded, ImportError> {
-        // Of several files some may be good; one alone fails as a whole.
+        // A single file fails as a whole; of several, some may be good.
         if let [ReadFile { result: Err(error), .. }] = report.files.as_slice() {
             let error = error.clone();
             tell_unread(notices, &error);
@@ -102,8 +102,8 @@ impl FileIntake {
                 told.push(msg!("{more} more warnings are listed with the clips."));
             }
             let text = Message::joined(told, " ");
-            // A T-pose in front is how the takes of whole databases come: good to know, and nothing
-            // to do about it.
+            // The takes of whole databases begin with a T-pose: good to know, and nothing has to be
+            // done about it.
             let is_odd = loaded.warnings.len() > t_poses;
             let mends: Vec<String> = loaded
                 .ids
@@ -112,9 +112,9 @@ impl FileIntake {
                 .cloned()
                 .collect();
             match loaded.ids.as_slice() {
-                // Until its other half comes.
+                // Until its other half arrives.
                 [id] if is_odd && document.is_half(id) => notices.miss(id, text),
-                // A skeleton that was waited for: it has its motion.
+                // A skeleton that a motion waited for: the motion has it now.
                 [id] if document.library.get(id).is_none() => {
                     if let Some(text) = in_the_library(&names) {
                         notices.say(Level::Info, text);
@@ -124,16 +124,16 @@ impl FileIntake {
                 _ => notices.say(if is_odd { Level::Warning } else { Level::Info }, text),
             }
         } else if !loaded.warnings.is_empty() {
-            // What holds for the archive holds though nothing in it can be read.
+            // Notes on the archive hold even if nothing in it can be read.
             let told: Vec<Message> = loaded.warnings.iter().map(ToMessage::to_sentence).collect();
             notices.say(Level::Warning, Message::joined(told, " "));
         }
-        // Listeners are told of each.
+        // Listeners receive each of them.
         loaded.warnings.extend(failures.iter().map(ToMessage::to_message));
         Ok(loaded)
     }
 
-    /// Adds a clip. Where the library has it already, keeps what was set by hand.
+    /// Adds a clip. If the library has it already, keeps what was set by hand.
     fn join(
         &mut self,
         document: &mut Document,
@@ -147,15 +147,15 @@ impl FileIntake {
             Some(known) => self.join_again(document, notices, known, entry),
             None => document.library.put(entry),
         }
-        // A skeleton alone plays nothing, nor does a character that comes without a motion of its
-        // own; a motion that waits for one may come into its place when it can be read.
+        // A skeleton alone plays nothing, nor does a character without a motion of its own. A
+        // motion that waits for a skeleton may take its slot when it can be read.
         let plays = document.library.get(&id).is_some_and(|entry| {
             entry
                 .motion
                 .as_ref()
                 .is_some_and(|motion| motion.clip().frames() > usize::from(entry.mesh.is_some()))
         });
-        // What the link fetches once more, after a reload, has the place that it was given then, or
+        // A file that the link fetches again after a reload has the slot that it was given then, or
         // none.
         if plays && (known.is_none() || arrival == Arrival::ByHand) {
             document.offer(&id, arrival);
@@ -193,11 +193,11 @@ impl FileIntake {
     }
 }
 
-/// Returns whether a file with a skin becomes the character. One that the link fetches does not
-/// where it was here before, or the link names another.
+/// Returns whether a file with a skin becomes the character. A fetched one does not if it was in
+/// the library before, or if the link names another character.
 fn takes_character(document: &Document, entry: &Entry, arrival: Arrival) -> bool {
     let is_free = document.params.text(Key::Character).is_empty();
-    // A figure that only its own clips move is no character for the others.
+    // A figure that only its own clips move cannot be the character of other clips.
     let replaces = entry.character().is_some_and(|character| character.has_limbs());
     match arrival {
         Arrival::ByHand => is_free || replaces,
@@ -205,8 +205,8 @@ fn takes_character(document: &Document, entry: &Entry, arrival: Arrival) -> bool
     }
 }
 
-/// Gives the clips that are in the library the content of a new report. Leaves out those that are
-/// to be read with other options by now.
+/// Replaces the content of clips in the library by that of a new report. Leaves out those whose
+/// options have changed since.
 pub(super) fn refill(
     document: &mut Document,
     report: ReadReport,
@@ -214,7 +214,7 @@ pub(super) fn refill(
 ) -> Result<Loaded, ImportError> {
     let mut loaded = Loaded::default();
     for file in report.files {
-        // Where the bytes are is known: the entries say it.
+        // The entries know where the bytes are.
         let (entries, warnings) = file_entries(file, &Content::Here(Arc::from([])), options)?;
         loaded.warnings.extend(warnings);
         for new in entries {

@@ -1,4 +1,4 @@
-//! The files that are on their way into the library.
+//! The files that are being added to the library.
 
 use super::setup::setup_for_new;
 use crate::command::{CommandError, FileCommand, Request};
@@ -13,7 +13,7 @@ use segue_formats::ImportError;
 use segue_text::{Message, msg};
 use std::sync::Arc;
 
-/// The most addresses of files that a link may name.
+/// The greatest number of addresses of files in a link.
 const MAX_SOURCES: usize = 16;
 
 /// The content of a file that was read.
@@ -21,7 +21,7 @@ const MAX_SOURCES: usize = 16;
 pub struct Loaded {
     /// The ids of its clips.
     pub ids: Vec<String>,
-    /// Oddities in it, one sentence each.
+    /// The oddities in it, one sentence each.
     pub warnings: Vec<Message>,
 }
 
@@ -29,20 +29,20 @@ pub struct Loaded {
 #[derive(Debug)]
 pub(super) struct Reading {
     pub(super) task: ReadTask,
-    /// Bytes that are read.
+    /// The number of bytes that were read.
     pub(super) done: u64,
     pub(super) purpose: Purpose,
 }
 
-/// The use of a file that is being read.
+/// The purpose of reading a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Purpose {
-    /// Its clips join the library.
+    /// Adding its clips to the library.
     New(Arrival),
-    /// Its clips are in the library and get their motion. Those that waited for a skeleton, which
-    /// has arrived in this way, are offered A and B.
+    /// Replacing the motion of its clips, which are in the library. Those that waited for a
+    /// skeleton, which has arrived in this way, are offered A and B.
     Again(Option<Arrival>),
-    /// It is the motion of a bundled take.
+    /// The motion of a bundled take.
     Sample(&'static Sample),
 }
 
@@ -56,17 +56,17 @@ impl Reading {
     }
 }
 
-/// The bundled takes that were asked for and have not arrived.
+/// The bundled takes that were requested and have not arrived.
 #[derive(Debug, Default)]
 pub(super) struct AwaitedSamples {
     pub(super) samples: Vec<&'static Sample>,
-    /// How many were asked for since none was awaited.
+    /// The number that was requested since none was awaited.
     pub(super) asked: usize,
-    /// Those that failed, and are not asked for again before the next command.
+    /// Those that failed, and are not requested again before the next command.
     pub(super) failed: Vec<&'static Sample>,
 }
 
-/// The files that are being read, and what is asked of the app for them.
+/// The files that are being read, and the requests to the app for them.
 #[derive(Debug)]
 pub(crate) struct FileIntake {
     /// The function that reads small files at once; `None` where all files are read elsewhere.
@@ -76,9 +76,9 @@ pub(crate) struct FileIntake {
     tasks: u64,
     pub(super) requests: Vec<Request>,
     pub(super) samples: AwaitedSamples,
-    /// The page's memory, where that has an end.
+    /// The page's memory, if it is limited.
     memory: Option<Memory>,
-    /// The library revision at which the motions outside of the library were dropped last.
+    /// The library revision at which motions outside the library were dropped last.
     dropped_at: Option<u64>,
 }
 
@@ -95,7 +95,7 @@ impl FileIntake {
         }
     }
 
-    /// Returns what is asked of the app since the last call.
+    /// Returns the requests to the app since the last call.
     pub(crate) fn take_requests(&mut self) -> Vec<Request> {
         std::mem::take(&mut self.requests)
     }
@@ -103,7 +103,7 @@ impl FileIntake {
     /// Carries out a command.
     ///
     /// # Errors
-    /// [`CommandError`] says what does not fit; the document is then as it was.
+    /// [`CommandError`] with the reason; the document is then unchanged.
     pub(crate) fn apply(
         &mut self,
         command: FileCommand,
@@ -122,7 +122,7 @@ impl FileIntake {
         Ok(())
     }
 
-    /// Asks for the files at addresses that a link names. An address that cannot be fetched is
+    /// Requests the files at addresses that a link names. An address that cannot be fetched is
     /// refused by itself.
     pub(crate) fn fetch(&mut self, addresses: Vec<String>, notices: &mut Notices) {
         if addresses.len() > MAX_SOURCES {
@@ -149,11 +149,11 @@ impl FileIntake {
         }
     }
 
-    /// Reads a file and puts its clips into the library: at once, or, where it is large or all
-    /// files are read elsewhere, by a task. Nothing is loaded yet then.
+    /// Reads a file and adds its clips to the library: at once, or by a task if it is large or all
+    /// files are read elsewhere. Nothing is loaded yet then.
     ///
     /// # Errors
-    /// [`ImportError`] where the file cannot be read; nothing already loaded changes.
+    /// [`ImportError`] if the file cannot be read; nothing already loaded changes.
     pub(crate) fn load(
         &mut self,
         document: &mut Document,
@@ -172,7 +172,7 @@ impl FileIntake {
         self.admit(document, notices, report, &Content::Here(bytes), &setup, arrival)
     }
 
-    /// Asks for a file to be read elsewhere and put into the library then. Returns the task's
+    /// Requests that a file be read elsewhere and then added to the library. Returns the task's
     /// number.
     pub(crate) fn begin_reading(
         &mut self,
@@ -185,25 +185,25 @@ impl FileIntake {
         self.begin(name, content, size, setup_for_new(library), Purpose::New(arrival))
     }
 
-    /// Takes in what the page says of its memory. Once more than half of it is taken, drops the
-    /// motions that only steps of undo hold: they are read again when a step brings them back.
+    /// Records the size of the page's memory. Once more than half of it is in use, drops the
+    /// motions that only steps of undo contain: they are read again when a step restores them.
     /// Returns whether there were any.
     pub(crate) fn note_memory(&mut self, page: PageMemory, document: &mut Document) -> bool {
         let memory = Memory::follow(self.memory, page, library_bytes(&document.library));
         self.memory = Some(memory);
-        // Once for every change: there may be many steps of many clips.
+        // Once for every change, because there may be many steps with many clips.
         let revision = document.library_revision;
         memory.is_scarce()
             && self.dropped_at.replace(revision) != Some(revision)
             && document.drop_motions_of_steps()
     }
 
-    /// Returns how much memory is in use; `None` where it has no end.
+    /// Returns the memory in use; `None` if it is unlimited.
     pub(crate) fn memory(&self) -> Option<MemoryUse> {
         self.memory.as_ref().map(Memory::in_use)
     }
 
-    /// Returns how much memory a task's file is expected to need, bytes, where that is more than is
+    /// Returns the memory that a task's file is expected to need, bytes, if that is more than is
     /// left.
     pub(crate) fn memory_lacking_for(&self, task: &ReadTask) -> Option<u64> {
         let needed = expected_bytes(&task.name, task.size);
@@ -211,7 +211,7 @@ impl FileIntake {
     }
 
     /// Ends a task because there is no memory for the `needed` bytes of its clips. Returns `None`
-    /// where the task was given up already.
+    /// if the task was stopped already.
     pub(crate) fn refuse_for_memory(
         &mut self,
         document: &mut Document,
@@ -225,7 +225,7 @@ impl FileIntake {
         self.fail_reading(document, notices, task, text.clone(), text)
     }
 
-    /// Has a file read elsewhere. Returns the task's number.
+    /// Requests that a file be read elsewhere. Returns the task's number.
     pub(super) fn begin(
         &mut self,
         name: &str,

@@ -1,4 +1,4 @@
-//! Files for which there is no memory, and motion that nobody needs.
+//! Tests of files for which there is no memory, and of motions that are no longer needed.
 
 use crate::fixtures::*;
 use crate::memory::PageMemory;
@@ -18,7 +18,7 @@ fn walk() -> Arc<[u8]> {
 }
 
 #[test]
-fn a_file_that_memory_cannot_hold_is_refused_with_its_name_and_size() {
+fn file_beyond_memory_is_refused_with_its_name_and_size() {
     let mut session = Session::new();
     let task = session.begin_reading("long.bvh", Content::Outside("file 1".into()), 480_000_000);
     let Some(Request::Read(read)) = session.take_requests().pop() else {
@@ -40,14 +40,14 @@ fn a_file_that_memory_cannot_hold_is_refused_with_its_name_and_size() {
 }
 
 #[test]
-fn removed_motion_is_let_go_where_memory_is_scarce_and_read_again_when_it_comes_back() {
+fn removed_motion_is_dropped_when_memory_is_scarce_and_read_again_after_undo() {
     for (bytes, is_kept) in [(LIMIT / 2, true), (LIMIT / 2 + 1, false)] {
         let mut session = Session::new();
         let id = session.load("walk.bvh", walk()).unwrap().ids.remove(0);
         settle(&mut session);
         let motion = session.library().get(&id).unwrap().motion.clone().unwrap();
         session.apply(Command::Remove(id.clone())).unwrap();
-        // What is shown instead needs none of it.
+        // The clip that is shown instead needs none of it.
         session.apply(Command::OpenLink("lab=view&a=idle".into())).unwrap();
         settle(&mut session);
         let held = Arc::strong_count(&motion);
@@ -63,7 +63,7 @@ fn removed_motion_is_let_go_where_memory_is_scarce_and_read_again_when_it_comes_
 }
 
 #[test]
-fn motion_of_the_library_stays_however_scarce_memory_is() {
+fn motion_of_the_library_stays_when_memory_is_scarce() {
     let mut session = Session::new();
     let id = session.load("walk.bvh", walk()).unwrap().ids.remove(0);
     session.apply(Command::Rename(id.clone(), "other".into())).unwrap();
@@ -75,7 +75,7 @@ fn motion_of_the_library_stays_however_scarce_memory_is() {
 }
 
 #[test]
-fn a_large_file_that_was_fetched_joins_as_a_small_one_does() {
+fn large_fetched_file_joins_the_library_like_a_small_one() {
     let mut session = Session::with_external_reader();
     session.apply(Command::OpenLink("lab=blend&a=idle&b=run".into())).unwrap();
     let came = |session: &mut Session, fetched: bool| {

@@ -1,4 +1,5 @@
-//! Clips of an improbable size or with improbable rows, and how they are read better.
+//! Clips of an improbable size or with improbable rows, and the options by which they are read
+//! better.
 
 use super::messages::MAX_NAMED;
 use crate::library::{Library, Origin};

@@ -1,19 +1,19 @@
-//! Notices of files that were read, and of those that were not.
+//! Notices about files that were read, and about those that were not.
 
 use crate::notice::{Level, Notices};
 use segue_formats::ImportError;
 use segue_text::{Message, ToMessage, msg};
 
-/// The most files that one notice names.
+/// The greatest number of files that one notice names.
 pub(crate) const MAX_NAMED: usize = 3;
 
-/// Tells why a file was not read.
+/// Adds a notice that says why a file was not read.
 pub(super) fn tell_unread(notices: &mut Notices, error: &ImportError) {
     notices.say_of(Level::Error, &error.file, error.to_message());
 }
 
-/// Tells why the files of an archive were not read: of each of the first ones, and how many more
-/// there are.
+/// Adds a notice that says why the files of an archive were not read: the reason of each of the
+/// first ones, and the number of the others.
 pub(super) fn tell_all_unread(notices: &mut Notices, errors: &[ImportError]) {
     let (first, rest) = errors.split_at_checked(MAX_NAMED).unwrap_or((errors, &[]));
     for error in first {

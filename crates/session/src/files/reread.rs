@@ -1,4 +1,5 @@
-//! Files of the library that are read again: with other options, with other roles, or mended.
+//! Files of the library that are read again: with other options, with other roles, or with better
+//! options that a notice offers.
 
 use super::admission::refill;
 use super::intake::FileIntake;
@@ -63,8 +64,8 @@ impl FileIntake {
         };
         let file = SourceFile { options: *options, ..file.clone() };
         let library = document.library.clone();
-        // Noted at once, wherever the file is read: further options add to these, and undo keeps
-        // the report from being taken in.
+        // Recorded at once, wherever the file is read: further options add to these, and after undo
+        // the report is ignored.
         for entry in library.entries().iter().filter(|entry| entry.sha256() == Some(&file.sha256)) {
             document.library.change(&entry.id, |entry| {
                 if let Origin::File(file) = &mut entry.origin {
@@ -79,7 +80,7 @@ impl FileIntake {
         Ok(())
     }
 
-    /// Reads the clips again that a notice offers to mend, as one step for undo. Tells of those
+    /// Reads the clips of a notice again with better options, as one step for undo. Reports those
     /// that cannot be read; they stay as they are.
     pub(crate) fn mend(&mut self, document: &mut Document, notices: &mut Notices, notice: u64) {
         let found = notices.list().iter().find(|found| found.id == notice);
@@ -98,8 +99,8 @@ impl FileIntake {
         notices.dismiss(notice);
     }
 
-    /// Corrects the role of a joint by hand. A file that is large, or is being read, is read again
-    /// with it.
+    /// Corrects the role of a joint by hand. A file that is large or being read is read again with
+    /// it.
     pub(crate) fn correct_role(
         &mut self,
         document: &mut Document,

@@ -1,4 +1,4 @@
-//! Bundled takes, alone and as a set: asked for, come, failed, taken back, stored.
+//! Tests of bundled takes, alone and as a set: requested, loaded, failed, removed by undo, stored.
 
 use crate::List;
 use crate::clip_sets::ClipSet;
@@ -18,7 +18,7 @@ fn packed(sample: &Sample) -> Vec<u8> {
         .unwrap()
 }
 
-/// The takes that are asked for.
+/// Returns the requested takes.
 fn asked(session: &mut Session) -> Vec<&'static Sample> {
     let requests = session.take_requests().into_iter();
     let sample = |request| {
@@ -27,7 +27,7 @@ fn asked(session: &mut Session) -> Vec<&'static Sample> {
     requests.filter_map(sample).collect()
 }
 
-/// Hands over all takes that are asked for, and does all work.
+/// Hands over all requested takes, and does all work.
 fn serve(session: &mut Session) {
     loop {
         settle(session);
@@ -41,7 +41,7 @@ fn serve(session: &mut Session) {
     }
 }
 
-/// The takes of the set that the library has, and how many of them can be played.
+/// Returns the number of the set's takes in the library, and of those that can be played.
 fn here(session: &Session) -> (usize, usize) {
     let entries = ids().into_iter().filter_map(|id| session.library().get(id)).collect::<Vec<_>>();
     (entries.len(), entries.iter().filter(|entry| entry.motion.is_some()).count())
@@ -52,7 +52,7 @@ fn load() -> Command {
 }
 
 #[test]
-fn a_set_is_loaded_with_one_command_and_taken_back_with_one() {
+fn set_of_takes_is_loaded_and_taken_back_in_one_step() {
     let mut session = Session::new();
     let all = set().samples.len();
     assert_eq!(here(&session), (0, 0), "nobody asked for it");
@@ -85,7 +85,7 @@ fn a_set_is_loaded_with_one_command_and_taken_back_with_one() {
 }
 
 #[test]
-fn a_set_that_is_taken_back_while_it_loads_stays_away_and_comes_when_it_is_asked_for_again() {
+fn set_taken_back_while_loading_stays_away_until_redo() {
     let mut session = Session::new();
     session.apply(load()).unwrap();
     let wanted = asked(&mut session);
@@ -96,14 +96,14 @@ fn a_set_that_is_taken_back_while_it_loads_stays_away_and_comes_when_it_is_asked
     assert_eq!(here(&session), (0, 0));
     session.apply(Command::Redo).unwrap();
     serve(&mut session);
-    // The first is still under way from the first time.
+    // The first one is still in transfer since the first request.
     session.load_sample(wanted[0], &packed(wanted[0])).unwrap();
     let all = set().samples.len();
     assert_eq!((here(&session), session.samples_progress()), ((all, all), None));
 }
 
 #[test]
-fn in_view_the_first_of_a_set_is_looked_at_and_own_clips_keep_their_places() {
+fn set_loaded_in_view_shows_its_first_take_and_leaves_own_clips() {
     let mut session = Session::new();
     session.apply(Command::OpenLink("lab=view".into())).unwrap();
     session.apply(load()).unwrap();
@@ -118,7 +118,7 @@ fn in_view_the_first_of_a_set_is_looked_at_and_own_clips_keep_their_places() {
 }
 
 #[test]
-fn a_link_that_names_a_take_loads_that_one_alone() {
+fn link_that_names_a_take_loads_that_take_only() {
     let mut session = Session::new();
     session.apply(Command::OpenLink("lab=loop&a=cmu16_walk".into())).unwrap();
     let wanted: Vec<_> = asked(&mut session).iter().map(|sample| sample.id).collect();
@@ -146,7 +146,7 @@ fn a_link_that_names_a_take_loads_that_one_alone() {
 }
 
 #[test]
-fn a_take_that_does_not_come_says_why_and_is_asked_for_by_the_next_command() {
+fn take_that_fails_is_reported_and_requested_by_the_next_command() {
     let mut session = Session::new();
     session.apply(Command::OpenLink("lab=loop&a=cmu16_walk".into())).unwrap();
     let sample = asked(&mut session)[0];
@@ -181,7 +181,7 @@ fn a_take_that_does_not_come_says_why_and_is_asked_for_by_the_next_command() {
 }
 
 #[test]
-fn takes_in_the_library_survive_a_reload_and_others_do_not_appear() {
+fn takes_in_the_library_survive_a_reload_without_others() {
     let mut session = Session::new();
     session.apply(load()).unwrap();
     serve(&mut session);
@@ -199,14 +199,14 @@ fn takes_in_the_library_survive_a_reload_and_others_do_not_appear() {
         assert_eq!(here(&restored), (all - 1, all - 1), "late: {late}");
         assert!(restored.library().get("cmu_climb").is_none());
     }
-    // What was loaded before the stored work came is not taken for something that was removed on an
-    // earlier visit.
+    // A clip that was loaded before the stored work arrived is not taken for one that was removed
+    // on an earlier visit.
     let mut waiting = Session::new();
     waiting.apply(load()).unwrap();
     waiting.restore_late(&Session::new().saved(), |_| None);
     serve(&mut waiting);
     assert_eq!(here(&waiting), (all, all));
-    // Earlier versions stored every take there was, asked for or not.
+    // Earlier versions stored all takes, requested or not.
     let mut text = serde_json::to_value(&saved).unwrap();
     for entry in text["entries"].as_array_mut().unwrap() {
         entry.as_object_mut().unwrap().remove("is_sample");
@@ -222,7 +222,7 @@ fn takes_in_the_library_survive_a_reload_and_others_do_not_appear() {
 }
 
 #[test]
-fn every_lab_with_a_set_of_clips_changes_it_in_one_step() {
+fn set_of_clips_of_each_lab_changes_in_one_step() {
     for lab in ["speed", "loop", "register", "path", "graph", "match"] {
         let mut session = Session::new();
         session.apply(Command::OpenLink(format!("lab={lab}&scenario=straight"))).unwrap();
@@ -255,7 +255,7 @@ fn every_lab_with_a_set_of_clips_changes_it_in_one_step() {
 }
 
 #[test]
-fn the_users_own_clips_take_the_place_of_the_set_in_graph_and_match() {
+fn own_clips_replace_the_set_in_graph_and_match() {
     for (lab, key) in [("graph", Key::Clips), ("match", Key::MatchClips)] {
         let mut session = Session::new();
         session.apply(Command::OpenLink(format!("lab={lab}&scenario=straight"))).unwrap();
@@ -278,7 +278,7 @@ fn the_users_own_clips_take_the_place_of_the_set_in_graph_and_match() {
 }
 
 #[test]
-fn a_bundled_take_is_asked_for_and_takes_its_place() {
+fn bundled_take_is_requested_and_takes_its_slot() {
     let mut session = Session::new();
     let sample = &Session::samples()[2];
     session.apply(Command::Assign(Slot::A, sample.id.into())).unwrap();

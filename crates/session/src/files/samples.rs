@@ -1,4 +1,4 @@
-//! Bundled takes: asked for, and given to their entries of the library.
+//! Bundled takes: requested, and added to their entries of the library.
 
 use super::intake::{AwaitedSamples, FileIntake, Purpose};
 use crate::command::Request;
@@ -11,23 +11,23 @@ use segue_formats::{ImportError, ImportOptions};
 use segue_text::{Message, ToMessage, msg};
 use std::sync::Arc;
 
-/// The most bytes that a bundled take unpacks to: a damaged file must not fill the memory.
+/// The greatest size of an unpacked take, bytes: a damaged file must not fill the memory.
 const MAX_SAMPLE_BYTES: usize = 64 << 20;
 
 impl FileIntake {
-    /// Returns the bundled takes that were asked for and have not arrived.
+    /// Returns the bundled takes that were requested and have not arrived.
     pub(crate) fn awaited_samples(&self) -> &[&'static Sample] {
         &self.samples.samples
     }
 
-    /// Returns how many of the takes that were asked for together have arrived, and how many these
-    /// are; `None` while none is awaited.
+    /// Returns how many of the takes that were requested together have arrived, and their number;
+    /// `None` while none is awaited.
     pub(crate) fn samples_progress(&self) -> Option<(usize, usize)> {
         let AwaitedSamples { samples, asked, .. } = &self.samples;
         (!samples.is_empty()).then(|| (asked - samples.len(), *asked))
     }
 
-    /// Asks for a take, unless it is awaited, or has failed since the last command.
+    /// Requests a take, unless it is awaited, or has failed since the last command.
     pub(crate) fn ask_for_sample(&mut self, document: &mut Document, sample: &'static Sample) {
         let AwaitedSamples { samples, asked, failed } = &mut self.samples;
         if samples.contains(&sample) || failed.contains(&sample) {
@@ -39,8 +39,8 @@ impl FileIntake {
         document.library.change(sample.id, |entry| entry.unread = None);
     }
 
-    /// Puts all takes of a set into the library. Their motions are asked for; the first ones take
-    /// the places of built-in clips in A and B.
+    /// Adds all takes of a set to the library. Requests their motions; the first ones take the
+    /// slots of built-in clips in A and B.
     pub(crate) fn load_samples(
         &mut self,
         document: &mut Document,
@@ -61,7 +61,7 @@ impl FileIntake {
         self.ask_for_missing_samples(document);
     }
 
-    /// Asks for the motions of all takes in the library that have none.
+    /// Requests the motions of all takes in the library that have none.
     pub(crate) fn ask_for_missing_samples(&mut self, document: &mut Document) {
         let missing: Vec<_> =
             (document.library.entries().iter())
@@ -75,12 +75,11 @@ impl FileIntake {
         }
     }
 
-    /// Takes in a bundled take that was asked for with [`Request::Sample`]; `packed` is its gzip
-    /// file. Where files are read elsewhere, it is not there yet.
+    /// Loads a bundled take that was requested with [`Request::Sample`]; `packed` is its gzip file.
+    /// If files are read elsewhere, this only begins to read it.
     ///
     /// # Errors
-    /// [`ImportError`] when it is damaged; of one that is read elsewhere, that is told when it was
-    /// read.
+    /// [`ImportError`] if it is damaged. If it is read elsewhere, that is reported after reading.
     pub(crate) fn load_sample(
         &mut self,
         document: &mut Document,
@@ -107,8 +106,8 @@ impl FileIntake {
         self.take_sample(document, notices, sample, report)
     }
 
-    /// Tells why a bundled take that was asked for has not arrived. The next command that needs it
-    /// asks for it again.
+    /// Reports why a requested take has not arrived. The next command that needs it requests it
+    /// again.
     pub(crate) fn fail_sample(
         &mut self,
         document: &mut Document,
@@ -127,7 +126,7 @@ impl FileIntake {
         notices.say(Level::Error, text);
     }
 
-    /// Lets takes that failed be asked for again.
+    /// Allows takes that failed to be requested again.
     pub(crate) fn forget_failed_samples(&mut self) {
         self.samples.failed.clear();
     }

@@ -1,4 +1,4 @@
-//! How files are to be read, by what the library knows: options, roles, and skeleton files.
+//! The options, roles and skeleton files by which a file is read, from the library.
 
 use crate::library::{Library, Origin, SourceFile};
 use crate::reading::{Companion, Content, ReadFile, ReadReport, ReadSetup};
@@ -7,7 +7,7 @@ use segue_motion::skeleton::Roles;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Returns how a file of the library is to be read, as its entries say.
+/// Returns the setup for reading a file of the library, as its entries say.
 pub(super) fn setup_of(library: &Library, file: &SourceFile) -> ReadSetup {
     ReadSetup {
         options: file.options,
@@ -21,7 +21,7 @@ pub(super) fn setup_of(library: &Library, file: &SourceFile) -> ReadSetup {
     }
 }
 
-/// Returns how a new file is to be read.
+/// Returns the setup for reading a new file.
 pub(super) fn setup_for_new(library: &Library) -> ReadSetup {
     ReadSetup { companions: companions(library), ..ReadSetup::default() }
 }
@@ -37,8 +37,8 @@ fn roles_by_hand(library: &Library, file: &SourceFile) -> BTreeMap<usize, Roles>
     entries.collect()
 }
 
-/// Returns the skeleton files that there are: those in the library, and those that its motions were
-/// read with.
+/// Returns the known skeleton files: those in the library, and those that its motions were read
+/// with.
 pub(super) fn companions(library: &Library) -> Vec<Companion> {
     let mut all: Vec<Companion> = Vec::new();
     for entry in library.entries() {

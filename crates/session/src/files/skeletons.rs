@@ -48,7 +48,7 @@ impl FileIntake {
     }
 }
 
-/// Tells why a motion still waits though a skeleton has arrived.
+/// Reports why a motion still waits although a skeleton has arrived.
 fn tell_misfit(library: &Library, notices: &mut Notices, id: &str) {
     if let Some(entry) = library.get(id).filter(|entry| entry.awaits_skeleton()) {
         let told: Vec<Message> = entry.warnings.iter().map(ToMessage::to_sentence).collect();

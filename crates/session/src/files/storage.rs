@@ -1,4 +1,4 @@
-//! Stored work, back into the library.
+//! Restoring of stored work to the library.
 
 use super::intake::FileIntake;
 use crate::built_in::built_in_entries;
@@ -13,8 +13,8 @@ use segue_text::msg;
 use std::sync::Arc;
 
 impl FileIntake {
-    /// Reads the files of the library that have no motion yet, and asks for the bundled takes.
-    /// Names those that cannot be read any more together with those that are `lost` already, and
+    /// Reads the files of the library that have no motion yet, and requests the bundled takes.
+    /// Names those that can no longer be read together with those that are already `lost`, and
     /// removes their clips.
     pub(crate) fn read_stored(
         &mut self,
@@ -28,7 +28,7 @@ impl FileIntake {
             let Origin::File(file) = &entry.origin else {
                 continue;
             };
-            // A motion that waits for a skeleton has told so when it was read.
+            // A motion that waits for a skeleton was reported when it was read.
             let waits = |entry: &Entry| entry.awaits_skeleton() && !entry.warnings.is_empty();
             let read_by_now = |entry: &Arc<Entry>| {
                 entry.motion.is_some() || entry.unread.is_some() || waits(entry)
@@ -50,8 +50,8 @@ impl FileIntake {
     }
 }
 
-/// Returns the clips of stored work, and the names of files that are gone; `content_of` gives a
-/// file's bytes by its SHA-256.
+/// Returns the clips of stored work, and the names of missing files; `content_of` returns a file's
+/// bytes by its SHA-256.
 pub(crate) fn stored_entries(
     library: &Library,
     saved: &[SavedEntry],

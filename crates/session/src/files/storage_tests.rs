@@ -1,4 +1,4 @@
-//! What survives a reload, and what comes back late.
+//! Tests of work that survives a reload, and of work that is restored late.
 
 use crate::choices;
 use crate::fixtures::*;
@@ -6,7 +6,7 @@ use crate::reading::Content;
 use crate::saved::Saved;
 use segue_motion::skeleton::Role;
 
-/// The same work in a new session, as after a reload. `bytes` are those of its only file.
+/// Returns the same work in a new session, as after a reload. `bytes` are those of its only file.
 fn reloaded(session: &Session, bytes: &Arc<[u8]>) -> Session {
     let mut restored = Session::new();
     restored.restore(&session.saved(), |_| Some(Content::Here(Arc::clone(bytes))), None);
@@ -14,7 +14,7 @@ fn reloaded(session: &Session, bytes: &Arc<[u8]>) -> Session {
 }
 
 #[test]
-fn roles_that_were_corrected_by_hand_survive_for_every_kind_of_clip() {
+fn roles_corrected_by_hand_survive_a_reload_for_every_kind_of_clip() {
     let bytes = made_bvh(1.0);
     let sample = &Session::samples()[2];
     let packed = std::fs::read(format!(
@@ -51,7 +51,7 @@ fn roles_that_were_corrected_by_hand_survive_for_every_kind_of_clip() {
 }
 
 #[test]
-fn what_comes_late_leaves_the_clips_that_are_in_use() {
+fn work_restored_late_leaves_the_clips_in_use() {
     let mut earlier = Session::new();
     earlier.apply(Command::Remove("idle".into())).unwrap();
     for link in ["lab=graph", "lab=view&compare=a:walk,idle", "a=idle"] {
@@ -66,7 +66,7 @@ fn what_comes_late_leaves_the_clips_that_are_in_use() {
 }
 
 #[test]
-fn roles_for_joints_that_are_not_there_are_left_alone() {
+fn roles_of_missing_joints_are_ignored() {
     let mut session = Session::new();
     settle(&mut session);
     session
@@ -85,7 +85,7 @@ fn roles_for_joints_that_are_not_there_are_left_alone() {
 }
 
 #[test]
-fn work_that_comes_late_completes_what_waits_for_it() {
+fn work_restored_late_completes_waiting_clips() {
     let bytes = made_bvh(1.0);
     let mut before = Session::new();
     let id = before.load("x.bvh", Arc::clone(&bytes)).unwrap().ids.remove(0);
@@ -108,8 +108,8 @@ fn work_that_comes_late_completes_what_waits_for_it() {
         "as for every link"
     );
 
-    // The same file came meanwhile: what was said of it on the last visit is said of it still,
-    // unless it was said anew.
+    // The same file was loaded meanwhile: what was set on the last visit stays, unless it was set
+    // again.
     for (renamed, name) in [(false, "mine"), (true, "yours")] {
         let mut session = Session::new();
         session.load("x.bvh", Arc::clone(&bytes)).unwrap();
@@ -120,7 +120,7 @@ fn work_that_comes_late_completes_what_waits_for_it() {
         assert_eq!(session.library().get(&id).unwrap().name, name);
         assert_eq!(session.library().entries().iter().filter(|entry| entry.id == id).count(), 1);
     }
-    // Nothing is stored: what is built in stays.
+    // With an empty storage, the built-in clips stay.
     let mut session = Session::new();
     let clips = session.library().entries().len();
     session.restore_late(&Saved::default(), |_| None);
@@ -128,7 +128,7 @@ fn work_that_comes_late_completes_what_waits_for_it() {
 }
 
 #[test]
-fn the_work_survives_storage() {
+fn work_survives_storage() {
     let bytes = made_bvh(5.0);
     let mut session = Session::new();
     let id = session.load("kept.bvh", Arc::clone(&bytes)).unwrap().ids.remove(0);

@@ -1,4 +1,4 @@
-//! Files that are read at once, elsewhere, or from an address.
+//! Tests of files that are read at once, elsewhere, or from an address.
 
 use crate::fixtures::*;
 use crate::reading::{LARGE_BYTES, read};
@@ -13,13 +13,13 @@ fn dropped_files_take_a_then_b_and_keep_their_bytes() {
     assert!(first.ids[0].starts_with("first~") && first.ids[0].len() == "first~".len() + 8);
     settle(&mut session);
     assert!(session.panes().iter().all(|pane| pane.problem.is_none()));
-    // A third one joins the library and leaves the experiment alone.
+    // A third one joins the library and leaves the rest unchanged.
     session.load("third.bvh", made_bvh(3.0)).unwrap();
     assert_eq!(session.slot(Slot::B).unwrap().id, second.ids[0]);
 }
 
 #[test]
-fn a_broken_file_is_named_and_nothing_changes() {
+fn broken_file_is_named_and_changes_nothing() {
     let mut session = Session::new();
     let (query, clips) = (session.query(), session.clip_infos());
     let error = session
@@ -31,7 +31,7 @@ fn a_broken_file_is_named_and_nothing_changes() {
 }
 
 #[test]
-fn a_link_to_a_dropped_file_waits_for_it() {
+fn link_to_a_dropped_file_waits_for_it() {
     let bytes = made_bvh(4.0);
     let mut sender = Session::new();
     sender.load("mine.bvh", Arc::clone(&bytes)).unwrap();
@@ -62,7 +62,7 @@ fn a_link_to_a_dropped_file_waits_for_it() {
 }
 
 #[test]
-fn addresses_are_asked_for_and_others_are_refused() {
+fn addresses_of_files_are_requested_and_others_refused() {
     let mut session = Session::new();
     session
         .apply(Command::OpenLink("src=https://example.org/a.bvh%20ftp://x/b.bvh".into()))
@@ -78,7 +78,7 @@ fn addresses_are_asked_for_and_others_are_refused() {
 }
 
 #[test]
-fn addresses_beyond_the_limit_are_left_out_and_told() {
+fn addresses_beyond_the_limit_are_left_out_and_reported() {
     let mut session = Session::new();
     let addresses: Vec<String> =
         (0..300).map(|number| format!("https://example.org/{number}.bvh")).collect();
@@ -90,7 +90,7 @@ fn addresses_beyond_the_limit_are_left_out_and_told() {
     assert!(notices.iter().any(|notice| notice.text.to_string() == told));
 }
 
-/// The task that the session has just asked for.
+/// Returns the task that the session has just requested.
 fn asked(session: &mut Session) -> crate::reading::ReadTask {
     let requests = session.take_requests();
     let task = requests.into_iter().find_map(|request| match request {
@@ -101,7 +101,7 @@ fn asked(session: &mut Session) -> crate::reading::ReadTask {
 }
 
 #[test]
-fn a_large_file_is_read_elsewhere_and_then_joins_the_library() {
+fn large_file_is_read_elsewhere_and_joins_the_library() {
     let bytes = made_bvh(6.0);
     let mut session = Session::new();
     let task =
@@ -128,7 +128,7 @@ fn a_large_file_is_read_elsewhere_and_then_joins_the_library() {
     );
     assert!(session.finish_reading(task, Ok(report.clone())).is_none(), "once is enough");
 
-    // Its roles are corrected by reading it again, elsewhere too.
+    // Correcting its roles reads it again, also elsewhere.
     session
         .apply(Command::File(FileCommand::CorrectRole(
             loaded.ids[0].clone(),
@@ -143,7 +143,7 @@ fn a_large_file_is_read_elsewhere_and_then_joins_the_library() {
     let motion = session.slot(Slot::A).unwrap().motion.clone().unwrap();
     assert_eq!(motion.roles().get(segue_motion::skeleton::Role::Head), Some(1));
 
-    // After a reload it is asked for again, and is there as soon as it was read.
+    // After a reload it is requested again, and available when it was read.
     let mut restored = Session::new();
     restored.restore(&session.saved(), |key| Some(Content::Outside(key.into())), None);
     assert!(
@@ -164,7 +164,7 @@ fn a_large_file_is_read_elsewhere_and_then_joins_the_library() {
 }
 
 #[test]
-fn reading_can_be_given_up() {
+fn reading_that_is_stopped_changes_nothing() {
     let mut session = Session::new();
     let clips = session.clip_infos();
     let task =
@@ -176,7 +176,7 @@ fn reading_can_be_given_up() {
     assert_eq!(session.clip_infos(), clips);
 }
 
-/// A session whose slot A holds a large file from storage, that is being read.
+/// Returns a session whose slot A holds a large file from storage that is being read, and the task.
 fn with_stored_large_file() -> (Session, crate::reading::ReadTask) {
     let bytes = made_bvh(6.0);
     let mut session = Session::new();
@@ -194,7 +194,7 @@ fn with_stored_large_file() -> (Session, crate::reading::ReadTask) {
 }
 
 #[test]
-fn a_stored_file_that_cannot_be_read_is_not_read_again_and_again() {
+fn stored_file_that_cannot_be_read_is_tried_once() {
     let reads = |session: &mut Session| {
         session.take_requests().iter().filter(|request| matches!(request, Request::Read(_))).count()
     };
@@ -221,7 +221,7 @@ fn a_stored_file_that_cannot_be_read_is_not_read_again_and_again() {
             .as_ref()
             .is_some_and(|text| text.to_string().contains("stopped"))
     );
-    // Asked for by hand it is read once more.
+    // By hand it can be requested once more.
     let id = session.slot(Slot::A).unwrap().id.clone();
     session
         .apply(Command::File(FileCommand::Reimport(id, segue_formats::ImportOptions::default())))

@@ -1,4 +1,4 @@
-//! Files that are read elsewhere: followed, finished or given up.
+//! Files that are read elsewhere: progress, end and cancellation.
 
 use super::admission::refill;
 use super::intake::{FileIntake, Loaded, Purpose, Reading};
@@ -16,19 +16,19 @@ use segue_text::{Message, ToMessage, msg};
 /// Work that takes longer than a frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Job {
-    /// The number by which it can be stopped; `None` where it ends soon by itself.
+    /// The number by which it can be stopped; `None` if it ends soon by itself.
     pub task: Option<u64>,
     /// Its kind.
     pub kind: JobKind,
-    /// The share that is done, 0 to 1.
+    /// The progress, 0 to 1.
     pub progress: f64,
-    /// The size of the file that is read, bytes.
+    /// The size of the file, bytes.
     pub size: Option<u64>,
 }
 
 impl FileIntake {
-    /// Has a file of the library read again elsewhere, as its entries say, unless that is under
-    /// way. [`Purpose::Again`] has the meaning of `arrival`.
+    /// Requests that a file of the library be read again elsewhere, as its entries say, unless this
+    /// is in progress. `arrival` is that of [`Purpose::Again`].
     pub(crate) fn read_again(
         &mut self,
         document: &mut Document,
@@ -53,14 +53,14 @@ impl FileIntake {
         self.reading.iter().any(|reading| reading.task.setup.sha256.as_deref() == sha256)
     }
 
-    /// Notes how many bytes of a task's file are read.
+    /// Records the number of bytes of a task's file that were read.
     pub(crate) fn progress_reading(&mut self, task: u64, done: u64) {
         if let Some(reading) = self.reading.iter_mut().find(|reading| reading.task.id == task) {
             reading.done = done;
         }
     }
 
-    /// Returns the key of the file that a task reads, where its bytes lie outside.
+    /// Returns the key of the file that a task reads, if its bytes are outside the document.
     pub(crate) fn reading_key(&self, task: u64) -> Option<&str> {
         let reading = self.reading.iter().find(|reading| reading.task.id == task)?;
         match &reading.task.content {
@@ -69,8 +69,8 @@ impl FileIntake {
         }
     }
 
-    /// Takes in the report of a file, or the reason why there is none. Returns `None` where the
-    /// task was given up, and where the file has to be read again.
+    /// Processes the report on a file, or the reason why there is none. Returns `None` if the task
+    /// was stopped, or if the file has to be read again.
     pub(crate) fn finish_reading(
         &mut self,
         document: &mut Document,
@@ -88,7 +88,7 @@ impl FileIntake {
             }
         };
         let Reading { task, purpose, .. } = self.end_task(task)?;
-        // A file outside is from now on known by its content.
+        // From now on, a file outside the document is known by its content.
         let content = match (task.content.clone(), report.files.as_slice()) {
             (Content::Outside(_), [file]) if report.is_one_file() => {
                 Content::Outside(file.sha256.clone())
@@ -118,7 +118,7 @@ impl FileIntake {
                 drop_used_skeletons(&mut document.library);
                 refilled
             }
-            // Its skeleton was dropped with it, and has come meanwhile. What came out of an archive
+            // Its skeleton was dropped with it, and has arrived meanwhile. A file from an archive
             // is read again from there.
             Purpose::New(_)
                 if report.is_one_file()
@@ -138,8 +138,8 @@ impl FileIntake {
         Some(loaded.map_err(|error| error.to_message()))
     }
 
-    /// Ends a task whose file is not read, for the returned reason; `text` is the notice. Returns
-    /// `None` where the task was given up already.
+    /// Ends a task without a report, and returns the reason; `text` is the notice. Returns `None`
+    /// if the task was stopped already.
     pub(crate) fn fail_reading(
         &mut self,
         document: &mut Document,
@@ -150,7 +150,7 @@ impl FileIntake {
     ) -> Option<Message> {
         let Reading { task, purpose, .. } = self.end_task(task)?;
         if let Purpose::Sample(sample) = purpose {
-            // Asked for at once, it would fail again and again: the next command asks for it.
+            // Requested at once, it would fail again and again: the next command requests it.
             self.fail_sample(document, notices, sample, reason.clone());
             return Some(reason);
         }
@@ -170,7 +170,7 @@ impl FileIntake {
         Some(self.reading.remove(at))
     }
 
-    /// Returns whether a task is under way.
+    /// Returns whether a task is in progress.
     pub(crate) fn is_reading(&self, task: u64) -> bool {
         self.reading.iter().any(|reading| reading.task.id == task)
     }
@@ -185,7 +185,7 @@ impl FileIntake {
         self.reading.iter().any(|reading| reading.task.id == task && reading.is_new())
     }
 
-    /// Returns whether a file is being read that takes a moment, and so has no progress bar.
+    /// Returns whether a file is being read that takes only a moment, and so has no progress bar.
     pub(crate) fn is_reading_small(&self) -> bool {
         self.reading.iter().any(Reading::is_small)
     }
@@ -195,7 +195,7 @@ impl FileIntake {
         !self.reading.is_empty()
     }
 
-    /// Gives up a task.
+    /// Stops a task.
     pub(crate) fn stop_reading(&mut self, document: &mut Document, task: u64) {
         let forget = self.reading_key(task).map(str::to_owned);
         let Some(at) = self.reading.iter().position(|reading| reading.task.id == task) else {
@@ -227,7 +227,7 @@ impl FileIntake {
     }
 }
 
-/// Notes with the clips of a file why they have no motion, so that it is not read over and over.
+/// Records in the clips of a file why they have no motion, so that it is not read over and over.
 fn mark_unread(library: &mut Library, sha256: &str, why: Option<&Message>) {
     let entries = library.entries().to_vec();
     for entry in entries.iter().filter(|entry| entry.sha256() == Some(sha256)) {

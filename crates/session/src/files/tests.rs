@@ -1,4 +1,4 @@
-//! Files that lean on others: motions and their skeletons, archives.
+//! Tests of files that depend on others: motions and their skeletons, archives.
 
 use super::messages::MAX_NAMED;
 use crate::Notice;
@@ -9,12 +9,12 @@ use segue_formats::archive::MAX_FILES;
 use std::io::Write as _;
 
 #[test]
-fn a_motion_waits_for_its_skeleton() {
+fn motion_without_a_skeleton_waits_for_it() {
     let mut session = Session::new();
     let loaded = session.load("01_02.amc", bytes(AMC)).unwrap();
     assert!(loaded.warnings[0].to_string().contains("drop the .asf file"), "{:?}", loaded.warnings);
     assert_eq!(files(&session), [("01_02".to_owned(), "amc", 0)]);
-    // It waits through a reload, too.
+    // It waits after a reload, too.
     let mut restored = Session::new();
     restored.restore(&session.saved(), |_| Some(Content::Here(bytes(AMC))), None);
     for mut session in [session, restored] {
@@ -29,7 +29,7 @@ fn a_motion_waits_for_its_skeleton() {
 }
 
 #[test]
-fn a_waiting_motion_is_read_again_only_when_a_skeleton_comes() {
+fn waiting_motion_is_read_again_only_when_a_skeleton_arrives() {
     let mut session = Session::new();
     let task = session.begin_reading("01_02.amc", Content::Outside("file 1".into()), 2 << 20);
     let report = |setup: &crate::reading::ReadSetup| {
@@ -55,7 +55,7 @@ fn a_waiting_motion_is_read_again_only_when_a_skeleton_comes() {
     assert_eq!(names, ["01_02", "walk"], "the skeleton has no row of its own any longer");
 }
 
-/// The bytes of a session's files by their SHA-256, as storage has them.
+/// Returns the bytes of a session's files by their SHA-256, as storage has them.
 fn stored(session: &Session) -> impl Fn(&str) -> Option<Content> + Copy + '_ {
     |sha256| {
         session.library().entries().iter().find_map(|entry| match &entry.origin {
@@ -65,21 +65,21 @@ fn stored(session: &Session) -> impl Fn(&str) -> Option<Content> + Copy + '_ {
     }
 }
 
-/// How many notices of a level there are.
+/// Returns the number of notices of a level.
 fn told(session: &Session, level: Level) -> usize {
     session.notices().list().iter().filter(|notice| notice.level == level).count()
 }
 
-/// Names and bytes of what is dropped.
+/// Names and bytes of dropped files.
 type Dropped<'a> = &'a [(&'a str, Arc<[u8]>)];
 
-/// What is in the library, and what is played.
+/// Returns the clips of files in the library, and the clips in A and B.
 fn shown(session: &Session) -> (Vec<(String, &'static str, usize)>, [String; 2]) {
     (files(session), [Key::A, Key::B].map(|key| session.params().text(key).to_owned()))
 }
 
 #[test]
-fn files_that_are_read_elsewhere_give_what_those_give_that_are_read_at_once() {
+fn files_read_elsewhere_give_the_same_as_files_read_at_once() {
     let packed = {
         let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
         encoder.write_all(BVH.as_bytes()).unwrap();
@@ -124,7 +124,7 @@ fn files_that_are_read_elsewhere_give_what_those_give_that_are_read_at_once() {
 }
 
 #[test]
-fn a_bundled_take_that_cannot_be_read_is_asked_for_again_with_the_next_command_only() {
+fn bundled_take_that_cannot_be_read_is_requested_by_the_next_command_only() {
     let sample = &Session::samples()[2];
     let mut session = Session::with_external_reader();
     session.apply(Command::Assign(Slot::A, sample.id.into())).unwrap();
@@ -147,7 +147,7 @@ fn a_bundled_take_that_cannot_be_read_is_asked_for_again_with_the_next_command_o
 }
 
 #[test]
-fn what_was_read_stays_read_when_a_step_is_taken_back() {
+fn clips_that_were_read_stay_read_after_undo() {
     let mut session = Session::with_external_reader();
     session.load("walk.bvh", bytes(BVH)).unwrap();
     session.load("01.asf", bytes(ASF)).unwrap();
@@ -157,7 +157,7 @@ fn what_was_read_stays_read_when_a_step_is_taken_back() {
         |session: &Session| files(session).iter().filter(|(.., frames)| *frames == 0).count();
     let (mut before, mut late) = (Session::with_external_reader(), Session::with_external_reader());
     before.restore(&session.saved(), stored(&session), None);
-    // Something is changed while they are read, or before they come.
+    // Something changes while they are read, or before they arrive.
     let change = |session: &mut Session| {
         session.apply(Command::Set(vec![(Key::BlendWindow, Value::Number(9.0))])).unwrap();
     };
@@ -176,7 +176,7 @@ fn what_was_read_stays_read_when_a_step_is_taken_back() {
 }
 
 #[test]
-fn how_a_file_is_read_can_be_changed_while_it_is_read() {
+fn options_changed_while_a_file_is_read_take_effect() {
     let mut session = Session::with_external_reader();
     session.load("walk.bvh", bytes(BVH)).unwrap();
     serve(&mut session);
@@ -196,7 +196,7 @@ fn how_a_file_is_read_can_be_changed_while_it_is_read() {
     reimport(&mut session, Some(60.0), Some(0.5));
     serve(&mut session);
     assert_eq!((fps_of(&session), options_of(&session).metres_per_unit), (60.0, Some(0.5)));
-    // Taken back before it has come: it does not come.
+    // Taken back before its report has arrived, the report is ignored.
     reimport(&mut session, Some(90.0), Some(0.5));
     session.apply(Command::Undo).unwrap();
     serve(&mut session);
@@ -211,7 +211,7 @@ fn how_a_file_is_read_can_be_changed_while_it_is_read() {
 }
 
 #[test]
-fn a_bundled_take_is_read_elsewhere_without_a_word() {
+fn bundled_take_is_read_elsewhere_without_a_notice() {
     let sample = &Session::samples()[2];
     let packed = std::fs::read(format!(
         "{}/../../assets/samples/{}",
@@ -242,7 +242,7 @@ fn a_bundled_take_is_read_elsewhere_without_a_word() {
 }
 
 #[test]
-fn a_motion_has_the_skeleton_of_its_name() {
+fn motion_has_the_skeleton_of_its_name() {
     let of_16 = ASF.replace("length 85", "length 95");
     for ahead in [true, false] {
         for mut session in [Session::new(), Session::with_external_reader()] {
@@ -259,7 +259,7 @@ fn a_motion_has_the_skeleton_of_its_name() {
                     .unwrap_or_default()
             };
             come(&[("16.asf", &of_16), ("16_22.amc", AMC)]);
-            // Its own comes behind it, or only later.
+            // The motion's own skeleton arrives before or after it.
             let own =
                 [("01_01.amc", AMC.replace("spine 2", "spine 3")), ("01_01.asf", ASF.to_owned())];
             let own = [(own[0].0, own[0].1.as_str()), (own[1].0, own[1].1.as_str())];
@@ -284,7 +284,7 @@ fn a_motion_has_the_skeleton_of_its_name() {
 }
 
 #[test]
-fn what_waits_for_its_other_half_says_so_until_that_has_come() {
+fn motion_or_skeleton_alone_has_a_notice_until_its_other_half_arrives() {
     for files in [[("01_02.amc", AMC), ("01.asf", ASF)], [("01.asf", ASF), ("01_02.amc", AMC)]] {
         for mut session in [Session::new(), Session::with_external_reader()] {
             session.load(files[0].0, bytes(files[0].1)).unwrap();
@@ -303,7 +303,7 @@ fn what_waits_for_its_other_half_says_so_until_that_has_come() {
 }
 
 #[test]
-fn a_skeleton_serves_all_its_motions() {
+fn skeleton_serves_all_its_motions() {
     let mut session = Session::new();
     session.load("01.asf", bytes(ASF)).unwrap();
     assert_eq!(files(&session), [("01".to_owned(), "asf", 0)]);
@@ -323,9 +323,9 @@ fn a_skeleton_serves_all_its_motions() {
 }
 
 #[test]
-fn an_archive_brings_all_its_motions() {
-    // A zip archive with stored files, by hand: the crate that reads them writes none in tests of
-    // the core.
+fn archive_brings_all_its_motions() {
+    // A zip archive with stored files, written by hand: the crate that reads archives writes none
+    // in tests of the core.
     let names = [
         ("take/01.asf", ASF),
         ("take/01_01.amc", AMC),
@@ -337,7 +337,7 @@ fn an_archive_brings_all_its_motions() {
     assert_eq!(loaded.ids.len(), 2, "{loaded:?}");
     assert_eq!(files(&session), [("01_01".to_owned(), "amc", 2), ("walk".to_owned(), "bvh", 2)]);
     assert!(session.notices().list().last().unwrap().text.to_string().contains("2 files"));
-    // What came out of the archive is stored file by file.
+    // Files from the archive are stored one by one.
     let mut restored = Session::new();
     restored.restore(&session.saved(), stored(&session), None);
     assert_eq!(files(&restored), files(&session));
@@ -354,7 +354,7 @@ fn an_archive_brings_all_its_motions() {
 
 const BVH: &str = "HIERARCHY ROOT Hips { OFFSET 0 1 0 CHANNELS 1 Yrotation End Site { OFFSET 0 0.7 0 } } MOTION Frames: 2 Frame Time: .1\n1\n2";
 
-/// A zip archive of files that are not packed (PKWARE's application note, 4.3).
+/// Returns a zip archive of uncompressed files (PKWARE's application note, 4.3).
 fn zip(files: &[(&str, &str)]) -> Vec<u8> {
     let (mut out, mut directory) = (Vec::new(), Vec::new());
     for (name, text) in files {
@@ -387,7 +387,8 @@ fn zip(files: &[(&str, &str)]) -> Vec<u8> {
     out
 }
 
-/// A person in a file of another program: a mesh with a skin, and `frames` frames of a walk.
+/// Returns a person in a file of another program: a mesh with a skin, and `frames` frames of a
+/// walk.
 fn person(frames: usize) -> Arc<[u8]> {
     let walk = segue_motion::synth::synthesize(&segue_motion::synth::Params::new(
         segue_motion::synth::Action::Walk,
@@ -397,7 +398,7 @@ fn person(frames: usize) -> Arc<[u8]> {
     figure(&walk.crop(0..frames).unwrap())
 }
 
-/// A creature of eight legs, none of which a person has.
+/// Returns a creature with eight legs, none of which a person has.
 fn spider() -> Arc<[u8]> {
     let leg = |number: u32| {
         let angle = f64::from(number) * std::f64::consts::FRAC_PI_4 + 0.4;
@@ -424,7 +425,7 @@ fn spider() -> Arc<[u8]> {
     figure(&read.unwrap().clips[0].clip)
 }
 
-/// A clip in a file of another program, with a mesh around its bones.
+/// Returns a clip in a file of another program, with a mesh around its bones.
 fn figure(clip: &segue_motion::clip::Clip) -> Arc<[u8]> {
     use segue_formats::gltf::{GlbOptions, write_glb};
     let mut bytes = write_glb(clip, &GlbOptions { smooth: true, ..GlbOptions::default() }).unwrap();
@@ -434,7 +435,7 @@ fn figure(clip: &segue_motion::clip::Clip) -> Arc<[u8]> {
 }
 
 #[test]
-fn a_dropped_file_with_a_skin_becomes_the_character_and_drives() {
+fn dropped_file_with_a_skin_becomes_the_character() {
     let mut session = Session::new();
     assert!(session.character().is_none());
     let before = session.params().text(Key::A).to_owned();
@@ -462,7 +463,7 @@ fn a_dropped_file_with_a_skin_becomes_the_character_and_drives() {
     let bytes = person(0);
     again.restore(&saved, |_| Some(Content::Here(Arc::clone(&bytes))), None);
     assert_eq!(again.character().unwrap().mesh, character.mesh);
-    // And goes again: by the parameter, by undo, and with its clip.
+    // It is removed by the parameter, by undo, and with its clip.
     session.apply(Command::Set(vec![(Key::Character, Value::Text(String::new()))])).unwrap();
     assert!(session.character().is_none());
     session.apply(Command::Undo).unwrap();
@@ -472,8 +473,9 @@ fn a_dropped_file_with_a_skin_becomes_the_character_and_drives() {
 }
 
 #[test]
-fn a_figure_that_no_clip_moves_is_not_cast_for_others() {
-    // Alone, it is there for its own clips. What cannot move it has its own body, and that is said.
+fn figure_that_no_other_clip_moves_is_no_character_for_others() {
+    // Alone, it serves its own clips. A motion that cannot move it is shown with a body of its own,
+    // and a note.
     let mut session = Session::new();
     session.apply(Command::OpenLink("lab=blend".into())).unwrap();
     let loaded = session.load("spider.glb", spider()).unwrap();
@@ -500,12 +502,12 @@ fn a_figure_that_no_clip_moves_is_not_cast_for_others() {
     assert!(!is_moved);
     assert!(note.unwrap().to_string().contains("This clip cannot animate"));
 
-    // A person that was there stays.
+    // A person that is the character stays.
     let mut session = Session::new();
     let person_id = session.load("person.glb", person(0)).unwrap().ids.remove(0);
     session.load("spider.glb", spider()).unwrap();
     assert_eq!(session.params().text(Key::Character), person_id);
-    // And takes the place of a spider.
+    // A person replaces a spider.
     let mut session = Session::new();
     session.load("spider.glb", spider()).unwrap();
     session.load("person.glb", person(0)).unwrap();
@@ -513,7 +515,7 @@ fn a_figure_that_no_clip_moves_is_not_cast_for_others() {
 }
 
 #[test]
-fn a_motion_file_without_a_motion_waits_for_nothing() {
+fn motion_file_without_a_motion_waits_for_nothing() {
     for text in ["", ":FULLY-SPECIFIED\n:DEGREES\n", "<html>not found</html>", ":DEGREES\n1\n"] {
         let mut session = Session::new();
         let before = session.library().entries().len();
@@ -532,7 +534,7 @@ fn a_motion_file_without_a_motion_waits_for_nothing() {
 }
 
 #[test]
-fn a_skeleton_that_does_not_fit_is_named() {
+fn skeleton_that_does_not_fit_is_named() {
     let other = ASF.replace("thigh", "leg").replace("spine", "trunk");
     let said = |session: &Session| {
         session
@@ -553,7 +555,7 @@ fn a_skeleton_that_does_not_fit_is_named() {
         }
         let said = said(&session);
         assert!(said.contains("The skeleton of 01.asf does not fit: 1 of 3 bones"), "{said}");
-        // The one that fits is taken when it comes.
+        // The one that fits is used when it arrives.
         session.load("02.asf", bytes(ASF)).unwrap();
         let motions = files_with_motion(&session);
         assert_eq!(motions, ["01_02"], "{said}");
@@ -566,7 +568,7 @@ fn files_with_motion(session: &Session) -> Vec<String> {
 }
 
 #[test]
-fn a_character_with_a_motion_brings_both() {
+fn character_with_a_motion_brings_both() {
     let mut session = Session::new();
     let loaded = session.load("walker.glb", person(60)).unwrap();
     assert_eq!(session.params().text(Key::A), loaded.ids[0]);
@@ -575,7 +577,7 @@ fn a_character_with_a_motion_brings_both() {
 }
 
 #[test]
-fn files_of_an_archive_that_cannot_be_read_are_counted_before_they_are_told() {
+fn unreadable_files_of_an_archive_are_counted_in_one_notice() {
     let names: Vec<String> = (0..200).map(|n| format!("{n:03}.bvh")).collect();
     let files: Vec<(&str, &str)> = names.iter().map(|name| (name.as_str(), "")).collect();
     let mut session = Session::new();
@@ -591,7 +593,7 @@ fn files_of_an_archive_that_cannot_be_read_are_counted_before_they_are_told() {
 }
 
 #[test]
-fn limit_of_an_archive_is_told_though_nothing_in_it_can_be_read() {
+fn limit_of_an_archive_is_reported_even_if_nothing_in_it_can_be_read() {
     let names: Vec<String> = (0..MAX_FILES + 50).map(|n| format!("{n:05}.bvh")).collect();
     let files: Vec<(&str, &str)> = names.iter().map(|name| (name.as_str(), "")).collect();
     let mut session = Session::new();
@@ -651,7 +653,7 @@ fn with_size(text: &str, factor: f64) -> String {
     lines.join("\n")
 }
 
-/// The message that offers to read clips better.
+/// Returns the notice that offers to read clips better.
 fn offer(session: &Session) -> Notice {
     let mut offers = session.notices().list().iter().filter(|notice| !notice.mends.is_empty());
     let offer = offers.next().expect("an offer").clone();
@@ -671,7 +673,7 @@ fn longest_step_metres(session: &Session, id: &str) -> f32 {
 }
 
 #[test]
-fn clip_in_a_wrong_unit_or_with_a_wild_row_is_mended_by_what_its_notice_offers() {
+fn clip_in_a_wrong_unit_or_with_a_wild_row_is_mended_by_its_notice() {
     let text = walk_bvh();
     for (text, part) in [
         (with_wild_row(&text), "1 row with a root that is 1.0e18 m away"),
@@ -696,13 +698,13 @@ fn clip_in_a_wrong_unit_or_with_a_wild_row_is_mended_by_what_its_notice_offers()
         }
         session.apply(Command::Undo).unwrap();
     }
-    // A person of a usual size who goes a usual way is told nothing of the kind.
+    // A person of a usual size at a usual speed causes no such notice.
     let loaded = Session::new().load("x.bvh", bytes(&text)).unwrap();
     assert_eq!(loaded.warnings, []);
 }
 
 #[test]
-fn several_absurd_clips_are_mended_at_once_whether_they_come_packed_or_one_by_one() {
+fn several_absurd_clips_are_mended_at_once_from_an_archive_or_single_files() {
     let text = walk_bvh();
     let (tiny, huge, wild) = (with_size(&text, 1e-4), with_size(&text, 1e4), with_wild_row(&text));
     let files =
@@ -724,7 +726,7 @@ fn several_absurd_clips_are_mended_at_once_whether_they_come_packed_or_one_by_on
         }
         let notice = offer(&session);
         assert_eq!((ids.len(), notice.mends.len()), (4, 3), "{notice:?}");
-        // What was taken away, or set by hand meanwhile, is left alone.
+        // Clips that were removed or set by hand meanwhile are left alone.
         let (tiny, wild) = (ids_named(&session, "tiny"), ids_named(&session, "wild"));
         session.apply(Command::Remove(ids_named(&session, "huge"))).unwrap();
         let by_hand = ImportOptions { metres_per_unit: Some(150.0), ..ImportOptions::default() };
@@ -733,7 +735,7 @@ fn several_absurd_clips_are_mended_at_once_whether_they_come_packed_or_one_by_on
         session.apply(Command::File(FileCommand::Mend(notice.id))).unwrap();
         assert_eq!(height_metres(&session, &tiny), tall);
         assert!(longest_step_metres(&session, &wild) < 0.2);
-        // Mending, setting by hand and taking away are a step each.
+        // Reading better, setting by hand and removing are one step each.
         for _ in 0..3 {
             session.apply(Command::Undo).unwrap();
             settle(&mut session);
@@ -771,7 +773,7 @@ fn ids_named(session: &Session, name: &str) -> String {
 }
 
 #[test]
-fn empty_motion_is_told_as_an_empty_file_and_waits_for_no_skeleton() {
+fn empty_motion_is_reported_as_an_empty_file_and_waits_for_no_skeleton() {
     for empty in ["", " \r\n"] {
         for skeleton in [None, Some(ASF)] {
             let mut session = Session::new();
@@ -790,7 +792,7 @@ fn empty_motion_is_told_as_an_empty_file_and_waits_for_no_skeleton() {
 }
 
 #[test]
-fn skeleton_whose_hierarchy_names_unknown_bones_is_told_with_its_motion() {
+fn skeleton_whose_hierarchy_names_unknown_bones_is_reported_with_its_motion() {
     let asf = ASF.replace("root thigh spine", "root thigh spine tail");
     let mut session = Session::new();
     session.load("01.asf", bytes(&asf)).unwrap();
@@ -803,7 +805,7 @@ fn skeleton_whose_hierarchy_names_unknown_bones_is_told_with_its_motion() {
 }
 
 #[test]
-fn values_of_a_link_of_any_length_are_quoted_in_short_and_its_problems_counted() {
+fn long_values_of_a_link_are_shortened_and_its_problems_counted() {
     let long = "x".repeat(100_000);
     let nested = format!("{}walk{}", "blend(a:".repeat(2000), ")".repeat(2000));
     let keys: Vec<String> = (0..500).map(|n| format!("key{n}=1")).collect();

@@ -356,8 +356,8 @@ impl Blender {
         };
     }
 
-    /// Returns the frames that the user set, and the best match for the others. Until the distances
-    /// are known, the middle of the allowed range.
+    /// Returns the frames that the user set, and the best match for the others; the middle of the
+    /// allowed range until the distances are known.
     fn place(&mut self, pair: &Pair, wanted: MatchRequest) -> Result<Place, LabError> {
         if wanted.weights.is_some() && self.poses.is_none() {
             self.poses = Some(pose_search(pair)?);

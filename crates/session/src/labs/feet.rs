@@ -67,8 +67,8 @@ pub(super) fn with_feet(
     }
 }
 
-/// Returns the metric of foot slide over a whole result, in all labs as
-/// [`foot_slide_cm`](segue_motion::metrics::foot_slide_cm) defines it.
+/// Returns the metric of foot slide over a whole result, defined in all labs as
+/// [`foot_slide_cm`](segue_motion::metrics::foot_slide_cm).
 pub(super) fn slide(cm: Option<f64>) -> Metric {
     Metric::new(MetricId::FootSlide, cm)
 }

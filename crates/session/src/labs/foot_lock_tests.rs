@@ -1,4 +1,4 @@
-//! Foot lock in all labs, by commands.
+//! Tests of the foot lock in all labs, by commands.
 
 use crate::JobKind;
 use crate::fixtures::*;
@@ -7,7 +7,7 @@ use segue_motion::clip::Clip;
 use segue_motion::metrics::foot_slide_cm;
 use segue_motion::transition::{FootLockOptions, foot_lock};
 
-/// Every lab with a foot lock, where it has something to hold.
+/// Every lab with a foot lock, with feet that slide.
 const LOCKING_LABS: [&str; 9] = [
     "lab=make&gait=stop",
     "lab=view&a=stop",
@@ -29,7 +29,7 @@ fn opened(link: &str) -> Session {
 }
 
 #[test]
-fn foot_lock_stills_the_feet_and_tells_what_it_did() {
+fn foot_lock_stops_slides_and_reports_them() {
     let mut session = Session::new();
     session.apply(Command::OpenLink("lab=transition&half_life=0.3&foot_lock=on".into())).unwrap();
     settle(&mut session);
@@ -42,19 +42,19 @@ fn foot_lock_stills_the_feet_and_tells_what_it_did() {
     assert_eq!(skate.unwrap().value, Some(before));
 }
 
-/// All local rotations of a clip, frame by frame.
+/// Returns all local rotations of a clip, frame by frame.
 fn rotations_of(clip: &Clip) -> Vec<Quat> {
     (0..clip.frames()).flat_map(|frame| clip.rotations(frame).to_vec()).collect()
 }
 
-/// Those of the first pane's result.
+/// Returns those of the first pane's result.
 fn rotations(session: &Session) -> Vec<Quat> {
     rotations_of(session.main_outcome().unwrap().motion.clip())
 }
 
 #[test]
-fn lock_settings_change_a_held_result_in_every_lab() {
-    // A path is short enough to be held at once, or is held in slices.
+fn lock_settings_change_a_locked_result_in_every_lab() {
+    // A short path is locked at once, a long one in slices.
     let paths = ["lab=path&a=run", "lab=path&a=walk(make_seconds:12)"];
     for lab in LOCKING_LABS.into_iter().chain(paths) {
         let mut session = opened(&format!("{lab}&foot_lock=on"));
@@ -73,14 +73,14 @@ fn lock_settings_change_a_held_result_in_every_lab() {
 }
 
 #[test]
-fn each_lock_setting_changes_a_held_result_and_no_other() {
+fn each_lock_setting_changes_a_locked_result_and_no_other() {
     let [held, free] =
         ["on", "off"].map(|lock| format!("lab=transition&half_life=0.3&foot_lock={lock}"));
     let (usual_held, usual_free) = (rotations(&opened(&held)), rotations(&opened(&free)));
     for setting in ["lock_blend=0.6", "lock_reach=3", "lock_clearance=8"] {
         assert_ne!(rotations(&opened(&format!("{held}&{setting}"))), usual_held, "{setting}");
         assert_eq!(rotations(&opened(&format!("{free}&{setting}"))), usual_free, "{setting}");
-        // Nor is a clip kept, or shown as changed, for what has no effect.
+        // A setting without effect does not make the clip a changed one that can be kept.
         let mut view = opened(&format!("lab=view&a=walk&{setting}"));
         assert!(!view.view_is_changed() && view.apply(Command::Keep(0)).is_err(), "{setting}");
         assert!(opened(&format!("lab=view&a=walk&foot_lock=on&{setting}")).view_is_changed());
@@ -107,7 +107,7 @@ fn clearance_of_zero_leaves_the_swing_as_it_is() {
 }
 
 #[test]
-fn lock_settings_come_back_from_a_link() {
+fn lock_settings_are_restored_from_a_link() {
     let link = "lab=transition&foot_lock=on&lock_blend=0.5&lock_reach=12&lock_clearance=0";
     let session = opened(link);
     let query = session.query();
@@ -124,7 +124,7 @@ fn lock_settings_come_back_from_a_link() {
 }
 
 #[test]
-fn one_switch_holds_the_feet_in_every_lab() {
+fn foot_lock_switch_applies_to_every_lab() {
     for lab in LOCKING_LABS {
         let mut session = Session::new();
         session.apply(Command::OpenLink(format!("{lab}&foot_lock=on"))).unwrap();
@@ -138,7 +138,7 @@ fn one_switch_holds_the_feet_in_every_lab() {
 }
 
 #[test]
-fn a_held_view_is_kept_under_its_recipe() {
+fn locked_view_is_kept_under_its_recipe() {
     let mut session = Session::new();
     session.apply(Command::OpenLink("lab=view&a=stop&foot_lock=on".into())).unwrap();
     let held = session.main_outcome().unwrap().motion.clip().clone();
@@ -160,7 +160,7 @@ fn a_held_view_is_kept_under_its_recipe() {
 }
 
 #[test]
-fn a_long_clip_is_held_in_slices_while_the_free_one_stays() {
+fn long_clip_is_locked_in_slices_while_the_free_one_stays() {
     let mut session = Session::new();
     let long = "walk(make_seconds:25)";
     session.apply(Command::OpenLink(format!("lab=view&a={long}"))).unwrap();

@@ -53,7 +53,7 @@ impl<S: HasPart<Grapher>> Lab<S> for GraphLab {
     }
 
     fn grown(&self, outcome: &Outcome) -> Vec<(Key, Value)> {
-        // As far as a link can say it.
+        // In whole seconds, within the range of the parameter.
         let secs = outcome.duration_secs().round().clamp(10.0, 600.0);
         vec![(Key::WalkSeconds, Value::Number(secs))]
     }

@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn way_that_was_taken_out_is_put_back_from_the_feet() {
+    fn root_motion_that_was_removed_is_rebuilt_from_the_feet() {
         let walk = opened("lab=view&a=walk");
         let mut session = opened("lab=in_place&a=walk");
         assert!(way_m(&session) < 1e-3, "{} m", way_m(&session));
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn turn_stays_where_it_is_not_taken_out() {
+    fn turn_that_is_not_removed_stays() {
         let yaws = |link: &str| {
             let session = opened(link);
             let frames = session.main_outcome().expect("a result").motion.ground_frames();
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn both_ways_stand_side_by_side() {
+    fn both_changes_of_root_motion_are_compared() {
         let session = opened("lab=in_place&a=walk&compare=root_way:take_out,put_back");
         assert!(session.panes().len() == 2 && session.panes().iter().all(|p| p.problem.is_none()));
     }

@@ -1,4 +1,4 @@
-//! The trait of labs: what a result depends on, what it is called, and what it is made from.
+//! The trait of labs: the inputs of a result, its name, and its recipe.
 
 use super::error::LabError;
 use super::outcome::{Outcome, Slot};
@@ -10,8 +10,8 @@ use std::any::Any;
 use std::fmt;
 use std::sync::Arc;
 
-/// The facts of a lab, in the lab's own file. `S` is what labs remember between results: a lab
-/// names the parts of it that it uses.
+/// The definition of a lab, in the lab's own file. `S` is the state that labs keep between results:
+/// a lab names the parts of it that it uses.
 pub(crate) trait Lab<S>: Sync {
     /// Returns the ids of the clips in the lab's own list; empty if it has no list.
     fn listed(&self, params: &Params) -> Vec<String> {
@@ -57,23 +57,23 @@ pub(crate) trait Lab<S>: Sync {
     /// Returns the name of a file of the result, without its ending.
     fn file_stem(&self, params: &Params) -> String;
 
-    /// Returns the id of the result, where that is not the lab's name with its parameters.
+    /// Returns the id of the result, if that is not the lab's name with its parameters.
     fn own_id(&self, _params: &Params) -> Option<String> {
         None
     }
 
-    /// Returns what is to be set for the name in front of an [own id](Self::own_id); `None` for
-    /// other names.
+    /// Returns the parameters to set for the name before the brackets of an [own id](Self::own_id);
+    /// `None` for other names.
     fn values_of_id(&self, _name: &str) -> Option<Vec<(Key, Value)>> {
         None
     }
 
-    /// Returns whether the result is a clip of the library as it is, which has an id already.
+    /// Returns whether the result is an unchanged clip of the library, which has an id already.
     fn is_clip_as_it_is(&self, _params: &Params) -> bool {
         false
     }
 
-    /// Returns what is to be set so that the recipe makes the result as long as it is by now.
+    /// Returns the parameters to set so that the recipe makes the result as long as it is now.
     fn grown(&self, _outcome: &Outcome) -> Vec<(Key, Value)> {
         Vec::new()
     }
@@ -116,12 +116,13 @@ pub(crate) fn slots_of(lab: LabId) -> impl Iterator<Item = Slot> {
     [Slot::A, Slot::B].into_iter().filter(move |slot| slot.key().param().is_used_by(lab))
 }
 
-/// Returns whether a parameter can change the result: those of foot lock cannot while it is off.
+/// Returns whether a parameter can change the result. Those of the foot lock cannot while it is
+/// off.
 pub(super) fn counts(params: &Params, key: Key) -> bool {
     params.is_on(Key::FootLock) || !key.param().has(Mark::Lock)
 }
 
-/// A part of what labs remember between results.
+/// A part of the state that labs keep between results.
 pub(crate) trait HasPart<T> {
     /// Returns the part.
     fn part(&mut self) -> &mut T;
@@ -130,9 +131,9 @@ pub(crate) trait HasPart<T> {
 /// The clips that a result is made from.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LabClips {
-    /// Those of the lab's slots, in their order.
+    /// The clips in the lab's slots, in their order.
     pub(crate) slots: Vec<Arc<Motion>>,
-    /// Those that it takes besides, by id.
+    /// The other clips, by id.
     pub(crate) more: Vec<MoreClip>,
 }
 

@@ -1,4 +1,4 @@
-//! All labs, and what they remember between results.
+//! All labs, and the state that they keep between results.
 
 use super::blend::{self, Blender};
 use super::gauge::Gauge;
@@ -17,7 +17,7 @@ use super::{in_place, make};
 use crate::LabId;
 use crate::motion::FeetReader;
 
-/// Returns the facts of a lab.
+/// Returns the definition of a lab.
 pub(crate) fn lab_of(lab: LabId) -> &'static dyn Lab<LabSet> {
     match lab {
         LabId::View => &view::ViewLab,
@@ -49,7 +49,7 @@ pub(crate) struct LabSet {
     viewer: Viewer,
     pub(crate) driver: Driver,
     pub(crate) gauge: Gauge,
-    /// Clips whose feet are read otherwise than usual.
+    /// Clips whose feet are read with options other than the defaults.
     pub(crate) feet: FeetReader,
 }
 

@@ -318,7 +318,7 @@ impl LabInputs for LayerInputs {
 }
 
 impl Outcome {
-    /// Returns what of it is a layer; `None` where there is none.
+    /// Returns the facts about the layer; `None` if the result has none.
     #[must_use]
     pub fn layer(&self) -> Option<&Arc<LayerFacts>> {
         self.facts.get()

@@ -1,4 +1,4 @@
-//! The result of a lab: a motion, and what is known about it.
+//! The result of a lab: a motion, and facts about it.
 
 use crate::metrics::{self, Metric, MetricId};
 use crate::params::Key;
@@ -159,7 +159,7 @@ pub struct Outcome {
     pub cycle: Option<Cycle>,
     /// The retargeting of B to the skeleton of A; `None` if both have the same one.
     pub retargeted: Option<Arc<Retargeted>>,
-    /// What only its lab knows of it.
+    /// Facts that are specific to its lab.
     pub facts: LabFacts,
     /// The artefact metrics: those of every lab, then those of its own.
     pub metrics: Vec<Metric>,
@@ -172,23 +172,23 @@ pub struct Outcome {
     pub(crate) is_measured: bool,
 }
 
-/// A value that one lab alone knows of its results.
+/// A fact that is specific to one lab.
 trait Fact: Any + fmt::Debug + Send + Sync {}
 
 impl<T: Any + fmt::Debug + Send + Sync> Fact for T {}
 
-/// What one lab alone knows of a result, as a type of its own. The lab's file has the method of
-/// [`Outcome`] that returns it.
+/// The facts about a result that are specific to one lab, as a type of its own. The lab's file has
+/// the method of [`Outcome`] that returns them.
 #[derive(Clone, Debug, Default)]
 pub struct LabFacts(Option<Arc<dyn Fact>>);
 
 impl LabFacts {
-    /// Takes the facts of a lab.
+    /// Wraps the facts of a lab.
     pub(crate) fn of<T: Any + fmt::Debug + Send + Sync>(facts: Arc<T>) -> Self {
         Self(Some(Arc::new(facts)))
     }
 
-    /// Returns the facts, where they are of this type.
+    /// Returns the facts, if they are of this type.
     pub(crate) fn get<T: Any>(&self) -> Option<&Arc<T>> {
         (&**self.0.as_ref()? as &dyn Any).downcast_ref()
     }
@@ -240,7 +240,7 @@ impl Outcome {
         self.is_measured = found.is_some();
     }
 
-    /// Returns a metric; `None` where the result has none of that name.
+    /// Returns a metric; `None` if the result has none of that name.
     #[must_use]
     pub fn metric(&self, id: MetricId) -> Option<Metric> {
         self.metrics.iter().copied().find(|metric| metric.id == id)

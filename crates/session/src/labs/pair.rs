@@ -122,8 +122,8 @@ mod tests {
         changes.fold(0.0, f32::max)
     }
 
-    /// Between the frames of a slower clip the velocity changes evenly, not in a step at each of
-    /// them.
+    /// Checks that the velocity changes evenly between the frames of a slower clip, not in a step
+    /// at each of them.
     #[test]
     fn slower_incoming_clip_is_resampled_without_velocity_steps() {
         let at = |fps: f32| {

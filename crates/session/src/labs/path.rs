@@ -385,13 +385,13 @@ impl LabInputs for PathInputs {
 }
 
 impl Outcome {
-    /// Returns the path that it is on; `None` where it was not edited.
+    /// Returns the facts about the path; `None` if the result is not on one.
     #[must_use]
     pub fn path(&self) -> Option<&Arc<OnPath>> {
         self.facts.get()
     }
 
-    /// Returns whether its feet are to be planted, and are not yet.
+    /// Returns whether its feet are to be locked, and are not yet.
     pub(crate) fn awaits_feet(&self) -> bool {
         self.path().is_some_and(|path| path.awaits_feet)
     }

@@ -17,8 +17,8 @@ pub(crate) fn recipe_ingredients(lab: LabId) -> impl Iterator<Item = Key> {
 /// Returns the id of the result of the parameters: `run(turn_rate:20)` of a synthesised motion,
 /// `transition(a:walk,b:run,half_life:0.3)` of another result. `None` for a clip as it is.
 ///
-/// Values that Segue found are written down, so that the same result is made again, and at once.
-/// `fps` are the clips' own frame rates.
+/// The id contains the values that Segue found, so that the same result is made again, without a
+/// search. `fps` are the clips' own frame rates.
 pub(crate) fn recipe_id(params: &Params, outcome: &Outcome, fps: [f64; 2]) -> Option<String> {
     let lab = params.lab();
     let facts = lab_of(lab);
@@ -49,7 +49,7 @@ pub(crate) fn recipe_id(params: &Params, outcome: &Outcome, fps: [f64; 2]) -> Op
     Some(format!("{}({})", lab.word(), list.join(",")))
 }
 
-/// Returns the parameters that an id stands for; `None` when it stands for none.
+/// Returns the parameters of an id; `None` if it is not the id of a result.
 pub(crate) fn recipe_params(id: &str) -> Option<Params> {
     let (word, list) = id.strip_suffix(')')?.split_once('(')?;
     let mut params = Params::default();
@@ -85,7 +85,7 @@ pub(crate) fn recipe_name(params: &Params) -> Message {
     lab_of(params.lab()).result_name(params, a, b)
 }
 
-/// Returns what a person calls the clip of a reference, which may not be there.
+/// Returns the name on screen of a clip of a reference, which may be missing.
 fn reference_name(reference: &str) -> Message {
     match synth::presets().into_iter().find(|preset| preset.id == reference) {
         Some(preset) => preset.id.into(),
@@ -99,13 +99,13 @@ pub fn file_stem(params: &Params) -> String {
     lab_of(params.lab()).file_stem(params)
 }
 
-/// Encodes a value inside an id. The id of a kept clip stays unchanged: its brackets close.
+/// Encodes a value inside an id. The id of a kept clip stays unchanged, because its brackets close.
 fn written(param: &Param, value: &Value) -> String {
     let text = param.format(value);
     if is_text(param) && !is_recipe(&text) { escaped(&text) } else { text }
 }
 
-/// Whether a value may hold what ends one.
+/// Returns whether a value may contain the delimiters of ids.
 fn is_text(param: &Param) -> bool {
     matches!(param.kind, Kind::Clip | Kind::Joint | Kind::Character | Kind::Text | Kind::List(_))
 }
@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn ids_that_are_none_name_nothing() {
+    fn invalid_ids_have_no_parameters() {
         for id in [
             "blend(a:walk",
             "blend(a:walk))",
@@ -149,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn lists_stay_whole_inside_of_an_id() {
+    fn lists_in_an_id_stay_whole() {
         let mut params = Params::default();
         params.set(Key::Lab, LabId::Register.into()).expect("a lab");
         params.set(Key::Pins, List::Pins(vec![(12, 30), (50, 71)]).into()).expect("pins");
@@ -158,10 +158,10 @@ mod tests {
 
     proptest! {
         #[test]
-        fn any_name_of_a_file_comes_back(a in ".{0,24}", b in "[a-z(),:%~ ]{0,16}") {
+        fn any_name_of_a_file_reads_back_from_an_id(a in ".{0,24}", b in "[a-z(),:%~ ]{0,16}") {
             let params = named(&a, &b).expect("texts");
             prop_assert_eq!(recipe_params(&id_of(&params)), Some(params.clone()));
-            // And again inside another.
+            // And inside another id.
             let outer = named(&id_of(&params), &b).expect("texts");
             prop_assert_eq!(recipe_params(&id_of(&outer)), Some(outer));
         }

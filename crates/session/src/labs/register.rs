@@ -515,15 +515,15 @@ fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
 }
 
 impl Outcome {
-    /// Returns which frames of A and B it is made of; `None` where they were not registered.
+    /// Returns the registration and the facts about it; `None` if nothing was registered.
     #[must_use]
     pub fn registered(&self) -> Option<&Arc<Registered>> {
         self.facts.get()
     }
 
-    /// Returns the time of a source that goes into the result at a time of the result, and where
-    /// the source lies then, standing where the result stands. `None` where there is none of it,
-    /// and where the sources are not registered: they simply play on.
+    /// Returns the time of a source that contributes to the result at a time of the result, and the
+    /// placement of the source on the result at that moment. `None` if it does not contribute, and
+    /// if the sources are not registered: they then simply play on.
     #[must_use]
     pub fn source_at(&self, source: &PlacedClip, secs: f64) -> Option<(f64, Planar)> {
         let beat = self.registered()?.beat_at(secs)?;

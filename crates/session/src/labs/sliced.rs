@@ -37,7 +37,7 @@ impl JobKind {
 
 /// Work that is done in slices between frames, for panes that wait for it.
 pub(crate) trait Sliced {
-    /// Forgets which panes wait: all are about to ask again.
+    /// Clears the pending requests. Call before a refresh; each pane requests again what it needs.
     fn ask_anew(&mut self);
 
     /// Does one slice. Returns `false` if there was nothing to do.
@@ -46,7 +46,7 @@ pub(crate) trait Sliced {
     /// Returns whether a requested result is available, so that its pane should ask again.
     fn is_ready(&self) -> bool;
 
-    /// Returns the kind of the present work and how much of it is done, 0 to 1; `None` without work
-    /// that is worth telling.
+    /// Returns the kind of the present work and its progress, 0 to 1; `None` if there is no work,
+    /// or none that takes long enough to be shown.
     fn progress(&self) -> Option<(JobKind, f64)>;
 }

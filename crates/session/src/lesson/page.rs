@@ -13,7 +13,7 @@ pub struct Page {
     pub tries: Vec<Try>,
     /// The question at the end; empty where there is none.
     pub question: Vec<Block>,
-    /// Its answer, hidden at first.
+    /// Its answer, hidden at first; empty where there is none.
     pub answer: Vec<Block>,
 }
 

@@ -1,4 +1,4 @@
-//! Which lessons there are, and where their texts are.
+//! The bundled lessons, and the sources of lessons' texts.
 
 use crate::outside::short;
 use segue_text::{Message, msg};
@@ -51,8 +51,8 @@ pub(super) fn lesson_of_file(name: &str) -> Option<&'static str> {
     (file_name(lesson)? == name).then_some(lesson)
 }
 
-/// Returns the source of the text that the parameter `lesson` names, in a language, and the page of
-/// it, from 0.
+/// Returns the source of the text that the parameter `lesson` names, in a language, and the index
+/// of its page.
 ///
 /// # Errors
 /// A message with the value found, and the valid ones.

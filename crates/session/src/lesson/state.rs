@@ -1,4 +1,4 @@
-//! The lesson that is open: its text is asked for when it is needed, and its links set parameters.
+//! The open lesson: its text is requested when it is needed, and its links set parameters.
 
 use super::page::Page;
 use super::parse::{LessonError, parse};
@@ -12,55 +12,55 @@ use std::sync::Arc;
 /// The content of the panel of lessons.
 #[derive(Clone, Debug)]
 pub enum Lesson<'a> {
-    /// The list of the lessons that come with Segue; see [`Page::entries`].
+    /// The list of the bundled lessons; see [`Page::entries`].
     Contents(&'a Page),
     /// A page.
     Page(LessonPage<'a>),
-    /// A text is under way.
+    /// A text that is being loaded.
     Waiting,
-    /// There is no such text: why.
+    /// A text that is not available, with the reason.
     Failed(Message),
 }
 
-/// The page of a lesson that is open.
+/// An open page of a lesson.
 #[derive(Clone, Debug)]
 pub struct LessonPage<'a> {
     /// Its content.
     pub page: &'a Page,
-    /// Its place, counted from 1: among the lessons that come with Segue, or among the pages of a
-    /// teacher's own.
+    /// Its number, counted from 1: among the bundled lessons, or among the pages of a teacher's
+    /// own.
     pub number: usize,
-    /// How many there are.
+    /// The number of lessons or pages.
     pub of: usize,
     /// The value of the parameter `lesson` for the page before.
     pub previous: Option<String>,
-    /// The value of the parameter `lesson` for the page behind.
+    /// The value of the parameter `lesson` for the next page.
     pub next: Option<String>,
 }
 
 /// A text that was requested.
 #[derive(Clone, Debug)]
 enum Text {
-    /// It is under way.
+    /// It was requested.
     Awaited,
     /// It is available.
     Here(Arc<[Page]>),
-    /// It did not arrive, or is no lesson: why.
+    /// It did not arrive, or is not a lesson; with the reason.
     Failed(Message),
 }
 
-/// The texts of lessons that were asked for, and the lesson that is about to be set up.
+/// The requested texts of lessons, and the lesson that is about to be set up.
 #[derive(Clone, Debug)]
 pub(crate) struct LessonState {
     /// The folder of the bundled lessons in the current language.
     language: &'static str,
     texts: BTreeMap<Source, Text>,
-    /// The lesson whose page sets the parameters once its text is here.
+    /// The lesson whose page sets the parameters once its text is available.
     to_set_up: Option<String>,
     requests: Vec<Source>,
 }
 
-/// Parameters to be taken over, as those of a link that names some of them.
+/// Parameters that replace the present ones, like those of a link that names some of them.
 #[derive(Debug)]
 pub(crate) struct NewParams {
     pub(crate) params: Params,
@@ -76,7 +76,7 @@ impl Default for LessonState {
 }
 
 impl LessonState {
-    /// Returns the lesson that is open; `None` where none is.
+    /// Returns the open lesson; `None` if there is none.
     pub(crate) fn lesson(&self, params: &Params) -> Option<Lesson<'_>> {
         let name = params.text(Key::Lesson);
         if name.is_empty() {
@@ -126,8 +126,8 @@ impl LessonState {
         Some(Lesson::Page(page))
     }
 
-    /// Returns whether the parameters are those that a link of the open page sets. Camera and time
-    /// do not matter.
+    /// Returns whether a link of the open page sets the parameters as they are, apart from camera
+    /// and time.
     pub(crate) fn is_tried(&self, params: &Params, query: &str) -> bool {
         let Some(page) = self.page(params) else {
             return false;
@@ -142,7 +142,8 @@ impl LessonState {
         PARAMS.iter().filter(counts).all(|param| wanted.get(param.key) == params.get(param.key))
     }
 
-    /// Takes in the text of a lesson, or why it did not arrive. Keeps a text that is not shown.
+    /// Stores the text of a lesson, or the reason why it did not arrive. A text that is not shown
+    /// is kept.
     pub(crate) fn finish(&mut self, source: &Source, text: Result<&[u8], Message>) {
         let read = text.and_then(|bytes| parse(bytes).map_err(|error| unread(source, &error)));
         let text = match read {
@@ -152,19 +153,18 @@ impl LessonState {
         self.texts.insert(source.clone(), text);
     }
 
-    /// Chooses the folder of the lessons that come with Segue, `en` or `zh-Hant`. Returns whether
-    /// it is another one.
+    /// Chooses the folder of the bundled lessons, `en` or `zh-Hant`. Returns whether it changed.
     pub(crate) fn set_language(&mut self, language: &'static str) -> bool {
         std::mem::replace(&mut self.language, language) != language
     }
 
-    /// Returns the page that is open.
+    /// Returns the open page.
     fn page(&self, params: &Params) -> Option<&Page> {
         let (source, index) = source_of(params.text(Key::Lesson), self.language).ok()?;
         self.pages(&source)?.get(index)
     }
 
-    /// Returns the pages of a text that is here.
+    /// Returns the pages of a text, if it is available.
     fn pages(&self, source: &Source) -> Option<&Arc<[Page]>> {
         match self.texts.get(source)? {
             Text::Here(pages) => Some(pages),
@@ -172,7 +172,7 @@ impl LessonState {
         }
     }
 
-    /// Asks for the text of the open lesson, where it was not asked for yet.
+    /// Requests the text of the open lesson, if it was not requested yet.
     pub(crate) fn ask_for_text(&mut self, params: &Params) {
         let name = params.text(Key::Lesson);
         if name.is_empty() {
@@ -187,23 +187,24 @@ impl LessonState {
         }
     }
 
-    /// Returns the texts that were asked for since the last call.
+    /// Returns the texts that were requested since the last call.
     pub(crate) fn take_requests(&mut self) -> Vec<Source> {
         std::mem::take(&mut self.requests)
     }
 
-    /// Notes that values were set together. A lesson that is opened alone sets the parameters, at
-    /// once or when its text is here: [`Self::set_up`]. With other values it is read beside what
-    /// they show.
+    /// Records that values were set together. A lesson that is opened alone sets the parameters, at
+    /// once or when its text is available: [`Self::set_up`]. Opened with other values, it leaves
+    /// them as they are.
     pub(crate) fn note_set(&mut self, params: &Params, keys: impl IntoIterator<Item = Key>) {
-        // Texts that failed are asked for again.
+        // Texts that failed are requested again.
         self.texts.retain(|_, text| !matches!(text, Text::Failed(_)));
         let is_alone = keys.into_iter().all(is_about_the_reader);
         let lesson = params.text(Key::Lesson);
         self.to_set_up = (is_alone && !lesson.is_empty()).then(|| lesson.to_owned());
     }
 
-    /// Returns the parameters of the open page, if they are about to be set and its text is here.
+    /// Returns the parameters of the open page, if they are about to be set and its text is
+    /// available.
     pub(crate) fn set_up(&mut self, params: &Params) -> Option<NewParams> {
         if self.to_set_up.as_deref() != Some(params.text(Key::Lesson)) {
             self.to_set_up = None;
@@ -219,8 +220,7 @@ impl LessonState {
         })
     }
 
-    /// Returns the parameters that a link of the open page asks for; `None` where no lesson is
-    /// open.
+    /// Returns the parameters that a link of the open page sets; `None` if no lesson is open.
     pub(crate) fn tried(&self, params: &Params, link: Link) -> Option<NewParams> {
         let page = self.page(params)?;
         let state = link::read(page.state.as_ref().map_or("", |state| state.query.as_str()));
@@ -234,15 +234,15 @@ impl LessonState {
     }
 }
 
-/// Returns whether the link that [`link::write`] writes would have the open lesson set the
+/// Returns whether the link that [`link::write`] writes would make the open lesson set the
 /// parameters.
 pub(crate) fn would_set_up(params: &Params) -> bool {
     let mut named = link::named(params).map(|(param, _)| param.key);
     !params.text(Key::Lesson).is_empty() && named.all(is_about_the_reader)
 }
 
-/// Returns the parameters when links are laid over each other, and over the defaults of all that
-/// makes a result. Parameters about the reader stay as they are, as do A and B where no link names
+/// Returns the parameters after several links, applied in order to the defaults of everything that
+/// makes a result. Parameters about the reader stay as they are, as do A and B if no link names
 /// them; stage, camera and time too, unless the page is `new`.
 fn laid_over(present: &Params, links: &[Link], new: bool) -> Params {
     let mut params = present.clone();
@@ -263,19 +263,19 @@ fn laid_over(present: &Params, links: &[Link], new: bool) -> Params {
     params
 }
 
-/// Returns the message on a file that is no lesson.
+/// Returns the message about a file that is not a lesson.
 fn unread(source: &Source, error: &LessonError) -> Message {
     let (Source::BuiltIn(name) | Source::Web(name)) = source;
     msg!("{name} is no lesson: {error}.")
 }
 
-/// Returns whether a link of a lesson sets a parameter even where it does not name it: it makes the
-/// result.
+/// Returns whether a link of a lesson sets a parameter even if it does not name it, because it
+/// makes the result.
 fn is_of_page_state(param: &Param) -> bool {
     param.group.is_of_lab() || param.has(Mark::State)
 }
 
-/// Returns whether a parameter is about the reader, and not the stage: no lesson changes it.
+/// Returns whether a parameter is about the reader and not the stage. No lesson changes it.
 fn is_about_the_reader(key: Key) -> bool {
     key.param().group == Group::Page && !is_of_page_state(key.param())
 }

@@ -1,4 +1,4 @@
-//! Lessons, by commands.
+//! Tests of lessons, by commands.
 
 use crate::choices;
 use crate::fixtures::*;
@@ -14,7 +14,7 @@ fn set(session: &mut Session, values: &[(Key, &str)]) {
     session.apply(Command::Settle).unwrap();
 }
 
-/// Answers what is asked for.
+/// Answers the requests for texts, and returns them.
 fn deliver(session: &mut Session) -> Vec<Source> {
     let mut asked = Vec::new();
     for request in session.take_requests() {
@@ -41,7 +41,7 @@ fn number_of(session: &Session) -> usize {
 }
 
 #[test]
-fn a_lesson_that_is_chosen_sets_the_document_up_in_one_step() {
+fn lesson_that_is_chosen_sets_up_the_document_in_one_step() {
     let mut session = Session::new();
     let before = session.query();
     set(&mut session, &[(Key::Lesson, ADDRESS)]);
@@ -68,7 +68,7 @@ fn a_lesson_that_is_chosen_sets_the_document_up_in_one_step() {
 }
 
 #[test]
-fn a_link_with_a_state_keeps_it_beside_the_lesson() {
+fn link_with_a_state_keeps_it_beside_the_lesson() {
     for (link, window) in [
         (format!("lesson={ADDRESS}&blend_window=77"), 77.0),
         (format!("lesson={ADDRESS}&theme=dark&lang=en"), 30.0),
@@ -85,12 +85,12 @@ fn a_link_with_a_state_keeps_it_beside_the_lesson() {
 }
 
 #[test]
-fn a_link_to_what_is_there_does_not_set_the_page_up() {
+fn link_of_the_default_state_does_not_set_up_the_page() {
     let mut session = Session::new();
     set(&mut session, &[(Key::Lesson, &format!("{ADDRESS}#2"))]);
     deliver(&mut session);
     assert_eq!(session.params().lab().word(), "make");
-    // All as in the table, but for the lesson.
+    // All values are the defaults, except that of the lesson.
     set(&mut session, &[(Key::Lab, "blend"), (Key::Gait, "walk")]);
     let link = session.query();
     let mut other = Session::new();
@@ -110,7 +110,7 @@ fn link_of_default_state_beside_a_lesson_at_a_later_time_keeps_that_state() {
 }
 
 #[test]
-fn a_try_lays_its_link_over_the_page_and_is_one_step() {
+fn try_applies_its_link_to_the_page_in_one_step() {
     let mut session = opened();
     set(&mut session, &[(Key::Theme, "light"), (Key::Align, "off"), (Key::Look, "bones")]);
     let before = session.query();
@@ -139,7 +139,7 @@ fn a_try_lays_its_link_over_the_page_and_is_one_step() {
 }
 
 #[test]
-fn clips_of_the_user_stay_where_no_link_names_others() {
+fn clips_of_the_user_stay_if_no_link_names_others() {
     let bare = "# Any\n\n[Begin](?lab=blend&blend_window=12)\n\n## Try\n\n- [Long](?blend_window=50) Long.\n";
     let mut session = Session::new();
     set(&mut session, &[(Key::A, "jump"), (Key::B, "spin")]);
@@ -152,7 +152,7 @@ fn clips_of_the_user_stay_where_no_link_names_others() {
 }
 
 #[test]
-fn a_link_to_another_lesson_opens_it() {
+fn link_to_another_lesson_opens_it() {
     let mut session = opened();
     session.apply(Command::Try("lesson=half_life".into())).unwrap();
     assert_eq!(session.params().text(Key::Lesson), "half_life");
@@ -168,7 +168,7 @@ fn a_link_to_another_lesson_opens_it() {
 }
 
 #[test]
-fn what_goes_wrong_is_said_and_can_be_asked_for_again() {
+fn text_that_fails_is_reported_and_requested_again() {
     let mut session = Session::new();
     assert!(session.apply(Command::Try("blend_window=10".into())).is_err(), "no lesson is open");
     let source = Source::Web(ADDRESS.to_owned());
@@ -193,7 +193,7 @@ fn what_goes_wrong_is_said_and_can_be_asked_for_again() {
             "{lesson}"
         );
     }
-    // What a link of a lesson says wrongly is told, and the rest is used.
+    // Invalid values in a link of a lesson are reported, and the others are used.
     let mut session = opened();
     session.apply(Command::Try("blend_window=10&weight_law=steep".into())).unwrap();
     assert_eq!(session.params().number(Key::BlendWindow), 10.0);

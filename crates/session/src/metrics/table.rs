@@ -9,8 +9,8 @@ macro_rules! metrics {
         #[expect(missing_docs, reason = "the help sentence of the row says it")]
         pub enum MetricId { $($id),* }
 
-        /// Every metric, in the order in which the stage shows them: first those of every lab. A
-        /// narrow pane has room for these and two more.
+        /// Every metric, in the order on the stage: first those of every lab. A narrow pane has
+        /// room for these and two more.
         pub static METRICS: &[MetricRow] = &[$(MetricRow {
             id: MetricId::$id,
             name: $name,

@@ -1,9 +1,9 @@
-//! The choices of parameters that take one of a few words, as types:
+//! The choices of parameters that accept a few fixed words, as types:
 //! `params.choice::<TransitionMethod>()`.
 
 use super::key::Key;
 
-/// One of the words that a parameter takes; see [`Kind::Choice`](super::Kind::Choice).
+/// A word that a parameter accepts; see [`Kind::Choice`](super::Kind::Choice).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Choice {
     /// The word in the link.
@@ -14,11 +14,11 @@ pub struct Choice {
 
 /// A type whose values are the choices of one parameter.
 pub trait Selected: Copy + PartialEq + 'static {
-    /// The parameter that it is the value of.
+    /// The parameter with these choices.
     const KEY: Key;
-    /// Every choice, in the order in which they are shown.
+    /// Every choice, in the order on screen.
     const ALL: &'static [Self];
-    /// The first of them.
+    /// The first choice.
     const FIRST: Self;
 
     /// Returns the choice's word in a link.
@@ -95,14 +95,14 @@ choices! {
         InPlace "in_place" "In place",
     }
 
-    /// How the weight moves from A to B inside a blend window.
+    /// The law by which the weight moves from A to B inside a blend window.
     WeightLaw of WeightLaw {
         Smooth "smooth" "smooth",
         Linear "linear" "linear",
         Smoother "smoother" "smoother",
     }
 
-    /// How A goes over into B in the Transition lab.
+    /// The method of the transition in the Transition lab.
     TransitionMethod of Method {
         Inertialize "inertialize" "inertialize",
         Cubic "cubic" "cubic",
@@ -113,7 +113,7 @@ choices! {
         Cut "cut" "cut",
     }
 
-    /// How the difference between the ends of a cycle is spread over it.
+    /// The method by which the difference between the ends of a cycle is spread over it.
     LoopMethod of LoopMethod {
         Exact "exact" "exact",
         Both "both" "both ends",
@@ -124,7 +124,7 @@ choices! {
         Cubic "cubic" "cubic",
     }
 
-    /// What the best match of two clips compares.
+    /// The unit of comparison for the best match of two clips.
     MatchBy of MatchBy {
         Pose "pose" "pose",
         Window "window" "window",
@@ -144,7 +144,7 @@ choices! {
         WorldRoot "world_root" "root blended in world space",
     }
 
-    /// How a layer joins the motion below it.
+    /// The way in which a layer joins the motion below it.
     LayerMode of LayerMode {
         Partial "partial" "partial",
         Additive "additive" "additive",
@@ -162,7 +162,7 @@ choices! {
         Whole "whole" "whole body",
     }
 
-    /// How a layer's time follows the motion below it.
+    /// The way in which a layer's time follows the motion below it.
     LayerFit of LayerFit {
         Step "step" "in step",
         Loop "loop" "loop",
@@ -176,25 +176,25 @@ choices! {
         Rest "rest" "rest pose",
     }
 
-    /// Whether two clips are registered in time before they are blended.
+    /// The relation in time of two clips that are blended: registered, or plain.
     WarpWith of WarpWith {
         Registered "registered" "registered",
         Plain "plain" "plain",
     }
 
-    /// Whether registered clips are blended throughout or joined.
+    /// The result of registered clips: a blend throughout, or a join.
     WarpMode of WarpMode {
         Blend "blend" "blend",
         Join "join" "join",
     }
 
-    /// Where a time warp may begin and end.
+    /// The places where a time warp may begin and end.
     Ends of Ends {
         Free "free" "free",
         Corner "corner" "corner",
     }
 
-    /// What of a motion stays the same on an edited path.
+    /// The property of a motion that stays the same on an edited path.
     PathKeep of PathKeep {
         Speed "speed" "speed",
         Duration "duration" "duration",
@@ -207,38 +207,38 @@ choices! {
         Uniform "uniform" "uniform",
     }
 
-    /// The frame in which the root keeps its offset from a path.
+    /// The coordinates in which the root keeps its offset from a path.
     PathOffset of PathOffset {
         Path "path" "with the path",
         World "world" "as it was",
     }
 
-    /// How much of a clip's root motion is kept.
+    /// The part of a clip's root motion that is kept.
     RootMotion of RootMotion {
         World "world" "recorded",
         InPlace "in_place" "in place",
         Residual "residual" "residual",
     }
 
-    /// What becomes of a clip's root motion.
+    /// The change of a clip's root motion.
     RootWay of RootWay {
         TakeOut "take_out" "removed",
         PutBack "put_back" "rebuilt",
     }
 
-    /// The frame in which a character on a path keeps its heading.
+    /// The coordinates in which a character on a path keeps its heading.
     PathFacing of PathFacing {
         Path "path" "with the path",
         World "world" "as it did",
     }
 
-    /// How the nodes of a motion graph are found.
+    /// The method by which the nodes of a motion graph are found.
     Construction of Construction {
         Segments "segments" "segments",
         Minima "minima" "local minima",
     }
 
-    /// How likely a transition of a motion graph is at a distance d.
+    /// The law by which the probability of a transition follows from its distance d.
     EdgeWeight of EdgeWeight {
         Inverse "inverse" "1 / d",
         Exponential "exponential" "exp(−d)",
@@ -246,32 +246,32 @@ choices! {
         Proportional "proportional" "d (wrong)",
     }
 
-    /// How likely a walk is to go on in its clip.
+    /// The law for the probability that a walk continues in its clip.
     GoingOn of GoingOn {
         Share "share" "a share",
         Constant "constant" "a constant weight",
     }
 
-    /// How the clips of a walk are joined.
+    /// The method by which the clips of a walk are joined.
     WalkMethod of WalkMethod {
         Dissolve "dissolve" "dissolve",
         Inertialize "inertialize" "inertialize",
     }
 
-    /// What is laid on what when B is aligned to A.
+    /// The points by which B is aligned with A.
     AlignBy of AlignBy {
         Window "window" "whole window",
         First "first" "first posture",
     }
 
-    /// Which frames of a clip a walk moves to where the last clip ended.
+    /// The frames of a clip that a walk moves to the end of the last clip.
     Transform of Transform {
         Whole "whole" "whole clip",
         First "first" "first frame only",
         Teleport "teleport" "first frame, then as recorded",
     }
 
-    /// How the alignment angle of a walk is computed; all but the first are mistakes.
+    /// The formula for the alignment angle of a walk; all but the first are mistakes.
     Atan of Atan {
         Atan2 "atan2" "atan2",
         Atan "atan" "atan (wrong)",
@@ -291,7 +291,7 @@ choices! {
         Eight "eight" "figure eight",
     }
 
-    /// What keeps a matched character from jumping too often.
+    /// The rule that keeps a matched character from jumping too often.
     Hysteresis of Hysteresis {
         None "none" "none",
         Bias "bias" "bias",
@@ -300,20 +300,20 @@ choices! {
         ClipVotes "clip_votes" "votes for another clip",
     }
 
-    /// What features of motion matching are divided by.
+    /// The scale by which features of motion matching are divided.
     Normalisation of Normalisation {
         Block "block" "by block",
         Dimension "dimension" "by dimension",
     }
 
-    /// How the nearest features are searched.
+    /// The method of the search for the nearest features.
     SearchBy of SearchBy {
         Boxes "boxes" "boxes",
         Tree "tree" "k-d tree",
         Scan "scan" "scan",
     }
 
-    /// How a matched character jumps to another frame.
+    /// The method by which a matched character jumps to another frame.
     JumpMethod of JumpMethod {
         Inertialize "inertialize" "inertialize",
         Dead "dead" "dead blend",
@@ -330,7 +330,7 @@ choices! {
         Jump "jump" "jump",
     }
 
-    /// What of a figure is drawn.
+    /// The parts of a figure that are drawn.
     Look of Look {
         Body "body" "body",
         Limbs "limbs" "limbs",
@@ -338,7 +338,7 @@ choices! {
         Both "both" "both",
     }
 
-    /// How a body follows its skeleton.
+    /// The method by which a body follows its skeleton.
     Skinning of Skinning {
         Dual "dual" "dual quaternions",
         Linear "linear" "linear blend",
@@ -352,7 +352,7 @@ choices! {
         Paper "paper" "paper",
     }
 
-    /// What the camera follows.
+    /// The point that the camera follows.
     Follow of Follow {
         Off "off" "off",
         Result "result" "result",
@@ -390,7 +390,7 @@ choices! {
     }
 }
 
-/// The labs that make a result of the clip in A.
+/// The labs that make a result from the clip in A.
 pub(super) const OF_A: &[LabId] = &[
     LabId::View,
     LabId::Blend,
@@ -403,11 +403,11 @@ pub(super) const OF_A: &[LabId] = &[
     LabId::InPlace,
 ];
 
-/// The labs that make a result of the clip in B.
+/// The labs that make a result from the clip in B.
 pub(super) const OF_B: &[LabId] =
     &[LabId::Blend, LabId::Transition, LabId::Speed, LabId::Layers, LabId::Register];
 
-/// The labs that read the feet of their clips, and can hold them.
+/// The labs that read the feet of their clips, and can lock them.
 pub(super) const OF_FEET: &[LabId] = &[
     LabId::View,
     LabId::Make,

@@ -45,13 +45,13 @@ impl fmt::Debug for Params {
 }
 
 impl Params {
-    /// The value of a parameter.
+    /// Returns the value of a parameter.
     #[must_use]
     pub fn get(&self, key: Key) -> &Value {
         &self.0[key as usize]
     }
 
-    /// Sets a value after checking it; says whether it was another before.
+    /// Sets a value after checking it; returns whether it changed.
     ///
     /// # Errors
     /// [`ValueError`]; nothing is changed then.
@@ -63,31 +63,31 @@ impl Params {
         Ok(changed)
     }
 
-    /// Takes one value over from another set.
+    /// Copies one value from another set.
     pub(crate) fn copy_from(&mut self, other: &Self, key: Key) {
         self.0[key as usize] = other.0[key as usize].clone();
     }
 
-    /// A number; `None` where it is left to Segue.
+    /// Returns a number; `None` if it is left to Segue.
     #[must_use]
     pub fn optional(&self, key: Key) -> Option<f64> {
         if let Value::Number(number) = self.get(key) { Some(*number) } else { None }
     }
 
-    /// A number that is never `auto`. 0 for a parameter that is no number.
+    /// Returns a number that is never `auto`; 0 for a parameter that is not a number.
     #[must_use]
     pub fn number(&self, key: Key) -> f64 {
         self.optional(key).unwrap_or_default()
     }
 
-    /// A switch. `false` for a parameter that is none.
+    /// Returns the state of a switch; `false` for a parameter that is not a switch.
     #[must_use]
     pub fn is_on(&self, key: Key) -> bool {
         *self.get(key) == Value::Switch(true)
     }
 
     /// Returns a clip's id or a text; the empty text for a parameter of another kind. Choices and
-    /// lists have types: [`Params::choice`], [`Params::pins`] and others.
+    /// lists have types of their own: [`Params::choice`], [`Params::pins`] and others.
     #[must_use]
     pub fn text(&self, key: Key) -> &str {
         debug_assert!(
@@ -100,7 +100,7 @@ impl Params {
         }
     }
 
-    /// Returns the word in the link of a choice whose type the caller does not know; the empty word
+    /// Returns the word in links of a choice whose type the caller does not know; the empty word
     /// for a parameter of another kind.
     #[must_use]
     pub fn word(&self, key: Key) -> &'static str {

@@ -1,8 +1,8 @@
-//! The grammars of parameters that hold a list, one a file: `read` names the place of an entry that
-//! it cannot read, and `write` writes what `read` reads.
+//! The grammars of parameters that contain a list, one in each file: `read` names the place of an
+//! entry that it cannot read, and `write` writes what `read` reads.
 //!
-//! A list is read once, together with the link, the command or the id that holds it. Labs and
-//! panels get its values. A list is written as it was read, but for spaces and the form of numbers.
+//! A list is read once, with the link, the command or the id that contains it. Labs and panels use
+//! its values. A list is written as it was read, except for spaces and the form of numbers.
 
 mod addresses;
 mod clip_ids;
@@ -29,7 +29,7 @@ use segue_motion::graph::Place;
 use segue_motion::matching::{Recording, RecordingError};
 use segue_motion::path::{GroundSpline, PathEditError};
 
-/// Why a text is not a list.
+/// The reason why a text is not a list.
 #[derive(Clone, Debug, PartialEq, thiserror::Error, segue_text::ToMessage)]
 pub enum Misread {
     /// The text cannot be read as a whole.
@@ -84,7 +84,7 @@ fn entries<'a, T>(
     numbered.map(read).collect()
 }
 
-/// Returns the entries between commas, without the spaces around them, and without empty entries.
+/// Returns the entries between commas, without the spaces around them and without empty entries.
 fn between_commas(text: &str) -> impl Iterator<Item = &str> {
     text.split(',').map(str::trim).filter(|entry| !entry.is_empty())
 }
@@ -151,12 +151,12 @@ lists! {
     Pins(Vec<(usize, usize)>) in pins, else Vec::new();
     /// An edited path, by its control points; `None` for the fitted one.
     EditedPath(Option<GroundSpline>) in edited_path, else None;
-    /// When to set off for which clip: seconds and the clip's index, as in `12.5:3,40:0`.
+    /// Visits of clips: when to set off, seconds, and the clip's index, as in `12.5:3,40:0`.
     Visits(Vec<(f64, usize)>) in visits, else Vec::new();
     /// A line over the ground, x and z in metres, as in `0:0,1.5:4`.
     GroundPath(Vec<DVec2>) in ground_path, else Vec::new();
-    /// A transition of a graph: where one clip is left and where another one entered, as in
-    /// `0:52-3:14`; `None` for none.
+    /// A transition of a graph: the frame of the clip that is left, and that of the clip that is
+    /// entered, as in `0:52-3:14`; `None` for none.
     Jump(Option<[Place; 2]>) in jump, else None;
     /// Recorded input; `None` for none.
     Recording(Option<Recording>) in recording, else None;

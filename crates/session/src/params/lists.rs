@@ -55,7 +55,7 @@ impl Params {
         }
     }
 
-    /// Returns when a walk sets off for which clip: seconds and the clip's index.
+    /// Returns the visits of a walk: when to set off, seconds, and the clip's index.
     #[must_use]
     pub fn visits(&self) -> &[(f64, usize)] {
         match self.get(Key::GoTo) {
@@ -73,8 +73,8 @@ impl Params {
         }
     }
 
-    /// Returns where the chosen transition of a graph leaves a clip and where it enters one; `None`
-    /// if none is chosen.
+    /// Returns the chosen transition of a graph: the frame that is left, and the one that is
+    /// entered; `None` if none is chosen.
     #[must_use]
     pub fn jump(&self) -> Option<&[Place; 2]> {
         match self.get(Key::Jump) {

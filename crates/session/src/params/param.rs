@@ -4,16 +4,16 @@ use super::choices::{Choice, LabId};
 use super::grammar::ListKind;
 use super::key::Key;
 
-/// What a parameter belongs to: the lab whose panel shows it, or the part of the page that does.
+/// The owner of a parameter: the lab whose panel shows it, or a part of the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Group {
-    /// The page as a whole: what is open, and in which colours and language.
+    /// The page as a whole: the open lab and lesson, colours and language.
     Page,
-    /// Time and playing.
+    /// Time and playback.
     Transport,
     /// The camera.
     Camera,
-    /// The stage and who stands on it.
+    /// The stage and its characters.
     Stage,
     /// A lab.
     Lab(LabId),
@@ -39,7 +39,7 @@ impl Group {
     }
 }
 
-/// What values a parameter takes.
+/// The kind of values that a parameter accepts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
     /// A number in `[min, max]`, snapped to multiples of `step`.
@@ -63,11 +63,11 @@ pub enum Kind {
     Clip,
     /// A body part, or the name of a joint.
     Joint,
-    /// The id of a clip whose file brought a character; empty for a body made around the bones.
+    /// The id of a clip whose file contains a character; empty for a generated body.
     Character,
     /// Free text.
     Text,
-    /// A list, read once.
+    /// A list; see [`ListKind`].
     List(ListKind),
     /// A comparable parameter and two to four values of it; see
     /// [`Compare`](super::Compare).
@@ -99,57 +99,57 @@ impl Kind {
 /// A row of the table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Param {
-    /// Which parameter.
+    /// The name inside the program.
     pub key: Key,
     /// The key in the link and in the API.
     pub name: &'static str,
     /// The label on screen.
     pub label: &'static str,
-    /// What values it takes.
+    /// The kind of its values.
     pub kind: Kind,
-    /// The unit of a number, as shown behind it; empty where there is none.
+    /// The unit of a number, shown after it; empty if there is none.
     pub unit: &'static str,
-    /// Where it belongs.
+    /// Its owner.
     pub group: Group,
     /// One sentence of help.
     pub help: &'static str,
-    /// What is special about it.
+    /// Its special properties.
     pub(super) marks: &'static [Mark],
     /// The labs besides its own whose results depend on it.
     pub shared_with: &'static [LabId],
     pub(super) default: Start,
 }
 
-/// What may be special about a parameter: a column of the table.
+/// A special property of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mark {
-    /// A place in the clip in A: it means nothing in another clip.
+    /// A place in the clip in A: it has no meaning in another clip.
     PlaceInA,
     /// A place in the clip in B.
     PlaceInB,
-    /// A place in what plays: it means nothing when another clip is shown.
+    /// A place in the result: it has no meaning when another clip is shown.
     PlaceInResult,
-    /// A number of frames that is also said in seconds.
+    /// A number of frames that is also shown in seconds.
     InSeconds,
-    /// Looked at or worked with: no result is made from it, though it stands in a lab.
+    /// Not an ingredient of a result, although it belongs to a lab: a view or a tool.
     LookedAt,
-    /// Says how feet are read and held.
+    /// Affects how feet are read and locked.
     Feet,
-    /// Says how planted feet are held, which counts only while they are.
+    /// Affects how planted feet are locked; without effect while they are not.
     Lock,
-    /// Part of what is shown, though it belongs to the page.
+    /// Part of the shown state, although it belongs to the page.
     State,
-    /// A change of it is no step of undo: looking around, playing and stopping.
+    /// Not a step of undo: view and playback.
     NoUndo,
-    /// No panes are made of its values, though it belongs to a lab: clips are read anew for it.
+    /// Not comparable in panes, although it belongs to a lab: it changes how clips are read.
     NoCompare,
-    /// Panes can be made of its values, though it belongs to no lab.
+    /// Comparable in panes, although it belongs to no lab.
     Compare,
-    /// Set by the pointer on the stage alone: no panel shows it.
+    /// Set with the pointer on the stage only: no panel shows it.
     ByPointer,
 }
 
-/// A default, as a [`Value`](super::Value) that can stand in a constant.
+/// A default as a constant; [`Value`](super::Value) cannot be one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Start {
     Auto,
@@ -166,7 +166,7 @@ impl Param {
         self.marks.contains(&mark)
     }
 
-    /// Returns whether a lab's result, or what it shows beside it, depends on this parameter.
+    /// Returns whether a lab's result, or the views beside it, depend on this parameter.
     #[must_use]
     pub fn is_used_by(&self, lab: LabId) -> bool {
         self.group == Group::Lab(lab) || self.shared_with.contains(&lab)
@@ -178,7 +178,7 @@ impl Param {
         self.is_used_by(lab) && !self.has(Mark::LookedAt)
     }
 
-    /// Returns whether compare can make panes of it: a clip, or a number or choice that changes the
+    /// Returns whether it can be compared in panes: a clip, or a number or choice that changes the
     /// result.
     #[must_use]
     pub fn is_comparable(&self) -> bool {

@@ -12,7 +12,7 @@ use super::key::Key;
 use super::param::{Group, Kind, Mark, Param, Start};
 use super::table::parameters;
 
-/// Labs that a row names behind `in`.
+/// Expands to the labs after `in` in a row.
 macro_rules! labs {
     () => { &[] };
     ([$($lab:ident),*]) => { &[$(LabId::$lab),*] };
@@ -21,7 +21,7 @@ macro_rules! labs {
 
 macro_rules! rows {
     ($($key:ident $name:literal $label:literal $group:ident$(($lab:ident))?, $kind:expr, $default:expr, $unit:literal, $help:literal $([$($mark:ident),*])? $(in $labs:tt)?;)*) => {
-        /// Every parameter, in the order in which links and panels show them.
+        /// Every parameter, in the order of links and panels.
         pub static PARAMS: &[Param] = &[$(Param {
             key: Key::$key, name: $name, label: $label, kind: $kind, unit: $unit, group: Group::$group$((LabId::$lab))?, help: $help, marks: &[$($(Mark::$mark),*)?], shared_with: labs!($($labs)?), default: $default,
         }),*];
@@ -41,13 +41,13 @@ const fn logarithmic(min: f64, max: f64, step: f64) -> Kind {
 parameters!(rows);
 
 impl Key {
-    /// The row of this parameter.
+    /// Returns the row of this parameter.
     #[must_use]
     pub fn param(self) -> &'static Param {
         &PARAMS[self as usize]
     }
 
-    /// The parameter of that name in the link.
+    /// Returns the parameter with that name in links.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         PARAMS.iter().find(|param| param.name == name).map(|param| param.key)

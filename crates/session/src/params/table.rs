@@ -1,10 +1,10 @@
 //! The table of parameters, one row each.
 //!
-//! [`Key`](super::Key) and [`PARAMS`](super::PARAMS) are made from it, in files of their own: the
-//! types of the columns name keys, and the rows name those types.
+//! [`Key`](super::Key) and [`PARAMS`](super::PARAMS) are generated from it, in files of their own:
+//! the types of the columns name keys, and the rows name those types.
 
-// Key, name in the link, label, group, values, default, unit, help; [marks] and `in` the labs that
-// share it, where there are any. The lists of labs stand in `choices.rs`.
+// Key, name in the link, label, group, values, default, unit, help; then, where there are any,
+// [marks] and `in` with the labs that share it. The lists of labs are in `choices.rs`.
 macro_rules! parameters {
     ($expand:ident) => { $expand! {
     Lab "lab" "Lab" Page, Kind::Choice(LabId::CHOICES), Start::Choice(LabId::Blend.word()), "", "Which experiment is open." [State];

@@ -1,10 +1,10 @@
-//! The table of parameters holds together.
+//! Tests of the table of parameters.
 
 use super::*;
 use proptest::prelude::*;
 
 #[test]
-fn the_table_is_sound() {
+fn rows_of_the_table_are_consistent() {
     for (index, param) in PARAMS.iter().enumerate() {
         assert_eq!(param.key as usize, index);
         assert_eq!(Key::from_name(param.name), Some(param.key), "{} is there twice", param.name);
@@ -29,7 +29,7 @@ fn the_table_is_sound() {
 }
 
 #[test]
-fn bad_values_are_named() {
+fn invalid_values_are_named() {
     let window = Key::BlendWindow.param();
     assert_eq!(
         window.parse("many").unwrap_err().to_string(),

@@ -11,10 +11,10 @@ use serde_json::Value as Json;
 use std::fmt;
 
 impl Param {
-    /// Checks a value and brings it into its normal form: numbers are snapped to the step.
+    /// Checks a value and converts it to its normal form: numbers are rounded to the step.
     ///
     /// # Errors
-    /// [`ValueError`] names the key, what was found and what would do.
+    /// [`ValueError`] names the key, the value found and the values expected.
     pub fn check(&self, value: Value) -> Result<Value, ValueError> {
         match (self.kind, value) {
             (Kind::Number { min, max, step, .. }, Value::Number(number)) => {
@@ -31,7 +31,7 @@ impl Param {
                     })
                 }
             }
-            // Everything else has one normal form, the one that a link reads.
+            // All other values have one normal form, the one that a link reads.
             (_, value) => self.parse(&self.format(&value)),
         }
     }
@@ -41,7 +41,7 @@ impl Param {
         ValueError::NotAChoice { key: self.name, found: found.to_owned(), expected }
     }
 
-    /// Returns a value as it is said on screen.
+    /// Returns a value as it is shown on screen.
     #[must_use]
     pub fn spoken(&self, value: &Value) -> Message {
         let word = self.format(value);
@@ -57,7 +57,7 @@ impl Param {
     /// Reads the value from a link.
     ///
     /// # Errors
-    /// [`ValueError`] names the key, what was found and what would do.
+    /// [`ValueError`] names the key, the value found and the values expected.
     pub fn parse(&self, text: &str) -> Result<Value, ValueError> {
         match self.kind {
             Kind::Number { auto: true, .. } if text == "auto" => Ok(Value::Auto),
@@ -95,7 +95,7 @@ impl Param {
         }
     }
 
-    /// Writes the value as [`Param::parse`] reads it, as short as it goes.
+    /// Writes the value as [`Param::parse`] reads it, in its shortest form.
     #[must_use]
     pub fn format(&self, value: &Value) -> String {
         match (value, self.kind) {
@@ -112,8 +112,8 @@ impl Param {
         }
     }
 
-    /// The value as JSON for the API: numbers, booleans and strings; `"auto"` where it is left to
-    /// Segue.
+    /// Returns the value as JSON for the API: numbers, booleans and strings; `"auto"` if it is left
+    /// to Segue.
     #[must_use]
     pub fn to_json(&self, value: &Value) -> Json {
         match value {
@@ -123,10 +123,10 @@ impl Param {
         }
     }
 
-    /// Reads a value that the API was given.
+    /// Reads a value from the API.
     ///
     /// # Errors
-    /// As [`Param::parse`].
+    /// Those of [`Param::parse`].
     pub fn from_json(&self, json: &Json) -> Result<Value, ValueError> {
         match json {
             Json::Number(number) => self.check(Value::Number(number.as_f64().unwrap_or(f64::NAN))),
@@ -147,7 +147,7 @@ fn snap(number: f64, step: f64) -> f64 {
     }
 }
 
-/// `number` with the decimals that `step` calls for, trailing zeros dropped.
+/// Writes a number with the decimals of `step`, without trailing zeros.
 #[must_use]
 pub fn format_number(number: f64, step: f64) -> String {
     let decimals = decimals_of(step);
@@ -160,7 +160,7 @@ pub fn format_number(number: f64, step: f64) -> String {
     if text == "-0" { "0".to_owned() } else { text }
 }
 
-/// How many decimals values of that step have.
+/// Returns the number of decimals of values with that step.
 #[must_use]
 pub fn decimals_of(step: f64) -> usize {
     (0..6)

@@ -1,4 +1,4 @@
-//! Values of parameters, and why one does not fit.
+//! Values of parameters, and the reasons why one does not fit.
 
 use super::choices::Selected;
 use super::grammar::{List, Misread};
@@ -35,7 +35,7 @@ pub struct Compare {
     pub values: Vec<Value>,
 }
 
-/// How many panes fit side by side.
+/// The greatest number of panes side by side.
 pub const MAX_PANES: usize = 4;
 
 impl Value {
@@ -61,7 +61,7 @@ impl<C: Selected> From<C> for Value {
     }
 }
 
-/// Why a value does not fit its parameter.
+/// The reason why a value does not fit its parameter.
 #[derive(Clone, Debug, PartialEq, thiserror::Error, segue_text::ToMessage)]
 pub enum ValueError {
     /// Not a number.
@@ -72,51 +72,51 @@ pub enum ValueError {
     NotANumber {
         /// The parameter.
         key: &'static str,
-        /// What was there.
+        /// The value found.
         found: String,
-        /// Its unit.
+        /// The unit of the parameter.
         unit: &'static str,
-        /// Whether `auto` would do.
+        /// Whether `auto` is valid.
         auto: bool,
     },
-    /// A number outside of the range.
+    /// A number outside the range.
     #[error("{key}: found {found}, expected {min} to {max}{unit}", unit = unit_suffix(.unit))]
     OutOfRange {
         /// The parameter.
         key: &'static str,
-        /// What was there.
+        /// The value found.
         found: f64,
         /// Smallest value.
         min: f64,
         /// Largest value.
         max: f64,
-        /// Its unit.
+        /// The unit of the parameter.
         unit: &'static str,
     },
-    /// A word that is none of the choices.
+    /// A word that is not one of the choices.
     #[error("{key}: found `{found}`, expected {expected}", found = short(.found))]
     NotAChoice {
         /// The parameter.
         key: &'static str,
-        /// What was there.
+        /// The word found.
         found: String,
-        /// The words that there are.
+        /// The valid words.
         expected: String,
     },
-    /// No such list.
+    /// A list that cannot be read.
     #[error("{key}: {error}")]
     Misread {
         /// The parameter.
         key: &'static str,
-        /// What cannot be read.
+        /// The reason, with its place.
         error: Misread,
     },
-    /// Not a comparison.
+    /// A text that is not a comparison.
     #[error("compare: found `{found}`, expected {expected}", found = short(.found))]
     NotAComparison {
-        /// What was there.
+        /// The text found.
         found: String,
-        /// What would do.
+        /// A description of a valid text.
         expected: Message,
     },
 }

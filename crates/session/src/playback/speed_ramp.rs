@@ -1,4 +1,4 @@
-//! Gaits that take on another speed little by little.
+//! Gaits that change their speed gradually.
 
 use crate::labs::{CycleMade, Inputs, Outcome, SpeedInputs};
 use segue_motion::gait::SpeedOptions;
@@ -6,8 +6,8 @@ use segue_motion::math::spring;
 use std::mem::discriminant;
 use std::sync::Arc;
 
-/// A gait on its way to the speed that was asked for: the speed is a critically damped spring, as
-/// that of a [`SpeedPlayer`](segue_motion::gait::SpeedPlayer).
+/// A gait that approaches the requested speed. The speed is a critically damped spring, as that of
+/// a [`SpeedPlayer`](segue_motion::gait::SpeedPlayer).
 #[derive(Clone, Debug)]
 pub(crate) struct SpeedRamp {
     speed_mps: f64,
@@ -21,13 +21,13 @@ pub(crate) struct SpeedRamp {
 const FINISHED: [f64; 2] = [0.01, 0.05];
 
 impl SpeedRamp {
-    /// Returns the beginning of a ramp: a result at its own speed.
+    /// Returns a ramp that is at its end: a result at its own speed.
     pub(super) fn at_speed_of(outcome: &Arc<Outcome>) -> Self {
         Self { speed_mps: speed_of(outcome), acceleration: 0.0, outcome: Arc::clone(outcome) }
     }
 
-    /// Brings the gait nearer to the speed of `target`, which was made from `inputs`. Returns
-    /// `None` where it has that speed, or cannot be made.
+    /// Advances the gait towards the speed of `target`, which was made from `inputs`. Returns
+    /// `None` if it has that speed, or cannot be made.
     pub(super) fn advance(
         mut self,
         target: &Outcome,

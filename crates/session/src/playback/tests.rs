@@ -1,4 +1,4 @@
-//! Results that loop: in place, phase and speed they go on from what played before.
+//! Tests of results that loop: place, phase and speed continue from the result before.
 
 use crate::Span;
 use crate::fixtures::*;
@@ -27,8 +27,8 @@ fn cycle(session: &Session) -> Cycle {
     session.main_outcome().unwrap().cycle.unwrap()
 }
 
-/// What is on the stage: rotations in the character's own frame, the root's height, and where the
-/// character stands.
+/// Returns what the stage shows: rotations relative to the character, the root's height, and the
+/// placement of the character.
 fn shown(session: &Session) -> (Vec<Quat>, f32, Planar) {
     shown_at(session, session.now_secs())
 }
@@ -43,7 +43,7 @@ fn shown_at(session: &Session, secs: f64) -> (Vec<Quat>, f32, Planar) {
     (rotations, pose.root_translation.y, place.after(&here))
 }
 
-/// The largest angle between the same joint of two poses, degrees.
+/// Returns the largest angle between the same joint of two poses, degrees.
 fn turned(a: &[Quat], b: &[Quat]) -> f32 {
     let angles = a.iter().zip(b).map(|(&a, &b)| quat::angle_between(a, b).to_degrees());
     angles.fold(0.0, f32::max)
@@ -54,7 +54,7 @@ fn distance(a: &Planar, b: &Planar) -> f64 {
 }
 
 #[test]
-fn the_speed_asked_for_is_measured_over_the_whole_range() {
+fn requested_speed_is_measured_over_the_whole_range() {
     let mut session = open("lab=speed");
     let CycleMade::Gait { clips_mps: [a, b], .. } = cycle(&session).made else { panic!() };
     assert!((a - 1.4).abs() < 0.02 && (b - 3.5).abs() < 0.02);
@@ -86,13 +86,13 @@ fn the_speed_asked_for_is_measured_over_the_whole_range() {
 }
 
 #[test]
-fn speeds_stand_side_by_side() {
+fn speeds_are_compared_side_by_side() {
     let mut session = open("lab=speed&compare=speed:1.4,2.2,3.5");
     assert_eq!(session.panes().len(), 3);
     for (pane, speed) in [1.4, 2.2, 3.5].into_iter().enumerate() {
         assert!((metric(&session, pane, MetricId::Speed) / speed - 1.0).abs() < 0.02);
     }
-    // The shorter ones go round until the longest is through.
+    // The shorter ones repeat until the longest has ended.
     let duration = session.duration_secs();
     for pane in session.panes() {
         let own = pane.outcome.as_ref().unwrap().duration_secs();
@@ -104,7 +104,7 @@ fn speeds_stand_side_by_side() {
 }
 
 #[test]
-fn a_speed_that_is_dragged_changes_the_gait_without_a_jump() {
+fn speed_that_is_dragged_changes_the_gait_without_a_jump() {
     for lock in ["off", "on"] {
         let mut session = open(&format!("lab=speed&speed=1.4&foot_lock={lock}"));
         let dt = 1.0 / 60.0;
@@ -128,8 +128,8 @@ fn a_speed_that_is_dragged_changes_the_gait_without_a_jump() {
                 .max(distance(&at, &at_after))
                 .max(f64::from((height - height_after).abs()));
         }
-        // A step of the slider turns no joint by half as much as a frame of the gait itself does,
-        // and nobody leaves his place.
+        // A step of the slider turns no joint by half as much as a frame of the gait itself, and
+        // the character keeps its place.
         assert!(
             largest.0 < 0.5 * in_a_frame && largest.1 < 5e-3,
             "{lock}: {largest:?} {in_a_frame}"
@@ -139,7 +139,7 @@ fn a_speed_that_is_dragged_changes_the_gait_without_a_jump() {
 }
 
 #[test]
-fn a_speed_that_is_set_at_once_is_taken_on_little_by_little() {
+fn speed_that_is_set_at_once_is_approached_gradually() {
     for (from, to) in [(1.4, 3.5), (3.5, 1.4)] {
         let mut session = open(&format!("lab=speed&speed={from}"));
         let dt = 1.0 / 60.0;
@@ -155,7 +155,7 @@ fn a_speed_that_is_set_at_once_is_taken_on_little_by_little() {
         let own = usual(&mut session);
         let (before, height, at) = shown(&session);
         set(&mut session, Key::Speed, to);
-        // The numbers are those of the speed asked for, and on the stage nothing has moved.
+        // The numbers are those of the requested speed, and nothing has moved on the stage.
         assert!((metric(&session, 0, MetricId::Speed) / to - 1.0).abs() < 0.02);
         let (after, height_after, at_after) = shown(&session);
         assert!(
@@ -179,7 +179,7 @@ fn a_speed_that_is_set_at_once_is_taken_on_little_by_little() {
             most < 1.5 * most_of_both && fastest < 1.5 * 3.5,
             "{from} to {to}: {most} {own} {fastest}"
         );
-        // A picture that stands shows at once what was asked for.
+        // While paused, the requested speed is shown at once.
         set(&mut session, Key::Speed, from);
         session.apply(Command::Playback(PlaybackCommand::TogglePlay)).unwrap();
         assert!(session.tick(dt) && !session.tick(dt) && session.panes()[0].ramp.is_none());
@@ -187,8 +187,8 @@ fn a_speed_that_is_set_at_once_is_taken_on_little_by_little() {
 }
 
 #[test]
-fn other_phases_would_jump() {
-    // What the tests above measure is felt: half a cycle later the legs have changed places.
+fn gait_at_another_phase_jumps() {
+    // Half a cycle later the legs have changed places: the tests above would notice.
     let mut session = open("lab=speed&speed=1.4");
     session.tick(1.3);
     let (before, ..) = shown(&session);
@@ -199,7 +199,7 @@ fn other_phases_would_jump() {
 }
 
 #[test]
-fn a_playhead_that_is_put_somewhere_stays_there() {
+fn playhead_that_is_moved_stays_there() {
     let mut session = open("lab=speed&speed=1.4&play=off");
     session
         .apply(Command::Set(vec![
@@ -213,7 +213,7 @@ fn a_playhead_that_is_put_somewhere_stays_there() {
 }
 
 #[test]
-fn a_loop_goes_round_a_hundred_times_without_drift() {
+fn loop_repeats_a_hundred_times_without_drift() {
     for link in
         ["lab=loop&a=walk", "lab=loop&a=walk_left&foot_lock=on", "lab=loop&a=run&loop_method=cubic"]
     {
@@ -222,16 +222,15 @@ fn a_loop_goes_round_a_hundred_times_without_drift() {
         let duration = session.duration_secs();
         let cycles = (duration / secs).round() as usize;
         assert!((duration - cycles as f64 * secs).abs() < 1e-9 && cycles >= 2);
-        // The same phase in every cycle, a hundred of them, however often the timeline begins
-        // again.
+        // A hundred cycles have the same phase, however often the timeline begins again.
         let begin = 0.3 * secs;
         session.apply(Command::Playback(PlaybackCommand::Seek(begin))).unwrap();
         let (first, height, mut at) = shown_at(&session, begin);
         let mut steps: Vec<Planar> = Vec::new();
         for round in 1..=100 {
             session.tick(secs);
-            // The playhead counts in milliseconds; what is compared is compared at the same time of
-            // the cycle.
+            // The playhead counts in milliseconds; poses are compared at the same time of the
+            // cycle.
             let now = begin + (round % cycles) as f64 * secs;
             assert!((session.now_secs() - now).abs() < 0.1, "{round}");
             session.apply(Command::Playback(PlaybackCommand::Seek(now))).unwrap();
@@ -255,7 +254,7 @@ fn a_loop_goes_round_a_hundred_times_without_drift() {
 }
 
 #[test]
-fn the_frames_of_every_cycle_are_those_of_the_first() {
+fn frames_of_every_cycle_are_those_of_the_first() {
     let mut session = open("lab=loop&a=walk_left");
     let outcome = Arc::clone(session.main_outcome().unwrap());
     let clip = outcome.motion.clip();
@@ -273,7 +272,7 @@ fn the_frames_of_every_cycle_are_those_of_the_first() {
             assert!(distance(&step(frame), &step(frame + frames)) < 1e-3, "{frame}");
         }
     }
-    // At the end of the timeline the character walks on from where it is, also where the curve has
+    // At the end of the timeline the character continues from where it is, also where the curve has
     // led it.
     session.tick(session.duration_secs() - 0.01);
     let (before, _, at) = shown(&session);
@@ -281,14 +280,14 @@ fn the_frames_of_every_cycle_are_those_of_the_first() {
     let (after, _, on) = shown(&session);
     assert!(session.now_secs() < 0.1);
     assert!(turned(&before, &after) < 15.0 && distance(&at, &on) < 0.05, "{at:?} {on:?}");
-    // With a camera that stands it goes back to the start.
+    // With a fixed camera it returns to the start.
     session.apply(Command::Set(vec![(Key::Follow, Value::Choice("off"))])).unwrap();
     session.tick(session.duration_secs());
     assert_eq!(session.panes()[0].place, Planar::IDENTITY);
 }
 
 #[test]
-fn the_classic_ways_to_close_a_loop_leave_what_the_exact_one_does_not() {
+fn classic_loop_methods_leave_a_seam_and_the_exact_one_does_not() {
     let session = open("lab=loop&compare=loop_method:exact,end,both");
     let [exact, end, both] = [0, 1, 2].map(|pane| metric(&session, pane, MetricId::LoopSeam));
     assert!(exact < 1e-2 && end > 10.0 * exact && both > 10.0 * exact, "{exact} {end} {both}");
@@ -304,12 +303,12 @@ fn the_classic_ways_to_close_a_loop_leave_what_the_exact_one_does_not() {
         (metric(&session, 0, MetricId::CycleTime), metric(&session, 0, MetricId::CycleFrames));
     assert!((secs * session.main_outcome().unwrap().motion.clip().fps() - frames).abs() < 1e-9);
     assert!((metric(&session, 0, MetricId::CycleLength) / secs / 1.4 - 1.0).abs() < 0.05);
-    // A half-life belongs to loops, too.
+    // The half-life is a parameter of loops, too.
     assert_eq!(open("lab=loop&compare=half_life:0.1,0.4").panes().len(), 2);
 }
 
 #[test]
-fn ends_are_found_or_set_by_hand() {
+fn ends_of_a_loop_are_found_or_set_by_hand() {
     let mut session = open("lab=loop");
     let CycleMade::Cut { from_secs, to_secs, .. } = cycle(&session).made else { panic!() };
     assert_eq!(session.automatic_value(Key::LoopFrom), Some(from_secs));
@@ -327,7 +326,7 @@ fn ends_are_found_or_set_by_hand() {
         (from - 0.2).abs() < 0.01 && (to - 0.5).abs() < 0.01,
         "the other way round: {from} {to}"
     );
-    // What cannot be is said, and no earlier loop stands for it.
+    // An impossible part is refused, and no earlier loop is shown.
     set(&mut session, Key::LoopTo, 0.5);
     assert!(
         session.panes()[0].problem.as_ref().is_some_and(|text| text.to_string().contains("cycle"))
@@ -339,7 +338,7 @@ fn ends_are_found_or_set_by_hand() {
 }
 
 #[test]
-fn clips_that_are_no_gaits_say_so() {
+fn clips_without_a_gait_are_refused() {
     let mut session = Session::new();
     session.apply(Command::OpenLink("lab=speed&a=idle".into())).unwrap();
     let problem = session.panes()[0].problem.clone().unwrap();
@@ -350,7 +349,7 @@ fn clips_that_are_no_gaits_say_so() {
 }
 
 #[test]
-fn the_playhead_goes_round_in_the_span_between_the_marks() {
+fn playhead_repeats_the_span_between_the_marks() {
     let mut session = Session::new();
     session
         .apply(Command::Set(vec![(Key::In, Value::Number(1.0)), (Key::Out, Value::Number(2.0))]))

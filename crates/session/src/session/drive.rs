@@ -10,7 +10,7 @@ use segue_motion::skeleton::Pose;
 use std::sync::Arc;
 
 impl Session {
-    /// Returns whether a character is driven now: it goes on with time, and has no end.
+    /// Returns whether a character is driven now: it continues with time, and has no end.
     #[must_use]
     pub fn is_driven(&self) -> bool {
         let panes = self.panes.list.iter().enumerate();
@@ -31,20 +31,20 @@ impl Session {
         self.drive.recording()
     }
 
-    /// Returns the crowd about the character: the database that it comes from, and its poses in the
-    /// world.
+    /// Returns the crowd around the character: the database that it comes from, and its poses in
+    /// the world.
     #[must_use]
     pub fn crowd(&self) -> Option<(&Arc<Database>, Vec<&Pose>)> {
         self.drive.crowd()
     }
 
-    /// Takes in how long the last call of [`Session::tick`] took, seconds: the session has no
-    /// clock.
+    /// Records the duration of the last call of [`Session::tick`], seconds, because the session has
+    /// no clock.
     pub fn tick_took(&mut self, secs: f64) {
         self.drive.note_duration(secs);
     }
 
-    /// Changes the input. One that begins to ask for motion has time run.
+    /// Changes the input. Input that begins to request motion starts playback.
     pub(super) fn steer(&mut self, control: Control) {
         if self.drive.steer(control) && self.is_driven() && !self.document.params.is_on(Key::Play) {
             self.document.set_unchecked(Key::Play, Value::Switch(true));
@@ -71,9 +71,9 @@ impl Session {
         Ok(())
     }
 
-    /// Lets time pass for the driven characters.
+    /// Advances the time of the driven characters.
     pub(super) fn advance_drive(&mut self, dt_secs: f64) {
-        // Tags that cannot be read are refused where the database is asked for.
+        // Tags that cannot be read are refused where the database is requested.
         let filter = filter_of(&self.document.params).unwrap_or_default();
         let outcomes = self.drive.advance(dt_secs, filter, &mut self.labs.gauge);
         self.panes.show_next(outcomes);
@@ -87,8 +87,8 @@ impl Session {
         self.panes.show_next(outcomes);
     }
 
-    /// Returns the parameters under which the result of a driven pane is made again: the input is
-    /// written down.
+    /// Returns the parameters by which the result of a driven pane is made again: with the recorded
+    /// input.
     pub(super) fn with_recording(&self, mut params: Params) -> Params {
         if self.is_driven() {
             let recording = Some(self.drive.recording().clone());

@@ -1,4 +1,4 @@
-//! Files that come into the library, and the memory that they need.
+//! Files that are added to the library, and the memory that they need.
 
 use super::Session;
 use crate::files::Loaded;
@@ -13,10 +13,10 @@ use std::sync::Arc;
 
 impl Session {
     /// Reads one file, exactly as if it were dropped on the page: its clips join the library, and
-    /// the first ones take the places of built-in clips in A and B. It is read at once, unless it
-    /// is larger than [`LARGE_BYTES`](crate::reading::LARGE_BYTES) or the session has all files
-    /// read elsewhere: then it is asked for with [`Request::Read`](crate::Request::Read), nothing
-    /// is loaded yet, and an error is told when it was read.
+    /// the first ones take the slots of built-in clips in A and B. It is read at once, unless it is
+    /// larger than [`LARGE_BYTES`](crate::reading::LARGE_BYTES) or the session reads all files
+    /// elsewhere: then it is requested with [`Request::Read`](crate::Request::Read), nothing is
+    /// loaded yet, and an error is reported after reading.
     ///
     /// # Errors
     /// [`ImportError`] with name, line, column, found and expected; nothing already loaded changes.
@@ -24,12 +24,12 @@ impl Session {
         self.load_arriving(name, bytes, Arrival::ByHand)
     }
 
-    /// Reads a file that was fetched from an address in the link: as [`Session::load`], but where
-    /// the link names a clip for a slot, that one stays, and a file that is in the library already
-    /// takes no slot.
+    /// Reads a file that was fetched from an address in the link: like [`Session::load`], but a
+    /// clip that the link names for a slot stays, and a file that is in the library already takes
+    /// no slot.
     ///
     /// # Errors
-    /// As [`Session::load`].
+    /// Those of [`Session::load`].
     pub fn load_fetched(&mut self, name: &str, bytes: Arc<[u8]>) -> Result<Loaded, ImportError> {
         self.load_arriving(name, bytes, Arrival::ByLink)
     }
@@ -46,34 +46,34 @@ impl Session {
         loaded
     }
 
-    /// Asks for a file to be read elsewhere ([`Request::Read`](crate::Request::Read)) and joined to
-    /// the library then, as by [`Session::load`]. Returns the task's number.
+    /// Requests a file to be read elsewhere ([`Request::Read`](crate::Request::Read)) and then
+    /// added to the library, as by [`Session::load`]. Returns the task's number.
     pub fn begin_reading(&mut self, name: &str, content: Content, size: u64) -> u64 {
         self.revision += 1;
         self.files.begin_reading(&self.document.library, name, content, size, Arrival::ByHand)
     }
 
-    /// As [`Session::begin_reading`], for a file that was fetched: its clips join the library as by
-    /// [`Session::load_fetched`].
+    /// Requests a file as [`Session::begin_reading`] does, for one that was fetched: its clips join
+    /// the library as by [`Session::load_fetched`].
     pub fn begin_reading_fetched(&mut self, name: &str, content: Content, size: u64) -> u64 {
         self.revision += 1;
         self.files.begin_reading(&self.document.library, name, content, size, Arrival::ByLink)
     }
 
-    /// Notes how many bytes of a task's file are read.
+    /// Records the number of bytes of a task's file that were read.
     pub fn progress_reading(&mut self, task: u64, done: u64) {
         self.files.progress_reading(task, done);
         self.revision += 1;
     }
 
-    /// Returns the key of the file that a task reads, where its bytes lie outside.
+    /// Returns the key of the file that a task reads, if its bytes are outside the document.
     #[must_use]
     pub fn reading_key(&self, task: u64) -> Option<&str> {
         self.files.reading_key(task)
     }
 
-    /// Takes in the report of a file, or the reason why there is none. Returns `None` where the
-    /// task was given up, and where the file has to be read again.
+    /// Processes the report on a file, or the reason why there is none. Returns `None` if the task
+    /// was stopped, or if the file has to be read again.
     pub fn finish_reading(
         &mut self,
         task: u64,
@@ -85,7 +85,7 @@ impl Session {
         finished
     }
 
-    /// Returns whether a task is under way.
+    /// Returns whether a task is in progress.
     #[must_use]
     pub fn is_reading(&self, task: u64) -> bool {
         self.files.is_reading(task)
@@ -103,7 +103,7 @@ impl Session {
         self.files.brings_clips(task)
     }
 
-    /// Returns whether a file is being read that takes a moment, and so has no progress bar.
+    /// Returns whether a file is being read that takes only a moment, and so has no progress bar.
     #[must_use]
     pub fn is_reading_small(&self) -> bool {
         self.files.is_reading_small()
@@ -127,26 +127,24 @@ impl Session {
         &SETS
     }
 
-    /// Returns the bundled takes that were asked for and have not arrived.
+    /// Returns the bundled takes that were requested and have not arrived.
     #[must_use]
     pub fn awaited_samples(&self) -> &[&'static Sample] {
         self.files.awaited_samples()
     }
 
-    /// Returns how many of the takes that were asked for together have arrived, and how many these
-    /// are; `None` while none is awaited.
+    /// Returns how many of the takes that were requested together have arrived, and their number;
+    /// `None` while none is awaited.
     #[must_use]
     pub fn samples_progress(&self) -> Option<(usize, usize)> {
         self.files.samples_progress()
     }
 
-    /// Takes in a bundled take that was asked for with
-    /// [`Request::Sample`](crate::Request::Sample); `packed` is its gzip file. Where files are read
-    /// elsewhere, it is not there yet.
+    /// Loads a bundled take that was requested with [`Request::Sample`](crate::Request::Sample);
+    /// `packed` is its gzip file. If files are read elsewhere, this only begins to read it.
     ///
     /// # Errors
-    /// [`ImportError`] when it is damaged; where it is read elsewhere, that is told when it was
-    /// read.
+    /// [`ImportError`] if it is damaged. If it is read elsewhere, that is reported after reading.
     pub fn load_sample(
         &mut self,
         sample: &'static Sample,
@@ -158,28 +156,28 @@ impl Session {
         loaded
     }
 
-    /// Notes why a bundled take that was asked for has not arrived. The next command that needs it
-    /// asks for it again.
+    /// Reports why a requested take has not arrived. The next command that needs it requests it
+    /// again.
     pub fn fail_sample(&mut self, sample: &'static Sample, reason: impl Into<Message>) {
         self.files.fail_sample(&mut self.document, &mut self.notices, sample, reason);
         self.refresh();
     }
 
-    /// Takes in what the page says of its memory. Once more than half of it is taken, drops the
-    /// motions that only steps of undo hold: they are read again when a step brings them back.
+    /// Records the size of the page's memory. Once more than half of it is in use, drops the
+    /// motions that only steps of undo contain: they are read again when a step restores them.
     pub fn note_memory(&mut self, page: PageMemory) {
         if self.files.note_memory(page, &mut self.document) {
             self.labs.feet = FeetReader::default();
         }
     }
 
-    /// Returns how much memory is in use; `None` where it has no end.
+    /// Returns the memory in use; `None` if it is unlimited.
     #[must_use]
     pub fn memory(&self) -> Option<MemoryUse> {
         self.files.memory()
     }
 
-    /// Returns how much memory a task's file is expected to need, bytes, where that is more than is
+    /// Returns the memory that a task's file is expected to need, bytes, if that is more than is
     /// left.
     #[must_use]
     pub fn memory_lacking_for(&self, task: &ReadTask) -> Option<u64> {
@@ -187,7 +185,7 @@ impl Session {
     }
 
     /// Ends a task because there is no memory for the `needed` bytes of its clips. Returns `None`
-    /// where the task was given up already.
+    /// if the task was stopped already.
     pub fn refuse_for_memory(&mut self, task: u64, needed: u64) -> Option<Result<Loaded, Message>> {
         let (document, notices) = (&mut self.document, &mut self.notices);
         let reason = self.files.refuse_for_memory(document, notices, task, needed)?;

@@ -13,14 +13,14 @@ impl Session {
         lab_of(self.document.params.lab()).has(Beside::Graph)
     }
 
-    /// Returns the ids of the clips that the graph is made of; none where there are too many.
+    /// Returns the ids of the graph's clips; none if there are too many.
     #[must_use]
     pub fn graph_clip_ids(&self) -> Vec<String> {
         clips_of(self.document.params.clip_ids(Key::Clips)).unwrap_or_default()
     }
 
     /// Returns the clips of the graph, on one skeleton; `None` outside of the Graph lab and while
-    /// they are made ready.
+    /// they are prepared.
     #[must_use]
     pub fn graph_cast(&self) -> Option<&Arc<GraphClips>> {
         self.labs.grapher.cast().filter(|_| self.is_graph_lab())
@@ -33,8 +33,8 @@ impl Session {
         self.labs.grapher.field().filter(|_| self.is_graph_lab())
     }
 
-    /// Returns the graph of the first pane: that of the present parameters where it is made, else
-    /// that of the walk.
+    /// Returns the graph of the first pane: that of the present parameters if it is built,
+    /// otherwise that of the walk.
     #[must_use]
     pub fn graph_built(&self) -> Option<&Arc<BuiltGraph>> {
         let walked = || self.graph_walk().map(|walk| &walk.built);
@@ -47,32 +47,32 @@ impl Session {
         self.main_outcome()?.walk().filter(|_| self.is_graph_lab())
     }
 
-    /// Returns how long it took to make a graph, seconds, as far as [`Session::work_took`] was
-    /// told.
+    /// Returns the time that building a graph took, seconds, as far as it was reported by
+    /// [`Session::work_took`].
     #[must_use]
     pub fn graph_build_secs(&self, built: &BuiltGraph) -> Option<f64> {
         self.labs.grapher.build_secs(built)
     }
 
-    /// Takes in how long the last call of [`Session::work`] took, seconds: the session has no
-    /// clock.
+    /// Records the duration of the last call of [`Session::work`], seconds, because the session has
+    /// no clock.
     pub fn work_took(&mut self, secs: f64) {
         self.labs.grapher.took(secs);
     }
 
-    /// Returns whether making the graph was given up.
+    /// Returns whether the construction of the graph was stopped.
     #[must_use]
     pub fn graph_is_stopped(&self) -> bool {
         self.is_graph_lab() && self.labs.grapher.is_stopped()
     }
 
-    /// Returns when the walk sets off for which clip: seconds, and the clip's index.
+    /// Returns the visits of the walk: when to set off, seconds, and the clip's index.
     #[must_use]
     pub fn graph_visits(&self) -> Vec<(f64, usize)> {
         visits_of(&self.document.params)
     }
 
-    /// Returns the line that the walk follows, (x, z) in metres.
+    /// Returns the path that the walk follows, (x, z) in metres.
     #[must_use]
     pub fn graph_path(&self) -> &[DVec2] {
         if self.is_graph_lab() { self.document.params.ground_path() } else { &[] }

@@ -9,7 +9,7 @@ use segue_text::msg;
 use std::sync::Arc;
 
 impl Session {
-    /// Puts a pane's result into the library.
+    /// Adds a pane's result to the library.
     pub(super) fn keep(&mut self, pane: usize) -> Result<(), CommandError> {
         let made = self.panes.get(pane)?.recipe()?;
         let (params, outcome) =

@@ -1,4 +1,4 @@
-//! Results that are kept, and what is made of them.
+//! Tests of results that are kept, and of results made from them.
 
 use crate::fixtures::*;
 use segue_motion::math::wrap_angle;
@@ -11,7 +11,8 @@ fn opened(link: &str) -> Session {
     session
 }
 
-/// Joins a clip to what was kept last, where Segue finds it best, and keeps that.
+/// Joins a clip to the last kept one, at the place that Segue finds, and keeps the result. Returns
+/// its id.
 fn join(session: &mut Session, a: &str, b: &str) -> String {
     let values = vec![(Key::A, Value::Text(a.into())), (Key::B, Value::Text(b.into()))];
     session.apply(Command::Set(values)).unwrap();
@@ -25,7 +26,7 @@ fn motion(session: &Session, id: &str) -> Arc<Motion> {
     session.library().find(id).unwrap().motion.clone().unwrap()
 }
 
-/// How far the character has turned at the end, to the left, degrees.
+/// Returns how far the character has turned to the left at the end, degrees.
 fn turned(motion: &Motion) -> f64 {
     let frames = motion.ground_frames();
     let steps = frames.windows(2).map(|pair| wrap_angle(pair[1].yaw - pair[0].yaw));
@@ -33,7 +34,7 @@ fn turned(motion: &Motion) -> f64 {
 }
 
 #[test]
-fn a_sequence_of_kept_results_keeps_its_middle() {
+fn sequence_of_kept_results_keeps_its_middle() {
     for lab in [
         "lab=transition",
         "lab=transition&match_by=pose&method=smooth",
@@ -52,14 +53,14 @@ fn a_sequence_of_kept_results_keeps_its_middle() {
         assert!(left + 1e-6 >= seam, "{lab}: {left} s lies before the seam at {seam} s");
         assert_eq!(third.seams()[..2], second.seams()[..], "{lab}");
         let turns = [turned(&first), turned(&second), turned(&third)];
-        // What a registered join goes over in is a mixture of both, in which the turn is less.
+        // In a registered join both clips are mixed, which turns less.
         let is_mixed = lab.contains("register");
         assert!(
             is_mixed || (turns[1] > turns[0] + 30.0 && turns[2] > turns[0] + 25.0),
             "{lab}: {turns:?}"
         );
 
-        // In front of another clip, too: what was kept is entered before its first seam.
+        // Before another clip, too: the kept clip is entered before its first seam.
         let after = join(&mut session, "walk", &two);
         let place = session.main_outcome().unwrap().transition.unwrap();
         let first_seam = second.before_seams() as f64 / second.clip().fps();
@@ -70,7 +71,7 @@ fn a_sequence_of_kept_results_keeps_its_middle() {
         );
         assert_eq!(motion(&session, &after).seams().len(), 3, "{lab}");
 
-        // The link alone brings the same motion back, seams and all.
+        // The link alone restores the same motion, including its seams.
         let again = opened(&format!("lab=view&a={three}"));
         let again = &again.main_outcome().unwrap().motion;
         assert_eq!(
@@ -89,7 +90,7 @@ fn results_with_a_further_clip_of_a_file_are_kept() {
         &segue_formats::bvh::WriteOptions::default(),
     );
     let id = session.load("two.bvh", bytes.into_bytes().into()).unwrap().ids.remove(0);
-    // As a file with several motions has them.
+    // As in a file with several motions.
     let first = Arc::clone(session.library().find(&id).unwrap());
     let Origin::File(file) = &first.origin else { panic!() };
     let second = Entry {
@@ -102,7 +103,7 @@ fn results_with_a_further_clip_of_a_file_are_kept() {
     let kept = join(&mut session, "run", &format!("{id}.2"));
     assert!(kept.starts_with("blend(a:run,b:two~"), "{kept}");
     assert!(session.library().get(&kept).is_some());
-    // What says that something is here already is true.
+    // The message that a clip is already in the library is true.
     let again = session.apply(Command::Keep(0)).unwrap_err().to_string();
     assert!(again.contains("in the library already"), "{again}");
     session.apply(Command::OpenLink(format!("lab=view&a={id}"))).unwrap();
@@ -111,7 +112,7 @@ fn results_with_a_further_clip_of_a_file_are_kept() {
 }
 
 #[test]
-fn what_no_link_can_hold_is_not_kept() {
+fn result_that_no_link_can_contain_is_not_kept() {
     let mut session = opened("lab=blend&blend_window=8");
     let mut id = "walk".to_owned();
     let refused = (0..10).find_map(|_| {
@@ -123,7 +124,7 @@ fn what_no_link_can_hold_is_not_kept() {
         kept.err()
     });
     assert!(refused.is_some_and(|error| error.to_string().contains("save it as a file")));
-    // All that was kept can be made again.
+    // Everything that was kept can be made again.
     let last = opened(&format!("lab=view&a={id}"));
     assert_eq!(
         motion(&session, &id).clip().frames(),
@@ -132,7 +133,7 @@ fn what_no_link_can_hold_is_not_kept() {
 }
 
 #[test]
-fn made_clips_are_kept_and_travel_in_the_link() {
+fn synthesised_clips_are_kept_and_contained_in_links() {
     let mut session = Session::new();
     session.apply(Command::OpenLink("lab=make&gait=run&turn_rate=20".into())).unwrap();
     session.apply(Command::Keep(0)).unwrap();
@@ -183,7 +184,7 @@ fn results_of_every_lab_are_kept_as_recipes() {
             session.library().entries().last().map(|entry| &entry.id)
         );
         assert!(session.apply(Command::Keep(0)).is_err(), "a second one of the same");
-        // Whoever opens a link to it has none of the data, and gets the same motion.
+        // A session that opens a link to it has none of the data, and makes the same motion.
         let mut other = Session::new();
         other.apply(Command::OpenLink(format!("lab=view&a={id}"))).unwrap();
         settle(&mut other);
@@ -195,7 +196,7 @@ fn results_of_every_lab_are_kept_as_recipes() {
 }
 
 #[test]
-fn what_was_found_is_part_of_the_recipe() {
+fn automatic_values_are_part_of_the_recipe() {
     for (lab, named) in [
         ("blend", "leave_a"),
         ("transition", "mix_frame_b"),
@@ -208,7 +209,7 @@ fn what_was_found_is_part_of_the_recipe() {
         session.apply(Command::Keep(0)).unwrap();
         let kept = Arc::clone(session.library().entries().last().unwrap());
         assert!(kept.id.contains(&format!("{named}:")), "{}", kept.id);
-        // Kept of what is kept: the link still holds it all.
+        // Kept from a kept result, the link still contains everything.
         session
             .apply(Command::OpenLink(format!(
                 "lab=transition&a={}&b=run&mix_frame_a=9&mix_frame_b=9",

@@ -1,4 +1,4 @@
-//! The lesson that is open.
+//! The open lesson.
 
 use super::Session;
 use crate::command::CommandError;
@@ -9,20 +9,21 @@ use crate::playback;
 use segue_text::Message;
 
 impl Session {
-    /// Returns the lesson that is open; `None` where none is.
+    /// Returns the open lesson; `None` if there is none.
     #[must_use]
     pub fn lesson(&self) -> Option<Lesson<'_>> {
         self.lessons.lesson(&self.document.params)
     }
 
-    /// Returns whether the parameters are those that a link of the open page sets. Camera and time
-    /// do not matter.
+    /// Returns whether a link of the open page sets the parameters as they are, apart from camera
+    /// and time.
     #[must_use]
     pub fn is_tried(&self, query: &str) -> bool {
         self.lessons.is_tried(&self.document.params, query)
     }
 
-    /// Takes in the text of a lesson, or why it did not arrive. Keeps a text that is not shown.
+    /// Stores the text of a lesson, or the reason why it did not arrive. A text that is not shown
+    /// is kept.
     pub fn finish_lesson(&mut self, source: &Source, text: Result<&[u8], Message>) {
         self.lessons.finish(source, text);
         if self.set_up_lesson() {
@@ -32,8 +33,7 @@ impl Session {
         self.revision += 1;
     }
 
-    /// Chooses the language of the lessons that come with Segue, by their folder: `en` or
-    /// `zh-Hant`.
+    /// Chooses the language of the bundled lessons, by their folder: `en` or `zh-Hant`.
     pub fn set_lesson_language(&mut self, language: &'static str) {
         if self.lessons.set_language(language) {
             self.lessons.ask_for_text(&self.document.params);
@@ -41,14 +41,14 @@ impl Session {
         }
     }
 
-    /// Notes that parameters were set together, the open lesson among them perhaps: opened alone,
-    /// it sets the parameters.
+    /// Records that parameters were set together. If the open lesson is among them alone, it sets
+    /// the parameters.
     pub(super) fn note_lesson(&mut self, named: &[Key]) {
         self.lessons.note_set(&self.document.params, named.iter().copied());
         self.set_up_lesson();
     }
 
-    /// Sets the parameters as the open page says, if they are about to be set and its text is here.
+    /// Sets the parameters of the open page, if they are about to be set and its text is available.
     /// Returns whether it did.
     fn set_up_lesson(&mut self) -> bool {
         let new = self.lessons.set_up(&self.document.params);
@@ -60,7 +60,7 @@ impl Session {
         let link = link::read(query);
         if let Some(lesson) = link.values.iter().find(|(key, _)| *key == Key::Lesson) {
             if self.document.params.get(Key::Lesson) == &lesson.1 {
-                // It is open already: a text that failed is asked for again.
+                // It is open already: a text that failed is requested again.
                 self.document.remember(None);
                 self.note_lesson(&[Key::Lesson]);
             }

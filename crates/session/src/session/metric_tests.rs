@@ -1,4 +1,4 @@
-//! The numbers that every lab has.
+//! Tests of the metrics of every lab.
 
 use crate::NumberTable;
 use crate::fixtures::*;
@@ -43,13 +43,13 @@ fn opened(link: &str) -> Session {
     session
 }
 
-/// The first numbers of the first pane.
+/// Returns the metrics of every lab in the first pane.
 fn common(session: &Session) -> Vec<Metric> {
     session.panes()[0].result().unwrap().outcome.metrics.iter().take(4).copied().collect()
 }
 
 #[test]
-fn every_lab_has_the_same_numbers_first_and_a_clean_result_shows_nothing() {
+fn metrics_of_every_lab_come_first_and_are_clean_for_clean_results() {
     let labs: BTreeSet<&str> =
         LABS.iter().map(|link| link[4..].split('&').next().unwrap()).collect();
     let Kind::Choice(all) = Key::Lab.param().kind else { panic!() };
@@ -78,7 +78,7 @@ fn every_lab_has_the_same_numbers_first_and_a_clean_result_shows_nothing() {
         let values: Vec<f64> = found.iter().map(|metric| metric.value.unwrap()).collect();
         let [jump, _, spin, skating] = values[..] else { panic!("{values:?}") };
         assert!(jump < 6.0 && spin < 4.0 && skating < 15.0, "{link}: {values:?}");
-        // A slide has one name and one measure wherever it stands, and each number stands once.
+        // Foot slide has one name and one measure in every lab, and each metric is listed once.
         let metrics = &session.main_outcome().unwrap().metrics;
         let ids: BTreeSet<MetricId> = metrics.iter().map(|metric| metric.id).collect();
         assert_eq!(ids.len(), metrics.len(), "{link}");
@@ -106,7 +106,7 @@ fn every_lab_has_the_same_numbers_first_and_a_clean_result_shows_nothing() {
     assert!(unused.is_empty(), "no lab has {unused:?}");
 }
 
-/// A result whose frames are something else.
+/// Returns a result with changed frames.
 fn spoiled(outcome: &Outcome, change: impl Fn(usize, &mut [Quat])) -> Outcome {
     let clip = outcome.motion.clip();
     let mut rotations = Vec::new();
@@ -138,7 +138,7 @@ fn measured(outcome: &Outcome) -> ResultMetrics {
 }
 
 #[test]
-fn a_fault_in_the_result_of_any_lab_is_told() {
+fn fault_in_the_result_of_any_lab_is_measured() {
     for link in LABS {
         let session = opened(link);
         let outcome = session.main_outcome().unwrap();
@@ -192,7 +192,7 @@ fn long_results_are_shown_at_once_and_measured_in_slices() {
         Arc::ptr_eq(&session.main_outcome().unwrap().motion, &outcome.motion),
         "the same motion"
     );
-    // What is kept of it needs no numbers.
+    // A kept result needs no numbers.
     session.apply(Command::Keep(0)).unwrap();
     let id = session.library().entries().last().unwrap().id.clone();
     let mut other = Session::new();

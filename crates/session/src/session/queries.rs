@@ -27,15 +27,15 @@ impl Session {
         let params = &self.document.params;
         let query = link::write(params);
         if would_set_up(params) {
-            // The lab, which is named only where it is not the first one, says that there is a
-            // state besides.
+            // The lab, which is usually named only if it is not the first one, shows that there is
+            // a state besides.
             format!("{query}&{}={}", Key::Lab.param().name, params.lab().word())
         } else {
             query
         }
     }
 
-    /// Returns the comparison that is open.
+    /// Returns the open comparison.
     #[must_use]
     pub fn compare(&self) -> Option<&Compare> {
         self.document.params.compare()
@@ -53,7 +53,7 @@ impl Session {
         slot.key().param().is_used_by(self.document.params.lab())
     }
 
-    /// Returns whether the link that was opened names this parameter, be it with its default.
+    /// Returns whether the opened link names this parameter, even with its default.
     #[must_use]
     pub fn names(&self, key: Key) -> bool {
         self.document.link_names(key)
@@ -66,7 +66,7 @@ impl Session {
         self.document.nameable(reference)
     }
 
-    /// Returns what the panes have of a choice: the values that are compared, or the one that is
+    /// Returns the values of a choice in the panes: those that are compared, or the one that is
     /// set.
     #[must_use]
     pub fn choices<C: Selected>(&self) -> Vec<C> {
@@ -76,8 +76,8 @@ impl Session {
         }
     }
 
-    /// Returns the name of the difference of a pane to the others: the value with its unit, or the
-    /// clip's name. `None` where there is nothing to compare.
+    /// Returns the name of a pane's difference from the others: the value with its unit, or the
+    /// clip's name. `None` if nothing is compared.
     #[must_use]
     pub fn variant_name(&self, pane: &Pane) -> Option<Message> {
         let (key, value) = pane.compared()?;
@@ -93,7 +93,7 @@ impl Session {
         })
     }
 
-    /// Returns the title on screen of a clip of which only the name is known, such as one of a
+    /// Returns the title on screen of a clip of which only the name is known, such as a clip of a
     /// walk.
     #[must_use]
     pub fn clip_title(&self, name: &str) -> Message {
@@ -107,15 +107,15 @@ impl Session {
         }
     }
 
-    /// Returns the character that moves in place of bodies made around bones: that of the clip that
-    /// the parameter `character` names.
+    /// Returns the character that replaces generated bodies: that of the clip in the parameter
+    /// `character`.
     #[must_use]
     pub fn character(&self) -> Option<Character> {
         self.document.library.find(self.document.params.text(Key::Character))?.character()
     }
 
-    /// Returns why the motion on the stage cannot move the chosen character, in a sentence. `None`
-    /// where it can, or none is chosen.
+    /// Returns the reason why the motion on the stage cannot move the chosen character, in a
+    /// sentence. `None` if it can, or if none is chosen.
     #[must_use]
     pub fn character_note(&self) -> Option<Message> {
         let entry = self.document.library.find(self.document.params.text(Key::Character))?;
@@ -133,7 +133,7 @@ impl Session {
         })
     }
 
-    /// Returns the value that Segue chose for a parameter that is left to it.
+    /// Returns the value that Segue found for an automatic parameter.
     #[must_use]
     pub fn automatic_value(&self, key: Key) -> Option<f64> {
         let outcome = self.main_outcome()?;
@@ -175,7 +175,7 @@ impl Session {
         Some((secs * motion.clip().fps()).round())
     }
 
-    /// Returns whether the open lab shows a clip, and changes it: its feet are held, it is moved,
+    /// Returns whether the open lab shows a clip with a change: its feet are locked, it is moved,
     /// or in place.
     #[must_use]
     pub fn view_is_changed(&self) -> bool {
@@ -202,7 +202,7 @@ impl Session {
         made_motion_has(&self.document.params, key)
     }
 
-    /// Returns the part of a number's range that can be used now, where that is less than in the
+    /// Returns the part of a number's range that can be used now, if that is less than in the
     /// table: speeds and durations of a synthesised motion.
     #[must_use]
     pub fn range_of(&self, key: Key) -> Option<(f64, f64)> {
@@ -217,7 +217,7 @@ impl Session {
     }
 }
 
-/// Rounds a value to whole steps; never the zero below zero.
+/// Rounds a value to whole steps; never returns negative zero.
 fn to_step(value: f64, step: f64) -> f64 {
     (value / step).round() * step + 0.0
 }

@@ -1,4 +1,5 @@
-//! Where a result cannot be made, nothing stands for it: every lab, every kind of refusal.
+//! Tests of results that cannot be made, in every lab and for every reason: no other result is
+//! shown.
 
 use crate::List;
 use crate::fixtures::*;
@@ -22,7 +23,7 @@ fn bytes_of(clip: &Clip) -> Arc<[u8]> {
     bvh::write(clip, &bvh::WriteOptions::default()).into_bytes().into()
 }
 
-/// The first frames of the built-in walk, as a file.
+/// Returns the first frames of the built-in walk, as a file.
 fn first_frames(frames: usize) -> Arc<[u8]> {
     let walk = opened("lab=view&a=walk");
     bytes_of(&walk.main_outcome().unwrap().motion.clip().crop(0..frames).unwrap())
@@ -53,7 +54,7 @@ Frame Time: 0.0333333
 0 0 3 0 5 0 0 5 0
 ";
 
-/// A clip of the test's own library: a file, or the name of one that is not here.
+/// A clip of the test's own library: a file, or the name of a missing one.
 #[derive(Clone, Copy, PartialEq)]
 enum Clips {
     OneFrame,
@@ -65,7 +66,7 @@ enum Clips {
 }
 
 impl Clips {
-    /// Puts it into the library, and nowhere else; its id.
+    /// Adds the clip to the library, and to no slot; returns its id.
     fn id(self, session: &mut Session) -> String {
         let (name, bytes) = match self {
             Self::Missing => return "nobody".to_owned(),
@@ -94,7 +95,7 @@ impl Clips {
     }
 }
 
-/// What makes a good state a bad one.
+/// A change that makes a good state a bad one.
 enum Change {
     A(Clips),
     B(Clips),
@@ -108,7 +109,7 @@ const MATCH: &str =
     "lab=match&mirrored=off&match_clips=idle,walk,walk_left,walk_right,walk(make_seconds:6)";
 const REPLAY: &str = "lab=match&mirrored=off&match_clips=idle,walk,walk_left,walk_right,walk(make_seconds:6)&scenario=straight";
 
-/// Every lab with what it cannot make, and a part of the sentence that says so.
+/// Returns the refusals of every lab: a link, a change, and a part of the message.
 fn refusals() -> Vec<(&'static str, Change, &'static str)> {
     use Change::{A, B, Both, Set};
     use Clips::{BuiltIn, Empty, Missing, OneFrame, Short, Snake};
@@ -165,7 +166,7 @@ fn refusals() -> Vec<(&'static str, Change, &'static str)> {
     ]
 }
 
-/// Changes a session; the clips that stand on its stage from then on.
+/// Changes a session; returns the slots whose clips are on its stage from then on.
 fn change(session: &mut Session, change: &Change) -> Vec<Slot> {
     let lab = session.params().lab().word().to_owned();
     let (mut is_here, mut values) = ([true; 2], Vec::new());
@@ -199,8 +200,8 @@ fn change(session: &mut Session, change: &Change) -> Vec<Slot> {
 }
 
 #[test]
-fn nothing_stands_for_a_result_that_cannot_be_made() {
-    // All of them are told at once.
+fn result_that_cannot_be_made_is_replaced_by_no_other() {
+    // All failures are reported together.
     let stale = refusals().into_iter().filter(|(link, bad, part)| {
         let checked = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
             stands_for_nothing(link, bad, part);
@@ -220,7 +221,7 @@ fn stands_for_nothing(link: &str, bad: &Change, part: &str) {
     assert!(problem.to_string().contains(part), "{state}: {problem}");
     assert!(session.jobs().is_empty(), "{state}");
 
-    // Nothing of what was there before is shown or handed on, by any way.
+    // Nothing of the earlier result is shown or passed on in any way.
     let refused = NoResult::Refused(problem.clone());
     assert_eq!(pane.result().err(), Some(refused.clone()), "{state}");
     assert!(
@@ -244,7 +245,7 @@ fn stands_for_nothing(link: &str, bad: &Change, part: &str) {
     }
     assert_eq!((session.library().entries().len(), session.query()), (kept, state.clone()));
 
-    // Time that passes changes nothing of that, and the way back leads to the same result.
+    // Time changes nothing of that, and undo leads to the same result.
     session.tick(0.1);
     assert!(session.panes()[0].outcome.is_none() && session.params().is_on(Key::Play), "{state}");
     session.apply(Command::OpenLink(link.into())).unwrap();
@@ -258,7 +259,7 @@ fn stands_for_nothing(link: &str, bad: &Change, part: &str) {
 }
 
 #[test]
-fn one_pane_that_cannot_be_made_leaves_the_others() {
+fn pane_that_cannot_be_made_leaves_the_others() {
     let session = opened("lab=view&compare=a:walk,nobody,run");
     let made: Vec<bool> = session.panes().iter().map(|pane| pane.result().is_ok()).collect();
     assert_eq!(made, [true, false, true]);
@@ -269,7 +270,7 @@ fn one_pane_that_cannot_be_made_leaves_the_others() {
 }
 
 #[test]
-fn an_earlier_result_is_told_from_the_one_that_is_computed() {
+fn earlier_result_is_outdated_while_another_is_computed() {
     let mut session = opened("lab=graph&clips=walk,walk_left,walk_right&walk_seconds=20");
     let before = Arc::clone(session.main_outcome().unwrap());
     session.apply(Command::Set(vec![(Key::BlendWindow, Value::Number(25.0))])).unwrap();
@@ -280,13 +281,13 @@ fn an_earlier_result_is_told_from_the_one_that_is_computed() {
     assert_eq!(session.apply(Command::Keep(0)), Err(CommandError::NoResult(NoResult::Awaited)));
     assert_eq!(report(&session, &ReportFacts::default()), Err(NoResult::Awaited));
     assert!(NumberTable::of(&session).rows.is_empty());
-    // Back before it was made: what is shown is the result again.
+    // Undone before it was made, the shown outcome is the result again.
     session.apply(Command::Set(vec![(Key::BlendWindow, Value::Number(30.0))])).unwrap();
     assert!(session.panes()[0].result().is_ok_and(|made| Arc::ptr_eq(made.outcome, &before)));
     set(&mut session, &[(Key::BlendWindow, Value::Number(25.0))]);
     let pane = &session.panes()[0];
     assert!(!pane.is_outdated() && pane.made_from().unwrap().number(Key::BlendWindow) == 25.0);
-    // What another lab showed is not of this one.
+    // The result of another lab is not shown.
     session.apply(Command::Set(vec![(Key::Lab, Value::Choice("match"))])).unwrap();
     assert!(
         session.panes()[0].outcome.is_none()
@@ -295,8 +296,8 @@ fn an_earlier_result_is_told_from_the_one_that_is_computed() {
 }
 
 #[test]
-fn a_guess_is_not_kept() {
-    // Longer than what is compared at once.
+fn guess_of_a_match_is_not_kept() {
+    // Clips longer than those that are compared at once.
     let link = "lab=blend&a=walk(make_seconds:20)&b=run(make_seconds:20)";
     let mut session = Session::new();
     session.apply(Command::OpenLink(link.into())).unwrap();
@@ -308,7 +309,7 @@ fn a_guess_is_not_kept() {
 }
 
 #[test]
-fn what_comes_late_plays() {
+fn result_that_arrives_late_plays() {
     // A frame passes before the first slice of work.
     let mut session = Session::new();
     session

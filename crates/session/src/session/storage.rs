@@ -1,4 +1,4 @@
-//! The work into storage, and back from it: before anything is shown, or later.
+//! Storing of the work, and its restoring: before anything is shown, or later.
 
 use super::Session;
 use crate::files::{is_as_it_came, stored_entries};
@@ -11,7 +11,7 @@ use crate::saved::{Saved, SavedEntry};
 use std::sync::Arc;
 
 impl Session {
-    /// Returns the work as it is stored.
+    /// Returns the work to be stored.
     #[must_use]
     pub fn saved(&self) -> Saved {
         Saved {
@@ -26,11 +26,10 @@ impl Session {
         }
     }
 
-    /// Brings stored work back; `content_of` gives a file's bytes by its SHA-256. Files that are
-    /// gone are named in a notice, and so are those that can be read no longer, where they are read
-    /// at once; those that are read elsewhere are asked for with [`super::Request::Read`], first
-    /// what is shown. The parameters come from `query` when there is one (a link was opened), else
-    /// from what was stored.
+    /// Restores stored work; `content_of` returns a file's bytes by its SHA-256. A notice names the
+    /// missing files, and those that can no longer be read if files are read at once; otherwise
+    /// they are requested with [`super::Request::Read`], first those on the stage. The parameters
+    /// come from `query` if there is one (a link was opened), otherwise from storage.
     pub fn restore(
         &mut self,
         saved: &Saved,
@@ -41,23 +40,23 @@ impl Session {
         if !entries.is_empty() {
             self.document.library = entries.into_iter().collect();
         }
-        // A language that was chosen by hand stays, whatever link the page is opened with, unless
-        // the link names another.
+        // A language that was chosen by hand stays when the page is opened with a link, unless the
+        // link names another.
         self.keep_language(saved);
         self.open_link(query.unwrap_or(&saved.query));
         self.document.forget_steps();
-        // The results on the stage are not of this work.
+        // The results on the stage do not belong to this work.
         self.panes.list.clear();
-        // The files of what is shown are asked for first.
+        // The files of the clips on the stage are requested first.
         self.refresh();
         self.files.read_stored(&mut self.document, &mut self.notices, lost);
         look_for_clips(&mut self.document, &mut self.notices);
         self.refresh();
     }
 
-    /// Brings stored work back into a session that has begun without it. The parameters stay as
-    /// they are, and so does what came into the library or was said of a clip by hand meanwhile;
-    /// every stored clip joins that. Taking back what was done before does not take them away.
+    /// Restores stored work in a session that has begun without it. The parameters stay as they
+    /// are, and so do clips that were added or changed by hand meanwhile; every stored clip joins
+    /// them. Undo of earlier steps does not remove them.
     pub fn restore_late(&mut self, saved: &Saved, content_of: impl FnMut(&str) -> Option<Content>) {
         let (entries, lost) = stored_entries(&self.document.library, &saved.entries, content_of);
         let before = std::mem::take(&mut self.document.library);
@@ -74,7 +73,7 @@ impl Session {
         }
         let nothing_came = self.document.library.entries().is_empty();
         for entry in before.entries() {
-            // A preset that is not stored was removed on an earlier visit. It comes back where the
+            // A preset that is not stored was removed on an earlier visit. It returns if the
             // parameters name it.
             let stays = nothing_came || !matches!(entry.origin, Origin::Preset);
             if stays && self.document.library.get(&entry.id).is_none() {
@@ -94,7 +93,7 @@ impl Session {
     }
 
     /// Adds clips that another window has stored. Those that are here already stay as they are, and
-    /// taking back what was done before does not take the others away.
+    /// undo of earlier steps does not remove the others.
     pub fn add_stored(
         &mut self,
         saved: &[SavedEntry],

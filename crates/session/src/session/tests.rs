@@ -1,9 +1,9 @@
-//! The session, by commands: what is shown, made and compared.
+//! Tests of the session by commands: contents of the stage, results and comparisons.
 
 use crate::fixtures::*;
 
 #[test]
-fn the_first_visit_blends_a_walk_into_a_run_in_three_panes() {
+fn first_visit_blends_a_walk_into_a_run_in_three_panes() {
     let session = Session::new();
     assert_eq!(session.panes().len(), 3);
     assert_eq!(session.query(), "compare=blend_window:30,15,10");
@@ -28,7 +28,7 @@ fn the_first_visit_blends_a_walk_into_a_run_in_three_panes() {
 }
 
 #[test]
-fn what_did_not_change_is_not_computed_again() {
+fn unchanged_results_are_not_computed_again() {
     let mut session = Session::new();
     settle(&mut session);
     let before = Arc::clone(session.main_outcome().unwrap());
@@ -39,7 +39,7 @@ fn what_did_not_change_is_not_computed_again() {
 }
 
 #[test]
-fn a_bad_value_changes_nothing() {
+fn invalid_value_changes_nothing() {
     let mut session = Session::new();
     let query = session.query();
     let both = vec![(Key::BlendWindow, Value::Number(20.0)), (Key::TurnRate, Value::Number(1e9))];
@@ -50,7 +50,7 @@ fn a_bad_value_changes_nothing() {
 }
 
 #[test]
-fn a_motion_is_made_whatever_was_set_for_another() {
+fn synthesised_motion_clamps_values_set_for_another() {
     let mut session = Session::new();
     let make = [
         (Key::Lab, Value::Choice("make")),
@@ -63,7 +63,7 @@ fn a_motion_is_made_whatever_was_set_for_another() {
     for gait in ["run", "walk", "idle", "start", "stop", "spin", "jump"] {
         session.apply(Command::Set(vec![(Key::Gait, Value::Choice(gait))])).unwrap();
         assert_eq!(session.panes()[0].problem, None, "{gait}");
-        // Side by side, too, each pane shows something, and no two the same.
+        // Compared side by side, each pane shows something, and no two the same.
         if session.range_of(Key::GaitSpeed).is_some() {
             session.apply(Command::Compare(Key::GaitSpeed)).unwrap();
             let values = session.compare().unwrap().values.clone();
@@ -78,7 +78,7 @@ fn a_motion_is_made_whatever_was_set_for_another() {
 }
 
 #[test]
-fn removing_a_clip_that_plays_puts_another_in_its_place_and_undo_brings_it_back() {
+fn removed_clip_is_replaced_and_restored_by_undo() {
     let mut session = Session::new();
     settle(&mut session);
     session.apply(Command::Remove("walk".into())).unwrap();
@@ -105,7 +105,7 @@ fn methods_are_compared_on_one_transition() {
         == (pair[1].leave_a_secs, pair[1].enter_b_secs)));
     let seam = |outcome: &Arc<Outcome>| outcome.metric(MetricId::PoseJump).unwrap().value.unwrap();
     assert!(seam(&outcomes[3]) > 4.0 * seam(&outcomes[0]), "a cut jumps, inertialization does not");
-    // What the slider changes shows at once, and the match stays.
+    // A change by the slider shows at once, and the match stays.
     session.apply(Command::OpenLink("lab=transition".into())).unwrap();
     settle(&mut session);
     let before = Arc::clone(session.main_outcome().unwrap());
@@ -146,13 +146,13 @@ fn number_of(outcome: &Outcome, id: MetricId) -> f64 {
 }
 
 #[test]
-fn right_and_wrong_stand_side_by_side() {
+fn mistakes_are_compared_with_the_correct_transition() {
     let right = opened("lab=transition");
     let both = opened("lab=transition&compare=mistake:none,euler,hemisphere");
     let outcome = |session: &Session, pane: usize| {
         Arc::clone(session.panes()[pane].outcome.as_ref().unwrap())
     };
-    // No mistake is the transition itself, bit for bit.
+    // Without a mistake, the result is the transition itself, bit for bit.
     assert_eq!(outcome(&right, 0).motion, outcome(&both, 0).motion);
     assert_eq!(outcome(&right, 0).metrics, outcome(&both, 0).metrics);
     let seam = |pane| number_of(&outcome(&both, pane), MetricId::VelocityJump);
@@ -169,7 +169,7 @@ fn right_and_wrong_stand_side_by_side() {
     assert!(jumps[1] > 10.0 * jumps[0], "{jumps:?}");
     let spins = [0, 2].map(|pane| of(pane, MetricId::Spin));
     assert!(spins[0] < 5.0 && spins[1] > 60.0, "{spins:?}");
-    // The other labs know nothing of mistakes.
+    // Other labs ignore mistakes.
     let [plain, spoiled] =
         ["lab=blend&compare=", "lab=blend&mistake=degrees"].map(|link| outcome(&opened(link), 0));
     assert_eq!(plain.motion, spoiled.motion);

@@ -1,4 +1,4 @@
-//! The Graph lab, by commands.
+//! Tests of the Graph lab, by commands.
 
 use crate::JobKind;
 use crate::fixtures::*;
@@ -14,7 +14,7 @@ fn opened(link: &str) -> Session {
     session
 }
 
-/// A graph that is made in a moment.
+/// A graph that is built quickly.
 const SMALL: &str = "lab=graph&clips=walk,walk_left,walk_right&walk_seconds=20&blend_window=20";
 
 fn set(session: &mut Session, key: Key, value: Value) {
@@ -37,13 +37,13 @@ fn number(session: &Session, pane: usize, id: MetricId) -> f64 {
     outcome.metric(id).and_then(|metric| metric.value).unwrap_or(f64::NAN)
 }
 
-/// Clips, in the order in which they play, with the frame at which each is entered.
+/// Returns the clips in the order in which they play, with the frame at which each is entered.
 fn way(walk: &Walk) -> Vec<(usize, usize)> {
     walk.passed.iter().map(|passed| (passed.stay.clip, passed.stay.from)).collect()
 }
 
 #[test]
-fn the_result_of_another_lab_does_not_stand_in_for_a_walk() {
+fn result_of_another_lab_is_not_shown_as_a_walk() {
     let mut session = Session::new();
     session.apply(Command::OpenLink(SMALL.into())).unwrap();
     assert!(session.panes()[0].outcome.is_none());
@@ -55,7 +55,7 @@ fn the_result_of_another_lab_does_not_stand_in_for_a_walk() {
 }
 
 #[test]
-fn a_walk_goes_through_the_built_in_clips_without_a_jump() {
+fn walk_through_the_built_in_clips_has_no_jump() {
     let session = opened("lab=graph");
     let walk = walk(&session);
     assert_eq!(walk.motion.clip().frames(), 3600);
@@ -72,7 +72,7 @@ fn a_walk_goes_through_the_built_in_clips_without_a_jump() {
     assert!(slide < 15.0, "{slide}");
     assert!(walk.built.rings()[0] > 0.6, "one large component: {:?}", walk.built.rings());
     assert!(walk.run_secs.unwrap() > 0.5);
-    // What it shows is what it is made of.
+    // The state at a time is that of the stays, and its ghosts are clips of the walk.
     for secs in [0.0, 3.3, 17.0, 59.0] {
         let at = walk.at(secs).unwrap();
         let frame = (secs * 60.0).round() as usize;
@@ -80,7 +80,7 @@ fn a_walk_goes_through_the_built_in_clips_without_a_jump() {
         assert!((passed.start..passed.end).contains(&frame) && passed.stay.clip == at.place.clip);
         assert_eq!(at.place.frame, passed.stay.from + frame - passed.start);
     }
-    // Behind a transition and before the next, the walk is the clip, laid somewhere else.
+    // Between two transitions the walk equals the clip at another place.
     let calm = walk
         .passed
         .iter()
@@ -96,7 +96,7 @@ fn a_walk_goes_through_the_built_in_clips_without_a_jump() {
 }
 
 #[test]
-fn the_same_seed_is_the_same_walk_and_it_grows_while_it_plays() {
+fn walk_of_the_same_seed_is_the_same_and_grows_while_it_plays() {
     let mut session = opened(SMALL);
     let first = Arc::clone(walk(&session));
     assert_eq!(way(&first), way(walk(&opened(SMALL))));
@@ -125,13 +125,13 @@ fn the_same_seed_is_the_same_walk_and_it_grows_while_it_plays() {
             .to_vec(),
         numbers
     );
-    // A link to a time beyond what is measured shows that time.
+    // A link to a time beyond the measured part shows that time.
     let later = opened(&format!("{SMALL}&play=off&t=61"));
     assert!(later.now_secs() == 61.0 && walk(&later).motion.clip().duration_secs() > 80.0);
 }
 
 #[test]
-fn a_change_is_made_in_slices_from_what_is_known_and_can_be_given_up() {
+fn change_is_computed_in_slices_from_cached_parts_and_can_be_stopped() {
     let mut session = opened("lab=graph&walk_seconds=20");
     let slices = |session: &mut Session, key: Key, value: f64| {
         session.apply(Command::Set(vec![(key, Value::Number(value))])).unwrap();
@@ -161,7 +161,7 @@ fn a_change_is_made_in_slices_from_what_is_known_and_can_be_given_up() {
         for_seed > 5 && for_threshold > for_seed / 2 && for_window > 5,
         "{for_seed} {for_threshold} {for_window}"
     );
-    // A window that was there before is there at once, but for the walk.
+    // For a window that was used before, only the walk is made again.
     session.apply(Command::Set(vec![(Key::BlendWindow, Value::Number(30.0))])).unwrap();
     assert_eq!(session.graph_field().unwrap().window(), 30);
     assert!(session.graph_built().is_some());
@@ -179,14 +179,14 @@ fn a_change_is_made_in_slices_from_what_is_known_and_can_be_given_up() {
     session.apply(Command::StopGraph(true)).unwrap();
     set(&mut session, Key::BlendWindow, Value::Number(12.0));
     assert_eq!(walk(&session).built.options().blend_window, 12, "a change goes on");
-    // A lab that is left is not worked for.
+    // No work is done for a lab that was left.
     session.apply(Command::Set(vec![(Key::BlendWindow, Value::Number(33.0))])).unwrap();
     session.apply(Command::Set(vec![(Key::Lab, Value::Choice("view"))])).unwrap();
     assert!(session.jobs().is_empty());
 }
 
 #[test]
-fn the_mistakes_spin_on_the_same_walk() {
+fn mistakes_spin_on_the_same_walk() {
     let session = opened(&format!("{SMALL}&compare=atan:atan2,atan"));
     assert_eq!(way(walk_of(&session, 0)), way(walk_of(&session, 1)));
     assert!(
@@ -202,7 +202,7 @@ fn the_mistakes_spin_on_the_same_walk() {
 }
 
 #[test]
-fn other_windows_walk_the_same_way_where_they_can() {
+fn walks_with_other_windows_follow_the_first_where_they_can() {
     let session = opened(&format!("{SMALL}&edge_threshold=10&compare=blend_window:24,12,8"));
     let clips = |pane: usize| -> Vec<usize> {
         walk_of(&session, pane).passed.iter().map(|passed| passed.stay.clip).collect()
@@ -221,7 +221,7 @@ fn other_windows_walk_the_same_way_where_they_can() {
 }
 
 #[test]
-fn other_segments_and_thresholds_have_walks_of_their_own() {
+fn walks_with_other_segments_or_thresholds_are_their_own() {
     let segments = "lab=graph&clips=walk,walk_left,walk_right&walk_seconds=20&construction=segments&blend_window=10&edge_threshold=10";
     for link in [
         format!("{segments}&compare=segment_size:40,20"),
@@ -232,7 +232,7 @@ fn other_segments_and_thresholds_have_walks_of_their_own() {
         assert_ne!(way(walk_of(&session, 0)), way(walk_of(&session, 1)), "{link}");
         let slides = [0, 1].map(|pane| number(&session, pane, MetricId::FootSlide));
         assert_ne!(slides[0], slides[1], "{link}");
-        // As if each stood alone.
+        // Each is the same as alone.
         let alone = opened(
             &link
                 .replace("compare=segment_size:40,20", "segment_size=20")
@@ -243,7 +243,7 @@ fn other_segments_and_thresholds_have_walks_of_their_own() {
 }
 
 #[test]
-fn a_clip_is_gone_to_and_a_path_is_followed() {
+fn walk_visits_a_clip_and_follows_a_path() {
     let mut session = opened(SMALL);
     let before = Arc::clone(walk(&session));
     for clip in [2, 0, 1] {
@@ -275,7 +275,7 @@ fn a_clip_is_gone_to_and_a_path_is_followed() {
 }
 
 #[test]
-fn the_best_way_so_far_is_walked_while_a_path_is_searched() {
+fn walk_follows_the_best_path_so_far_during_the_search() {
     let line: Vec<DVec2> = (0..=10).map(|k| DVec2::new(0.1 * f64::from(k), f64::from(k))).collect();
     let mut patient = opened(SMALL);
     set(&mut patient, Key::WalkPath, List::GroundPath(line.clone()).into());
@@ -286,7 +286,7 @@ fn the_best_way_so_far_is_walked_while_a_path_is_searched() {
     let (mut shown, mut along) = (0, 0.0);
     let mut last = Arc::clone(walk(&hasty));
     while hasty.work() {
-        // A slow machine.
+        // On a slow machine.
         hasty.work_took(0.3);
         if !Arc::ptr_eq(&last, walk(&hasty)) {
             last = Arc::clone(walk(&hasty));
@@ -298,7 +298,7 @@ fn the_best_way_so_far_is_walked_while_a_path_is_searched() {
         }
     }
     assert!(shown >= 2, "{shown}");
-    // How long one had to wait changes nothing in the end.
+    // The duration of the search does not change the final walk.
     let (a, b) = (walk(&patient), walk(&hasty));
     assert_eq!(a.followed, b.followed);
     assert!(!a.followed.as_ref().unwrap().is_searching);
@@ -306,7 +306,7 @@ fn the_best_way_so_far_is_walked_while_a_path_is_searched() {
 }
 
 #[test]
-fn held_feet_stay_where_they_are_while_the_walk_grows() {
+fn locked_feet_stay_in_place_while_the_walk_grows() {
     let mut session = opened(&format!("{SMALL}&foot_lock=on"));
     let before = Arc::clone(walk(&session));
     let free = opened(SMALL);
@@ -316,8 +316,8 @@ fn held_feet_stay_where_they_are_while_the_walk_grows() {
     while session.work() {}
     let after = walk(&session);
     assert!(after.motion.clip().frames() > before.motion.clip().frames());
-    // What is about to play is what was shown before, but for roundings: the plane in which a leg
-    // usually bends is that of the whole walk.
+    // The part about to play is the one that was shown before, except for rounding: the plane in
+    // which a leg usually bends is that of the whole walk.
     let mut most = 0.0_f32;
     for frame in 0..18 * 60 {
         let pairs =
@@ -328,7 +328,7 @@ fn held_feet_stay_where_they_are_while_the_walk_grows() {
 }
 
 #[test]
-fn one_transition_plays_alone() {
+fn chosen_transition_plays_alone() {
     let mut session = opened(SMALL);
     let jump = walk(&session).built.whole().jumps()[3];
     set(&mut session, Key::Jump, List::Jump(Some([jump.leave, jump.enter])).into());
@@ -337,7 +337,7 @@ fn one_transition_plays_alone() {
     assert!(walk(&session).is_jump && outcome.sources.len() == 2);
     assert!((f64::from(transition.distance_cm) - jump.distance_cm).abs() < 1e-3);
     assert_eq!((transition.leave_a_secs * 60.0).round() as usize, jump.leave.frame);
-    // Each source lies on the result where that is the source alone.
+    // Each source lies on the result where only that source plays.
     for (source, secs) in outcome.sources.iter().zip([0.0, transition.end_secs + 0.2]) {
         let stands =
             source.world_from_clip.after(&source.motion.standing_at(secs - source.starts_at_secs));
@@ -357,7 +357,7 @@ fn one_transition_plays_alone() {
 }
 
 #[test]
-fn every_setting_answers_and_no_earlier_walk_stands_for_it() {
+fn every_setting_gives_its_own_walk_or_a_reason() {
     let mut session = opened(
         "lab=graph&clips=walk(make_seconds:2),walk(turn_rate:20,make_seconds:2)&walk_seconds=10",
     );
@@ -409,7 +409,7 @@ fn every_setting_answers_and_no_earlier_walk_stands_for_it() {
 }
 
 #[test]
-fn a_walk_is_kept_and_made_again_from_its_link() {
+fn kept_walk_is_made_again_from_its_link() {
     let mut session = opened(SMALL);
     let kept = session.main_outcome().unwrap().motion.clip().clone();
     session.apply(Command::Keep(0)).unwrap();
@@ -422,20 +422,20 @@ fn a_walk_is_kept_and_made_again_from_its_link() {
         (made.motion.clip().rotations(900), made.motion.clip().frames()),
         (kept.rotations(900), kept.frames())
     );
-    // A clip that is taken out of the library leaves the graph.
+    // A clip that is removed from the library leaves the graph.
     session.apply(Command::Remove("walk_left".into())).unwrap();
     while session.work() {}
     assert_eq!(session.graph_clip_ids(), ["walk", "walk_right"]);
     assert_eq!(walk(&session).built.cast().names().len(), 2);
-    // Not what a guided pane shows: alone it goes another way.
+    // The walk of a guided pane cannot be kept: alone it takes another path.
     let mut compared = opened(&format!("{SMALL}&compare=blend_window:20,10"));
     assert!(matches!(compared.apply(Command::Keep(1)), Err(CommandError::NotPossible(_))));
     assert!(compared.apply(Command::Keep(0)).is_ok());
 }
 
-/// What plays begins where a transition leads to, and goes on to where the next one leaves; the way
-/// is one through the graph.
-fn hangs_together(walk: &Walk) {
+/// Asserts that each stay begins where a transition enters and ends where the next one leaves,
+/// along transitions of the graph.
+fn assert_connected(walk: &Walk) {
     let jumps = walk.built.graph().jumps();
     for pair in walk.passed.windows(2) {
         let (stay, next) = (&pair[0].stay, &pair[1].stay);
@@ -451,7 +451,7 @@ fn hangs_together(walk: &Walk) {
 }
 
 #[test]
-fn a_walk_can_set_off_at_any_time() {
+fn visit_begins_at_any_time() {
     let segments = "lab=graph&clips=walk,walk_left,walk_right&walk_seconds=20&blend_window=15&construction=segments&segment_size=40&edge_threshold=10";
     for link in [SMALL, segments] {
         let mut session = opened(link);
@@ -463,7 +463,7 @@ fn a_walk_can_set_off_at_any_time() {
             set(&mut session, Key::GoTo, List::Visits(vec![(secs, clip)]).into());
             let now = &Arc::clone(walk(&session));
             assert_eq!(now.missed, []);
-            hangs_together(now);
+            assert_connected(now);
             let due = (secs * 60.0).round() as usize;
             for frame in 0..due {
                 let same = now.motion.clip().rotations(frame)
@@ -473,7 +473,7 @@ fn a_walk_can_set_off_at_any_time() {
                     && now.motion.ground_frames()[frame] == before.motion.ground_frames()[frame];
                 assert!(same, "{link}: set off at {due}, frame {frame} is another one");
             }
-            // As soon as there is a way, and not by chance some day.
+            // Reached as soon as there is a path, not by chance later.
             let there = now
                 .passed
                 .iter()
@@ -481,7 +481,7 @@ fn a_walk_can_set_off_at_any_time() {
                 .unwrap();
             assert!(there.start < due + 9 * 60, "{link}: {due} {there:?}");
             assert_eq!(number(&session, 0, MetricId::Spins), 0.0, "{link}: {secs}");
-            // What a transition does wherever one comes to it is none of the visit's.
+            // Spins and flashes that a transition always has are not caused by the visit.
             let flashes = number(&session, 0, MetricId::Flashes);
             let mut alone = 0.0;
             for seam in now.passed.iter().filter_map(|passed| passed.seam) {
@@ -500,19 +500,19 @@ fn a_walk_can_set_off_at_any_time() {
         }
         assert!(off_the_way > 20 && first > 20, "{off_the_way} {first}");
     }
-    // One visit behind the other, and a second one before the first has come to anything.
+    // One visit after another, and a second one before the first is reached.
     let mut session = opened(SMALL);
     for visits in ["3:2,9:0,14:1", "6:2,6.1:0,6.2:1"] {
         set(&mut session, Key::GoTo, Key::GoTo.param().parse(visits).unwrap());
-        hangs_together(walk(&session));
+        assert_connected(walk(&session));
     }
     let reached = (62..150).any(|k| walk(&session).at(f64::from(k) * 0.1).unwrap().place.clip == 1);
     assert!(reached, "{:?}", way(walk(&session)));
 }
 
 #[test]
-fn where_no_way_leads_is_told() {
-    // Without clips that start and stop nobody comes to rest.
+fn visit_of_an_unreachable_clip_is_reported() {
+    // Without clips that start and stop, no path leads to rest.
     let mut session =
         opened("lab=graph&clips=walk,walk_left,walk_right,idle&walk_seconds=20&blend_window=20");
     let built = Arc::clone(&walk(&session).built);
@@ -525,7 +525,7 @@ fn where_no_way_leads_is_told() {
     assert_ne!(way(walk(&session)), before, "the other visit is made");
     session.apply(Command::Reset(Key::GoTo)).unwrap();
     assert_eq!(walk(&session).missed, []);
-    // All of the graph: its parts do not reach each other, or one way only.
+    // In the unpruned graph, some parts do not reach each other, or one way only.
     set(&mut session, Key::Prune, Value::Switch(false));
     let built = &walk(&session).built;
     for clip in 0..4 {
@@ -547,11 +547,11 @@ fn where_no_way_leads_is_told() {
 }
 
 #[test]
-fn a_walk_that_goes_like_another_does_not_hang_on_what_was_shown_of_it() {
+fn guided_walk_does_not_depend_on_what_was_shown_of_its_guide() {
     let small = format!("{SMALL}&edge_threshold=10&play=off");
     let compare = "blend_window:24,12,8";
     let fresh = opened(&format!("{small}&compare={compare}"));
-    // The first walk is there already, and much more of it.
+    // The first walk is known already, and is much longer.
     let mut late = opened(&format!("{small}&blend_window=24&t=90"));
     assert!(walk(&late).motion.clip().duration_secs() > 100.0);
     late.apply(Command::Set(vec![
@@ -560,7 +560,7 @@ fn a_walk_that_goes_like_another_does_not_hang_on_what_was_shown_of_it() {
     ]))
     .unwrap();
     while late.work() {}
-    // Or the walk that goes like it gets long.
+    // The guiding walk becomes long.
     let mut long = opened(&format!("{small}&compare={compare}"));
     long.apply(Command::Playback(PlaybackCommand::Seek(70.0))).unwrap();
     while long.work() {}
@@ -571,9 +571,9 @@ fn a_walk_that_goes_like_another_does_not_hang_on_what_was_shown_of_it() {
         for other in [&late, &long] {
             assert_eq!(way(walk_of(other, pane))[..wanted.len()], *wanted, "pane {pane}");
         }
-        hangs_together(walk_of(&long, pane));
+        assert_connected(walk_of(&long, pane));
     }
-    // One that follows a line goes there, whatever the first one does.
+    // A walk along a line follows the line, whatever the first one does.
     let line: Vec<DVec2> = (0..=10).map(|k| DVec2::new(0.1 * f64::from(k), f64::from(k))).collect();
     let path = List::GroundPath(line).write();
     let both = opened(&format!("{small}&walk_path={path}&compare={compare}"));
@@ -585,8 +585,8 @@ fn a_walk_that_goes_like_another_does_not_hang_on_what_was_shown_of_it() {
 }
 
 #[test]
-fn a_walk_that_goes_like_another_goes_where_it_is_sent() {
-    // From a walk one comes to rest only by stopping.
+fn guided_walk_makes_its_visits() {
+    // From a walk, the only way to rest is by a stop.
     let link = "lab=graph&clips=walk,start,stop,idle,walk_left&walk_seconds=30&play=off&compare=blend_window:24,12,8&edge_threshold=10";
     let mut session = opened(link);
     for secs in (2..16).map(f64::from) {
@@ -606,7 +606,7 @@ fn a_walk_that_goes_like_another_goes_where_it_is_sent() {
 }
 
 #[test]
-fn a_clip_that_is_taken_out_takes_the_places_along_that_were_told_by_numbers() {
+fn clip_removed_from_the_list_resets_parameters_with_clip_indices() {
     let mut session = opened(&format!("{SMALL}&go_to=6:2&jump=0:1-2:3"));
     session.apply(Command::Remove("walk".into())).unwrap();
     while session.work() {}
@@ -625,7 +625,7 @@ fn a_clip_that_is_taken_out_takes_the_places_along_that_were_told_by_numbers() {
 }
 
 #[test]
-fn clips_may_be_called_anything() {
+fn clips_with_any_name_are_used() {
     let mut session = opened(SMALL);
     let motion = session.library().find("walk_left").unwrap().motion.clone().unwrap();
     let bytes: Arc<[u8]> =
@@ -648,14 +648,14 @@ fn clips_may_be_called_anything() {
 }
 
 #[test]
-fn a_threshold_is_dragged_without_looking_at_the_distances_again() {
-    // More frames than distances are held of.
+fn threshold_that_is_dragged_needs_no_new_search() {
+    // More frames than the distance matrix is kept for.
     let clips = "walk(make_seconds:30),walk(turn_rate:20,make_seconds:30),run(make_seconds:30),walk(turn_rate:-20,make_seconds:20)";
     let base = format!("lab=graph&clips={clips}&walk_seconds=10&blend_window=12&edge_threshold=6");
     let mut session = opened(&base);
     let field = Arc::clone(session.graph_field().unwrap());
     assert!(matches!(field.distances(), crate::Distances::FromAfar(_)));
-    // How far one is at once.
+    // Returns the progress at the first moment after a change.
     let starts_at = |session: &mut Session, key: Key, value: Value| {
         session.apply(Command::Set(vec![(key, value)])).unwrap();
         let before = Arc::clone(walk(session));
@@ -691,7 +691,7 @@ fn a_threshold_is_dragged_without_looking_at_the_distances_again() {
     assert!(
         Arc::ptr_eq(session.graph_field().unwrap(), &field) && !walk(&session).built.lacks_some()
     );
-    // The graph is the one that is made when nothing else was asked before.
+    // The graph is the one that is built when nothing else was requested before.
     let direct =
         opened(&base.replace("edge_threshold=6", "edge_threshold=5&min_jump=0.8&prune=off"));
     assert_eq!(direct_jumps(&session), direct_jumps(&direct));
@@ -702,8 +702,8 @@ fn direct_jumps(session: &Session) -> Vec<segue_motion::graph::Jump> {
     walk(session).built.whole().jumps().to_vec()
 }
 
-/// A stay of the walk that is written down: the clip's id, the frames that play, and the walk's
-/// frame at which it begins.
+/// A stay of the golden walk: the clip's id, the frames that play, and the walk's frame at which it
+/// begins.
 #[derive(Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 struct GoldenStay {
     clip: String,
@@ -720,10 +720,10 @@ struct GoldenWalk {
     stays: Vec<GoldenStay>,
 }
 
-/// A minute of the walk that everybody sees who opens this link, here and in the browser
-/// (`labs.test.mjs`). Where a change makes another walk on purpose, write down what the test found.
+/// The first minute of the walk that this link opens, on every machine and in the browser
+/// (`labs.test.mjs`). If a change makes another walk on purpose, copy what the test found.
 #[test]
-fn the_walk_is_the_one_that_is_written_down() {
+fn golden_walk_is_unchanged() {
     let text = include_str!("../../../tests/golden/walk.json");
     let golden: GoldenWalk = serde_json::from_str(text).unwrap();
     let session = opened(&golden.link);

@@ -201,7 +201,7 @@ pub(super) fn of_walk(found: &WalkMetrics) -> [Metric; 5] {
 }
 
 impl Outcome {
-    /// Returns the walk that it is; `None` where it is none.
+    /// Returns the walk of the result; `None` if it is not a walk.
     #[must_use]
     pub fn walk(&self) -> Option<&Arc<Walk>> {
         self.facts.get()

@@ -146,7 +146,7 @@ impl WalkRequest {
     }
 }
 
-/// Returns the clips of a list. An id may stand there several times, and counts once.
+/// Returns the clips of a list. An id that is listed several times counts once.
 ///
 /// # Errors
 /// The list is empty or too long.
@@ -182,7 +182,7 @@ pub fn graph_of(ids: &[String]) -> Vec<(Key, Value)> {
     ]
 }
 
-/// Returns when to set off for which clip, in the order of time.
+/// Returns the visits in order of time: when to set off, seconds, and the index of the clip.
 pub(crate) fn visits_of(params: &Params) -> Vec<(f64, usize)> {
     let mut visits = params.visits().to_vec();
     visits.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -194,7 +194,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn clip_that_is_listed_twice_counts_once() {
+    fn clip_listed_twice_counts_once() {
         let ids = |ids: &[&str]| ids.iter().map(|id| (*id).to_owned()).collect::<Vec<_>>();
         assert_eq!(clips_of(&ids(&["walk", "run", "walk"])), Ok(ids(&["walk", "run"])));
         assert_eq!(clips_of(&[]), Err(LabError::NoGraphClips));

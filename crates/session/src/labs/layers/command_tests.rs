@@ -1,4 +1,4 @@
-//! The Layers lab, by commands.
+//! Tests of the Layers lab, by commands.
 
 use crate::fixtures::*;
 use segue_motion::metrics::foot_slide_cm;
@@ -16,14 +16,14 @@ fn number_of(outcome: &Outcome, id: MetricId) -> f64 {
 }
 
 #[test]
-fn the_layers_lab_opens_with_a_run_on_walking_legs() {
+fn layers_lab_opens_with_a_run_on_walking_legs() {
     let session = opened("lab=layers");
     let outcome = session.main_outcome().unwrap();
     let layer = outcome.layer().unwrap();
     assert_eq!((layer.fit, layer.has_no_steps), (crate::LayerFit::InStep, false));
     assert!(layer.shares[0] == 0.0 && layer.shares.contains(&1.0));
     let walk = session.slot(Slot::A).unwrap().motion.clone().unwrap();
-    // The legs are the walk's, bit for bit, and stand as they stood.
+    // The legs are the walk's, bit for bit, with the same contacts.
     assert_eq!(outcome.motion.clip().root_translations(), walk.clip().root_translations());
     assert_eq!(outcome.motion.contacts(), walk.contacts());
     let slide = foot_slide_cm(walk.clip(), walk.roles(), walk.contacts());
@@ -41,8 +41,8 @@ fn the_layers_lab_opens_with_a_run_on_walking_legs() {
 }
 
 #[test]
-fn the_arms_of_a_run_in_step_swing_with_the_legs() {
-    // As far apart as the hands are when the left foot strikes, in every cycle.
+fn arms_of_a_run_in_step_swing_with_the_legs() {
+    // The forearm has the same rotation at each strike of the left foot.
     let session = opened("lab=layers&mask=arms&keep_orientation=off");
     let outcome = session.main_outcome().unwrap();
     let hand = outcome.motion.roles().get(segue_motion::skeleton::Role::LeftForearm).unwrap();
@@ -59,7 +59,7 @@ fn the_arms_of_a_run_in_step_swing_with_the_legs() {
 }
 
 #[test]
-fn layers_are_live_and_say_how_their_time_goes() {
+fn layers_update_at_once_and_report_how_their_time_fits() {
     use crate::LayerFit;
     for (link, fit, has_no_steps) in [
         ("lab=layers&b=run(make_seconds:2)&layer_fit=loop", LayerFit::Looped, false),
@@ -83,7 +83,7 @@ fn layers_are_live_and_say_how_their_time_goes() {
         .map(|pane| number_of(pane.outcome.as_ref().unwrap(), MetricId::ArmsOffA))
         .collect();
     assert!(arms[0] == 0.0 && arms[1] > 0.3 * arms[2] && arms[1] < 0.7 * arms[2], "{arms:?}");
-    // What did not change is not computed again, in any pane, whatever they differ in.
+    // Unchanged results are not computed again in any pane, whichever parameter is compared.
     for compare in [
         "layer_weight:0,0.5",
         "layer_start:0,0.2,0.4",
@@ -102,8 +102,8 @@ fn layers_are_live_and_say_how_their_time_goes() {
         );
         assert!(before.windows(2).all(|pair| pair[0].motion != pair[1].motion), "{compare}");
     }
-    // Against the mean, an additive layer leaves the posture; against the rest pose it adds all of
-    // it.
+    // Relative to the mean, an additive layer keeps the posture; relative to the rest pose, it adds
+    // all of it.
     let off = |reference: &str| {
         let session =
             opened(&format!("lab=layers&layer_mode=additive&layer_reference={reference}"));

@@ -1,4 +1,4 @@
-//! The Match lab, by commands.
+//! Tests of the Match lab, by commands.
 
 use crate::Driven;
 use crate::fixtures::*;
@@ -16,7 +16,7 @@ fn open(link: &str) -> Session {
     session
 }
 
-/// A database that is built in a moment.
+/// A database that is built quickly.
 const SMALL: &str =
     "lab=match&mirrored=off&match_clips=idle,walk,walk_left,walk_right,walk(make_seconds:6)";
 
@@ -32,7 +32,7 @@ fn ask(session: &mut Session, x: f64, z: f64) {
 }
 
 #[test]
-fn a_scenario_by_link_is_what_the_core_makes_of_it() {
+fn scenario_of_a_link_equals_the_core() {
     let session = open("lab=match&scenario=spin");
     let outcome = session.main_outcome().unwrap();
     let database =
@@ -41,11 +41,11 @@ fn a_scenario_by_link_is_what_the_core_makes_of_it() {
     let mut options = crate::labs::options_of(session.params());
     options.candidates = 1;
     let played = drive(&database, options, &Scenario::Spin.recording()).unwrap();
-    // The trajectory times of the sliders are hundredths of a second, and come to the same frames.
+    // The trajectory times of the sliders are hundredths of a second, and round to the same frames.
     assert_eq!(outcome.motion.clip().root_translations(), played.clip.root_translations());
     assert_eq!(outcome.motion.clip().rotations(200), played.clip.rotations(200));
     let metrics = super::trace::of_drive(&played.metrics(&database));
-    // Behind those that every lab has.
+    // After the metrics of every lab.
     assert_eq!(outcome.metrics[4..][..metrics.len()], metrics);
     assert!(
         driven(&session).jumps_secs().count() == played.jumps.len() && !played.jumps.is_empty()
@@ -53,7 +53,7 @@ fn a_scenario_by_link_is_what_the_core_makes_of_it() {
 }
 
 #[test]
-fn what_is_driven_is_written_down_and_played_again_exactly() {
+fn driven_motion_is_recorded_and_replayed_exactly() {
     let mut session = open(SMALL);
     assert!(session.is_driven() && session.jobs().is_empty());
     let rest = driven(&session).moments.last().unwrap().root;
@@ -79,7 +79,7 @@ fn what_is_driven_is_written_down_and_played_again_exactly() {
             (clip.rotations(frames - back), clip.root_translations()[frames - back])
         );
     }
-    // The link alone brings it back, and it is kept like any other clip.
+    // The link alone restores it, and it is kept like any other clip.
     let mut other = open(&session.query());
     let again = Arc::clone(other.main_outcome().unwrap().motion.clip());
     assert_eq!(again.root_translations(), replay.root_translations());
@@ -98,7 +98,7 @@ fn what_is_driven_is_written_down_and_played_again_exactly() {
 }
 
 #[test]
-fn time_of_any_rate_makes_whole_ticks_and_a_pause_stands() {
+fn time_at_any_rate_makes_whole_ticks_and_none_while_paused() {
     let mut session = open(SMALL);
     ask(&mut session, 0.0, 1.4);
     for _ in 0..50 {
@@ -118,21 +118,21 @@ fn time_of_any_rate_makes_whole_ticks_and_a_pause_stands() {
     assert_eq!((session.recording().ticks(), session.now_secs()), now);
     session.apply(Command::Playback(PlaybackCommand::Step(3))).unwrap();
     assert_eq!(session.recording().ticks(), now.0 + 3);
-    // A page that slept does not run for hours.
+    // A page that was suspended does not catch up for hours.
     session.apply(Command::Playback(PlaybackCommand::TogglePlay)).unwrap();
     session.tick(3600.0);
     assert!(session.recording().ticks() < now.0 + 3 + RATE);
 }
 
 #[test]
-fn whoever_pushes_the_stick_lets_time_run() {
+fn stick_input_starts_playback() {
     let mut session = open(&format!("{SMALL}&play=off"));
     assert!(session.is_driven() && !session.tick(0.5));
     ask(&mut session, 0.0, 1.4);
     assert!(session.params().is_on(Key::Play) && session.tick(0.5));
     let ticks = session.recording().ticks();
     assert!(ticks > 10);
-    // Paused with the stick held, it stays so until it is pushed anew.
+    // Paused with the stick held, it stays paused until the stick moves again.
     session.apply(Command::Playback(PlaybackCommand::TogglePlay)).unwrap();
     ask(&mut session, 0.5, 1.4);
     assert!(!session.params().is_on(Key::Play) && session.recording().ticks() == ticks);
@@ -140,7 +140,7 @@ fn whoever_pushes_the_stick_lets_time_run() {
     assert!(!session.params().is_on(Key::Play));
     ask(&mut session, 0.0, 1.4);
     assert!(session.params().is_on(Key::Play));
-    // From the Graph lab, which has nothing to show at first, it plays on.
+    // From the Graph lab, which has nothing to show at first, playback continues.
     let mut session = Session::new();
     for lab in ["lab=graph", "lab=match"] {
         session.apply(Command::OpenLink(lab.into())).unwrap();
@@ -150,7 +150,7 @@ fn whoever_pushes_the_stick_lets_time_run() {
 }
 
 #[test]
-fn a_character_comes_to_a_pane_whose_neighbour_waits() {
+fn character_appears_beside_a_pane_that_waits() {
     // The second database is known, the first is not.
     let mut session = open(&format!("{SMALL}&ahead_far=1.2"));
     session.apply(Command::OpenLink("lab=view".into())).unwrap();
@@ -167,7 +167,7 @@ fn a_character_comes_to_a_pane_whose_neighbour_waits() {
 }
 
 #[test]
-fn sliders_change_the_character_on_its_way_and_panes_have_one_input() {
+fn sliders_change_the_moving_character_and_panes_share_the_input() {
     let mut session = open(&format!("{SMALL}&compare=hysteresis:none,bias,votes"));
     ask(&mut session, 0.7, 1.2);
     for _ in 0..90 {
@@ -204,7 +204,7 @@ fn sliders_change_the_character_on_its_way_and_panes_have_one_input() {
 }
 
 #[test]
-fn tags_are_asked_for_and_searches_tell_of_candidates() {
+fn tag_filter_restricts_the_candidates_of_searches() {
     let mut session = open("lab=match&ask_tag=walk&shown_candidates=4");
     for _ in 0..120 {
         session.tick(1.0 / 60.0);
@@ -225,7 +225,7 @@ fn tags_are_asked_for_and_searches_tell_of_candidates() {
 }
 
 #[test]
-fn tags_by_hand_are_asked_for_and_excluded() {
+fn tags_by_hand_are_required_and_excluded() {
     let session = open(&format!(
         "{SMALL}&tags=walk:0-1:proud,walk:0.5-2:-walk,idle:0-10:exclude&ask_tag=proud"
     ));
@@ -245,13 +245,13 @@ fn tags_by_hand_are_asked_for_and_excluded() {
             && !at(1, 45).has(Tag::Walk)
             && !at(1, 90).meets(own)
     );
-    // A word that no frame has is told, with what to do.
+    // A word that no frame has is refused, with the remedy.
     let problem = open(&format!("{SMALL}&scenario=straight&forbid_tag=tired")).panes()[0]
         .problem
         .clone()
         .unwrap();
     assert!(problem.to_string().contains("`tired`"), "{problem}");
-    // Tags change while one drives: the character goes on from where it is.
+    // Tags change during driving: the character continues from where it is.
     let mut session = open(SMALL);
     ask(&mut session, 0.0, 1.4);
     for _ in 0..90 {
@@ -270,7 +270,7 @@ fn tags_by_hand_are_asked_for_and_excluded() {
 }
 
 #[test]
-fn a_crowd_shares_the_database() {
+fn crowd_shares_the_database() {
     let mut session = open(&format!("{SMALL}&crowd=6"));
     for _ in 0..30 {
         session.tick(1.0 / 60.0);
@@ -296,7 +296,7 @@ fn a_crowd_shares_the_database() {
 }
 
 #[test]
-fn what_cannot_be_done_is_a_sentence() {
+fn impossible_settings_are_refused_with_a_sentence() {
     for (link, part) in [
         (
             "lab=match&match_clips=walk(make_seconds:2)&ahead_far=3&match_cycles=off",
@@ -317,7 +317,7 @@ fn what_cannot_be_done_is_a_sentence() {
         session.apply(Command::Drive(DriveCommand::Replay)),
         Err(CommandError::NotPossible(_))
     ));
-    // A controller of the core stands where this one stands.
+    // A controller of the core begins at the same frame.
     let core = Controller::new(
         Arc::clone(&driven(&session).database),
         crate::labs::options_of(session.params()),
@@ -327,7 +327,7 @@ fn what_cannot_be_done_is_a_sentence() {
 }
 
 #[test]
-fn the_literal_forms_of_a_course_are_choices() {
+fn literal_forms_of_a_course_are_choices() {
     let given =
         "lab=match&mirrored=off&match_clips=walk,walk_left,walk(make_seconds:6)&scenario=straight";
     let usual = open(given);
@@ -342,7 +342,7 @@ fn the_literal_forms_of_a_course_are_choices() {
         !options(&literal).cycles
             && options(&literal).features.normalisation == Normalisation::Dimension
     );
-    // The clip that is preferred plays, although it leads elsewhere.
+    // The preferred clip plays, although it leads elsewhere.
     let played = |session: &Session| {
         let driven = driven(session);
         let left = |moment: &&Arc<crate::DriveMoment>| {

@@ -1,4 +1,4 @@
-//! Extra characters that wander about, with the same clips and controllers of their own.
+//! Extra characters that wander around, with the same clips and their own controllers.
 
 use crate::labs::LabError;
 use glam::DVec2;

@@ -1,5 +1,5 @@
-//! The characters of the Match lab that the user drives: they go on while time runs, and all their
-//! input is recorded.
+//! The characters of the Match lab that the user drives: they continue while time advances, and all
+//! their input is recorded.
 
 use super::crowd::Crowd;
 use super::live::Live;
@@ -29,15 +29,15 @@ pub(crate) struct LiveDrive {
     control: Control,
     /// The input of every tick so far.
     recording: Recording,
-    /// Time that is no tick yet, seconds.
+    /// Time that is not yet a whole tick, seconds.
     left_secs: f64,
-    /// Ticks of the last call, whose duration is not known yet.
+    /// The ticks of the last call, whose duration is not known yet.
     unmeasured: usize,
-    /// How long a tick of all characters takes, milliseconds, smoothed; 0 until it is measured.
+    /// The duration of a tick of all characters, milliseconds, smoothed; 0 until it is measured.
     tick_ms: f64,
 }
 
-/// What a pane with a driven character asks for, and what it shows.
+/// A pane with a driven character: the database that it requests, and the result that it shows.
 pub(crate) struct DrivenPane {
     pub(crate) params: Arc<Params>,
     /// `None` while the database is built.
@@ -51,7 +51,7 @@ impl LiveDrive {
         self.lives.get(pane).is_some_and(Option::is_some)
     }
 
-    /// Returns the first character that there is.
+    /// Returns the first character.
     fn main_live(&self) -> Option<&Live> {
         self.lives.iter().flatten().next()
     }
@@ -72,25 +72,25 @@ impl LiveDrive {
         Some((crowd.database(), crowd.poses().collect()))
     }
 
-    /// Returns the time that is shown of what is kept, seconds: one tick behind, so that it is
-    /// smooth at any rate of the screen. `None` without a character.
+    /// Returns the time of the history that is shown, seconds: one tick behind its end, so that
+    /// motion is smooth at any rate of the screen. `None` without a character.
     pub(crate) fn shown_secs(&self) -> Option<f64> {
         let live = self.main_live()?;
         Some((live.kept_secs() - TICK_SECS + self.left_secs).max(0.0))
     }
 
-    /// Takes in the input from now on. Returns whether it begins to ask for motion.
+    /// Sets the input from now on. Returns whether it begins to request motion.
     pub(crate) fn steer(&mut self, control: Control) -> bool {
         let before = std::mem::replace(&mut self.control, control);
         before.is_at_rest() && !control.is_at_rest()
     }
 
-    /// Puts the characters at the origin, and forgets the recording.
+    /// Puts the characters at the origin, and discards the recording.
     pub(crate) fn restart(&mut self) {
         *self = Self { control: self.control, ..Self::default() };
     }
 
-    /// Lets time pass. Returns what each pane shows then.
+    /// Advances the time. Returns the new outcome of each pane.
     pub(crate) fn advance(
         &mut self,
         dt_secs: f64,
@@ -103,7 +103,7 @@ impl LiveDrive {
         self.tick(ticks.min(MAX_TICKS), filter, gauge)
     }
 
-    /// Takes in how long the last ticks took together, seconds.
+    /// Records the duration of the last ticks together, seconds.
     pub(crate) fn note_duration(&mut self, secs: f64) {
         let ticks = std::mem::take(&mut self.unmeasured);
         if ticks > 0 {
@@ -113,8 +113,8 @@ impl LiveDrive {
         }
     }
 
-    /// Does ticks with the present input. Returns what each pane shows then: nothing new without a
-    /// tick.
+    /// Advances by ticks with the present input. Returns the new outcome of each pane; none without
+    /// a tick.
     pub(crate) fn tick(
         &mut self,
         ticks: usize,
@@ -124,7 +124,7 @@ impl LiveDrive {
         self.unmeasured = ticks;
         let control = self.control.with_filter(filter);
         for _ in 0..ticks {
-            // A recording that is full holds the first half hour.
+            // A full recording keeps its first half hour.
             self.recording.push(control);
             for live in self.lives.iter_mut().flatten() {
                 live.tick(&control);
@@ -140,7 +140,7 @@ impl LiveDrive {
         }
         let tick_ms = (self.tick_ms > 0.0).then_some(self.tick_ms);
         let outcome = |live: &mut Option<Live>| {
-            // Where the outcome fails, the pane stays as it was until the next tick.
+            // If the outcome fails, the pane stays as it was until the next tick.
             let mut outcome = live.as_mut()?.outcome(gauge).ok()?;
             outcome.metrics.push(Metric::new(MetricId::TickTime, tick_ms));
             Some(outcome)
@@ -148,8 +148,8 @@ impl LiveDrive {
         self.lives.iter_mut().map(outcome).collect()
     }
 
-    /// Brings the characters in step with what the panes ask for, and a crowd of `crowd` about
-    /// them. Returns the answer for each pane.
+    /// Adapts the characters to the requests of the panes, with a crowd of `crowd` around them.
+    /// Returns the answer for each pane.
     pub(crate) fn refresh(
         &mut self,
         panes: Vec<DrivenPane>,
@@ -161,7 +161,7 @@ impl LiveDrive {
             Ok(Some(database)) => live.as_ref().is_some_and(|live| live.plays(database)),
             _ => true,
         };
-        // Panes are driven by the same input from the same start: where one begins, all do.
+        // All panes have the same input from the same start: if one begins, all do.
         if !self.lives.iter().zip(&panes).all(has_begun) {
             self.lives.fill_with(|| None);
             self.recording = Recording::new();
@@ -170,7 +170,7 @@ impl LiveDrive {
         let mut answers = Vec::with_capacity(panes.len());
         for (live, DrivenPane { params, database, shown }) in self.lives.iter_mut().zip(panes) {
             answers.push(match database {
-                // The old database is played until the new one is there.
+                // The old database plays until the new one is available.
                 Ok(None) => Answer::Awaited,
                 Ok(Some(database)) => options_in(&database, &params)
                     .and_then(|options| {
@@ -196,13 +196,13 @@ impl LiveDrive {
     }
 }
 
-/// Returns whether a pane shows what was driven in that database.
+/// Returns whether a pane shows a drive through that database.
 fn is_shown(shown: Option<&Outcome>, database: &Arc<Database>) -> bool {
     let driven = shown.and_then(Outcome::driven);
     driven.is_some_and(|driven| driven.is_live && Arc::ptr_eq(&driven.database, database))
 }
 
-/// Returns the answer for a pane. Its character takes on the options, and begins where there is
+/// Returns the answer for a pane. Its character takes the options; a new one begins if there is
 /// none.
 fn answer(
     live: &mut Option<Live>,

@@ -100,7 +100,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_of_the_user_are_told_from_fixed_ones() {
+    fn own_words_exclude_the_fixed_ones() {
         let hand = |word: &str| HandTag {
             clip: "walk".into(),
             secs: [0.0, 1.0],
@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tag_is_taken_away_from_the_middle() {
+    fn tag_removed_in_the_middle_leaves_both_ends() {
         let range = TagRange { tag: Tag::Walk, frames: 10..50 };
         let left: Vec<_> = without(range.clone(), Tag::Walk, 20, 30)
             .into_iter()

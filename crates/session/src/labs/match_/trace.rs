@@ -232,7 +232,7 @@ pub(super) fn of_drive(found: &DriveMetrics) -> [Metric; 5] {
 }
 
 impl Outcome {
-    /// Returns how it was driven; `None` where it was not.
+    /// Returns the facts about the drive; `None` if the result was not driven.
     #[must_use]
     pub fn driven(&self) -> Option<&Arc<Driven>> {
         self.facts.get()

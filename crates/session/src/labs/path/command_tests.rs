@@ -1,4 +1,4 @@
-//! The Path lab, by commands.
+//! Tests of the Path lab, by commands.
 
 use crate::JobKind;
 use crate::List;
@@ -24,14 +24,14 @@ fn metric(session: &Session, id: MetricId) -> f64 {
     outcome.metric(id).unwrap().value.unwrap()
 }
 
-/// The present path with one point elsewhere.
+/// Returns the present path with one point moved.
 fn moved(session: &Session, index: usize, by: DVec2) -> Value {
     let spline = path(session).curve.spline();
     let to = spline.points()[index] + by;
     List::EditedPath(spline.edited(&PathEdit::Move { index, to }, Pins::default()).ok()).into()
 }
 
-/// The edited path as the link has it.
+/// Returns the edited path as the link contains it.
 fn code(session: &Session) -> String {
     session.params().edited_path().unwrap().to_code()
 }
@@ -41,7 +41,7 @@ fn set(session: &mut Session, key: Key, value: Value) {
 }
 
 #[test]
-fn a_path_that_nobody_edited_gives_the_clip_back() {
+fn path_without_edits_gives_the_clip() {
     for keep in ["speed", "duration", "whole"] {
         let session = open(&format!("lab=path&a=walk_left&keep={keep}"));
         let made = &session.main_outcome().unwrap().motion;
@@ -64,7 +64,7 @@ fn a_path_that_nobody_edited_gives_the_clip_back() {
 }
 
 #[test]
-fn a_dragged_point_takes_the_character_with_it_and_is_one_step() {
+fn point_that_is_dragged_moves_the_character_in_one_step() {
     let mut session = open("lab=path&a=walk");
     let before = session.query();
     let fitted = Arc::clone(&path(&session).fitted);
@@ -85,7 +85,7 @@ fn a_dragged_point_takes_the_character_with_it_and_is_one_step() {
     };
     assert!(middle(&session) > 0.3, "{}", middle(&session));
     assert!(path(&session).is_edited);
-    // The link alone brings it back.
+    // The link alone restores it.
     let other = open(&session.query());
     let clip = |session: &Session| Arc::clone(session.main_outcome().unwrap().motion.clip());
     assert_eq!(clip(&other).root_translations(), clip(&session).root_translations());
@@ -97,7 +97,7 @@ fn a_dragged_point_takes_the_character_with_it_and_is_one_step() {
 }
 
 #[test]
-fn where_a_character_stands_is_where_its_clip_has_it() {
+fn ground_frames_on_a_path_equal_the_measured_ones() {
     for link in ["keep=speed", "keep=duration", "keep=whole", "path_facing=world", "foot_lock=on"] {
         let mut session = open(&format!("lab=path&a=walk_left&{link}"));
         let value = moved(&session, 3, DVec2::new(0.4, -0.3));
@@ -107,7 +107,7 @@ fn where_a_character_stands_is_where_its_clip_has_it() {
         for (frame, (told, measured)) in made.ground_frames().iter().zip(&measured).enumerate() {
             let apart = told.shift.distance(measured.shift);
             let turned = segue_motion::math::wrap_angle(told.yaw - measured.yaw).abs();
-            // Planted feet pull at the hips a little.
+            // Locked feet move the hips a little.
             let tolerance = if link == "foot_lock=on" { 0.05 } else { 0.003 };
             assert!(
                 apart < tolerance && turned < 0.02,
@@ -118,7 +118,7 @@ fn where_a_character_stands_is_where_its_clip_has_it() {
 }
 
 #[test]
-fn what_is_no_path_says_so_and_loses_nothing() {
+fn invalid_path_is_refused_and_nothing_is_lost() {
     let session = open("lab=path&a=idle");
     assert!(
         session.panes()[0].problem.as_ref().unwrap().to_string().contains("stays within"),
@@ -131,7 +131,7 @@ fn what_is_no_path_says_so_and_loses_nothing() {
     assert!(session.panes()[0].problem.as_ref().unwrap().to_string().contains("no direction"));
     session.apply(Command::Reset(Key::Path)).unwrap();
     assert!(!path(&session).is_edited);
-    // Closed and crossing itself is fine.
+    // A closed path that crosses itself is valid.
     let eight =
         [(0.0, 0.0), (2.0, 1.0), (2.0, -1.0), (-2.0, 1.0), (-2.0, -1.0), (-1.0, 0.5), (0.0, 0.0)];
     let eight = GroundSpline::uniform(eight.map(DVec2::from).to_vec()).unwrap();
@@ -142,7 +142,7 @@ fn what_is_no_path_says_so_and_loses_nothing() {
 }
 
 #[test]
-fn more_control_points_fit_better_side_by_side() {
+fn more_control_points_fit_better() {
     let session = open("lab=path&a=walk_left&compare=control_points:4,8,16");
     let errors: Vec<f64> = session
         .panes()
@@ -153,7 +153,7 @@ fn more_control_points_fit_better_side_by_side() {
 }
 
 #[test]
-fn a_hairpin_is_told_in_place_and_time() {
+fn hairpin_is_reported_with_place_and_time() {
     let mut session = open("lab=path&a=walk&keep=duration");
     assert!(path(&session).hard_turns.is_empty());
     let value = moved(&session, 4, DVec2::new(0.2, -2.5));
@@ -164,7 +164,7 @@ fn a_hairpin_is_told_in_place_and_time() {
 }
 
 #[test]
-fn characters_on_paths_of_their_own_play_together_from_a_link() {
+fn extra_characters_on_their_own_paths_play_from_a_link() {
     let mut session = open("lab=path&a=walk&play=off");
     let alone = session.query();
     let value = moved(&session, 4, DVec2::new(1.0, 0.0));
@@ -192,14 +192,14 @@ fn characters_on_paths_of_their_own_play_together_from_a_link() {
     }
     assert!(other.duration_secs() >= other.extra_characters()[1].duration_secs().unwrap());
 
-    // The first one is edited again, and the present one waits in its place.
+    // The first one is edited again, and the present one takes its place in the list.
     let second = code(&session);
     session.apply(Command::ExtraCharacters(ExtraCharacterCommand::Edit(0))).unwrap();
     assert_eq!(code(&session), first);
     assert_eq!(names(&session), [format!("path(a:walk,path:{second})"), "run".to_owned()]);
     session.apply(Command::ExtraCharacters(ExtraCharacterCommand::Remove(1))).unwrap();
     assert_eq!(session.extra_characters().len(), 1);
-    // Who is thrown out of the library leaves the stage, and comes back with undo.
+    // A clip that is removed from the library leaves the stage, and returns with undo.
     session.apply(Command::Remove(names(&session)[0].clone())).unwrap();
     assert!(session.extra_characters().is_empty());
     session.apply(Command::Undo).unwrap();
@@ -208,13 +208,13 @@ fn characters_on_paths_of_their_own_play_together_from_a_link() {
         session.apply(Command::Undo).unwrap();
     }
     assert_eq!(session.query(), alone);
-    // In another lab nobody plays along.
+    // In other labs there are no extra characters.
     let elsewhere = open(&format!("lab=view&others={id}"));
     assert!(elsewhere.extra_characters().is_empty());
 }
 
 #[test]
-fn whoever_is_not_here_is_named() {
+fn missing_extra_character_is_named() {
     let session = open("lab=path&a=walk&others=somebody~0123456789ab,walk");
     assert!(
         session.extra_characters()[0].motion.as_ref().unwrap_err().to_string().contains("somebody")
@@ -223,7 +223,7 @@ fn whoever_is_not_here_is_named() {
 }
 
 #[test]
-fn a_kept_path_is_a_clip_for_every_other_lab() {
+fn kept_path_is_a_clip_for_every_other_lab() {
     let mut session = open("lab=path&a=run&foot_lock=on&keep=whole");
     let value = moved(&session, 3, DVec2::new(0.5, 0.0));
     set(&mut session, Key::Path, value);
@@ -239,7 +239,7 @@ fn a_kept_path_is_a_clip_for_every_other_lab() {
 }
 
 #[test]
-fn feet_of_a_short_clip_are_held_on_its_own_ground() {
+fn feet_of_a_short_clip_are_locked_on_its_own_ground() {
     let session = open("lab=path&a=run&foot_lock=on&ground=4");
     let free = open("lab=path&a=run&ground=4");
     let carried = &free.main_outcome().unwrap().motion;
@@ -257,11 +257,11 @@ fn feet_of_a_short_clip_are_held_on_its_own_ground() {
     assert!(!path(&session).awaits_feet);
 }
 
-/// A walk longer than what is planted while a hand moves.
+/// A walk with more frames than are locked during dragging.
 const LONG: &str = "walk(make_seconds:12)";
 
 #[test]
-fn the_feet_of_a_long_walk_are_planted_when_the_hand_rests() {
+fn feet_of_a_long_walk_are_locked_when_dragging_ends() {
     let mut session = Session::new();
     let open = |session: &mut Session, query: &str| {
         session.apply(Command::OpenLink(query.to_owned())).unwrap();
@@ -282,7 +282,7 @@ fn the_feet_of_a_long_walk_are_planted_when_the_hand_rests() {
         metric(&session, MetricId::FootSlide)
     );
     assert!(session.jobs().is_empty());
-    // The same as done at once.
+    // The result is the same as when it is locked at once.
     let known = path(&session).fitted.motion();
     let roles = known.roles();
     let now = Arc::clone(session.main_outcome().unwrap());
@@ -303,7 +303,7 @@ fn the_feet_of_a_long_walk_are_planted_when_the_hand_rests() {
     let apart = locked.rotations(300).iter().zip(now.motion.clip().rotations(300));
     assert!(apart.map(|(a, b)| a.angle_between(*b)).all(|angle| angle < 1e-3));
 
-    // Who keeps it before that keeps what will come of it.
+    // If it is kept before that, the finished result is kept.
     let value = moved(&session, 3, DVec2::new(0.8, 0.3));
     set(&mut session, Key::Path, value);
     session.apply(Command::ExtraCharacters(ExtraCharacterCommand::AddResult(0))).unwrap();

@@ -1,4 +1,4 @@
-//! The Register lab, by commands.
+//! Tests of the Register lab, by commands.
 
 use crate::JobKind;
 use crate::Registered;
@@ -23,22 +23,22 @@ fn registered(session: &Session) -> &Registered {
     session.main_outcome().unwrap().registered().unwrap()
 }
 
-/// The largest distance of any joint, metres, between a frame of one clip and one of another that
-/// is moved.
+/// Returns the largest distance of any joint, metres, between a frame of one clip and a frame of
+/// another that is moved.
 fn apart(one: &Clip, frame: usize, other: &Clip, in_other: usize, moved: &Planar) -> f32 {
     let (a, b) =
         (one.world_positions(frame..frame + 1), other.world_positions(in_other..in_other + 1));
     a.iter().zip(&b).map(|(a, b)| a.distance(moved.apply(*b))).fold(0.0, f32::max)
 }
 
-/// Touchdowns inside of the result, seconds.
+/// Returns the times of the strikes inside the result, seconds.
 fn strikes(session: &Session, of: Option<Slot>, side: Side) -> Vec<f64> {
     let stances = registered(session).stances(of, side);
     stances.into_iter().map(|stance| stance.start).filter(|&at| at > 0.0).collect()
 }
 
 #[test]
-fn a_walk_is_registered_to_a_run_at_once() {
+fn walk_is_registered_to_a_run_at_once() {
     let session = opened("lab=register");
     assert_eq!(session.panes()[0].problem, None);
     let plain = opened("lab=register&warp_with=plain");
@@ -47,7 +47,7 @@ fn a_walk_is_registered_to_a_run_at_once() {
     let cm =
         |session: &Session| number_of(session.main_outcome().unwrap(), MetricId::FrameDistance);
     assert!(cm(&session) < 0.7 * cm(&plain), "{} {}", cm(&session), cm(&plain));
-    // Every step of the result is one of A and one of B. Without the warp they come apart.
+    // Every strike of the result is one of A and one of B. Without the time warp they come apart.
     let worst = |session: &Session| {
         let sides = Side::BOTH.into_iter();
         let off = sides.flat_map(|side| {
@@ -68,7 +68,7 @@ fn a_walk_is_registered_to_a_run_at_once() {
 }
 
 #[test]
-fn no_weight_is_a_and_all_weight_is_b() {
+fn weight_of_none_gives_a_and_of_all_gives_b() {
     for (link, slot) in [
         ("lab=register&ends=corner&b=walk(gait_speed:1.6)&warp_weight=0", Slot::A),
         ("lab=register&ends=corner&b=walk(gait_speed:1.6)&warp_weight=1", Slot::B),
@@ -95,7 +95,7 @@ fn no_weight_is_a_and_all_weight_is_b() {
 }
 
 #[test]
-fn a_join_is_a_then_b_with_less_sliding_than_a_dissolve() {
+fn join_slides_less_than_a_dissolve() {
     let session = opened("lab=register&warp_mode=join&compare=warp_with:registered,plain");
     let outcomes: Vec<_> =
         session.panes().iter().map(|pane| pane.outcome.clone().unwrap()).collect();
@@ -121,7 +121,7 @@ fn a_join_is_a_then_b_with_less_sliding_than_a_dissolve() {
             );
         }
     }
-    // Chosen by Segue, and by hand.
+    // Found by Segue, and set by hand.
     assert!(
         session.automatic_value(Key::WarpFrom).unwrap()
             < session.automatic_value(Key::WarpTo).unwrap()
@@ -134,7 +134,7 @@ fn a_join_is_a_then_b_with_less_sliding_than_a_dissolve() {
 }
 
 #[test]
-fn pins_are_in_the_link_and_the_curve_passes_them() {
+fn pins_of_a_link_are_on_the_curve() {
     let session = opened("lab=register&pins=100-92,40-60");
     assert_eq!(session.params().pins(), [(100, 92), (40, 60)]);
     let warp = registered(&session).registration.warp();
@@ -146,7 +146,7 @@ fn pins_are_in_the_link_and_the_curve_passes_them() {
 }
 
 #[test]
-fn what_cannot_be_is_said_and_no_earlier_result_stands_for_it() {
+fn impossible_registration_is_refused_and_shows_no_earlier_result() {
     let mut session = opened("lab=register");
     for (key, value, sentence) in [
         (Key::Pins, "100-90,120-80", "The pins at frames 100 | 90 and 120 | 80 exclude each other"),
@@ -187,7 +187,8 @@ fn long_clips_are_registered_in_slices() {
     session.apply(Command::OpenLink(link.into())).unwrap();
     while session.work() {}
     let first = session.main_outcome().cloned().unwrap();
-    // Another window keeps what was multiplied; the old result stays until the new one is there.
+    // Another window reuses the products of frames; the old result stays until the new one is
+    // available.
     let slices = |session: &mut Session, key, value| {
         session.apply(Command::Set(vec![(key, Value::Number(value))])).unwrap();
         let before = session.main_outcome().cloned().unwrap();
@@ -208,18 +209,18 @@ fn long_clips_are_registered_in_slices() {
     let for_window = slices(&mut session, Key::RegistrationWindow, 9.0);
     let for_path = slices(&mut session, Key::SlopeLimit, 3.0);
     assert!(for_path > 3 && for_window > for_path + 3, "{for_window} {for_path}");
-    // All at once gives the same.
+    // Computed all at once, the result is the same.
     session.apply(Command::OpenLink(link.into())).unwrap();
     while session.work() {}
     assert_eq!(session.main_outcome().unwrap().motion, first.motion);
-    // A lab that is left is not worked for.
+    // No work is done for a lab that was left.
     session.apply(Command::Set(vec![(Key::RegistrationWindow, Value::Number(15.0))])).unwrap();
     session.apply(Command::Set(vec![(Key::Lab, Value::Choice("view"))])).unwrap();
     assert!(session.jobs().is_empty());
 }
 
 #[test]
-fn a_weight_can_change_over_the_blend() {
+fn weight_curve_changes_the_weight_over_the_blend() {
     let session = opened("lab=register&warp_curve=0-0,50-100,100-20");
     let weights: Vec<f64> = registered(&session).beats.iter().map(|beat| beat.weights[1]).collect();
     let last = weights.len() - 1;
@@ -230,7 +231,7 @@ fn a_weight_can_change_over_the_blend() {
 }
 
 #[test]
-fn more_than_two_clips_are_blended() {
+fn further_clips_are_blended_with_two() {
     let three = "lab=register&a=walk&b=run&warp_weight=0.25&warp_also=0.5:fast_walk";
     let session = opened(three);
     let of = |session: &Session| registered(session).beats[0].weights;
@@ -244,7 +245,7 @@ fn more_than_two_clips_are_blended() {
     let fast = opened("lab=view&a=fast_walk");
     assert!((speed(&alone) - speed(&fast)).abs() < 0.03, "{} {}", speed(&alone), speed(&fast));
     assert!(session.main_outcome().unwrap().motion.clip().name().contains(" + "), "both are named");
-    // What is kept comes back from its id.
+    // A kept result is restored from its id.
     let mut session = session;
     session.apply(Command::Keep(0)).unwrap();
     let id = session.library().entries().last().unwrap().id.clone();

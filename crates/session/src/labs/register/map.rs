@@ -58,8 +58,8 @@ impl DistanceMap {
         (self.matrix.window().max(1) - 1) / 2
     }
 
-    /// Returns the cell that is nearest to a pair; `None` if the pair is in no clip, or no window
-    /// fits.
+    /// Returns the cell that is nearest to a pair; `None` if the pair is outside the clips, or no
+    /// window fits.
     #[must_use]
     pub fn cell_of(&self, frames: [f64; 2]) -> Option<(usize, usize)> {
         let sizes = [self.matrix.rows(), self.matrix.columns()];

@@ -1,17 +1,17 @@
 //! Ids of clips, separated by commas: `walk,blend(a:walk,b:run),my%2C walk.bvh~0a1b2c3d`.
 //!
-//! The id of a kept result stands as it is: its brackets close. In any other one, what would end an
-//! entry is percent-encoded.
+//! The id of a kept result is written unchanged, because its brackets close. In any other id,
+//! characters that end an entry are percent-encoded.
 
 use super::Misread;
 use crate::params::choices::{LabId, MadeAction, Selected};
 use percent_encoding::{AsciiSet, CONTROLS, percent_decode_str, utf8_percent_encode};
 
-/// What would end an id, and what says that something is written otherwise.
+/// The characters to percent-encode inside an id: its delimiters, and `%` itself.
 const RESERVED: &AsciiSet = &CONTROLS.add(b'(').add(b')').add(b',').add(b':').add(b'%');
-/// What is reserved at the ends of an id.
+/// The characters to percent-encode at the ends of an id.
 const OUTER: &AsciiSet = &RESERVED.add(b' ');
-/// A result of a result of a result: deeper ids name nothing.
+/// The greatest nesting of results in an id; deeper ids are not valid.
 const MAX_DEPTH: usize = 6;
 
 pub(super) fn read(text: &str) -> Result<Vec<String>, Misread> {
@@ -27,13 +27,13 @@ pub(super) fn write(ids: &[String]) -> String {
     write_ids(ids)
 }
 
-/// Writes several ids as one text: separated by commas.
+/// Writes several ids as one text, separated by commas.
 #[must_use]
 pub fn write_ids(ids: &[String]) -> String {
     super::joined(ids, |id| write_id(id))
 }
 
-/// Returns the parts of a list whose entries have ids of clips in them.
+/// Returns the parts of a list whose entries contain ids of clips.
 pub(super) fn all_parts(text: &str) -> Result<Vec<&str>, Misread> {
     parts(text).ok_or_else(|| Misread::Text {
         found: text.to_owned(),
@@ -55,19 +55,19 @@ pub(super) fn write_id(id: &str) -> String {
     if is_recipe(id) {
         return id.to_owned();
     }
-    // Spaces between entries mean nothing.
+    // Spaces between entries are ignored.
     let (before, inner) = id.split_at(id.len() - id.trim_start().len());
     let (inner, behind) = inner.split_at(inner.trim_end().len());
     let spaces = |spaces: &str| utf8_percent_encode(spaces, OUTER).to_string();
     format!("{}{}{}", spaces(before), escaped(inner), spaces(behind))
 }
 
-/// Writes a text so that it ends no entry and opens no bracket.
+/// Writes a text so that it neither ends an entry nor opens a bracket.
 pub(crate) fn escaped(text: &str) -> String {
     utf8_percent_encode(text, RESERVED).to_string()
 }
 
-/// Returns whether an id is that of a result, with what it was made from in brackets.
+/// Returns whether an id is that of a result, with its recipe in brackets.
 pub(crate) fn is_recipe(id: &str) -> bool {
     let Some((word, list)) = id.strip_suffix(')').and_then(|id| id.split_once('(')) else {
         return false;
@@ -91,8 +91,8 @@ pub(crate) fn is_recipe(id: &str) -> bool {
     is_made && stays_inside && depth == 0
 }
 
-/// Returns the list's parts: at the commas outside of brackets. `None` when the brackets do not
-/// close, or lie too deep.
+/// Returns the parts of a list between the commas outside of brackets. `None` if the brackets do
+/// not close, or are nested too deeply.
 pub(crate) fn parts(list: &str) -> Option<Vec<&str>> {
     let (mut parts, mut depth, mut start) = (Vec::new(), 0_usize, 0);
     for (at, letter) in list.char_indices() {

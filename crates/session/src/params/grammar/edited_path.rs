@@ -1,4 +1,4 @@
-//! An edited path: its control points to 1 cm in a short word.
+//! An edited path: its control points, rounded to 1 cm, in a short word.
 
 use super::Misread;
 use segue_motion::path::GroundSpline;

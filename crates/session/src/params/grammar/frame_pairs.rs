@@ -2,7 +2,7 @@
 
 use super::{Misread, between_commas, entries, joined};
 
-/// A link with more pairs is an accident.
+/// The greatest number of pairs; a link with more is an accident.
 const MAX_PAIRS: usize = 64;
 
 /// Reads pairs of numbers up to `max`.

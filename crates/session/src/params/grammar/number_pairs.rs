@@ -2,9 +2,9 @@
 
 use super::{Misread, between_commas, entries};
 
-/// A link with more pairs is an accident.
+/// The greatest number of pairs; a link with more is an accident.
 const MAX_PAIRS: usize = 1_000;
-/// Numbers of a link are nearer to zero.
+/// The bound of numbers in a list; all useful ones are nearer to zero.
 const BEYOND: f64 = 1e5;
 
 pub(super) fn read(text: &str, expected: &'static str) -> Result<Vec<(f64, f64)>, Misread> {

@@ -20,7 +20,7 @@ mod tests {
     }
 
     #[test]
-    fn pin_that_is_none_is_named() {
+    fn invalid_pin_is_named() {
         for bad in ["12", "12-", "a-b", "1-2-3", "-4"] {
             let error = read(&format!("1-2,{bad}")).unwrap_err().to_string();
             assert_eq!(

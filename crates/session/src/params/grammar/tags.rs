@@ -3,12 +3,12 @@
 use super::clip_ids::{all_parts, escaped, read_id, write_id};
 use super::{Misread, entries, joined};
 
-/// A link with more tags is an accident.
+/// The greatest number of tags; a link with more is an accident.
 const MAX_TAGS: usize = 200;
 /// The longest word of a tag, in characters.
 const MAX_WORD: usize = 24;
 
-/// A stretch of a clip that gets a tag, or loses one.
+/// A stretch of a clip to which a tag is added, or from which one is removed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HandTag {
     /// The clip's id, or the name of one of the synthesiser's set.
@@ -17,7 +17,7 @@ pub struct HandTag {
     pub secs: [f64; 2],
     /// `walk`, `run`, `idle`, `turn`, `exclude`, or a word of one's own.
     pub word: String,
-    /// The tag is taken away there.
+    /// Whether the tag is removed there.
     pub takes_away: bool,
 }
 
@@ -37,7 +37,7 @@ fn read_tag(entry: &str) -> Option<HandTag> {
     let (word, takes_away) =
         word.trim().strip_prefix('-').map_or((word.trim(), false), |word| (word, true));
     let word = read_id(word).trim().to_owned();
-    // A minus sign before the word takes the tag away.
+    // A minus sign before the word removes the tag.
     let is_word = !word.is_empty()
         && (takes_away || !word.starts_with('-'))
         && word.chars().count() <= MAX_WORD;
@@ -84,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn tag_that_is_none_is_named() {
+    fn invalid_tag_is_named() {
         for bad in [
             "walk",
             "walk:1-2",

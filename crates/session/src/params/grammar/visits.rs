@@ -1,10 +1,10 @@
-//! When to set off for which clip: seconds and the clip's index, `12.5:3,40:0`.
+//! Visits of clips: when to set off, seconds, and the clip's index: `12.5:3,40:0`.
 
 use super::{Misread, joined, number_pairs};
 
 pub(super) fn read(text: &str) -> Result<Vec<(f64, usize)>, Misread> {
     let pairs = number_pairs::read(text, "seconds and a clip's place in the list, as in 12.5:3")?;
-    // What is below zero is zero, `-0` too.
+    // Negative times become zero; `-0` too.
     Ok(pairs.into_iter().map(|(secs, clip)| (secs.max(0.0) + 0.0, clip as usize)).collect())
 }
 

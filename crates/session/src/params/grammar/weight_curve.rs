@@ -1,4 +1,4 @@
-//! A weight over the course of a blend, in per cent of both: `0-0,50-100`.
+//! A weight over the course of a blend, in per cent of the blend and of B: `0-0,50-100`.
 
 use super::{Misread, frame_pairs};
 

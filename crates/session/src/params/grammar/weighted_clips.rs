@@ -3,7 +3,7 @@
 use super::clip_ids::{all_parts, read_id, write_id};
 use super::{Misread, entries, joined};
 
-/// The most clips that join A and B in a blend.
+/// The greatest number of clips that join A and B in a blend.
 pub const MAX_WEIGHTED_CLIPS: usize = 6;
 
 pub(super) fn read(text: &str) -> Result<Vec<(String, f64)>, Misread> {
@@ -38,7 +38,7 @@ mod tests {
     }
 
     #[test]
-    fn weighted_clip_that_is_none_is_named() {
+    fn invalid_weighted_clip_is_named() {
         for bad in ["run", "2:run", "x:run", "0.5:", "NaN:run", "-1:run"] {
             let error = read(&format!("0.5:walk,{bad}")).unwrap_err().to_string();
             assert!(error.starts_with(&format!("entry 2: found `{bad}`")), "{error}");
