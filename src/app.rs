@@ -30,7 +30,7 @@ use keeper::Keeper;
 use language::{LanguageLoader, WindowLanguage};
 use picture::Picture;
 #[cfg(target_arch = "wasm32")]
-use segue_session::Storing;
+use segue_session::StorageState;
 use segue_session::{
     Command, CommandError, Key, Lesson, Level, PlaybackCommand, Session, Value, link,
 };
@@ -481,7 +481,8 @@ impl Segue {
     #[cfg(target_arch = "wasm32")]
     pub(crate) fn has_unstored_files(&self) -> bool {
         let progress = self.keeper.files_stored();
-        progress.is_some_and(|progress| progress != Storing::Done || self.session.is_reading_new())
+        progress
+            .is_some_and(|progress| progress != StorageState::Done || self.session.is_reading_new())
     }
 
     /// Whether files with one of these SHA-256 are being stored.

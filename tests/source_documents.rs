@@ -262,7 +262,7 @@ fn transform_of_the_first_frame_alone_flashes() {
     for passed in walk.passed.iter() {
         let settled = passed.start + passed.seam.map_or(0, |seam| seam.frames);
         if settled < passed.end.min(walk.motion.ground_frames().len()) {
-            let recorded = &walk.built.cast().motions()[passed.stay.clip];
+            let recorded = &walk.built.clips().motions()[passed.stay.clip];
             let stood = recorded.ground_frames()[passed.stay.from + settled - passed.start];
             let stands = walk.motion.ground_frames()[settled];
             assert!(stands.shift.distance(stood.shift) < 1e-3, "{stands:?} {stood:?}");
@@ -368,7 +368,9 @@ fn time_warp_compares_five_frames_with_a_slope_limit_of_two() {
         assert!(across <= 2 && along <= 2);
     }
     // The average of the pair.
-    assert!(registered.beats.iter().all(|beat| (beat.weights[1] - 0.5).abs() < 1e-9));
+    assert!(
+        registered.frame_pairs.iter().all(|frame_pair| (frame_pair.weights[1] - 0.5).abs() < 1e-9)
+    );
 }
 
 #[test]
@@ -378,11 +380,11 @@ fn join_has_a_linear_weight_over_the_requested_part() {
         let made = outcome(&session, 0).clone();
         let transition = made.transition.expect("a transition");
         let from = (transition.start_secs * made.motion.clip().fps()).round() as usize;
-        let beats = &made.registered().expect("a registration").beats;
+        let frame_pairs = &made.registered().expect("a registration").frame_pairs;
         // The frames of A in the transition, with B's weight in each.
-        beats[from..from + transition.window_frames]
+        frame_pairs[from..from + transition.window_frames]
             .iter()
-            .map(|beat| (beat.frames[0], beat.weights[1]))
+            .map(|frame_pair| (frame_pair.frames[0], frame_pair.weights[1]))
             .collect::<Vec<(f64, f64)>>()
     };
     let (linear, smooth) = (of("linear"), of("smooth"));

@@ -24,8 +24,9 @@ use segue_session::metrics::MetricId;
 use segue_session::outside;
 use segue_session::reading::Content;
 use segue_session::{
-    ClipInfo, Command, CommandError, FileCommand, Key, Kind, List, Loaded, Made, PARAMS, Pane,
-    Param, PlaybackCommand, ReportFacts, Value, check_graph_clips, file_stem, frame_at, report,
+    ClipInfo, Command, CommandError, FileCommand, Key, Kind, List, LoadedFile, PARAMS, Pane,
+    PaneResult, Param, PlaybackCommand, ReportFacts, Value, check_graph_clips, file_stem, frame_at,
+    report,
 };
 use serde_json::{Map, Value as Json};
 use std::collections::BTreeMap;
@@ -36,7 +37,7 @@ enum Subject<'a> {
     /// A clip of the library.
     Clip(&'a Arc<Motion>),
     /// The result of a pane.
-    Result(&'a Pane, Made<'a>),
+    Result(&'a Pane, PaneResult<'a>),
 }
 
 /// What the API calls a backend.
@@ -120,7 +121,7 @@ impl Segue {
         Ok((key, value))
     }
 
-    pub(super) fn loaded_clips(&mut self, loaded: &Loaded) -> LoadedClips {
+    pub(super) fn loaded_clips(&mut self, loaded: &LoadedFile) -> LoadedClips {
         let clips = self.clips().into_iter().filter(|clip| loaded.ids.contains(&clip.id)).collect();
         let warnings = loaded.warnings.iter().map(ToString::to_string).collect();
         LoadedClips { clips, warnings }

@@ -2,7 +2,7 @@
 //! else soon after it has changed.
 
 use crate::platform::{Arrival, Storage, Stored, StoredFiles, Vault, Work};
-use segue_session::{Origin, Saved, SavedEntry, Session, Storing};
+use segue_session::{Origin, Saved, SavedEntry, Session, StorageState};
 use std::collections::BTreeSet;
 
 /// The page does not wait longer than this for what is stored, milliseconds.
@@ -199,15 +199,15 @@ impl Keeper {
     }
 
     /// How far the files are stored that have come; `None` where nothing is stored.
-    pub(crate) fn files_stored(&self) -> Option<Storing> {
+    pub(crate) fn files_stored(&self) -> Option<StorageState> {
         self.storage.as_ref()?.progress()
     }
 
     /// How far the work is stored; `None` where nothing is.
-    pub(crate) fn progress(&self) -> Option<Storing> {
+    pub(crate) fn progress(&self) -> Option<StorageState> {
         let is_due = self.changed.is_some() || !matches!(self.phase, Phase::Ready);
         Some(match self.files_stored()? {
-            Storing::Done if is_due => Storing::UnderWay,
+            StorageState::Done if is_due => StorageState::UnderWay,
             other => other,
         })
     }

@@ -5,7 +5,7 @@ use super::language::Language;
 use eframe::egui::Rect;
 use glam::DVec2;
 use segue_scene::Camera;
-use segue_session::Storing;
+use segue_session::StorageState;
 use segue_session::export::ExportOptions;
 
 /// How much room there is.
@@ -119,7 +119,7 @@ pub(crate) struct UiState {
     /// Whether a page around this one can use what is opened here.
     pub(crate) host_reads: bool,
     /// How far the work is stored; none where nothing is stored.
-    pub(crate) stored: Option<Storing>,
+    pub(crate) stored: Option<StorageState>,
 }
 
 impl Default for UiState {

@@ -19,7 +19,7 @@ use segue_session::export::{ExportFormat, ExportOptions, export};
 use segue_session::reading::Content;
 use segue_session::{
     Command, Entry, FileCommand, Key, Kind, Level, List, Origin, Outcome, PageMemory, Session,
-    Slot, SourceFile, Storing, Value,
+    Slot, SourceFile, StorageState, Value,
 };
 use std::fmt::Write as _;
 use std::sync::Arc;

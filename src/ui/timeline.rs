@@ -95,7 +95,7 @@ pub(crate) fn timeline_panel_ui(
     let names = match outcome.walk() {
         Some(walk) => [0, 1].map(|part: usize| {
             let clip = walk.passed.get(part).map(|passed| passed.stay.clip);
-            clip.and_then(|clip| walk.built.cast().names().get(clip))
+            clip.and_then(|clip| walk.built.clips().names().get(clip))
                 .map_or_else(String::new, |name| say(&session.clip_title(name), ui))
         }),
         None => names,

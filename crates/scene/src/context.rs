@@ -33,8 +33,8 @@ pub(crate) struct Shown<'a> {
 
 impl<'a> Shown<'a> {
     /// Poses a result; `None` where its motion has no pose.
-    pub(crate) fn new(shown: segue_session::Shown<'a>) -> Option<Self> {
-        let segue_session::Shown { outcome, secs: now, place } = shown;
+    pub(crate) fn new(shown: segue_session::PaneContent<'a>) -> Option<Self> {
+        let segue_session::PaneContent { outcome, secs: now, place } = shown;
         Some(Self { outcome, now, place, world: pose_at(&outcome.motion, now, &place)? })
     }
 

@@ -129,7 +129,7 @@ impl ClipResolver<'_> {
             let reference = params.text(key).to_owned();
             let _was_gone = self.document.bring_back(&reference) || self.document.bring(&reference);
         }
-        self.labs.grapher.guide_by(None);
+        self.labs.graphs.guide_by(None);
         match self.answer(params, None, widest_window(params, None)) {
             Answer::Made { outcome, is_draft: false, .. } => Ok(Arc::clone(&outcome.motion)),
             Answer::Refused(problem) => Err(problem),

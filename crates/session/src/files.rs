@@ -13,7 +13,7 @@ mod storage;
 mod tasks;
 
 pub(crate) use intake::FileIntake;
-pub use intake::Loaded;
+pub use intake::LoadedFile;
 pub(crate) use storage::{is_as_it_came, stored_entries};
 pub use tasks::Job;
 

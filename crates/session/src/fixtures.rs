@@ -12,7 +12,7 @@ pub(crate) use crate::metrics::MetricId;
 pub(crate) use crate::notice::Level;
 pub(crate) use crate::params::{Key, Value};
 pub(crate) use crate::reading::Content;
-pub(crate) use crate::{Lesson, Loaded, NoResult, Pane, Session, Shown};
+pub(crate) use crate::{Lesson, LoadedFile, NoResult, Pane, PaneContent, Session};
 pub(crate) use segue_motion::clip::Motion;
 pub(crate) use std::sync::Arc;
 

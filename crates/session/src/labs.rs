@@ -1,10 +1,10 @@
 //! Labs: results made from clips and parameters, as pure functions of their inputs.
 
 mod answer;
+mod artefact_meter;
 mod blend;
 mod error;
 mod feet;
-mod gauge;
 mod graph;
 mod in_place;
 pub(super) mod lab;
@@ -18,18 +18,18 @@ mod pair;
 mod path;
 mod recipe;
 mod register;
-mod rounds;
+mod repetition;
 pub(super) mod sliced;
 mod speed;
 mod view;
 
 pub(super) use answer::Answer;
+pub(super) use artefact_meter::ArtefactMeter;
 pub use blend::mistake_shows;
 pub use error::LabError;
-pub(super) use gauge::Gauge;
 pub use graph::{
-    BuiltGraph, DistanceField, Distances, GraphClips, Trace, Walk, WalkGhost, WalkMoment, WalkStay,
-    check_graph_clips, graph_of,
+    BuiltGraph, DistanceField, Distances, FollowedPath, GraphClips, Walk, WalkGhost, WalkMoment,
+    WalkStay, check_graph_clips, graph_of,
 };
 pub(super) use graph::{clips_of, visits_of};
 pub(super) use lab::{Inputs, LabClips, MoreClip, slots_of};
@@ -38,16 +38,16 @@ pub use layers::{LayerFacts, LayerFit};
 pub(super) use make::{has as made_motion_has, preset_motion, range_of, synth_action};
 #[cfg(test)]
 pub(super) use match_::options_of;
-pub use match_::{DriveMoment, Driven, own_words};
+pub use match_::{DriveHistory, DriveMoment, own_words};
 pub(super) use match_::{DrivenPane, LiveDrive, filter_of};
 pub use outcome::{
-    Cycle, CycleMade, MatchSearch, Outcome, PlacedClip, Retargeted, Slot, Transition,
+    Cycle, CycleMade, MatchSearch, Outcome, PlacedClip, RetargetReport, Slot, Transition,
 };
-pub(super) use outcome::{LabFacts, Measured};
-pub use path::{FittedMotion, OnPath, spline_ends};
+pub(super) use outcome::{LabFacts, MeasuredMotion};
+pub use path::{FittedMotion, PathFacts, spline_ends};
 pub use recipe::file_stem;
 pub(super) use recipe::{recipe_id, recipe_ingredients, recipe_name, recipe_params};
-pub use register::{Beat, DistanceMap, Registered, weight_curve};
+pub use register::{DistanceMap, FramePair, RegistrationFacts, weight_curve};
 pub use sliced::JobKind;
 pub(super) use speed::{SpeedInputs, middle_mps};
 

@@ -102,18 +102,19 @@ pub use command::{
     Request,
 };
 pub use extra_characters::ExtraCharacter;
-pub use files::{Job, Loaded};
+pub use files::{Job, LoadedFile};
 pub use labs::LabError;
 pub use labs::{
-    Beat, DistanceMap, DriveMoment, Driven, FittedMotion, OnPath, Registered, spline_ends,
+    BuiltGraph, DistanceField, Distances, FollowedPath, GraphClips, Walk, WalkGhost, WalkMoment,
+    WalkStay, check_graph_clips, graph_of,
 };
 pub use labs::{
-    BuiltGraph, DistanceField, Distances, GraphClips, Trace, Walk, WalkGhost, WalkMoment, WalkStay,
-    check_graph_clips, graph_of,
-};
-pub use labs::{
-    Cycle, CycleMade, LayerFacts, LayerFit, MatchSearch, Outcome, PlacedClip, Retargeted, Slot,
+    Cycle, CycleMade, LayerFacts, LayerFit, MatchSearch, Outcome, PlacedClip, RetargetReport, Slot,
     Transition, mistake_shows,
+};
+pub use labs::{
+    DistanceMap, DriveHistory, DriveMoment, FittedMotion, FramePair, PathFacts, RegistrationFacts,
+    spline_ends,
 };
 pub use labs::{JobKind, file_stem, own_words, weight_curve};
 pub use lesson::{Lesson, LessonPage};
@@ -122,7 +123,7 @@ pub use memory::{MemoryUse, PageMemory};
 pub use motion::{curve_kind, foot_options, frame_at, joint_of, word_of_joint};
 pub use notice::{Level, Notice, Notices};
 pub use numbers::{NumberRow, NumberTable, digits};
-pub use pane::{Made, NoResult, Pane, Shown};
+pub use pane::{NoResult, Pane, PaneContent, PaneResult};
 pub use params::choices::{self, LabId, Selected};
 pub use params::{
     Choice, Compare, Group, HandTag, Key, Kind, List, ListKind, MAX_PANES, MAX_WEIGHTED_CLIPS,
@@ -131,5 +132,5 @@ pub use params::{
 pub use playback::Span;
 pub use report::{ReportFacts, report};
 pub use samples::{SAMPLES_CREDIT, Sample, SampleSet};
-pub use saved::{Saved, SavedEntry, Storing};
+pub use saved::{Saved, SavedEntry, StorageState};
 pub use session::Session;

@@ -10,7 +10,7 @@ use segue_motion::skin::{Character, SkinnedMesh};
 use segue_text::Message;
 use std::sync::Arc;
 
-/// How a file has arrived.
+/// The way in which a file has arrived.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Arrival {
     /// The user dropped or opened it, or the page's API handed it over.

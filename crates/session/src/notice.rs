@@ -19,7 +19,7 @@ pub enum Level {
 pub struct Notice {
     /// Its number, by which it is dismissed.
     pub id: u64,
-    /// How much it matters.
+    /// The severity.
     pub level: Level,
     /// The event and the remedy, in a sentence or two.
     pub text: Message,

@@ -1,6 +1,6 @@
 //! A pane of the stage: a result, and its relation to the present parameters.
 
-use crate::labs::{Answer, Gauge, Inputs, LabError, Outcome, PlacedClip};
+use crate::labs::{Answer, ArtefactMeter, Inputs, LabError, Outcome, PlacedClip};
 use crate::params::{Key, Params, Value};
 use crate::playback::speed_ramp::{SpeedRamp, cycle_durations};
 use segue_motion::math::Planar;
@@ -25,7 +25,7 @@ pub struct Pane {
     pub sources: Vec<PlacedClip>,
     /// The parameters that `outcome` was made from.
     made_from: Option<Arc<Params>>,
-    standing: Standing,
+    standing: OutcomeState,
     pub(crate) inputs: Option<Inputs>,
     /// The placement in the shown world that a looping result has reached.
     pub(crate) place: Planar,
@@ -33,9 +33,9 @@ pub struct Pane {
     pub(crate) ramp: Option<SpeedRamp>,
 }
 
-/// How the outcome of a pane relates to the present parameters.
+/// The relation of an outcome to the present parameters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-enum Standing {
+enum OutcomeState {
     /// It has earlier parameters; the result of the present ones is being computed.
     #[default]
     Earlier,
@@ -46,7 +46,7 @@ enum Standing {
     Finished,
 }
 
-impl Standing {
+impl OutcomeState {
     fn of(is_draft: bool) -> Self {
         if is_draft { Self::Draft } else { Self::Finished }
     }
@@ -54,7 +54,7 @@ impl Standing {
 
 /// A result, and the parameters that it was made from.
 #[derive(Clone, Copy, Debug)]
-pub struct Made<'a> {
+pub struct PaneResult<'a> {
     /// The result.
     pub outcome: &'a Arc<Outcome>,
     /// The parameters by which it is made again.
@@ -74,7 +74,7 @@ pub enum NoResult {
 
 /// The content of a pane at some time.
 #[derive(Clone, Copy, Debug)]
-pub struct Shown<'a> {
+pub struct PaneContent<'a> {
     /// The pane's result; a gait that approaches it, if the speed has just been changed.
     pub outcome: &'a Arc<Outcome>,
     /// The time in its motion, seconds.
@@ -89,26 +89,26 @@ impl Pane {
     /// # Errors
     /// [`NoResult`] if it cannot be made, and while it is computed: the stage then shows a result
     /// of earlier parameters, or a draft.
-    pub fn result(&self) -> Result<Made<'_>, NoResult> {
+    pub fn result(&self) -> Result<PaneResult<'_>, NoResult> {
         if let Some(problem) = &self.problem {
             return Err(NoResult::Refused(problem.clone()));
         }
-        self.made().filter(|_| self.standing == Standing::Finished).ok_or(NoResult::Awaited)
+        self.made().filter(|_| self.standing == OutcomeState::Finished).ok_or(NoResult::Awaited)
     }
 
     /// Returns the result for uses that make it again from its parameters: like [`Pane::result`],
     /// but its feet may still have to be locked.
-    pub(crate) fn recipe(&self) -> Result<Made<'_>, NoResult> {
+    pub(crate) fn recipe(&self) -> Result<PaneResult<'_>, NoResult> {
         let drafted = self
             .made()
-            .filter(|made| self.standing == Standing::Draft && made.outcome.awaits_feet());
+            .filter(|made| self.standing == OutcomeState::Draft && made.outcome.awaits_feet());
         drafted.map_or_else(|| self.result(), Ok)
     }
 
     /// Returns the outcome on the stage, and the parameters that it was made from.
-    fn made(&self) -> Option<Made<'_>> {
+    fn made(&self) -> Option<PaneResult<'_>> {
         let (outcome, params) = (self.outcome.as_ref()?, self.made_from.as_deref()?);
-        Some(Made { outcome, params })
+        Some(PaneResult { outcome, params })
     }
 
     /// Returns the parameters that the outcome on the stage was made from; `None` if there is none.
@@ -129,7 +129,7 @@ impl Pane {
     /// ones is being computed.
     #[must_use]
     pub fn is_outdated(&self) -> bool {
-        self.outcome.is_some() && self.standing == Standing::Earlier
+        self.outcome.is_some() && self.standing == OutcomeState::Earlier
     }
 
     /// Applies the answer to `params`. If there can be no result, an earlier one is removed.
@@ -141,14 +141,14 @@ impl Pane {
                 self.outcome = Some(outcome);
                 self.inputs = inputs;
                 self.made_from = Some(Arc::clone(params));
-                self.standing = Standing::of(is_draft);
+                self.standing = OutcomeState::of(is_draft);
             }
             Answer::Same { is_draft } => {
                 self.made_from = Some(Arc::clone(params));
-                self.standing = Standing::of(is_draft);
+                self.standing = OutcomeState::of(is_draft);
             }
             Answer::Awaited => {
-                self.standing = Standing::Earlier;
+                self.standing = OutcomeState::Earlier;
                 // An earlier result of the same lab stays until there is a newer one.
                 if self.made_from().is_some_and(|from| from.get(Key::Lab) != params.get(Key::Lab)) {
                     self.clear();
@@ -163,17 +163,18 @@ impl Pane {
 
     /// Adds the metrics of every lab at the front of a new result's list. Until they are measured
     /// it is a draft.
-    pub(crate) fn measure(&mut self, gauge: &mut Gauge) {
-        let Some(outcome) = self.outcome.as_mut().filter(|_| self.standing != Standing::Earlier)
+    pub(crate) fn measure(&mut self, meter: &mut ArtefactMeter) {
+        let Some(outcome) =
+            self.outcome.as_mut().filter(|_| self.standing != OutcomeState::Earlier)
         else {
             return;
         };
         if outcome.is_measured {
             return;
         }
-        let found = gauge.numbers(outcome);
+        let found = meter.numbers(outcome);
         if found.is_none() {
-            self.standing = Standing::Draft;
+            self.standing = OutcomeState::Draft;
         }
         if found.is_some() || !outcome.awaits_numbers() {
             Arc::make_mut(outcome).take_numbers(found);
@@ -198,13 +199,13 @@ impl Pane {
     fn clear(&mut self) {
         (self.outcome, self.made_from, self.inputs, self.ramp) = (None, None, None, None);
         self.place = Planar::IDENTITY;
-        self.standing = Standing::Earlier;
+        self.standing = OutcomeState::Earlier;
     }
 
     /// Returns the content at a time of the timeline; `None` without a result. A result that loops
     /// and is shorter than the timeline begins again, and continues from where the character is.
     #[must_use]
-    pub fn shown_at(&self, secs: f64) -> Option<Shown<'_>> {
+    pub fn shown_at(&self, secs: f64) -> Option<PaneContent<'_>> {
         let own = self.outcome.as_ref()?;
         let on_ramp = self.ramp.as_ref().and_then(|ramp| {
             let [own_secs, ramp_secs] = cycle_durations(own, &ramp.outcome)?;
@@ -212,6 +213,6 @@ impl Pane {
         });
         let (outcome, secs) = on_ramp.unwrap_or((own, secs));
         let (secs, place) = outcome.around(secs);
-        Some(Shown { outcome, secs, place: self.place.after(&place) })
+        Some(PaneContent { outcome, secs, place: self.place.after(&place) })
     }
 }

@@ -5,7 +5,7 @@ use crate::clip_resolver::{ClipResolver, widest_window};
 use crate::command::CommandError;
 use crate::labs::{DrivenPane, LiveDrive, Outcome, PlacedClip, Slot};
 use crate::labs::{lab_of, recipe_ingredients, slots_of};
-use crate::pane::{Made, NoResult, Pane};
+use crate::pane::{NoResult, Pane, PaneResult};
 use crate::params::{Key, Kind, MAX_PANES, Params, Value};
 use segue_motion::clip::Motion;
 use segue_motion::math::Planar;
@@ -24,7 +24,7 @@ impl Panes {
     }
 
     /// Returns the first result.
-    pub(crate) fn first_result(&self) -> Result<Made<'_>, NoResult> {
+    pub(crate) fn first_result(&self) -> Result<PaneResult<'_>, NoResult> {
         let (mut found, mut refused) = (None, None);
         for result in self.list.iter().map(Pane::result) {
             match result {
@@ -80,8 +80,8 @@ impl Panes {
         let is_driven = is_driven_by_user(&clips.document.params);
         let match_window = widest_window(&clips.document.params, compare);
         let mut old = std::mem::take(&mut self.list).into_iter();
-        clips.labs.ask_anew();
-        clips.labs.grapher.guide_by(None);
+        clips.labs.clear_requests();
+        clips.labs.graphs.guide_by(None);
         for variant in variants {
             let mut pane = old.next().unwrap_or_default();
             pane.variant = variant;
@@ -89,10 +89,10 @@ impl Panes {
             if !is_driven {
                 let answer = clips.answer(&params, pane.inputs.as_ref(), match_window);
                 pane.take(answer, &params);
-                pane.measure(&mut clips.labs.gauge);
+                pane.measure(&mut clips.labs.meter);
             }
             if self.list.is_empty() {
-                clips.labs.grapher.guide_by(Some(&params));
+                clips.labs.graphs.guide_by(Some(&params));
             }
             self.list.push(pane);
         }
@@ -108,12 +108,12 @@ impl Panes {
         for pane in &self.list {
             let params = Arc::new(pane.params_in(&clips.document.params));
             let database = (clips.lab_clips(&params))
-                .and_then(|motions| clips.labs.driver.database_of(motions, &params));
+                .and_then(|motions| clips.labs.drives.database_of(motions, &params));
             wanted.push(DrivenPane { params, database, shown: pane.outcome.clone() });
         }
         let params: Vec<_> = wanted.iter().map(|pane| Arc::clone(&pane.params)).collect();
         let crowd = clips.document.params.number(Key::Crowd) as usize - 1;
-        let answers = drive.refresh(wanted, crowd, &mut clips.labs.gauge);
+        let answers = drive.refresh(wanted, crowd, &mut clips.labs.meter);
         for ((pane, answer), params) in self.list.iter_mut().zip(answers).zip(params) {
             pane.take(answer, &params);
         }

@@ -69,9 +69,9 @@ impl Timeline {
         let (span, before, rate) =
             (self.span(params), self.now_secs(params), params.number(Key::Rate));
         let (now, is_moving) = span.advance(before, dt_secs, rate, params.is_on(Key::Loop));
-        let rounds = span.rounds(before, dt_secs, rate);
-        if is_moving && rounds > 0 {
-            wrap_playhead(params, panes, span, rounds);
+        let wraps = span.wraps(before, dt_secs, rate);
+        if is_moving && wraps > 0 {
+            wrap_playhead(params, panes, span, wraps);
         }
         set(params, Key::Time, Value::Number(now));
         if !is_moving {
@@ -180,17 +180,17 @@ pub(crate) fn advance_ramps(
     any
 }
 
-/// Restarts the span after the playhead has reached its end `rounds` times. The character continues
+/// Restarts the span after the playhead has reached its end `wraps` times. The character continues
 /// from there if the camera follows it; with a fixed camera or several panes it returns to the
 /// start.
-fn wrap_playhead(params: &Params, panes: &mut [Pane], span: Span, rounds: usize) {
+fn wrap_playhead(params: &Params, panes: &mut [Pane], span: Span, wraps: usize) {
     let walks_on = panes.len() == 1 && params.choice::<Follow>() != Follow::Off;
     for pane in panes {
         if !walks_on || pane.outcome.as_ref().is_none_or(|outcome| outcome.cycle.is_none()) {
             pane.place = Planar::IDENTITY;
             continue;
         }
-        for _ in 0..rounds {
+        for _ in 0..wraps {
             if let Some(character) = pane.world_from_character(span.end) {
                 pane.place_character(span.start, &character);
             }

@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 
 /// The progress of storing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Storing {
+pub enum StorageState {
     /// Everything is stored.
     #[default]
     Done,

@@ -19,11 +19,11 @@ use crate::library::Library;
 use crate::link;
 use crate::missing::{dismiss_found, look_for_clips};
 use crate::notice::{Level, Notices};
-use crate::pane::{Made, NoResult, Pane};
+use crate::pane::{NoResult, Pane, PaneResult};
 use crate::panes::{Panes, is_driven_by_user};
 use crate::params::{Compare, Key, Params, Value};
 use crate::playback::{self, PlaybackState, Span, Timeline};
-use crate::reading::{Reads, read};
+use crate::reading::{ReadFunction, read};
 use segue_text::{Message, msg};
 use std::sync::Arc;
 
@@ -67,7 +67,7 @@ impl Session {
         Self::with_reader(None)
     }
 
-    fn with_reader(reads: Option<Reads>) -> Self {
+    fn with_reader(reads: Option<ReadFunction>) -> Self {
         let mut session = Self {
             document: Document::default(),
             labs: LabSet::default(),
@@ -119,7 +119,7 @@ impl Session {
     ///
     /// # Errors
     /// [`NoResult`] if no pane has one, and while one of them is computed.
-    pub fn first_result(&self) -> Result<Made<'_>, NoResult> {
+    pub fn first_result(&self) -> Result<PaneResult<'_>, NoResult> {
         self.panes.first_result()
     }
 
@@ -281,7 +281,7 @@ impl Session {
             Command::ExtraCharacters(command) => {
                 extra_characters::apply(command, &mut self.document, &self.panes)?;
             }
-            Command::StopGraph(stop) => self.labs.grapher.stop(stop),
+            Command::StopGraph(stop) => self.labs.graphs.stop(stop),
             Command::Undo => self.take_step(Document::undo),
             Command::Redo => self.take_step(Document::redo),
             Command::Dismiss(id) => self.notices.dismiss(id),
@@ -316,7 +316,7 @@ impl Session {
         let changes = self.document.set(values)?;
         self.files.fetch(changes.new_sources, &mut self.notices);
         if changes.keys.iter().any(|key| key.param().group.is_of_lab()) {
-            self.labs.grapher.stop(false);
+            self.labs.graphs.stop(false);
         }
         if changes.keys.contains(&Key::Lesson) {
             self.note_lesson(&named);
@@ -372,7 +372,7 @@ impl Session {
         }
         self.files.fetch(new_sources, &mut self.notices);
         look_for_clips(&mut self.document, &mut self.notices);
-        self.labs.grapher.stop(false);
+        self.labs.graphs.stop(false);
     }
 
     fn clips(&mut self) -> ClipResolver<'_> {

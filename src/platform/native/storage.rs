@@ -4,7 +4,7 @@ use super::LargeFile;
 use crate::platform::records::{LATEST, Records};
 use crate::platform::{Arrival, FileBytes, Inbox, Incoming, Stored, StoredFiles, Work};
 use segue_session::reading::LARGE_BYTES;
-use segue_session::{Saved, SavedEntry, Session, Storing};
+use segue_session::{Saved, SavedEntry, Session, StorageState};
 use segue_text::{Message, msg};
 use std::fs;
 use std::io;
@@ -131,14 +131,14 @@ impl Storage {
     pub(crate) fn fetch(&self, _entries: Vec<SavedEntry>) {}
 
     /// How far storing is; `None` where nothing is stored.
-    pub(crate) fn progress(&self) -> Option<Storing> {
+    pub(crate) fn progress(&self) -> Option<StorageState> {
         let writer = self.0.as_ref()?.lock().unwrap_or_else(PoisonError::into_inner);
         Some(if writer.waiting.load(Ordering::Relaxed) > 0 {
-            Storing::UnderWay
+            StorageState::UnderWay
         } else if writer.has_failed.load(Ordering::Relaxed) {
-            Storing::Incomplete
+            StorageState::Incomplete
         } else {
-            Storing::Done
+            StorageState::Done
         })
     }
 

@@ -15,7 +15,7 @@ use idb::{
     TransactionResult,
 };
 use js_sys::{Date, Math, Uint8Array};
-use segue_session::{SavedEntry, Storing};
+use segue_session::{SavedEntry, StorageState};
 use segue_text::{Message, msg};
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
@@ -243,15 +243,15 @@ impl Storage {
     }
 
     /// How far storing is; `None` where nothing is stored.
-    pub(crate) fn progress(&self) -> Option<Storing> {
+    pub(crate) fn progress(&self) -> Option<StorageState> {
         let state = self.state.borrow();
         state.database.as_ref()?;
         Some(if state.writing {
-            Storing::UnderWay
+            StorageState::UnderWay
         } else if state.refused.is_empty() {
-            Storing::Done
+            StorageState::Done
         } else {
-            Storing::Incomplete
+            StorageState::Incomplete
         })
     }
 

@@ -18,7 +18,9 @@ use crate::ui::text;
 use crate::ui::theme::{Type, palette_of, space, theme_of};
 use eframe::egui::{Rect, RichText, Ui, UiBuilder, pos2, vec2};
 use segue_motion::path::PathEdit;
-use segue_session::{Command, Compare, ExtraCharacterCommand, Key, LabId, OnPath, Session, Slot};
+use segue_session::{
+    Command, Compare, ExtraCharacterCommand, Key, LabId, PathFacts, Session, Slot,
+};
 use segue_text::{Message, ToMessage};
 
 /// The lab's part of the page.
@@ -114,7 +116,7 @@ pub(super) fn path_ui(session: &Session, state: &mut UiState, out: &mut Out, ui:
 }
 
 /// What is done with single points.
-fn points_ui(path: &OnPath, session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+fn points_ui(path: &PathFacts, session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing = vec2(space::XS, space::XS);
         let draw = Button::new(text::DRAW)
@@ -152,7 +154,7 @@ fn points_ui(path: &OnPath, session: &Session, state: &mut UiState, out: &mut Ou
 }
 
 /// What is done with the whole path.
-fn whole_ui(path: &OnPath, session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
+fn whole_ui(path: &PathFacts, session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     ui.label(RichText::new(tr(text::WHOLE_PATH, ui)).font(theme_of(ui).font(Type::Label)));
     let turn = |degrees: f64| PathEdit::Rotate { radians: degrees.to_radians() };
     let grid_m = session.params().number(Key::PathGrid);
@@ -186,7 +188,7 @@ fn whole_ui(path: &OnPath, session: &Session, state: &mut UiState, out: &mut Out
 }
 
 /// Where the path asks for more than the motion can.
-fn warnings_ui(path: &OnPath, ui: &mut Ui) {
+fn warnings_ui(path: &PathFacts, ui: &mut Ui) {
     let fps = path.fitted.motion().clip().fps();
     let warning = palette_of(ui).warning;
     for turn in path.hard_turns.iter().take(MOST_WARNINGS) {
@@ -199,7 +201,7 @@ fn warnings_ui(path: &OnPath, ui: &mut Ui) {
 }
 
 /// How the path is fitted to the motion, and how well.
-fn fit_ui(path: Option<&OnPath>, session: &Session, out: &mut Out, ui: &mut Ui) {
+fn fit_ui(path: Option<&PathFacts>, session: &Session, out: &mut Out, ui: &mut Ui) {
     ui.label(RichText::new(tr(text::FIT, ui)).font(theme_of(ui).font(Type::Strong)));
     let on = session.compare().is_some_and(|compare| compare.key == Key::ControlPoints);
     // The rows of what is compared have the way back.

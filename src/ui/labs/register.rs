@@ -20,8 +20,8 @@ use segue_motion::skeleton::Side;
 use segue_session::JobKind;
 use segue_session::choices::{self, WarpMode};
 use segue_session::{
-    Command, Compare, DistanceMap, Key, List, MAX_WEIGHTED_CLIPS, PlaybackCommand, Registered,
-    Session, Value, weight_curve,
+    Command, Compare, DistanceMap, Key, List, MAX_WEIGHTED_CLIPS, PlaybackCommand,
+    RegistrationFacts, Session, Value, weight_curve,
 };
 use segue_text::{Message, ToMessage, msg};
 use std::sync::Arc;
@@ -40,15 +40,15 @@ pub(super) const LAB: LabUi = LabUi {
 pub(super) fn edge_value(
     edge: Edge,
     secs: f64,
-    registered: &Registered,
+    registered: &RegistrationFacts,
     fps: f64,
 ) -> Option<(Key, f64)> {
     match edge {
         Edge::Start => Some((Key::WarpFrom, secs.max(0.0))),
         // The end is a time of A, whose clock is bent until then.
         Edge::End => {
-            let beat = registered.beat_at(secs)?;
-            Some((Key::WarpTo, (beat.frames[0] / fps).max(0.0)))
+            let frame_pair = registered.frame_pair_at(secs)?;
+            Some((Key::WarpTo, (frame_pair.frames[0] / fps).max(0.0)))
         }
     }
 }
@@ -259,7 +259,7 @@ fn map_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let half = 0.5 * matrix.stride() as f64 / fps;
     let field = [0, 1].map(|clip| [first[clip] - half, last[clip] + half]);
     let feet = [0, 1].map(|clip: usize| feet_of(map, clip));
-    let registered: Vec<&Registered> = (session.panes().iter())
+    let registered: Vec<&RegistrationFacts> = (session.panes().iter())
         .filter_map(|pane| pane.outcome.as_ref()?.registered().map(|fact| &**fact))
         .filter(|registered| same_clips(&registered.map, map))
         .collect();
@@ -268,8 +268,8 @@ fn map_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let pins = session.params().pins();
     let pin_secs: Vec<[f64; 2]> = pins.iter().map(|&(a, b)| secs([a as f64, b as f64])).collect();
     let now = (registered.first())
-        .and_then(|registered| registered.beat_at(session.now_secs()))
-        .map(|beat| beat.frames);
+        .and_then(|registered| registered.frame_pair_at(session.now_secs()))
+        .map(|frame_pair| frame_pair.frames);
     let inside =
         |frames: &[f64; 2]| (0..2).all(|clip| (0.0..=spans[clip]).contains(&secs(*frames)[clip]));
     let view = HeatMap {
@@ -323,7 +323,7 @@ fn same_clips(one: &DistanceMap, other: &DistanceMap) -> bool {
 fn map_event(
     event: HeatMapEvent,
     map: &DistanceMap,
-    registered: Option<&Registered>,
+    registered: Option<&RegistrationFacts>,
     pins: &[(usize, usize)],
     state: &mut UiState,
     out: &mut Out,
@@ -384,7 +384,7 @@ impl Line {
 const CURVE_POINTS: usize = 300;
 
 /// The path of the first pane, and what every pane follows: its timewarp, or none.
-fn lines(registered: &[&Registered], palette: &Palette) -> Vec<Line> {
+fn lines(registered: &[&RegistrationFacts], palette: &Palette) -> Vec<Line> {
     let mut lines = Vec::new();
     let Some(first) = registered.first() else {
         return lines;
@@ -404,10 +404,12 @@ fn lines(registered: &[&Registered], palette: &Palette) -> Vec<Line> {
         dashed: false,
     });
     for registered in registered.iter().rev().filter(|registered| registered.is_plain) {
-        let points =
-            registered.beats.iter().filter(|beat| beat.frames.iter().all(|frame| *frame >= 0.0));
+        let points = registered
+            .frame_pairs
+            .iter()
+            .filter(|frame_pair| frame_pair.frames.iter().all(|frame| *frame >= 0.0));
         lines.push(Line {
-            points: points.map(|beat| secs(beat.frames)).collect(),
+            points: points.map(|frame_pair| secs(frame_pair.frames)).collect(),
             color: palette.bad,
             width: 1.6,
             dashed: true,

@@ -172,7 +172,7 @@ fn end_of_clip(key: Key, session: &Session) -> Option<f64> {
 /// Returns the frame rate of what is shown, or of the clips that it is to be made from.
 fn frame_rate(session: &Session) -> f64 {
     let shown = session.main_outcome().map(|outcome| outcome.motion.clip().fps());
-    let of_graph = || session.graph_cast().map(|cast| cast.set().fps());
+    let of_graph = || session.graph_clips().map(|graph_clips| graph_clips.set().fps());
     let of_map = || session.distance_map().map(|map| map.fps());
     shown.or_else(of_graph).or_else(of_map).unwrap_or(60.0)
 }

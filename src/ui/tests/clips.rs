@@ -191,9 +191,9 @@ fn the_library_tells_how_far_the_work_is_stored() {
         assert!(harness.query_by_label(words).is_none(), "{words} where nothing is stored");
     }
     for (stored, words) in [
-        (Storing::Done, "Saved"),
-        (Storing::UnderWay, "Saving…"),
-        (Storing::Incomplete, "Not all saved"),
+        (StorageState::Done, "Saved"),
+        (StorageState::UnderWay, "Saving…"),
+        (StorageState::Incomplete, "Not all saved"),
     ] {
         harness.state_mut().state.stored = Some(stored);
         harness.run();

@@ -3,7 +3,7 @@
 use super::*;
 use eframe::egui::{Event, Modifiers};
 use segue_motion::matching::{Control, Place};
-use segue_session::{DriveCommand, Driven, PlaybackCommand};
+use segue_session::{DriveCommand, DriveHistory, PlaybackCommand};
 
 /// A database that is built in a moment.
 const SMALL: &str =
@@ -15,7 +15,7 @@ fn ghost(harness: &Harness<'_, Page>) -> Option<Place> {
     highlights(&page.session, &page.state).candidate
 }
 
-fn driven(harness: &Harness<'_, Page>) -> Arc<Driven> {
+fn driven(harness: &Harness<'_, Page>) -> Arc<DriveHistory> {
     outcome(harness.state()).driven().cloned().expect("a drive")
 }
 

@@ -49,8 +49,8 @@ fn the_graph_lab_does_what_is_pressed() {
         let session = &harness.state().session;
         let built = session.graph_built().unwrap();
         let jump = built.graph().jumps()[0];
-        let size = built.cast().set().frames() as f32;
-        let number = |place| built.cast().set().number(place).unwrap() as f32 + 0.5;
+        let size = built.clips().set().frames() as f32;
+        let number = |place| built.clips().set().number(place).unwrap() as f32 + 0.5;
         let field = harness.get_by_label(text::ALL_DISTANCES).rect();
         (vec2(number(jump.enter), number(jump.leave)) / size, field)
     };
@@ -184,10 +184,10 @@ fn the_distances_of_very_many_frames_are_seen_from_afar_and_nearby() {
     let (mark, ends, frames) = {
         let session = &harness.state().session;
         let (built, field) = (session.graph_built().unwrap(), session.graph_field().unwrap());
-        let frames = built.cast().set().frames();
+        let frames = built.clips().set().frames();
         assert!(frames > 6_000 && matches!(field.distances(), Distances::FromAfar(_)), "{frames}");
         let jump = built.whole().jumps()[0];
-        let number = |place| built.cast().set().number(place).unwrap() as f32 + 0.5;
+        let number = |place| built.clips().set().number(place).unwrap() as f32 + 0.5;
         let at = vec2(number(jump.enter), number(jump.leave)) / frames as f32;
         (at, [jump.leave, jump.enter], frames)
     };

@@ -3,10 +3,10 @@
 use super::*;
 use eframe::egui::{Event, Modifiers, Pos2, TouchDeviceId, TouchId, TouchPhase};
 use glam::DVec2;
-use segue_session::OnPath;
+use segue_session::PathFacts;
 use segue_session::choices;
 
-fn path(harness: &Harness<'_, Page>) -> Arc<OnPath> {
+fn path(harness: &Harness<'_, Page>) -> Arc<PathFacts> {
     outcome(harness.state()).path().cloned().expect("a path")
 }
 

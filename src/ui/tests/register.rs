@@ -71,8 +71,8 @@ fn a_weight_over_time_is_drawn_by_hand() {
     harness.run();
     let (share, weight) = keys(&harness)[1];
     assert!(share.abs_diff(30) <= 2 && weight.abs_diff(20) <= 2, "{share} {weight}");
-    let beats = &outcome(harness.state()).registered().unwrap().beats;
-    assert!((beats[beats.len() * 3 / 10].weights[1] - 0.2).abs() < 0.06);
+    let frame_pairs = &outcome(harness.state()).registered().unwrap().frame_pairs;
+    assert!((frame_pairs[frame_pairs.len() * 3 / 10].weights[1] - 0.2).abs() < 0.06);
     picture("register-weights-dark", &mut harness);
     press(text::ONE_WEIGHT, &mut harness);
     assert_eq!(keys(&harness), []);
@@ -104,14 +104,15 @@ fn the_map_is_pointed_at_pressed_and_pinned() {
     };
     click(&mut harness, at(0.5, 0.5));
     let now = harness.state().session.now_secs();
-    let beat = outcome(harness.state()).registered().unwrap().beat_at(now).unwrap();
+    let frame_pair = outcome(harness.state()).registered().unwrap().frame_pair_at(now).unwrap();
     let off = |secs: f64| {
-        let frames = outcome(harness.state()).registered().unwrap().beat_at(secs).unwrap().frames;
+        let frames =
+            outcome(harness.state()).registered().unwrap().frame_pair_at(secs).unwrap().frames;
         (frames[0] - a).hypot(frames[1] - b)
     };
     assert!(
         off(now) < 20.0 && off(now) < off(now - 0.1) && off(now) < off(now + 0.1),
-        "{beat:?} for {a} {b}"
+        "{frame_pair:?} for {a} {b}"
     );
     // A drag sets a pin, and the curve passes through it.
     let pins = |harness: &Harness<'_, Page>| harness.state().session.params().pins().to_vec();

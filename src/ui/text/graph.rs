@@ -1,6 +1,6 @@
 //! The texts of the Graph lab.
 
-use segue_session::{BuiltGraph, GraphClips, Trace};
+use segue_session::{BuiltGraph, FollowedPath, GraphClips};
 use segue_text::{Message, msg};
 
 /// What the Graph lab does.
@@ -184,14 +184,14 @@ pub(crate) fn windows_apart([leave, enter]: [Message; 2], cm: Option<f64>) -> Me
 
 /// Which clips were moved onto the skeleton of the first; `None` where all are on it.
 pub(crate) fn moved_onto_first(
-    cast: &GraphClips,
+    clips: &GraphClips,
     title: impl Fn(&str) -> Message,
 ) -> Option<Message> {
-    let moved: Vec<Message> = (cast.names().iter().enumerate())
-        .filter(|(clip, _)| cast.retargeted(*clip).is_some())
+    let moved: Vec<Message> = (clips.names().iter().enumerate())
+        .filter(|(clip, _)| clips.retargeted(*clip).is_some())
         .map(|(_, name)| title(name))
         .collect();
-    let first = cast.names().first().filter(|_| !moved.is_empty())?;
+    let first = clips.names().first().filter(|_| !moved.is_empty())?;
     Some(msg!(
         "Retargeted to the skeleton of {first}: {names}.",
         first = title(first),
@@ -200,8 +200,8 @@ pub(crate) fn moved_onto_first(
 }
 
 /// How a walk follows its line.
-pub(crate) fn followed(trace: &Trace) -> Message {
-    let &Trace { along_m, length_m, rms_m, looked_at, .. } = trace;
+pub(crate) fn followed(trace: &FollowedPath) -> Message {
+    let &FollowedPath { along_m, length_m, rms_m, looked_at, .. } = trace;
     if trace.is_searching {
         msg!(
             "Searching: the walk follows {along_m:.1} of {length_m:.1} m of the path so far, {rms_m:.2} m away on average; {looked_at} walks compared.",

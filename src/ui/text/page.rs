@@ -1,7 +1,7 @@
 //! What the page says: its panels, buttons and the details of a clip.
 
 use segue_session::export::ExportFormat;
-use segue_session::{ClipSet, Entry, Job, JobKind, MemoryUse, Origin, Storing};
+use segue_session::{ClipSet, Entry, Job, JobKind, MemoryUse, Origin, StorageState};
 use segue_text::{Message, msg};
 
 pub(crate) const APP: &str = "Segue";
@@ -167,11 +167,11 @@ pub(crate) fn status(entry: &Entry) -> &'static str {
 }
 
 /// How far the work is stored.
-pub(crate) fn stored(stored: Storing) -> &'static str {
+pub(crate) fn stored(stored: StorageState) -> &'static str {
     match stored {
-        Storing::Done => SAVED,
-        Storing::UnderWay => SAVING,
-        Storing::Incomplete => NOT_ALL_SAVED,
+        StorageState::Done => SAVED,
+        StorageState::UnderWay => SAVING,
+        StorageState::Incomplete => NOT_ALL_SAVED,
     }
 }
 

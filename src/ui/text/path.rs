@@ -1,7 +1,7 @@
 //! The texts of the Path lab.
 
 use segue_motion::path::HardTurn;
-use segue_session::OnPath;
+use segue_session::PathFacts;
 use segue_session::choices::PathKeep;
 use segue_text::{Message, msg};
 
@@ -121,7 +121,7 @@ pub(crate) fn path_keep(word: PathKeep) -> &'static str {
 }
 
 /// How long the path is, and was.
-pub(crate) fn path_lengths(path: &OnPath) -> Message {
+pub(crate) fn path_lengths(path: &PathFacts) -> Message {
     let (now, before) = (path.curve.length_m(), path.fitted.curve().length_m());
     if path.is_edited {
         msg!("{now:.2} m, was {before:.2} m", now, before)

@@ -2,7 +2,7 @@
 
 use super::{BY_HAND, FOUND};
 use segue_session::choices::Mistake;
-use segue_session::{LayerFacts, LayerFit, Retargeted, Transition, format_number};
+use segue_session::{LayerFacts, LayerFit, RetargetReport, Transition, format_number};
 use segue_text::{Message, msg};
 
 /// How the place of a transition was found, and how far apart the clips are there. `automatic`:
@@ -44,7 +44,7 @@ pub(crate) fn place_found(transition: &Transition, automatic: [bool; 2]) -> Mess
 }
 
 /// That B was moved onto A's skeleton, and what was not matched.
-pub(crate) fn retargeted(retargeted: &Retargeted) -> Message {
+pub(crate) fn retargeted(retargeted: &RetargetReport) -> Message {
     /// More names would be a list that nobody reads.
     const NAMED: usize = 4;
     let unmatched = &retargeted.unmatched;
@@ -148,7 +148,7 @@ mod tests {
     #[test]
     fn what_was_not_matched_is_named_and_counted() {
         let told = |names: &[&str]| {
-            retargeted(&Retargeted {
+            retargeted(&RetargetReport {
                 unmatched: names.iter().map(|name| (*name).to_owned()).collect(),
             })
             .to_string()

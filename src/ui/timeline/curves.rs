@@ -8,7 +8,7 @@ use segue_motion::clip::{Motion, joint_curve};
 use segue_motion::skeleton::Role;
 use segue_session::choices;
 use segue_session::{
-    Key, Kind, Outcome, PlacedClip, Registered, Slot, Value, curve_kind, joint_of,
+    Key, Kind, Outcome, PlacedClip, RegistrationFacts, Slot, Value, curve_kind, joint_of,
 };
 use std::sync::Arc;
 
@@ -122,7 +122,7 @@ fn curve(
 /// made of.
 fn registered_curve(
     source: &PlacedClip,
-    registered: &Registered,
+    registered: &RegistrationFacts,
     joint: &str,
     quantity: choices::Curve,
 ) -> Vec<[f64; 2]> {
@@ -131,12 +131,12 @@ fn registered_curve(
     };
     let values = joint_curve(source.motion.clip(), joint, curve_kind(quantity));
     let (fps, clip) = (registered.map.fps(), usize::from(source.slot == Slot::B));
-    let stride = registered.beats.len().div_ceil(MAX_CURVE_POINTS).max(1);
-    let beats = registered.beats.iter().enumerate().step_by(stride);
-    beats
-        .filter(|(_, beat)| beat.frames[clip] > -0.5)
-        .filter_map(|(frame, beat)| {
-            let value = values.get(beat.frames[clip].round() as usize)?;
+    let stride = registered.frame_pairs.len().div_ceil(MAX_CURVE_POINTS).max(1);
+    let frame_pairs = registered.frame_pairs.iter().enumerate().step_by(stride);
+    frame_pairs
+        .filter(|(_, frame_pair)| frame_pair.frames[clip] > -0.5)
+        .filter_map(|(frame, frame_pair)| {
+            let value = values.get(frame_pair.frames[clip].round() as usize)?;
             Some([frame as f64 / fps, f64::from(*value)])
         })
         .collect()

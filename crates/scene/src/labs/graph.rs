@@ -20,7 +20,7 @@ pub(crate) fn add_jump(
     else {
         return;
     };
-    let motions = built.cast().motions();
+    let motions = built.clips().motions();
     let (Some(a), Some(b)) = (motions.get(leave.clip), motions.get(enter.clip)) else {
         return;
     };

@@ -6,7 +6,7 @@ use crate::extra_characters::add_character;
 use crate::{Body, Color, Colors, Layer, Pane, Ring, with_alpha};
 use segue_motion::math::Planar;
 use segue_motion::skeleton::{WorldPose, world_pose, world_pose_into};
-use segue_session::{DriveMoment, Driven, Key};
+use segue_session::{DriveHistory, DriveMoment, Key};
 
 /// Number of segments of a trajectory.
 const SEGMENTS: usize = 20;
@@ -25,7 +25,7 @@ const CROWD_SHARE: f32 = 0.3;
 
 /// Adds the driven character's trajectories and the candidate under the pointer.
 pub(crate) fn add_driven(
-    driven: &Driven,
+    driven: &DriveHistory,
     now_secs: f64,
     body: &Body,
     context: &DrawContext<'_>,
@@ -68,7 +68,7 @@ pub(crate) fn add_crowd(shown: &Shown<'_>, context: &mut DrawContext<'_>, pane: 
 
 /// Adds trajectories on the ground: desired ones in A's colour, that of the frame that plays in
 /// B's.
-fn add_trajectories(driven: &Driven, moment: &DriveMoment, colors: &Colors, pane: &mut Pane) {
+fn add_trajectories(driven: &DriveHistory, moment: &DriveMoment, colors: &Colors, pane: &mut Pane) {
     let stride = driven.moments.len().div_ceil(MAX_RECORDED_POINTS).max(1);
     let recorded = driven.moments.iter().step_by(stride);
     pane.add_dashed_path(
@@ -90,7 +90,7 @@ fn add_trajectories(driven: &Driven, moment: &DriveMoment, colors: &Colors, pane
 
 /// Adds a trajectory with the facings at the trajectory times.
 fn add_trajectory(
-    driven: &Driven,
+    driven: &DriveHistory,
     trajectory: &[Planar],
     color: Color,
     height: f32,

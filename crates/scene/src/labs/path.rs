@@ -4,7 +4,7 @@
 use crate::{Color, Colors, Layer, Look, Pane, PathMarks, with_alpha};
 use glam::{DVec2, Vec3};
 use segue_motion::path::{ArcLengthPath, Waypoint};
-use segue_session::OnPath;
+use segue_session::PathFacts;
 
 /// Number of points of a curve per control point.
 const POINTS_PER_CONTROL_POINT: usize = 24;
@@ -24,7 +24,7 @@ const HANDLE_RADIUS: f32 = 6.0;
 /// Adds the trajectories and paths to a pane whose camera is set later. Control points are lines in
 /// the ground plane on top of everything.
 pub(crate) fn add_path(
-    path: &OnPath,
+    path: &PathFacts,
     marks: &PathMarks,
     look: &Look,
     colors: &Colors,
@@ -62,7 +62,7 @@ pub(crate) fn add_drawn(marks: &PathMarks, colors: &Colors, pane: &mut Pane) {
 
 /// Adds the trajectory of the hips in A's colour, the path fitted to it, and short lines between
 /// both: the residual.
-fn add_original(path: &OnPath, colors: &Colors, pane: &mut Pane) {
+fn add_original(path: &PathFacts, colors: &Colors, pane: &mut Pane) {
     let (motion, places) = (path.fitted.motion(), path.fitted.places());
     let strength = if path.is_edited { 0.6 } else { 1.0 };
     let trajectory = motion.ground_frames().iter();
@@ -98,7 +98,7 @@ fn add_original(path: &OnPath, colors: &Colors, pane: &mut Pane) {
 }
 
 /// Adds the edited path, in the colour of a warning where it turns too sharply.
-fn add_edited(path: &OnPath, colors: &Colors, pane: &mut Pane) {
+fn add_edited(path: &PathFacts, colors: &Colors, pane: &mut Pane) {
     let places = places_along(&path.curve);
     pane.add_path(
         places.iter().map(|place| (on_ground(place.frame.shift, EDITED_HEIGHT_M), colors.result)),

@@ -1,6 +1,6 @@
 //! Admission of the clips of read files to the library.
 
-use super::intake::{FileIntake, Loaded};
+use super::intake::{FileIntake, LoadedFile};
 use super::mends::{mend_of, offer_mends};
 use super::messages::{in_the_library, tell_all_unread, tell_unread};
 use super::setup::misses_skeleton;
@@ -28,7 +28,7 @@ impl FileIntake {
         content: &Content,
         setup: &ReadSetup,
         arrival: Arrival,
-    ) -> Result<Loaded, ImportError> {
+    ) -> Result<LoadedFile, ImportError> {
         // A single file fails as a whole; of several, some may be good.
         if let [ReadFile { result: Err(error), .. }] = report.files.as_slice() {
             let error = error.clone();
@@ -36,7 +36,7 @@ impl FileIntake {
             return Err(error);
         }
         document.remember(None);
-        let mut loaded = Loaded::default();
+        let mut loaded = LoadedFile::default();
         let (mut names, mut t_poses, mut failures) = (Vec::new(), 0, Vec::new());
         let brings_skeleton = |file: &ReadFile| {
             file.kind == FileKind::Asf
@@ -211,8 +211,8 @@ pub(super) fn refill(
     document: &mut Document,
     report: ReadReport,
     options: &ImportOptions,
-) -> Result<Loaded, ImportError> {
-    let mut loaded = Loaded::default();
+) -> Result<LoadedFile, ImportError> {
+    let mut loaded = LoadedFile::default();
     for file in report.files {
         // The entries know where the bytes are.
         let (entries, warnings) = file_entries(file, &Content::Here(Arc::from([])), options)?;

@@ -7,7 +7,7 @@ use crate::library::{Arrival, Library};
 use crate::memory::{Memory, MemoryUse, PageMemory, expected_bytes, library_bytes, refusal};
 use crate::notice::{Level, Notices};
 use crate::outside;
-use crate::reading::{Content, LARGE_BYTES, ReadSetup, ReadTask, Reads};
+use crate::reading::{Content, LARGE_BYTES, ReadFunction, ReadSetup, ReadTask};
 use crate::samples::Sample;
 use segue_formats::ImportError;
 use segue_text::{Message, msg};
@@ -18,7 +18,7 @@ const MAX_SOURCES: usize = 16;
 
 /// The content of a file that was read.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Loaded {
+pub struct LoadedFile {
     /// The ids of its clips.
     pub ids: Vec<String>,
     /// The oddities in it, one sentence each.
@@ -70,7 +70,7 @@ pub(super) struct AwaitedSamples {
 #[derive(Debug)]
 pub(crate) struct FileIntake {
     /// The function that reads small files at once; `None` where all files are read elsewhere.
-    pub(super) reads: Option<Reads>,
+    pub(super) reads: Option<ReadFunction>,
     pub(super) reading: Vec<Reading>,
     /// The number of tasks so far.
     tasks: u64,
@@ -83,7 +83,7 @@ pub(crate) struct FileIntake {
 }
 
 impl FileIntake {
-    pub(crate) fn new(reads: Option<Reads>) -> Self {
+    pub(crate) fn new(reads: Option<ReadFunction>) -> Self {
         Self {
             reads,
             reading: Vec::new(),
@@ -161,12 +161,12 @@ impl FileIntake {
         name: &str,
         bytes: Arc<[u8]>,
         arrival: Arrival,
-    ) -> Result<Loaded, ImportError> {
+    ) -> Result<LoadedFile, ImportError> {
         let (name, setup, size) =
             (&outside::file_name(name), setup_for_new(&document.library), bytes.len() as u64);
         let Some(read) = self.reads.filter(|_| size <= LARGE_BYTES) else {
             self.begin(name, Content::Here(bytes), size, setup, Purpose::New(arrival));
-            return Ok(Loaded::default());
+            return Ok(LoadedFile::default());
         };
         let report = read(name, &bytes, &setup, &mut |_| true).unwrap_or_default();
         self.admit(document, notices, report, &Content::Here(bytes), &setup, arrival)

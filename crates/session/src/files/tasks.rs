@@ -1,7 +1,7 @@
 //! Files that are read elsewhere: progress, end and cancellation.
 
 use super::admission::refill;
-use super::intake::{FileIntake, Loaded, Purpose, Reading};
+use super::intake::{FileIntake, LoadedFile, Purpose, Reading};
 use super::messages::tell_unread;
 use super::setup::{misses_skeleton, setup_for_new, setup_of};
 use super::skeletons::{drop_used_skeletons, offer_moving};
@@ -77,7 +77,7 @@ impl FileIntake {
         notices: &mut Notices,
         task: u64,
         report: Result<ReadReport, Message>,
-    ) -> Option<Result<Loaded, Message>> {
+    ) -> Option<Result<LoadedFile, Message>> {
         let report = match report {
             Ok(report) => report,
             Err(reason) => {
@@ -132,7 +132,7 @@ impl FileIntake {
                 self.admit(document, notices, report, &content, &task.setup, arrival)
             }
             Purpose::Sample(sample) => {
-                self.take_sample(document, notices, sample, report).map(|()| Loaded::default())
+                self.take_sample(document, notices, sample, report).map(|()| LoadedFile::default())
             }
         };
         Some(loaded.map_err(|error| error.to_message()))

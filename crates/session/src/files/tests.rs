@@ -100,7 +100,7 @@ fn files_read_elsewhere_give_the_same_as_files_read_at_once() {
             at_once.load(name, Arc::clone(bytes)).ok();
             assert_eq!(
                 elsewhere.load(name, Arc::clone(bytes)),
-                Ok(Loaded::default()),
+                Ok(LoadedFile::default()),
                 "it is asked for"
             );
         }

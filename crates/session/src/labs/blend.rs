@@ -26,7 +26,7 @@ use std::sync::Arc;
 /// The Blend lab: A fades into B over a window.
 pub(super) struct BlendLab;
 
-impl<S: HasPart<Pairs> + HasPart<Blender>> Lab<S> for BlendLab {
+impl<S: HasPart<Pairs> + HasPart<BlendCache>> Lab<S> for BlendLab {
     fn result_name(&self, _params: &Params, a: Message, b: Message) -> Message {
         msg!("{a} to {b}", a, b)
     }
@@ -50,7 +50,11 @@ impl<S: HasPart<Pairs> + HasPart<Blender>> Lab<S> for BlendLab {
         match_window: usize,
     ) -> Result<Option<Inputs>, LabError> {
         let pair = HasPart::<Pairs>::part(labs).of_slots(&clips.slots)?;
-        Ok(Some(Inputs::new(HasPart::<Blender>::part(labs).inputs(&pair, params, match_window)?)))
+        Ok(Some(Inputs::new(HasPart::<BlendCache>::part(labs).inputs(
+            &pair,
+            params,
+            match_window,
+        )?)))
     }
 }
 
@@ -58,7 +62,7 @@ impl<S: HasPart<Pairs> + HasPart<Blender>> Lab<S> for BlendLab {
 /// dissolve, which has the Blend lab's parameters.
 pub(super) struct TransitionLab;
 
-impl<S: HasPart<Pairs> + HasPart<Blender>> Lab<S> for TransitionLab {
+impl<S: HasPart<Pairs> + HasPart<BlendCache>> Lab<S> for TransitionLab {
     fn result_name(&self, params: &Params, a: Message, b: Message) -> Message {
         Lab::<S>::result_name(&BlendLab, params, a, b)
     }
@@ -234,7 +238,7 @@ fn pose_search(pair: &Pair) -> Result<PoseSearch, LabError> {
 /// A cache of what does not change between blends: the pair of clips and the distances between
 /// their frames.
 #[derive(Debug, Default)]
-pub(crate) struct Blender {
+pub(crate) struct BlendCache {
     pair: Option<Arc<Pair>>,
     search: Option<TransitionSearch>,
     /// The search by pose, begun on request.
@@ -253,7 +257,7 @@ const ROWS_PER_SLICE: usize = 16;
 /// no second slice.
 const ROWS_AT_ONCE: usize = 160;
 
-impl Blender {
+impl BlendCache {
     /// Prepares the inputs, with which the blend itself is a pure function: finds the place and
     /// fits the clips to each other.
     pub(crate) fn inputs(
@@ -426,8 +430,8 @@ impl Blender {
     }
 }
 
-impl Sliced for Blender {
-    fn ask_anew(&mut self) {
+impl Sliced for BlendCache {
+    fn clear_requests(&mut self) {
         self.is_ready = false;
     }
 

@@ -4,29 +4,29 @@
 use super::lab::{Beside, HasPart, Inputs, Lab, LabClips, LabInputs};
 use crate::labs::LabError;
 use crate::params::{Key, Params, Value};
-mod built;
-mod cast;
-mod grapher;
-mod maker;
+mod built_graph;
+mod graph_clips;
 mod plan;
+mod requests;
+mod scheduler;
 mod walk;
-mod wanted;
+mod walk_builder;
 
-pub use built::{BuiltGraph, DistanceField, Distances};
-pub use cast::GraphClips;
-pub(crate) use grapher::Grapher;
-pub use walk::{Trace, Walk, WalkGhost, WalkMoment, WalkStay};
-pub use wanted::{check_graph_clips, graph_of};
-pub(crate) use wanted::{clips_of, visits_of};
+pub use built_graph::{BuiltGraph, DistanceField, Distances};
+pub use graph_clips::GraphClips;
+pub use requests::{check_graph_clips, graph_of};
+pub(crate) use requests::{clips_of, visits_of};
+pub(crate) use scheduler::GraphScheduler;
+pub use walk::{FollowedPath, Walk, WalkGhost, WalkMoment, WalkStay};
 
-use super::{LabFacts, Measured, Outcome, PlacedClip, Slot, Transition};
+use super::{LabFacts, MeasuredMotion, Outcome, PlacedClip, Slot, Transition};
 use segue_text::{Message, msg};
 use std::sync::Arc;
 
 /// The Graph lab: a walk through a motion graph.
 pub(super) struct GraphLab;
 
-impl<S: HasPart<Grapher>> Lab<S> for GraphLab {
+impl<S: HasPart<GraphScheduler>> Lab<S> for GraphLab {
     fn more_clips(&self, params: &Params) -> Result<Vec<String>, LabError> {
         clips_of(params.clip_ids(Key::Clips))
     }
@@ -70,7 +70,7 @@ impl<S: HasPart<Grapher>> Lab<S> for GraphLab {
         _match_window: usize,
     ) -> Result<Option<Inputs>, LabError> {
         let clips = clips.more.into_iter().map(|clip| (clip.name, clip.motion)).collect();
-        Ok(HasPart::<Grapher>::part(labs).inputs(clips, params)?.map(Inputs::new))
+        Ok(HasPart::<GraphScheduler>::part(labs).inputs(clips, params)?.map(Inputs::new))
     }
 }
 
@@ -95,7 +95,7 @@ impl LabInputs for GraphInputs {
             let secs = |frame: usize| frame as f64 / fps;
             let clips = [(Slot::A, left), (Slot::B, entered)];
             sources.extend(clips.into_iter().filter_map(|(slot, part)| {
-                let motion = walk.built.cast.motions().get(part.stay.clip)?;
+                let motion = walk.built.clips.motions().get(part.stay.clip)?;
                 let starts_at = secs(part.start) - secs(part.stay.from);
                 Some(PlacedClip::new(slot, motion, starts_at, part.world_from_clip))
             }));
@@ -116,12 +116,12 @@ impl LabInputs for GraphInputs {
             metrics: walk.metrics.clone(),
             beside: walk
                 .built
-                .cast
+                .clips
                 .motions()
                 .iter()
                 .map(|motion| Arc::clone(motion.clip()))
                 .collect(),
-            measured: walk.trace.clone().map_or(Measured::Motion, Measured::Trace),
+            measured: walk.trace.clone().map_or(MeasuredMotion::Motion, MeasuredMotion::Trace),
             ..Outcome::plain(Arc::clone(&walk.motion))
         })
     }

@@ -2,7 +2,7 @@
 
 use super::feet::{Lock, slide, with_feet};
 use super::lab::{Inputs, Lab, LabClips, LabInputs};
-use super::{Measured, Outcome};
+use super::{MeasuredMotion, Outcome};
 use crate::choices::RootWay;
 use crate::labs::LabError;
 use crate::metrics::{Metric, MetricId};
@@ -106,7 +106,7 @@ impl LabInputs for InPlaceInputs {
         Ok(Outcome {
             metrics,
             beside: vec![Arc::clone(source.clip())],
-            measured: Measured::Clip(going),
+            measured: MeasuredMotion::Clip(going),
             ..Outcome::plain(Arc::new(
                 source.with_clip(clip, ground_frames).with_contacts(contacts),
             ))

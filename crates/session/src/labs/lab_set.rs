@@ -1,18 +1,18 @@
 //! All labs, and the state that they keep between results.
 
-use super::blend::{self, Blender};
-use super::gauge::Gauge;
-use super::graph::{self, Grapher};
+use super::artefact_meter::ArtefactMeter;
+use super::blend::{self, BlendCache};
+use super::graph::{self, GraphScheduler};
 use super::lab::{HasPart, Lab};
-use super::layers::{self, Layerer};
+use super::layers::{self, LayerCache};
 use super::loop_::{self, CycleFinder};
-use super::match_::{self, Driver};
+use super::match_::{self, DriveScheduler};
 use super::pair::Pairs;
 use super::path::{self, Paths};
-use super::register::{self, Registrars};
+use super::register::{self, RegistrationSchedulers};
 use super::sliced::{JobKind, Sliced};
 use super::speed::{self, GaitFinder};
-use super::view::{self, Viewer};
+use super::view::{self, ViewCache};
 use super::{in_place, make};
 use crate::LabId;
 use crate::motion::FeetReader;
@@ -39,16 +39,16 @@ pub(crate) fn lab_of(lab: LabId) -> &'static dyn Lab<LabSet> {
 #[derive(Debug, Default)]
 pub(crate) struct LabSet {
     pairs: Pairs,
-    blender: Blender,
+    blends: BlendCache,
     gaits: GaitFinder,
     cycles: CycleFinder,
-    layerer: Layerer,
-    pub(crate) registrars: Registrars,
+    layers: LayerCache,
+    pub(crate) registrations: RegistrationSchedulers,
     paths: Paths,
-    pub(crate) grapher: Grapher,
-    viewer: Viewer,
-    pub(crate) driver: Driver,
-    pub(crate) gauge: Gauge,
+    pub(crate) graphs: GraphScheduler,
+    views: ViewCache,
+    pub(crate) drives: DriveScheduler,
+    pub(crate) meter: ArtefactMeter,
     /// Clips whose feet are read with options other than the defaults.
     pub(crate) feet: FeetReader,
 }
@@ -57,39 +57,39 @@ impl LabSet {
     /// Returns all sliced work, in the order of scheduling.
     fn sliced(&self) -> [&dyn Sliced; 7] {
         [
-            &self.blender,
-            &self.registrars,
-            &self.viewer,
+            &self.blends,
+            &self.registrations,
+            &self.views,
             &self.paths,
-            &self.driver,
-            &self.gauge,
-            &self.grapher,
+            &self.drives,
+            &self.meter,
+            &self.graphs,
         ]
     }
 
     fn sliced_mut(&mut self) -> [&mut dyn Sliced; 7] {
         [
-            &mut self.blender,
-            &mut self.registrars,
-            &mut self.viewer,
+            &mut self.blends,
+            &mut self.registrations,
+            &mut self.views,
             &mut self.paths,
-            &mut self.driver,
-            &mut self.gauge,
-            &mut self.grapher,
+            &mut self.drives,
+            &mut self.meter,
+            &mut self.graphs,
         ]
     }
 
     /// Clears the pending requests of all labs; each pane then requests what it needs again.
-    pub(crate) fn ask_anew(&mut self) {
+    pub(crate) fn clear_requests(&mut self) {
         for sliced in self.sliced_mut() {
-            sliced.ask_anew();
+            sliced.clear_requests();
         }
     }
 
     /// Does one slice of work; `now_secs` is the playhead. Returns `false` if there was nothing to
     /// do.
     pub(crate) fn work(&mut self, now_secs: f64) -> bool {
-        self.grapher.play_at(now_secs);
+        self.graphs.play_at(now_secs);
         self.sliced_mut().into_iter().any(Sliced::work)
     }
 
@@ -122,13 +122,13 @@ macro_rules! has_parts {
 
 has_parts! {
     Pairs, pairs;
-    Blender, blender;
+    BlendCache, blends;
     GaitFinder, gaits;
     CycleFinder, cycles;
-    Layerer, layerer;
-    Registrars, registrars;
+    LayerCache, layers;
+    RegistrationSchedulers, registrations;
     Paths, paths;
-    Grapher, grapher;
-    Viewer, viewer;
-    Driver, driver;
+    GraphScheduler, graphs;
+    ViewCache, views;
+    DriveScheduler, drives;
 }

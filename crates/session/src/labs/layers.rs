@@ -22,7 +22,7 @@ use std::sync::Arc;
 /// The Layers lab: a part of one clip over another.
 pub(super) struct LayersLab;
 
-impl<S: HasPart<Pairs> + HasPart<Layerer>> Lab<S> for LayersLab {
+impl<S: HasPart<Pairs> + HasPart<LayerCache>> Lab<S> for LayersLab {
     fn result_name(&self, _params: &Params, a: Message, b: Message) -> Message {
         msg!("{a} with {b}", a, b)
     }
@@ -39,7 +39,7 @@ impl<S: HasPart<Pairs> + HasPart<Layerer>> Lab<S> for LayersLab {
         _match_window: usize,
     ) -> Result<Option<Inputs>, LabError> {
         let pair = HasPart::<Pairs>::part(labs).of_slots(&clips.slots)?;
-        Ok(Some(Inputs::new(HasPart::<Layerer>::part(labs).inputs(&pair, params)?)))
+        Ok(Some(Inputs::new(HasPart::<LayerCache>::part(labs).inputs(&pair, params)?)))
     }
 }
 
@@ -108,14 +108,14 @@ struct TimedLayer {
 
 /// A cache of B in A's time.
 #[derive(Debug, Default)]
-pub(crate) struct Layerer {
+pub(crate) struct LayerCache {
     /// B in step with A, if both have steps.
     in_step: Option<(Arc<Pair>, Option<Reading>)>,
     /// The last ones requested, at most one for each pane.
     timed: Vec<Arc<TimedLayer>>,
 }
 
-impl Layerer {
+impl LayerCache {
     /// Prepares the inputs, with which the layer itself is a pure function.
     pub(crate) fn inputs(
         &mut self,

@@ -2,7 +2,7 @@
 
 use super::feet::Lock;
 use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs};
-use super::rounds::{Rounds, repeated, rounds};
+use super::repetition::{Repetition, repeat_cycle, repeated};
 use super::{Cycle, CycleMade, Outcome, PlacedClip, Slot};
 use crate::choices;
 use crate::labs::LabError;
@@ -151,8 +151,14 @@ impl LabInputs for LoopInputs {
         let three = looped.repeat(4).and_then(|clip| clip.crop(0..3 * frames + 1));
         let three = three?;
         let contacts = repeated(motion.contacts(), &cut.cycle, 3 * frames + 1);
-        let Rounds { motion: played, mut slides } =
-            rounds(motion.roles(), frames, three, &contacts, motion.ground_m(), self.foot_lock)?;
+        let Repetition { motion: played, mut slides } = repeat_cycle(
+            motion.roles(),
+            frames,
+            three,
+            &contacts,
+            motion.ground_m(),
+            self.foot_lock,
+        )?;
         let secs = |frame: usize| frame as f64 / fps;
         let step = looped
             .frames

@@ -161,7 +161,7 @@ pub(crate) fn made_id(params: &Params) -> String {
         .filter(|(param, _)| has(params, param.key) && counts(params, param.key));
     let list: Vec<String> = changed
         .map(|(param, value)| match (value, range_of(params, param.key)) {
-            // As used, not as set for another action.
+            // The value in use, not one that was set for another action.
             (Value::Number(number), Some((min, max))) => {
                 (param, Value::Number(number.clamp(min, max)))
             }

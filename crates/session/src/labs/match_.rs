@@ -6,26 +6,26 @@ use crate::labs::LabError;
 use crate::params::{Key, List, Params, Value};
 use segue_text::{Message, msg};
 mod crowd;
-mod driver;
 mod live;
 mod live_drive;
+mod scheduler;
 mod settings;
 mod tagging;
 mod trace;
 
-pub(crate) use driver::Driver;
 pub(crate) use live_drive::{DrivenPane, LiveDrive};
+pub(crate) use scheduler::DriveScheduler;
 #[cfg(test)]
 pub(crate) use settings::options_of;
 use settings::{options_in, recording_of};
 pub(crate) use tagging::filter_of;
 pub use tagging::own_words;
-pub use trace::{DriveMoment, Driven};
+pub use trace::{DriveHistory, DriveMoment};
 
 /// The Match lab: a character that is steered.
 pub(super) struct MatchLab;
 
-impl<S: HasPart<Driver>> Lab<S> for MatchLab {
+impl<S: HasPart<DriveScheduler>> Lab<S> for MatchLab {
     fn more_clips(&self, params: &Params) -> Result<Vec<String>, LabError> {
         Ok(params.clip_ids(Key::MatchClips).to_vec())
     }
@@ -59,11 +59,12 @@ impl<S: HasPart<Driver>> Lab<S> for MatchLab {
         let Some(recording) = recording_of(params) else {
             return Err(LabError::NothingDriven);
         };
-        let Some(database) = HasPart::<Driver>::part(labs).database_of(clips, params)? else {
+        let Some(database) = HasPart::<DriveScheduler>::part(labs).database_of(clips, params)?
+        else {
             return Ok(None);
         };
         let options = options_in(&database, params)?;
-        let replay = HasPart::<Driver>::part(labs).replay(
+        let replay = HasPart::<DriveScheduler>::part(labs).replay(
             database,
             options,
             recording,

@@ -103,7 +103,7 @@ pub struct MatchSearch {
 
 /// A report on retargeting B.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Retargeted {
+pub struct RetargetReport {
     /// The joints of A's skeleton without a counterpart in B, by name, parents first: they keep
     /// their rest pose.
     pub unmatched: Vec<String>,
@@ -158,7 +158,7 @@ pub struct Outcome {
     /// The cycle that it repeats; `None` if it does not loop.
     pub cycle: Option<Cycle>,
     /// The retargeting of B to the skeleton of A; `None` if both have the same one.
-    pub retargeted: Option<Arc<Retargeted>>,
+    pub retargeted: Option<Arc<RetargetReport>>,
     /// Facts that are specific to its lab.
     pub facts: LabFacts,
     /// The artefact metrics: those of every lab, then those of its own.
@@ -167,7 +167,7 @@ pub struct Outcome {
     /// Empty for an unchanged clip.
     pub(crate) beside: Vec<Arc<Clip>>,
     /// The motion on which the metrics of every lab are measured.
-    pub(crate) measured: Measured,
+    pub(crate) measured: MeasuredMotion,
     /// Whether these metrics are known.
     pub(crate) is_measured: bool,
 }
@@ -196,7 +196,7 @@ impl LabFacts {
 
 /// The motion on which artefact metrics are measured.
 #[derive(Clone, Debug, Default)]
-pub(crate) enum Measured {
+pub(crate) enum MeasuredMotion {
     /// The motion of the result.
     #[default]
     Motion,
@@ -218,7 +218,7 @@ impl Outcome {
             facts: LabFacts::default(),
             metrics: Vec::new(),
             beside: Vec::new(),
-            measured: Measured::Motion,
+            measured: MeasuredMotion::Motion,
             is_measured: false,
         }
     }

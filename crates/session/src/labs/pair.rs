@@ -1,6 +1,6 @@
 //! Two clips on one skeleton and at one frame rate.
 
-use super::Retargeted;
+use super::RetargetReport;
 use crate::labs::LabError;
 use segue_motion::clip::{Clip, Interpolation, Motion, resample, retarget_onto};
 use segue_motion::skeleton::Retargeting;
@@ -14,7 +14,7 @@ pub(crate) struct Pair {
     /// B on the skeleton and at the frame rate of A.
     pub(super) incoming: Arc<Motion>,
     /// The retargeting of B; `None` if its skeleton is A's.
-    pub(super) retargeted: Option<Arc<Retargeted>>,
+    pub(super) retargeted: Option<Arc<RetargetReport>>,
 }
 
 impl Pair {
@@ -40,7 +40,7 @@ impl Pair {
 pub(super) fn fitted(
     a: &Arc<Motion>,
     b: &Arc<Motion>,
-) -> Result<(Arc<Motion>, Option<Arc<Retargeted>>), LabError> {
+) -> Result<(Arc<Motion>, Option<Arc<RetargetReport>>), LabError> {
     let same_skeleton = Arc::ptr_eq(a.clip().skeleton(), b.clip().skeleton())
         || a.clip().skeleton() == b.clip().skeleton();
     let same_rate = (a.clip().fps() - b.clip().fps()).abs() <= 1e-4 * a.clip().fps();
@@ -55,14 +55,14 @@ pub(super) fn fitted(
         clip = Arc::new(resample(&clip, a.clip().fps(), Interpolation::Cubic)?);
     }
     let roles = if same_skeleton { b.roles().clone() } else { a.roles().clone() };
-    let retargeted = (!same_skeleton).then(|| Arc::new(Retargeted::between(a, b)));
+    let retargeted = (!same_skeleton).then(|| Arc::new(RetargetReport::between(a, b)));
     let (rate, rate_b) = (a.clip().fps(), b.clip().fps());
     let seams = b.seams_at(|frame| (frame as f64 * rate / rate_b).round() as usize);
     let motion = Motion::with_roles(clip, &roles).with_feet(b.feet()).with_seams(seams);
     Ok((Arc::new(motion), retargeted))
 }
 
-impl Retargeted {
+impl RetargetReport {
     /// Compares the skeletons of `a` and `b`.
     fn between(a: &Motion, b: &Motion) -> Self {
         let skeleton = a.clip().skeleton();

@@ -8,7 +8,7 @@ use crate::choices;
 use crate::labs::LabError;
 use crate::metrics::{Metric, MetricId};
 use crate::params::{Key, List, MAX_PANES, Params, Value};
-use planter::{LockedFeet, Planter};
+use locked_feet::{LockedFeet, LockedFeetCache};
 use segue_motion::clip::{Clip, Contacts, Motion};
 use segue_motion::math::Planar;
 use segue_motion::metrics::foot_slide_cm;
@@ -20,7 +20,7 @@ use segue_motion::transition::FootLocking;
 use segue_text::{Message, msg};
 use std::sync::Arc;
 
-mod planter;
+mod locked_feet;
 
 /// The Path lab: a clip on an edited path.
 pub(super) struct PathLab;
@@ -132,7 +132,7 @@ impl FittedMotion {
 
 /// Facts about a motion on an edited path.
 #[derive(Clone, Debug)]
-pub struct OnPath {
+pub struct PathFacts {
     /// The motion before it was edited.
     pub fitted: Arc<FittedMotion>,
     /// The edited path.
@@ -196,7 +196,7 @@ impl PartialEq for PathInputs {
 #[derive(Debug, Default)]
 pub(crate) struct Paths {
     fitted: Vec<Arc<FittedMotion>>,
-    planter: Planter,
+    locked_feet: LockedFeetCache,
 }
 
 impl Paths {
@@ -223,7 +223,7 @@ impl Paths {
             inputs.feet = if motion.clip().frames() <= AT_ONCE {
                 Feet::AtOnce
             } else {
-                self.planter.ask(&inputs).map_or(Feet::Awaited, Feet::Locked)
+                self.locked_feet.ask(&inputs).map_or(Feet::Awaited, Feet::Locked)
             };
         }
         Ok(inputs)
@@ -250,20 +250,20 @@ impl Paths {
 }
 
 impl Sliced for Paths {
-    fn ask_anew(&mut self) {
-        self.planter.ask_anew();
+    fn clear_requests(&mut self) {
+        self.locked_feet.clear_requests();
     }
 
     fn work(&mut self) -> bool {
-        self.planter.work()
+        self.locked_feet.work()
     }
 
     fn is_ready(&self) -> bool {
-        self.planter.is_ready()
+        self.locked_feet.is_ready()
     }
 
     fn progress(&self) -> Option<(JobKind, f64)> {
-        Some((JobKind::HoldingFeet, f64::from(self.planter.progress()?)))
+        Some((JobKind::HoldingFeet, f64::from(self.locked_feet.progress()?)))
     }
 }
 
@@ -364,7 +364,7 @@ impl LabInputs for PathInputs {
             .with_seams(seams);
         Ok(Outcome {
             sources: vec![PlacedClip::new(Slot::A, &fitted.motion, 0.0, Planar::IDENTITY)],
-            facts: LabFacts::of(Arc::new(OnPath {
+            facts: LabFacts::of(Arc::new(PathFacts {
                 fitted: Arc::clone(fitted),
                 curve,
                 is_edited: self.edited.is_some(),
@@ -387,7 +387,7 @@ impl LabInputs for PathInputs {
 impl Outcome {
     /// Returns the facts about the path; `None` if the result is not on one.
     #[must_use]
-    pub fn path(&self) -> Option<&Arc<OnPath>> {
+    pub fn path(&self) -> Option<&Arc<PathFacts>> {
         self.facts.get()
     }
 

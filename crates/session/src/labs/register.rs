@@ -5,17 +5,17 @@ use crate::labs::LabError;
 use crate::metrics::{Metric, MetricId};
 use crate::params::{Key, Params};
 mod map;
-mod registrar;
+mod scheduler;
 
 pub use map::DistanceMap;
-pub(crate) use registrar::Registrars;
+pub(crate) use scheduler::RegistrationSchedulers;
 
 use super::blend::weight_law;
 use super::feet::{Lock, slide, slide_before, with_feet};
 use super::pair::{Pair, Pairs};
 use super::{LabFacts, Outcome, PlacedClip, Slot, Transition};
 use crate::choices;
-use registrar::FoundRegistration;
+use scheduler::FoundRegistration;
 use segue_motion::blend::{
     DissolveOptions, FrameMix, Partner, RegisteredBlend, WeightCurve, WeightLaw, dissolve,
     registered_blend, registered_join,
@@ -32,7 +32,7 @@ use std::sync::Arc;
 /// The Register lab: clips registered in time, then blended or joined.
 pub(super) struct RegisterLab;
 
-impl<S: HasPart<Pairs> + HasPart<Registrars>> Lab<S> for RegisterLab {
+impl<S: HasPart<Pairs> + HasPart<RegistrationSchedulers>> Lab<S> for RegisterLab {
     fn result_name(&self, _params: &Params, a: Message, b: Message) -> Message {
         msg!("{a} to {b}", a, b)
     }
@@ -63,13 +63,15 @@ impl<S: HasPart<Pairs> + HasPart<Registrars>> Lab<S> for RegisterLab {
         let pair = HasPart::<Pairs>::part(labs).of_slots(&clips.slots)?;
         let weights = params.weighted_clips().iter().map(|(_, weight)| *weight);
         let also: Vec<_> = clips.motions().into_iter().zip(weights).collect();
-        Ok(HasPart::<Registrars>::part(labs).inputs(&pair, &also, params)?.map(Inputs::new))
+        Ok(HasPart::<RegistrationSchedulers>::part(labs)
+            .inputs(&pair, &also, params)?
+            .map(Inputs::new))
     }
 }
 
-/// The frames that a frame of a registered result is made from.
+/// The frames of A and B that a frame of a registered result is made from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Beat {
+pub struct FramePair {
     /// The frame of A and that of B, at A's rate; beyond the clips where one of them is over, or
     /// has not begun.
     pub frames: [f64; 2],
@@ -79,7 +81,7 @@ pub struct Beat {
 
 /// The registration of A and B, and the result made by it.
 #[derive(Clone, Debug)]
-pub struct Registered {
+pub struct RegistrationFacts {
     /// The distances.
     pub map: Arc<DistanceMap>,
     /// The path and the curves through it, which the result follows unless it is plain.
@@ -87,30 +89,30 @@ pub struct Registered {
     /// Whether both clips run at their own speed.
     pub is_plain: bool,
     /// The frames of A and B for each frame of the result.
-    pub beats: Vec<Beat>,
+    pub frame_pairs: Vec<FramePair>,
     /// The contacts of the result, by its own motion.
     pub steps: Contacts,
     /// The part of A that can be registered, or that the join covers: from and to, seconds in A.
     pub part_secs: [f64; 2],
 }
 
-impl Registered {
+impl RegistrationFacts {
     fn fps(&self) -> f64 {
         self.map.fps()
     }
 
     /// Returns the frames of A and B at a time, which may be between two frames.
     #[must_use]
-    pub fn beat_at(&self, secs: f64) -> Option<Beat> {
-        let last = self.beats.len().checked_sub(1)?;
+    pub fn frame_pair_at(&self, secs: f64) -> Option<FramePair> {
+        let last = self.frame_pairs.len().checked_sub(1)?;
         // `max` maps NaN to 0.
         let at = (secs * self.fps()).max(0.0).min(last as f64);
         let (here, next) = (
-            self.beats.get(at.floor() as usize)?,
-            self.beats.get((at.floor() as usize + 1).min(last))?,
+            self.frame_pairs.get(at.floor() as usize)?,
+            self.frame_pairs.get((at.floor() as usize + 1).min(last))?,
         );
         let mixed = |from: f64, to: f64| from + (to - from) * at.fract();
-        Some(Beat {
+        Some(FramePair {
             frames: [0, 1].map(|clip| mixed(here.frames[clip], next.frames[clip])),
             weights: [0, 1].map(|clip| mixed(here.weights[clip], next.weights[clip])),
         })
@@ -119,8 +121,11 @@ impl Registered {
     /// Returns the time of the result that is nearest to a pair of frames.
     #[must_use]
     pub fn secs_near(&self, frames: [f64; 2]) -> Option<f64> {
-        let off = |beat: &Beat| (beat.frames[0] - frames[0]).hypot(beat.frames[1] - frames[1]);
-        let nearest = (self.beats.iter().enumerate()).min_by(|x, y| off(x.1).total_cmp(&off(y.1)));
+        let off = |frame_pair: &FramePair| {
+            (frame_pair.frames[0] - frames[0]).hypot(frame_pair.frames[1] - frames[1])
+        };
+        let nearest =
+            (self.frame_pairs.iter().enumerate()).min_by(|x, y| off(x.1).total_cmp(&off(y.1)));
         nearest.map(|(frame, _)| frame as f64 / self.fps())
     }
 
@@ -135,8 +140,11 @@ impl Registered {
         };
         let clip = usize::from(slot == Slot::B);
         let contacts = self.map.motions()[clip].contacts();
-        let flags =
-            self.beats.iter().map(|beat| stands(contacts, side, beat.frames[clip])).collect();
+        let flags = self
+            .frame_pairs
+            .iter()
+            .map(|frame_pair| stands(contacts, side, frame_pair.frames[clip]))
+            .collect();
         let in_result = Contacts::from_flags([flags, Vec::new()]);
         in_result.intervals(Side::BOTH[0]).into_iter().map(secs).collect()
     }
@@ -236,7 +244,7 @@ struct Draft {
     clip: Clip,
     /// The ground frames of the character.
     frames: Vec<Planar>,
-    beats: Vec<Beat>,
+    frame_pairs: Vec<FramePair>,
     contacts: Contacts,
     /// The frames in which both clips are mixed.
     mixed: Range<usize>,
@@ -244,9 +252,9 @@ struct Draft {
     world_from_b: Planar,
 }
 
-fn beat(mix: &FrameMix) -> Beat {
+fn frame_pair(mix: &FrameMix) -> FramePair {
     let of = |values: &[f64], at: usize| values.get(at).copied().unwrap_or_default();
-    Beat {
+    FramePair {
         frames: [of(&mix.frames, 0), of(&mix.frames, 1)],
         weights: [of(&mix.weights, 0), of(&mix.weights, 1)],
     }
@@ -292,16 +300,17 @@ impl RegisterInputs {
             mixed: 0..clip.frames(),
             clip,
             frames,
-            beats: mixes.iter().map(beat).collect(),
+            frame_pairs: mixes.iter().map(frame_pair).collect(),
             contacts,
             world_from_b: Planar::IDENTITY,
         })
     }
 
     /// Returns the places of the seams of A and B in the result, and of its own if it is a join.
-    fn seams(&self, beats: &[Beat], own: Option<&Range<usize>>) -> Vec<Range<usize>> {
-        let plays =
-            |of: usize, frame: usize| beats.partition_point(|beat| beat.frames[of] < frame as f64);
+    fn seams(&self, frame_pairs: &[FramePair], own: Option<&Range<usize>>) -> Vec<Range<usize>> {
+        let plays = |of: usize, frame: usize| {
+            frame_pairs.partition_point(|frame_pair| frame_pair.frames[of] < frame as f64)
+        };
         let [of_a, of_b] = [&self.pair.a, &self.pair.incoming];
         let of_a = of_a.seams_at(|frame| plays(0, frame)).into_iter();
         let of_b = of_b.seams_at(|frame| plays(1, frame)).into_iter();
@@ -360,19 +369,19 @@ impl RegisterInputs {
             let window = (arrive - leave).min(b.clip().frames().saturating_sub(enter + 1));
             let options = DissolveOptions { window, law, ..DissolveOptions::default() };
             let joined = dissolve(a, leave, b, enter, &options)?;
-            let beat = |p: usize| Beat {
+            let frame_pair = |p: usize| FramePair {
                 frames: [(leave + p) as f64, (enter + p) as f64],
                 weights: of_two(1.0 - law.alpha((p + 1) as f64 / window.max(1) as f64)),
             };
-            let during: Vec<Beat> = (0..joined.transition.len()).map(beat).collect();
+            let during: Vec<FramePair> = (0..joined.transition.len()).map(frame_pair).collect();
             let contacts = Contacts::joined(contacts_a, contacts_b, leave, enter, joined.handover);
             (joined, during, contacts)
         } else {
             let made = registered_join(a, b, &self.found.registration, leave, arrive, law)?;
             let contacts = made.contacts(contacts_a, contacts_b);
-            (made.joined, made.during.iter().map(beat).collect(), contacts)
+            (made.joined, made.during.iter().map(frame_pair).collect(), contacts)
         };
-        let before = (0..leave).map(|frame| Beat {
+        let before = (0..leave).map(|frame| FramePair {
             frames: [frame as f64, warp.at(frame as f64)],
             weights: of_two(0.0),
         });
@@ -381,10 +390,10 @@ impl RegisterInputs {
         let after = (1..=left).map(|step| {
             let in_b = last[1] + step as f64;
             let in_a = if self.is_plain { last[0] + step as f64 } else { warp.inverse(in_b) };
-            Beat { frames: [in_a, in_b], weights: of_two(1.0) }
+            FramePair { frames: [in_a, in_b], weights: of_two(1.0) }
         });
         Ok(Draft {
-            beats: before.chain(during).chain(after).collect(),
+            frame_pairs: before.chain(during).chain(after).collect(),
             clip: Arc::unwrap_or_clone(joined.clip),
             frames: joined.frames,
             contacts,
@@ -440,7 +449,7 @@ impl LabInputs for RegisterInputs {
                 (self.join(part, *law)?, part.map(|frame| frame as f64), true)
             }
         };
-        let Draft { clip: free, frames, beats, contacts, mixed, world_from_b } = draft;
+        let Draft { clip: free, frames, frame_pairs, contacts, mixed, world_from_b } = draft;
         let roles = pair.a.roles().clone();
         let sign = if is_join { "→" } else { "+" };
         let also = self.also.iter().map(|also| &also.pair.b);
@@ -453,15 +462,19 @@ impl LabInputs for RegisterInputs {
         )));
         let clip = with_feet(&free, &roles, &contacts, self.ground_m(), self.foot_lock)?;
         let distance_cm = mean(
-            beats
+            frame_pairs
                 .get(mixed.clone())
                 .unwrap_or_default()
                 .iter()
-                .filter_map(|beat| self.found.map.cm_at(beat.frames)),
+                .filter_map(|frame_pair| self.found.map.cm_at(frame_pair.frames)),
         );
         let secs = |frame: usize| frame as f64 / fps;
-        let entered = beats.get(mixed.start).map_or(0.0, |beat| beat.frames[1] / fps);
-        let left = beats.get(mixed.end).or(beats.last()).map_or(0.0, |beat| beat.frames[1] / fps);
+        let entered =
+            frame_pairs.get(mixed.start).map_or(0.0, |frame_pair| frame_pair.frames[1] / fps);
+        let left = frame_pairs
+            .get(mixed.end)
+            .or(frame_pairs.last())
+            .map_or(0.0, |frame_pair| frame_pair.frames[1] / fps);
         let transition = is_join.then(|| Transition {
             start_secs: secs(mixed.start),
             end_secs: secs(mixed.end),
@@ -472,7 +485,7 @@ impl LabInputs for RegisterInputs {
             search: None,
         });
         let metrics = self.measured([&clip, &free], &contacts, &mixed, distance_cm);
-        let seams = self.seams(&beats, is_join.then_some(&mixed));
+        let seams = self.seams(&frame_pairs, is_join.then_some(&mixed));
         let sources = vec![
             PlacedClip::new(Slot::A, &pair.a, 0.0, Planar::IDENTITY),
             PlacedClip::new(Slot::B, &pair.incoming, secs(mixed.end) - left, world_from_b),
@@ -486,11 +499,11 @@ impl LabInputs for RegisterInputs {
                 .with_seams(seams),
         );
         Ok(Outcome {
-            facts: LabFacts::of(Arc::new(Registered {
+            facts: LabFacts::of(Arc::new(RegistrationFacts {
                 map: Arc::clone(&self.found.map),
                 registration: Arc::clone(&self.found.registration),
                 is_plain: self.is_plain,
-                beats,
+                frame_pairs,
                 steps,
                 part_secs: part.map(|frame| frame / fps),
             })),
@@ -517,7 +530,7 @@ fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
 impl Outcome {
     /// Returns the registration and the facts about it; `None` if nothing was registered.
     #[must_use]
-    pub fn registered(&self) -> Option<&Arc<Registered>> {
+    pub fn registered(&self) -> Option<&Arc<RegistrationFacts>> {
         self.facts.get()
     }
 
@@ -526,8 +539,8 @@ impl Outcome {
     /// if the sources are not registered: they then simply play on.
     #[must_use]
     pub fn source_at(&self, source: &PlacedClip, secs: f64) -> Option<(f64, Planar)> {
-        let beat = self.registered()?.beat_at(secs)?;
-        let at = beat.frames[usize::from(source.slot == Slot::B)] / self.motion.clip().fps();
+        let frame_pair = self.registered()?.frame_pair_at(secs)?;
+        let at = frame_pair.frames[usize::from(source.slot == Slot::B)] / self.motion.clip().fps();
         let inside = at >= 0.0 && at <= source.motion.clip().duration_secs();
         inside.then(|| {
             let stands = source.motion.standing_at(at);

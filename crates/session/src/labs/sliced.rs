@@ -38,7 +38,7 @@ impl JobKind {
 /// Work that is done in slices between frames, for panes that wait for it.
 pub(crate) trait Sliced {
     /// Clears the pending requests. Call before a refresh; each pane requests again what it needs.
-    fn ask_anew(&mut self);
+    fn clear_requests(&mut self);
 
     /// Does one slice. Returns `false` if there was nothing to do.
     fn work(&mut self) -> bool;

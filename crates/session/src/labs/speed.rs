@@ -3,7 +3,7 @@
 use super::feet::Lock;
 use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs};
 use super::pair::{Pair, Pairs};
-use super::rounds::{Rounds, rounds};
+use super::repetition::{Repetition, repeat_cycle};
 use super::{Cycle, CycleMade, Outcome};
 use crate::labs::LabError;
 use crate::metrics::{Metric, MetricId};
@@ -144,7 +144,7 @@ impl LabInputs for SpeedInputs {
         let fps = pair.a.clip().fps();
         let three = blend.cycles_at(self.asked_mps, 3)?;
         let (facts, cycle_frames) = (three.facts, (three.clip.frames() - 1) / 3);
-        let Rounds { motion, mut slides } = rounds(
+        let Repetition { motion, mut slides } = repeat_cycle(
             roles,
             cycle_frames,
             three.clip,

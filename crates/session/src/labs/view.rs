@@ -4,7 +4,7 @@
 use super::feet::{Lock, locking, slide, slide_before};
 use super::lab::{HasPart, Inputs, Lab, LabClips, LabInputs, counts};
 use super::sliced::{JobKind, Sliced};
-use super::{Measured, Outcome};
+use super::{MeasuredMotion, Outcome};
 use crate::labs::LabError;
 use crate::metrics::{Metric, MetricId};
 use crate::params::{Key, Kind, MAX_PANES, PARAMS, Param, Params};
@@ -20,7 +20,7 @@ use std::sync::Arc;
 /// The View lab: one clip, placed on the ground.
 pub(super) struct ViewLab;
 
-impl<S: HasPart<Viewer>> Lab<S> for ViewLab {
+impl<S: HasPart<ViewCache>> Lab<S> for ViewLab {
     fn result_name(&self, params: &Params, a: Message, _b: Message) -> Message {
         let is_placed = [Key::PlaceX, Key::PlaceZ, Key::PlaceHeading]
             .iter()
@@ -59,7 +59,7 @@ impl<S: HasPart<Viewer>> Lab<S> for ViewLab {
         params: &Params,
         _match_window: usize,
     ) -> Result<Option<Inputs>, LabError> {
-        Ok(HasPart::<Viewer>::part(labs).inputs(clips.first()?, params).map(Inputs::new))
+        Ok(HasPart::<ViewCache>::part(labs).inputs(clips.first()?, params).map(Inputs::new))
     }
 }
 
@@ -93,7 +93,7 @@ impl LabInputs for ViewInputs {
             None => Outcome::plain(Arc::clone(&self.motion)),
             Some(viewed) => viewed.made.clone()?,
         };
-        let measured = Measured::Clip(Arc::clone(shown.motion.clip()));
+        let measured = MeasuredMotion::Clip(Arc::clone(shown.motion.clip()));
         let motion = self.ground.moved(&shown.motion)?;
         Ok(Outcome { motion, measured, ..shown })
     }
@@ -182,7 +182,7 @@ struct ViewResult {
 
 /// A cache of locked and measured clips, as many as there can be panes, with their work in slices.
 #[derive(Debug, Default)]
-pub(crate) struct Viewer {
+pub(crate) struct ViewCache {
     /// The results, the newest last.
     known: Vec<Arc<ViewResult>>,
     under_way: Vec<PendingView>,
@@ -222,7 +222,7 @@ impl Stage {
     }
 }
 
-impl Viewer {
+impl ViewCache {
     /// Returns the clip of the parameters, with its feet locked if they are to be. `None` if that
     /// takes longer than a frame: call [`work`](Self::work), then ask again. An unchanged clip is
     /// returned at once, and later again with its metrics.
@@ -286,8 +286,8 @@ impl Viewer {
     }
 }
 
-impl Sliced for Viewer {
-    fn ask_anew(&mut self) {
+impl Sliced for ViewCache {
+    fn clear_requests(&mut self) {
         self.is_ready = false;
         for under_way in &mut self.under_way {
             under_way.is_wanted = false;

@@ -12,13 +12,13 @@ mod inline;
 mod page;
 mod parse;
 mod prose;
-mod shelf;
+mod sources;
 mod state;
 
 pub use address::host_of;
 pub use page::{Block, Page, Span, Target, Try};
 pub use parse::{LessonError, MOST_BYTES, parse};
-pub use shelf::{CONTENTS, LESSONS, Source, file_name, source_of};
+pub use sources::{CONTENTS, LESSONS, Source, file_name, source_of};
 pub use state::{Lesson, LessonPage};
 pub(super) use state::{LessonState, NewParams, would_set_up};
 

@@ -2,7 +2,7 @@
 //! merged.
 
 use super::page::{Span, Target};
-use super::shelf::lesson_of_file;
+use super::sources::lesson_of_file;
 
 /// The greatest number of spans in a link; the rest of a longer one has a single style. Each span
 /// contains the address, so that a long address with many spans would fill the memory.

@@ -2,7 +2,7 @@
 
 use super::page::Page;
 use super::parse::{LessonError, parse};
-use super::shelf::{CONTENTS, LESSONS, Source, source_of};
+use super::sources::{CONTENTS, LESSONS, Source, source_of};
 use crate::link::{self, Link};
 use crate::params::{Group, Key, Kind, Mark, PARAMS, Param, Params};
 use segue_text::{Message, msg};

@@ -157,8 +157,8 @@ fn source_of_names_and_addresses_is_found() {
             .to_string()
             .contains("expected contents, alignment, slerp")
     );
-    assert_eq!(shelf::lesson_of_file("02-slerp.md"), Some("slerp"));
-    assert_eq!(shelf::lesson_of_file("03-slerp.md"), None);
+    assert_eq!(sources::lesson_of_file("02-slerp.md"), Some("slerp"));
+    assert_eq!(sources::lesson_of_file("03-slerp.md"), None);
 }
 
 proptest! {

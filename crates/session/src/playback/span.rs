@@ -42,7 +42,7 @@ impl Span {
 
     /// Returns how many times a repeating playhead, as in [`Span::advance`], reaches the end.
     #[must_use]
-    pub fn rounds(&self, now: f64, dt_secs: f64, rate: f64) -> usize {
+    pub fn wraps(&self, now: f64, dt_secs: f64, rate: f64) -> usize {
         let length = self.end - self.start;
         let inside = (self.start..=self.end).contains(&now);
         let next = (if inside { now } else { self.start }) + dt_secs * rate;
@@ -66,10 +66,10 @@ mod tests {
         assert_eq!(span.advance(2.5, 1.0, 1.0, false), (3.0, false));
         assert_eq!(span.advance(2.0, 0.5, 0.5, false), (2.25, true));
         assert_eq!(Span::between(None, None, 0.0).advance(0.0, 1.0, 1.0, true), (0.0, false));
-        let rounds = [(2.5, 0.25), (2.5, 1.0), (2.5, 4.75), (0.0, 0.5), (0.0, 2.5)]
-            .map(|(now, dt)| span.rounds(now, dt, 1.0));
-        assert_eq!(rounds, [0, 1, 3, 0, 1]);
-        assert_eq!(Span::between(None, None, 0.0).rounds(0.0, 1.0, 1.0), 0);
+        let wraps = [(2.5, 0.25), (2.5, 1.0), (2.5, 4.75), (0.0, 0.5), (0.0, 2.5)]
+            .map(|(now, dt)| span.wraps(now, dt, 1.0));
+        assert_eq!(wraps, [0, 1, 3, 0, 1]);
+        assert_eq!(Span::between(None, None, 0.0).wraps(0.0, 1.0, 1.0), 0);
     }
 
     #[test]

@@ -34,7 +34,7 @@ fn shown(session: &Session) -> (Vec<Quat>, f32, Planar) {
 }
 
 fn shown_at(session: &Session, secs: f64) -> (Vec<Quat>, f32, Planar) {
-    let Shown { outcome, secs, place } = session.panes()[0].shown_at(secs).unwrap();
+    let PaneContent { outcome, secs, place } = session.panes()[0].shown_at(secs).unwrap();
     let motion = &outcome.motion;
     let pose = motion.clip().sample(secs, Interpolation::Linear).unwrap();
     let here = motion.standing_at(secs);
@@ -96,7 +96,7 @@ fn speeds_are_compared_side_by_side() {
     let duration = session.duration_secs();
     for pane in session.panes() {
         let own = pane.outcome.as_ref().unwrap().duration_secs();
-        let Shown { secs, place, .. } = pane.shown_at(duration - 1e-3).unwrap();
+        let PaneContent { secs, place, .. } = pane.shown_at(duration - 1e-3).unwrap();
         assert!(secs <= own && (own >= duration || place.shift.length() > 5.0), "{secs} {place:?}");
     }
     session.tick(duration + 0.3);

@@ -150,7 +150,8 @@ pub struct About {
 }
 
 /// The type of [`read`], and of functions that replace it.
-pub type Reads = fn(&str, &[u8], &ReadSetup, &mut dyn FnMut(usize) -> bool) -> Option<ReadReport>;
+pub type ReadFunction =
+    fn(&str, &[u8], &ReadSetup, &mut dyn FnMut(usize) -> bool) -> Option<ReadReport>;
 
 /// Reads a file, or all motion files of an archive. `progress` receives the bytes done and returns
 /// whether to continue; the result is `None` if it returned `false`.

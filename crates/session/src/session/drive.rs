@@ -75,7 +75,7 @@ impl Session {
     pub(super) fn advance_drive(&mut self, dt_secs: f64) {
         // Tags that cannot be read are refused where the database is requested.
         let filter = filter_of(&self.document.params).unwrap_or_default();
-        let outcomes = self.drive.advance(dt_secs, filter, &mut self.labs.gauge);
+        let outcomes = self.drive.advance(dt_secs, filter, &mut self.labs.meter);
         self.panes.show_next(outcomes);
     }
 
@@ -83,7 +83,7 @@ impl Session {
     pub(super) fn step_drive(&mut self, ticks: i64) {
         let filter = filter_of(&self.document.params).unwrap_or_default();
         let ticks = ticks.clamp(0, 60) as usize;
-        let outcomes = self.drive.tick(ticks, filter, &mut self.labs.gauge);
+        let outcomes = self.drive.tick(ticks, filter, &mut self.labs.meter);
         self.panes.show_next(outcomes);
     }
 

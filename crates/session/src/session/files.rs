@@ -1,7 +1,7 @@
 //! Files that are added to the library, and the memory that they need.
 
 use super::Session;
-use crate::files::Loaded;
+use crate::files::LoadedFile;
 use crate::library::Arrival;
 use crate::memory::{MemoryUse, PageMemory};
 use crate::motion::FeetReader;
@@ -20,7 +20,7 @@ impl Session {
     ///
     /// # Errors
     /// [`ImportError`] with name, line, column, found and expected; nothing already loaded changes.
-    pub fn load(&mut self, name: &str, bytes: Arc<[u8]>) -> Result<Loaded, ImportError> {
+    pub fn load(&mut self, name: &str, bytes: Arc<[u8]>) -> Result<LoadedFile, ImportError> {
         self.load_arriving(name, bytes, Arrival::ByHand)
     }
 
@@ -30,7 +30,11 @@ impl Session {
     ///
     /// # Errors
     /// Those of [`Session::load`].
-    pub fn load_fetched(&mut self, name: &str, bytes: Arc<[u8]>) -> Result<Loaded, ImportError> {
+    pub fn load_fetched(
+        &mut self,
+        name: &str,
+        bytes: Arc<[u8]>,
+    ) -> Result<LoadedFile, ImportError> {
         self.load_arriving(name, bytes, Arrival::ByLink)
     }
 
@@ -39,7 +43,7 @@ impl Session {
         name: &str,
         bytes: Arc<[u8]>,
         arrival: Arrival,
-    ) -> Result<Loaded, ImportError> {
+    ) -> Result<LoadedFile, ImportError> {
         let (document, notices) = (&mut self.document, &mut self.notices);
         let loaded = self.files.load(document, notices, name, bytes, arrival);
         self.refresh();
@@ -78,7 +82,7 @@ impl Session {
         &mut self,
         task: u64,
         report: Result<ReadReport, Message>,
-    ) -> Option<Result<Loaded, Message>> {
+    ) -> Option<Result<LoadedFile, Message>> {
         let (document, notices) = (&mut self.document, &mut self.notices);
         let finished = self.files.finish_reading(document, notices, task, report);
         self.refresh();
@@ -186,7 +190,11 @@ impl Session {
 
     /// Ends a task because there is no memory for the `needed` bytes of its clips. Returns `None`
     /// if the task was stopped already.
-    pub fn refuse_for_memory(&mut self, task: u64, needed: u64) -> Option<Result<Loaded, Message>> {
+    pub fn refuse_for_memory(
+        &mut self,
+        task: u64,
+        needed: u64,
+    ) -> Option<Result<LoadedFile, Message>> {
         let (document, notices) = (&mut self.document, &mut self.notices);
         let reason = self.files.refuse_for_memory(document, notices, task, needed)?;
         self.refresh();

@@ -22,15 +22,15 @@ impl Session {
     /// Returns the clips of the graph, on one skeleton; `None` outside of the Graph lab and while
     /// they are prepared.
     #[must_use]
-    pub fn graph_cast(&self) -> Option<&Arc<GraphClips>> {
-        self.labs.grapher.cast().filter(|_| self.is_graph_lab())
+    pub fn graph_clips(&self) -> Option<&Arc<GraphClips>> {
+        self.labs.graphs.graph_clips().filter(|_| self.is_graph_lab())
     }
 
     /// Returns the distances of the first pane's window, or the last ones while these are computed;
     /// `None` outside of the Graph lab.
     #[must_use]
     pub fn graph_field(&self) -> Option<&Arc<DistanceField>> {
-        self.labs.grapher.field().filter(|_| self.is_graph_lab())
+        self.labs.graphs.field().filter(|_| self.is_graph_lab())
     }
 
     /// Returns the graph of the first pane: that of the present parameters if it is built,
@@ -38,7 +38,7 @@ impl Session {
     #[must_use]
     pub fn graph_built(&self) -> Option<&Arc<BuiltGraph>> {
         let walked = || self.graph_walk().map(|walk| &walk.built);
-        self.labs.grapher.built().or_else(walked).filter(|_| self.is_graph_lab())
+        self.labs.graphs.built().or_else(walked).filter(|_| self.is_graph_lab())
     }
 
     /// Returns the walk of the first pane.
@@ -51,19 +51,19 @@ impl Session {
     /// [`Session::work_took`].
     #[must_use]
     pub fn graph_build_secs(&self, built: &BuiltGraph) -> Option<f64> {
-        self.labs.grapher.build_secs(built)
+        self.labs.graphs.build_secs(built)
     }
 
     /// Records the duration of the last call of [`Session::work`], seconds, because the session has
     /// no clock.
     pub fn work_took(&mut self, secs: f64) {
-        self.labs.grapher.took(secs);
+        self.labs.graphs.took(secs);
     }
 
     /// Returns whether the construction of the graph was stopped.
     #[must_use]
     pub fn graph_is_stopped(&self) -> bool {
-        self.is_graph_lab() && self.labs.grapher.is_stopped()
+        self.is_graph_lab() && self.labs.graphs.is_stopped()
     }
 
     /// Returns the visits of the walk: when to set off, seconds, and the clip's index.

@@ -90,7 +90,7 @@ fn results_with_a_further_clip_of_a_file_are_kept() {
         &segue_formats::bvh::WriteOptions::default(),
     );
     let id = session.load("two.bvh", bytes.into_bytes().into()).unwrap().ids.remove(0);
-    // As in a file with several motions.
+    // The same name as in a file with several motions.
     let first = Arc::clone(session.library().find(&id).unwrap());
     let Origin::File(file) = &first.origin else { panic!() };
     let second = Entry {

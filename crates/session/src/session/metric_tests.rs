@@ -3,7 +3,7 @@
 use crate::NumberTable;
 use crate::fixtures::*;
 use crate::labs::sliced::Sliced as _;
-use crate::labs::{Gauge, Measured};
+use crate::labs::{ArtefactMeter, MeasuredMotion};
 use crate::metrics::{Better, METRICS, Metric, of_result};
 use crate::params::{Kind, List};
 use glam::{DVec2, Quat};
@@ -120,20 +120,20 @@ fn spoiled(outcome: &Outcome, change: impl Fn(usize, &mut [Quat])) -> Outcome {
         Clip::new("spoiled", Arc::clone(clip.skeleton()), clip.fps(), rotations, roots).unwrap();
     Outcome {
         motion: Arc::new(outcome.motion.with_clip(clip, outcome.motion.ground_frames().to_vec())),
-        measured: Measured::Motion,
+        measured: MeasuredMotion::Motion,
         ..outcome.clone()
     }
 }
 
 fn measured(outcome: &Outcome) -> ResultMetrics {
-    let mut gauge = Gauge::default();
+    let mut meter = ArtefactMeter::default();
     loop {
-        gauge.ask_anew();
-        if let Some(found) = gauge.numbers(outcome) {
+        meter.clear_requests();
+        if let Some(found) = meter.numbers(outcome) {
             return found;
         }
-        while gauge.work() {}
-        assert!(gauge.is_ready());
+        while meter.work() {}
+        assert!(meter.is_ready());
     }
 }
 

@@ -193,7 +193,7 @@ impl Session {
         let pane = self.panes.list.first()?;
         let shown = pane.outcome.as_ref().and_then(|outcome| outcome.registered());
         let shown = shown.map(|registered| &registered.map);
-        shown.or_else(|| self.labs.registrars.last_map())
+        shown.or_else(|| self.labs.registrations.last_map())
     }
 
     /// Returns whether the motion to be synthesised has a parameter: a standing one has no speed.

@@ -30,7 +30,7 @@ pub(super) fn close_jump(state: &UiState, out: &mut Out) {
 
 /// Returns the name of a clip of a graph.
 pub(super) fn clip_title(built: &BuiltGraph, clip: usize, session: &Session) -> Message {
-    let name = built.cast().names().get(clip);
+    let name = built.clips().names().get(clip);
     name.map(|name| session.clip_title(name)).unwrap_or_default()
 }
 

@@ -65,7 +65,7 @@ impl Drawn {
     }
 
     fn new(built: &Arc<BuiltGraph>, choices: Option<&Arc<Choices>>) -> Self {
-        let (whole, graph, set) = (built.whole(), built.graph(), built.cast().set());
+        let (whole, graph, set) = (built.whole(), built.graph(), built.clips().set());
         let mut probable: BTreeMap<[Place; 2], f64> = BTreeMap::new();
         for edge in graph.graph().edge_indices() {
             if let Some(jump) = graph.jump(edge) {
@@ -146,7 +146,7 @@ pub(crate) fn map_ui(
     ui: &mut Ui,
 ) {
     let palette = palette_of(ui);
-    let Some(cast) = session.graph_cast() else {
+    let Some(graph_clips) = session.graph_clips() else {
         kit::note_ui(text::EMPTY_PANE, palette.muted, ui);
         return;
     };
@@ -155,8 +155,8 @@ pub(crate) fn map_ui(
         return;
     };
     let drawn = built.map(|built| Drawn::of(built, walk.map(|walk| &**walk), ui));
-    let set = cast.set();
-    let parts: Vec<(usize, &str)> = (cast.names().iter().enumerate())
+    let set = graph_clips.set();
+    let parts: Vec<(usize, &str)> = (graph_clips.names().iter().enumerate())
         .filter_map(|(clip, name)| Some((set.number(Place { clip, frame: 0 })?, name.as_str())))
         .collect();
     let lit = drawn.as_ref().and_then(|drawn| {

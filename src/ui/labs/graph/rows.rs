@@ -127,10 +127,9 @@ fn clips_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
         all.push(entry.id.clone());
         set_clips(&all, out);
     }
-    if let Some(words) = session
-        .graph_cast()
-        .and_then(|cast| text::moved_onto_first(cast, |name| session.clip_title(name)))
-    {
+    if let Some(words) = session.graph_clips().and_then(|graph_clips| {
+        text::moved_onto_first(graph_clips, |name| session.clip_title(name))
+    }) {
         kit::note_ui(&say(&words, ui), palette.muted, ui);
     }
 }
@@ -145,7 +144,7 @@ fn construction_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
     let params = session.params();
     let palette = palette_of(ui);
     param_row_ui(Key::Construction, &Detail::default(), session, out, ui);
-    let longest = session.graph_cast().map(|cast| cast.set().longest() as f64);
+    let longest = session.graph_clips().map(|graph_clips| graph_clips.set().longest() as f64);
     let window = Detail {
         max: longest.map(|longest| (longest - 2.0).max(params.number(Key::BlendWindow))),
         help: Some("How long a transition takes, and the length of the windows that are compared. Longer is smoother but slower to respond; shorter is snappier but pops.".into()),
@@ -248,10 +247,10 @@ fn walk_ui(session: &Session, out: &mut Out, ui: &mut Ui) {
 fn ways_ui(session: &Session, state: &mut UiState, out: &mut Out, ui: &mut Ui) {
     let palette = palette_of(ui);
     let visits = session.graph_visits();
-    if let Some(cast) = session.graph_cast() {
+    if let Some(graph_clips) = session.graph_clips() {
         let reached = reached(session, ui);
         let titles: Vec<String> =
-            cast.names().iter().map(|name| say(&session.clip_title(name), ui)).collect();
+            graph_clips.names().iter().map(|name| say(&session.clip_title(name), ui)).collect();
         let options: Vec<(usize, &str)> = (titles.iter().map(String::as_str).enumerate())
             .filter(|(clip, _)| reached.get(*clip).copied().unwrap_or(true))
             .collect();

@@ -89,8 +89,8 @@ fn strip_ui(session: &Session, walk: &Arc<Walk>, state: &mut UiState, out: &mut 
         return;
     };
     let drawn = Drawn::of(built, Some(walk), ui);
-    let (cast, set) = (built.cast(), built.cast().set());
-    let bars: Vec<(&str, usize)> = cast
+    let (clips, set) = (built.clips(), built.clips().set());
+    let bars: Vec<(&str, usize)> = clips
         .names()
         .iter()
         .enumerate()

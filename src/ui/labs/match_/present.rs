@@ -1,6 +1,6 @@
 //! What the Match lab shows now.
 
-use segue_session::{DriveMoment, Driven, LabId, Session};
+use segue_session::{DriveHistory, DriveMoment, LabId, Session};
 use std::sync::Arc;
 
 /// Returns whether the lab is open.
@@ -9,7 +9,7 @@ pub(super) fn is_open(session: &Session) -> bool {
 }
 
 /// Returns what the first pane shows now, where it was driven.
-pub(super) fn shown(session: &Session) -> Option<(&Arc<Driven>, &DriveMoment)> {
+pub(super) fn shown(session: &Session) -> Option<(&Arc<DriveHistory>, &DriveMoment)> {
     let driven = session.main_outcome()?.driven()?;
     Some((driven, driven.at(session.now_secs())?))
 }

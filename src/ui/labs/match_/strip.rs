@@ -12,7 +12,7 @@ use crate::ui::theme::{Palette, palette_of, space, theme_of};
 use crate::ui::transport_row::{Playhead, transport_row_ui};
 use eframe::egui::{Color32, Ui};
 use segue_motion::matching::{Database, Place, RATE, Tag};
-use segue_session::{Command, Driven, Key, Outcome, PlaybackCommand, Session, Value};
+use segue_session::{Command, DriveHistory, Key, Outcome, PlaybackCommand, Session, Value};
 use segue_text::Message;
 
 /// A jump is seen for so long, seconds.
@@ -26,7 +26,7 @@ const MOST_BARS: usize = 300;
 pub(crate) fn drive_panel_ui(
     session: &Session,
     outcome: &Outcome,
-    driven: &Driven,
+    driven: &DriveHistory,
     layout: Layout,
     state: &mut UiState,
     out: &mut Out,
@@ -55,13 +55,19 @@ pub(crate) fn drive_panel_ui(
 }
 
 /// What the last search came to, in a few words.
-fn caption(session: &Session, driven: &Driven) -> Message {
+fn caption(session: &Session, driven: &DriveHistory) -> Message {
     let search = shown(session).and_then(|(_, moment)| moment.search.as_ref());
     search.map_or_else(Message::default, |search| text::outcome_of_search(search, driven.is_live))
 }
 
 /// The costs of going on and of the best frame; a mark where it jumped.
-fn time_ui(session: &Session, outcome: &Outcome, driven: &Driven, out: &mut Out, ui: &mut Ui) {
+fn time_ui(
+    session: &Session,
+    outcome: &Outcome,
+    driven: &DriveHistory,
+    out: &mut Out,
+    ui: &mut Ui,
+) {
     let palette = palette_of(ui);
     let (mut current, mut best, mut last) = (Vec::new(), Vec::new(), None);
     for (frame, moment) in driven.moments.iter().enumerate() {
@@ -143,7 +149,7 @@ fn tag_color(tag: Tag, palette: &Palette) -> Color32 {
 
 fn strip_ui(
     session: &Session,
-    driven: &Driven,
+    driven: &DriveHistory,
     now_secs: f64,
     height: f32,
     state: &mut UiState,

@@ -7,7 +7,7 @@ use segue_motion::path::{
     ArcLengthPath, FitOptions, GroundSpline, PathEdit, PathEditError, Pins, SplineEnds, drawn_path,
 };
 use segue_session::LabId;
-use segue_session::{Command, Key, List, OnPath, Pane, Session, Value, spline_ends};
+use segue_session::{Command, Key, List, Pane, PathFacts, Session, Value, spline_ends};
 use segue_text::{Message, ToMessage};
 
 /// The hand on the path, remembered between frames.
@@ -119,7 +119,7 @@ impl PathHand {
     }
 
     /// One more control point: behind the chosen one, or where there is most room.
-    pub(crate) fn add_point(&mut self, path: &OnPath, session: &Session, out: &mut Out) {
+    pub(crate) fn add_point(&mut self, path: &PathFacts, session: &Session, out: &mut Out) {
         let spline = path.curve.spline();
         let ends = spline.with_ends(SplineEnds::Clamped).greville();
         let gaps = || ends.windows(2).enumerate();
@@ -139,7 +139,7 @@ impl PathHand {
     }
 
     /// Takes the chosen control point away.
-    pub(crate) fn remove_point(&mut self, path: &OnPath, session: &Session, out: &mut Out) {
+    pub(crate) fn remove_point(&mut self, path: &PathFacts, session: &Session, out: &mut Out) {
         let Some(index) = self.chosen else {
             self.said = Some(text::CHOOSE_POINT.into());
             return;
@@ -157,7 +157,7 @@ fn pins(session: &Session) -> Pins {
 }
 
 /// The path of a pane, if there is one to be edited: not while its lab has nothing to show.
-pub(crate) fn path_of<'a>(session: &Session, pane: &'a Pane) -> Option<&'a OnPath> {
+pub(crate) fn path_of<'a>(session: &Session, pane: &'a Pane) -> Option<&'a PathFacts> {
     let is_open = session.params().lab() == LabId::Path && pane.problem.is_none();
     pane.outcome.as_ref()?.path().map(|fact| &**fact).filter(|_| is_open)
 }

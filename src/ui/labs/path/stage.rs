@@ -14,7 +14,7 @@ use eframe::egui::{
 use glam::DVec2;
 use segue_motion::path::{GroundSpline, PathEdit, SplineEnds};
 use segue_session::LabId;
-use segue_session::{Command, Group, Key, OnPath, Session};
+use segue_session::{Command, Group, Key, PathFacts, Session};
 
 /// Side of the square in which a control point is taken hold of, points: fingers need more than the
 /// standard's 24.
@@ -74,7 +74,7 @@ struct Handle<'a> {
     pane: usize,
     point: DVec2,
     view: &'a View<'a>,
-    path: &'a OnPath,
+    path: &'a PathFacts,
     response: &'a Response,
 }
 

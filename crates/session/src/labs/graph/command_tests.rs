@@ -86,7 +86,7 @@ fn walk_through_the_built_in_clips_has_no_jump() {
         .iter()
         .find(|passed| passed.end > passed.start + 60 && passed.seam.is_some())
         .unwrap();
-    let clip = walk.built.cast().motions()[calm.stay.clip].clip();
+    let clip = walk.built.clips().motions()[calm.stay.clip].clip();
     let (frame, place) = (calm.start + 45, calm.stay.from + 45);
     for joint in 1..clip.skeleton().len() {
         let turned =
@@ -426,7 +426,7 @@ fn kept_walk_is_made_again_from_its_link() {
     session.apply(Command::Remove("walk_left".into())).unwrap();
     while session.work() {}
     assert_eq!(session.graph_clip_ids(), ["walk", "walk_right"]);
-    assert_eq!(walk(&session).built.cast().names().len(), 2);
+    assert_eq!(walk(&session).built.clips().names().len(), 2);
     // The walk of a guided pane cannot be kept: alone it takes another path.
     let mut compared = opened(&format!("{SMALL}&compare=blend_window:20,10"));
     assert!(matches!(compared.apply(Command::Keep(1)), Err(CommandError::NotPossible(_))));
@@ -529,7 +529,7 @@ fn visit_of_an_unreachable_clip_is_reported() {
     set(&mut session, Key::Prune, Value::Switch(false));
     let built = &walk(&session).built;
     for clip in 0..4 {
-        for frame in (0..built.cast().set().frames_of(clip)).step_by(37) {
+        for frame in (0..built.clips().set().frames_of(clip)).step_by(37) {
             let place = Place { clip, frame };
             let reached = built.clips_from(place);
             let graph = built.graph();
@@ -640,11 +640,11 @@ fn clips_with_any_name_are_used() {
     session.apply(Command::Set(crate::graph_of(&ids))).unwrap();
     while session.work() {}
     assert_eq!(session.graph_clip_ids(), ids);
-    assert_eq!(walk(&session).built.cast().names().len(), 5);
+    assert_eq!(walk(&session).built.clips().names().len(), 5);
     session.apply(Command::Remove(ids[1].clone())).unwrap();
     while session.work() {}
     ids.remove(1);
-    assert_eq!((session.graph_clip_ids(), walk(&session).built.cast().names().len()), (ids, 4));
+    assert_eq!((session.graph_clip_ids(), walk(&session).built.clips().names().len()), (ids, 4));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! The plan of a walk: its stays, without frames.
 
-use super::wanted::WalkRequest;
+use super::requests::WalkRequest;
 use petgraph::graph::EdgeIndex;
 use petgraph::visit::EdgeRef;
 use segue_motion::graph::{Choices, GraphError, MotionGraph, Place, Stay, Walker};

@@ -78,7 +78,7 @@ pub struct Walk {
     /// Whether it follows the walk of another pane where it can.
     pub is_guided: bool,
     /// The path that it follows, and how well.
-    pub followed: Option<Trace>,
+    pub followed: Option<FollowedPath>,
 }
 
 /// A clip of a walk, drawn as a ghost.
@@ -96,7 +96,7 @@ pub struct WalkGhost<'a> {
 
 /// A path over the ground, and how closely a walk follows it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Trace {
+pub struct FollowedPath {
     /// The points, (x, z) in metres.
     pub points: Vec<DVec2>,
     /// The root mean square distance of the walk from the path, by the search, metres.
@@ -168,7 +168,7 @@ impl Walk {
         // at the end the one that is entered.
         let end = (passed.start + seam.frames).min(self.motion.clip().frames().saturating_sub(1));
         let laid = |place: Place, met: usize, walk_frame: usize, clear: f64| {
-            let motion = self.built.cast().motions().get(place.clip)?;
+            let motion = self.built.clips().motions().get(place.clip)?;
             let stands = motion.ground_frames().get(met)?;
             let world_from_clip =
                 self.motion.ground_frames().get(walk_frame)?.after(&stands.inverse());

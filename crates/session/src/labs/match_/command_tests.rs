@@ -1,6 +1,6 @@
 //! Tests of the Match lab, by commands.
 
-use crate::Driven;
+use crate::DriveHistory;
 use crate::fixtures::*;
 use glam::DVec2;
 use segue_motion::matching::{
@@ -20,7 +20,7 @@ fn open(link: &str) -> Session {
 const SMALL: &str =
     "lab=match&mirrored=off&match_clips=idle,walk,walk_left,walk_right,walk(make_seconds:6)";
 
-fn driven(session: &Session) -> &Driven {
+fn driven(session: &Session) -> &DriveHistory {
     assert_eq!(session.panes()[0].problem, None);
     session.main_outcome().unwrap().driven().unwrap()
 }

@@ -2,7 +2,7 @@
 
 use super::trace::Tracer;
 use crate::labs::LabError;
-use crate::labs::{Gauge, Outcome};
+use crate::labs::{ArtefactMeter, Outcome};
 use crate::metrics::{Metric, MetricId};
 use segue_motion::matching::{Control, Controller, ControllerOptions, Database, RATE};
 use segue_motion::math::Planar;
@@ -91,11 +91,11 @@ impl Live {
 
     /// Returns the history as an outcome, with metrics: those of every lab as soon as its clips are
     /// measured.
-    pub(crate) fn outcome(&mut self, gauge: &mut Gauge) -> Result<Outcome, LabError> {
+    pub(crate) fn outcome(&mut self, meter: &mut ArtefactMeter) -> Result<Outcome, LabError> {
         let mut outcome = self.tracer.outcome(true)?;
         let ticks = self.tracer.controller.ticks();
         if ticks.is_multiple_of(MEASURED) || self.metrics.is_empty() {
-            self.found = gauge.numbers_now(&outcome);
+            self.found = meter.numbers_now(&outcome);
             self.metrics = self.tracer.metrics(&outcome.motion);
             // Most turns in the history have no beginning or no end.
             self.metrics.retain(|metric| metric.id != MetricId::TurnTime);

@@ -5,8 +5,8 @@ use super::crowd::Crowd;
 use super::live::Live;
 use super::settings::options_in;
 use crate::labs::answer::Answer;
+use crate::labs::artefact_meter::ArtefactMeter;
 use crate::labs::error::LabError;
-use crate::labs::gauge::Gauge;
 use crate::labs::outcome::Outcome;
 use crate::metrics::{Metric, MetricId};
 use crate::params::Params;
@@ -95,12 +95,12 @@ impl LiveDrive {
         &mut self,
         dt_secs: f64,
         filter: TagFilter,
-        gauge: &mut Gauge,
+        meter: &mut ArtefactMeter,
     ) -> Vec<Option<Outcome>> {
         self.left_secs += dt_secs.max(0.0);
         let ticks = (self.left_secs / TICK_SECS) as usize;
         self.left_secs -= ticks as f64 * TICK_SECS;
-        self.tick(ticks.min(MAX_TICKS), filter, gauge)
+        self.tick(ticks.min(MAX_TICKS), filter, meter)
     }
 
     /// Records the duration of the last ticks together, seconds.
@@ -119,7 +119,7 @@ impl LiveDrive {
         &mut self,
         ticks: usize,
         filter: TagFilter,
-        gauge: &mut Gauge,
+        meter: &mut ArtefactMeter,
     ) -> Vec<Option<Outcome>> {
         self.unmeasured = ticks;
         let control = self.control.with_filter(filter);
@@ -141,7 +141,7 @@ impl LiveDrive {
         let tick_ms = (self.tick_ms > 0.0).then_some(self.tick_ms);
         let outcome = |live: &mut Option<Live>| {
             // If the outcome fails, the pane stays as it was until the next tick.
-            let mut outcome = live.as_mut()?.outcome(gauge).ok()?;
+            let mut outcome = live.as_mut()?.outcome(meter).ok()?;
             outcome.metrics.push(Metric::new(MetricId::TickTime, tick_ms));
             Some(outcome)
         };
@@ -154,7 +154,7 @@ impl LiveDrive {
         &mut self,
         panes: Vec<DrivenPane>,
         crowd: usize,
-        gauge: &mut Gauge,
+        meter: &mut ArtefactMeter,
     ) -> Vec<Answer> {
         self.lives.resize_with(panes.len(), || None);
         let has_begun = |(live, pane): (&Option<Live>, &DrivenPane)| match &pane.database {
@@ -175,7 +175,7 @@ impl LiveDrive {
                 Ok(Some(database)) => options_in(&database, &params)
                     .and_then(|options| {
                         main = main.take().or(Some((Arc::clone(&database), options)));
-                        answer(live, shown.as_deref(), &database, options, gauge)
+                        answer(live, shown.as_deref(), &database, options, meter)
                     })
                     .unwrap_or_else(Answer::Refused),
                 Err(problem) => Answer::Refused(problem),
@@ -209,7 +209,7 @@ fn answer(
     shown: Option<&Outcome>,
     database: &Arc<Database>,
     options: ControllerOptions,
-    gauge: &mut Gauge,
+    meter: &mut ArtefactMeter,
 ) -> Result<Answer, LabError> {
     let (is_changed, live) = match live {
         Some(live) => (live.change(database, options)?, live),
@@ -218,5 +218,5 @@ fn answer(
     if !is_changed && is_shown(shown, database) {
         return Ok(Answer::Same { is_draft: false });
     }
-    Ok(Answer::Made { outcome: Arc::new(live.outcome(gauge)?), is_draft: false, inputs: None })
+    Ok(Answer::Made { outcome: Arc::new(live.outcome(meter)?), is_draft: false, inputs: None })
 }

@@ -30,7 +30,7 @@ pub struct DriveMoment {
 
 /// The history of a motion: one moment for each of its frames.
 #[derive(Clone, Debug)]
-pub struct Driven {
+pub struct DriveHistory {
     /// The database of its frames.
     pub database: Arc<Database>,
     /// The steering of the simulation object.
@@ -41,7 +41,7 @@ pub struct Driven {
     pub is_live: bool,
 }
 
-impl Driven {
+impl DriveHistory {
     /// Returns the moment at a time of the motion, seconds.
     #[must_use]
     pub fn at(&self, secs: f64) -> Option<&DriveMoment> {
@@ -163,7 +163,7 @@ impl Tracer {
         let motion = Motion::with_ground_frames(clip?, database.roles(), frames)
             .with_contacts(self.contacts())
             .with_ground_m(database.ground_m());
-        let driven = Driven {
+        let driven = DriveHistory {
             database: Arc::clone(database),
             steering: self.controller.options().steering,
             moments: self.moments.iter().cloned().collect(),
@@ -234,7 +234,7 @@ pub(super) fn of_drive(found: &DriveMetrics) -> [Metric; 5] {
 impl Outcome {
     /// Returns the facts about the drive; `None` if the result was not driven.
     #[must_use]
-    pub fn driven(&self) -> Option<&Arc<Driven>> {
+    pub fn driven(&self) -> Option<&Arc<DriveHistory>> {
         self.facts.get()
     }
 }

@@ -3,7 +3,7 @@
 use crate::JobKind;
 use crate::List;
 use crate::fixtures::*;
-use crate::{ExtraCharacterCommand, OnPath};
+use crate::{ExtraCharacterCommand, PathFacts};
 use glam::DVec2;
 use segue_motion::path::{GroundSpline, PathEdit, Pins};
 
@@ -14,7 +14,7 @@ fn open(link: &str) -> Session {
     session
 }
 
-fn path(session: &Session) -> &OnPath {
+fn path(session: &Session) -> &PathFacts {
     assert_eq!(session.panes()[0].problem, None);
     session.main_outcome().unwrap().path().map(|fact| &**fact).unwrap()
 }

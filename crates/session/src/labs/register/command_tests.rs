@@ -1,7 +1,7 @@
 //! Tests of the Register lab, by commands.
 
 use crate::JobKind;
-use crate::Registered;
+use crate::RegistrationFacts;
 use crate::fixtures::*;
 use segue_motion::clip::{Clip, ground_speed};
 use segue_motion::math::Planar;
@@ -19,7 +19,7 @@ fn number_of(outcome: &Outcome, id: MetricId) -> f64 {
     outcome.metric(id).and_then(|metric| metric.value).unwrap_or(f64::NAN)
 }
 
-fn registered(session: &Session) -> &Registered {
+fn registered(session: &Session) -> &RegistrationFacts {
     session.main_outcome().unwrap().registered().unwrap()
 }
 
@@ -60,11 +60,11 @@ fn walk_is_registered_to_a_run_at_once() {
     };
     assert!(worst(&session) < 0.16 && worst(&plain) > 0.2, "{} {}", worst(&session), worst(&plain));
     let registered = registered(&session);
-    assert!(registered.beats.windows(2).all(|pair| pair[1].frames[0] > pair[0].frames[0]));
+    assert!(registered.frame_pairs.windows(2).all(|pair| pair[1].frames[0] > pair[0].frames[0]));
     // From a pair to the time that shows it, and back.
-    let at = registered.beat_at(1.0).unwrap();
+    let at = registered.frame_pair_at(1.0).unwrap();
     assert!((registered.secs_near(at.frames).unwrap() - 1.0).abs() < 0.02);
-    assert_eq!(registered.beat_at(f64::NAN), registered.beats.first().copied());
+    assert_eq!(registered.frame_pair_at(f64::NAN), registered.frame_pairs.first().copied());
 }
 
 #[test]
@@ -79,7 +79,7 @@ fn weight_of_none_gives_a_and_of_all_gives_b() {
         let outcome = session.main_outcome().unwrap();
         let of = &session.slot(slot).unwrap().motion.as_ref().unwrap();
         let clip = usize::from(slot == Slot::B);
-        let first = registered(&session).beats[0].frames[clip];
+        let first = registered(&session).frame_pairs[0].frames[clip];
         assert!((first - first.round()).abs() < 1e-5, "{first}");
         let first = first.round() as usize;
         if link.contains("corner") {
@@ -103,9 +103,9 @@ fn join_slides_less_than_a_dissolve() {
     assert!(skate(0) < 0.5 * skate(1), "{} {}", skate(0), skate(1));
     for outcome in &outcomes {
         let (registered, transition) = (outcome.registered().unwrap(), outcome.transition.unwrap());
-        assert_eq!(registered.beats.len(), outcome.motion.clip().frames());
+        assert_eq!(registered.frame_pairs.len(), outcome.motion.clip().frames());
         assert_eq!(outcome.motion.ground_frames().len(), outcome.motion.clip().frames());
-        let at = |secs: f64| registered.beat_at(secs).unwrap();
+        let at = |secs: f64| registered.frame_pair_at(secs).unwrap();
         assert_eq!(
             (at(0.0).weights, at(outcome.duration_secs()).weights),
             ([1.0, 0.0], [0.0, 1.0])
@@ -142,7 +142,7 @@ fn pins_of_a_link_are_on_the_curve() {
     let query = session.query();
     assert!(query.contains("pins=100-92,40-60"), "{query}");
     let again = opened(&query);
-    assert_eq!(registered(&again).beats, registered(&session).beats);
+    assert_eq!(registered(&again).frame_pairs, registered(&session).frame_pairs);
 }
 
 #[test]
@@ -222,7 +222,8 @@ fn long_clips_are_registered_in_slices() {
 #[test]
 fn weight_curve_changes_the_weight_over_the_blend() {
     let session = opened("lab=register&warp_curve=0-0,50-100,100-20");
-    let weights: Vec<f64> = registered(&session).beats.iter().map(|beat| beat.weights[1]).collect();
+    let weights: Vec<f64> =
+        registered(&session).frame_pairs.iter().map(|frame_pair| frame_pair.weights[1]).collect();
     let last = weights.len() - 1;
     assert!(
         weights[0] < 1e-9 && weights[last / 2] > 0.99 && (weights[last] - 0.2).abs() < 0.01,
@@ -234,7 +235,7 @@ fn weight_curve_changes_the_weight_over_the_blend() {
 fn further_clips_are_blended_with_two() {
     let three = "lab=register&a=walk&b=run&warp_weight=0.25&warp_also=0.5:fast_walk";
     let session = opened(three);
-    let of = |session: &Session| registered(session).beats[0].weights;
+    let of = |session: &Session| registered(session).frame_pairs[0].weights;
     assert_eq!(of(&session), [0.25, 0.25]);
     // With all of the weight the third clip plays alone, at its own speed.
     let speed = |session: &Session| {

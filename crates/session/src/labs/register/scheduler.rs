@@ -41,12 +41,12 @@ pub(super) struct FoundRegistration {
 
 /// The registrations of all clips of a blend to A.
 #[derive(Debug, Default)]
-pub(crate) struct Registrars {
-    b: Registrar,
-    also: Vec<(Pairs, Registrar)>,
+pub(crate) struct RegistrationSchedulers {
+    b: RegistrationScheduler,
+    also: Vec<(Pairs, RegistrationScheduler)>,
 }
 
-impl Registrars {
+impl RegistrationSchedulers {
     /// Prepares the inputs, with which the result is a pure function; `also` are the further clips
     /// with their weights. `None` if that takes longer than a frame: call [`work`](Self::work),
     /// then ask again.
@@ -62,11 +62,11 @@ impl Registrars {
         let also = if matches!(made, RegisteredKind::Join { .. }) { &[] } else { also };
         self.also.resize_with(also.len(), Default::default);
         let mut more = Vec::with_capacity(also.len());
-        for ((motion, weight), (pairs, registrar)) in also.iter().zip(&mut self.also) {
+        for ((motion, weight), (pairs, scheduler)) in also.iter().zip(&mut self.also) {
             let pair = pairs.of(&pair.a, motion)?;
             // Pins are pairs of A and B.
             let wanted = wanted_of(&pair, params, Vec::new())?;
-            let found = registrar.found(&pair, wanted)?;
+            let found = scheduler.found(&pair, wanted)?;
             more.push(found.map(|found| ExtraClip { pair, found, weight: *weight }));
         }
         let Some((found, also)) = found.zip(more.into_iter().collect::<Option<Vec<_>>>()) else {
@@ -87,30 +87,30 @@ impl Registrars {
         self.b.last_map()
     }
 
-    fn all(&self) -> impl Iterator<Item = &Registrar> {
-        std::iter::once(&self.b).chain(self.also.iter().map(|(_, registrar)| registrar))
+    fn all(&self) -> impl Iterator<Item = &RegistrationScheduler> {
+        std::iter::once(&self.b).chain(self.also.iter().map(|(_, scheduler)| scheduler))
     }
 
-    fn all_mut(&mut self) -> impl Iterator<Item = &mut Registrar> {
-        std::iter::once(&mut self.b).chain(self.also.iter_mut().map(|(_, registrar)| registrar))
+    fn all_mut(&mut self) -> impl Iterator<Item = &mut RegistrationScheduler> {
+        std::iter::once(&mut self.b).chain(self.also.iter_mut().map(|(_, scheduler)| scheduler))
     }
 }
 
-impl Sliced for Registrars {
-    fn ask_anew(&mut self) {
-        self.all_mut().for_each(Registrar::ask_anew);
+impl Sliced for RegistrationSchedulers {
+    fn clear_requests(&mut self) {
+        self.all_mut().for_each(RegistrationScheduler::clear_requests);
     }
 
     fn work(&mut self) -> bool {
-        self.all_mut().any(Registrar::work)
+        self.all_mut().any(RegistrationScheduler::work)
     }
 
     fn is_ready(&self) -> bool {
-        self.all().any(Registrar::is_ready)
+        self.all().any(RegistrationScheduler::is_ready)
     }
 
     fn progress(&self) -> Option<(JobKind, f64)> {
-        let under_way: Vec<f32> = self.all().filter_map(Registrar::progress).collect();
+        let under_way: Vec<f32> = self.all().filter_map(RegistrationScheduler::progress).collect();
         let ended = self.also.len() + 1 - under_way.len();
         let progress =
             (under_way.iter().sum::<f32>() + ended as f32) / (self.also.len() + 1) as f32;
@@ -121,7 +121,7 @@ impl Sliced for Registrars {
 /// Registers clips in slices, and caches what a change does not affect: products of frames for a
 /// new window, distances for a new path.
 #[derive(Debug, Default)]
-struct Registrar {
+struct RegistrationScheduler {
     pair: Option<Arc<Pair>>,
     terms: Option<PairTerms>,
     sweep: Option<PausedSweep>,
@@ -135,9 +135,9 @@ struct Registrar {
     is_ready: bool,
 }
 
-impl Registrar {
+impl RegistrationScheduler {
     /// Clears the pending requests. Call before a refresh; each pane requests again what it needs.
-    fn ask_anew(&mut self) {
+    fn clear_requests(&mut self) {
         self.wanted.clear();
         self.is_ready = false;
     }

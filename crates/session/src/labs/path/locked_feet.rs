@@ -30,7 +30,7 @@ enum Stage {
 
 /// A cache of the last results, with their work in slices.
 #[derive(Debug, Default)]
-pub(super) struct Planter {
+pub(super) struct LockedFeetCache {
     done: Vec<Arc<LockedFeet>>,
     wanted: Vec<PathInputs>,
     under_way: Option<(PathInputs, Stage)>,
@@ -38,8 +38,8 @@ pub(super) struct Planter {
     is_ready: bool,
 }
 
-impl Planter {
-    pub(super) fn ask_anew(&mut self) {
+impl LockedFeetCache {
+    pub(super) fn clear_requests(&mut self) {
         self.wanted.clear();
         self.is_ready = false;
     }

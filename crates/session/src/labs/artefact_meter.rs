@@ -2,7 +2,7 @@
 //! compared with the clips that it was made from.
 
 use super::sliced::{JobKind, Sliced};
-use super::{Measured, Outcome};
+use super::{MeasuredMotion, Outcome};
 use segue_motion::clip::Clip;
 use segue_motion::metrics::{MotionTrace, ResultMetrics, TraceMeter};
 use segue_motion::skeleton::Roles;
@@ -16,7 +16,7 @@ const PER_SLICE: usize = 500;
 /// A measurement of results and their clips in slices. Measurements of a clip are kept as long as
 /// the clip exists.
 #[derive(Debug, Default)]
-pub(crate) struct Gauge {
+pub(crate) struct ArtefactMeter {
     known: Vec<(Weak<Clip>, Arc<MotionTrace>)>,
     /// The requested clips.
     wanted: Vec<(Arc<Clip>, Roles)>,
@@ -25,15 +25,15 @@ pub(crate) struct Gauge {
     is_ready: bool,
 }
 
-impl Gauge {
+impl ArtefactMeter {
     /// Returns the metrics of a result. `None` if they take longer than a frame: call
     /// [`work`](Self::work), then ask again.
     pub(crate) fn numbers(&mut self, outcome: &Outcome) -> Option<ResultMetrics> {
         let (mut left, roles) = (AT_ONCE, outcome.motion.roles());
         let own = match &outcome.measured {
-            Measured::Motion => self.trace(outcome.motion.clip(), roles, &mut left),
-            Measured::Clip(clip) => self.trace(clip, roles, &mut left),
-            Measured::Trace(trace) => Some(Arc::clone(trace)),
+            MeasuredMotion::Motion => self.trace(outcome.motion.clip(), roles, &mut left),
+            MeasuredMotion::Clip(clip) => self.trace(clip, roles, &mut left),
+            MeasuredMotion::Trace(trace) => Some(Arc::clone(trace)),
         };
         let clips = self.traces(&outcome.beside, roles, &mut left);
         Some(measured(own.as_deref()?, &clips?))
@@ -87,8 +87,8 @@ impl Gauge {
     }
 }
 
-impl Sliced for Gauge {
-    fn ask_anew(&mut self) {
+impl Sliced for ArtefactMeter {
+    fn clear_requests(&mut self) {
         self.wanted.clear();
         self.is_ready = false;
     }

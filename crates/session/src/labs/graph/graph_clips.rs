@@ -1,7 +1,7 @@
 //! The clips of a motion graph, fitted to one skeleton.
 
 use crate::labs::LabError;
-use crate::labs::Retargeted;
+use crate::labs::RetargetReport;
 use segue_motion::clip::Motion;
 use segue_motion::graph::{FrameSet, JoltSearch, WalkProfile};
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use std::sync::Arc;
 pub struct GraphClips {
     names: Vec<String>,
     motions: Vec<Arc<Motion>>,
-    retargeted: Vec<Option<Arc<Retargeted>>>,
+    retargeted: Vec<Option<Arc<RetargetReport>>>,
     set: Arc<FrameSet>,
     profile: WalkProfile,
     jolts: JoltSearch,
@@ -21,11 +21,11 @@ pub struct GraphClips {
 const JOINT_FRAMES: usize = 12_000;
 
 /// A clip that was fitted to the first, and the report on its retargeting.
-pub(super) type Fitted = (Arc<Motion>, Option<Arc<Retargeted>>);
+pub(super) type FittedClip = (Arc<Motion>, Option<Arc<RetargetReport>>);
 
 impl GraphClips {
     /// Returns the clips in order; further measurements are made by [`Self::advance`].
-    pub(super) fn new(names: Vec<String>, fitted: Vec<Fitted>) -> Result<Self, LabError> {
+    pub(super) fn new(names: Vec<String>, fitted: Vec<FittedClip>) -> Result<Self, LabError> {
         let (motions, retargeted): (Vec<_>, Vec<_>) = fitted.into_iter().unzip();
         let first = motions.first().ok_or(LabError::NoGraphClips)?;
         let height = f64::from(first.roles().body_height(first.clip().skeleton()));
@@ -54,7 +54,7 @@ impl GraphClips {
 
     /// Returns the report on retargeting a clip; `None` if it has the skeleton of the first.
     #[must_use]
-    pub fn retargeted(&self, clip: usize) -> Option<&Arc<Retargeted>> {
+    pub fn retargeted(&self, clip: usize) -> Option<&Arc<RetargetReport>> {
         self.retargeted.get(clip)?.as_ref()
     }
 

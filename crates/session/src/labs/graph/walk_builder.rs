@@ -1,8 +1,8 @@
 //! Construction of a walk in slices, ahead of the playhead.
 
 use super::plan::Plan;
-use super::walk::{Trace, of_walk};
-use super::wanted::WalkRequest;
+use super::requests::WalkRequest;
+use super::walk::{FollowedPath, of_walk};
 use super::{BuiltGraph, Walk, WalkStay};
 use crate::labs::LabError;
 use crate::labs::feet::{locking, slide, slide_before};
@@ -121,7 +121,7 @@ pub(super) struct WalkBuilder {
     searched_secs: f64,
     /// The walk that follows the path as far as it is known.
     preview: Option<Box<Self>>,
-    trace: Option<Trace>,
+    trace: Option<FollowedPath>,
     plan: Plan,
     stitcher: Stitcher,
     meter: WalkMeter,
@@ -155,7 +155,7 @@ impl WalkBuilder {
                 && Arc::ptr_eq(&other.built, built)
                 && other.wanted.weights == wanted.weights
         };
-        let mut maker = if let Some(known) = others.find(knows) {
+        let mut builder = if let Some(known) = others.find(knows) {
             Self::like(known, wanted)?
         } else {
             let choices = Choices::new(built.graph(), &wanted.weights)?;
@@ -171,24 +171,24 @@ impl WalkBuilder {
                 PATH_BUDGET,
                 &wanted.stitch,
             );
-            maker.search = Some((search, path));
+            builder.search = Some((search, path));
         }
-        Ok(maker)
+        Ok(builder)
     }
 
     /// Begins a walk along the path as far as it has been found.
     fn preview(&self, found: Followed, length_m: f64) -> Result<Self, LabError> {
-        let mut maker = Self::like(self, &self.wanted)?;
-        maker.follow(found, length_m, true);
-        Ok(maker)
+        let mut builder = Self::like(self, &self.wanted)?;
+        builder.follow(found, length_m, true);
+        Ok(builder)
     }
 
     /// Begins a walk in the same graph with the same weights, whose expected run is known.
     fn like(other: &Self, wanted: &WalkRequest) -> Result<Self, LabError> {
-        let mut maker =
+        let mut builder =
             Self::idle(&other.built, wanted, Arc::clone(&other.choices), other.run.clone())?;
-        maker.run_is_known = true;
-        Ok(maker)
+        builder.run_is_known = true;
+        Ok(builder)
     }
 
     fn idle(
@@ -205,8 +205,8 @@ impl WalkBuilder {
             searched_secs: 0.0,
             preview: None,
             trace: None,
-            stitcher: Stitcher::new(Arc::clone(built.cast.set()), &wanted.stitch),
-            meter: WalkMeter::new(built.cast.set()),
+            stitcher: Stitcher::new(Arc::clone(built.clips.set()), &wanted.stitch),
+            meter: WalkMeter::new(built.clips.set()),
             metrics: None,
             pieces: Vec::new(),
             metered: 0,
@@ -234,7 +234,7 @@ impl WalkBuilder {
     }
 
     fn fps(&self) -> f64 {
-        self.built.cast.set().fps()
+        self.built.clips.set().fps()
     }
 
     /// Returns whether the walk should be longer for this playhead.
@@ -419,7 +419,7 @@ impl WalkBuilder {
 
     /// Makes the walk follow a path that was found.
     fn follow(&mut self, found: Followed, length_m: f64, is_searching: bool) {
-        self.trace = Some(Trace {
+        self.trace = Some(FollowedPath {
             points: self.wanted.path.clone(),
             rms_m: found.rms_m,
             along_m: found.along_m,
@@ -449,7 +449,7 @@ impl WalkBuilder {
         let Some(piece) = self.pieces.get(self.metered).filter(|_| self.metrics.is_none()) else {
             return false;
         };
-        if self.meter.advance(piece, self.built.cast.profile(), METERED_FRAMES) {
+        if self.meter.advance(piece, self.built.clips.profile(), METERED_FRAMES) {
             self.metered += 1;
             if (self.meter.frames() as f64) >= self.wanted.measured_secs * self.fps() {
                 self.metrics = Some(self.measured());
@@ -461,7 +461,7 @@ impl WalkBuilder {
     fn take(&mut self, piece: WalkPiece) {
         for frame in 0..piece.clip.frames() {
             let place = piece.shown_at(frame);
-            let motion = self.built.cast.motions().get(place.clip);
+            let motion = self.built.clips.motions().get(place.clip);
             for side in Side::BOTH {
                 let stands = motion.is_some_and(|motion| {
                     motion.contacts().planted(side, place.frame.min(motion.clip().frames() - 1))
@@ -474,7 +474,7 @@ impl WalkBuilder {
     }
 
     fn measured(&self) -> Vec<Metric> {
-        of_walk(&self.meter.metrics(self.built.cast.profile())).to_vec()
+        of_walk(&self.meter.metrics(self.built.clips.profile())).to_vec()
     }
 
     /// Returns the assembled frames as a motion.
@@ -484,7 +484,7 @@ impl WalkBuilder {
             flags.truncate(clip.frames());
             flags
         });
-        let motions = self.built.cast.motions();
+        let motions = self.built.clips.motions();
         let first = motions.first();
         let roles = first.map(|motion| motion.roles().clone()).unwrap_or_default();
         // The lowest ground: no foot is lifted off the ground of its own clip.
@@ -525,7 +525,7 @@ impl WalkBuilder {
         let whole = Arc::clone(self.built.whole());
         let index = self.built.jump_of(leave, enter).ok_or_else(|| {
             let name =
-                |place: Place| self.built.cast.names().get(place.clip).map_or("?", String::as_str);
+                |place: Place| self.built.clips.names().get(place.clip).map_or("?", String::as_str);
             LabError::NoJump {
                 leave: leave.frame,
                 from: name(leave).to_owned(),
@@ -533,7 +533,7 @@ impl WalkBuilder {
                 to: name(enter).to_owned(),
             }
         })?;
-        let set = self.built.cast.set();
+        let set = self.built.clips.set();
         let around = (AROUND_JUMP_SECS * self.fps()).round() as usize;
         let first = Stay {
             clip: leave.clip,

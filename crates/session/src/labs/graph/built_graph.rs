@@ -1,7 +1,7 @@
 //! Motion graphs and distance fields of the Graph lab.
 
 use super::GraphClips;
-use super::wanted::GraphKey;
+use super::requests::GraphKey;
 use petgraph::graph::NodeIndex;
 use petgraph::visit::Dfs;
 use segue_motion::graph::{
@@ -109,7 +109,7 @@ impl DistanceField {
 /// A graph, and facts about it.
 #[derive(Debug)]
 pub struct BuiltGraph {
-    pub(super) cast: Arc<GraphClips>,
+    pub(super) clips: Arc<GraphClips>,
     pub(super) key: GraphKey,
     whole: Arc<MotionGraph>,
     graph: Arc<MotionGraph>,
@@ -141,13 +141,13 @@ impl Building {
     /// Does the next slice; returns the remaining work, or the graph.
     pub(super) fn advance(
         self,
-        cast: &Arc<GraphClips>,
+        clips: &Arc<GraphClips>,
         key: GraphKey,
     ) -> Result<ControlFlow<BuiltGraph, Self>, GraphError> {
         Ok(match self {
             Self::Found(candidates) => {
                 let lacks_some = !candidates.are_all_within(key.options.edge_threshold_cm);
-                let whole = MotionGraph::new(cast.set(), &candidates, &key.options)?;
+                let whole = MotionGraph::new(clips.set(), &candidates, &key.options)?;
                 ControlFlow::Continue(Self::Linked(whole, lacks_some))
             }
             Self::Linked(whole, lacks_some) => {
@@ -155,7 +155,7 @@ impl Building {
                 ControlFlow::Continue(Self::Parted(Arc::new(whole), lacks_some, components))
             }
             Self::Parted(whole, lacks_some, components) => {
-                let built = BuiltGraph::new(cast, whole, &components, key)?;
+                let built = BuiltGraph::new(clips, whole, &components, key)?;
                 ControlFlow::Break(BuiltGraph { lacks_some, ..built })
             }
         })
@@ -164,7 +164,7 @@ impl Building {
 
 impl BuiltGraph {
     fn new(
-        cast: &Arc<GraphClips>,
+        clips: &Arc<GraphClips>,
         whole: Arc<MotionGraph>,
         components: &[Vec<NodeIndex>],
         key: GraphKey,
@@ -173,7 +173,7 @@ impl BuiltGraph {
             if key.pruned { Arc::new(whole.pruned_to(components)?) } else { Arc::clone(&whole) };
         let mut component = vec![0; whole.graph().node_count()];
         let (mut rings, mut ring_components) = (Vec::new(), Vec::new());
-        let all = cast.set().frames().max(1) as f64;
+        let all = clips.set().frames().max(1) as f64;
         for (index, nodes) in components.iter().enumerate() {
             for node in nodes {
                 if let Some(slot) = component.get_mut(node.index()) {
@@ -193,14 +193,14 @@ impl BuiltGraph {
                 );
             }
         }
-        let mut is_walked = vec![false; cast.set().clips().len()];
+        let mut is_walked = vec![false; clips.set().clips().len()];
         for stretch in graph.graph().node_weights() {
             is_walked[stretch.clip] = true;
         }
         Ok(Self {
             lacks_some: false,
             is_walked,
-            cast: Arc::clone(cast),
+            clips: Arc::clone(clips),
             key,
             dead_ends: whole.dead_ends().len(),
             whole,
@@ -213,8 +213,8 @@ impl BuiltGraph {
 
     /// Returns the clips.
     #[must_use]
-    pub fn cast(&self) -> &Arc<GraphClips> {
-        &self.cast
+    pub fn clips(&self) -> &Arc<GraphClips> {
+        &self.clips
     }
 
     /// Returns the options of its construction.

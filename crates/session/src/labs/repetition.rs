@@ -13,7 +13,7 @@ use std::sync::Arc;
 const SHOWN_SECS: f64 = 6.0;
 
 /// Several repetitions of a cycle, and the slide of their feet.
-pub(super) struct Rounds {
+pub(super) struct Repetition {
     /// Whole cycles and one more frame, which has the pose of the first.
     pub(super) motion: Motion,
     /// The foot slide, with the foot lock and without it.
@@ -25,14 +25,14 @@ pub(super) struct Rounds {
 /// `three` are three cycles and one more frame, with the contacts of the feet. The middle cycle is
 /// repeated: a stance that the end of a clip cuts in two would be locked at another position than
 /// the same stance in full. `ground_m` is the height of the ground.
-pub(super) fn rounds(
+pub(super) fn repeat_cycle(
     roles: &Roles,
     cycle_frames: usize,
     three: Clip,
     contacts: &Contacts,
     ground_m: f32,
     lock: Option<Lock>,
-) -> Result<Rounds, LabError> {
+) -> Result<Repetition, LabError> {
     let fps = three.fps();
     let count = (SHOWN_SECS * fps / cycle_frames as f64).ceil().clamp(2.0, 12.0) as usize;
     let stands = character_frames(&three, roles);
@@ -51,7 +51,7 @@ pub(super) fn rounds(
     let frames = count * cycle_frames + 1;
     let clip = repeat_clip(&middle.transformed(&cycle.inverse()), &cycle, count + 1)
         .and_then(|clip| clip.crop(0..frames))?;
-    Ok(Rounds {
+    Ok(Repetition {
         motion: Motion::with_roles(clip, roles)
             .with_contacts(repeated(contacts, &(cycle_frames..2 * cycle_frames), frames))
             .with_ground_m(ground_m),

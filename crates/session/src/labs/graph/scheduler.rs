@@ -1,10 +1,10 @@
 //! Scheduling and caching of motion graphs and walks.
 
 use super::super::sliced::{JobKind, Sliced};
-use super::built::Building;
-use super::cast::Fitted;
-use super::maker::WalkBuilder;
-use super::wanted::{GraphKey, WalkRequest};
+use super::built_graph::Building;
+use super::graph_clips::FittedClip;
+use super::requests::{GraphKey, WalkRequest};
+use super::walk_builder::WalkBuilder;
 use super::{BuiltGraph, DistanceField, GraphClips, GraphInputs};
 use crate::labs::LabError;
 use crate::labs::pair::fitted;
@@ -32,13 +32,13 @@ const MAX_CANDIDATES: usize = 800_000;
 /// Builds graphs and walks in slices, and caches what a change does not affect: products of frames
 /// for a new window, candidates for a new threshold, the graph for another walk.
 #[derive(Debug, Default)]
-pub(crate) struct Grapher {
+pub(crate) struct GraphScheduler {
     /// The requested clips, by name and motion.
     clips: Vec<(String, Arc<Motion>)>,
-    fitted: Vec<Fitted>,
+    fitted: Vec<FittedClip>,
     /// The clips while they are measured.
     measuring_clips: Option<Box<GraphClips>>,
-    cast: Option<Result<Arc<GraphClips>, LabError>>,
+    graph_clips: Option<Result<Arc<GraphClips>, LabError>>,
     all: Option<AllPairs>,
     sweep: Option<PausedAllSweep>,
     /// A distance field that is being counted, and the progress.
@@ -51,7 +51,7 @@ pub(crate) struct Grapher {
     found: Vec<(GraphOptions, Arc<Candidates>)>,
     building: Option<(GraphKey, Building)>,
     built: Vec<(GraphKey, Result<Arc<BuiltGraph>, LabError>)>,
-    makers: Vec<(WalkRequest, Result<WalkBuilder, LabError>)>,
+    builders: Vec<(WalkRequest, Result<WalkBuilder, LabError>)>,
     /// The requests of the panes, the first pane's first.
     wanted: Vec<WalkRequest>,
     now_secs: f64,
@@ -95,7 +95,7 @@ enum Search {
     Streamed(Box<CandidateStream>),
 }
 
-impl Grapher {
+impl GraphScheduler {
     /// Makes walks that are requested from now on follow the walk of these parameters, where their
     /// graphs allow it.
     pub(crate) fn guide_by(&mut self, params: Option<&Params>) {
@@ -111,10 +111,12 @@ impl Grapher {
     ) -> Result<Option<GraphInputs>, LabError> {
         self.meet(clips);
         let wanted = WalkRequest::guided(params, self.guide.as_ref(), self.clips.len())?;
-        let known = self.makers.iter().find(|(known, _)| *known == wanted);
-        let found = match (known, &self.cast) {
+        let known = self.builders.iter().find(|(known, _)| *known == wanted);
+        let found = match (known, &self.graph_clips) {
             (_, Some(Err(problem))) | (Some((_, Err(problem))), _) => Err(problem.clone()),
-            (Some((_, Ok(maker))), _) => Ok(maker.walk().map(|walk| GraphInputs(Arc::clone(walk)))),
+            (Some((_, Ok(builder))), _) => {
+                Ok(builder.walk().map(|walk| GraphInputs(Arc::clone(walk))))
+            }
             (None, _) => Ok(None),
         };
         if found.is_ok() {
@@ -127,8 +129,8 @@ impl Grapher {
     }
 
     /// Returns the clips, if they are ready.
-    pub(crate) fn cast(&self) -> Option<&Arc<GraphClips>> {
-        self.cast.as_ref()?.as_ref().ok()
+    pub(crate) fn graph_clips(&self) -> Option<&Arc<GraphClips>> {
+        self.graph_clips.as_ref()?.as_ref().ok()
     }
 
     /// Returns the distances that the first pane requested, or the last ones while it waits.
@@ -155,8 +157,8 @@ impl Grapher {
 
     /// Records the duration of the last slice, seconds.
     pub(crate) fn took(&mut self, secs: f64) {
-        if let (true, Some((_, Ok(maker)))) = (self.stepped, self.makers.last_mut()) {
-            maker.took(secs);
+        if let (true, Some((_, Ok(builder)))) = (self.stepped, self.builders.last_mut()) {
+            builder.took(secs);
         }
         self.stepped = false;
         let Some(key) = self.worked_for.take() else {
@@ -192,10 +194,12 @@ impl Grapher {
         }
         let wanted = self.next()?;
         let share = |progress: Progress| progress.done as f64 / progress.total.max(1) as f64;
-        match self.makers.iter().find(|(known, _)| known == wanted) {
+        match self.builders.iter().find(|(known, _)| known == wanted) {
             // The extension of a walk is not waited for.
-            Some((_, Ok(maker))) if maker.walk().is_some() && !maker.is_searching() => return None,
-            Some((_, Ok(maker))) => return Some(0.85 + 0.15 * maker.progress()),
+            Some((_, Ok(builder))) if builder.walk().is_some() && !builder.is_searching() => {
+                return None;
+            }
+            Some((_, Ok(builder))) => return Some(0.85 + 0.15 * builder.progress()),
             _ if self.known(wanted.graph).is_some() => return Some(0.85),
             _ => {}
         }
@@ -227,18 +231,18 @@ impl Grapher {
         Some(0.1 * fitted + 0.4 * pairs + 0.25 * swept + 0.1 * searched)
     }
 
-    fn maker(&self, wanted: &WalkRequest) -> Option<&Result<WalkBuilder, LabError>> {
-        self.makers.iter().find(|(known, _)| known == wanted).map(|(_, maker)| maker)
+    fn builder(&self, wanted: &WalkRequest) -> Option<&Result<WalkBuilder, LabError>> {
+        self.builders.iter().find(|(known, _)| known == wanted).map(|(_, builder)| builder)
     }
 
     fn next(&self) -> Option<&WalkRequest> {
-        let maker = |wanted: &WalkRequest| self.maker(wanted);
-        let short = |wanted: &&WalkRequest| match maker(wanted) {
-            Some(Ok(maker)) => maker.is_short(self.now_secs),
+        let builder = |wanted: &WalkRequest| self.builder(wanted);
+        let short = |wanted: &&WalkRequest| match builder(wanted) {
+            Some(Ok(builder)) => builder.is_short(self.now_secs),
             Some(Err(_)) => false,
             None => true,
         };
-        let begins = |wanted: &&WalkRequest| !matches!(maker(wanted), Some(Ok(maker)) if maker.walk().is_some());
+        let begins = |wanted: &&WalkRequest| !matches!(builder(wanted), Some(Ok(builder)) if builder.walk().is_some());
         // The first view of a walk takes precedence over the extension of another.
         let first = self.wanted.iter().filter(short).find(begins);
         first.or_else(|| self.wanted.iter().find(short))
@@ -258,8 +262,8 @@ impl Grapher {
         if let Some(guide) = &wanted.guide {
             // Without the walk to follow, this one would be random. If that one has failed, there
             // is nothing to follow.
-            let is_to_be_made = match self.maker(guide) {
-                Some(Ok(maker)) => maker.is_short(self.now_secs),
+            let is_to_be_made = match self.builder(guide) {
+                Some(Ok(builder)) => builder.is_short(self.now_secs),
                 Some(Err(_)) => false,
                 None => true,
             };
@@ -270,39 +274,39 @@ impl Grapher {
                 return Ok(());
             }
         }
-        if let Some(at) = self.makers.iter().position(|(known, _)| known == wanted) {
-            let entry = self.makers.remove(at);
-            self.makers.push(entry);
+        if let Some(at) = self.builders.iter().position(|(known, _)| known == wanted) {
+            let entry = self.builders.remove(at);
+            self.builders.push(entry);
             self.stepped = true;
-            if let Some(((_, Ok(maker)), others)) = self.makers.split_last_mut() {
+            if let Some(((_, Ok(builder)), others)) = self.builders.split_last_mut() {
                 let guide = wanted
                     .guide
                     .as_deref()
                     .and_then(|guide| others.iter_mut().find(|(known, _)| known == guide));
                 let guide = guide.and_then(|(_, guide)| Some(guide.as_mut().ok()?.plan()));
-                self.is_ready |= maker.step(self.now_secs, guide)?;
+                self.is_ready |= builder.step(self.now_secs, guide)?;
             }
             return Ok(());
         }
-        let Some(cast) = self.ready_cast()? else {
+        let Some(graph_clips) = self.ready_graph_clips()? else {
             return Ok(());
         };
-        wanted.graph.options.check(cast.set())?;
+        wanted.graph.options.check(graph_clips.set())?;
         if let Some(built) = self.known(wanted.graph) {
             let built = Arc::clone(built.as_ref().map_err(LabError::clone)?);
-            let like = self.makers.iter().filter_map(|(_, maker)| maker.as_ref().ok());
-            let maker = WalkBuilder::new(&built, wanted, like);
-            self.settle(wanted, maker);
+            let like = self.builders.iter().filter_map(|(_, builder)| builder.as_ref().ok());
+            let builder = WalkBuilder::new(&built, wanted, like);
+            self.settle(wanted, builder);
             return Ok(());
         }
         self.worked_for = Some(wanted.graph);
         let key = wanted.graph;
         let Some((_, building)) = self.building.take().filter(|(known, _)| *known == key) else {
-            let found = self.search_slice(&cast, key)?;
+            let found = self.search_slice(&graph_clips, key)?;
             self.building = found.map(|found| (key, Building::Found(found)));
             return Ok(());
         };
-        let found = match building.advance(&cast, key) {
+        let found = match building.advance(&graph_clips, key) {
             Ok(ControlFlow::Continue(building)) => {
                 self.building = Some((key, building));
                 return Ok(());
@@ -318,9 +322,9 @@ impl Grapher {
     }
 
     /// Fits the clips to one skeleton, one in each slice.
-    fn ready_cast(&mut self) -> Result<Option<Arc<GraphClips>>, LabError> {
-        if let Some(cast) = &self.cast {
-            return cast.clone().map(Some);
+    fn ready_graph_clips(&mut self) -> Result<Option<Arc<GraphClips>>, LabError> {
+        if let Some(graph_clips) = &self.graph_clips {
+            return graph_clips.clone().map(Some);
         }
         if let (Some((name, next)), Some((_, first))) =
             (self.clips.get(self.fitted.len()), self.clips.first())
@@ -328,7 +332,7 @@ impl Grapher {
             match fitted(first, next) {
                 Ok(ready) => self.fitted.push(ready),
                 Err(problem) => {
-                    self.cast = Some(Err(LabError::OfClip {
+                    self.graph_clips = Some(Err(LabError::OfClip {
                         name: name.clone(),
                         error: Box::new(problem),
                     }));
@@ -338,17 +342,17 @@ impl Grapher {
         }
         if let Some(mut measuring_clips) = self.measuring_clips.take() {
             if measuring_clips.advance() {
-                self.cast = Some(Ok(Arc::from(measuring_clips)));
+                self.graph_clips = Some(Ok(Arc::from(measuring_clips)));
             } else {
                 self.measuring_clips = Some(measuring_clips);
             }
             return Ok(None);
         }
         let names = self.clips.iter().map(|(name, _)| name.clone()).collect();
-        // As many as the clips at this point.
+        // All clips are fitted at this point.
         match GraphClips::new(names, self.fitted.clone()) {
-            Ok(cast) => self.measuring_clips = Some(Box::new(cast)),
-            Err(problem) => self.cast = Some(Err(problem)),
+            Ok(graph_clips) => self.measuring_clips = Some(Box::new(graph_clips)),
+            Err(problem) => self.graph_clips = Some(Err(problem)),
         }
         Ok(None)
     }
@@ -356,7 +360,7 @@ impl Grapher {
     /// Does a slice of the search for candidates; returns them when they are found.
     fn search_slice(
         &mut self,
-        cast: &Arc<GraphClips>,
+        graph_clips: &Arc<GraphClips>,
         key: GraphKey,
     ) -> Result<Option<Arc<Candidates>>, GraphError> {
         if let Some(found) = self.places(&key.options) {
@@ -369,7 +373,7 @@ impl Grapher {
                 }
                 _ => {
                     let options = widened(&key.options);
-                    (options, Box::new(CandidateStream::new(cast.set(), &options)?))
+                    (options, Box::new(CandidateStream::new(graph_clips.set(), &options)?))
                 }
             };
             if stream.advance(1)?.is_complete() {
@@ -384,7 +388,7 @@ impl Grapher {
             return Ok(None);
         }
         let Some(all) = &mut self.all else {
-            self.all = Some(AllPairs::new(Arc::clone(cast.set()))?);
+            self.all = Some(AllPairs::new(Arc::clone(graph_clips.set()))?);
             return Ok(None);
         };
         if !all.progress().is_complete() {
@@ -412,7 +416,7 @@ impl Grapher {
                 Some(sweep) => sweep.resume(all),
                 None => all.sweep(window)?,
             };
-            if sweep.advance(CELLS.div_ceil(cast.set().longest().max(1)))?.is_complete() {
+            if sweep.advance(CELLS.div_ceil(graph_clips.set().longest().max(1)))?.is_complete() {
                 self.counting = Some((DistanceField::held(sweep.finish()?), CountedTo::default()));
             } else {
                 self.sweep = Some(sweep.pause());
@@ -437,7 +441,7 @@ impl Grapher {
 
     /// Returns whether the distances are not kept in memory.
     fn is_streamed(&self) -> bool {
-        self.cast().is_some_and(|cast| cast.set().frames() > MAX_FRAMES)
+        self.graph_clips().is_some_and(|graph_clips| graph_clips.set().frames() > MAX_FRAMES)
     }
 
     /// Returns known candidates that serve a graph, if the distances that are shown with it are
@@ -474,20 +478,20 @@ impl Grapher {
         }
     }
 
-    fn settle(&mut self, wanted: &WalkRequest, maker: Result<WalkBuilder, LabError>) {
-        self.is_ready |= maker.is_err();
-        self.makers.retain(|(known, _)| known != wanted);
-        if self.makers.len() >= 2 * MAX_PANES {
+    fn settle(&mut self, wanted: &WalkRequest, builder: Result<WalkBuilder, LabError>) {
+        self.is_ready |= builder.is_err();
+        self.builders.retain(|(known, _)| known != wanted);
+        if self.builders.len() >= 2 * MAX_PANES {
             // Drops the oldest walk that no pane shows and no walk follows.
-            let unwanted = self.makers.iter().position(|(known, _)| !self.wanted.contains(known));
-            drop(self.makers.remove(unwanted.unwrap_or(0)));
+            let unwanted = self.builders.iter().position(|(known, _)| !self.wanted.contains(known));
+            drop(self.builders.remove(unwanted.unwrap_or(0)));
         }
-        self.makers.push((wanted.clone(), maker));
+        self.builders.push((wanted.clone(), builder));
     }
 }
 
-impl Sliced for Grapher {
-    fn ask_anew(&mut self) {
+impl Sliced for GraphScheduler {
+    fn clear_requests(&mut self) {
         self.wanted.clear();
         self.is_ready = false;
     }

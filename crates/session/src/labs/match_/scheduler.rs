@@ -100,7 +100,7 @@ impl LabInputs for ReplayInputs {
 
 /// A replay in progress.
 #[derive(Debug)]
-struct Playing {
+struct RunningReplay {
     tracer: Tracer,
     controls: Vec<Control>,
     next: usize,
@@ -108,7 +108,7 @@ struct Playing {
 
 /// A database with tags set by hand.
 #[derive(Debug)]
-struct Tagged {
+struct TaggedDatabase {
     /// The database without these tags, and the ids of its clips.
     base: Arc<Database>,
     ids: Vec<String>,
@@ -118,19 +118,19 @@ struct Tagged {
 
 /// A cache of databases and replays, with their work in slices.
 #[derive(Debug, Default)]
-pub(crate) struct Driver {
+pub(crate) struct DriveScheduler {
     made: Vec<Arc<Motion>>,
     databases: Vec<(Source, Result<Arc<Database>, LabError>)>,
-    tagged: Vec<Tagged>,
+    tagged: Vec<TaggedDatabase>,
     building: Option<(Source, Box<DatabaseBuilder>)>,
     wanted: Vec<Source>,
     replays: Vec<(Script, Result<Arc<Outcome>, LabError>)>,
-    playing: Option<(Script, Box<Playing>)>,
+    playing: Option<(Script, Box<RunningReplay>)>,
     scripts: Vec<Script>,
     is_ready: bool,
 }
 
-impl Driver {
+impl DriveScheduler {
     /// Returns a database. `None` while it is built: call [`work`](Self::work), then ask again.
     fn database(&mut self, source: &Source) -> Result<Option<Arc<Database>>, LabError> {
         if let Some((_, known)) = self.databases.iter().find(|(known, _)| known == source) {
@@ -163,7 +163,7 @@ impl Driver {
         if tags.is_empty() {
             return database;
         }
-        let is_it = |known: &&Tagged| {
+        let is_it = |known: &&TaggedDatabase| {
             Arc::ptr_eq(&known.base, &database) && known.ids == ids && known.tags == tags
         };
         if let Some(known) = self.tagged.iter().find(is_it) {
@@ -173,7 +173,7 @@ impl Driver {
         if self.tagged.len() >= MAX_PANES {
             drop(self.tagged.remove(0));
         }
-        self.tagged.push(Tagged { base: database, ids, tags, made: Arc::clone(&made) });
+        self.tagged.push(TaggedDatabase { base: database, ids, tags, made: Arc::clone(&made) });
         made
     }
 
@@ -235,7 +235,7 @@ impl Driver {
         } else {
             let controller =
                 Controller::new(Arc::clone(&script.database), script.options, &Planar::IDENTITY);
-            Box::new(Playing {
+            Box::new(RunningReplay {
                 tracer: Tracer::new(controller?, usize::MAX),
                 controls: script
                     .recording
@@ -260,8 +260,8 @@ impl Driver {
     }
 }
 
-impl Sliced for Driver {
-    fn ask_anew(&mut self) {
+impl Sliced for DriveScheduler {
+    fn clear_requests(&mut self) {
         self.wanted.clear();
         self.scripts.clear();
         self.is_ready = false;
