@@ -18,12 +18,22 @@ pub(crate) use storage::{is_as_it_came, stored_entries};
 pub use tasks::Job;
 
 #[cfg(test)]
+mod archive_tests;
+#[cfg(test)]
+mod character_tests;
+#[cfg(test)]
+mod external_reader_tests;
+#[cfg(test)]
 mod memory_tests;
 #[cfg(test)]
+mod mend_tests;
+#[cfg(test)]
 mod sample_tests;
+#[cfg(test)]
+mod skeleton_tests;
 #[cfg(test)]
 mod storage_tests;
 #[cfg(test)]
 mod task_tests;
 #[cfg(test)]
-mod tests;
+mod test_files;

@@ -134,4 +134,12 @@ impl LabInputs for GraphInputs {
 }
 
 #[cfg(test)]
-mod command_tests;
+mod fixtures;
+#[cfg(test)]
+mod guide_tests;
+#[cfg(test)]
+mod scheduling_tests;
+#[cfg(test)]
+mod visit_tests;
+#[cfg(test)]
+mod walk_tests;

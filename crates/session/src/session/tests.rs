@@ -197,3 +197,54 @@ fn comparison_of_a_choice_begins_with_the_one_that_is_set() {
     let compare = session.compare().unwrap();
     assert_eq!(compare.values.first(), Some(&Value::Choice("dead")));
 }
+
+#[test]
+fn long_values_of_a_link_are_shortened_and_its_problems_counted() {
+    let long = "x".repeat(100_000);
+    let nested = format!("{}walk{}", "blend(a:".repeat(2000), ")".repeat(2000));
+    let keys: Vec<String> = (0..500).map(|n| format!("key{n}=1")).collect();
+    let links = [
+        format!("lab={long}"),
+        format!("{long}=1"),
+        format!("blend_window={long}"),
+        format!("compare={long}"),
+        format!("compare=blend_window:{long},2"),
+        format!("a={nested}"),
+        format!("a=x~{}", "0".repeat(10_000)),
+        format!("lab=graph&clips={long}:"),
+        format!("lab=graph&clips=walk&go_to={long}"),
+        format!("lab=graph&clips=walk&jump={long}"),
+        format!("lab=match&tags={long}"),
+        format!("lab=register&also={long}"),
+        format!("lab=register&pins={long}"),
+        format!("src=ftp://{long}"),
+        format!("lesson={long}"),
+        keys.join("&"),
+    ];
+    for link in links {
+        let mut session = Session::new();
+        session.apply(Command::OpenLink(link.clone())).unwrap();
+        while session.work() {}
+        let said = session.notices().list().iter().map(|notice| notice.text.to_string());
+        let problems = session
+            .panes()
+            .iter()
+            .filter_map(|pane| pane.problem.as_ref().map(ToString::to_string));
+        let lesson = session.lesson().and_then(|lesson| match lesson {
+            Lesson::Failed(reason) => Some(reason.to_string()),
+            _ => None,
+        });
+        let texts: Vec<String> = said.chain(problems).chain(lesson).collect();
+        assert!(!texts.is_empty(), "{}", link.get(..40).unwrap_or(&link));
+        for text in texts {
+            assert!(
+                text.chars().count() < 600,
+                "{} letters: {}…",
+                text.len(),
+                text.get(..200).unwrap_or(&text)
+            );
+        }
+    }
+    let error = Command::Assign(Slot::A, long);
+    assert!(Session::new().apply(error).unwrap_err().to_string().len() < 200);
+}

@@ -1,0 +1,120 @@
+//! Tests of files with a skinned mesh.
+
+use super::test_files::{figure, person};
+use crate::fixtures::*;
+
+/// Returns a creature with eight legs, none of which a person has.
+fn spider() -> Arc<[u8]> {
+    let leg = |number: u32| {
+        let angle = f64::from(number) * std::f64::consts::FRAC_PI_4 + 0.4;
+        let (x, z) = (20.0 * angle.sin(), 20.0 * angle.cos());
+        format!(
+            "  JOINT segment_{number}_a\n  {{\n    OFFSET {x:.3} 4 {z:.3}\n    CHANNELS 3 Zrotation Xrotation Yrotation\n    JOINT segment_{number}_b\n    {{\n      OFFSET {x:.3} 10 {z:.3}\n      CHANNELS 3 Zrotation Xrotation Yrotation\n      End Site\n      {{\n        OFFSET {x:.3} -40 {z:.3}\n      }}\n    }}\n  }}\n"
+        )
+    };
+    let legs: String = (0..8).map(leg).collect();
+    let row = |frame: u32| {
+        let turns: Vec<String> =
+            (0..48).map(|channel| (5 * ((channel + frame) % 3)).to_string()).collect();
+        format!("0 30 {frame} 0 0 0 {}\n", turns.join(" "))
+    };
+    let rows: String = (0..40).map(row).collect();
+    let text = format!(
+        "HIERARCHY\nROOT trunk\n{{\n  OFFSET 0 0 0\n  CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n{legs}}}\nMOTION\nFrames: 40\nFrame Time: 0.033333\n{rows}"
+    );
+    let read = segue_formats::import(
+        "spider.bvh",
+        text.as_bytes(),
+        &segue_formats::ImportOptions::default(),
+    );
+    figure(&read.unwrap().clips[0].clip)
+}
+
+#[test]
+fn dropped_file_with_a_skin_becomes_the_character() {
+    let mut session = Session::new();
+    assert!(session.character().is_none());
+    let before = session.params().text(Key::A).to_owned();
+    let loaded = session.load("person.glb", person(0)).unwrap();
+    let character = session.character().unwrap();
+    assert_eq!(session.params().text(Key::Character), loaded.ids[0]);
+    assert!(character.mesh.positions.len() > 1000);
+    // A character without a motion plays nothing.
+    assert_eq!(session.params().text(Key::A), before);
+    let outcome = Arc::clone(session.main_outcome().unwrap());
+    let drive =
+        segue_motion::skin::Drive::new(outcome.motion.clip(), outcome.motion.roles(), &character)
+            .unwrap();
+    let mut transforms = Vec::new();
+    drive.transforms(&outcome.motion.clip().world_pose(10), &character.mesh, &mut transforms);
+    assert_eq!(transforms.len(), character.skeleton.len());
+    assert!(
+        transforms.iter().all(
+            |transform| transform.translation.is_finite() && transform.rotation.is_normalized()
+        )
+    );
+    // It is stored with the library and comes back with it.
+    let saved = session.saved();
+    let mut again = Session::new();
+    let bytes = person(0);
+    again.restore(&saved, |_| Some(Content::Here(Arc::clone(&bytes))), None);
+    assert_eq!(again.character().unwrap().mesh, character.mesh);
+    // It is removed by the parameter, by undo, and with its clip.
+    session.apply(Command::Set(vec![(Key::Character, Value::Text(String::new()))])).unwrap();
+    assert!(session.character().is_none());
+    session.apply(Command::Undo).unwrap();
+    assert!(session.character().is_some());
+    session.apply(Command::Remove(loaded.ids[0].clone())).unwrap();
+    assert!(session.character().is_none() && session.params().text(Key::Character).is_empty());
+}
+
+#[test]
+fn figure_that_no_other_clip_moves_is_no_character_for_others() {
+    // Alone, it serves its own clips. A motion that cannot move it is shown with a body of its own,
+    // and a note.
+    let mut session = Session::new();
+    session.apply(Command::OpenLink("lab=blend".into())).unwrap();
+    let loaded = session.load("spider.glb", spider()).unwrap();
+    assert!(
+        loaded
+            .warnings
+            .iter()
+            .any(|warning| warning.to_string().contains("only its own clips can animate it")),
+        "{:?}",
+        loaded.warnings
+    );
+    let spider_id = loaded.ids[0].clone();
+    let character = session.character().unwrap();
+    let show = |session: &mut Session, a: &str| {
+        let link = format!("lab=view&a={a}&character={spider_id}");
+        session.apply(Command::OpenLink(link)).unwrap();
+        settle(session);
+        let motion = Arc::clone(&session.main_outcome().unwrap().motion);
+        let drive = segue_motion::skin::Drive::new(motion.clip(), motion.roles(), &character);
+        (drive.is_some(), session.character_note())
+    };
+    assert_eq!(show(&mut session, &spider_id), (true, None));
+    let (is_moved, note) = show(&mut session, "walk");
+    assert!(!is_moved);
+    assert!(note.unwrap().to_string().contains("This clip cannot animate"));
+
+    // A person that is the character stays.
+    let mut session = Session::new();
+    let person_id = session.load("person.glb", person(0)).unwrap().ids.remove(0);
+    session.load("spider.glb", spider()).unwrap();
+    assert_eq!(session.params().text(Key::Character), person_id);
+    // A person replaces a spider.
+    let mut session = Session::new();
+    session.load("spider.glb", spider()).unwrap();
+    session.load("person.glb", person(0)).unwrap();
+    assert_eq!(session.params().text(Key::Character), person_id);
+}
+
+#[test]
+fn character_with_a_motion_brings_both() {
+    let mut session = Session::new();
+    let loaded = session.load("walker.glb", person(60)).unwrap();
+    assert_eq!(session.params().text(Key::A), loaded.ids[0]);
+    assert_eq!(session.params().text(Key::Character), loaded.ids[0]);
+    assert_eq!(loaded.warnings, []);
+}

@@ -1,0 +1,187 @@
+//! The sending side: a report as a header and pieces.
+
+use super::{ClipHead, ClipsHead, FileHead, Head, MeshHead, WireError};
+use crate::reading::{ReadClip, ReadFile, ReadReport};
+use bytemuck::NoUninit;
+use segue_motion::clip::Motion;
+use segue_motion::skeleton::Side;
+use segue_motion::skin::{RigidTransform, SkinnedMesh};
+use std::sync::Arc;
+
+/// The length of a piece, bytes: a multiple of the size of every value below, and copied in well
+/// under a millisecond.
+const PIECE_BYTES: usize = 48 << 14;
+
+/// A report that is ready for transfer.
+#[derive(Debug)]
+pub struct Parcel {
+    head: String,
+    report: ReadReport,
+}
+
+impl Parcel {
+    /// Packs a report.
+    ///
+    /// # Errors
+    /// [`WireError::Head`] when JSON cannot represent it.
+    pub fn new(report: ReadReport) -> Result<Self, WireError> {
+        let head = Head {
+            files: report.files.iter().map(FileHead::of).collect(),
+            notes: report.notes.clone(),
+        };
+        Ok(Self { head: serde_json::to_string(&head)?, report })
+    }
+
+    /// Returns the header: everything but the arrays.
+    #[must_use]
+    pub fn head(&self) -> &str {
+        &self.head
+    }
+
+    /// Sends the arrays piece by piece, in the order that [`Unpacker::push`](super::Unpacker::push) expects.
+    pub fn pieces(&self, mut send: impl FnMut(&[u8])) {
+        let mut piece = Piece { bytes: Vec::with_capacity(PIECE_BYTES), send: &mut send };
+        for file in &self.report.files {
+            piece.put(file.unpacked.as_deref().unwrap_or_default());
+            let clips = file.result.as_ref().map_or(&[][..], |read| &read.clips);
+            for clip in clips {
+                put_motion(&mut piece, &clip.motion);
+            }
+            for mesh in meshes(clips) {
+                put_mesh(&mut piece, mesh);
+            }
+        }
+        piece.flush();
+    }
+}
+
+fn put_motion(piece: &mut Piece<'_>, motion: &Motion) {
+    let clip = motion.clip();
+    for frame in 0..clip.frames() {
+        piece.put(clip.rotations(frame));
+    }
+    piece.put(clip.root_translations());
+    for track in clip.translations() {
+        piece.put(&track.values);
+    }
+    for place in motion.ground_frames() {
+        piece.put(&[[place.yaw, place.shift.x, place.shift.y]]);
+    }
+    for frame in 0..clip.frames() {
+        piece.put(&[Side::BOTH.map(|side| u8::from(motion.contacts().planted(side, frame)))]);
+    }
+}
+
+/// Returns the meshes of clips, each once.
+fn meshes(clips: &[ReadClip]) -> Vec<&Arc<SkinnedMesh>> {
+    let mut meshes: Vec<&Arc<SkinnedMesh>> = Vec::new();
+    for mesh in clips.iter().filter_map(|clip| clip.mesh.as_ref()) {
+        if !meshes.iter().any(|known| Arc::ptr_eq(known, mesh)) {
+            meshes.push(mesh);
+        }
+    }
+    meshes
+}
+
+fn put_mesh(piece: &mut Piece<'_>, mesh: &SkinnedMesh) {
+    piece.put(&mesh.positions);
+    piece.put(&mesh.normals);
+    piece.put(&mesh.joints);
+    piece.put(&mesh.weights);
+    piece.put(&mesh.colors);
+    piece.put(&mesh.triangles);
+    for RigidTransform { rotation, translation } in &mesh.bind {
+        let ([x, y, z, w], [dx, dy, dz]) = (rotation.to_array(), translation.to_array());
+        piece.put(&[[x, y, z, w, dx, dy, dz]]);
+    }
+}
+
+/// A buffer for the values of one piece; no value is split.
+struct Piece<'a> {
+    bytes: Vec<u8>,
+    send: &'a mut dyn FnMut(&[u8]),
+}
+
+impl Piece<'_> {
+    /// Adds values in the byte order of this machine, which is also that of the receiver.
+    fn put<T: NoUninit>(&mut self, mut values: &[T]) {
+        while !values.is_empty() {
+            let room = (PIECE_BYTES - self.bytes.len()) / size_of::<T>();
+            if room == 0 {
+                self.flush();
+            }
+            let (now, later) = values.split_at(values.len().min(room));
+            self.bytes.extend_from_slice(bytemuck::cast_slice(now));
+            values = later;
+        }
+    }
+
+    fn flush(&mut self) {
+        if !self.bytes.is_empty() {
+            (self.send)(&self.bytes);
+            self.bytes.clear();
+        }
+    }
+}
+
+impl FileHead {
+    fn of(file: &ReadFile) -> Self {
+        Self {
+            name: file.name.clone(),
+            sha256: file.sha256.clone(),
+            size: file.size,
+            kind: file.kind,
+            unpacked: file.unpacked.as_ref().map(Vec::len),
+            result: match &file.result {
+                Ok(read) => Ok(ClipsHead {
+                    clips: read
+                        .clips
+                        .iter()
+                        .map(|clip| ClipHead::of(clip, &meshes(&read.clips)))
+                        .collect(),
+                    meshes: meshes(&read.clips)
+                        .into_iter()
+                        .map(|mesh| MeshHead::of(mesh))
+                        .collect(),
+                    warnings: read.warnings.clone(),
+                    companion: read.companion.clone(),
+                    awaits_skeleton: read.awaits_skeleton,
+                }),
+                Err(error) => Err(error.clone()),
+            },
+        }
+    }
+}
+
+impl ClipHead {
+    fn of(clip: &ReadClip, meshes: &[&Arc<SkinnedMesh>]) -> Self {
+        let motion = &clip.motion;
+        Self {
+            name: motion.clip().name().to_owned(),
+            joints: motion.clip().skeleton().joints().to_vec(),
+            above: motion.clip().skeleton().folded_chain().cloned(),
+            fps: motion.clip().fps(),
+            frames: motion.clip().frames(),
+            provenance: motion.clip().provenance(),
+            moving: motion.clip().translations().iter().map(|track| track.joint).collect(),
+            roles: motion.roles().clone(),
+            ground_m: motion.ground_m(),
+            about: clip.about.clone(),
+            mesh: clip
+                .mesh
+                .as_ref()
+                .and_then(|mesh| meshes.iter().position(|known| Arc::ptr_eq(known, mesh))),
+        }
+    }
+}
+
+impl MeshHead {
+    fn of(mesh: &SkinnedMesh) -> Self {
+        Self {
+            vertices: mesh.positions.len(),
+            triangles: mesh.triangles.len(),
+            joints: mesh.bind.len(),
+            colors: mesh.colors.len(),
+        }
+    }
+}
