@@ -3,7 +3,7 @@
 
 mod bundled;
 
-use segue_session::lesson::{CONTENTS, LESSONS, MOST_BYTES, Page, file_name, parse};
+use segue_session::lesson::{CONTENTS, LESSONS, MAX_BYTES, Page, file_name, parse};
 use segue_session::{Command, Level, Session, link};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -22,7 +22,7 @@ fn text(language: &str, lesson: &str) -> String {
 
 fn page(language: &str, lesson: &str) -> Page {
     let text = text(language, lesson);
-    assert!(text.len() < MOST_BYTES / 16, "{language}, {lesson}");
+    assert!(text.len() < MAX_BYTES / 16, "{language}, {lesson}");
     let pages =
         parse(text.as_bytes()).unwrap_or_else(|error| panic!("{language}, {lesson}: {error}"));
     let [page] = pages.as_slice() else { panic!("{language}, {lesson}: {} pages", pages.len()) };

@@ -201,11 +201,11 @@ mod tests {
     enum Inner {
         #[error("joint {0} is missing")]
         Joint(usize),
-        #[error("a {what} of {value:.1} is more than {MOST}")]
+        #[error("a {what} of {value:.1} is more than {MAX}")]
         Value { what: &'static str, value: f32 },
     }
 
-    const MOST: u8 = 9;
+    const MAX: u8 = 9;
 
     #[derive(Debug, thiserror::Error, ToMessage)]
     enum Outer {
@@ -237,7 +237,7 @@ mod tests {
         }
         let error = Outer::Named { name: "x".to_owned(), error: inner() };
         let table = Table::new([
-            ("a {what} of {value:.1} is more than {MOST}", "{what}不能超過 {MOST}：{value:.2}"),
+            ("a {what} of {value:.1} is more than {MAX}", "{what}不能超過 {MAX}：{value:.2}"),
             ("half-life", "半衰期"),
         ]);
         assert_eq!(table.write(&error.to_message()), "`x`: 半衰期不能超過 9：9.25");

@@ -7,7 +7,7 @@ use crate::platform::{
 };
 use js_sys::{Array, Reflect, Uint8Array};
 use segue_session::Sample;
-use segue_session::lesson::{MOST_BYTES, Source, host_of};
+use segue_session::lesson::{MAX_BYTES, Source, host_of};
 use segue_session::outside::short;
 use segue_session::reading::LARGE_BYTES;
 use segue_text::{Message, msg};
@@ -225,7 +225,7 @@ const MOTION: Wanted = Wanted {
 
 const LESSON: Wanted = Wanted {
     what: "a Markdown file",
-    most_bytes: MOST_BYTES as u64,
+    most_bytes: MAX_BYTES as u64,
     otherwise: "Put the lesson on a server that does, such as GitHub.",
 };
 

@@ -23,7 +23,7 @@ pub(super) struct History {
 }
 
 /// A lesson's worth of steps. A state is small: clips are shared.
-const MOST_STEPS: usize = 200;
+const MAX_STEPS: usize = 200;
 
 impl History {
     /// Records the state before a change. With `key`, changes of one parameter in one gesture are
@@ -34,7 +34,7 @@ impl History {
         }
         self.open = key;
         self.future.clear();
-        if self.past.len() >= MOST_STEPS {
+        if self.past.len() >= MAX_STEPS {
             self.past.remove(0);
         }
         self.past.push(State { params: params.clone(), library: library.clone() });

@@ -13,7 +13,7 @@ use segue_motion::transition::{FootLockError, LoopError};
 use segue_text::{Message, ToMessage};
 
 /// The most clips of a motion graph: the picture of its distances shows no more.
-pub(crate) const MOST_CLIPS: usize = 64;
+pub(crate) const MAX_CLIPS: usize = 64;
 
 /// The reason why a lab has no result, with the remedy.
 #[derive(Clone, Debug, PartialEq, thiserror::Error, ToMessage)]
@@ -99,7 +99,7 @@ pub enum LabError {
     #[error("A motion graph needs a clip: add at least one.")]
     NoGraphClips,
     /// A graph with too many clips.
-    #[error("These are {count} clips: take {MOST_CLIPS} at most.")]
+    #[error("These are {count} clips: take {MAX_CLIPS} at most.")]
     TooManyGraphClips {
         /// Their number.
         count: usize,

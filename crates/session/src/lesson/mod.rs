@@ -17,7 +17,7 @@ mod state;
 
 pub use address::host_of;
 pub use page::{Block, Page, Span, Target, Try};
-pub use parse::{LessonError, MOST_BYTES, parse};
+pub use parse::{LessonError, MAX_BYTES, parse};
 pub use sources::{CONTENTS, LESSONS, Source, file_name, source_of};
 pub use state::{Lesson, LessonPage};
 pub(super) use state::{LessonState, NewParams, would_set_up};

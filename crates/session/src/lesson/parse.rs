@@ -6,7 +6,7 @@ use super::inline::spans_of;
 use super::page::{Block, Page, Try};
 
 /// The greatest size of a lesson, bytes.
-pub const MOST_BYTES: usize = 256 * 1024;
+pub const MAX_BYTES: usize = 256 * 1024;
 /// The greatest number of pages in a file; further ones are left out.
 const MAX_PAGES: usize = 200;
 /// The greatest number of blocks on a page; further ones are left out.
@@ -25,7 +25,7 @@ const SECTIONS: [(Section, &[&str]); 3] = [
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error, segue_text::ToMessage)]
 pub enum LessonError {
     /// A file that is too large.
-    #[error("it has {found} bytes, a lesson has at most {MOST_BYTES}")]
+    #[error("it has {found} bytes, a lesson has at most {MAX_BYTES}")]
     TooLarge {
         /// Its size, bytes.
         found: usize,
@@ -44,7 +44,7 @@ pub enum LessonError {
 /// # Errors
 /// [`LessonError`] about the file; Markdown itself is never invalid.
 pub fn parse(bytes: &[u8]) -> Result<Vec<Page>, LessonError> {
-    if bytes.len() > MOST_BYTES {
+    if bytes.len() > MAX_BYTES {
         return Err(LessonError::TooLarge { found: bytes.len() });
     }
     let text = std::str::from_utf8(bytes).map_err(|_| LessonError::NotText)?;

@@ -1,6 +1,6 @@
 //! Tests of lessons and their sources.
 
-use super::parse::{LessonError, MOST_BYTES, parse};
+use super::parse::{LessonError, MAX_BYTES, parse};
 use super::*;
 use proptest::prelude::*;
 
@@ -118,7 +118,7 @@ fn parse_of_forbidden_links_gives_text() {
 fn parse_of_other_files_is_refused() {
     assert_eq!(parse(b"no title"), Err(LessonError::NoTitle));
     assert_eq!(parse(b"# \xff"), Err(LessonError::NotText));
-    let found = MOST_BYTES + 1;
+    let found = MAX_BYTES + 1;
     assert_eq!(parse(&vec![b'#'; found]), Err(LessonError::TooLarge { found }));
 }
 

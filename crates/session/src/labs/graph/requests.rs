@@ -2,7 +2,7 @@
 
 use crate::choices;
 use crate::labs::blend::{align_by, root_blend, weight_law};
-use crate::labs::error::{LabError, MOST_CLIPS};
+use crate::labs::error::{LabError, MAX_CLIPS};
 use crate::labs::feet::Lock;
 use crate::params::{Key, List, Params, Value};
 use glam::DVec2;
@@ -159,7 +159,7 @@ pub(crate) fn clips_of(listed: &[String]) -> Result<Vec<String>, LabError> {
     }
     match ids.len() {
         0 => Err(LabError::NoGraphClips),
-        count if count > MOST_CLIPS => Err(LabError::TooManyGraphClips { count }),
+        count if count > MAX_CLIPS => Err(LabError::TooManyGraphClips { count }),
         _ => Ok(ids),
     }
 }
