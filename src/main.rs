@@ -5,7 +5,10 @@
     expect(dead_code, reason = "the page's API needs more of it than the window does")
 )]
 mod app;
-#[cfg(any(test, target_arch = "wasm32"))]
+#[cfg_attr(
+    not(any(test, target_arch = "wasm32")),
+    expect(dead_code, reason = "a window's widgets are told to the system by eframe")
+)]
 mod outline;
 mod platform;
 mod render;

@@ -25,7 +25,6 @@ mod transport_row;
 pub(crate) use appearance::{stage_look, stage_theme, theme};
 pub(crate) use labs::on_stage::highlights;
 pub(crate) use language::{Language, LanguagePack, PackError, activate_english};
-#[cfg(any(test, target_arch = "wasm32"))]
 pub(crate) use language::{skip_words, translate_labels};
 pub(crate) use out::Action;
 pub(crate) use page::show;

@@ -14,7 +14,6 @@
 mod pack;
 
 pub(crate) use pack::{LanguagePack, PackError, activate_english, say, tr};
-#[cfg(any(test, target_arch = "wasm32"))]
 pub(crate) use pack::{skip_words, translate_labels};
 
 use segue_session::Session;

@@ -86,7 +86,6 @@ pub(crate) fn translate_labels(ctx: &Context) {
 }
 
 /// Returns the words of the link to the parameters that is the first element of the page.
-#[cfg(any(test, target_arch = "wasm32"))]
 pub(crate) fn skip_words(ctx: &Context) -> String {
     let texts = texts_of(ctx);
     let found = texts.as_ref().and_then(|texts| texts.find(text::SKIP_TO_PARAMETERS));
