@@ -256,14 +256,16 @@ impl ToMessage for ImportWarning {
                 )
             }
             WarningKind::FrameTime { found: None } => {
-                msg!("no frame time; 30 frames per second are taken")
+                msg!("no frame time; 30 frames per second are assumed")
             }
             WarningKind::FrameTime { found: Some(found) } => {
-                msg!("a frame time of {found} is no time{place}; 30 frames per second are taken")
+                msg!(
+                    "a frame time of {found} is not a time{place}; 30 frames per second are assumed"
+                )
             }
             WarningKind::UnlikelyFrameTime { secs } => {
                 msg!(
-                    "a frame time of {secs} s is unlikely{place}; taken as written, the frame rate can be set by hand"
+                    "a frame time of {secs} s is unlikely{place}; used as written, the frame rate can be set by hand"
                 )
             }
             WarningKind::TruncatedRow { found, expected } => {
@@ -301,7 +303,7 @@ impl ToMessage for ImportWarning {
                 )
             }
             WarningKind::PathsOutside => msg!(
-                "{count, plural, one {# file} other {# files}} of the archive with a path out of it; the rest of the path was taken"
+                "{count, plural, one {# file} other {# files}} of the archive with a path that leads out of it; the rest of the path was used"
             ),
             WarningKind::UnreadableFiles { path, why } if one => {
                 msg!("`{path}` in the archive left out: {why}")
@@ -315,13 +317,15 @@ impl ToMessage for ImportWarning {
                 msg!("{count, plural, one {# animated scale} other {# animated scales}} ignored")
             }
             WarningKind::UnevenScale => msg!(
-                "{count, plural, one {# node} other {# nodes}} scaled by a different factor along each axis; joints below are exact at rest and near in motion"
+                "{count, plural, one {# node} other {# nodes}} scaled by a different factor along each axis; joints below are exact at rest and approximate in motion"
             ),
             WarningKind::Resampled { fps } => {
                 msg!("the keys have no common rate; sampled at {fps} frames per second")
             }
             WarningKind::NotMetres { metres_per_unit } => {
-                msg!("the body is far too large for metres; units of {metres_per_unit} m are taken")
+                msg!(
+                    "the body is far too large for metres; units of {metres_per_unit} m are assumed"
+                )
             }
             WarningKind::RestFromFirstRow => {
                 msg!("all OFFSETs are zero; the rest pose was taken from the first row")
@@ -334,11 +338,11 @@ impl ToMessage for ImportWarning {
             }
             WarningKind::AssumedFrameRate { fps } => {
                 msg!(
-                    "the format has no frame rate; {fps} frames per second are taken, it can be set by hand"
+                    "the format has no frame rate; {fps} frames per second are assumed, the rate can be set by hand"
                 )
             }
             WarningKind::FrameNumbers => msg!(
-                "{count, plural, one {# frame number} other {# frame numbers}} out of order{place}; frames were taken as they come"
+                "{count, plural, one {# frame number} other {# frame numbers}} out of order{place}; frames are used in the order of the file"
             ),
             WarningKind::MissingBones => {
                 msg!(
@@ -393,13 +397,10 @@ impl ToMessage for ImportWarning {
                     UpAxis::Y => "Y",
                     UpAxis::Z => "Z",
                 };
-                msg!("the motion does not tell which axis points up; {axis} is taken")
+                msg!("the motion does not show which axis points up; {axis} is assumed")
             }
             WarningKind::UnlikelyHeight { metres } => {
-                msg!(
-                    "the body is {metres} tall: its unit may be another one",
-                    metres = length(*metres)
-                )
+                msg!("the body is {metres} tall: its unit may be wrong", metres = length(*metres))
             }
             WarningKind::WildRows { metres, evened: false } => {
                 msg!(
@@ -421,7 +422,7 @@ impl ToMessage for ImportWarning {
                 msg!("the root goes {metres} away from the origin", metres = length(*metres))
             }
             WarningKind::UnknownUnit => {
-                msg!("the size of the skeleton fits no unit of length; centimetres are taken")
+                msg!("the size of the skeleton fits no unit of length; centimetres are assumed")
             }
         }
     }

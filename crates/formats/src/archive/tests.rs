@@ -55,7 +55,7 @@ fn unpack_sorts_motion_and_warns_of_the_rest() {
             "`a.zip/deeper.zip` in the archive left out: an archive inside an archive inside this one",
             "1 file of the archive without motion left out",
             "2 hidden files of the archive left out",
-            "2 files of the archive with a path out of it; the rest of the path was taken",
+            "2 files of the archive with a path that leads out of it; the rest of the path was used",
         ]
     );
 }

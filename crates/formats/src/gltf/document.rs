@@ -53,7 +53,7 @@ impl<'a> Document<'a> {
             (None, _) => Buffer::Missing(msg!("buffer {index} without data")),
             (Some(uri), _) => match uri.strip_prefix("data:") {
                 Some(data) => embedded(data).map_or_else(
-                    || Buffer::Missing(msg!("buffer {index} with data that is no Base64")),
+                    || Buffer::Missing(msg!("buffer {index} with data that is not Base64")),
                     |bytes| Buffer::Shared(bytes.into()),
                 ),
                 None => external(uri, resolve).map_or_else(
@@ -164,7 +164,7 @@ fn parse(name: &str, json: &[u8]) -> Result<Root, ImportError> {
         column: error.column().max(1),
         ..ImportError::whole_file(
             name,
-            msg!("JSON that is no glTF ({error})", error = error.to_string()),
+            msg!("JSON that is not glTF ({error})", error = error.to_string()),
             "a glTF 2.0 file",
         )
     };

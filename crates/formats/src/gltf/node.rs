@@ -94,7 +94,7 @@ impl Nodes {
                 && linear.to_cols_array().iter().all(|entry| entry.abs() < MAX_MAGNITUDE))
             {
                 let found =
-                    msg!("node {index} (`{name}`) farther away than can be told", name = node.name);
+                    msg!("node {index} (`{name}`) too far from the origin", name = node.name);
                 return Err(document.error(found, "a scene of some size"));
             }
         }

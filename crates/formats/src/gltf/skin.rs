@@ -185,7 +185,7 @@ impl Part {
         if before.saturating_add(claimed) > MAX_VERTICES
             || primitive.indices.is_some_and(|indices| document.claimed(indices) > 3 * MAX_VERTICES)
         {
-            return Err(document.error(msg!("{claimed} vertices"), "at most two millions"));
+            return Err(document.error(msg!("{claimed} vertices"), "at most two million"));
         }
         let positions = vectors(&document.lengths(positions, Type::Vec3)?);
         let count = positions.len();

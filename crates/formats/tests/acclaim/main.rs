@@ -16,7 +16,7 @@ use segue_motion::clip::Clip;
 
 /// The warning of every motion.
 const NO_RATE: &str =
-    "the format has no frame rate; 120 frames per second are taken, it can be set by hand";
+    "the format has no frame rate; 120 frames per second are assumed, the rate can be set by hand";
 
 /// A body 1.6 m tall in centimetres.
 const ASF: &str = "# by hand

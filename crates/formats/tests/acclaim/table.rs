@@ -199,11 +199,11 @@ fn frames_are_separated_by_any_number() {
     );
     assert_eq!(
         same_motion(with(&text, "\n2\n", "\n4000000000\n")),
-        ["2 frame numbers out of order (first: line 9); frames were taken as they come"]
+        ["2 frame numbers out of order (first: line 9); frames are used in the order of the file"]
     );
     assert_eq!(
         same_motion(with(&text, "\n3\n", "\n99999999999999999999999\n")),
-        ["1 frame number out of order (line 14); frames were taken as they come"]
+        ["1 frame number out of order (line 14); frames are used in the order of the file"]
     );
     assert_eq!(same_motion(with(&text, "\n3\n", "\n3.0\n")), [""; 0]);
     // Rows over several lines, and all on one.

@@ -93,8 +93,9 @@ fn frame_times_invalid_or_rounded_are_read() {
         );
     }
     for time in ["0", "-0.01", "nan", "soon"] {
-        let said =
-            format!("a frame time of {time} is no time (line 23); 30 frames per second are taken");
+        let said = format!(
+            "a frame time of {time} is not a time (line 23); 30 frames per second are assumed"
+        );
         assert_eq!(fps(time), (30.0, vec![said]));
     }
     // A frame rate that the user gives is used without a warning.

@@ -77,7 +77,7 @@ fn headers_without_colons_spaces_or_frame_time_are_read() {
     for header in ["Frames: 4\n", "Frames: 4\nFrame Time:\n"] {
         let (found, warnings) = one(with(header));
         assert_eq!((found.clip.fps(), found.clip.frames()), (30.0, 4));
-        assert_eq!(warnings, ["no frame time; 30 frames per second are taken"]);
+        assert_eq!(warnings, ["no frame time; 30 frames per second are assumed"]);
     }
 }
 

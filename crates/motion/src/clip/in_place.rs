@@ -54,7 +54,7 @@ pub enum RootMotionError {
     #[error("No foot of this body is known: set its roles, then try again.")]
     NoFeet,
     /// No foot reaches the ground.
-    #[error("No foot ever stands on the ground here: raise the contact height.")]
+    #[error("No foot reaches the ground in this clip: raise the contact height.")]
     NoContacts,
 }
 

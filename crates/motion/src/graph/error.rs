@@ -68,7 +68,7 @@ pub enum GraphError {
     },
     /// The distances have another window.
     #[error(
-        "these are distances of windows of {found} frames, the graph asks for {expected}: sum them again"
+        "these are distances of windows of {found} frames, the graph asks for {expected}: compute them again"
     )]
     OtherWindow {
         /// The distances' window.
@@ -89,7 +89,7 @@ pub enum GraphError {
     },
     /// No transition is below the greatest sensible threshold.
     #[error(
-        "the closest two windows are {nearest_cm:.2} cm apart, which is no transition any more: {or_lower}add clips that move alike",
+        "the closest two windows are {nearest_cm:.2} cm apart, too far for a transition: {or_lower}add clips that move alike",
         or_lower = or_lower_blend_window(*window)
     )]
     TooFar {
@@ -100,7 +100,7 @@ pub enum GraphError {
     },
     /// There is one clip, and every jump in it is too short.
     #[error(
-        "with a blend window of {window} frames one can go {most_secs:.2} s away at most in the only clip that is long enough, less than the minimum jump of {min_jump_secs} s: lower the jump to {most_secs:.2} s, {lower_window}or add a clip",
+        "with a blend window of {window} frames, a jump in the only clip that is long enough spans at most {most_secs:.2} s, less than the minimum of {min_jump_secs} s: lower the jump to {most_secs:.2} s, {lower_window}or add a clip",
         most_secs = floored(*farthest_secs),
         lower_window = lower_window.map_or_else(Message::default, |window| msg!("the window to {window}, ", window))
     )]
@@ -116,7 +116,7 @@ pub enum GraphError {
     },
     /// Transitions are possible, and none of them is a local minimum.
     #[error(
-        "no distance of windows of {window} frames has a local minimum where one could go: cut the clips into segments, or add clips"
+        "no distance between windows of {window} frames has a local minimum at a possible transition: cut the clips into segments, or add clips"
     )]
     NoMinimum {
         /// Frames of the blend window.

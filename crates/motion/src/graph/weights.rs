@@ -85,7 +85,7 @@ impl Choices {
         match options.continuity {
             Continuity::Share(share) => setting("a continuity", share, 0.0, 1.0)?,
             Continuity::Weight(weight) => {
-                setting("a weight of going on", weight, 1e-6, Continuity::MAX_WEIGHT)?;
+                setting("a weight of continuing", weight, 1e-6, Continuity::MAX_WEIGHT)?;
             }
         }
         if let DistanceLaw::Exponential { sigma_cm } = options.law {

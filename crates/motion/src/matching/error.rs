@@ -12,7 +12,7 @@ pub enum MatchError {
     NoClips,
     /// A clip has no frame whose trajectory is known.
     #[error(
-        "`{name}` lasts {secs:.2} s, which is too short to look {horizon_secs:.2} s ahead: shorten the trajectory, or take a longer clip"
+        "`{name}` lasts {secs:.2} s, which is too short to look {horizon_secs:.2} s ahead: shorten the trajectory, or choose a longer clip"
     )]
     TooShort {
         /// The clip's name.
@@ -44,7 +44,7 @@ pub enum MatchError {
     },
     /// More frames than a database may hold.
     #[error(
-        "{frames} frames are more than the {most} that a database holds: take fewer or shorter clips"
+        "{frames} frames are more than the {most} that a database holds: choose fewer or shorter clips"
     )]
     TooManyFrames {
         /// Frames at the database's rate, mirrored copies included.
@@ -75,7 +75,7 @@ pub enum MatchError {
         most: f64,
     },
     /// A feature is not finite, because a position in the clip is not.
-    #[error("`{name}` holds a position that is no number")]
+    #[error("`{name}` contains a position that is not a number")]
     NotFinite {
         /// The clip's name.
         name: String,

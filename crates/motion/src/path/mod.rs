@@ -96,7 +96,7 @@ pub use turning::{HardTurn, hard_turns, turn_rates};
 #[derive(Clone, Debug, PartialEq, thiserror::Error, segue_text::ToMessage)]
 pub enum PathEditError {
     /// The clip is too short to have a path.
-    #[error("{frames} frames are no way over the ground: take a clip of two or more")]
+    #[error("a clip of {frames} frames has no path over the ground: choose one of at least two")]
     Frames {
         /// Number of frames.
         frames: usize,
@@ -127,7 +127,7 @@ pub enum PathEditError {
     },
     /// Knots that do not rise, or not as many as needed.
     #[error(
-        "knots have to rise between 0 and 1, four fewer than control points and not too close to each other: take another place"
+        "knots have to rise between 0 and 1, four fewer than control points and not too close to each other: choose another place"
     )]
     Knots,
     /// Parameters that are out of range, equal or descending.

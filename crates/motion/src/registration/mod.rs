@@ -129,7 +129,7 @@ pub use transition::{Region, SearchOptions, TransitionSearch, WindowMatch, best_
 pub enum RegistrationError {
     /// The clouds do not have the same points.
     #[error(
-        "two clouds of {source_points} and {target_points} points cannot be laid on each other point by point: use the same joints and frames for both"
+        "two clouds of {source_points} and {target_points} points cannot be compared point by point: use the same joints and frames for both"
     )]
     Points {
         /// Points of the source cloud.

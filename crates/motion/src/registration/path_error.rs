@@ -39,7 +39,7 @@ pub enum PathError {
     },
     /// Two pins of which the later one in the first clip is not later in the second.
     #[error(
-        "the pins at frames {a} | {b} and {later_a} | {later_b} exclude each other, for both clips only go forward: remove one, or move the later one on in both clips",
+        "the pins at frames {a} | {b} and {later_a} | {later_b} exclude each other, because both clips only play forward: remove one, or move the later one on in both clips",
         a = first.0, b = first.1, later_a = second.0, later_b = second.1
     )]
     Pins {
@@ -49,7 +49,7 @@ pub enum PathError {
         second: (usize, usize),
     },
     /// A pin that excludes the corner at which the path must begin or end.
-    #[error("the pin at frames {a} | {b} holds one clip back at the path's {end}: free the {end}, or move the pin inwards", a = pin.0, b = pin.1)]
+    #[error("the pin at frames {a} | {b} excludes the path's {end}: free the {end}, or move the pin inwards", a = pin.0, b = pin.1)]
     PinAtEnd {
         /// Frames of the pin.
         pin: (usize, usize),

@@ -58,8 +58,8 @@ fn clip_in_a_wrong_unit_or_with_a_wild_row_is_mended_by_its_notice() {
     let text = walk_bvh();
     for (text, part) in [
         (with_wild_row(&text), "1 row with a root that is 1.0e18 m away"),
-        (with_size(&text, 1e-12), "m tall: its unit may be another one"),
-        (with_size(&text, 1e12), "m tall: its unit may be another one"),
+        (with_size(&text, 1e-12), "m tall: its unit may be wrong"),
+        (with_size(&text, 1e12), "m tall: its unit may be wrong"),
     ] {
         let mut session = Session::new();
         let loaded = session.load("x.bvh", bytes(&text)).unwrap();

@@ -36,7 +36,7 @@ fn oddities_of_a_file_give_warnings() {
             "1 animated scale ignored",
             "1 value without a number; the last good value was held",
             "the keys have no common rate; sampled at 30 frames per second",
-            "1 node scaled by a different factor along each axis; joints below are exact at rest and near in motion",
+            "1 node scaled by a different factor along each axis; joints below are exact at rest and approximate in motion",
         ]
     );
     assert_eq!(
@@ -55,7 +55,7 @@ fn oddities_of_a_file_give_warnings() {
     assert_eq!(
         sentences(&imported),
         [
-            "the body is far too large for metres; units of 0.01 m are taken",
+            "the body is far too large for metres; units of 0.01 m are assumed",
             "the file has a skeleton but no animation"
         ]
     );
@@ -93,7 +93,7 @@ fn buffers_are_found_beside_the_file_or_refused_by_name() {
 fn invalid_gltf_is_refused_with_its_place() {
     let say = |text: &str| open(text.as_bytes()).unwrap_err().to_string();
     assert!(
-        say("{\n \"asset\": {]").starts_with("dir/builder.gltf:2:12: found JSON that is no glTF"),
+        say("{\n \"asset\": {]").starts_with("dir/builder.gltf:2:12: found JSON that is not glTF"),
         "{}",
         say("{\n \"asset\": {]")
     );
@@ -118,7 +118,7 @@ fn invalid_gltf_is_refused_with_its_place() {
             .contains("node 4 in a skin")
     );
     let huge = r#"{"asset":{"version":"2.0"},"nodes":[{"scale":[1e30,1e30,1e30],"children":[1]},{"translation":[1,0,0]}],"skins":[{"joints":[0]}]}"#;
-    assert!(say(huge).contains("farther away than can be told"));
+    assert!(say(huge).contains("too far from the origin"));
     let glb = write_glb(&wander(&fixtures::cmu_bvh(), 3, 1), &GlbOptions::default()).unwrap();
     let cut = open(&glb[..glb.len() - 5]).unwrap_err().to_string();
     assert!(cut.contains("the file was cut off, expected a whole glTF 2.0 file"), "{cut}");
