@@ -282,22 +282,20 @@ impl Trial {
     /// Returns the cost of the best frame, and the number of frames that the boxes visited.
     pub(crate) fn search(&self, method: Method, kind: Kind, query: usize) -> (f32, usize) {
         let (query, known) = &self.asked[kind as usize][query];
-        let question = Query { query, weights: &self.weights, filter: TagFilter::default() };
+        let query = Query { row: query, weights: &self.weights, filter: TagFilter::default() };
         let cost = |hit: Option<Hit>| hit.map_or(f32::NAN, |hit| hit.cost);
         match method {
             Method::Boxes => {
-                let found = self.database.index().search(self.database.masks(), &question, *known);
+                let found = self.database.index().search(self.database.masks(), &query, *known);
                 (cost(found.best), found.visited)
             }
             Method::TwoLevels => {
                 let weighted: Vec<f32> =
-                    query.iter().zip(&self.weights).map(|(q, w)| q * w).collect();
+                    query.row.iter().zip(&self.weights).map(|(q, w)| q * w).collect();
                 (self.two.search(&weighted, known.map(|hit| hit.cost)), 0)
             }
-            Method::Tree => {
-                (cost(self.tree.search(&self.database.candidates(), &question).best), 0)
-            }
-            Method::Scan => (cost(scan(&self.database.candidates(), &question).best), 0),
+            Method::Tree => (cost(self.tree.search(&self.database.candidates(), &query).best), 0),
+            Method::Scan => (cost(scan(&self.database.candidates(), &query).best), 0),
         }
     }
 }

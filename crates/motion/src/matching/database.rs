@@ -220,7 +220,7 @@ impl Database {
             let range = self.features.layout().range(block);
             let weights = vec![weights.of(block); range.len()];
             let part = Query {
-                query: query.get(range.clone()).unwrap_or(&[]),
+                row: query.get(range.clone()).unwrap_or(&[]),
                 weights: &weights,
                 filter: super::TagFilter::default(),
             };

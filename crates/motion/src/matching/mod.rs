@@ -60,9 +60,9 @@
 //! let weights = Weights::default().spread(database.features().layout());
 //! let row = database.features().row(700).ok_or("no such frame")?;
 //! let query: Vec<f32> = row.iter().map(|x| x + 0.02).collect();
-//! let question = Query { query: &query, weights: &weights, filter: TagFilter::default() };
-//! let slow = scan(&database.candidates(), &question);
-//! let fast = database.index().search(database.masks(), &question, None);
+//! let query = Query { row: &query, weights: &weights, filter: TagFilter::default() };
+//! let slow = scan(&database.candidates(), &query);
+//! let fast = database.index().search(database.masks(), &query, None);
 //! assert!(slow.best == fast.best && fast.visited < slow.visited / 2);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

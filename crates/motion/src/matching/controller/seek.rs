@@ -69,20 +69,20 @@ impl Controller {
         filter: TagFilter,
         known: Option<Hit>,
     ) -> SearchResult {
-        let question = Query { query, weights: &self.weights, filter };
+        let query = Query { row: query, weights: &self.weights, filter };
         let candidates = self.database.candidates();
         match self.options.method {
             SearchMethod::Boxes => {
-                self.database.index().search(self.database.masks(), &question, known)
+                self.database.index().search(self.database.masks(), &query, known)
             }
-            SearchMethod::Scan => scan(&candidates, &question),
+            SearchMethod::Scan => scan(&candidates, &query),
             SearchMethod::Tree => {
                 if !self.tree.as_ref().is_some_and(|tree| tree.fits(&self.weights, filter)) {
                     self.tree = TreeIndex::new(&candidates, &self.weights, filter);
                 }
                 match &self.tree {
-                    Some(tree) => tree.search(&candidates, &question),
-                    None => scan(&candidates, &question),
+                    Some(tree) => tree.search(&candidates, &query),
+                    None => scan(&candidates, &query),
                 }
             }
         }
@@ -93,8 +93,8 @@ impl Controller {
         let query = self.query();
         let here = self.database.number(self.place).unwrap_or(0);
         let cost = |frame: usize| {
-            let question = Query { query: &query, weights: &self.weights, filter };
-            self.database.features().row(frame).map_or(f32::INFINITY, |row| question.cost(row))
+            let query = Query { row: &query, weights: &self.weights, filter };
+            self.database.features().row(frame).map_or(f32::INFINITY, |row| query.cost(row))
         };
         let current = Hit { frame: here, cost: cost(here) };
         let admitted =
@@ -170,7 +170,7 @@ impl Controller {
     /// all including the preference; otherwise that one.
     fn preferred(&self, query: &[f32], filter: TagFilter, best: Option<Hit>) -> Option<Hit> {
         let best = best?;
-        let question = Query { query, weights: &self.weights, filter };
+        let query = Query { row: query, weights: &self.weights, filter };
         let database = &self.database;
         let frames = (0..database.motions().len())
             .filter(|&motion| self.is_preferred(motion))
@@ -180,7 +180,7 @@ impl Controller {
             });
         let hits =
             frames.filter(|&frame| filter.admits(database.tags(frame))).filter_map(|frame| {
-                let cost = question.cost(database.features().row(frame)?);
+                let cost = query.cost(database.features().row(frame)?);
                 Some(Hit { frame, cost })
             });
         let named = hits.reduce(|a, b| if b.beats(&a) { b } else { a });
@@ -262,12 +262,12 @@ impl Controller {
     /// Returns the best frames that cost no more than those next to them in their clip, the best
     /// first.
     fn best(&self, query: &[f32], filter: TagFilter) -> Vec<Hit> {
-        let question = Query { query, weights: &self.weights, filter };
+        let query = Query { row: query, weights: &self.weights, filter };
         let database = &self.database;
         let cost = |frame: usize| {
             let row =
                 database.features().row(frame).filter(|_| filter.admits(database.tags(frame)));
-            row.map_or(f32::INFINITY, |row| question.cost(row))
+            row.map_or(f32::INFINITY, |row| query.cost(row))
         };
         let mut best: Vec<Hit> = Vec::new();
         let valid = database.valid();

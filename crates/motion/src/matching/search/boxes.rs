@@ -131,20 +131,15 @@ impl BoxIndex {
     /// Returns the best admitted frame. `known` is a frame that the filter admits and that is in
     /// the index; it or a better one is returned.
     #[must_use]
-    pub fn search(
-        &self,
-        masks: &BoxMasks,
-        question: &Query<'_>,
-        known: Option<Hit>,
-    ) -> SearchResult {
-        if !question.is_sound(self.dims) || self.ids.is_empty() {
+    pub fn search(&self, masks: &BoxMasks, query: &Query<'_>, known: Option<Hit>) -> SearchResult {
+        if !query.is_sound(self.dims) || self.ids.is_empty() {
             return SearchResult::default();
         }
         let mut search = Search {
             index: self,
             masks,
-            question,
-            filtered: !(masks.free && question.filter == TagFilter::default()),
+            query,
+            filtered: !(masks.free && query.filter == TagFilter::default()),
             best: known,
             visited: 0,
         };
@@ -156,7 +151,7 @@ impl BoxIndex {
 struct Search<'a> {
     index: &'a BoxIndex,
     masks: &'a BoxMasks,
-    question: &'a Query<'a>,
+    query: &'a Query<'a>,
     filtered: bool,
     best: Option<Hit>,
     visited: usize,
@@ -215,7 +210,7 @@ impl Search<'_> {
             return;
         };
         let limit = self.limit();
-        let bounds = box_bounds(cells, self.question, limit);
+        let bounds = box_bounds(cells, self.query, limit);
         let first = pack * LANES;
         let count = (boxes.boxes - first).min(LANES);
         let base = stack.len();
@@ -237,7 +232,7 @@ impl Search<'_> {
 
     fn may_admit(&self, level: usize, index: usize) -> bool {
         let masks = self.masks.levels.get(level).and_then(|level| level.get(index));
-        masks.is_some_and(|&(any, all)| self.question.filter.may_admit(any, all))
+        masks.is_some_and(|&(any, all)| self.query.filter.may_admit(any, all))
     }
 
     fn leaf(&mut self, leaf: usize) {
@@ -250,7 +245,7 @@ impl Search<'_> {
             let ids = &self.index.ids[first..(first + LANES).min(self.index.ids.len())];
             self.visited += ids.len();
             let limit = self.limit();
-            let Some(costs) = frame_costs(cells, self.question, limit) else {
+            let Some(costs) = frame_costs(cells, self.query, limit) else {
                 continue;
             };
             for (lane, (&id, &cost)) in ids.iter().zip(&costs).enumerate() {
@@ -264,7 +259,7 @@ impl Search<'_> {
 
     fn admits(&self, slot: usize) -> bool {
         !self.filtered
-            || self.masks.frames.get(slot).is_some_and(|tags| self.question.filter.admits(*tags))
+            || self.masks.frames.get(slot).is_some_and(|tags| self.query.filter.admits(*tags))
     }
 }
 
@@ -273,11 +268,11 @@ const DIMS_PER_CHECK: usize = 9;
 
 /// Returns the costs of eight frames; `None` as soon as all are above `limit`.
 #[inline]
-fn frame_costs(cells: &[f32], question: &Query<'_>, limit: f32) -> Option<Lane> {
+fn frame_costs(cells: &[f32], query: &Query<'_>, limit: f32) -> Option<Lane> {
     let mut costs = [0.0; LANES];
     let parts = cells
         .chunks(DIMS_PER_CHECK * LANES)
-        .zip(question.query.chunks(DIMS_PER_CHECK).zip(question.weights.chunks(DIMS_PER_CHECK)));
+        .zip(query.row.chunks(DIMS_PER_CHECK).zip(query.weights.chunks(DIMS_PER_CHECK)));
     for (cells, (query, weights)) in parts {
         for (cell, (&q, &w)) in cells.as_chunks::<LANES>().0.iter().zip(query.iter().zip(weights)) {
             for (cost, x) in costs.iter_mut().zip(cell) {
@@ -294,10 +289,10 @@ fn frame_costs(cells: &[f32], question: &Query<'_>, limit: f32) -> Option<Lane> 
 
 /// Returns lower bounds of the costs in eight boxes: exact unless all are above `limit`.
 #[inline]
-fn box_bounds(cells: &[f32], question: &Query<'_>, limit: f32) -> Lane {
+fn box_bounds(cells: &[f32], query: &Query<'_>, limit: f32) -> Lane {
     let mut bounds = [0.0; LANES];
     let parts = (cells.chunks(DIMS_PER_CHECK * 2 * LANES))
-        .zip(question.query.chunks(DIMS_PER_CHECK).zip(question.weights.chunks(DIMS_PER_CHECK)));
+        .zip(query.row.chunks(DIMS_PER_CHECK).zip(query.weights.chunks(DIMS_PER_CHECK)));
     for (cells, (query, weights)) in parts {
         let ends = cells.as_chunks::<{ 2 * LANES }>().0;
         for (ends, (&q, &w)) in ends.iter().zip(query.iter().zip(weights)) {

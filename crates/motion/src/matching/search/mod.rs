@@ -38,8 +38,8 @@ impl Hit {
 /// A query.
 #[derive(Clone, Copy, Debug)]
 pub struct Query<'a> {
-    /// A normalised row.
-    pub query: &'a [f32],
+    /// The normalised features that are searched for.
+    pub row: &'a [f32],
     /// One factor for each dimension.
     pub weights: &'a [f32],
     /// The filter of frames.
@@ -61,7 +61,7 @@ impl Query<'_> {
     #[must_use]
     pub fn cost(&self, row: &[f32]) -> f32 {
         let mut cost = 0.0;
-        for ((q, w), x) in self.query.iter().zip(self.weights).zip(row) {
+        for ((q, w), x) in self.row.iter().zip(self.weights).zip(row) {
             let difference = w * (q - x);
             cost += difference * difference;
         }
@@ -70,9 +70,9 @@ impl Query<'_> {
 
     /// Returns whether query and weights have this number of dimensions, and are finite.
     pub(super) fn is_sound(&self, dims: usize) -> bool {
-        self.query.len() == dims
+        self.row.len() == dims
             && self.weights.len() == dims
-            && self.query.iter().all(|q| q.is_finite())
+            && self.row.iter().all(|q| q.is_finite())
             && self.weights.iter().all(|w| w.is_finite() && *w >= 0.0)
     }
 }

@@ -4,20 +4,19 @@ use super::{Candidates, Hit, Query, SearchResult};
 
 /// Scans every admitted frame. O(frames × dimensions).
 #[must_use]
-pub fn scan(candidates: &Candidates<'_>, question: &Query<'_>) -> SearchResult {
+pub fn scan(candidates: &Candidates<'_>, query: &Query<'_>) -> SearchResult {
     let mut found = SearchResult::default();
-    if !question.is_sound(candidates.features.layout().dims()) {
+    if !query.is_sound(candidates.features.layout().dims()) {
         return found;
     }
     for &frame in candidates.valid {
         let frame = frame as usize;
         let tags = candidates.tags.get(frame).copied().unwrap_or_default();
-        let Some(row) = candidates.features.row(frame).filter(|_| question.filter.admits(tags))
-        else {
+        let Some(row) = candidates.features.row(frame).filter(|_| query.filter.admits(tags)) else {
             continue;
         };
         found.visited += 1;
-        let hit = Hit { frame, cost: question.cost(row) };
+        let hit = Hit { frame, cost: query.cost(row) };
         if found.best.is_none_or(|best| hit.beats(&best)) {
             found.best = Some(hit);
         }

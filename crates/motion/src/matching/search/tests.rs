@@ -114,19 +114,19 @@ fn searches_of_ten_thousand_queries_agree() {
                 let query: Vec<f32> = (near.iter())
                     .map(|x| if kind % 4 == 0 { 0.0 } else { *x } + noise * number(&mut random))
                     .collect();
-                let question = Query { query: &query, weights: &weights, filter };
-                let oracle = scan(&candidates, &question);
-                let boxes = index.search(&masks, &question, None);
+                let query = Query { row: &query, weights: &weights, filter };
+                let oracle = scan(&candidates, &query);
+                let boxes = index.search(&masks, &query, None);
                 assert_eq!(boxes.best, oracle.best, "{round} {set} {kind}");
                 assert_eq!(
-                    tree.as_ref().and_then(|tree| tree.search(&candidates, &question).best),
+                    tree.as_ref().and_then(|tree| tree.search(&candidates, &query).best),
                     oracle.best,
                     "{round} {set} {kind}"
                 );
                 let known = field.valid[random.next_u32() as usize % field.valid.len()] as usize;
                 if filter.admits(field.tags[known]) {
-                    let cost = question.cost(field.features.row(known).unwrap());
-                    let warm = index.search(&masks, &question, Some(Hit { frame: known, cost }));
+                    let cost = query.cost(field.features.row(known).unwrap());
+                    let warm = index.search(&masks, &query, Some(Hit { frame: known, cost }));
                     assert_eq!(warm.best, oracle.best);
                     assert!(warm.visited <= index.len() + index.len() / 16 + SMALL_INDEX);
                 }
@@ -148,8 +148,8 @@ fn box_search_near_a_frame_visits_few_frames() {
     let mut visited = 0;
     for frame in (0..20_000).step_by(501) {
         let query: Vec<f32> = field.features.row(frame).unwrap().iter().map(|x| x + 0.02).collect();
-        let question = Query { query: &query, weights: &weights, filter: TagFilter::default() };
-        visited += index.search(&masks, &question, None).visited;
+        let query = Query { row: &query, weights: &weights, filter: TagFilter::default() };
+        visited += index.search(&masks, &query, None).visited;
     }
     assert!(visited / 40 < 3_000, "{}", visited / 40);
 }
@@ -161,14 +161,14 @@ fn search_of_an_invalid_query_finds_nothing() {
     let masks = index.masks(&field.tags);
     let weights = vec![1.0; 27];
     for query in [vec![0.0; 26], vec![f32::NAN; 27], vec![f32::INFINITY; 27], vec![]] {
-        let question = Query { query: &query, weights: &weights, filter: TagFilter::default() };
-        assert_eq!(scan(&candidates, &question), SearchResult::default());
-        assert_eq!(index.search(&masks, &question, None), SearchResult::default());
+        let query = Query { row: &query, weights: &weights, filter: TagFilter::default() };
+        assert_eq!(scan(&candidates, &query), SearchResult::default());
+        assert_eq!(index.search(&masks, &query, None), SearchResult::default());
     }
     // Costs that overflow are all equal.
     let far = vec![1e30; 27];
-    let question = Query { query: &far, weights: &weights, filter: TagFilter::default() };
-    assert_eq!(index.search(&masks, &question, None).best, scan(&candidates, &question).best);
+    let query = Query { row: &far, weights: &weights, filter: TagFilter::default() };
+    assert_eq!(index.search(&masks, &query, None).best, scan(&candidates, &query).best);
     let empty = Candidates { valid: &[], ..candidates };
     assert!(TreeIndex::new(&empty, &weights, TagFilter::default()).is_none());
     assert_eq!(BoxBuilder::new(&[], &[]).finish(&field.features).len(), 0);
@@ -178,12 +178,12 @@ fn search_of_an_invalid_query_finds_nothing() {
     let valid: Vec<u32> = (0..5_000).collect();
     let candidates = Candidates { features: &same, tags: &[], valid: &valid };
     let query = vec![0.5; 27];
-    let question = Query { query: &query, weights: &weights, filter: TagFilter::default() };
+    let query = Query { row: &query, weights: &weights, filter: TagFilter::default() };
     let index = BoxBuilder::new(&valid, &[]).finish(&same);
-    assert_eq!(index.search(&index.masks(&[]), &question, None).best.map(|hit| hit.frame), Some(0));
+    assert_eq!(index.search(&index.masks(&[]), &query, None).best.map(|hit| hit.frame), Some(0));
     let tree = TreeIndex::new(&candidates, &weights, TagFilter::default());
     assert_eq!(
-        tree.and_then(|tree| tree.search(&candidates, &question).best).map_or(0, |hit| hit.frame),
+        tree.and_then(|tree| tree.search(&candidates, &query).best).map_or(0, |hit| hit.frame),
         0
     );
 }

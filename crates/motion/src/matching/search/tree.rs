@@ -67,16 +67,16 @@ impl TreeIndex {
     /// tree does not report the frames that it visits: `visited` counts those that were evaluated
     /// again.
     #[must_use]
-    pub fn search(&self, candidates: &Candidates<'_>, question: &Query<'_>) -> SearchResult {
+    pub fn search(&self, candidates: &Candidates<'_>, query: &Query<'_>) -> SearchResult {
         let mut found = SearchResult::default();
-        if !question.is_sound(candidates.features.layout().dims())
-            || !self.fits(question.weights, question.filter)
+        if !query.is_sound(candidates.features.layout().dims())
+            || !self.fits(query.weights, query.filter)
         {
             return found;
         }
         let near = match &self.tree {
-            Tree::Usual(tree) => near(tree, &point(question.query, question.weights)),
-            Tree::Any(tree) => near(tree, &point(question.query, question.weights)),
+            Tree::Usual(tree) => near(tree, &point(query.row, query.weights)),
+            Tree::Any(tree) => near(tree, &point(query.row, query.weights)),
         };
         for item in near {
             let Some(&id) = self.ids.get(item) else {
@@ -86,7 +86,7 @@ impl TreeIndex {
                 continue;
             };
             found.visited += 1;
-            let hit = Hit { frame: id as usize, cost: question.cost(row) };
+            let hit = Hit { frame: id as usize, cost: query.cost(row) };
             if found.best.is_none_or(|best| hit.beats(&best)) {
                 found.best = Some(hit);
             }

@@ -67,9 +67,9 @@ fn database_with_other_rates_times_and_tags_differs_as_documented() {
     }
     let excluded = usual.retagged(0, &[TagRange { tag: Tag::Exclude, frames: 0..usual.frames() }]);
     let query = vec![0.0; 27];
-    let question = Query { query: &query, weights: &[1.0; 27], filter: TagFilter::default() };
-    assert_eq!(excluded.index().search(excluded.masks(), &question, None).best, None);
-    assert!(scan(&usual.candidates(), &question).best.is_some());
+    let query = Query { row: &query, weights: &[1.0; 27], filter: TagFilter::default() };
+    assert_eq!(excluded.index().search(excluded.masks(), &query, None).best, None);
+    assert!(scan(&usual.candidates(), &query).best.is_some());
     for number in (0..database.frames()).step_by(997) {
         assert_eq!(database.number(database.place(number).unwrap()), Some(number));
     }
