@@ -150,11 +150,18 @@ proptest! {
             up: options.up.unwrap_or(clip.provenance().up),
         };
         let reading = ImportOptions {
-            metres_per_unit: Some(provenance.metres_per_unit), up: Some(provenance.up), drop_t_pose: false, ..ImportOptions::default()
+            metres_per_unit: Some(provenance.metres_per_unit),
+            up: Some(provenance.up),
+            drop_t_pose: false,
+            ..ImportOptions::default()
         };
-        let imported = import("clip.bvh", text.as_bytes(), &reading).map_err(|error| TestCaseError::fail(format!("{error}\n{text}")))?;
+        let imported = import("clip.bvh", text.as_bytes(), &reading)
+            .map_err(|error| TestCaseError::fail(format!("{error}\n{text}")))?;
         let back = &imported.clips[0].clip;
-        prop_assert_eq!((back.name(), back.frames(), back.provenance()), ("clip", clip.frames(), provenance));
+        prop_assert_eq!(
+            (back.name(), back.frames(), back.provenance()),
+            ("clip", clip.frames(), provenance)
+        );
         prop_assert!((back.fps() - clip.fps()).abs() < 1e-9 * clip.fps());
         let folded = clip.clone().folded().unwrap();
         let order = written_joints(back, &clip, &folded);
@@ -167,12 +174,16 @@ proptest! {
             // The offset of a root with positions is zero in the file.
             prop_assert!(found == 0 || a.offset.distance(b.offset) < 1e-5);
             prop_assert_eq!(a.end_site.is_some(), b.end_site.is_some());
-            prop_assert!(a.end_site.unwrap_or_default().distance(b.end_site.unwrap_or_default()) < 1e-5);
+            prop_assert!(
+                a.end_site.unwrap_or_default().distance(b.end_site.unwrap_or_default()) < 1e-5
+            );
             for frame in 0..clip.frames() {
-                let angle = quat::angle_between(back.rotations(frame)[found], clip.rotations(frame)[joint]);
+                let angle =
+                    quat::angle_between(back.rotations(frame)[found], clip.rotations(frame)[joint]);
                 prop_assert!(angle < 1e-5, "{}, frame {frame}: {angle} rad", b.name);
                 if joint > 0 {
-                    let (a, b) = (translation(back, found, frame), translation(&clip, joint, frame));
+                    let (a, b) =
+                        (translation(back, found, frame), translation(&clip, joint, frame));
                     prop_assert!(a.distance(b) < 1e-5, "joint {joint} at {a}, not {b}\n{text}");
                 }
             }
@@ -182,17 +193,27 @@ proptest! {
         }
         // A clip that was read is written the same way again.
         let again = write(back, &WriteOptions::default());
-        let twice = import("clip.bvh", again.as_bytes(), &reading).map_err(|error| TestCaseError::fail(error.to_string()))?;
+        let twice = import("clip.bvh", again.as_bytes(), &reading)
+            .map_err(|error| TestCaseError::fail(error.to_string()))?;
         prop_assert_eq!(twice.clips[0].clip.frames(), back.frames());
     }
 
     #[test]
     fn written_glb_reads_back_equal(clip in clip()) {
         let bytes = write_glb(&clip, &GlbOptions::default()).unwrap();
-        let reading = ImportOptions { metres_per_unit: Some(1.0), fps: Some(clip.fps()), drop_t_pose: false, ..ImportOptions::default() };
-        let imported = gltf::read("clip.glb", &bytes, &|_| None, &reading).map_err(|error| TestCaseError::fail(error.to_string()))?;
+        let reading = ImportOptions {
+            metres_per_unit: Some(1.0),
+            fps: Some(clip.fps()),
+            drop_t_pose: false,
+            ..ImportOptions::default()
+        };
+        let imported = gltf::read("clip.glb", &bytes, &|_| None, &reading)
+            .map_err(|error| TestCaseError::fail(error.to_string()))?;
         let back = &imported.clips[0].clip;
-        prop_assert_eq!((back.name(), back.fps(), back.frames()), ("clip", clip.fps(), clip.frames().max(1)));
+        prop_assert_eq!(
+            (back.name(), back.fps(), back.frames()),
+            ("clip", clip.fps(), clip.frames().max(1))
+        );
         let folded = clip.clone().folded().unwrap();
         let order = written_joints(back, &clip, &folded);
         let clip = folded;
@@ -202,11 +223,19 @@ proptest! {
             prop_assert_eq!((&a.name, a.parent.map(|parent| order[parent])), (&b.name, b.parent));
             prop_assert!(found == 0 || a.offset.distance(b.offset) < 1e-5);
             prop_assert_eq!(a.end_site.is_some(), b.end_site.is_some());
-            prop_assert!(a.end_site.unwrap_or_default().distance(b.end_site.unwrap_or_default()) < 1e-5);
+            prop_assert!(
+                a.end_site.unwrap_or_default().distance(b.end_site.unwrap_or_default()) < 1e-5
+            );
             for frame in 0..clip.frames() {
-                prop_assert!(quat::angle_between(back.rotations(frame)[found], clip.rotations(frame)[joint]) < 1e-5);
+                prop_assert!(
+                    quat::angle_between(back.rotations(frame)[found], clip.rotations(frame)[joint])
+                        < 1e-5
+                );
                 if joint > 0 {
-                    prop_assert!(translation(back, found, frame).distance(translation(&clip, joint, frame)) < 1e-5);
+                    prop_assert!(
+                        translation(back, found, frame).distance(translation(&clip, joint, frame))
+                            < 1e-5
+                    );
                 }
             }
         }
@@ -219,11 +248,28 @@ proptest! {
     fn damaged_files_are_read_or_refused(
         clip in clip(),
         plain: bool,
-        edits in prop::collection::vec((any::<prop::sample::Index>(), 0..6_u8, any::<u8>(), any::<prop::sample::Index>()), 0..8),
+        edits in prop::collection::vec(
+            (any::<prop::sample::Index>(), 0..6_u8, any::<u8>(), any::<prop::sample::Index>()),
+            0..8,
+        ),
     ) {
-        let mut bytes = if plain { chain(5) } else { write(&clip, &WriteOptions::default()) }.into_bytes();
+        let mut bytes =
+            if plain { chain(5) } else { write(&clip, &WriteOptions::default()) }.into_bytes();
         let pieces: [&[u8]; 14] = [
-            b"{", b"}", b"\n", b" nan ", b"-", b"1e999", b",", b"\xff\xfe", b"\0", b"JOINT x {", b"MOTION", b"End Site", b"CHANNELS 99", b"1.#IND",
+            b"{",
+            b"}",
+            b"\n",
+            b" nan ",
+            b"-",
+            b"1e999",
+            b",",
+            b"\xff\xfe",
+            b"\0",
+            b"JOINT x {",
+            b"MOTION",
+            b"End Site",
+            b"CHANNELS 99",
+            b"1.#IND",
         ];
         for (at, kind, byte, other) in edits {
             if bytes.is_empty() {
@@ -234,7 +280,9 @@ proptest! {
                 0 => bytes[at] = byte,
                 1 => bytes.truncate(at),
                 2 => drop(bytes.drain(at.min(other)..at.max(other))),
-                3 => drop(bytes.splice(at..at, pieces[usize::from(byte) % pieces.len()].iter().copied())),
+                3 => drop(
+                    bytes.splice(at..at, pieces[usize::from(byte) % pieces.len()].iter().copied()),
+                ),
                 4 => bytes.swap(at, other),
                 _ => {
                     let copy = bytes[at.min(other)..at.max(other)].to_vec();
@@ -246,24 +294,45 @@ proptest! {
             Ok(imported) => {
                 prop_assert!(!imported.clips.is_empty());
                 for found in &imported.clips {
-                    prop_assert!((0..found.clip.frames()).all(|frame| found.clip.rotations(frame).iter().all(|q| q.is_normalized())));
+                    prop_assert!((0..found.clip.frames()).all(|frame| {
+                        found.clip.rotations(frame).iter().all(|q| q.is_normalized())
+                    }));
                     prop_assert!(found.clip.root_translations().iter().all(|p| p.is_finite()));
                     // A clip that was read can be written and read again.
                     let text = write(&found.clip, &WriteOptions::default());
-                    let again = import("again.bvh", text.as_bytes(), &ImportOptions { drop_t_pose: false, ..ImportOptions::default() });
-                    prop_assert_eq!(again.map(|again| again.clips[0].clip.frames()), Ok(found.clip.frames()));
+                    let again = import(
+                        "again.bvh",
+                        text.as_bytes(),
+                        &ImportOptions { drop_t_pose: false, ..ImportOptions::default() },
+                    );
+                    prop_assert_eq!(
+                        again.map(|again| again.clips[0].clip.frames()),
+                        Ok(found.clip.frames())
+                    );
                 }
-                prop_assert!(imported.warnings.iter().all(|warning| warning.count > 0 && !warning.to_string().contains('\n')));
+                prop_assert!(
+                    imported
+                        .warnings
+                        .iter()
+                        .all(|warning| warning.count > 0 && !warning.to_string().contains('\n'))
+                );
             }
             Err(error) => {
-                prop_assert!(error.line >= 1 && error.column >= 1 && !error.to_string().contains('\n'), "{}", error);
+                prop_assert!(
+                    error.line >= 1 && error.column >= 1 && !error.to_string().contains('\n'),
+                    "{}",
+                    error
+                );
                 prop_assert!(!error.found.is_empty() && !error.expected.is_empty());
             }
         }
     }
 
     #[test]
-    fn plain_rows_equal_the_slow_path(clip in clip(), edits in prop::collection::vec((any::<prop::sample::Index>(), "[-+0-9.,e \tn#\n]"), 0..4)) {
+    fn plain_rows_equal_the_slow_path(
+        clip in clip(),
+        edits in prop::collection::vec((any::<prop::sample::Index>(), "[-+0-9.,e \tn#\n]"), 0..4),
+    ) {
         let mut text = write(&clip, &WriteOptions::default());
         let rows = text.find("Frame Time").unwrap();
         for (at, piece) in edits {
@@ -272,13 +341,23 @@ proptest! {
         }
         // Other white space, with which no line takes the fast path.
         let slow = text.replace('\n', "\x0b\n");
-        let read = |text: &str| import("clip.bvh", text.as_bytes(), &ImportOptions::default()).map_err(|error| (error.line, error.expected));
+        let read = |text: &str| {
+            import("clip.bvh", text.as_bytes(), &ImportOptions::default())
+                .map_err(|error| (error.line, error.expected))
+        };
         prop_assert_eq!(read(&text), read(&slow));
     }
 
     #[test]
-    fn any_bytes_are_read_or_refused(bytes in prop::collection::vec(any::<u8>(), 0..200), tail in "[ -~\n\r\t{}0-9.,eE+-]{0,80}") {
-        for text in [bytes.clone(), tail.clone().into_bytes(), format!("ROOT a {{ CHANNELS 2 Xrotation Yposition }} MOTION {tail}").into_bytes()] {
+    fn any_bytes_are_read_or_refused(
+        bytes in prop::collection::vec(any::<u8>(), 0..200),
+        tail in "[ -~\n\r\t{}0-9.,eE+-]{0,80}",
+    ) {
+        for text in [
+            bytes.clone(),
+            tail.clone().into_bytes(),
+            format!("ROOT a {{ CHANNELS 2 Xrotation Yposition }} MOTION {tail}").into_bytes(),
+        ] {
             if let Err(error) = import("any.bvh", &text, &ImportOptions::default()) {
                 prop_assert!(error.to_string().starts_with("any.bvh:"));
             }

@@ -542,12 +542,22 @@ proptest! {
             }
         }
         prop_assert!(made.truth.phase.iter().all(|phase| (0.0..=1.0).contains(phase)));
-        prop_assert!(max_slip(&made, params.height_m) < 1e-3, "slip {}", max_slip(&made, params.height_m));
-        prop_assert!(max_depth(&made, params.height_m) < 2e-3, "depth {}", max_depth(&made, params.height_m));
+        prop_assert!(
+            max_slip(&made, params.height_m) < 1e-3,
+            "slip {}",
+            max_slip(&made, params.height_m)
+        );
+        prop_assert!(
+            max_depth(&made, params.height_m) < 2e-3,
+            "depth {}",
+            max_depth(&made, params.height_m)
+        );
         // Nothing flips from one frame to the next, at any frame rate.
         let fastest = 62.0 * (1.75 / params.height_m).sqrt();
         for frame in 1..made.clip.frames() {
-            for (joint, (a, b)) in made.clip.rotations(frame - 1).iter().zip(made.clip.rotations(frame)).enumerate() {
+            for (joint, (a, b)) in
+                made.clip.rotations(frame - 1).iter().zip(made.clip.rotations(frame)).enumerate()
+            {
                 let speed = quat::angle_between(*a, *b) * params.fps;
                 prop_assert!(speed < fastest, "{speed} rad/s in joint {joint} at frame {frame}");
             }

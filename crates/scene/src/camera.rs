@@ -248,7 +248,12 @@ mod tests {
 
     proptest! {
         #[test]
-        fn ray_through_a_pixel_projects_back_to_it(camera in camera(), x in 5.0f32..635.0, y in 5.0f32..475.0, depth in 0.7f32..9.0) {
+        fn ray_through_a_pixel_projects_back_to_it(
+            camera in camera(),
+            x in 5.0f32..635.0,
+            y in 5.0f32..475.0,
+            depth in 0.7f32..9.0,
+        ) {
             let pixel = Vec2::new(x, y);
             let ray = camera.ray(pixel, VIEWPORT);
             let back = camera.project(ray.origin + ray.direction * depth, VIEWPORT).unwrap();
@@ -256,27 +261,42 @@ mod tests {
         }
 
         #[test]
-        fn framing_of_a_box_shows_all_corners_with_a_small_margin(camera in camera(), w in 0.1f32..6.0, h in 0.1f32..3.0) {
+        fn framing_of_a_box_shows_all_corners_with_a_small_margin(
+            camera in camera(),
+            w in 0.1f32..6.0,
+            h in 0.1f32..3.0,
+        ) {
             let mut camera = camera;
             let bounds = Bounds { min: Vec3::new(-w, 0.0, -1.0), max: Vec3::new(w, h, 1.0) };
             camera.frame(&bounds, VIEWPORT.x / VIEWPORT.y);
-            let ndc = bounds.corners().map(|c| (camera.project(c, VIEWPORT).unwrap() / VIEWPORT * 2.0 - 1.0).abs().max_element());
+            let ndc = bounds.corners().map(|c| {
+                (camera.project(c, VIEWPORT).unwrap() / VIEWPORT * 2.0 - 1.0).abs().max_element()
+            });
             let largest = ndc.into_iter().fold(0.0, f32::max);
             prop_assert!((0.9..=0.95).contains(&largest), "{largest}");
         }
 
         #[test]
-        fn panning_keeps_the_point_under_the_pointer(camera in camera(), x in 5.0f32..635.0, y in 5.0f32..475.0) {
+        fn panning_keeps_the_point_under_the_pointer(
+            camera in camera(),
+            x in 5.0f32..635.0,
+            y in 5.0f32..475.0,
+        ) {
             let at = Vec2::new(x, y);
             let on_target_plane = |camera: &Camera| {
                 let ray = camera.ray(at, VIEWPORT);
                 let back = camera.axes()[2];
-                ray.origin + ray.direction * ((camera.target - ray.origin).dot(back) / ray.direction.dot(back))
+                ray.origin
+                    + ray.direction
+                        * ((camera.target - ray.origin).dot(back) / ray.direction.dot(back))
             };
             let held = on_target_plane(&camera);
             let mut panned = camera;
             panned.pan(Vec2::new(30.0, -20.0), VIEWPORT.y);
-            prop_assert!((panned.project(held, VIEWPORT).unwrap() - at - Vec2::new(30.0, -20.0)).length() < 0.2);
+            prop_assert!(
+                (panned.project(held, VIEWPORT).unwrap() - at - Vec2::new(30.0, -20.0)).length()
+                    < 0.2
+            );
         }
     }
 

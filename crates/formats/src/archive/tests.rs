@@ -164,19 +164,31 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
     #[test]
-    fn unpack_of_damaged_bytes_reads_or_refuses(edits in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..12), cut in any::<prop::sample::Index>()) {
+    fn unpack_of_damaged_bytes_reads_or_refuses(
+        edits in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..12),
+        cut in any::<prop::sample::Index>(),
+    ) {
         let mut bytes = TAKES.to_vec();
         for (at, value) in &edits {
             let at = at.index(bytes.len());
             bytes[at] = *value;
         }
-        bytes.truncate(bytes.len() - cut.index(bytes.len()) / 8 * usize::from(edits.len() % 3 == 0));
+        bytes
+            .truncate(bytes.len() - cut.index(bytes.len()) / 8 * usize::from(edits.len() % 3 == 0));
         let limits = ArchiveLimits { max_bytes: 1 << 20, ..ArchiveLimits::default() };
         if let Ok(unpacked) = unpack("spoilt.zip", &bytes, &limits) {
             prop_assert!(!unpacked.files.is_empty());
-            prop_assert!(unpacked.files.iter().map(|file| file.bytes.len()).sum::<usize>() <= limits.max_bytes);
+            prop_assert!(
+                unpacked.files.iter().map(|file| file.bytes.len()).sum::<usize>()
+                    <= limits.max_bytes
+            );
             prop_assert!(unpacked.files.is_sorted_by(|a, b| a.path <= b.path));
-            prop_assert!(unpacked.files.iter().all(|file| file.path.split('/').all(|part| !part.is_empty() && part != "..")));
+            prop_assert!(
+                unpacked
+                    .files
+                    .iter()
+                    .all(|file| file.path.split('/').all(|part| !part.is_empty() && part != ".."))
+            );
         }
     }
 }

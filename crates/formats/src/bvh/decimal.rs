@@ -280,7 +280,10 @@ mod tests {
         }
 
         #[test]
-        fn short_number_reads_all_usual_numbers(before in "[-0-9. ]{17}", text in "-?([0-9]{1,15}|[0-9]{0,9}\\.[0-9]{1,6}|[0-9]{1,8}\\.)") {
+        fn short_number_reads_all_usual_numbers(
+            before in "[-0-9. ]{17}",
+            text in "-?([0-9]{1,15}|[0-9]{0,9}\\.[0-9]{1,6}|[0-9]{1,8}\\.)",
+        ) {
             let all = format!("{before}{text}");
             let found = short(&all, before.len(), all.len());
             prop_assert_eq!(found.map(f64::to_bits), slow(&text));
@@ -302,22 +305,38 @@ mod tests {
         }
 
         #[test]
-        fn usual_number_reads_numbers_of_its_shape(before in "[-0-9. ]{9}", whole in "-?[0-9]{1,4}", decimals in "[0-9]{1,4}", blank in "[ \t]") {
+        fn usual_number_reads_numbers_of_its_shape(
+            before in "[-0-9. ]{9}",
+            whole in "-?[0-9]{1,4}",
+            decimals in "[0-9]{1,4}",
+            blank in "[ \t]",
+        ) {
             let text = format!("{whole}.{decimals}");
             let all = format!("{before}{text}{blank}2.345678901");
             let found = Usual::new(decimals.len()).unwrap().number(all.as_bytes(), before.len());
             let expected = slow(&text).map(|value| (value, all.len() - 12));
-            prop_assert_eq!(found.map(|(digits, divisor, end)| ((digits / divisor).to_bits(), end)), expected);
+            prop_assert_eq!(
+                found.map(|(digits, divisor, end)| ((digits / divisor).to_bits(), end)),
+                expected
+            );
         }
 
         #[test]
-        fn end_of_word_is_the_first_blank(word in "[!-~\u{80}-\u{ff}]{0,40}", blank in 0..=b' ', after: [u8; 16]) {
+        fn end_of_word_is_the_first_blank(
+            word in "[!-~\u{80}-\u{ff}]{0,40}",
+            blank in 0..=b' ',
+            after: [u8; 16],
+        ) {
             let text = [word.as_bytes(), &[blank], &after].concat();
             prop_assert_eq!(end_of_word(&text, 0), Some(word.len()));
         }
 
         #[test]
-        fn lines_equal_their_words(words in prop::collection::vec("-?[0-9]{1,4}(\\.[0-9]{0,9})?|1e-7", 0..40), gap in "[ \t]{1,70}", indent in "[ \t]{0,3}") {
+        fn lines_equal_their_words(
+            words in prop::collection::vec("-?[0-9]{1,4}(\\.[0-9]{0,9})?|1e-7", 0..40),
+            gap in "[ \t]{1,70}",
+            indent in "[ \t]{0,3}",
+        ) {
             let text = format!("{indent}{}\n{}", words.join(&gap), "\n".repeat(16));
             let mut row = vec![0.0; words.len()];
             let mut lines = Lines::default();
@@ -325,9 +344,15 @@ mod tests {
             for _ in 0..2 {
                 let end = lines.line(text.as_bytes(), 0, &mut row);
                 prop_assert_eq!(end, text.find('\n'));
-                prop_assert_eq!(&row, &words.iter().map(|word| word.parse::<f64>().unwrap()).collect::<Vec<_>>());
+                prop_assert_eq!(
+                    &row,
+                    &words.iter().map(|word| word.parse::<f64>().unwrap()).collect::<Vec<_>>()
+                );
             }
-            prop_assert_eq!(Lines::default().line(text.as_bytes(), 0, &mut vec![0.0; words.len() + 1]), None);
+            prop_assert_eq!(
+                Lines::default().line(text.as_bytes(), 0, &mut vec![0.0; words.len() + 1]),
+                None
+            );
         }
     }
 

@@ -106,7 +106,14 @@ mod tests {
 
     proptest! {
         #[test]
-        fn three_angles_compose_to_the_rotation(x in -1.0f64..1.0, y in -1.0f64..1.0, z in -1.0f64..1.0, w in -1.0f64..1.0, order in 0usize..6, near in -9.0f64..9.0) {
+        fn three_angles_compose_to_the_rotation(
+            x in -1.0f64..1.0,
+            y in -1.0f64..1.0,
+            z in -1.0f64..1.0,
+            w in -1.0f64..1.0,
+            order in 0usize..6,
+            near in -9.0f64..9.0,
+        ) {
             let q = DQuat::from_xyzw(x, y, z, w);
             prop_assume!(q.length() > 0.1);
             let q = q * q.length().recip();
@@ -115,7 +122,13 @@ mod tests {
         }
 
         #[test]
-        fn three_angles_in_gimbal_lock_lose_nothing(first in -4.0f64..4.0, last in -4.0f64..4.0, exponent in 0.0f64..18.0, order in 0usize..6, up: bool) {
+        fn three_angles_in_gimbal_lock_lose_nothing(
+            first in -4.0f64..4.0,
+            last in -4.0f64..4.0,
+            exponent in 0.0f64..18.0,
+            order in 0usize..6,
+            up: bool,
+        ) {
             let middle = if up { FRAC_PI_2 } else { -FRAC_PI_2 } - 10f64.powf(-exponent);
             let q = compose(&ORDERS[order], &[first, middle, last]);
             let angles = three_angles(q, ORDERS[order], [0.1, 0.2, 0.3]);
@@ -127,10 +140,23 @@ mod tests {
         }
 
         #[test]
-        fn three_angles_are_nearest_to_the_given(first in -9.0f64..9.0, middle in -1.5f64..4.6, last in -9.0f64..9.0, order in 0usize..6) {
-            prop_assume!((middle - FRAC_PI_2).abs() > 0.05 && (middle - 3.0 * FRAC_PI_2).abs() > 0.05 && (middle + FRAC_PI_2).abs() > 0.05);
+        fn three_angles_are_nearest_to_the_given(
+            first in -9.0f64..9.0,
+            middle in -1.5f64..4.6,
+            last in -9.0f64..9.0,
+            order in 0usize..6,
+        ) {
+            prop_assume!(
+                (middle - FRAC_PI_2).abs() > 0.05
+                    && (middle - 3.0 * FRAC_PI_2).abs() > 0.05
+                    && (middle + FRAC_PI_2).abs() > 0.05
+            );
             let angles = [first, middle, last];
-            let found = three_angles(compose(&ORDERS[order], &angles), ORDERS[order], angles.map(|angle| angle + 0.01));
+            let found = three_angles(
+                compose(&ORDERS[order], &angles),
+                ORDERS[order],
+                angles.map(|angle| angle + 0.01),
+            );
             for (found, angle) in found.iter().zip(angles) {
                 prop_assert!((found - angle).abs() < 1e-9);
             }

@@ -220,12 +220,16 @@ mod tests {
     proptest! {
         #[test]
         fn rotations_into_multiplies_in_order(
-            kinds in prop::collection::vec((prop::collection::vec(0..3_usize, 0..7), 1..6_usize), 0..5),
+            kinds in
+                prop::collection::vec((prop::collection::vec(0..3_usize, 0..7), 1..6_usize), 0..5),
             angles in prop::collection::vec(-1e4..1e4, 1..200),
         ) {
             // Columns in an arbitrary order.
             let mut column = 0;
-            let mut next = || { column += 31; column % angles.len() };
+            let mut next = || {
+                column += 31;
+                column % angles.len()
+            };
             let joints: Vec<Vec<(usize, usize)>> = kinds
                 .iter()
                 .flat_map(|(axes, times)| std::iter::repeat_n(axes, *times))
@@ -237,9 +241,13 @@ mod tests {
             turns.rotations_into(&angles, &mut found);
             prop_assert_eq!(found.len(), 2 * joints.len());
             for (found, joint) in found.iter().zip(joints.iter().cycle()) {
-                let turn = |&(axis, column): &(usize, usize)| DQuat::from_axis_angle(DVec3::AXES[axis], angles[column].to_radians());
+                let turn = |&(axis, column): &(usize, usize)| {
+                    DQuat::from_axis_angle(DVec3::AXES[axis], angles[column].to_radians())
+                };
                 let expected = joint.iter().map(turn).fold(DQuat::IDENTITY, |q, turn| q * turn);
-                prop_assert!((*found - expected.as_quat()).length() < 1.5e-7 * (1.0 + joint.len() as f32));
+                prop_assert!(
+                    (*found - expected.as_quat()).length() < 1.5e-7 * (1.0 + joint.len() as f32)
+                );
             }
         }
     }

@@ -63,20 +63,37 @@ proptest! {
         damage(&mut motion, &of_motion);
         let plain = skeleton_of(ASF).unwrap();
         let spoilt = skeleton_of(&asf);
-        let skeletons: Vec<(&str, &AcclaimSkeleton)> = [("a.asf", Some(&plain)), ("b.asf", spoilt.as_ref().ok())]
-            .into_iter().filter_map(|(name, skeleton)| Some((name, skeleton?))).collect();
-        prop_assert!(best_skeleton("c.amc", &motion, &skeletons).is_none_or(|best| best < skeletons.len()));
-        let alone = spoilt.as_ref().map_err(Clone::clone).and_then(|skeleton| acclaim::skeleton_clip(skeleton, &ImportOptions::default()));
-        let read = skeletons.iter().map(|(_, skeleton)| read_motion("c.amc", &motion, skeleton, &ImportOptions::default()));
+        let skeletons: Vec<(&str, &AcclaimSkeleton)> =
+            [("a.asf", Some(&plain)), ("b.asf", spoilt.as_ref().ok())]
+                .into_iter()
+                .filter_map(|(name, skeleton)| Some((name, skeleton?)))
+                .collect();
+        prop_assert!(
+            best_skeleton("c.amc", &motion, &skeletons).is_none_or(|best| best < skeletons.len())
+        );
+        let alone = spoilt
+            .as_ref()
+            .map_err(Clone::clone)
+            .and_then(|skeleton| acclaim::skeleton_clip(skeleton, &ImportOptions::default()));
+        let read = skeletons.iter().map(|(_, skeleton)| {
+            read_motion("c.amc", &motion, skeleton, &ImportOptions::default())
+        });
         for result in read.chain([alone]) {
             match result {
                 Ok(imported) => {
                     let clip = &imported.clips[0].clip;
-                    prop_assert!((0..clip.frames()).all(|frame| clip.rotations(frame).iter().all(|q| q.is_normalized())));
+                    prop_assert!(
+                        (0..clip.frames())
+                            .all(|frame| clip.rotations(frame).iter().all(|q| q.is_normalized()))
+                    );
                     prop_assert!(clip.root_translations().iter().all(|p| p.is_finite()));
                     prop_assert!(imported.warnings.iter().all(|warning| warning.count > 0 && !warning.to_string().contains('\n')));
                 }
-                Err(error) => prop_assert!(error.line >= 1 && error.column >= 1 && !error.to_string().contains('\n'), "{}", error),
+                Err(error) => prop_assert!(
+                    error.line >= 1 && error.column >= 1 && !error.to_string().contains('\n'),
+                    "{}",
+                    error
+                ),
             }
         }
     }

@@ -70,12 +70,19 @@ proptest! {
         values in prop::collection::vec(-90.0..90.0_f64, 48),
     ) {
         // Each bone is a child of any bone before it; the root is 0.
-        let bones: Vec<Bone> = bones.into_iter().enumerate().map(|(index, (parent, bone))| Bone { parent: parent.index(index + 1), ..bone }).collect();
+        let bones: Vec<Bone> = bones
+            .into_iter()
+            .enumerate()
+            .map(|(index, (parent, bone))| Bone { parent: parent.index(index + 1), ..bone })
+            .collect();
         let name = |index: usize| if index == 0 { "root".to_owned() } else { format!("b{index}") };
         let order: Vec<&str> = root_dofs.iter().map(|&dof| DOFS[dof]).collect();
         let mut asf = format!(
             ":root\norder {}\naxis {}\nposition {}\norientation {}\n:bonedata\n",
-            order.join(" ").to_uppercase(), letters(ORDERS[root_order]), triple(position), triple(orientation)
+            order.join(" ").to_uppercase(),
+            letters(ORDERS[root_order]),
+            triple(position),
+            triple(orientation)
         );
         let mut tree = String::from(":hierarchy\nbegin\n");
         let mut motion = String::from("1\nroot");
@@ -88,30 +95,55 @@ proptest! {
             }
             own
         };
-        let turn = |dofs: &[usize], own: &[f64; 7]| dofs.iter().filter(|dof| (3..6).contains(*dof)).fold(DMat3::IDENTITY, |m, &dof| about(dof - 3, own[dof]) * m);
+        let turn = |dofs: &[usize], own: &[f64; 7]| {
+            dofs.iter()
+                .filter(|dof| (3..6).contains(*dof))
+                .fold(DMat3::IDENTITY, |m, &dof| about(dof - 3, own[dof]) * m)
+        };
         let own = take(&root_dofs, &mut motion);
-        let base = ORDERS[root_order].iter().fold(DMat3::IDENTITY, |m, &axis| about(axis, orientation[axis]) * m);
+        let base = ORDERS[root_order]
+            .iter()
+            .fold(DMat3::IDENTITY, |m, &axis| about(axis, orientation[axis]) * m);
         let start = DVec3::from_array(position) + base * DVec3::new(own[0], own[1], own[2]);
         // Rotation, start and end of every bone in the world, straight from the definition.
         let mut world = vec![(base * turn(&root_dofs, &own), start, start)];
         for (index, bone) in bones.iter().enumerate() {
             let names: Vec<&str> = bone.dofs.iter().map(|&dof| DOFS[dof]).collect();
-            write!(asf,
+            write!(
+                asf,
                 "begin\nname {}\ndirection {}\nlength {}\naxis {} {}\ndof {}\nend\n",
-                name(index + 1), triple(bone.direction.to_array()), bone.length, triple(bone.axis), letters(bone.axis_order), names.join(" ")
-            ).unwrap();
+                name(index + 1),
+                triple(bone.direction.to_array()),
+                bone.length,
+                triple(bone.axis),
+                letters(bone.axis_order),
+                names.join(" ")
+            )
+            .unwrap();
             writeln!(tree, "{} {}", name(bone.parent), name(index + 1)).unwrap();
             write!(motion, "\n{}", name(index + 1)).unwrap();
             let own = take(&bone.dofs, &mut motion);
-            let c = bone.axis_order.iter().fold(DMat3::IDENTITY, |m, &axis| about(axis, bone.axis[axis]) * m);
+            let c = bone
+                .axis_order
+                .iter()
+                .fold(DMat3::IDENTITY, |m, &axis| about(axis, bone.axis[axis]) * m);
             let (parent, _, end) = world[bone.parent];
             let start = end + parent * (c * DVec3::new(own[0], own[1], own[2]));
             let rotation = parent * c * turn(&bone.dofs, &own) * c.transpose();
-            world.push((rotation, start, start + rotation * (bone.direction * (bone.length + own[6]))));
+            world.push((
+                rotation,
+                start,
+                start + rotation * (bone.direction * (bone.length + own[6])),
+            ));
         }
         asf += &tree;
-        let options = ImportOptions { metres_per_unit: Some(0.01), up: Some(segue_motion::clip::UpAxis::Y), ..ImportOptions::default() };
-        let imported = read_with(&asf, &motion, &options).map_err(|error| TestCaseError::fail(format!("{error}\n{asf}\n{motion}")))?;
+        let options = ImportOptions {
+            metres_per_unit: Some(0.01),
+            up: Some(segue_motion::clip::UpAxis::Y),
+            ..ImportOptions::default()
+        };
+        let imported = read_with(&asf, &motion, &options)
+            .map_err(|error| TestCaseError::fail(format!("{error}\n{asf}\n{motion}")))?;
         let clip = &imported.clips[0].clip;
         let pose = clip.world_pose(0);
         for (index, (rotation, start, end)) in world.iter().enumerate() {
@@ -121,7 +153,11 @@ proptest! {
                 prop_assert!(above.joints().any(|joint| joint.name == name(index)));
                 continue;
             };
-            prop_assert!((pose.positions[joint] * 100.0).as_dvec3().distance(*start) < 1e-3, "{} of\n{asf}{motion}", name(index));
+            prop_assert!(
+                (pose.positions[joint] * 100.0).as_dvec3().distance(*start) < 1e-3,
+                "{} of\n{asf}{motion}",
+                name(index)
+            );
             let found = glam::Mat3::from_quat(pose.rotations[joint]).as_dmat3();
             prop_assert!((found - *rotation).to_cols_array().iter().all(|d| d.abs() < 1e-5));
             let grows = index > 0 && bones[index - 1].dofs.contains(&6);

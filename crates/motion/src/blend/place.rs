@@ -61,7 +61,13 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(32))]
         #[test]
-        fn align_facing_keeps_joint_distances(yaw in -3.2f64..3.2, x in -20.0f64..20.0, z in -20.0f64..20.0, f in 0usize..60, g in 0usize..60) {
+        fn align_facing_keeps_joint_distances(
+            yaw in -3.2f64..3.2,
+            x in -20.0f64..20.0,
+            z in -20.0f64..20.0,
+            f in 0usize..60,
+            g in 0usize..60,
+        ) {
             let clip = Walk { frames: 60, turning: 0.8, ..Walk::default() }.clip();
             let moved = clip.transformed(&Planar::new(yaw, x, z));
             let (p, q) = (clip.world_positions(f..f + 1), clip.world_positions(g..g + 1));
@@ -75,14 +81,21 @@ mod tests {
         }
 
         #[test]
-        fn alignment_of_a_moved_clip_is_the_inverse_transform(yaw in -3.1f64..3.1, x in -9.0f64..9.0, z in -9.0f64..9.0) {
+        fn alignment_of_a_moved_clip_is_the_inverse_transform(
+            yaw in -3.1f64..3.1,
+            x in -9.0f64..9.0,
+            z in -9.0f64..9.0,
+        ) {
             let clip = Walk { frames: 40, turning: 0.8, ..Walk::default() }.clip();
             let there = Planar::new(yaw, x, z);
             let moved = clip.transformed(&there);
             let weights = limb_weights(clip.skeleton());
             let roles = Roles::detect(clip.skeleton());
             let windowed = align_onto(&clip, 7, &moved, 7, 12, &weights, 0.0).unwrap().transform;
-            let facing = align_facing(&character_frames(&clip, &roles)[7], &character_frames(&moved, &roles)[7]);
+            let facing = align_facing(
+                &character_frames(&clip, &roles)[7],
+                &character_frames(&moved, &roles)[7],
+            );
             for found in [windowed, facing] {
                 let still = found.after(&there);
                 prop_assert!(still.yaw.abs() < 1e-4 && still.shift.length() < 1e-3, "{still:?}");

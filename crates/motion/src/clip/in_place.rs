@@ -462,7 +462,11 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(12))]
         /// The position and facing of the clip in place do not change the trajectory.
         #[test]
-        fn root_motion_does_not_depend_on_the_position_of_the_clip(yaw in -3.0f64..3.0, x in -5.0f64..5.0, z in -5.0f64..5.0) {
+        fn root_motion_does_not_depend_on_the_position_of_the_clip(
+            yaw in -3.0f64..3.0,
+            x in -5.0f64..5.0,
+            z in -5.0f64..5.0,
+        ) {
             let (clip, roles, frames) = made(&Params::new(Action::Walk));
             let still = clip.transformed_by_frame(&take_in_place(&frames, true));
             let there = Planar::new(yaw, x, z);

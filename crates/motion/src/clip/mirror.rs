@@ -271,7 +271,11 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(24))]
         #[test]
-        fn mirror_twice_is_the_original(rig in 0usize..11, seed in 0u64..1000, radians in 0.0f32..0.3) {
+        fn mirror_twice_is_the_original(
+            rig in 0usize..11,
+            seed in 0u64..1000,
+            radians in 0.0f32..0.3,
+        ) {
             let (_, skeleton, _) = fixtures::all().swap_remove(rig);
             assert_involution(&fixtures::uneven(&skeleton, 1.0, radians, 0.2, seed), seed);
         }

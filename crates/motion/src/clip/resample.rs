@@ -89,7 +89,11 @@ mod tests {
 
         /// A multiple of the rate keeps every frame, and resampling back gives the clip again.
         #[test]
-        fn resample_to_a_multiple_and_back_is_the_clip(frames in 1usize..20, times in 2u32..5, seed in 0u64..100) {
+        fn resample_to_a_multiple_and_back_is_the_clip(
+            frames in 1usize..20,
+            times in 2u32..5,
+            seed in 0u64..100,
+        ) {
             let clip = wander(&fixtures::lafan(), frames, seed);
             for how in ALL {
                 let finer = resample(&clip, clip.fps() * f64::from(times), how).unwrap();

@@ -252,7 +252,12 @@ mod tests {
     proptest! {
         /// Transforming the clip transforms its ground frames.
         #[test]
-        fn character_frames_transform_with_the_clip(seed in 0u64..500, yaw in -3.0f64..3.0, x in -5.0f64..5.0, z in -5.0f64..5.0) {
+        fn character_frames_transform_with_the_clip(
+            seed in 0u64..500,
+            yaw in -3.0f64..3.0,
+            x in -5.0f64..5.0,
+            z in -5.0f64..5.0,
+        ) {
             let skeleton = fixtures::cmu_bvh();
             let roles = fixtures::roles(&skeleton);
             let clip = wander_by(&skeleton, 4, seed, 0.3);

@@ -256,10 +256,19 @@ mod tests {
 
     proptest! {
         #[test]
-        fn recording_to_text_and_back_is_equal(parts in prop::collection::vec((-240i16..=240, -240i16..=240, prop::option::of(0u8..), 0u32..99, 0u32..1 << 31), 0..9)) {
+        fn recording_to_text_and_back_is_equal(
+            parts in prop::collection::vec(
+                (-240i16..=240, -240i16..=240, prop::option::of(0u8..), 0u32..99, 0u32..1 << 31),
+                0..9,
+            ),
+        ) {
             let mut recording = Recording::new();
             for (x, z, facing, ticks, ask) in parts {
-                let control = Control { velocity: [x, z], facing, filter: TagFilter { ask: TagSet(ask & 31), forbid: TagSet(ask >> 5) } };
+                let control = Control {
+                    velocity: [x, z],
+                    facing,
+                    filter: TagFilter { ask: TagSet(ask & 31), forbid: TagSet(ask >> 5) },
+                };
                 recording.hold(control, ticks);
             }
             let again = Recording::from_text(&recording.to_text()).unwrap();

@@ -122,17 +122,28 @@ mod tests {
     proptest! {
         #[test]
         fn decay_starts_with_the_given_offset_and_velocity(
-            x in -1.0f64..1.0, v in -9.0f64..9.0, t in 0.0f64..0.5
+            x in -1.0f64..1.0,
+            v in -9.0f64..9.0,
+            t in 0.0f64..0.5,
         ) {
             for decay in ALL {
                 let closing = if x == 0.0 { 0.0 } else { -v / x };
                 prop_assert_eq!(decay.response(closing, 0.0).of(x, v), (x, v));
                 let at = |t: f64| decay.response(closing, t).of(x, v);
-                let support = match decay { Decay::Quintic { blend_secs } if closing > 0.0 => blend_secs.min(5.0 / closing), _ => 0.4 };
+                let support = match decay {
+                    Decay::Quintic { blend_secs } if closing > 0.0 => blend_secs.min(5.0 / closing),
+                    _ => 0.4,
+                };
                 let dt = 1e-6;
                 if (t - support).abs() > 1e-3 && t > dt && support > 1e-2 {
                     let slope = (at(t + dt).0 - at(t - dt).0) / (2.0 * dt);
-                    prop_assert!((slope - at(t).1).abs() < 1e-3, "{:?} {} {}", decay, slope, at(t).1);
+                    prop_assert!(
+                        (slope - at(t).1).abs() < 1e-3,
+                        "{:?} {} {}",
+                        decay,
+                        slope,
+                        at(t).1
+                    );
                 }
             }
         }

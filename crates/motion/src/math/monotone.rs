@@ -151,7 +151,9 @@ mod tests {
 
     proptest! {
         #[test]
-        fn curve_through_points_increases_and_inverts(steps in prop::collection::vec((0.1f64..3.0, 0.01f64..3.0), 0..12)) {
+        fn curve_through_points_increases_and_inverts(
+            steps in prop::collection::vec((0.1f64..3.0, 0.01f64..3.0), 0..12),
+        ) {
             let mut points = vec![(-1.0, 2.0)];
             for (dx, dy) in steps {
                 let &(x, y) = points.last().unwrap();
@@ -170,7 +172,10 @@ mod tests {
                 before = y;
                 prop_assert!((curve.inverse(y) - x).abs() < 1e-4, "{x} {}", curve.inverse(y));
                 let h = 1e-6;
-                prop_assert!((curve.slope(x) - (curve.at(x + h) - curve.at(x - h)) / (2.0 * h)).abs() < 1e-3 || points.iter().any(|p| (p.0 - x).abs() < 2.0 * h));
+                prop_assert!(
+                    (curve.slope(x) - (curve.at(x + h) - curve.at(x - h)) / (2.0 * h)).abs() < 1e-3
+                        || points.iter().any(|p| (p.0 - x).abs() < 2.0 * h)
+                );
                 prop_assert!(curve.slope(x) >= 0.0);
             }
         }

@@ -120,7 +120,12 @@ mod tests {
 
     proptest! {
         #[test]
-        fn planar_after_its_inverse_is_identity(a in planar(), x in -5.0f32..5.0, y in -1.0f32..3.0, z in -5.0f32..5.0) {
+        fn planar_after_its_inverse_is_identity(
+            a in planar(),
+            x in -5.0f32..5.0,
+            y in -1.0f32..3.0,
+            z in -5.0f32..5.0,
+        ) {
             let p = Vec3::new(x, y, z);
             prop_assert!((a.inverse().apply(a.apply(p)) - p).length() < 1e-5);
             prop_assert!((a.after(&a.inverse()).apply(p) - p).length() < 1e-5);

@@ -271,18 +271,30 @@ mod tests {
         /// The rotation of rotated directions is found; equal offsets to either side do not change
         /// it.
         #[test]
-        fn best_fit_of_rotated_directions_is_the_rotation(x in -1.8f32..1.8, y in -1.8f32..1.8, z in -1.8f32..1.8, long in 0.2f32..5.0) {
+        fn best_fit_of_rotated_directions_is_the_rotation(
+            x in -1.8f32..1.8,
+            y in -1.8f32..1.8,
+            z in -1.8f32..1.8,
+            long in 0.2f32..5.0,
+        ) {
             let turn = exp(Vec3::new(x, y, z));
             let from = [Vec3::X * long, Vec3::new(0.1, 1.0, -0.3), Vec3::new(-0.4, -0.2, 0.5)];
             let pairs = from.map(|v| (v, turn * v));
             prop_assert!(angle_between(best_fit(&pairs).unwrap(), turn) < 1e-3);
             // No rotation near it fits better.
-            let noisy = [(from[0], turn * (from[0] + Vec3::Y * 0.3)), (from[1], turn * (from[1] - Vec3::Z * 0.2)), pairs[2]];
-            let cost = |q: Quat| noisy.iter().map(|(u, v)| (q * *u).distance_squared(*v)).sum::<f32>();
+            let noisy = [
+                (from[0], turn * (from[0] + Vec3::Y * 0.3)),
+                (from[1], turn * (from[1] - Vec3::Z * 0.2)),
+                pairs[2],
+            ];
+            let cost =
+                |q: Quat| noisy.iter().map(|(u, v)| (q * *u).distance_squared(*v)).sum::<f32>();
             let best = best_fit(&noisy).unwrap();
             for axis in Vec3::AXES {
                 for angle in [-0.02, 0.02] {
-                    prop_assert!(cost(Quat::from_axis_angle(axis, angle) * best) >= cost(best) - 1e-5);
+                    prop_assert!(
+                        cost(Quat::from_axis_angle(axis, angle) * best) >= cost(best) - 1e-5
+                    );
                 }
             }
         }
@@ -298,11 +310,16 @@ mod tests {
 
         #[test]
         fn rate_to_angular_velocity_agrees_with_differences(
-            x in -1.7f32..1.7, y in -1.7f32..1.7, z in -1.7f32..1.7, u in -3.0f32..3.0, v in -3.0f32..3.0
+            x in -1.7f32..1.7,
+            y in -1.7f32..1.7,
+            z in -1.7f32..1.7,
+            u in -3.0f32..3.0,
+            v in -3.0f32..3.0,
         ) {
             for scale in [1.0, 1e-2, 1e-4] {
                 let (at, rate, dt) = (Vec3::new(x, y, z) * scale, Vec3::new(u, v, u - v), 2e-3);
-                let found = angular_velocity(exp(at - rate * (0.5 * dt)), exp(at + rate * (0.5 * dt)), dt);
+                let found =
+                    angular_velocity(exp(at - rate * (0.5 * dt)), exp(at + rate * (0.5 * dt)), dt);
                 let wanted = rate_to_angular_velocity(at, rate);
                 prop_assert!((found - wanted).length() < 2e-3, "{found} {wanted}");
                 prop_assert!((vector_rate(at, wanted) - rate).length() < 2e-4);
@@ -311,7 +328,11 @@ mod tests {
 
         #[test]
         fn slerp_turns_at_constant_speed(
-            x in -1.8f32..1.8, y in -1.8f32..1.8, z in -1.8f32..1.8, angle in 0.0f32..3.0, t in 0.0f32..=1.0
+            x in -1.8f32..1.8,
+            y in -1.8f32..1.8,
+            z in -1.8f32..1.8,
+            angle in 0.0f32..3.0,
+            t in 0.0f32..=1.0,
         ) {
             let start = exp(Vec3::new(x, y, z));
             let turn = Vec3::new(y, z, x + 0.01).normalize_or(Vec3::X) * angle;
@@ -320,7 +341,12 @@ mod tests {
         }
 
         #[test]
-        fn slerp_of_negated_quaternions_is_equal(x in -3.0f32..3.0, y in -3.0f32..3.0, z in -3.0f32..3.0, t in 0.0f32..1.0) {
+        fn slerp_of_negated_quaternions_is_equal(
+            x in -3.0f32..3.0,
+            y in -3.0f32..3.0,
+            z in -3.0f32..3.0,
+            t in 0.0f32..1.0,
+        ) {
             let (a, b) = (exp(Vec3::new(x, y, z)), exp(Vec3::new(z, x, y)));
             prop_assume!(a.dot(b).abs() > 1e-3);
             prop_assert!(angle_between(slerp(a, b, t), slerp(a, -b, t)) < 1e-3);

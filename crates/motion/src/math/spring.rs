@@ -147,7 +147,13 @@ mod tests {
 
     proptest! {
         #[test]
-        fn response_of_two_steps_equals_one_long_step(x in -2.0f64..2.0, v in -9.0f64..9.0, h in 0.01f64..2.0, s in 0.0f64..1.0, t in 0.0f64..1.0) {
+        fn response_of_two_steps_equals_one_long_step(
+            x in -2.0f64..2.0,
+            v in -9.0f64..9.0,
+            h in 0.01f64..2.0,
+            s in 0.0f64..1.0,
+            t in 0.0f64..1.0,
+        ) {
             let (p, q) = response(h, s).of(x, v);
             let (p, q) = response(h, t).of(p, q);
             let (a, b) = response(h, s + t).of(x, v);
@@ -156,9 +162,17 @@ mod tests {
 
         #[test]
         fn towards_rotation_starts_with_its_velocity_and_arrives(
-            x in -1.5f32..1.5, y in -1.5f32..1.5, z in -1.5f32..1.5, w in -3.0f32..3.0, h in 0.05f64..0.5
+            x in -1.5f32..1.5,
+            y in -1.5f32..1.5,
+            z in -1.5f32..1.5,
+            w in -3.0f32..3.0,
+            h in 0.05f64..0.5,
         ) {
-            let (q, target, spin) = (quat::exp(Vec3::new(x, y, z)), quat::exp(Vec3::new(z, x, 0.3)), Vec3::new(w, 1.0, -w));
+            let (q, target, spin) = (
+                quat::exp(Vec3::new(x, y, z)),
+                quat::exp(Vec3::new(z, x, 0.3)),
+                Vec3::new(w, 1.0, -w),
+            );
             let (there, still) = towards_rotation(q, spin, target, h, 30.0 * h);
             prop_assert!(quat::angle_between(there, target) < 1e-4 && still.length() < 1e-3);
             let dt = 1e-3;

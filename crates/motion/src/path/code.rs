@@ -151,8 +151,13 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(64))]
 
         #[test]
-        fn code_of_a_path_decodes_to_the_centimetre(way in prop::collection::vec((-50.0f64..50.0, -50.0f64..50.0), 6..20), at in 0.01f64..0.99, closed: bool) {
-            let mut path = GroundSpline::uniform(way.into_iter().map(DVec2::from).collect()).unwrap();
+        fn code_of_a_path_decodes_to_the_centimetre(
+            way in prop::collection::vec((-50.0f64..50.0, -50.0f64..50.0), 6..20),
+            at in 0.01f64..0.99,
+            closed: bool,
+        ) {
+            let mut path =
+                GroundSpline::uniform(way.into_iter().map(DVec2::from).collect()).unwrap();
             if closed {
                 path = path.joined();
             }

@@ -149,7 +149,12 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(24))]
         #[test]
-        fn self_terms_agree_with_pair_terms(frames in 1usize..60, window in 1usize..25, turning in -1.0f32..1.0, slice in 1usize..20) {
+        fn self_terms_agree_with_pair_terms(
+            frames in 1usize..60,
+            window in 1usize..25,
+            turning in -1.0f32..1.0,
+            slice in 1usize..20,
+        ) {
             let clip = Walk { frames, turning, ..Walk::default() }.clip();
             let weights = limb_weights(clip.skeleton());
             let level = PointClouds::level_m(&clip, &weights).unwrap();
@@ -159,20 +164,38 @@ mod tests {
                 prop_assert!(half.sweep(window).is_err());
             }
             while !half.advance(slice).is_complete() {}
-            let mut whole = PairTerms::new(&clip, 0..frames, &clip, 0..frames, &weights, 1).unwrap();
+            let mut whole =
+                PairTerms::new(&clip, 0..frames, &clip, 0..frames, &weights, 1).unwrap();
             whole.finish();
             let all = 0..frames;
-            let (packed, full) = (half.sweep(window).unwrap().finish(), whole.distances(window, &all, &all).unwrap());
+            let (packed, full) = (
+                half.sweep(window).unwrap().finish(),
+                whole.distances(window, &all, &all).unwrap(),
+            );
             prop_assert_eq!(packed.rows(), full.rows());
             for row in 0..full.rows() {
                 for column in 0..full.columns() {
-                    let (found, wanted) = (packed.get(row, column).unwrap(), full.get(row, column).unwrap());
-                    prop_assert!((found * found - wanted * wanted).abs() < 3e-7, "{} {} {} {}", row, column, found, wanted);
+                    let (found, wanted) =
+                        (packed.get(row, column).unwrap(), full.get(row, column).unwrap());
+                    prop_assert!(
+                        (found * found - wanted * wanted).abs() < 3e-7,
+                        "{} {} {} {}",
+                        row,
+                        column,
+                        found,
+                        wanted
+                    );
                     if row <= column {
                         prop_assert_eq!(found, wanted);
                     }
-                    let (a, b) = (half.alignment(row, column, window, 0.0).unwrap(), whole.alignment(row, column, window, 0.0).unwrap());
-                    prop_assert!((a.distance - b.distance).abs() < 1e-5 && (a.transform.yaw - b.transform.yaw).abs() < 1e-3);
+                    let (a, b) = (
+                        half.alignment(row, column, window, 0.0).unwrap(),
+                        whole.alignment(row, column, window, 0.0).unwrap(),
+                    );
+                    prop_assert!(
+                        (a.distance - b.distance).abs() < 1e-5
+                            && (a.transform.yaw - b.transform.yaw).abs() < 1e-3
+                    );
                     prop_assert!((a.transform.shift - b.transform.shift).length() < 1e-3);
                     let direct = rms_cm(a.distance, a.weight, 1.75) / 100.0;
                     prop_assert!((direct * direct - f64::from(found * found)).abs() < 3e-7);

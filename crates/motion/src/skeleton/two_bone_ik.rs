@@ -47,7 +47,11 @@ mod tests {
     proptest! {
         #[test]
         fn two_bone_ik_within_reach_bends_about_the_hinge(
-            x in -0.3f32..0.3, y in -0.8f32..-0.3, z in -0.4f32..0.4, upper in 0.3f32..0.5, side in -0.4f32..0.4
+            x in -0.3f32..0.3,
+            y in -0.8f32..-0.3,
+            z in -0.4f32..0.4,
+            upper in 0.3f32..0.5,
+            side in -0.4f32..0.4,
         ) {
             let (line, lower) = (Vec3::new(x, y, z), 0.42);
             prop_assume!(line.length() < upper + lower - 1e-3);
@@ -61,7 +65,11 @@ mod tests {
         }
 
         #[test]
-        fn two_bone_ik_out_of_reach_is_straight(x in -3.0f32..3.0, y in -3.0f32..-0.9, z in -3.0f32..3.0) {
+        fn two_bone_ik_out_of_reach_is_straight(
+            x in -3.0f32..3.0,
+            y in -3.0f32..-0.9,
+            z in -3.0f32..3.0,
+        ) {
             let line = Vec3::new(x, y, z);
             let bones = two_bone_ik(line, 0.43, 0.42, Vec3::X);
             for bone in [bones.upper, bones.lower] {

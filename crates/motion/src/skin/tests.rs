@@ -374,20 +374,31 @@ fn character_of_another_rig_stands_where_the_clip_stands() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
     #[test]
-    fn body_of_a_random_tree_is_valid(seed in any::<u64>(), joints in 2usize..16, scale in -2.0f32..2.0) {
+    fn body_of_a_random_tree_is_valid(
+        seed in any::<u64>(),
+        joints in 2usize..16,
+        scale in -2.0f32..2.0,
+    ) {
         let mut next = fixtures::noise(seed);
-        let list = (0..joints).map(|index| Joint {
-            name: format!("j{index}"),
-            parent: index.checked_sub(1).map(|last| (next().abs() * (last + 1) as f32) as usize % (last + 1)),
-            offset: Vec3::new(next(), next(), next()) * 10f32.powf(scale) * next().abs(),
-            end_site: None,
-            channels: vec![],
-        }).collect();
+        let list = (0..joints)
+            .map(|index| Joint {
+                name: format!("j{index}"),
+                parent: index
+                    .checked_sub(1)
+                    .map(|last| (next().abs() * (last + 1) as f32) as usize % (last + 1)),
+                offset: Vec3::new(next(), next(), next()) * 10f32.powf(scale) * next().abs(),
+                end_site: None,
+                channels: vec![],
+            })
+            .collect();
         let skeleton = Skeleton::new(list).unwrap();
         let mesh = SkinnedMesh::around(&skeleton, &Roles::detect(&skeleton), 1.0);
         check("random", &skeleton, &mesh);
         prop_assert!(mesh.positions.len() < 60_000, "{}", mesh.positions.len());
-        let world = world_pose(&skeleton, &Pose { rotations: vec![quat::exp(Vec3::ONE); joints], ..Pose::default() });
+        let world = world_pose(
+            &skeleton,
+            &Pose { rotations: vec![quat::exp(Vec3::ONE); joints], ..Pose::default() },
+        );
         let (mut transforms, mut positions, mut normals) = (vec![], vec![], vec![]);
         mesh.joint_transforms(&world, &mut transforms);
         dual_quaternion(&mesh, &transforms, &mut positions, &mut normals);

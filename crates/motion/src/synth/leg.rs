@@ -23,7 +23,11 @@ mod tests {
 
     proptest! {
         #[test]
-        fn leg_within_reach_ends_at_the_ankle(x in -0.3f32..0.3, y in -0.8f32..-0.3, z in -0.4f32..0.4) {
+        fn leg_within_reach_ends_at_the_ankle(
+            x in -0.3f32..0.3,
+            y in -0.8f32..-0.3,
+            z in -0.4f32..0.4,
+        ) {
             let (thigh, shank) = (0.43, 0.42);
             let (hip, ankle) = (Vec3::new(0.1, 0.9, 0.0), Vec3::new(0.1 + x, 0.9 + y, z));
             prop_assume!((ankle - hip).length() < 0.849);

@@ -152,25 +152,52 @@ mod tests {
     proptest! {
         #[test]
         fn exact_loop_closes_in_pose_and_velocity(
-            h in 0.01f64..3.0, r in 0.0f64..1.0, duration in 0.2f64..5.0, d in -1.0f64..1.0, v in -5.0f64..5.0
+            h in 0.01f64..3.0,
+            r in 0.0f64..1.0,
+            duration in 0.2f64..5.0,
+            d in -1.0f64..1.0,
+            v in -5.0f64..5.0,
         ) {
             for method in [LoopMethod::Exact { half_life_secs: h }, LoopMethod::Cubic] {
                 for r in [0.0, 0.5, 1.0, r] {
                     let (x, w) = seam(&LoopCurve::new(method, r, duration), duration, d, v);
-                    prop_assert!(x.abs() < 1e-10 && w.abs() < 1e-10, "{method:?} {r} {duration}: {x} {w}");
+                    prop_assert!(
+                        x.abs() < 1e-10 && w.abs() < 1e-10,
+                        "{method:?} {r} {duration}: {x} {w}"
+                    );
                 }
             }
-            prop_assert!(seam(&LoopCurve::new(LoopMethod::Linear, r, duration), duration, d, v).0.abs() < 1e-12);
+            prop_assert!(
+                seam(&LoopCurve::new(LoopMethod::Linear, r, duration), duration, d, v).0.abs()
+                    < 1e-12
+            );
         }
 
         #[test]
-        fn loop_curve_rate_is_its_derivative(h in 0.05f64..1.0, r in 0.0f64..1.0, duration in 0.3f64..3.0, share in 0.01f64..0.99) {
-            for method in [LoopMethod::Exact { half_life_secs: h }, LoopMethod::Classic { half_life_secs: h }, LoopMethod::Crossed { half_life_secs: h }, LoopMethod::Linear, LoopMethod::Cubic] {
+        fn loop_curve_rate_is_its_derivative(
+            h in 0.05f64..1.0,
+            r in 0.0f64..1.0,
+            duration in 0.3f64..3.0,
+            share in 0.01f64..0.99,
+        ) {
+            for method in [
+                LoopMethod::Exact { half_life_secs: h },
+                LoopMethod::Classic { half_life_secs: h },
+                LoopMethod::Crossed { half_life_secs: h },
+                LoopMethod::Linear,
+                LoopMethod::Cubic,
+            ] {
                 let curve = LoopCurve::new(method, r, duration);
                 let (t, dt) = (share * duration, 1e-6);
                 let [before, here, after] = [t - dt, t, t + dt].map(|t| curve.at(t));
-                prop_assert!(((after.xx - before.xx) / (2.0 * dt) - here.vx).abs() < 1e-4 * (1.0 + here.vx.abs()));
-                prop_assert!(((after.xv - before.xv) / (2.0 * dt) - here.vv).abs() < 1e-4 * (1.0 + here.vv.abs()));
+                prop_assert!(
+                    ((after.xx - before.xx) / (2.0 * dt) - here.vx).abs()
+                        < 1e-4 * (1.0 + here.vx.abs())
+                );
+                prop_assert!(
+                    ((after.xv - before.xv) / (2.0 * dt) - here.vv).abs()
+                        < 1e-4 * (1.0 + here.vv.abs())
+                );
             }
         }
     }

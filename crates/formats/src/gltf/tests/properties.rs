@@ -26,7 +26,14 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(120))]
 
     #[test]
-    fn joint_positions_equal_node_matrices(tree in tree(), joints in prop::collection::btree_set(0usize..9, 1..6), keys in prop::collection::vec((0usize..9, [-2.0f32..2.0, -2.0f32..2.0, -2.0f32..2.0], any::<bool>()), 1..6)) {
+    fn joint_positions_equal_node_matrices(
+        tree in tree(),
+        joints in prop::collection::btree_set(0usize..9, 1..6),
+        keys in prop::collection::vec(
+            (0usize..9, [-2.0f32..2.0, -2.0f32..2.0, -2.0f32..2.0], any::<bool>()),
+            1..6,
+        ),
+    ) {
         let turn = |v: [f32; 3]| quat::exp(Vec3::from_array(v));
         let parent = |node: usize| (node > 0).then(|| tree[node].0.index(node));
         let nodes: Vec<Value> = tree.iter().enumerate().map(|(node, (_, place, angles, scale))| {
@@ -42,21 +49,38 @@ proptest! {
         let mut builder = GltfBuilder::new(&json!(nodes), &joints);
         // From rest to a key one frame later; of several channels for one property, the last one
         // counts.
-        let mut moved: Vec<([f32; 3], Quat)> = tree.iter().map(|(_, place, angles, _)| (*place, turn(*angles))).collect();
+        let mut moved: Vec<([f32; 3], Quat)> =
+            tree.iter().map(|(_, place, angles, _)| (*place, turn(*angles))).collect();
         let at_rest = moved.clone();
         for &(node, to, turns) in keys.iter().filter(|key| key.0 < tree.len()) {
             if turns {
                 moved[node].1 = turn(to);
-                builder.channel(node, "rotation", "LINEAR", &[0.0, 1.0 / 24.0], &[at_rest[node].1.to_array(), turn(to).to_array()].concat());
+                builder.channel(
+                    node,
+                    "rotation",
+                    "LINEAR",
+                    &[0.0, 1.0 / 24.0],
+                    &[at_rest[node].1.to_array(), turn(to).to_array()].concat(),
+                );
             } else {
                 moved[node].0 = to;
-                builder.channel(node, "translation", "LINEAR", &[0.0, 1.0 / 24.0], &[at_rest[node].0, to].concat());
+                builder.channel(
+                    node,
+                    "translation",
+                    "LINEAR",
+                    &[0.0, 1.0 / 24.0],
+                    &[at_rest[node].0, to].concat(),
+                );
             }
         }
         let world = |poses: &[([f32; 3], Quat)]| {
             let mut all: Vec<DMat4> = Vec::new();
             for (node, (place, turn)) in poses.iter().enumerate() {
-                let local = DMat4::from_scale_rotation_translation(DVec3::splat(f64::from(tree[node].3)), DQuat::from_array(turn.to_array().map(f64::from)), DVec3::from_array(place.map(f64::from)));
+                let local = DMat4::from_scale_rotation_translation(
+                    DVec3::splat(f64::from(tree[node].3)),
+                    DQuat::from_array(turn.to_array().map(f64::from)),
+                    DVec3::from_array(place.map(f64::from)),
+                );
                 all.push(parent(node).map_or(DMat4::IDENTITY, |parent| all[parent]) * local);
             }
             all
@@ -64,25 +88,37 @@ proptest! {
         let imported = builder.read();
         for found in &imported.clips {
             let clip = &found.clip;
-            for (frame, matrices) in [world(&at_rest), world(&moved)].iter().enumerate().take(clip.frames()) {
+            for (frame, matrices) in
+                [world(&at_rest), world(&moved)].iter().enumerate().take(clip.frames())
+            {
                 let pose = clip.world_pose(frame);
                 for (joint, position) in clip.skeleton().joints().iter().zip(&pose.positions) {
                     let node: usize = joint.name[1..].parse().unwrap();
                     let expected = matrices[node].transform_point3(DVec3::ZERO).as_vec3();
                     let size = 1.0 + expected.length();
-                    prop_assert!(position.distance(expected) < 2e-5 * size, "{} in frame {frame}: {position}, not {expected}", joint.name);
+                    prop_assert!(
+                        position.distance(expected) < 2e-5 * size,
+                        "{} in frame {frame}: {position}, not {expected}",
+                        joint.name
+                    );
                 }
             }
         }
         let skeletons = imported.clips.iter().map(|found| found.clip.skeleton());
         let kept = skeletons.clone().flat_map(|skeleton| skeleton.joints());
-        let folded = skeletons.filter_map(|skeleton| skeleton.folded_chain()).flat_map(FoldedChain::joints);
+        let folded =
+            skeletons.filter_map(|skeleton| skeleton.folded_chain()).flat_map(FoldedChain::joints);
         let names: Vec<&str> = kept.chain(folded).map(|joint| joint.name.as_str()).collect();
-        prop_assert!(joints.iter().all(|joint| names.contains(&format!("n{joint}").as_str())), "{names:?}");
+        prop_assert!(
+            joints.iter().all(|joint| names.contains(&format!("n{joint}").as_str())),
+            "{names:?}"
+        );
     }
 
     #[test]
-    fn damaged_files_are_read_or_refused(edits in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0u8..4), 1..10)) {
+    fn damaged_files_are_read_or_refused(
+        edits in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>(), 0u8..4), 1..10),
+    ) {
         let clip = wander(&fixtures::cmu_bvh(), 4, 9);
         let mut bytes = by_another_program(write_glb(&clip, &GlbOptions::default()).unwrap());
         let json = 20 + bytes[20..].windows(4).position(|w| w == b"BIN\0").unwrap();
@@ -98,7 +134,13 @@ proptest! {
         let options = ImportOptions { max_bytes: 1 << 22, ..ImportOptions::default() };
         if let Ok(imported) = read("spoilt.glb", &bytes, &|_| None, &options) {
             for found in &imported.clips {
-                prop_assert!((0..found.clip.frames()).all(|frame| found.clip.rotations(frame).iter().all(|q| q.is_normalized())));
+                prop_assert!(
+                    (0..found.clip.frames()).all(|frame| found
+                        .clip
+                        .rotations(frame)
+                        .iter()
+                        .all(|q| q.is_normalized()))
+                );
                 prop_assert!(found.clip.root_translations().iter().all(|place| place.is_finite()));
                 if let Some(mesh) = &found.mesh {
                     skin::check(mesh, found.clip.skeleton().len());

@@ -41,29 +41,68 @@ fn laws() -> impl Strategy<Value = (WeightLaw, RootBlend)> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
     #[test]
-    fn dissolve_of_a_clip_with_itself_is_the_clip((law, root) in laws(), window in 0usize..60, at in 0usize..59, turning in -1.0f32..1.0) {
-        let a = source(Walk { frames: 120, turning, heading: 3.0, start: (3.0, -2.0), ..Walk::default() });
-        let out = dissolve(&a, at, &a, at, &DissolveOptions { window, law, root, ..DissolveOptions::default() }).unwrap();
+    fn dissolve_of_a_clip_with_itself_is_the_clip(
+        (law, root) in laws(),
+        window in 0usize..60,
+        at in 0usize..59,
+        turning in -1.0f32..1.0,
+    ) {
+        let a = source(Walk {
+            frames: 120,
+            turning,
+            heading: 3.0,
+            start: (3.0, -2.0),
+            ..Walk::default()
+        });
+        let out = dissolve(
+            &a,
+            at,
+            &a,
+            at,
+            &DissolveOptions { window, law, root, ..DissolveOptions::default() },
+        )
+        .unwrap();
         let worst = worst_distance(&out.clip, a.clip());
         prop_assert!(worst < 1e-5, "{worst}");
-        let angle = (0..120).flat_map(|f| out.clip.rotations(f).iter().zip(a.clip().rotations(f))).map(|(p, q)| quat::angle_between(*p, *q));
+        let angle = (0..120)
+            .flat_map(|f| out.clip.rotations(f).iter().zip(a.clip().rotations(f)))
+            .map(|(p, q)| quat::angle_between(*p, *q));
         prop_assert!(angle.fold(0.0, f32::max) < 1e-5 * PI);
     }
 
     #[test]
-    fn dissolve_does_not_depend_on_the_position_of_b(yaw in -3.0f64..3.0, x in -9.0f64..9.0, z in -9.0f64..9.0, (law, root) in laws()) {
+    fn dissolve_does_not_depend_on_the_position_of_b(
+        yaw in -3.0f64..3.0,
+        x in -9.0f64..9.0,
+        z in -9.0f64..9.0,
+        (law, root) in laws(),
+    ) {
         let (a, b) = two_walks();
         let moved = Motion::with_roles(b.clip().transformed(&Planar::new(yaw, x, z)), b.roles());
         let options = DissolveOptions { window: 20, law, root, ..DissolveOptions::default() };
-        let (here, there) = (dissolve(&a, 50, &b, 10, &options).unwrap(), dissolve(&a, 50, &moved, 10, &options).unwrap());
+        let (here, there) = (
+            dissolve(&a, 50, &b, 10, &options).unwrap(),
+            dissolve(&a, 50, &moved, 10, &options).unwrap(),
+        );
         let worst = worst_distance(&here.clip, &there.clip);
         prop_assert!(worst < 2e-4, "{worst}");
     }
 
     #[test]
-    fn dissolve_is_a_before_the_window_and_b_from_its_last_frame((law, root) in laws(), window in 0usize..40, align in any::<bool>()) {
+    fn dissolve_is_a_before_the_window_and_b_from_its_last_frame(
+        (law, root) in laws(),
+        window in 0usize..40,
+        align in any::<bool>(),
+    ) {
         let (a, b) = two_walks();
-        let out = dissolve(&a, 55, &b, 7, &DissolveOptions { window, law, align, root, ..DissolveOptions::default() }).unwrap();
+        let out = dissolve(
+            &a,
+            55,
+            &b,
+            7,
+            &DissolveOptions { window, law, align, root, ..DissolveOptions::default() },
+        )
+        .unwrap();
         let overlap = if window < 2 { 0 } else { window };
         prop_assert_eq!(out.transition.clone(), 55..55 + overlap);
         prop_assert_eq!(out.clip.frames(), 55 + 80 - 7);

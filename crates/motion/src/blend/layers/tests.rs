@@ -68,30 +68,59 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn layer_with_weight_0_is_the_base_and_with_weight_1_the_layer(seed in 0u64..50, part in 0usize..7, feather in 0usize..4, additive in any::<bool>()) {
+    fn layer_with_weight_0_is_the_base_and_with_weight_1_the_layer(
+        seed in 0u64..50,
+        part in 0usize..7,
+        feather in 0usize..4,
+        additive in any::<bool>(),
+    ) {
         for (_, skeleton, _) in fixtures::all() {
             let roles = fixtures::roles(&skeleton);
-            let (base, over) = (wander_by(&skeleton, 12, seed, 0.3), wander_by(&skeleton, 12, seed + 1, 0.3));
-            let mode = if additive { LayerMode::Additive(Reference::Rest) } else { LayerMode::Override };
-            let with = |weight, parts: &[BodyPart]| LayerOptions { weight, feather, mode, time: LayerTime::Hold, ..options(parts) };
+            let (base, over) =
+                (wander_by(&skeleton, 12, seed, 0.3), wander_by(&skeleton, 12, seed + 1, 0.3));
+            let mode =
+                if additive { LayerMode::Additive(Reference::Rest) } else { LayerMode::Override };
+            let with = |weight, parts: &[BodyPart]| LayerOptions {
+                weight,
+                feather,
+                mode,
+                time: LayerTime::Hold,
+                ..options(parts)
+            };
             let part = BodyPart::ALL[part];
-            prop_assert_eq!(layer(&base, &roles, &over, &with(0.0, &[part])).unwrap(), base.clone());
+            prop_assert_eq!(
+                layer(&base, &roles, &over, &with(0.0, &[part])).unwrap(),
+                base.clone()
+            );
             let whole = layer(&base, &roles, &over, &with(1.0, &[BodyPart::Whole])).unwrap();
             let some = layer(&base, &roles, &over, &with(1.0, &[part])).unwrap();
             let weights = mask(&skeleton, &roles, &[part], feather);
             for frame in 0..12 {
                 for (joint, &weight) in weights.iter().enumerate().skip(1) {
                     if !additive {
-                        prop_assert!(quat::angle_between(whole.rotations(frame)[joint], over.rotations(frame)[joint]) < 1e-6);
+                        prop_assert!(
+                            quat::angle_between(
+                                whole.rotations(frame)[joint],
+                                over.rotations(frame)[joint]
+                            ) < 1e-6
+                        );
                     }
                     if weight == 0.0 {
                         prop_assert_eq!(some.rotations(frame)[joint], base.rotations(frame)[joint]);
                     } else if weight == 1.0 {
-                        prop_assert!(quat::angle_between(some.rotations(frame)[joint], whole.rotations(frame)[joint]) < 1e-6);
+                        prop_assert!(
+                            quat::angle_between(
+                                some.rotations(frame)[joint],
+                                whole.rotations(frame)[joint]
+                            ) < 1e-6
+                        );
                     }
                 }
                 if weights[0] == 0.0 {
-                    prop_assert_eq!(some.root_translations()[frame], base.root_translations()[frame]);
+                    prop_assert_eq!(
+                        some.root_translations()[frame],
+                        base.root_translations()[frame]
+                    );
                 }
             }
         }

@@ -161,11 +161,18 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
     /// The body stays in place, however the joints above it move.
     #[test]
-    fn folded_clip_keeps_world_positions(seed in 0u64..1000, speed in 0.0f32..4.0, lean in -1.0f32..1.0) {
+    fn folded_clip_keeps_world_positions(
+        seed in 0u64..1000,
+        speed in 0.0f32..4.0,
+        lean in -1.0f32..1.0,
+    ) {
         let body = wander(&fixtures::cmu_bvh(), 12, seed);
         let file = with_joints_above(&body, |frame| {
             let t = frame as f32 * 0.1;
-            (Vec3::new(speed * t, lean * t, 0.3), Quat::from_rotation_y(speed * t) * Quat::from_rotation_x(lean * t))
+            (
+                Vec3::new(speed * t, lean * t, 0.3),
+                Quat::from_rotation_y(speed * t) * Quat::from_rotation_x(lean * t),
+            )
         });
         check_unfolded(&file, &body);
     }

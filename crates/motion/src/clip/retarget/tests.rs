@@ -56,20 +56,27 @@ proptest! {
         let clip = wander(&source, 3, seed);
         let values = (0..3).map(|i| Vec3::Y * (1.0 + 0.1 * i as f32)).collect();
         let clip = clip.with_translations(vec![JointTranslations { joint: 1, values }]).unwrap();
-        let there = retarget(&clip, &fixtures::roles(&source), &target, &fixtures::roles(&target)).unwrap();
+        let there =
+            retarget(&clip, &fixtures::roles(&source), &target, &fixtures::roles(&target)).unwrap();
         for frame in 0..3 {
             let (before, after) = (clip.world_pose(frame), there.world_pose(frame));
             for (new, &old) in order.iter().enumerate() {
                 prop_assert!(before.positions[old].distance(after.positions[new]) < 1e-5);
             }
         }
-        let back = retarget(&there, &fixtures::roles(&target), &source, &fixtures::roles(&source)).unwrap();
+        let back = retarget(&there, &fixtures::roles(&target), &source, &fixtures::roles(&source))
+            .unwrap();
         prop_assert!(largest_distance(&clip, &back) < 1e-5);
     }
 
     /// The limbs have the directions of the source's for any proportions and rest pose.
     #[test]
-    fn retarget_between_rigs_keeps_limb_directions(from in 0usize..11, to in 0usize..11, seed in 0u64..1000, radians in 0.0f32..0.6) {
+    fn retarget_between_rigs_keeps_limb_directions(
+        from in 0usize..11,
+        to in 0usize..11,
+        seed in 0u64..1000,
+        radians in 0.0f32..0.6,
+    ) {
         let (_, source, _) = fixtures::all().swap_remove(from);
         let (_, target, _) = fixtures::all().swap_remove(to);
         let source = fixtures::uneven(&source, 1.0, radians, 0.1, seed);

@@ -317,30 +317,62 @@ proptest! {
 
     /// For every request, time runs forwards and the stride is positive.
     #[test]
-    fn cycle_at_any_speed_is_a_motion(speed in prop_oneof![-5.0f64..20.0, Just(f64::NAN), Just(f64::INFINITY), Just(-1e300)]) {
+    fn cycle_at_any_speed_is_a_motion(
+        speed in prop_oneof![-5.0f64..20.0, Just(f64::NAN), Just(f64::INFINITY), Just(-1e300)],
+    ) {
         let (blend, _) = blend(&SpeedOptions::default());
         let facts = blend.facts(speed);
-        prop_assert!(blend.range_mps().contains(&(facts.speed_mps * (1.0 + 1e-12))) || blend.range_mps().contains(&(facts.speed_mps * (1.0 - 1e-12))));
-        prop_assert!(facts.cycle_secs > 0.2 && facts.stride_m > 0.1 && (-0.25..=1.25).contains(&facts.weight));
+        prop_assert!(
+            blend.range_mps().contains(&(facts.speed_mps * (1.0 + 1e-12)))
+                || blend.range_mps().contains(&(facts.speed_mps * (1.0 - 1e-12)))
+        );
+        prop_assert!(
+            facts.cycle_secs > 0.2
+                && facts.stride_m > 0.1
+                && (-0.25..=1.25).contains(&facts.weight)
+        );
         prop_assert_eq!(facts.limited, !blend.range_mps().contains(&speed) && !speed.is_nan());
         let made = blend.cycle_at(speed).unwrap();
-        prop_assert!(made.clip.world_positions(0..made.clip.frames()).iter().all(|p| p.is_finite()));
+        prop_assert!(
+            made.clip.world_positions(0..made.clip.frames()).iter().all(|p| p.is_finite())
+        );
     }
 
     /// Phases rise, coincide at events, and one cycle of the blend is one cycle of each gait.
     #[test]
-    fn phases_rise_and_meet_at_events(speed in 0.9f64..4.0, at in -2.0f64..3.0, by in 0.001f64..0.5) {
+    fn phases_rise_and_meet_at_events(
+        speed in 0.9f64..4.0,
+        at in -2.0f64..3.0,
+        by in 0.001f64..0.5,
+    ) {
         let (blend, _) = blend(&SpeedOptions::default());
         let events = blend.events(blend.facts(speed).weight);
         for gait in &blend.gaits {
-            let (here, there, later) = (blend.phases(gait, &events, at), blend.phases(gait, &events, at + by), blend.phases(gait, &events, at + 1.0));
+            let (here, there, later) = (
+                blend.phases(gait, &events, at),
+                blend.phases(gait, &events, at + by),
+                blend.phases(gait, &events, at + 1.0),
+            );
             for part in 0..3 {
-                prop_assert!(there[part] > here[part] && (later[part] - here[part] - 1.0).abs() < 1e-9);
+                prop_assert!(
+                    there[part] > here[part] && (later[part] - here[part] - 1.0).abs() < 1e-9
+                );
             }
             let right = Part::Leg(Side::Right).index();
-            prop_assert!((blend.phases(gait, &events, events.right_lift)[right] - gait.events.right_lift).abs() < 1e-9);
-            prop_assert!((blend.phases(gait, &events, events.right_strike)[0] - gait.events.right_strike).abs() < 1e-9);
-            prop_assert!((blend.phases(gait, &events, events.left_lift)[1] - gait.events.left_lift).abs() < 1e-9);
+            prop_assert!(
+                (blend.phases(gait, &events, events.right_lift)[right] - gait.events.right_lift)
+                    .abs()
+                    < 1e-9
+            );
+            prop_assert!(
+                (blend.phases(gait, &events, events.right_strike)[0] - gait.events.right_strike)
+                    .abs()
+                    < 1e-9
+            );
+            prop_assert!(
+                (blend.phases(gait, &events, events.left_lift)[1] - gait.events.left_lift).abs()
+                    < 1e-9
+            );
         }
     }
 }

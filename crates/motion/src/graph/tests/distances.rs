@@ -97,7 +97,11 @@ fn assert_overview_equals(overview: &DistanceOverview, all: &FrameDistances) {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
     #[test]
-    fn all_pairs_agree_with_direct_alignment(frames in [5usize..40, 5usize..40, 5usize..40], window in 1usize..12, slice in 1usize..900) {
+    fn all_pairs_agree_with_direct_alignment(
+        frames in [5usize..40, 5usize..40, 5usize..40],
+        window in 1usize..12,
+        slice in 1usize..900,
+    ) {
         let set = three(frames);
         let mut all = AllPairs::new(Arc::clone(&set)).unwrap();
         prop_assert!(all.distances(window).is_err());
@@ -116,15 +120,25 @@ proptest! {
         for a in 0..set.frames() {
             for b in 0..set.frames() {
                 let (p, q) = (set.place(a).unwrap(), set.place(b).unwrap());
-                let fits = [p, q].iter().all(|place| place.frame + window <= set.frames_of(place.clip));
+                let fits =
+                    [p, q].iter().all(|place| place.frame + window <= set.frames_of(place.clip));
                 let found = distances.cm(p, q);
                 prop_assert_eq!(found.is_some(), fits);
                 // One candidate in seven is sufficient.
                 let Some(found) = found.filter(|_| (a + 3 * b) % 7 == 0) else { continue };
                 let source = |place: Place| set.clip(place.clip).unwrap().clip();
-                let direct = align_onto(source(p), p.frame, source(q), q.frame, window, set.weights(), 0.0).unwrap();
+                let direct =
+                    align_onto(source(p), p.frame, source(q), q.frame, window, set.weights(), 0.0)
+                        .unwrap();
                 let wanted = rms_cm(direct.distance, direct.weight, HEIGHT);
-                prop_assert!((found * found - wanted * wanted).abs() < 4e-3 + 2e-3 * wanted, "{:?} {:?} {} {}", p, q, found, wanted);
+                prop_assert!(
+                    (found * found - wanted * wanted).abs() < 4e-3 + 2e-3 * wanted,
+                    "{:?} {:?} {} {}",
+                    p,
+                    q,
+                    found,
+                    wanted
+                );
                 let aligned = all.alignment(p, q, window).unwrap();
                 if !direct.turn_is_free && !aligned.turn_is_free && wanted < 30.0 {
                     let off = aligned.transform.inverse().after(&direct.transform);
@@ -136,17 +150,22 @@ proptest! {
 
     #[test]
     fn candidate_stream_finds_the_candidates_of_all_pairs(
-        frames in [20usize..90, 20usize..90, 20usize..90], window in 1usize..18, segment in prop::option::of(19usize..20), threshold in 0.5f64..30.0
+        frames in [20usize..90, 20usize..90, 20usize..90],
+        window in 1usize..18,
+        segment in prop::option::of(19usize..20),
+        threshold in 0.5f64..30.0,
     ) {
         let set = three(frames);
-        let construction = segment.map_or(Construction::Minima, |segment_size| Construction::Segments { segment_size });
+        let construction = segment
+            .map_or(Construction::Minima, |segment_size| Construction::Segments { segment_size });
         let options = options(construction, window, threshold);
         let all = compared(&set);
         let held = Candidates::find(&all, &all.distances(window).unwrap(), &options).unwrap();
         let (streamed, overview) = CandidateStream::new(&set, &options).unwrap().finish().unwrap();
         assert_overview_equals(&overview, &all.distances(window).unwrap());
         let places = |of: &Candidates| {
-            let mut places: Vec<_> = of.found().iter().map(|found| (found.leave, found.enter)).collect();
+            let mut places: Vec<_> =
+                of.found().iter().map(|found| (found.leave, found.enter)).collect();
             places.sort_unstable();
             places
         };
@@ -160,9 +179,16 @@ proptest! {
             for found in held.found() {
                 let (a, b) = (found.leave, found.enter);
                 let here = distances.cm(a, b).unwrap();
-                prop_assert!(here <= threshold && a.frame >= 1 && b.frame + window < set.frames_of(b.clip));
-                for (da, db) in [(-1i64, 0i64), (1, 0), (0, -1), (0, 1), (1, 1), (-1, -1), (1, -1), (-1, 1)] {
-                    let moved = |place: Place, by: i64| Place { frame: (place.frame as i64 + by) as usize, ..place };
+                prop_assert!(
+                    here <= threshold && a.frame >= 1 && b.frame + window < set.frames_of(b.clip)
+                );
+                for (da, db) in
+                    [(-1i64, 0i64), (1, 0), (0, -1), (0, 1), (1, 1), (-1, -1), (1, -1), (-1, 1)]
+                {
+                    let moved = |place: Place, by: i64| Place {
+                        frame: (place.frame as i64 + by) as usize,
+                        ..place
+                    };
                     if a.frame as i64 + da >= 0
                         && b.frame as i64 + db >= 0
                         && let Some(there) = distances.cm(moved(a, da), moved(b, db))

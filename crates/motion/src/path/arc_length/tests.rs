@@ -15,7 +15,10 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
 
     #[test]
-    fn length_and_parameter_are_inverse(way in prop::collection::vec((-3.0f64..3.0, -3.0f64..3.0), 4..12), share in 0.0f64..1.0) {
+    fn length_and_parameter_are_inverse(
+        way in prop::collection::vec((-3.0f64..3.0, -3.0f64..3.0), 4..12),
+        share in 0.0f64..1.0,
+    ) {
         let curve = curve(&way);
         let along = curve.length_m() * share;
         let u = curve.parameter_at(along);
@@ -26,19 +29,28 @@ proptest! {
 
     /// The quadrature is compared with twenty thousand chords, which cut off the tip of a hairpin.
     #[test]
-    fn length_agrees_with_many_chords(way in prop::collection::vec((-3.0f64..3.0, -3.0f64..3.0), 4..12)) {
+    fn length_agrees_with_many_chords(
+        way in prop::collection::vec((-3.0f64..3.0, -3.0f64..3.0), 4..12),
+    ) {
         let curve = curve(&way);
         let mut chords = 0.0;
         for k in 0..20_000 {
             let at = |k: i32| curve.spline().position(f64::from(k) / 20_000.0);
             chords += at(k).distance(at(k + 1));
         }
-        prop_assert!((chords - curve.length_m()).abs() < 2e-5 * chords, "{chords} {}", curve.length_m());
+        prop_assert!(
+            (chords - curve.length_m()).abs() < 2e-5 * chords,
+            "{chords} {}",
+            curve.length_m()
+        );
     }
 
     /// The frame's +Z runs along the path, and the curvature is the turn per metre.
     #[test]
-    fn waypoints_run_along_the_path(way in prop::collection::vec((-3.0f64..3.0, -3.0f64..3.0), 4..12), share in 0.01f64..0.99) {
+    fn waypoints_run_along_the_path(
+        way in prop::collection::vec((-3.0f64..3.0, -3.0f64..3.0), 4..12),
+        share in 0.01f64..0.99,
+    ) {
         let curve = curve(&way);
         let (step, along) = (1e-5 * curve.length_m(), share * curve.length_m());
         let [before, here, after] = [-1.0, 0.0, 1.0].map(|k| curve.at_length(along + k * step));
@@ -46,9 +58,17 @@ proptest! {
         prop_assume!(here.curvature.abs() * step < 1e-3);
         let way = after.frame.shift - before.frame.shift;
         let forward = here.frame.forward();
-        prop_assert!(way.normalize_or_zero().distance(DVec2::new(f64::from(forward.x), f64::from(forward.z))) < 1e-3);
+        prop_assert!(
+            way.normalize_or_zero()
+                .distance(DVec2::new(f64::from(forward.x), f64::from(forward.z)))
+                < 1e-3
+        );
         let turn = crate::math::wrap_angle(after.frame.yaw - before.frame.yaw) / (2.0 * step);
-        prop_assert!((turn - here.curvature).abs() < 0.01 * (1.0 + here.curvature.abs()), "{turn} {}", here.curvature);
+        prop_assert!(
+            (turn - here.curvature).abs() < 0.01 * (1.0 + here.curvature.abs()),
+            "{turn} {}",
+            here.curvature
+        );
     }
 }
 

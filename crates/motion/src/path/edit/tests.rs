@@ -51,7 +51,11 @@ proptest! {
         let more = path.edited(&PathEdit::Insert { at }, BOTH).unwrap();
         prop_assert_eq!(more.points().len(), path.points().len() + 1);
         prop_assert!(apart(&path, &more) < 1e-12);
-        let index = (0..more.points().len()).min_by(|&a, &b| (more.greville()[a] - at).abs().total_cmp(&(more.greville()[b] - at).abs())).unwrap();
+        let index = (0..more.points().len())
+            .min_by(|&a, &b| {
+                (more.greville()[a] - at).abs().total_cmp(&(more.greville()[b] - at).abs())
+            })
+            .unwrap();
         if let Ok(back) = more.edited(&PathEdit::Remove { index }, BOTH) {
             prop_assert_eq!(back.points().len(), path.points().len());
             if back.inner_knots() == path.inner_knots() {
@@ -63,7 +67,11 @@ proptest! {
     /// A moved point changes only the pieces that depend on it, and no point of these moves farther
     /// than it does.
     #[test]
-    fn moved_point_changes_its_own_pieces_alone(path in winding(), index in 0usize..6, x in -2.0f64..2.0) {
+    fn moved_point_changes_its_own_pieces_alone(
+        path in winding(),
+        index in 0usize..6,
+        x in -2.0f64..2.0,
+    ) {
         let to = path.points()[index] + DVec2::new(x, 0.3);
         let moved = path.edited(&PathEdit::Move { index, to }, FREE).unwrap();
         let pieces = (path.points().len() - 3) as f64;
@@ -77,7 +85,11 @@ proptest! {
     }
 
     #[test]
-    fn rotation_and_shift_are_rigid_and_scaling_is_not(path in winding(), radians in -3.0f64..3.0, factor in 0.2f64..4.0) {
+    fn rotation_and_shift_are_rigid_and_scaling_is_not(
+        path in winding(),
+        radians in -3.0f64..3.0,
+        factor in 0.2f64..4.0,
+    ) {
         for pins in [FREE, START, Pins { start: false, end: true }] {
             let turned = path.edited(&PathEdit::Rotate { radians }, pins).unwrap();
             prop_assert!((length(&turned) - length(&path)).abs() < 1e-9);
@@ -100,22 +112,40 @@ proptest! {
     #[test]
     fn straightened_path_keeps_its_length_and_its_pins(path in winding()) {
         let straight = path.edited(&PathEdit::Straighten { share: 1.0 }, START).unwrap();
-        prop_assert!((length(&straight) - length(&path)).abs() < 0.02 * length(&path), "{} {}", length(&straight), length(&path));
-        prop_assert!((ends(&straight)[1].distance(ends(&straight)[0]) - length(&straight)).abs() < 1e-3);
+        prop_assert!(
+            (length(&straight) - length(&path)).abs() < 0.02 * length(&path),
+            "{} {}",
+            length(&straight),
+            length(&path)
+        );
+        prop_assert!(
+            (ends(&straight)[1].distance(ends(&straight)[0]) - length(&straight)).abs() < 1e-3
+        );
         let between = path.edited(&PathEdit::Straighten { share: 1.0 }, BOTH).unwrap();
-        prop_assert!(ends(&between)[0].distance(ends(&path)[0]) < 1e-9 && ends(&between)[1].distance(ends(&path)[1]) < 1e-9);
+        prop_assert!(
+            ends(&between)[0].distance(ends(&path)[0]) < 1e-9
+                && ends(&between)[1].distance(ends(&path)[1]) < 1e-9
+        );
         let half = path.edited(&PathEdit::Straighten { share: 0.5 }, START).unwrap();
         let direct = |spline: &GroundSpline| ends(spline)[0].distance(ends(spline)[1]);
-        prop_assert!(direct(&half) >= direct(&path) - 0.02 && direct(&half) <= direct(&straight) + 0.02);
+        prop_assert!(
+            direct(&half) >= direct(&path) - 0.02 && direct(&half) <= direct(&straight) + 0.02
+        );
     }
 
     #[test]
-    fn closed_path_is_smooth_at_its_start(path in winding(), index in 0usize..6, x in -1.0f64..1.0) {
+    fn closed_path_is_smooth_at_its_start(
+        path in winding(),
+        index in 0usize..6,
+        x in -1.0f64..1.0,
+    ) {
         let closed = path.edited(&PathEdit::Close, START).unwrap();
         prop_assert!(ends(&closed)[0].distance(ends(&path)[0]) < 1e-9);
         let smooth = |closed: &GroundSpline| {
             let (a, b) = (closed.jet(0.0), closed.jet(1.0));
-            closed.is_closed() && a.position.distance(b.position) < 1e-9 && a.first.distance(b.first) < 1e-8
+            closed.is_closed()
+                && a.position.distance(b.position) < 1e-9
+                && a.first.distance(b.first) < 1e-8
         };
         prop_assert!(smooth(&closed));
         for edit in [
@@ -131,12 +161,20 @@ proptest! {
         }
         let to = closed.points()[1] + DVec2::new(x, 0.2);
         let held = closed.edited(&PathEdit::Move { index: 1, to }, START).unwrap();
-        prop_assert!(smooth(&held) && held.points()[1].distance(to) < 1e-9 && ends(&held)[0].distance(ends(&closed)[0]) < 1e-9);
+        prop_assert!(
+            smooth(&held)
+                && held.points()[1].distance(to) < 1e-9
+                && ends(&held)[0].distance(ends(&closed)[0]) < 1e-9
+        );
         prop_assert!(!closed.edited(&PathEdit::Open, FREE).unwrap().is_closed());
     }
 
     #[test]
-    fn edits_by_any_numbers_do_not_panic(path in winding(), value in prop::num::f64::ANY, index: usize) {
+    fn edits_by_any_numbers_do_not_panic(
+        path in winding(),
+        value in prop::num::f64::ANY,
+        index: usize,
+    ) {
         let point = DVec2::new(value, 1.0);
         for edit in [
             PathEdit::Move { index, to: point },

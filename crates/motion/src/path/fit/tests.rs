@@ -105,10 +105,16 @@ proptest! {
 
     /// The residual is orthogonal to the basis functions: no other control points are closer.
     #[test]
-    fn fit_residual_is_orthogonal_to_the_basis(way in prop::collection::vec((-3.0f64..3.0, -3.0f64..3.0), 12..60), control_points in 4usize..9) {
+    fn fit_residual_is_orthogonal_to_the_basis(
+        way in prop::collection::vec((-3.0f64..3.0, -3.0f64..3.0), 12..60),
+        control_points in 4usize..9,
+    ) {
         let way: Vec<DVec2> = way.into_iter().map(DVec2::from).collect();
-        let parameters: Vec<f64> = (0..way.len()).map(|k| k as f64 / (way.len() - 1) as f64).collect();
-        let spline = fit_spline(&way, &parameters, &FitOptions { control_points, ..FitOptions::default() }).unwrap();
+        let parameters: Vec<f64> =
+            (0..way.len()).map(|k| k as f64 / (way.len() - 1) as f64).collect();
+        let spline =
+            fit_spline(&way, &parameters, &FitOptions { control_points, ..FitOptions::default() })
+                .unwrap();
         let mut sums = vec![DVec2::ZERO; control_points];
         for (&p, &u) in way.iter().zip(&parameters) {
             let (start, shares) = spline.shares(u);
@@ -122,12 +128,19 @@ proptest! {
     /// A path is reproduced by its fit, and a straight trajectory gives a straight path however
     /// strong the smoothing is.
     #[test]
-    fn fit_of_a_path_reproduces_it(way in prop::collection::vec((-3.0f64..3.0, -3.0f64..3.0), 4..9), smoothing in 0.0f64..1e4, pin_ends: bool) {
+    fn fit_of_a_path_reproduces_it(
+        way in prop::collection::vec((-3.0f64..3.0, -3.0f64..3.0), 4..9),
+        smoothing in 0.0f64..1e4,
+        pin_ends: bool,
+    ) {
         let control: Vec<DVec2> = way.into_iter().map(DVec2::from).collect();
         let spline = GroundSpline::uniform(control.clone()).unwrap();
         let parameters: Vec<f64> = (0..=100).map(|k| f64::from(k) / 100.0).collect();
-        let of = |spline: &GroundSpline| parameters.iter().map(|&u| spline.position(u)).collect::<Vec<_>>();
-        let options = FitOptions { control_points: control.len(), pin_ends, ..FitOptions::default() };
+        let of = |spline: &GroundSpline| {
+            parameters.iter().map(|&u| spline.position(u)).collect::<Vec<_>>()
+        };
+        let options =
+            FitOptions { control_points: control.len(), pin_ends, ..FitOptions::default() };
         let found = fit_spline(&of(&spline), &parameters, &options).unwrap();
         for (a, b) in found.points().iter().zip(&control) {
             prop_assert!(a.distance(*b) < 1e-9);

@@ -107,20 +107,41 @@ fn cloud() -> impl Strategy<Value = Vec<Vec3>> {
 
 proptest! {
     #[test]
-    fn align_distance_is_that_of_its_transform(source in cloud(), target in cloud(), w in prop::collection::vec(0.1f64..2.0, 4)) {
+    fn align_distance_is_that_of_its_transform(
+        source in cloud(),
+        target in cloud(),
+        w in prop::collection::vec(0.1f64..2.0, 4),
+    ) {
         let found = align(&source, &target, &w, 0.0).unwrap();
         let left = cost(&found.transform, &source, &target, &w);
-        prop_assert!((left - found.distance).abs() < 1e-9 * (1.0 + left), "{} {left}", found.distance);
+        prop_assert!(
+            (left - found.distance).abs() < 1e-9 * (1.0 + left),
+            "{} {left}",
+            found.distance
+        );
     }
 
     #[test]
-    fn align_distance_is_a_local_minimum(source in cloud(), target in cloud(), yaw in -3.1f64..3.1, x in -1.0f64..1.0, z in -1.0f64..1.0) {
+    fn align_distance_is_a_local_minimum(
+        source in cloud(),
+        target in cloud(),
+        yaw in -3.1f64..3.1,
+        x in -1.0f64..1.0,
+        z in -1.0f64..1.0,
+    ) {
         let found = align(&source, &target, &[1.0], 0.0).unwrap();
-        prop_assert!(found.distance <= cost(&Planar::new(yaw, x, z), &source, &target, &[1.0]) + 1e-9);
+        prop_assert!(
+            found.distance <= cost(&Planar::new(yaw, x, z), &source, &target, &[1.0]) + 1e-9
+        );
     }
 
     #[test]
-    fn align_of_a_moved_cloud_is_the_inverse_transform(target in cloud(), yaw in -3.1f64..3.1, x in -9.0f64..9.0, z in -9.0f64..9.0) {
+    fn align_of_a_moved_cloud_is_the_inverse_transform(
+        target in cloud(),
+        yaw in -3.1f64..3.1,
+        x in -9.0f64..9.0,
+        z in -9.0f64..9.0,
+    ) {
         let moved = Planar::new(yaw, x, z);
         let source: Vec<Vec3> = target.iter().map(|&p| moved.apply(p)).collect();
         let found = align(&source, &target, &[1.0], 0.0).unwrap();

@@ -22,12 +22,18 @@ proptest! {
     /// The path has any steps, and pins anywhere on it.
     #[test]
     fn time_warp_increases_through_its_fixed_points(
-        steps in prop::collection::vec(0u8..3, 1..80), pins in prop::collection::vec(0usize..80, 0..4), smoothing in 0.0f64..20.0
+        steps in prop::collection::vec(0u8..3, 1..80),
+        pins in prop::collection::vec(0usize..80, 0..4),
+        smoothing in 0.0f64..20.0,
     ) {
         let mut path = vec![(0.0, 0.0)];
         for step in steps {
             let &(i, j) = path.last().unwrap();
-            path.push(match step { 0 => (i + 1.0, j), 1 => (i, j + 1.0), _ => (i + 1.0, j + 1.0) });
+            path.push(match step {
+                0 => (i + 1.0, j),
+                1 => (i, j + 1.0),
+                _ => (i + 1.0, j + 1.0),
+            });
         }
         let last = path.len() - 1;
         prop_assume!(path[last].0 > 0.0 && path[last].1 > 0.0);
@@ -36,7 +42,11 @@ proptest! {
         let mut fixed = vec![path[0]];
         for pin in at {
             let before = fixed[fixed.len() - 1];
-            if path[pin].0 > before.0 && path[pin].1 > before.1 && path[pin].0 < path[last].0 && path[pin].1 < path[last].1 {
+            if path[pin].0 > before.0
+                && path[pin].1 > before.1
+                && path[pin].0 < path[last].0
+                && path[pin].1 < path[last].1
+            {
                 fixed.push(path[pin]);
             }
         }

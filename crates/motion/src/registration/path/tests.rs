@@ -88,8 +88,13 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
     #[test]
     fn optimal_path_is_the_cheapest_of_all(
-        rows in 1usize..6, columns in 1usize..6, values in prop::collection::vec(0u8..6, 25), slope_limit in 1usize..4,
-        start in end(), end in end(), pins in prop::collection::vec((0usize..5, 0usize..5), 0..3)
+        rows in 1usize..6,
+        columns in 1usize..6,
+        values in prop::collection::vec(0u8..6, 25),
+        slope_limit in 1usize..4,
+        start in end(),
+        end in end(),
+        pins in prop::collection::vec((0usize..5, 0usize..5), 0..3),
     ) {
         let matrix = matrix(rows, columns, |row, column| f32::from(values[row * 5 + column]));
         let pins: Vec<_> = pins.into_iter().filter(|pin| pin.0 < rows && pin.1 < columns).collect();
@@ -98,15 +103,27 @@ proptest! {
         match optimal_path(&matrix, &options) {
             Ok(found) => {
                 prop_assert!(keeps_limit(&found.cells, slope_limit), "{:?}", found.cells);
-                prop_assert!(options.pins.iter().all(|pin| found.cells.contains(pin)), "{:?}", found.cells);
+                prop_assert!(
+                    options.pins.iter().all(|pin| found.cells.contains(pin)),
+                    "{:?}",
+                    found.cells
+                );
                 let (cost, weight) = weigh(&matrix, &found.cells, options.side_step_m);
                 let best = best.unwrap();
-                prop_assert!((cost / weight - best).abs() < 1e-9, "{} {best} {:?}", cost / weight, found.cells);
+                prop_assert!(
+                    (cost / weight - best).abs() < 1e-9,
+                    "{} {best} {:?}",
+                    cost / weight,
+                    found.cells
+                );
             }
             Err(PathError::NoPath { .. }) => prop_assert_eq!(best, None),
             // Refused although steps along a border lead there: the clip that stands still in these
             // steps could not be warped.
-            Err(PathError::Pins { .. } | PathError::PinAtEnd { .. }) => prop_assert!(options.pins.len() > usize::from(start != PathEnd::Corner && end != PathEnd::Corner)),
+            Err(PathError::Pins { .. } | PathError::PinAtEnd { .. }) => prop_assert!(
+                options.pins.len()
+                    > usize::from(start != PathEnd::Corner && end != PathEnd::Corner)
+            ),
             Err(other) => prop_assert!(false, "{other}"),
         }
     }
@@ -272,20 +289,39 @@ proptest! {
     /// The matrix has so many rows that the trace goes through many blocks of rows.
     #[test]
     fn optimal_path_traced_over_many_blocks_is_the_cheapest(
-        rows in 70usize..140, columns in 70usize..140, seed in any::<u32>(), slope_limit in 1usize..6, pin in (0.1f64..0.9, 0.1f64..0.9)
+        rows in 70usize..140,
+        columns in 70usize..140,
+        seed in any::<u32>(),
+        slope_limit in 1usize..6,
+        pin in (0.1f64..0.9, 0.1f64..0.9),
     ) {
-        let hash = |row: usize, column: usize| (row as u32).wrapping_mul(0x9E37_79B9) ^ (column as u32).wrapping_mul(0x85EB_CA6B) ^ seed;
-        let value = |row, column| (hash(row, column).wrapping_mul(0xC2B2_AE35) >> 16) as f32 / 65_536.0 + ((row as f32 / 9.0).sin() - (column as f32 / 7.0).sin()).abs();
+        let hash = |row: usize, column: usize| {
+            (row as u32).wrapping_mul(0x9E37_79B9)
+                ^ (column as u32).wrapping_mul(0x85EB_CA6B)
+                ^ seed
+        };
+        let value = |row, column| {
+            (hash(row, column).wrapping_mul(0xC2B2_AE35) >> 16) as f32 / 65_536.0
+                + ((row as f32 / 9.0).sin() - (column as f32 / 7.0).sin()).abs()
+        };
         let matrix = matrix(rows, columns, value);
         let pin = ((pin.0 * rows as f64) as usize, (pin.1 * columns as f64) as usize);
-        let options = PathOptions { slope_limit, start: PathEnd::Corner, end: PathEnd::Corner, pins: vec![pin], side_step_m: 1e-3 };
+        let options = PathOptions {
+            slope_limit,
+            start: PathEnd::Corner,
+            end: PathEnd::Corner,
+            pins: vec![pin],
+            side_step_m: 1e-3,
+        };
         if let Ok(found) = optimal_path(&matrix, &options) {
             let least = cheapest_through(&matrix, pin, slope_limit, options.side_step_m);
             let (cost, _) = weigh(&matrix, &found.cells, options.side_step_m);
             prop_assert!(keeps_limit(&found.cells, slope_limit) && found.cells.contains(&pin));
             prop_assert!((cost - least).abs() < 1e-9 * least, "{cost} {least}");
         } else {
-            prop_assert!(!cheapest_through(&matrix, pin, slope_limit, options.side_step_m).is_finite());
+            prop_assert!(
+                !cheapest_through(&matrix, pin, slope_limit, options.side_step_m).is_finite()
+            );
         }
     }
 }

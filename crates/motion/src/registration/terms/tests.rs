@@ -180,11 +180,18 @@ fn distances_of_windows_never_cross_an_end() {
 
 proptest! {
     #[test]
-    fn distances_do_not_depend_on_the_ground_position(yaw in -3.0f64..3.0, x in -50.0f64..50.0, z in -50.0f64..50.0) {
+    fn distances_do_not_depend_on_the_ground_position(
+        yaw in -3.0f64..3.0,
+        x in -50.0f64..50.0,
+        z in -50.0f64..50.0,
+    ) {
         let (a, b) = pair();
         let moved = b.transformed(&crate::math::Planar::new(yaw, x, z));
         let all = 0..67;
-        let (still, moved) = (terms(&a, &b, 2).distances(7, &all, &all).unwrap(), terms(&a, &moved, 2).distances(7, &all, &all).unwrap());
+        let (still, moved) = (
+            terms(&a, &b, 2).distances(7, &all, &all).unwrap(),
+            terms(&a, &moved, 2).distances(7, &all, &all).unwrap(),
+        );
         for (still, moved) in still.rms_m().iter().zip(moved.rms_m()) {
             // The moved positions are rounded too.
             prop_assert!((still - moved).abs() < 2e-5, "{still} {moved}");

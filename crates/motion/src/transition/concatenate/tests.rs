@@ -72,26 +72,43 @@ fn difference(a: &Clip, b: &Clip) -> (f32, f32) {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
     #[test]
-    fn concatenate_without_difference_leaves_b_unchanged(at in 0usize..119, turning in -1.0f32..1.0) {
-        let a = source(Walk { frames: 120, turning, heading: 3.0, start: (3.0, -2.0), ..Walk::default() });
+    fn concatenate_without_difference_leaves_b_unchanged(
+        at in 0usize..119,
+        turning in -1.0f32..1.0,
+    ) {
+        let a = source(Walk {
+            frames: 120,
+            turning,
+            heading: 3.0,
+            start: (3.0, -2.0),
+            ..Walk::default()
+        });
         // An extrapolated pose differs from the motion that it came from, so that dead blending
         // alone changes a clip that is joined to itself.
         for how in &KINDS[..3] {
             for place in ROOT_OPTIONS {
                 let out = made(&a, at, &a, at, *how, place);
                 let (distance, angle) = difference(&out.clip, a.clip());
-                prop_assert!(distance < 2e-5 && angle < 2e-5, "{how:?} {place:?}: {distance} {angle}");
+                prop_assert!(
+                    distance < 2e-5 && angle < 2e-5,
+                    "{how:?} {place:?}: {distance} {angle}"
+                );
             }
         }
     }
 
     #[test]
-    fn concatenate_does_not_depend_on_the_position_of_b(yaw in -3.0f64..3.0, x in -9.0f64..9.0, z in -9.0f64..9.0) {
+    fn concatenate_does_not_depend_on_the_position_of_b(
+        yaw in -3.0f64..3.0,
+        x in -9.0f64..9.0,
+        z in -9.0f64..9.0,
+    ) {
         let (a, b) = two_walks();
         let moved = source_of(b.clip().transformed(&Planar::new(yaw, x, z)));
         for how in KINDS {
             for place in &ROOT_OPTIONS[..2] {
-                let (here, there) = (made(&a, 70, &b, 10, how, *place), made(&a, 70, &moved, 10, how, *place));
+                let (here, there) =
+                    (made(&a, 70, &b, 10, how, *place), made(&a, 70, &moved, 10, how, *place));
                 let (distance, _) = difference(&here.clip, &there.clip);
                 prop_assert!(distance < 1e-3, "{how:?} {distance}");
             }
@@ -99,7 +116,10 @@ proptest! {
     }
 
     #[test]
-    fn concatenate_is_a_before_the_transition_and_b_after_it(leave in 0usize..=120, enter in 0usize..260) {
+    fn concatenate_is_a_before_the_transition_and_b_after_it(
+        leave in 0usize..=120,
+        enter in 0usize..260,
+    ) {
         let (a, b) = two_walks();
         for how in KINDS {
             for place in ROOT_OPTIONS {
@@ -107,9 +127,14 @@ proptest! {
                 prop_assert_eq!(out.clip.frames(), leave + 260 - enter);
                 prop_assert_eq!(out.frames.len(), out.clip.frames());
                 prop_assert_eq!(out.b_during.len(), out.transition.len());
-                prop_assert!(out.transition.start == leave && out.transition.end <= out.clip.frames());
+                prop_assert!(
+                    out.transition.start == leave && out.transition.end <= out.clip.frames()
+                );
                 prop_assert!(out.transition.contains(&out.handover) || out.transition.is_empty());
-                prop_assert_eq!(&out.clip.crop(0..leave).unwrap().with_name(""), &a.clip().crop(0..leave).unwrap().with_name(""));
+                prop_assert_eq!(
+                    &out.clip.crop(0..leave).unwrap().with_name(""),
+                    &a.clip().crop(0..leave).unwrap().with_name("")
+                );
                 let settled = leave + (how.settling_secs() * 60.0).ceil() as usize;
                 for f in (settled..out.clip.frames()).step_by(7) {
                     let mut expected = b.clip().world_pose(enter + f - leave);

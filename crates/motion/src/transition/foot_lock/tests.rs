@@ -313,7 +313,14 @@ proptest! {
     /// A leg reaches its target, or stops before it is stretched; without a shift it stays the
     /// same.
     #[test]
-    fn move_ankle_reaches_its_target_or_stops(flexion in -0.1f32..1.8, tilt in -0.6f32..0.6, x in -0.4f32..0.4, y in -0.5f32..0.3, z in -0.4f32..0.4, turn in -3.0f32..3.0) {
+    fn move_ankle_reaches_its_target_or_stops(
+        flexion in -0.1f32..1.8,
+        tilt in -0.6f32..0.6,
+        x in -0.4f32..0.4,
+        y in -0.5f32..0.3,
+        z in -0.4f32..0.4,
+        turn in -3.0f32..3.0,
+    ) {
         let world = Quat::from_rotation_y(turn) * Quat::from_rotation_x(tilt);
         let leg = LegPose {
             thigh: world * Vec3::NEG_Y * 0.43,

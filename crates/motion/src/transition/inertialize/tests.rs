@@ -62,7 +62,10 @@ fn rates(a: &MovingPose, b: &MovingPose, dt: f32) -> (Vec3, Vec3) {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
     #[test]
-    fn inertializer_starts_with_the_old_pose_and_ends_with_the_new(old in steady(), new in steady()) {
+    fn inertializer_starts_with_the_old_pose_and_ends_with_the_new(
+        old in steady(),
+        new in steady(),
+    ) {
         for how in KINDS {
             let mut inertia = Inertializer::new(how);
             prop_assert_eq!(&with_inertia(&mut inertia, new.at(0.3)), &new.at(0.3));
@@ -76,7 +79,10 @@ proptest! {
     /// The rotations are any angle apart, and the next jump comes while the offsets of the last one
     /// are still decaying.
     #[test]
-    fn inertializer_over_several_jumps_has_continuous_velocities(clips in [steady(), steady(), steady()], between in 0.01f32..0.4) {
+    fn inertializer_over_several_jumps_has_continuous_velocities(
+        clips in [steady(), steady(), steady()],
+        between in 0.01f32..0.4,
+    ) {
         for how in KINDS {
             let mut inertia = Inertializer::new(how);
             inertia.trigger(&clips[0].at(0.0), &clips[1].at(0.0));
@@ -90,7 +96,10 @@ proptest! {
             track.push(with_inertia(&mut inertia, clips[1].at(secs)));
             inertia.trigger(&clips[1].at(secs), &clips[2].at(secs));
             let seam = track.len() - 1;
-            prop_assert!(off(&with_inertia(&mut inertia, clips[2].at(secs)), &track[seam]) < 1e-4, "{how:?}");
+            prop_assert!(
+                off(&with_inertia(&mut inertia, clips[2].at(secs)), &track[seam]) < 1e-4,
+                "{how:?}"
+            );
             for _ in 0..3 {
                 secs += dt;
                 inertia.advance(f64::from(dt));
@@ -101,7 +110,10 @@ proptest! {
             if matches!(how, Inertialization::Offset(Decay::Quintic { .. })) {
                 continue;
             }
-            let (before, after) = (rates(&track[seam - 1], &track[seam], dt), rates(&track[seam], &track[seam + 1], dt));
+            let (before, after) = (
+                rates(&track[seam - 1], &track[seam], dt),
+                rates(&track[seam], &track[seam + 1], dt),
+            );
             let bound = dt * 1500.0;
             prop_assert!((before.0 - after.0).length() < bound, "{how:?} {} {}", before.0, after.0);
             prop_assert!((before.1 - after.1).length() < bound, "{how:?} {} {}", before.1, after.1);
@@ -110,7 +122,11 @@ proptest! {
 
     /// The half-life or the method changes in the middle of a transition.
     #[test]
-    fn inertializer_change_keeps_pose_and_velocity(old in steady(), new in steady(), at in 0.01f32..0.4) {
+    fn inertializer_change_keeps_pose_and_velocity(
+        old in steady(),
+        new in steady(),
+        at in 0.01f32..0.4,
+    ) {
         for (how, then) in KINDS.into_iter().flat_map(|how| KINDS.map(|then| (how, then))) {
             let mut inertia = Inertializer::new(how);
             inertia.trigger(&old.at(0.0), &new.at(0.0));
@@ -120,17 +136,33 @@ proptest! {
             inertia.advance(f64::from(dt));
             let here = with_inertia(&mut inertia, new.at(at));
             inertia.change(then, &new.at(at));
-            prop_assert!(off(&with_inertia(&mut inertia, new.at(at)), &here) < 1e-4, "{how:?} {then:?}");
+            prop_assert!(
+                off(&with_inertia(&mut inertia, new.at(at)), &here) < 1e-4,
+                "{how:?} {then:?}"
+            );
             // A quintic may start with a high acceleration, so that it does not overshoot.
-            if [how, then].iter().any(|how| matches!(how, Inertialization::Offset(Decay::Quintic { .. }))) {
+            if [how, then]
+                .iter()
+                .any(|how| matches!(how, Inertialization::Offset(Decay::Quintic { .. })))
+            {
                 continue;
             }
             inertia.advance(f64::from(dt));
             let after = with_inertia(&mut inertia, new.at(at + dt));
             let (before, after) = (rates(&before, &here, dt), rates(&here, &after, dt));
             let bound = dt * 1500.0;
-            prop_assert!((before.0 - after.0).length() < bound, "{how:?} {then:?} {} {}", before.0, after.0);
-            prop_assert!((before.1 - after.1).length() < bound, "{how:?} {then:?} {} {}", before.1, after.1);
+            prop_assert!(
+                (before.0 - after.0).length() < bound,
+                "{how:?} {then:?} {} {}",
+                before.0,
+                after.0
+            );
+            prop_assert!(
+                (before.1 - after.1).length() < bound,
+                "{how:?} {then:?} {} {}",
+                before.1,
+                after.1
+            );
         }
     }
 
@@ -163,7 +195,11 @@ proptest! {
             coarse.advance(0.1);
             with_inertia(&mut coarse, new.at(0.1));
             coarse.advance(0.1);
-            prop_assert!(off(&with_inertia(&mut fine, new.at(0.2)), &with_inertia(&mut coarse, new.at(0.2))) < 1e-4, "{how:?}");
+            prop_assert!(
+                off(&with_inertia(&mut fine, new.at(0.2)), &with_inertia(&mut coarse, new.at(0.2)))
+                    < 1e-4,
+                "{how:?}"
+            );
         }
     }
 }

@@ -44,19 +44,32 @@ fn seam_of_frames(source: &Motion, cycle: Range<usize>, made: &Loop) -> f32 {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
     #[test]
-    fn close_loop_closes_pose_and_velocity(start in 0usize..30, length in 20usize..100, turning in -1.0f32..1.0, ratio in 0.0f64..1.0) {
+    fn close_loop_closes_pose_and_velocity(
+        start in 0usize..30,
+        length in 20usize..100,
+        turning in -1.0f32..1.0,
+        ratio in 0.0f64..1.0,
+    ) {
         let source = walk(160, turning);
         for method in &METHODS[..2] {
             let made = closed(&source, start..start + length, *method, ratio);
             prop_assert_eq!((made.clip.frames(), made.frames.len()), (length, length));
-            prop_assert!(made.seam.turn_deg < 1e-3 && made.seam.turn_dps < 0.1 && made.seam.shift_cm < 1e-3, "{method:?} {:?}", made.seam);
+            prop_assert!(
+                made.seam.turn_deg < 1e-3 && made.seam.turn_dps < 0.1 && made.seam.shift_cm < 1e-3,
+                "{method:?} {:?}",
+                made.seam
+            );
         }
         let linear = closed(&source, start..start + length, LoopMethod::Linear, ratio);
         prop_assert!(linear.seam.turn_deg < 1e-3, "{:?}", linear.seam);
     }
 
     #[test]
-    fn repeated_loop_does_not_drift(start in 0usize..30, length in 40usize..100, turning in -1.0f32..1.0) {
+    fn repeated_loop_does_not_drift(
+        start in 0usize..30,
+        length in 40usize..100,
+        turning in -1.0f32..1.0,
+    ) {
         let source = walk(160, turning);
         let roles = Roles::detect(source.clip().skeleton());
         let made = closed(&source, start..start + length, METHODS[0], 0.5);
@@ -74,14 +87,21 @@ proptest! {
             // that, rounded once: to half the distance between neighbouring numbers of single
             // precision, 8 µm at 160 m. Errors do not accumulate.
             let at = place.apply_ground(DVec2::new(root.x.into(), root.z.into()));
-            for (stored, exact) in axes(played.root_translations()[frame]).into_iter().zip([at.x, f64::from(root.y), at.y]) {
+            for (stored, exact) in axes(played.root_translations()[frame]).into_iter().zip([
+                at.x,
+                f64::from(root.y),
+                at.y,
+            ]) {
                 let rounding = 0.5 * f64::from(f32::EPSILON) * exact.abs();
                 prop_assert!((stored - exact).abs() <= rounding, "{k}: {stored} {exact}");
             }
             let turned = place.rotation() * played.rotations(0)[0];
             prop_assert!(quat::angle_between(played.rotations(frame)[0], turned) < 1e-6, "{k}");
         }
-        prop_assert!(first.shift.distance(made.cycle.shift) < 1e-3 && (first.yaw - made.cycle.yaw).abs() < 1e-4);
+        prop_assert!(
+            first.shift.distance(made.cycle.shift) < 1e-3
+                && (first.yaw - made.cycle.yaw).abs() < 1e-4
+        );
     }
 }
 
