@@ -4,7 +4,7 @@
 
 use segue_session::metrics::METRICS;
 use segue_session::{Kind, PARAMS};
-use segue_text::Table;
+use segue_text::{Table, text_of_template};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
@@ -228,18 +228,6 @@ fn sources() -> Vec<(String, String)> {
     found
 }
 
-/// Returns a template without its arguments.
-fn without_places(template: &str) -> String {
-    let mut depth = 0_usize;
-    let words = template.chars().filter(|letter| {
-        depth += usize::from(*letter == '{');
-        let is_word = depth == 0;
-        depth = depth.saturating_sub(usize::from(*letter == '}'));
-        is_word
-    });
-    words.collect()
-}
-
 fn is_two_letters(text: &str) -> bool {
     text.as_bytes().windows(2).any(|pair| pair.iter().all(u8::is_ascii_alphabetic))
 }
@@ -274,7 +262,7 @@ fn shown(path: &str, source: &str) -> Vec<String> {
                     || in_log(literal.before)
             };
             let seen =
-                is_two_letters(&without_places(&text)) && (is_sentence || is_word) && !unseen();
+                is_two_letters(&text_of_template(&text)) && (is_sentence || is_word) && !unseen();
             (seen && !NO_SENTENCE.contains(&text.as_str())).then_some(text)
         })
         .collect()

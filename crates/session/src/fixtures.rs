@@ -58,6 +58,26 @@ pub(crate) fn settle(session: &mut Session) {
     while session.work() {}
 }
 
+/// Returns a session with an opened link and all its work done.
+pub(crate) fn opened(link: &str) -> Session {
+    let mut session = Session::new();
+    session.apply(Command::OpenLink(link.into())).unwrap();
+    settle(&mut session);
+    session
+}
+
+/// Returns a session as [`opened`] does, and asserts that every pane has a result.
+pub(crate) fn opened_without_problems(link: &str) -> Session {
+    let session = opened(link);
+    assert!(session.panes().iter().all(|pane| pane.problem.is_none()), "{link}");
+    session
+}
+
+/// Returns a metric of a result; NaN if it has no value.
+pub(crate) fn number_of(outcome: &Outcome, id: MetricId) -> f64 {
+    outcome.metric(id).and_then(|metric| metric.value).unwrap_or(f64::NAN)
+}
+
 /// Returns a synthesised motion as a BVH file.
 pub(crate) fn made_bvh(seed: f64) -> Arc<[u8]> {
     let mut session = Session::new();

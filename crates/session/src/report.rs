@@ -102,17 +102,11 @@ fn clip_in_words(session: &Session, id: &str) -> String {
 mod tests {
     use super::*;
     use crate::Command;
-
-    fn open(query: &str) -> Session {
-        let mut session = Session::new();
-        session.apply(Command::OpenLink(query.into())).unwrap();
-        while session.work() {}
-        session
-    }
+    use crate::fixtures::opened;
 
     #[test]
     fn report_contains_the_state() {
-        let session = open("compare=blend_window:30,15,10&weight_law=linear");
+        let session = opened("compare=blend_window:30,15,10&weight_law=linear");
         let report = report(
             &session,
             &ReportFacts {
@@ -141,14 +135,14 @@ mod tests {
 
     #[test]
     fn report_escapes_names() {
-        let mut session = open("lab=view&a=walk");
+        let mut session = opened("lab=view&a=walk");
         let name = "<img src=x> [click](javascript:alert(1)) |";
         session.apply(Command::Rename("walk".into(), name.into())).unwrap();
         let said = report(&session, &ReportFacts::default()).unwrap();
         let row = said.lines().find(|line| line.starts_with("| A")).unwrap();
         assert!(row.contains("\\<img src=x\\> \\[click\\](javascript:alert(1)) \\| |"), "{row}");
         // A missing clip has the name in the link.
-        let session = open("lab=view&a=%60%3Cb%3E%7C");
+        let session = opened("lab=view&a=%60%3Cb%3E%7C");
         let reason = session.panes()[0].problem.clone();
         assert!(reason.is_some());
         assert_eq!(clip_in_words(&session, "`<b>|"), "`'<b>\\|`, which is not here");
@@ -156,7 +150,7 @@ mod tests {
 
     #[test]
     fn report_of_two_clips_has_one_table() {
-        let session = open("lab=view&compare=a:walk,run(turn_rate:20)");
+        let session = opened("lab=view&compare=a:walk,run(turn_rate:20)");
         let report = report(&session, &ReportFacts::default()).unwrap();
         let head = report.lines().find(|line| line.starts_with("| | ")).unwrap();
         assert!(head.starts_with("| | Walk | "), "{head}");

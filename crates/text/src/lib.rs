@@ -70,6 +70,7 @@ mod template;
 pub use arg::{Arg, ToArg};
 pub use segue_text_derive::{ToMessage, msg};
 pub use table::{Table, TemplateError};
+pub use template::text_of_template;
 
 // The macros' paths must also hold in this crate's own tests.
 extern crate self as segue_text;

@@ -102,6 +102,17 @@ impl<'a> Forms<'a> {
     }
 }
 
+/// Returns the text of a template without its arguments and forms.
+#[must_use]
+pub fn text_of_template(template: &str) -> String {
+    parts(template)
+        .filter_map(|part| match part {
+            Part::Words(words) => Some(words),
+            Part::Value(..) | Part::Forms(..) => None,
+        })
+        .collect()
+}
+
 /// Returns the names in a template, including those in forms, each as often as it occurs.
 pub(crate) fn names(template: &str) -> Vec<&str> {
     parts(template)
@@ -158,5 +169,11 @@ mod tests {
         let forms: Vec<_> = forms.iter().collect();
         assert_eq!(forms, [("=0", "no"), ("one", "# {x}"), ("other", "")]);
         assert_eq!(names(template), ["b", "c", "n", "x"]);
+    }
+
+    #[test]
+    fn text_of_template_has_no_arguments() {
+        let template = "The join ends at {secs:.2} s: move {n, plural, one {# bone} other {it}}.";
+        assert_eq!(text_of_template(template), "The join ends at  s: move .");
     }
 }

@@ -2,6 +2,7 @@
 
 use super::*;
 use segue_session::choices;
+use segue_text::text_of_template;
 use std::collections::BTreeSet;
 use std::fs;
 
@@ -54,18 +55,6 @@ fn english_in(text: &str) -> Vec<&str> {
         .collect()
 }
 
-/// A template without the names of its places.
-fn without_places(template: &str) -> String {
-    let mut depth = 0_usize;
-    let words = template.chars().filter(|letter| {
-        depth += usize::from(*letter == '{');
-        let is_word = depth == 0;
-        depth = depth.saturating_sub(usize::from(*letter == '}'));
-        is_word
-    });
-    words.collect()
-}
-
 #[test]
 fn every_lab_is_in_chinese() {
     let pack = pack();
@@ -96,7 +85,7 @@ fn every_lab_is_in_chinese() {
     }
     let left: BTreeSet<String> = (pack.shown().into_iter())
         .filter_map(|(text, found)| {
-            let shown = without_places(found.as_deref().unwrap_or(&text));
+            let shown = text_of_template(found.as_deref().unwrap_or(&text));
             let words = english_in(&shown);
             (!words.is_empty()).then(|| format!("{words:?} in {shown:?}, of {text:?}"))
         })

@@ -27,6 +27,11 @@ fn asked(session: &mut Session) -> Vec<&'static Sample> {
     requests.filter_map(sample).collect()
 }
 
+/// Returns the message about the first pane.
+fn problem(session: &Session) -> Option<String> {
+    session.panes()[0].problem.as_ref().map(ToString::to_string)
+}
+
 /// Hands over all requested takes, and does all work.
 fn serve(session: &mut Session) {
     loop {
@@ -153,28 +158,14 @@ fn take_that_fails_is_reported_and_requested_by_the_next_command() {
     session.fail_sample(sample, "its server answered 404");
     assert_eq!(asked(&mut session).len(), 0, "not over and over");
     let said = "CMU 16 · walk could not be loaded: its server answered 404.";
-    assert_eq!(session.panes()[0].problem.as_ref().map(ToString::to_string).as_deref(), Some(said));
+    assert_eq!(problem(&session).as_deref(), Some(said));
     assert_eq!(session.notices().list()[0].text.to_string(), said);
     assert_eq!(session.samples_progress(), None);
     session.apply(Command::Set(vec![(Key::LoopRatio, Value::Number(0.25))])).unwrap();
     assert_eq!(asked(&mut session), [sample]);
-    assert!(
-        session.panes()[0]
-            .problem
-            .as_ref()
-            .map(ToString::to_string)
-            .as_deref()
-            .is_some_and(|problem| problem.contains("is being loaded"))
-    );
+    assert!(problem(&session).is_some_and(|text| text.contains("is being loaded")));
     session.load_sample(sample, b"no file").unwrap_err();
-    assert!(
-        session.panes()[0]
-            .problem
-            .as_ref()
-            .map(ToString::to_string)
-            .as_deref()
-            .is_some_and(|problem| problem.contains("could not be loaded"))
-    );
+    assert!(problem(&session).is_some_and(|text| text.contains("could not be loaded")));
     session.apply(Command::Set(vec![(Key::LoopRatio, Value::Number(0.5))])).unwrap();
     serve(&mut session);
     assert_eq!(session.panes()[0].problem, None);

@@ -20,14 +20,6 @@ const LOCKING_LABS: [&str; 9] = [
     "lab=graph&clips=walk,walk_left,walk_right&walk_seconds=20&blend_window=20",
 ];
 
-fn opened(link: &str) -> Session {
-    let mut session = Session::new();
-    session.apply(Command::OpenLink(link.into())).unwrap();
-    settle(&mut session);
-    assert!(session.panes().iter().all(|pane| pane.problem.is_none()), "{link}");
-    session
-}
-
 #[test]
 fn foot_lock_stops_slides_and_reports_them() {
     let mut session = Session::new();
@@ -57,7 +49,7 @@ fn lock_settings_change_a_locked_result_in_every_lab() {
     // A short path is locked at once, a long one in slices.
     let paths = ["lab=path&a=run", "lab=path&a=walk(make_seconds:12)"];
     for lab in LOCKING_LABS.into_iter().chain(paths) {
-        let mut session = opened(&format!("{lab}&foot_lock=on"));
+        let mut session = opened_without_problems(&format!("{lab}&foot_lock=on"));
         let usual = rotations(&session);
         let settings = [(Key::LockBlend, 0.6), (Key::LockReach, 1.0), (Key::LockClearance, 10.0)];
         let settings = settings.map(|(key, value)| (key, Value::Number(value)));
@@ -76,20 +68,32 @@ fn lock_settings_change_a_locked_result_in_every_lab() {
 fn each_lock_setting_changes_a_locked_result_and_no_other() {
     let [held, free] =
         ["on", "off"].map(|lock| format!("lab=transition&half_life=0.3&foot_lock={lock}"));
-    let (usual_held, usual_free) = (rotations(&opened(&held)), rotations(&opened(&free)));
+    let (usual_held, usual_free) =
+        (rotations(&opened_without_problems(&held)), rotations(&opened_without_problems(&free)));
     for setting in ["lock_blend=0.6", "lock_reach=3", "lock_clearance=8"] {
-        assert_ne!(rotations(&opened(&format!("{held}&{setting}"))), usual_held, "{setting}");
-        assert_eq!(rotations(&opened(&format!("{free}&{setting}"))), usual_free, "{setting}");
+        assert_ne!(
+            rotations(&opened_without_problems(&format!("{held}&{setting}"))),
+            usual_held,
+            "{setting}"
+        );
+        assert_eq!(
+            rotations(&opened_without_problems(&format!("{free}&{setting}"))),
+            usual_free,
+            "{setting}"
+        );
         // A setting without effect does not make the clip a changed one that can be kept.
-        let mut view = opened(&format!("lab=view&a=walk&{setting}"));
+        let mut view = opened_without_problems(&format!("lab=view&a=walk&{setting}"));
         assert!(!view.view_is_changed() && view.apply(Command::Keep(0)).is_err(), "{setting}");
-        assert!(opened(&format!("lab=view&a=walk&foot_lock=on&{setting}")).view_is_changed());
+        assert!(
+            opened_without_problems(&format!("lab=view&a=walk&foot_lock=on&{setting}"))
+                .view_is_changed()
+        );
     }
 }
 
 #[test]
 fn clearance_of_zero_leaves_the_swing_as_it_is() {
-    let free = opened("lab=blend");
+    let free = opened_without_problems("lab=blend");
     let motion = &free.main_outcome().unwrap().motion;
     let held = |clearance_m| {
         let options = FootLockOptions {
@@ -101,23 +105,29 @@ fn clearance_of_zero_leaves_the_swing_as_it_is() {
             &foot_lock(motion.clip(), motion.roles(), motion.contacts(), &options).unwrap(),
         )
     };
-    assert_eq!(rotations(&opened("lab=blend&foot_lock=on&lock_clearance=0")), held(None));
-    assert_eq!(rotations(&opened("lab=blend&foot_lock=on&lock_clearance=8")), held(Some(0.08)));
+    assert_eq!(
+        rotations(&opened_without_problems("lab=blend&foot_lock=on&lock_clearance=0")),
+        held(None)
+    );
+    assert_eq!(
+        rotations(&opened_without_problems("lab=blend&foot_lock=on&lock_clearance=8")),
+        held(Some(0.08))
+    );
     assert_ne!(held(None), held(Some(0.08)));
 }
 
 #[test]
 fn lock_settings_are_restored_from_a_link() {
     let link = "lab=transition&foot_lock=on&lock_blend=0.5&lock_reach=12&lock_clearance=0";
-    let session = opened(link);
+    let session = opened_without_problems(link);
     let query = session.query();
     for setting in ["lock_blend=0.5", "lock_reach=12", "lock_clearance=0"] {
         assert!(query.split('&').any(|pair| pair == setting), "{setting} in {query}");
     }
-    let again = opened(&query);
+    let again = opened_without_problems(&query);
     assert_eq!(again.query(), query);
     assert_eq!(rotations(&again), rotations(&session));
-    let panes = opened("lab=transition&foot_lock=on&compare=lock_reach:30,3");
+    let panes = opened_without_problems("lab=transition&foot_lock=on&compare=lock_reach:30,3");
     let of_pane =
         |pane: usize| rotations_of(panes.panes()[pane].outcome.as_ref().unwrap().motion.clip());
     assert_ne!(of_pane(0), of_pane(1));

@@ -128,15 +128,9 @@ fn way_metrics(frames: &[Planar], fps: f64) -> [Metric; 3] {
 
 #[cfg(test)]
 mod tests {
+    use crate::fixtures::opened;
     use crate::metrics::MetricId;
     use crate::{Command, Session};
-
-    fn opened(link: &str) -> Session {
-        let mut session = Session::new();
-        session.apply(Command::OpenLink(link.into())).expect("a link");
-        while session.work() {}
-        session
-    }
 
     fn number(session: &Session, id: MetricId) -> f64 {
         let outcome = session.main_outcome().expect("a result");

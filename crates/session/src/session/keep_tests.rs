@@ -3,14 +3,6 @@
 use crate::fixtures::*;
 use segue_motion::math::wrap_angle;
 
-fn opened(link: &str) -> Session {
-    let mut session = Session::new();
-    session.apply(Command::OpenLink(link.into())).unwrap();
-    settle(&mut session);
-    assert_eq!(session.panes()[0].problem, None, "{link}");
-    session
-}
-
 /// Joins a clip to the last kept one, at the place that Segue finds, and keeps the result. Returns
 /// its id.
 fn join(session: &mut Session, a: &str, b: &str) -> String {
@@ -41,7 +33,7 @@ fn sequence_of_kept_results_keeps_its_middle() {
         "lab=blend",
         "lab=register&warp_mode=join&end_slack=30",
     ] {
-        let mut session = opened(lab);
+        let mut session = opened_without_problems(lab);
         let one = join(&mut session, "start", "walk");
         let two = join(&mut session, &one, "walk_left");
         let (first, second) = (motion(&session, &one), motion(&session, &two));
@@ -72,7 +64,7 @@ fn sequence_of_kept_results_keeps_its_middle() {
         assert_eq!(motion(&session, &after).seams().len(), 3, "{lab}");
 
         // The link alone restores the same motion, including its seams.
-        let again = opened(&format!("lab=view&a={three}"));
+        let again = opened_without_problems(&format!("lab=view&a={three}"));
         let again = &again.main_outcome().unwrap().motion;
         assert_eq!(
             (again.clip().root_translations(), again.seams()),
@@ -84,7 +76,7 @@ fn sequence_of_kept_results_keeps_its_middle() {
 
 #[test]
 fn results_with_a_further_clip_of_a_file_are_kept() {
-    let mut session = opened("lab=view&a=walk");
+    let mut session = opened_without_problems("lab=view&a=walk");
     let bytes = segue_formats::bvh::write(
         motion(&session, "walk").clip(),
         &segue_formats::bvh::WriteOptions::default(),
@@ -113,7 +105,7 @@ fn results_with_a_further_clip_of_a_file_are_kept() {
 
 #[test]
 fn result_that_no_link_can_contain_is_not_kept() {
-    let mut session = opened("lab=blend&blend_window=8");
+    let mut session = opened_without_problems("lab=blend&blend_window=8");
     let mut id = "walk".to_owned();
     let refused = (0..10).find_map(|_| {
         let values = vec![(Key::A, Value::Text(id.clone())), (Key::B, Value::Text("walk".into()))];
@@ -125,7 +117,7 @@ fn result_that_no_link_can_contain_is_not_kept() {
     });
     assert!(refused.is_some_and(|error| error.to_string().contains("save it as a file")));
     // Everything that was kept can be made again.
-    let last = opened(&format!("lab=view&a={id}"));
+    let last = opened_without_problems(&format!("lab=view&a={id}"));
     assert_eq!(
         motion(&session, &id).clip().frames(),
         last.main_outcome().unwrap().motion.clip().frames()

@@ -35,14 +35,6 @@ const LABS: [&str; 14] = [
 const METRICS_OF_ALL: [&str; 4] =
     ["pose_jump_deg", "velocity_jump_dps", "spin_deg", "skating_cmps"];
 
-fn opened(link: &str) -> Session {
-    let mut session = Session::new();
-    session.apply(Command::OpenLink(link.into())).unwrap();
-    settle(&mut session);
-    assert_eq!(session.panes()[0].problem, None, "{link}");
-    session
-}
-
 /// Returns the metrics of every lab in the first pane.
 fn common(session: &Session) -> Vec<Metric> {
     session.panes()[0].result().unwrap().outcome.metrics.iter().take(4).copied().collect()
@@ -59,7 +51,7 @@ fn metrics_of_every_lab_come_first_and_are_clean_for_clean_results() {
     assert!(expected.iter().all(|metric| metric.id.row().better == Better::Lower));
     let mut seen = BTreeSet::new();
     for link in LABS {
-        let mut session = opened(link);
+        let mut session = opened_without_problems(link);
         if session.is_driven() {
             session
                 .apply(Command::Drive(DriveCommand::Steer(segue_motion::matching::Control::new(
@@ -91,8 +83,8 @@ fn metrics_of_every_lab_come_first_and_are_clean_for_clean_results() {
         seen.extend(ids);
         seen.extend(NumberTable::of(&session).rows.iter().map(|row| row.metric));
     }
-    let locked = opened("lab=make&foot_lock=on");
-    let mut edited = opened("lab=path&a=walk_left");
+    let locked = opened_without_problems("lab=make&foot_lock=on");
+    let mut edited = opened_without_problems("lab=path&a=walk_left");
     let spline = edited.main_outcome().unwrap().path().unwrap().fitted.curve().spline().clone();
     let step = PathEdit::Move { index: 1, to: spline.points()[1] + DVec2::X };
     let path = List::EditedPath(spline.edited(&step, Pins::default()).ok());
@@ -140,7 +132,7 @@ fn measured(outcome: &Outcome) -> ResultMetrics {
 #[test]
 fn fault_in_the_result_of_any_lab_is_measured() {
     for link in LABS {
-        let session = opened(link);
+        let session = opened_without_problems(link);
         let outcome = session.main_outcome().unwrap();
         let clip = outcome.motion.clip();
         if clip.frames() < 60 {
@@ -173,8 +165,9 @@ fn fault_in_the_result_of_any_lab_is_measured() {
 
 #[test]
 fn long_results_are_shown_at_once_and_measured_in_slices() {
-    let mut session =
-        opened("lab=blend&a=walk(make_seconds:25)&b=walk(make_seconds:25)&leave_a=20&enter_b=1");
+    let mut session = opened_without_problems(
+        "lab=blend&a=walk(make_seconds:25)&b=walk(make_seconds:25)&leave_a=20&enter_b=1",
+    );
     let shorter = Command::Set(vec![(Key::BlendWindow, Value::Number(20.0))]);
     session.apply(shorter).unwrap();
     let outcome = Arc::clone(session.main_outcome().unwrap());

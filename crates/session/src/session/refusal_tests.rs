@@ -7,13 +7,6 @@ use crate::{NumberTable, ReportFacts, report};
 use segue_formats::bvh;
 use segue_motion::clip::Clip;
 
-fn opened(link: &str) -> Session {
-    let mut session = Session::new();
-    session.apply(Command::OpenLink(link.into())).unwrap();
-    settle(&mut session);
-    session
-}
-
 fn set(session: &mut Session, values: &[(Key, Value)]) {
     session.apply(Command::Set(values.to_vec())).unwrap();
     settle(session);

@@ -133,22 +133,10 @@ fn mix_frames_are_frames_of_each_clip() {
     );
 }
 
-fn opened(link: &str) -> Session {
-    let mut session = Session::new();
-    session.apply(Command::OpenLink(link.into())).unwrap();
-    settle(&mut session);
-    assert!(session.panes().iter().all(|pane| pane.problem.is_none()), "{link}");
-    session
-}
-
-fn number_of(outcome: &Outcome, id: MetricId) -> f64 {
-    outcome.metric(id).and_then(|metric| metric.value).unwrap_or(f64::NAN)
-}
-
 #[test]
 fn mistakes_are_compared_with_the_correct_transition() {
-    let right = opened("lab=transition");
-    let both = opened("lab=transition&compare=mistake:none,euler,hemisphere");
+    let right = opened_without_problems("lab=transition");
+    let both = opened_without_problems("lab=transition&compare=mistake:none,euler,hemisphere");
     let outcome = |session: &Session, pane: usize| {
         Arc::clone(session.panes()[pane].outcome.as_ref().unwrap())
     };
@@ -163,22 +151,24 @@ fn mistakes_are_compared_with_the_correct_transition() {
         seam(1),
         seam(2)
     );
-    let others = opened("lab=transition&compare=mistake:none,degrees,atan");
+    let others = opened_without_problems("lab=transition&compare=mistake:none,degrees,atan");
     let of = |pane, id| number_of(&outcome(&others, pane), id);
     let jumps = [0, 1].map(|pane| of(pane, MetricId::VelocityJump));
     assert!(jumps[1] > 10.0 * jumps[0], "{jumps:?}");
     let spins = [0, 2].map(|pane| of(pane, MetricId::Spin));
     assert!(spins[0] < 5.0 && spins[1] > 60.0, "{spins:?}");
     // Other labs ignore mistakes.
-    let [plain, spoiled] =
-        ["lab=blend&compare=", "lab=blend&mistake=degrees"].map(|link| outcome(&opened(link), 0));
+    let [plain, spoiled] = ["lab=blend&compare=", "lab=blend&mistake=degrees"]
+        .map(|link| outcome(&opened_without_problems(link), 0));
     assert_eq!(plain.motion, spoiled.motion);
     // Every mistake has a picture and the same numbers, by every method.
     for mistake in ["hemisphere", "euler", "degrees", "atan", "alignment", "velocity", "world_root"]
     {
         for method in ["inertialize", "cubic", "quintic", "dead", "smooth", "linear", "cut"] {
-            let session = opened(&format!("lab=transition&method={method}&mistake={mistake}"));
-            let good = opened(&format!("lab=transition&method={method}"));
+            let session = opened_without_problems(&format!(
+                "lab=transition&method={method}&mistake={mistake}"
+            ));
+            let good = opened_without_problems(&format!("lab=transition&method={method}"));
             let differs = outcome(&session, 0).motion != outcome(&good, 0).motion;
             let told = |session: &Session| {
                 outcome(session, 0).metrics.iter().map(|metric| metric.id).collect::<Vec<_>>()

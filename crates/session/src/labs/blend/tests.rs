@@ -1,16 +1,10 @@
 //! Tests of frames set by hand, and of the match.
 
+use crate::Transition;
+use crate::fixtures::opened;
 use crate::session::Session;
-use crate::{Command, Transition};
 use segue_motion::clip::Clip;
 use segue_motion::registration::{align, limb_weights, rms_cm};
-
-fn opened(link: &str) -> Session {
-    let mut session = Session::new();
-    session.apply(Command::OpenLink(link.to_owned())).unwrap();
-    while session.work() {}
-    session
-}
 
 /// Returns the frames at which A is left and B is entered, and the transition.
 fn place(session: &Session) -> ([usize; 2], Transition) {

@@ -3,13 +3,6 @@
 use crate::Walk;
 use crate::fixtures::*;
 
-pub(super) fn opened(link: &str) -> Session {
-    let mut session = Session::new();
-    session.apply(Command::OpenLink(link.into())).unwrap();
-    while session.work() {}
-    session
-}
-
 /// A graph that is built quickly.
 pub(super) const SMALL: &str =
     "lab=graph&clips=walk,walk_left,walk_right&walk_seconds=20&blend_window=20";
@@ -30,8 +23,7 @@ pub(super) fn walk_of(session: &Session, pane: usize) -> &Arc<Walk> {
 }
 
 pub(super) fn number(session: &Session, pane: usize, id: MetricId) -> f64 {
-    let outcome = session.panes()[pane].outcome.as_ref().unwrap();
-    outcome.metric(id).and_then(|metric| metric.value).unwrap_or(f64::NAN)
+    number_of(session.panes()[pane].outcome.as_ref().unwrap(), id)
 }
 
 /// Returns the clips in the order in which they play, with the frame at which each is entered.

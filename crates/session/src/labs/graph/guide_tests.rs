@@ -1,6 +1,6 @@
 //! Tests of compared walks, which follow the first one where they can.
 
-use super::fixtures::{SMALL, assert_connected, number, opened, set, walk, walk_of, way};
+use super::fixtures::{SMALL, assert_connected, number, set, walk, walk_of, way};
 use crate::List;
 use crate::fixtures::*;
 use glam::DVec2;

@@ -1,6 +1,6 @@
 //! Tests of the work in slices: what is computed again after a change, and what is refused.
 
-use super::fixtures::{SMALL, opened, set, walk};
+use super::fixtures::{SMALL, set, walk};
 use crate::JobKind;
 use crate::fixtures::*;
 use segue_text::ToMessage;

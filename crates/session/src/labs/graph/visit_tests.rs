@@ -1,6 +1,6 @@
 //! Tests of walks that visit clips and follow paths.
 
-use super::fixtures::{SMALL, assert_connected, number, opened, set, walk, way};
+use super::fixtures::{SMALL, assert_connected, number, set, walk, way};
 use crate::List;
 use crate::fixtures::*;
 use glam::DVec2;

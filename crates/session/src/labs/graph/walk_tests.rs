@@ -1,6 +1,6 @@
 //! Tests of walks: made, extended, kept, and the golden walk.
 
-use super::fixtures::{SMALL, number, opened, set, walk, way};
+use super::fixtures::{SMALL, number, set, walk, way};
 use crate::List;
 use crate::fixtures::*;
 use segue_motion::graph::Place;

@@ -3,21 +3,9 @@
 use crate::fixtures::*;
 use segue_motion::metrics::foot_slide_cm;
 
-fn opened(link: &str) -> Session {
-    let mut session = Session::new();
-    session.apply(Command::OpenLink(link.into())).unwrap();
-    settle(&mut session);
-    assert!(session.panes().iter().all(|pane| pane.problem.is_none()), "{link}");
-    session
-}
-
-fn number_of(outcome: &Outcome, id: MetricId) -> f64 {
-    outcome.metric(id).and_then(|metric| metric.value).unwrap_or(f64::NAN)
-}
-
 #[test]
 fn layers_lab_opens_with_a_run_on_walking_legs() {
-    let session = opened("lab=layers");
+    let session = opened_without_problems("lab=layers");
     let outcome = session.main_outcome().unwrap();
     let layer = outcome.layer().unwrap();
     assert_eq!((layer.fit, layer.has_no_steps), (crate::LayerFit::InStep, false));
@@ -43,7 +31,7 @@ fn layers_lab_opens_with_a_run_on_walking_legs() {
 #[test]
 fn arms_of_a_run_in_step_swing_with_the_legs() {
     // The forearm has the same rotation at each strike of the left foot.
-    let session = opened("lab=layers&mask=arms&keep_orientation=off");
+    let session = opened_without_problems("lab=layers&mask=arms&keep_orientation=off");
     let outcome = session.main_outcome().unwrap();
     let hand = outcome.motion.roles().get(segue_motion::skeleton::Role::LeftForearm).unwrap();
     let strikes = outcome.motion.contacts().intervals(segue_motion::skeleton::Side::Left);
@@ -68,7 +56,7 @@ fn layers_update_at_once_and_report_how_their_time_fits() {
         ("lab=layers&b=idle(make_seconds:2)", LayerFit::Looped, true),
         ("lab=layers&a=idle(make_seconds:2)&b=walk", LayerFit::Once, true),
     ] {
-        let session = opened(link);
+        let session = opened_without_problems(link);
         let layer = session.main_outcome().unwrap().layer().cloned().unwrap();
         assert_eq!((layer.fit, layer.has_no_steps), (fit, has_no_steps), "{link}");
         assert!(
@@ -76,7 +64,7 @@ fn layers_update_at_once_and_report_how_their_time_fits() {
             "{link}"
         );
     }
-    let mut session = opened("lab=layers&compare=layer_weight:0,0.5,1");
+    let mut session = opened_without_problems("lab=layers&compare=layer_weight:0,0.5,1");
     let arms: Vec<f64> = session
         .panes()
         .iter()
@@ -105,8 +93,9 @@ fn layers_update_at_once_and_report_how_their_time_fits() {
     // Relative to the mean, an additive layer keeps the posture; relative to the rest pose, it adds
     // all of it.
     let off = |reference: &str| {
-        let session =
-            opened(&format!("lab=layers&layer_mode=additive&layer_reference={reference}"));
+        let session = opened_without_problems(&format!(
+            "lab=layers&layer_mode=additive&layer_reference={reference}"
+        ));
         number_of(session.main_outcome().unwrap(), MetricId::ArmsOffA)
     };
     assert!(

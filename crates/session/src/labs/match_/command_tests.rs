@@ -9,13 +9,6 @@ use segue_motion::matching::{
 };
 use segue_text::ToMessage;
 
-fn open(link: &str) -> Session {
-    let mut session = Session::new();
-    session.apply(Command::OpenLink(link.into())).unwrap();
-    while session.work() {}
-    session
-}
-
 /// A database that is built quickly.
 const SMALL: &str =
     "lab=match&mirrored=off&match_clips=idle,walk,walk_left,walk_right,walk(make_seconds:6)";
@@ -33,7 +26,7 @@ fn ask(session: &mut Session, x: f64, z: f64) {
 
 #[test]
 fn scenario_of_a_link_equals_the_core() {
-    let session = open("lab=match&scenario=spin");
+    let session = opened("lab=match&scenario=spin");
     let outcome = session.main_outcome().unwrap();
     let database =
         Arc::new(Database::new(made_clips(1.75).unwrap(), &DatabaseOptions::default()).unwrap());
@@ -54,7 +47,7 @@ fn scenario_of_a_link_equals_the_core() {
 
 #[test]
 fn driven_motion_is_recorded_and_replayed_exactly() {
-    let mut session = open(SMALL);
+    let mut session = opened(SMALL);
     assert!(session.is_driven() && session.jobs().is_empty());
     let rest = driven(&session).moments.last().unwrap().root;
     for (x, z, ticks) in [(0.0, 0.0, 20), (0.0, 1.4, 90), (1.0, 1.0, 60), (0.0, 0.0, 40)] {
@@ -80,13 +73,13 @@ fn driven_motion_is_recorded_and_replayed_exactly() {
         );
     }
     // The link alone restores it, and it is kept like any other clip.
-    let mut other = open(&session.query());
+    let mut other = opened(&session.query());
     let again = Arc::clone(other.main_outcome().unwrap().motion.clip());
     assert_eq!(again.root_translations(), replay.root_translations());
     other.apply(Command::Keep(0)).unwrap();
     let id = other.library().entries().last().unwrap().id.clone();
     assert!(id.starts_with("match(drive:"), "{id}");
-    let viewed = open(&format!("lab=view&a={}", id.replace('%', "%25")));
+    let viewed = opened(&format!("lab=view&a={}", id.replace('%', "%25")));
     assert_eq!(
         viewed.main_outcome().unwrap().motion.clip().root_translations(),
         replay.root_translations()
@@ -99,7 +92,7 @@ fn driven_motion_is_recorded_and_replayed_exactly() {
 
 #[test]
 fn time_at_any_rate_makes_whole_ticks_and_none_while_paused() {
-    let mut session = open(SMALL);
+    let mut session = opened(SMALL);
     ask(&mut session, 0.0, 1.4);
     for _ in 0..50 {
         session.tick(0.01);
@@ -126,7 +119,7 @@ fn time_at_any_rate_makes_whole_ticks_and_none_while_paused() {
 
 #[test]
 fn stick_input_starts_playback() {
-    let mut session = open(&format!("{SMALL}&play=off"));
+    let mut session = opened(&format!("{SMALL}&play=off"));
     assert!(session.is_driven() && !session.tick(0.5));
     ask(&mut session, 0.0, 1.4);
     assert!(session.params().is_on(Key::Play) && session.tick(0.5));
@@ -152,7 +145,7 @@ fn stick_input_starts_playback() {
 #[test]
 fn character_appears_beside_a_pane_that_waits() {
     // The second database is known, the first is not.
-    let mut session = open(&format!("{SMALL}&ahead_far=1.2"));
+    let mut session = opened(&format!("{SMALL}&ahead_far=1.2"));
     session.apply(Command::OpenLink("lab=view".into())).unwrap();
     session.apply(Command::OpenLink(format!("{SMALL}&compare=ahead_far:1.1,1.2"))).unwrap();
     assert!(session.panes()[0].result().is_err() && session.panes()[1].result().is_ok());
@@ -168,7 +161,7 @@ fn character_appears_beside_a_pane_that_waits() {
 
 #[test]
 fn sliders_change_the_moving_character_and_panes_share_the_input() {
-    let mut session = open(&format!("{SMALL}&compare=hysteresis:none,bias,votes"));
+    let mut session = opened(&format!("{SMALL}&compare=hysteresis:none,bias,votes"));
     ask(&mut session, 0.7, 1.2);
     for _ in 0..90 {
         session.tick(1.0 / 60.0);
@@ -205,7 +198,7 @@ fn sliders_change_the_moving_character_and_panes_share_the_input() {
 
 #[test]
 fn tag_filter_restricts_the_candidates_of_searches() {
-    let mut session = open("lab=match&ask_tag=walk&shown_candidates=4");
+    let mut session = opened("lab=match&ask_tag=walk&shown_candidates=4");
     for _ in 0..120 {
         session.tick(1.0 / 60.0);
     }
@@ -226,7 +219,7 @@ fn tag_filter_restricts_the_candidates_of_searches() {
 
 #[test]
 fn tags_by_hand_are_required_and_excluded() {
-    let session = open(&format!(
+    let session = opened(&format!(
         "{SMALL}&tags=walk:0-1:proud,walk:0.5-2:-walk,idle:0-10:exclude&ask_tag=proud"
     ));
     let database = &driven(&session).database;
@@ -246,13 +239,13 @@ fn tags_by_hand_are_required_and_excluded() {
             && !at(1, 90).meets(own)
     );
     // A word that no frame has is refused, with the remedy.
-    let problem = open(&format!("{SMALL}&scenario=straight&forbid_tag=tired")).panes()[0]
+    let problem = opened(&format!("{SMALL}&scenario=straight&forbid_tag=tired")).panes()[0]
         .problem
         .clone()
         .unwrap();
     assert!(problem.to_string().contains("`tired`"), "{problem}");
     // Tags change during driving: the character continues from where it is.
-    let mut session = open(SMALL);
+    let mut session = opened(SMALL);
     ask(&mut session, 0.0, 1.4);
     for _ in 0..90 {
         session.tick(1.0 / 60.0);
@@ -271,7 +264,7 @@ fn tags_by_hand_are_required_and_excluded() {
 
 #[test]
 fn crowd_shares_the_database() {
-    let mut session = open(&format!("{SMALL}&crowd=6"));
+    let mut session = opened(&format!("{SMALL}&crowd=6"));
     for _ in 0..30 {
         session.tick(1.0 / 60.0);
     }
@@ -305,14 +298,14 @@ fn impossible_settings_are_refused_with_a_sentence() {
         ("lab=match&match_clips=nobody", "is not here"),
         ("lab=match&ahead_near=1&ahead_far=0.5", "must rise"),
     ] {
-        let session = open(link);
+        let session = opened(link);
         let problem =
             session.panes()[0].problem.as_ref().map(|problem| problem.to_sentence().to_string());
         let problem = problem.unwrap_or_default();
         assert!(problem.contains(part) && problem.ends_with('.'), "{link}: {problem}");
         assert!(session.jobs().is_empty());
     }
-    let mut session = open(SMALL);
+    let mut session = opened(SMALL);
     assert!(matches!(
         session.apply(Command::Drive(DriveCommand::Replay)),
         Err(CommandError::NotPossible(_))
@@ -330,12 +323,12 @@ fn impossible_settings_are_refused_with_a_sentence() {
 fn literal_forms_of_a_course_are_choices() {
     let given =
         "lab=match&mirrored=off&match_clips=walk,walk_left,walk(make_seconds:6)&scenario=straight";
-    let usual = open(given);
+    let usual = opened(given);
     let options = |session: &Session| driven(session).database.options().clone();
     assert!(
         options(&usual).cycles && options(&usual).features.normalisation == Normalisation::Block
     );
-    let literal = open(&format!(
+    let literal = opened(&format!(
         "{given}&normalisation=dimension&hysteresis=clip_votes&prefer_clip=walk_left&prefer_current=1&match_cycles=off"
     ));
     assert!(
@@ -357,7 +350,7 @@ fn literal_forms_of_a_course_are_choices() {
         played(&literal),
         played(&usual)
     );
-    let unknown = open(&format!("{given}&prefer_clip=run"));
+    let unknown = opened(&format!("{given}&prefer_clip=run"));
     let problem = unknown.panes()[0].problem.as_ref().unwrap();
     assert!(problem.to_string().contains("`run` is not among the clips"), "{problem}");
 }

@@ -7,13 +7,6 @@ use crate::{ExtraCharacterCommand, PathFacts};
 use glam::DVec2;
 use segue_motion::path::{GroundSpline, PathEdit, Pins};
 
-fn open(link: &str) -> Session {
-    let mut session = Session::new();
-    session.apply(Command::OpenLink(link.into())).unwrap();
-    while session.work() {}
-    session
-}
-
 fn path(session: &Session) -> &PathFacts {
     assert_eq!(session.panes()[0].problem, None);
     session.main_outcome().unwrap().path().map(|fact| &**fact).unwrap()
@@ -43,7 +36,7 @@ fn set(session: &mut Session, key: Key, value: Value) {
 #[test]
 fn path_without_edits_gives_the_clip() {
     for keep in ["speed", "duration", "whole"] {
-        let session = open(&format!("lab=path&a=walk_left&keep={keep}"));
+        let session = opened(&format!("lab=path&a=walk_left&keep={keep}"));
         let made = &session.main_outcome().unwrap().motion;
         let original = path(&session).fitted.motion();
         assert_eq!(made.clip().frames(), original.clip().frames());
@@ -65,7 +58,7 @@ fn path_without_edits_gives_the_clip() {
 
 #[test]
 fn point_that_is_dragged_moves_the_character_in_one_step() {
-    let mut session = open("lab=path&a=walk");
+    let mut session = opened("lab=path&a=walk");
     let before = session.query();
     let fitted = Arc::clone(&path(&session).fitted);
     for step in 1..=5 {
@@ -86,7 +79,7 @@ fn point_that_is_dragged_moves_the_character_in_one_step() {
     assert!(middle(&session) > 0.3, "{}", middle(&session));
     assert!(path(&session).is_edited);
     // The link alone restores it.
-    let other = open(&session.query());
+    let other = opened(&session.query());
     let clip = |session: &Session| Arc::clone(session.main_outcome().unwrap().motion.clip());
     assert_eq!(clip(&other).root_translations(), clip(&session).root_translations());
     session.apply(Command::Undo).unwrap();
@@ -99,7 +92,7 @@ fn point_that_is_dragged_moves_the_character_in_one_step() {
 #[test]
 fn ground_frames_on_a_path_equal_the_measured_ones() {
     for link in ["keep=speed", "keep=duration", "keep=whole", "path_facing=world", "foot_lock=on"] {
-        let mut session = open(&format!("lab=path&a=walk_left&{link}"));
+        let mut session = opened(&format!("lab=path&a=walk_left&{link}"));
         let value = moved(&session, 3, DVec2::new(0.4, -0.3));
         set(&mut session, Key::Path, value);
         let made = &session.main_outcome().unwrap().motion;
@@ -119,7 +112,7 @@ fn ground_frames_on_a_path_equal_the_measured_ones() {
 
 #[test]
 fn invalid_path_is_refused_and_nothing_is_lost() {
-    let session = open("lab=path&a=idle");
+    let session = opened("lab=path&a=idle");
     assert!(
         session.panes()[0].problem.as_ref().unwrap().to_string().contains("stays within"),
         "{:?}",
@@ -127,7 +120,7 @@ fn invalid_path_is_refused_and_nothing_is_lost() {
     );
     // All points in one place: no direction.
     let code = GroundSpline::uniform(vec![DVec2::ONE; 6]).unwrap().to_code();
-    let mut session = open(&format!("lab=path&a=walk&path={code}"));
+    let mut session = opened(&format!("lab=path&a=walk&path={code}"));
     assert!(session.panes()[0].problem.as_ref().unwrap().to_string().contains("no direction"));
     session.apply(Command::Reset(Key::Path)).unwrap();
     assert!(!path(&session).is_edited);
@@ -143,7 +136,7 @@ fn invalid_path_is_refused_and_nothing_is_lost() {
 
 #[test]
 fn more_control_points_fit_better() {
-    let session = open("lab=path&a=walk_left&compare=control_points:4,8,16");
+    let session = opened("lab=path&a=walk_left&compare=control_points:4,8,16");
     let errors: Vec<f64> = session
         .panes()
         .iter()
@@ -154,7 +147,7 @@ fn more_control_points_fit_better() {
 
 #[test]
 fn hairpin_is_reported_with_place_and_time() {
-    let mut session = open("lab=path&a=walk&keep=duration");
+    let mut session = opened("lab=path&a=walk&keep=duration");
     assert!(path(&session).hard_turns.is_empty());
     let value = moved(&session, 4, DVec2::new(0.2, -2.5));
     set(&mut session, Key::Path, value);
@@ -165,7 +158,7 @@ fn hairpin_is_reported_with_place_and_time() {
 
 #[test]
 fn extra_characters_on_their_own_paths_play_from_a_link() {
-    let mut session = open("lab=path&a=walk&play=off");
+    let mut session = opened("lab=path&a=walk&play=off");
     let alone = session.query();
     let value = moved(&session, 4, DVec2::new(1.0, 0.0));
     set(&mut session, Key::Path, value);
@@ -180,7 +173,7 @@ fn extra_characters_on_their_own_paths_play_from_a_link() {
     set(&mut session, Key::Path, value);
     session.apply(Command::Settle).unwrap();
 
-    let other = open(&session.query());
+    let other = opened(&session.query());
     let names = |session: &Session| {
         session.extra_characters().iter().map(|one| one.id.clone()).collect::<Vec<_>>()
     };
@@ -209,13 +202,13 @@ fn extra_characters_on_their_own_paths_play_from_a_link() {
     }
     assert_eq!(session.query(), alone);
     // In other labs there are no extra characters.
-    let elsewhere = open(&format!("lab=view&others={id}"));
+    let elsewhere = opened(&format!("lab=view&others={id}"));
     assert!(elsewhere.extra_characters().is_empty());
 }
 
 #[test]
 fn missing_extra_character_is_named() {
-    let session = open("lab=path&a=walk&others=somebody~0123456789ab,walk");
+    let session = opened("lab=path&a=walk&others=somebody~0123456789ab,walk");
     assert!(
         session.extra_characters()[0].motion.as_ref().unwrap_err().to_string().contains("somebody")
     );
@@ -224,14 +217,14 @@ fn missing_extra_character_is_named() {
 
 #[test]
 fn kept_path_is_a_clip_for_every_other_lab() {
-    let mut session = open("lab=path&a=run&foot_lock=on&keep=whole");
+    let mut session = opened("lab=path&a=run&foot_lock=on&keep=whole");
     let value = moved(&session, 3, DVec2::new(0.5, 0.0));
     set(&mut session, Key::Path, value);
     session.apply(Command::Keep(0)).unwrap();
     let word = code(&session);
     let id = format!("path(a:run,foot_lock:on,keep:whole,path:{word})");
     assert!(session.library().find(&id).is_some(), "{:?}", session.library().entries().last());
-    let other = open(&format!("lab=path&a={id}&control_points=6"));
+    let other = opened(&format!("lab=path&a={id}&control_points=6"));
     assert_eq!(
         path(&other).fitted.motion().clip().root_translations(),
         session.main_outcome().unwrap().motion.clip().root_translations()
@@ -240,8 +233,8 @@ fn kept_path_is_a_clip_for_every_other_lab() {
 
 #[test]
 fn feet_of_a_short_clip_are_locked_on_its_own_ground() {
-    let session = open("lab=path&a=run&foot_lock=on&ground=4");
-    let free = open("lab=path&a=run&ground=4");
+    let session = opened("lab=path&a=run&foot_lock=on&ground=4");
+    let free = opened("lab=path&a=run&ground=4");
     let carried = &free.main_outcome().unwrap().motion;
     let options =
         segue_motion::transition::FootLockOptions { ground_m: Some(0.04), ..Default::default() };

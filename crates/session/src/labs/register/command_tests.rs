@@ -8,17 +8,6 @@ use segue_motion::math::Planar;
 use segue_motion::skeleton::Side;
 use segue_text::ToMessage;
 
-fn opened(link: &str) -> Session {
-    let mut session = Session::new();
-    session.apply(Command::OpenLink(link.into())).unwrap();
-    while session.work() {}
-    session
-}
-
-fn number_of(outcome: &Outcome, id: MetricId) -> f64 {
-    outcome.metric(id).and_then(|metric| metric.value).unwrap_or(f64::NAN)
-}
-
 fn registered(session: &Session) -> &RegistrationFacts {
     session.main_outcome().unwrap().registered().unwrap()
 }
