@@ -105,15 +105,14 @@ pub fn frame_at(motion: &Motion, secs: f64) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fixtures::{opened, settle};
     use crate::metrics::MetricId;
-    use crate::{Command, Outcome, Session};
+    use crate::{Command, Outcome};
+    use segue_motion::clip::character_frames;
     use segue_motion::skeleton::Side;
 
     fn outcome(link: &str) -> Arc<Outcome> {
-        let mut session = Session::new();
-        session.apply(Command::OpenLink(link.to_owned())).unwrap();
-        while session.work() {}
-        Arc::clone(session.main_outcome().unwrap())
+        Arc::clone(opened(link).main_outcome().unwrap())
     }
 
     fn planted(motion: &Motion) -> usize {
@@ -128,21 +127,37 @@ mod tests {
         assert_eq!(foot_options(&Params::default()), FootOptions::default());
         let raised = outcome("lab=view&a=walk&ground=5");
         assert!((raised.motion.ground_m() - 0.05).abs() < 1e-6);
-        let sunk = |outcome: &Outcome| {
+        let penetration = |outcome: &Outcome| {
             let metric = outcome.metric(MetricId::ClipPenetration).unwrap();
             metric.value.unwrap()
         };
         // The lowest points of this body are toe tips, which stand 1 cm above the soles.
         assert!(
-            (3.0..=5.0).contains(&(sunk(&raised) - sunk(&usual))),
+            (3.0..=5.0).contains(&(penetration(&raised) - penetration(&usual))),
             "{} {}",
-            sunk(&raised),
-            sunk(&usual)
+            penetration(&raised),
+            penetration(&usual)
         );
         let generous = outcome("lab=view&a=walk&contact_height=8&contact_speed=0.8");
         assert!(planted(&generous.motion) > planted(&usual.motion));
         // B on the skeleton and at the rate of A is read in the same way.
         let blended = outcome("lab=blend&a=walk&b=run&ground=5");
         assert!((blended.motion.ground_m() - 0.05).abs() < 1e-6);
+    }
+
+    #[test]
+    fn feet_read_with_other_options_keep_blended_ground_frames() {
+        let mut session = opened("lab=blend&a=walk_left&b=run");
+        session.apply(Command::Keep(0)).unwrap();
+        let kept = session.library().entries().last().unwrap();
+        let (id, motion) = (kept.id.clone(), Arc::clone(kept.motion.as_ref().unwrap()));
+        let measured = character_frames(motion.clip(), motion.roles());
+        assert_ne!(motion.ground_frames(), measured, "the blend has ground frames of its own");
+        let link = format!("lab=view&a={id}&ground=5&contact_height=8");
+        session.apply(Command::OpenLink(link)).unwrap();
+        settle(&mut session);
+        let read = &session.main_outcome().unwrap().motion;
+        assert_ne!((read.feet(), read.contacts()), (motion.feet(), motion.contacts()));
+        assert_eq!(read.ground_frames(), motion.ground_frames());
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::fixtures::*;
 use segue_motion::math::wrap_angle;
+use segue_motion::skeleton::Role;
 
 /// Joins a clip to the last kept one, at the place that Segue finds, and keeps the result. Returns
 /// its id.
@@ -71,6 +72,24 @@ fn sequence_of_kept_results_keeps_its_middle() {
             (third.clip().root_translations(), third.seams()),
             "{lab}"
         );
+    }
+}
+
+#[test]
+fn role_corrected_by_hand_keeps_the_seams_of_a_kept_result() {
+    let mut session = opened_without_problems("lab=blend");
+    let id = join(&mut session, "start", "walk");
+    let seams = motion(&session, &id).seams().to_vec();
+    assert_eq!(seams.len(), 1);
+    let correction = FileCommand::CorrectRole(id.clone(), Role::Head, None);
+    session.apply(Command::File(correction)).unwrap();
+    // After a reload, the result is made again from its recipe.
+    let mut restored = Session::new();
+    restored.restore(&session.saved(), |_| None, Some(&format!("lab=view&a={id}")));
+    settle(&mut restored);
+    for session in [&session, &restored] {
+        let corrected = motion(session, &id);
+        assert_eq!((corrected.roles().get(Role::Head), corrected.seams()), (None, &*seams));
     }
 }
 
