@@ -1,12 +1,13 @@
 //! The object by which the page's JavaScript drives the app. `web/js/boot.js` and `web/js/api.js`
 //! say what they expect of it.
 
-use crate::app::{Event, Segue, Shared, View, api};
+use crate::app::api::{self, ApiError};
+use crate::app::{Event, Segue, Shared, View};
 use crate::outline::{Deed, Outline};
 use crate::platform::{
-    Area, FileBytes, Inbox, LargeFile, area_of, ask_before_leaving_while, inline_picture, listen,
-    next_frame, now_ms, page_bytes, sleep, snapshot, turn, wanted_backend, watch_folders,
-    watch_hiding, words_of, workers_are_made_by,
+    Area, FileBytes, Inbox, LargeFile, area_of, confirm_leaving_while, inline_picture,
+    js_error_text, listen, next_frame, next_turn, now_ms, set_worker_factory, sleep, snapshot,
+    wanted_backend, wasm_memory_bytes, watch_folders, watch_hiding,
 };
 use eframe::egui::Modifiers;
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
@@ -52,7 +53,7 @@ fn show_outline(changes: &str) {
     if let Some(listener) = listener
         && let Err(error) = listener.call1(&JsValue::NULL, &JsValue::from_str(changes))
     {
-        log::error!("the outline could not be shown: {}", words_of(&error));
+        log::error!("the outline could not be shown: {}", js_error_text(&error));
     }
 }
 
@@ -61,8 +62,8 @@ fn show_outline(changes: &str) {
 /// machine is, not how long a device lives.
 const SOON_MS: f64 = 10_000.0;
 
-fn error(text: impl AsRef<str>) -> JsValue {
-    Error::new(text.as_ref()).into()
+fn error(text: impl std::fmt::Display) -> JsValue {
+    Error::new(&text.to_string()).into()
 }
 
 fn to_js(value: &impl Serialize) -> Result<JsValue, JsValue> {
@@ -76,7 +77,7 @@ impl SegueHandle {
         canvas: HtmlCanvasElement,
         new_reader: Function,
     ) -> Result<SegueHandle, JsValue> {
-        workers_are_made_by(new_reader);
+        set_worker_factory(new_reader);
         let inbox = Inbox::default();
         let handle = Self {
             runner: WebRunner::new(),
@@ -94,11 +95,11 @@ impl SegueHandle {
             if let Some(segue) = weak.upgrade()
                 && let Ok(mut segue) = segue.try_borrow_mut()
             {
-                segue.leave();
+                segue.save_on_exit();
             }
         });
         let weak = Rc::downgrade(&handle.segue);
-        ask_before_leaving_while(move || {
+        confirm_leaving_while(move || {
             let segue = weak.upgrade();
             segue.is_some_and(|segue| {
                 segue.try_borrow().is_ok_and(|segue| segue.has_unstored_files())
@@ -127,7 +128,7 @@ impl SegueHandle {
         }
         self.run_on(canvas, Backends::GL).await?;
         self.change(|segue| {
-            segue.complain("The graphics device was lost twice within 10 seconds, so Segue draws with WebGL 2 now. Reload the page to try WebGPU again.");
+            segue.show_error("The graphics device was lost twice within 10 seconds, so Segue draws with WebGL 2 now. Reload the page to try WebGPU again.");
             Ok(())
         })
     }
@@ -226,7 +227,7 @@ impl SegueHandle {
         while self.borrow()?.is_reading(task) {
             sleep(10).await;
             // While the page is hidden no frame comes to do it.
-            self.borrow_mut()?.pump();
+            self.borrow_mut()?.poll();
         }
         self.settled().await?;
         let result = self.borrow_mut()?.read_result(task);
@@ -256,7 +257,7 @@ impl SegueHandle {
         // While the page is hidden no frame comes to do it.
         while {
             let mut segue = self.borrow_mut()?;
-            segue.pump();
+            segue.poll();
             segue.is_loading()
         } {
             sleep(10).await;
@@ -369,7 +370,7 @@ impl SegueHandle {
 
     /// Begins to film the page.
     pub fn record(&self) -> Result<(), JsValue> {
-        self.change(|segue| segue.begin_film().map_err(|reason| format!("record: {reason}")))
+        self.change(|segue| segue.begin_film().map_err(ApiError::Recording))
     }
 
     /// Ends the film; all of it as a Blob.
@@ -382,7 +383,7 @@ impl SegueHandle {
 
     /// How the app is doing.
     pub fn stats(&self) -> Result<JsValue, JsValue> {
-        to_js(&self.borrow()?.stats(page_bytes()))
+        to_js(&self.borrow()?.stats(wasm_memory_bytes()))
     }
 
     /// Ends the app; what there is to store is stored.
@@ -390,7 +391,7 @@ impl SegueHandle {
         {
             let mut segue = self.borrow_mut()?;
             segue.detach();
-            segue.leave();
+            segue.save_on_exit();
         }
         self.runner.destroy();
         Ok(())
@@ -404,7 +405,7 @@ impl SegueHandle {
 
     /// Where the stage is on the canvas.
     fn stage_area(&self) -> Option<Area> {
-        let place = self.segue.try_borrow().ok()?.stage_place()?;
+        let place = self.segue.try_borrow().ok()?.stage_rect()?;
         Some(area_of(place, self.inbox.ctx()?.pixels_per_point()))
     }
 
@@ -434,7 +435,10 @@ impl SegueHandle {
         };
         // An adapter that then gives no device: WebGL 2 may still do. A canvas keeps the kind of
         // context it once had, so it needs a new one.
-        log::warn!("the graphics could not be set up, trying WebGL 2 alone: {}", words_of(&reason));
+        log::warn!(
+            "the graphics could not be set up, trying WebGL 2 alone: {}",
+            js_error_text(&reason)
+        );
         let fresh: HtmlCanvasElement =
             canvas.clone_node()?.dyn_into().map_err(|_| reason.clone())?;
         canvas.replace_with_with_node_1(&fresh)?;
@@ -445,7 +449,11 @@ impl SegueHandle {
             tell(&listener, vec![Event::Lost { message: "the WebGL context was lost".to_owned() }]);
         });
         let both_reasons = |second: JsValue| {
-            error(format!("WebGPU: {}. WebGL 2: {}", words_of(&reason), words_of(&second)))
+            error(format!(
+                "WebGPU: {}. WebGL 2: {}",
+                js_error_text(&reason),
+                js_error_text(&second)
+            ))
         };
         self.run_on(fresh, Backends::GL).await.map_err(both_reasons)
     }
@@ -475,7 +483,10 @@ impl SegueHandle {
         self.runner.start(canvas, options, create).await
     }
 
-    fn change(&self, change: impl FnOnce(&mut Segue) -> Result<(), String>) -> Result<(), JsValue> {
+    fn change(
+        &self,
+        change: impl FnOnce(&mut Segue) -> Result<(), ApiError>,
+    ) -> Result<(), JsValue> {
         let done = change(&mut *self.borrow_mut()?);
         self.changed();
         done.map_err(error)
@@ -492,7 +503,7 @@ impl SegueHandle {
     /// Waits until what was stored has come back, or is not to be expected any longer: whoever asks
     /// then finds it there.
     async fn opened(&self) -> Result<(), JsValue> {
-        while self.borrow_mut()?.awaits_work() {
+        while self.borrow_mut()?.is_restoring() {
             sleep(5).await;
         }
         Ok(())
@@ -504,13 +515,13 @@ impl SegueHandle {
             // While the page is hidden no frame comes to do it.
             let more = {
                 let mut segue = self.borrow_mut()?;
-                segue.pump() || segue.is_busy()
+                segue.poll() || segue.is_busy()
             };
             if !more {
                 self.changed();
                 return Ok(());
             }
-            turn().await;
+            next_turn().await;
         }
     }
 }
@@ -541,7 +552,7 @@ fn tell(listener: &Rc<RefCell<Option<Function>>>, events: Vec<Event>) {
                 listener.call2(&JsValue::NULL, &JsValue::from(event.name()), &detail)
             });
             if let Err(error) = told {
-                log::error!("a listener failed: {}", words_of(&error));
+                log::error!("a listener failed: {}", js_error_text(&error));
             }
         }
     });

@@ -11,14 +11,15 @@ use std::path::Path;
 
 /// Sources without sentences for the screen: names for graphics tools, keywords of files and
 /// reports, and the page's API and its test programs, whose messages are English.
-const NOT_SHOWN: [&str; 12] = [
+const NOT_SHOWN: [&str; 13] = [
     "crates/session/src/report.rs",
     "src/app/api.rs",
+    "src/app/api/error.rs",
     "crates/formats/src/bvh/write.rs",
     "crates/motion/src/graph/export.rs",
     "crates/motion/src/lib.rs",
     "src/main.rs",
-    "src/platform/vault.rs",
+    "src/platform/file_bytes.rs",
     "src/platform/native/reader.rs",
     "src/web_api.rs",
     "src/render/pipelines.rs",

@@ -1,4 +1,4 @@
-//! What only the platform can do: files, clipboard, pictures and films.
+//! Actions of the panels that only the platform can carry out: files, clipboard, pictures, films.
 
 use super::Segue;
 use crate::platform;
@@ -9,19 +9,19 @@ use segue_session::export::file_name;
 use segue_text::{Message, msg};
 
 impl Segue {
-    /// Tells once, before the first file is read, that the page around this one can use it: it
-    /// drives this one by the page's API.
-    pub(super) fn tell_of_host(&mut self) {
-        if self.panels.host_reads && !std::mem::replace(&mut self.has_told_of_host, true) {
+    /// Warns once, before the first file is read, that the page around this one drives it by its
+    /// API, and so can read the files.
+    pub(super) fn warn_of_host(&mut self) {
+        if self.panels.host_reads && !std::mem::replace(&mut self.has_warned_of_host, true) {
             self.session.say(Level::Warning, ui::HOST_READS);
         }
     }
 
-    /// Does what only the platform can do.
-    pub(super) fn act(&mut self, action: &Action, ctx: &egui::Context) {
+    /// Carries out an action of the panels.
+    pub(super) fn run_action(&mut self, action: &Action, ctx: &egui::Context) {
         match action {
             Action::OpenFiles => {
-                self.tell_of_host();
+                self.warn_of_host();
                 platform::open_files(&self.inbox);
             }
             Action::OpenPage(address) => platform::open_page(address, ctx),
@@ -36,7 +36,7 @@ impl Segue {
                 platform::copy_text(text.clone(), ctx, &self.inbox);
             }
             Action::CopyReport => {
-                if let Some(stage) = self.picture.place() {
+                if let Some(stage) = self.picture.stage_rect() {
                     platform::take_picture(stage, &self.inbox);
                 }
             }
@@ -49,12 +49,12 @@ impl Segue {
                     Level::Error,
                     msg!(
                         "The file could not be saved: {reason}.",
-                        reason = reason.trim_end_matches('.').to_owned()
+                        reason = reason.to_string().trim_end_matches('.').to_owned()
                     ),
                 ),
             },
             Action::SavePicture => {
-                if let Some(stage) = self.picture.place() {
+                if let Some(stage) = self.picture.stage_rect() {
                     platform::save_picture(
                         &file_name(&self.stage_name(), "png"),
                         stage,

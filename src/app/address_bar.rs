@@ -3,23 +3,24 @@
 use crate::platform;
 use segue_session::{Key, Session};
 
-/// Browsers refuse an address that changes more often than about three times a second.
-const LEAST_GAP_MS: f64 = 350.0;
+/// The shortest time between two changes of the address, milliseconds. Browsers refuse more than
+/// about three changes a second.
+const MIN_GAP_MS: f64 = 350.0;
 
-/// See the module.
+/// The page's address and the state that it stands for.
 #[derive(Debug, Default)]
 pub(crate) struct AddressBar {
-    /// The query as it was last read from the address.
+    /// The query of the address as the browser last returned it.
     address: String,
-    /// The state that the address stands for.
+    /// The query of the state that the address stands for.
     query: String,
-    /// The revision at which that was found.
+    /// The session's revision at which `query` was computed.
     revision: u64,
     written_at_ms: Option<f64>,
 }
 
-/// The query of a link to this state. A link without any would show what a first visitor sees, so
-/// it always names something.
+/// Returns the query of a link to this state. It is never empty, because a link without a query
+/// shows what a first visitor sees.
 pub(crate) fn link_query(session: &Session) -> String {
     let query = session.query();
     if query.is_empty() {
@@ -30,35 +31,35 @@ pub(crate) fn link_query(session: &Session) -> String {
 }
 
 impl AddressBar {
-    /// Takes the address, whatever it says, for one that leads to the present state: the session
-    /// was just opened with it.
-    pub(crate) fn is_right(&mut self, session: &Session) {
+    /// Takes the address for one that leads to the session's present state, such as after opening
+    /// the session with it.
+    pub(crate) fn sync_from_session(&mut self, session: &Session) {
         self.address = platform::location_query();
         self.query = link_query(session);
         self.revision = session.revision();
     }
 
-    /// Whether the user went to another query than the one that is known. A change behind the `#`
-    /// is none.
-    pub(crate) fn is_news(&self, address: &str) -> bool {
+    /// Returns whether the user has navigated to another query. A change of the fragment does not
+    /// count.
+    pub(crate) fn has_changed(&self, address: &str) -> bool {
         address != self.address
     }
 
-    /// Writes the address when the state is another, but not in the middle of a drag. Returns in
-    /// how many milliseconds to ask again.
-    pub(crate) fn tend(&mut self, session: &Session, dragging: bool, now_ms: f64) -> Option<f64> {
+    /// Writes the address when the state has changed, except during a drag. Returns the time until
+    /// the next call is due, milliseconds.
+    pub(crate) fn update(&mut self, session: &Session, dragging: bool, now_ms: f64) -> Option<f64> {
         if session.revision() == self.revision || dragging {
             return None;
         }
         let query = link_query(session);
         if query != self.query {
-            let wait = self.written_at_ms.map_or(0.0, |at| at + LEAST_GAP_MS - now_ms);
+            let wait = self.written_at_ms.map_or(0.0, |at| at + MIN_GAP_MS - now_ms);
             if wait > 0.0 {
                 return Some(wait);
             }
             platform::replace_query(&query);
             self.written_at_ms = Some(now_ms);
-            // Read back, for a browser may escape more than was asked.
+            // Read back, because a browser may escape more characters.
             self.address = platform::location_query();
             self.query = query;
         }

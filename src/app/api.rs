@@ -1,11 +1,12 @@
-//! The page's own API, as far as it is plain data: what it is asked, and what it answers.
-//! `docs/api.md` documents it.
+//! The calls of the page's API and their answers as plain data. `docs/api.md` documents them.
 
 mod answers;
+mod error;
 #[cfg(test)]
 mod tests;
 
 pub(crate) use answers::{ExportedFile, KeyInfo, LoadedClips, MetricInfo, PoseInfo, Stats};
+pub(crate) use error::ApiError;
 
 use super::Segue;
 use super::link_query;
@@ -24,15 +25,15 @@ use segue_session::metrics::MetricId;
 use segue_session::outside;
 use segue_session::reading::Content;
 use segue_session::{
-    ClipInfo, Command, CommandError, FileCommand, Key, Kind, List, LoadedFile, PARAMS, Pane,
-    PaneResult, Param, PlaybackCommand, ReportFacts, Value, check_graph_clips, file_stem, frame_at,
-    report,
+    ClipInfo, Command, CommandError, FileCommand, Key, Kind, List, LoadedFile, NoResult, PARAMS,
+    Pane, PaneResult, Param, PlaybackCommand, ReportFacts, Value, check_graph_clips, file_stem,
+    frame_at, report,
 };
 use serde_json::{Map, Value as Json};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// What the API asks a motion of.
+/// A motion that a call of the API names.
 enum Subject<'a> {
     /// A clip of the library.
     Clip(&'a Arc<Motion>),
@@ -40,7 +41,7 @@ enum Subject<'a> {
     Result(&'a Pane, PaneResult<'a>),
 }
 
-/// What the API calls a backend.
+/// Returns the name of a graphics backend in the API.
 pub(crate) fn backend_name(backend: Backend) -> &'static str {
     match backend {
         Backend::BrowserWebGpu => "webgpu",
@@ -49,7 +50,7 @@ pub(crate) fn backend_name(backend: Backend) -> &'static str {
     }
 }
 
-/// Every row of the table of parameters.
+/// Returns every row of the table of parameters.
 pub(crate) fn keys() -> Vec<KeyInfo> {
     let row = |param: &'static Param| {
         let number = if let Kind::Number { min, max, step, auto, .. } = param.kind {
@@ -80,13 +81,13 @@ pub(crate) fn keys() -> Vec<KeyInfo> {
 }
 
 impl Segue {
-    /// Every clip of the library.
+    /// Returns every clip of the library.
     pub(crate) fn clips(&mut self) -> Vec<ClipInfo> {
         self.session.make_all();
         self.session.clip_infos()
     }
 
-    /// Every parameter's value by its key.
+    /// Returns every parameter's value by its key.
     pub(crate) fn params(&self) -> Map<String, Json> {
         let params = self.session.params();
         PARAMS
@@ -96,41 +97,45 @@ impl Segue {
     }
 
     /// Sets parameters, all or none.
-    pub(crate) fn set(&mut self, values: &Map<String, Json>) -> Result<(), String> {
+    pub(crate) fn set(&mut self, values: &Map<String, Json>) -> Result<(), ApiError> {
         let checked = values
             .iter()
-            .map(|(name, json)| self.checked(name, json))
-            .collect::<Result<Vec<_>, String>>()?;
-        self.apply(Command::Set(checked)).map_err(|error| error.to_string())?;
-        self.apply(Command::Settle).map_err(|error| error.to_string())
+            .map(|(name, json)| self.checked_value(name, json))
+            .collect::<Result<Vec<_>, ApiError>>()?;
+        self.apply(Command::Set(checked))?;
+        Ok(self.apply(Command::Settle)?)
     }
 
-    fn checked(&self, name: &str, json: &Json) -> Result<(Key, Value), String> {
-        let key = Key::from_name(name)
-            .ok_or_else(|| format!("`{name}` is not a parameter; keys() lists them"))?;
-        let mut value = key.param().from_json(json).map_err(|error| error.to_string())?;
-        if let (Kind::Clip, Value::Text(id)) = (key.param().kind, &value) {
+    /// Returns a parameter and its value, checked as far as the session's commands do not.
+    fn checked_value(&self, name: &str, json: &Json) -> Result<(Key, Value), ApiError> {
+        let key = Key::from_name(name).ok_or_else(|| ApiError::UnknownKey(name.to_owned()))?;
+        let param = key.param();
+        let mut value = param.from_json(json)?;
+        if let (Kind::Clip, Value::Text(id)) = (param.kind, &value) {
             let known = self.session.nameable(id);
-            value = Value::Text(
-                known.ok_or_else(|| format!("{name}: {}", CommandError::NoClip(id.clone())))?,
-            );
+            value = Value::Text(known.ok_or_else(|| ApiError::NoClip {
+                key: param.name,
+                error: CommandError::NoClip(id.clone()),
+            })?);
         }
         if let (Key::Clips, Value::List(List::ClipIds(ids))) = (key, &value) {
-            check_graph_clips(ids).map_err(|reason| format!("{name}: {reason}"))?;
+            check_graph_clips(ids)
+                .map_err(|error| ApiError::GraphClips { key: param.name, error })?;
         }
         Ok((key, value))
     }
 
+    /// Returns the answer of `load()` for a file that was read.
     pub(super) fn loaded_clips(&mut self, loaded: &LoadedFile) -> LoadedClips {
         let clips = self.clips().into_iter().filter(|clip| loaded.ids.contains(&clip.id)).collect();
         let warnings = loaded.warnings.iter().map(ToString::to_string).collect();
         LoadedClips { clips, warnings }
     }
 
-    /// Has a file read elsewhere, exactly as if it were dropped on the page, and keeps what comes
-    /// of it. Returns the task's number.
+    /// Starts to read a file in the background, exactly as if it were dropped on the page. Returns
+    /// the task's number, by which [`Self::read_result`] has the result.
     pub(crate) fn load_elsewhere(&mut self, name: &str, file: FileBytes) -> u64 {
-        self.pump();
+        self.poll();
         let task = match file {
             FileBytes::Large(file) => self.begin_reading(name, file),
             FileBytes::Here(bytes) => {
@@ -142,22 +147,22 @@ impl Segue {
         task
     }
 
-    /// Whether clips are still to come: from storage, over the network, or out of a file that is
-    /// being read.
+    /// Returns whether clips are still to come: from storage, over the network, or out of a file
+    /// that is being read.
     pub(crate) fn is_loading(&mut self) -> bool {
-        self.awaits_work()
+        self.is_restoring()
             || !self.downloads.is_empty()
             || !self.session.awaited_samples().is_empty()
             || self.session.is_reading_any()
     }
 
-    /// Whether that file is still being read.
+    /// Returns whether a task is still reading its file.
     pub(crate) fn is_reading(&self, task: u64) -> bool {
         self.session.is_reading(task)
     }
 
-    /// Stops what is under way: the file of that name that is read or fetched, a lesson's too.
-    pub(crate) fn stop(&mut self, name: &str) -> Result<(), String> {
+    /// Stops reading or fetching the file of that name, which may be a lesson's.
+    pub(crate) fn stop(&mut self, name: &str) -> Result<(), ApiError> {
         let name = outside::file_name(name);
         let reading = self
             .session
@@ -165,104 +170,95 @@ impl Segue {
             .into_iter()
             .find(|job| job.kind.name() == name && job.task.is_some());
         if let Some(task) = reading.and_then(|job| job.task) {
-            self.obey(Command::File(FileCommand::StopReading(task)));
+            self.dispatch(Command::File(FileCommand::StopReading(task)));
         } else if self.downloads.under_way().any(|(fetched, _)| fetched == name)
             || self.downloads.lessons_under_way().any(|lesson| lesson == name)
         {
             self.stop_fetching(&name);
         } else {
-            return Err(format!(
-                "stop: found `{name}`, expected the name of a file that is under way"
-            ));
+            return Err(ApiError::NotUnderWay(name));
         }
         Ok(())
     }
 
-    /// What [`Self::load_elsewhere`] gave; `None` when it was stopped.
-    pub(crate) fn read_result(&mut self, task: u64) -> Option<Result<LoadedClips, String>> {
+    /// Takes out the result of a task of [`Self::load_elsewhere`]; `None` when it was stopped.
+    pub(crate) fn read_result(&mut self, task: u64) -> Option<Result<LoadedClips, ApiError>> {
         self.read.remove(&task).flatten()
     }
 
-    /// The link that restores this state.
+    /// Returns the link that restores this state.
     pub(crate) fn url(&self) -> String {
         platform::full_link(&link_query(&self.session))
     }
 
-    /// What is shown, in Markdown. `picture` is an address, such as one that is the picture itself.
-    pub(crate) fn report(&self, picture: Option<&str>) -> Result<String, String> {
+    /// Returns a report of the results in Markdown. `picture` is the address of a picture, which
+    /// may be a `data:` URL.
+    pub(crate) fn report(&self, picture: Option<&str>) -> Result<String, NoResult> {
         let facts = ReportFacts { link: &self.url(), picture, backend: self.window.backend };
-        report(&self.session, &facts).map_err(|reason| reason.to_string())
+        report(&self.session, &facts)
     }
 
     /// Plays or pauses.
-    pub(crate) fn play(&mut self, on: bool) -> Result<(), String> {
+    pub(crate) fn play(&mut self, on: bool) -> Result<(), ApiError> {
         if self.session.params().is_on(Key::Play) == on {
             return Ok(());
         }
-        self.apply(Command::Playback(PlaybackCommand::TogglePlay))
-            .map_err(|error| error.to_string())
+        Ok(self.apply(Command::Playback(PlaybackCommand::TogglePlay))?)
     }
 
     /// Moves the playhead.
-    pub(crate) fn seek(&mut self, secs: f64) -> Result<(), String> {
+    pub(crate) fn seek(&mut self, secs: f64) -> Result<(), ApiError> {
         if !secs.is_finite() {
-            return Err(format!("seek: found {secs}, expected seconds"));
+            return Err(ApiError::NotSeconds { call: "seek", secs });
         }
-        self.apply(Command::Playback(PlaybackCommand::Seek(secs)))
-            .map_err(|error| error.to_string())
+        Ok(self.apply(Command::Playback(PlaybackCommand::Seek(secs)))?)
     }
 
-    /// The playhead, seconds.
+    /// Returns the position of the playhead, seconds.
     pub(crate) fn time(&self) -> f64 {
         self.session.now_secs()
     }
 
-    /// What a clip's id, `result`, or `result:1` (the second pane) names.
-    fn subject(&self, which: &str) -> Result<Subject<'_>, String> {
+    /// Returns the motion of a clip's id, `result`, or `result:1` (the second pane).
+    fn subject(&self, which: &str) -> Result<Subject<'_>, ApiError> {
         let panes = self.session.panes();
         let Some(index) = pane_number(which) else {
             let entry = self.session.library().find(which);
-            let entry =
-                entry.ok_or_else(|| format!("found `{which}`, expected the id of a clip, `result`, or `result:1` for the second pane"))?;
+            let entry = entry.ok_or_else(|| ApiError::UnknownMotion(which.to_owned()))?;
             let motion = entry.motion.as_ref();
-            return motion.map(Subject::Clip).ok_or_else(|| {
-                format!("`{}` is not loaded yet; put it into a or b first", entry.id)
-            });
+            return motion.map(Subject::Clip).ok_or_else(|| ApiError::NotLoaded(entry.id.clone()));
         };
-        let pane = panes.get(index).ok_or_else(|| {
-            format!(
-                "found `{which}`, expected a pane from `result:0` to `result:{}`",
-                panes.len() - 1
-            )
+        let pane = panes.get(index).ok_or_else(|| ApiError::UnknownPane {
+            found: which.to_owned(),
+            last: panes.len() - 1,
         })?;
-        pane.result().map(|made| Subject::Result(pane, made)).map_err(|reason| reason.to_string())
+        Ok(Subject::Result(pane, pane.result()?))
     }
 
     /// Puts a result into the library. Returns the id of the new clip.
-    pub(crate) fn keep(&mut self, which: &str) -> Result<String, String> {
-        let pane = pane_number(which).ok_or_else(|| {
-            format!("found `{which}`, expected `result`, or `result:1` for the second pane")
-        })?;
-        self.apply(Command::Keep(pane)).map_err(|error| error.to_string())?;
+    pub(crate) fn keep(&mut self, which: &str) -> Result<String, ApiError> {
+        let pane = pane_number(which).ok_or_else(|| ApiError::NotAResult(which.to_owned()))?;
+        self.apply(Command::Keep(pane))?;
         let kept = self.session.library().entries().last();
         Ok(kept.map(|entry| entry.id.clone()).unwrap_or_default())
     }
 
-    /// The motion of [`Self::subject`].
-    fn motion(&self, which: &str) -> Result<Arc<Motion>, String> {
+    /// Returns a shared handle of a motion; `which` as in [`Self::subject`].
+    fn motion(&self, which: &str) -> Result<Arc<Motion>, ApiError> {
         Ok(match self.subject(which)? {
             Subject::Clip(motion) => Arc::clone(motion),
             Subject::Result(_, made) => Arc::clone(&made.outcome.motion),
         })
     }
 
-    /// A pose in the world.
-    pub(crate) fn pose(&self, which: &str, secs: f64) -> Result<PoseInfo, String> {
+    /// Returns a pose in the world; `which` is a clip's id, `result`, or `result:1` for the second
+    /// pane.
+    pub(crate) fn pose(&self, which: &str, secs: f64) -> Result<PoseInfo, ApiError> {
         if !secs.is_finite() {
-            return Err(format!("pose: found {secs}, expected seconds"));
+            return Err(ApiError::NotSeconds { call: "pose", secs });
         }
         let motion = self.motion(which)?;
-        let world = pose_at(&motion, secs, &Planar::IDENTITY).ok_or("the clip has no frames")?;
+        let world = pose_at(&motion, secs, &Planar::IDENTITY).ok_or(ApiError::NoFrames)?;
         let frame = frame_at(&motion, secs);
         let joints = motion.clip().skeleton().joints();
         Ok(PoseInfo {
@@ -277,11 +273,11 @@ impl Segue {
         })
     }
 
-    /// The artefacts of the results, by name.
-    pub(crate) fn metrics(&self) -> Result<BTreeMap<&'static str, MetricInfo>, String> {
+    /// Returns the metrics of the results by their names.
+    pub(crate) fn metrics(&self) -> Result<BTreeMap<&'static str, MetricInfo>, NoResult> {
         let panes = self.session.panes();
         let of_pane = |pane: &Pane, id| pane.result().ok()?.outcome.metric(id)?.value;
-        let main = self.session.first_result().map_err(|reason| reason.to_string())?;
+        let main = self.session.first_result()?;
         let info = |id: MetricId| {
             let row = id.row();
             let info = MetricInfo {
@@ -297,32 +293,28 @@ impl Segue {
         Ok(main.outcome.metrics.iter().map(|metric| info(metric.id)).collect())
     }
 
-    /// A motion as a file of that format. `which` as in [`Self::pose`]; `body` says whose body a
-    /// GLB file has, the character's on the stage where `None`.
+    /// Returns a motion as a file of that format. `which` is as in [`Self::pose`]; `body` names the
+    /// body in a GLB file, with `None` for that of the character on the stage.
     pub(crate) fn export(
         &self,
         which: &str,
         format: &str,
         body: Option<&str>,
-    ) -> Result<ExportedFile, String> {
-        let format = ExportFormat::from_name(format).ok_or_else(|| {
-            let names = ExportFormat::ALL.map(ExportFormat::name).join(", ");
-            format!("found `{format}`, expected one of {names}")
-        })?;
+    ) -> Result<ExportedFile, ApiError> {
+        let format = ExportFormat::from_name(format)
+            .ok_or_else(|| ApiError::UnknownFormat(format.to_owned()))?;
         let body = body.map_or(Ok(ExportBody::default()), |body| {
-            let names = ExportBody::ALL.map(ExportBody::name).join(", ");
-            ExportBody::from_name(body)
-                .ok_or_else(|| format!("found `{body}`, expected one of {names}"))
+            ExportBody::from_name(body).ok_or_else(|| ApiError::UnknownBody(body.to_owned()))
         })?;
         self.export_as(which, &ExportOptions { format, body, ..ExportOptions::default() })
     }
 
-    /// A motion as a file, in the way that a person wants it.
+    /// Returns a motion as a file with the options of the export dialogue.
     pub(crate) fn export_as(
         &self,
         which: &str,
         how: &ExportOptions,
-    ) -> Result<ExportedFile, String> {
+    ) -> Result<ExportedFile, ApiError> {
         let params = self.session.params();
         let (motion, curves, stem) = match self.subject(which)? {
             Subject::Clip(motion) => {
@@ -340,18 +332,17 @@ impl Segue {
         Ok(ExportedFile {
             name: file_name(&stem, how.format.name()),
             mime: how.format.mime(),
-            bytes: export(motion, self.session.character().as_ref(), &curves, how)
-                .map_err(|error| error.to_string())?,
+            bytes: export(motion, self.session.character().as_ref(), &curves, how)?,
         })
     }
 
-    /// What a picture or a film of the stage is called as a file: what is seen.
+    /// Returns the stem of the file name of a picture or a film of the stage.
     pub(super) fn stage_name(&self) -> String {
-        let seen = self.session.panes().first().and_then(Pane::made_from);
-        file_stem(seen.unwrap_or(self.session.params()))
+        let shown = self.session.panes().first().and_then(Pane::made_from);
+        file_stem(shown.unwrap_or(self.session.params()))
     }
 
-    /// What is under way.
+    /// Returns everything that is under way: computations, files, lessons and bundled takes.
     fn jobs(&self) -> Vec<JobInfo> {
         let computed = self
             .session
@@ -369,36 +360,37 @@ impl Segue {
             .collect()
     }
 
-    /// How the app is doing.
+    /// Returns statistics of the app.
     pub(crate) fn stats(&self, wasm_bytes: u64) -> Stats {
         Stats {
             backend: self.window.backend,
-            frames: self.frames.count(),
-            frame_ms: self.frames.times(),
-            draw_ms: self.frames.whole_times(),
+            frames: self.frame_stats.count(),
+            frame_ms: self.frame_stats.update_times(),
+            draw_ms: self.frame_stats.total_times(),
             jobs: self.jobs(),
             wasm_bytes,
         }
     }
 
-    /// How many frames were drawn since the start.
+    /// Returns the number of frames drawn since the start.
     pub(crate) fn frames_drawn(&self) -> u64 {
-        self.frames.count()
+        self.frame_stats.count()
     }
 
-    /// Returns whether the link at the start said that the page is embedded: only then may the page
+    /// Returns whether the link at the start says that the page is embedded. Only then may the page
     /// around this one drive it, and nothing is stored.
     pub(crate) fn is_embedded(&self) -> bool {
         self.embedded
     }
 
-    /// Where the stage is on the page, in points; none before it was drawn.
-    pub(crate) fn stage_place(&self) -> Option<eframe::egui::Rect> {
-        self.picture.place()
+    /// Returns the stage's rectangle on the page, in points; `None` before it was drawn.
+    pub(crate) fn stage_rect(&self) -> Option<eframe::egui::Rect> {
+        self.picture.stage_rect()
     }
 }
 
-/// The pane that `result` or `result:1` means, from 0; `None` for the id of a clip.
+/// Returns the index of the pane that `result` or `result:1` names, from 0; `None` for the id of a
+/// clip.
 fn pane_number(which: &str) -> Option<usize> {
     match which.strip_prefix("result")? {
         "" => Some(0),

@@ -1,32 +1,34 @@
-//! Files and lessons that come over the network. Files are handed on in the order in which they
-//! were asked for: the first one is A, the second B.
+//! Downloads of files and lessons. Files are handed on in the order of their requests, because the
+//! first one becomes A and the second one B.
 
 use crate::platform::{self, Fetch, FileBytes, Inbox, fetch, file_name_of};
 use segue_session::lesson::Source;
 use segue_text::Message;
 use std::collections::VecDeque;
 
-/// Bytes, or why there are none.
+/// The bytes of a file, or the reason why it was not fetched.
 pub(crate) type Fetched = Result<FileBytes, Message>;
 
-/// Everything under way.
+/// All downloads that are under way.
 #[derive(Debug, Default)]
 pub(crate) struct Downloads {
     files: VecDeque<Download>,
     lessons: Vec<(Source, Fetch)>,
 }
 
+/// A file that is being fetched, or waits for those before it.
 #[derive(Debug)]
 struct Download {
     address: String,
     done: u64,
     total: Option<u64>,
     fetched: Option<Fetched>,
+    /// Dropping it stops the transfer.
     _fetch: Fetch,
 }
 
 impl Downloads {
-    /// Asks for a file, unless it is under way already.
+    /// Starts to fetch a file, unless it is under way already.
     pub(crate) fn start(&mut self, address: String, inbox: &Inbox) {
         if self.files.iter().any(|download| download.address == address) {
             return;
@@ -41,29 +43,29 @@ impl Downloads {
         });
     }
 
-    /// Asks for the text of a lesson.
+    /// Starts to fetch the text of a lesson.
     pub(crate) fn start_lesson(&mut self, source: Source, inbox: &Inbox) {
         let fetch = platform::load_lesson(&source, inbox);
         self.lessons.push((source, fetch));
     }
 
-    /// The text of a lesson has come, or will not come.
+    /// Removes a lesson whose text was fetched, or has failed.
     pub(crate) fn end_lesson(&mut self, source: &Source) {
         self.lessons.retain(|(own, _)| own != source);
     }
 
-    /// Stops all lessons. Returns which there were.
+    /// Stops all lessons. Returns those that were under way.
     pub(crate) fn end_lessons(&mut self) -> Vec<Source> {
         self.lessons.drain(..).map(|(source, _)| source).collect()
     }
 
-    /// Stops files that are not asked for any more.
+    /// Stops all files but those that `wanted` accepts by their address.
     pub(crate) fn keep_only(&mut self, mut wanted: impl FnMut(&str) -> bool) {
         self.files.retain(|download| wanted(&download.address));
     }
 
-    /// A part has come. Returns the file's name and how much of it there is, 0 to 1, where that is
-    /// known.
+    /// Records the progress of a file. Returns its name and the share of it that was received,
+    /// 0 to 1, where the size is known.
     pub(crate) fn progressed(
         &mut self,
         address: &str,
@@ -75,31 +77,31 @@ impl Downloads {
         Some((file_name_of(address), download.progress()))
     }
 
-    /// A file has come, or will not come.
+    /// Records that a file was fetched, or has failed.
     pub(crate) fn finished(&mut self, address: &str, fetched: Fetched) {
         if let Some(download) = self.find(address) {
             download.fetched = Some(fetched);
         }
     }
 
-    /// The name and the outcome of the next file in order, once it is there.
+    /// Takes out the next file in order, once it is complete. Returns its name and the outcome.
     pub(crate) fn next_ready(&mut self) -> Option<(String, Fetched)> {
         self.files.front()?.fetched.as_ref()?;
         let download = self.files.pop_front()?;
         Some((file_name_of(&download.address), download.fetched?))
     }
 
-    /// Name and progress of every file under way.
+    /// Returns the name and the progress of every file under way.
     pub(crate) fn under_way(&self) -> impl Iterator<Item = (String, Option<f64>)> {
         self.files.iter().map(|download| (file_name_of(&download.address), download.progress()))
     }
 
-    /// The files in which the lessons under way stand.
+    /// Returns the file names of the lessons under way.
     pub(crate) fn lessons_under_way(&self) -> impl Iterator<Item = String> {
         self.lessons.iter().map(|(source, _)| lesson_file(source))
     }
 
-    /// Whether no file is under way.
+    /// Returns whether no file is under way.
     pub(crate) fn is_empty(&self) -> bool {
         self.files.is_empty()
     }
@@ -109,7 +111,7 @@ impl Downloads {
     }
 }
 
-/// The name of the file in which a lesson stands.
+/// Returns the name of a lesson's file.
 pub(crate) fn lesson_file(source: &Source) -> String {
     match source {
         Source::BuiltIn(file) => file.rsplit('/').next().unwrap_or(file).to_owned(),

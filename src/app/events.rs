@@ -1,35 +1,35 @@
-//! What the page is told.
+//! Events of the page's API.
 
-/// What the page's API tells its listeners.
+/// An event for the listeners of the page's API.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 #[serde(untagged)]
 pub(crate) enum Event {
-    /// Anything but the playhead has changed.
+    /// A change of the state other than the playhead.
     Change {
         /// The link to the new state.
         query: String,
     },
-    /// Something did not work.
+    /// A failure.
     Error {
-        /// What and why.
+        /// A sentence that names the failure and its reason.
         message: String,
     },
-    /// Something that takes long goes on.
+    /// The progress of a computation or of a file.
     Progress {
-        /// What.
+        /// The name of the computation or the file.
         name: String,
-        /// How much of it is done, 0 to 1, where that is known.
+        /// The share that is done, 0 to 1, where it is known.
         progress: Option<f64>,
     },
-    /// The graphics device is gone.
+    /// The loss of the graphics device.
     Lost {
-        /// What the driver says.
+        /// The reason that the driver gives.
         message: String,
     },
 }
 
 impl Event {
-    /// The name that listeners know it by.
+    /// Returns the name by which listeners register for it.
     pub(crate) fn name(&self) -> &'static str {
         match self {
             Self::Change { .. } => "change",

@@ -1,21 +1,23 @@
-//! What comes in from outside, and what is asked of it: files, takes, answers.
+//! Answers of the platform to the app, and requests of the session to the platform.
 
+use super::api::ApiError;
 use super::downloads::lesson_file;
 use super::{Event, Segue};
-use crate::platform::{self, FileBytes, Incoming, LargeFile, ReadNews};
+use crate::platform::{self, FileBytes, Incoming, LargeFile, ReadError, ReadEvent};
 use crate::ui;
 use segue_session::reading::Content;
 use segue_session::{Command, Key, Level, List, Request};
-use segue_text::{Message, msg};
+use segue_text::{Message, ToMessage, msg};
 
 impl Segue {
+    /// Takes in an answer of the platform.
     pub(super) fn receive(&mut self, incoming: Incoming) {
         match incoming {
             Incoming::File { name, bytes } => self.load(&name, bytes, false),
             Incoming::Large { name, file } => {
                 self.begin_reading(&name, file);
             }
-            Incoming::Reading { task, news } => self.hear_of_reading(task, news),
+            Incoming::Reading { task, event } => self.on_read_event(task, event),
             Incoming::Picture(picture) => {
                 let Some(ctx) = self.inbox.ctx() else { return };
                 match self.report(picture.as_deref()) {
@@ -24,12 +26,12 @@ impl Segue {
                         platform::copy_text(report, &ctx, &self.inbox);
                     }
                     Err(reason) => {
-                        let reason = reason.trim_end_matches('.');
+                        let reason = reason.to_string();
                         self.session.say(
                             Level::Error,
                             msg!(
                                 "The report could not be made: {reason}.",
-                                reason = reason.to_owned()
+                                reason = reason.trim_end_matches('.').to_owned()
                             ),
                         );
                     }
@@ -41,7 +43,7 @@ impl Segue {
                 let loaded = result.map(|packed| self.session.load_sample(sample, &packed));
                 match loaded {
                     Ok(Ok(())) => {}
-                    // It was said.
+                    // The session has shown a notice.
                     Ok(Err(error)) => log::info!("{} was not loaded: {error}", sample.label),
                     Err(reason) => self.session.fail_sample(sample, reason),
                 }
@@ -75,22 +77,28 @@ impl Segue {
                 }
             }
             Incoming::Stored(stored) => {
-                if self.keeper.arrived(
+                if self.autosave.on_loaded(
                     &mut self.session,
-                    &mut self.vault,
+                    &mut self.large_files,
                     stored.map(|stored| *stored),
                 ) {
-                    self.address.is_right(&self.session);
+                    self.address.sync_from_session(&self.session);
                 }
             }
-            Incoming::StoredElsewhere(entries) => self.keeper.hear_of(&self.session, entries),
-            Incoming::Joined(stored) => {
-                self.keeper.join(&mut self.session, &mut self.vault, &stored);
+            Incoming::StoredElsewhere(entries) => {
+                self.autosave.on_stored_elsewhere(&self.session, entries)
+            }
+            Incoming::FetchedElsewhere(stored) => {
+                self.autosave.on_fetched_elsewhere(
+                    &mut self.session,
+                    &mut self.large_files,
+                    &stored,
+                );
             }
             Incoming::Navigated(query) => {
-                if self.address.is_news(&query) {
-                    self.obey(Command::OpenLink(query));
-                    self.address.is_right(&self.session);
+                if self.address.has_changed(&query) {
+                    self.dispatch(Command::OpenLink(query));
+                    self.address.sync_from_session(&self.session);
                 }
             }
             Incoming::DeviceLost { generation, reason } => {
@@ -102,54 +110,55 @@ impl Segue {
         }
     }
 
-    /// Has a large file read elsewhere. Returns the task's number.
+    /// Starts to read a large file in the background. Returns the task's number.
     pub(crate) fn begin_reading(&mut self, name: &str, file: LargeFile) -> u64 {
         let (size, content) = self.keep_outside(file);
         self.session.begin_reading(name, content, size)
     }
 
-    /// Keeps a large file. Returns how many bytes it has, and what the document knows of it.
+    /// Keeps a large file. Returns its size in bytes, and the key by which the document refers to
+    /// it.
     fn keep_outside(&mut self, file: LargeFile) -> (u64, Content) {
-        (file.len(), Content::Outside(self.vault.take(file)))
+        (file.len(), Content::Outside(self.large_files.insert(file)))
     }
 
-    fn hear_of_reading(&mut self, task: u64, news: ReadNews) {
-        if let ReadNews::Progress(done) = news {
+    /// Takes in an event of a file that is being read in the background.
+    fn on_read_event(&mut self, task: u64, event: ReadEvent) {
+        if let ReadEvent::Progress(done) = event {
             return self.session.progress_reading(task, done);
         }
         let brings_clips = self.session.brings_clips(task);
         if let Some(key) = self.session.reading_key(task).map(str::to_owned) {
-            match &news {
-                ReadNews::Done(Ok(report)) => match report.files.as_slice() {
+            match &event {
+                ReadEvent::Done(Ok(report)) => match report.files.as_slice() {
                     [file] if file.result.is_ok() && report.is_one_file() => {
-                        self.vault.name(&key, &file.sha256);
+                        self.large_files.set_sha256(&key, &file.sha256);
                     }
-                    _ => self.vault.drop_file(&key),
+                    _ => self.large_files.remove(&key),
                 },
-                // A file that is not in the library yet will not be: nobody else has it.
-                _ if brings_clips => self.vault.drop_file(&key),
+                // The file did not get into the library, so nothing else refers to it.
+                _ if brings_clips => self.large_files.remove(&key),
                 _ => {}
             }
         }
-        let result = match news {
-            ReadNews::Progress(_) => None,
-            ReadNews::NoRoom(needed) => self.session.refuse_for_memory(task, needed),
-            ReadNews::Done(report) => {
-                self.session.finish_reading(task, report.map_err(Message::data))
+        let result = match event {
+            ReadEvent::Progress(_) => None,
+            ReadEvent::NoRoom(needed) => self.session.refuse_for_memory(task, needed),
+            ReadEvent::Done(report) => {
+                self.session.finish_reading(task, report.map_err(|error| error.to_message()))
             }
         };
         let Some(result) = result else { return };
         if let (true, Ok(loaded)) = (brings_clips, &result) {
-            self.keeper.store_clips(&self.session, &self.vault, &loaded.ids);
+            self.autosave.store_clips(&self.session, &self.large_files, &loaded.ids);
         }
         if self.read.contains_key(&task) {
             let result = result.map(|loaded| self.loaded_clips(&loaded));
-            let result = result.map_err(|reason| reason.to_string());
-            self.read.insert(task, Some(result));
+            self.read.insert(task, Some(result.map_err(ApiError::Load)));
         }
     }
 
-    /// Loads a file. What is wrong with it stands in a notice.
+    /// Loads a file. An error in it becomes a notice.
     fn load(&mut self, name: &str, bytes: std::sync::Arc<[u8]>, was_fetched: bool) {
         let loaded = if was_fetched {
             self.session.load_fetched(name, bytes)
@@ -157,11 +166,13 @@ impl Segue {
             self.session.load(name, bytes)
         };
         match loaded {
-            Ok(loaded) => self.keeper.store_clips(&self.session, &self.vault, &loaded.ids),
+            Ok(loaded) => self.autosave.store_clips(&self.session, &self.large_files, &loaded.ids),
             Err(error) => log::info!("{name} was not loaded: {error}"),
         }
     }
 
+    /// Sends the session's requests to the platform, and stops fetching files that the link no
+    /// longer names.
     pub(super) fn send_requests(&mut self) {
         for request in self.session.take_requests() {
             match request {
@@ -170,18 +181,18 @@ impl Segue {
                 Request::Fetch(address) => self.downloads.start(address, &self.inbox),
                 Request::Read(task) => {
                     if let Some(needed) = self.session.memory_lacking_for(&task) {
-                        self.hear_of_reading(task.id, ReadNews::NoRoom(needed));
-                    } else if let Some(bytes) = self.vault.bytes_of(&task.content) {
+                        self.on_read_event(task.id, ReadEvent::NoRoom(needed));
+                    } else if let Some(bytes) = self.large_files.bytes_of(&task.content) {
                         self.reader.start(task, bytes);
                     } else {
-                        let gone = Err("it is no longer available: drop it again".to_owned());
-                        self.hear_of_reading(task.id, ReadNews::Done(gone));
+                        let lost = ReadEvent::Done(Err(ReadError::Lost));
+                        self.on_read_event(task.id, lost);
                     }
                 }
                 Request::StopReading { task, forget } => {
                     self.reader.stop(task);
                     if let Some(key) = forget {
-                        self.vault.drop_file(&key);
+                        self.large_files.remove(&key);
                     }
                 }
             }
@@ -190,7 +201,7 @@ impl Segue {
         self.downloads.keep_only(|address| wanted.iter().any(|source| source == address));
     }
 
-    /// Stops waiting for lessons: whoever opens one waits for that one alone.
+    /// Stops all lessons under way. The user waits for the one opened last alone.
     pub(super) fn stop_lessons(&mut self) {
         for source in self.downloads.end_lessons() {
             let reason = msg!("Loading {name} was stopped.", name = lesson_file(&source));
@@ -198,8 +209,8 @@ impl Segue {
         }
     }
 
-    /// Stops what comes over the network in a file of that name. The addresses of a motion file go
-    /// out of the link; a lesson says that it was stopped.
+    /// Stops fetching the file of that name. The addresses of a motion file are removed from the
+    /// link; a lesson shows that it was stopped.
     pub(super) fn stop_fetching(&mut self, name: &str) {
         if self.downloads.lessons_under_way().any(|lesson| lesson == name) {
             return self.stop_lessons();
@@ -207,6 +218,6 @@ impl Segue {
         let sources = self.session.params().source_addresses().iter();
         let rest = sources.filter(|address| platform::file_name_of(address) != *name);
         let rest = List::Addresses(rest.cloned().collect());
-        self.obey(Command::Set(vec![(Key::Src, rest.into())]));
+        self.dispatch(Command::Set(vec![(Key::Src, rest.into())]));
     }
 }

@@ -1,4 +1,4 @@
-//! Shows the interface in the language that is asked for, as soon as its files are here.
+//! The language of the interface: loading of its files, and its activation in a window.
 
 use crate::platform::{self, Inbox};
 use crate::ui::{Language, LanguagePack, PackError, activate_english};
@@ -8,44 +8,45 @@ use segue_text::{Message, msg};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// The texts and the font of a language, or why they are not here.
+/// The texts and the font of a language, or the reason why they were not loaded.
 pub(crate) type PackFiles = Result<[Arc<[u8]>; 2], Message>;
 
 /// The language of a window. A new window begins in English, without the fonts of any other.
 #[derive(Debug, Default)]
 pub(super) struct WindowLanguage {
     shown: Language,
-    /// The language whose letters the window has.
+    /// The language whose font is installed.
     fonts: Option<Language>,
-    /// What the page around it was told.
-    told: Option<Language>,
+    /// The language that is set on the page's document.
+    of_page: Option<Language>,
 }
 
-/// How far the files of a language are.
+/// The state of the files of a language.
 #[derive(Debug, Default)]
 enum PackState {
-    /// They were not asked for.
+    /// They were not requested.
     #[default]
     NotRequested,
-    /// They were asked for.
+    /// They were requested.
     Loading,
-    /// They are here.
+    /// They are loaded.
     Loaded(LanguagePack),
-    /// They did not come, or cannot be used. They are asked for again after another language was
-    /// shown.
+    /// They were not loaded, or cannot be used. They are requested again after another language
+    /// was shown.
     Failed,
 }
 
-/// Loads the files of languages when they are first asked for.
+/// A loader that requests the files of a language when it is first selected.
 #[derive(Debug)]
 pub(super) struct LanguageLoader {
+    /// The language of a user who has selected none.
     preferred: Language,
     /// By the tag of the language.
     packs: BTreeMap<&'static str, PackState>,
 }
 
 impl LanguageLoader {
-    /// Returns a loader for a reader of the languages of this system.
+    /// Returns a loader that prefers the languages of this system.
     pub(super) fn new() -> Self {
         Self {
             preferred: Language::preferred(platform::languages().iter().map(String::as_str)),
@@ -53,30 +54,31 @@ impl LanguageLoader {
         }
     }
 
-    /// Takes the files of a language, which have come or have not. Returns what to tell the user.
+    /// Takes in the files of a language, or the reason why they were not loaded. Returns a notice
+    /// where they cannot be used.
     pub(super) fn finish(&mut self, tag: &'static str, files: PackFiles) -> Option<Message> {
         let read = match files {
             Ok([texts, font]) => LanguagePack::read(&texts, font),
             Err(reason) => Err(PackError::NotLoaded(reason)),
         };
-        let (state, told) = match read {
+        let (state, notice) = match read {
             Ok(pack) => (PackState::Loaded(pack), None),
             Err(error) => {
                 let language = Language::of_tag(tag).unwrap_or_default().name();
-                let told = msg!(
+                let notice = msg!(
                     "The interface could not be shown in {language}: {error}.",
                     language,
                     error
                 );
-                (PackState::Failed, Some(told))
+                (PackState::Failed, Some(notice))
             }
         };
         self.packs.insert(tag, state);
-        told
+        notice
     }
 
-    /// Asks for the language that is wanted, or shows it in a window, before a frame. Returns the
-    /// one that is shown.
+    /// Requests the selected language, or activates it in a window, before a frame. Returns the
+    /// language that is shown.
     pub(super) fn update(
         &mut self,
         session: &Session,
@@ -111,8 +113,8 @@ impl LanguageLoader {
                 }
             }
         }
-        if window.told.replace(window.shown) != Some(window.shown) {
-            platform::tell_language(window.shown.tag());
+        if window.of_page.replace(window.shown) != Some(window.shown) {
+            platform::set_page_language(window.shown.tag());
         }
         window.shown
     }

@@ -1,4 +1,4 @@
-//! The 3D picture between the panels that leave room for it and the renderer that draws it.
+//! The picture of the stage: the connection of the panels' layout and the renderer.
 
 use crate::platform::now_ms;
 use crate::render;
@@ -8,70 +8,68 @@ use eframe::egui::{Color32, Painter, Rect, Shape, Ui};
 use segue_scene::{Camera, Color, Colors, Director, Highlights, Look, StageOptions, Viewport};
 use segue_session::Session;
 
-/// The one stage of the page.
+/// The id of the page's only stage.
 const STAGE: u64 = 0;
-/// A camera does not leap over the time that nothing was drawn in, seconds. Slow machines need a
-/// second for a frame of many bodies.
-const LONGEST_STEP_SECS: f64 = 1.0;
+/// The longest step of a camera, seconds, so that it does not jump after a pause. Slow machines
+/// need a second for a frame of many bodies.
+const MAX_STEP_SECS: f64 = 1.0;
 
-/// What goes on from frame to frame.
+/// The state of the picture between frames.
 #[derive(Debug, Default)]
 pub(crate) struct Picture {
     director: Director,
     drawn_at_ms: f64,
-    /// Where the stage is on the page, points.
-    place: Option<Rect>,
+    /// The stage's rectangle on the page, points.
+    stage: Option<Rect>,
 }
 
-/// The place in a frame that the picture is put into once the panels are through.
+/// A slot in the shapes of a frame that receives the picture after the panels are drawn.
 #[derive(Default)]
-pub(crate) struct Place(Option<Reserved>);
+pub(crate) struct StageSlot(Option<Reservation>);
 
-struct Reserved {
+struct Reservation {
     stage: Rect,
-    /// The panes that are shown: index in the session, and place.
+    /// The panes that are shown: index in the session, and rectangle on the page.
     panes: Vec<(usize, Rect)>,
     painter: Painter,
     index: ShapeIdx,
 }
 
-impl Place {
-    /// Keeps a place behind everything that the panels draw from here on.
+impl StageSlot {
+    /// Reserves the slot behind everything that the panels draw from here on.
     pub(crate) fn reserve(&mut self, stage: Rect, panes: &[(usize, Rect)], ui: &Ui) {
         let painter = ui.painter().clone();
         let index = painter.add(Shape::Noop);
-        self.0 = Some(Reserved { stage, panes: panes.to_vec(), painter, index });
+        self.0 = Some(Reservation { stage, panes: panes.to_vec(), painter, index });
     }
 }
 
 impl Picture {
-    /// The cameras of so many panes, as they were drawn last.
+    /// Returns the cameras of the first `panes` panes, as last drawn.
     pub(crate) fn cameras(&self, panes: usize) -> Vec<Option<Camera>> {
         (0..panes).map(|pane| self.director.camera(pane).copied()).collect()
     }
 
-    /// Draws the session's present state into the place that was kept.
+    /// Draws the session's present state into the reserved slot.
     pub(crate) fn finish(
         &mut self,
-        place: Place,
+        slot: StageSlot,
         session: &Session,
         (palette, look): (&Palette, Look),
         highlights: Highlights,
         ui: &Ui,
     ) {
         let now_ms = now_ms();
-        let dt_secs = ((now_ms - self.drawn_at_ms) / 1e3).clamp(0.0, LONGEST_STEP_SECS) as f32;
+        let dt_secs = ((now_ms - self.drawn_at_ms) / 1e3).clamp(0.0, MAX_STEP_SECS) as f32;
         self.drawn_at_ms = now_ms;
-        self.place = place.0.as_ref().map(|reserved| reserved.stage);
-        let Some(Reserved { stage: rect, panes, painter, index }) = place.0 else {
+        self.stage = slot.0.as_ref().map(|reserved| reserved.stage);
+        let Some(Reservation { stage: rect, panes, painter, index }) = slot.0 else {
             return;
         };
         let scale = ui.ctx().pixels_per_point();
         let size = render::stage_pixels(ui.ctx(), rect);
-        let panes: Vec<(usize, Viewport)> = panes
-            .into_iter()
-            .map(|(pane, place)| (pane, within(rect, place, size, scale)))
-            .collect();
+        let panes: Vec<(usize, Viewport)> =
+            panes.into_iter().map(|(pane, part)| (pane, within(rect, part, size, scale))).collect();
         let colors = colors_of(palette);
         let options =
             StageOptions { panes: &panes, pixels_per_point: scale, look, colors, highlights };
@@ -79,30 +77,30 @@ impl Picture {
         painter.set(index, render::paint_callback(STAGE, rect, stage, ui.ctx()));
     }
 
-    /// Works on what will be seen, a millisecond or two; `true` while there is more to do.
+    /// Prepares what will be drawn, for a millisecond or two. Returns whether there is more to do.
     pub(crate) fn work(&mut self) -> bool {
         self.director.work()
     }
 
-    /// Whether something is in the making that will be seen.
+    /// Returns whether something that will be drawn is being prepared.
     pub(crate) fn is_at_work(&self) -> bool {
         self.director.is_at_work()
     }
 
-    /// Whether a camera is still on its way.
+    /// Returns whether a camera is moving.
     pub(crate) fn is_moving(&self) -> bool {
         self.director.is_moving()
     }
 
-    /// Where the stage is on the page, points; none before it was drawn.
-    pub(crate) fn place(&self) -> Option<Rect> {
-        self.place
+    /// Returns the stage's rectangle on the page, points; `None` before it was drawn.
+    pub(crate) fn stage_rect(&self) -> Option<Rect> {
+        self.stage
     }
 }
 
-/// A part of a stage in the pixels of its target.
+/// Returns a part of a stage in the pixels of its target.
 fn within(stage: Rect, part: Rect, size: [u32; 2], scale: f32) -> Viewport {
-    let pixel = |points: f32, most: u32| (points * scale).round().clamp(0.0, most as f32) as u32;
+    let pixel = |points: f32, max: u32| (points * scale).round().clamp(0.0, max as f32) as u32;
     let (left, right) =
         (pixel(part.left() - stage.left(), size[0]), pixel(part.right() - stage.left(), size[0]));
     let (top, bottom) =

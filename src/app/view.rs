@@ -1,4 +1,4 @@
-//! The window: what eframe draws.
+//! The app that eframe runs: a view of a [`Segue`](super::Segue).
 
 use super::{Event, Shared};
 use crate::platform;
@@ -6,44 +6,45 @@ use eframe::egui;
 use std::cell::Cell;
 use std::rc::Rc;
 
-/// A window on a [`Segue`](super::Segue).
+/// A view of a [`Segue`](super::Segue) in a window.
 pub(crate) struct View {
     segue: Shared,
-    /// Called with what there is to tell, after every frame.
-    tell: Box<dyn Fn(Vec<Event>)>,
+    /// The receiver of the events of every frame.
+    on_events: Box<dyn Fn(Vec<Event>)>,
     /// Whether work goes on between frames.
-    works: Rc<Cell<bool>>,
+    is_working: Rc<Cell<bool>>,
 }
 
 impl View {
-    /// A window that begins to draw `segue`.
+    /// Returns a view that draws `segue` in a new window, and attaches it.
     pub(crate) fn new(
         segue: Shared,
         cc: &eframe::CreationContext<'_>,
-        tell: impl Fn(Vec<Event>) + 'static,
+        on_events: impl Fn(Vec<Event>) + 'static,
     ) -> Self {
         segue.borrow_mut().attach(cc);
-        Self { segue, tell: Box::new(tell), works: Rc::default() }
+        Self { segue, on_events: Box::new(on_events), is_working: Rc::default() }
     }
 
-    /// Has what a frame left over done before the next one, where the platform can: frames are far
-    /// apart where pictures are drawn in software, and the processor waits for them.
-    fn work_on(&self, ctx: &egui::Context) {
-        if self.works.replace(true) {
+    /// Continues the work that a frame left over, where the platform can run it between frames.
+    /// Frames that are drawn in software are far apart, and the processor would be idle.
+    fn work_between_frames(&self, ctx: &egui::Context) {
+        if self.is_working.replace(true) {
             return;
         }
-        let (segue, works, ctx) = (Rc::clone(&self.segue), Rc::clone(&self.works), ctx.clone());
+        let (segue, is_working, ctx) =
+            (Rc::clone(&self.segue), Rc::clone(&self.is_working), ctx.clone());
         platform::between_frames(move || {
-            // In use means that it is being worked on.
+            // A borrowed app is at work already.
             let Ok(mut segue) = segue.try_borrow_mut() else {
                 return true;
             };
             let before = segue.session.revision();
-            let more = segue.pump();
+            let more = segue.poll();
             if !more || segue.session.revision() != before {
                 ctx.request_repaint();
             }
-            works.set(more);
+            is_working.set(more);
             more
         });
     }
@@ -51,18 +52,18 @@ impl View {
 
 impl eframe::App for View {
     fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
-        // In use means: some call of the page's API is being answered. The next frame will do.
+        // A call of the page's API is being answered; the next frame catches up.
         let Ok(mut segue) = self.segue.try_borrow_mut() else {
             ctx.request_repaint();
             return;
         };
         if segue.logic(ctx) {
-            self.work_on(ctx);
+            self.work_between_frames(ctx);
         }
         segue.schedule(ctx);
         let events = segue.take_events();
         drop(segue);
-        (self.tell)(events);
+        (self.on_events)(events);
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, frame: &mut eframe::Frame) {
@@ -73,7 +74,7 @@ impl eframe::App for View {
 
     fn on_exit(&mut self) {
         if let Ok(mut segue) = self.segue.try_borrow_mut() {
-            segue.leave();
+            segue.save_on_exit();
         }
     }
 }

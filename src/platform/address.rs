@@ -1,14 +1,13 @@
-//! Addresses as text: what both sides need to know of them.
+//! Parsing of addresses and their queries.
 
-use super::last_part;
+use super::motion_files::last_part;
 use percent_encoding::percent_decode_str;
 use segue_session::outside;
 
-/// The key with which a page is told which graphics to use. It belongs to the page, not to the
-/// state.
+/// The key in a query that selects the graphics backend. It belongs to the page, not to the state.
 const BACKEND: &str = "backend";
 
-/// The value of `backend=` in a query.
+/// Returns the value of `backend=` in a query.
 #[cfg_attr(
     not(target_arch = "wasm32"),
     expect(dead_code, reason = "a window has no backend to choose by its address")
@@ -19,7 +18,7 @@ pub(super) fn backend_of(query: &str) -> Option<String> {
         .map(|(_, value)| value.into_owned())
 }
 
-/// `query` with the `backend=` that `old` has.
+/// Returns `query` with the `backend=` of `old`.
 #[cfg_attr(
     not(target_arch = "wasm32"),
     expect(dead_code, reason = "a window has no address to keep it in")
@@ -33,7 +32,7 @@ pub(super) fn with_backend_of(query: &str, old: &str) -> String {
     }
 }
 
-/// A query without its question mark and without `backend=`.
+/// Returns a query without its question mark and without `backend=`.
 pub(super) fn state_of(query: &str) -> String {
     let pairs: Vec<&str> = bare(query)
         .split('&')
@@ -42,15 +41,16 @@ pub(super) fn state_of(query: &str) -> String {
     pairs.join("&")
 }
 
+/// Returns a query without its question mark.
 fn bare(query: &str) -> &str {
     query.strip_prefix('?').unwrap_or(query)
 }
 
-/// The name of the file at an address.
+/// Returns the name of the file at an address.
 pub(crate) fn file_name_of(address: &str) -> String {
     let path = address.split(['?', '#']).next().unwrap_or(address);
     let path = path.split_once("://").map_or(path, |(_, rest)| rest);
-    // The host alone names no file.
+    // A host without a path names no file.
     let name = path.split_once('/').map_or("", |(_, path)| last_part(path));
     let name = percent_decode_str(name).decode_utf8_lossy();
     if name.is_empty() { "download".to_owned() } else { outside::file_name(&name) }
@@ -61,14 +61,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn backend_stays_and_is_no_state() {
+    fn backend_in_a_query_is_not_part_of_the_state() {
         assert_eq!(state_of("?lab=blend&backend=webgl2&t=1"), "lab=blend&t=1");
         assert_eq!(state_of(""), "");
         assert_eq!(state_of("?backend=webgpu"), "");
     }
 
     #[test]
-    fn files_are_named_by_their_address() {
+    fn file_name_of_an_address_is_decoded_and_cleaned() {
         for (address, name) in [
             ("https://a.org/x/01%20walk.bvh?raw=1#top", "01 walk.bvh"),
             ("https://a.org/x/", "x"),

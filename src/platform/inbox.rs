@@ -1,6 +1,9 @@
-//! Incoming answers of the platform, in order of arrival.
+//! Answers of the platform, in order of arrival.
 
-use super::{FileBytes, LargeFile, ReadNews, Stored};
+use super::LargeFile;
+use super::file_bytes::FileBytes;
+use super::read_event::ReadEvent;
+use super::work::StoredWork;
 use eframe::egui;
 use segue_session::lesson::Source;
 use segue_session::{Sample, SavedEntry};
@@ -9,7 +12,7 @@ use std::collections::VecDeque;
 use std::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// What comes in from outside, in the order in which it came.
+/// An answer of the platform, or an event from outside the app.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Incoming {
     /// A file that was opened or dropped.
@@ -23,82 +26,81 @@ pub(crate) enum Incoming {
     Large {
         /// Its name.
         name: String,
-        /// Where it is.
+        /// The platform's handle of it.
         file: LargeFile,
     },
-    /// News of a file that is read elsewhere.
+    /// An event of a file that is read in the background.
     Reading {
         /// The task's number.
         task: u64,
-        /// What is new.
-        news: ReadNews,
+        /// The event.
+        event: ReadEvent,
     },
-    /// Something outside did not work.
+    /// A failure outside the app.
     Failed {
-        /// What happened and what to do, in a sentence or two.
+        /// A sentence or two that say what happened and what to do.
         reason: Message,
     },
-    /// The text that was to be copied is in the clipboard.
+    /// A text to copy is now in the clipboard.
     Copied,
-    /// The picture that was asked for, as an address that is the picture itself; `None` where none
-    /// could be taken.
+    /// A requested picture as a `data:` URL; `None` where none could be taken.
     Picture(Option<String>),
     /// A bundled take.
     Sample {
-        /// Which.
+        /// The take.
         sample: &'static Sample,
-        /// Its packed bytes, or why they are not there.
+        /// Its packed bytes, or the reason why they were not loaded.
         result: Result<Arc<[u8]>, Message>,
     },
     /// The text of a lesson.
     Lesson {
-        /// Which.
+        /// The lesson.
         source: Source,
-        /// Its bytes, or why they are not there.
+        /// Its bytes, or the reason why they were not loaded.
         result: Result<Arc<[u8]>, Message>,
     },
-    /// The files of a language that was asked for.
+    /// The files of a requested language.
     Language {
         /// Its tag.
         tag: &'static str,
-        /// Its texts and its font, or why they are not here.
+        /// Its texts and its font, or the reason why they were not loaded.
         files: Result<[Arc<[u8]>; 2], Message>,
     },
-    /// A part of a file has come over the network.
+    /// The progress of a file that is being fetched.
     Progress {
         /// The file's address.
         address: String,
-        /// Bytes so far.
+        /// The bytes received so far.
         done: u64,
-        /// Bytes in all, where that is known.
+        /// The bytes in all, where that is known.
         total: Option<u64>,
     },
-    /// A file has come over the network.
+    /// The end of fetching a file.
     Fetched {
         /// The file's address.
         address: String,
-        /// Its bytes, or why they did not come.
+        /// Its bytes, or the reason why it was not fetched.
         result: Result<FileBytes, Message>,
     },
-    /// Storage was read; `None` where there was nothing in it, or no storage.
-    Stored(Option<Box<Stored>>),
-    /// Another window has stored clips.
+    /// The work in storage; `None` where there is none, or no storage.
+    Stored(Option<Box<StoredWork>>),
+    /// Clips that another window has just stored.
     StoredElsewhere(Vec<SavedEntry>),
-    /// Clips of another window that were asked for.
-    Joined(Box<Stored>),
-    /// The user went back or forward; the query that the page's address now has.
+    /// Requested clips of another window.
+    FetchedElsewhere(Box<StoredWork>),
+    /// The query of the page's address after the user went back or forward.
     Navigated(String),
-    /// The graphics device is gone.
+    /// The loss of a graphics device.
     DeviceLost {
-        /// Which one, counted from the app's start: one that was given up on purpose is nothing to
-        /// tell.
+        /// The number of the window since the app's start. The loss of a detached window's device
+        /// is ignored.
         generation: u64,
-        /// What the driver says.
+        /// The reason that the driver gives.
         reason: String,
     },
 }
 
-/// Where answers wait until the app takes them. Clones share one box; a push wakes the app.
+/// A queue of answers for the app. Clones share one queue; a push wakes the app.
 #[derive(Clone, Default)]
 pub(crate) struct Inbox(Arc<Mutex<Inner>>);
 
@@ -116,34 +118,34 @@ impl fmt::Debug for Inbox {
 
 impl Inbox {
     fn inner(&self) -> std::sync::MutexGuard<'_, Inner> {
-        // A push cannot be left half-done, so what a panicking thread leaves behind is whole.
+        // A push cannot be left half-done, so the queue of a panicked thread is intact.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Puts something in and wakes the app.
+    /// Adds an answer, and wakes the app.
     pub(crate) fn push(&self, incoming: Incoming) {
         self.inner().queue.push_back(incoming);
         self.wake();
     }
 
-    /// Takes everything out.
+    /// Takes out all answers, in order of arrival.
     pub(crate) fn take(&self) -> VecDeque<Incoming> {
         std::mem::take(&mut self.inner().queue)
     }
 
-    /// From now on this context is woken.
-    pub(crate) fn wakes(&self, ctx: &egui::Context) {
+    /// Sets the context to wake.
+    pub(crate) fn set_context(&self, ctx: &egui::Context) {
         self.inner().ctx = Some(ctx.clone());
     }
 
-    /// The context that is woken; none before the app has started.
+    /// Returns the context to wake; `None` before the app has started.
     pub(crate) fn ctx(&self) -> Option<egui::Context> {
         self.inner().ctx.clone()
     }
 
-    /// Has the app drawn again.
+    /// Requests a frame of the app.
     pub(crate) fn wake(&self) {
-        // Not while locked: waking may call back.
+        // Outside the lock, because waking may call back.
         if let Some(ctx) = self.ctx() {
             ctx.request_repaint();
         }
@@ -155,10 +157,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn keeps_the_order_and_wakes_the_app() {
+    fn inbox_keeps_the_order_and_wakes_the_app() {
         let inbox = Inbox::default();
         let ctx = egui::Context::default();
-        inbox.wakes(&ctx);
+        inbox.set_context(&ctx);
         let asked = Arc::new(Mutex::new(0));
         ctx.set_request_repaint_callback({
             let asked = Arc::clone(&asked);

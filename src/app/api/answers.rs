@@ -1,6 +1,6 @@
-//! What the page's API answers, as plain data.
+//! Answers of the page's API as plain data.
 
-use crate::app::frames::FrameTimes;
+use crate::app::frame_stats::FrameTimes;
 use segue_session::ClipInfo;
 use serde::Serialize;
 use serde_json::Value as Json;
@@ -25,7 +25,7 @@ pub(crate) struct KeyInfo {
     pub(super) help: &'static str,
 }
 
-/// What `load()` resolves with.
+/// The answer of `load()`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct LoadedClips {
     pub(super) clips: Vec<ClipInfo>,
@@ -33,14 +33,14 @@ pub(crate) struct LoadedClips {
 }
 
 impl LoadedClips {
-    /// The SHA-256 of the files that the clips came from.
+    /// Returns the SHA-256 of the files that the clips came from.
     #[cfg(target_arch = "wasm32")]
     pub(crate) fn files(&self) -> Vec<String> {
         self.clips.iter().filter_map(|clip| clip.sha256.clone()).collect()
     }
 }
 
-/// What `pose()` answers.
+/// The answer of `pose()`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct PoseInfo {
     /// The joints' names.
@@ -59,7 +59,7 @@ pub(crate) struct PoseInfo {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct MetricInfo {
     pub(super) label: &'static str,
-    /// The number of the first pane; `null` where it cannot be told.
+    /// The number of the first pane; `null` where it is not known.
     pub(super) value: Option<f64>,
     pub(super) unit: &'static str,
     /// The numbers of all panes, left to right.
@@ -69,22 +69,22 @@ pub(crate) struct MetricInfo {
     pub(super) help: &'static str,
 }
 
-/// Something that is under way.
+/// A computation or a file that is under way.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct JobInfo {
     pub(super) name: String,
-    /// 0 to 1; `null` where it cannot be told.
+    /// 0 to 1; `null` where it is not known.
     pub(super) progress: Option<f64>,
 }
 
-/// What `stats()` answers, but for what only the page knows.
+/// The answer of `stats()`, without the fields that the page adds.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Stats {
     pub(super) backend: &'static str,
     pub(super) frames: u64,
-    /// Input, panels and scene.
+    /// The time for input, panels and scene.
     pub(super) frame_ms: FrameTimes,
-    /// The same with the commands for the graphics device.
+    /// The time for whole frames, with the commands for the graphics device.
     pub(super) draw_ms: FrameTimes,
     pub(super) jobs: Vec<JobInfo>,
     pub(super) wasm_bytes: u64,
@@ -93,9 +93,9 @@ pub(crate) struct Stats {
 /// A file to hand to the user.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct ExportedFile {
-    /// A name for it.
+    /// Its name.
     pub(crate) name: String,
-    /// What it is.
+    /// Its media type.
     pub(crate) mime: &'static str,
     /// Its bytes.
     pub(crate) bytes: Vec<u8>,

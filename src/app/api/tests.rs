@@ -1,4 +1,4 @@
-//! What the page's API is asked, and what it answers.
+//! Tests of the page's API: answers, and the texts of rejections.
 
 use super::*;
 use crate::platform::{Inbox, Storage};
@@ -7,17 +7,17 @@ use serde_json::json;
 
 fn open(link: &str) -> Segue {
     let mut segue = Segue::new(Inbox::default(), None, link.to_owned());
-    while segue.pump() || segue.is_busy() {}
+    while segue.poll() || segue.is_busy() {}
     segue
 }
 
-/// As the page's `load` does.
-fn load(segue: &mut Segue, name: &str, bytes: &[u8]) -> Result<LoadedClips, String> {
+/// Loads a file as the page's `load` does.
+fn load(segue: &mut Segue, name: &str, bytes: &[u8]) -> Result<LoadedClips, ApiError> {
     let task = segue.load_elsewhere(name, FileBytes::Here(Arc::from(bytes)));
     while segue.is_reading(task) {
-        segue.pump();
+        segue.poll();
     }
-    segue.read_result(task).expect("nobody stopped it")
+    segue.read_result(task).expect("no test stops a task")
 }
 
 fn object(json: Json) -> Map<String, Json> {
@@ -25,7 +25,7 @@ fn object(json: Json) -> Map<String, Json> {
 }
 
 #[test]
-fn a_bundled_take_can_be_named_before_it_is_in_the_library() {
+fn bundled_take_outside_the_library_can_be_set() {
     let mut segue = open("lab=view&play=off");
     segue.set(&object(json!({ "a": "cmu_jump" }))).unwrap();
     assert_eq!(segue.params()["a"], json!("cmu_jump"));
@@ -33,7 +33,7 @@ fn a_bundled_take_can_be_named_before_it_is_in_the_library() {
 }
 
 #[test]
-fn values_are_set_all_or_none_and_what_is_wrong_is_named() {
+fn set_with_a_wrong_value_changes_nothing_and_names_it() {
     let mut segue = open("lab=blend");
     segue
         .set(&object(
@@ -53,14 +53,14 @@ fn values_are_set_all_or_none_and_what_is_wrong_is_named() {
         (json!({ "a": "nobody" }), "a: there is no clip `nobody`"),
         (json!({ "blend_window": [1, 2] }), "blend_window: found `[1,2]`"),
     ] {
-        let message = segue.set(&object(values)).unwrap_err();
+        let message = segue.set(&object(values)).unwrap_err().to_string();
         assert!(message.contains(part), "{message}");
         assert_eq!(segue.url(), before, "{message}");
     }
 }
 
 #[test]
-fn every_link_leads_back_even_that_of_the_defaults() {
+fn url_of_every_state_restores_it_even_of_the_defaults() {
     let mut segue = open("blend_window=24");
     assert_eq!(segue.url(), "?blend_window=24");
     segue.set(&object(json!({ "blend_window": 30 }))).unwrap();
@@ -69,7 +69,7 @@ fn every_link_leads_back_even_that_of_the_defaults() {
 }
 
 #[test]
-fn keys_and_values_have_the_same_names() {
+fn keys_and_params_have_the_same_names() {
     let names: Vec<&str> = keys().iter().map(|key| key.key).collect();
     let segue = open("lab=blend");
     assert!(names.iter().all(|name| segue.params().contains_key(*name)));
@@ -83,7 +83,7 @@ fn keys_and_values_have_the_same_names() {
 }
 
 #[test]
-fn a_pose_is_in_the_world_and_complete() {
+fn pose_of_a_result_has_every_joint_in_the_world() {
     let segue = open("compare=blend_window:30,10");
     let pose = segue.pose("result:1", 0.5).unwrap();
     let joints = pose.joints.len();
@@ -104,14 +104,14 @@ fn a_pose_is_in_the_world_and_complete() {
     }
     for which in ["result:2", "result:x", "resultant", "nobody"] {
         assert!(
-            segue.pose(which, 0.0).unwrap_err().contains(&format!("found `{which}`")),
+            segue.pose(which, 0.0).unwrap_err().to_string().contains(&format!("found `{which}`")),
             "{which}"
         );
     }
 }
 
 #[test]
-fn metrics_have_a_number_for_every_pane() {
+fn metrics_of_compared_panes_have_a_number_for_each() {
     let segue = open("compare=blend_window:30,15,10");
     let metrics = segue.metrics().unwrap();
     assert!(!metrics.is_empty());
@@ -122,7 +122,7 @@ fn metrics_have_a_number_for_every_pane() {
 }
 
 #[test]
-fn what_cannot_be_made_is_refused_with_its_sentence_by_every_call() {
+fn every_call_on_a_refused_result_rejects_with_its_sentence() {
     for (good, bad, part) in [
         ("lab=speed", json!({ "a": "idle" }), "cycle"),
         ("lab=loop&loop_to=1.5", json!({ "loop_from": 1.5 }), "cycle"),
@@ -141,26 +141,26 @@ fn what_cannot_be_made_is_refused_with_its_sentence_by_every_call() {
                 && segue.report(None).is_ok()
         );
         segue.set(&object(bad)).unwrap();
-        while segue.pump() || segue.is_busy() {}
+        while segue.poll() || segue.is_busy() {}
         let kept = segue.clips().len();
         let refused = [
-            segue.pose("result", 0.0).map(drop),
-            segue.metrics().map(drop),
-            segue.export("result", "bvh", None).map(drop),
-            segue.report(None).map(drop),
-            segue.keep("result").map(drop),
+            segue.pose("result", 0.0).unwrap_err().to_string(),
+            segue.metrics().unwrap_err().to_string(),
+            segue.export("result", "bvh", None).unwrap_err().to_string(),
+            segue.report(None).unwrap_err().to_string(),
+            segue.keep("result").unwrap_err().to_string(),
         ];
         let problem = segue.session.panes()[0].problem.clone().unwrap();
         let sentence = problem.to_sentence().to_string();
         assert!(sentence.contains(part), "{good}: {sentence}");
-        assert_eq!(refused, std::array::from_fn(|_| Err(sentence.clone())), "{good}");
+        assert_eq!(refused, std::array::from_fn(|_| sentence.clone()), "{good}");
         assert_eq!(segue.clips().len(), kept);
         assert!(segue.stage_name() != name || !good.contains("path"), "{name}");
     }
 }
 
 #[test]
-fn what_is_exported_can_be_loaded_again() {
+fn exported_file_can_be_loaded() {
     let mut segue = open("a=walk&lab=view");
     let file = segue.export("result", "bvh", None).unwrap();
     assert_eq!(file.name, "walk.bvh");
@@ -168,19 +168,20 @@ fn what_is_exported_can_be_loaded_again() {
     assert_eq!(loaded.clips.len(), 1);
     assert_eq!(loaded.clips[0].frames, segue.motion("walk").unwrap().clip().frames());
     assert_eq!(
-        segue.export("result", "fbx", None).unwrap_err(),
+        segue.export("result", "fbx", None).unwrap_err().to_string(),
         "found `fbx`, expected one of bvh, csv, glb"
     );
     assert_eq!(
-        segue.export("result", "glb", Some("statue")).unwrap_err(),
+        segue.export("result", "glb", Some("statue")).unwrap_err().to_string(),
         "found `statue`, expected one of character, plain"
     );
-    assert!(load(&mut segue, "x.bvh", b"HIERARCHY oops").unwrap_err().starts_with("x.bvh:1:"));
+    let refused = load(&mut segue, "x.bvh", b"HIERARCHY oops").unwrap_err().to_string();
+    assert!(refused.starts_with("x.bvh:1:"), "{refused}");
     assert_eq!(segue.clips().iter().filter(|clip| clip.sha256.is_some()).count(), 1);
 }
 
 #[test]
-fn every_clip_and_every_pane_is_exported_in_every_format() {
+fn clips_and_panes_are_exported_in_every_format() {
     let segue = open("compare=blend_window:30,10&joint=left%20foot");
     for (which, stem) in [
         ("walk", "Walk"),
@@ -210,24 +211,24 @@ fn every_clip_and_every_pane_is_exported_in_every_format() {
 }
 
 #[test]
-fn more_clips_than_a_graph_takes_are_refused_with_the_sentence() {
+fn set_with_more_clips_than_a_graph_takes_is_rejected() {
     let mut segue = open("lab=graph&play=off");
     let before = segue.params();
     let many: Vec<String> = (0..65).map(|n| format!("clip{n}")).collect();
     let refused = segue.set(&object(json!({ "clips": many.join(",") }))).unwrap_err();
-    assert_eq!(refused, "clips: These are 65 clips: take 64 at most.");
+    assert_eq!(refused.to_string(), "clips: These are 65 clips: take 64 at most.");
     assert_eq!(segue.params(), before);
 }
 
 #[test]
-fn time_of_a_pose_is_a_number() {
+fn pose_at_a_time_that_is_not_finite_is_rejected() {
     let segue = open("lab=view&play=off");
     for secs in [f64::NAN, f64::INFINITY] {
-        assert!(segue.pose("walk", secs).unwrap_err().contains("expected seconds"));
+        assert!(segue.pose("walk", secs).unwrap_err().to_string().contains("expected seconds"));
     }
 }
 
-/// However a link spells it, the page that answers the one around it is the page that stores
+/// Pages that a framing page may drive, by any spelling of the link, are the pages that store
 /// nothing.
 #[test]
 fn embedded_page_in_any_spelling_has_no_storage() {
@@ -265,9 +266,9 @@ fn embedded_page_in_any_spelling_has_no_storage() {
 }
 
 #[test]
-fn page_around_the_frame_is_told_of_once() {
+fn warning_of_the_framing_page_is_shown_once() {
     let mut segue = open("lab=view&play=off");
-    let said = |segue: &Segue| {
+    let shown = |segue: &Segue| {
         segue
             .session
             .notices()
@@ -276,13 +277,13 @@ fn page_around_the_frame_is_told_of_once() {
             .filter(|notice| notice.text.to_string() == crate::ui::HOST_READS)
             .count()
     };
-    segue.tell_of_host();
-    assert_eq!(said(&segue), 0, "there is none");
+    segue.warn_of_host();
+    assert_eq!(shown(&segue), 0, "no page frames this one");
     segue.panels.host_reads = true;
-    segue.tell_of_host();
-    assert_eq!(said(&segue), 1);
+    segue.warn_of_host();
+    assert_eq!(shown(&segue), 1);
     let id = segue.session.notices().list().last().unwrap().id;
     segue.apply(Command::Dismiss(id)).unwrap();
-    segue.tell_of_host();
-    assert_eq!(said(&segue), 0, "it is told once");
+    segue.warn_of_host();
+    assert_eq!(shown(&segue), 0, "it was dismissed");
 }

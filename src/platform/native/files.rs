@@ -1,18 +1,19 @@
-//! Files of the user: into the window and out of it. Reading and asking happen on threads of their
-//! own, so that the picture goes on.
+//! Opening and saving of the user's files. Dialogues and reading run on threads of their own, so
+//! that frames continue.
 
 use super::LargeFile;
-use crate::platform::{
-    Inbox, Incoming, MAX_FILE_BYTES, MOST_FILES_OF_FOLDER, MOTION_ENDINGS, is_motion_file,
-    last_part, no_motion_in, too_large, too_many_in,
+use crate::platform::motion_files::{
+    MAX_FILE_BYTES, MAX_FILES_OF_FOLDER, MOTION_ENDINGS, is_motion_file, last_part, no_motion_in,
+    too_large, too_many_in,
 };
+use crate::platform::{Inbox, Incoming};
 use eframe::egui::DroppedFileHandle;
 use segue_session::reading::LARGE_BYTES;
 use segue_text::msg;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Lets the user choose files.
+/// Opens a dialogue for files, and reads the chosen ones.
 pub(crate) fn open_files(inbox: &Inbox) {
     let asked = rfd::AsyncFileDialog::new()
         .add_filter("Motion files", &MOTION_ENDINGS)
@@ -26,7 +27,7 @@ pub(crate) fn open_files(inbox: &Inbox) {
     });
 }
 
-/// Reads what was dropped on the window, in order.
+/// Reads the files dropped on the window, in order.
 pub(crate) fn read_dropped(files: Vec<DroppedFileHandle>, inbox: &Inbox) {
     let inbox = inbox.clone();
     std::thread::spawn(move || {
@@ -51,7 +52,7 @@ pub(crate) fn read_arguments(inbox: &Inbox) {
     });
 }
 
-/// Whether an argument is a link's query and not a file.
+/// Returns whether an argument is a link's query and not a file.
 pub(super) fn is_query(argument: &str) -> bool {
     argument.starts_with('?') || (argument.contains('=') && !Path::new(argument).exists())
 }
@@ -65,7 +66,7 @@ fn read_path(path: &Path, inbox: &Inbox) {
         return;
     }
     let say = |reason| inbox.push(Incoming::Failed { reason });
-    match motion_files(path, &name, MOST_FILES_OF_FOLDER) {
+    match motion_files(path, &name, MAX_FILES_OF_FOLDER) {
         Err(error) => {
             say(msg!("{name} cannot be read: {error}.", name, error = error.to_string()));
         }
@@ -81,16 +82,16 @@ fn read_path(path: &Path, inbox: &Inbox) {
     }
 }
 
-/// The first `most` motion files in and below a folder in the order of their paths, with the names
-/// that they get, and whether there are more.
+/// Returns the first `max` motion files in and below a folder in the order of their paths, each
+/// with its name in the library, and whether there are more.
 fn motion_files(
     folder: &Path,
     name: &str,
-    most: usize,
+    max: usize,
 ) -> std::io::Result<(Vec<(PathBuf, String)>, bool)> {
     let mut files = Vec::new();
-    // What is still to be looked at; the next one last. Links are not followed: they may lead round
-    // in a circle.
+    // A stack of the paths to visit. Symbolic links are not followed, because they may form a
+    // cycle.
     let mut waiting = vec![(folder.to_path_buf(), name.to_owned(), true)];
     while let Some((path, name, is_folder)) = waiting.pop() {
         if is_folder {
@@ -105,7 +106,7 @@ fn motion_files(
             }
             children.sort_by(|x, y| y.1.cmp(&x.1));
             waiting.extend(children);
-        } else if files.len() == most {
+        } else if files.len() == max {
             return Ok((files, true));
         } else {
             files.push((path, name));
@@ -114,6 +115,7 @@ fn motion_files(
     Ok((files, false))
 }
 
+/// Reads a file into memory.
 fn read_file(path: &Path, name: String, inbox: &Inbox) {
     let unreadable = |error: std::io::Error| {
         msg!("{name} cannot be read: {error}.", name = name.clone(), error = error.to_string())
@@ -134,7 +136,7 @@ fn read_file(path: &Path, name: String, inbox: &Inbox) {
     });
 }
 
-/// Asks where to and writes a file there.
+/// Opens a dialogue for a path, and writes a file there.
 pub(crate) fn download(file_name: &str, _mime: &str, bytes: &[u8], inbox: &Inbox) {
     let asked = rfd::AsyncFileDialog::new().set_file_name(file_name).save_file();
     let (bytes, inbox) = (bytes.to_vec(), inbox.clone());
@@ -164,17 +166,17 @@ mod tests {
         assert!(!is_query("walk.bvh"));
     }
 
-    fn told(inbox: &Inbox) -> Vec<String> {
-        let told = |incoming| match incoming {
+    fn received(inbox: &Inbox) -> Vec<String> {
+        let name = |incoming| match incoming {
             Incoming::Failed { reason } => reason.to_string(),
             Incoming::File { name, .. } | Incoming::Large { name, .. } => name,
             other => format!("{other:?}"),
         };
-        inbox.take().into_iter().map(told).collect()
+        inbox.take().into_iter().map(name).collect()
     }
 
     #[test]
-    fn of_a_folder_the_motion_files_are_read_in_order() {
+    fn motion_files_of_a_folder_are_read_in_order() {
         let folder = std::env::temp_dir().join(format!("segue-folder-test-{}", std::process::id()));
         std::fs::remove_dir_all(&folder).ok();
         std::fs::create_dir_all(folder.join("takes/b")).unwrap();
@@ -191,14 +193,17 @@ mod tests {
         }
         let inbox = Inbox::default();
         read_path(&folder.join("takes"), &inbox);
-        assert_eq!(told(&inbox), ["takes/a.zip", "takes/b/1.ASF", "takes/b/2.amc", "takes/c.bvh"]);
+        assert_eq!(
+            received(&inbox),
+            ["takes/a.zip", "takes/b/1.ASF", "takes/b/2.amc", "takes/c.bvh"]
+        );
         let (files, more) = motion_files(&folder.join("takes"), "takes", 3).unwrap();
         assert_eq!((files.len(), more), (3, true));
         let (files, more) = motion_files(&folder.join("takes"), "takes", 4).unwrap();
         assert_eq!((files.len(), more), (4, false));
         read_path(&folder.join("empty"), &inbox);
         read_path(Path::new("/nowhere/walk.bvh"), &inbox);
-        let reasons = told(&inbox);
+        let reasons = received(&inbox);
         assert_eq!(
             reasons[0],
             "empty has no motion files (.bvh, .asf, .amc, .glb, .gltf, .zip, .gz)."

@@ -1,44 +1,44 @@
-//! A window takes no pictures of itself: desktops have programs for it.
+//! Pictures and films of a window: none, because desktops have programs for them.
 
 use crate::platform::{Inbox, Incoming};
 use eframe::egui::Rect;
 use segue_text::Message;
 use std::convert::Infallible;
 
-/// Whether pictures of the stage can be saved.
+/// Returns whether pictures of the stage can be saved.
 pub(crate) fn can_take_pictures() -> bool {
     false
 }
 
-/// Nobody asks for it here.
+/// Does nothing, because [`can_take_pictures`] is false.
 pub(crate) fn save_picture(_file_name: &str, _stage: Rect, _inbox: &Inbox) {}
 
-/// A text does without one.
+/// Answers that there is no picture; a report is then made without one.
 pub(crate) fn take_picture(_stage: Rect, inbox: &Inbox) {
     inbox.push(Incoming::Picture(None));
 }
 
-/// Whether films can be made.
+/// Returns whether films can be made.
 pub(crate) fn can_film() -> bool {
     false
 }
 
-/// There is none.
+/// A film, of which there is none.
 #[derive(Debug)]
 pub(crate) struct Film(Infallible);
 
 impl Film {
-    /// Says why there is none.
+    /// Returns the reason why a window has no films.
     pub(crate) fn begin() -> Result<Self, Message> {
         Err("a window cannot record itself".into())
     }
 
-    /// How long it is, seconds.
+    /// Returns its duration, seconds.
     pub(crate) fn secs(&self) -> f64 {
         match self.0 {}
     }
 
-    /// Hands it to the user.
+    /// Saves it for the user.
     pub(crate) fn save(self, _stem: &str, _inbox: &Inbox) {
         match self.0 {}
     }

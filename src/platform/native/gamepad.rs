@@ -1,8 +1,8 @@
 //! Gamepads of a desktop window: none.
 
-use crate::platform::Gamepad;
+use crate::platform::gamepad::Gamepad;
 
-/// A gamepad that is there. Windows have none: that would be a crate of its own for each system.
+/// Returns `None`: gamepads would need a crate of their own for each operating system.
 pub(crate) fn gamepad() -> Option<Gamepad> {
     None
 }

@@ -1,17 +1,17 @@
-//! The desktop window.
+//! The platform of a desktop window.
 
 mod files;
 mod film;
+mod frame_pacer;
 mod gamepad;
-mod pace;
 mod reader;
 mod storage;
 
 pub(crate) use files::{download, open_files, read_arguments, read_dropped};
 pub(crate) use film::{Film, can_film, can_take_pictures, save_picture, take_picture};
+pub(crate) use frame_pacer::FramePacer;
 pub(crate) use gamepad::gamepad;
-pub(crate) use pace::Pace;
-pub(crate) use reader::{LargeFile, Reader, follow_memory};
+pub(crate) use reader::{LargeFile, Reader, update_memory};
 pub(crate) use storage::Storage;
 
 use super::{Inbox, Incoming, address};
@@ -22,15 +22,13 @@ use segue_text::{Message, msg};
 use std::sync::{Arc, LazyLock};
 use std::time::Instant;
 
-pub(crate) use super::address::file_name_of;
-
-/// Milliseconds since some fixed moment; never goes back.
+/// Returns the milliseconds since a fixed moment, by a monotonic clock.
 pub(crate) fn now_ms() -> f64 {
     static START: LazyLock<Instant> = LazyLock::new(Instant::now);
     START.elapsed().as_secs_f64() * 1e3
 }
 
-/// The state that the command line describes: `segue "lab=blend&blend_window=24"`.
+/// Returns the query that the command line names, as in `segue "lab=blend&blend_window=24"`.
 pub(crate) fn location_query() -> String {
     std::env::args()
         .skip(1)
@@ -38,21 +36,22 @@ pub(crate) fn location_query() -> String {
         .map_or_else(String::new, |query| address::state_of(&query))
 }
 
-/// Whether [`between_frames`] does anything.
+/// Whether [`between_frames`] runs work.
 pub(crate) const WORKS_BETWEEN_FRAMES: bool = false;
 
-/// Small files are read at once, large ones on threads.
+/// Whether all files are read in the background. A window reads small files at once, and only
+/// large ones on threads.
 pub(crate) const READS_ELSEWHERE: bool = false;
 
-/// A window's frames come at a steady pace: what they leave over waits for the next.
+/// Does nothing: the frames of a window are regular, so that work can wait for the next one.
 pub(crate) fn between_frames(_work: impl FnMut() -> bool + 'static) {}
 
-/// Desktops tell a window nothing of the kind.
-pub(crate) fn prefers_stillness() -> bool {
+/// Returns `false`, because desktops do not tell a window.
+pub(crate) fn prefers_reduced_motion() -> bool {
     false
 }
 
-/// The user's languages, best first, as their tags.
+/// Returns the tags of the user's languages, the preferred one first.
 pub(crate) fn languages() -> Vec<String> {
     ["LC_ALL", "LC_MESSAGES", "LANG"]
         .into_iter()
@@ -60,39 +59,40 @@ pub(crate) fn languages() -> Vec<String> {
         .collect()
 }
 
-/// Puts a text into the clipboard. [`Incoming::Copied`] tells that it is there.
+/// Puts a text into the clipboard, and confirms it by [`Incoming::Copied`].
 pub(crate) fn copy_text(text: String, ctx: &egui::Context, inbox: &Inbox) {
     ctx.copy_text(text);
     inbox.push(Incoming::Copied);
 }
 
-/// Opens a page of the web in the user's browser.
-#[expect(clippy::disallowed_methods, reason = "a browser of its own knows nothing of this window")]
+/// Opens a web page in the user's browser.
+#[expect(clippy::disallowed_methods, reason = "the browser gets no handle to this window")]
 pub(crate) fn open_page(address: &str, ctx: &egui::Context) {
     ctx.open_url(egui::OpenUrl::new_tab(address));
 }
 
-/// A window stands in no page.
+/// Returns `false`, because no page frames a window.
 pub(crate) fn is_framed() -> bool {
     false
 }
 
-/// A window has no address.
+/// Does nothing, because a window has no address.
 pub(crate) fn replace_query(_query: &str) {}
 
-/// The query that restores a state, for the end of a page's address or for the command line.
+/// Returns the query that restores a state, for the end of a page's address or for the command
+/// line.
 pub(crate) fn full_link(query: &str) -> String {
     format!("?{query}")
 }
 
-/// Nobody goes back or forward in a window.
+/// Does nothing, because a window has no history.
 pub(crate) fn watch_navigation(_inbox: &Inbox) {}
 
-/// Something that is under way.
+/// A request under way. A window makes none, so it has no fields.
 #[derive(Debug)]
 pub(crate) struct Fetch;
 
-/// A window loads nothing over the network, and says so.
+/// Refuses to fetch a file, because a window does not use the network.
 pub(crate) fn fetch(address: &str, inbox: &Inbox) -> Fetch {
     let reason = msg!(
         "This window does not load files over the network. Download {address} and drop the file here.",
@@ -102,23 +102,23 @@ pub(crate) fn fetch(address: &str, inbox: &Inbox) -> Fetch {
     Fetch
 }
 
-/// Reads a bundled take; [`Incoming::Sample`] brings it.
+/// Reads a bundled take. The answer is [`Incoming::Sample`].
 pub(crate) fn load_sample(sample: &'static Sample, inbox: &Inbox) {
     let result = read_bundled("samples", sample.file);
     inbox.push(Incoming::Sample { sample, result });
 }
 
-/// Reads the files of a language; [`Incoming::Language`] brings them.
+/// Reads the files of a language. The answer is [`Incoming::Language`].
 pub(crate) fn load_language(tag: &'static str, inbox: &Inbox) {
     let read = |ending| read_bundled("lang", &format!("{tag}.{ending}"));
     let files = read("json").and_then(|texts| Ok([texts, read("otf")?]));
     inbox.push(Incoming::Language { tag, files });
 }
 
-/// A window has no page around it that would have a language.
-pub(crate) fn tell_language(_tag: &str) {}
+/// Does nothing, because no page frames a window.
+pub(crate) fn set_page_language(_tag: &str) {}
 
-/// Reads the text of a lesson; [`Incoming::Lesson`] brings it.
+/// Reads the text of a lesson. The answer is [`Incoming::Lesson`].
 pub(crate) fn load_lesson(source: &Source, inbox: &Inbox) -> Fetch {
     let result = match source {
         Source::BuiltIn(file) => read_bundled("lessons", file).map_err(|reason| {
@@ -134,7 +134,7 @@ pub(crate) fn load_lesson(source: &Source, inbox: &Inbox) -> Fetch {
     Fetch
 }
 
-/// What lies in a folder beside the program, or in the project's own.
+/// Reads a bundled file from a folder beside the program, or from the project's own folder.
 fn read_bundled(folder: &str, file: &str) -> Result<Arc<[u8]>, Message> {
     let beside =
         std::env::current_exe().ok().and_then(|program| Some(program.parent()?.join(folder)));

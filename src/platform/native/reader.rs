@@ -1,6 +1,6 @@
-//! Large files are read on threads of their own.
+//! Reading of large files on threads of their own.
 
-use crate::platform::{FileBytes, Inbox, Incoming, ReadNews};
+use crate::platform::{FileBytes, Inbox, Incoming, ReadEvent};
 use segue_session::Session;
 use segue_session::reading::{ReadTask, read};
 use std::fmt;
@@ -12,17 +12,17 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub(crate) struct LargeFile(Arc<[u8]>);
 
 impl LargeFile {
-    /// A file of these bytes.
+    /// Returns a file of these bytes.
     pub(crate) fn new(bytes: Arc<[u8]>) -> Self {
         Self(bytes)
     }
 
-    /// How many bytes it has.
+    /// Returns its size, bytes.
     pub(crate) fn len(&self) -> u64 {
         self.0.len() as u64
     }
 
-    /// Its bytes.
+    /// Returns its bytes.
     pub(super) fn bytes(&self) -> &Arc<[u8]> {
         &self.0
     }
@@ -34,44 +34,45 @@ impl fmt::Debug for LargeFile {
     }
 }
 
-/// A window has as much memory as the system gives.
-pub(crate) fn follow_memory(_reader: &mut Reader, _session: &mut Session) {}
+/// Does nothing, because only the system limits the memory of a window.
+pub(crate) fn update_memory(_reader: &mut Reader, _session: &mut Session) {}
 
-/// Reads files elsewhere.
+/// A reader of files in the background.
 #[derive(Debug)]
 pub(crate) struct Reader {
     inbox: Inbox,
+    /// The running tasks, and the flags that stop them.
     running: Vec<(u64, Arc<AtomicBool>)>,
 }
 
 impl Reader {
-    /// One that tells `inbox` of what it reads.
+    /// Returns a reader that reports to `inbox`.
     pub(crate) fn new(inbox: &Inbox) -> Self {
         Self { inbox: inbox.clone(), running: Vec::new() }
     }
 
-    /// Begins to read a file.
+    /// Starts to read a file on a thread of its own.
     pub(crate) fn start(&mut self, task: ReadTask, bytes: FileBytes) {
         let stopped = Arc::new(AtomicBool::new(false));
         self.running.push((task.id, Arc::clone(&stopped)));
         let inbox = self.inbox.clone();
         std::thread::spawn(move || {
-            let tell = |news| inbox.push(Incoming::Reading { task: task.id, news });
+            let report_event = |event| inbox.push(Incoming::Reading { task: task.id, event });
             let bytes = match &bytes {
                 FileBytes::Here(bytes) => bytes,
                 FileBytes::Large(file) => file.bytes(),
             };
             let report = read(&task.name, bytes, &task.setup, &mut |done| {
-                tell(ReadNews::Progress(done as u64));
+                report_event(ReadEvent::Progress(done as u64));
                 !stopped.load(Ordering::Relaxed)
             });
             if let Some(report) = report {
-                tell(ReadNews::Done(Ok(report)));
+                report_event(ReadEvent::Done(Ok(report)));
             }
         });
     }
 
-    /// Nobody waits for this task any longer.
+    /// Stops a task, if it is running.
     pub(crate) fn stop(&mut self, task: u64) {
         self.running.retain(|(id, stopped)| {
             if *id == task {
@@ -86,11 +87,11 @@ impl Reader {
 mod tests {
     use super::*;
     use segue_session::reading::Content;
-    use segue_text::Message;
+    use segue_text::ToMessage as _;
     use std::time::Duration;
 
     #[test]
-    fn a_file_is_read_on_another_thread() {
+    fn file_read_on_a_thread_gives_its_clips() {
         let text: Arc<[u8]> =
             Arc::from(&b"HIERARCHY ROOT Hips { OFFSET 0 1 0 CHANNELS 1 Yrotation } MOTION Frames: 2 Frame Time: .1\n1\n2"[..]);
         let inbox = Inbox::default();
@@ -107,16 +108,19 @@ mod tests {
         });
         reader.start(task.unwrap(), FileBytes::Large(LargeFile::new(text)));
         let report = loop {
-            let news = inbox.take().into_iter().find_map(|incoming| match incoming {
-                Incoming::Reading { news: ReadNews::Done(done), .. } => Some(done),
+            let done = inbox.take().into_iter().find_map(|incoming| match incoming {
+                Incoming::Reading { event: ReadEvent::Done(done), .. } => Some(done),
                 _ => None,
             });
-            match news {
+            match done {
                 Some(report) => break report,
                 None => std::thread::sleep(Duration::from_millis(1)),
             }
         };
-        let loaded = session.finish_reading(id, report.map_err(Message::data)).unwrap().unwrap();
+        let loaded = session
+            .finish_reading(id, report.map_err(|error| error.to_message()))
+            .unwrap()
+            .unwrap();
         assert_eq!(loaded.ids.len(), 1);
     }
 }

@@ -1,8 +1,8 @@
-//! The work in a folder of the user's: one record, and the files' bytes by their SHA-256.
+//! Storage of the work in a folder of the user: one record, and the files' bytes by their SHA-256.
 
 use super::LargeFile;
 use crate::platform::records::{LATEST, Records};
-use crate::platform::{Arrival, FileBytes, Inbox, Incoming, Stored, StoredFiles, Work};
+use crate::platform::{FileBytes, Inbox, Incoming, NewClip, StoredFiles, StoredWork, Work};
 use segue_session::reading::LARGE_BYTES;
 use segue_session::{Saved, SavedEntry, Session, StorageState};
 use segue_text::{Message, msg};
@@ -16,33 +16,35 @@ use std::thread::JoinHandle;
 
 const RECORD: &str = "work.json";
 const FILES: &str = "files";
-/// A record that could not be read, which is kept.
+/// The name of a damaged record, which is kept.
 const UNREAD: &str = "work-unread.json";
 
-/// The folder, and the thread that writes into it; by default there is none. Clones are the same
-/// one.
+/// A storage in a folder, with the thread that writes into it. Clones share both; the default has
+/// neither.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Storage(Option<Arc<Mutex<Writer>>>);
 
+/// The connection to the thread that writes.
 #[derive(Debug)]
 struct Writer {
-    /// None once the app has ended.
+    /// The queue of jobs; `None` once the app has ended.
     queue: Option<Sender<Job>>,
-    /// How many jobs were queued that are not done.
+    /// The number of queued jobs that are not done.
     waiting: Arc<AtomicUsize>,
-    /// The last of them could not be done.
+    /// Whether the last job has failed.
     has_failed: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
 
+/// A job of the thread that writes.
 #[derive(Debug)]
 enum Job {
-    Store(Vec<Arrival>),
+    Store(Vec<NewClip>),
     Save(Work),
 }
 
 impl Drop for Writer {
-    /// Waits until everything is written: the program ends behind this.
+    /// Waits until everything is written, because the program may end afterwards.
     fn drop(&mut self) {
         self.queue = None;
         if let Some(thread) = self.thread.take()
@@ -54,7 +56,7 @@ impl Drop for Writer {
 }
 
 impl Storage {
-    /// Opens the storage and reads it; [`Incoming::Stored`] brings what is in it.
+    /// Opens the storage and reads it. The answer is [`Incoming::Stored`].
     pub(crate) fn open(inbox: &Inbox) -> Self {
         let Some(folder) = folder() else {
             inbox.push(Incoming::Stored(None));
@@ -80,14 +82,14 @@ impl Storage {
                 for job in std::iter::once(first).chain(jobs.try_iter()) {
                     taken += 1;
                     match (due.last_mut(), job) {
-                        (Some(Job::Store(arrivals)), Job::Store(more)) => arrivals.extend(more),
-                        // Older work is of no interest.
+                        (Some(Job::Store(new_clips)), Job::Store(more)) => new_clips.extend(more),
+                        // The newer work replaces the older one.
                         (Some(Job::Save(work)), Job::Save(newer)) => *work = newer,
                         (_, job) => due.push(job),
                     }
                 }
                 let done = due.iter().try_for_each(|job| match job {
-                    Job::Store(arrivals) => store(&folder, arrivals),
+                    Job::Store(new_clips) => store(&folder, new_clips),
                     Job::Save(work) => write(&folder, work),
                 });
                 failed.store(done.is_err(), Ordering::Relaxed);
@@ -111,26 +113,29 @@ impl Storage {
         }))))
     }
 
-    /// Writes clips that have just come, with their files. Work that was read before stays.
-    pub(crate) fn store(&self, arrivals: Vec<Arrival>) {
-        self.queue(Job::Store(arrivals));
+    /// Writes new clips with their files. The stored work stays.
+    pub(crate) fn store(&self, new_clips: Vec<NewClip>) {
+        self.queue(Job::Store(new_clips));
     }
 
-    /// Writes the work, the newest one last. What it no longer needs is deleted.
+    /// Writes the work, and deletes the files that it no longer needs. Of several calls, the last
+    /// one counts.
     pub(crate) fn save(&self, work: Work) {
         self.queue(Job::Save(work));
     }
 
-    /// As [`Storage::save`]: a program waits until everything is written.
-    pub(crate) fn leave(&self, work: Work) {
+    /// Writes the work like [`Storage::save`], because the program waits until everything is
+    /// written.
+    pub(crate) fn save_on_exit(&self, work: Work) {
         self.save(work);
     }
 
-    /// A folder is read again when the program starts: nobody tells of other windows.
-    #[expect(clippy::unused_self, reason = "a page asks its storage")]
+    /// Does nothing, because the windows of a program do not announce their clips; the folder is
+    /// read again when the program starts.
+    #[expect(clippy::unused_self, reason = "a page reads its storage")]
     pub(crate) fn fetch(&self, _entries: Vec<SavedEntry>) {}
 
-    /// How far storing is; `None` where nothing is stored.
+    /// Returns the progress of storing; `None` where nothing is stored.
     pub(crate) fn progress(&self) -> Option<StorageState> {
         let writer = self.0.as_ref()?.lock().unwrap_or_else(PoisonError::into_inner);
         Some(if writer.waiting.load(Ordering::Relaxed) > 0 {
@@ -142,6 +147,7 @@ impl Storage {
         })
     }
 
+    /// Hands a job to the thread that writes.
     fn queue(&self, job: Job) {
         let Some(writer) = &self.0 else { return };
         let writer = writer.lock().unwrap_or_else(PoisonError::into_inner);
@@ -154,7 +160,8 @@ impl Storage {
     }
 }
 
-/// Where programs keep such things; `None` where that is not known, and then nothing is kept.
+/// Returns the folder for the data of the program; `None` where the system names none. Nothing is
+/// stored then.
 fn folder() -> Option<PathBuf> {
     let path = |key| std::env::var_os(key).map(PathBuf::from).filter(|path| path.is_absolute());
     let folder = if cfg!(windows) {
@@ -167,8 +174,8 @@ fn folder() -> Option<PathBuf> {
     Some(folder?.join("segue"))
 }
 
-/// What is stored, and what is to be said of it.
-fn read(folder: &Path) -> (Option<Stored>, Option<Message>) {
+/// Returns the stored work, and a notice about a damaged record.
+fn read(folder: &Path) -> (Option<StoredWork>, Option<Message>) {
     let record = fs::read_to_string(folder.join(RECORD)).ok();
     let records = Records::read(record.as_deref().map(|record| (LATEST, record)));
     if let Some(problem) = records.problem {
@@ -196,11 +203,11 @@ fn read(folder: &Path) -> (Option<Stored>, Option<Message>) {
             files.insert(key.to_owned(), bytes);
         }
     }
-    let stored = Stored { saved: Some(saved), loose: Vec::new(), files };
+    let stored = StoredWork { saved: Some(saved), loose: Vec::new(), files };
     (Some(stored), None)
 }
 
-/// The record as it is at present. One that cannot be read is moved out of the way.
+/// Reads the present record. A damaged one is renamed, so that it is kept.
 fn record_of(folder: &Path) -> io::Result<Option<Saved>> {
     let path = folder.join(RECORD);
     let record = fs::read_to_string(&path).ok();
@@ -211,6 +218,7 @@ fn record_of(folder: &Path) -> io::Result<Option<Saved>> {
     Ok(records.saved)
 }
 
+/// Writes files that are not in the folder yet.
 fn write_files<'a>(
     folder: &Path,
     files: impl IntoIterator<Item = (&'a String, &'a FileBytes)>,
@@ -229,18 +237,20 @@ fn write_files<'a>(
     Ok(())
 }
 
-fn store(folder: &Path, arrivals: &[Arrival]) -> io::Result<()> {
-    write_files(folder, arrivals.iter().map(|arrival| (&arrival.sha256, &arrival.bytes)))?;
-    // On a first visit the built-in clips are there, too.
+/// Adds new clips to the record, and writes their files.
+fn store(folder: &Path, new_clips: &[NewClip]) -> io::Result<()> {
+    write_files(folder, new_clips.iter().map(|new_clip| (&new_clip.sha256, &new_clip.bytes)))?;
+    // On a first visit, the record begins with the built-in clips.
     let mut saved = record_of(folder)?.unwrap_or_else(|| Session::new().saved());
-    let new = arrivals
+    let new = new_clips
         .iter()
-        .filter(|arrival| saved.entries.iter().all(|there| there.id != arrival.entry.id));
-    let new: Vec<SavedEntry> = new.map(|arrival| arrival.entry.clone()).collect();
+        .filter(|new_clip| saved.entries.iter().all(|there| there.id != new_clip.entry.id));
+    let new: Vec<SavedEntry> = new.map(|new_clip| new_clip.entry.clone()).collect();
     saved.entries.extend(new);
     write_whole(&folder.join(RECORD), serde_json::to_string(&saved)?.as_bytes())
 }
 
+/// Replaces the record by the work, and deletes the files that it no longer needs.
 fn write(folder: &Path, work: &Work) -> io::Result<()> {
     write_files(folder, &work.files)?;
     let files = folder.join(FILES);
@@ -248,10 +258,10 @@ fn write(folder: &Path, work: &Work) -> io::Result<()> {
         work.over(&record_of(folder)?.unwrap_or_default(), |sha256| files.join(sha256).exists());
     write_whole(&folder.join(RECORD), serde_json::to_string(&all)?.as_bytes())?;
     if folder.join(UNREAD).exists() {
-        // It may need any of them.
+        // The damaged record may need any file.
         return Ok(());
     }
-    // Last: until the record is replaced, the old one needs its files.
+    // Files are deleted after the record is replaced, because the old record needs them.
     let needed = all.files();
     for entry in fs::read_dir(&files)?.flatten() {
         if entry.file_name().to_str().is_none_or(|key| !needed.contains(key)) {
@@ -261,8 +271,8 @@ fn write(folder: &Path, work: &Work) -> io::Result<()> {
     Ok(())
 }
 
-/// Writes beside the file and then in its place: whoever reads it finds the old one or the new one,
-/// never half of one.
+/// Writes a file beside the old one, and renames it. A reader finds either the old file or the new
+/// one, and never a part of one.
 fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let beside = path.with_extension("part");
     fs::write(&beside, bytes)?;
@@ -272,16 +282,16 @@ fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::platform::clip_of;
+    use crate::platform::work::clip_of;
 
-    fn stored_of(inbox: &Inbox) -> Option<Stored> {
+    fn stored_of(inbox: &Inbox) -> Option<StoredWork> {
         match inbox.take().pop_front() {
             Some(Incoming::Stored(stored)) => stored.map(|stored| *stored),
             other => panic!("expected what is stored, found {other:?}"),
         }
     }
 
-    /// Work with clips from files of these keys, by somebody who knows of these and `removed` ones.
+    /// Returns work with a clip of each of these files, by a window that had `removed` ones, too.
     fn work_of(query: &str, files: &[&str], removed: &[&str]) -> Work {
         Work {
             saved: Saved {
@@ -296,15 +306,15 @@ mod tests {
         }
     }
 
-    fn arrival(key: &str) -> Arrival {
-        Arrival {
+    fn new_clip(key: &str) -> NewClip {
+        NewClip {
             entry: clip_of(&format!("{key}~{key}")),
             sha256: key.to_owned(),
             bytes: FileBytes::Here(Arc::from(key.as_bytes())),
         }
     }
 
-    fn emptied(name: &str) -> PathBuf {
+    fn empty_folder(name: &str) -> PathBuf {
         let folder =
             std::env::temp_dir().join(format!("segue-storage-{name}-{}", std::process::id()));
         fs::remove_dir_all(&folder).ok();
@@ -312,12 +322,12 @@ mod tests {
     }
 
     #[test]
-    fn a_clip_that_has_come_is_stored_before_the_work_is() {
-        let folder = emptied("arrival");
+    fn new_clip_is_added_to_the_stored_work() {
+        let folder = empty_folder("new_clip");
         let inbox = Inbox::default();
         let storage = Storage::open_in(folder.clone(), &inbox);
         storage.save(work_of("t=1", &["aa"], &[]));
-        storage.store(vec![arrival("bb")]);
+        storage.store(vec![new_clip("bb")]);
         drop(storage);
         let stored = read(&folder).0.unwrap();
         let saved = stored.saved.unwrap();
@@ -331,16 +341,16 @@ mod tests {
     }
 
     #[test]
-    fn a_record_that_cannot_be_read_is_told_and_kept_with_its_files() {
-        let folder = emptied("unread");
+    fn damaged_record_is_reported_and_kept_with_its_files() {
+        let folder = empty_folder("unread");
         write(&folder, &work_of("t=1", &["aa"], &[])).unwrap();
         fs::write(folder.join(RECORD), "{\"garbage\":").unwrap();
         let inbox = Inbox::default();
         let storage = Storage::open_in(folder.clone(), &inbox);
-        let told: Vec<Incoming> = inbox.take().into();
+        let answers: Vec<Incoming> = inbox.take().into();
         assert!(
-            matches!(&told[..], [Incoming::Stored(None), Incoming::Failed { reason }] if reason.to_string().contains(UNREAD)),
-            "{told:?}"
+            matches!(&answers[..], [Incoming::Stored(None), Incoming::Failed { reason }] if reason.to_string().contains(UNREAD)),
+            "{answers:?}"
         );
         storage.save(work_of("t=2", &["bb"], &[]));
         storage.save(work_of("t=3", &[], &["bb"]));
@@ -352,8 +362,8 @@ mod tests {
     }
 
     #[test]
-    fn what_is_saved_last_is_there_again_and_nothing_else() {
-        let folder = emptied("last");
+    fn work_saved_last_replaces_the_earlier_one() {
+        let folder = empty_folder("last");
         let inbox = Inbox::default();
         let storage = Storage::open_in(folder.clone(), &inbox);
         assert_eq!(stored_of(&inbox), None);
@@ -371,8 +381,8 @@ mod tests {
     }
 
     #[test]
-    fn what_another_window_added_stays() {
-        let folder = emptied("windows");
+    fn clips_of_another_window_stay_in_the_record() {
+        let folder = empty_folder("windows");
         let inbox = Inbox::default();
         let windows = [
             work_of("t=1", &["aa"], &[]),

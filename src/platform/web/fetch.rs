@@ -1,10 +1,9 @@
-//! Files over the network.
+//! Fetching of files, lessons and bundled data.
 
+use super::js_error_text;
 use super::page::window;
-use super::words_of;
-use crate::platform::{
-    FileBytes, Inbox, Incoming, LargeFile, MAX_FILE_BYTES, file_name_of, too_large,
-};
+use crate::platform::motion_files::{MAX_FILE_BYTES, too_large};
+use crate::platform::{FileBytes, Inbox, Incoming, LargeFile, file_name_of};
 use js_sys::{Array, Reflect, Uint8Array};
 use segue_session::Sample;
 use segue_session::lesson::{MAX_BYTES, Source, host_of};
@@ -22,10 +21,10 @@ use web_sys::{
     RequestMode, Response,
 };
 
-/// A server that sends nothing for so long has been waited for long enough, milliseconds.
-const PATIENCE_MS: i32 = 20_000;
+/// The time without any data after which a request is stopped, milliseconds.
+const TIMEOUT_MS: i32 = 20_000;
 
-/// Something that is under way. Dropping it stops it.
+/// A request under way. Dropping it stops it.
 #[derive(Debug)]
 pub(crate) struct Fetch(Call);
 
@@ -35,37 +34,37 @@ impl Drop for Fetch {
     }
 }
 
-/// What several hold on to who wait for one answer: it can be ended, and is ended when nothing
-/// comes for [`PATIENCE_MS`].
+/// A shared handle of a request. It is stopped on demand, and when no data arrives for
+/// [`TIMEOUT_MS`].
 #[derive(Clone, Debug)]
 struct Call(Rc<CallInner>);
 
 #[derive(Debug)]
 struct CallInner {
     controller: Option<AbortController>,
-    is_late: Cell<bool>,
+    has_timed_out: Cell<bool>,
     timer: Cell<Option<i32>>,
-    ring: OnceCell<Closure<dyn FnMut()>>,
+    on_timeout: OnceCell<Closure<dyn FnMut()>>,
 }
 
 impl Call {
     fn new() -> Self {
         let call = Self(Rc::new(CallInner {
             controller: AbortController::new().ok(),
-            is_late: Cell::new(false),
+            has_timed_out: Cell::new(false),
             timer: Cell::new(None),
-            ring: OnceCell::new(),
+            on_timeout: OnceCell::new(),
         }));
         let weak = Rc::downgrade(&call.0);
-        let ring = Closure::new(move || {
+        let on_timeout = Closure::new(move || {
             if let Some(inner) = weak.upgrade() {
-                inner.is_late.set(true);
+                inner.has_timed_out.set(true);
                 inner.abort();
             }
         });
-        let is_first = call.0.ring.set(ring);
+        let is_first = call.0.on_timeout.set(on_timeout);
         debug_assert!(is_first.is_ok(), "it is set once");
-        call.goes_on();
+        call.restart_timeout();
         call
     }
 
@@ -77,34 +76,34 @@ impl Call {
         self.0.abort();
     }
 
-    fn is_over(&self) -> bool {
+    fn is_stopped(&self) -> bool {
         self.signal().is_some_and(|signal| signal.aborted())
     }
 
-    /// Something has come: the patience begins anew.
-    fn goes_on(&self) {
-        self.0.clear();
-        let (Some(window), Some(ring)) = (window(), self.0.ring.get()) else {
+    /// Restarts the timeout, when data has arrived.
+    fn restart_timeout(&self) {
+        self.0.clear_timeout();
+        let (Some(window), Some(on_timeout)) = (window(), self.0.on_timeout.get()) else {
             return;
         };
         let set = window.set_timeout_with_callback_and_timeout_and_arguments_0(
-            ring.as_ref().unchecked_ref(),
-            PATIENCE_MS,
+            on_timeout.as_ref().unchecked_ref(),
+            TIMEOUT_MS,
         );
         self.0.timer.set(set.ok());
     }
 
-    /// What is said where the patience has ended: of the file `name` at an address.
-    fn lateness(&self, address: &str, name: &str) -> Option<Message> {
-        let said = || {
+    /// Returns the notice about the timeout of the file `name`; `None` where there was none.
+    fn timeout_notice(&self, address: &str, name: &str) -> Option<Message> {
+        let notice = || {
             msg!(
                 "{host} has sent nothing for {secs} s, so loading {name} was stopped. Try again later.",
                 host = host_of(address).to_owned(),
-                secs = PATIENCE_MS / 1000,
+                secs = TIMEOUT_MS / 1000,
                 name = name.to_owned()
             )
         };
-        self.0.is_late.get().then(said)
+        self.0.has_timed_out.get().then(notice)
     }
 }
 
@@ -115,7 +114,7 @@ impl CallInner {
         }
     }
 
-    fn clear(&self) {
+    fn clear_timeout(&self) {
         if let (Some(window), Some(timer)) = (window(), self.timer.take()) {
             window.clear_timeout_with_handle(timer);
         }
@@ -124,20 +123,19 @@ impl CallInner {
 
 impl Drop for CallInner {
     fn drop(&mut self) {
-        self.clear();
+        self.clear_timeout();
     }
 }
 
-/// Asks for the file at an address. [`Incoming::Progress`] tells how it goes on,
-/// [`Incoming::Fetched`] how it ended; nothing comes any more once the result of this function is
-/// dropped.
+/// Fetches the file at an address. The answers are [`Incoming::Progress`] and finally
+/// [`Incoming::Fetched`]. There are no more answers once the returned value is dropped.
 pub(crate) fn fetch(address: &str, inbox: &Inbox) -> Fetch {
     let call = Call::new();
     let fetch = Fetch(call.clone());
     let (address, inbox) = (address.to_owned(), inbox.clone());
     spawn_local(async move {
         let result = get(&address, &MOTION, &call, &inbox).await;
-        if call.is_over() && !call.0.is_late.get() {
+        if call.is_stopped() && !call.0.has_timed_out.get() {
             return;
         }
         let result = result.and_then(|pieces| pieces.into_file(&file_name_of(&address)));
@@ -146,7 +144,7 @@ pub(crate) fn fetch(address: &str, inbox: &Inbox) -> Fetch {
     fetch
 }
 
-/// Asks for a bundled take; [`Incoming::Sample`] brings it.
+/// Fetches a bundled take. The answer is [`Incoming::Sample`].
 pub(crate) fn load_sample(sample: &'static Sample, inbox: &Inbox) {
     let inbox = inbox.clone();
     spawn_local(async move {
@@ -155,8 +153,8 @@ pub(crate) fn load_sample(sample: &'static Sample, inbox: &Inbox) {
     });
 }
 
-/// Asks for the text of a lesson; [`Incoming::Lesson`] brings it, unless the result of this
-/// function is dropped before.
+/// Fetches the text of a lesson. The answer is [`Incoming::Lesson`], unless the returned value is
+/// dropped before.
 pub(crate) fn load_lesson(source: &Source, inbox: &Inbox) -> Fetch {
     let call = Call::new();
     let fetch = Fetch(call.clone());
@@ -173,7 +171,7 @@ pub(crate) fn load_lesson(source: &Source, inbox: &Inbox) -> Fetch {
                 get(address, &LESSON, &call, &inbox).await.map(|pieces| pieces.to_bytes())
             }
         };
-        if call.is_over() && !call.0.is_late.get() {
+        if call.is_stopped() && !call.0.has_timed_out.get() {
             return;
         }
         inbox.push(Incoming::Lesson { source, result });
@@ -181,7 +179,7 @@ pub(crate) fn load_lesson(source: &Source, inbox: &Inbox) -> Fetch {
     fetch
 }
 
-/// Asks for the files of a language; [`Incoming::Language`] brings them.
+/// Fetches the files of a language. The answer is [`Incoming::Language`].
 pub(crate) fn load_language(tag: &'static str, inbox: &Inbox) {
     let inbox = inbox.clone();
     spawn_local(async move {
@@ -193,10 +191,10 @@ pub(crate) fn load_language(tag: &'static str, inbox: &Inbox) {
     });
 }
 
-/// A file that lies beside the page.
+/// Fetches a file of the page's own server.
 async fn bundled(address: &str, call: &Call, inbox: &Inbox) -> Result<Arc<[u8]>, Message> {
     let refused = || {
-        let late = call.0.is_late.get().then_some("its server does not answer");
+        let late = call.0.has_timed_out.get().then_some("its server does not answer");
         Message::word(late.unwrap_or("the connection may have been interrupted"))
     };
     let response = request(address, RequestMode::SameOrigin, call).await.map_err(|_| refused())?;
@@ -207,28 +205,29 @@ async fn bundled(address: &str, call: &Call, inbox: &Inbox) -> Result<Arc<[u8]>,
     bytes.map(|pieces| pieces.to_bytes()).map_err(|_| refused())
 }
 
-/// What is asked for at an address.
-struct Wanted {
-    /// What it is.
+/// The kind of file that is expected at an address.
+struct Expected {
+    /// The name of the kind, with its article.
     what: &'static str,
-    /// The most bytes that are read.
-    most_bytes: u64,
-    /// What to do with a file that its server gives to nobody's page.
-    otherwise: &'static str,
+    /// The greatest size that is read, bytes.
+    max_bytes: u64,
+    /// The advice for a file whose server refuses other pages.
+    advice: &'static str,
 }
 
-const MOTION: Wanted = Wanted {
+const MOTION: Expected = Expected {
     what: "a motion file",
-    most_bytes: MAX_FILE_BYTES,
-    otherwise: "Download the file and drop it here.",
+    max_bytes: MAX_FILE_BYTES,
+    advice: "Download the file and drop it here.",
 };
 
-const LESSON: Wanted = Wanted {
+const LESSON: Expected = Expected {
     what: "a Markdown file",
-    most_bytes: MAX_BYTES as u64,
-    otherwise: "Put the lesson on a server that does, such as GitHub.",
+    max_bytes: MAX_BYTES as u64,
+    advice: "Put the lesson on a server that does, such as GitHub.",
 };
 
+/// Sends a request, and waits for the head of the answer.
 async fn request(address: &str, mode: RequestMode, call: &Call) -> Result<Response, JsValue> {
     let window = window().ok_or("no window")?;
     let init = RequestInit::new();
@@ -238,20 +237,21 @@ async fn request(address: &str, mode: RequestMode, call: &Call) -> Result<Respon
     JsFuture::from(window.fetch_with_str_and_init(address, &init)).await?.dyn_into()
 }
 
+/// Fetches a file of another server. Returns its data, or a notice.
 async fn get(
     address: &str,
-    wanted: &Wanted,
+    expected: &Expected,
     call: &Call,
     inbox: &Inbox,
 ) -> Result<Pieces, Message> {
     let name = file_name_of(address);
     let Ok(response) = request(address, RequestMode::Cors, call).await else {
-        return Err(match call.lateness(address, &name) {
-            Some(late) => late,
-            None => why_refused(address, wanted).await,
+        return Err(match call.timeout_notice(address, &name) {
+            Some(notice) => notice,
+            None => refusal(address, expected).await,
         });
     };
-    call.goes_on();
+    call.restart_timeout();
     match response.status() {
         200..=299 => {}
         404 | 410 => {
@@ -283,29 +283,29 @@ async fn get(
         return Err(msg!(
             "{address} is a web page, not {what}. Use the address of the file itself (on GitHub: Raw).",
             address = short(address),
-            what = wanted.what
+            what = expected.what
         ));
     }
     let total = header("content-length").and_then(|length| length.parse::<u64>().ok());
-    if let Some(reason) = total.and_then(|bytes| too_large(&name, bytes, wanted.most_bytes)) {
+    if let Some(reason) = total.and_then(|bytes| too_large(&name, bytes, expected.max_bytes)) {
         return Err(reason);
     }
-    read(&response, address, total, wanted.most_bytes, call, inbox).await.map_err(|error| {
+    read(&response, address, total, expected.max_bytes, call, inbox).await.map_err(|error| {
         match error {
-            Unread::TooLarge(reason) => reason,
-            Unread::Broken(error) => call.lateness(address, &name).unwrap_or_else(|| {
+            BodyError::TooLarge(reason) => reason,
+            BodyError::Broken(error) => call.timeout_notice(address, &name).unwrap_or_else(|| {
                 msg!(
                     "The connection broke while {name} was loading: {error}.",
                     name = name.to_string(),
-                    error = words_of(&error)
+                    error = js_error_text(&error)
                 )
             }),
         }
     })
 }
 
-/// What came of an answer. It stays with the browser until all of it is there: the page's own
-/// memory would keep the size of a file that is refused.
+/// The data of an answer, held by the browser until it is complete. The app's memory never shrinks,
+/// so a file that is refused must not enter it.
 struct Pieces {
     parts: Array,
     bytes: u64,
@@ -321,7 +321,7 @@ impl Pieces {
         self.parts.push(piece);
     }
 
-    /// All of it in the page's memory.
+    /// Returns a copy of all data in the app's memory.
     fn to_bytes(&self) -> Arc<[u8]> {
         let mut bytes = Vec::with_capacity(self.bytes as usize);
         for part in self.parts.iter() {
@@ -330,7 +330,7 @@ impl Pieces {
         Arc::from(bytes)
     }
 
-    /// The file `name`: in the page's memory only where it is small.
+    /// Returns the data as a file, which is in the app's memory only where it is small.
     fn into_file(self, name: &str) -> Result<FileBytes, Message> {
         if self.bytes <= LARGE_BYTES {
             return Ok(FileBytes::Here(self.to_bytes()));
@@ -340,27 +340,28 @@ impl Pieces {
     }
 }
 
-enum Unread {
+/// The reason why the body of an answer was not read.
+enum BodyError {
     TooLarge(Message),
     Broken(JsValue),
 }
 
-impl From<JsValue> for Unread {
+impl From<JsValue> for BodyError {
     fn from(error: JsValue) -> Self {
         Self::Broken(error)
     }
 }
 
-/// Reads an answer piece by piece. An answer without a length may be endless, so it is counted, not
-/// trusted.
+/// Reads an answer in pieces, up to `max_bytes`. The bytes are counted, because an answer without a
+/// length may be endless.
 async fn read(
     response: &Response,
     address: &str,
     total: Option<u64>,
-    most_bytes: u64,
+    max_bytes: u64,
     call: &Call,
     inbox: &Inbox,
-) -> Result<Pieces, Unread> {
+) -> Result<Pieces, BodyError> {
     let mut pieces = Pieces::new();
     let Some(stream) = response.body() else {
         return Ok(pieces);
@@ -369,29 +370,29 @@ async fn read(
         stream.get_reader().dyn_into().map_err(JsValue::from)?;
     loop {
         let chunk = JsFuture::from(reader.read()).await?;
-        call.goes_on();
+        call.restart_timeout();
         if Reflect::get(&chunk, &"done".into())?.is_truthy() {
             return Ok(pieces);
         }
         let piece: Uint8Array = Reflect::get(&chunk, &"value".into())?.dyn_into()?;
         let done = pieces.bytes + u64::from(piece.length());
-        if done > most_bytes {
+        if done > max_bytes {
             JsFuture::from(reader.cancel()).await.ok();
-            return Err(Unread::TooLarge(
-                too_large(&file_name_of(address), done, most_bytes).unwrap_or_default(),
+            return Err(BodyError::TooLarge(
+                too_large(&file_name_of(address), done, max_bytes).unwrap_or_default(),
             ));
         }
         pieces.push(&piece);
-        // The length is that of what travels, packed; once there is more than that, it says
-        // nothing.
+        // The stated length is that of the compressed data. Once more bytes have arrived, the
+        // progress is unknown.
         let total = total.filter(|&total| done <= total);
         inbox.push(Incoming::Progress { address: address.to_owned(), done, total });
     }
 }
 
-/// A browser does not say why it refused. Asking again without wanting to read the answer tells
-/// apart a server that is not there from one that does not let other pages read.
-async fn why_refused(address: &str, wanted: &Wanted) -> Message {
+/// Returns the notice about a request that the browser refused without a reason. A second request,
+/// whose answer is not read, tells an unreachable server from one that refuses other pages (CORS).
+async fn refusal(address: &str, expected: &Expected) -> Message {
     let host = host_of(address).to_owned();
     let Some(window) = window() else {
         return Message::default();
@@ -415,7 +416,7 @@ async fn why_refused(address: &str, wanted: &Wanted) -> Message {
     let there = request(address, RequestMode::NoCors, &call).await.is_ok();
     call.stop();
     if there {
-        let what = wanted.otherwise;
+        let what = expected.advice;
         msg!("{host} does not allow other pages to read its files (CORS). {what}", host, what)
     } else {
         msg!(

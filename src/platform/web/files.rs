@@ -1,9 +1,10 @@
-//! Files of the user: into the page and out of it.
+//! Opening and saving of the user's files, and the clipboard.
 
+use super::js_error_text;
 use super::page::{document, listen, window};
 use super::reader::LargeFile;
-use super::words_of;
-use crate::platform::{Inbox, Incoming, MAX_FILE_BYTES, too_large};
+use crate::platform::motion_files::{MAX_FILE_BYTES, too_large};
+use crate::platform::{Inbox, Incoming};
 use eframe::egui::{self, DroppedFileHandle};
 use js_sys::{Array, Reflect, Uint8Array};
 use segue_session::reading::LARGE_BYTES;
@@ -14,15 +15,15 @@ use wasm_bindgen::{JsCast as _, JsValue};
 use wasm_bindgen_futures::{JsFuture, spawn_local};
 use web_sys::{Blob, BlobPropertyBag, Clipboard, File, HtmlAnchorElement, HtmlInputElement, Url};
 
-/// Longer texts are no notice to read.
-const LONGEST_NOTICE: usize = 2_000;
-/// What those are saved as.
+/// The longest text that is shown in a notice, bytes.
+const MAX_NOTICE_BYTES: usize = 2_000;
+/// The name of the file in which a longer text is saved.
 const TEXT_FILE: &str = "segue.md";
 
-/// Lets the user choose files.
+/// Opens a dialogue for files, and reads the chosen ones.
 ///
-/// Only within a user's gesture: browsers ignore it otherwise. There is no filter by ending,
-/// because phones then grey out every file of a kind that they do not know.
+/// Browsers ignore it outside a user's gesture. There is no filter by ending, because phones then
+/// disable every file of a type that they do not know.
 pub(crate) fn open_files(inbox: &Inbox) {
     let asked = (|| -> Result<(), JsValue> {
         let document = document().ok_or("no document")?;
@@ -30,7 +31,7 @@ pub(crate) fn open_files(inbox: &Inbox) {
         input.set_type("file");
         input.set_multiple(true);
         input.set_hidden(true);
-        // Safari forgets an input that is nowhere on the page.
+        // Safari drops an input that is not in the document.
         document.body().ok_or("no body")?.append_child(&input)?;
         let (chosen, inbox) = (input.clone(), inbox.clone());
         listen(Some(&input), "change", move |_| {
@@ -43,17 +44,17 @@ pub(crate) fn open_files(inbox: &Inbox) {
             chosen.remove();
             spawn_local(read(files.unwrap_or_default(), inbox.clone()));
         });
-        let given_up = input.clone();
-        listen(Some(&input), "cancel", move |_| given_up.remove());
+        let cancelled = input.clone();
+        listen(Some(&input), "cancel", move |_| cancelled.remove());
         input.click();
         Ok(())
     })();
     if let Err(error) = asked {
-        log::error!("no file dialog: {}", words_of(&error));
+        log::error!("no file dialog: {}", js_error_text(&error));
     }
 }
 
-/// Reads files, each with its name, one after the other, so that they arrive in order.
+/// Reads files, each with its name, one after the other, so that their answers are in order.
 pub(super) async fn read(files: Vec<(String, File)>, inbox: Inbox) {
     for (name, file) in files {
         if let Some(reason) = too_large(&name, file.size() as u64, MAX_FILE_BYTES) {
@@ -66,26 +67,27 @@ pub(super) async fn read(files: Vec<(String, File)>, inbox: Inbox) {
             continue;
         }
         let bytes = file.array_buffer().await.map(|buffer| Uint8Array::new(&buffer).to_vec());
-        deliver(name, bytes.map_err(|error| words_of(&error)), &inbox);
+        match bytes {
+            Ok(bytes) => deliver(name, bytes, &inbox),
+            Err(error) => refuse(name, &js_error_text(&error), &inbox),
+        }
     }
 }
 
-fn deliver(name: String, bytes: Result<Vec<u8>, String>, inbox: &Inbox) {
-    inbox.push(match bytes {
-        Ok(bytes) => Incoming::File { name, bytes: Arc::from(bytes) },
-        Err(error) => {
-            log::warn!("{name}: {error}");
-            Incoming::Failed {
-                reason: msg!(
-                    "{name} cannot be read. If it is a folder, drop the files in it.",
-                    name
-                ),
-            }
-        }
+/// Hands the bytes of a file to the app.
+fn deliver(name: String, bytes: Vec<u8>, inbox: &Inbox) {
+    inbox.push(Incoming::File { name, bytes: Arc::from(bytes) });
+}
+
+/// Reports a file that the browser cannot read. The log gets the reason in the browser's words.
+fn refuse(name: String, reason: &str, inbox: &Inbox) {
+    log::warn!("{name}: {reason}");
+    inbox.push(Incoming::Failed {
+        reason: msg!("{name} cannot be read. If it is a folder, drop the files in it.", name),
     });
 }
 
-/// Reads what was dropped on the page, in order.
+/// Reads the files dropped on the page, in order.
 pub(crate) fn read_dropped(files: Vec<DroppedFileHandle>, inbox: &Inbox) {
     let inbox = inbox.clone();
     spawn_local(async move {
@@ -105,7 +107,10 @@ pub(crate) fn read_dropped(files: Vec<DroppedFileHandle>, inbox: &Inbox) {
                     let file = LargeFile::new(file.clone().into());
                     inbox.push(Incoming::Large { name, file });
                 }
-                None => deliver(name, file.bytes_async().await, &inbox),
+                None => match file.bytes_async().await {
+                    Ok(bytes) => deliver(name, bytes, &inbox),
+                    Err(error) => refuse(name, &error, &inbox),
+                },
             }
         }
     });
@@ -115,7 +120,7 @@ fn path_text(path: &Path) -> String {
     path.to_string_lossy().into_owned()
 }
 
-/// Hands a file to the user.
+/// Saves a file for the user.
 pub(crate) fn download(file_name: &str, mime: &str, bytes: &[u8], inbox: &Inbox) {
     let options = BlobPropertyBag::new();
     options.set_type(mime);
@@ -123,19 +128,19 @@ pub(crate) fn download(file_name: &str, mime: &str, bytes: &[u8], inbox: &Inbox)
         &Array::of1(&Uint8Array::from(bytes)),
         &options,
     );
-    if let Err(error) = blob.and_then(|blob| hand_over(file_name, &blob)) {
+    if let Err(error) = blob.and_then(|blob| save_blob(file_name, &blob)) {
         inbox.push(Incoming::Failed {
             reason: msg!(
                 "{file} could not be saved: {error}.",
                 file = file_name.to_owned(),
-                error = words_of(&error)
+                error = js_error_text(&error)
             ),
         });
     }
 }
 
-/// Has the browser save a blob under that name.
-pub(super) fn hand_over(file_name: &str, blob: &Blob) -> Result<(), JsValue> {
+/// Makes the browser save a blob under that name.
+pub(super) fn save_blob(file_name: &str, blob: &Blob) -> Result<(), JsValue> {
     let document = document().ok_or("no document")?;
     let url = Url::create_object_url_with_blob(blob)?;
     let anchor: HtmlAnchorElement = document.create_element("a")?.dyn_into()?;
@@ -153,15 +158,15 @@ pub(super) fn hand_over(file_name: &str, blob: &Blob) -> Result<(), JsValue> {
     Ok(())
 }
 
-/// Puts a text into the clipboard. [`Incoming::Copied`] tells that it is there; where a browser
-/// refuses, the text itself is shown.
+/// Puts a text into the clipboard, and confirms it by [`Incoming::Copied`]. Where the browser
+/// refuses, a notice shows the text.
 pub(crate) fn copy_text(text: String, _ctx: &egui::Context, inbox: &Inbox) {
-    // Undefined on an insecure address, whatever the type says.
+    // Undefined on an insecure address, although its type is not optional.
     let clipboard = window()
         .map(|window| window.navigator())
         .and_then(|navigator| Reflect::get(&navigator, &"clipboard".into()).ok());
     let clipboard = clipboard.and_then(|clipboard| clipboard.dyn_into::<Clipboard>().ok());
-    // At once and not in the task: Safari allows it within the user's gesture only.
+    // Called here and not in the task, because Safari allows it only within the user's gesture.
     let written = clipboard.map(|clipboard| JsFuture::from(clipboard.write_text(&text)));
     let inbox = inbox.clone();
     spawn_local(async move {
@@ -172,15 +177,15 @@ pub(crate) fn copy_text(text: String, _ctx: &egui::Context, inbox: &Inbox) {
         inbox.push(if done {
             Incoming::Copied
         } else {
-            Incoming::Failed { reason: by_hand(&text, &inbox) }
+            Incoming::Failed { reason: copy_by_hand(&text, &inbox) }
         });
     });
 }
 
-/// What to do where the clipboard is closed to pages: copy what is short by hand, and take the rest
-/// as a file.
-fn by_hand(text: &str, inbox: &Inbox) -> Message {
-    if text.len() < LONGEST_NOTICE {
+/// Returns the notice for a browser that closes the clipboard to pages. A short text is in the
+/// notice; a long one is saved as a file.
+fn copy_by_hand(text: &str, inbox: &Inbox) -> Message {
+    if text.len() < MAX_NOTICE_BYTES {
         let text = text.to_owned();
         return msg!(
             "This browser does not let the page use the clipboard. Copy it by hand: {text}",

@@ -1,9 +1,9 @@
 //! Pictures of the stage and films of the page, as files for the user.
 
-use super::files::hand_over;
+use super::files::save_blob;
+use super::js_error_text;
 use super::page::{canvas, listen, now_ms, window};
 use super::snapshot::{area_of, inline_picture, snapshot};
-use super::words_of;
 use crate::platform::{Inbox, Incoming};
 use eframe::egui::Rect;
 use js_sys::{Array, Error, Promise, Reflect};
@@ -17,21 +17,21 @@ use web_sys::{
     RecordingState,
 };
 
-/// What films are packed as: the first of these that the browser can.
-const KINDS: [&str; 4] =
+/// The media types of films, in order of preference.
+const MEDIA_TYPES: [&str; 4] =
     ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm", "video/mp4"];
-/// Thin lines before a smooth ground need more than browsers give by themselves.
+/// The bit rate of films. The default of browsers is too low for thin lines on a smooth ground.
 const BITS_PER_SECOND: u32 = 12_000_000;
-/// What is filmed is handed over every so many milliseconds: a long film does not wait in the
-/// encoder.
+/// The length of the parts in which the encoder delivers a film, milliseconds. Without parts, it
+/// would keep a long film in memory.
 const PART_MS: i32 = 1000;
 
-/// Whether pictures of the stage can be saved.
+/// Returns whether pictures of the stage can be saved.
 pub(crate) fn can_take_pictures() -> bool {
     true
 }
 
-/// Saves the stage, at that place on the page (points), as a picture.
+/// Saves a picture of the stage, a rectangle of the page in points.
 pub(crate) fn save_picture(file_name: &str, stage: Rect, inbox: &Inbox) {
     let (Some(canvas), Some(ctx)) = (canvas(), inbox.ctx()) else {
         return;
@@ -41,12 +41,12 @@ pub(crate) fn save_picture(file_name: &str, stage: Rect, inbox: &Inbox) {
         let area = area_of(stage, ctx.pixels_per_point());
         let taken =
             snapshot(&canvas, || ctx.cumulative_frame_nr(), || inbox.wake(), || Some(area)).await;
-        tell_failure(&file_name, taken.and_then(|blob| hand_over(&file_name, &blob)), &inbox);
+        report_failure(&file_name, taken.and_then(|blob| save_blob(&file_name, &blob)), &inbox);
     });
 }
 
-/// Takes a picture of the stage, at that place on the page (points), for a text:
-/// [`Incoming::Picture`] brings it.
+/// Takes a picture of the stage, a rectangle of the page in points, for a text. The answer is
+/// [`Incoming::Picture`].
 pub(crate) fn take_picture(stage: Rect, inbox: &Inbox) {
     let (Some(canvas), Some(ctx)) = (canvas(), inbox.ctx()) else {
         return inbox.push(Incoming::Picture(None));
@@ -58,35 +58,36 @@ pub(crate) fn take_picture(stage: Rect, inbox: &Inbox) {
             inline_picture(&canvas, || ctx.cumulative_frame_nr(), || inbox.wake(), || Some(area))
                 .await;
         if let Err(error) = &taken {
-            log::warn!("no picture: {}", words_of(error));
+            log::warn!("no picture: {}", js_error_text(error));
         }
         inbox.push(Incoming::Picture(taken.ok()));
     });
 }
 
-fn tell_failure(file_name: &str, done: Result<(), JsValue>, inbox: &Inbox) {
+/// Reports a file that could not be saved.
+fn report_failure(file_name: &str, done: Result<(), JsValue>, inbox: &Inbox) {
     if let Err(error) = done {
         inbox.push(Incoming::Failed {
             reason: msg!(
                 "{file} could not be saved: {error}.",
                 file = file_name.to_owned(),
-                error = words_of(&error)
+                error = js_error_text(&error)
             ),
         });
     }
 }
 
-/// Whether films can be made.
+/// Returns whether films can be made.
 pub(crate) fn can_film() -> bool {
     thread_local! {
         static CAN_FILM: OnceCell<bool> = const { OnceCell::new() };
     }
     let has = |object: &JsValue, key: &str| Reflect::has(object, &key.into()).unwrap_or(false);
-    let look = || {
+    let check = || {
         window().is_some_and(|window| has(&window, "MediaRecorder"))
             && canvas().is_some_and(|canvas| has(&canvas, "captureStream"))
     };
-    CAN_FILM.with(|known| *known.get_or_init(look))
+    CAN_FILM.with(|known| *known.get_or_init(check))
 }
 
 /// A film under way.
@@ -94,7 +95,7 @@ pub(crate) fn can_film() -> bool {
 pub(crate) struct Film {
     recorder: MediaRecorder,
     parts: Array,
-    /// Resolves when the last part is there.
+    /// Resolves when the last part has arrived.
     ended: Promise,
     began_ms: f64,
 }
@@ -105,14 +106,16 @@ impl Film {
         if !can_film() {
             return Err("this browser cannot record what a page shows".into());
         }
-        Self::of_canvas().map_err(|error| Message::data(words_of(&error)))
+        Self::of_canvas().map_err(|error| Message::data(js_error_text(&error)))
     }
 
     fn of_canvas() -> Result<Self, JsValue> {
         let stream = canvas().ok_or("no canvas")?.capture_stream()?;
         let options = MediaRecorderOptions::new();
         options.set_video_bits_per_second(BITS_PER_SECOND);
-        if let Some(kind) = KINDS.into_iter().find(|kind| MediaRecorder::is_type_supported(kind)) {
+        if let Some(kind) =
+            MEDIA_TYPES.into_iter().find(|kind| MediaRecorder::is_type_supported(kind))
+        {
             options.set_mime_type(kind);
         }
         let recorder =
@@ -133,25 +136,25 @@ impl Film {
         Ok(Self { recorder, parts, ended, began_ms: now_ms() })
     }
 
-    /// How long it is, seconds.
+    /// Returns its duration, seconds.
     pub(crate) fn secs(&self) -> f64 {
         (now_ms() - self.began_ms) / 1e3
     }
 
-    /// Ends it and hands it to the user.
+    /// Ends it, and saves it for the user.
     pub(crate) fn save(self, stem: &str, inbox: &Inbox) {
         let ending =
             if self.recorder.mime_type().starts_with("video/mp4") { "mp4" } else { "webm" };
         let (name, inbox) = (file_name(stem, ending), inbox.clone());
         spawn_local(async move {
             let film = self.end().await;
-            tell_failure(&name, film.and_then(|blob| hand_over(&name, &blob)), &inbox);
+            report_failure(&name, film.and_then(|blob| save_blob(&name, &blob)), &inbox);
         });
     }
 
-    /// Ends it; all of it in one piece.
+    /// Ends it. Returns the whole film.
     pub(crate) async fn end(self) -> Result<Blob, JsValue> {
-        // It has ended by itself where the canvas is gone.
+        // The recorder is inactive already where the canvas was removed.
         if self.recorder.state() != RecordingState::Inactive {
             self.recorder.stop()?;
         }

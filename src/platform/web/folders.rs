@@ -1,19 +1,20 @@
-//! Folders that are dropped on the page: eframe knows files only.
+//! Folders that are dropped on the page. eframe handles only files.
 
 use super::files::read;
+use super::js_error_text;
 use super::page::{listen_first, window};
-use super::words_of;
-use crate::platform::{
-    Inbox, Incoming, MOST_FILES_OF_FOLDER, is_motion_file, no_motion_in, too_many_in,
+use crate::platform::motion_files::{
+    MAX_FILES_OF_FOLDER, is_motion_file, no_motion_in, too_many_in,
 };
+use crate::platform::{Inbox, Incoming};
 use js_sys::{Array, Promise};
 use segue_text::msg;
 use wasm_bindgen::{JsCast as _, JsValue};
 use wasm_bindgen_futures::{JsFuture, spawn_local};
 use web_sys::{DragEvent, File, FileSystemDirectoryEntry, FileSystemEntry, FileSystemFileEntry};
 
-/// From now on, a drop with a folder in it is read here as a whole, folders and files. Any other is
-/// left to eframe.
+/// Starts to handle every drop that contains a folder, with its folders and files. eframe handles
+/// the others.
 pub(crate) fn watch_folders(inbox: &Inbox) {
     let inbox = inbox.clone();
     listen_first(window(), "drop", move |event| {
@@ -23,12 +24,12 @@ pub(crate) fn watch_folders(inbox: &Inbox) {
         }
         event.prevent_default();
         event.stop_propagation();
-        // eframe has seen the files come and does not see them go: for it, they have left again.
+        // eframe has seen the drag and does not see the drop, so it is told that the drag has left.
         let left = event.target().and_then(|target| {
             Some(target.dispatch_event(DragEvent::new("dragleave").ok()?.as_ref()))
         });
         if let Some(Err(error)) = left {
-            log::warn!("the drop was not ended: {}", words_of(&error));
+            log::warn!("the drop was not ended: {}", js_error_text(&error));
         }
         let inbox = inbox.clone();
         spawn_local(async move {
@@ -39,7 +40,7 @@ pub(crate) fn watch_folders(inbox: &Inbox) {
     });
 }
 
-/// What was dropped. Only within the event: afterwards browsers tell no more of it.
+/// Returns the dropped files and folders. Browsers have them only during the event.
 fn entries_of(event: &DragEvent) -> Vec<FileSystemEntry> {
     let Some(items) = event.data_transfer().map(|transfer| transfer.items()) else {
         return Vec::new();
@@ -64,20 +65,20 @@ async fn read_entry(entry: FileSystemEntry, inbox: &Inbox) {
         }
         Ok(files) => read(files, inbox.clone()).await,
         Err(error) => inbox.push(Incoming::Failed {
-            reason: msg!("{name} cannot be read: {error}.", name, error = words_of(&error)),
+            reason: msg!("{name} cannot be read: {error}.", name, error = js_error_text(&error)),
         }),
     }
 }
 
-/// The motion files in and below a folder, with their paths. What can be listed is read up to a
-/// number that nobody has by intention.
+/// Returns the motion files in and below a folder with their paths, at most
+/// [`MAX_FILES_OF_FOLDER`].
 async fn motion_files(
     folder: FileSystemEntry,
     inbox: &Inbox,
 ) -> Result<Vec<(String, File)>, JsValue> {
     let name = folder.name();
     let mut files = Vec::new();
-    // What is still to be looked at; the next one last.
+    // A stack of the entries to visit.
     let mut waiting = vec![folder];
     while let Some(entry) = waiting.pop() {
         if entry.is_directory() {
@@ -85,7 +86,7 @@ async fn motion_files(
             children.sort_by_key(FileSystemEntry::name);
             waiting.extend(children.into_iter().rev());
         } else if is_motion_file(&entry.name()) {
-            if files.len() == MOST_FILES_OF_FOLDER {
+            if files.len() == MAX_FILES_OF_FOLDER {
                 inbox.push(Incoming::Failed { reason: too_many_in(&name) });
                 break;
             }
@@ -95,7 +96,7 @@ async fn motion_files(
     Ok(files)
 }
 
-/// Everything in a folder. Browsers tell it in parts, an empty one last.
+/// Returns the entries of a folder. Browsers list them in parts, of which the last is empty.
 async fn children_of(folder: &FileSystemDirectoryEntry) -> Result<Vec<FileSystemEntry>, JsValue> {
     let reader = folder.create_reader();
     let mut children = Vec::new();
@@ -113,6 +114,7 @@ async fn children_of(folder: &FileSystemDirectoryEntry) -> Result<Vec<FileSystem
     }
 }
 
+/// Returns the file of an entry.
 async fn file_of(entry: FileSystemEntry) -> Result<File, JsValue> {
     let entry: FileSystemFileEntry = entry.unchecked_into();
     let file = Promise::new(&mut |resolve, reject| {
@@ -121,7 +123,7 @@ async fn file_of(entry: FileSystemEntry) -> Result<File, JsValue> {
     Ok(JsFuture::from(file).await?.unchecked_into())
 }
 
-/// `takes/day 1/walk.bvh`.
+/// Returns the path of an entry, such as `takes/day 1/walk.bvh`.
 fn path_of(entry: &FileSystemEntry) -> String {
     entry.full_path().trim_start_matches('/').to_owned()
 }

@@ -1,11 +1,11 @@
-//! Gamepads, as browsers know them.
+//! Gamepads of the browser.
 
 use super::page::window;
-use crate::platform::Gamepad;
+use crate::platform::gamepad::Gamepad;
 use wasm_bindgen::JsCast as _;
 
-/// The first gamepad that has two sticks; none before one of its buttons was pressed, as browsers
-/// have it. Buttons lie as in the [standard layout](https://www.w3.org/TR/gamepad/#remapping).
+/// Returns the state of the first gamepad that has two sticks. Browsers hide a gamepad until one of
+/// its buttons is pressed. Buttons are numbered as in the [standard layout](https://www.w3.org/TR/gamepad/#remapping).
 pub(crate) fn gamepad() -> Option<Gamepad> {
     let pads = window()?.navigator().get_gamepads().ok()?;
     let pads = pads.iter().filter_map(|pad| pad.dyn_into::<web_sys::Gamepad>().ok());
@@ -18,7 +18,7 @@ pub(crate) fn gamepad() -> Option<Gamepad> {
         };
         let right = axis(2).zip(axis(3)).unwrap_or_default();
         Some(Gamepad {
-            // Down is positive there.
+            // The browser's vertical axes point down.
             left: [axis(0)?, -axis(1)?],
             right: [right.0, -right.1],
             run: [0, 5, 7].into_iter().any(is_down),

@@ -1,4 +1,4 @@
-//! The window, its address and its clock.
+//! The browser's window: address, clock, events, and waiting.
 
 use crate::platform::address::{backend_of, state_of, with_backend_of};
 use crate::platform::{Inbox, Incoming};
@@ -22,12 +22,12 @@ pub(super) fn document() -> Option<Document> {
     window()?.document()
 }
 
-/// The canvas that the app is drawn on.
+/// Returns the app's canvas.
 pub(super) fn canvas() -> Option<HtmlCanvasElement> {
     document()?.get_element_by_id("segue")?.dyn_into().ok()
 }
 
-/// Milliseconds since some fixed moment; never goes back.
+/// Returns the milliseconds since a fixed moment, by a monotonic clock.
 pub(crate) fn now_ms() -> f64 {
     window()
         .and_then(|window| window.performance())
@@ -38,33 +38,33 @@ fn search() -> String {
     window().and_then(|window| window.location().search().ok()).unwrap_or_default()
 }
 
-/// The state that the page's address describes: its query, without `?` and without what belongs to
-/// the page.
+/// Returns the query of the page's address, without `?` and without the keys that belong to the
+/// page.
 pub(crate) fn location_query() -> String {
     state_of(&search())
 }
 
-/// The user's languages, best first, as their tags.
+/// Returns the tags of the user's languages, the preferred one first.
 pub(crate) fn languages() -> Vec<String> {
     window().map_or_else(Vec::new, |window| {
         window.navigator().languages().iter().filter_map(|tag| tag.as_string()).collect()
     })
 }
 
-/// Tells the browser and screen readers which language the page is in.
-pub(crate) fn tell_language(tag: &str) {
+/// Sets the language of the page for the browser and for screen readers.
+pub(crate) fn set_page_language(tag: &str) {
     let root = document().and_then(|document| document.document_element());
     if let Some(root) = root.and_then(|root| root.dyn_into::<HtmlElement>().ok()) {
         root.set_lang(tag);
     }
 }
 
-/// The graphics that the page's address asks for.
+/// Returns the graphics backend that the page's address selects.
 pub(crate) fn wanted_backend() -> Option<String> {
     backend_of(&search())
 }
 
-/// Puts the state into the page's address. The history gets no entry.
+/// Puts the state into the page's address, without an entry in the history.
 pub(crate) fn replace_query(query: &str) {
     let Some(window) = window() else { return };
     let query = with_backend_of(query, &search());
@@ -79,13 +79,13 @@ pub(crate) fn replace_query(query: &str) {
         window.history()?.replace_state_with_url(&JsValue::NULL, "", Some(&address))
     });
     if let Err(error) = result {
-        // A frame without an origin has no address of its own, and browsers limit how often it may
-        // change. The state is not lost by it.
-        log::debug!("the address was not changed: {}", super::words_of(&error));
+        // A frame without an origin has no address of its own, and browsers limit the number of
+        // changes. The state is not lost by a failure.
+        log::debug!("the address was not changed: {}", super::js_error_text(&error));
     }
 }
 
-/// The whole link that restores a state.
+/// Returns the whole link that restores a state.
 pub(crate) fn full_link(query: &str) -> String {
     let base = window().and_then(|window| {
         let location = window.location();
@@ -94,33 +94,33 @@ pub(crate) fn full_link(query: &str) -> String {
     format!("{}?{query}", base.unwrap_or_default())
 }
 
-/// Opens a page of the web in a new tab. That page gets neither a handle to this one, which it
-/// could put a forgery in the place of, nor its address.
+/// Opens a web page in a new tab. It gets no handle to this page, which it could replace by a
+/// forgery, and not its address.
 pub(crate) fn open_page(address: &str, _ctx: &egui::Context) {
     let opened = window().map(|window| {
         window.open_with_url_and_target_and_features(address, "_blank", "noopener,noreferrer")
     });
     if let Some(Err(error)) = opened {
-        log::warn!("{address} was not opened: {}", super::words_of(&error));
+        log::warn!("{address} was not opened: {}", super::js_error_text(&error));
     }
 }
 
-/// Whether this page stands in a frame of another one.
+/// Returns whether another page frames this one.
 pub(crate) fn is_framed() -> bool {
     let window = window();
     let parent = window.as_ref().and_then(|window| window.parent().ok().flatten());
-    // A page that stands alone is its own parent.
+    // A page outside any frame is its own parent.
     parent.is_some() && parent != window
 }
 
-/// Tells the app when the user goes back or forward, or changes the address.
+/// Reports to `inbox` when the user goes back or forward, or changes the address.
 pub(crate) fn watch_navigation(inbox: &Inbox) {
     let inbox = inbox.clone();
     listen(window(), "popstate", move |_| inbox.push(Incoming::Navigated(location_query())));
 }
 
-/// Calls back when the page may be about to go: in the background a browser may end it without a
-/// word.
+/// Calls `on_hide` when the page is hidden or closed. A browser may end a page in the background
+/// without another event.
 pub(crate) fn watch_hiding(on_hide: impl Fn() + Clone + 'static) {
     let hidden = on_hide.clone();
     listen(document(), "visibilitychange", move |_| {
@@ -131,8 +131,8 @@ pub(crate) fn watch_hiding(on_hide: impl Fn() + Clone + 'static) {
     listen(window(), "pagehide", move |_| on_hide());
 }
 
-/// Has the browser ask whether to leave the page, while there is something to lose.
-pub(crate) fn ask_before_leaving_while(is_unsafe: impl Fn() -> bool + 'static) {
+/// Makes the browser ask for confirmation before it leaves the page, while `is_unsafe` is true.
+pub(crate) fn confirm_leaving_while(is_unsafe: impl Fn() -> bool + 'static) {
     listen(window(), "beforeunload", move |event| {
         if is_unsafe() {
             event.prevent_default();
@@ -140,19 +140,19 @@ pub(crate) fn ask_before_leaving_while(is_unsafe: impl Fn() -> bool + 'static) {
     });
 }
 
-/// Whether the user has asked their system for little motion.
-pub(crate) fn prefers_stillness() -> bool {
-    let asked = window()
+/// Returns whether the user has set their system to reduced motion.
+pub(crate) fn prefers_reduced_motion() -> bool {
+    let query = window()
         .and_then(|window| window.match_media("(prefers-reduced-motion: reduce)").ok().flatten());
-    asked.is_some_and(|query| query.matches())
+    query.is_some_and(|query| query.matches())
 }
 
-/// Whether nothing is drawn because nobody could see it.
+/// Returns whether the page is hidden, so that nothing is drawn.
 pub(super) fn is_hidden() -> bool {
     document().is_some_and(|document| document.hidden())
 }
 
-/// Listens for as long as the page lives.
+/// Adds a listener for the life of the page.
 pub(crate) fn listen(
     target: Option<impl AsRef<EventTarget>>,
     event: &str,
@@ -161,7 +161,7 @@ pub(crate) fn listen(
     listen_in(target, event, false, listener);
 }
 
-/// The same, before whatever the event is meant for hears of it.
+/// Adds a listener in the capture phase, before the event's target receives it.
 pub(super) fn listen_first(
     target: Option<impl AsRef<EventTarget>>,
     event: &str,
@@ -183,12 +183,12 @@ fn listen_in(
         closure.as_ref().unchecked_ref(),
         capture,
     ) {
-        log::error!("no `{event}` events: {}", super::words_of(&error));
+        log::error!("no `{event}` events: {}", super::js_error_text(&error));
     }
     closure.forget();
 }
 
-/// Waits.
+/// Waits for a time, milliseconds.
 pub(crate) async fn sleep(millis: i32) {
     resolved(|resolve| {
         window().is_some_and(|window| {
@@ -198,26 +198,28 @@ pub(crate) async fn sleep(millis: i32) {
     .await;
 }
 
-/// Waits until the browser has had its turn: input and frames that are due come first. Unlike
-/// [`sleep`], which takes 4 ms at the least once it was called a few times in a row.
-pub(crate) async fn turn() {
-    resolved(|resolve| TURNS.with(|turns| turns.as_ref().is_some_and(|turns| turns.wait(resolve))))
-        .await;
+/// Waits until the browser has handled input and frames that are due. It is shorter than
+/// [`sleep`], which takes at least 4 ms after a few calls in a row.
+pub(crate) async fn next_turn() {
+    resolved(|resolve| {
+        TURN_CHANNEL.with(|channel| channel.as_ref().is_some_and(|channel| channel.wait(resolve)))
+    })
+    .await;
 }
 
 thread_local! {
-    static TURNS: Option<Turns> = Turns::open();
+    static TURN_CHANNEL: Option<TurnChannel> = TurnChannel::open();
 }
 
-/// One channel of the page to itself for all who wait for their turn. One for every wait would stay
-/// in memory: a browser keeps a port that has a listener for as long as its other end could still
-/// speak.
-struct Turns {
+/// A message channel of the page to itself, shared by all calls of [`next_turn`]. A channel for each
+/// call would stay in memory, because a browser keeps a port with a listener while its other end
+/// exists.
+struct TurnChannel {
     sender: MessagePort,
     waiting: Rc<RefCell<VecDeque<Function>>>,
 }
 
-impl Turns {
+impl TurnChannel {
     fn open() -> Option<Self> {
         let channel = MessageChannel::new().ok()?;
         let waiting = Rc::new(RefCell::new(VecDeque::<Function>::new()));
@@ -233,7 +235,7 @@ impl Turns {
         Some(Self { sender: channel.port2(), waiting })
     }
 
-    /// Has a function called at the next turn; `false` when the browser takes no message.
+    /// Calls a function at the next turn. Returns `false` when the browser takes no message.
     fn wait(&self, resolve: &Function) -> bool {
         let is_sent = self.sender.post_message(&JsValue::NULL).is_ok();
         if is_sent {
@@ -243,18 +245,19 @@ impl Turns {
     }
 }
 
-/// Whether [`between_frames`] does anything.
+/// Whether [`between_frames`] runs work.
 pub(crate) const WORKS_BETWEEN_FRAMES: bool = true;
 
-/// All files are read by a worker, which has the code for it.
+/// Whether all files are read in the background. The page's WebAssembly has no code to read files;
+/// the worker's has.
 pub(crate) const READS_ELSEWHERE: bool = true;
 
-/// Calls `work` again and again, between the browser's frames and whether there are any or not,
-/// until it says that nothing is left.
+/// Calls `work` repeatedly between the browser's frames until it returns `false`, even while the
+/// page draws no frames.
 pub(crate) fn between_frames(mut work: impl FnMut() -> bool + 'static) {
     spawn_local(async move {
         loop {
-            turn().await;
+            next_turn().await;
             if !work() {
                 return;
             }
@@ -262,7 +265,7 @@ pub(crate) fn between_frames(mut work: impl FnMut() -> bool + 'static) {
     });
 }
 
-/// Waits for the next frame of the page: what runs then runs after the app's own drawing, before
+/// Waits for the next frame of the page. The code after it runs after the app's own drawing, before
 /// the picture is shown.
 pub(crate) async fn next_frame() {
     resolved(|resolve| {
@@ -271,11 +274,11 @@ pub(crate) async fn next_frame() {
     .await;
 }
 
-/// Waits for a function to be called that `ask` hands on; not at all when `ask` says that it could
-/// not.
-async fn resolved(mut ask: impl FnMut(&Function) -> bool) {
+/// Waits until the function is called that `register` gets; returns at once when `register` returns
+/// `false`.
+async fn resolved(mut register: impl FnMut(&Function) -> bool) {
     let promise = Promise::new(&mut |resolve, _| {
-        if !ask(&resolve) {
+        if !register(&resolve) {
             resolve.call0(&JsValue::NULL).ok();
         }
     });

@@ -1,12 +1,13 @@
-//! Files are read by a worker, which has a WebAssembly of its own: `src/bin/reader.rs`.
-//! `web/js/reader.js` starts it.
+//! Reading of files by a worker with a WebAssembly of its own, `src/bin/reader.rs`, which
+//! `web/js/reader.js` starts.
 
+use super::js_error_text;
 use super::page::{listen, window};
-use super::words_of;
-use crate::platform::{FileBytes, Inbox, Incoming, ReadNews};
+use crate::platform::{FileBytes, Inbox, Incoming, ReadError, ReadEvent};
 use js_sys::{Array, Function, Object, Reflect, Uint8Array};
 use segue_session::reading::{LARGE_BYTES, ReadTask, Unpacker, WireError};
 use segue_session::{MemoryUse, PageMemory, Session};
+use segue_text::ToMessage as _;
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::fmt;
@@ -14,40 +15,41 @@ use std::rc::Rc;
 use wasm_bindgen::{JsCast as _, JsValue};
 use web_sys::{Blob, MessageEvent, Worker};
 
-/// A file that is too large to be read between two frames: it stays with the browser, and none of
-/// its bytes is copied here.
+/// A file that is too large to be read between two frames. The browser holds it, so that the app's
+/// memory has no copy of its bytes.
 #[derive(Clone, PartialEq)]
 pub(crate) struct LargeFile(Blob);
 
 impl LargeFile {
-    /// A file that the user chose, or that storage had.
+    /// Returns a file that the user chose, or that was stored.
     pub(crate) fn new(blob: Blob) -> Self {
         Self(blob)
     }
 
-    /// A file of these bytes; none when the browser has no room for it.
+    /// Returns a file of these bytes; `None` when the browser has no room for it.
     pub(crate) fn of_bytes(bytes: &Uint8Array) -> Option<Self> {
         Self::of_pieces(&Array::of1(bytes))
     }
 
-    /// A file of these pieces, each a `Uint8Array`; none when the browser has no room for it.
+    /// Returns a file of these pieces, each a `Uint8Array`; `None` when the browser has no room for
+    /// it.
     pub(super) fn of_pieces(pieces: &Array) -> Option<Self> {
         Blob::new_with_u8_array_sequence(pieces).ok().map(Self)
     }
 
-    /// How many bytes it has.
+    /// Returns its size, bytes.
     pub(crate) fn len(&self) -> u64 {
         self.0.size() as u64
     }
 
-    /// The browser's handle of it.
+    /// Returns the browser's handle of it.
     pub(super) fn blob(&self) -> &Blob {
         &self.0
     }
 }
 
 impl FileBytes {
-    /// How many there are.
+    /// Returns the number of bytes.
     pub(super) fn len(&self) -> u64 {
         match self {
             Self::Here(bytes) => bytes.len() as u64,
@@ -63,37 +65,38 @@ impl fmt::Debug for LargeFile {
 }
 
 thread_local! {
-    /// Makes a worker that is about to start; the page's modules know from where.
+    /// A function of the page's modules that makes a worker.
     static NEW_WORKER: RefCell<Option<Function>> = const { RefCell::new(None) };
 }
 
-/// The page tells how workers are made.
-pub(crate) fn workers_are_made_by(make: Function) {
+/// Sets the function that makes a worker.
+pub(crate) fn set_worker_factory(make: Function) {
     NEW_WORKER.with(|slot| slot.replace(Some(make)));
 }
 
-/// A worker that has read more than this is ended, for its memory never shrinks, bytes.
-const KEPT_UP_TO: u64 = 16 << 20;
+/// The largest file after which a worker is kept, bytes. After a larger one it is ended, because
+/// the memory of a WebAssembly never shrinks.
+const MAX_KEPT_BYTES: u64 = 16 << 20;
 
 /// The length of a page of WebAssembly's memory, bytes.
 const PAGE_BYTES: u64 = 65536;
 
-/// How large the page's memory is by now, bytes.
-pub(crate) fn page_bytes() -> u64 {
+/// Returns the size of the app's WebAssembly memory, bytes.
+pub(crate) fn wasm_memory_bytes() -> u64 {
     core::arch::wasm32::memory_size(0) as u64 * PAGE_BYTES
 }
 
-/// Tells the session how much memory the page has, and the reader how much of it is left.
-pub(crate) fn follow_memory(reader: &mut Reader, session: &mut Session) {
-    // Not every browser tells.
+/// Hands the session the size of the page's memory, and the reader the size of what is left of it.
+pub(crate) fn update_memory(reader: &mut Reader, session: &mut Session) {
+    // Some browsers do not have this property.
     let navigator = window().map(|window| window.navigator());
     let device_gib = navigator
         .and_then(|navigator| Reflect::get(&navigator, &"deviceMemory".into()).ok()?.as_f64());
     let states = [&reader.large, &reader.small];
     session.note_memory(PageMemory {
-        bytes: page_bytes(),
+        bytes: wasm_memory_bytes(),
         limit: PageMemory::limit_of(device_gib),
-        coming: states.map(|state| state.borrow().coming()).iter().sum(),
+        coming: states.map(|state| state.borrow().incoming_bytes()).iter().sum(),
     });
     let left = session.memory().map_or(u64::MAX, MemoryUse::left);
     for state in states {
@@ -101,24 +104,28 @@ pub(crate) fn follow_memory(reader: &mut Reader, session: &mut Session) {
     }
 }
 
-/// Reads files elsewhere: large ones one after the other, and small ones beside them.
+/// A reader of files in workers: one for large files, one after the other, and one for small
+/// files.
 pub(crate) struct Reader {
     large: Rc<RefCell<State>>,
     small: Rc<RefCell<State>>,
 }
 
+/// A worker and its queue.
 struct State {
     inbox: Inbox,
     worker: Option<Worker>,
     waiting: VecDeque<(ReadTask, FileBytes)>,
     current: Option<Current>,
-    /// How much memory there is for what is read, bytes.
+    /// The memory that is left for reports, bytes.
     room: u64,
 }
 
+/// The task that the worker is at.
 struct Current {
     task: u64,
     size: u64,
+    /// The report so far; `None` before its head has arrived.
     unpacker: Option<Unpacker>,
 }
 
@@ -129,7 +136,7 @@ impl fmt::Debug for Reader {
 }
 
 impl Reader {
-    /// One that tells `inbox` of what it reads.
+    /// Returns a reader that reports to `inbox`.
     pub(crate) fn new(inbox: &Inbox) -> Self {
         let state = || {
             Rc::new(RefCell::new(State {
@@ -143,24 +150,25 @@ impl Reader {
         Self { large: state(), small: state() }
     }
 
-    /// Reads a file when those before it are read.
+    /// Queues a file to read.
     pub(crate) fn start(&mut self, task: ReadTask, bytes: FileBytes) {
         let state = if bytes.len() > LARGE_BYTES { &self.large } else { &self.small };
         state.borrow_mut().waiting.push_back((task, bytes));
-        next(state);
+        start_next(state);
     }
 
-    /// Nobody waits for this task any longer.
+    /// Stops a task, if it is running or waits.
     pub(crate) fn stop(&mut self, task: u64) {
         for state in [&self.large, &self.small] {
-            state.borrow_mut().forget(task);
-            next(state);
+            state.borrow_mut().remove(task);
+            start_next(state);
         }
     }
 }
 
 impl State {
-    fn forget(&mut self, task: u64) {
+    /// Removes a task, and ends the worker that runs it.
+    fn remove(&mut self, task: u64) {
         self.waiting.retain(|(waiting, _)| waiting.id != task);
         if self.current.as_ref().is_some_and(|current| current.task == task) {
             self.current = None;
@@ -174,45 +182,49 @@ impl State {
         }
     }
 
-    fn tell(&self, task: u64, news: ReadNews) {
-        self.inbox.push(Incoming::Reading { task, news });
+    /// Reports an event of a task to the app.
+    fn report(&self, task: u64, event: ReadEvent) {
+        self.inbox.push(Incoming::Reading { task, event });
     }
 
-    /// How much memory is set aside for what is on its way, bytes.
-    fn coming(&self) -> u64 {
+    /// Returns the memory that is reserved for the report under way, bytes.
+    fn incoming_bytes(&self) -> u64 {
         let unpacker = self.current.as_ref().and_then(|current| current.unpacker.as_ref());
         unpacker.map_or(0, Unpacker::bytes)
     }
 
-    /// Gives the current task up, for that reason.
-    fn fail(&mut self, reason: String) {
-        self.give_up(ReadNews::Done(Err(reason)));
+    /// Ends the current task and the worker, for that reason.
+    fn fail(&mut self, reason: ReadError) {
+        self.abandon(ReadEvent::Done(Err(reason)));
     }
 
-    /// Gives the current task up, and tells so.
-    fn give_up(&mut self, news: ReadNews) {
+    /// Ends the current task and the worker, and reports the event.
+    fn abandon(&mut self, event: ReadEvent) {
         if let Some(current) = self.current.take() {
-            self.tell(current.task, news);
+            self.report(current.task, event);
         }
         self.end_worker();
     }
 
-    fn done(&mut self) {
+    /// Reports the end of the current task.
+    fn finish(&mut self) {
         let Some(current) = self.current.take() else {
             return;
         };
         let report = match current.unpacker {
-            Some(unpacker) => unpacker.finish().map_err(|error| error.to_string()),
-            None => Err("the worker sent nothing".to_owned()),
+            Some(unpacker) => {
+                unpacker.finish().map_err(|error| ReadError::InvalidReport(error.to_message()))
+            }
+            None => Err(ReadError::NoReport),
         };
-        self.tell(current.task, ReadNews::Done(report));
-        if current.size > KEPT_UP_TO {
+        self.report(current.task, ReadEvent::Done(report));
+        if current.size > MAX_KEPT_BYTES {
             self.end_worker();
         }
     }
 
-    /// Takes what the worker says.
-    fn hear(&mut self, data: &JsValue) {
+    /// Takes in a message of the worker.
+    fn on_message(&mut self, data: &JsValue) {
         let part =
             |name: &str| Reflect::get(data, &JsValue::from(name)).unwrap_or(JsValue::UNDEFINED);
         let Some(current) = &mut self.current else {
@@ -223,30 +235,30 @@ impl State {
         }
         if let Some(done) = part("progress").as_f64() {
             let task = current.task;
-            self.tell(task, ReadNews::Progress(done as u64));
+            self.report(task, ReadEvent::Progress(done as u64));
         } else if let Some(head) = part("head").as_string() {
             match Unpacker::new(&head, self.room) {
                 Ok(unpacker) => {
                     self.room = self.room.saturating_sub(unpacker.bytes());
                     current.unpacker = Some(unpacker);
                 }
-                Err(WireError::NoRoom { bytes }) => self.give_up(ReadNews::NoRoom(bytes as u64)),
-                Err(error) => self.fail(error.to_string()),
+                Err(WireError::NoRoom { bytes }) => self.abandon(ReadEvent::NoRoom(bytes as u64)),
+                Err(error) => self.fail(ReadError::InvalidReport(error.to_message())),
             }
         } else if let (Ok(piece), Some(unpacker)) =
             (part("piece").dyn_into::<Uint8Array>(), &mut current.unpacker)
         {
             unpacker.push(&piece.to_vec());
         } else if let Some(reason) = part("failed").as_string() {
-            self.fail(reason);
+            self.fail(ReadError::Failed(reason));
         } else if part("end").is_truthy() {
-            self.done();
+            self.finish();
         }
     }
 }
 
-/// Gives the worker the next task, when it is free and there is one.
-fn next(state: &Rc<RefCell<State>>) {
+/// Posts the next task to the worker, when it is free and a task waits.
+fn start_next(state: &Rc<RefCell<State>>) {
     let (task, bytes) = {
         let mut state = state.borrow_mut();
         if state.current.is_some() {
@@ -258,24 +270,30 @@ fn next(state: &Rc<RefCell<State>>) {
         state.current = Some(Current { task: task.id, size: bytes.len(), unpacker: None });
         (task, bytes)
     };
-    if let Err(error) = give(state, &task, &bytes) {
-        state.borrow_mut().fail(words_of(&error));
-        next(state);
+    if let Err(error) = post(state, &task, &bytes) {
+        state.borrow_mut().fail(error);
+        start_next(state);
     }
 }
 
-fn give(state: &Rc<RefCell<State>>, task: &ReadTask, bytes: &FileBytes) -> Result<(), JsValue> {
+impl From<JsValue> for ReadError {
+    fn from(error: JsValue) -> Self {
+        Self::Failed(js_error_text(&error))
+    }
+}
+
+/// Posts a task to the worker, which is made where there is none.
+fn post(state: &Rc<RefCell<State>>, task: &ReadTask, bytes: &FileBytes) -> Result<(), ReadError> {
     let worker = match state.borrow().worker.clone() {
         Some(worker) => worker,
         None => new_worker(state)?,
     };
     state.borrow_mut().worker = Some(worker.clone());
-    let setup = serde_json::to_string(&task.setup).map_err(|error| error.to_string())?;
+    let setup =
+        serde_json::to_string(&task.setup).map_err(|error| ReadError::Failed(error.to_string()))?;
     let file = match bytes {
         FileBytes::Here(bytes) => {
-            LargeFile::of_bytes(&Uint8Array::from(&bytes[..]))
-                .ok_or("there is no room for the file")?
-                .0
+            LargeFile::of_bytes(&Uint8Array::from(&bytes[..])).ok_or(ReadError::NoRoom)?.0
         }
         FileBytes::Large(file) => file.blob().clone(),
     };
@@ -288,19 +306,20 @@ fn give(state: &Rc<RefCell<State>>, task: &ReadTask, bytes: &FileBytes) -> Resul
     ] {
         Reflect::set(&message, &JsValue::from(key), &value)?;
     }
-    worker.post_message(&message)
+    Ok(worker.post_message(&message)?)
 }
 
-fn new_worker(state: &Rc<RefCell<State>>) -> Result<Worker, JsValue> {
-    let make = NEW_WORKER.with(|make| make.borrow().clone()).ok_or("the page makes no workers")?;
+/// Makes a worker that reports to `state`.
+fn new_worker(state: &Rc<RefCell<State>>) -> Result<Worker, ReadError> {
+    let make = NEW_WORKER.with(|make| make.borrow().clone()).ok_or(ReadError::NoWorkers)?;
     let worker: Worker = make.call0(&JsValue::NULL)?.dyn_into()?;
     let weak = Rc::downgrade(state);
     listen(Some(&worker), "message", move |event| {
         let (Some(state), Some(event)) = (weak.upgrade(), event.dyn_ref::<MessageEvent>()) else {
             return;
         };
-        state.borrow_mut().hear(&event.data());
-        next(&state);
+        state.borrow_mut().on_message(&event.data());
+        start_next(&state);
     });
     let weak = Rc::downgrade(state);
     listen(Some(&worker), "error", move |event| {
@@ -308,10 +327,8 @@ fn new_worker(state: &Rc<RefCell<State>>) -> Result<Worker, JsValue> {
         let Some(state) = weak.upgrade() else { return };
         let message =
             Reflect::get(&event, &"message".into()).ok().and_then(|text| text.as_string());
-        state
-            .borrow_mut()
-            .fail(message.unwrap_or_else(|| "the worker could not be started".to_owned()));
-        next(&state);
+        state.borrow_mut().fail(message.map_or(ReadError::NotStarted, ReadError::Failed));
+        start_next(&state);
     });
     Ok(worker)
 }

@@ -1,4 +1,4 @@
-//! A picture of the page.
+//! Pictures of the page.
 
 use super::page::{document, is_hidden, next_frame};
 use eframe::egui::Rect;
@@ -11,54 +11,56 @@ use web_sys::{Blob, CanvasRenderingContext2d, HtmlCanvasElement};
 /// A rectangle of the canvas in its own pixels: left, top, width, height.
 pub(crate) type Area = [f64; 4];
 
-/// A rectangle of the page, points, as an area of the canvas.
+/// Returns the area of the canvas for a rectangle of the page in points.
 pub(crate) fn area_of(rect: Rect, pixels_per_point: f32) -> Area {
     [rect.left(), rect.top(), rect.width(), rect.height()]
         .map(|points| f64::from(points * pixels_per_point).round())
 }
 
-/// How many frames to wait for one in which the app draws.
-const MOST_FRAMES: usize = 120;
+/// The greatest number of frames to wait for one in which the app draws.
+const MAX_AWAITED_FRAMES: usize = 120;
 
-/// A picture for a text is at most this wide, pixels: it travels within the text.
-const TEXT_PICTURE_WIDTH: f64 = 960.0;
-/// And packed like this: a dark stage with a few bodies takes some 30 KB.
+/// The greatest width of a picture that is embedded in a text, pixels.
+const MAX_TEXT_PICTURE_WIDTH: f64 = 960.0;
+/// The JPEG quality of a picture that is embedded in a text. A dark stage with a few bodies then has
+/// about 30 KB.
 const TEXT_PICTURE_QUALITY: f64 = 0.85;
 
-/// A part of the canvas as a PNG. For the rest see [`take`].
+/// Returns a part of the canvas as a PNG. The arguments are those of [`capture`].
 pub(crate) async fn snapshot(
     canvas: &HtmlCanvasElement,
     frames: impl Fn() -> u64,
     wake: impl Fn(),
     area: impl Fn() -> Option<Area>,
 ) -> Result<Blob, JsValue> {
-    pack(&take(canvas, frames, wake, area, f64::INFINITY).await?).await
+    encode(&capture(canvas, frames, wake, area, f64::INFINITY).await?).await
 }
 
-/// A part of the canvas as an address that is the picture itself (`data:image/jpeg;base64,…`).
+/// Returns a part of the canvas as a `data:` URL (`data:image/jpeg;base64,…`). The arguments are
+/// those of [`capture`].
 pub(crate) async fn inline_picture(
     canvas: &HtmlCanvasElement,
     frames: impl Fn() -> u64,
     wake: impl Fn(),
     area: impl Fn() -> Option<Area>,
 ) -> Result<String, JsValue> {
-    let picture = take(canvas, frames, wake, area, TEXT_PICTURE_WIDTH).await?;
+    let picture = capture(canvas, frames, wake, area, MAX_TEXT_PICTURE_WIDTH).await?;
     picture.to_data_url_with_type_and_encoder_options("image/jpeg", &TEXT_PICTURE_QUALITY.into())
 }
 
-/// A copy of a part of the canvas, at most so wide.
+/// Copies a part of the canvas, at most `max_width` pixels wide.
 ///
-/// What WebGPU and WebGL draw can be read only until the frame ends. So this waits for a frame in
-/// which the app draws (`frames` counts them, `wake` asks for one), copies the picture within it,
-/// and packs the copy.
-async fn take(
+/// The pictures of WebGPU and WebGL can be read only until the frame ends. The function therefore
+/// waits for a frame in which the app draws (`frames` counts them, `wake` requests one), and copies
+/// the picture within it.
+async fn capture(
     canvas: &HtmlCanvasElement,
     frames: impl Fn() -> u64,
     wake: impl Fn(),
     area: impl Fn() -> Option<Area>,
-    widest: f64,
+    max_width: f64,
 ) -> Result<HtmlCanvasElement, JsValue> {
-    for _ in 0..MOST_FRAMES {
+    for _ in 0..MAX_AWAITED_FRAMES {
         if is_hidden() {
             return Err(Error::new(
                 "snapshot: the page is hidden, so nothing is drawn; bring it to the front",
@@ -69,22 +71,23 @@ async fn take(
         wake();
         next_frame().await;
         if frames() != before {
-            return copy(canvas, area(), widest);
+            return copy(canvas, area(), max_width);
         }
     }
     Err(Error::new("snapshot: nothing was drawn").into())
 }
 
+/// Copies an area of the canvas, or all of it, at most `max_width` pixels wide.
 fn copy(
     canvas: &HtmlCanvasElement,
     area: Option<Area>,
-    widest: f64,
+    max_width: f64,
 ) -> Result<HtmlCanvasElement, JsValue> {
     let whole = [0.0, 0.0, f64::from(canvas.width()), f64::from(canvas.height())];
     let [x, y, width, height] = area.unwrap_or(whole);
     let copy: HtmlCanvasElement =
         document().ok_or("no document")?.create_element("canvas")?.dyn_into()?;
-    let scale = (widest / width.max(1.0)).min(1.0);
+    let scale = (max_width / width.max(1.0)).min(1.0);
     let [wide, high] = [width, height].map(|side| (side * scale).round().max(1.0));
     copy.set_width(wide as u32);
     copy.set_height(high as u32);
@@ -98,7 +101,8 @@ fn copy(
     Ok(copy)
 }
 
-async fn pack(canvas: &HtmlCanvasElement) -> Result<Blob, JsValue> {
+/// Encodes a canvas as a PNG.
+async fn encode(canvas: &HtmlCanvasElement) -> Result<Blob, JsValue> {
     let mut failed = None;
     let promise = Promise::new(&mut |resolve, reject| {
         let done = Closure::once_into_js(move |blob: JsValue| {

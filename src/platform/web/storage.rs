@@ -1,15 +1,17 @@
-//! The work in the browser's IndexedDB: the records of it (see
+//! Storage of the work in the browser's IndexedDB: its records (see
 //! [`records`](crate::platform::records)), and the files' bytes by their SHA-256.
 //!
-//! What has just come is put there in a transaction that asks nothing first and is committed in the
-//! same breath: such a one is carried out though the page goes meanwhile. The record of all work
-//! joins what other windows have stored, so it has to read first, and may be late.
+//! New clips are written in a transaction that reads nothing and is committed at once. The browser
+//! completes such a transaction even if the page is closed meanwhile. The record of all work merges
+//! what other windows have stored; its transaction has to read first, and may be too late.
 
 use super::reader::LargeFile;
+use crate::platform::motion_files::abbreviated;
 use crate::platform::records::{
-    LATEST, Left, Records, Row, is_left, is_unread, left_key, row_id, row_key, unread_key,
+    ClipRecord, ExitRecord, LATEST, Records, clip_id, clip_key, exit_key, is_exit_key,
+    is_unread_key, unread_key,
 };
-use crate::platform::{Arrival, FileBytes, Inbox, Incoming, Stored, StoredFiles, Work, in_short};
+use crate::platform::{FileBytes, Inbox, Incoming, NewClip, StoredFiles, StoredWork, Work};
 use idb::{
     Database, DatabaseEvent as _, Error, Factory, ObjectStoreParams, Transaction, TransactionMode,
     TransactionResult,
@@ -33,7 +35,7 @@ const FILES: &str = "files";
 
 #[wasm_bindgen]
 extern "C" {
-    /// How the windows of one origin speak to each other.
+    /// A channel between the windows of one origin.
     #[derive(Clone, Debug)]
     type BroadcastChannel;
 
@@ -47,41 +49,43 @@ extern "C" {
     fn set_onmessage(this: &BroadcastChannel, listener: &JsValue);
 }
 
-/// The browser's storage. Clones are the same one.
+/// The browser's storage. Clones share it.
 #[derive(Clone, Debug)]
 pub(crate) struct Storage {
     state: Rc<RefCell<State>>,
     inbox: Inbox,
 }
 
+/// The shared state of a storage and its clones.
 #[derive(Debug, Default)]
 struct State {
-    /// None before it is open, and where there is none.
+    /// The database; `None` before it is open, and where there is none.
     database: Option<Rc<Database>>,
-    /// There is no storage.
+    /// Whether there is no storage.
     is_closed: bool,
-    /// Clips that are to be written next.
-    queue: Vec<Arrival>,
-    /// Clips that are being written.
-    in_flight: Rc<Vec<Arrival>>,
-    /// What is to be written when what is being written is done. Older work is of no interest.
+    /// The clips to write next.
+    queue: Vec<NewClip>,
+    /// The clips that are being written.
+    in_flight: Rc<Vec<NewClip>>,
+    /// The work to write after the clips. Newer work replaces it.
     next: Option<Work>,
-    writing: bool,
-    /// The names of files that there was no room for, by their SHA-256.
+    is_writing: bool,
+    /// The names of the files that were not written, by their SHA-256.
     refused: BTreeMap<String, String>,
-    /// The ids of clips that other windows were told of, or know from where this one does.
+    /// The ids of the clips that were announced to other windows, or read from the storage.
     announced: BTreeSet<String>,
+    /// The channel to other windows; `None` where the browser has none.
     channel: Option<BroadcastChannel>,
-    /// A name for this window.
+    /// The random name of this window.
     window: String,
 }
 
-/// Why something was not written.
+/// The reason why something was not written.
 #[derive(Clone, Debug)]
 enum Failure {
-    /// There is no room for it.
+    /// The storage is full.
     Full,
-    /// What the browser says.
+    /// Another reason, in the browser's words.
     Other(String),
 }
 
@@ -92,7 +96,7 @@ impl From<Error> for Failure {
 }
 
 impl Storage {
-    /// Opens the storage and reads it; [`Incoming::Stored`] brings what is in it.
+    /// Opens the storage and reads it. The answer is [`Incoming::Stored`].
     pub(crate) fn open(inbox: &Inbox) -> Self {
         let storage = Self {
             state: Rc::new(RefCell::new(State {
@@ -109,12 +113,12 @@ impl Storage {
                 let mut state = this.state.borrow_mut();
                 state.is_closed = state.database.is_none();
                 state.queue.clear();
-                if name_of(&error).is_some_and(|name| name == "VersionError") {
+                if exception_name(&error).is_some_and(|name| name == "VersionError") {
                     let reason = "A newer Segue has stored its work in this browser, and this page cannot read it: nothing is stored until you reload the page.";
                     (None, Some(Message::word(reason)))
                 } else {
-                    // A private window, or storage that the user switched off: Segue works, and
-                    // promises nothing.
+                    // A private window, or storage that the user switched off. Segue works without
+                    // it, and shows no progress of storing.
                     log::warn!("no storage in this browser: {error}");
                     (None, None)
                 }
@@ -123,20 +127,20 @@ impl Storage {
             if let Some(reason) = reason {
                 this.inbox.push(Incoming::Failed { reason });
             }
-            this.go_on();
+            this.write_pending();
         });
         storage
     }
 
-    /// What is stored, and what is to be said of it.
-    async fn open_and_read(&self) -> Result<(Option<Stored>, Option<Message>), Error> {
+    /// Opens the database. Returns the stored work, and a notice about a damaged record.
+    async fn open_and_read(&self) -> Result<(Option<StoredWork>, Option<Message>), Error> {
         let database = Rc::new(open_database().await?);
         self.state.borrow_mut().database = Some(Rc::clone(&database));
         let transaction = database.transaction(&[WORK, FILES], TransactionMode::ReadOnly)?;
         let (works, files) = (transaction.object_store(WORK)?, transaction.object_store(FILES)?);
         let (work_keys, texts) = (works.get_all_keys(None, None)?, works.get_all(None, None)?);
         let (keys, values) = (files.get_all_keys(None, None)?, files.get_all(None, None)?);
-        // All asked at once; the answers come in this order.
+        // All requests are sent at once; the answers come in this order.
         let (work_keys, texts) = (work_keys.await?, texts.await?);
         let (keys, values) = (keys.await?, values.await?);
         let texts: Vec<(String, String)> = (work_keys.iter().zip(&texts))
@@ -157,52 +161,50 @@ impl Storage {
         }
         let entries = records.saved.iter().flat_map(|saved| &saved.entries).chain(&records.loose);
         self.state.borrow_mut().announced.extend(entries.map(|entry| entry.id.clone()));
-        let stored = Stored { saved: records.saved, loose: records.loose, files };
+        let stored = StoredWork { saved: records.saved, loose: records.loose, files };
         Ok((Some(stored), problem))
     }
 
-    /// Writes clips that have just come, with their files.
-    pub(crate) fn store(&self, arrivals: Vec<Arrival>) {
+    /// Writes new clips with their files.
+    pub(crate) fn store(&self, clips: Vec<NewClip>) {
         let mut state = self.state.borrow_mut();
         if !state.is_closed {
-            state.queue.extend(arrivals);
+            state.queue.extend(clips);
             drop(state);
-            self.go_on();
+            self.write_pending();
         }
     }
 
-    /// Writes the work, the newest one last. What nobody needs any longer is deleted.
+    /// Writes the work, and deletes what it no longer needs. Of several calls, the last one counts.
     pub(crate) fn save(&self, work: Work) {
         self.state.borrow_mut().next = Some(work);
-        self.go_on();
+        self.write_pending();
     }
 
-    /// Writes the work before the page goes, which may be any moment: with nothing read first, and
-    /// with all clips that are not written yet.
-    pub(crate) fn leave(&self, work: Work) {
-        let (database, arrivals, left) = {
+    /// Writes the work when the page may end at any moment: without reading first, and with all
+    /// clips that are not written yet.
+    pub(crate) fn save_on_exit(&self, work: Work) {
+        let (database, clips, (key, record)) = {
             let mut state = self.state.borrow_mut();
             let Some(database) = state.database.clone() else {
                 return;
             };
-            // It is older.
+            // The queued work is older.
             state.next = None;
-            let arrivals: Vec<Arrival> =
-                state.in_flight.iter().chain(&state.queue).cloned().collect();
+            let clips: Vec<NewClip> = state.in_flight.iter().chain(&state.queue).cloned().collect();
             let mut saved = work.saved;
             (saved.entries).retain(|entry| {
                 entry.file.as_ref().is_none_or(|file| !state.refused.contains_key(&file.sha256))
             });
-            let left = Left { at_ms: Date::now(), known: work.known, saved };
-            (database, arrivals, (left_key(&state.window), left))
+            let record = ExitRecord { at_ms: Date::now(), known: work.known, saved };
+            (database, clips, (exit_key(&state.window), record))
         };
-        let (key, left) = left;
-        let begun =
-            text_of(&left).and_then(|text| begin_put(&database, &arrivals, Some((&key, &text))));
+        let pending =
+            text_of(&record).and_then(|text| begin_put(&database, &clips, Some((&key, &text))));
         let inbox = self.inbox.clone();
         spawn_local(async move {
-            let put = match begun {
-                Ok(begun) => finished(begun).await,
+            let put = match pending {
+                Ok(pending) => committed(pending).await,
                 Err(failure) => Err(failure),
             };
             if let Err(failure) = put {
@@ -211,7 +213,7 @@ impl Storage {
         });
     }
 
-    /// Asks for clips that another window has stored: [`Incoming::Joined`] brings them.
+    /// Reads clips that another window has stored. The answer is [`Incoming::FetchedElsewhere`].
     pub(crate) fn fetch(&self, entries: Vec<SavedEntry>) {
         let Some(database) = self.state.borrow().database.clone() else {
             return;
@@ -227,26 +229,30 @@ impl Storage {
                     let ids = loose.iter().map(|entry| entry.id.clone());
                     this.state.borrow_mut().announced.extend(ids);
                     let saved = None;
-                    this.inbox.push(Incoming::Joined(Box::new(Stored { saved, loose, files })));
+                    this.inbox.push(Incoming::FetchedElsewhere(Box::new(StoredWork {
+                        saved,
+                        loose,
+                        files,
+                    })));
                 }
                 Err(error) => log::warn!("clips of another window: {error}"),
             }
         });
     }
 
-    /// Whether the file of that SHA-256 is being written.
+    /// Returns whether the file of that SHA-256 is queued or being written.
     pub(crate) fn is_writing(&self, sha256: &str) -> bool {
         let state = self.state.borrow();
-        // Nobody waits for a storage that does not open.
-        let mut arrivals = state.in_flight.iter().chain(&state.queue);
-        state.database.is_some() && arrivals.any(|arrival| arrival.sha256 == sha256)
+        // A storage that does not open never writes the queued files.
+        let mut clips = state.in_flight.iter().chain(&state.queue);
+        state.database.is_some() && clips.any(|clip| clip.sha256 == sha256)
     }
 
-    /// How far storing is; `None` where nothing is stored.
+    /// Returns the progress of storing; `None` where nothing is stored.
     pub(crate) fn progress(&self) -> Option<StorageState> {
         let state = self.state.borrow();
         state.database.as_ref()?;
-        Some(if state.writing {
+        Some(if state.is_writing {
             StorageState::UnderWay
         } else if state.refused.is_empty() {
             StorageState::Done
@@ -255,32 +261,34 @@ impl Storage {
         })
     }
 
-    fn go_on(&self) {
+    /// Starts to write what is queued, unless writing is under way.
+    fn write_pending(&self) {
         let mut state = self.state.borrow_mut();
-        if state.database.is_some() && !std::mem::replace(&mut state.writing, true) {
+        if state.database.is_some() && !std::mem::replace(&mut state.is_writing, true) {
             spawn_local(self.clone().write_all());
         }
     }
 
+    /// Writes the queued clips and the work until nothing is left.
     async fn write_all(self) {
         loop {
-            let (database, arrivals, work) = {
+            let (database, clips, work) = {
                 let mut state = self.state.borrow_mut();
-                let arrivals = Rc::new(std::mem::take(&mut state.queue));
-                state.in_flight = Rc::clone(&arrivals);
-                let work = if arrivals.is_empty() { state.next.take() } else { None };
+                let clips = Rc::new(std::mem::take(&mut state.queue));
+                state.in_flight = Rc::clone(&clips);
+                let work = if clips.is_empty() { state.next.take() } else { None };
                 let database =
-                    state.database.clone().filter(|_| !arrivals.is_empty() || work.is_some());
+                    state.database.clone().filter(|_| !clips.is_empty() || work.is_some());
                 let Some(database) = database else {
-                    state.writing = false;
+                    state.is_writing = false;
                     drop(state);
-                    // "Saved" can be shown.
+                    // The panels can show that everything is stored.
                     self.inbox.wake();
                     return;
                 };
-                (database, arrivals, work)
+                (database, clips, work)
             };
-            self.write_arrivals(&database, &arrivals).await;
+            self.write_clips(&database, &clips).await;
             if let Some(work) = work
                 && let Err(failure) = self.write(&database, &work).await
             {
@@ -289,35 +297,35 @@ impl Storage {
         }
     }
 
-    /// Writes clips with their files, all at once, or one by one where there is no room for all:
-    /// what has room is kept.
-    async fn write_arrivals(&self, database: &Database, arrivals: &[Arrival]) {
-        if arrivals.is_empty() {
+    /// Writes clips with their files, all at once, or one by one where there is no room for all, so
+    /// that as many as possible are stored.
+    async fn write_clips(&self, database: &Database, clips: &[NewClip]) {
+        if clips.is_empty() {
             return;
         }
-        if put(database, arrivals).await.is_ok() {
-            self.announce(arrivals.iter().map(|arrival| &arrival.entry));
+        if put(database, clips).await.is_ok() {
+            self.announce(clips.iter().map(|clip| &clip.entry));
             return;
         }
         let (mut full, mut other): (Vec<String>, Option<(String, String)>) = (Vec::new(), None);
-        for arrival in arrivals {
-            let name = arrival.entry.file.as_ref().map_or(&arrival.entry.name, |file| &file.name);
-            match put(database, std::slice::from_ref(arrival)).await {
+        for clip in clips {
+            let name = clip.entry.file.as_ref().map_or(&clip.entry.name, |file| &file.name);
+            match put(database, std::slice::from_ref(clip)).await {
                 Ok(()) => {
-                    self.state.borrow_mut().refused.remove(&arrival.sha256);
-                    self.announce([&arrival.entry]);
+                    self.state.borrow_mut().refused.remove(&clip.sha256);
+                    self.announce([&clip.entry]);
                     continue;
                 }
                 Err(Failure::Full) => full.push(name.clone()),
                 Err(Failure::Other(reason)) => other = Some((name.clone(), reason)),
             }
-            self.state.borrow_mut().refused.insert(arrival.sha256.clone(), name.clone());
+            self.state.borrow_mut().refused.insert(clip.sha256.clone(), name.clone());
         }
         full.dedup();
         if !full.is_empty() {
             let reason = msg!(
                 "This browser's storage is full: {names} will not be here on the next visit. Remove clips from the library that you do not need.",
-                names = in_short(&full)
+                names = abbreviated(&full)
             );
             self.inbox.push(Incoming::Failed { reason });
         }
@@ -328,6 +336,7 @@ impl Storage {
         }
     }
 
+    /// Writes the missing clips and the record of all work.
     async fn write(&self, database: &Database, work: &Work) -> Result<(), Failure> {
         let asked = database.transaction(&[FILES], TransactionMode::ReadOnly)?;
         let held = keys_of(asked.object_store(FILES)?.get_all_keys(None, None)?.await?);
@@ -336,24 +345,25 @@ impl Storage {
             state.refused.retain(|sha256, _| work.files.contains_key(sha256));
             work.missing(|sha256| held.contains(sha256) || state.refused.contains_key(sha256))
         };
-        self.write_arrivals(database, &missing).await;
+        self.write_clips(database, &missing).await;
         let freed = self.write_record(database, work).await?;
         self.announce(&work.saved.entries);
         if freed {
             let refused = std::mem::take(&mut self.state.borrow_mut().refused);
             let again = work.missing(|sha256| !refused.contains_key(sha256));
-            self.write_arrivals(database, &again).await;
+            self.write_clips(database, &again).await;
         }
         Ok(())
     }
 
-    /// Writes the record of all work, and deletes what nobody needs. Says whether that made room.
+    /// Writes the record of all work, and deletes what it does not need. Returns whether that made
+    /// room.
     async fn write_record(&self, database: &Database, work: &Work) -> Result<bool, Failure> {
         let transaction = database.transaction(&[WORK, FILES], TransactionMode::ReadWrite)?;
         let watched = transaction.object_store(WORK)?.transaction();
         let (works, files) = (transaction.object_store(WORK)?, transaction.object_store(FILES)?);
-        // Other windows may have written meanwhile: what is there is asked, not remembered. Until
-        // this transaction ends, no other begins.
+        // Other windows may have written meanwhile, so the records are read again. No other
+        // transaction begins before this one ends.
         let (latest, work_keys) =
             (works.get(JsValue::from(LATEST))?, works.get_all_keys(None, None)?);
         let held = files.get_all_keys(None, None)?;
@@ -363,7 +373,7 @@ impl Storage {
             latest.map(|text| (LATEST, text)).into_iter().collect();
         for key in &work_keys {
             let is_of_others =
-                row_id(key).is_some_and(|id| !work.known.contains(id)) || is_left(key);
+                clip_id(key).is_some_and(|id| !work.known.contains(id)) || is_exit_key(key);
             if is_of_others
                 && let Some(text) =
                     works.get(JsValue::from(key))?.await?.and_then(|text| text.as_string())
@@ -372,7 +382,7 @@ impl Storage {
             }
         }
         let records = Records::read(texts.iter().map(|(key, text)| (*key, text.as_str())));
-        let mut some_are_unread = work_keys.iter().any(|key| is_unread(key));
+        let mut some_are_unread = work_keys.iter().any(|key| is_unread_key(key));
         if let (Some(problem), Some((_, text))) = (&records.problem, texts.first()) {
             log::warn!("the stored work cannot be read and is kept: {problem}");
             works.put(&JsValue::from(text), Some(&JsValue::from(unread_key(Date::now()))))?;
@@ -381,20 +391,19 @@ impl Storage {
         let there = records.all();
         let all = work.over(&there, |sha256| held.contains(sha256));
         works.put(&JsValue::from(text_of(&all)?), Some(&JsValue::from(LATEST)))?;
-        let rows: BTreeMap<String, &SavedEntry> =
+        let clip_records: BTreeMap<String, &SavedEntry> =
             (all.entries.iter().filter(|entry| entry.file.is_some()))
-                .map(|entry| (row_key(&entry.id), entry))
+                .map(|entry| (clip_key(&entry.id), entry))
                 .collect();
-        for key in work_keys
-            .iter()
-            .filter(|key| is_left(key) || (row_id(key).is_some() && !rows.contains_key(*key)))
-        {
+        for key in work_keys.iter().filter(|key| {
+            is_exit_key(key) || (clip_id(key).is_some() && !clip_records.contains_key(*key))
+        }) {
             works.delete(JsValue::from(key))?;
         }
-        for (key, entry) in rows.iter().filter(|(key, _)| !work_keys.contains(*key)) {
-            works.put(&JsValue::from(row_text(entry)?), Some(&JsValue::from(key)))?;
+        for (key, entry) in clip_records.iter().filter(|(key, _)| !work_keys.contains(*key)) {
+            works.put(&JsValue::from(clip_record_text(entry)?), Some(&JsValue::from(key)))?;
         }
-        // A record that cannot be read may need any file but those that others named, too.
+        // A damaged record may need any file, except those that the readable records name as well.
         let (needed, named) = (all.files(), there.files());
         let is_free = |key: &&String| {
             !needed.contains(key.as_str()) && (!some_are_unread || named.contains(key.as_str()))
@@ -404,11 +413,11 @@ impl Storage {
             files.delete(JsValue::from(key))?;
             freed = true;
         }
-        finished((transaction.commit()?, watched)).await?;
+        committed((transaction.commit()?, watched)).await?;
         Ok(freed)
     }
 
-    /// Tells other windows of clips that are stored by now.
+    /// Announces newly stored clips to other windows.
     fn announce<'a>(&self, entries: impl IntoIterator<Item = &'a SavedEntry>) {
         let mut state = self.state.borrow_mut();
         let new: Vec<&SavedEntry> = (entries.into_iter())
@@ -417,15 +426,15 @@ impl Storage {
         let Some(channel) = state.channel.as_ref().filter(|_| !new.is_empty()) else {
             return;
         };
-        let told = text_of(&new).map(|text| channel.post_message(&JsValue::from(text)));
-        if !matches!(told, Ok(Ok(()))) {
+        let posted = text_of(&new).map(|text| channel.post_message(&JsValue::from(text)));
+        if !matches!(posted, Ok(Ok(()))) {
             log::warn!("other windows were not told of {} clips", new.len());
         }
     }
 }
 
 impl Failure {
-    /// What is said where the work as a whole was not written.
+    /// Returns the notice about work that was not written as a whole.
     fn of_work(&self) -> Message {
         match self {
             Self::Full => {
@@ -440,7 +449,7 @@ impl Failure {
     }
 }
 
-/// Hears what other windows have stored.
+/// Opens the channel to other windows, and forwards their announcements to `inbox`.
 fn open_channel(inbox: &Inbox) -> Option<BroadcastChannel> {
     let channel = BroadcastChannel::new(DATABASE).ok()?;
     let inbox = inbox.clone();
@@ -456,40 +465,45 @@ fn open_channel(inbox: &Inbox) -> Option<BroadcastChannel> {
     Some(channel)
 }
 
+/// Returns a value as JSON.
 fn text_of(value: &impl serde::Serialize) -> Result<String, Failure> {
     serde_json::to_string(value).map_err(|error| Failure::Other(error.to_string()))
 }
 
-fn row_text(entry: &SavedEntry) -> Result<String, Failure> {
-    text_of(&Row { at_ms: Date::now(), entry: entry.clone() })
+/// Returns the record of a clip as JSON.
+fn clip_record_text(entry: &SavedEntry) -> Result<String, Failure> {
+    text_of(&ClipRecord { at_ms: Date::now(), entry: entry.clone() })
 }
 
+/// Returns the keys that are strings.
 fn keys_of(keys: Vec<JsValue>) -> BTreeSet<String> {
     keys.into_iter().filter_map(|key| key.as_string()).collect()
 }
 
-/// A transaction, and a second wrapper of it for asking what went wrong once the first is used up.
-type Begun = (Transaction, Transaction);
+/// A transaction that is being committed, and a second handle for its error, because waiting
+/// consumes the first.
+type PendingCommit = (Transaction, Transaction);
 
-/// Begins to write clips with their files, and one more record, and commits that at once.
+/// Starts to write clips with their files, and one more record, in a transaction that is committed
+/// at once.
 fn begin_put(
     database: &Database,
-    arrivals: &[Arrival],
+    clips: &[NewClip],
     record: Option<(&str, &str)>,
-) -> Result<Begun, Failure> {
+) -> Result<PendingCommit, Failure> {
     let transaction = database.transaction(&[WORK, FILES], TransactionMode::ReadWrite)?;
     let (works, files) = (transaction.object_store(WORK)?, transaction.object_store(FILES)?);
     let mut written = BTreeSet::new();
-    for arrival in arrivals {
-        if written.insert(arrival.sha256.as_str()) {
-            let value: JsValue = match &arrival.bytes {
+    for clip in clips {
+        if written.insert(clip.sha256.as_str()) {
+            let value: JsValue = match &clip.bytes {
                 FileBytes::Here(bytes) => Uint8Array::from(&bytes[..]).into(),
                 FileBytes::Large(file) => file.blob().into(),
             };
-            files.put(&value, Some(&JsValue::from(&arrival.sha256)))?;
+            files.put(&value, Some(&JsValue::from(&clip.sha256)))?;
         }
-        let key = row_key(&arrival.entry.id);
-        works.put(&JsValue::from(row_text(&arrival.entry)?), Some(&JsValue::from(key)))?;
+        let key = clip_key(&clip.entry.id);
+        works.put(&JsValue::from(clip_record_text(&clip.entry)?), Some(&JsValue::from(key)))?;
     }
     if let Some((key, text)) = record {
         works.put(&JsValue::from(text), Some(&JsValue::from(key)))?;
@@ -498,8 +512,8 @@ fn begin_put(
     Ok((transaction.commit()?, watched))
 }
 
-/// Waits until a transaction is carried out.
-async fn finished((transaction, watched): Begun) -> Result<(), Failure> {
+/// Waits until a transaction is committed.
+async fn committed((transaction, watched): PendingCommit) -> Result<(), Failure> {
     let ended = transaction.await;
     if matches!(ended, Ok(TransactionResult::Committed)) {
         return Ok(());
@@ -512,10 +526,12 @@ async fn finished((transaction, watched): Begun) -> Result<(), Failure> {
     })
 }
 
-async fn put(database: &Database, arrivals: &[Arrival]) -> Result<(), Failure> {
-    finished(begin_put(database, arrivals, None)?).await
+/// Writes clips with their files in one transaction.
+async fn put(database: &Database, clips: &[NewClip]) -> Result<(), Failure> {
+    committed(begin_put(database, clips, None)?).await
 }
 
+/// Reads the files of clips.
 async fn read_files(database: &Database, entries: &[SavedEntry]) -> Result<StoredFiles, Error> {
     let transaction = database.transaction(&[FILES], TransactionMode::ReadOnly)?;
     let store = transaction.object_store(FILES)?;
@@ -530,12 +546,12 @@ async fn read_files(database: &Database, entries: &[SavedEntry]) -> Result<Store
     Ok(files)
 }
 
-/// What a browser calls an error.
-fn name_of(error: &Error) -> Option<String> {
+/// Returns the name of a DOM exception; `None` for other errors.
+fn exception_name(error: &Error) -> Option<String> {
     if let Error::DomException(exception) = error { Some(exception.name()) } else { None }
 }
 
-/// A stored file: small ones as their bytes, large ones as the browser's handle.
+/// Returns a stored file: a small one as its bytes, a large one as the browser's handle.
 fn file_bytes(value: JsValue) -> Option<FileBytes> {
     match value.dyn_into::<Uint8Array>() {
         Ok(bytes) => Some(FileBytes::Here(Arc::from(bytes.to_vec()))),
@@ -543,6 +559,7 @@ fn file_bytes(value: JsValue) -> Option<FileBytes> {
     }
 }
 
+/// Opens the database, and creates its stores on the first visit.
 async fn open_database() -> Result<Database, Error> {
     let mut request = Factory::new()?.open(DATABASE, Some(VERSION))?;
     request.on_upgrade_needed(|event| {

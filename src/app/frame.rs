@@ -1,0 +1,150 @@
+//! A frame of the window: the panels, their commands, the picture, and the time of the next frame.
+
+use super::{Segue, picture};
+use crate::platform;
+use crate::ui::{self, Filming};
+use eframe::egui;
+use std::time::Duration;
+
+/// The time between two frames that show the progress of work.
+const SHOW_PROGRESS: Duration = Duration::from_millis(200);
+/// The time between two frames that are drawn without a graphics card, milliseconds.
+const SOFTWARE_FRAME_MS: f64 = 33.0;
+
+impl Segue {
+    /// Advances the app before a frame, and now and then while the page is hidden. Draws nothing.
+    /// Returns whether there is work left.
+    pub(super) fn logic(&mut self, ctx: &egui::Context) -> bool {
+        self.clock.frame_began = platform::now_ms();
+        let more = self.poll();
+        let ticked = self.tick();
+        if ticked {
+            self.animate(ctx);
+        } else if more {
+            // Work that goes on between frames changes nothing in the picture but its progress.
+            let soon = if platform::WORKS_BETWEEN_FRAMES { SHOW_PROGRESS } else { Duration::ZERO };
+            ctx.request_repaint_after(soon);
+        }
+        more && !self.autosave.is_waiting()
+    }
+
+    /// Shows the panels, carries out their commands and draws the picture.
+    pub(super) fn ui(&mut self, ui: &mut egui::Ui, frame: &eframe::Frame) {
+        let dropped = ui.input_mut(|input| std::mem::take(&mut input.raw.dropped_files));
+        if !dropped.is_empty() || ui.input(|input| !input.raw.hovered_files.is_empty()) {
+            self.warn_of_host();
+        }
+        if !dropped.is_empty() {
+            platform::read_dropped(dropped, &self.inbox);
+        }
+        if self.autosave.is_waiting() {
+            return;
+        }
+        self.note_frame_time(ui.ctx(), frame);
+        self.apply_theme(ui.ctx());
+        let before = self.session.revision();
+        self.update_panels(ui.ctx());
+        let mut slot = picture::StageSlot::default();
+        let mut reserve = |stage: egui::Rect, panes: &[(usize, egui::Rect)], ui: &mut egui::Ui| {
+            slot.reserve(stage, panes, ui);
+        };
+        let out = ui::show(&self.session, &mut self.panels, &mut self.curves, &mut reserve, ui);
+        for command in out.commands {
+            self.dispatch(command);
+        }
+        for action in out.actions {
+            self.run_action(&action, ui.ctx());
+        }
+        // After the commands, so that this frame's picture shows what a slider has just changed.
+        let theme = ui::stage_theme(&self.session, ui::theme::theme_of(ui));
+        let look = ui::stage_look(&self.session, theme);
+        let highlights = ui::highlights(&self.session, &self.panels);
+        self.picture.finish(slot, &self.session, (theme.palette(), look), highlights, ui);
+        if self.session.revision() != before {
+            ui.ctx().request_repaint();
+        }
+        if self.picture.is_moving() {
+            self.animate(ui.ctx());
+        }
+        self.frame_stats.begin();
+        self.clock.frame_took = platform::now_ms() - self.clock.frame_began;
+    }
+
+    /// Hands the panels what they show and the session does not have.
+    fn update_panels(&mut self, ctx: &egui::Context) {
+        self.panels.cameras = self.picture.cameras(self.session.panes().len());
+        self.panels.language =
+            self.languages.update(&self.session, &mut self.window.language, &self.inbox, ctx);
+        self.session.set_lesson_language(self.panels.language.tag());
+        self.panels.fetching = self.downloads.under_way().collect();
+        self.panels.stored = self.autosave.progress();
+        if self.session.is_driven() {
+            self.panels.gamepad = platform::gamepad().map(|pad| ui::Gamepad {
+                walk: pad.left,
+                look: pad.right,
+                run: pad.run,
+                strafe: pad.strafe,
+            });
+        }
+        self.panels.filming = Filming {
+            pictures: platform::can_take_pictures(),
+            films: platform::can_film(),
+            secs: self.film.as_ref().map(platform::Film::secs),
+        };
+    }
+
+    /// Records the duration of the last frame. eframe measures all of it, up to the commands for
+    /// the graphics device, but only where the frame began with the screen's refresh; for a frame
+    /// that was computed inside an input event, the time measured by [`Self::ui`] stands in.
+    fn note_frame_time(&mut self, ctx: &egui::Context, frame: &eframe::Frame) {
+        let measured_ms = frame.info().cpu_usage.map(|secs| secs * 1e3);
+        let total_ms = if self.window.within_event { None } else { measured_ms }
+            .unwrap_or(self.clock.frame_took as f32);
+        if self.frame_stats.count() > 0 {
+            self.frame_stats.record(self.clock.frame_took as f32, total_ms);
+        }
+        self.window.within_event = ctx.input(|input| {
+            let computed_at_once = |event: &egui::Event| {
+                matches!(
+                    event,
+                    egui::Event::PointerButton { .. }
+                        | egui::Event::Copy
+                        | egui::Event::Cut
+                        | egui::Event::Paste(_)
+                )
+            };
+            input.events.iter().any(computed_at_once)
+        });
+    }
+
+    /// Requests the next frame for the time at which there will be something new to see or to do.
+    pub(super) fn schedule(&mut self, ctx: &egui::Context) {
+        let now_ms = platform::now_ms();
+        let dragging = ctx.input(|input| input.pointer.any_down());
+        let waits = [
+            self.address.update(&self.session, dragging, now_ms),
+            self.autosave.update(&self.session, &self.large_files, now_ms),
+            self.session.notices().next_change_secs().map(|secs| secs * 1e3),
+            // The next second of a film.
+            self.film.as_ref().map(|film| (1.0 - film.secs().fract()) * 1e3),
+        ];
+        if let Some(wait) = waits.into_iter().flatten().min_by(f64::total_cmp) {
+            ctx.request_repaint_after(Duration::from_secs_f64((wait / 1e3).max(0.0)));
+        }
+        if self.autosave.is_waiting() {
+            ctx.request_repaint();
+        }
+        if self.session.is_playing() {
+            self.animate(ctx);
+        }
+    }
+
+    /// Requests the next frame of an animation: at the screen's next refresh, or, where frames are
+    /// drawn in software, late enough to leave the processor time for everything else.
+    fn animate(&self, ctx: &egui::Context) {
+        match &self.window.pacer {
+            Some(pacer) => pacer.next_frame(ctx, self.clock.frame_began, SOFTWARE_FRAME_MS),
+            None => ctx.request_repaint(),
+        }
+    }
+}
